@@ -1,0 +1,40 @@
+/* A session: settings -> a running garment. Loads what the scene names, drapes it, and hands one frame after
+ * the other to the renderer. Knows no GL. */
+#ifndef TOILE_APP_SESSION_H
+#define TOILE_APP_SESSION_H
+
+#include "app/settings.h"
+#include "cloth/cloth.h"
+#include "render/renderer.h"
+
+typedef struct tl_session tl_session;
+
+/* Loads and settles; shows progress. */
+tl_session *tl_session_create(const struct tl_settings *settings, tl_error *error);
+void tl_session_destroy(tl_session **session);
+
+/* One frame (1/frame_rate s) further: avatar, cloth, normals and tangents. */
+bool tl_session_advance(tl_session *session, tl_error *error);
+/* To frame `number` (0 = settled), from the start when it lies behind. */
+bool tl_session_go_to(tl_session *session, int number, tl_error *error);
+int tl_session_frame_number(const tl_session *session);
+/* Settled state again, frame 0. */
+bool tl_session_reset(tl_session *session, tl_error *error);
+
+/* Takes over changed settings: reloads or re-weaves only what differs. On failure the session is as it was.
+ */
+bool tl_session_apply(tl_session *session, const struct tl_settings *settings, tl_error *error);
+const struct tl_settings *tl_session_settings(const tl_session *session);
+
+/* The frame as the renderer wants it; valid until the next call that changes the session. Orbit camera from
+ * settings.camera, framed on the avatar and garment when camera.distance_m is 0. */
+tl_frame tl_session_frame(const tl_session *session);
+
+/* Where a ray meets the garment: its nearest render vertex and the distance along the ray; false when it
+ * misses. */
+bool tl_session_pick(const tl_session *session, vec3s origin, vec3s direction, uint32_t *vertex,
+                     float *distance_m);
+tl_cloth *tl_session_cloth(tl_session *session); /* NULL when the scene has no garment */
+struct tl_cloth_report tl_session_report(const tl_session *session);
+
+#endif

@@ -1,0 +1,56 @@
+/* Every params struct, one value; and the layers that fill it: defaults < preset < fabric < scene file <
+ * command line. */
+#ifndef TOILE_APP_SETTINGS_H
+#define TOILE_APP_SETTINGS_H
+
+#include "assets/weave.h"
+#include "cloth/cloth.h"
+#include "config/options.h"
+#include "render/renderer.h"
+
+struct tl_scene_params {              /* table "scene": what to show; names of built-ins or paths */
+    char garment[TL_STRING_SIZE];     /* "dress", "skirt", "none", or a glTF file */
+    char avatar[TL_STRING_SIZE];      /* "form", "none", or a glTF file */
+    char environment[TL_STRING_SIZE]; /* "studio", or an .exr or .hdr file */
+    char fabric[TL_STRING_SIZE];      /* name of an embedded fabric, a YAML file, or "none" */
+    char preset[TL_STRING_SIZE];      /* name of an embedded preset, or a YAML file */
+    char clip[TL_STRING_SIZE];        /* animation of the avatar; "": the first; "none": the rest pose */
+    float environment_yaw_deg;
+};
+
+struct tl_camera_params { /* table "camera": an orbit about a target */
+    float yaw_deg;        /* 0 looks from +Z; positive moves the eye towards +X */
+    float pitch_deg;      /* positive looks down */
+    float distance_m;     /* 0: frames what is there */
+    float target[3];      /* metres; used when distance_m > 0 */
+    float fov_deg;        /* vertical */
+};
+
+struct tl_settings {
+    struct tl_scene_params scene;
+    struct tl_camera_params camera;
+    struct tl_cloth_params cloth;
+    struct tl_cloth_fabric fabric;
+    struct tl_weave_params weave;
+    struct tl_material_params material;
+    struct tl_light_params light;
+    struct tl_image_params image;
+};
+
+#define TL_SETTINGS_TABLES 8
+/* The bindings of a settings value, in the order of the reference page. */
+void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[TL_SETTINGS_TABLES]);
+
+/* What the command line says about settings. */
+struct tl_settings_source {
+    const char *scene_file;         /* YAML, .glb or .gltf, or NULL: the built-in scene */
+    const char *const *assignments; /* "table.key=value", later ones win */
+    size_t assignment_count;
+};
+bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *source, tl_error *error);
+
+/* Layers a named fabric or preset over settings already there (the panel does this). */
+bool tl_settings_apply_fabric(struct tl_settings *settings, const char *name, tl_error *error);
+bool tl_settings_apply_preset(struct tl_settings *settings, const char *name, tl_error *error);
+
+#endif

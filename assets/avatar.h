@@ -1,0 +1,22 @@
+/* What wears the garment and is collided with: a model whose mesh may move. Immutable once made. */
+#ifndef TOILE_ASSETS_AVATAR_H
+#define TOILE_ASSETS_AVATAR_H
+
+#include "assets/model.h"
+
+typedef struct tl_avatar {
+    tl_model model;
+} tl_avatar;
+
+bool tl_avatar_load(const char *path, tl_avatar *out, tl_error *error);
+void tl_avatar_release(tl_avatar *avatar);
+
+/* The built-in dress form (assets/form.c): a tailor's torso on a stand, 1.6 m high, feet of the stand at y =
+ * 0, facing +Z, closed and manifold, covered in canvas. */
+tl_avatar tl_avatar_form(void);
+
+/* Half-width (x) and half-depth (z) in metres of the form's horizontal section at height `y_m`, for cutting
+ * garments around it; false above the neck and below the hips. */
+bool tl_form_section(float y_m, float *half_width_m, float *half_depth_m);
+
+#endif

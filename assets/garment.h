@@ -1,0 +1,35 @@
+/* A garment: the mesh to draw, what it is at rest as flat cloth, what is sewn to what, and what is pinned.
+ *
+ * Physics vertices are not listed: cloth welds render vertices of bitwise equal start position, and those
+ * that seams join. Immutable once made. */
+#ifndef TOILE_ASSETS_GARMENT_H
+#define TOILE_ASSETS_GARMENT_H
+
+#include "assets/model.h"
+
+struct tl_seam_pair {
+    uint32_t a, b;
+}; /* render vertices to be drawn together and then welded */
+
+typedef struct tl_garment {
+    tl_model model; /* mesh.positions is where the cloth starts */
+    /* Rest shape as flat cloth, metres: x along the weft, y along the warp, one per render vertex; NULL when
+     * the file has no pattern: then each triangle's start shape is its rest shape and UV directions give warp
+     * and weft. */
+    vec2s *pattern;
+    size_t seam_count;
+    struct tl_seam_pair *seams;
+    size_t pin_count;
+    uint32_t *pins; /* render vertices held where they start (on the avatar, they follow its nearest point) */
+} tl_garment;
+
+/* A glTF file as a garment. */
+bool tl_garment_load(const char *path, tl_garment *out, tl_error *error);
+void tl_garment_release(tl_garment *garment);
+
+/* Built-in garments, cut as flat panels around the built-in dress form (assets/form.h): "dress", "skirt".
+ * `edge_m` is the wanted length of an edge. False when the name is unknown (the message lists the names). */
+bool tl_garment_cut(const char *name, float edge_m, tl_garment *out, tl_error *error);
+extern const char *const tl_garment_names[]; /* NULL-terminated */
+
+#endif

@@ -1,0 +1,28 @@
+#include "assets/material.h"
+
+#include <math.h>
+#include <stdio.h>
+
+tl_material tl_material_default(const char *name)
+{
+    const struct tl_uv_transform identity = {.scale = {1, 1}};
+    const struct tl_map none = {.transform = identity};
+    tl_material material = {.diffuse = {{0.5f, 0.5f, 0.5f}},
+                            .specular = {{0.04f, 0.04f, 0.04f}},
+                            .normal_scale = 1,
+                            .occlusion_strength = 1,
+                            .diffuse_map = none,
+                            .normal_map = none,
+                            .gloss_map = none,
+                            .specular_map = none,
+                            .occlusion_map = none};
+    snprintf(material.name, sizeof material.name, "%s", name);
+    return material;
+}
+
+float tl_glossiness_from_roughness(float roughness)
+{
+    float alpha = roughness * roughness;
+    float exponent = (2 / fmaxf(alpha * alpha, 1e-12f) - 2) / 4;
+    return 1 - 1 / fmaxf(exponent, 1);
+}

@@ -1,0 +1,51 @@
+/* A glTF 2.0 scene, flattened into one mesh in metres, with its materials, and the skeleton and clips that
+ * move it.
+ *
+ * Loaded: node hierarchy (also scaled, mirrored: winding is mended), skins, animations (step, linear, cubic
+ * spline), KHR_texture_transform, KHR_mesh_quantization, base colour, normal, occlusion, metallic-roughness,
+ * alpha mask, double-sided, sparse accessors, triangle strips and fans. Everything else is ignored, and named
+ * once in `ignored`. Immutable after load. Threads: tl_model_pose may run on several threads. */
+#ifndef TOILE_ASSETS_MODEL_H
+#define TOILE_ASSETS_MODEL_H
+
+#include "assets/material.h"
+#include "assets/mesh.h"
+#include "assets/surface.h"
+
+typedef struct tl_rig tl_rig; /* nodes, skins, per-vertex weights, clips */
+
+struct tl_clip {
+    char name[64];
+    double duration_s;
+};
+
+typedef struct tl_model {
+    char *name;   /* file name without folders */
+    tl_mesh mesh; /* rest pose: node transforms and skins applied, no animation */
+    size_t material_count;
+    tl_material *materials; /* at least one */
+    size_t image_count;
+    tl_image *images; /* the maps that materials point to */
+    size_t clip_count;
+    struct tl_clip *clips;
+    tl_rig *rig; /* NULL when nothing moves */
+    size_t ignored_count;
+    char **ignored; /* "KHR_materials_sheen", "morph targets", ...: each once */
+} tl_model;
+
+/* .gltf or .glb. Refuses indices out of range, NaN positions, files without triangles, sizes that lie. */
+bool tl_model_load(const char *path, tl_model *out, tl_error *error);
+void tl_model_release(tl_model *model); /* frees and zeroes */
+
+/* Positions of the mesh at `time_s` of clip `clip` (looped), skinned on the CPU; mesh->vertex_count of them.
+ * Clip -1, or a model without a rig, gives the rest pose. */
+void tl_model_pose(const tl_model *model, int clip, double time_s, vec3s *positions);
+
+/* Index of the clip called `name` (exact); "" gives 0; -1 when there is none. */
+int tl_model_find_clip(const tl_model *model, const char *name);
+
+/* Writes surfaces as one GLB: positions, normals, tangents, UVs, materials with colours and PNG maps; atomic.
+ */
+bool tl_model_export_glb(const char *path, const tl_surface *surfaces, size_t surface_count, tl_error *error);
+
+#endif

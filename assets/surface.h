@@ -1,0 +1,25 @@
+/* The contract between whoever moves a mesh (cloth, an animated avatar) and the renderer: a borrowed view of
+ * one frame's geometry. Plain data, owned by nobody: the arrays must outlive the frame. */
+#ifndef TOILE_ASSETS_SURFACE_H
+#define TOILE_ASSETS_SURFACE_H
+
+#include "assets/material.h"
+#include "assets/mesh.h"
+
+typedef struct tl_surface {
+    const char *name; /* "garment", "avatar", "ground" */
+    size_t vertex_count;
+    const vec3s *positions; /* metres, world */
+    const vec3s *normals;   /* unit; towards the outside */
+    const vec4s *tangents;  /* unit xyz, handedness w: bitangent = w * cross(n, t) */
+    const vec2s *uvs;
+    size_t index_count;
+    const uint32_t *indices;
+    size_t part_count;
+    const struct tl_mesh_part *parts;
+    const tl_material *materials;
+    uint64_t topology_revision; /* changes when anything but positions, normals and tangents does */
+    uint64_t motion_revision;   /* changes when positions do */
+} tl_surface;
+
+#endif

@@ -1,0 +1,29 @@
+/* Woven fabrics made from a drawing of their interlacing, at true millimetre scale: each yarn is a bent
+ * elliptic tube; height is the upper envelope, normals its analytic slope, gloss and tint follow the yarn on
+ * top. */
+#ifndef TOILE_ASSETS_WEAVE_H
+#define TOILE_ASSETS_WEAVE_H
+
+#include "assets/material.h"
+#include "config/options.h"
+
+enum tl_weave_pattern { TL_WEAVE_NONE, TL_WEAVE_PLAIN, TL_WEAVE_TWILL, TL_WEAVE_SATIN };
+
+struct tl_weave_params {
+    int pattern;         /* enum tl_weave_pattern; NONE: the material's own maps only */
+    float warp_pitch_mm; /* distance between warp yarns */
+    float weft_pitch_mm; /* distance between weft yarns */
+    float crimp_mm;      /* height of a yarn's crest over the fabric's middle plane */
+    float warp_gloss;    /* added to material.glossiness on warp yarns */
+    float weft_gloss;    /* ... on weft yarns */
+    float warp_tint[3];  /* factor on material.diffuse on warp yarns, linear */
+    float weft_tint[3];
+    int texels_per_yarn; /* resolution of the maps */
+};
+extern const struct tl_option_table tl_weave_options; /* "weave" */
+
+/* Maps of one repeat. pattern NONE gives false without an error: there is nothing to make. */
+bool tl_weave_create(const struct tl_weave_params *params, tl_weave *out);
+void tl_weave_release(tl_weave *weave);
+
+#endif

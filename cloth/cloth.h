@@ -1,0 +1,89 @@
+/* The cloth: a mass-spring sheet in physical units, solved by XPBD with substeps, in double precision.
+ *
+ * Render vertices are welded into physics vertices (bitwise equal start position; seams once they are
+ * closed), so UV seams do not tear. Results do not depend on the number of threads. Positions are metres,
+ * world axes. Ownership: a tl_cloth borrows its garment and must not outlive it. Threads: one at a time per
+ * cloth. */
+#ifndef TOILE_CLOTH_CLOTH_H
+#define TOILE_CLOTH_CLOTH_H
+
+#include "assets/garment.h"
+#include "cloth/collider.h"
+#include "config/options.h"
+
+typedef struct tl_cloth tl_cloth;
+
+/* What the cloth is made of: SI, per metre of fabric width where the quantity is per width. Table "fabric".
+ */
+struct tl_cloth_fabric {
+    double areal_density; /* kg/m^2 */
+    double stretch_weft;  /* N/m, membrane stiffness along u */
+    double stretch_warp;  /* N/m, along v */
+    double shear;         /* N/m */
+    double bend_weft;     /* N m, bending stiffness B of a strip cut along u */
+    double bend_warp;     /* N m, along v */
+    double damping;       /* 1/s, of velocities relative to rigid motion of nothing: plain viscous air drag */
+    double friction;      /* Coulomb coefficient against avatar and ground */
+    double thickness_m;   /* kept between the cloth's middle surface and the avatar */
+};
+extern const struct tl_option_table tl_cloth_fabric_options;
+
+/* How it is solved. Table "cloth". */
+enum tl_cloth_solver { TL_CLOTH_XPBD };
+struct tl_cloth_params {
+    int solver;          /* enum tl_cloth_solver */
+    double dt;           /* s, one step; a frame is made of whole steps: see frame_rate */
+    double frame_rate;   /* frames per second of the animation */
+    int substeps;        /* per step */
+    double gravity;      /* m/s^2, along -Y */
+    double settle_s;     /* longest simulated time spent settling before the first frame */
+    double settle_speed; /* m/s: settled when the fastest vertex is slower than this */
+    float edge_m;        /* wanted edge length of built-in garments */
+};
+extern const struct tl_option_table tl_cloth_options;
+
+/* What can be measured of the state; tests, `toile plan` and the panel read it. */
+struct tl_cloth_report {
+    size_t vertex_count, edge_count, triangle_count; /* physics mesh */
+    size_t open_seams;                               /* seam pairs not yet welded */
+    double time_s;         /* simulated since creation or reset, settling excluded */
+    double max_speed;      /* m/s */
+    double max_strain;     /* largest |length / rest length - 1| over edges that are not seams */
+    double kinetic_energy; /* J */
+    double deepest_m;      /* deepest penetration below the avatar's surface, 0 when none */
+    bool settled;
+};
+
+tl_cloth *tl_cloth_create(const tl_garment *garment, const struct tl_cloth_fabric *fabric,
+                          const struct tl_cloth_params *params, tl_error *error);
+void tl_cloth_destroy(tl_cloth **cloth);
+
+/* Changes material or solver in place; the state is kept. */
+bool tl_cloth_set(tl_cloth *cloth, const struct tl_cloth_fabric *fabric, const struct tl_cloth_params *params,
+                  tl_error *error);
+
+/* Back to the garment's start. */
+void tl_cloth_reset(tl_cloth *cloth);
+
+/* Draws seams together, resolves starting penetration and lets the cloth come to rest against the collider,
+ * at rest itself, with strong damping. Shows progress; stops early on tl_interrupted. The clock stays at 0.
+ * TL_UNSTABLE when the state left its envelope (non-finite or strain beyond 10): the last good state is kept.
+ */
+bool tl_cloth_settle(tl_cloth *cloth, const tl_collider *collider, tl_error *error);
+
+/* Advances by one frame, 1/frame_rate seconds; the collider's surface moves linearly from its previous to its
+ * current pose during it. Failure as above. */
+bool tl_cloth_step(tl_cloth *cloth, const tl_collider *collider, tl_error *error);
+
+/* Pull: holds the physics vertex of a render vertex at a target (metres) by a soft constraint until released.
+ */
+void tl_cloth_grab(tl_cloth *cloth, uint32_t render_vertex, vec3s target);
+void tl_cloth_release(tl_cloth *cloth);
+
+/* Current positions of all render vertices, and the physics vertex of each (for tl_frames). */
+void tl_cloth_positions(const tl_cloth *cloth, vec3s *out);
+const uint32_t *tl_cloth_weld(const tl_cloth *cloth);
+
+struct tl_cloth_report tl_cloth_measure(const tl_cloth *cloth, const tl_collider *collider /* or NULL */);
+
+#endif

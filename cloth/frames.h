@@ -1,0 +1,27 @@
+/* Normals and tangents of a moving mesh, every frame.
+ *
+ * Normals per physics (welded) vertex, angle-weighted, tangents per render vertex, MikkTSpace-compatible: the
+ * groups, signs and degenerate flags of MikkTSpace depend on connectivity and UVs only, so they are built
+ * once; each frame streams positions (CLOTH notes: groups as in mikktspace.c, weights by the angle between
+ * projected edges). A vertex whose UVs are degenerate keeps its last tangent, made orthogonal to its normal,
+ * or takes any orthogonal direction. Always finite, orthonormal to 1e-5, w = +1 or -1; a zero-area fan keeps
+ * its last normal, at first +Y. Threads: one update at a time per object. */
+#ifndef TOILE_CLOTH_FRAMES_H
+#define TOILE_CLOTH_FRAMES_H
+
+#include "assets/mesh.h"
+
+typedef struct tl_frames tl_frames;
+
+/* Physics vertex of every render vertex, by bitwise equal position (-0 equals 0); returns how many there are.
+ * Numbers rise in order of first appearance. */
+size_t tl_weld_positions(const vec3s *positions, size_t count, uint32_t *weld);
+
+/* `weld` as above or from tl_cloth_weld: vertex_count entries. Copies what it needs. */
+tl_frames *tl_frames_create(const tl_mesh *mesh, const uint32_t *weld);
+void tl_frames_destroy(tl_frames **frames);
+
+/* vertex_count of each. */
+void tl_frames_update(tl_frames *frames, const vec3s *positions, vec3s *normals, vec4s *tangents);
+
+#endif

@@ -1,0 +1,13 @@
+# Script of toile_embed: writes OUT, a C file that holds the bytes of every file of INPUTS.
+set(arrays "")
+set(rows "")
+set(index 0)
+foreach(input ${INPUTS})
+  file(READ ${input} hex HEX)
+  string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," bytes "${hex}")
+  get_filename_component(name ${input} NAME)
+  string(APPEND arrays "static const unsigned char file_${index}[] = {${bytes}0};\n")
+  string(APPEND rows "    {\"${name}\", \"${input}\", (const char *)file_${index}, sizeof file_${index} - 1},\n")
+  math(EXPR index "${index} + 1")
+endforeach()
+file(WRITE ${OUT} "#include \"config/embedded.h\"\n\n${arrays}\nconst struct tl_embedded ${SYMBOL}[] = {\n${rows}    {0},\n};\n")

@@ -1,0 +1,203 @@
+#include "config/file.h"
+
+#include "config/interrupt.h"
+#include "config/memory.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static bool check_status(const char *path, struct stat *status, tl_error *error)
+{
+    if (path[0] == '\0')
+        return tl_fail(error, TL_INPUT, "no file name given: name a file");
+    if (stat(path, status) != 0) {
+        if (errno == ENOENT || errno == ENOTDIR)
+            return tl_fail(error, TL_INPUT, "%s: no such file: check the path", path);
+        return tl_fail(error, TL_INPUT, "%s: %s: check the path and its permissions", path, strerror(errno));
+    }
+    if (S_ISDIR(status->st_mode))
+        return tl_fail(error, TL_INPUT, "%s: is a folder: name a file in it", path);
+    if (!S_ISREG(status->st_mode))
+        return tl_fail(error, TL_INPUT, "%s: is not a regular file: copy its contents to one", path);
+    if (status->st_size == 0)
+        return tl_fail(error, TL_INPUT, "%s: is empty: write or fetch it again", path);
+    if ((uint64_t)status->st_size > TL_LIMIT_FILE_BYTES)
+        return tl_fail(error, TL_INPUT, "%s: is larger than 4 GiB: make it smaller", path);
+    return true;
+}
+
+bool tl_file_check(const char *path, tl_error *error)
+{
+    struct stat status;
+    if (!check_status(path, &status, error))
+        return false;
+    if (access(path, R_OK) != 0)
+        return tl_fail(error, TL_INPUT, "%s: %s: make it readable", path, strerror(errno));
+    return true;
+}
+
+bool tl_file_exists(const char *path)
+{
+    struct stat status;
+    return stat(path, &status) == 0;
+}
+
+bool tl_file_read(const char *path, char **data, size_t *size, tl_error *error)
+{
+    struct stat status;
+    if (!check_status(path, &status, error))
+        return false;
+    FILE *stream = fopen(path, "rb");
+    if (!stream)
+        return tl_fail(error, TL_INPUT, "%s: %s: make it readable", path, strerror(errno));
+    size_t expected = (size_t)status.st_size;
+    char *bytes = tl_alloc(expected + 1, 1);
+    size_t got = fread(bytes, 1, expected, stream);
+    fclose(stream);
+    if (got != expected) {
+        free(bytes);
+        return tl_fail(error, TL_INPUT, "%s: only %zu of %zu bytes could be read: check the disk", path, got,
+                       expected);
+    }
+    *data = bytes;
+    *size = expected;
+    return true;
+}
+
+static void release(struct tl_writer *writer)
+{
+    if (writer->stream)
+        fclose(writer->stream);
+    free(writer->path);
+    free(writer->temporary);
+    *writer = (struct tl_writer){0};
+}
+
+/* /dev/null and its like must not be replaced by a renamed file. */
+static bool is_device(const char *path)
+{
+    struct stat status;
+    return stat(path, &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
+}
+
+bool tl_writer_begin(struct tl_writer *writer, const char *path, tl_error *error)
+{
+    *writer = (struct tl_writer){0};
+    struct stat status;
+    if (path[0] == '\0')
+        return tl_fail(error, TL_OUTPUT, "no output file named: give one with -o");
+    if (stat(path, &status) == 0 && S_ISDIR(status.st_mode))
+        return tl_fail(error, TL_OUTPUT, "%s: is a folder: name a file in it", path);
+    writer->path = tl_copy_string(path);
+    if (is_device(path)) {
+        writer->temporary = tl_copy_string(path);
+        writer->stream = fopen(path, "wb");
+    } else {
+        writer->temporary = tl_format("%s.XXXXXX.tmp", path);
+        int descriptor = mkstemps(writer->temporary, 4);
+        writer->stream = descriptor < 0 ? NULL : fdopen(descriptor, "wb");
+        if (writer->stream) {
+            mode_t mask = umask(0);
+            umask(mask);
+            fchmod(descriptor,
+                   0666 & ~mask); /* mkstemps makes private files; the result should be an ordinary one */
+            tl_interrupt_guard(writer->temporary);
+        }
+    }
+    if (!writer->stream) {
+        int reason = errno;
+        release(writer);
+        return tl_fail(error, TL_OUTPUT,
+                       "%s: cannot be written: %s: choose a folder that exists and is writable", path,
+                       strerror(reason));
+    }
+    return true;
+}
+
+void tl_writer_close_stream(struct tl_writer *writer)
+{
+    if (writer->stream)
+        fclose(writer->stream);
+    writer->stream = NULL;
+}
+
+void tl_writer_abandon(struct tl_writer *writer)
+{
+    if (!writer->temporary)
+        return;
+    if (strcmp(writer->temporary, writer->path) != 0) {
+        unlink(writer->temporary);
+        tl_interrupt_unguard(writer->temporary);
+    }
+    release(writer);
+}
+
+bool tl_writer_commit(struct tl_writer *writer, tl_error *error)
+{
+    bool device = strcmp(writer->temporary, writer->path) == 0;
+    FILE *stream = writer->stream ? writer->stream : fopen(writer->temporary, "rb+");
+    writer->stream = NULL;
+    errno = 0;
+    bool written = stream && !ferror(stream) && fflush(stream) == 0;
+    if (written && !device)
+        written = fsync(fileno(stream)) == 0;
+    int reason = errno;
+    if (stream && fclose(stream) != 0 && written) {
+        written = false;
+        reason = errno;
+    }
+    if (written && !device && rename(writer->temporary, writer->path) != 0) {
+        written = false;
+        reason = errno;
+    }
+    if (!written) {
+        tl_fail(error, TL_OUTPUT,
+                "%s: could not be written whole: %s: free some space or choose another place", writer->path,
+                reason ? strerror(reason) : "write error");
+        tl_writer_abandon(writer);
+        return false;
+    }
+    tl_interrupt_unguard(writer->temporary);
+    release(writer);
+    return true;
+}
+
+bool tl_folder_make(const char *path, tl_error *error)
+{
+    char *copy = tl_copy_string(path);
+    bool made = true;
+    for (char *c = copy + 1; made && *c; c++)
+        if (*c == '/') {
+            *c = '\0';
+            made = mkdir(copy, 0777) == 0 || errno == EEXIST;
+            *c = '/';
+        }
+    made = made && (mkdir(copy, 0777) == 0 || errno == EEXIST);
+    int reason = errno;
+    free(copy);
+    struct stat status;
+    if (made && (stat(path, &status) != 0 || !S_ISDIR(status.st_mode)))
+        return tl_fail(error, TL_OUTPUT, "%s: is a file, not a folder: choose another name", path);
+    if (!made)
+        return tl_fail(error, TL_OUTPUT, "%s: folder cannot be made: %s: choose another place", path,
+                       strerror(reason));
+    return true;
+}
+
+char *tl_path_beside(const char *base_file, const char *relative)
+{
+    const char *slash = base_file ? strrchr(base_file, '/') : NULL;
+    if (relative[0] == '/' || !slash)
+        return tl_copy_string(relative);
+    return tl_format("%.*s%s", (int)(slash - base_file + 1), base_file, relative);
+}
+
+bool tl_path_has_extension(const char *path, const char *extension)
+{
+    const char *dot = strrchr(path, '.');
+    return dot && strcasecmp(dot + 1, extension) == 0;
+}

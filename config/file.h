@@ -1,0 +1,51 @@
+/* Files: whole reads with a size limit, and writes that either appear complete or not at all.
+ *
+ * A reader refuses directories, missing and empty files with one line. A writer makes `path.XXXXXX.tmp`
+ * beside the target, and renames it over the target on commit, after flushing; a full disk or an abandoned
+ * write leaves no file behind and the old target untouched. A second Ctrl-C removes the temporary file too
+ * (config/interrupt.h). Not atomic: writing to a device such as /dev/full or /dev/null, which is written
+ * directly. */
+#ifndef TOILE_CONFIG_FILE_H
+#define TOILE_CONFIG_FILE_H
+
+#include "config/error.h"
+
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#define TL_LIMIT_FILE_BYTES ((uint64_t)4 << 30) /* larger inputs are refused */
+
+/* Reads a whole file; *data is followed by a NUL that *size does not count; free(*data). */
+bool tl_file_read(const char *path, char **data, size_t *size, tl_error *error);
+
+/* Checks that `path` is a readable regular file and not empty (same messages as tl_file_read). */
+bool tl_file_check(const char *path, tl_error *error);
+
+bool tl_file_exists(const char *path);
+
+struct tl_writer {
+    char *path;      /* final name */
+    char *temporary; /* name to write to; libraries that open files themselves use it */
+    FILE *stream;    /* open for writing; NULL after tl_writer_close_stream */
+};
+
+bool tl_writer_begin(struct tl_writer *writer, const char *path, tl_error *error);
+/* Closes the stream but keeps the temporary file, for libraries that open `temporary` themselves. */
+void tl_writer_close_stream(struct tl_writer *writer);
+/* Flushes, checks and renames; on failure removes the temporary file. Releases the writer either way. */
+bool tl_writer_commit(struct tl_writer *writer, tl_error *error);
+/* Removes the temporary file. Safe on a zeroed or already released writer. */
+void tl_writer_abandon(struct tl_writer *writer);
+
+/* Makes a folder and its parents; fine when it exists. */
+bool tl_folder_make(const char *path, tl_error *error);
+
+/* `relative` seen from the folder that holds `base_file`; absolute paths are returned as they are. New
+ * string. */
+char *tl_path_beside(const char *base_file, const char *relative);
+
+/* True when `path` ends in `.extension` (no dot given), ignoring case. */
+bool tl_path_has_extension(const char *path, const char *extension);
+
+#endif

@@ -1,0 +1,52 @@
+#include "config/interrupt.h"
+
+#include <limits.h>
+#include <signal.h>
+#include <string.h>
+#include <unistd.h>
+
+#define GUARDS 16
+
+static volatile sig_atomic_t signals_seen;
+/* Fixed storage, so that the handler needs nothing but unlink and _exit, which are async-signal-safe. */
+static char guarded[GUARDS][PATH_MAX];
+
+static void on_signal(int number)
+{
+    (void)number;
+    if (++signals_seen < 2)
+        return;
+    for (int i = 0; i < GUARDS; i++)
+        if (guarded[i][0])
+            unlink(guarded[i]);
+    _exit(130);
+}
+
+void tl_interrupt_install(void)
+{
+    struct sigaction action = {.sa_handler = on_signal};
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+}
+
+bool tl_interrupted(void)
+{
+    return signals_seen > 0;
+}
+
+void tl_interrupt_guard(const char *temporary)
+{
+    for (int i = 0; i < GUARDS; i++)
+        if (!guarded[i][0] && strlen(temporary) < PATH_MAX) {
+            strcpy(guarded[i], temporary);
+            return;
+        }
+}
+
+void tl_interrupt_unguard(const char *temporary)
+{
+    for (int i = 0; i < GUARDS; i++)
+        if (strcmp(guarded[i], temporary) == 0)
+            guarded[i][0] = '\0';
+}

@@ -1,0 +1,15 @@
+/* Ctrl-C: the first SIGINT or SIGTERM sets a flag that long loops ask for; a second one removes the temporary
+ * files of open tl_writers and ends the program with status 130. */
+#ifndef TOILE_CONFIG_INTERRUPT_H
+#define TOILE_CONFIG_INTERRUPT_H
+
+#include <stdbool.h>
+
+void tl_interrupt_install(void);
+bool tl_interrupted(void);
+
+/* For tl_writer only: remembers a temporary file that a killed program must remove; forgets it again. */
+void tl_interrupt_guard(const char *temporary);
+void tl_interrupt_unguard(const char *temporary);
+
+#endif

@@ -1,0 +1,40 @@
+#include "config/memory.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void *insist(void *memory, size_t count, size_t size)
+{
+    if (!memory) {
+        fprintf(stderr, "toile: out of memory: %zu x %zu bytes were refused by the system\n", count, size);
+        abort();
+    }
+    return memory;
+}
+
+void *tl_alloc(size_t count, size_t size)
+{
+    return insist(calloc(count ? count : 1, size), count, size);
+}
+
+void *tl_resize(void *memory, size_t count, size_t size)
+{
+    return insist(reallocarray(memory, count ? count : 1, size), count, size);
+}
+
+char *tl_copy_string(const char *text)
+{
+    return insist(strdup(text), strlen(text), 1);
+}
+
+char *tl_format(const char *format, ...)
+{
+    char *text = NULL;
+    va_list arguments;
+    va_start(arguments, format);
+    int length = vasprintf(&text, format, arguments);
+    va_end(arguments);
+    return insist(length < 0 ? NULL : text, 1, 1);
+}

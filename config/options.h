@@ -1,0 +1,133 @@
+/* Option tables: the one place where a parameter's name, type, range, unit and help stand.
+ *
+ * A technique declares a params struct, its defaults and one const tl_option_table. A tl_binding joins a
+ * table to a value of its struct. From a list of bindings come the scene file's keys, --set, --help, the
+ * reference page and the panel; nothing else knows any option by name.
+ *
+ *     struct tl_shadow_params { int map_size; float softness_m; };
+ *     #define TL_SHADOW_DEFAULTS .map_size = 256, .softness_m = 0.05f
+ *     static const struct tl_option rows[] = {
+ *         TL_OPTION_INT(struct tl_shadow_params, map_size, 1, 4096, "texels", "side of a shadow map"),
+ *         TL_OPTION_FLOAT(struct tl_shadow_params, softness_m, 0, 10, "m", "..."),
+ *     };
+ *     const struct tl_option_table tl_shadow_options = TL_OPTION_TABLE("shadow", "...", rows, struct
+ * tl_shadow_params, TL_SHADOW_DEFAULTS);
+ *
+ * Field types by option type: TL_BOOL bool; TL_INT int; TL_FLOAT float; TL_DOUBLE double; TL_ENUM int (index
+ * into `choices`); TL_COLOUR vec3-like float[3] (linear Rec. 709, written [r, g, b]); TL_STRING and TL_PATH
+ * char[TL_STRING_SIZE]. A relative TL_PATH is taken from the folder of the file that names it.
+ *
+ * NaN and infinities are refused everywhere. Threads: pure. */
+#ifndef TOILE_CONFIG_OPTIONS_H
+#define TOILE_CONFIG_OPTIONS_H
+
+#include "config/error.h"
+
+#include <stddef.h>
+#include <stdio.h>
+
+#define TL_STRING_SIZE 1024
+
+enum tl_option_type { TL_BOOL, TL_INT, TL_FLOAT, TL_DOUBLE, TL_ENUM, TL_COLOUR, TL_STRING, TL_PATH };
+
+struct tl_option {
+    const char *name; /* key inside its table: map_size */
+    enum tl_option_type type;
+    size_t offset;              /* of the field in the params struct */
+    double minimum, maximum;    /* inclusive; for TL_COLOUR of each component; unused for text */
+    const char *const *choices; /* TL_ENUM: names, NULL-terminated */
+    const char *unit;           /* "m", "texels", "" for none */
+    const char *help;           /* one line, says what a larger value does */
+};
+
+struct tl_option_table {
+    const char *name; /* first part of table.key */
+    const char *help; /* one line */
+    const struct tl_option *rows;
+    size_t row_count;
+    size_t params_size;   /* bytes of the params struct */
+    const void *defaults; /* one value of it */
+};
+
+struct tl_binding {
+    const struct tl_option_table *table;
+    void *params;
+};
+
+#define TL_OPTION_BOOL(s, field, text)                                                                       \
+    {                                                                                                        \
+#field, TL_BOOL, offsetof(s, field), 0, 1, NULL, "", text                                            \
+    }
+#define TL_OPTION_INT(s, field, lo, hi, u, text)                                                             \
+    {                                                                                                        \
+#field, TL_INT, offsetof(s, field), lo, hi, NULL, u, text                                            \
+    }
+#define TL_OPTION_FLOAT(s, field, lo, hi, u, text)                                                           \
+    {                                                                                                        \
+#field, TL_FLOAT, offsetof(s, field), lo, hi, NULL, u, text                                          \
+    }
+#define TL_OPTION_DOUBLE(s, field, lo, hi, u, text)                                                          \
+    {                                                                                                        \
+#field, TL_DOUBLE, offsetof(s, field), lo, hi, NULL, u, text                                         \
+    }
+#define TL_OPTION_ENUM(s, field, names, text)                                                                \
+    {                                                                                                        \
+#field, TL_ENUM, offsetof(s, field), 0, 0, names, "", text                                           \
+    }
+#define TL_OPTION_COLOUR(s, field, lo, hi, text)                                                             \
+    {                                                                                                        \
+#field, TL_COLOUR, offsetof(s, field), lo, hi, NULL, "linear", text                                  \
+    }
+#define TL_OPTION_STRING(s, field, text)                                                                     \
+    {                                                                                                        \
+#field, TL_STRING, offsetof(s, field), 0, 0, NULL, "", text                                          \
+    }
+#define TL_OPTION_PATH(s, field, text)                                                                       \
+    {                                                                                                        \
+#field, TL_PATH, offsetof(s, field), 0, 0, NULL, "", text                                            \
+    }
+#define TL_OPTION_TABLE(label, text, row_array, s, ...)                                                      \
+    {                                                                                                        \
+        .name = (label), .help = (text), .rows = (row_array),                                                \
+        .row_count = sizeof(row_array) / sizeof((row_array)[0]), .params_size = sizeof(s),                   \
+        .defaults = &(const s)                                                                               \
+        {                                                                                                    \
+            __VA_ARGS__                                                                                      \
+        }                                                                                                    \
+    }
+
+/* Copies every table's defaults into its params. */
+void tl_options_reset(const struct tl_binding *bindings, size_t count);
+
+/* Sets one option from text. `key` is "table.name"; `where` ("scene.yaml:12" or "--set") begins the message
+ * of a failure, which names the key, what was expected and, for an unknown key, the nearest known one.
+ * `base_file` is the file that relative paths are taken from, or NULL for the working directory. Nothing is
+ * changed on failure. */
+bool tl_options_set(const struct tl_binding *bindings, size_t count, const char *key, const char *text,
+                    const char *where, const char *base_file, tl_error *error);
+
+/* Sets an option from "table.name=value", as --set takes it. */
+bool tl_options_set_assignment(const struct tl_binding *bindings, size_t count, const char *assignment,
+                               tl_error *error);
+
+/* Reads a YAML document: a mapping of table names to mappings of option names to scalars (or [r, g, b]).
+ * `name` is the file's name for messages and the base of relative paths. On failure some options may have
+ * been set already: callers discard the settings. Documents over 1 MiB, aliases and nested structures are
+ * refused. */
+bool tl_options_read_yaml(const struct tl_binding *bindings, size_t count, const char *name, const char *data,
+                          size_t size, tl_error *error);
+
+/* The option's value as the text that tl_options_set takes back. New string. */
+char *tl_options_get_text(const struct tl_binding *binding, const struct tl_option *row);
+
+/* All options as help text (one line each), as a Markdown reference page, or as a YAML document that
+ * tl_options_read_yaml reads back to the same values. */
+void tl_options_print_help(const struct tl_binding *bindings, size_t count, FILE *out);
+void tl_options_print_reference(const struct tl_binding *bindings, size_t count, FILE *out);
+void tl_options_print_yaml(const struct tl_binding *bindings, size_t count, FILE *out);
+
+/* The word of `words` nearest to `word` (optimal string alignment distance), or NULL when none is near enough
+ * to be a likely slip: distance at most a third of the longer word, at least 1. */
+const char *tl_nearest_word(const char *word, const char *const *words, size_t count);
+
+#endif

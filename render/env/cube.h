@@ -1,0 +1,39 @@
+/* Cube maps on the CPU: the form in which the renderer works with an environment. Pure.
+ *
+ * Faces in GL order +X -X +Y -Y +Z -Z, rows as GL uploads them (t from 0). Texel (x, y) of a face is centred
+ * at s = (x + 0.5) / size, t = (y + 0.5) / size. RGB float, linear radiance. */
+#ifndef TOILE_RENDER_ENV_CUBE_H
+#define TOILE_RENDER_ENV_CUBE_H
+
+#include "assets/environment.h"
+
+#include <cglm/struct.h>
+
+typedef struct tl_cube {
+    int size;      /* texels per face side */
+    float *texels; /* [6][size][size][3] */
+} tl_cube;
+
+tl_cube tl_cube_create(int size); /* black */
+void tl_cube_release(tl_cube *cube);
+
+/* Area average of the environment over every texel (supersampled so that no source texel is missed: a single
+ * bright texel keeps its energy within 1 %). */
+tl_cube tl_cube_from_environment(const tl_environment *environment, int size);
+
+/* Direction (not normalised, largest component 1) of face coordinates s, t in [0, 1]; outside of that range
+ * the plane of the face is continued. OpenGL 4.5, table 8.19 inverted. */
+vec3s tl_cube_direction(int face, float s, float t);
+void tl_cube_locate(vec3s direction, int *face, float *s, float *t);
+
+/* Exact solid angle of texel (x, y), steradians. */
+float tl_cube_solid_angle(int size, int x, int y);
+
+/* Seamless bilinear fetch, as GL with GL_TEXTURE_CUBE_MAP_SEAMLESS (corners: mean of the three texels that
+ * exist). */
+vec3s tl_cube_sample(const tl_cube *cube, vec3s direction);
+
+/* Bilinear fetch of the environment itself in its own layout. */
+vec3s tl_environment_sample(const tl_environment *environment, vec3s direction);
+
+#endif

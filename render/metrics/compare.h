@@ -1,0 +1,27 @@
+/* How different two images are: relative RMSE, FLIP (LDR and HDR), largest difference. Pure.
+ *
+ * Linear RGB(A) float images of equal size. A pixel counts when alpha > 0 in either image; images without
+ * alpha count whole. FLIP: Andersson et al. 2020, "FLIP: A Difference Evaluator for Alternating Images", and
+ * 2021 for HDR; HDR exposures are found from covered pixels only, and a non-finite one is an error. */
+#ifndef TOILE_RENDER_METRICS_COMPARE_H
+#define TOILE_RENDER_METRICS_COMPARE_H
+
+#include "assets/image.h"
+
+struct tl_comparison {
+    size_t covered; /* pixels compared */
+    double
+        rel_rmse; /* sqrt(mean |a-b|^2) / mean luminance-free channel mean of the reference, covered pixels */
+    double flip_mean;  /* covered pixels */
+    double flip_frame; /* whole frame */
+    double max_abs;    /* largest channel difference */
+    bool hdr;          /* HDR-FLIP was used: a value above 1 in the reference, or asked for */
+    double exposure_start, exposure_stop; /* HDR only, log2 */
+};
+
+/* `a` is tested, `b` the reference. Sizes that differ, or NaN or Inf in either, are TL_INPUT errors. `hdr`:
+ * -1 decides by content, 0 LDR, 1 HDR. `pixels_per_degree` <= 0 means FLIP's default, 67. */
+bool tl_image_compare(const tl_image *a, const tl_image *b, int hdr, double pixels_per_degree,
+                      struct tl_comparison *out, tl_error *error);
+
+#endif

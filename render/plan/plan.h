@@ -1,0 +1,66 @@
+/* The plan of a frame: which jobs of the table run, at which level, and why. Pure: no GL, no clock.
+ *
+ * plan = f(jobs, what changed, what the scene requires, what is wanted). A job is dropped when the scene does
+ * not require it or nobody reads what it writes, reused when nothing that it reads has changed, and run
+ * otherwise. */
+#ifndef TOILE_RENDER_PLAN_PLAN_H
+#define TOILE_RENDER_PLAN_PLAN_H
+
+#include "config/error.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+#define TL_JOBS_MAX       32
+#define TL_JOB_LEVELS_MAX 6
+
+enum tl_job_action { TL_JOB_RUN, TL_JOB_REUSE, TL_JOB_DROP };
+extern const char *const tl_job_action_names[]; /* run reuse drop */
+
+typedef struct tl_job {
+    const char *name; /* "regions", "maps", "light" ... */
+    const char *what; /* one line for people */
+    uint32_t reads;   /* bits of resources; a resource that no job writes is an input of the frame */
+    uint32_t writes;
+    uint32_t requires_scene;               /* bits of scene facts that must all hold, else dropped */
+    const char *levels[TL_JOB_LEVELS_MAX]; /* names, cost grows and error falls; at least one */
+    bool (*run)(void *context, int level, tl_error *error);
+} tl_job;
+
+struct tl_plan_input {
+    uint32_t changed;                    /* resources (inputs of the frame) that differ from the last frame */
+    uint32_t valid;                      /* resources that an earlier frame left behind */
+    uint32_t scene;                      /* facts about the scene */
+    uint32_t wanted;                     /* resources that somebody outside reads at the end */
+    const char *const *scene_fact_names; /* by bit, for reasons */
+    const char *const *resource_names;   /* by bit */
+};
+
+struct tl_plan_row {
+    const char *name;
+    enum tl_job_action action;
+    int level;
+    char reason[120];
+    double predicted_ms; /* median of the cost model; NaN while unknown */
+};
+
+typedef struct tl_plan {
+    int count;
+    struct tl_plan_row rows[TL_JOBS_MAX]; /* in the table's order */
+} tl_plan;
+
+/* What jobs took: medians of the last TL_COST_HISTORY runs by (job, level). */
+#define TL_COST_HISTORY 15
+typedef struct tl_cost {
+    float ms[TL_JOBS_MAX][TL_JOB_LEVELS_MAX][TL_COST_HISTORY];
+    int count[TL_JOBS_MAX][TL_JOB_LEVELS_MAX]; /* runs ever recorded */
+} tl_cost;
+void tl_cost_add(tl_cost *cost, int job, int level, double ms);
+double tl_cost_median(const tl_cost *cost, int job, int level); /* NaN when nothing is known */
+
+/* False when the table is not in a possible order: a job reads what only a later one writes. */
+bool tl_jobs_check(const tl_job *jobs, int count, tl_error *error);
+void tl_plan_make(const tl_job *jobs, int count, const struct tl_plan_input *input, const tl_cost *cost,
+                  tl_plan *out);
+
+#endif

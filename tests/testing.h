@@ -1,0 +1,52 @@
+/* What every test needs: cmocka, real data that may be absent, and a few checks. */
+#ifndef TOILE_TESTS_TESTING_H
+#define TOILE_TESTS_TESTING_H
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+/* Path of a file of the real test data (TOILE_DATA overrides the folder). Skips the test, with the reason,
+ * when it is absent. */
+static inline const char *test_data(const char *relative)
+{
+    static char paths[8][1024]; /* a test may hold a few at once */
+    static int next;
+    char *path = paths[next++ % 8];
+    const char *folder = getenv("TOILE_DATA");
+    snprintf(path, sizeof paths[0], "%s/%s", folder ? folder : TOILE_DATA_DIR, relative);
+    if (access(path, R_OK) != 0) {
+        printf("skipped: %s is absent\n", path);
+        skip();
+    }
+    return path;
+}
+
+/* |actual - expected| <= tolerance, and both finite; prints the three when not. */
+#define assert_near(actual, expected, tolerance)                                                             \
+    do {                                                                                                     \
+        double actual_ = (double)(actual), expected_ = (double)(expected), tolerance_ = (double)(tolerance); \
+        if (!(fabs(actual_ - expected_) <= tolerance_)) {                                                    \
+            print_error("%s = %.9g, expected %.9g within %.3g\n", #actual, actual_, expected_, tolerance_);  \
+            fail();                                                                                          \
+        }                                                                                                    \
+    } while (0)
+
+/* A call that must succeed; prints the error's message when it does not. */
+#define assert_ok(call, error)                                                                               \
+    do {                                                                                                     \
+        if (!(call)) {                                                                                       \
+            print_error("%s: %s\n", #call, (error).message);                                                 \
+            fail();                                                                                          \
+        }                                                                                                    \
+    } while (0)
+
+#endif
