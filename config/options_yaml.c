@@ -15,6 +15,8 @@ struct reader {
     const struct tl_binding *bindings;
     size_t count;
     const char *name;
+    const char *data;
+    size_t size;
     yaml_parser_t parser;
     yaml_event_t event; /* the current one */
     /* [binding][row, or the table itself as the last]: line where it was given, 0: not yet */
@@ -32,13 +34,17 @@ static bool fail(const struct reader *reader, size_t line, const char *what)
     return tl_fail(reader->error, TL_USAGE, "%s:%zu: %s", reader->name, line, what);
 }
 
-/* Bytes that are not characters have no line; libyaml gives their offset. */
 static bool fail_parser(const struct reader *reader)
 {
     const yaml_parser_t *parser = &reader->parser;
-    if (parser->error == YAML_READER_ERROR)
-        return tl_fail(reader->error, TL_USAGE, "%s: byte %zu: %s: write the file as UTF-8 text",
-                       reader->name, parser->problem_offset, parser->problem);
+    if (parser->error ==
+        YAML_READER_ERROR) { /* of bytes that are no characters libyaml only knows the offset */
+        size_t line = 1;
+        for (size_t i = 0; i < parser->problem_offset && i < reader->size; i++)
+            line += reader->data[i] == '\n';
+        return tl_fail(reader->error, TL_USAGE, "%s:%zu: %s: write the file as UTF-8 text", reader->name,
+                       line, parser->problem);
+    }
     return tl_fail(reader->error, TL_USAGE, "%s:%zu: %s%s%s: not valid YAML", reader->name,
                    parser->problem_mark.line + 1, parser->context ? parser->context : "",
                    parser->context ? ", " : "", parser->problem ? parser->problem : "damaged");
@@ -221,11 +227,19 @@ bool tl_options_read_yaml(const struct tl_binding *bindings, size_t count, const
 {
     if (size > TL_LIMIT_YAML_BYTES)
         return tl_fail(error, TL_USAGE, "%s: is larger than 1 MiB: that is no list of options", name);
-    struct reader reader = {.bindings = bindings, .count = count, .name = name, .error = error};
+    /* Told the encoding, libyaml refuses UTF-16, but also takes the mark that some editors put before UTF-8
+     * for a character that indents the first line. */
+    size_t mark = size >= 3 && memcmp(data, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0;
+    struct reader reader = {.bindings = bindings,
+                            .count = count,
+                            .name = name,
+                            .data = data + mark,
+                            .size = size - mark,
+                            .error = error};
     if (!yaml_parser_initialize(&reader.parser))
         return tl_fail(error, TL_USAGE, "%s: the YAML reader could not be started", name);
     yaml_parser_set_encoding(&reader.parser, YAML_UTF8_ENCODING);
-    yaml_parser_set_input_string(&reader.parser, (const unsigned char *)data, size);
+    yaml_parser_set_input_string(&reader.parser, (const unsigned char *)reader.data, reader.size);
     reader.given = TL_NEW_ARRAY(size_t *, count);
     for (size_t i = 0; i < count; i++)
         reader.given[i] = TL_NEW_ARRAY(size_t, bindings[i].table->row_count + 1);
