@@ -83,16 +83,13 @@ static bool is_printable(const char *text)
 
 struct tl_excerpt tl_excerpt_of(const char *text)
 {
-    struct tl_excerpt excerpt = {{0}};
-    size_t room = sizeof excerpt.text - sizeof "...";
-    if (strlen(text) <= room) {
-        memcpy(excerpt.text, text, strlen(text));
-        return excerpt;
-    }
-    while (room > 0 && ((unsigned char)text[room] & 0xC0) == 0x80)
-        room--; /* back to the border of a character */
-    memcpy(excerpt.text, text, room);
-    strcpy(excerpt.text + room, "...");
+    struct tl_excerpt excerpt;
+    size_t length = strlen(text), room = sizeof excerpt.text - sizeof "...";
+    bool cut = length > room;
+    if (cut)
+        for (length = room; length > 0 && ((unsigned char)text[length] & 0xC0) == 0x80;)
+            length--; /* back to the border of a character */
+    snprintf(excerpt.text, sizeof excerpt.text, "%.*s%s", (int)length, text, cut ? "..." : "");
     return excerpt;
 }
 
@@ -277,8 +274,8 @@ static char *read_text(const struct tl_option *row, const char *text, char field
         return refuse(row, text, "is not printable UTF-8");
     if (strlen(text) >= TL_STRING_SIZE)
         return tl_format("%zu bytes are too many: expected %d at most", strlen(text), TL_STRING_SIZE - 1);
-    memset(field, 0, TL_STRING_SIZE); /* equal values are equal bytes: sessions compare settings whole */
-    memcpy(field, text, strlen(text));
+    strncpy(field, text,
+            TL_STRING_SIZE); /* clears the rest: equal values are equal bytes, which sessions compare */
     return NULL;
 }
 
