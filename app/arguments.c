@@ -35,17 +35,23 @@ struct flag {
 };
 
 static const struct flag flags_known[] = {
-    {"--garment", TL_FLAGS_SCENE, FLAG_ASSIGN, "scene.garment", "NAME|FILE", "dress, skirt, none, or a .glb or .gltf file"},
-    {"--avatar", TL_FLAGS_SCENE, FLAG_ASSIGN, "scene.avatar", "NAME|FILE", "form, none, or a .glb or .gltf file"},
-    {"--env", TL_FLAGS_SCENE, FLAG_ASSIGN, "scene.environment", "NAME|FILE", "studio, or an .exr or .hdr file"},
-    {"--fabric", TL_FLAGS_SCENE, FLAG_ASSIGN, "scene.fabric", "NAME|FILE", "a fabric: `toile info fabrics` lists them"},
+    {"--garment", TL_FLAGS_SCENE, FLAG_ASSIGN, "scene.garment", "NAME|FILE",
+     "dress, skirt, none, or a .glb or .gltf file"},
+    {"--avatar", TL_FLAGS_SCENE, FLAG_ASSIGN, "scene.avatar", "NAME|FILE",
+     "form, none, or a .glb or .gltf file"},
+    {"--env", TL_FLAGS_SCENE, FLAG_ASSIGN, "scene.environment", "NAME|FILE",
+     "studio, or an .exr or .hdr file"},
+    {"--fabric", TL_FLAGS_SCENE, FLAG_ASSIGN, "scene.fabric", "NAME|FILE",
+     "a fabric: `toile info fabrics` lists them"},
     {"--preset", TL_FLAGS_SCENE, FLAG_ASSIGN, "scene.preset", "NAME|FILE", "paper, draft, review or final"},
     {"--method", TL_FLAGS_SCENE, FLAG_ASSIGN, "light.method", "METHOD", "how light is computed"},
     {"--size", TL_FLAGS_SCENE, FLAG_SIZE, NULL, "WxH", "size of the image in pixels"},
-    {"--set", TL_FLAGS_SCENE, FLAG_SET, NULL, "TABLE.KEY=VALUE", "any option: `toile help options` lists them"},
+    {"--set", TL_FLAGS_SCENE, FLAG_SET, NULL, "TABLE.KEY=VALUE",
+     "any option: `toile help options` lists them"},
     {"-o", TL_FLAGS_OUTPUT, FLAG_OUTPUT, NULL, "FILE", "where the result goes"},
     {"--frame", TL_FLAGS_FRAME, FLAG_FRAME, NULL, "N", "frame of the animation; 0 is the settled start"},
-    {"--frames", TL_FLAGS_FRAMES, FLAG_FRAMES, NULL, "A:B", "all frames from A to B; OUT.png becomes OUT.0001.png ..."},
+    {"--frames", TL_FLAGS_FRAMES, FLAG_FRAMES, NULL, "A:B",
+     "all frames from A to B; OUT.png becomes OUT.0001.png ..."},
     {"--json", TL_FLAGS_JSON, FLAG_JSON, NULL, NULL, "print one JSON object and nothing else"},
     {"--ldr", TL_FLAGS_METRIC, FLAG_LDR, NULL, NULL, "compare as display images, clamped to [0, 1]"},
     {"--hdr", TL_FLAGS_METRIC, FLAG_HDR, NULL, NULL, "compare over all exposures that the reference holds"},
@@ -83,7 +89,8 @@ static const struct flag *find_flag(const char *word, unsigned flags, tl_error *
 }
 
 /* A whole number from `lowest`, the whole text. */
-static bool read_whole(const char *flag, const char *text, const char **end, int lowest, int *out, tl_error *error)
+static bool read_whole(const char *flag, const char *text, const char **end, int lowest, int *out,
+                       tl_error *error)
 {
     char *stop;
     long value = strtol(text, &stop, 10);
@@ -179,7 +186,8 @@ bool tl_arguments_parse(int argc, char **argv, unsigned flags, struct tl_argumen
         const char *word = argv[i];
         if (word[0] != '-' || word[1] == '\0') {
             if (out->positional_count == TL_POSITIONALS_MAX)
-                return tl_fail(error, TL_USAGE, "%s: too many arguments: at most %d", word, TL_POSITIONALS_MAX);
+                return tl_fail(error, TL_USAGE, "%s: too many arguments: at most %d", word,
+                               TL_POSITIONALS_MAX);
             out->positionals[out->positional_count++] = word;
             continue;
         }
@@ -195,7 +203,8 @@ bool tl_arguments_parse(int argc, char **argv, unsigned flags, struct tl_argumen
             return tl_fail(error, TL_USAGE, "%s: takes no value: write it alone", flag->name);
         if (flag->value && !value) {
             if (i + 1 == argc)
-                return tl_fail(error, TL_USAGE, "%s: needs a value: %s %s", flag->name, flag->name, flag->value);
+                return tl_fail(error, TL_USAGE, "%s: needs a value: %s %s", flag->name, flag->name,
+                               flag->value);
             value = argv[++i];
         }
         if (!take_flag(flag, value, out, error))
@@ -218,7 +227,8 @@ void tl_arguments_print_flags(unsigned flags)
         if (!belongs(&flags_known[i], flags))
             continue;
         char left[64];
-        snprintf(left, sizeof left, "%s %s", flags_known[i].name, flags_known[i].value ? flags_known[i].value : "");
+        snprintf(left, sizeof left, "%s %s", flags_known[i].name,
+                 flags_known[i].value ? flags_known[i].value : "");
         printf("  %-26s %s\n", left, flags_known[i].help);
     }
 }

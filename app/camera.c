@@ -4,7 +4,8 @@
 
 #define MARGIN 1.08f
 
-/* Distance at which the box's vertical extent and its widest horizontal radius fit, so that turning does not zoom. */
+/* Distance at which the box's vertical extent and its widest horizontal radius fit, so that turning does not
+ * zoom. */
 static float fitting_distance(struct tl_box box, float fov_y, float aspect)
 {
     vec3s size = glms_vec3_sub(box.upper, box.lower);

@@ -11,7 +11,8 @@ bool tl_command_export(const struct tl_arguments *arguments, tl_error *error)
                        arguments->output ? arguments->output : "export");
     struct tl_settings settings;
     struct tl_writer writer;
-    if (!tl_stage_settings(arguments, &settings, error) || !tl_writer_begin(&writer, arguments->output, error))
+    if (!tl_stage_settings(arguments, &settings, error) ||
+        !tl_writer_begin(&writer, arguments->output, error))
         return false;
     tl_writer_abandon(&writer); /* it could be written; the exporter makes its own */
     tl_session *session = tl_session_create(&settings, error);

@@ -14,12 +14,14 @@ static void print_plan(const tl_plan *plan, const struct tl_render_memory *memor
         char cost[16] = "-";
         if (isfinite(row->predicted_ms))
             snprintf(cost, sizeof cost, "%.2f", row->predicted_ms);
-        printf("%-12s %-6s %5d %10s  %s\n", row->name, tl_job_action_names[row->action], row->level, cost, row->reason);
+        printf("%-12s %-6s %5d %10s  %s\n", row->name, tl_job_action_names[row->action], row->level, cost,
+               row->reason);
     }
     const double mebibyte = 1024.0 * 1024.0;
     printf("\nmemory (MiB): PEMs %.2f, maps %.2f, targets %.2f, surfaces %.2f, other %.2f, total %.2f\n",
-           (double)memory->pems / mebibyte, (double)memory->maps / mebibyte, (double)memory->targets / mebibyte,
-           (double)memory->surfaces / mebibyte, (double)memory->other / mebibyte, (double)memory->total / mebibyte);
+           (double)memory->pems / mebibyte, (double)memory->maps / mebibyte,
+           (double)memory->targets / mebibyte, (double)memory->surfaces / mebibyte,
+           (double)memory->other / mebibyte, (double)memory->total / mebibyte);
 }
 
 static void print_plan_json(const tl_plan *plan, const struct tl_render_memory *memory)
@@ -34,7 +36,8 @@ static void print_plan_json(const tl_plan *plan, const struct tl_render_memory *
         cJSON_AddStringToObject(job, "action", tl_job_action_names[row->action]);
         cJSON_AddStringToObject(job, "reason", row->reason);
         cJSON_AddItemToObject(job, "predicted_ms",
-                              isfinite(row->predicted_ms) ? cJSON_CreateNumber(row->predicted_ms) : cJSON_CreateNull());
+                              isfinite(row->predicted_ms) ? cJSON_CreateNumber(row->predicted_ms)
+                                                          : cJSON_CreateNull());
         cJSON_AddItemToArray(jobs, job);
     }
     cJSON *bytes = cJSON_AddObjectToObject(object, "memory_bytes");
@@ -47,8 +50,8 @@ static void print_plan_json(const tl_plan *plan, const struct tl_render_memory *
     tl_json_print(object);
 }
 
-/* The plan of frame N is that of an animation at N: the frame before it is drawn, so that what it leaves behind is
- * reused and costs are known. Frame 0 is the first frame, where all is new. */
+/* The plan of frame N is that of an animation at N: the frame before it is drawn, so that what it leaves
+ * behind is reused and costs are known. Frame 0 is the first frame, where all is new. */
 bool tl_command_plan(const struct tl_arguments *arguments, tl_error *error)
 {
     struct tl_stage stage;
@@ -61,7 +64,8 @@ bool tl_command_plan(const struct tl_arguments *arguments, tl_error *error)
                tl_session_advance(stage.session, error);
     if (done) {
         tl_frame next = tl_session_frame(stage.session);
-        const struct tl_render_settings settings = {.light = stage.settings.light, .image = stage.settings.image};
+        const struct tl_render_settings settings = {.light = stage.settings.light,
+                                                    .image = stage.settings.image};
         tl_plan plan;
         tl_renderer_plan(stage.renderer, &next, &settings, &plan);
         done = tl_stage_draw(&stage, error); /* memory is what the frame really holds */

@@ -26,7 +26,8 @@ static bool check_output(const struct tl_arguments *arguments, tl_error *error)
     if (!arguments->output)
         return tl_fail(error, TL_USAGE, "render: no output named: add -o FILE.exr or -o FILE.png");
     if (!tl_path_has_extension(arguments->output, "exr") && !tl_path_has_extension(arguments->output, "png"))
-        return tl_fail(error, TL_USAGE, "%s: unknown kind of image: end the name in .exr or .png", arguments->output);
+        return tl_fail(error, TL_USAGE, "%s: unknown kind of image: end the name in .exr or .png",
+                       arguments->output);
     char *path = frame_path(arguments, arguments->first_frame);
     struct tl_writer writer;
     bool writable = tl_writer_begin(&writer, path, error);
@@ -45,7 +46,8 @@ static bool save_frame(struct tl_stage *stage, const char *path, tl_error *error
         saved = tl_renderer_read(stage->renderer, &image, error) &&
                 tl_exr_save(path, &(struct tl_exr_layer){.channel_names = names, .image = &image}, 1, error);
     } else {
-        saved = tl_renderer_show_image(stage->renderer, &image, error) && tl_image_save_png(path, &image, error);
+        saved =
+            tl_renderer_show_image(stage->renderer, &image, error) && tl_image_save_png(path, &image, error);
     }
     tl_image_release(&image);
     return saved;
@@ -54,12 +56,14 @@ static bool save_frame(struct tl_stage *stage, const char *path, tl_error *error
 static bool render_frames(struct tl_stage *stage, const struct tl_arguments *arguments, tl_error *error)
 {
     int first = arguments->first_frame, last = arguments->last_frame;
-    struct tl_progress progress = tl_progress_begin(first == 0 && last == 0 ? "rendering" : "simulating and rendering");
+    struct tl_progress progress =
+        tl_progress_begin(first == 0 && last == 0 ? "rendering" : "simulating and rendering");
     bool done = true;
     /* Frames before the first are simulated only: the cloth's state is the sum of all steps. */
     for (int frame = 0; done && frame <= last; frame++) {
         if (tl_interrupted()) {
-            done = tl_fail(error, TL_INTERRUPTED, "render: stopped at frame %d: frames before it are kept", frame);
+            done = tl_fail(error, TL_INTERRUPTED, "render: stopped at frame %d: frames before it are kept",
+                           frame);
             break;
         }
         if (frame > 0)

@@ -6,10 +6,12 @@
 #include <string.h>
 
 const struct tl_command tl_commands[] = {
-    {"view", "view [SCENE] [OPTIONS]", "Opens the review window: orbit, play, pull on the cloth, change fabric and light.",
+    {"view", "view [SCENE] [OPTIONS]",
+     "Opens the review window: orbit, play, pull on the cloth, change fabric and light.",
      TL_FLAGS_SCENE | TL_FLAGS_WINDOW, tl_command_view},
     {"render", "render [SCENE] -o OUT.exr|OUT.png [OPTIONS]",
-     "Renders frames without a screen: .exr holds linear radiance and coverage, .png what a person would see.",
+     "Renders frames without a screen: .exr holds linear radiance and coverage, .png what a person would "
+     "see.",
      TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_FRAME | TL_FLAGS_FRAMES, tl_command_render},
     {"plan", "plan [SCENE] [--json] [OPTIONS]",
      "Prints what would run for a frame, why, at what cost and in how much memory.",
@@ -17,12 +19,15 @@ const struct tl_command tl_commands[] = {
     {"compare", "compare TESTED REFERENCE [--json] [--ldr|--hdr]",
      "Tells how different two images are: relative RMSE, mean FLIP, largest difference.",
      TL_FLAGS_JSON | TL_FLAGS_METRIC, tl_command_compare},
-    {"export", "export [SCENE] -o OUT.glb [OPTIONS]", "Writes the draped garment and its avatar as a GLB file.",
+    {"export", "export [SCENE] -o OUT.glb [OPTIONS]",
+     "Writes the draped garment and its avatar as a GLB file.",
      TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_FRAME, tl_command_export},
     {"info", "info FILE|fabrics|presets|garments [--json]",
-     "Tells what a file holds and how it will be read, or lists what is built in.", TL_FLAGS_JSON, tl_command_info},
+     "Tells what a file holds and how it will be read, or lists what is built in.", TL_FLAGS_JSON,
+     tl_command_info},
     {"help", "help [COMMAND|options|reference]",
-     "Lists the commands, explains one, or prints every option (reference: as a Markdown page).", 0, tl_command_help},
+     "Lists the commands, explains one, or prints every option (reference: as a Markdown page).", 0,
+     tl_command_help},
     {0},
 };
 

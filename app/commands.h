@@ -1,5 +1,5 @@
-/* The commands of the program. Each takes its parsed arguments and fails with one line; a command whose check failed
- * without an error sets code TL_UNSTABLE. Results go to stdout, all else to stderr. */
+/* The commands of the program. Each takes its parsed arguments and fails with one line; a command whose check
+ * failed without an error sets code TL_UNSTABLE. Results go to stdout, all else to stderr. */
 #ifndef TOILE_APP_COMMANDS_H
 #define TOILE_APP_COMMANDS_H
 

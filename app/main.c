@@ -1,4 +1,5 @@
-/* toile COMMAND [SCENE] [OPTIONS]: finds the command, parses its flags, runs it, turns its error into one line. */
+/* toile COMMAND [SCENE] [OPTIONS]: finds the command, parses its flags, runs it, turns its error into one
+ * line. */
 #include "app/commands.h"
 #include "config/interrupt.h"
 #include "config/log.h"

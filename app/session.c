@@ -11,8 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A clip's first pose may be far from the rest pose that a garment was made for. The avatar walks there in this time,
- * before frame 0, so that the cloth is carried along instead of torn. */
+/* A clip's first pose may be far from the rest pose that a garment was made for. The avatar walks there in
+ * this time, before frame 0, so that the cloth is carried along instead of torn. */
 #define POSE_IN_S 1.0
 
 struct tl_session {
@@ -34,7 +34,7 @@ struct tl_session {
 
     bool woven;
     tl_weave weave;
-    tl_material *materials;      /* of the garment: the file's, or what settings.material makes of them */
+    tl_material *materials; /* of the garment: the file's, or what settings.material makes of them */
     uint64_t material_revision;
 
     int frame;
@@ -85,8 +85,10 @@ static bool load_avatar(tl_session *session, tl_error *error)
     if (session->clip >= 0 || clip[0] == '\0')
         return true;
     if (model->clip_count == 0)
-        return tl_fail(error, TL_INPUT, "%s: has no animation \"%s\", nor any other: leave scene.clip out", name, clip);
-    return tl_fail(error, TL_INPUT, "%s: has no animation \"%s\": its first is \"%s\", `toile info` lists them all", name,
+        return tl_fail(error, TL_INPUT, "%s: has no animation \"%s\", nor any other: leave scene.clip out",
+                       name, clip);
+    return tl_fail(error, TL_INPUT,
+                   "%s: has no animation \"%s\": its first is \"%s\", `toile info` lists them all", name,
                    clip, model->clips[0].name);
 }
 
@@ -310,9 +312,9 @@ static bool same_text(const char *a, const char *b)
 /* What cannot be changed in place: who wears what, and what is decided when the cloth is made. */
 static bool needs_new_scene(const struct tl_settings *old, const struct tl_settings *new)
 {
-    return !same_text(old->scene.garment, new->scene.garment) || !same_text(old->scene.avatar, new->scene.avatar) ||
-           !same_text(old->scene.clip, new->scene.clip) || old->cloth.edge_m != new->cloth.edge_m ||
-           old->image.ground != new->image.ground;
+    return !same_text(old->scene.garment, new->scene.garment) ||
+           !same_text(old->scene.avatar, new->scene.avatar) || !same_text(old->scene.clip, new->scene.clip) ||
+           old->cloth.edge_m != new->cloth.edge_m || old->image.ground != new->image.ground;
 }
 
 bool tl_session_apply(tl_session *session, const struct tl_settings *settings, tl_error *error)
@@ -381,7 +383,8 @@ tl_frame tl_session_frame(tl_session *session)
 }
 
 /* Moeller & Trumbore 1997; both sides count. */
-static bool hit_triangle(vec3s origin, vec3s direction, const vec3s corners[3], float *distance_m, float weights[3])
+static bool hit_triangle(vec3s origin, vec3s direction, const vec3s corners[3], float *distance_m,
+                         float weights[3])
 {
     vec3s side = glms_vec3_sub(corners[1], corners[0]), other = glms_vec3_sub(corners[2], corners[0]);
     vec3s p = glms_vec3_cross(direction, other);
@@ -399,7 +402,8 @@ static bool hit_triangle(vec3s origin, vec3s direction, const vec3s corners[3], 
     return u >= 0 && v >= 0 && u + v <= 1 && *distance_m > 0;
 }
 
-bool tl_session_pick(const tl_session *session, vec3s origin, vec3s direction, uint32_t *vertex, float *distance_m)
+bool tl_session_pick(const tl_session *session, vec3s origin, vec3s direction, uint32_t *vertex,
+                     float *distance_m)
 {
     if (!session->has_garment)
         return false;

@@ -41,6 +41,7 @@ void tl_stage_release(struct tl_stage *stage)
 bool tl_stage_draw(struct tl_stage *stage, tl_error *error)
 {
     tl_frame frame = tl_session_frame(stage->session);
-    const struct tl_render_settings settings = {.light = stage->settings.light, .image = stage->settings.image};
+    const struct tl_render_settings settings = {.light = stage->settings.light,
+                                                .image = stage->settings.image};
     return tl_renderer_draw(stage->renderer, &frame, &settings, error);
 }

@@ -1,11 +1,10 @@
 #include "assets/fit.h"
 
-#include "assets/avatar.h"
+#include "assets/form.h"
 #include "config/memory.h"
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 struct segment {
     vec2s ends[2]; /* x, z */
@@ -134,12 +133,14 @@ struct waist {
     struct tl_girth girth;
 };
 
-static bool find_waist(const tl_mesh *mesh, float from, float to, struct waist *out)
+/* The narrowest section where the waist of a standing person is. */
+static bool find_waist(const tl_mesh *mesh, struct waist *out)
 {
+    const float from = 0.56f, to = 0.66f; /* of the body's height */
+    const int sections = 21;
     struct tl_box box = tl_box_of(mesh->positions, mesh->vertex_count);
     float height = box.upper.y - box.lower.y;
-    out->girth.length_m = INFINITY;
-    const int sections = 21;
+    *out = (struct waist){.girth = {.length_m = INFINITY}};
     for (int i = 0; i < sections; i++) {
         float y = box.lower.y + height * (from + (to - from) * (float)i / (float)(sections - 1));
         struct tl_girth girth;
@@ -151,21 +152,17 @@ static bool find_waist(const tl_mesh *mesh, float from, float to, struct waist *
 
 bool tl_garment_fit(tl_garment *garment, const char *body_name, const tl_mesh *body, tl_error *error)
 {
-    tl_avatar form = tl_avatar_form();
-    struct waist old, new;
-    /* The form has no head: its waist lies higher in proportion. */
-    bool found = find_waist(&form.model.mesh, 0.60f, 0.72f, &old) && find_waist(body, 0.56f, 0.66f, &new);
-    tl_avatar_release(&form);
-    if (!found)
-        return tl_fail(error, TL_INPUT, "%s: no waist was found to fit a built-in garment to: name a garment file",
-                       body_name);
-    float scale = new.girth.length_m / old.girth.length_m;
+    struct waist waist;
+    if (!find_waist(body, &waist))
+        return tl_fail(error, TL_INPUT,
+                       "%s: no waist was found to fit a built-in garment to: name a garment file", body_name);
+    float scale = waist.girth.length_m / (float)tl_form_girth(TL_FORM_WAIST);
     tl_mesh *mesh = &garment->model.mesh;
     for (size_t i = 0; i < mesh->vertex_count; i++) {
         vec3s *p = &mesh->positions[i];
-        p->x = new.girth.centre.x + scale * (p->x - old.girth.centre.x);
-        p->y = new.y_m + scale * (p->y - old.y_m);
-        p->z = new.girth.centre.y + scale * (p->z - old.girth.centre.y);
+        p->x = waist.girth.centre.x + scale * p->x;
+        p->y = waist.y_m + scale * (p->y - (float)TL_FORM_WAIST);
+        p->z = waist.girth.centre.y + scale * p->z;
         garment->pattern[i] = glms_vec2_scale(garment->pattern[i], scale);
         mesh->uvs[i] = glms_vec2_scale(mesh->uvs[i], scale);
     }

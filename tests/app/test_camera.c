@@ -25,7 +25,8 @@ static void every_corner_is_in_view(void **state)
             float largest = 0;
             for (int corner = 0; corner < 8; corner++) {
                 float x, y;
-                vec3s point = {{corner & 1 ? box.upper.x : box.lower.x, corner & 2 ? box.upper.y : box.lower.y,
+                vec3s point = {{corner & 1 ? box.upper.x : box.lower.x,
+                                corner & 2 ? box.upper.y : box.lower.y,
                                 corner & 4 ? box.upper.z : box.lower.z}};
                 project(&camera, aspects[a], point, &x, &y);
                 largest = fmaxf(largest, fmaxf(fabsf(x), fabsf(y)));

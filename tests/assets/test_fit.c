@@ -18,8 +18,9 @@ static tl_mesh tubes(const float (*circles)[3], size_t count)
             float angle = 2 * (float)M_PI * (float)i / SIDES;
             uint32_t base = (uint32_t)t * SIDES * 2, next = (i + 1) % SIDES;
             for (uint32_t level = 0; level < 2; level++)
-                mesh.positions[base + 2 * i + level] = (vec3s){{circles[t][1] + circles[t][0] * cosf(angle),
-                                                                (float)level, circles[t][2] + circles[t][0] * sinf(angle)}};
+                mesh.positions[base + 2 * i + level] =
+                    (vec3s){{circles[t][1] + circles[t][0] * cosf(angle), (float)level,
+                             circles[t][2] + circles[t][0] * sinf(angle)}};
             const uint32_t quad[6] = {2 * i, 2 * i + 1, 2 * next, 2 * next, 2 * i + 1, 2 * next + 1};
             for (int k = 0; k < 6; k++)
                 *index++ = base + quad[k];
