@@ -3,6 +3,7 @@
 #include "app/camera.h"
 #include "app/moving.h"
 #include "assets/avatar.h"
+#include "assets/fit.h"
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
@@ -100,6 +101,12 @@ static bool load_garment(tl_session *session, tl_error *error)
     if (is_built_in_garment(name)) {
         if (!tl_garment_cut(name, session->settings.cloth.edge_m, &session->garment, error))
             return false;
+        const char *wearer = session->settings.scene.avatar;
+        bool own_body = strcmp(wearer, "form") != 0 && strcmp(wearer, "none") != 0;
+        if (own_body && !tl_garment_fit(&session->garment, wearer, &session->avatar.model.mesh, error)) {
+            tl_garment_release(&session->garment);
+            return false;
+        }
     } else if (!tl_garment_load(name, &session->garment, error)) {
         return false;
     }
