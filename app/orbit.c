@@ -7,7 +7,7 @@
 #define DISTANCE_FARTHEST_M 100.0f
 
 struct basis {
-    vec3s right, up, back; /* back: from the target towards the eye */
+    vec3s right, up; /* of the image */
 };
 
 static struct basis basis_of(const struct tl_camera_params *params)
@@ -16,7 +16,6 @@ static struct basis basis_of(const struct tl_camera_params *params)
     return (struct basis){
         .right = {{cosf(yaw), 0, -sinf(yaw)}},
         .up = {{-sinf(yaw) * sinf(pitch), cosf(pitch), -cosf(yaw) * sinf(pitch)}},
-        .back = {{sinf(yaw) * cosf(pitch), sinf(pitch), cosf(yaw) * cosf(pitch)}},
     };
 }
 
@@ -39,32 +38,22 @@ static void shift_target(struct tl_camera_params *params, float x, float y)
     set_target(params, glms_vec3_muladds(basis.up, -y * height_m, target));
 }
 
-struct tl_camera tl_orbit_camera(const struct tl_camera_params *params)
-{
-    const float near_share = 0.02f, beyond_m = 50.0f;
-    vec3s target = target_of(params);
-    return (struct tl_camera){
-        .eye = glms_vec3_muladds(basis_of(params).back, params->distance_m, target),
-        .target = target,
-        .up = {{0, 1, 0}},
-        .fov_y = glm_rad(params->fov_deg),
-        .near_m = near_share * params->distance_m,
-        .far_m = params->distance_m + beyond_m,
-    };
-}
-
 void tl_orbit_take(struct tl_camera_params *params, const struct tl_camera *framed)
 {
     set_target(params, framed->target);
     params->distance_m = glms_vec3_distance(framed->eye, framed->target);
 }
 
+float tl_orbit_wrap_deg(float angle_deg)
+{
+    return angle_deg - 360.0f * floorf((angle_deg + 180.0f) / 360.0f);
+}
+
 void tl_orbit_turn(struct tl_camera_params *params, float dx, float dy)
 {
-    const float deg_per_height = 180.0f;
-    float yaw = params->yaw_deg - dx * deg_per_height;
-    params->yaw_deg = yaw - 360.0f * floorf((yaw + 180.0f) / 360.0f);
-    params->pitch_deg = glm_clamp(params->pitch_deg + dy * deg_per_height, -PITCH_LIMIT_DEG, PITCH_LIMIT_DEG);
+    params->yaw_deg = tl_orbit_wrap_deg(params->yaw_deg - dx * TL_ORBIT_DEG_PER_HEIGHT);
+    params->pitch_deg =
+        glm_clamp(params->pitch_deg + dy * TL_ORBIT_DEG_PER_HEIGHT, -PITCH_LIMIT_DEG, PITCH_LIMIT_DEG);
 }
 
 void tl_orbit_pan(struct tl_camera_params *params, float dx, float dy)

@@ -1,4 +1,4 @@
-/* The camera of the review window: an orbit about a target, moved by drags and the wheel.
+/* Moves of the review window's camera (app/camera.h): drags and the wheel.
  *
  * Pure. Metres; right-handed, +Y up; angles in degrees in tl_camera_params. Pixels count from the view's
  * upper left corner, x to the right, y down; all moves are in units of the view's height, so a drag does the
@@ -12,12 +12,13 @@ struct tl_ray {
     vec3s origin, direction; /* metres; unit */
 };
 
-/* The camera that `params` describe, distance_m > 0:
- * eye = target + distance (sin yaw cos pitch, sin pitch, cos yaw cos pitch). */
-struct tl_camera tl_orbit_camera(const struct tl_camera_params *params);
-
 /* Takes target and distance from a camera that was framed automatically (distance_m was 0). */
 void tl_orbit_take(struct tl_camera_params *params, const struct tl_camera *framed);
+
+#define TL_ORBIT_DEG_PER_HEIGHT 180.0f /* of a drag over the view's whole height */
+
+/* The same angle in [-180, 180). */
+float tl_orbit_wrap_deg(float angle_deg);
 
 /* A drag by (dx, dy) view heights turns what is seen along with the pointer: half a turn per height. Pitch
  * stays within +-89 degrees, yaw within [-180, 180). */

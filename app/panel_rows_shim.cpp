@@ -39,6 +39,7 @@ size_t size_of(const tl_option &row)
     case TL_DOUBLE:
         return sizeof(double);
     case TL_COLOUR:
+    case TL_VECTOR:
         return 3 * sizeof(float);
     case TL_STRING:
     case TL_PATH:
@@ -156,41 +157,60 @@ bool edit_switch(const tl_binding &binding, const tl_option &row)
     return true;
 }
 
-/* Colours are linear in the table and are shown as a screen shows them. Three numbers beyond [0, 1] are not a
- * colour that a swatch could show: they are edited as numbers. */
+bool keep_three(const tl_binding &binding, const tl_option &row, float value[3])
+{
+    const float lowest = static_cast<float>(row.minimum), highest = static_cast<float>(row.maximum);
+    for (int i = 0; i < 3; i++) {
+        if (!std::isfinite(value[i]))
+            return false;
+        value[i] = std::fmin(std::fmax(value[i], lowest), highest);
+    }
+    memcpy(field_of(binding, row), value, 3 * sizeof *value);
+    return true;
+}
+
+/* Colours are linear in the table and are shown as a screen shows them. */
 bool edit_colour(const tl_binding &binding, const tl_option &row)
 {
     float value[3];
     memcpy(value, field_of(binding, row), sizeof value);
-    const bool is_swatch = row.minimum >= 0 && row.maximum <= 1;
-    bool edited;
-    if (is_swatch) {
-        for (float &channel : value)
-            channel = tl_srgb_from_linear(channel);
-        edited = ImGui::ColorEdit3("##value", value,
-                                   ImGuiColorEditFlags_Float | ImGuiColorEditFlags_PickerHueWheel);
-    } else {
-        edited = ImGui::DragFloat3("##value", value, 0.01f, static_cast<float>(row.minimum),
-                                   static_cast<float>(row.maximum), "%.3g", ImGuiSliderFlags_AlwaysClamp);
-    }
-    if (!edited)
+    for (float &channel : value)
+        channel = tl_srgb_from_linear(channel);
+    if (!ImGui::ColorEdit3("##value", value, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_PickerHueWheel))
         return false;
-    for (float &channel : value) {
-        if (!std::isfinite(channel))
-            return false;
-        if (is_swatch)
-            channel = tl_srgb_to_linear(channel);
-        channel =
-            std::fmin(std::fmax(channel, static_cast<float>(row.minimum)), static_cast<float>(row.maximum));
-    }
-    memcpy(field_of(binding, row), value, sizeof value);
-    return true;
+    for (float &channel : value)
+        channel = tl_srgb_to_linear(channel);
+    return keep_three(binding, row, value);
+}
+
+bool edit_vector(const tl_binding &binding, const tl_option &row)
+{
+    float value[3];
+    memcpy(value, field_of(binding, row), sizeof value);
+    return ImGui::DragFloat3("##value", value, 0.01f, static_cast<float>(row.minimum),
+                             static_cast<float>(row.maximum), "%.3g", ImGuiSliderFlags_AlwaysClamp) &&
+           keep_three(binding, row, value);
 }
 
 bool edit_text(const tl_binding &binding, const tl_option &row)
 {
-    ImGui::InputText("##value", field_of(binding, row), TL_STRING_SIZE);
-    return ImGui::IsItemDeactivatedAfterEdit(); /* half a path is no value yet */
+    char *field = field_of(binding, row);
+    if (row.choices) /* room for the list's arrow beside the text */
+        ImGui::SetNextItemWidth(-ImGui::GetFrameHeight());
+    ImGui::InputText("##value", field, TL_STRING_SIZE);
+    bool edited = ImGui::IsItemDeactivatedAfterEdit(); /* half a path is no value yet */
+    if (!row.choices)
+        return edited;
+    ImGui::SameLine(0, 0);
+    if (!ImGui::BeginCombo("##choices", "", ImGuiComboFlags_NoPreview | ImGuiComboFlags_PopupAlignLeft))
+        return edited;
+    for (int i = 0; row.choices[i]; i++)
+        if (ImGui::Selectable(row.choices[i], strcmp(row.choices[i], field) == 0)) {
+            snprintf(field, TL_STRING_SIZE, "%s", row.choices[i]);
+            edited = true;
+        }
+    ImGui::EndCombo();
+    return edited;
 }
 
 bool edit(const tl_binding &binding, const tl_option &row)
@@ -207,6 +227,8 @@ bool edit(const tl_binding &binding, const tl_option &row)
         return edit_choice(binding, row);
     case TL_COLOUR:
         return edit_colour(binding, row);
+    case TL_VECTOR:
+        return edit_vector(binding, row);
     case TL_STRING:
     case TL_PATH:
         break;

@@ -105,33 +105,6 @@ void draw_buttons(const tl_panel_button *buttons, size_t count, tl_panel_result 
     }
 }
 
-void draw_list(const tl_panel_list &list, tl_panel_result &result)
-{
-    ImGui::TableNextRow();
-    ImGui::TableNextColumn();
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted(list.label);
-    tooltip_of_last_item(list.help);
-    ImGui::TableNextColumn();
-    ImGui::SetNextItemWidth(-FLT_MIN);
-    ImGui::PushID(list.label);
-    if (ImGui::BeginCombo("##list", list.current, ImGuiComboFlags_HeightLarge)) {
-        for (size_t i = 0; i < list.count; i++) {
-            const bool is_current = strcmp(list.names[i], list.current) == 0;
-            ImGui::PushID(static_cast<int>(i));
-            if (ImGui::Selectable(list.names[i], is_current)) {
-                result.command = list.command;
-                result.index = i;
-            }
-            ImGui::PopID();
-        }
-        ImGui::EndCombo();
-    } else {
-        tooltip_of_last_item(list.help);
-    }
-    ImGui::PopID();
-}
-
 /* "table.key" among the bindings. */
 bool draw_favourite(const tl_panel_input &input, const char *name)
 {
@@ -151,8 +124,6 @@ void draw_front(const tl_panel_input &input, tl_panel_result &result)
 {
     if (!tl_panel_rows_begin("front"))
         return;
-    for (size_t i = 0; i < input.list_count; i++)
-        draw_list(input.lists[i], result);
     ImGui::PushID("favourites");
     for (size_t i = 0; i < input.favourite_count; i++)
         result.changed |= draw_favourite(input, input.favourites[i]);
@@ -327,7 +298,7 @@ bool tl_panel_wants_keys(const tl_panel *panel)
 struct tl_panel_result tl_panel_build(tl_panel *panel, const struct tl_panel_input *input)
 {
     (void)panel;
-    tl_panel_result result = {false, false, -1, 0};
+    tl_panel_result result = {false, false, -1};
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();

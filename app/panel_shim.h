@@ -12,18 +12,10 @@
 typedef struct tl_panel tl_panel;
 struct GLFWwindow;
 
-/* A button or a list entry stands for a number of the caller's choosing. */
+/* A button stands for a number of the caller's choosing. */
 struct tl_panel_button {
     const char *label, *help;
     int command;
-};
-
-struct tl_panel_list { /* a choice among names */
-    const char *label, *help;
-    const char *const *names;
-    size_t count;
-    const char *current; /* shown, also when it is none of the names */
-    int command;         /* picked: the result's index says which */
 };
 
 struct tl_panel_line { /* one row of measures: cells[0] is its label */
@@ -44,8 +36,6 @@ struct tl_panel_input {
     bool message_is_error;
     const struct tl_panel_button *buttons;
     size_t button_count;
-    const struct tl_panel_list *lists;
-    size_t list_count;
     const char *const *favourites; /* "table.key" of options that stand on top */
     size_t favourite_count;
     const struct tl_panel_lines *measures;
@@ -63,8 +53,7 @@ struct tl_panel_input {
 struct tl_panel_result {
     bool changed; /* an option was edited */
     bool editing; /* a widget is held or typed in: more is to come */
-    int command;  /* of a button or list, -1 for none */
-    size_t index; /* into the list's names */
+    int command;  /* of a button, -1 for none */
 };
 
 /* Chains itself after the window's own callbacks. */
