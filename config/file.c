@@ -54,7 +54,7 @@ bool tl_file_read(const char *path, char **data, size_t *size, tl_error *error)
 
 bool tl_file_read_small(const char *path, size_t limit, char **data, size_t *size, tl_error *error)
 {
-    struct stat status;
+    struct stat status = {0};
     if (!check_status(path, limit, &status, error))
         return false;
     FILE *stream = fopen(path, "rb");

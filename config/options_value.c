@@ -83,16 +83,13 @@ static bool is_printable(const char *text)
 
 struct tl_excerpt tl_excerpt_of(const char *text)
 {
-    struct tl_excerpt excerpt = {{0}};
-    size_t room = sizeof excerpt.text - sizeof "...";
-    if (strlen(text) <= room) {
-        memcpy(excerpt.text, text, strlen(text));
-        return excerpt;
-    }
-    while (room > 0 && ((unsigned char)text[room] & 0xC0) == 0x80)
-        room--; /* back to the border of a character */
-    memcpy(excerpt.text, text, room);
-    strcpy(excerpt.text + room, "...");
+    struct tl_excerpt excerpt;
+    size_t length = strlen(text), room = sizeof excerpt.text - sizeof "...";
+    bool cut = length > room;
+    if (cut)
+        for (length = room; length > 0 && ((unsigned char)text[length] & 0xC0) == 0x80;)
+            length--; /* back to the border of a character */
+    snprintf(excerpt.text, sizeof excerpt.text, "%.*s%s", (int)length, text, cut ? "..." : "");
     return excerpt;
 }
 
@@ -113,9 +110,15 @@ static char *list_choices(const char *const *choices, const char *last_link)
     return list;
 }
 
+static bool is_single(const struct tl_option *row)
+{
+    return row->type == TL_FLOAT || row->type == TL_COLOUR || row->type == TL_VECTOR;
+}
+
 static char *describe_range(const char *what, const struct tl_option *row)
 {
-    char *low = shortest_number(row->minimum, false), *high = shortest_number(row->maximum, false);
+    char *low = shortest_number(row->minimum, is_single(row));
+    char *high = shortest_number(row->maximum, is_single(row));
     char *text = tl_format("%s from %s to %s%s%s", what, low, high, row->unit[0] ? " " : "", row->unit);
     free(low);
     free(high);
@@ -194,7 +197,8 @@ static char *read_int(const struct tl_option *row, const char *text, int *field)
     return NULL;
 }
 
-/* One number of the row's range; `whole` is the text that a message shows. */
+/* One number of the row's range; `whole` is the text that a message shows. Single precision is compared in
+ * single precision: a limit of 0.001f lies above 0.001, yet 0.001 must be within it. */
 static char *read_number(const struct tl_option *row, const char *text, const char *whole, double *value)
 {
     bool plain =
@@ -203,7 +207,13 @@ static char *read_number(const struct tl_option *row, const char *text, const ch
     *value = plain ? parse_number(text, &end) : 0;
     if (!plain || end == text || *end != '\0')
         return refuse(row, whole, "is not a number");
-    if (!isfinite(*value) || *value < row->minimum || *value > row->maximum)
+    double minimum = row->minimum, maximum = row->maximum;
+    if (is_single(row)) {
+        *value = (double)(float)*value;
+        minimum = (double)(float)minimum;
+        maximum = (double)(float)maximum;
+    }
+    if (!isfinite(*value) || *value < minimum || *value > maximum)
         return refuse(row, whole, "is out of range");
     return NULL;
 }
@@ -212,8 +222,6 @@ static char *read_scalar(const struct tl_option *row, const char *text, void *fi
 {
     double value = 0;
     char *reason = read_number(row, text, text, &value);
-    if (!reason && row->type == TL_FLOAT && !isfinite((float)value))
-        reason = refuse(row, text, "is out of range");
     if (reason)
         return reason;
     if (row->type == TL_FLOAT)
@@ -266,8 +274,8 @@ static char *read_text(const struct tl_option *row, const char *text, char field
         return refuse(row, text, "is not printable UTF-8");
     if (strlen(text) >= TL_STRING_SIZE)
         return tl_format("%zu bytes are too many: expected %d at most", strlen(text), TL_STRING_SIZE - 1);
-    memset(field, 0, TL_STRING_SIZE); /* equal values are equal bytes: sessions compare settings whole */
-    memcpy(field, text, strlen(text));
+    strncpy(field, text,
+            TL_STRING_SIZE); /* clears the rest: equal values are equal bytes, which sessions compare */
     return NULL;
 }
 

@@ -15,6 +15,8 @@ struct reader {
     const struct tl_binding *bindings;
     size_t count;
     const char *name;
+    const char *data;
+    size_t size;
     yaml_parser_t parser;
     yaml_event_t event; /* the current one */
     /* [binding][row, or the table itself as the last]: line where it was given, 0: not yet */
@@ -32,13 +34,17 @@ static bool fail(const struct reader *reader, size_t line, const char *what)
     return tl_fail(reader->error, TL_USAGE, "%s:%zu: %s", reader->name, line, what);
 }
 
-/* Bytes that are not characters have no line; libyaml gives their offset. */
 static bool fail_parser(const struct reader *reader)
 {
     const yaml_parser_t *parser = &reader->parser;
-    if (parser->error == YAML_READER_ERROR)
-        return tl_fail(reader->error, TL_USAGE, "%s: byte %zu: %s: write the file as UTF-8 text",
-                       reader->name, parser->problem_offset, parser->problem);
+    if (parser->error ==
+        YAML_READER_ERROR) { /* of bytes that are no characters libyaml only knows the offset */
+        size_t line = 1;
+        for (size_t i = 0; i < parser->problem_offset && i < reader->size; i++)
+            line += reader->data[i] == '\n';
+        return tl_fail(reader->error, TL_USAGE, "%s:%zu: %s: write the file as UTF-8 text", reader->name,
+                       line, parser->problem);
+    }
     return tl_fail(reader->error, TL_USAGE, "%s:%zu: %s%s%s: not valid YAML", reader->name,
                    parser->problem_mark.line + 1, parser->context ? parser->context : "",
                    parser->context ? ", " : "", parser->problem ? parser->problem : "damaged");
@@ -78,6 +84,12 @@ static bool next(struct reader *reader)
 static const char *scalar_text(const struct reader *reader)
 {
     return (const char *)reader->event.data.scalar.value;
+}
+
+/* Nothing stands where a value or a table could: `light:` alone. */
+static bool is_empty(const struct reader *reader)
+{
+    return reader->event.type == YAML_SCALAR_EVENT && reader->event.data.scalar.length == 0;
 }
 
 /* The text of a value: a scalar as it is, a list of scalars as "[a, b, c]". `row` is NULL when the key is
@@ -153,30 +165,37 @@ static bool fail_no_table(const struct reader *reader, const char *key, size_t l
                    reader->name, line, tl_excerpt_of(key).text);
 }
 
+/* The binding that the table's name in the current event belongs to, given for the first time; NULL on
+ * failure. The next event, already current, is its mapping or an empty scalar. */
+static const struct tl_binding *read_table_name(struct reader *reader)
+{
+    size_t line = line_of(&reader->event);
+    char *name = tl_copy_string(scalar_text(reader));
+    char *where = tl_format("%s:%zu", reader->name, line);
+    const struct tl_binding *binding =
+        tl_options_find_table(reader->bindings, reader->count, name, strlen(name));
+    bool good = next(reader);
+    if (good && !is_empty(reader) && reader->event.type != YAML_MAPPING_START_EVENT)
+        good = fail_no_table(reader, name, line);
+    if (good && !binding)
+        tl_options_fail_table(reader->bindings, reader->count, name, where, reader->error);
+    if (good && binding)
+        good =
+            give(reader, &reader->given[binding - reader->bindings][binding->table->row_count], name, line);
+    free(where);
+    free(name);
+    return good ? binding : NULL;
+}
+
 /* The current event is a table's name; its mapping follows. */
 static bool read_table(struct reader *reader)
 {
-    size_t line = line_of(&reader->event);
     if (reader->event.type != YAML_SCALAR_EVENT)
-        return fail(reader, line, "a list or table stands where a table's name was expected");
-    char *name = tl_copy_string(scalar_text(reader));
-    const struct tl_binding *binding =
-        tl_options_find_table(reader->bindings, reader->count, name, strlen(name));
-    bool read = next(reader);
-    bool empty = read && reader->event.type == YAML_SCALAR_EVENT && reader->event.data.scalar.length == 0;
-    if (read && !empty && reader->event.type != YAML_MAPPING_START_EVENT)
-        read = fail_no_table(reader, name, line);
-    if (read && !binding) {
-        char *where = tl_format("%s:%zu", reader->name, line);
-        read = tl_options_fail_table(reader->bindings, reader->count, name, where, reader->error);
-        free(where);
-    }
-    if (read)
-        read =
-            give(reader, &reader->given[binding - reader->bindings][binding->table->row_count], name, line);
-    free(name);
-    if (!read || empty)
-        return read;
+        return fail(reader, line_of(&reader->event),
+                    "a list or table stands where a table's name was expected");
+    const struct tl_binding *binding = read_table_name(reader);
+    if (!binding || is_empty(reader))
+        return binding != NULL;
     while (next(reader)) {
         if (reader->event.type == YAML_MAPPING_END_EVENT)
             return true;
@@ -189,11 +208,10 @@ static bool read_table(struct reader *reader)
 static bool read_root(struct reader *reader)
 {
     const yaml_event_t *event = &reader->event;
-    bool nothing = event->type == YAML_SCALAR_EVENT && event->data.scalar.length == 0;
-    if (!nothing && event->type != YAML_MAPPING_START_EVENT)
-        return fail(reader, line_of(event), "expected tables of options, as in `light: {regions: 96}`");
-    if (nothing)
+    if (is_empty(reader))
         return true;
+    if (event->type != YAML_MAPPING_START_EVENT)
+        return fail(reader, line_of(event), "expected tables of options, as in `light: {regions: 96}`");
     while (next(reader)) {
         if (event->type == YAML_MAPPING_END_EVENT)
             return true;
@@ -205,11 +223,15 @@ static bool read_root(struct reader *reader)
 
 static bool read_stream(struct reader *reader)
 {
-    if (!next(reader) /* the stream's start */ || !next(reader))
+    bool started = next(reader);
+    if (!started || !next(reader))
         return false;
     if (reader->event.type == YAML_STREAM_END_EVENT)
         return true; /* nothing but comments */
-    if (!next(reader) || !read_root(reader) || !next(reader) /* the document's end */ || !next(reader))
+    if (!next(reader) || !read_root(reader))
+        return false;
+    bool ended = next(reader);
+    if (!ended || !next(reader))
         return false;
     if (reader->event.type != YAML_STREAM_END_EVENT)
         return fail(reader, line_of(&reader->event), "a second document begins: keep one to a file");
@@ -221,11 +243,19 @@ bool tl_options_read_yaml(const struct tl_binding *bindings, size_t count, const
 {
     if (size > TL_LIMIT_YAML_BYTES)
         return tl_fail(error, TL_USAGE, "%s: is larger than 1 MiB: that is no list of options", name);
-    struct reader reader = {.bindings = bindings, .count = count, .name = name, .error = error};
+    /* Told the encoding, libyaml refuses UTF-16, but also takes the mark that some editors put before UTF-8
+     * for a character that indents the first line. */
+    size_t mark = size >= 3 && memcmp(data, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0;
+    struct reader reader = {.bindings = bindings,
+                            .count = count,
+                            .name = name,
+                            .data = data + mark,
+                            .size = size - mark,
+                            .error = error};
     if (!yaml_parser_initialize(&reader.parser))
         return tl_fail(error, TL_USAGE, "%s: the YAML reader could not be started", name);
     yaml_parser_set_encoding(&reader.parser, YAML_UTF8_ENCODING);
-    yaml_parser_set_input_string(&reader.parser, (const unsigned char *)data, size);
+    yaml_parser_set_input_string(&reader.parser, (const unsigned char *)reader.data, reader.size);
     reader.given = TL_NEW_ARRAY(size_t *, count);
     for (size_t i = 0; i < count; i++)
         reader.given[i] = TL_NEW_ARRAY(size_t, bindings[i].table->row_count + 1);

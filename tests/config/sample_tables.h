@@ -31,7 +31,7 @@ static const char *const sample_garments[] = {"dress", "skirt", "none", NULL};
 static const struct tl_option sample_light_rows[] = {
     TL_OPTION_INT(struct sample_light, regions, 6, 384, "", "more regions: sharper shadows"),
     TL_OPTION_ENUM(struct sample_light, lobe, sample_lobes, "lobes a pixel"),
-    TL_OPTION_FLOAT(struct sample_light, softness, 0, 10, "m", "wider shadows"),
+    TL_OPTION_FLOAT(struct sample_light, softness, 0.001f, 10, "m", "wider shadows"),
     TL_OPTION_DOUBLE(struct sample_light, bias_m, -1, 1e12, "m", "a | bar, and more"),
     TL_OPTION_BOOL(struct sample_light, ground, "draws the ground"),
 };

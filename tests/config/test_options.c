@@ -5,7 +5,6 @@
 #include "config/options.h"
 #include "sample_tables.h"
 
-#include <float.h>
 #include <locale.h>
 #include <string.h>
 
@@ -62,6 +61,7 @@ static void test_values_are_taken(void **state)
     assert_int_equal(sample.light.lobe, 0);
     accept("light.softness", "1e-3");
     assert_true(sample.light.softness == 1e-3f);
+    accept("light.softness", "0.001"); /* the limit, which as a float lies above the double */
     accept("light.bias_m", "-.5");
     assert_true(sample.light.bias_m == -0.5);
     accept("scene.title", "a: \"b\" \\ c");
@@ -132,14 +132,14 @@ static void test_numbers_are_refused(void **state)
                                              " 1",  "1,5", "1.5.2", "e5",   "1e",       "--1",   "one"};
     for (size_t i = 0; i < TL_COUNT(no_numbers); i++) {
         char *message = tl_format(
-            "here: light.softness: %s is not a number: expected a number from 0 to 10 m", no_numbers[i]);
+            "here: light.softness: %s is not a number: expected a number from 0.001 to 10 m", no_numbers[i]);
         refuse("light.softness", no_numbers[i], message);
         free(message);
     }
     refuse("light.bias_m", "1e999",
            "here: light.bias_m: 1e999 is out of range: expected a number from -1 to 1e+12 m");
     refuse("light.softness", "10.000001",
-           "here: light.softness: 10.000001 is out of range: expected a number from 0 to 10 m");
+           "here: light.softness: 10.000001 is out of range: expected a number from 0.001 to 10 m");
 }
 
 static void test_names_and_choices(void **state)
@@ -265,6 +265,8 @@ static void test_assignments(void **state)
 static void test_text_and_back(void **state)
 {
     (void)state;
+    refuse("light.softness", "1e-45",
+           "here: light.softness: 1e-45 is out of range: expected a number from 0.001 to 10 m");
     static const double values[] = {
         0, -0.0, 0.1, 1.0 / 3, 1e-300, 4.9e-324, 123456789.125, 1e12, 0.30000000000000004};
     for (size_t i = 0; i < TL_COUNT(values); i++) {
@@ -275,7 +277,7 @@ static void test_text_and_back(void **state)
         assert_memory_equal(&sample.light.bias_m, &values[i], sizeof values[i]);
         free(text);
     }
-    static const float floats[] = {0.1f, 1.0f / 3, FLT_MIN, 1e-45f, 9.999999f, 0.05f};
+    static const float floats[] = {0.1f, 1.0f / 3, 0.001f, 9.999999f, 0.05f};
     for (size_t i = 0; i < TL_COUNT(floats); i++) {
         sample.light.softness = floats[i];
         char *text = tl_options_get_text(&bindings[0], &sample_light_rows[2]);
