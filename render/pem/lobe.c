@@ -36,8 +36,15 @@ static double *hat_volumes(int size)
     return volumes;
 }
 
-/* The curve volume / peak against level, in steps between every two levels. */
-#define BLENDS_PER_LEVEL 16
+/* The curve volume / peak against level, in steps between every two levels: denser towards the coarser, where
+ * the last of the finer level's sharp peak still outweighs its share. */
+#define BLENDS_PER_LEVEL 24
+static double blend_of(int step)
+{
+    double rest = 1 - (double)step / BLENDS_PER_LEVEL;
+    return 1 - rest * rest;
+}
+
 struct curve {
     int count;                                                       /* (levels - 1) * BLENDS_PER_LEVEL + 1 */
     double widths[(TL_CHAIN_LEVELS_MAX - 1) * BLENDS_PER_LEVEL + 1]; /* sr */
@@ -68,7 +75,7 @@ static void raise_peaks(const tl_cube *at, const tl_cube *fine, const tl_cube *c
         vec3s direction = texel_direction(at, i);
         double a = (double)tl_cube_sample(fine, direction).x, b = (double)tl_cube_sample(coarse, direction).x;
         for (int step = 0; step < BLENDS_PER_LEVEL; step++)
-            peaks[step] = fmax(peaks[step], a + (b - a) * step / BLENDS_PER_LEVEL);
+            peaks[step] = fmax(peaks[step], a + (b - a) * blend_of(step));
     }
 }
 
@@ -86,7 +93,7 @@ static void add_lobe(const tl_cube *impulse, enum tl_chain_filter filter, double
         raise_peaks(coarse, fine, coarse, peaks);
         double a = level_volume(fine, hats[level]), b = level_volume(coarse, hats[level + 1]);
         for (int step = 0; step < BLENDS_PER_LEVEL; step++)
-            *widths++ += (a + (b - a) * step / BLENDS_PER_LEVEL) / peaks[step];
+            *widths++ += (a + (b - a) * blend_of(step)) / peaks[step];
     }
     double peak = 0;
     for (int i = 0; i < 6; i++)
@@ -95,12 +102,10 @@ static void add_lobe(const tl_cube *impulse, enum tl_chain_filter filter, double
     tl_chain_release(&chain);
 }
 
-/* Texels of a face, the corner first, then spread evenly (Roberts' R2 sequence). */
+/* Texels of a face, spread evenly from border to border (Roberts' R2 sequence). */
 #define POSITIONS 64
 static int position_texel(int size, int i)
 {
-    if (i == 0)
-        return 0;
     double x = fmod(0.5 + i * 0.7548776662466927, 1), y = fmod(0.5 + i * 0.5698402909980532, 1);
     return (int)(y * size) * size + (int)(x * size);
 }
@@ -132,7 +137,8 @@ static struct curve measure_curve(int size, enum tl_chain_filter filter)
     return curve;
 }
 
-/* The level at which the curve reaches a width; the ends hold beyond them. */
+/* The level at which the curve reaches a width; the ends hold beyond them. Between two steps the peak falls
+ * in proportion, so the reciprocal of the width is interpolated. */
 static float find_level(const struct curve *curve, double width)
 {
     if (width <= curve->widths[0])
@@ -140,10 +146,12 @@ static float find_level(const struct curve *curve, double width)
     for (int i = 1; i < curve->count; i++) {
         if (width > curve->widths[i])
             continue;
-        double part = (width - curve->widths[i - 1]) / (curve->widths[i] - curve->widths[i - 1]);
-        return (float)((i - 1 + part) / BLENDS_PER_LEVEL);
+        int level = (i - 1) / BLENDS_PER_LEVEL, step = (i - 1) % BLENDS_PER_LEVEL;
+        double before = 1 / curve->widths[i - 1], after = 1 / curve->widths[i];
+        double part = (before - 1 / width) / (before - after);
+        return (float)(level + blend_of(step) + part * (blend_of(step + 1) - blend_of(step)));
     }
-    return (float)(curve->count - 1) / BLENDS_PER_LEVEL;
+    return (float)((curve->count - 1) / BLENDS_PER_LEVEL);
 }
 
 void tl_lobe_calibrate(int size, enum tl_chain_filter filter, struct tl_lobe_table *out)
