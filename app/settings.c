@@ -65,6 +65,18 @@ void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[T
     bindings[IMAGE] = (struct tl_binding){&tl_image_options, &settings->image};
 }
 
+bool tl_settings_equal(const struct tl_settings *a, const struct tl_settings *b)
+{
+    struct tl_settings first = *a, second = *b; /* bindings can be written through, so they get copies */
+    struct tl_binding first_bindings[TL_SETTINGS_TABLES], second_bindings[TL_SETTINGS_TABLES];
+    tl_settings_bind(&first, first_bindings);
+    tl_settings_bind(&second, second_bindings);
+    for (size_t i = 0; i < TL_SETTINGS_TABLES; i++)
+        if (!tl_options_equal(first_bindings[i].table, first_bindings[i].params, second_bindings[i].params))
+            return false;
+    return true;
+}
+
 /* One kind of file that can be named or lie on disk. */
 struct layer {
     const char *kind; /* for messages */
@@ -146,7 +158,7 @@ static bool apply_source(const struct tl_binding *all, const struct tl_settings_
 bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *source, tl_error *error)
 {
     struct tl_settings settings;
-    memset(&settings, 0, sizeof settings); /* padding too: sessions compare settings whole */
+    memset(&settings, 0, sizeof settings); /* padding too: equal settings are equal bytes */
     struct tl_binding all[TL_SETTINGS_TABLES];
     tl_settings_bind(&settings, all);
     tl_options_reset(all, TL_SETTINGS_TABLES);

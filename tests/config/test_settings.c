@@ -152,6 +152,7 @@ static void test_shipped_files(void **state)
             char *fabric = tl_format("scene.fabric=%s", tl_embedded_fabrics_names[j]);
             const char *const assignments[] = {preset, fabric};
             assert_ok(load(NULL, assignments, TL_COUNT(assignments), &error), error);
+            assert_true(tl_settings_equal(&changed, &settings));
             assert_memory_equal(&changed, &settings, sizeof settings);
             free(preset);
             free(fabric);
@@ -207,7 +208,9 @@ static void test_print_and_load_back(void **state)
     free(text);
     begin(NULL);
     assert_ok(load(FOLDER "/printed.yaml", NULL, 0, &error), error);
-    assert_memory_equal(&settings, &before, sizeof settings);
+    assert_true(tl_settings_equal(&settings, &before));
+    settings.camera.target[1] += 0.5f;
+    assert_false(tl_settings_equal(&settings, &before));
 }
 
 int main(void)
