@@ -161,6 +161,25 @@ static void test_shipped_files(void **state)
         assert_ok(load(tl_embedded_scenes_names[i], NULL, 0, &error), error);
 }
 
+/* The scene file that README.md shows is one that the program reads. */
+static void test_readme_example(void **state)
+{
+    (void)state;
+    tl_error error = {0};
+    char *page = NULL;
+    size_t size = 0;
+    assert_ok(tl_file_read(TOILE_SOURCE_DIR "/README.md", &page, &size, &error), error);
+    char *example = strstr(page, "```yaml\n");
+    assert_non_null(example);
+    example += strlen("```yaml\n");
+    char *end = strstr(example, "```");
+    assert_non_null(end);
+    *end = '\0';
+    write_text(FOLDER "/readme.yaml", example);
+    assert_ok(load(FOLDER "/readme.yaml", NULL, 0, &error), error);
+    free(page);
+}
+
 static void test_changes_that_fail_change_nothing(void **state)
 {
     (void)state;
@@ -221,6 +240,7 @@ int main(void)
         cmocka_unit_test_setup(test_model_in_place_of_a_scene, begin),
         cmocka_unit_test_setup(test_refusals, begin),
         cmocka_unit_test_setup(test_shipped_files, begin),
+        cmocka_unit_test_setup(test_readme_example, begin),
         cmocka_unit_test_setup(test_changes_that_fail_change_nothing, begin),
         cmocka_unit_test_setup(test_paper_preset, begin),
         cmocka_unit_test_setup(test_print_and_load_back, begin),
