@@ -20,9 +20,7 @@ static int make_form(void **state)
 static int drop_form(void **state)
 {
     (void)state;
-    free(form.model.name);
-    free(form.model.materials);
-    tl_mesh_release(&form.model.mesh);
+    tl_avatar_release(&form);
     return 0;
 }
 
