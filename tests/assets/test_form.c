@@ -20,7 +20,9 @@ static int make_form(void **state)
 static int drop_form(void **state)
 {
     (void)state;
-    tl_avatar_release(&form);
+    free(form.model.name);
+    free(form.model.materials);
+    tl_mesh_release(&form.model.mesh);
     return 0;
 }
 
