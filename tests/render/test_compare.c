@@ -108,7 +108,7 @@ static void exposures_come_from_covered_pixels(void **state)
     (void)state;
     const float nothing[4] = {0};
     tl_image a = filled(64, 64, 4, nothing), b = filled(64, 64, 4, nothing);
-    for (int i = 0; i < 64; i++) {
+    for (size_t i = 0; i < 64; i++) {
         const float tested[4] = {1, 1, 1, 1}, wanted[4] = {2 + (float)(i % 3), 2, 2, 1};
         memcpy(tl_image_floats(&a) + 4 * i, tested, sizeof tested);
         memcpy(tl_image_floats(&b) + 4 * i, wanted, sizeof wanted);

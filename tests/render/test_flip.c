@@ -20,10 +20,10 @@ static float noise(int seed)
 
 static void fill(float *rgb, float red, float green, float blue)
 {
-    for (int i = 0; i < PIXELS; i++) {
-        rgb[3 * i] = red;
-        rgb[3 * i + 1] = green;
-        rgb[3 * i + 2] = blue;
+    for (float *end = rgb + 3 * (size_t)PIXELS; rgb < end; rgb += 3) {
+        rgb[0] = red;
+        rgb[1] = green;
+        rgb[2] = blue;
     }
 }
 
@@ -86,7 +86,7 @@ static double opponent(const float *rgb, int x, int y, int channel)
 {
     x = x < 0 ? 0 : x >= WIDTH ? WIDTH - 1 : x;
     y = y < 0 ? 0 : y >= HEIGHT ? HEIGHT - 1 : y;
-    const float *texel = rgb + 3 * (y * WIDTH + x);
+    const float *texel = rgb + 3 * (size_t)(y * WIDTH + x);
     double xyz[3];
     to_xyz((double[]){(double)texel[0], (double)texel[1], (double)texel[2]}, xyz);
     return channel == 0   ? 116 * xyz[1] - 16
@@ -222,7 +222,8 @@ static void more_noise_differs_more(void **state)
     static float reference[3 * PIXELS], test[3 * PIXELS];
     fill(reference, 0.4f, 0.5f, 0.3f);
     double previous = 0;
-    for (float strength = 0.02f; strength < 0.5f; strength *= 2) {
+    for (int power = 0; power < 5; power++) {
+        float strength = ldexpf(0.02f, power);
         for (int i = 0; i < 3 * PIXELS; i++)
             test[i] = reference[i] + strength * (noise(i) - 0.5f);
         double mean = mean_ldr(test, reference);
