@@ -28,7 +28,7 @@ const struct tl_settings *tl_session_settings(const tl_session *session);
 
 /* The frame as the renderer wants it; valid until the next call that changes the session. Orbit camera from
  * settings.camera, framed on the avatar and garment when camera.distance_m is 0. */
-tl_frame tl_session_frame(const tl_session *session);
+tl_frame tl_session_frame(tl_session *session);
 
 /* Where a ray meets the garment: its nearest render vertex and the distance along the ray; false when it
  * misses. */

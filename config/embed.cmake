@@ -1,5 +1,6 @@
 # toile_embed(TARGET SYMBOL FILE...): compiles files into TARGET as `const struct tl_embedded SYMBOL[]`, ended by
-# an entry whose name is NULL. Names are the files' names without folders. Rebuilt when a file changes.
+# an entry whose name is NULL, and their names without folder and extension as `const char *const SYMBOL_names[]`.
+# Rebuilt when a file changes.
 function(toile_embed target symbol)
   set(out ${CMAKE_CURRENT_BINARY_DIR}/${symbol}.c)
   set(inputs)

@@ -14,6 +14,11 @@ struct tl_embedded {
 /* The entry called `name`, or NULL. */
 const struct tl_embedded *tl_embedded_find(const struct tl_embedded *list, const char *name);
 
+/* Each list has its names without extension beside it, NULL-terminated: choices for a tl_option. */
+extern const char *const tl_embedded_presets_names[];
+extern const char *const tl_embedded_scenes_names[];
+extern const char *const tl_embedded_fabrics_names[];
+
 extern const struct tl_embedded tl_embedded_presets[]; /* paper.yaml ... : what --preset names */
 extern const struct tl_embedded tl_embedded_scenes[];  /* built-in scenes */
 extern const struct tl_embedded tl_embedded_fabrics[]; /* what --fabric names */

@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static bool check_status(const char *path, struct stat *status, tl_error *error)
+static bool check_status(const char *path, uint64_t limit, struct stat *status, tl_error *error)
 {
     if (path[0] == '\0')
         return tl_fail(error, TL_INPUT, "no file name given: name a file");
@@ -25,15 +25,16 @@ static bool check_status(const char *path, struct stat *status, tl_error *error)
         return tl_fail(error, TL_INPUT, "%s: is not a regular file: copy its contents to one", path);
     if (status->st_size == 0)
         return tl_fail(error, TL_INPUT, "%s: is empty: write or fetch it again", path);
-    if ((uint64_t)status->st_size > TL_LIMIT_FILE_BYTES)
-        return tl_fail(error, TL_INPUT, "%s: is larger than 4 GiB: make it smaller", path);
+    if ((uint64_t)status->st_size > limit)
+        return tl_fail(error, TL_INPUT, "%s: is larger than %llu MiB: make it smaller", path,
+                       (unsigned long long)(limit >> 20));
     return true;
 }
 
 bool tl_file_check(const char *path, tl_error *error)
 {
     struct stat status;
-    if (!check_status(path, &status, error))
+    if (!check_status(path, TL_LIMIT_FILE_BYTES, &status, error))
         return false;
     if (access(path, R_OK) != 0)
         return tl_fail(error, TL_INPUT, "%s: %s: make it readable", path, strerror(errno));
@@ -48,8 +49,13 @@ bool tl_file_exists(const char *path)
 
 bool tl_file_read(const char *path, char **data, size_t *size, tl_error *error)
 {
-    struct stat status;
-    if (!check_status(path, &status, error))
+    return tl_file_read_small(path, TL_LIMIT_FILE_BYTES, data, size, error);
+}
+
+bool tl_file_read_small(const char *path, size_t limit, char **data, size_t *size, tl_error *error)
+{
+    struct stat status = {0};
+    if (!check_status(path, limit, &status, error))
         return false;
     FILE *stream = fopen(path, "rb");
     if (!stream)

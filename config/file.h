@@ -19,6 +19,9 @@
 /* Reads a whole file; *data is followed by a NUL that *size does not count; free(*data). */
 bool tl_file_read(const char *path, char **data, size_t *size, tl_error *error);
 
+/* The same for files that are small by nature: one of more than `limit` bytes is refused unread. */
+bool tl_file_read_small(const char *path, size_t limit, char **data, size_t *size, tl_error *error);
+
 /* Checks that `path` is a readable regular file and not empty (same messages as tl_file_read). */
 bool tl_file_check(const char *path, tl_error *error);
 

@@ -14,10 +14,13 @@
  * tl_shadow_params, TL_SHADOW_DEFAULTS);
  *
  * Field types by option type: TL_BOOL bool; TL_INT int; TL_FLOAT float; TL_DOUBLE double; TL_ENUM int (index
- * into `choices`); TL_COLOUR vec3-like float[3] (linear Rec. 709, written [r, g, b]); TL_STRING and TL_PATH
- * char[TL_STRING_SIZE]. A relative TL_PATH is taken from the folder of the file that names it.
+ * into `choices`); TL_COLOUR float[3] (linear Rec. 709, written [r, g, b]); TL_VECTOR float[3] (written
+ * [x, y, z]); TL_STRING and TL_PATH char[TL_STRING_SIZE]. A relative TL_PATH is taken from the folder of the
+ * file that names it. A TL_PATH with `choices` holds either one of these names, kept as it is, or a file
+ * name; tl_option_is_file_name tells them apart.
  *
- * NaN and infinities are refused everywhere. Threads: pure. */
+ * NaN and infinities are refused everywhere; so is text that is not printable UTF-8, so that every value can
+ * be written into YAML and JSON and read back. Threads: pure. */
 #ifndef TOILE_CONFIG_OPTIONS_H
 #define TOILE_CONFIG_OPTIONS_H
 
@@ -28,16 +31,27 @@
 
 #define TL_STRING_SIZE 1024
 
-enum tl_option_type { TL_BOOL, TL_INT, TL_FLOAT, TL_DOUBLE, TL_ENUM, TL_COLOUR, TL_STRING, TL_PATH };
+enum tl_option_type {
+    TL_BOOL,
+    TL_INT,
+    TL_FLOAT,
+    TL_DOUBLE,
+    TL_ENUM,
+    TL_COLOUR,
+    TL_VECTOR,
+    TL_STRING,
+    TL_PATH
+};
 
 struct tl_option {
     const char *name; /* key inside its table: map_size */
     enum tl_option_type type;
-    size_t offset;              /* of the field in the params struct */
-    double minimum, maximum;    /* inclusive; for TL_COLOUR of each component; unused for text */
-    const char *const *choices; /* TL_ENUM: names, NULL-terminated */
-    const char *unit;           /* "m", "texels", "" for none */
-    const char *help;           /* one line, says what a larger value does */
+    size_t offset;           /* of the field in the params struct */
+    double minimum, maximum; /* inclusive; for TL_COLOUR and TL_VECTOR of each component; unused for text */
+    const char *const
+        *choices;     /* TL_ENUM: names, NULL-terminated; TL_PATH: NULL or names that are not files */
+    const char *unit; /* "m", "texels", "" for none */
+    const char *help; /* one line, says what a larger value does */
 };
 
 struct tl_option_table {
@@ -54,6 +68,7 @@ struct tl_binding {
     void *params;
 };
 
+/* clang-format off: it takes the braces of an initialiser for a block. */
 #define TL_OPTION_BOOL(s, field, text)                                                                       \
     {                                                                                                        \
 #field, TL_BOOL, offsetof(s, field), 0, 1, NULL, "", text                                            \
@@ -78,6 +93,10 @@ struct tl_binding {
     {                                                                                                        \
 #field, TL_COLOUR, offsetof(s, field), lo, hi, NULL, "linear", text                                  \
     }
+#define TL_OPTION_VECTOR(s, field, lo, hi, u, text)                                                          \
+    {                                                                                                        \
+#field, TL_VECTOR, offsetof(s, field), lo, hi, NULL, u, text                                         \
+    }
 #define TL_OPTION_STRING(s, field, text)                                                                     \
     {                                                                                                        \
 #field, TL_STRING, offsetof(s, field), 0, 0, NULL, "", text                                          \
@@ -85,6 +104,10 @@ struct tl_binding {
 #define TL_OPTION_PATH(s, field, text)                                                                       \
     {                                                                                                        \
 #field, TL_PATH, offsetof(s, field), 0, 0, NULL, "", text                                            \
+    }
+#define TL_OPTION_NAME_OR_PATH(s, field, names, text)                                                        \
+    {                                                                                                        \
+#field, TL_PATH, offsetof(s, field), 0, 0, names, "", text                                           \
     }
 #define TL_OPTION_TABLE(label, text, row_array, s, ...)                                                      \
     {                                                                                                        \
@@ -95,6 +118,7 @@ struct tl_binding {
             __VA_ARGS__                                                                                      \
         }                                                                                                    \
     }
+/* clang-format on */
 
 /* Copies every table's defaults into its params. */
 void tl_options_reset(const struct tl_binding *bindings, size_t count);
@@ -110,18 +134,28 @@ bool tl_options_set(const struct tl_binding *bindings, size_t count, const char 
 bool tl_options_set_assignment(const struct tl_binding *bindings, size_t count, const char *assignment,
                                tl_error *error);
 
+#define TL_LIMIT_YAML_BYTES ((size_t)1 << 20)
+
 /* Reads a YAML document: a mapping of table names to mappings of option names to scalars (or [r, g, b]).
  * `name` is the file's name for messages and the base of relative paths. On failure some options may have
- * been set already: callers discard the settings. Documents over 1 MiB, aliases and nested structures are
- * refused. */
+ * been set already: callers discard the settings. Documents over TL_LIMIT_YAML_BYTES, several documents,
+ * keys given twice, anchors, aliases, tags and nested structures are refused. */
 bool tl_options_read_yaml(const struct tl_binding *bindings, size_t count, const char *name, const char *data,
                           size_t size, tl_error *error);
+
+/* The same from a file. */
+bool tl_options_read_yaml_file(const struct tl_binding *bindings, size_t count, const char *path,
+                               tl_error *error);
+
+/* True when the text of a TL_PATH with choices is a file's name: it has a dot or a slash in it. */
+bool tl_option_is_file_name(const char *text);
 
 /* The option's value as the text that tl_options_set takes back. New string. */
 char *tl_options_get_text(const struct tl_binding *binding, const struct tl_option *row);
 
 /* All options as help text (one line each), as a Markdown reference page, or as a YAML document that
- * tl_options_read_yaml reads back to the same values. */
+ * tl_options_read_yaml reads back to the same values (relative paths are printed as they stand, so the
+ * document must be read from the same working directory, under a name without a folder). */
 void tl_options_print_help(const struct tl_binding *bindings, size_t count, FILE *out);
 void tl_options_print_reference(const struct tl_binding *bindings, size_t count, FILE *out);
 void tl_options_print_yaml(const struct tl_binding *bindings, size_t count, FILE *out);

@@ -1,0 +1,234 @@
+#include "app/arguments.h"
+
+#include "config/memory.h"
+#include "config/options.h"
+
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum flag_kind {
+    FLAG_ASSIGN, /* sets the option named in `key` */
+    FLAG_SET,
+    FLAG_SIZE,
+    FLAG_OUTPUT,
+    FLAG_FRAME,
+    FLAG_FRAMES,
+    FLAG_JSON,
+    FLAG_LDR,
+    FLAG_HDR,
+    FLAG_SCREENSHOTS,
+    FLAG_MAX_FRAMES,
+    FLAG_QUIET,
+    FLAG_VERBOSE,
+    FLAG_HELP,
+};
+
+struct flag {
+    const char *name;
+    unsigned set; /* 0: every command */
+    enum flag_kind kind;
+    const char *key;   /* FLAG_ASSIGN */
+    const char *value; /* name of the value in help; NULL: takes none */
+    const char *help;
+};
+
+static const struct flag flags_known[] = {
+    {"--garment", TL_FLAGS_SCENE, FLAG_ASSIGN, "scene.garment", "NAME|FILE",
+     "dress, skirt, none, or a .glb or .gltf file"},
+    {"--avatar", TL_FLAGS_SCENE, FLAG_ASSIGN, "scene.avatar", "NAME|FILE",
+     "form, none, or a .glb or .gltf file"},
+    {"--env", TL_FLAGS_SCENE, FLAG_ASSIGN, "scene.environment", "NAME|FILE",
+     "studio, or an .exr or .hdr file"},
+    {"--fabric", TL_FLAGS_SCENE, FLAG_ASSIGN, "scene.fabric", "NAME|FILE",
+     "a fabric: `toile info fabrics` lists them"},
+    {"--preset", TL_FLAGS_SCENE, FLAG_ASSIGN, "scene.preset", "NAME|FILE", "paper, draft, review or final"},
+    {"--method", TL_FLAGS_SCENE, FLAG_ASSIGN, "light.method", "METHOD", "how light is computed"},
+    {"--size", TL_FLAGS_SCENE, FLAG_SIZE, NULL, "WxH", "size of the image in pixels"},
+    {"--set", TL_FLAGS_SCENE, FLAG_SET, NULL, "TABLE.KEY=VALUE",
+     "any option: `toile help options` lists them"},
+    {"-o", TL_FLAGS_OUTPUT, FLAG_OUTPUT, NULL, "FILE", "where the result goes"},
+    {"--frame", TL_FLAGS_FRAME, FLAG_FRAME, NULL, "N", "frame of the animation; 0 is the settled start"},
+    {"--frames", TL_FLAGS_FRAMES, FLAG_FRAMES, NULL, "A:B",
+     "all frames from A to B; OUT.png becomes OUT.0001.png ..."},
+    {"--json", TL_FLAGS_JSON, FLAG_JSON, NULL, NULL, "print one JSON object and nothing else"},
+    {"--ldr", TL_FLAGS_METRIC, FLAG_LDR, NULL, NULL, "compare as display images, clamped to [0, 1]"},
+    {"--hdr", TL_FLAGS_METRIC, FLAG_HDR, NULL, NULL, "compare over all exposures that the reference holds"},
+    {"--screenshots", TL_FLAGS_WINDOW, FLAG_SCREENSHOTS, NULL, "FOLDER", "where screenshots go"},
+    {"--max-frames", TL_FLAGS_WINDOW, FLAG_MAX_FRAMES, NULL, "N", "close after N frames"},
+    {"--quiet", 0, FLAG_QUIET, NULL, NULL, "say nothing but errors"},
+    {"--verbose", 0, FLAG_VERBOSE, NULL, NULL, "say more"},
+    {"--help", 0, FLAG_HELP, NULL, NULL, "what the command does and takes"},
+};
+
+static bool belongs(const struct flag *flag, unsigned flags)
+{
+    return flag->set == 0 || (flag->set & flags) != 0;
+}
+
+static const struct flag *find_flag(const char *word, unsigned flags, tl_error *error)
+{
+    if (strcmp(word, "--output") == 0)
+        word = "-o";
+    const char *names[TL_COUNT(flags_known)];
+    size_t count = 0;
+    for (size_t i = 0; i < TL_COUNT(flags_known); i++) {
+        if (!belongs(&flags_known[i], flags))
+            continue;
+        if (strcmp(flags_known[i].name, word) == 0)
+            return &flags_known[i];
+        names[count++] = flags_known[i].name;
+    }
+    const char *near = tl_nearest_word(word, names, count);
+    if (near)
+        tl_fail(error, TL_USAGE, "%s: no such option of this command: did you mean %s?", word, near);
+    else
+        tl_fail(error, TL_USAGE, "%s: no such option of this command: --help lists those that are", word);
+    return NULL;
+}
+
+/* A whole number from `lowest`, the whole text. */
+static bool read_whole(const char *flag, const char *text, const char **end, int lowest, int *out,
+                       tl_error *error)
+{
+    char *stop;
+    long value = strtol(text, &stop, 10);
+    if (stop == text || value < lowest || value > INT_MAX || (!end && *stop))
+        return tl_fail(error, TL_USAGE, "%s: \"%s\": expected a whole number from %d", flag, text, lowest);
+    if (end)
+        *end = stop;
+    *out = (int)value;
+    return true;
+}
+
+static void assign(struct tl_arguments *out, char *assignment)
+{
+    out->assignments = tl_resize(out->assignments, out->assignment_count + 1, sizeof(char *));
+    out->assignments[out->assignment_count++] = assignment;
+}
+
+static bool read_size(const char *text, struct tl_arguments *out, tl_error *error)
+{
+    int width = 0, height = 0;
+    const char *rest = "";
+    if (!read_whole("--size", text, &rest, 1, &width, NULL) || (*rest != 'x' && *rest != 'X') ||
+        !read_whole("--size", rest + 1, NULL, 1, &height, NULL))
+        return tl_fail(error, TL_USAGE, "--size: \"%s\": expected WIDTHxHEIGHT, as in 960x540", text);
+    assign(out, tl_format("image.width=%d", width));
+    assign(out, tl_format("image.height=%d", height));
+    return true;
+}
+
+static bool read_frames(const char *text, struct tl_arguments *out, tl_error *error)
+{
+    const char *rest = "";
+    if (!read_whole("--frames", text, &rest, 0, &out->first_frame, NULL) || *rest != ':' ||
+        !read_whole("--frames", rest + 1, NULL, out->first_frame, &out->last_frame, NULL))
+        return tl_fail(error, TL_USAGE, "--frames: \"%s\": expected FIRST:LAST, as in 0:59", text);
+    out->frames_given = true;
+    return true;
+}
+
+static bool take_flag(const struct flag *flag, const char *value, struct tl_arguments *out, tl_error *error)
+{
+    switch (flag->kind) {
+    case FLAG_ASSIGN:
+        assign(out, tl_format("%s=%s", flag->key, value));
+        return true;
+    case FLAG_SET:
+        assign(out, tl_copy_string(value));
+        return true;
+    case FLAG_SIZE:
+        return read_size(value, out, error);
+    case FLAG_OUTPUT:
+        out->output = value;
+        return true;
+    case FLAG_FRAME:
+        out->frames_given = false;
+        if (!read_whole("--frame", value, NULL, 0, &out->first_frame, error))
+            return false;
+        out->last_frame = out->first_frame;
+        return true;
+    case FLAG_FRAMES:
+        return read_frames(value, out, error);
+    case FLAG_JSON:
+        out->json = true;
+        return true;
+    case FLAG_LDR:
+        out->hdr = 0;
+        return true;
+    case FLAG_HDR:
+        out->hdr = 1;
+        return true;
+    case FLAG_SCREENSHOTS:
+        out->screenshots = value;
+        return true;
+    case FLAG_MAX_FRAMES:
+        return read_whole("--max-frames", value, NULL, 1, &out->max_frames, error);
+    case FLAG_QUIET:
+        out->quiet = true;
+        return true;
+    case FLAG_VERBOSE:
+        out->verbose = true;
+        return true;
+    case FLAG_HELP:
+        out->help = true;
+        return true;
+    }
+    return true;
+}
+
+bool tl_arguments_parse(int argc, char **argv, unsigned flags, struct tl_arguments *out, tl_error *error)
+{
+    *out = (struct tl_arguments){.hdr = -1};
+    for (int i = 0; i < argc; i++) {
+        const char *word = argv[i];
+        if (word[0] != '-' || word[1] == '\0') {
+            if (out->positional_count == TL_POSITIONALS_MAX)
+                return tl_fail(error, TL_USAGE, "%s: too many arguments: at most %d", word,
+                               TL_POSITIONALS_MAX);
+            out->positionals[out->positional_count++] = word;
+            continue;
+        }
+        /* --flag=value is taken as --flag value. */
+        const char *equals = word[1] == '-' ? strchr(word, '=') : NULL;
+        char *name = equals ? tl_format("%.*s", (int)(equals - word), word) : tl_copy_string(word);
+        const struct flag *flag = find_flag(name, flags, error);
+        free(name);
+        if (!flag)
+            return false;
+        const char *value = equals ? equals + 1 : NULL;
+        if (!flag->value && value)
+            return tl_fail(error, TL_USAGE, "%s: takes no value: write it alone", flag->name);
+        if (flag->value && !value) {
+            if (i + 1 == argc)
+                return tl_fail(error, TL_USAGE, "%s: needs a value: %s %s", flag->name, flag->name,
+                               flag->value);
+            value = argv[++i];
+        }
+        if (!take_flag(flag, value, out, error))
+            return false;
+    }
+    return true;
+}
+
+void tl_arguments_release(struct tl_arguments *arguments)
+{
+    for (size_t i = 0; i < arguments->assignment_count; i++)
+        free(arguments->assignments[i]);
+    free(arguments->assignments);
+    *arguments = (struct tl_arguments){0};
+}
+
+void tl_arguments_print_flags(unsigned flags)
+{
+    for (size_t i = 0; i < TL_COUNT(flags_known); i++) {
+        if (!belongs(&flags_known[i], flags))
+            continue;
+        char left[64];
+        snprintf(left, sizeof left, "%s %s", flags_known[i].name,
+                 flags_known[i].value ? flags_known[i].value : "");
+        printf("  %-26s %s\n", left, flags_known[i].help);
+    }
+}

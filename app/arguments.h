@@ -1,0 +1,42 @@
+/* The command line, parsed once into plain data. Each command says which flags it takes; the rest is refused
+ * with the nearest flag that it knows. Strings are borrowed from argv. */
+#ifndef TOILE_APP_ARGUMENTS_H
+#define TOILE_APP_ARGUMENTS_H
+
+#include "config/error.h"
+
+#include <stddef.h>
+
+#define TL_POSITIONALS_MAX 64
+
+enum tl_flag_set {                      /* which groups of flags a command takes */
+                   TL_FLAGS_SCENE = 1,  /* --set --garment --avatar --env --fabric --preset --size --method */
+                   TL_FLAGS_OUTPUT = 2, /* -o */
+                   TL_FLAGS_FRAME = 4,  /* --frame N */
+                   TL_FLAGS_FRAMES = 8, /* --frames A:B */
+                   TL_FLAGS_JSON = 16,  /* --json */
+                   TL_FLAGS_METRIC = 32, /* --ldr --hdr */
+                   TL_FLAGS_WINDOW = 64, /* --screenshots DIR --max-frames N */
+};
+
+struct tl_arguments {
+    const char *positionals[TL_POSITIONALS_MAX];
+    size_t positional_count;
+    char **assignments; /* "table.key=value", in order; owned */
+    size_t assignment_count;
+    const char *output;          /* NULL: not given */
+    int first_frame, last_frame; /* 0, 0 unless given */
+    bool frames_given;           /* --frames rather than --frame */
+    bool json, quiet, verbose, help;
+    int hdr;                 /* -1 by content, 0 --ldr, 1 --hdr */
+    const char *screenshots; /* folder for screenshots */
+    int max_frames;          /* 0: no limit */
+};
+
+bool tl_arguments_parse(int argc, char **argv, unsigned flags, struct tl_arguments *out, tl_error *error);
+void tl_arguments_release(struct tl_arguments *arguments);
+
+/* The flags of a set, one a line, for --help. */
+void tl_arguments_print_flags(unsigned flags);
+
+#endif

@@ -1,0 +1,175 @@
+/* toile info: what a file holds and how it will be read; or what is built in. */
+#include "app/commands.h"
+#include "app/json.h"
+#include "app/settings.h"
+#include "assets/environment.h"
+#include "assets/model.h"
+#include "config/file.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* Both outputs come from one object: --json prints it, otherwise its members become lines. */
+static void print_value(const cJSON *value, int indent)
+{
+    const cJSON *child;
+    if (cJSON_IsString(value))
+        printf("%s\n", value->valuestring);
+    else if (cJSON_IsBool(value))
+        printf("%s\n", cJSON_IsTrue(value) ? "yes" : "no");
+    else if (cJSON_IsNumber(value))
+        printf("%.7g\n", value->valuedouble);
+    else if (!value->child)
+        printf("none\n");
+    else {
+        printf("\n");
+        cJSON_ArrayForEach(child, value)
+        {
+            printf("%*s", indent + 2, "");
+            if (child->string)
+                printf("%-*s ", 20 - indent, child->string);
+            print_value(child, indent + 2);
+        }
+    }
+}
+
+static void print_object(cJSON *object, bool json)
+{
+    if (json) {
+        tl_json_print(object);
+        return;
+    }
+    const cJSON *child;
+    cJSON_ArrayForEach(child, object)
+    {
+        printf("%-20s ", child->string);
+        print_value(child, 0);
+    }
+    cJSON_Delete(object);
+}
+
+static cJSON *describe_vector(vec3s vector)
+{
+    return cJSON_CreateFloatArray(vector.raw, 3);
+}
+
+static cJSON *describe_material(const tl_material *material)
+{
+    cJSON *object = cJSON_CreateObject();
+    cJSON_AddStringToObject(object, "name", material->name);
+    cJSON_AddNumberToObject(object, "glossiness", (double)material->glossiness);
+    cJSON_AddBoolToObject(object, "double_sided", material->double_sided);
+    cJSON_AddNumberToObject(object, "alpha_cutoff", (double)material->alpha_cutoff);
+    const struct {
+        const char *name;
+        const tl_image *image;
+    } maps[] = {{"diffuse_map", material->diffuse_map.image},
+                {"normal_map", material->normal_map.image},
+                {"gloss_map", material->gloss_map.image},
+                {"specular_map", material->specular_map.image},
+                {"occlusion_map", material->occlusion_map.image}};
+    for (size_t i = 0; i < sizeof maps / sizeof maps[0]; i++) {
+        if (!maps[i].image)
+            continue;
+        char size[32];
+        snprintf(size, sizeof size, "%d x %d", maps[i].image->width, maps[i].image->height);
+        cJSON_AddStringToObject(object, maps[i].name, size);
+    }
+    return object;
+}
+
+static cJSON *describe_model(const tl_model *model)
+{
+    cJSON *object = cJSON_CreateObject();
+    struct tl_box box = tl_box_of(model->mesh.positions, model->mesh.vertex_count);
+    cJSON_AddStringToObject(object, "kind", "model");
+    cJSON_AddStringToObject(object, "name", model->name);
+    cJSON_AddNumberToObject(object, "vertices", (double)model->mesh.vertex_count);
+    cJSON_AddNumberToObject(object, "triangles", (double)model->mesh.index_count / 3);
+    cJSON_AddNumberToObject(object, "parts", (double)model->mesh.part_count);
+    cJSON_AddItemToObject(object, "lower_m", describe_vector(box.lower));
+    cJSON_AddItemToObject(object, "upper_m", describe_vector(box.upper));
+    cJSON *materials = cJSON_AddArrayToObject(object, "materials");
+    for (size_t i = 0; i < model->material_count; i++)
+        cJSON_AddItemToArray(materials, describe_material(&model->materials[i]));
+    cJSON *clips = cJSON_AddArrayToObject(object, "clips");
+    for (size_t i = 0; i < model->clip_count; i++) {
+        cJSON *clip = cJSON_CreateObject();
+        cJSON_AddStringToObject(clip, "name", model->clips[i].name);
+        cJSON_AddNumberToObject(clip, "duration_s", model->clips[i].duration_s);
+        cJSON_AddItemToArray(clips, clip);
+    }
+    cJSON *ignored = cJSON_AddArrayToObject(object, "ignored");
+    for (size_t i = 0; i < model->ignored_count; i++)
+        cJSON_AddItemToArray(ignored, cJSON_CreateString(model->ignored[i]));
+    return object;
+}
+
+static cJSON *describe_environment(const tl_environment *environment)
+{
+    cJSON *object = cJSON_CreateObject();
+    cJSON_AddStringToObject(object, "kind", "environment");
+    cJSON_AddStringToObject(object, "name", environment->name);
+    cJSON_AddStringToObject(object, "layout", environment->layout == TL_ENV_CUBE ? "cube" : "lat-long");
+    cJSON_AddNumberToObject(object, "width", environment->image.width);
+    cJSON_AddNumberToObject(object, "height", environment->image.height);
+    cJSON_AddNumberToObject(object, "peak", (double)environment->peak);
+    cJSON_AddNumberToObject(object, "negative_cleaned", (double)environment->negative_count);
+    cJSON_AddNumberToObject(object, "nan_cleaned", (double)environment->nan_count);
+    cJSON_AddNumberToObject(object, "inf_cleaned", (double)environment->inf_count);
+    return object;
+}
+
+static void list_embedded(cJSON *object, const char *key, const struct tl_embedded *list)
+{
+    cJSON *names = cJSON_AddArrayToObject(object, key);
+    for (const struct tl_embedded *entry = list; entry->name; entry++) {
+        char name[64];
+        snprintf(name, sizeof name, "%.*s", (int)strcspn(entry->name, "."), entry->name);
+        cJSON_AddItemToArray(names, cJSON_CreateString(name));
+    }
+}
+
+static cJSON *describe_built_in(const char *what)
+{
+    cJSON *object = cJSON_CreateObject();
+    if (strcmp(what, "fabrics") == 0)
+        list_embedded(object, what, tl_embedded_fabrics);
+    else if (strcmp(what, "presets") == 0)
+        list_embedded(object, what, tl_embedded_presets);
+    else {
+        cJSON *names = cJSON_AddArrayToObject(object, what);
+        for (const char *const *name = tl_garment_names; *name; name++)
+            cJSON_AddItemToArray(names, cJSON_CreateString(*name));
+    }
+    return object;
+}
+
+bool tl_command_info(const struct tl_arguments *arguments, tl_error *error)
+{
+    if (arguments->positional_count != 1)
+        return tl_fail(error, TL_USAGE, "info: expected one file: toile info FILE");
+    const char *path = arguments->positionals[0];
+    cJSON *object = NULL;
+    if (strcmp(path, "fabrics") == 0 || strcmp(path, "presets") == 0 || strcmp(path, "garments") == 0) {
+        object = describe_built_in(path);
+    } else if (!tl_file_check(path, error)) {
+        return false;
+    } else if (tl_path_has_extension(path, "glb") || tl_path_has_extension(path, "gltf")) {
+        tl_model model;
+        if (!tl_model_load(path, &model, error))
+            return false;
+        object = describe_model(&model);
+        tl_model_release(&model);
+    } else if (tl_path_has_extension(path, "exr") || tl_path_has_extension(path, "hdr")) {
+        tl_environment environment;
+        if (!tl_environment_load(path, &environment, error))
+            return false;
+        object = describe_environment(&environment);
+        tl_environment_release(&environment);
+    } else {
+        return tl_fail(error, TL_INPUT, "%s: unknown kind of file: expected .glb, .gltf, .exr or .hdr", path);
+    }
+    print_object(object, arguments->json);
+    return true;
+}

@@ -1,0 +1,80 @@
+/* toile plan: what would run for a frame, and why. */
+#include "app/commands.h"
+#include "app/json.h"
+#include "app/stage.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static void print_plan(const tl_plan *plan, const struct tl_render_memory *memory)
+{
+    printf("%-12s %-6s %5s %10s  %s\n", "job", "action", "level", "ms", "reason");
+    for (int i = 0; i < plan->count; i++) {
+        const struct tl_plan_row *row = &plan->rows[i];
+        char cost[16] = "-";
+        if (isfinite(row->predicted_ms))
+            snprintf(cost, sizeof cost, "%.2f", row->predicted_ms);
+        printf("%-12s %-6s %5d %10s  %s\n", row->name, tl_job_action_names[row->action], row->level, cost,
+               row->reason);
+    }
+    const double mebibyte = 1024.0 * 1024.0;
+    printf("\nmemory (MiB): PEMs %.2f, maps %.2f, targets %.2f, surfaces %.2f, other %.2f, total %.2f\n",
+           (double)memory->pems / mebibyte, (double)memory->maps / mebibyte,
+           (double)memory->targets / mebibyte, (double)memory->surfaces / mebibyte,
+           (double)memory->other / mebibyte, (double)memory->total / mebibyte);
+}
+
+static void print_plan_json(const tl_plan *plan, const struct tl_render_memory *memory)
+{
+    cJSON *object = cJSON_CreateObject();
+    cJSON *jobs = cJSON_AddArrayToObject(object, "jobs");
+    for (int i = 0; i < plan->count; i++) {
+        const struct tl_plan_row *row = &plan->rows[i];
+        cJSON *job = cJSON_CreateObject();
+        cJSON_AddStringToObject(job, "name", row->name);
+        cJSON_AddNumberToObject(job, "level", row->level);
+        cJSON_AddStringToObject(job, "action", tl_job_action_names[row->action]);
+        cJSON_AddStringToObject(job, "reason", row->reason);
+        cJSON_AddItemToObject(job, "predicted_ms",
+                              isfinite(row->predicted_ms) ? cJSON_CreateNumber(row->predicted_ms)
+                                                          : cJSON_CreateNull());
+        cJSON_AddItemToArray(jobs, job);
+    }
+    cJSON *bytes = cJSON_AddObjectToObject(object, "memory_bytes");
+    cJSON_AddNumberToObject(bytes, "pems", (double)memory->pems);
+    cJSON_AddNumberToObject(bytes, "maps", (double)memory->maps);
+    cJSON_AddNumberToObject(bytes, "targets", (double)memory->targets);
+    cJSON_AddNumberToObject(bytes, "surfaces", (double)memory->surfaces);
+    cJSON_AddNumberToObject(bytes, "other", (double)memory->other);
+    cJSON_AddNumberToObject(bytes, "total", (double)memory->total);
+    tl_json_print(object);
+}
+
+/* The plan of frame N is that of an animation at N: the frame before it is drawn, so that what it leaves
+ * behind is reused and costs are known. Frame 0 is the first frame, where all is new. */
+bool tl_command_plan(const struct tl_arguments *arguments, tl_error *error)
+{
+    struct tl_stage stage;
+    if (!tl_stage_create(&stage, arguments, error))
+        return false;
+    bool done = true;
+    int frame = arguments->first_frame;
+    if (frame > 0)
+        done = tl_session_go_to(stage.session, frame - 1, error) && tl_stage_draw(&stage, error) &&
+               tl_session_advance(stage.session, error);
+    if (done) {
+        tl_frame next = tl_session_frame(stage.session);
+        const struct tl_render_settings settings = {.light = stage.settings.light,
+                                                    .image = stage.settings.image};
+        tl_plan plan;
+        tl_renderer_plan(stage.renderer, &next, &settings, &plan);
+        done = tl_stage_draw(&stage, error); /* memory is what the frame really holds */
+        struct tl_render_memory memory = tl_renderer_memory(stage.renderer);
+        if (done && arguments->json)
+            print_plan_json(&plan, &memory);
+        else if (done)
+            print_plan(&plan, &memory);
+    }
+    tl_stage_release(&stage);
+    return done;
+}

@@ -1,0 +1,69 @@
+#include "app/commands.h"
+
+#include "app/settings.h"
+
+#include <stdio.h>
+#include <string.h>
+
+const struct tl_command tl_commands[] = {
+    {"view", "view [SCENE] [OPTIONS]",
+     "Opens the review window: orbit, play, pull on the cloth, change fabric and light.",
+     TL_FLAGS_SCENE | TL_FLAGS_WINDOW, tl_command_view},
+    {"render", "render [SCENE] -o OUT.exr|OUT.png [OPTIONS]",
+     "Renders frames without a screen: .exr holds linear radiance and coverage, .png what a person would "
+     "see.",
+     TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_FRAME | TL_FLAGS_FRAMES, tl_command_render},
+    {"plan", "plan [SCENE] [--json] [OPTIONS]",
+     "Prints what would run for a frame, why, at what cost and in how much memory.",
+     TL_FLAGS_SCENE | TL_FLAGS_FRAME | TL_FLAGS_JSON, tl_command_plan},
+    {"compare", "compare TESTED REFERENCE [--json] [--ldr|--hdr]",
+     "Tells how different two images are: relative RMSE, mean FLIP, largest difference.",
+     TL_FLAGS_JSON | TL_FLAGS_METRIC, tl_command_compare},
+    {"export", "export [SCENE] -o OUT.glb [OPTIONS]",
+     "Writes the draped garment and its avatar as a GLB file.",
+     TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_FRAME, tl_command_export},
+    {"info", "info FILE|fabrics|presets|garments [--json]",
+     "Tells what a file holds and how it will be read, or lists what is built in.", TL_FLAGS_JSON,
+     tl_command_info},
+    {"help", "help [COMMAND|options|reference]",
+     "Lists the commands, explains one, or prints every option (reference: as a Markdown page).", 0,
+     tl_command_help},
+    {0},
+};
+
+static bool print_command_help(const char *name, tl_error *error)
+{
+    for (const struct tl_command *command = tl_commands; command->name; command++)
+        if (strcmp(command->name, name) == 0) {
+            printf("usage: toile %s\n\n%s\n\n", command->usage, command->help);
+            tl_arguments_print_flags(command->flags);
+            return true;
+        }
+    return tl_fail(error, TL_USAGE, "%s: no such command: `toile help` lists them", name);
+}
+
+bool tl_command_help(const struct tl_arguments *arguments, tl_error *error)
+{
+    const char *topic = arguments->positional_count ? arguments->positionals[0] : NULL;
+    struct tl_settings settings;
+    struct tl_binding bindings[TL_SETTINGS_TABLES];
+    tl_settings_bind(&settings, bindings);
+    tl_options_reset(bindings, TL_SETTINGS_TABLES);
+    if (topic && strcmp(topic, "options") == 0) {
+        tl_options_print_help(bindings, TL_SETTINGS_TABLES, stdout);
+        return true;
+    }
+    if (topic && strcmp(topic, "reference") == 0) {
+        tl_options_print_reference(bindings, TL_SETTINGS_TABLES, stdout);
+        return true;
+    }
+    if (topic)
+        return print_command_help(topic, error);
+    printf("toile %s: garment review. usage: toile COMMAND [SCENE] [OPTIONS]\n\n"
+           "SCENE is a YAML file, a .glb or .gltf model, or nothing: the built-in scene.\n\n",
+           TOILE_VERSION);
+    for (const struct tl_command *command = tl_commands; command->name; command++)
+        printf("  %-9s %s\n", command->name, command->help);
+    printf("\n`toile COMMAND --help` tells more, `toile help options` lists every option.\n");
+    return true;
+}

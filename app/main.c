@@ -1,0 +1,72 @@
+/* toile COMMAND [SCENE] [OPTIONS]: finds the command, parses its flags, runs it, turns its error into one
+ * line. */
+#include "app/commands.h"
+#include "config/interrupt.h"
+#include "config/log.h"
+#include "config/options.h"
+
+#include <locale.h>
+#include <stdio.h>
+#include <string.h>
+
+#define COMMANDS_MAX 32
+
+static const struct tl_command *find_command(const char *name, tl_error *error)
+{
+    const char *names[COMMANDS_MAX];
+    size_t count = 0;
+    for (const struct tl_command *command = tl_commands; command->name; command++) {
+        if (strcmp(command->name, name) == 0)
+            return command;
+        names[count++] = command->name;
+    }
+    const char *near = tl_nearest_word(name, names, count);
+    if (near)
+        tl_fail(error, TL_USAGE, "%s: no such command: did you mean `toile %s`?", name, near);
+    else
+        tl_fail(error, TL_USAGE, "%s: no such command: `toile help` lists them", name);
+    return NULL;
+}
+
+static bool run(int argc, char **argv, tl_error *error)
+{
+    const char *name = argc > 1 ? argv[1] : "help";
+    if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0)
+        name = "help";
+    if (strcmp(name, "--version") == 0) {
+        printf("toile %s\n", TOILE_VERSION);
+        return true;
+    }
+    const struct tl_command *command = find_command(name, error);
+    if (!command)
+        return false;
+    struct tl_arguments arguments;
+    bool done = tl_arguments_parse(argc > 2 ? argc - 2 : 0, argv + 2, command->flags, &arguments, error);
+    if (done && arguments.help) {
+        done = tl_command_help(&(struct tl_arguments){.positionals = {name}, .positional_count = 1}, error);
+    } else if (done) {
+        if (arguments.quiet)
+            tl_log_set_level(TL_LOG_QUIET);
+        else if (arguments.verbose)
+            tl_log_set_level(TL_LOG_DEBUG);
+        done = command->run(&arguments, error);
+    }
+    tl_arguments_release(&arguments);
+    return done;
+}
+
+int main(int argc, char **argv)
+{
+    setlocale(LC_ALL, "C"); /* numbers in files and results have a point, wherever the user lives */
+    tl_interrupt_install();
+    tl_error error = {0};
+    bool done = run(argc, argv, &error);
+    if (!done && error.message[0])
+        fprintf(stderr, "toile: %s\n", error.message);
+    /* A full disk or a closed pipe must not pass for success. */
+    if ((fflush(stdout) != 0 || ferror(stdout)) && done) {
+        fprintf(stderr, "toile: standard output: could not be written: free some space or check the pipe\n");
+        return tl_exit_status(TL_OUTPUT);
+    }
+    return done ? 0 : tl_exit_status(error.code);
+}

@@ -1,0 +1,61 @@
+#include "app/moving.h"
+
+#include "config/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void tl_moving_create(struct tl_moving *moving, const tl_model *model, const uint32_t *weld)
+{
+    size_t count = model->mesh.vertex_count;
+    *moving = (struct tl_moving){
+        .model = model,
+        .positions = TL_NEW_ARRAY(vec3s, count),
+        .normals = TL_NEW_ARRAY(vec3s, count),
+        .tangents = TL_NEW_ARRAY(vec4s, count),
+    };
+    memcpy(moving->positions, model->mesh.positions, count * sizeof *moving->positions);
+    if (weld) {
+        moving->frames = tl_frames_create(&model->mesh, weld);
+    } else {
+        uint32_t *by_position = TL_NEW_ARRAY(uint32_t, count);
+        tl_weld_positions(model->mesh.positions, count, by_position);
+        moving->frames = tl_frames_create(&model->mesh, by_position);
+        free(by_position);
+    }
+    tl_moving_update(moving);
+}
+
+void tl_moving_release(struct tl_moving *moving)
+{
+    tl_frames_destroy(&moving->frames);
+    free(moving->positions);
+    free(moving->normals);
+    free(moving->tangents);
+    *moving = (struct tl_moving){0};
+}
+
+void tl_moving_update(struct tl_moving *moving)
+{
+    tl_frames_update(moving->frames, moving->positions, moving->normals, moving->tangents);
+    moving->motion_revision++;
+}
+
+tl_surface tl_moving_surface(const struct tl_moving *moving, const char *name, const tl_material *materials)
+{
+    const tl_mesh *mesh = &moving->model->mesh;
+    return (tl_surface){
+        .name = name,
+        .vertex_count = mesh->vertex_count,
+        .positions = moving->positions,
+        .normals = moving->normals,
+        .tangents = moving->tangents,
+        .uvs = mesh->uvs,
+        .index_count = mesh->index_count,
+        .indices = mesh->indices,
+        .part_count = mesh->part_count,
+        .parts = mesh->parts,
+        .materials = materials,
+        .motion_revision = moving->motion_revision,
+    };
+}

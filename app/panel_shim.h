@@ -1,0 +1,70 @@
+/* The panel of the review window, drawn by Dear ImGui. C++ stays inside panel_shim.cpp.
+ *
+ * It knows no option by name: widgets come from the option tables, lists and measures from its caller. It
+ * edits the params that the bindings point to, in place and within range, and says so; taking the change
+ * over, or back, is the caller's affair. Ownership: everything passed in is borrowed for the call. Threads:
+ * the window's. */
+#ifndef TOILE_APP_PANEL_SHIM_H
+#define TOILE_APP_PANEL_SHIM_H
+
+#include "config/options.h"
+
+typedef struct tl_panel tl_panel;
+struct GLFWwindow;
+
+/* A button stands for a number of the caller's choosing. */
+struct tl_panel_button {
+    const char *label, *help;
+    int command;
+};
+
+struct tl_panel_line { /* one row of measures: cells[0] is its label */
+    char cells[4][128];
+};
+
+struct tl_panel_lines {
+    const char *title, *help;
+    const struct tl_panel_line *lines;
+    size_t count;
+    int columns;
+    bool open; /* at first */
+};
+
+struct tl_panel_input {
+    const char *title;
+    const char *message; /* what was said last, or "" */
+    bool message_is_error;
+    const struct tl_panel_button *buttons;
+    size_t button_count;
+    const char *const *favourites; /* "table.key" of options that stand on top */
+    size_t favourite_count;
+    const struct tl_panel_lines *measures;
+    size_t measure_count;
+    const struct tl_binding *bindings;
+    size_t binding_count;
+    const struct tl_panel_line *help; /* key, what it does; drawn over the view when there are any */
+    size_t help_count;
+    const char *question; /* asks and waits for one of the answers, unless NULL */
+    const struct tl_panel_button *answers;
+    size_t answer_count;
+    int x, y, width, height; /* the panel's place, framebuffer pixels; width 0: hidden */
+};
+
+struct tl_panel_result {
+    bool changed; /* an option was edited */
+    bool editing; /* a widget is held or typed in: more is to come */
+    int command;  /* of a button, -1 for none */
+};
+
+/* Chains itself after the window's own callbacks. */
+tl_panel *tl_panel_create(struct GLFWwindow *window, float scale, tl_error *error);
+void tl_panel_destroy(tl_panel **panel);
+
+bool tl_panel_wants_pointer(const tl_panel *panel);
+bool tl_panel_wants_keys(const tl_panel *panel);
+
+/* Builds one frame of the panel, then draws it into the current framebuffer. */
+struct tl_panel_result tl_panel_build(tl_panel *panel, const struct tl_panel_input *input);
+void tl_panel_draw(tl_panel *panel);
+
+#endif

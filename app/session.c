@@ -1,0 +1,444 @@
+#include "app/session.h"
+
+#include "app/camera.h"
+#include "app/moving.h"
+#include "assets/avatar.h"
+#include "assets/fit.h"
+#include "config/interrupt.h"
+#include "config/log.h"
+#include "config/memory.h"
+
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A clip's first pose may be far from the rest pose that a garment was made for. The avatar walks there in
+ * this time, before frame 0, so that the cloth is carried along instead of torn. */
+#define POSE_IN_S 1.0
+
+struct tl_session {
+    struct tl_settings settings;
+
+    tl_environment environment;
+    uint64_t environment_revision;
+
+    bool has_avatar;
+    tl_avatar avatar;
+    int clip; /* -1: rest pose */
+    struct tl_moving body;
+
+    bool has_garment;
+    tl_garment garment;
+    tl_cloth *cloth;
+    tl_collider *collider;
+    struct tl_moving dress;
+
+    bool woven;
+    tl_weave weave;
+    tl_material *materials; /* of the garment: the file's, or what settings.material makes of them */
+    uint64_t material_revision;
+
+    int frame;
+    struct tl_box framed; /* what the camera frames: all there is at frame 0 */
+    tl_surface surfaces[2];
+    size_t surface_count;
+};
+
+static bool is_built_in_garment(const char *name)
+{
+    for (const char *const *known = tl_garment_names; *known; known++)
+        if (strcmp(*known, name) == 0)
+            return true;
+    return false;
+}
+
+static bool load_environment(const char *name, tl_environment *out, tl_error *error)
+{
+    if (strcmp(name, "studio") == 0) {
+        *out = tl_environment_studio();
+        return true;
+    }
+    if (!tl_environment_load(name, out, error))
+        return false;
+    size_t cleaned = out->negative_count + out->nan_count + out->inf_count;
+    if (cleaned)
+        tl_warn("%s: cleaned %zu negative, %zu NaN and %zu infinite values", out->name, out->negative_count,
+                out->nan_count, out->inf_count);
+    return true;
+}
+
+static bool load_avatar(tl_session *session, tl_error *error)
+{
+    const char *name = session->settings.scene.avatar;
+    session->clip = -1;
+    if (strcmp(name, "none") == 0)
+        return true;
+    if (strcmp(name, "form") == 0)
+        session->avatar = tl_avatar_form();
+    else if (!tl_avatar_load(name, &session->avatar, error))
+        return false;
+    session->has_avatar = true;
+    const char *clip = session->settings.scene.clip;
+    const tl_model *model = &session->avatar.model;
+    if (strcmp(clip, "none") == 0)
+        return true;
+    session->clip = tl_model_find_clip(model, clip);
+    if (session->clip >= 0 || clip[0] == '\0')
+        return true;
+    if (model->clip_count == 0)
+        return tl_fail(error, TL_INPUT, "%s: has no animation \"%s\", nor any other: leave scene.clip out",
+                       name, clip);
+    return tl_fail(error, TL_INPUT,
+                   "%s: has no animation \"%s\": its first is \"%s\", `toile info` lists them all", name,
+                   clip, model->clips[0].name);
+}
+
+static bool load_garment(tl_session *session, tl_error *error)
+{
+    const char *name = session->settings.scene.garment;
+    if (strcmp(name, "none") == 0)
+        return true;
+    if (is_built_in_garment(name)) {
+        if (!tl_garment_cut(name, session->settings.cloth.edge_m, &session->garment, error))
+            return false;
+        const char *wearer = session->settings.scene.avatar;
+        bool own_body = strcmp(wearer, "form") != 0 && strcmp(wearer, "none") != 0;
+        if (own_body && !tl_garment_fit(&session->garment, wearer, &session->avatar.model.mesh, error)) {
+            tl_garment_release(&session->garment);
+            return false;
+        }
+    } else if (!tl_garment_load(name, &session->garment, error)) {
+        return false;
+    }
+    session->has_garment = true;
+    return true;
+}
+
+/* The garment's materials from its file and settings.material; the weave they point to. */
+static void make_materials(tl_session *session)
+{
+    const struct tl_material_params *look = &session->settings.material;
+    if (session->woven)
+        tl_weave_release(&session->weave);
+    session->woven = !look->use_file && tl_weave_create(&session->settings.weave, &session->weave);
+    const tl_model *model = &session->garment.model;
+    session->materials = tl_resize(session->materials, model->material_count, sizeof *session->materials);
+    for (size_t i = 0; i < model->material_count; i++) {
+        tl_material material = model->materials[i];
+        if (!look->use_file) {
+            /* The fabric replaces how the surface reflects; a print or dye that the file brings stays. */
+            if (!material.diffuse_map.image)
+                memcpy(material.diffuse.raw, look->diffuse, sizeof material.diffuse.raw);
+            memcpy(material.specular.raw, look->specular, sizeof material.specular.raw);
+            material.glossiness = look->glossiness;
+            material.gloss_map.image = NULL;
+            material.specular_map.image = NULL;
+            material.weave = session->woven ? &session->weave : NULL;
+        }
+        session->materials[i] = material;
+    }
+    session->material_revision++;
+}
+
+static void pose_avatar(tl_session *session, double time_s)
+{
+    tl_model_pose(&session->avatar.model, session->clip, time_s, session->body.positions);
+    tl_moving_update(&session->body);
+    if (session->collider)
+        tl_collider_move(session->collider, session->body.positions);
+}
+
+static void pull_cloth(tl_session *session)
+{
+    tl_cloth_positions(session->cloth, session->dress.positions);
+    tl_moving_update(&session->dress);
+}
+
+/* From the rest pose to the clip's first pose, vertex by vertex on straight lines. */
+static bool pose_in(tl_session *session, tl_error *error)
+{
+    size_t count = session->avatar.model.mesh.vertex_count;
+    const vec3s *rest = session->avatar.model.mesh.positions;
+    vec3s *first = TL_NEW_ARRAY(vec3s, count);
+    tl_model_pose(&session->avatar.model, session->clip, 0, first);
+    int steps = (int)(POSE_IN_S * session->settings.cloth.frame_rate) + 1;
+    bool done = true;
+    for (int step = 1; done && step <= steps && !tl_interrupted(); step++) {
+        float part = (float)step / (float)steps;
+        for (size_t i = 0; i < count; i++)
+            session->body.positions[i] = glms_vec3_lerp(rest[i], first[i], part);
+        tl_collider_move(session->collider, session->body.positions);
+        done = tl_cloth_step(session->cloth, session->collider, error);
+    }
+    free(first);
+    return done;
+}
+
+static bool drape(tl_session *session, tl_error *error)
+{
+    const struct tl_settings *settings = &session->settings;
+    const tl_mesh *body = session->has_avatar ? &session->avatar.model.mesh : NULL;
+    session->collider = tl_collider_create(body, settings->image.ground, error);
+    if (!session->collider)
+        return false;
+    session->cloth = tl_cloth_create(&session->garment, &settings->fabric, &settings->cloth, error);
+    if (!session->cloth || !tl_cloth_settle(session->cloth, session->collider, error))
+        return false;
+    if (session->clip >= 0 && !pose_in(session, error))
+        return false;
+    tl_cloth_mark_start(session->cloth);
+    tl_moving_create(&session->dress, &session->garment.model, tl_cloth_weld(session->cloth));
+    pull_cloth(session);
+    return true;
+}
+
+static void frame_everything(tl_session *session)
+{
+    struct tl_box box = {{{FLT_MAX, FLT_MAX, FLT_MAX}}, {{-FLT_MAX, -FLT_MAX, -FLT_MAX}}};
+    const struct tl_moving *shown[] = {session->has_avatar ? &session->body : NULL,
+                                       session->has_garment ? &session->dress : NULL};
+    for (size_t i = 0; i < TL_COUNT(shown); i++) {
+        if (!shown[i])
+            continue;
+        struct tl_box part = tl_box_of(shown[i]->positions, shown[i]->model->mesh.vertex_count);
+        box.lower = glms_vec3_minv(box.lower, part.lower);
+        box.upper = glms_vec3_maxv(box.upper, part.upper);
+    }
+    session->framed = box;
+}
+
+static bool load_all(tl_session *session, tl_error *error)
+{
+    if (!load_environment(session->settings.scene.environment, &session->environment, error))
+        return false;
+    session->environment_revision = 1;
+    if (!load_avatar(session, error) || !load_garment(session, error))
+        return false;
+    if (!session->has_avatar && !session->has_garment)
+        return tl_fail(error, TL_USAGE, "scene: neither a garment nor an avatar: name at least one");
+    if (session->has_avatar)
+        tl_moving_create(&session->body, &session->avatar.model, NULL);
+    if (session->has_garment) {
+        make_materials(session);
+        if (!drape(session, error))
+            return false;
+    }
+    if (tl_interrupted())
+        return tl_fail(error, TL_INTERRUPTED, "stopped while the scene was made ready");
+    if (session->has_avatar)
+        pose_avatar(session, 0);
+    frame_everything(session);
+    return true;
+}
+
+tl_session *tl_session_create(const struct tl_settings *settings, tl_error *error)
+{
+    tl_session *session = TL_NEW(tl_session);
+    session->settings = *settings;
+    if (!load_all(session, error))
+        tl_session_destroy(&session);
+    return session;
+}
+
+void tl_session_destroy(tl_session **handle)
+{
+    tl_session *session = *handle;
+    if (!session)
+        return;
+    tl_moving_release(&session->dress);
+    tl_moving_release(&session->body);
+    tl_cloth_destroy(&session->cloth);
+    tl_collider_destroy(&session->collider);
+    tl_garment_release(&session->garment);
+    tl_avatar_release(&session->avatar);
+    tl_environment_release(&session->environment);
+    if (session->woven)
+        tl_weave_release(&session->weave);
+    free(session->materials);
+    free(session);
+    *handle = NULL;
+}
+
+bool tl_session_advance(tl_session *session, tl_error *error)
+{
+    double time_s = (session->frame + 1) / session->settings.cloth.frame_rate;
+    if (session->has_avatar && (session->clip >= 0 || session->has_garment))
+        pose_avatar(session, time_s);
+    if (session->has_garment) {
+        if (!tl_cloth_step(session->cloth, session->collider, error))
+            return false;
+        pull_cloth(session);
+    }
+    session->frame++;
+    return true;
+}
+
+bool tl_session_reset(tl_session *session, tl_error *error)
+{
+    (void)error;
+    session->frame = 0;
+    if (session->has_avatar) {
+        pose_avatar(session, 0);
+        pose_avatar(session, 0); /* twice: the collider is at rest */
+    }
+    if (session->has_garment) {
+        tl_cloth_reset(session->cloth);
+        pull_cloth(session);
+    }
+    return true;
+}
+
+bool tl_session_go_to(tl_session *session, int number, tl_error *error)
+{
+    if (number < session->frame && !tl_session_reset(session, error))
+        return false;
+    struct tl_progress progress = tl_progress_begin("simulating");
+    int first = session->frame;
+    bool done = true;
+    while (done && session->frame < number) {
+        if (tl_interrupted())
+            done = tl_fail(error, TL_INTERRUPTED, "stopped at frame %d", session->frame);
+        else
+            done = tl_session_advance(session, error);
+        tl_progress_update(&progress, session->frame - first, number - first);
+    }
+    tl_progress_end(&progress);
+    return done;
+}
+
+int tl_session_frame_number(const tl_session *session)
+{
+    return session->frame;
+}
+
+static bool same_text(const char *a, const char *b)
+{
+    return strcmp(a, b) == 0;
+}
+
+/* What cannot be changed in place: who wears what, and what is decided when the cloth is made. */
+static bool needs_new_scene(const struct tl_settings *old, const struct tl_settings *new)
+{
+    return !same_text(old->scene.garment, new->scene.garment) ||
+           !same_text(old->scene.avatar, new->scene.avatar) || !same_text(old->scene.clip, new->scene.clip) ||
+           old->cloth.edge_m != new->cloth.edge_m || old->image.ground != new->image.ground;
+}
+
+bool tl_session_apply(tl_session *session, const struct tl_settings *settings, tl_error *error)
+{
+    const struct tl_settings *old = &session->settings;
+    if (needs_new_scene(old, settings)) {
+        tl_session *fresh = tl_session_create(settings, error);
+        if (!fresh)
+            return false;
+        /* Revisions go on rising, so that the renderer sees everything as new. */
+        fresh->environment_revision += session->environment_revision;
+        fresh->material_revision += session->material_revision;
+        fresh->body.motion_revision += session->body.motion_revision;
+        fresh->dress.motion_revision += session->dress.motion_revision;
+        tl_session swap = *session;
+        *session = *fresh;
+        *fresh = swap;
+        tl_session_destroy(&fresh);
+        return true;
+    }
+    if (!same_text(old->scene.environment, settings->scene.environment)) {
+        tl_environment fresh;
+        if (!load_environment(settings->scene.environment, &fresh, error))
+            return false;
+        tl_environment_release(&session->environment);
+        session->environment = fresh;
+        session->environment_revision++;
+    }
+    bool new_look = memcmp(&old->weave, &settings->weave, sizeof old->weave) != 0 ||
+                    memcmp(&old->material, &settings->material, sizeof old->material) != 0;
+    if (session->cloth && !tl_cloth_set(session->cloth, &settings->fabric, &settings->cloth, error))
+        return false;
+    session->settings = *settings;
+    if (session->has_garment && new_look)
+        make_materials(session);
+    return true;
+}
+
+const struct tl_settings *tl_session_settings(const tl_session *session)
+{
+    return &session->settings;
+}
+
+tl_frame tl_session_frame(tl_session *session)
+{
+    session->surface_count = 0;
+    if (session->has_avatar)
+        session->surfaces[session->surface_count++] =
+            tl_moving_surface(&session->body, "avatar", session->avatar.model.materials);
+    if (session->has_garment) {
+        tl_surface *garment = &session->surfaces[session->surface_count++];
+        *garment = tl_moving_surface(&session->dress, "garment", session->materials);
+        garment->topology_revision = session->material_revision;
+    }
+    const struct tl_image_params *image = &session->settings.image;
+    return (tl_frame){
+        .camera = tl_camera_frame(&session->settings.camera, session->framed,
+                                  (float)image->width / (float)image->height),
+        .surfaces = session->surfaces,
+        .surface_count = session->surface_count,
+        .environment = &session->environment,
+        .environment_revision = session->environment_revision,
+        .environment_yaw = glm_rad(session->settings.scene.environment_yaw_deg),
+        .time_s = session->frame / session->settings.cloth.frame_rate,
+    };
+}
+
+/* Moeller & Trumbore 1997; both sides count. */
+static bool hit_triangle(vec3s origin, vec3s direction, const vec3s corners[3], float *distance_m,
+                         float weights[3])
+{
+    vec3s side = glms_vec3_sub(corners[1], corners[0]), other = glms_vec3_sub(corners[2], corners[0]);
+    vec3s p = glms_vec3_cross(direction, other);
+    float determinant = glms_vec3_dot(side, p);
+    if (determinant == 0)
+        return false;
+    vec3s to_origin = glms_vec3_sub(origin, corners[0]);
+    vec3s q = glms_vec3_cross(to_origin, side);
+    float u = glms_vec3_dot(to_origin, p) / determinant;
+    float v = glms_vec3_dot(direction, q) / determinant;
+    *distance_m = glms_vec3_dot(other, q) / determinant;
+    weights[0] = 1 - u - v;
+    weights[1] = u;
+    weights[2] = v;
+    return u >= 0 && v >= 0 && u + v <= 1 && *distance_m > 0;
+}
+
+bool tl_session_pick(const tl_session *session, vec3s origin, vec3s direction, uint32_t *vertex,
+                     float *distance_m)
+{
+    if (!session->has_garment)
+        return false;
+    const tl_mesh *mesh = &session->garment.model.mesh;
+    float nearest = FLT_MAX;
+    for (size_t i = 0; i + 2 < mesh->index_count; i += 3) {
+        const uint32_t *index = &mesh->indices[i];
+        const vec3s corners[3] = {session->dress.positions[index[0]], session->dress.positions[index[1]],
+                                  session->dress.positions[index[2]]};
+        float distance, weights[3];
+        if (!hit_triangle(origin, direction, corners, &distance, weights) || distance >= nearest)
+            continue;
+        nearest = distance;
+        int best = weights[1] > weights[0] ? 1 : 0;
+        *vertex = index[weights[2] > weights[best] ? 2 : best];
+    }
+    *distance_m = nearest;
+    return nearest < FLT_MAX;
+}
+
+tl_cloth *tl_session_cloth(tl_session *session)
+{
+    return session->cloth;
+}
+
+struct tl_cloth_report tl_session_report(const tl_session *session)
+{
+    if (!session->cloth)
+        return (struct tl_cloth_report){0};
+    return tl_cloth_measure(session->cloth, session->collider);
+}

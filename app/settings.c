@@ -1,0 +1,192 @@
+#include "app/settings.h"
+
+#include "config/embedded.h"
+#include "config/file.h"
+#include "config/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* What assets/garment.h, assets/avatar.h and assets/studio.h make without a file, and "none". */
+static const char *const garment_names[] = {"dress", "skirt", "none", NULL};
+static const char *const avatar_names[] = {"form", "none", NULL};
+static const char *const environment_names[] = {"studio", NULL};
+
+#define TL_SCENE_DEFAULTS                                                                                    \
+    .garment = "dress", .avatar = "form", .environment = "studio", .fabric = "satin", .preset = "review"
+
+static const struct tl_option scene_rows[] = {
+    TL_OPTION_NAME_OR_PATH(struct tl_scene_params, garment, garment_names,
+                           "what is worn: built in, or a glTF file"),
+    TL_OPTION_NAME_OR_PATH(struct tl_scene_params, avatar, avatar_names,
+                           "who wears it: built in, or a glTF file"),
+    TL_OPTION_NAME_OR_PATH(struct tl_scene_params, environment, environment_names,
+                           "the light: built in, or an .exr or .hdr file"),
+    TL_OPTION_NAME_OR_PATH(struct tl_scene_params, fabric, tl_embedded_fabrics_names,
+                           "sets the tables fabric, weave and material: built in, or a YAML file"),
+    TL_OPTION_NAME_OR_PATH(struct tl_scene_params, preset, tl_embedded_presets_names,
+                           "sets quality in the tables cloth, light and image: built in, or a YAML file"),
+    TL_OPTION_STRING(struct tl_scene_params, clip,
+                     "animation of the avatar; empty: its first; none: the rest pose"),
+    TL_OPTION_FLOAT(struct tl_scene_params, environment_yaw_deg, -3600, 3600, "degrees",
+                    "turns the environment about the vertical, counter-clockwise from above"),
+};
+static const struct tl_option_table scene_table =
+    TL_OPTION_TABLE("scene", "what is shown", scene_rows, struct tl_scene_params, TL_SCENE_DEFAULTS);
+
+#define TL_CAMERA_DEFAULTS .yaw_deg = 25, .pitch_deg = 8, .distance_m = 0, .fov_deg = 30
+
+static const struct tl_option camera_rows[] = {
+    TL_OPTION_FLOAT(struct tl_camera_params, yaw_deg, -3600, 3600, "degrees",
+                    "where the eye is about the vertical: 0 looks from +Z, positive moves it towards +X"),
+    TL_OPTION_FLOAT(struct tl_camera_params, pitch_deg, -90, 90, "degrees", "positive looks down"),
+    TL_OPTION_FLOAT(struct tl_camera_params, distance_m, 0, 10000, "m",
+                    "from the target; 0 frames the avatar and the garment"),
+    TL_OPTION_VECTOR(struct tl_camera_params, target, -10000, 10000, "m",
+                     "what the eye looks at and turns about, once distance_m is given"),
+    TL_OPTION_FLOAT(struct tl_camera_params, fov_deg, 1, 150, "degrees",
+                    "vertical field of view; larger looks wider"),
+};
+static const struct tl_option_table camera_table = TL_OPTION_TABLE(
+    "camera", "an orbit about a target", camera_rows, struct tl_camera_params, TL_CAMERA_DEFAULTS);
+
+/* The reference page's order. A preset sets CLOTH, LIGHT and IMAGE; a fabric FABRIC, WEAVE and MATERIAL. */
+enum { SCENE, CAMERA, CLOTH, FABRIC, WEAVE, MATERIAL, LIGHT, IMAGE };
+
+void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[TL_SETTINGS_TABLES])
+{
+    bindings[SCENE] = (struct tl_binding){&scene_table, &settings->scene};
+    bindings[CAMERA] = (struct tl_binding){&camera_table, &settings->camera};
+    bindings[CLOTH] = (struct tl_binding){&tl_cloth_options, &settings->cloth};
+    bindings[FABRIC] = (struct tl_binding){&tl_cloth_fabric_options, &settings->fabric};
+    bindings[WEAVE] = (struct tl_binding){&tl_weave_options, &settings->weave};
+    bindings[MATERIAL] = (struct tl_binding){&tl_material_options, &settings->material};
+    bindings[LIGHT] = (struct tl_binding){&tl_light_options, &settings->light};
+    bindings[IMAGE] = (struct tl_binding){&tl_image_options, &settings->image};
+}
+
+/* One kind of file that can be named or lie on disk. */
+struct layer {
+    const char *kind; /* for messages */
+    const struct tl_embedded *list;
+    const char *const *names;
+};
+static const struct layer preset_layer = {"preset", tl_embedded_presets, tl_embedded_presets_names};
+static const struct layer fabric_layer = {"fabric", tl_embedded_fabrics, tl_embedded_fabrics_names};
+static const struct layer scene_layer = {"scene", tl_embedded_scenes, tl_embedded_scenes_names};
+
+static bool fail_name(const struct layer *layer, const char *name, tl_error *error)
+{
+    size_t count = 0;
+    char *list = tl_copy_string("");
+    for (; layer->names[count]; count++) {
+        char *longer = tl_format("%s%s, ", list, layer->names[count]);
+        free(list);
+        list = longer;
+    }
+    const char *near = tl_nearest_word(name, layer->names, count);
+    tl_fail(error, TL_USAGE, "%s: no such %s: expected %sor a YAML file%s%s%s", name, layer->kind, list,
+            near ? ": did you mean " : "", near ? near : "", near ? "?" : "");
+    free(list);
+    return false;
+}
+
+static bool apply(const struct layer *layer, const char *name, const struct tl_binding *bindings,
+                  size_t count, tl_error *error)
+{
+    if (tl_option_is_file_name(name))
+        return tl_options_read_yaml_file(bindings, count, name, error);
+    char *file = tl_format("%s.yaml", name);
+    const struct tl_embedded *entry = tl_embedded_find(layer->list, file);
+    free(file);
+    if (!entry)
+        return fail_name(layer, name, error);
+    return tl_options_read_yaml(bindings, count, entry->name, entry->data, entry->size, error);
+}
+
+static bool apply_preset(const struct tl_binding *all, const char *name, tl_error *error)
+{
+    const struct tl_binding bindings[] = {all[CLOTH], all[LIGHT], all[IMAGE]};
+    return apply(&preset_layer, name, bindings, TL_COUNT(bindings), error);
+}
+
+static bool apply_fabric(const struct tl_binding *all, const char *name, tl_error *error)
+{
+    const struct tl_binding bindings[] = {all[FABRIC], all[WEAVE], all[MATERIAL]};
+    return apply(&fabric_layer, name, bindings, TL_COUNT(bindings), error);
+}
+
+static bool is_model(const char *path)
+{
+    return path && (tl_path_has_extension(path, "glb") || tl_path_has_extension(path, "gltf"));
+}
+
+/* A model in place of a scene is shown as it is: no garment to drape, its own materials. */
+static bool apply_model(const struct tl_binding *all, const char *path, tl_error *error)
+{
+    return tl_options_set(all, TL_SETTINGS_TABLES, "scene.avatar", path, "SCENE", NULL, error) &&
+           tl_options_set(all, TL_SETTINGS_TABLES, "scene.garment", "none", "SCENE", NULL, error) &&
+           tl_options_set(all, TL_SETTINGS_TABLES, "scene.fabric", "none", "SCENE", NULL, error);
+}
+
+/* The two topmost layers. */
+static bool apply_source(const struct tl_binding *all, const struct tl_settings_source *source,
+                         tl_error *error)
+{
+    const char *scene = source->scene_file ? source->scene_file : "dress";
+    bool applied = is_model(scene) ? apply_model(all, scene, error)
+                                   : apply(&scene_layer, scene, all, TL_SETTINGS_TABLES, error);
+    for (size_t i = 0; applied && i < source->assignment_count; i++)
+        applied = tl_options_set_assignment(all, TL_SETTINGS_TABLES, source->assignments[i], error);
+    return applied;
+}
+
+/* The topmost layers name the preset and the fabric that lie below them, so they are read twice: once to
+ * learn these names, and once more in their place. */
+bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *source, tl_error *error)
+{
+    struct tl_settings settings;
+    memset(&settings, 0, sizeof settings); /* padding too: sessions compare settings whole */
+    struct tl_binding all[TL_SETTINGS_TABLES];
+    tl_settings_bind(&settings, all);
+    tl_options_reset(all, TL_SETTINGS_TABLES);
+    if (!apply_source(all, source, error))
+        return false;
+    struct tl_scene_params named = settings.scene;
+    tl_options_reset(all, TL_SETTINGS_TABLES);
+    if (!apply_preset(all, named.preset, error) || !apply_fabric(all, named.fabric, error) ||
+        !apply_source(all, source, error))
+        return false;
+    *out = settings;
+    return true;
+}
+
+/* What the last fabric set and this one does not must not remain: the tables begin anew. */
+bool tl_settings_apply_fabric(struct tl_settings *settings, const char *name, tl_error *error)
+{
+    struct tl_settings changed = *settings;
+    struct tl_binding all[TL_SETTINGS_TABLES];
+    tl_settings_bind(&changed, all);
+    tl_options_reset(&all[FABRIC], 1);
+    tl_options_reset(&all[WEAVE], 1);
+    tl_options_reset(&all[MATERIAL], 1);
+    if (!tl_options_set(all, TL_SETTINGS_TABLES, "scene.fabric", name, "fabric", NULL, error) ||
+        !apply_fabric(all, name, error))
+        return false;
+    *settings = changed;
+    return true;
+}
+
+/* Only light begins anew: cloth and image hold more than quality (the picture's size, say). */
+bool tl_settings_apply_preset(struct tl_settings *settings, const char *name, tl_error *error)
+{
+    struct tl_settings changed = *settings;
+    struct tl_binding all[TL_SETTINGS_TABLES];
+    tl_settings_bind(&changed, all);
+    tl_options_reset(&all[LIGHT], 1);
+    if (!tl_options_set(all, TL_SETTINGS_TABLES, "scene.preset", name, "preset", NULL, error) ||
+        !apply_preset(all, name, error))
+        return false;
+    *settings = changed;
+    return true;
+}

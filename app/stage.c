@@ -1,0 +1,47 @@
+#include "app/stage.h"
+
+#include "config/log.h"
+
+bool tl_stage_settings(const struct tl_arguments *arguments, struct tl_settings *out, tl_error *error)
+{
+    if (arguments->positional_count > 1)
+        return tl_fail(error, TL_USAGE, "%s: one scene at a time: name a YAML, .glb or .gltf file, or none",
+                       arguments->positionals[1]);
+    const struct tl_settings_source source = {
+        .scene_file = arguments->positional_count ? arguments->positionals[0] : NULL,
+        .assignments = (const char *const *)arguments->assignments,
+        .assignment_count = arguments->assignment_count,
+    };
+    return tl_settings_load(out, &source, error);
+}
+
+bool tl_stage_create(struct tl_stage *stage, const struct tl_arguments *arguments, tl_error *error)
+{
+    *stage = (struct tl_stage){0};
+    if (!tl_stage_settings(arguments, &stage->settings, error))
+        return false;
+    stage->gpu = tl_gpu_create_headless(error);
+    stage->renderer = stage->gpu ? tl_renderer_create(stage->gpu, error) : NULL;
+    stage->session = stage->renderer ? tl_session_create(&stage->settings, error) : NULL;
+    if (stage->session) {
+        tl_debug("rendering with %s", tl_gpu_name(stage->gpu));
+        return true;
+    }
+    tl_stage_release(stage);
+    return false;
+}
+
+void tl_stage_release(struct tl_stage *stage)
+{
+    tl_renderer_destroy(&stage->renderer);
+    tl_gpu_destroy(&stage->gpu);
+    tl_session_destroy(&stage->session);
+}
+
+bool tl_stage_draw(struct tl_stage *stage, tl_error *error)
+{
+    tl_frame frame = tl_session_frame(stage->session);
+    const struct tl_render_settings settings = {.light = stage->settings.light,
+                                                .image = stage->settings.image};
+    return tl_renderer_draw(stage->renderer, &frame, &settings, error);
+}

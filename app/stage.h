@@ -1,0 +1,25 @@
+/* A session with a headless renderer: what every command without a window works on. */
+#ifndef TOILE_APP_STAGE_H
+#define TOILE_APP_STAGE_H
+
+#include "app/arguments.h"
+#include "app/session.h"
+
+struct tl_stage {
+    struct tl_settings settings;
+    tl_session *session;
+    tl_gpu *gpu;
+    tl_renderer *renderer;
+};
+
+/* Settings from the command line: its scene and its assignments. */
+bool tl_stage_settings(const struct tl_arguments *arguments, struct tl_settings *out, tl_error *error);
+
+/* Settings, device, session (settled). On failure nothing is left. */
+bool tl_stage_create(struct tl_stage *stage, const struct tl_arguments *arguments, tl_error *error);
+void tl_stage_release(struct tl_stage *stage);
+
+/* Draws the session's current frame. */
+bool tl_stage_draw(struct tl_stage *stage, tl_error *error);
+
+#endif

@@ -1,0 +1,289 @@
+/* Keys and pointer of the review window. */
+#include "app/orbit.h"
+#include "app/view.h"
+#include "config/log.h"
+#include "config/memory.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <math.h>
+#include <stdio.h>
+
+struct key_row {
+    int key, modifiers;
+    int command;
+    const char *label; /* NULL: another key for the row above */
+    const char *help;
+};
+
+static const struct key_row key_rows[] = {
+    {GLFW_KEY_SPACE, 0, TL_VIEW_PLAY, "Space", "play, pause"},
+    {GLFW_KEY_PERIOD, 0, TL_VIEW_STEP, ".  or  Right", "one frame on"},
+    {GLFW_KEY_RIGHT, 0, TL_VIEW_STEP, NULL, NULL},
+    {GLFW_KEY_R, 0, TL_VIEW_RESET, "R", "back to the settled start"},
+    {GLFW_KEY_F, 0, TL_VIEW_FRAME_ALL, "F", "frame the whole figure"},
+    {GLFW_KEY_E, 0, TL_VIEW_NEXT_ENVIRONMENT, "E", "next environment"},
+    {GLFW_KEY_LEFT_BRACKET, 0, TL_VIEW_TURN_LEFT, "[  ]", "turn the environment by 15\u00b0"},
+    {GLFW_KEY_RIGHT_BRACKET, 0, TL_VIEW_TURN_RIGHT, NULL, NULL},
+    {GLFW_KEY_S, 0, TL_VIEW_SCREENSHOT, "S  or  F12", "screenshot as PNG"},
+    {GLFW_KEY_F12, 0, TL_VIEW_SCREENSHOT, NULL, NULL},
+    {GLFW_KEY_S, GLFW_MOD_SHIFT, TL_VIEW_SCREENSHOT_LINEAR, "Shift+S", "screenshot as EXR, linear"},
+    {GLFW_KEY_TAB, 0, TL_VIEW_PANEL, "Tab", "hide or show the panel"},
+    {GLFW_KEY_H, 0, TL_VIEW_HELP, "H  or  F1", "this list"},
+    {GLFW_KEY_F1, 0, TL_VIEW_HELP, NULL, NULL},
+    {GLFW_KEY_ESCAPE, 0, TL_VIEW_BACK, "Esc", "close what is open, or leave"},
+    {GLFW_KEY_Q, 0, TL_VIEW_QUIT, "Q", "leave"},
+    {GLFW_KEY_1, 0, TL_VIEW_FABRIC, "1 to 9", "fabrics, in the order of the panel's list"},
+    {GLFW_KEY_2, 0, TL_VIEW_FABRIC + 1, NULL, NULL},
+    {GLFW_KEY_3, 0, TL_VIEW_FABRIC + 2, NULL, NULL},
+    {GLFW_KEY_4, 0, TL_VIEW_FABRIC + 3, NULL, NULL},
+    {GLFW_KEY_5, 0, TL_VIEW_FABRIC + 4, NULL, NULL},
+    {GLFW_KEY_6, 0, TL_VIEW_FABRIC + 5, NULL, NULL},
+    {GLFW_KEY_7, 0, TL_VIEW_FABRIC + 6, NULL, NULL},
+    {GLFW_KEY_8, 0, TL_VIEW_FABRIC + 7, NULL, NULL},
+    {GLFW_KEY_9, 0, TL_VIEW_FABRIC + 8, NULL, NULL},
+};
+
+static const char *const gesture_rows[][2] = {
+    {"left drag", "turn about the figure"},
+    {"right or middle drag", "move the figure"},
+    {"wheel", "nearer, farther"},
+    {"double click", "look closely at that point"},
+    {"Ctrl + left drag", "pull on the cloth"},
+    {"Shift + left drag", "turn the environment"},
+    {"drop a file", ".glb .gltf: garment or avatar; .exr .hdr: environment; .yaml: scene, fabric or preset"},
+};
+
+static void add_help(struct tl_panel_line *line, const char *label, const char *help)
+{
+    snprintf(line->cells[0], sizeof line->cells[0], "%s", label);
+    snprintf(line->cells[1], sizeof line->cells[1], "%s", help);
+}
+
+size_t tl_view_help(struct tl_panel_line *lines, size_t capacity)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < TL_COUNT(gesture_rows) && count < capacity; i++)
+        add_help(&lines[count++], gesture_rows[i][0], gesture_rows[i][1]);
+    for (size_t i = 0; i < TL_COUNT(key_rows) && count < capacity; i++)
+        if (key_rows[i].label)
+            add_help(&lines[count++], key_rows[i].label, key_rows[i].help);
+    return count;
+}
+
+static void on_key(struct tl_view *view, const struct tl_window_event *event)
+{
+    if (tl_panel_wants_keys(view->panel) ||
+        (event->modifiers & (GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER)))
+        return;
+    int modifiers = event->modifiers & GLFW_MOD_SHIFT;
+    for (size_t i = 0; i < TL_COUNT(key_rows); i++)
+        if (key_rows[i].key == event->key && key_rows[i].modifiers == modifiers) {
+            tl_view_act(view, key_rows[i].command);
+            return;
+        }
+}
+
+static struct tl_ray ray_under(const struct tl_view *view, const struct tl_camera *camera, float x, float y)
+{
+    int width, height;
+    tl_view_size(view, &width, &height);
+    return tl_orbit_ray(camera, x, y, (float)width, (float)height);
+}
+
+static float depth_of(const struct tl_camera *camera, vec3s point)
+{
+    vec3s forward = glms_vec3_normalize(glms_vec3_sub(camera->target, camera->eye));
+    return glms_vec3_dot(glms_vec3_sub(point, camera->eye), forward);
+}
+
+/* The garment's point under the pointer. */
+static bool pick(const struct tl_view *view, const struct tl_camera *camera, float x, float y,
+                 uint32_t *vertex, vec3s *point)
+{
+    struct tl_ray ray = ray_under(view, camera, x, y);
+    float distance_m;
+    if (!tl_session_pick(view->session, ray.origin, ray.direction, vertex, &distance_m))
+        return false;
+    *point = glms_vec3_muladds(ray.direction, distance_m, ray.origin);
+    return true;
+}
+
+/* Moves but for a turn need to know how far the eye is, which an automatic frame leaves open. */
+static void fix_camera(struct tl_view *view)
+{
+    struct tl_camera camera = tl_session_frame(view->session).camera;
+    if (view->wanted.camera.distance_m <= 0)
+        tl_orbit_take(&view->wanted.camera, &camera);
+}
+
+static void pull(struct tl_view *view, float x, float y)
+{
+    tl_cloth *cloth = tl_session_cloth(view->session);
+    if (!cloth)
+        return;
+    struct tl_camera camera = tl_session_frame(view->session).camera;
+    struct tl_ray ray = ray_under(view, &camera, x, y);
+    float depth_per_m = depth_of(&camera, glms_vec3_add(camera.eye, ray.direction));
+    vec3s target = glms_vec3_muladds(ray.direction, view->grab_depth_m / depth_per_m, ray.origin);
+    tl_cloth_grab(cloth, view->grab_vertex, target);
+}
+
+static void begin_pull(struct tl_view *view, float x, float y)
+{
+    struct tl_camera camera = tl_session_frame(view->session).camera;
+    vec3s point;
+    if (!pick(view, &camera, x, y, &view->grab_vertex, &point)) {
+        tl_view_say(view, "nothing to pull here: hold Ctrl and drag on the garment");
+        return;
+    }
+    view->drag = TL_DRAG_CLOTH;
+    view->grab_depth_m = depth_of(&camera, point);
+    pull(view, x, y);
+    if (!view->playing)
+        tl_view_act(view, TL_VIEW_PLAY); /* cloth that stands still cannot follow */
+    tl_info("view: pulls on vertex %u", (unsigned)view->grab_vertex);
+}
+
+static void focus(struct tl_view *view, float x, float y)
+{
+    struct tl_camera camera = tl_session_frame(view->session).camera;
+    uint32_t vertex;
+    vec3s point;
+    if (!pick(view, &camera, x, y, &vertex, &point))
+        return;
+    fix_camera(view);
+    tl_orbit_focus(&view->wanted.camera, point);
+    view->changed = true;
+    tl_info("view: looks at vertex %u", (unsigned)vertex);
+}
+
+static bool is_double_click(struct tl_view *view, const struct tl_window_event *event)
+{
+    const double patience_s = 0.35;
+    const float slack = 5; /* pixels */
+    double now_s = tl_clock_s();
+    bool is_second = now_s - view->pressed_s < patience_s && fabsf(event->x - view->pressed_x) < slack &&
+                     fabsf(event->y - view->pressed_y) < slack;
+    view->pressed_s = is_second ? 0 : now_s;
+    view->pressed_x = event->x;
+    view->pressed_y = event->y;
+    return is_second;
+}
+
+static void on_press(struct tl_view *view, const struct tl_window_event *event)
+{
+    int width, height;
+    tl_view_size(view, &width, &height);
+    if (view->drag != TL_DRAG_NONE || event->x >= (float)width || tl_panel_wants_pointer(view->panel))
+        return;
+    view->drag_button = event->button;
+    view->pointer_x = event->x;
+    view->pointer_y = event->y;
+    if (event->button != GLFW_MOUSE_BUTTON_LEFT)
+        view->drag = TL_DRAG_PAN;
+    else if (event->modifiers & GLFW_MOD_CONTROL)
+        begin_pull(view, event->x, event->y);
+    else if (event->modifiers & GLFW_MOD_SHIFT)
+        view->drag = TL_DRAG_LIGHT;
+    else if (is_double_click(view, event))
+        focus(view, event->x, event->y);
+    else
+        view->drag = TL_DRAG_ORBIT;
+}
+
+static void on_release(struct tl_view *view, const struct tl_window_event *event)
+{
+    if (view->drag == TL_DRAG_NONE || event->button != view->drag_button)
+        return;
+    tl_cloth *cloth = tl_session_cloth(view->session);
+    if (view->drag == TL_DRAG_CLOTH && cloth)
+        tl_cloth_release(cloth);
+    view->drag = TL_DRAG_NONE;
+}
+
+static void on_move(struct tl_view *view, const struct tl_window_event *event)
+{
+    int width, height;
+    tl_view_size(view, &width, &height);
+    float dx = (event->x - view->pointer_x) / (float)height,
+          dy = (event->y - view->pointer_y) / (float)height;
+    view->pointer_x = event->x;
+    view->pointer_y = event->y;
+    switch (view->drag) {
+    case TL_DRAG_NONE:
+        return;
+    case TL_DRAG_ORBIT:
+        tl_orbit_turn(&view->wanted.camera, dx, dy);
+        break;
+    case TL_DRAG_PAN:
+        fix_camera(view);
+        tl_orbit_pan(&view->wanted.camera, dx, dy);
+        break;
+    case TL_DRAG_LIGHT:
+        view->wanted.scene.environment_yaw_deg =
+            tl_orbit_wrap_deg(view->wanted.scene.environment_yaw_deg - dx * TL_ORBIT_DEG_PER_HEIGHT);
+        break;
+    case TL_DRAG_CLOTH:
+        pull(view, event->x, event->y);
+        return;
+    }
+    view->changed = true;
+    tl_view_touch(view);
+}
+
+static void on_wheel(struct tl_view *view, const struct tl_window_event *event)
+{
+    int width, height;
+    tl_view_size(view, &width, &height);
+    if (event->x >= (float)width || tl_panel_wants_pointer(view->panel))
+        return;
+    fix_camera(view);
+    float x = (event->x - 0.5f * (float)width) / (float)height;
+    float y = (event->y - 0.5f * (float)height) / (float)height;
+    tl_orbit_zoom(&view->wanted.camera, event->steps, x, y);
+    view->changed = true;
+    tl_view_touch(view);
+}
+
+static void handle(struct tl_view *view, const struct tl_window_event *event)
+{
+    switch (event->type) {
+    case TL_WINDOW_KEY:
+        on_key(view, event);
+        break;
+    case TL_WINDOW_PRESS:
+        on_press(view, event);
+        break;
+    case TL_WINDOW_RELEASE:
+        on_release(view, event);
+        break;
+    case TL_WINDOW_MOVE:
+        on_move(view, event);
+        break;
+    case TL_WINDOW_WHEEL:
+        on_wheel(view, event);
+        break;
+    case TL_WINDOW_DROP:
+        tl_view_drop(view, event->path);
+        break;
+    case TL_WINDOW_REDRAW:
+        view->changed = true; /* the picture's size may have */
+        break;
+    case TL_WINDOW_CLOSE:
+        view->closing = true;
+        break;
+    }
+}
+
+void tl_view_listen(struct tl_view *view)
+{
+    const int panel_settles = 3; /* ImGui answers to an event within so many frames */
+    struct tl_window_event event;
+    while (tl_window_next(view->window, &event)) {
+        handle(view, &event);
+        tl_window_event_release(&event);
+        view->redraws = panel_settles;
+    }
+}

@@ -1,0 +1,220 @@
+/* What the panel of the review window shows: options, measures, the plan. */
+#include "app/view.h"
+#include "config/log.h"
+#include "config/memory.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#define MEASURES_MAX 12
+#define HELP_MAX     40
+
+static const char *const favourites[] = {
+    "scene.garment",       "scene.avatar",      "scene.fabric",
+    "material.glossiness", "scene.environment", "scene.environment_yaw_deg",
+    "scene.preset",        "light.method",      "light.regions",
+    "image.exposure_ev",   "image.background",
+};
+
+static const struct tl_panel_button model_answers[] = {
+    {"Garment", "worn by the avatar", TL_VIEW_USE_GARMENT},
+    {"Avatar", "wears the garment", TL_VIEW_USE_AVATAR},
+    {"Cancel", "", TL_VIEW_USE_NOTHING},
+};
+
+static const struct tl_panel_button text_answers[] = {
+    {"Scene", "replaces all options", TL_VIEW_USE_SCENE},
+    {"Fabric", "replaces fabric, weave and material", TL_VIEW_USE_FABRIC},
+    {"Preset", "replaces the quality of light, image and cloth", TL_VIEW_USE_PRESET},
+    {"Cancel", "", TL_VIEW_USE_NOTHING},
+};
+
+int tl_view_panel_width(const struct tl_view *view)
+{
+    const float wished = 380;
+    int width, height;
+    tl_window_size(view->window, &width, &height);
+    int panel = (int)(wished * tl_window_scale(view->window));
+    return view->panel_hidden ? 0 : panel < width / 2 ? panel : width / 2;
+}
+
+size_t tl_view_resident_bytes(void)
+{
+    unsigned long pages = 0;
+    FILE *file = fopen("/proc/self/statm", "r");
+    if (file && fscanf(file, "%*u %lu", &pages) != 1)
+        pages = 0;
+    if (file)
+        fclose(file);
+    return (size_t)pages * (size_t)sysconf(_SC_PAGESIZE);
+}
+
+static double megabytes(size_t bytes)
+{
+    return (double)bytes / (1 << 20);
+}
+
+static void add_line(struct tl_panel_line *lines, size_t *count, const char *label, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+
+static void add_line(struct tl_panel_line *lines, size_t *count, const char *label, const char *format, ...)
+{
+    if (*count == MEASURES_MAX)
+        return;
+    struct tl_panel_line *line = &lines[(*count)++];
+    snprintf(line->cells[0], sizeof line->cells[0], "%s", label);
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(line->cells[1], sizeof line->cells[1], format, arguments);
+    va_end(arguments);
+}
+
+/* Measuring the cloth costs a query a vertex: not for every frame. */
+static const struct tl_cloth_report *cloth_report(struct tl_view *view)
+{
+    const double patience_s = 0.5;
+    int frame = tl_session_frame_number(view->session);
+    double now_s = tl_clock_s();
+    if (frame != view->reported_frame && (!view->playing || now_s - view->reported_s > patience_s)) {
+        view->report = tl_session_report(view->session);
+        view->reported_frame = frame;
+        view->reported_s = now_s;
+    }
+    return &view->report;
+}
+
+static void count_triangles(struct tl_view *view, size_t *triangles, size_t *vertices)
+{
+    tl_frame frame = tl_session_frame(view->session);
+    *triangles = *vertices = 0;
+    for (size_t i = 0; i < frame.surface_count; i++) {
+        *triangles += frame.surfaces[i].index_count / 3;
+        *vertices += frame.surfaces[i].vertex_count;
+    }
+}
+
+static size_t list_measures(struct tl_view *view, struct tl_panel_line *lines)
+{
+    size_t count = 0, triangles, vertices;
+    int width, height;
+    tl_view_size(view, &width, &height);
+    add_line(lines, &count, "frame", "%d, %.0f ms", tl_session_frame_number(view->session),
+             view->times.frame);
+    add_line(lines, &count, "cloth", "%.1f ms", view->times.cloth);
+    add_line(lines, &count, "drawing", "%.0f ms", view->times.draw);
+    add_line(lines, &count, "image", view->scale > 1 ? "%d x %d at 1/%d" : "%d x %d", width, height,
+             view->scale);
+    count_triangles(view, &triangles, &vertices);
+    add_line(lines, &count, "surfaces", "%zu triangles, %zu vertices", triangles, vertices);
+    if (tl_session_cloth(view->session)) {
+        const struct tl_cloth_report *report = cloth_report(view);
+        add_line(lines, &count, "sheet", "%zu vertices, %zu edges", report->vertex_count, report->edge_count);
+        add_line(lines, &count, "strain", "%.1f %% at most", 100 * report->max_strain);
+        add_line(lines, &count, "speed", "%.2f m/s at most", report->max_speed);
+    }
+    struct tl_render_memory memory = tl_renderer_memory(view->renderer);
+    add_line(lines, &count, "GL memory", "%.0f MB: light %.0f, maps %.0f, image %.0f",
+             megabytes(memory.total), megabytes(memory.pems), megabytes(memory.maps),
+             megabytes(memory.targets));
+    add_line(lines, &count, "memory", "%.0f MB", megabytes(tl_view_resident_bytes()));
+    if (tl_gpu_message_count(view->gpu) > 0)
+        add_line(lines, &count, "GL messages", "%zu, see the log", tl_gpu_message_count(view->gpu));
+    return count;
+}
+
+static size_t list_plan(struct tl_view *view, struct tl_panel_line *lines)
+{
+    const tl_plan *plan = tl_renderer_last_plan(view->renderer);
+    for (int i = 0; i < plan->count; i++) {
+        const struct tl_plan_row *row = &plan->rows[i];
+        snprintf(lines[i].cells[0], sizeof lines[i].cells[0], "%s", row->name);
+        snprintf(lines[i].cells[1], sizeof lines[i].cells[1], "%s", tl_job_action_names[row->action]);
+        if (isfinite(row->predicted_ms))
+            snprintf(lines[i].cells[2], sizeof lines[i].cells[2], "%.1f ms", row->predicted_ms);
+        else
+            lines[i].cells[2][0] = '\0';
+        snprintf(lines[i].cells[3], sizeof lines[i].cells[3], "%s", row->reason);
+    }
+    return (size_t)plan->count;
+}
+
+static void ask_about_dropped(const struct tl_view *view, char *question, size_t size,
+                              struct tl_panel_input *input)
+{
+    if (!view->dropped)
+        return;
+    const char *slash = strrchr(view->dropped, '/');
+    snprintf(question, size, "%s: use it as", slash ? slash + 1 : view->dropped);
+    bool is_model = strstr(slash ? slash : view->dropped, ".gl") != NULL;
+    input->question = question;
+    input->answers = is_model ? model_answers : text_answers;
+    input->answer_count = is_model ? TL_COUNT(model_answers) : TL_COUNT(text_answers);
+}
+
+static void take_result(struct tl_view *view, const struct tl_panel_result *result)
+{
+    view->editing = result->editing;
+    if (result->changed) {
+        tl_view_layer(view);
+        tl_view_know_environment(view, view->wanted.scene.environment);
+        tl_view_touch(view);
+        view->changed = true;
+    }
+    if (result->command >= 0)
+        tl_view_act(view, result->command);
+}
+
+void tl_view_build_panel(struct tl_view *view)
+{
+    const struct tl_panel_button buttons[] = {
+        {view->playing ? "Pause" : "Play", "Space", TL_VIEW_PLAY},
+        {"Step", "one frame on: .", TL_VIEW_STEP},
+        {"Reset", "back to the settled start: R", TL_VIEW_RESET},
+        {"Frame", "frame the whole figure: F", TL_VIEW_FRAME_ALL},
+        {"Next light", "next environment: E", TL_VIEW_NEXT_ENVIRONMENT},
+        {"Picture", "screenshot: S, or Shift+S for a linear EXR", TL_VIEW_SCREENSHOT},
+        {"Keys", "keys and gestures: H", TL_VIEW_HELP},
+    };
+    struct tl_panel_line measures[MEASURES_MAX], plan[TL_JOBS_MAX], help[HELP_MAX];
+    const struct tl_panel_lines groups[] = {
+        {.title = "Measures",
+         .lines = measures,
+         .count = list_measures(view, measures),
+         .columns = 2,
+         .open = true},
+        {.title = "Plan",
+         .help = "what the last image needed: job, action, usual time, reason",
+         .lines = plan,
+         .count = list_plan(view, plan),
+         .columns = 4},
+    };
+    struct tl_binding bindings[TL_SETTINGS_TABLES];
+    tl_settings_bind(&view->wanted, bindings);
+    int width, height;
+    tl_view_size(view, &width, &height);
+    char question[TL_STRING_SIZE];
+    struct tl_panel_input input = {
+        .title = view->title,
+        .message = view->message,
+        .message_is_error = view->message_is_error,
+        .buttons = buttons,
+        .button_count = TL_COUNT(buttons),
+        .favourites = favourites,
+        .favourite_count = TL_COUNT(favourites),
+        .measures = groups,
+        .measure_count = TL_COUNT(groups),
+        .bindings = bindings,
+        .binding_count = TL_SETTINGS_TABLES,
+        .help = help,
+        .help_count = view->help_shown ? tl_view_help(help, HELP_MAX) : 0,
+        .x = width,
+        .width = tl_view_panel_width(view),
+        .height = height,
+    };
+    ask_about_dropped(view, question, sizeof question, &input);
+    struct tl_panel_result result = tl_panel_build(view->panel, &input);
+    take_result(view, &result);
+}

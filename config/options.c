@@ -1,0 +1,149 @@
+#include "config/options.h"
+
+#include "config/memory.h"
+#include "config/options_value.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void tl_options_reset(const struct tl_binding *bindings, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        memcpy(bindings[i].params, bindings[i].table->defaults, bindings[i].table->params_size);
+}
+
+const struct tl_binding *tl_options_find_table(const struct tl_binding *bindings, size_t count,
+                                               const char *name, size_t length)
+{
+    for (size_t i = 0; i < count; i++)
+        if (strlen(bindings[i].table->name) == length && memcmp(bindings[i].table->name, name, length) == 0)
+            return &bindings[i];
+    return NULL;
+}
+
+const struct tl_option *tl_options_find_row(const struct tl_option_table *table, const char *name)
+{
+    for (size_t i = 0; i < table->row_count; i++)
+        if (strcmp(table->rows[i].name, name) == 0)
+            return &table->rows[i];
+    return NULL;
+}
+
+/* "a, b, c": new string. */
+static char *join(const char *const *words, size_t count)
+{
+    char *list = tl_copy_string("");
+    for (size_t i = 0; i < count; i++) {
+        char *longer = tl_format("%s%s%s", list, i ? ", " : "", words[i]);
+        free(list);
+        list = longer;
+    }
+    return list;
+}
+
+bool tl_options_fail_table(const struct tl_binding *bindings, size_t count, const char *name,
+                           const char *where, tl_error *error)
+{
+    const char **names = TL_NEW_ARRAY(const char *, count);
+    for (size_t i = 0; i < count; i++)
+        names[i] = bindings[i].table->name;
+    const char *near = tl_nearest_word(name, names, count);
+    if (near)
+        tl_fail(error, TL_USAGE, "%s: %s: no such table: did you mean %s?", where, tl_excerpt_of(name).text,
+                near);
+    else {
+        char *list = join(names, count);
+        tl_fail(error, TL_USAGE, "%s: %s: no such table: expected one of %s", where, tl_excerpt_of(name).text,
+                list);
+        free(list);
+    }
+    free(names);
+    return false;
+}
+
+/* A row that has this name in whatever table: people remember names better than tables. */
+static const struct tl_binding *find_row_anywhere(const struct tl_binding *bindings, size_t count,
+                                                  const char *name)
+{
+    for (size_t i = 0; i < count; i++)
+        if (tl_options_find_row(bindings[i].table, name))
+            return &bindings[i];
+    return NULL;
+}
+
+static bool fail_row(const struct tl_binding *bindings, size_t count, const struct tl_option_table *table,
+                     const char *name, const char *where, tl_error *error)
+{
+    const char **names = TL_NEW_ARRAY(const char *, table->row_count);
+    for (size_t i = 0; i < table->row_count; i++)
+        names[i] = table->rows[i].name;
+    const char *near = tl_nearest_word(name, names, table->row_count);
+    const struct tl_binding *elsewhere = find_row_anywhere(bindings, count, name);
+    const char *near_table = near || !elsewhere ? table->name : elsewhere->table->name;
+    struct tl_excerpt shown = tl_excerpt_of(name);
+    if (near || elsewhere)
+        tl_fail(error, TL_USAGE, "%s: %s.%s: no such option: did you mean %s.%s?", where, table->name,
+                shown.text, near_table, near ? near : name);
+    else {
+        char *list = join(names, table->row_count);
+        tl_fail(error, TL_USAGE, "%s: %s.%s: no such option: %s has %s", where, table->name, shown.text,
+                table->name, list);
+        free(list);
+    }
+    free(names);
+    return false;
+}
+
+/* A key without a dot. */
+static bool fail_key(const struct tl_binding *bindings, size_t count, const char *key, const char *where,
+                     tl_error *error)
+{
+    const struct tl_binding *binding = find_row_anywhere(bindings, count, key);
+    if (binding)
+        return tl_fail(error, TL_USAGE, "%s: %s: lacks its table: did you mean %s.%s?", where, key,
+                       binding->table->name, key);
+    return tl_fail(error, TL_USAGE, "%s: %s: lacks its table: expected table.option, as in %s.%s", where,
+                   tl_excerpt_of(key).text, bindings[0].table->name, bindings[0].table->rows[0].name);
+}
+
+bool tl_options_set(const struct tl_binding *bindings, size_t count, const char *key, const char *text,
+                    const char *where, const char *base_file, tl_error *error)
+{
+    const char *dot = strchr(key, '.');
+    if (!dot)
+        return fail_key(bindings, count, key, where, error);
+    const struct tl_binding *binding = tl_options_find_table(bindings, count, key, (size_t)(dot - key));
+    if (!binding) {
+        char *table = tl_format("%.*s", (int)(dot - key), key);
+        tl_options_fail_table(bindings, count, table, where, error);
+        free(table);
+        return false;
+    }
+    const struct tl_option *row = tl_options_find_row(binding->table, dot + 1);
+    if (!row)
+        return fail_row(bindings, count, binding->table, dot + 1, where, error);
+    char *reason = tl_option_read(row, text, base_file, (char *)binding->params + row->offset);
+    if (!reason)
+        return true;
+    tl_fail(error, TL_USAGE, "%s: %s: %s", where, key, reason);
+    free(reason);
+    return false;
+}
+
+bool tl_options_set_assignment(const struct tl_binding *bindings, size_t count, const char *assignment,
+                               tl_error *error)
+{
+    const char *equals = strchr(assignment, '=');
+    if (!equals)
+        return tl_fail(error, TL_USAGE, "--set: %s: has no value: expected table.option=value",
+                       tl_excerpt_of(assignment).text);
+    char *key = tl_format("%.*s", (int)(equals - assignment), assignment);
+    bool set = tl_options_set(bindings, count, key, equals + 1, "--set", NULL, error);
+    free(key);
+    return set;
+}
+
+char *tl_options_get_text(const struct tl_binding *binding, const struct tl_option *row)
+{
+    return tl_option_write(row, (const char *)binding->params + row->offset);
+}

@@ -1,0 +1,33 @@
+/* Inside the option tables: one value as text and back, and how a row or a table is found and missed. Shared
+ * by options.c, options_yaml.c and options_print.c; others use config/options.h. */
+#ifndef TOILE_CONFIG_OPTIONS_VALUE_H
+#define TOILE_CONFIG_OPTIONS_VALUE_H
+
+#include "config/options.h"
+
+/* What a row accepts, for people: "a whole number from 6 to 384 texels". New string. */
+char *tl_option_expectation(const struct tl_option *row);
+
+/* Text into a field of the row's type. On failure the field is untouched and the result is the reason, a new
+ * string; NULL means success. */
+char *tl_option_read(const struct tl_option *row, const char *text, const char *base_file, void *field);
+
+/* The text that tl_option_read takes back. New string. */
+char *tl_option_write(const struct tl_option *row, const void *field);
+
+/* Start of `text`, short enough for a message, on a character's border. */
+struct tl_excerpt {
+    char text[72];
+};
+struct tl_excerpt tl_excerpt_of(const char *text);
+
+/* The binding of the table whose name is the first `length` bytes of `name`; NULL when there is none. */
+const struct tl_binding *tl_options_find_table(const struct tl_binding *bindings, size_t count,
+                                               const char *name, size_t length);
+/* NULL when there is none. */
+const struct tl_option *tl_options_find_row(const struct tl_option_table *table, const char *name);
+/* The message for a table that there is none of. Returns false. */
+bool tl_options_fail_table(const struct tl_binding *bindings, size_t count, const char *name,
+                           const char *where, tl_error *error);
+
+#endif

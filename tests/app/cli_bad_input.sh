@@ -1,0 +1,127 @@
+#!/usr/bin/env bash
+# Every bad input: exit status 2, exactly one line on stderr that names what is wrong, and no file left behind.
+set -u
+data=${TOILE_DATA:-$TOILE_DATA_DIR}
+room=$(mktemp -d)
+trap 'rm -rf "$room"' EXIT
+cd "$room" || exit 1
+failed=0
+
+# refuse NAME PATTERN COMMAND...: runs `toile COMMAND...`, checks status, message and leftovers.
+refuse() {
+    local name=$1 pattern=$2
+    shift 2
+    local before after message status
+    before=$(find . -type f | sort)
+    "$TOILE" "$@" --quiet >stdout.txt 2>stderr.txt
+    status=$?
+    message=$(cat stderr.txt)
+    rm -f stdout.txt stderr.txt
+    after=$(find . -type f | sort)
+    if [ $status -ne 2 ]; then
+        echo "FAILED $name: exit status $status, expected 2: $message"
+        failed=1
+    elif [ "$(printf '%s\n' "$message" | wc -l)" -ne 1 ] || ! printf '%s' "$message" | grep -qE "$pattern"; then
+        echo "FAILED $name: expected one line that matches /$pattern/, got: $message"
+        failed=1
+    elif [ "$before" != "$after" ]; then
+        echo "FAILED $name: files left behind: $(diff <(echo "$before") <(echo "$after") | tr '\n' ' ')"
+        failed=1
+    else
+        echo "ok     $name: $message"
+    fi
+}
+
+# le32 N: four bytes, little endian.
+le32() { printf "\\x$(printf %02x $(($1 & 255)))\\x$(printf %02x $(($1 >> 8 & 255)))\\x$(printf %02x $(($1 >> 16 & 255)))\\x$(printf %02x $(($1 >> 24 & 255)))"; }
+
+# glb FILE JSON [BINARY_FILE]: a well-formed GLB around some JSON.
+glb() {
+    local json=$2 binary=${3:-} length
+    while [ $((${#json} % 4)) -ne 0 ]; do json="$json "; done
+    length=$((20 + ${#json}))
+    [ -n "$binary" ] && length=$((length + 8 + $(stat -c %s "$binary")))
+    { printf glTF; le32 2; le32 $length; le32 ${#json}; printf JSON; printf '%s' "$json"
+      [ -n "$binary" ] && { le32 "$(stat -c %s "$binary")"; printf 'BIN\0'; cat "$binary"; }; } >"$1"
+}
+
+mkdir folder.glb
+: >empty.glb
+echo "this is not a model" >text.glb
+# A triangle: three positions (36 bytes), three 16-bit indices, two bytes of padding.
+{ head -c 12 /dev/zero; printf '\0\0\200\77\0\0\0\0\0\0\0\0'; printf '\0\0\0\0\0\0\200\77\0\0\0\0'; printf '\0\0\1\0\2\0\0\0'; } >good.bin
+{ head -c 36 good.bin; printf '\0\0\1\0\7\0\0\0'; } >index.bin
+{ printf '\0\0\300\177'; tail -c +5 good.bin; } >nan.bin
+mesh='{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},{"bufferView":1,"componentType":5123,"count":3,"type":"SCALAR"}],"bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":6}],"buffers":[{"byteLength":44}]}'
+glb good.glb "$mesh" good.bin
+glb index.glb "$mesh" index.bin
+glb nan.glb "$mesh" nan.bin
+glb nomesh.glb '{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[]}]}'
+glb lies.glb "${mesh//\"count\":3/\"count\":357913941}" good.bin
+head -c 60 good.glb >truncated.glb
+{ printf glTF; le32 2; printf '\377\377\377\377'; tail -c +13 good.glb; } >huge.glb
+printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 0 +X 0\n' >zero.hdr
+printf 'light:\n  regionz: 24\n' >key.yaml
+printf 'light:\n  regions: 7000\n' >range.yaml
+printf 'light:\n  regions: many\n' >type.yaml
+printf 'light: [1\n' >broken.yaml
+
+"$TOILE" info good.glb >/dev/null || { echo "FAILED good.glb must load, or the tests below prove nothing"; failed=1; }
+
+for kind in garment avatar; do
+    refuse "missing $kind" 'nowhere\.glb.*no such file' render -o a.png --$kind nowhere.glb
+    refuse "folder as $kind" 'folder\.glb.*folder' render -o a.png --$kind folder.glb
+    refuse "empty $kind" 'empty\.glb.*empty' render -o a.png --$kind empty.glb
+    refuse "text as $kind" 'text\.glb' render -o a.png --$kind text.glb
+    refuse "truncated $kind" 'truncated\.glb' render -o a.png --$kind truncated.glb
+    refuse "$kind whose length lies" 'huge\.glb' render -o a.png --$kind huge.glb
+    refuse "$kind whose counts lie" 'lies\.glb' render -o a.png --$kind lies.glb
+    refuse "$kind with an index out of range" 'index\.glb.*(index|vertex|range)' render -o a.png --$kind index.glb
+    refuse "$kind with NaN positions" 'nan\.glb.*(NaN|finite|number)' render -o a.png --$kind nan.glb
+    refuse "$kind without a mesh" 'nomesh\.glb.*(mesh|triangle)' render -o a.png --$kind nomesh.glb
+done
+refuse "missing environment" 'nowhere\.exr.*no such file' render -o a.png --env nowhere.exr
+refuse "text as environment" 'text\.glb' render -o a.png --env text.glb
+refuse "zero-sized image" 'zero\.hdr' render -o a.png --env zero.hdr
+refuse "unknown key" 'key\.yaml:2.*regionz.*regions' render key.yaml -o a.png
+refuse "value out of range" 'range\.yaml:2.*light\.regions' render range.yaml -o a.png
+refuse "wrong type" 'type\.yaml:2.*light\.regions' render type.yaml -o a.png
+refuse "broken YAML" 'broken\.yaml' render broken.yaml -o a.png
+refuse "missing scene" 'nowhere\.yaml.*no such file' render nowhere.yaml -o a.png
+refuse "unknown --set" 'light\.regionz.*regions' render -o a.png --set light.regionz=24
+refuse "unknown fabric" 'satinn.*satin' render -o a.png --fabric satinn
+refuse "unknown preset" 'papr.*paper' render -o a.png --preset papr
+refuse "unknown flag" '\-\-fabrik.*--fabric' render -o a.png --fabrik satin
+refuse "unknown command" 'rendr.*render' rendr
+refuse "no output" 'output' render
+refuse "unknown image kind" 'a\.bmp' render -o a.bmp
+refuse "output in no folder" 'nowhere/a\.png' render -o nowhere/a.png
+refuse "output is a folder" 'folder\.glb' render -o folder.glb/../folder.glb/x/../../folder.glb/a.png/b.png
+refuse "size without height" '\-\-size' render -o a.png --size 960
+refuse "compare without files" 'compare' compare
+refuse "compare a missing file" 'nowhere\.png' compare nowhere.png nowhere.png
+refuse "info without a file" 'info' info
+refuse "info of a broken file" 'text\.glb' info text.glb
+
+full=$(mktemp -d)
+if mount -t tmpfs -o size=64k tmpfs "$full" 2>/dev/null; then
+    fast="--preset draft --garment none --size 256x256"
+    refuse "full disk, PNG" 'written' render -o "$full/a.png" $fast
+    refuse "full disk, EXR" 'written' render -o "$full/a.exr" $fast
+    [ -z "$(ls -A "$full")" ] || { echo "FAILED full disk: files left: $(ls -A "$full")"; failed=1; }
+    umount "$full"
+else
+    echo "skipped: full disk: a tmpfs cannot be mounted here"
+fi
+rmdir "$full"
+
+if [ -d "$data/broken" ]; then
+    for file in "$data"/broken/exr/tinyexr_2by2.exr "$data"/broken/exr/openexr_comp_early_eof_piz.exr; do
+        refuse "damaged $(basename "$file")" "$(basename "$file")" render -o a.png --env "$file"
+    done
+    head -c 100000 "$data/envmaps/exr/brown_photostudio_02_1k_half_piz_rgba.exr" >cut.exr
+    refuse "truncated EXR" 'cut\.exr' render -o a.png --env cut.exr
+else
+    echo "skipped: damaged EXR files: $data is absent"
+fi
+exit $failed
