@@ -3,6 +3,6 @@ add_library(toile_light STATIC
   env/cube.c
   pem/chain.c
   pem/lobe.c
-  pem/regions.c)
-
+  pem/regions.c
+  plan/plan.c)
 target_link_libraries(toile_light PUBLIC toile_assets)
