@@ -70,11 +70,11 @@ static char *read_text(const struct tl_embedded *file, tl_error *error)
     return text;
 }
 
-/* If `line` reads #include "name", the embedded file of that name, else NULL. */
+/* If `line` begins with #include "name", the embedded file of that name, else NULL. */
 static const struct tl_embedded *included_file(const struct source *source, const char *line,
                                                bool *is_include, char name[64])
 {
-    *is_include = sscanf(line, " # include \"%63[^\"]\"", name) == 1;
+    *is_include = sscanf(line, "#include \"%63[^\"\n]\"", name) == 1;
     return *is_include ? tl_embedded_find(source->shaders, name) : NULL;
 }
 
