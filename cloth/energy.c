@@ -144,7 +144,7 @@ static void add_hinge(const struct tl_topology *topology, const struct flat *fla
     if (other == TL_NONE || quality(&flats[other]) < needle)
         return;
     const struct flat *near = &flats[triangle], *far = &flats[other];
-    int far_corner = (int)tl_topology_far_corner(topology, other, triangle);
+    int far_corner = (int)tl_topology_far_corner(topology, triangle, other);
     const uint32_t *mine = topology->triangles[triangle], *theirs = topology->triangles[other];
     int start = (corner + 1) % 3, end = (corner + 2) % 3;
     int far_start = theirs[(far_corner + 1) % 3] == mine[start] ? (far_corner + 1) % 3 : (far_corner + 2) % 3;

@@ -29,7 +29,7 @@ struct tl_topology tl_topology_build(const uint32_t *indices, size_t index_count
                                      size_t render_count, size_t vertex_count);
 void tl_topology_release(struct tl_topology *topology);
 
-/* Which corner of `triangle` is not on its edge with `neighbour`'s corners: the far corner of a hinge. */
+/* Corner (0 to 2) of `neighbour` that `triangle` does not have: the far corner of their hinge. */
 uint32_t tl_topology_far_corner(const struct tl_topology *topology, uint32_t triangle, uint32_t neighbour);
 
 /* Lists of the elements around each vertex: those of v are items[first[v]] to items[first[v + 1] - 1], in

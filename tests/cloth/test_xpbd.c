@@ -67,12 +67,12 @@ static void test_hanging_strip(void **state)
         sheet_pin(&garment, sheet_vertex(&shape, column, shape.rows));
     struct tl_cloth_fabric fabric = fabric_defaults();
     struct tl_cloth_params params = params_defaults();
-    fabric.stretch_warp = 500;
+    fabric.stretch_warp = 50; /* soft, so that substeps resolve the elements: see energy.h */
     fabric.damping = 20;
-    params.substeps = 40;
+    params.substeps = 150;
     tl_cloth *cloth = tl_cloth_create(&garment, &fabric, &params, &error);
     assert_non_null(cloth);
-    for (int frame = 0; frame < 240; frame++)
+    for (int frame = 0; frame < 60; frame++)
         assert_ok(tl_cloth_step(cloth, NULL, &error), error);
     double full = fabric.areal_density * params.gravity * shape.height * shape.height / (2 * fabric.stretch_warp);
     for (int row = 0; row <= shape.rows; row++) {

@@ -183,6 +183,7 @@ static void test_paper_preset(void **state)
     assert_int_equal(settings.light.lobe, TL_LOBE_SINGLE);
     assert_int_equal(settings.light.pems_per_pass, 12);
     assert_int_equal(settings.light.pem_size, 128);
+    assert_true(settings.light.bleed_reduction == 0);
     assert_int_equal(settings.light.regions % 6, 0);
 }
 
