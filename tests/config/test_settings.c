@@ -52,10 +52,9 @@ static void test_built_in_scene(void **state)
 }
 
 /* A fabric that nobody names: satin for what is built in, a garment file's own look for a file. */
-static void fabric_left_out(void **state)
+static void test_fabric_left_out(void **state)
 {
     (void)state;
-    struct tl_settings settings;
     tl_error error = {0};
     const char *const file[] = {"scene.garment=shirt.glb"};
     assert_ok(tl_settings_load(&settings, &(struct tl_settings_source){NULL, file, 1}, &error), error);
@@ -253,7 +252,7 @@ static void test_print_and_load_back(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(fabric_left_out),
+        cmocka_unit_test(test_fabric_left_out),
         cmocka_unit_test_setup(test_built_in_scene, begin),
         cmocka_unit_test_setup(test_each_layer_wins, begin),
         cmocka_unit_test_setup(test_model_in_place_of_a_scene, begin),
