@@ -119,7 +119,8 @@ static float *derivative(int radius, double sigma, int order)
         weights[i + radius] = (float)weight;
     }
     for (int i = 0; i <= 2 * radius; i++)
-        weights[i] /= (float)(weights[i] > 0 ? positive : negative);
+        if (weights[i] != 0) /* a filter narrower than a pixel has nothing on one side */
+            weights[i] /= (float)(weights[i] > 0 ? positive : negative);
     return weights;
 }
 
