@@ -22,7 +22,7 @@ struct tl_comparison {
 /* `a` is tested, `b` the reference. Sizes that differ, NaN or Inf in either, or
  * no covered pixel at all are TL_INPUT errors; so is HDR against a reference that is half black, which has no
  * exposure. 8-bit images are decoded from sRGB. `hdr`:
- * -1 decides by content, 0 LDR, 1 HDR. `pixels_per_degree` <= 0 means FLIP's default, 67. */
+ * -1 decides by content, 0 LDR, 1 HDR. `pixels_per_degree` <= 0 means FLIP's default, 67; else 10 to 1000. */
 bool tl_image_compare(const tl_image *a, const tl_image *b, int hdr, double pixels_per_degree,
                       struct tl_comparison *out, tl_error *error);
 

@@ -119,8 +119,7 @@ static float *derivative(int radius, double sigma, int order)
         weights[i + radius] = (float)weight;
     }
     for (int i = 0; i <= 2 * radius; i++)
-        if (weights[i] != 0) /* a filter narrower than a pixel has nothing on one side */
-            weights[i] /= (float)(weights[i] > 0 ? positive : negative);
+        weights[i] /= (float)(weights[i] > 0 ? positive : negative);
     return weights;
 }
 
