@@ -65,21 +65,20 @@ static void cut_pieces(struct cutting *cutting, double edge_m)
     }
 }
 
-/* The garment's vertex at division `n` of an outline's curve. */
-static uint32_t outline_vertex(const struct cutting *cutting, size_t piece_index, size_t curve, size_t n)
-{
-    const struct tl_cut_piece *piece = &cutting->plan->pieces[piece_index];
-    size_t before = 0;
-    for (size_t c = 0; c < curve; c++)
-        before += (size_t)piece->half[c < piece->half_count ? c : tl_cut_mirror(piece, c)].segments;
-    size_t point = (before + n) % cutting->panels[piece_index].outline_count;
-    return (uint32_t)(cutting->first_vertex[piece_index] + point);
-}
-
 static size_t curve_segments(const struct cutting *cutting, size_t piece_index, size_t curve)
 {
     const struct tl_cut_piece *piece = &cutting->plan->pieces[piece_index];
     return (size_t)piece->half[curve < piece->half_count ? curve : tl_cut_mirror(piece, curve)].segments;
+}
+
+/* The garment's vertex at division `n` of an outline's curve. */
+static uint32_t outline_vertex(const struct cutting *cutting, size_t piece_index, size_t curve, size_t n)
+{
+    size_t point = n;
+    for (size_t c = 0; c < curve; c++)
+        point += curve_segments(cutting, piece_index, c);
+    point %= cutting->panels[piece_index].outline_count;
+    return (uint32_t)(cutting->first_vertex[piece_index] + point);
 }
 
 /* A dart's legs share their point, which needs no stitch: fewer pairs may be used than counted. */

@@ -12,7 +12,7 @@
 #define SKIRT_LENGTH 0.50
 #define SKIRT_ANGLE  3.0    /* radians: the hem is 0.75 + 3.0 x 0.5 = 2.25 m around */
 #define SKIRT_SLOPE  0.42   /* radians, of the start shape */
-#define SKIRT_FOLDS  9      /* of the start shape */
+#define SKIRT_FOLDS  5      /* of the start shape: with more they cross as they fall */
 #define UNDERARM     0.190  /* metres of cloth above the waist seam */
 #define STRAP_X      0.112  /* the shoulder seam's middle */
 #define RIDGE_Z      -0.016 /* the shoulders' ridge */

@@ -1,10 +1,8 @@
 #include "assets/garment_cut.h"
 
 #include "assets/form.h"
-#include "config/memory.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 enum { PASSES = 150, PASSES_PER_PUSH = 4 };
 #define SHORT_STIFFNESS 0.15  /* cloth resists stretch, but slack may stay: it would only buckle */
@@ -22,15 +20,13 @@ static void pull(double a[3], double b[3], bool a_fixed, bool b_fixed, double le
     }
 }
 
-/* One step along the distance's gradient; returns the distance before it, so that far points can be left out.
- */
-static double push_out(double p[3])
+/* One step along the distance's gradient, to the clearance as far as the distance is right. */
+static void push_out(double p[3])
 {
     const double step = 1e-4;
-    double distance = tl_form_distance(p);
+    double distance = tl_form_distance(p), gradient[3], norm2 = 0;
     if (distance >= CLEARANCE_M)
-        return distance;
-    double gradient[3], norm2 = 0;
+        return;
     for (int k = 0; k < 3; k++) {
         double q[3] = {p[0], p[1], p[2]};
         q[k] += step;
@@ -39,7 +35,6 @@ static double push_out(double p[3])
     }
     for (int k = 0; k < 3; k++)
         p[k] += (CLEARANCE_M - distance) * gradient[k] / fmax(norm2, 0.1);
-    return distance;
 }
 
 void tl_cut_fit(double (*positions)[3], size_t count, const bool *fixed, const struct tl_fit_edge *edges,
