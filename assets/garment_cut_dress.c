@@ -10,12 +10,12 @@
 #define WAIST_Y      1.035
 #define WAIST_LENGTH 0.75 /* metres around: the form's girth and 7 cm of ease */
 #define SKIRT_LENGTH 0.50
-#define SKIRT_ANGLE  3.0    /* radians: the hem is 0.75 + 3.0 x 0.5 = 2.25 m around */
-#define SKIRT_SLOPE  0.42   /* radians, of the start shape */
-#define SKIRT_FOLDS  5      /* of the start shape: with more they cross as they fall */
-#define UNDERARM     0.190  /* metres of cloth above the waist seam */
-#define STRAP_X      0.112  /* the shoulder seam's middle */
-#define RIDGE_Z      -0.016 /* the shoulders' ridge */
+#define SKIRT_ANGLE  3.0      /* radians: the hem is 0.75 + 3.0 x 0.5 = 2.25 m around */
+#define SKIRT_SLOPE  0.42     /* radians, of the start shape */
+#define SKIRT_FOLDS  5        /* of the start shape: with more they cross as they fall */
+#define UNDERARM     0.190    /* metres of cloth above the waist seam */
+#define STRAP_X      0.112    /* the shoulder seam's middle */
+#define RIDGE_Z      (-0.016) /* the shoulders' ridge */
 
 enum { BODICE_RINGS = 16, PROFILE_STEPS = 64 };
 

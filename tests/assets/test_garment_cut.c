@@ -169,7 +169,7 @@ static void check_seams(const tl_garment *garment, const char *name, float edge_
     }
     qsort(sorted, mesh->vertex_count, sizeof *sorted, compare_positions);
     for (size_t v = 1; v < mesh->vertex_count; v++)
-        distinct += memcmp(&sorted[v], &sorted[v - 1], sizeof(vec3s)) != 0;
+        distinct += compare_positions(&sorted[v], &sorted[v - 1]) != 0;
     assert_int_equal(classes, distinct);
     free(sorted);
     free(weld);
