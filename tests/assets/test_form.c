@@ -115,9 +115,9 @@ static void test_volume(void **state)
 static void test_measurements(void **state)
 {
     (void)state;
-    assert_near(tl_form_girth(1.205), 0.88, 0.01);
+    assert_near(tl_form_girth(TL_FORM_BUST), 0.88, 0.01);
     assert_near(tl_form_girth(TL_FORM_WAIST), 0.68, 0.01);
-    assert_near(tl_form_girth(0.85), 0.94, 0.01);
+    assert_near(tl_form_girth(TL_FORM_HIP), 0.94, 0.01);
     struct tl_box box = tl_box_of(form.model.mesh.positions, form.model.mesh.vertex_count);
     assert_near(box.lower.y, 0, 1e-6);
     assert_near(box.upper.y, 1.6, 1e-6);
@@ -132,8 +132,8 @@ static void test_measurements(void **state)
 static void test_facing(void **state)
 {
     (void)state;
-    double bust = tl_form_radius(1.205, M_PI - 0.6), chest_back = tl_form_radius(1.205, 0.6);
-    double belly = tl_form_radius(0.855, M_PI - 0.4), seat = tl_form_radius(0.855, 0.4);
+    double bust = tl_form_radius(TL_FORM_BUST, M_PI - 0.6), chest_back = tl_form_radius(TL_FORM_BUST, 0.6);
+    double belly = tl_form_radius(TL_FORM_HIP, M_PI - 0.4), seat = tl_form_radius(TL_FORM_HIP, 0.4);
     assert_true(bust > chest_back + 0.01);
     assert_true(seat > belly + 0.01);
 }
