@@ -161,16 +161,15 @@ static uint32_t scene_facts(const struct tl_render_settings *settings)
     return settings->light.method == TL_METHOD_UNSHADOWED ? 0 : TL_BIT(TL_SCENE_SHADOWED);
 }
 
-static void make_plan(const tl_renderer *renderer, const struct tl_render_settings *settings,
-                      uint32_t changed, uint32_t wanted, tl_plan *out)
+static struct tl_plan_input plan_input(const tl_renderer *renderer, const struct tl_render_settings *settings,
+                                       uint32_t changed, enum tl_resource wanted)
 {
-    const struct tl_plan_input input = {.changed = changed,
-                                        .valid = renderer->valid,
-                                        .scene = scene_facts(settings),
-                                        .wanted = wanted,
-                                        .scene_fact_names = tl_scene_fact_names,
-                                        .resource_names = tl_resource_names};
-    tl_plan_make(tl_frame_jobs, tl_frame_job_count, &input, &renderer->cost, out);
+    return (struct tl_plan_input){.changed = changed,
+                                  .valid = renderer->valid,
+                                  .scene = scene_facts(settings),
+                                  .wanted = TL_BIT(wanted),
+                                  .scene_fact_names = tl_scene_fact_names,
+                                  .resource_names = tl_resource_names};
 }
 
 static uint32_t changed_inputs(const tl_renderer *renderer, const uint64_t signatures[TL_INPUT_COUNT])
@@ -182,29 +181,23 @@ static uint32_t changed_inputs(const tl_renderer *renderer, const uint64_t signa
     return changed;
 }
 
-/* Runs the plan's jobs. What a dropped job would have made from changed things is valid no more. */
-static bool run_plan(tl_renderer *renderer, const tl_plan *plan, uint32_t changed, tl_error *error)
+static bool run_plan(tl_renderer *renderer, const struct tl_plan_input *input, tl_plan *plan, tl_error *error)
 {
+    tl_plan_make(tl_frame_jobs, tl_frame_job_count, input, &renderer->cost, plan);
+    tl_gpu_reset_state(renderer->gpu);
     for (int i = 0; i < plan->count; i++) {
-        const tl_job *job = &tl_frame_jobs[i];
-        const struct tl_plan_row *row = &plan->rows[i];
-        if (row->action == TL_JOB_DROP && job->reads & changed) {
-            renderer->valid &= ~job->writes;
-            changed |= job->writes;
-        }
-        if (row->action != TL_JOB_RUN)
+        if (plan->rows[i].action != TL_JOB_RUN)
             continue;
         double started_s = tl_clock_s();
-        if (!job->run(renderer, row->level, error)) {
+        if (!tl_frame_jobs[i].run(renderer, plan->rows[i].level, error)) {
             renderer->valid = 0;
             return false;
         }
         /* The CPU's clock around a finished job: GL's own timers are wrong on software drivers. */
         glFinish();
-        tl_cost_add(&renderer->cost, i, row->level, 1000 * (tl_clock_s() - started_s));
-        renderer->valid |= job->writes;
-        changed |= job->writes;
+        tl_cost_add(&renderer->cost, i, plan->rows[i].level, 1000 * (tl_clock_s() - started_s));
     }
+    renderer->valid = tl_plan_valid_after(tl_frame_jobs, tl_frame_job_count, input, plan);
     return true;
 }
 
@@ -239,10 +232,9 @@ bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct
     renderer->frame = *frame;
     renderer->settings = used;
     renderer->view = tl_view_make(&frame->camera, used.image.width, used.image.height);
-    make_plan(renderer, &used, changed, TL_BIT(TL_MADE_IMAGE), &renderer->plan);
-    tl_gpu_reset_state(renderer->gpu);
     memcpy(renderer->signatures, signatures, sizeof signatures);
-    return run_plan(renderer, &renderer->plan, changed, error);
+    const struct tl_plan_input input = plan_input(renderer, &used, changed, TL_MADE_IMAGE);
+    return run_plan(renderer, &input, &renderer->plan, error);
 }
 
 /* GL's rows run upwards, an image's downwards. */
@@ -283,9 +275,8 @@ static bool show(tl_renderer *renderer, unsigned framebuffer, int width, int hei
     renderer->valid &=
         ~TL_BIT(TL_MADE_SHOWN); /* a window's buffer holds nothing from one frame to the next */
     tl_plan plan;
-    make_plan(renderer, &renderer->settings, 0, TL_BIT(TL_MADE_SHOWN), &plan);
-    tl_gpu_reset_state(renderer->gpu);
-    return run_plan(renderer, &plan, 0, error);
+    const struct tl_plan_input input = plan_input(renderer, &renderer->settings, 0, TL_MADE_SHOWN);
+    return run_plan(renderer, &input, &plan, error);
 }
 
 bool tl_renderer_show_image(tl_renderer *renderer, tl_image *out, tl_error *error)
@@ -312,7 +303,9 @@ void tl_renderer_plan(const tl_renderer *renderer, const tl_frame *frame,
     struct tl_render_settings used = usable(settings);
     uint64_t signatures[TL_INPUT_COUNT];
     sign_inputs(frame, &used, signatures);
-    make_plan(renderer, &used, changed_inputs(renderer, signatures), TL_BIT(TL_MADE_IMAGE), out);
+    const struct tl_plan_input input =
+        plan_input(renderer, &used, changed_inputs(renderer, signatures), TL_MADE_IMAGE);
+    tl_plan_make(tl_frame_jobs, tl_frame_job_count, &input, &renderer->cost, out);
 }
 
 const tl_plan *tl_renderer_last_plan(const tl_renderer *renderer)

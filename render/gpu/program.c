@@ -11,7 +11,11 @@
 
 #define FILES_MAX 16 /* of one shader, includes counted */
 
-/* One shader's text with its includes in place. GLSL names files by number, so their names are kept here. */
+/* Line l of file f is called f x LINES_MAX + l: GLSL numbers files as well as lines, but Mesa gives file 0
+ * for many places in another one. */
+#define LINES_MAX 10000
+
+/* One shader's text with its includes in place. */
 struct source {
     const struct tl_embedded *shaders;
     const char *files[FILES_MAX];
@@ -31,7 +35,7 @@ static void append(struct source *source, const char *text, size_t size)
 static void append_line_directive(struct source *source, int line, int file)
 {
     char directive[64];
-    int length = snprintf(directive, sizeof directive, "#line %d %d\n", line, file);
+    int length = snprintf(directive, sizeof directive, "#line %d\n", file * LINES_MAX + line);
     append(source, directive, (size_t)length);
 }
 
@@ -66,11 +70,11 @@ static char *read_text(const struct tl_embedded *file, tl_error *error)
     return text;
 }
 
-/* If `line` reads #include "name", the embedded file of that name, else NULL. */
+/* If `line` begins with #include "name", the embedded file of that name, else NULL. */
 static const struct tl_embedded *included_file(const struct source *source, const char *line,
                                                bool *is_include, char name[64])
 {
-    *is_include = sscanf(line, " # include \"%63[^\"]\"", name) == 1;
+    *is_include = sscanf(line, "#include \"%63[^\"\n]\"", name) == 1;
     return *is_include ? tl_embedded_find(source->shaders, name) : NULL;
 }
 
@@ -112,13 +116,15 @@ static bool expand(struct source *source, const struct tl_embedded *file, tl_err
     return fine;
 }
 
-/* "3:12(7): error: ..." is what Mesa writes for line 12 of file 3: the number becomes the file's name. */
+/* The compiler's first message, with the name of the file that it is about: "light.frag:12(7): error: ...".
+ * Mesa writes "0:LINE(COLUMN): ...", others "0(LINE) : ...". */
 static bool fail_with_log(const struct source *source, const char *log, tl_error *error)
 {
-    unsigned file;
-    int consumed = 0, length = (int)strcspn(log, "\n");
-    if (sscanf(log, "%u:%n", &file, &consumed) == 1 && consumed > 0 && (int)file < source->file_count)
-        return tl_fail(error, TL_INPUT, "%s:%.*s", source->files[file], length - consumed, log + consumed);
+    int line = 0, consumed = 0, length = (int)strcspn(log, "\n");
+    if ((sscanf(log, "%*u:%d%n", &line, &consumed) == 1 || sscanf(log, "%*u(%d)%n", &line, &consumed) == 1) &&
+        line >= 0 && line / LINES_MAX < source->file_count)
+        return tl_fail(error, TL_INPUT, "%s:%d%.*s", source->files[line / LINES_MAX], line % LINES_MAX,
+                       length - consumed, log + consumed);
     return tl_fail(error, TL_INPUT, "%s: %.*s", source->files[0], length, log);
 }
 

@@ -2,7 +2,7 @@
 
 #include "config/memory.h"
 
-#include <math.h>
+#include "testing.h"
 
 void test_shape_release(struct test_shape *shape)
 {
@@ -12,6 +12,8 @@ void test_shape_release(struct test_shape *shape)
 
 void test_shape_refresh(struct test_shape *shape)
 {
+    static uint64_t revision; /* no two shapes share one: places in a frame's list are used again */
+    revision++;
     const tl_mesh *mesh = &shape->mesh;
     shape->surface = (tl_surface){.name = "shape",
                                   .vertex_count = mesh->vertex_count,
@@ -24,8 +26,8 @@ void test_shape_refresh(struct test_shape *shape)
                                   .part_count = 1,
                                   .parts = mesh->parts,
                                   .materials = &shape->material,
-                                  .topology_revision = shape->surface.topology_revision + 1,
-                                  .motion_revision = shape->surface.motion_revision + 1};
+                                  .topology_revision = revision,
+                                  .motion_revision = revision};
 }
 
 /* A grid of (columns + 1) x (rows + 1) vertices, to be placed by the caller; u = column / columns, v = row /
@@ -110,12 +112,15 @@ struct test_shape test_sheet(float height, float half, float amplitude, float wa
     return finish(mesh);
 }
 
+static uint64_t environment_count; /* the revision of the newest one: addresses are used again */
+
 tl_environment test_environment(int width, int height, vec3s (*radiance)(vec3s direction))
 {
     tl_environment environment = {.name = tl_copy_string("test"),
                                   .layout = TL_ENV_LATLONG,
                                   .image = tl_image_create(width, height, 3, TL_IMAGE_F32)};
     float *texel = tl_image_floats(&environment.image);
+    environment_count++;
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++, texel += 3) {
             float phi = 2 * (float)M_PI * (((float)x + 0.5f) / (float)width - 0.5f);
@@ -156,5 +161,44 @@ tl_frame test_frame(vec3s eye, vec3s target, float fov_deg, const tl_surface *su
                       .surfaces = surfaces,
                       .surface_count = count,
                       .environment = environment,
-                      .environment_revision = 1};
+                      .environment_revision = environment_count};
+}
+
+tl_image test_draw(tl_renderer *renderer, const tl_frame *frame, const struct tl_render_settings *settings)
+{
+    tl_error error = {0};
+    tl_image image;
+    assert_ok(tl_renderer_draw(renderer, frame, settings, &error), error);
+    assert_ok(tl_renderer_read(renderer, &image, &error), error);
+    return image;
+}
+
+const float *test_pixel(const tl_image *image, int x, int y)
+{
+    return tl_image_floats(image) + ((size_t)y * (size_t)image->width + (size_t)x) * (size_t)image->channels;
+}
+
+int test_device_open(void **state)
+{
+    tl_error error = {0};
+    struct test_device *device = TL_NEW(struct test_device);
+    *state = device;
+    device->gpu = tl_gpu_create_headless(&error);
+    if (device->gpu)
+        device->renderer = tl_renderer_create(device->gpu, &error);
+    if (!device->renderer)
+        print_error("%s\n", error.message);
+    return device->renderer ? 0 : -1;
+}
+
+int test_device_close(void **state)
+{
+    struct test_device *device = *state;
+    tl_renderer_destroy(&device->renderer);
+    size_t messages = tl_gpu_message_count(device->gpu), bytes = tl_gpu_texture_bytes(device->gpu);
+    tl_gpu_destroy(&device->gpu);
+    free(device);
+    if (messages || bytes)
+        print_error("%zu GL messages, %zu bytes of textures left\n", messages, bytes);
+    return messages || bytes ? -1 : 0;
 }

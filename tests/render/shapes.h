@@ -30,4 +30,16 @@ struct tl_render_settings test_settings(int width, int height);
 tl_frame test_frame(vec3s eye, vec3s target, float fov_deg, const tl_surface *surfaces, size_t count,
                     const tl_environment *environment);
 
+/* Draws and reads; fails the test when either does. */
+tl_image test_draw(tl_renderer *renderer, const tl_frame *frame, const struct tl_render_settings *settings);
+const float *test_pixel(const tl_image *image, int x, int y);
+
+/* cmocka group setup and teardown: one headless context and renderer; teardown fails when GL complained. */
+struct test_device {
+    tl_gpu *gpu;
+    tl_renderer *renderer;
+};
+int test_device_open(void **state);
+int test_device_close(void **state);
+
 #endif
