@@ -67,6 +67,7 @@ static bool stale(const struct tl_contact_cache *cache, double travel, double ph
     return slack <= 0 || vec3d_dot(moved, moved) > slack * slack;
 }
 
+/* Asked for where the particle was, not for where it was driven to: that may be nearer to the other side. */
 static void ask(const tl_collider *collider, double thickness, double phase, vec3d x,
                 struct tl_contact_cache *cache)
 {
@@ -125,7 +126,7 @@ void tl_contacts_solve(struct tl_contacts *contacts, const struct tl_contact_par
         vec3d x = particles->x[i], before = particles->previous[i];
         struct tl_contact_cache *cache = &contacts->caches[i];
         if (stale(cache, travel, params->phase, x))
-            ask(collider, params->thickness_m, params->phase, x, cache);
+            ask(collider, params->thickness_m, params->phase_before, before, cache);
         if (cache->near)
             x = push_out(x, before, anchor_at(cache, params->phase), anchor_at(cache, params->phase_before),
                          cache->normal, params);
