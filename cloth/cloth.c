@@ -100,7 +100,7 @@ static void set_constants(tl_cloth *cloth)
     set_inverse_masses(cloth);
     tl_energy_set(&cloth->energy, &cloth->fabric, cloth->particles.w, tl_cloth_substep(cloth));
     tl_contacts_release(&cloth->contacts); /* its planes know the thickness */
-    cloth->contacts = tl_contacts_create(cloth->particles.count);
+    cloth->contacts = tl_contacts_create(&cloth->topology, cloth->rest);
 }
 
 /* A hundredth of the mean edge. */
@@ -242,7 +242,7 @@ bool tl_cloth_set(tl_cloth *cloth, const struct tl_cloth_fabric *fabric, const s
 static void forget_contacts(tl_cloth *cloth)
 {
     tl_contacts_release(&cloth->contacts);
-    cloth->contacts = tl_contacts_create(cloth->particles.count);
+    cloth->contacts = tl_contacts_create(&cloth->topology, cloth->rest);
 }
 
 /* Kept by render vertex: seams that close later change the particles, but not these. */
