@@ -64,7 +64,7 @@ static void sign_inputs(const tl_frame *frame, const struct tl_render_settings *
     const struct tl_light_params *light = &settings->light;
     const struct tl_image_params *image = &settings->image;
     const uint64_t start = FNV_OFFSET;
-    signatures[TL_INPUT_ENVIRONMENT] = MIX(MIX(start, frame->environment), frame->environment_revision);
+    signatures[TL_INPUT_ENVIRONMENT] = MIX(start, frame->environment_revision);
     signatures[TL_INPUT_YAW] = MIX(start, frame->environment_yaw);
     signatures[TL_INPUT_SHAPES] = shapes_signature(frame);
     signatures[TL_INPUT_MOTION] = motion_signature(frame);

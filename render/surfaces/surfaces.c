@@ -297,6 +297,12 @@ static void set_material(const struct item *item, const struct tl_mesh_part *par
     glUniform3fv(TL_UNIFORM_UV_ROWS, 2 * TL_MAP_USES, rows[0]);
 }
 
+/* GL takes an offset into the bound buffer as a pointer. */
+static const void *offset_of_index(uint32_t index)
+{
+    return (const void *)((uintptr_t)index * sizeof(uint32_t)); /* NOLINT(performance-no-int-to-ptr) */
+}
+
 bool tl_surfaces_draw(const tl_surfaces *surfaces, size_t index)
 {
     if (index >= surfaces->count)
@@ -307,7 +313,7 @@ bool tl_surfaces_draw(const tl_surfaces *surfaces, size_t index)
         const struct tl_mesh_part *part = &item->parts[p];
         set_material(item, part);
         glDrawElements(GL_TRIANGLES, (GLsizei)part->index_count, GL_UNSIGNED_INT,
-                       (const void *)(part->first_index * sizeof(uint32_t)));
+                       offset_of_index(part->first_index));
     }
     return true;
 }
