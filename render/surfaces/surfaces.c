@@ -21,6 +21,7 @@ struct uploaded {
 struct item {
     GLuint vertex_array, buffers[ATTRIBUTES], indices;
     size_t vertex_count, index_count;
+    size_t attribute_counts[ATTRIBUTES]; /* vertices sent; 0 for what the surface does not have */
     uint64_t topology_revision, motion_revision;
     size_t part_count, material_count;
     struct tl_mesh_part *parts;
@@ -167,8 +168,11 @@ static bool upload_material(tl_gpu *gpu, struct item *item, const char *surface,
 static void attach_buffer(struct item *item, enum attribute attribute, const void *data, size_t count)
 {
     static const GLint components[ATTRIBUTES] = {3, 3, 4, 2};
-    if (!data)
-        return; /* the attribute then reads GL's constant, zero */
+    item->attribute_counts[attribute] = data ? count : 0;
+    if (!data) { /* the attribute then reads GL's constant, zero */
+        glDisableVertexArrayAttrib(item->vertex_array, attribute);
+        return;
+    }
     glNamedBufferData(item->buffers[attribute], (GLsizeiptr)(count * attribute_bytes[attribute]), data,
                       attribute == UV ? GL_STATIC_DRAW : GL_STREAM_DRAW);
     glVertexArrayVertexBuffer(item->vertex_array, attribute, item->buffers[attribute], 0,
@@ -327,7 +331,7 @@ size_t tl_surfaces_bytes(const tl_surfaces *surfaces)
             bytes += tl_texture_bytes(&item->textures[t].texture);
         bytes += item->index_count * sizeof(uint32_t);
         for (int a = 0; a < ATTRIBUTES; a++)
-            bytes += item->vertex_count * attribute_bytes[a];
+            bytes += item->attribute_counts[a] * attribute_bytes[a];
     }
     return bytes;
 }
