@@ -200,6 +200,9 @@ static void test_too_large(void **state)
     scene.settings.image.width = 16384;
     scene.settings.image.supersample = 4;
     expect_refusal(device->renderer, &scene, "make image.width");
+    scene.settings.image.height = 16384;
+    scene.settings.image.supersample = 1;
+    expect_refusal(device->renderer, &scene, "make image.width");
     scene.settings = fine;
     draw(device->renderer, &scene);
     scene_close(&scene);
