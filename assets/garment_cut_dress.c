@@ -154,8 +154,8 @@ static void sew_waist(struct tl_cut_plan *plan, size_t bodice, size_t skirt)
 
 struct tl_cut_plan tl_cut_plan_dress(void)
 {
-    const struct bodice_pattern front = {0.25 * WAIST_LENGTH, 0.240, 0.130, 0.140};
-    const struct bodice_pattern back = {0.25 * WAIST_LENGTH, 0.230, 0.080, 0.145};
+    const struct bodice_pattern front = {0.25 * WAIST_LENGTH, 0.235, 0.130, 0.140};
+    const struct bodice_pattern back = {0.25 * WAIST_LENGTH, 0.235, 0.080, 0.145};
     struct dress_placement *placement = TL_NEW(struct dress_placement);
     const double underarm_y = WAIST_Y + UNDERARM - 0.006; /* the sides slant */
     for (int i = 0; i < BODICE_RINGS; i++) {

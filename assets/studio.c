@@ -80,10 +80,12 @@ static vec3s latlong_direction(float u, float v)
 static vec3s studio_texel(int x, int y, const struct tl_studio_axes *axes)
 {
     vec3s sum = glms_vec3_zero();
-    for (int i = 0; i < SUBSAMPLES * SUBSAMPLES; i++) {
-        float u = ((float)x + ((float)(i % SUBSAMPLES) + 0.5f) / SUBSAMPLES) / STUDIO_WIDTH;
-        float v = ((float)y + ((float)(i / SUBSAMPLES) + 0.5f) / SUBSAMPLES) / STUDIO_HEIGHT;
-        sum = glms_vec3_add(sum, studio_radiance(latlong_direction(u, v), axes));
+    for (int j = 0; j < SUBSAMPLES; j++) {
+        for (int i = 0; i < SUBSAMPLES; i++) {
+            float u = ((float)x + ((float)i + 0.5f) / SUBSAMPLES) / STUDIO_WIDTH;
+            float v = ((float)y + ((float)j + 0.5f) / SUBSAMPLES) / STUDIO_HEIGHT;
+            sum = glms_vec3_add(sum, studio_radiance(latlong_direction(u, v), axes));
+        }
     }
     return glms_vec3_scale(sum, 1.0f / (SUBSAMPLES * SUBSAMPLES));
 }
@@ -111,7 +113,7 @@ tl_environment tl_environment_studio(void)
         for (int x = 0; x < STUDIO_WIDTH; x++) {
             vec3s texel = studio_texel(x, y, axes);
             for (int c = 0; c < 3; c++)
-                texels[(y * STUDIO_WIDTH + x) * 3 + c] = texel.raw[c];
+                texels[((size_t)y * STUDIO_WIDTH + (size_t)x) * 3 + (size_t)c] = texel.raw[c];
         }
     }
     environment.peak = peak_of(&environment.image);

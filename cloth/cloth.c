@@ -202,6 +202,8 @@ void tl_cloth_destroy(tl_cloth **cloth)
     if (!*cloth)
         return;
     release_state(*cloth);
+    free((*cloth)->start_x);
+    free((*cloth)->start_v);
     free(*cloth);
     *cloth = NULL;
 }
@@ -218,12 +220,42 @@ bool tl_cloth_set(tl_cloth *cloth, const struct tl_cloth_fabric *fabric, const s
     return true;
 }
 
+/* What contacts remember would make a run after a reset differ from the first one. */
+static void forget_contacts(tl_cloth *cloth)
+{
+    tl_contacts_release(&cloth->contacts);
+    cloth->contacts = tl_contacts_create(cloth->particles.count);
+}
+
+/* Kept by render vertex: seams that close later change the particles, but not these. */
+void tl_cloth_mark_start(tl_cloth *cloth)
+{
+    size_t count = cloth->topology.render_count;
+    cloth->start_x = tl_resize(cloth->start_x, count, sizeof *cloth->start_x);
+    cloth->start_v = tl_resize(cloth->start_v, count, sizeof *cloth->start_v);
+    for (size_t i = 0; i < count; i++) {
+        cloth->start_x[i] = cloth->particles.x[cloth->topology.weld[i]];
+        cloth->start_v[i] = cloth->particles.v[cloth->topology.weld[i]];
+    }
+    cloth->time_s = 0;
+    forget_contacts(cloth);
+}
+
 void tl_cloth_reset(tl_cloth *cloth)
 {
-    release_state(cloth);
-    cloth->pins_bound = cloth->grabbed = cloth->settled = false;
+    cloth->grabbed = false;
     cloth->time_s = 0;
-    build_state(cloth);
+    if (!cloth->start_x) {
+        release_state(cloth);
+        cloth->pins_bound = cloth->settled = false;
+        build_state(cloth);
+        return;
+    }
+    for (size_t i = 0; i < cloth->topology.render_count; i++) {
+        cloth->particles.x[cloth->topology.weld[i]] = cloth->start_x[i];
+        cloth->particles.v[cloth->topology.weld[i]] = cloth->start_v[i];
+    }
+    forget_contacts(cloth);
 }
 
 void tl_cloth_grab(tl_cloth *cloth, uint32_t render_vertex, vec3s target)

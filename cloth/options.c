@@ -27,7 +27,7 @@ const struct tl_option_table tl_cloth_fabric_options = TL_OPTION_TABLE(
     "fabric", "what the cloth is made of", fabric_rows, struct tl_cloth_fabric, TL_CLOTH_FABRIC_DEFAULTS);
 
 #define TL_CLOTH_DEFAULTS                                                                                    \
-    .solver = TL_CLOTH_XPBD, .dt = 1.0 / 60, .frame_rate = 30, .substeps = 10, .gravity = 9.81,              \
+    .solver = TL_CLOTH_XPBD, .dt = 1.0 / 60, .frame_rate = 30, .substeps = 20, .gravity = 9.81,              \
     .settle_s = 6, .settle_speed = 0.01, .edge_m = 0.02f
 
 static const char *const solver_names[] = {"xpbd", NULL};

@@ -34,6 +34,7 @@ struct tl_cloth {
     vec3d grab_target;
     double time_s;
     bool settled;
+    vec3d *start_x, *start_v; /* [render vertex] what reset goes back to; NULL until a start is marked */
 };
 
 /* How one frame is advanced. */

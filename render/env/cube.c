@@ -219,9 +219,9 @@ static void average_cube(const tl_cube *source, tl_cube *target)
 }
 
 /* Lat-long to cube: every source texel is poured into the cube texels that it covers. Where all its corners
- * lie in one it goes there whole; otherwise it is quartered, down to cells of a sixteenth of a cube texel,
- * which go where their centre lies. So nothing is missed, however thin the source texels are (at the poles),
- * and each keeps its exact solid angle. */
+ * lie in one it goes there whole; otherwise it is halved, down to cells of an eighth of a cube texel, which
+ * are shared out by area. So nothing is missed, however thin the source texels are (at the poles), and each
+ * keeps its exact solid angle. */
 #define CELLS_PER_TEXEL 8
 /* Corners say where a cell lies only while its sides are nearly straight. */
 #define TURN_CELLS_MIN 64
@@ -231,10 +231,10 @@ static void average_cube(const tl_cube *source, tl_cube *target)
 struct pour {
     const tl_image *image;
     int size;                  /* of the target cube */
-    int steps;                 /* per source texel and axis, a power of two; the smallest cell has two */
-    int widest;                /* steps of a cell that its corners may judge */
-    double *sin_phi, *cos_phi; /* [width * steps + 1] where phi = atan2(x, -z) */
-    double *y, *radius;        /* [height * steps + 1] of the unit sphere, radius from the axis */
+    int steps_x, steps_y;      /* per source texel, powers of two; the smallest cell has two */
+    int widest, highest;       /* steps of a cell that its corners may judge */
+    double *sin_phi, *cos_phi; /* [width * steps_x + 1] where phi = atan2(x, -z) */
+    double *y, *radius;        /* [height * steps_y + 1] of the unit sphere, radius from the axis */
 };
 
 struct cell {
@@ -242,17 +242,26 @@ struct cell {
     int corners[4];     /* target texel at (x0, y0), (x1, y0), (x0, y1), (x1, y1) */
 };
 
+static int steps_for(int texels, int wanted)
+{
+    int steps = 2;
+    while (texels * steps < wanted)
+        steps *= 2;
+    return steps;
+}
+
 static struct pour pour_create(const tl_image *image, int size)
 {
-    struct pour pour = {.image = image, .size = size, .steps = 2};
-    int shorter = image->width < 2 * image->height ? image->width : 2 * image->height;
-    int wanted = 4 * size * CELLS_PER_TEXEL * 2; /* four faces are one turn */
-    if (wanted < 2 * TURN_CELLS_MIN)
-        wanted = 2 * TURN_CELLS_MIN;
-    while (shorter * pour.steps < wanted)
-        pour.steps *= 2;
-    int columns = image->width * pour.steps, rows = image->height * pour.steps;
-    pour.widest = (image->width > 2 * image->height ? columns : 2 * rows) / TURN_CELLS_MIN;
+    int turn = 4 * size * CELLS_PER_TEXEL; /* cells; four faces are one turn */
+    if (turn < TURN_CELLS_MIN)
+        turn = TURN_CELLS_MIN;
+    struct pour pour = {.image = image,
+                        .size = size,
+                        .steps_x = steps_for(image->width, 2 * turn),
+                        .steps_y = steps_for(image->height, turn)};
+    int columns = image->width * pour.steps_x, rows = image->height * pour.steps_y;
+    pour.widest = columns / TURN_CELLS_MIN;
+    pour.highest = 2 * rows / TURN_CELLS_MIN;
     pour.sin_phi = TL_NEW_ARRAY(double, (size_t)columns + 1);
     pour.cos_phi = TL_NEW_ARRAY(double, (size_t)columns + 1);
     pour.y = TL_NEW_ARRAY(double, (size_t)rows + 1);
@@ -293,7 +302,7 @@ static int pour_texel(const struct pour *pour, int x, int y)
 static void pour_whole(const struct pour *pour, const float *colour, const struct cell *cell, double share,
                        double sum[4])
 {
-    double step = 2 * M_PI / ((double)pour->image->width * pour->steps);
+    double step = 2 * M_PI / ((double)pour->image->width * pour->steps_x);
     double weight = share * (cell->x1 - cell->x0) * step * (pour->y[cell->y0] - pour->y[cell->y1]);
     for (int c = 0; c < 3; c++)
         sum[c] += weight * (double)colour[c];
@@ -339,33 +348,35 @@ static void pour_cell(const struct pour *pour, const float *colour, const struct
 {
     const int *corners = cell->corners;
     int x0 = cell->x0, y0 = cell->y0, x1 = cell->x1, y1 = cell->y1;
-    int xm = (x0 + x1) / 2, ym = (y0 + y1) / 2;
     bool uniform = corners[0] == corners[1] && corners[0] == corners[2] && corners[0] == corners[3];
-    if (uniform && x1 - x0 <= pour->widest) {
+    if (uniform && x1 - x0 <= pour->widest && y1 - y0 <= pour->highest) {
         pour_whole(pour, colour, cell, 1, sums[corners[0]]);
-        return;
-    }
-    if (x1 - x0 == 2) {
+    } else if (x1 - x0 == 2 && y1 - y0 == 2) {
         pour_smallest(pour, colour, cell, sums);
-        return;
+    } else if (x1 - x0 >= y1 - y0) {
+        int middle = (x0 + x1) / 2, top = pour_texel(pour, middle, y0), bottom = pour_texel(pour, middle, y1);
+        pour_cell(pour, colour, &(struct cell){x0, y0, middle, y1, {corners[0], top, corners[2], bottom}},
+                  sums);
+        pour_cell(pour, colour, &(struct cell){middle, y0, x1, y1, {top, corners[1], bottom, corners[3]}},
+                  sums);
+    } else {
+        int middle = (y0 + y1) / 2, left = pour_texel(pour, x0, middle), right = pour_texel(pour, x1, middle);
+        pour_cell(pour, colour, &(struct cell){x0, y0, x1, middle, {corners[0], corners[1], left, right}},
+                  sums);
+        pour_cell(pour, colour, &(struct cell){x0, middle, x1, y1, {left, right, corners[2], corners[3]}},
+                  sums);
     }
-    int top = pour_texel(pour, xm, y0), left = pour_texel(pour, x0, ym), middle = pour_texel(pour, xm, ym);
-    int right = pour_texel(pour, x1, ym), bottom = pour_texel(pour, xm, y1);
-    pour_cell(pour, colour, &(struct cell){x0, y0, xm, ym, {corners[0], top, left, middle}}, sums);
-    pour_cell(pour, colour, &(struct cell){xm, y0, x1, ym, {top, corners[1], middle, right}}, sums);
-    pour_cell(pour, colour, &(struct cell){x0, ym, xm, y1, {left, middle, corners[2], bottom}}, sums);
-    pour_cell(pour, colour, &(struct cell){xm, ym, x1, y1, {middle, right, bottom, corners[3]}}, sums);
 }
 
 static void pour_rows(const struct pour *pour, int begin, int end, double (*sums)[4])
 {
     for (int row = begin; row < end; row++) {
         const float *colour = tl_image_floats(pour->image) + 3 * (size_t)row * (size_t)pour->image->width;
-        int y0 = row * pour->steps, y1 = y0 + pour->steps;
+        int y0 = row * pour->steps_y, y1 = y0 + pour->steps_y;
         struct cell cell = {0, y0, 0, y1, {0, pour_texel(pour, 0, y0), 0, pour_texel(pour, 0, y1)}};
         for (int column = 0; column < pour->image->width; column++, colour += 3) {
             cell.x0 = cell.x1;
-            cell.x1 += pour->steps;
+            cell.x1 += pour->steps_x;
             cell.corners[0] = cell.corners[1];
             cell.corners[2] = cell.corners[3];
             cell.corners[1] = pour_texel(pour, cell.x1, y0);

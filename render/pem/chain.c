@@ -114,13 +114,18 @@ struct bordered {
     struct extent lit;
 };
 
+static float *bordered_texel(const struct bordered *bordered, float *plane, int x, int y)
+{
+    return plane + 3 * ((size_t)y * (size_t)bordered->side + (size_t)x);
+}
+
 static void bordered_fetch(struct bordered *bordered, const tl_cube *cube, int face)
 {
     int size = cube->size;
     bordered->lit = extent_none;
     for (int y = 0; y < bordered->side; y++) {
         for (int x = 0; x < bordered->side; x++) {
-            float *target = bordered->texels + 3 * (y * bordered->side + x);
+            float *target = bordered_texel(bordered, bordered->texels, x, y);
             int inner_x = x - REACH, inner_y = y - REACH;
             if (inner_x >= 0 && inner_x < size && inner_y >= 0 && inner_y < size) {
                 memcpy(target, texel_of(cube, face, inner_x, inner_y), 3 * sizeof(float));
@@ -136,14 +141,14 @@ static void bordered_fetch(struct bordered *bordered, const tl_cube *cube, int f
 }
 
 /* Five texels, `stride` floats apart, the middle one at `centre`. */
-static void filter_texel(const float *centre, int stride, const float weights[5], float *target)
+static void filter_texel(const float *centre, ptrdiff_t stride, const float weights[5], float *target)
 {
     for (int c = 0; c < 3; c++)
         target[c] = weights[0] * (centre[c - 2 * stride] + centre[c + 2 * stride]) +
                     weights[1] * (centre[c - stride] + centre[c + stride]) + weights[2] * centre[c];
 }
 
-static int clamp_int(int value, int low, int high)
+static int clamp_index(int value, int low, int high)
 {
     return value < low ? low : value > high ? high : value;
 }
@@ -152,21 +157,20 @@ static int clamp_int(int value, int low, int high)
 static void bordered_filter(struct bordered *bordered, const float weights[5], const tl_cube *target,
                             int face)
 {
-    if (bordered->lit.x0 >= bordered->lit.x1)
+    const struct extent *lit = &bordered->lit;
+    if (lit->x0 >= lit->x1)
         return;
-    int side = bordered->side, low = REACH, high = side - REACH;
-    int x0 = clamp_int(bordered->lit.x0 - REACH, low, high),
-        x1 = clamp_int(bordered->lit.x1 + REACH, low, high);
-    int y0 = clamp_int(bordered->lit.y0 - REACH, low, high),
-        y1 = clamp_int(bordered->lit.y1 + REACH, low, high);
+    int low = REACH, high = bordered->side - REACH;
+    int x0 = clamp_index(lit->x0 - REACH, low, high), x1 = clamp_index(lit->x1 + REACH, low, high);
+    int y0 = clamp_index(lit->y0 - REACH, low, high), y1 = clamp_index(lit->y1 + REACH, low, high);
     for (int y = y0 - REACH; y < y1 + REACH; y++)
         for (int x = x0; x < x1; x++)
-            filter_texel(bordered->texels + 3 * (y * side + x), 3, weights,
-                         bordered->rows + 3 * (y * side + x));
+            filter_texel(bordered_texel(bordered, bordered->texels, x, y), 3, weights,
+                         bordered_texel(bordered, bordered->rows, x, y));
     for (int y = y0; y < y1; y++)
         for (int x = x0; x < x1; x++)
-            filter_texel(bordered->rows + 3 * (y * side + x), 3 * side, weights,
-                         texel_of(target, face, x - REACH, y - REACH));
+            filter_texel(bordered_texel(bordered, bordered->rows, x, y), 3 * (ptrdiff_t)bordered->side,
+                         weights, texel_of(target, face, x - REACH, y - REACH));
 }
 
 static void filter_cube(const tl_cube *source, const float weights[5], const tl_cube *target)

@@ -2,6 +2,7 @@
 
 #include "config/memory.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -50,11 +51,18 @@ struct curve {
     double widths[(TL_CHAIN_LEVELS_MAX - 1) * BLENDS_PER_LEVEL + 1]; /* sr */
 };
 
+/* White on black: one channel says all. */
+static float red_of(const tl_cube *cube, int texel)
+{
+    return cube->texels[3 * (size_t)texel];
+}
+
 static double level_volume(const tl_cube *level, const double *hats)
 {
+    assert(hats); /* the chain has as many levels as there are tables of hats */
     double volume = 0;
     for (int i = 0; i < 6 * level->size * level->size; i++)
-        volume += (double)level->texels[3 * i] * hats[i];
+        volume += (double)red_of(level, i) * hats[i];
     return volume;
 }
 
@@ -70,7 +78,7 @@ static void raise_peaks(const tl_cube *at, const tl_cube *fine, const tl_cube *c
                         double peaks[BLENDS_PER_LEVEL])
 {
     for (int i = 0; i < 6 * at->size * at->size; i++) {
-        if (at->texels[3 * i] <= 0)
+        if (red_of(at, i) <= 0)
             continue;
         vec3s direction = texel_direction(at, i);
         double a = (double)tl_cube_sample(fine, direction).x, b = (double)tl_cube_sample(coarse, direction).x;
@@ -97,7 +105,7 @@ static void add_lobe(const tl_cube *impulse, enum tl_chain_filter filter, double
     }
     double peak = 0;
     for (int i = 0; i < 6; i++)
-        peak = fmax(peak, (double)chain.levels[last].texels[3 * i]);
+        peak = fmax(peak, (double)red_of(&chain.levels[last], i));
     *widths += level_volume(&chain.levels[last], hats[last]) / peak;
     tl_chain_release(&chain);
 }
@@ -121,7 +129,7 @@ static struct curve measure_curve(int size, enum tl_chain_filter filter)
     curve.count += (level_count - 1) * BLENDS_PER_LEVEL;
 
     for (int i = 0; i < POSITIONS; i++) {
-        float *texel = impulse.texels + 3 * position_texel(size, i);
+        float *texel = impulse.texels + 3 * (size_t)position_texel(size, i);
         texel[0] = texel[1] = texel[2] = 1;
         add_lobe(&impulse, filter, hats, &curve);
         texel[0] = texel[1] = texel[2] = 0;
@@ -151,7 +159,8 @@ static float find_level(const struct curve *curve, double width)
         double part = (before - 1 / width) / (before - after);
         return (float)(level + blend_of(step) + part * (blend_of(step + 1) - blend_of(step)));
     }
-    return (float)((curve->count - 1) / BLENDS_PER_LEVEL);
+    int last = (curve->count - 1) / BLENDS_PER_LEVEL;
+    return (float)last;
 }
 
 void tl_lobe_calibrate(int size, enum tl_chain_filter filter, struct tl_lobe_table *out)

@@ -155,12 +155,13 @@ static void cut_rectangle(const struct face *face, struct rectangle r, int count
 void tl_regions_cut(const tl_cube *cube, int count, struct tl_regions *out)
 {
     assert(count >= 6 && count <= TL_REGIONS_MAX && count % 6 == 0);
+    int face_count = count / 6;
     out->count = count;
 #pragma omp parallel for
     for (int i = 0; i < 6; i++) {
         struct face face = face_create(cube, i);
-        cut_rectangle(&face, (struct rectangle){0, 0, cube->size, cube->size}, count / 6,
-                      out->items + i * (count / 6));
+        cut_rectangle(&face, (struct rectangle){0, 0, cube->size, cube->size}, face_count,
+                      out->items + (size_t)i * (size_t)face_count);
         face_release(&face);
     }
 }

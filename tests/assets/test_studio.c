@@ -19,8 +19,7 @@ static int make_studio(void **state)
 static int drop_studio(void **state)
 {
     (void)state;
-    free(studio.name);
-    tl_image_release(&studio.image);
+    tl_environment_release(&studio);
     return 0;
 }
 
@@ -178,8 +177,7 @@ static void test_constant(void **state)
         }
     }
     assert_true(constant.peak == 2);
-    free(constant.name);
-    tl_image_release(&constant.image);
+    tl_environment_release(&constant);
 }
 
 int main(void)

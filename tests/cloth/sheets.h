@@ -1,5 +1,5 @@
-/* Sheets of cloth for tests: a grid of columns x rows quads in a pattern of width x height metres, placed by a
- * function, cut along one diagonal. */
+/* Sheets of cloth for tests: a grid of columns x rows quads in a pattern of width x height metres, placed by
+ * a function, cut along one diagonal. */
 #ifndef TOILE_TESTS_CLOTH_SHEETS_H
 #define TOILE_TESTS_CLOTH_SHEETS_H
 

@@ -74,7 +74,8 @@ static void test_hanging_strip(void **state)
     assert_non_null(cloth);
     for (int frame = 0; frame < 60; frame++)
         assert_ok(tl_cloth_step(cloth, NULL, &error), error);
-    double full = fabric.areal_density * params.gravity * shape.height * shape.height / (2 * fabric.stretch_warp);
+    double full =
+        fabric.areal_density * params.gravity * shape.height * shape.height / (2 * fabric.stretch_warp);
     for (int row = 0; row <= shape.rows; row++) {
         double s = shape.height * (1 - (double)row / shape.rows), l = shape.height;
         double expected = fabric.areal_density * params.gravity * (l * s - s * s / 2) / fabric.stretch_warp;

@@ -51,6 +51,23 @@ static void test_built_in_scene(void **state)
     assert_string_equal(settings.scene.garment, "skirt");
 }
 
+/* A fabric that nobody names: satin for what is built in, a garment file's own look for a file. */
+static void test_fabric_left_out(void **state)
+{
+    (void)state;
+    tl_error error = {0};
+    const char *const file[] = {"scene.garment=shirt.glb"};
+    assert_ok(tl_settings_load(&settings, &(struct tl_settings_source){NULL, file, 1}, &error), error);
+    assert_string_equal(settings.scene.fabric, "none");
+    assert_true(settings.material.use_file);
+    const char *const both[] = {"scene.garment=shirt.glb", "scene.fabric=denim"};
+    assert_ok(tl_settings_load(&settings, &(struct tl_settings_source){NULL, both, 2}, &error), error);
+    assert_string_equal(settings.scene.fabric, "denim");
+    const char *const skirt[] = {"scene.garment=skirt"};
+    assert_ok(tl_settings_load(&settings, &(struct tl_settings_source){NULL, skirt, 1}, &error), error);
+    assert_string_equal(settings.scene.fabric, "satin");
+}
+
 /* Each layer wins over the one below it, wherever the names of preset and fabric come from. */
 static void test_each_layer_wins(void **state)
 {
@@ -152,12 +169,32 @@ static void test_shipped_files(void **state)
             char *fabric = tl_format("scene.fabric=%s", tl_embedded_fabrics_names[j]);
             const char *const assignments[] = {preset, fabric};
             assert_ok(load(NULL, assignments, TL_COUNT(assignments), &error), error);
+            assert_true(tl_settings_equal(&changed, &settings));
             assert_memory_equal(&changed, &settings, sizeof settings);
             free(preset);
             free(fabric);
         }
     for (size_t i = 0; tl_embedded_scenes_names[i]; i++)
         assert_ok(load(tl_embedded_scenes_names[i], NULL, 0, &error), error);
+}
+
+/* The scene file that README.md shows is one that the program reads. */
+static void test_readme_example(void **state)
+{
+    (void)state;
+    tl_error error = {0};
+    char *page = NULL;
+    size_t size = 0;
+    assert_ok(tl_file_read(TOILE_SOURCE_DIR "/README.md", &page, &size, &error), error);
+    char *example = strstr(page, "```yaml\n");
+    assert_non_null(example);
+    example += strlen("```yaml\n");
+    char *end = strstr(example, "```");
+    assert_non_null(end);
+    *end = '\0';
+    write_text(FOLDER "/readme.yaml", example);
+    assert_ok(load(FOLDER "/readme.yaml", NULL, 0, &error), error);
+    free(page);
 }
 
 static void test_changes_that_fail_change_nothing(void **state)
@@ -207,17 +244,21 @@ static void test_print_and_load_back(void **state)
     free(text);
     begin(NULL);
     assert_ok(load(FOLDER "/printed.yaml", NULL, 0, &error), error);
-    assert_memory_equal(&settings, &before, sizeof settings);
+    assert_true(tl_settings_equal(&settings, &before));
+    settings.camera.target[1] += 0.5f;
+    assert_false(tl_settings_equal(&settings, &before));
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_fabric_left_out),
         cmocka_unit_test_setup(test_built_in_scene, begin),
         cmocka_unit_test_setup(test_each_layer_wins, begin),
         cmocka_unit_test_setup(test_model_in_place_of_a_scene, begin),
         cmocka_unit_test_setup(test_refusals, begin),
         cmocka_unit_test_setup(test_shipped_files, begin),
+        cmocka_unit_test_setup(test_readme_example, begin),
         cmocka_unit_test_setup(test_changes_that_fail_change_nothing, begin),
         cmocka_unit_test_setup(test_paper_preset, begin),
         cmocka_unit_test_setup(test_print_and_load_back, begin),

@@ -170,7 +170,7 @@ static void latlong_is_turned_the_right_way(void **state)
     for (int y = 0; y < 128; y++) {
         for (int x = 0; x < 256; x++) {
             double phi = ((x + 0.5) / 256 - 0.5) * 2 * M_PI, theta = (y + 0.5) / 128 * M_PI;
-            float *texel = tl_image_floats(&environment.image) + 3 * (y * 256 + x);
+            float *texel = tl_image_floats(&environment.image) + 3 * (size_t)(y * 256 + x);
             texel[0] = (float)(2 + sin(theta) * sin(phi)); /* 2 + x, 2 + y, 2 + z */
             texel[1] = (float)(2 + cos(theta));
             texel[2] = (float)(2 - sin(theta) * cos(phi));
@@ -227,7 +227,7 @@ static void a_corner_is_the_mean_of_three(void **state)
     (void)state;
     tl_cube cube = tl_cube_create(1);
     for (int face = 0; face < 6; face++)
-        cube.texels[3 * face] = (float)(1 << face);
+        cube.texels[3 * (size_t)face] = (float)(1 << face);
     /* +X, +Y and +Z meet there: 1, 4 and 16 */
     assert_near(tl_cube_sample(&cube, (vec3s){{1, 1, 1}}).x, 7, 1e-5);
     assert_near(tl_cube_sample(&cube, (vec3s){{-1, -1, -1}}).x, (2 + 8 + 32) / 3.0, 1e-5);

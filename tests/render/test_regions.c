@@ -6,8 +6,9 @@
 
 static const int counts[] = {6, 12, 24, 36, 48, 96, 384};
 
-static double luminance(const float *texel)
+static double luminance(const tl_cube *cube, int i)
 {
+    const float *texel = cube->texels + 3 * (size_t)i;
     return 0.2126 * (double)texel[0] + 0.7152 * (double)texel[1] + 0.0722 * (double)texel[2];
 }
 
@@ -44,7 +45,7 @@ static void check_partition(const tl_cube *cube, const struct tl_regions *region
                 int texel = (region->face * size + y) * size + x;
                 double weight = (double)tl_cube_solid_angle(size, x, y);
                 owners[texel]++;
-                importance += weight * luminance(cube->texels + 3 * texel);
+                importance += weight * luminance(cube, texel);
                 solid_angle += weight;
             }
         }
@@ -106,10 +107,10 @@ static void directions_are_centroids(void **state)
     for (int face = 0; face < 6; face++) {
         double sum[3] = {0};
         for (int i = 0; i < 32 * 32; i++) {
-            vec3s direction = glms_vec3_normalize(
-                tl_cube_direction(face, ((float)(i % 32) + 0.5f) / 32, ((float)(i / 32) + 0.5f) / 32));
-            double weight = luminance(cube.texels + 3 * (face * 1024 + i)) *
-                            (double)tl_cube_solid_angle(32, i % 32, i / 32);
+            int x = i % 32, y = i / 32;
+            vec3s direction =
+                glms_vec3_normalize(tl_cube_direction(face, ((float)x + 0.5f) / 32, ((float)y + 0.5f) / 32));
+            double weight = luminance(&cube, face * 1024 + i) * (double)tl_cube_solid_angle(32, x, y);
             for (int c = 0; c < 3; c++)
                 sum[c] += weight * (double)direction.raw[c];
         }
