@@ -307,19 +307,32 @@ static const void *offset_of_index(uint32_t index)
     return (const void *)((uintptr_t)index * sizeof(uint32_t)); /* NOLINT(performance-no-int-to-ptr) */
 }
 
-bool tl_surfaces_draw(const tl_surfaces *surfaces, size_t index)
+static enum tl_surface_parts kind_of(const struct item *item, const struct tl_mesh_part *part)
 {
-    if (index >= surfaces->count)
-        return false;
+    return item->materials[part->material].alpha_cutoff > 0 ? TL_PARTS_MASKED : TL_PARTS_OPAQUE;
+}
+
+void tl_surfaces_draw(const tl_surfaces *surfaces, size_t index, enum tl_surface_parts parts)
+{
     const struct item *item = &surfaces->items[index];
     glBindVertexArray(item->vertex_array);
     for (size_t p = 0; p < item->part_count; p++) {
         const struct tl_mesh_part *part = &item->parts[p];
+        if (!(kind_of(item, part) & parts))
+            continue;
         set_material(item, part);
         glDrawElements(GL_TRIANGLES, (GLsizei)part->index_count, GL_UNSIGNED_INT,
                        offset_of_index(part->first_index));
     }
-    return true;
+}
+
+bool tl_surfaces_have(const tl_surfaces *surfaces, enum tl_surface_parts parts)
+{
+    for (size_t i = 0; i < surfaces->count; i++)
+        for (size_t p = 0; p < surfaces->items[i].part_count; p++)
+            if (kind_of(&surfaces->items[i], &surfaces->items[i].parts[p]) & parts)
+                return true;
+    return false;
 }
 
 size_t tl_surfaces_bytes(const tl_surfaces *surfaces)
