@@ -110,8 +110,8 @@ static void assign(struct tl_arguments *out, char *assignment)
 
 static bool read_size(const char *text, struct tl_arguments *out, tl_error *error)
 {
-    int width, height;
-    const char *rest;
+    int width = 0, height = 0;
+    const char *rest = "";
     if (!read_whole("--size", text, &rest, 1, &width, NULL) || (*rest != 'x' && *rest != 'X') ||
         !read_whole("--size", rest + 1, NULL, 1, &height, NULL))
         return tl_fail(error, TL_USAGE, "--size: \"%s\": expected WIDTHxHEIGHT, as in 960x540", text);
@@ -122,7 +122,7 @@ static bool read_size(const char *text, struct tl_arguments *out, tl_error *erro
 
 static bool read_frames(const char *text, struct tl_arguments *out, tl_error *error)
 {
-    const char *rest;
+    const char *rest = "";
     if (!read_whole("--frames", text, &rest, 0, &out->first_frame, NULL) || *rest != ':' ||
         !read_whole("--frames", rest + 1, NULL, out->first_frame, &out->last_frame, NULL))
         return tl_fail(error, TL_USAGE, "--frames: \"%s\": expected FIRST:LAST, as in 0:59", text);

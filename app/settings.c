@@ -12,8 +12,7 @@ static const char *const garment_names[] = {"dress", "skirt", "none", NULL};
 static const char *const avatar_names[] = {"form", "none", NULL};
 static const char *const environment_names[] = {"studio", NULL};
 
-#define TL_SCENE_DEFAULTS                                                                                    \
-    .garment = "dress", .avatar = "form", .environment = "studio", .fabric = "satin", .preset = "review"
+#define TL_SCENE_DEFAULTS .garment = "dress", .avatar = "form", .environment = "studio", .preset = "review"
 
 static const struct tl_option scene_rows[] = {
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, garment, garment_names,
@@ -22,8 +21,10 @@ static const struct tl_option scene_rows[] = {
                            "who wears it: built in, or a glTF file"),
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, environment, environment_names,
                            "the light: built in, or an .exr or .hdr file"),
-    TL_OPTION_NAME_OR_PATH(struct tl_scene_params, fabric, tl_embedded_fabrics_names,
-                           "sets the tables fabric, weave and material: built in, or a YAML file"),
+    TL_OPTION_NAME_OR_PATH(
+        struct tl_scene_params, fabric, tl_embedded_fabrics_names,
+        "sets the tables fabric, weave and material: built in, or a YAML file; left out: satin on built-in "
+        "garments, none on a garment file"),
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, preset, tl_embedded_presets_names,
                            "sets quality in the tables cloth, light and image: built in, or a YAML file"),
     TL_OPTION_STRING(struct tl_scene_params, clip,
@@ -63,6 +64,18 @@ void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[T
     bindings[MATERIAL] = (struct tl_binding){&tl_material_options, &settings->material};
     bindings[LIGHT] = (struct tl_binding){&tl_light_options, &settings->light};
     bindings[IMAGE] = (struct tl_binding){&tl_image_options, &settings->image};
+}
+
+bool tl_settings_equal(const struct tl_settings *a, const struct tl_settings *b)
+{
+    struct tl_settings first = *a, second = *b; /* bindings can be written through, so they get copies */
+    struct tl_binding first_bindings[TL_SETTINGS_TABLES], second_bindings[TL_SETTINGS_TABLES];
+    tl_settings_bind(&first, first_bindings);
+    tl_settings_bind(&second, second_bindings);
+    for (size_t i = 0; i < TL_SETTINGS_TABLES; i++)
+        if (!tl_options_equal(first_bindings[i].table, first_bindings[i].params, second_bindings[i].params))
+            return false;
+    return true;
 }
 
 /* One kind of file that can be named or lie on disk. */
@@ -141,22 +154,31 @@ static bool apply_source(const struct tl_binding *all, const struct tl_settings_
     return applied;
 }
 
+/* A garment file brings its own look; what is built in needs a fabric to have one. */
+static void choose_fabric(struct tl_scene_params *scene)
+{
+    if (scene->fabric[0] == '\0')
+        strcpy(scene->fabric, tl_option_is_file_name(scene->garment) ? "none" : "satin");
+}
+
 /* The topmost layers name the preset and the fabric that lie below them, so they are read twice: once to
  * learn these names, and once more in their place. */
 bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *source, tl_error *error)
 {
     struct tl_settings settings;
-    memset(&settings, 0, sizeof settings); /* padding too: sessions compare settings whole */
+    memset(&settings, 0, sizeof settings); /* padding too: equal settings are equal bytes */
     struct tl_binding all[TL_SETTINGS_TABLES];
     tl_settings_bind(&settings, all);
     tl_options_reset(all, TL_SETTINGS_TABLES);
     if (!apply_source(all, source, error))
         return false;
     struct tl_scene_params named = settings.scene;
+    choose_fabric(&named);
     tl_options_reset(all, TL_SETTINGS_TABLES);
     if (!apply_preset(all, named.preset, error) || !apply_fabric(all, named.fabric, error) ||
         !apply_source(all, source, error))
         return false;
+    settings.scene = named;
     *out = settings;
     return true;
 }

@@ -41,6 +41,9 @@ struct tl_settings {
 /* The bindings of a settings value, in the order of the reference page. */
 void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[TL_SETTINGS_TABLES]);
 
+/* True when every option of every table agrees. */
+bool tl_settings_equal(const struct tl_settings *a, const struct tl_settings *b);
+
 /* What the command line says about settings. */
 struct tl_settings_source {
     const char *scene_file;         /* YAML, .glb or .gltf, or NULL: the built-in scene */

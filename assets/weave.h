@@ -7,6 +7,8 @@
 #include "assets/material.h"
 #include "config/options.h"
 
+/* The face of the cloth: twill is 3/1, its lines rising to the right (Z); satin is of five ends, counter 2;
+ * in both the warp floats on the face. */
 enum tl_weave_pattern { TL_WEAVE_NONE, TL_WEAVE_PLAIN, TL_WEAVE_TWILL, TL_WEAVE_SATIN };
 
 struct tl_weave_params {
@@ -20,6 +22,10 @@ struct tl_weave_params {
     float weft_tint[3];
     int texels_per_yarn; /* resolution of the maps */
 };
+/* A light cotton sheeting. */
+#define TL_WEAVE_DEFAULTS                                                                                    \
+    .pattern = TL_WEAVE_PLAIN, .warp_pitch_mm = 0.4f, .weft_pitch_mm = 0.4f, .crimp_mm = 0.1f,               \
+    .warp_tint = {1, 1, 1}, .weft_tint = {1, 1, 1}, .texels_per_yarn = 32
 extern const struct tl_option_table tl_weave_options; /* "weave" */
 
 /* Maps of one repeat. pattern NONE gives false without an error: there is nothing to make. */

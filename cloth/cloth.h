@@ -62,8 +62,8 @@ void tl_cloth_destroy(tl_cloth **cloth);
 bool tl_cloth_set(tl_cloth *cloth, const struct tl_cloth_fabric *fabric, const struct tl_cloth_params *params,
                   tl_error *error);
 
-/* Remembers the state of now as the start, with its clock at 0; and goes back to it. Before the first mark the start is
- * the garment's own. */
+/* Remembers the state of now as the start, with its clock at 0; and goes back to it. Before the first mark
+ * the start is the garment's own. */
 void tl_cloth_mark_start(tl_cloth *cloth);
 void tl_cloth_reset(tl_cloth *cloth);
 

@@ -30,4 +30,20 @@ struct tl_contact {
 bool tl_collider_query(const tl_collider *collider, const double point[3], double reach_m,
                        struct tl_contact *out);
 
+/* The same while it moves: `phase` 0 is the previous pose, 1 the current one. */
+bool tl_collider_query_at(const tl_collider *collider, const double point[3], double phase, double reach_m,
+                          struct tl_contact *out);
+
+/* A point of a triangle at both ends of the motion. */
+void tl_collider_path(const tl_collider *collider, uint32_t triangle, const double barycentric[3],
+                      double previous[3], double current[3]);
+
+bool tl_collider_has_ground(const tl_collider *collider);
+
+/* Longest way of any vertex from the previous to the current pose. */
+double tl_collider_travel(const tl_collider *collider);
+
+/* Rises with every move that changes something: answers to queries stay good while it is the same. */
+uint64_t tl_collider_revision(const tl_collider *collider);
+
 #endif

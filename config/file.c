@@ -148,7 +148,9 @@ bool tl_writer_commit(struct tl_writer *writer, tl_error *error)
     FILE *stream = writer->stream ? writer->stream : fopen(writer->temporary, "rb+");
     writer->stream = NULL;
     errno = 0;
-    bool written = stream && !ferror(stream) && fflush(stream) == 0;
+    /* Flushed first even after an error, because what is left to write meets the same reason again: errno
+     * names it. */
+    bool written = stream && fflush(stream) == 0 && !ferror(stream);
     if (written && !device)
         written = fsync(fileno(stream)) == 0;
     int reason = errno;
@@ -174,6 +176,8 @@ bool tl_writer_commit(struct tl_writer *writer, tl_error *error)
 
 bool tl_folder_make(const char *path, tl_error *error)
 {
+    if (path[0] == '\0')
+        return tl_fail(error, TL_OUTPUT, "no output folder named: give one with -o");
     char *copy = tl_copy_string(path);
     bool made = true;
     for (char *c = copy + 1; made && *c; c++)

@@ -147,3 +147,13 @@ char *tl_options_get_text(const struct tl_binding *binding, const struct tl_opti
 {
     return tl_option_write(row, (const char *)binding->params + row->offset);
 }
+
+bool tl_options_equal(const struct tl_option_table *table, const void *a, const void *b)
+{
+    for (size_t i = 0; i < table->row_count; i++) {
+        const struct tl_option *row = &table->rows[i];
+        if (!tl_option_equal(row, (const char *)a + row->offset, (const char *)b + row->offset))
+            return false;
+    }
+    return true;
+}

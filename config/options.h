@@ -153,6 +153,9 @@ bool tl_option_is_file_name(const char *text);
 /* The option's value as the text that tl_options_set takes back. New string. */
 char *tl_options_get_text(const struct tl_binding *binding, const struct tl_option *row);
 
+/* True when two values of the table's params struct agree in every option. */
+bool tl_options_equal(const struct tl_option_table *table, const void *a, const void *b);
+
 /* All options as help text (one line each), as a Markdown reference page, or as a YAML document that
  * tl_options_read_yaml reads back to the same values (relative paths are printed as they stand, so the
  * document must be read from the same working directory, under a name without a folder). */

@@ -274,8 +274,7 @@ static char *read_text(const struct tl_option *row, const char *text, char field
         return refuse(row, text, "is not printable UTF-8");
     if (strlen(text) >= TL_STRING_SIZE)
         return tl_format("%zu bytes are too many: expected %d at most", strlen(text), TL_STRING_SIZE - 1);
-    strncpy(field, text,
-            TL_STRING_SIZE); /* clears the rest: equal values are equal bytes, which sessions compare */
+    strncpy(field, text, TL_STRING_SIZE); /* clears the rest: equal values are equal bytes */
     return NULL;
 }
 
@@ -355,4 +354,31 @@ char *tl_option_write(const struct tl_option *row, const void *field)
         break;
     }
     return tl_copy_string(field);
+}
+
+static bool is_same_triple(const float *a, const float *b)
+{
+    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
+bool tl_option_equal(const struct tl_option *row, const void *a, const void *b)
+{
+    switch (row->type) {
+    case TL_BOOL:
+        return *(const bool *)a == *(const bool *)b;
+    case TL_INT:
+    case TL_ENUM:
+        return *(const int *)a == *(const int *)b;
+    case TL_FLOAT:
+        return *(const float *)a == *(const float *)b;
+    case TL_DOUBLE:
+        return *(const double *)a == *(const double *)b;
+    case TL_COLOUR:
+    case TL_VECTOR:
+        return is_same_triple(a, b);
+    case TL_STRING:
+    case TL_PATH:
+        break;
+    }
+    return strcmp(a, b) == 0;
 }

@@ -34,20 +34,27 @@ static bool fail(const struct reader *reader, size_t line, const char *what)
     return tl_fail(reader->error, TL_USAGE, "%s:%zu: %s", reader->name, line, what);
 }
 
+/* Bytes that are no characters have no line yet; libyaml knows their offset. */
+static size_t line_of_offset(const struct reader *reader, size_t offset)
+{
+    size_t line = 1;
+    for (size_t i = 0; i < offset && i < reader->size; i++)
+        line += reader->data[i] == '\n';
+    return line;
+}
+
 static bool fail_parser(const struct reader *reader)
 {
     const yaml_parser_t *parser = &reader->parser;
-    if (parser->error ==
-        YAML_READER_ERROR) { /* of bytes that are no characters libyaml only knows the offset */
-        size_t line = 1;
-        for (size_t i = 0; i < parser->problem_offset && i < reader->size; i++)
-            line += reader->data[i] == '\n';
+    const char *problem = parser->problem ? parser->problem : "out of memory";
+    if (parser->error == YAML_READER_ERROR)
         return tl_fail(reader->error, TL_USAGE, "%s:%zu: %s: write the file as UTF-8 text", reader->name,
-                       line, parser->problem);
-    }
-    return tl_fail(reader->error, TL_USAGE, "%s:%zu: %s%s%s: not valid YAML", reader->name,
-                   parser->problem_mark.line + 1, parser->context ? parser->context : "",
-                   parser->context ? ", " : "", parser->problem ? parser->problem : "damaged");
+                       line_of_offset(reader, parser->problem_offset), problem);
+    return tl_fail(
+        reader->error, TL_USAGE,
+        "%s:%zu: not valid YAML: %s%s%s: check the indentation (spaces, no tabs), quotes and brackets",
+        reader->name, parser->problem_mark.line + 1, parser->context ? parser->context : "",
+        parser->context ? ", " : "", problem);
 }
 
 static bool next(struct reader *reader)

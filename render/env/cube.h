@@ -29,6 +29,15 @@ void tl_cube_locate(vec3s direction, int *face, float *s, float *t);
 /* Exact solid angle of texel (x, y), steradians. */
 float tl_cube_solid_angle(int size, int x, int y);
 
+/* The texels and weights of a seamless bilinear fetch: a cube of `size` reads the same texels for the same
+ * direction whatever it holds. */
+struct tl_cube_taps {
+    int texel[4]; /* (face * size + y) * size + x */
+    float weight[4];
+};
+struct tl_cube_taps tl_cube_taps(int size, vec3s direction);
+vec3s tl_cube_fetch(const tl_cube *cube, const struct tl_cube_taps *taps);
+
 /* Seamless bilinear fetch, as GL with GL_TEXTURE_CUBE_MAP_SEAMLESS (corners: mean of the three texels that
  * exist). */
 vec3s tl_cube_sample(const tl_cube *cube, vec3s direction);

@@ -8,6 +8,7 @@
 #include "config/embedded.h"
 #include "config/error.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -22,6 +23,7 @@ void tl_gpu_destroy(tl_gpu **gpu);
 const char *tl_gpu_name(const tl_gpu *gpu);     /* GL_RENDERER and version, for reports */
 size_t tl_gpu_message_count(const tl_gpu *gpu); /* GL debug messages so far */
 size_t tl_gpu_texture_bytes(const tl_gpu *gpu); /* memory of all live textures, computed from their formats */
+int tl_gpu_texture_side_max(const tl_gpu *gpu); /* texels */
 
 typedef struct tl_texture {
     tl_gpu *gpu;
@@ -35,16 +37,43 @@ typedef struct tl_texture {
 tl_texture tl_texture_create(tl_gpu *gpu, unsigned target, unsigned format, int width, int height, int layers,
                              int levels);
 void tl_texture_destroy(tl_texture *texture);
+size_t tl_texture_bytes(const tl_texture *texture);
+/* Levels of a full mip chain down to one texel. */
+int tl_texture_full_levels(int width, int height);
 
-/* Programs from shader files: embedded at build, or from the folder in TOILE_SHADER_DIR when it is set (then
- * reloaded when a file changes). `#include "name.glsl"` is expanded, `#line` kept true. A program that does
- * not compile fails with the compiler's first message, file and line. */
+/* What a pass draws into: up to four 2D colour textures of one size, and a 32-bit float depth texture. */
+#define TL_TARGET_COLOURS_MAX 4
+typedef struct tl_target {
+    unsigned id; /* GL framebuffer */
+    int width, height, colour_count;
+    tl_texture colours[TL_TARGET_COLOURS_MAX];
+    tl_texture depth; /* id 0: none */
+} tl_target;
+tl_target tl_target_create(tl_gpu *gpu, int width, int height, const unsigned *formats, int colour_count,
+                           bool depth);
+void tl_target_destroy(tl_target *target);
+size_t tl_target_bytes(const tl_target *target);
+
+/* Programs from shader files: as embedded at build, or, where the folder in TOILE_SHADER_DIR holds them (laid
+ * out as render/ is: light/light.frag), from there. `#include "name.glsl"` is expanded, `#line` kept true. A
+ * program that does not compile fails with the compiler's first message, file and line. */
 typedef struct tl_program {
     unsigned id;
     char name[64];
+    const struct tl_embedded *shaders;
+    const char *vertex, *fragment; /* file names; must live as long as the program */
 } tl_program;
 bool tl_program_create(tl_gpu *gpu, const struct tl_embedded *shaders, const char *vertex,
                        const char *fragment, tl_program *out, tl_error *error);
 void tl_program_destroy(tl_program *program);
+/* Builds the program again from its files; on failure the old one stays in use. */
+bool tl_program_reload(tl_program *program, tl_error *error);
+/* Changes when a file of `shaders` in TOILE_SHADER_DIR does; constant when that is not set. */
+uint64_t tl_shaders_stamp(const struct tl_embedded *shaders);
+
+/* GL's state as a fresh context has it, so that a pass need not know who drew before (a window's panel). */
+void tl_gpu_reset_state(const tl_gpu *gpu);
+/* One triangle that covers the viewport, for programs whose vertex file is fullscreen.vert; at depth 1. */
+void tl_gpu_draw_fullscreen(const tl_gpu *gpu);
 
 #endif

@@ -41,7 +41,7 @@ struct tl_plan_row {
     enum tl_job_action action;
     int level;
     char reason[120];
-    double predicted_ms; /* median of the cost model; NaN while unknown */
+    double predicted_ms; /* median of the cost model; NaN while unknown, 0 for what does not run */
 };
 
 typedef struct tl_plan {
@@ -62,5 +62,10 @@ double tl_cost_median(const tl_cost *cost, int job, int level); /* NaN when noth
 bool tl_jobs_check(const tl_job *jobs, int count, tl_error *error);
 void tl_plan_make(const tl_job *jobs, int count, const struct tl_plan_input *input, const tl_cost *cost,
                   tl_plan *out);
+
+/* The resources that are up to date once the plan has been carried out: the next frame's `valid`. What a job
+ * wrote earlier goes stale when the job is dropped while something that it reads changes. */
+uint32_t tl_plan_valid_after(const tl_job *jobs, int count, const struct tl_plan_input *input,
+                             const tl_plan *plan);
 
 #endif

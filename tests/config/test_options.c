@@ -294,6 +294,32 @@ static void test_text_and_back(void **state)
     free(text);
 }
 
+/* A difference in any one option is seen; what lies between the fields and behind a text's end is not looked
+ * at. */
+static void test_equality(void **state)
+{
+    static const char *const others[][2] = {
+        {"light.regions", "7"},       {"light.lobe", "single"}, {"light.softness", "3"},
+        {"light.bias_m", "3"},        {"light.ground", "off"},  {"scene.tint", "1,0.5,0.3"},
+        {"scene.target", "0,0,1e-3"}, {"scene.title", "x"},     {"scene.file", "x.glb"},
+        {"scene.garment", "none"},
+    };
+    struct sample twin;
+    memset(&twin, 0xAA, sizeof twin); /* other padding */
+    struct tl_binding twin_bindings[SAMPLE_TABLES];
+    sample_bind(&twin, twin_bindings);
+    memcpy(&sample.scene.title[1], "rest", 4);
+    assert_true(tl_options_equal(&sample_light_table, &sample.light, &twin.light));
+    assert_true(tl_options_equal(&sample_scene_table, &sample.scene, &twin.scene));
+    for (size_t i = 0; i < TL_COUNT(others); i++) {
+        begin(state);
+        accept(others[i][0], others[i][1]);
+        bool same = tl_options_equal(&sample_light_table, &sample.light, &twin.light) &&
+                    tl_options_equal(&sample_scene_table, &sample.scene, &twin.scene);
+        assert_false(same);
+    }
+}
+
 /* 0.5 stays 0.5 where the locale writes 0,5. The locale may not be installed: then a made-up one will not do,
  * and the test says so. */
 static void test_any_locale(void **state)
@@ -389,6 +415,7 @@ int main(void)
         cmocka_unit_test_setup(test_messages_stay_short, begin),
         cmocka_unit_test_setup(test_assignments, begin),
         cmocka_unit_test_setup(test_text_and_back, begin),
+        cmocka_unit_test_setup(test_equality, begin),
         cmocka_unit_test_setup(test_any_locale, begin),
         cmocka_unit_test(test_nearest_word),
         cmocka_unit_test_setup(test_help_and_reference, begin),

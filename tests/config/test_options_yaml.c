@@ -122,11 +122,14 @@ static void test_messages_name_line_and_key(void **state)
         {"light:\n  regions: 12\n---\nscene:\n  title: a\n",
          "s.yaml:3: a second document begins: keep one to a file"},
         {"light:\n  regions: 12\n bad: [\n",
-         "s.yaml:3: while parsing a block mapping, did not find expected key: not valid YAML"},
-        {"light:\n\tregions: 12\n", "s.yaml:2: while scanning for the next token, found character that "
-                                    "cannot start any token: not valid YAML"},
+         "s.yaml:3: not valid YAML: while parsing a block mapping, did not find expected key: check the "
+         "indentation (spaces, no tabs), quotes and brackets"},
+        {"light:\n\tregions: 12\n",
+         "s.yaml:2: not valid YAML: while scanning for the next token, found character that cannot start any "
+         "token: check the indentation (spaces, no tabs), quotes and brackets"},
         {"scene:\n  title: \"open\n",
-         "s.yaml:3: while scanning a quoted scalar, found unexpected end of stream: not valid YAML"},
+         "s.yaml:3: not valid YAML: while scanning a quoted scalar, found unexpected end of stream: check "
+         "the indentation (spaces, no tabs), quotes and brackets"},
         {"scene:\n  title: caf\xE9 au lait\n",
          "s.yaml:2: invalid trailing UTF-8 octet: write the file as UTF-8 text"},
         {"scene:\n  title: a\x01\n",

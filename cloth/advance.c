@@ -1,0 +1,201 @@
+/* Time: a frame is made of equal steps, a step of equal substeps. */
+#include "cloth/state.h"
+#include "config/interrupt.h"
+#include "config/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Strain beyond which the state is no longer cloth. */
+#define STRAIN_LIMIT 10
+/* How far pins look for the avatar. */
+#define PIN_REACH_M 0.1
+/* A hand's pull: a soft spring, and no more than lifts a heavy coat. */
+#define GRAB_STIFFNESS 200.0
+#define GRAB_FORCE     5.0
+
+static int steps_per_frame(const struct tl_cloth_params *params)
+{
+    const double rounding = 1e-9;
+    return (int)fmax(ceil(1 / (params->frame_rate * params->dt) - rounding), 1);
+}
+
+double tl_cloth_substep(const tl_cloth *cloth)
+{
+    const struct tl_cloth_params *params = &cloth->params;
+    return 1 / (params->frame_rate * steps_per_frame(params) * params->substeps);
+}
+
+/* ---- Pins ---- */
+
+/* Point and axes of the avatar's triangle that carries a pin, at a phase of the motion. */
+struct carrier {
+    vec3d origin, axes[3];
+};
+
+static vec3d carrier_point(const tl_collider *collider, const struct tl_pin *pin, const double b[3],
+                           double phase)
+{
+    double before[3], after[3];
+    tl_collider_path(collider, pin->triangle, b, before, after);
+    return vec3d_mix((vec3d){before[0], before[1], before[2]}, (vec3d){after[0], after[1], after[2]}, phase);
+}
+
+static struct carrier carrier_at(const tl_collider *collider, const struct tl_pin *pin, double phase)
+{
+    const double corners[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    vec3d a = carrier_point(collider, pin, corners[0], phase);
+    vec3d side = vec3d_sub(carrier_point(collider, pin, corners[1], phase), a);
+    vec3d other = vec3d_sub(carrier_point(collider, pin, corners[2], phase), a);
+    vec3d normal = vec3d_unit_or(vec3d_cross(side, other), (vec3d){0, 1, 0});
+    vec3d along = vec3d_unit_or(side, (vec3d){1, 0, 0});
+    return (struct carrier){carrier_point(collider, pin, pin->barycentric, phase),
+                            {along, vec3d_cross(normal, along), normal}};
+}
+
+static void bind_pins(tl_cloth *cloth, const tl_collider *collider)
+{
+    for (size_t i = 0; collider && i < cloth->pin_count; i++) {
+        struct tl_pin *pin = &cloth->pins[i];
+        const double point[3] = {pin->at.x, pin->at.y, pin->at.z};
+        struct tl_contact contact;
+        if (!tl_collider_query_at(collider, point, 0, PIN_REACH_M, &contact))
+            continue;
+        pin->triangle = contact.triangle;
+        memcpy(pin->barycentric, contact.barycentric, sizeof pin->barycentric);
+        struct carrier carrier = carrier_at(collider, pin, 0);
+        vec3d offset = vec3d_sub(pin->at, carrier.origin);
+        pin->offset = (vec3d){vec3d_dot(offset, carrier.axes[0]), vec3d_dot(offset, carrier.axes[1]),
+                              vec3d_dot(offset, carrier.axes[2])};
+    }
+    cloth->pins_bound = collider != NULL;
+}
+
+static void place_pins(tl_cloth *cloth, const tl_collider *collider, double phase)
+{
+    for (size_t i = 0; i < cloth->pin_count; i++) {
+        const struct tl_pin *pin = &cloth->pins[i];
+        vec3d at = pin->at;
+        if (pin->triangle != TL_NONE && collider) {
+            struct carrier carrier = carrier_at(collider, pin, phase);
+            at = vec3d_muladd(carrier.origin, carrier.axes[0], pin->offset.x);
+            at = vec3d_muladd(at, carrier.axes[1], pin->offset.y);
+            at = vec3d_muladd(at, carrier.axes[2], pin->offset.z);
+        }
+        cloth->particles.x[pin->particle] = at;
+    }
+}
+
+/* ---- A frame ---- */
+
+static void pull_grabbed(tl_cloth *cloth, double h)
+{
+    if (!cloth->grabbed)
+        return;
+    uint32_t i = cloth->topology.weld[cloth->grabbed_vertex];
+    double w = cloth->particles.w[i];
+    vec3d way = vec3d_sub(cloth->grab_target, cloth->particles.x[i]);
+    double length = vec3d_norm(way);
+    if (!(w > 0) || !(length > 0))
+        return;
+    double impulse = fmin(length / (w + 1 / (GRAB_STIFFNESS * h * h)), GRAB_FORCE * h * h);
+    cloth->particles.x[i] = vec3d_muladd(cloth->particles.x[i], way, w * impulse / length);
+}
+
+static void substep(tl_cloth *cloth, const tl_collider *collider, double drag, double phase_before,
+                    double phase)
+{
+    double h = tl_cloth_substep(cloth);
+    bool sewing = tl_sewing_pulls(&cloth->sewing); /* weightless and slippery until the panels have met */
+    const struct tl_contact_params contact = {.friction = sewing ? 0 : cloth->fabric.friction,
+                                              .thickness_m = cloth->fabric.thickness_m,
+                                              .phase_before = phase_before,
+                                              .phase = phase,
+                                              .h = h};
+    tl_xpbd_predict(&cloth->particles, sewing ? 0 : cloth->params.gravity, drag, h);
+    place_pins(cloth, collider, phase);
+    tl_xpbd_solve(&cloth->energy, &cloth->particles);
+    if (cloth->sewing.pair_count > 0)
+        tl_sewing_solve(&cloth->sewing, &cloth->particles, h);
+    pull_grabbed(cloth, h);
+    tl_contacts_solve(&cloth->contacts, &contact, &cloth->particles);
+    tl_xpbd_finish(&cloth->particles, h);
+}
+
+static void run_steps(tl_cloth *cloth, const tl_collider *collider, double drag)
+{
+    int steps = steps_per_frame(&cloth->params), substeps = cloth->params.substeps;
+    double total = (double)steps * substeps;
+    for (int step = 0; step < steps && !tl_interrupted(); step++) {
+        tl_contacts_renew(&cloth->contacts);
+        for (int sub = 0; sub < substeps; sub++) {
+            double done = (double)step * substeps + sub;
+            substep(cloth, collider, drag, done / total, (done + 1) / total);
+        }
+    }
+}
+
+static void close_seams(tl_cloth *cloth)
+{
+    if (cloth->sewing.pair_count == 0)
+        return;
+    uint32_t *joined = TL_NEW_ARRAY(uint32_t, cloth->particles.count);
+    size_t count = tl_sewing_close(&cloth->sewing, &cloth->particles, joined);
+    if (count < cloth->particles.count)
+        tl_cloth_join(cloth, joined, count);
+    free(joined);
+}
+
+static bool check_state(const tl_cloth *cloth, tl_error *error)
+{
+    for (size_t i = 0; i < cloth->particles.count; i++)
+        if (!vec3d_finite(cloth->particles.x[i]) || !vec3d_finite(cloth->particles.v[i]))
+            return tl_fail(
+                error, TL_UNSTABLE,
+                "cloth: vertex %zu left the finite numbers at %.3f s; the last good frame is kept: "
+                "make cloth.dt smaller or cloth.substeps larger",
+                i, cloth->time_s);
+    double strain = tl_cloth_max_strain(cloth);
+    if (strain > STRAIN_LIMIT)
+        return tl_fail(error, TL_UNSTABLE,
+                       "cloth: stretched by %.0f times at %.3f s; the last good frame is kept: make cloth.dt "
+                       "smaller, cloth.substeps larger or the fabric stiffer",
+                       strain, cloth->time_s);
+    return true;
+}
+
+bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct tl_advance *advance,
+                      tl_error *error)
+{
+    struct tl_particles *particles = &cloth->particles;
+    size_t bytes = particles->count * sizeof(vec3d);
+    vec3d *good_x = TL_NEW_ARRAY(vec3d, particles->count), *good_v = TL_NEW_ARRAY(vec3d, particles->count);
+    memcpy(good_x, particles->x, bytes);
+    memcpy(good_v, particles->v, bytes);
+    unsigned denormals = tl_denormals_off();
+    if (!cloth->pins_bound)
+        bind_pins(cloth, collider);
+    tl_contacts_begin(&cloth->contacts, collider);
+    run_steps(cloth, collider, fmax(advance->drag, cloth->fabric.damping));
+    tl_denormals_restore(denormals);
+
+    bool good = tl_interrupted()
+                    ? tl_fail(error, TL_INTERRUPTED, "cloth: interrupted at %.3f s", cloth->time_s)
+                    : check_state(cloth, error);
+    if (good) {
+        close_seams(cloth);
+        cloth->time_s += advance->clock ? 1 / cloth->params.frame_rate : 0;
+    } else {
+        memcpy(particles->x, good_x, bytes);
+        memcpy(particles->v, good_v, bytes);
+    }
+    free(good_x);
+    free(good_v);
+    return good;
+}
+
+bool tl_cloth_step(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
+{
+    const struct tl_advance advance = {.clock = true};
+    return tl_cloth_advance(cloth, collider, &advance, error);
+}

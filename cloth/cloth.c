@@ -1,0 +1,342 @@
+#include "cloth/cloth.h"
+
+#include "cloth/frames.h"
+#include "cloth/state.h"
+#include "config/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- What is refused ---- */
+
+static bool check_params(const struct tl_option_table *table, const void *params, tl_error *error)
+{
+    for (size_t i = 0; i < table->row_count; i++) {
+        const struct tl_option *row = &table->rows[i];
+        double value;
+        if (row->type != TL_DOUBLE)
+            continue;
+        memcpy(&value, (const char *)params + row->offset, sizeof value);
+        if (!(value >= row->minimum && value <= row->maximum))
+            return tl_fail(error, TL_USAGE, "%s.%s is %g: give a value from %g to %g %s", table->name,
+                           row->name, value, row->minimum, row->maximum, row->unit);
+    }
+    return true;
+}
+
+static bool check_indices(const char *name, const char *what, const uint32_t *indices, size_t count,
+                          size_t vertex_count, tl_error *error)
+{
+    for (size_t i = 0; i < count; i++)
+        if (indices[i] >= vertex_count)
+            return tl_fail(error, TL_INPUT, "%s: %s %zu names vertex %u of %zu: mend the garment", name, what,
+                           i, indices[i], vertex_count);
+    return true;
+}
+
+static bool check_garment(const tl_garment *garment, tl_error *error)
+{
+    const tl_mesh *mesh = &garment->model.mesh;
+    const char *name = garment->model.name ? garment->model.name : "garment";
+    if (mesh->index_count < 3)
+        return tl_fail(error, TL_INPUT, "%s: has no triangles to make cloth of: choose another garment",
+                       name);
+    for (size_t i = 0; i < mesh->vertex_count; i++) {
+        bool flat = !garment->pattern || (isfinite(garment->pattern[i].x) && isfinite(garment->pattern[i].y));
+        if (!flat || !vec3d_finite(vec3d_from(mesh->positions[i])))
+            return tl_fail(error, TL_INPUT, "%s: vertex %zu is not finite: mend the garment", name, i);
+    }
+    return check_indices(name, "corner", mesh->indices, mesh->index_count, mesh->vertex_count, error) &&
+           check_indices(name, "seam end", (const uint32_t *)garment->seams, 2 * garment->seam_count,
+                         mesh->vertex_count, error) &&
+           check_indices(name, "pin", garment->pins, garment->pin_count, mesh->vertex_count, error);
+}
+
+/* ---- Building the state ---- */
+
+/* Inverse masses: held for pins and for vertices that no triangle uses. Slivers weigh next to nothing; a
+ * floor keeps mass ratios where one iteration still moves things. */
+static void set_inverse_masses(tl_cloth *cloth)
+{
+    const double floor_share = 1e-4;
+    size_t count = cloth->particles.count;
+    double *w = cloth->particles.w, total = 0;
+    bool *used = TL_NEW_ARRAY(bool, count);
+    for (size_t t = 0; t < cloth->topology.triangle_count; t++)
+        for (int i = 0; i < 3; i++)
+            used[cloth->topology.triangles[t][i]] = true;
+    for (size_t i = 0; i < count; i++)
+        total += cloth->energy.masses[i];
+    double least = floor_share * total / (double)count;
+    for (size_t i = 0; i < count; i++) {
+        double mass = fmax(cloth->energy.masses[i], least) * cloth->fabric.areal_density;
+        w[i] = used[i] && mass > 0 ? 1 / mass : 0;
+    }
+    for (size_t i = 0; i < cloth->pin_count; i++)
+        w[cloth->pins[i].particle] = 0;
+    free(used);
+}
+
+static void set_constants(tl_cloth *cloth)
+{
+    set_inverse_masses(cloth);
+    tl_energy_set(&cloth->energy, &cloth->fabric, cloth->particles.w, tl_cloth_substep(cloth));
+    tl_contacts_release(&cloth->contacts); /* its planes know the thickness */
+    cloth->contacts = tl_contacts_create(cloth->particles.count);
+}
+
+/* A hundredth of the mean edge. */
+static double find_shortest_edge(const tl_cloth *cloth)
+{
+    double area = 0;
+    for (size_t i = 0; i < cloth->topology.vertex_count; i++)
+        area += cloth->energy.masses[i];
+    return 0.01 * sqrt(area / (double)cloth->topology.vertex_count);
+}
+
+/* Everything that follows from a numbering of the physics vertices, but for positions and velocities. */
+static void build_mesh(tl_cloth *cloth, const uint32_t *weld, size_t vertex_count)
+{
+    const tl_mesh *mesh = &cloth->garment->model.mesh;
+    tl_topology_release(&cloth->topology);
+    tl_energy_release(&cloth->energy);
+    free(cloth->rest);
+    cloth->topology =
+        tl_topology_build(mesh->indices, mesh->index_count, weld, mesh->vertex_count, vertex_count);
+    cloth->rest = tl_rest_shapes(cloth->garment, &cloth->topology);
+    cloth->energy = tl_energy_build(&cloth->topology, cloth->rest);
+    cloth->shortest_edge = find_shortest_edge(cloth);
+}
+
+static void make_pins(tl_cloth *cloth)
+{
+    const tl_garment *garment = cloth->garment;
+    cloth->pin_count = garment->pin_count;
+    cloth->pins = TL_NEW_ARRAY(struct tl_pin, garment->pin_count);
+    for (size_t i = 0; i < garment->pin_count; i++)
+        cloth->pins[i] = (struct tl_pin){.particle = cloth->topology.weld[garment->pins[i]],
+                                         .at = vec3d_from(garment->model.mesh.positions[garment->pins[i]]),
+                                         .triangle = TL_NONE};
+}
+
+static void build_state(tl_cloth *cloth)
+{
+    const tl_garment *garment = cloth->garment;
+    const tl_mesh *mesh = &garment->model.mesh;
+    uint32_t *weld = TL_NEW_ARRAY(uint32_t, mesh->vertex_count);
+    size_t count = tl_weld_positions(mesh->positions, mesh->vertex_count, weld);
+    build_mesh(cloth, weld, count);
+    cloth->particles = tl_particles_create(count);
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        cloth->particles.x[weld[i]] = vec3d_from(mesh->positions[i]);
+    cloth->sewing = tl_sewing_create(garment->seams, garment->seam_count, weld, cloth->particles.x);
+    free(weld);
+    make_pins(cloth);
+    set_constants(cloth);
+}
+
+static void release_state(tl_cloth *cloth)
+{
+    tl_topology_release(&cloth->topology);
+    tl_energy_release(&cloth->energy);
+    tl_particles_release(&cloth->particles);
+    tl_contacts_release(&cloth->contacts);
+    tl_sewing_release(&cloth->sewing);
+    free(cloth->rest);
+    free(cloth->pins);
+    cloth->rest = NULL;
+    cloth->pins = NULL;
+}
+
+void tl_cloth_join(tl_cloth *cloth, const uint32_t *joined, size_t joined_count)
+{
+    struct tl_particles from = cloth->particles, to = tl_particles_create(joined_count);
+    double *masses = TL_NEW_ARRAY(double, joined_count);
+    bool *held = TL_NEW_ARRAY(bool, joined_count);
+    for (size_t i = 0; i < from.count; i++) { /* held ones decide where they all are */
+        uint32_t j = joined[i];
+        bool holds = !(from.w[i] > 0);
+        if (held[j] && !holds)
+            continue;
+        if (holds && !held[j])
+            masses[j] = 0;
+        held[j] = holds;
+        double mass = holds ? 1 : 1 / from.w[i];
+        masses[j] += mass;
+        to.x[j] = vec3d_mix(to.x[j], from.x[i], mass / masses[j]);
+        to.v[j] = vec3d_mix(to.v[j], from.v[i], mass / masses[j]);
+    }
+    free(masses);
+    free(held);
+
+    uint32_t *weld = TL_NEW_ARRAY(uint32_t, cloth->topology.render_count);
+    for (size_t i = 0; i < cloth->topology.render_count; i++)
+        weld[i] = joined[cloth->topology.weld[i]];
+    build_mesh(cloth, weld, joined_count);
+    free(weld);
+    tl_particles_release(&cloth->particles);
+    cloth->particles = to;
+    for (size_t i = 0; i < cloth->pin_count; i++)
+        cloth->pins[i].particle = joined[cloth->pins[i].particle];
+    set_constants(cloth);
+}
+
+/* ---- The public face ---- */
+
+tl_cloth *tl_cloth_create(const tl_garment *garment, const struct tl_cloth_fabric *fabric,
+                          const struct tl_cloth_params *params, tl_error *error)
+{
+    if (!check_garment(garment, error) || !check_params(&tl_cloth_fabric_options, fabric, error) ||
+        !check_params(&tl_cloth_options, params, error))
+        return NULL;
+    tl_cloth *cloth = TL_NEW(tl_cloth);
+    cloth->garment = garment;
+    cloth->fabric = *fabric;
+    cloth->params = *params;
+    build_state(cloth);
+    return cloth;
+}
+
+void tl_cloth_destroy(tl_cloth **cloth)
+{
+    if (!*cloth)
+        return;
+    release_state(*cloth);
+    free((*cloth)->start_x);
+    free((*cloth)->start_v);
+    free(*cloth);
+    *cloth = NULL;
+}
+
+bool tl_cloth_set(tl_cloth *cloth, const struct tl_cloth_fabric *fabric, const struct tl_cloth_params *params,
+                  tl_error *error)
+{
+    if (!check_params(&tl_cloth_fabric_options, fabric, error) ||
+        !check_params(&tl_cloth_options, params, error))
+        return false;
+    cloth->fabric = *fabric;
+    cloth->params = *params;
+    set_constants(cloth);
+    return true;
+}
+
+/* What contacts remember would make a run after a reset differ from the first one. */
+static void forget_contacts(tl_cloth *cloth)
+{
+    tl_contacts_release(&cloth->contacts);
+    cloth->contacts = tl_contacts_create(cloth->particles.count);
+}
+
+/* Kept by render vertex: seams that close later change the particles, but not these. */
+void tl_cloth_mark_start(tl_cloth *cloth)
+{
+    size_t count = cloth->topology.render_count;
+    cloth->start_x = tl_resize(cloth->start_x, count, sizeof *cloth->start_x);
+    cloth->start_v = tl_resize(cloth->start_v, count, sizeof *cloth->start_v);
+    for (size_t i = 0; i < count; i++) {
+        cloth->start_x[i] = cloth->particles.x[cloth->topology.weld[i]];
+        cloth->start_v[i] = cloth->particles.v[cloth->topology.weld[i]];
+    }
+    cloth->time_s = 0;
+    forget_contacts(cloth);
+}
+
+void tl_cloth_reset(tl_cloth *cloth)
+{
+    cloth->grabbed = false;
+    cloth->time_s = 0;
+    if (!cloth->start_x) {
+        release_state(cloth);
+        cloth->pins_bound = cloth->settled = false;
+        build_state(cloth);
+        return;
+    }
+    for (size_t i = 0; i < cloth->topology.render_count; i++) {
+        cloth->particles.x[cloth->topology.weld[i]] = cloth->start_x[i];
+        cloth->particles.v[cloth->topology.weld[i]] = cloth->start_v[i];
+    }
+    forget_contacts(cloth);
+}
+
+void tl_cloth_grab(tl_cloth *cloth, uint32_t render_vertex, vec3s target)
+{
+    cloth->grabbed = render_vertex < cloth->topology.render_count && vec3d_finite(vec3d_from(target));
+    cloth->grabbed_vertex = render_vertex;
+    cloth->grab_target = vec3d_from(target);
+}
+
+void tl_cloth_release(tl_cloth *cloth)
+{
+    cloth->grabbed = false;
+}
+
+void tl_cloth_positions(const tl_cloth *cloth, vec3s *out)
+{
+    for (size_t i = 0; i < cloth->topology.render_count; i++)
+        out[i] = vec3d_to_float(cloth->particles.x[cloth->topology.weld[i]]);
+}
+
+const uint32_t *tl_cloth_weld(const tl_cloth *cloth)
+{
+    return cloth->topology.weld;
+}
+
+double tl_cloth_max_speed(const tl_cloth *cloth)
+{
+    double fastest = 0;
+    for (size_t i = 0; i < cloth->particles.count; i++)
+        if (cloth->particles.w[i] > 0)
+            fastest = fmax(fastest, vec3d_dot(cloth->particles.v[i], cloth->particles.v[i]));
+    return sqrt(fastest);
+}
+
+double tl_cloth_max_strain(const tl_cloth *cloth)
+{
+    double worst = 0;
+    const vec3d *x = cloth->particles.x;
+    for (size_t m = 0; m < cloth->topology.triangle_count; m++) {
+        const uint32_t *t = cloth->topology.triangles[m];
+        for (int i = 0; i < 3; i++) {
+            vec2s side = glms_vec2_sub(cloth->rest[m][(i + 1) % 3], cloth->rest[m][i]);
+            double rest = hypot((double)side.x, (double)side.y);
+            double length = vec3d_distance(x[t[(i + 1) % 3]], x[t[i]]);
+            if (rest > cloth->shortest_edge)
+                worst = fmax(worst, fabs(length / rest - 1));
+        }
+    }
+    return worst;
+}
+
+static double deepest(const tl_cloth *cloth, const tl_collider *collider)
+{
+    const double reach_m = 0.1;
+    double worst = 0;
+    for (size_t i = 0; i < cloth->particles.count; i++) {
+        struct tl_contact contact;
+        const double point[3] = {cloth->particles.x[i].x, cloth->particles.x[i].y, cloth->particles.x[i].z};
+        if (tl_collider_query(collider, point, reach_m, &contact))
+            worst = fmax(worst, -contact.distance_m);
+        if (tl_collider_has_ground(collider))
+            worst = fmax(worst, -point[1]);
+    }
+    return worst;
+}
+
+struct tl_cloth_report tl_cloth_measure(const tl_cloth *cloth, const tl_collider *collider)
+{
+    struct tl_cloth_report report = {.vertex_count = cloth->topology.vertex_count,
+                                     .edge_count = cloth->topology.edge_count,
+                                     .triangle_count = cloth->topology.triangle_count,
+                                     .open_seams = cloth->sewing.pair_count,
+                                     .time_s = cloth->time_s,
+                                     .max_speed = tl_cloth_max_speed(cloth),
+                                     .max_strain = tl_cloth_max_strain(cloth),
+                                     .settled = cloth->settled};
+    for (size_t i = 0; i < cloth->particles.count; i++)
+        if (cloth->particles.w[i] > 0)
+            report.kinetic_energy +=
+                0.5 / cloth->particles.w[i] * vec3d_dot(cloth->particles.v[i], cloth->particles.v[i]);
+    if (collider)
+        report.deepest_m = deepest(cloth, collider);
+    return report;
+}

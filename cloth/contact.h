@@ -1,0 +1,48 @@
+/* Contact of particles with a moving collider and the ground, with Coulomb friction.
+ *
+ * Each particle remembers the plane at its nearest point of the avatar and asks again only once it has moved
+ * far enough along it to matter; cloth that rests asks nothing, and does not jitter between two answers. The
+ * plane moves with its triangle during the frame. Penetration that was there before the substep is taken out
+ * at a limited speed. Threads: pure. */
+#ifndef TOILE_CLOTH_CONTACT_H
+#define TOILE_CLOTH_CONTACT_H
+
+#include "cloth/collider.h"
+#include "cloth/xpbd.h"
+
+struct tl_contact_cache {
+    vec3d asked_at;     /* where the particle was when the collider was asked */
+    vec3d anchor[2];    /* nearest point, at the frame's start and end */
+    vec3d normal;       /* outward */
+    double asked_phase; /* 0 to 1 within the frame; above 1: never asked */
+    double clearance;   /* m the particle may move against the anchor before asking again */
+    bool near;          /* an anchor was found */
+};
+
+struct tl_contacts {
+    size_t count;
+    struct tl_contact_cache *caches;
+    uint64_t revision; /* of the collider when the caches were filled */
+    const tl_collider *collider;
+};
+struct tl_contacts tl_contacts_create(size_t particle_count);
+void tl_contacts_release(struct tl_contacts *contacts);
+
+/* Once per frame: forgets what no longer holds. */
+void tl_contacts_begin(struct tl_contacts *contacts, const tl_collider *collider);
+
+/* Once per step: a moving collider's planes turn, so near particles ask again. */
+void tl_contacts_renew(struct tl_contacts *contacts);
+
+struct tl_contact_params {
+    double friction, thickness_m;
+    double phase_before, phase; /* of the collider's motion at the start and the end of the substep */
+    double h;                   /* s, substep */
+};
+
+/* Moves particles out of the collider; after the constraints, so that nothing is inside at a substep's end.
+ */
+void tl_contacts_solve(struct tl_contacts *contacts, const struct tl_contact_params *params,
+                       struct tl_particles *particles);
+
+#endif

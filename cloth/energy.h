@@ -1,0 +1,75 @@
+/* The cloth's elastic energy as constraints for XPBD: membrane and bending of triangles, and links.
+ *
+ * Membrane, per triangle, with the deformation gradient F = [F_u F_v] from the flat rest shape of area A:
+ *     E = A/2 [ k_weft (|F_u| - 1)^2 + k_warp (|F_v| - 1)^2 + k_shear c^2 ],  c = F_u.F_v / (|F_u| |F_v|)
+ * so that a strip's tension per width is k times its strain, for any triangulation.
+ *
+ * Bending, per triangle with its up to three neighbours. A hinge's bend is the vector h = sum K_i x_i, K the
+ * cotangents of the flat hinge (Bergou et al. 2006, "A Quadratic Bending Model for Inextensible Surfaces");
+ * |h| is the fold angle times the edge length. Spread over the hinge's two triangles in proportion to their
+ * heights, the hinges give the triangle's curvature tensor (the mid-edge operator of Grinspun et al. 2006,
+ * "Computing discrete shape operators on general meshes"):
+ *     L = sum over edges h / (A + A') n n^T,     n the edge's unit normal in the rest plane
+ *     E = A/2 [ B_weft L_uu^2 + B_warp L_vv^2 + 2 sqrt(B_weft B_warp) L_uv^2 ]
+ * A sum of squared hinge angles with weights l^2/A alone overstates B by up to 3 on a grid (its bending all
+ * falls on one of three edge directions); this tensor is exact for any quadratic surface over a regular grid.
+ * Each component is linear in the positions, so it is an exact constraint with constant gradients. Rest is
+ * flat: cloth has no memory of the folds in its file.
+ *
+ * Rest shapes: x along weft, y along warp, metres. Threads: pure. */
+#ifndef TOILE_CLOTH_ENERGY_H
+#define TOILE_CLOTH_ENERGY_H
+
+#include "assets/garment.h"
+#include "cloth/cloth.h"
+#include "cloth/topology.h"
+#include "cloth/vec3d.h"
+
+/* One triangle's membrane. F_u = sum c_i x_i, F_v = sum d_i x_i. */
+struct tl_membrane {
+    uint32_t vertices[3];
+    double c[3], d[3]; /* 1/m */
+    double area;       /* m^2, at rest */
+    double cc, cd, dd; /* sums of w c_i c_i, ...: fixed while masses are */
+    double weft, warp; /* what a violation is multiplied by: -1 / (w |grad|^2 + 1 / (k A h^2)) */
+    double shear;      /* 1 / (k A h^2) */
+};
+
+/* One triangle's curvature: L_uu, L_vv, sqrt(2) L_uv = sum of rows over the stencil's vertices. */
+#define TL_BEND_STENCIL 6
+struct tl_bend {
+    uint32_t vertices[TL_BEND_STENCIL]; /* own three, then across each edge; a missing one repeats the first
+                                           with rows of 0 */
+    double rows[3][TL_BEND_STENCIL];    /* 1/m^2 */
+    double factors[3];                  /* -1 / (sum w row^2 + 1 / (B A h^2)) */
+    double area;
+};
+
+/* A spring: keeps slivers, which have no usable plane, in shape; closes seams. */
+struct tl_link {
+    uint32_t a, b;
+    double rest;       /* m */
+    double compliance; /* 1 / (k h^2); 0: rigid */
+};
+
+struct tl_energy {
+    size_t membrane_count, bend_count, link_count;
+    struct tl_membrane *membranes;
+    struct tl_bend *bends;
+    struct tl_link *links;
+    double *masses; /* [vertex_count] kg per areal density: a third of the area around */
+};
+
+/* `rest` gives every physics triangle's flat rest shape. */
+struct tl_energy tl_energy_build(const struct tl_topology *topology, const vec2s (*rest)[3]);
+void tl_energy_release(struct tl_energy *energy);
+
+/* Sets what depends on material, substep `h` seconds and inverse masses. */
+void tl_energy_set(struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
+                   const double *inverse_masses, double h);
+
+/* Flat rest shapes of the physics triangles: from the garment's pattern, else from the start shape turned so
+ * that x follows the UVs' u direction (an arbitrary one where UVs are degenerate). New array. */
+vec2s (*tl_rest_shapes(const tl_garment *garment, const struct tl_topology *topology))[3];
+
+#endif

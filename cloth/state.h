@@ -1,0 +1,60 @@
+/* The inside of a tl_cloth, for cloth.c, sew.c, settle.c and tests. */
+#ifndef TOILE_CLOTH_STATE_H
+#define TOILE_CLOTH_STATE_H
+
+#include "cloth/cloth.h"
+#include "cloth/contact.h"
+#include "cloth/sew.h"
+
+/* A held vertex: fixed, or riding on a triangle of the avatar. */
+struct tl_pin {
+    uint32_t particle;
+    vec3d at;          /* where it is held, when nothing carries it */
+    uint32_t triangle; /* of the avatar; TL_NONE: none */
+    double barycentric[3];
+    vec3d offset; /* from the triangle's point, in the triangle's own axes */
+};
+
+struct tl_cloth {
+    const tl_garment *garment;
+    struct tl_cloth_fabric fabric;
+    struct tl_cloth_params params;
+    struct tl_topology topology;
+    vec2s (*rest)[3];     /* [triangle_count] flat rest shape of each physics triangle, metres */
+    double shortest_edge; /* m; strain says nothing of shorter ones */
+    struct tl_energy energy;
+    struct tl_particles particles;
+    struct tl_contacts contacts;
+    struct tl_sewing sewing;
+    size_t pin_count;
+    struct tl_pin *pins;
+    bool pins_bound; /* the avatar has been looked for */
+    bool grabbed;
+    uint32_t grabbed_vertex; /* render vertex */
+    vec3d grab_target;
+    double time_s;
+    bool settled;
+    vec3d *start_x, *start_v; /* [render vertex] what reset goes back to; NULL until a start is marked */
+};
+
+/* How one frame is advanced. */
+struct tl_advance {
+    double drag; /* 1/s, in place of the fabric's damping when larger */
+    bool clock;  /* the animation's time passes */
+};
+
+/* One frame; restores the state and fails when the result is out of its envelope. */
+bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct tl_advance *advance,
+                      tl_error *error);
+
+/* Seconds of one substep, so that a frame is a whole number of equal steps. */
+double tl_cloth_substep(const tl_cloth *cloth);
+double tl_cloth_max_speed(const tl_cloth *cloth);
+double tl_cloth_max_strain(const tl_cloth *cloth);
+
+/* Replaces topology, energy and particles by those of a mesh in which physics vertex i has become
+ * joined[i]: masses add up,
+ * joined particles meet at their centre of mass, momentum is kept. */
+void tl_cloth_join(tl_cloth *cloth, const uint32_t *joined, size_t joined_count);
+
+#endif

@@ -1,0 +1,88 @@
+/* The inside of a renderer: what the jobs of a frame read and write. Not for use outside of render/. */
+#ifndef TOILE_RENDER_FRAME_FRAME_H
+#define TOILE_RENDER_FRAME_FRAME_H
+
+#include "render/light/gbuffer.h"
+#include "render/light/light.h"
+#include "render/present/present.h"
+#include "render/renderer.h"
+#include "render/visibility/maps.h"
+
+/* Resources, by bit. The first ones are inputs of the frame, which no job writes. */
+enum tl_resource {
+    TL_INPUT_ENVIRONMENT,
+    TL_INPUT_YAW,
+    TL_INPUT_SHAPES, /* topology, UVs, materials */
+    TL_INPUT_MOTION, /* positions, normals, tangents */
+    TL_INPUT_CAMERA,
+    TL_INPUT_SIZE, /* image size and samples per pixel */
+    TL_INPUT_GROUND,
+    TL_INPUT_PEM_SIZE,
+    TL_INPUT_FILTER,
+    TL_INPUT_REGIONS,
+    TL_INPUT_PASSES,
+    TL_INPUT_MAPS,  /* size and blur of the shadow maps */
+    TL_INPUT_LIGHT, /* how the light passes read what they read */
+    TL_INPUT_SHOW,  /* exposure and background */
+    TL_INPUT_COUNT,
+    TL_MADE_CUBE = TL_INPUT_COUNT,
+    TL_MADE_REGIONS,
+    TL_MADE_LOBE,
+    TL_MADE_PEMS,
+    TL_MADE_SURFACES,
+    TL_MADE_DEPTHS,
+    TL_MADE_MAPS,
+    TL_MADE_GBUFFER,
+    TL_MADE_LIGHT,
+    TL_MADE_IMAGE,
+    TL_MADE_BACKDROP,
+    TL_MADE_SHOWN,
+    TL_RESOURCE_COUNT
+};
+#define TL_BIT(resource) (1u << (resource))
+
+/* Facts about the scene, by bit. */
+enum tl_scene_fact { TL_SCENE_SHADOWED, TL_SCENE_FACT_COUNT };
+
+extern const char *const tl_resource_names[TL_RESOURCE_COUNT + 1];
+extern const char *const tl_scene_fact_names[TL_SCENE_FACT_COUNT + 1];
+
+/* The jobs, in execution order; each run function takes the tl_renderer. */
+extern const tl_job tl_frame_jobs[];
+extern const int tl_frame_job_count;
+
+/* Bytes of a sample: G-buffer, its depth, light. */
+#define TL_SAMPLE_BYTES (16 + 3 * 8 + 4 + 16)
+
+struct tl_renderer {
+    tl_gpu *gpu;
+
+    /* of the last draw; borrowed pointers in `frame` live as long as tl_frame says */
+    tl_frame frame;
+    struct tl_render_settings settings;
+    struct tl_view view;
+
+    tl_cube cube;
+    struct tl_regions regions;
+    struct tl_pems pems;
+    tl_surfaces *surfaces;
+    size_t surface_count; /* with the ground, which comes last */
+    struct tl_casters casters;
+    struct tl_ground ground;
+    tl_shadow_maps *maps;
+    struct tl_gbuffer gbuffer;
+    struct tl_lighting lighting;
+    struct tl_present present;
+
+    /* where the show job draws */
+    unsigned show_framebuffer;
+    int show_width, show_height;
+
+    uint64_t signatures[TL_INPUT_COUNT]; /* of the last draw's inputs */
+    uint64_t shaders_stamp;
+    uint32_t valid; /* resources that hold what their inputs call for */
+    tl_plan plan;
+    tl_cost cost;
+};
+
+#endif

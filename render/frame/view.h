@@ -1,0 +1,17 @@
+/* A camera as the passes need it. Pure. Cameras that make no sense (eye on its target, up along the view,
+ * near behind far) are mended to the nearest one that does, so that no matrix ever holds a NaN. */
+#ifndef TOILE_RENDER_FRAME_VIEW_H
+#define TOILE_RENDER_FRAME_VIEW_H
+
+#include "render/renderer.h"
+
+struct tl_view {
+    mat4s view_projection;
+    vec3s eye;
+    /* From the eye to the plane at distance 1: its middle, and from there to the right and upper edge. */
+    vec3s forward, right, up;
+};
+
+struct tl_view tl_view_make(const struct tl_camera *camera, int width, int height);
+
+#endif

@@ -1,0 +1,153 @@
+#include "render/gpu/context.h"
+
+#include "config/log.h"
+#include "config/memory.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#define GL_VERSION_NEEDED 45
+
+static void on_message(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length,
+                       const GLchar *message, const void *user)
+{
+    (void)source, (void)type, (void)length;
+    if (severity != GL_DEBUG_SEVERITY_HIGH && severity != GL_DEBUG_SEVERITY_MEDIUM)
+        return;
+    /* The pointer comes back const only because GL declares it so. */
+    ((tl_gpu *)user)->message_count++;
+    tl_warn("GL message %u: %s", id, message);
+}
+
+/* Everything that does not depend on who made the context. */
+static bool take_over(tl_gpu *gpu, tl_error *error)
+{
+    if (epoxy_gl_version() < GL_VERSION_NEEDED || !epoxy_is_desktop_gl())
+        return tl_fail(error, TL_DEVICE, "OpenGL: version %d.%d was found: 4.5 is needed, update the driver",
+                       epoxy_gl_version() / 10, epoxy_gl_version() % 10);
+    snprintf(gpu->name, sizeof gpu->name, "%s, OpenGL %s", (const char *)glGetString(GL_RENDERER),
+             (const char *)glGetString(GL_VERSION));
+    glEnable(GL_DEBUG_OUTPUT);
+    glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+    glDebugMessageCallback(on_message, gpu);
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &gpu->texture_side_max);
+    glCreateVertexArrays(1, &gpu->empty_vertices);
+    return true;
+}
+
+static bool create_context(tl_gpu *gpu, tl_error *error)
+{
+    const char *remedy = "install Mesa's EGL driver (libegl-mesa0)";
+    if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless"))
+        return tl_fail(error, TL_DEVICE, "EGL: there is no surfaceless platform here: %s", remedy);
+    gpu->display = eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL);
+    if (gpu->display == EGL_NO_DISPLAY || !eglInitialize(gpu->display, NULL, NULL))
+        return tl_fail(error, TL_DEVICE, "EGL: the surfaceless display does not open: %s", remedy);
+    const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                                 4,
+                                 EGL_CONTEXT_MINOR_VERSION,
+                                 5,
+                                 EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                 EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                 EGL_CONTEXT_OPENGL_DEBUG,
+                                 EGL_TRUE,
+                                 EGL_NONE};
+    if (eglBindAPI(EGL_OPENGL_API))
+        gpu->context = eglCreateContext(gpu->display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
+    if (gpu->context == EGL_NO_CONTEXT ||
+        !eglMakeCurrent(gpu->display, EGL_NO_SURFACE, EGL_NO_SURFACE, gpu->context))
+        return tl_fail(error, TL_DEVICE,
+                       "EGL: no OpenGL 4.5 core context (EGL error 0x%x): update the driver",
+                       (unsigned)eglGetError());
+    return true;
+}
+
+tl_gpu *tl_gpu_create_headless(tl_error *error)
+{
+    tl_gpu *gpu = TL_NEW(tl_gpu);
+    gpu->display = EGL_NO_DISPLAY;
+    gpu->context = EGL_NO_CONTEXT;
+    if (!create_context(gpu, error) || !take_over(gpu, error))
+        tl_gpu_destroy(&gpu);
+    return gpu;
+}
+
+tl_gpu *tl_gpu_create_current(tl_error *error)
+{
+    tl_gpu *gpu = TL_NEW(tl_gpu);
+    gpu->display = EGL_NO_DISPLAY;
+    if (!take_over(gpu, error))
+        tl_gpu_destroy(&gpu);
+    return gpu;
+}
+
+void tl_gpu_destroy(tl_gpu **gpu)
+{
+    if (!*gpu)
+        return;
+    if ((*gpu)->empty_vertices) {
+        glDeleteVertexArrays(1, &(*gpu)->empty_vertices);
+        glDebugMessageCallback(NULL, NULL); /* an adopted context outlives its tl_gpu */
+    }
+    if ((*gpu)->display != EGL_NO_DISPLAY) {
+        eglMakeCurrent((*gpu)->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+        if ((*gpu)->context != EGL_NO_CONTEXT)
+            eglDestroyContext((*gpu)->display, (*gpu)->context);
+        eglTerminate((*gpu)->display);
+        eglReleaseThread();
+    }
+    free(*gpu);
+    *gpu = NULL;
+}
+
+const char *tl_gpu_name(const tl_gpu *gpu)
+{
+    return gpu->name;
+}
+
+size_t tl_gpu_message_count(const tl_gpu *gpu)
+{
+    return gpu->message_count;
+}
+
+size_t tl_gpu_texture_bytes(const tl_gpu *gpu)
+{
+    return gpu->texture_bytes;
+}
+
+int tl_gpu_texture_side_max(const tl_gpu *gpu)
+{
+    return gpu->texture_side_max;
+}
+
+void tl_gpu_reset_state(const tl_gpu *gpu)
+{
+    const GLenum off[] = {GL_BLEND,        GL_CULL_FACE,           GL_DEPTH_CLAMP,
+                          GL_DEPTH_TEST,   GL_POLYGON_OFFSET_FILL, GL_SCISSOR_TEST,
+                          GL_STENCIL_TEST, GL_FRAMEBUFFER_SRGB};
+    for (size_t i = 0; i < TL_COUNT(off); i++)
+        glDisable(off[i]);
+    glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glDepthMask(GL_TRUE);
+    glDepthFunc(GL_LESS);
+    glBlendFunc(GL_ONE, GL_ZERO);
+    glBlendEquation(GL_FUNC_ADD);
+    glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glPixelStorei(GL_PACK_ROW_LENGTH, 0);
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+    /* A sampler object of the window's panel would override the textures' own parameters. */
+    for (GLuint unit = 0; unit < 8; unit++)
+        glBindSampler(unit, 0);
+    glBindVertexArray(gpu->empty_vertices);
+}
+
+void tl_gpu_draw_fullscreen(const tl_gpu *gpu)
+{
+    glBindVertexArray(gpu->empty_vertices);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+}

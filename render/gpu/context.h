@@ -1,0 +1,20 @@
+/* What the files of render/gpu share: the inside of a tl_gpu. */
+#ifndef TOILE_RENDER_GPU_CONTEXT_H
+#define TOILE_RENDER_GPU_CONTEXT_H
+
+#include "render/gpu/gpu.h"
+
+#include <epoxy/egl.h>
+#include <epoxy/gl.h>
+
+struct tl_gpu {
+    EGLDisplay display; /* EGL_NO_DISPLAY for an adopted context */
+    EGLContext context;
+    GLuint empty_vertices; /* vertex array without attributes, for the full-screen triangle */
+    GLint texture_side_max;
+    size_t message_count;
+    size_t texture_bytes;
+    char name[256];
+};
+
+#endif

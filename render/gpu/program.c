@@ -1,0 +1,225 @@
+#include "render/gpu/context.h"
+
+#include "config/file.h"
+#include "config/log.h"
+#include "config/memory.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#define FILES_MAX 16 /* of one shader, includes counted */
+
+/* Line l of file f is called f x LINES_MAX + l: GLSL numbers files as well as lines, but Mesa gives file 0
+ * for many places in another one. */
+#define LINES_MAX 10000
+
+/* One shader's text with its includes in place. */
+struct source {
+    const struct tl_embedded *shaders;
+    const char *files[FILES_MAX];
+    int file_count;
+    char *text; /* grows */
+    size_t size;
+};
+
+static void append(struct source *source, const char *text, size_t size)
+{
+    source->text = tl_resize(source->text, source->size + size + 1, 1);
+    memcpy(source->text + source->size, text, size);
+    source->size += size;
+    source->text[source->size] = '\0';
+}
+
+static void append_line_directive(struct source *source, int line, int file)
+{
+    char directive[64];
+    int length = snprintf(directive, sizeof directive, "#line %d\n", file * LINES_MAX + line);
+    append(source, directive, (size_t)length);
+}
+
+/* Where TOILE_SHADER_DIR, laid out as the folder render/ is, holds the file; NULL when it does not. New
+ * string. */
+static char *path_on_disk(const struct tl_embedded *file)
+{
+    const char *folder = getenv("TOILE_SHADER_DIR");
+    if (!folder)
+        return NULL;
+    const char *tail = file->source + strlen(file->source);
+    for (int slashes = 0; tail > file->source && slashes < 2; tail--)
+        slashes += tail[-1] == '/';
+    char *path = tl_format("%s/%s", folder, *tail == '/' ? tail + 1 : tail);
+    if (tl_file_exists(path))
+        return path;
+    free(path);
+    return NULL;
+}
+
+/* The file's text as a new string: from disk, or else as embedded. */
+static char *read_text(const struct tl_embedded *file, tl_error *error)
+{
+    char *path = path_on_disk(file);
+    if (!path)
+        return tl_copy_string(file->data);
+    char *text = NULL;
+    size_t size;
+    if (!tl_file_read(path, &text, &size, error))
+        text = NULL;
+    free(path);
+    return text;
+}
+
+/* If `line` begins with #include "name", the embedded file of that name, else NULL. */
+static const struct tl_embedded *included_file(const struct source *source, const char *line,
+                                               bool *is_include, char name[64])
+{
+    *is_include = sscanf(line, "#include \"%63[^\"\n]\"", name) == 1;
+    return *is_include ? tl_embedded_find(source->shaders, name) : NULL;
+}
+
+static bool expand(struct source *source, const struct tl_embedded *file, tl_error *error)
+{
+    for (int i = 0; i < source->file_count; i++)
+        if (source->files[i] == file->name)
+            return true; /* each file once, as if it had an include guard */
+    if (source->file_count == FILES_MAX)
+        return tl_fail(error, TL_INPUT, "%s: more than %d files are included: merge some", file->name,
+                       FILES_MAX);
+    int number = source->file_count++;
+    source->files[number] = file->name;
+    char *text = read_text(file, error);
+    if (!text)
+        return false;
+    if (number > 0) /* the first file begins with #version, which nothing may precede */
+        append_line_directive(source, 1, number);
+    bool fine = true;
+    int line = 1;
+    for (const char *start = text; fine && *start; line++) {
+        size_t length = strcspn(start, "\n");
+        bool is_include;
+        char name[64];
+        const struct tl_embedded *include = included_file(source, start, &is_include, name);
+        if (is_include && !include) {
+            fine = tl_fail(error, TL_INPUT, "%s:%d: no shader file is called %s: check the name", file->name,
+                           line, name);
+        } else if (include) {
+            fine = expand(source, include, error);
+            append_line_directive(source, line + 1, number);
+        } else {
+            append(source, start, length);
+            append(source, "\n", 1);
+        }
+        start += length + (start[length] == '\n');
+    }
+    free(text);
+    return fine;
+}
+
+/* The compiler's first message, with the name of the file that it is about: "light.frag:12(7): error: ...".
+ * Mesa writes "0:LINE(COLUMN): ...", others "0(LINE) : ...". */
+static bool fail_with_log(const struct source *source, const char *log, tl_error *error)
+{
+    int line = 0, consumed = 0, length = (int)strcspn(log, "\n");
+    if ((sscanf(log, "%*u:%d%n", &line, &consumed) == 1 || sscanf(log, "%*u(%d)%n", &line, &consumed) == 1) &&
+        line >= 0 && line / LINES_MAX < source->file_count)
+        return tl_fail(error, TL_INPUT, "%s:%d%.*s", source->files[line / LINES_MAX], line % LINES_MAX,
+                       length - consumed, log + consumed);
+    return tl_fail(error, TL_INPUT, "%s: %.*s", source->files[0], length, log);
+}
+
+static GLuint compile(GLenum kind, const struct tl_embedded *shaders, const char *name, tl_error *error)
+{
+    const struct tl_embedded *file = tl_embedded_find(shaders, name);
+    struct source source = {.shaders = shaders};
+    GLuint shader = 0;
+    if (!file) {
+        tl_fail(error, TL_INPUT, "%s: no shader file has this name: add it to toile_embed", name);
+        return 0;
+    }
+    if (!expand(&source, file, error))
+        goto done;
+    shader = glCreateShader(kind);
+    glShaderSource(shader, 1, (const GLchar *const *)&source.text, NULL);
+    glCompileShader(shader);
+    GLint compiled;
+    glGetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
+    if (!compiled) {
+        char log[512] = "";
+        glGetShaderInfoLog(shader, sizeof log, NULL, log);
+        fail_with_log(&source, log, error);
+        glDeleteShader(shader);
+        shader = 0;
+    }
+done:
+    free(source.text);
+    return shader;
+}
+
+static GLuint build(const tl_program *program, tl_error *error)
+{
+    GLuint id = 0, vertex = 0, fragment = 0;
+    vertex = compile(GL_VERTEX_SHADER, program->shaders, program->vertex, error);
+    if (vertex)
+        fragment = compile(GL_FRAGMENT_SHADER, program->shaders, program->fragment, error);
+    if (fragment) {
+        id = glCreateProgram();
+        glAttachShader(id, vertex);
+        glAttachShader(id, fragment);
+        glLinkProgram(id);
+        GLint linked;
+        glGetProgramiv(id, GL_LINK_STATUS, &linked);
+        if (!linked) {
+            char log[512] = "";
+            glGetProgramInfoLog(id, sizeof log, NULL, log);
+            tl_fail(error, TL_INPUT, "%s + %s: %.*s", program->vertex, program->fragment,
+                    (int)strcspn(log, "\n"), log);
+            glDeleteProgram(id);
+            id = 0;
+        }
+    }
+    glDeleteShader(vertex);
+    glDeleteShader(fragment);
+    return id;
+}
+
+bool tl_program_create(tl_gpu *gpu, const struct tl_embedded *shaders, const char *vertex,
+                       const char *fragment, tl_program *out, tl_error *error)
+{
+    (void)gpu; /* current on this thread */
+    *out = (tl_program){.shaders = shaders, .vertex = vertex, .fragment = fragment};
+    snprintf(out->name, sizeof out->name, "%s", fragment);
+    out->id = build(out, error);
+    return out->id != 0;
+}
+
+bool tl_program_reload(tl_program *program, tl_error *error)
+{
+    GLuint id = build(program, error);
+    if (!id)
+        return false;
+    glDeleteProgram(program->id);
+    program->id = id;
+    return true;
+}
+
+void tl_program_destroy(tl_program *program)
+{
+    if (program->id)
+        glDeleteProgram(program->id);
+    *program = (tl_program){0};
+}
+
+uint64_t tl_shaders_stamp(const struct tl_embedded *shaders)
+{
+    uint64_t stamp = 0;
+    for (const struct tl_embedded *file = shaders; file->name; file++) {
+        char *path = path_on_disk(file);
+        struct stat status;
+        if (path && stat(path, &status) == 0)
+            stamp = stamp * 1000003 + (uint64_t)status.st_mtim.tv_sec * 1000000000u +
+                    (uint64_t)status.st_mtim.tv_nsec;
+        free(path);
+    }
+    return stamp;
+}

@@ -1,0 +1,60 @@
+#include "render/light/gbuffer.h"
+
+#include "render/shaders.h"
+
+#include <epoxy/gl.h>
+
+/* Uniform locations of gbuffer.vert and gbuffer.frag beside those of surface.glsl. */
+enum { VIEW_PROJECTION = 16, EYE = 17, FADING_DISC = 18 };
+
+bool tl_gbuffer_create(struct tl_gbuffer *gbuffer, tl_gpu *gpu, tl_error *error)
+{
+    return tl_program_create(gpu, tl_embedded_shaders, "gbuffer.vert", "gbuffer.frag", &gbuffer->program,
+                             error);
+}
+
+void tl_gbuffer_release(struct tl_gbuffer *gbuffer)
+{
+    tl_program_destroy(&gbuffer->program);
+    tl_target_destroy(&gbuffer->target);
+}
+
+static void allocate(struct tl_gbuffer *gbuffer, tl_gpu *gpu, int width, int height)
+{
+    static const unsigned formats[TL_GBUFFER_LAYERS] = {GL_RGBA32F, GL_RGBA16F, GL_RGBA16F, GL_RGBA16F};
+    if (gbuffer->target.width == width && gbuffer->target.height == height)
+        return;
+    tl_target_destroy(&gbuffer->target);
+    gbuffer->target = tl_target_create(gpu, width, height, formats, TL_GBUFFER_LAYERS, true);
+}
+
+static void clear(const tl_target *target)
+{
+    const float nothing[] = {0, 0, 0, 0}, farthest = 1;
+    for (int i = 0; i < target->colour_count; i++)
+        glClearNamedFramebufferfv(target->id, GL_COLOR, i, nothing);
+    glClearNamedFramebufferfv(target->id, GL_DEPTH, 0, &farthest);
+}
+
+void tl_gbuffer_draw(struct tl_gbuffer *gbuffer, tl_gpu *gpu, const struct tl_view *view, int width,
+                     int height, const tl_surfaces *surfaces, size_t surface_count,
+                     const struct tl_ground *ground)
+{
+    allocate(gbuffer, gpu, width, height);
+    clear(&gbuffer->target);
+    glBindFramebuffer(GL_FRAMEBUFFER, gbuffer->target.id);
+    glViewport(0, 0, width, height);
+    glEnable(GL_DEPTH_TEST);
+    glUseProgram(gbuffer->program.id);
+    glUniformMatrix4fv(VIEW_PROJECTION, 1, GL_FALSE, view->view_projection.raw[0]);
+    glUniform3fv(EYE, 1, view->eye.raw);
+    for (size_t i = 0; i < surface_count; i++) {
+        bool is_ground = ground && i + 1 == surface_count;
+        if (is_ground)
+            glUniform4f(FADING_DISC, ground->centre.x, ground->centre.y, ground->centre.z, ground->radius);
+        else
+            glUniform4f(FADING_DISC, 0, 0, 0, 0);
+        tl_surfaces_draw(surfaces, i);
+    }
+    tl_gpu_reset_state(gpu);
+}

@@ -1,0 +1,31 @@
+/* The G-buffer: for every sample the nearest surface's point, shading normal and material. */
+#ifndef TOILE_RENDER_LIGHT_GBUFFER_H
+#define TOILE_RENDER_LIGHT_GBUFFER_H
+
+#include "render/frame/view.h"
+#include "render/surfaces/ground.h"
+#include "render/surfaces/surfaces.h"
+
+/* Colours of the target. Half floats hold directions to 0.03 degrees, a fortieth of a PEM's texel. */
+enum tl_gbuffer_layer {
+    TL_GBUFFER_POINT,    /* RGBA32F: world, metres; coverage */
+    TL_GBUFFER_NORMAL,   /* RGBA16F: world, unit, on the viewer's side; glossiness */
+    TL_GBUFFER_DIFFUSE,  /* RGBA16F: kd with occlusion */
+    TL_GBUFFER_SPECULAR, /* RGBA16F: F ks */
+    TL_GBUFFER_LAYERS
+};
+
+struct tl_gbuffer {
+    tl_program program;
+    tl_target target;
+};
+
+bool tl_gbuffer_create(struct tl_gbuffer *gbuffer, tl_gpu *gpu, tl_error *error);
+void tl_gbuffer_release(struct tl_gbuffer *gbuffer);
+
+/* `ground` is the last of the surfaces, or NULL when none is drawn. Sizes are in samples. */
+void tl_gbuffer_draw(struct tl_gbuffer *gbuffer, tl_gpu *gpu, const struct tl_view *view, int width,
+                     int height, const tl_surfaces *surfaces, size_t surface_count,
+                     const struct tl_ground *ground);
+
+#endif

@@ -1,0 +1,21 @@
+#version 450 core
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 vertex_normal;
+layout(location = 2) in vec4 vertex_tangent;
+layout(location = 3) in vec2 vertex_uv;
+
+layout(location = 16) uniform mat4 view_projection;
+
+out vec3 point;
+out vec3 normal;
+out vec4 tangent;
+out vec2 uv;
+
+void main()
+{
+    point = position;
+    normal = vertex_normal;
+    tangent = vertex_tangent;
+    uv = vertex_uv;
+    gl_Position = view_projection * vec4(position, 1.0);
+}

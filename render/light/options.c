@@ -1,0 +1,53 @@
+#include "render/pem/chain.h"
+#include "render/pem/regions.h"
+#include "render/renderer.h"
+
+static const char *const method_names[] = {"pem", "unshadowed", NULL};
+static const char *const lobe_names[] = {"single", "dual", NULL};
+
+typedef struct tl_light_params light_params;
+static const struct tl_option light_rows[] = {
+    TL_OPTION_ENUM(light_params, method, method_names,
+                   "pem: light of each region times its visibility; unshadowed: visibility is 1 everywhere"),
+    TL_OPTION_ENUM(light_params, lobe, lobe_names,
+                   "single: one look-up from diffuse to mirror by glossiness; dual: diffuse plus gloss"),
+    TL_OPTION_INT(light_params, regions, 6, TL_REGIONS_MAX, "",
+                  "regions of the environment, in sixes; more give truer shadows for more time and memory"),
+    TL_OPTION_INT(
+        light_params, pem_size, 4, 512, "texels",
+        "side of a PEM's cube face, a power of two; larger sharpens mirrors for four times the memory"),
+    TL_OPTION_ENUM(light_params, filter, tl_chain_filter_names,
+                   "filter between the levels of a PEM; wider ones make glossy highlights rounder"),
+    TL_OPTION_INT(light_params, pems_per_pass, 1, 64, "",
+                  "regions added up in one drawing pass; more need fewer passes and larger textures"),
+    TL_OPTION_INT(light_params, map_size, 1, 4096, "texels",
+                  "side of a shadow map; larger keeps small shadows for more time and memory"),
+    TL_OPTION_FLOAT(light_params, blur_m, 0, 10, "m",
+                    "shadow blur: sigma is this times the tangent of a region's cone; larger is softer"),
+    TL_OPTION_FLOAT(light_params, depth_bias_m, 0, 1, "m",
+                    "depth that a shadow must differ by; larger hides false shadows and loses small ones"),
+    TL_OPTION_FLOAT(
+        light_params, min_variance, 0, 1, "m^2",
+        "least variance of depth in a shadow map; larger hides false shadows and leaks more light"),
+    TL_OPTION_FLOAT(light_params, bleed_reduction, 0, 0.95, "",
+                    "visibility below it becomes 0; larger leaks less light and hardens soft shadows"),
+};
+const struct tl_option_table tl_light_options =
+    TL_OPTION_TABLE("light", "how the environment lights and shadows the scene", light_rows, light_params,
+                    .method = TL_METHOD_PEM, .lobe = TL_LOBE_DUAL, .regions = 96, .pem_size = 128,
+                    .filter = TL_CHAIN_SQRT_COSINE, .pems_per_pass = 12, .map_size = 256, .blur_m = 0.05f,
+                    .depth_bias_m = 0.004f, .min_variance = 1e-6f, .bleed_reduction = 0.1f);
+
+typedef struct tl_material_params material_params;
+static const struct tl_option material_rows[] = {
+    TL_OPTION_BOOL(material_params, use_file, "keep the materials of the garment's file where it has them"),
+    TL_OPTION_COLOUR(material_params, diffuse, 0, 1, "share of light scattered evenly; larger is brighter"),
+    TL_OPTION_COLOUR(material_params, specular, 0, 1,
+                     "share of light reflected at normal incidence; 0.04 for most fibres, larger is shinier"),
+    TL_OPTION_FLOAT(
+        material_params, glossiness, 0, 1, "",
+        "0 reflects in all directions, 1 is a mirror; the lobe's exponent is 1 / (1 - glossiness)"),
+};
+const struct tl_option_table tl_material_options = TL_OPTION_TABLE(
+    "material", "the garment's look: two lobes, diffuse and glossy", material_rows, material_params,
+    .use_file = true, .diffuse = {0.5f, 0.5f, 0.5f}, .specular = {0.04f, 0.04f, 0.04f}, .glossiness = 0.5f);

@@ -1,0 +1,159 @@
+#include "render/metrics/compare.h"
+
+#include "render/metrics/flip.h"
+
+#include "config/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#define PIXELS_PER_DEGREE_MAX 1000 /* filters grow with it; a phone at arm's length has 120 */
+
+/* An image as it is compared: linear RGB, and which of its pixels count. */
+struct plain {
+    size_t count;
+    float *rgb; /* [count][3] */
+    bool *covered;
+};
+
+static float channel_value(const tl_image *image, size_t index, bool colour)
+{
+    if (image->type == TL_IMAGE_F32)
+        return tl_image_floats(image)[index];
+    float value = (float)tl_image_bytes(image)[index] / 255;
+    return colour && !image->linear ? tl_srgb_to_linear(value) : value;
+}
+
+static bool plain_create(const tl_image *image, const char *role, struct plain *out, tl_error *error)
+{
+    size_t channels = (size_t)image->channels, colours = channels >= 3 ? 3 : 1;
+    *out = (struct plain){.count = (size_t)image->width * (size_t)image->height};
+    out->rgb = TL_NEW_ARRAY(float, 3 * out->count);
+    out->covered = TL_NEW_ARRAY(bool, out->count);
+    for (size_t i = 0; i < out->count; i++) {
+        for (size_t c = 0; c < 3; c++) {
+            float value = channel_value(image, channels * i + (colours == 3 ? c : 0), true);
+            if (!isfinite(value))
+                return tl_fail(error, TL_INPUT,
+                               "the %s image: pixel (%zu, %zu) is not a finite number: render it again", role,
+                               i % (size_t)image->width, i / (size_t)image->width);
+            out->rgb[3 * i + c] = value;
+        }
+        out->covered[i] = channels == colours || channel_value(image, channels * i + colours, false) > 0;
+    }
+    return true;
+}
+
+static void plain_release(struct plain *plain)
+{
+    free(plain->rgb);
+    free(plain->covered);
+    *plain = (struct plain){0};
+}
+
+/* A pixel counts when either image covers it; `reference->covered` says so for both afterwards. */
+static size_t join_coverage(const struct plain *test, struct plain *reference)
+{
+    size_t covered = 0;
+    for (size_t i = 0; i < test->count; i++) {
+        reference->covered[i] |= test->covered[i];
+        covered += reference->covered[i];
+    }
+    return covered;
+}
+
+static void measure_difference(const struct plain *test, const struct plain *reference,
+                               struct tl_comparison *out)
+{
+    double squares = 0, sum = 0;
+    for (size_t i = 0; i < 3 * test->count; i++) {
+        if (!reference->covered[i / 3])
+            continue;
+        double difference = (double)test->rgb[i] - (double)reference->rgb[i];
+        squares += difference * difference;
+        sum += (double)reference->rgb[i];
+        out->max_abs = fmax(out->max_abs, fabs(difference));
+    }
+    double values = 3 * (double)out->covered;
+    /* Against a black reference only an equal image has a finite error. */
+    out->rel_rmse = squares > 0 ? sqrt(squares / values) / (sum / values) : 0;
+}
+
+static bool needs_hdr(const struct plain *reference)
+{
+    for (size_t i = 0; i < 3 * reference->count; i++)
+        if (reference->covered[i / 3] && reference->rgb[i] > 1)
+            return true;
+    return false;
+}
+
+static bool find_exposures(const struct plain *reference, struct tl_comparison *out, tl_error *error)
+{
+    float *luminances = TL_NEW_ARRAY(float, out->covered);
+    size_t count = 0;
+    for (size_t i = 0; i < reference->count; i++) {
+        const float *rgb = reference->rgb + 3 * i;
+        if (reference->covered[i])
+            luminances[count++] = 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
+    }
+    bool found = tl_flip_exposures(luminances, count, &out->exposure_start, &out->exposure_stop);
+    free(luminances);
+    return found || tl_fail(error, TL_INPUT,
+                            "the reference image: half of its covered pixels are black, so HDR-FLIP finds no "
+                            "exposure for them: compare as LDR");
+}
+
+static bool measure_flip(const struct tl_flip_frame *frame, const struct plain *test,
+                         const struct plain *reference, struct tl_comparison *out, tl_error *error)
+{
+    if (out->hdr && !find_exposures(reference, out, error))
+        return false;
+    float *map = TL_NEW_ARRAY(float, test->count);
+    if (out->hdr)
+        tl_flip_hdr(frame, test->rgb, reference->rgb, out->exposure_start, out->exposure_stop, map);
+    else
+        tl_flip_ldr(frame, test->rgb, reference->rgb, map);
+    double covered = 0, all = 0;
+    for (size_t i = 0; i < test->count; i++) {
+        all += (double)map[i];
+        covered += reference->covered[i] ? (double)map[i] : 0;
+    }
+    out->flip_mean = covered / (double)out->covered;
+    out->flip_frame = all / (double)test->count;
+    free(map);
+    return true;
+}
+
+bool tl_image_compare(const tl_image *a, const tl_image *b, int hdr, double pixels_per_degree,
+                      struct tl_comparison *out, tl_error *error)
+{
+    *out = (struct tl_comparison){0};
+    if (a->width != b->width || a->height != b->height)
+        return tl_fail(error, TL_INPUT,
+                       "compare: one image is %d x %d, the other %d x %d: render both the same", a->width,
+                       a->height, b->width, b->height);
+    if (pixels_per_degree > PIXELS_PER_DEGREE_MAX)
+        return tl_fail(error, TL_USAGE, "compare: %g pixels per degree: give at most %d", pixels_per_degree,
+                       PIXELS_PER_DEGREE_MAX);
+    struct tl_flip_frame frame = {a->width, a->height, pixels_per_degree};
+    if (!(pixels_per_degree > 0))
+        frame.pixels_per_degree = TL_FLIP_PIXELS_PER_DEGREE;
+
+    struct plain test = {0}, reference = {0};
+    bool done = false;
+    if (!plain_create(a, "tested", &test, error) || !plain_create(b, "reference", &reference, error))
+        goto cleanup;
+    out->covered = join_coverage(&test, &reference);
+    if (out->covered == 0) {
+        tl_fail(error, TL_INPUT,
+                "compare: neither image covers a pixel (alpha > 0): render something into them");
+        goto cleanup;
+    }
+    measure_difference(&test, &reference, out);
+    out->hdr = hdr < 0 ? needs_hdr(&reference) : hdr > 0;
+    done = measure_flip(&frame, &test, &reference, out, error);
+cleanup:
+    plain_release(&test);
+    plain_release(&reference);
+    return done;
+}

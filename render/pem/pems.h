@@ -1,0 +1,31 @@
+/* The PEMs on the GPU: one filtered cube map a region [002, section 4], several to a cube map array.
+ *
+ * RGBA16F, as in the paper. A sun beyond the half range is kept: all values are stored times one power of two
+ * for the whole environment, which costs no precision, and the light pass multiplies by `scale` to take it
+ * back. */
+#ifndef TOILE_RENDER_PEM_PEMS_H
+#define TOILE_RENDER_PEM_PEMS_H
+
+#include "render/gpu/gpu.h"
+#include "render/pem/regions.h"
+
+#define TL_PEM_TEXEL_BYTES 8
+#define TL_PEM_STORED_MAX  32768.0f /* half the largest half: filters must not overflow either */
+
+struct tl_pems {
+    int count, per_array, array_count;
+    float scale;        /* radiance = scale x stored */
+    tl_texture *arrays; /* cube map arrays, per_array cubes each; the last one fewer */
+};
+
+/* Cuts, filters and uploads all regions of `cube`; replaces what `pems` held. The chains are built in
+ * parallel; the result does not depend on the thread count. */
+void tl_pems_build(struct tl_pems *pems, tl_gpu *gpu, const tl_cube *cube, const struct tl_regions *regions,
+                   int filter, int per_array);
+void tl_pems_release(struct tl_pems *pems);
+size_t tl_pems_bytes(const struct tl_pems *pems);
+
+/* One whole cube, filtered, as a cube map: the undivided environment. */
+tl_texture tl_pem_upload_whole(tl_gpu *gpu, const tl_cube *cube, int filter, float *scale);
+
+#endif

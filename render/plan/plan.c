@@ -1,0 +1,160 @@
+#include "render/plan/plan.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *const tl_job_action_names[] = {"run", "reuse", "drop", NULL};
+
+void tl_cost_add(tl_cost *cost, int job, int level, double ms)
+{
+    assert(job >= 0 && job < TL_JOBS_MAX && level >= 0 && level < TL_JOB_LEVELS_MAX);
+    if (!isfinite(ms) || ms < 0) /* a clock that was set back measures nothing */
+        return;
+    cost->ms[job][level][cost->count[job][level]++ % TL_COST_HISTORY] = (float)ms;
+}
+
+static int compare_floats(const void *a, const void *b)
+{
+    float left = *(const float *)a, right = *(const float *)b;
+    return (left > right) - (left < right);
+}
+
+double tl_cost_median(const tl_cost *cost, int job, int level)
+{
+    assert(job >= 0 && job < TL_JOBS_MAX && level >= 0 && level < TL_JOB_LEVELS_MAX);
+    int count = cost->count[job][level] < TL_COST_HISTORY ? cost->count[job][level] : TL_COST_HISTORY;
+    if (count == 0)
+        return (double)NAN;
+    float sorted[TL_COST_HISTORY];
+    memcpy(sorted, cost->ms[job][level], (size_t)count * sizeof(float));
+    qsort(sorted, (size_t)count, sizeof(float), compare_floats);
+    return 0.5 * ((double)sorted[(count - 1) / 2] + (double)sorted[count / 2]);
+}
+
+bool tl_jobs_check(const tl_job *jobs, int count, tl_error *error)
+{
+    if (count < 0 || count > TL_JOBS_MAX)
+        return tl_fail(error, TL_USAGE, "job table: %d jobs: at most %d fit", count, TL_JOBS_MAX);
+    for (int i = 0; i < count; i++) {
+        if (!jobs[i].levels[0])
+            return tl_fail(error, TL_USAGE, "job table: %s: has no level: name at least one", jobs[i].name);
+        /* What a job reads and only itself writes is what it left behind in the last frame. */
+        uint32_t known = jobs[i].writes;
+        for (int k = 0; k < i; k++)
+            known |= jobs[k].writes;
+        for (int k = i + 1; k < count; k++)
+            if (jobs[i].reads & jobs[k].writes & ~known)
+                return tl_fail(error, TL_USAGE,
+                               "job table: %s: reads what only %s writes, which comes later: put it before",
+                               jobs[i].name, jobs[k].name);
+    }
+    return true;
+}
+
+/* "camera, surfaces" from bits; what does not fit is left out. */
+static void name_bits(uint32_t bits, const char *const *names, char *out, size_t size)
+{
+    size_t length = 0;
+    out[0] = '\0';
+    for (int bit = 0; bit < 32; bit++) {
+        if (!(bits & (uint32_t)1 << bit))
+            continue;
+        const char *name = names && names[bit] ? names[bit] : "?";
+        int added = snprintf(out + length, size - length, "%s%s", length ? ", " : "", name);
+        if (added < 0 || (size_t)added >= size - length) {
+            out[length] = '\0';
+            return;
+        }
+        length += (size_t)added;
+    }
+}
+
+static void give_reason(struct tl_plan_row *row, const char *before, uint32_t bits, const char *const *names,
+                        const char *after)
+{
+    char list[90];
+    name_bits(bits, names, list, sizeof list);
+    snprintf(row->reason, sizeof row->reason, "%s%s%s", before, list, after);
+}
+
+static int level_count(const tl_job *job)
+{
+    int count = 0;
+    while (count < TL_JOB_LEVELS_MAX && job->levels[count])
+        count++;
+    return count;
+}
+
+/* What each job finds changed when its turn comes, were all jobs to run that have reason to. */
+static void spread_changes(const tl_job *jobs, int count, const struct tl_plan_input *input,
+                           uint32_t changed_reads[])
+{
+    uint32_t changed = input->changed;
+    for (int i = 0; i < count; i++) {
+        bool allowed = (jobs[i].requires_scene & ~input->scene) == 0;
+        changed_reads[i] = jobs[i].reads & changed;
+        if (allowed && (changed_reads[i] || jobs[i].writes & ~input->valid))
+            changed |= jobs[i].writes;
+    }
+}
+
+static void plan_row(const tl_job *job, const struct tl_plan_input *input, uint32_t changed_reads,
+                     uint32_t needed, struct tl_plan_row *row)
+{
+    uint32_t missing_facts = job->requires_scene & ~input->scene, missing = job->writes & ~input->valid;
+    /* Until there is a budget nothing speaks for less than the most exact level. */
+    *row = (struct tl_plan_row){.name = job->name, .level = level_count(job) - 1};
+    if (missing_facts) {
+        row->action = TL_JOB_DROP;
+        give_reason(row, "no ", missing_facts, input->scene_fact_names, " in the scene");
+    } else if (!(job->writes & needed)) {
+        row->action = TL_JOB_DROP;
+        give_reason(row, "nobody reads ", job->writes, input->resource_names, "");
+    } else if (missing) {
+        row->action = TL_JOB_RUN;
+        give_reason(row, "not made yet: ", missing, input->resource_names, "");
+    } else if (changed_reads) {
+        row->action = TL_JOB_RUN;
+        give_reason(row, "changed: ", changed_reads, input->resource_names, "");
+    } else {
+        row->action = TL_JOB_REUSE;
+        give_reason(row, job->reads ? "as before: " : "made once", job->reads, input->resource_names, "");
+    }
+}
+
+void tl_plan_make(const tl_job *jobs, int count, const struct tl_plan_input *input, const tl_cost *cost,
+                  tl_plan *out)
+{
+    assert(count >= 0 && count <= TL_JOBS_MAX);
+    uint32_t changed_reads[TL_JOBS_MAX], needed = input->wanted;
+    spread_changes(jobs, count, input, changed_reads);
+    *out = (tl_plan){.count = count};
+    for (int i = count - 1; i >= 0; i--) { /* backwards: readers say what is needed */
+        struct tl_plan_row *row = &out->rows[i];
+        plan_row(&jobs[i], input, changed_reads[i], needed, row);
+        if (row->action != TL_JOB_DROP)
+            needed |= jobs[i].reads;
+        if (row->action == TL_JOB_RUN)
+            row->predicted_ms = cost ? tl_cost_median(cost, i, row->level) : (double)NAN;
+    }
+}
+
+uint32_t tl_plan_valid_after(const tl_job *jobs, int count, const struct tl_plan_input *input,
+                             const tl_plan *plan)
+{
+    uint32_t changed = input->changed, valid = input->valid;
+    for (int i = 0; i < count; i++) {
+        enum tl_job_action action = plan->rows[i].action;
+        if (action == TL_JOB_RUN)
+            valid |= jobs[i].writes;
+        else if (action == TL_JOB_DROP && jobs[i].reads & changed)
+            valid &= ~jobs[i].writes;
+        else
+            continue;
+        changed |= jobs[i].writes;
+    }
+    return valid;
+}

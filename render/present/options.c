@@ -1,0 +1,20 @@
+#include "render/present/present.h"
+#include "render/renderer.h"
+
+typedef struct tl_image_params image_params;
+static const char *const background_names[] = {"environment", "blurred", "grey", NULL};
+
+static const struct tl_option image_rows[] = {
+    TL_OPTION_INT(image_params, width, 1, 16384, "pixels", "width of the image"),
+    TL_OPTION_INT(image_params, height, 1, 16384, "pixels", "height of the image"),
+    TL_OPTION_INT(image_params, supersample, 1, 8, "",
+                  "samples per pixel side; larger smooths edges and weave for the square of the time"),
+    TL_OPTION_FLOAT(image_params, exposure_ev, -20, 20, "EV",
+                    "brightness on the screen and in PNG files, in stops; EXR files stay as they are"),
+    TL_OPTION_ENUM(image_params, background, background_names,
+                   "what is seen behind, on the screen and in PNG files"),
+    TL_OPTION_BOOL(image_params, ground, "a matt grey disc at y = 0 that catches the shadow"),
+};
+const struct tl_option_table tl_image_options = TL_OPTION_TABLE(
+    "image", "size and show of the image", image_rows, image_params, .width = 960, .height = 540,
+    .supersample = 1, .exposure_ev = 0, .background = TL_BACKGROUND_BLURRED, .ground = true);

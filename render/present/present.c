@@ -1,0 +1,100 @@
+#include "render/present/present.h"
+
+#include "render/shaders.h"
+
+#include <epoxy/gl.h>
+
+#include <math.h>
+
+/* Uniform locations of show.frag. */
+enum { EXPOSURE, BACKGROUND, ENVIRONMENT_TURN, VIEW, LATLONG = 6, BLURRED_SCALE };
+
+bool tl_present_create(struct tl_present *present, tl_gpu *gpu, tl_error *error)
+{
+    return tl_program_create(gpu, tl_embedded_shaders, "fullscreen.vert", "resolve.frag", &present->resolve,
+                             error) &&
+           tl_program_create(gpu, tl_embedded_shaders, "fullscreen.vert", "show.frag", &present->show, error);
+}
+
+void tl_present_release(struct tl_present *present)
+{
+    tl_program_destroy(&present->resolve);
+    tl_program_destroy(&present->show);
+    tl_target_destroy(&present->image);
+    tl_target_destroy(&present->shown);
+    tl_texture_destroy(&present->backdrop);
+    tl_texture_destroy(&present->blurred);
+}
+
+void tl_present_resolve(struct tl_present *present, tl_gpu *gpu, const tl_texture *lights,
+                        const tl_texture *points, int width, int height, int side)
+{
+    const unsigned linear = GL_RGBA32F, encoded = GL_RGBA8;
+    if (present->image.width != width || present->image.height != height) {
+        tl_target_destroy(&present->image);
+        tl_target_destroy(&present->shown);
+        present->image = tl_target_create(gpu, width, height, &linear, 1, false);
+        present->shown = tl_target_create(gpu, width, height, &encoded, 1, false);
+    }
+    glBindFramebuffer(GL_FRAMEBUFFER, present->image.id);
+    glViewport(0, 0, width, height);
+    glUseProgram(present->resolve.id);
+    glUniform1i(0, side);
+    glBindTextureUnit(0, lights->id);
+    glBindTextureUnit(1, points->id);
+    tl_gpu_draw_fullscreen(gpu);
+}
+
+bool tl_present_set_backdrop(struct tl_present *present, tl_gpu *gpu, const tl_environment *environment,
+                             const tl_cube *cube, int filter, tl_error *error)
+{
+    const tl_image *image = &environment->image;
+    int limit = tl_gpu_texture_side_max(gpu);
+    if (image->width > limit || image->height > limit)
+        return tl_fail(error, TL_INPUT, "%s: %d x %d texels are more than GL holds: scale it to %d",
+                       environment->name, image->width, image->height, limit);
+    bool latlong = environment->layout == TL_ENV_LATLONG;
+    tl_texture_destroy(&present->backdrop);
+    tl_texture_destroy(&present->blurred);
+    present->blurred = tl_pem_upload_whole(gpu, cube, filter, &present->blurred_scale);
+    GLenum given = image->channels == 4 ? GL_RGBA : GL_RGB;
+    if (latlong) {
+        present->backdrop =
+            tl_texture_create(gpu, GL_TEXTURE_2D, GL_RGBA32F, image->width, image->height, 1, 1);
+        glTextureSubImage2D(present->backdrop.id, 0, 0, 0, image->width, image->height, given, GL_FLOAT,
+                            image->texels);
+        glTextureParameteri(present->backdrop.id, GL_TEXTURE_WRAP_S, GL_REPEAT);
+    } else {
+        present->backdrop =
+            tl_texture_create(gpu, GL_TEXTURE_CUBE_MAP, GL_RGBA32F, image->width, image->width, 6, 1);
+        glTextureSubImage3D(present->backdrop.id, 0, 0, 0, 0, image->width, image->width, 6, given, GL_FLOAT,
+                            image->texels);
+    }
+    return true;
+}
+
+void tl_present_show(const struct tl_present *present, tl_gpu *gpu, const struct tl_show_request *request)
+{
+    bool latlong = present->backdrop.target == GL_TEXTURE_2D;
+    const struct tl_view *view = &request->view;
+    const vec3s columns[3] = {view->right, view->up, view->forward};
+    glBindFramebuffer(GL_FRAMEBUFFER, request->framebuffer);
+    glViewport(0, 0, request->width, request->height);
+    glUseProgram(present->show.id);
+    glUniform1f(EXPOSURE, exp2f(request->params->exposure_ev));
+    glUniform1i(BACKGROUND, request->params->background);
+    glUniform2f(ENVIRONMENT_TURN, cosf(request->environment_yaw), sinf(request->environment_yaw));
+    glUniformMatrix3fv(VIEW, 1, GL_FALSE, columns[0].raw);
+    glUniform1i(LATLONG, latlong);
+    glUniform1f(BLURRED_SCALE, present->blurred_scale);
+    glBindTextureUnit(0, present->image.colours[0].id);
+    glBindTextureUnit(latlong ? 1 : 2, present->backdrop.id);
+    glBindTextureUnit(latlong ? 2 : 1, 0);
+    glBindTextureUnit(3, present->blurred.id);
+    tl_gpu_draw_fullscreen(gpu);
+}
+
+size_t tl_present_bytes(const struct tl_present *present)
+{
+    return tl_target_bytes(&present->image) + tl_target_bytes(&present->shown);
+}

@@ -1,0 +1,43 @@
+/* From samples to the linear image, and from the image to a screen: background, exposure, tone mapping
+ * (Khronos PBR Neutral), sRGB. */
+#ifndef TOILE_RENDER_PRESENT_PRESENT_H
+#define TOILE_RENDER_PRESENT_PRESENT_H
+
+#include "render/frame/view.h"
+#include "render/gpu/gpu.h"
+#include "render/pem/pems.h"
+
+enum tl_background { TL_BACKGROUND_ENVIRONMENT, TL_BACKGROUND_BLURRED, TL_BACKGROUND_GREY };
+
+struct tl_present {
+    tl_program resolve, show;
+    tl_target image;     /* RGBA32F: linear, premultiplied, coverage in alpha */
+    tl_target shown;     /* RGBA8, for images; windows have their own */
+    tl_texture backdrop; /* the environment in its own layout */
+    tl_texture blurred;  /* the whole cube, filtered */
+    float blurred_scale;
+};
+
+struct tl_show_request {
+    struct tl_view view;
+    float environment_yaw; /* rad */
+    const struct tl_image_params *params;
+    unsigned framebuffer; /* GL name */
+    int width, height;    /* pixels */
+};
+
+bool tl_present_create(struct tl_present *present, tl_gpu *gpu, tl_error *error);
+void tl_present_release(struct tl_present *present);
+
+/* Box filter of `side` x `side` samples a pixel; sizes in pixels. */
+void tl_present_resolve(struct tl_present *present, tl_gpu *gpu, const tl_texture *lights,
+                        const tl_texture *points, int width, int height, int side);
+
+/* Makes the backdrop from the environment. False when the environment is larger than GL can hold. */
+bool tl_present_set_backdrop(struct tl_present *present, tl_gpu *gpu, const tl_environment *environment,
+                             const tl_cube *cube, int filter, tl_error *error);
+void tl_present_show(const struct tl_present *present, tl_gpu *gpu, const struct tl_show_request *request);
+
+size_t tl_present_bytes(const struct tl_present *present); /* targets; without the backdrop */
+
+#endif

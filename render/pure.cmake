@@ -1,0 +1,10 @@
+# The parts of render that know neither GL nor the clock.
+add_library(toile_light STATIC
+  env/cube.c
+  metrics/compare.c
+  metrics/flip.c
+  pem/chain.c
+  pem/lobe.c
+  pem/regions.c
+  plan/plan.c)
+target_link_libraries(toile_light PUBLIC toile_assets)

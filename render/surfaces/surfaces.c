@@ -1,0 +1,327 @@
+#include "render/surfaces/surfaces.h"
+
+#include "config/memory.h"
+
+#include <epoxy/gl.h>
+
+#include <math.h>
+#include <stdlib.h>
+
+#define ANISOTROPY 8.0f /* cloth is seen at grazing angles; beyond 8 taps nothing was seen to change */
+
+enum attribute { POSITION, NORMAL, TANGENT, UV, ATTRIBUTES };
+
+/* A texture and the image it was made of: materials share images. */
+struct uploaded {
+    const tl_image *image;
+    bool colour; /* sRGB-decoded: the same image could be used as data elsewhere */
+    tl_texture texture;
+};
+
+struct item {
+    GLuint vertex_array, buffers[ATTRIBUTES], indices;
+    size_t vertex_count, index_count;
+    uint64_t topology_revision, motion_revision;
+    size_t part_count, material_count;
+    struct tl_mesh_part *parts;
+    tl_material *materials; /* copies: their maps' images are compared, never read, after the upload */
+    size_t texture_count;
+    struct uploaded *textures;
+};
+
+struct tl_surfaces {
+    tl_gpu *gpu;
+    size_t count;
+    struct item *items;
+};
+
+static const size_t attribute_bytes[ATTRIBUTES] = {sizeof(vec3s), sizeof(vec3s), sizeof(vec4s),
+                                                   sizeof(vec2s)};
+
+static void item_release(struct item *item)
+{
+    for (size_t i = 0; i < item->texture_count; i++)
+        tl_texture_destroy(&item->textures[i].texture);
+    free(item->textures);
+    free(item->parts);
+    free(item->materials);
+    if (item->vertex_array) {
+        glDeleteVertexArrays(1, &item->vertex_array);
+        glDeleteBuffers(ATTRIBUTES, item->buffers);
+        glDeleteBuffers(1, &item->indices);
+    }
+    *item = (struct item){0};
+}
+
+tl_surfaces *tl_surfaces_create(tl_gpu *gpu)
+{
+    tl_surfaces *surfaces = TL_NEW(tl_surfaces);
+    surfaces->gpu = gpu;
+    return surfaces;
+}
+
+static void resize(tl_surfaces *surfaces, size_t count)
+{
+    for (size_t i = count; i < surfaces->count; i++)
+        item_release(&surfaces->items[i]);
+    surfaces->items = tl_resize(surfaces->items, count, sizeof *surfaces->items);
+    for (size_t i = surfaces->count; i < count; i++)
+        surfaces->items[i] = (struct item){0};
+    surfaces->count = count;
+}
+
+void tl_surfaces_destroy(tl_surfaces **surfaces)
+{
+    if (!*surfaces)
+        return;
+    resize(*surfaces, 0);
+    free((*surfaces)->items);
+    free(*surfaces);
+    *surfaces = NULL;
+}
+
+struct texel_format {
+    GLenum stored, given, type;
+};
+
+static struct texel_format format_of(const tl_image *image, bool colour)
+{
+    static const GLenum given[] = {GL_RED, GL_RG, GL_RGB, GL_RGBA};
+    static const GLenum bytes[] = {GL_R8, GL_RG8, GL_RGBA8, GL_RGBA8};
+    static const GLenum floats[] = {GL_R32F, GL_RG32F, GL_RGBA32F, GL_RGBA32F};
+    int c = image->channels - 1;
+    if (image->type == TL_IMAGE_F32)
+        return (struct texel_format){floats[c], given[c], GL_FLOAT};
+    /* sRGB exists with four channels only; grey colour images are spread by the swizzle below. */
+    bool encoded = colour && !image->linear;
+    return (struct texel_format){encoded ? GL_SRGB8_ALPHA8 : bytes[c], given[c], GL_UNSIGNED_BYTE};
+}
+
+static tl_texture upload(tl_gpu *gpu, const tl_image *image, bool colour)
+{
+    struct texel_format format = format_of(image, colour);
+    tl_texture texture = tl_texture_create(gpu, GL_TEXTURE_2D, format.stored, image->width, image->height, 1,
+                                           tl_texture_full_levels(image->width, image->height));
+    glTextureSubImage2D(texture.id, 0, 0, 0, image->width, image->height, format.given, format.type,
+                        image->texels);
+    glGenerateTextureMipmap(texture.id);
+    if (colour && image->channels <= 2) {
+        const GLint grey[] = {GL_RED, GL_RED, GL_RED, image->channels == 2 ? GL_GREEN : GL_ONE};
+        glTextureParameteriv(texture.id, GL_TEXTURE_SWIZZLE_RGBA, grey);
+    }
+    if (epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic"))
+        glTextureParameterf(texture.id, GL_TEXTURE_MAX_ANISOTROPY_EXT, ANISOTROPY);
+    return texture;
+}
+
+static bool add_image(tl_gpu *gpu, struct item *item, const char *surface, const tl_image *image, bool colour,
+                      tl_error *error)
+{
+    if (!image)
+        return true;
+    for (size_t i = 0; i < item->texture_count; i++)
+        if (item->textures[i].image == image && item->textures[i].colour == colour)
+            return true;
+    int limit = tl_gpu_texture_side_max(gpu);
+    if (image->width > limit || image->height > limit)
+        return tl_fail(error, TL_INPUT, "%s: a map of %d x %d texels is larger than GL holds: scale it to %d",
+                       surface, image->width, image->height, limit);
+    item->textures = tl_resize(item->textures, item->texture_count + 1, sizeof *item->textures);
+    item->textures[item->texture_count++] = (struct uploaded){image, colour, upload(gpu, image, colour)};
+    return true;
+}
+
+static const struct tl_map *map_of(const tl_material *material, enum tl_map_use use)
+{
+    switch (use) {
+    case TL_MAP_DIFFUSE:
+        return &material->diffuse_map;
+    case TL_MAP_NORMAL:
+        return &material->normal_map;
+    case TL_MAP_GLOSS:
+        return &material->gloss_map;
+    case TL_MAP_SPECULAR:
+        return &material->specular_map;
+    default:
+        return &material->occlusion_map;
+    }
+}
+
+static bool is_colour(enum tl_map_use use)
+{
+    return use == TL_MAP_DIFFUSE || use == TL_MAP_SPECULAR;
+}
+
+static bool upload_material(tl_gpu *gpu, struct item *item, const char *surface, const tl_material *material,
+                            tl_error *error)
+{
+    for (enum tl_map_use use = 0; use < TL_MAP_USES; use++)
+        if (!add_image(gpu, item, surface, map_of(material, use)->image, is_colour(use), error))
+            return false;
+    const tl_weave *weave = material->weave;
+    return !weave || (add_image(gpu, item, surface, &weave->normal, false, error) &&
+                      add_image(gpu, item, surface, &weave->gloss, false, error) &&
+                      add_image(gpu, item, surface, &weave->tint, false, error));
+}
+
+static void attach_buffer(struct item *item, enum attribute attribute, const void *data, size_t count)
+{
+    static const GLint components[ATTRIBUTES] = {3, 3, 4, 2};
+    if (!data)
+        return; /* the attribute then reads GL's constant, zero */
+    glNamedBufferData(item->buffers[attribute], (GLsizeiptr)(count * attribute_bytes[attribute]), data,
+                      attribute == UV ? GL_STATIC_DRAW : GL_STREAM_DRAW);
+    glVertexArrayVertexBuffer(item->vertex_array, attribute, item->buffers[attribute], 0,
+                              (GLsizei)attribute_bytes[attribute]);
+    glVertexArrayAttribFormat(item->vertex_array, attribute, components[attribute], GL_FLOAT, GL_FALSE, 0);
+    glVertexArrayAttribBinding(item->vertex_array, attribute, attribute);
+    glEnableVertexArrayAttrib(item->vertex_array, attribute);
+}
+
+static void send_motion(struct item *item, const tl_surface *surface)
+{
+    attach_buffer(item, POSITION, surface->positions, surface->vertex_count);
+    attach_buffer(item, NORMAL, surface->normals, surface->vertex_count);
+    attach_buffer(item, TANGENT, surface->tangents, surface->vertex_count);
+    item->motion_revision = surface->motion_revision;
+}
+
+static bool send_topology(tl_gpu *gpu, struct item *item, const tl_surface *surface, tl_error *error)
+{
+    item_release(item);
+    glCreateVertexArrays(1, &item->vertex_array);
+    glCreateBuffers(ATTRIBUTES, item->buffers);
+    glCreateBuffers(1, &item->indices);
+    glNamedBufferData(item->indices, (GLsizeiptr)(surface->index_count * sizeof *surface->indices),
+                      surface->indices, GL_STATIC_DRAW);
+    glVertexArrayElementBuffer(item->vertex_array, item->indices);
+    attach_buffer(item, UV, surface->uvs, surface->vertex_count);
+    item->vertex_count = surface->vertex_count;
+    item->index_count = surface->index_count;
+    item->part_count = surface->part_count;
+    item->parts = TL_NEW_ARRAY(struct tl_mesh_part, surface->part_count);
+    for (size_t p = 0; p < surface->part_count; p++) {
+        item->parts[p] = surface->parts[p];
+        size_t needed = (size_t)surface->parts[p].material + 1;
+        item->material_count = needed > item->material_count ? needed : item->material_count;
+    }
+    item->materials = TL_NEW_ARRAY(tl_material, item->material_count);
+    for (size_t m = 0; m < item->material_count; m++) {
+        item->materials[m] = surface->materials[m];
+        if (!upload_material(gpu, item, surface->name, &surface->materials[m], error))
+            return false;
+    }
+    item->topology_revision = surface->topology_revision;
+    return true;
+}
+
+static bool update_item(tl_gpu *gpu, struct item *item, const tl_surface *surface, tl_error *error)
+{
+    bool fresh = item->vertex_array == 0 || item->topology_revision != surface->topology_revision ||
+                 item->vertex_count != surface->vertex_count || item->index_count != surface->index_count;
+    if (fresh && !send_topology(gpu, item, surface, error)) {
+        item_release(item);
+        return false;
+    }
+    if (fresh || item->motion_revision != surface->motion_revision)
+        send_motion(item, surface);
+    return true;
+}
+
+bool tl_surfaces_update(tl_surfaces *surfaces, const tl_surface *const *items, size_t count, tl_error *error)
+{
+    resize(surfaces, count);
+    for (size_t i = 0; i < count; i++)
+        if (!update_item(surfaces->gpu, &surfaces->items[i], items[i], error))
+            return false;
+    return true;
+}
+
+static const tl_texture *find_texture(const struct item *item, const tl_image *image, bool colour)
+{
+    for (size_t i = 0; i < item->texture_count; i++)
+        if (item->textures[i].image == image && item->textures[i].colour == colour)
+            return &item->textures[i].texture;
+    return NULL;
+}
+
+static void bind(GLuint unit, const tl_texture *texture, bool clamp_u, bool clamp_v)
+{
+    glTextureParameteri(texture->id, GL_TEXTURE_WRAP_S, clamp_u ? GL_CLAMP_TO_EDGE : GL_REPEAT);
+    glTextureParameteri(texture->id, GL_TEXTURE_WRAP_T, clamp_v ? GL_CLAMP_TO_EDGE : GL_REPEAT);
+    glBindTextureUnit(unit, texture->id);
+}
+
+/* Rows of uv' = offset + R(rotation) (scale uv); the rotation is counter-clockwise with v down, as
+ * KHR_texture_transform has it. */
+static void uv_rows(const struct tl_uv_transform *transform, float rows[6])
+{
+    float c = cosf(transform->rotation), s = sinf(transform->rotation);
+    rows[0] = c * transform->scale[0];
+    rows[1] = s * transform->scale[1];
+    rows[2] = transform->offset[0];
+    rows[3] = -s * transform->scale[0];
+    rows[4] = c * transform->scale[1];
+    rows[5] = transform->offset[1];
+}
+
+static int bind_weave(const struct item *item, const tl_weave *weave, float uv_metres)
+{
+    if (!weave || !(uv_metres > 0) || !(weave->size_m[0] > 0) || !(weave->size_m[1] > 0))
+        return 0;
+    const tl_image *images[TL_WEAVE_USES] = {&weave->normal, &weave->gloss, &weave->tint};
+    for (GLuint i = 0; i < TL_WEAVE_USES; i++)
+        bind(TL_MAP_USES + i, find_texture(item, images[i], false), false, false);
+    glUniform2f(TL_UNIFORM_WEAVE_SCALE, uv_metres / weave->size_m[0], uv_metres / weave->size_m[1]);
+    return 1 << TL_MAP_USES;
+}
+
+static void set_material(const struct item *item, const struct tl_mesh_part *part)
+{
+    const tl_material *material = &item->materials[part->material];
+    int flags = bind_weave(item, material->weave, part->uv_metres);
+    float rows[TL_MAP_USES][6];
+    for (enum tl_map_use use = 0; use < TL_MAP_USES; use++) {
+        const struct tl_map *map = map_of(material, use);
+        uv_rows(&map->transform, rows[use]);
+        if (!map->image)
+            continue;
+        bind((GLuint)use, find_texture(item, map->image, is_colour(use)), map->clamp_u, map->clamp_v);
+        flags |= 1 << use;
+    }
+    glUniform3fv(TL_UNIFORM_DIFFUSE, 1, material->diffuse.raw);
+    glUniform3fv(TL_UNIFORM_SPECULAR, 1, material->specular.raw);
+    glUniform4f(TL_UNIFORM_SCALARS, material->glossiness, material->normal_scale,
+                material->occlusion_strength, material->alpha_cutoff);
+    glUniform1i(TL_UNIFORM_MAP_FLAGS, flags);
+    glUniform3fv(TL_UNIFORM_UV_ROWS, 2 * TL_MAP_USES, rows[0]);
+}
+
+bool tl_surfaces_draw(const tl_surfaces *surfaces, size_t index)
+{
+    if (index >= surfaces->count)
+        return false;
+    const struct item *item = &surfaces->items[index];
+    glBindVertexArray(item->vertex_array);
+    for (size_t p = 0; p < item->part_count; p++) {
+        const struct tl_mesh_part *part = &item->parts[p];
+        set_material(item, part);
+        glDrawElements(GL_TRIANGLES, (GLsizei)part->index_count, GL_UNSIGNED_INT,
+                       (const void *)(part->first_index * sizeof(uint32_t)));
+    }
+    return true;
+}
+
+size_t tl_surfaces_bytes(const tl_surfaces *surfaces)
+{
+    size_t bytes = 0;
+    for (size_t i = 0; i < surfaces->count; i++) {
+        const struct item *item = &surfaces->items[i];
+        for (size_t t = 0; t < item->texture_count; t++)
+            bytes += tl_texture_bytes(&item->textures[t].texture);
+        bytes += item->index_count * sizeof(uint32_t);
+        for (int a = 0; a < ATTRIBUTES; a++)
+            bytes += item->vertex_count * attribute_bytes[a];
+    }
+    return bytes;
+}

@@ -1,0 +1,48 @@
+/* Surfaces on the GPU: vertex buffers that follow the motion, and the maps of their materials.
+ *
+ * What has not changed (by the surfaces' revisions) is not sent again. Both sides of every triangle are
+ * drawn: a garment's inside is seen, also where a file says that it is single-sided. */
+#ifndef TOILE_RENDER_SURFACES_SURFACES_H
+#define TOILE_RENDER_SURFACES_SURFACES_H
+
+#include "assets/surface.h"
+#include "render/gpu/gpu.h"
+
+enum tl_map_use {
+    TL_MAP_DIFFUSE,
+    TL_MAP_NORMAL,
+    TL_MAP_GLOSS,
+    TL_MAP_SPECULAR,
+    TL_MAP_OCCLUSION,
+    TL_MAP_USES
+};
+enum tl_weave_use { TL_WEAVE_NORMAL, TL_WEAVE_GLOSS, TL_WEAVE_TINT, TL_WEAVE_USES };
+
+/* Texture units that tl_surfaces_draw binds; a pass's own textures come after them. */
+#define TL_SURFACE_UNITS (TL_MAP_USES + TL_WEAVE_USES)
+
+/* Uniform locations shared with surface.glsl. */
+enum tl_surface_uniform {
+    TL_UNIFORM_DIFFUSE,
+    TL_UNIFORM_SPECULAR,
+    TL_UNIFORM_SCALARS,     /* glossiness, normal scale, occlusion strength, alpha cutoff */
+    TL_UNIFORM_MAP_FLAGS,   /* bits by tl_map_use; the weave's bit is 1 << TL_MAP_USES */
+    TL_UNIFORM_WEAVE_SCALE, /* repeats per UV unit */
+    TL_UNIFORM_UV_ROWS,     /* 2 vec3 a map: rows of the 2x3 UV transform */
+    TL_UNIFORM_SURFACE_END = TL_UNIFORM_UV_ROWS + 2 * TL_MAP_USES,
+};
+
+typedef struct tl_surfaces tl_surfaces;
+
+tl_surfaces *tl_surfaces_create(tl_gpu *gpu);
+void tl_surfaces_destroy(tl_surfaces **surfaces);
+
+/* Brings the GPU's copies up to date. Fails when a map is larger than GL can hold. */
+bool tl_surfaces_update(tl_surfaces *surfaces, const tl_surface *const *items, size_t count, tl_error *error);
+
+/* Draws surface `index` with the program in use, which includes surface.glsl. Returns false past the last. */
+bool tl_surfaces_draw(const tl_surfaces *surfaces, size_t index);
+
+size_t tl_surfaces_bytes(const tl_surfaces *surfaces); /* buffers and textures */
+
+#endif

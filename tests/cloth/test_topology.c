@@ -1,0 +1,93 @@
+/* Welding and connectivity, on meshes small enough to check by hand. */
+#include "cloth/frames.h"
+#include "cloth/topology.h"
+#include "testing.h"
+
+static void test_weld_is_bitwise_but_for_zero(void **state)
+{
+    (void)state;
+    const vec3s positions[] = {
+        {{0, 1, 2}}, {{-0.0f, 1, 2}}, {{nextafterf(0, 1), 1, 2}}, {{3, 4, 5}}, {{0, 1, 2}}};
+    const uint32_t expected[] = {0, 0, 1, 2, 0};
+    uint32_t weld[5];
+    assert_int_equal(tl_weld_positions(positions, 5, weld), 3);
+    assert_memory_equal(weld, expected, sizeof weld);
+}
+
+/* Two triangles of a square, one of them twice with its winding turned, a fin on the diagonal, and one whose
+ * corners weld together. */
+static const uint32_t corners[] = {0, 1, 2, 0, 2, 3, 2, 0, 3, 0, 2, 4, 1, 1, 5};
+static const uint32_t identity[] = {0, 1, 2, 3, 4, 5};
+
+static void test_edges_and_neighbours(void **state)
+{
+    (void)state;
+    struct tl_topology square = tl_topology_build(corners, 6, identity, 4, 4);
+    assert_int_equal(square.triangle_count, 2);
+    assert_int_equal(square.edge_count, 5);
+    assert_int_equal(square.neighbour[0][1], 1); /* the edge that faces corner 1 is the diagonal */
+    assert_int_equal(square.neighbour[1][2], 0);
+    assert_int_equal(square.neighbour[0][0], TL_NONE);
+    assert_int_equal(tl_topology_far_corner(&square, 0, 1), 2);
+    assert_int_equal(tl_topology_far_corner(&square, 1, 0), 1);
+    tl_topology_release(&square);
+}
+
+static void test_repeated_and_collapsed_triangles_are_dropped(void **state)
+{
+    (void)state;
+    struct tl_topology mesh = tl_topology_build(corners, 9, identity, 6, 6);
+    assert_int_equal(mesh.triangle_count, 2);
+    tl_topology_release(&mesh);
+    mesh = tl_topology_build(corners, 15, identity, 6, 6);
+    const uint32_t source[] = {0, 1, 3};
+    assert_int_equal(mesh.triangle_count, 3);
+    assert_memory_equal(mesh.source, source, sizeof source);
+    assert_int_equal(mesh.edge_count, 7);
+    tl_topology_release(&mesh);
+}
+
+static void test_an_edge_of_three_triangles_is_no_hinge(void **state)
+{
+    (void)state;
+    struct tl_topology mesh = tl_topology_build(corners, 15, identity, 6, 6);
+    for (size_t t = 0; t < mesh.triangle_count; t++)
+        for (int i = 0; i < 3; i++)
+            assert_int_equal(mesh.neighbour[t][i], TL_NONE);
+    tl_topology_release(&mesh);
+}
+
+static void test_fans_list_every_corner_once(void **state)
+{
+    (void)state;
+    struct tl_fans fans = tl_fans_build(corners, 6, 4);
+    const uint32_t first[] = {0, 2, 3, 5, 6}, items[] = {0, 3, 1, 2, 4, 5};
+    assert_memory_equal(fans.first, first, sizeof first);
+    assert_memory_equal(fans.items, items, sizeof items);
+    tl_fans_release(&fans);
+}
+
+static void test_sets(void **state)
+{
+    (void)state;
+    uint32_t parents[] = {0, 1, 2, 3, 4, 5};
+    tl_sets_join(parents, 4, 2);
+    tl_sets_join(parents, 5, 4);
+    tl_sets_join(parents, 0, 1);
+    const uint32_t expected[] = {0, 0, 2, 3, 2, 2};
+    for (uint32_t i = 0; i < 6; i++)
+        assert_int_equal(tl_sets_find(parents, i), expected[i]);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_weld_is_bitwise_but_for_zero),
+        cmocka_unit_test(test_edges_and_neighbours),
+        cmocka_unit_test(test_repeated_and_collapsed_triangles_are_dropped),
+        cmocka_unit_test(test_an_edge_of_three_triangles_is_no_hinge),
+        cmocka_unit_test(test_fans_list_every_corner_once),
+        cmocka_unit_test(test_sets),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,280 @@
+/* Variance shadow maps against hand-made cases, as the image shows them: light with shadows over light
+ * without. One bright patch of sky makes one region that matters; with six regions each is a whole cube face
+ * of 2 pi / 3 sr, so its cone has cos = 1 - 1/3 and tan = sqrt(5) / 2. */
+#include "shapes.h"
+
+#include "render/visibility/maps.h"
+
+#include "testing.h"
+
+#define TAN_CONE 1.118034f
+
+static vec3s patch_direction; /* of bright_patch; set by the tests */
+
+static vec3s bright_patch(vec3s d)
+{
+    float cosine = glms_vec3_dot(d, patch_direction);
+    return cosine > 0.98f ? (vec3s){{10, 10, 10}} : (vec3s){{0, 0, 0}};
+}
+
+static struct tl_render_settings settings_of_six(int width, int height)
+{
+    struct tl_render_settings settings = test_settings(width, height);
+    settings.light.regions = 6;
+    settings.light.map_size = 256;
+    settings.light.depth_bias_m = 0.001f;
+    settings.light.bleed_reduction = 0;
+    return settings;
+}
+
+/* Where the ray through the middle of a pixel meets the plane y = 0. */
+static vec3s ground_point(const struct tl_camera *camera, const struct tl_render_settings *settings, int x,
+                          int y)
+{
+    vec3s forward = glms_vec3_normalize(glms_vec3_sub(camera->target, camera->eye));
+    vec3s right = glms_vec3_normalize(glms_vec3_cross(forward, camera->up));
+    vec3s up = glms_vec3_cross(right, forward);
+    float half = tanf(camera->fov_y / 2), width = (float)settings->image.width,
+          height = (float)settings->image.height;
+    float sx = (2 * ((float)x + 0.5f) / width - 1) * half * width / height;
+    float sy = (1 - 2 * ((float)y + 0.5f) / height) * half;
+    vec3s ray = glms_vec3_add(forward, glms_vec3_add(glms_vec3_scale(right, sx), glms_vec3_scale(up, sy)));
+    return glms_vec3_add(camera->eye, glms_vec3_scale(ray, -camera->eye.y / ray.y));
+}
+
+/* Shadowed over unshadowed light, pixel by pixel, in the red channel; -1 where nothing is lit or drawn. */
+static tl_image visibility_image(struct test_device *device, const tl_frame *frame,
+                                 struct tl_render_settings settings)
+{
+    tl_image shadowed = test_draw(device->renderer, frame, &settings);
+    settings.light.method = TL_METHOD_UNSHADOWED;
+    tl_image lit = test_draw(device->renderer, frame, &settings);
+    for (size_t i = 0; i < (size_t)lit.width * (size_t)lit.height * 4; i += 4) {
+        float without = tl_image_floats(&lit)[i];
+        tl_image_floats(&shadowed)[i] = without > 1e-4f ? tl_image_floats(&shadowed)[i] / without : -1;
+    }
+    tl_image_release(&lit);
+    return shadowed;
+}
+
+static float normal_distribution(float x)
+{
+    return 0.5f * erfcf(-x / sqrtf(2));
+}
+
+/* A sheet at height 1 covers x < 0; light falls straight down. Of two depths a and b the Chebyshev bound at b
+ * is the share of b exactly, so the shadow of the straight edge is the Gaussian's integral. */
+static void test_half_plane_penumbra(void **state)
+{
+    struct test_device *device = *state;
+    patch_direction = (vec3s){{0, 1, 0}};
+    tl_environment environment = test_environment(128, 64, bright_patch);
+    struct test_shape shapes[2] = {
+        test_square((vec3s){{0, 0, 0}}, (vec3s){{1, 0, 0}}, (vec3s){{0, 1, 0}}, 2, 8),
+        test_square((vec3s){{-1, 1, 0}}, (vec3s){{1, 0, 0}}, (vec3s){{0, 1, 0}}, 1, 4),
+    };
+    tl_surface surfaces[2];
+    for (int i = 0; i < 2; i++) {
+        shapes[i].material.specular = (vec3s){{0, 0, 0}};
+        test_shape_refresh(&shapes[i]);
+        surfaces[i] = shapes[i].surface;
+    }
+    struct tl_render_settings settings = settings_of_six(64, 16);
+    settings.light.blur_m = 0.15f;
+    const float sigma = settings.light.blur_m * TAN_CONE;
+    /* From beside, below the sheet, along x. */
+    tl_frame frame = test_frame((vec3s){{0, 0.7f, 1.9f}}, (vec3s){{0, 0, 0}}, 45, surfaces, 2, &environment);
+    tl_image visibility = visibility_image(device, &frame, settings);
+    /* A map's texel is 4 sqrt(2) / 252 m = 0.13 sigma; the edge may lie half of one off, where the slope is
+     * at most 0.4 / sigma: 0.027. The kernel ends at 3 sigma: 0.003. */
+    const float tolerance = 0.03f;
+    int dark = 0, bright = 0;
+    for (int y = 0; y < settings.image.height; y++)
+        for (int x = 0; x < settings.image.width; x++) {
+            vec3s point = ground_point(&frame.camera, &settings, x, y);
+            float actual = test_pixel(&visibility, x, y)[0];
+            if (fabsf(point.z) > 0.4f || fabsf(point.x) > 1.2f) /* within reach of the sheet's other edges */
+                continue;
+            assert_near(actual, normal_distribution(point.x / sigma), tolerance);
+            dark += actual < 1e-3f;
+            bright += actual > 0.999f;
+        }
+    assert_true(dark > 20 && bright > 20); /* whole shadow and whole light were both seen */
+    tl_image_release(&visibility);
+    test_shape_release(&shapes[0]);
+    test_shape_release(&shapes[1]);
+    tl_environment_release(&environment);
+}
+
+/* The shadow of a ball on the ground lies where the light's direction puts it. */
+static void test_shadow_position(void **state)
+{
+    struct test_device *device = *state;
+    patch_direction = glms_vec3_normalize((vec3s){{0.3f, 1, 0.2f}});
+    tl_environment environment = test_environment(256, 128, bright_patch);
+    struct test_shape ball = test_sphere((vec3s){{0, 1, 0}}, 0.15f, 24);
+    test_shape_refresh(&ball);
+    struct tl_render_settings settings = settings_of_six(96, 96);
+    settings.image.ground = true;
+    settings.light.blur_m = 0.01f;
+    tl_frame frame =
+        test_frame((vec3s){{-1.5f, 3, -1}}, (vec3s){{-0.3f, 0, -0.2f}}, 20, &ball.surface, 1, &environment);
+    tl_image visibility = visibility_image(device, &frame, settings);
+    double weight = 0, mean_x = 0, mean_z = 0;
+    for (int y = 0; y < settings.image.height; y++)
+        for (int x = 0; x < settings.image.width; x++) {
+            const float *pixel = test_pixel(&visibility, x, y);
+            vec3s point = ground_point(&frame.camera, &settings, x, y);
+            /* The ball itself is seen only beyond this distance from its shadow. */
+            if (pixel[3] < 1 || pixel[0] < 0 || hypotf(point.x + 0.3f, point.z + 0.2f) > 0.35f)
+                continue;
+            double shadow = (double)(1 - pixel[0]);
+            weight += shadow;
+            mean_x += shadow * (double)point.x;
+            mean_z += shadow * (double)point.z;
+        }
+    /* The region's direction is the centre of the patch's light on the cube, within half a texel of 32
+     * (0.03); at one metre that is 3 cm. */
+    assert_true(weight > 50);
+    assert_near(mean_x / weight, -0.3, 0.03);
+    assert_near(mean_z / weight, -0.2, 0.03);
+    tl_image_release(&visibility);
+    test_shape_release(&ball);
+    tl_environment_release(&environment);
+}
+
+/* Light from straight below meets the ground first. */
+static void test_ground_blocks_light_from_below(void **state)
+{
+    struct test_device *device = *state;
+    patch_direction = (vec3s){{0, -1, 0}};
+    tl_environment environment = test_environment(128, 64, bright_patch);
+    struct test_shape ball = test_sphere((vec3s){{0, 1, 0}}, 0.4f, 24);
+    ball.material.specular = (vec3s){{0, 0, 0}};
+    test_shape_refresh(&ball);
+    struct tl_render_settings settings = settings_of_six(32, 32);
+    tl_frame frame =
+        test_frame((vec3s){{0, 0.3f, 2}}, (vec3s){{0, 0.7f, 0}}, 10, &ball.surface, 1, &environment);
+    tl_image lit = test_draw(device->renderer, &frame, &settings);
+    settings.image.ground = true;
+    tl_image dark = test_draw(device->renderer, &frame, &settings);
+    assert_true(test_pixel(&lit, 16, 24)[0] > 0.01f);
+    for (int i = 0; i < 32 * 32 * 4; i += 4)
+        assert_near(tl_image_floats(&dark)[i], 0, 0);
+    tl_image_release(&lit);
+    tl_image_release(&dark);
+    test_shape_release(&ball);
+    tl_environment_release(&environment);
+}
+
+/* A convex body shadows none of its lit side: no acne, whatever the map's size. Only near the terminator does
+ * the other side come within a texel; there n.l < 0.35 is left out. */
+static void test_no_acne(void **state)
+{
+    struct test_device *device = *state;
+    patch_direction = glms_vec3_normalize((vec3s){{0.2f, 1, 0.4f}});
+    tl_environment environment = test_environment(128, 64, bright_patch);
+    struct test_shape ball = test_sphere((vec3s){{0, 0, 0}}, 1, 64);
+    ball.material.specular = (vec3s){{0, 0, 0}};
+    test_shape_refresh(&ball);
+    tl_frame frame = test_frame((vec3s){{0, 3, 3}}, (vec3s){{0, 0, 0}}, 30, &ball.surface, 1, &environment);
+    struct tl_render_settings settings = settings_of_six(64, 64);
+    settings.light.depth_bias_m = 0.004f;
+    for (int size = 64; size <= 1024; size *= 4)
+        for (int blur = 0; blur < 2; blur++) {
+            settings.light.map_size = size;
+            settings.light.blur_m = blur ? 0.05f : 0;
+            tl_image visibility = visibility_image(device, &frame, settings);
+            for (int y = 8; y < 56; y++)
+                for (int x = 8; x < 56; x++) {
+                    const float *pixel = test_pixel(&visibility, x, y);
+                    /* The eye's side of the ball, within 50 degrees of the light. */
+                    float dx = ((float)x - 31.5f) / 32, dy = ((float)y - 31.5f) / 32;
+                    if (dx * dx + dy * dy < 0.3f)
+                        assert_near(pixel[0], 1, 0.02);
+                }
+            tl_image_release(&visibility);
+        }
+    test_shape_release(&ball);
+    tl_environment_release(&environment);
+}
+
+/* What the alpha mask cuts away casts no shadow. */
+static void test_mask_lets_light_through(void **state)
+{
+    struct test_device *device = *state;
+    patch_direction = (vec3s){{0, 1, 0}};
+    tl_environment environment = test_environment(128, 64, bright_patch);
+    struct test_shape shapes[2] = {
+        test_square((vec3s){{0, 0, 0}}, (vec3s){{1, 0, 0}}, (vec3s){{0, 1, 0}}, 2, 8),
+        test_square((vec3s){{0, 1, 0}}, (vec3s){{1, 0, 0}}, (vec3s){{0, 1, 0}}, 1, 4),
+    };
+    /* Left half there, right half cut away. */
+    tl_image mask = tl_image_create(2, 1, 4, TL_IMAGE_U8);
+    tl_image_bytes(&mask)[3] = 255;
+    shapes[1].material.diffuse_map.image = &mask;
+    shapes[1].material.diffuse_map.clamp_u = true;
+    shapes[1].material.alpha_cutoff = 0.5f;
+    tl_surface surfaces[2];
+    for (int i = 0; i < 2; i++) {
+        test_shape_refresh(&shapes[i]);
+        surfaces[i] = shapes[i].surface;
+    }
+    struct tl_render_settings settings = settings_of_six(64, 16);
+    settings.light.blur_m = 0;
+    tl_frame frame = test_frame((vec3s){{0, 0.7f, 1.9f}}, (vec3s){{0, 0, 0}}, 45, surfaces, 2, &environment);
+    tl_image visibility = visibility_image(device, &frame, settings);
+    int dark = 0, bright = 0;
+    for (int y = 0; y < settings.image.height; y++)
+        for (int x = 0; x < settings.image.width; x++) {
+            vec3s point = ground_point(&frame.camera, &settings, x, y);
+            float actual = test_pixel(&visibility, x, y)[0];
+            if (fabsf(point.z) > 0.4f || fabsf(point.x) > 0.9f || fabsf(point.x) < 0.05f)
+                continue;
+            assert_near(actual, point.x < 0 ? 0 : 1, 0.01);
+            dark += point.x < 0;
+            bright += point.x > 0;
+        }
+    assert_true(dark > 20 && bright > 20);
+    tl_image_release(&visibility);
+    tl_image_release(&mask);
+    test_shape_release(&shapes[0]);
+    test_shape_release(&shapes[1]);
+    tl_environment_release(&environment);
+}
+
+/* The view of a region: the sphere's nearest point to the light at depth 0, its farthest at 1, its centre in
+ * the middle; and the yaw is a turn about +Y that takes +X to -Z. */
+static void test_region_view(void **state)
+{
+    (void)state;
+    const struct tl_casters casters = {.centre = {{1, 2, 3}}, .radius = 0.7f};
+    const vec3s directions[] = {{{1, 0, 0}}, {{0, 1, 0}}, {{0, -1, 0}}, {{0.6f, -0.48f, 0.64f}}};
+    for (int i = 0; i < 4; i++) {
+        struct tl_region_view view = tl_region_view_make(directions[i], &casters, 256);
+        for (int end = -1; end <= 1; end++) {
+            vec3s p = glms_vec3_add(casters.centre, glms_vec3_scale(directions[i], -0.7f * (float)end));
+            vec4s point = {{p.x, p.y, p.z, 1}};
+            assert_near(glms_vec4_dot(view.map_rows[0], point), 0.5, 1e-5);
+            assert_near(glms_vec4_dot(view.map_rows[1], point), 0.5, 1e-5);
+            assert_near(glms_vec4_dot(view.map_rows[2], point), 0.5 + 0.5 * end, 1e-5);
+        }
+    }
+    vec3s turned = tl_turn_direction((vec3s){{1, 0.5f, 0}}, (float)M_PI / 2);
+    assert_near(turned.x, 0, 1e-6);
+    assert_near(turned.y, 0.5, 0);
+    assert_near(turned.z, -1, 1e-6);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_half_plane_penumbra),
+        cmocka_unit_test(test_shadow_position),
+        cmocka_unit_test(test_ground_blocks_light_from_below),
+        cmocka_unit_test(test_no_acne),
+        cmocka_unit_test(test_mask_lets_light_through),
+        cmocka_unit_test(test_region_view),
+    };
+    return cmocka_run_group_tests(tests, test_device_open, test_device_close);
+}

@@ -1,0 +1,403 @@
+/* The renderer as a whole: what runs again and what does not, memory, refusals, extremes. */
+#include "shapes.h"
+
+#include "config/memory.h"
+
+#include "testing.h"
+
+#include <string.h>
+
+static vec3s daylight(vec3s d)
+{
+    bool sun = glms_vec3_dot(d, glms_vec3_normalize((vec3s){{0.3f, 0.8f, 0.5f}})) > 0.99f;
+    return sun ? (vec3s){{60, 55, 50}} : (vec3s){{0.4f, 0.5f, 0.6f + 0.3f * d.y}};
+}
+
+static vec3s black(vec3s d)
+{
+    (void)d;
+    return (vec3s){{0, 0, 0}};
+}
+
+/* One texel of 1e6 on black. */
+static vec3s spark(vec3s d)
+{
+    return glms_vec3_dot(d, glms_vec3_normalize((vec3s){{1, 2, 1}})) > 0.9995f ? (vec3s){{1e6f, 1e6f, 1e6f}}
+                                                                               : (vec3s){{0, 0, 0}};
+}
+
+struct scene {
+    tl_environment environment;
+    struct test_shape shapes[2];
+    tl_surface surfaces[2];
+    tl_frame frame;
+    struct tl_render_settings settings;
+};
+
+static void scene_open(struct scene *scene, vec3s (*radiance)(vec3s))
+{
+    scene->environment = test_environment(64, 32, radiance);
+    scene->shapes[0] = test_sphere((vec3s){{0, 0.5f, 0}}, 0.4f, 16);
+    scene->shapes[1] = test_sheet(1.1f, 0.5f, 0.06f, 2, 16);
+    for (int i = 0; i < 2; i++) {
+        scene->shapes[i].material.glossiness = 0.7f;
+        test_shape_refresh(&scene->shapes[i]);
+        scene->surfaces[i] = scene->shapes[i].surface;
+    }
+    scene->frame =
+        test_frame((vec3s){{1, 1.5f, 2}}, (vec3s){{0, 0.6f, 0}}, 40, scene->surfaces, 2, &scene->environment);
+    scene->settings = test_settings(48, 32);
+    scene->settings.light.map_size = 32;
+    scene->settings.image.ground = true;
+}
+
+static void scene_close(struct scene *scene)
+{
+    tl_environment_release(&scene->environment);
+    test_shape_release(&scene->shapes[0]);
+    test_shape_release(&scene->shapes[1]);
+}
+
+static void draw(tl_renderer *renderer, const struct scene *scene)
+{
+    tl_error error = {0};
+    assert_ok(tl_renderer_draw(renderer, &scene->frame, &scene->settings, &error), error);
+}
+
+/* The jobs that ran, as one string: "gbuffer light resolve". */
+static const char *jobs_run(const tl_plan *plan)
+{
+    static char names[256];
+    names[0] = '\0';
+    for (int i = 0; i < plan->count; i++)
+        if (plan->rows[i].action == TL_JOB_RUN) {
+            size_t length = strlen(names);
+            snprintf(names + length, sizeof names - length, "%s%s", length ? " " : "", plan->rows[i].name);
+        }
+    return names;
+}
+
+static void expect_jobs(tl_renderer *renderer, const struct scene *scene, const char *names)
+{
+    tl_plan foretold;
+    tl_renderer_plan(renderer, &scene->frame, &scene->settings, &foretold);
+    assert_string_equal(jobs_run(&foretold), names);
+    draw(renderer, scene);
+    assert_string_equal(jobs_run(tl_renderer_last_plan(renderer)), names);
+}
+
+/* Only what a change touches is done again, and tl_renderer_plan says so beforehand. */
+static void test_only_what_changed(void **state)
+{
+    struct test_device *device = *state;
+    tl_error error = {0};
+    tl_renderer *renderer = tl_renderer_create(device->gpu, &error);
+    assert_non_null(renderer);
+    struct scene scene;
+    scene_open(&scene, daylight);
+    expect_jobs(renderer, &scene, "cube regions lobe pems surfaces maps blur gbuffer light resolve");
+    expect_jobs(renderer, &scene, "");
+    scene.frame.camera.eye.x += 0.1f;
+    expect_jobs(renderer, &scene, "gbuffer light resolve");
+    scene.surfaces[1].motion_revision++;
+    expect_jobs(renderer, &scene, "surfaces maps blur gbuffer light resolve");
+    scene.frame.environment_yaw = 1;
+    expect_jobs(renderer, &scene, "maps blur light resolve");
+    scene.settings.light.depth_bias_m = 0.01f;
+    expect_jobs(renderer, &scene, "light resolve");
+    scene.settings.image.exposure_ev = 1;
+    expect_jobs(renderer, &scene, "");
+    scene.settings.light.method = TL_METHOD_UNSHADOWED;
+    expect_jobs(renderer, &scene, "light resolve");
+    scene.surfaces[1].motion_revision++;
+    expect_jobs(renderer, &scene, "surfaces gbuffer light resolve");
+    scene.settings.light.method = TL_METHOD_PEM; /* the maps grew stale meanwhile */
+    expect_jobs(renderer, &scene, "maps blur light resolve");
+    scene.frame.environment_revision++;
+    expect_jobs(renderer, &scene, "cube regions pems maps blur light resolve");
+    scene_close(&scene);
+    tl_renderer_destroy(&renderer);
+}
+
+/* What is drawn from what was kept equals what is drawn from nothing. */
+static void test_reuse_changes_nothing(void **state)
+{
+    struct test_device *device = *state;
+    struct scene scene;
+    tl_error error = {0};
+    scene_open(&scene, daylight);
+    draw(device->renderer, &scene);
+    scene.frame.camera.eye.y += 0.2f;
+    scene.frame.environment_yaw = 0.5f;
+    scene.settings.light.lobe = TL_LOBE_SINGLE;
+    tl_image kept = test_draw(device->renderer, &scene.frame, &scene.settings);
+    tl_renderer *fresh = tl_renderer_create(device->gpu, &error);
+    tl_image anew = test_draw(fresh, &scene.frame, &scene.settings);
+    assert_memory_equal(kept.texels, anew.texels, 48 * 32 * 4 * sizeof(float));
+    tl_renderer_destroy(&fresh);
+    tl_image_release(&kept);
+    tl_image_release(&anew);
+    scene_close(&scene);
+}
+
+static size_t chain_texels(size_t side)
+{
+    return (4 * side * side - 1) / 3;
+}
+
+/* Computed = allocated: by formula, and by what the GPU floor counts. */
+static void test_memory(void **state)
+{
+    struct test_device *device = *state;
+    struct scene scene;
+    tl_error error = {0};
+    scene_open(&scene, daylight);
+    size_t others = tl_gpu_texture_bytes(device->gpu) - 0;
+    struct tl_render_memory before = tl_renderer_memory(device->renderer);
+    tl_renderer *renderer = tl_renderer_create(device->gpu, &error);
+    scene.settings.image.supersample = 2;
+    for (int regions = 24; regions <= 48; regions += 24) {
+        scene.settings.light.regions = regions;
+        draw(renderer, &scene);
+        struct tl_render_memory memory = tl_renderer_memory(renderer);
+        size_t count = (size_t)regions, vertices = 17 * 33 + 17 * 17 + 4,
+               indices = 6 * (16 * 32 + 16 * 16 + 1);
+        assert_int_equal(memory.pems, count * 6 * 8 * chain_texels(32));
+        assert_int_equal(memory.maps, (count * 8 + 8 + 4) * 32 * 32);
+        assert_int_equal(memory.targets, 48 * 32 * 4 * (16 + 3 * 8 + 4 + 16) + 48 * 32 * (16 + 4));
+        assert_int_equal(memory.surfaces, vertices * (12 + 12 + 16 + 8) + indices * 4);
+        assert_int_equal(memory.other, 256 * 4);
+        assert_int_equal(memory.total,
+                         memory.pems + memory.maps + memory.targets + memory.surfaces + memory.other);
+        assert_int_equal(memory.total - memory.surfaces, tl_gpu_texture_bytes(device->gpu) - others);
+    }
+    tl_renderer_destroy(&renderer);
+    assert_int_equal(tl_gpu_texture_bytes(device->gpu), others);
+    (void)before;
+    scene_close(&scene);
+}
+
+static void expect_refusal(tl_renderer *renderer, const struct scene *scene, const char *part)
+{
+    tl_error error = {0};
+    assert_false(tl_renderer_draw(renderer, &scene->frame, &scene->settings, &error));
+    assert_int_equal(error.code, TL_USAGE);
+    if (!strstr(error.message, part))
+        print_error("%s\n", error.message);
+    assert_non_null(strstr(error.message, part));
+}
+
+/* What would take the machine's memory is refused before it is asked for, and the renderer goes on. */
+static void test_too_large(void **state)
+{
+    struct test_device *device = *state;
+    struct scene scene;
+    scene_open(&scene, daylight);
+    const struct tl_render_settings fine = scene.settings;
+    scene.settings.light.map_size = 4096;
+    expect_refusal(device->renderer, &scene, "lower light.pems_per_pass");
+    scene.settings.light.pems_per_pass = 1;
+    scene.settings.light.regions = 384;
+    expect_refusal(device->renderer, &scene, "lower light.regions");
+    scene.settings = fine;
+    scene.settings.image.width = 16384;
+    scene.settings.image.supersample = 4;
+    expect_refusal(device->renderer, &scene, "make image.width");
+    scene.settings = fine;
+    draw(device->renderer, &scene);
+    scene_close(&scene);
+}
+
+static void test_not_finite(void **state)
+{
+    struct test_device *device = *state;
+    struct scene scene;
+    tl_error error = {0};
+    scene_open(&scene, daylight);
+    vec3s kept = scene.shapes[1].mesh.positions[3];
+    scene.shapes[1].mesh.positions[3].y = NAN;
+    scene.surfaces[1].motion_revision++;
+    assert_false(tl_renderer_draw(device->renderer, &scene.frame, &scene.settings, &error));
+    assert_int_equal(error.code, TL_UNSTABLE);
+    assert_non_null(strstr(error.message, "vertex 3"));
+    scene.shapes[1].mesh.positions[3] = kept;
+    draw(device->renderer, &scene);
+    scene_close(&scene);
+}
+
+/* Draws, and demands that every channel is finite and not negative, and that coverage is a share. */
+static void expect_sane(tl_renderer *renderer, const struct scene *scene)
+{
+    tl_image image = test_draw(renderer, &scene->frame, &scene->settings);
+    for (size_t i = 0; i < (size_t)image.width * (size_t)image.height * 4; i++) {
+        float value = tl_image_floats(&image)[i];
+        assert_true(isfinite(value) && value >= 0);
+        if (i % 4 == 3)
+            assert_true(value <= 1);
+    }
+    tl_image_release(&image);
+    tl_error error = {0};
+    tl_image shown;
+    assert_ok(tl_renderer_show_image(renderer, &shown, &error), error);
+    tl_image_release(&shown);
+}
+
+static void test_extreme_light(void **state)
+{
+    struct test_device *device = *state;
+    vec3s (*const lights[])(vec3s) = {black, spark, daylight};
+    for (int i = 0; i < 3; i++)
+        for (int g = 0; g <= 2; g++)
+            for (int lobe = TL_LOBE_SINGLE; lobe <= TL_LOBE_DUAL; lobe++) {
+                struct scene scene;
+                scene_open(&scene, lights[i]);
+                scene.shapes[0].material.glossiness = 0.5f * (float)g;
+                scene.settings.light.lobe = lobe;
+                expect_sane(device->renderer, &scene);
+                scene_close(&scene);
+            }
+}
+
+static void test_extreme_settings(void **state)
+{
+    struct test_device *device = *state;
+    const struct {
+        int regions, pem_size, map_size, per_pass;
+    } cases[] = {{6, 4, 1, 1}, {384, 16, 2, 64}, {6, 32, 2048, 1}, {13, 5, 3, 12}, {6, 512, 16, 1}};
+    for (size_t i = 0; i < TL_COUNT(cases); i++)
+        for (int blur = 0; blur < 2; blur++) {
+            struct scene scene;
+            scene_open(&scene, daylight);
+            scene.settings.light.regions = cases[i].regions;
+            scene.settings.light.pem_size = cases[i].pem_size;
+            scene.settings.light.map_size = cases[i].map_size;
+            scene.settings.light.pems_per_pass = cases[i].per_pass;
+            scene.settings.light.blur_m = blur ? 10 : 0;
+            scene.settings.light.min_variance = 0;
+            scene.settings.light.depth_bias_m = 0;
+            expect_sane(device->renderer, &scene);
+            scene_close(&scene);
+        }
+}
+
+/* Normals of length 0, triangles of no area, no tangents, 1 mm and 100 m, nothing at all. */
+static void test_extreme_shapes(void **state)
+{
+    struct test_device *device = *state;
+    struct scene scene;
+    scene_open(&scene, daylight);
+    struct test_shape *sheet = &scene.shapes[1];
+    for (size_t i = 0; i < sheet->mesh.vertex_count; i++)
+        sheet->mesh.normals[i] = (vec3s){{0, 0, 0}};
+    for (size_t i = 0; i < 60; i++)
+        sheet->mesh.indices[i] = sheet->mesh.indices[0];
+    test_shape_refresh(sheet);
+    scene.surfaces[1] = sheet->surface;
+    scene.surfaces[1].tangents = NULL;
+    expect_sane(device->renderer, &scene);
+    const float scales[] = {1e-3f, 1e2f};
+    for (int s = 0; s < 2; s++) {
+        for (int k = 0; k < 2; k++) {
+            struct test_shape *shape = &scene.shapes[k];
+            for (size_t i = 0; i < shape->mesh.vertex_count; i++)
+                shape->mesh.positions[i] =
+                    glms_vec3_scale(shape->mesh.positions[i], s == 0 ? scales[0] : scales[1] / scales[0]);
+            test_shape_refresh(shape);
+            scene.surfaces[k] = shape->surface;
+        }
+        scene.frame.camera.eye = glms_vec3_scale((vec3s){{1, 1.5f, 2}}, scales[s]);
+        scene.frame.camera.near_m = 0.01f * scales[s];
+        scene.frame.camera.far_m = 100 * scales[s];
+        expect_sane(device->renderer, &scene);
+    }
+    scene.frame.surface_count = 0;
+    expect_sane(device->renderer, &scene);
+    scene_close(&scene);
+}
+
+static void test_extreme_cameras(void **state)
+{
+    struct test_device *device = *state;
+    struct scene scene;
+    scene_open(&scene, daylight);
+    const struct tl_camera usual = scene.frame.camera;
+    const vec3s eyes[] = {{{0, 0, 0}}, {{0, 0.5f, 0}}, {{0, 1.1f, 0}},
+                          {{0, 5, 0}}, {{0, 0.6f, 0}}, {{1, 0, 1}}};
+    for (size_t i = 0; i < TL_COUNT(eyes); i++) {
+        scene.frame.camera = usual;
+        scene.frame.camera.eye =
+            eyes[i]; /* inside the ball, in the sheet, above, on the target, in the ground */
+        expect_sane(device->renderer, &scene);
+    }
+    scene.frame.camera = usual;
+    scene.frame.camera.far_m = scene.frame.camera.near_m;
+    expect_sane(device->renderer, &scene);
+    scene.frame.camera = usual;
+    scene.frame.camera.fov_y = 0;
+    expect_sane(device->renderer, &scene);
+    scene.frame.camera = usual;
+    scene.frame.camera.up = (vec3s){{0, 0, 0}};
+    expect_sane(device->renderer, &scene);
+    scene_close(&scene);
+}
+
+/* Coverage of supersampled pixels is the share of samples: a square over the left half of an odd image covers
+ * half of the middle column. */
+static void test_coverage(void **state)
+{
+    struct test_device *device = *state;
+    tl_environment environment = test_environment(64, 32, daylight);
+    struct test_shape square = test_square((vec3s){{-1, 0, 0}}, (vec3s){{1, 0, 0}}, (vec3s){{0, 0, 1}}, 1, 1);
+    test_shape_refresh(&square);
+    tl_frame frame = test_frame((vec3s){{0, 0, 3}}, (vec3s){{0, 0, 0}}, 10, &square.surface, 1, &environment);
+    struct tl_render_settings settings = test_settings(9, 9);
+    settings.image.supersample = 4;
+    tl_image image = test_draw(device->renderer, &frame, &settings);
+    for (int x = 0; x < 9; x++)
+        assert_near(test_pixel(&image, x, 4)[3], x < 4 ? 1 : x == 4 ? 0.5 : 0, 0);
+    for (int c = 0; c < 3; c++) /* premultiplied: the half-covered pixel is half as bright */
+        assert_near(test_pixel(&image, 4, 4)[c], 0.5 * (double)test_pixel(&image, 3, 4)[c], 0.02);
+    assert_near(test_pixel(&image, 8, 8)[0], 0, 0);
+    tl_image_release(&image);
+    test_shape_release(&square);
+    tl_environment_release(&environment);
+}
+
+/* Shown grey: 18 % background is sRGB 118; a lit white far above 1 is close to white, never beyond. */
+static void test_show(void **state)
+{
+    struct test_device *device = *state;
+    struct scene scene;
+    tl_error error = {0};
+    scene_open(&scene, daylight);
+    scene.settings.image.background = 2;
+    scene.settings.image.ground = false;
+    scene.settings.image.exposure_ev = -20;
+    tl_image shown;
+    draw(device->renderer, &scene);
+    assert_ok(tl_renderer_show_image(device->renderer, &shown, &error), error);
+    const uint8_t *corner = tl_image_bytes(&shown);
+    /* Khronos PBR Neutral takes 0.04 off a grey of 0.18: 0.14 is sRGB 105. */
+    for (int c = 0; c < 3; c++)
+        assert_in_range(corner[c], 104, 106);
+    tl_image_release(&shown);
+    scene_close(&scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_only_what_changed),
+        cmocka_unit_test(test_reuse_changes_nothing),
+        cmocka_unit_test(test_memory),
+        cmocka_unit_test(test_too_large),
+        cmocka_unit_test(test_not_finite),
+        cmocka_unit_test(test_extreme_light),
+        cmocka_unit_test(test_extreme_settings),
+        cmocka_unit_test(test_extreme_shapes),
+        cmocka_unit_test(test_extreme_cameras),
+        cmocka_unit_test(test_coverage),
+        cmocka_unit_test(test_show),
+    };
+    return cmocka_run_group_tests(tests, test_device_open, test_device_close);
+}
