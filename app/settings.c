@@ -12,8 +12,7 @@ static const char *const garment_names[] = {"dress", "skirt", "none", NULL};
 static const char *const avatar_names[] = {"form", "none", NULL};
 static const char *const environment_names[] = {"studio", NULL};
 
-#define TL_SCENE_DEFAULTS                                                                                    \
-    .garment = "dress", .avatar = "form", .environment = "studio", .fabric = "satin", .preset = "review"
+#define TL_SCENE_DEFAULTS .garment = "dress", .avatar = "form", .environment = "studio", .preset = "review"
 
 static const struct tl_option scene_rows[] = {
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, garment, garment_names,
@@ -22,8 +21,10 @@ static const struct tl_option scene_rows[] = {
                            "who wears it: built in, or a glTF file"),
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, environment, environment_names,
                            "the light: built in, or an .exr or .hdr file"),
-    TL_OPTION_NAME_OR_PATH(struct tl_scene_params, fabric, tl_embedded_fabrics_names,
-                           "sets the tables fabric, weave and material: built in, or a YAML file"),
+    TL_OPTION_NAME_OR_PATH(
+        struct tl_scene_params, fabric, tl_embedded_fabrics_names,
+        "sets the tables fabric, weave and material: built in, or a YAML file; left out: satin on built-in "
+        "garments, none on a garment file"),
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, preset, tl_embedded_presets_names,
                            "sets quality in the tables cloth, light and image: built in, or a YAML file"),
     TL_OPTION_STRING(struct tl_scene_params, clip,
@@ -153,6 +154,13 @@ static bool apply_source(const struct tl_binding *all, const struct tl_settings_
     return applied;
 }
 
+/* A garment file brings its own look; what is built in needs a fabric to have one. */
+static void choose_fabric(struct tl_scene_params *scene)
+{
+    if (scene->fabric[0] == '\0')
+        strcpy(scene->fabric, tl_option_is_file_name(scene->garment) ? "none" : "satin");
+}
+
 /* The topmost layers name the preset and the fabric that lie below them, so they are read twice: once to
  * learn these names, and once more in their place. */
 bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *source, tl_error *error)
@@ -165,10 +173,12 @@ bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *
     if (!apply_source(all, source, error))
         return false;
     struct tl_scene_params named = settings.scene;
+    choose_fabric(&named);
     tl_options_reset(all, TL_SETTINGS_TABLES);
     if (!apply_preset(all, named.preset, error) || !apply_fabric(all, named.fabric, error) ||
         !apply_source(all, source, error))
         return false;
+    settings.scene = named;
     *out = settings;
     return true;
 }

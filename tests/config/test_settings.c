@@ -52,6 +52,23 @@ static void test_built_in_scene(void **state)
     assert_string_equal(settings.scene.garment, "skirt");
 }
 
+/* A fabric that nobody names: satin for what is built in, a garment file's own look for a file. */
+static void test_fabric_left_out(void **state)
+{
+    (void)state;
+    tl_error error = {0};
+    const char *const file[] = {"scene.garment=shirt.glb"};
+    assert_ok(tl_settings_load(&settings, &(struct tl_settings_source){NULL, file, 1}, &error), error);
+    assert_string_equal(settings.scene.fabric, "none");
+    assert_true(settings.material.use_file);
+    const char *const both[] = {"scene.garment=shirt.glb", "scene.fabric=denim"};
+    assert_ok(tl_settings_load(&settings, &(struct tl_settings_source){NULL, both, 2}, &error), error);
+    assert_string_equal(settings.scene.fabric, "denim");
+    const char *const skirt[] = {"scene.garment=skirt"};
+    assert_ok(tl_settings_load(&settings, &(struct tl_settings_source){NULL, skirt, 1}, &error), error);
+    assert_string_equal(settings.scene.fabric, "satin");
+}
+
 /* Each layer wins over the one below it, wherever the names of preset and fabric come from. */
 static void test_each_layer_wins(void **state)
 {
@@ -257,6 +274,7 @@ static void test_print_and_load_back(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_fabric_left_out),
         cmocka_unit_test_setup(test_built_in_scene, begin),
         cmocka_unit_test_setup(test_each_layer_wins, begin),
         cmocka_unit_test_setup(test_model_in_place_of_a_scene, begin),
