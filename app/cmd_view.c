@@ -216,6 +216,7 @@ static void play(struct tl_view *view)
     if (!view->playing || now_s < view->next_step_s)
         return;
     tl_error error;
+    tl_view_move_hand(view);
     if (!tl_session_advance(view->session, &error))
         tl_view_complain(view, &error);
     double frame_s = 1 / view->good.cloth.frame_rate;
@@ -251,6 +252,7 @@ static bool run(struct tl_view *view, int max_frames, tl_error *error)
         tl_view_listen(view);
         if (is_minimised(view))
             continue;
+        int drawn_before = view->drawn_count;
         play(view);
         if (!update_image(view, error))
             return false;
@@ -260,25 +262,52 @@ static bool run(struct tl_view *view, int max_frames, tl_error *error)
         tl_view_build_panel(view);
         if (!present(view, error))
             return false;
-        view->times.frame = 1e3 * (tl_clock_s() - started_s);
+        if (view->drawn_count > drawn_before)
+            view->times.frame = 1e3 * (tl_clock_s() - started_s);
     }
     return true;
 }
 
-static bool open_view(struct tl_view *view, tl_error *error)
+/* Every image of the default quality takes a software driver about a second. Unless quality was asked for, a review
+ * there begins with less of it, and says so. */
+static void choose_preset(struct tl_view *view, const struct tl_arguments *arguments)
 {
-    view->session = tl_session_create(&view->wanted, error);
-    if (!view->session)
-        return false;
-    view->window = tl_window_create("toile", WINDOW_WIDTH, WINDOW_HEIGHT, error);
+    tl_error error;
+    bool is_chosen = arguments->positional_count > 0; /* a scene means what it says */
+    for (size_t i = 0; i < arguments->assignment_count; i++)
+        is_chosen = is_chosen || strncmp(arguments->assignments[i], "scene.preset", 12) == 0 ||
+                    strncmp(arguments->assignments[i], "light.", 6) == 0;
+    if (is_chosen || !strstr(tl_gpu_name(view->gpu), "llvmpipe"))
+        return;
+    if (tl_settings_apply_preset(&view->wanted, "draft", &error))
+        tl_view_say(view, "no graphics card: preset draft instead of review, to stay quick");
+    else
+        tl_view_complain(view, &error);
+}
+
+static bool open_window(struct tl_view *view, tl_error *error)
+{
+    view->window = tl_window_create("toile: loading", WINDOW_WIDTH, WINDOW_HEIGHT, error);
     if (!view->window)
         return false;
+    const float surround = 0.13f; /* the panel's grey */
+    glClearColor(surround, surround, surround, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    tl_window_show(view->window);
     view->gpu = tl_gpu_create_current(error);
-    view->panel = view->gpu
-                      ? tl_panel_create(tl_window_handle(view->window), tl_window_scale(view->window), error)
-                      : NULL;
+    view->panel = view->gpu ? tl_panel_create(tl_window_handle(view->window), tl_window_scale(view->window), error)
+                            : NULL;
     view->renderer = view->panel ? tl_renderer_create(view->gpu, error) : NULL;
-    if (!view->renderer)
+    return view->renderer != NULL;
+}
+
+static bool open_view(struct tl_view *view, const struct tl_arguments *arguments, tl_error *error)
+{
+    if (!tl_stage_settings(arguments, &view->wanted, error) || !open_window(view, error))
+        return false;
+    choose_preset(view, arguments);
+    view->session = tl_session_create(&view->wanted, error);
+    if (!view->session)
         return false;
     view->good = view->wanted;
     update_title(view);
@@ -309,7 +338,7 @@ bool tl_command_view(const struct tl_arguments *arguments, tl_error *error)
     view->redraws = 1;
     view->reported_frame = -1;
     view->screenshot_folder = arguments->screenshots ? arguments->screenshots : ".";
-    bool done = tl_stage_settings(arguments, &view->wanted, error) && open_view(view, error);
+    bool done = open_view(view, arguments, error);
     if (done) {
         const double megabyte = 1 << 20;
         double before = (double)tl_view_resident_bytes() / megabyte;

@@ -100,7 +100,8 @@ bool edit_number(const tl_binding &binding, const tl_option &row)
     const double wide = 1000; /* linear sliders wider than this are too coarse to aim with */
     bool edited;
     if (row.minimum < 0 && row.maximum - row.minimum > wide) {
-        edited = ImGui::DragScalar("##value", ImGuiDataType_Double, &value, 0.01f, &row.minimum, &row.maximum,
+        const float speed = strcmp(row.unit, "degrees") == 0 ? 0.5f : 0.01f; /* per pixel */
+        edited = ImGui::DragScalar("##value", ImGuiDataType_Double, &value, speed, &row.minimum, &row.maximum,
                                    format, ImGuiSliderFlags_AlwaysClamp);
     } else {
         int flags = ImGuiSliderFlags_AlwaysClamp;
@@ -265,8 +266,8 @@ bool tl_panel_rows_begin(const char *id)
 {
     if (!ImGui::BeginTable(id, 3, ImGuiTableFlags_None))
         return false;
-    ImGui::TableSetupColumn("label", ImGuiTableColumnFlags_WidthStretch, 0.42f);
-    ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 0.58f);
+    ImGui::TableSetupColumn("label", ImGuiTableColumnFlags_WidthStretch, 0.47f);
+    ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 0.53f);
     ImGui::TableSetupColumn("reset", ImGuiTableColumnFlags_WidthFixed, ImGui::GetFrameHeight());
     return true;
 }

@@ -136,8 +136,11 @@ void draw_lines(const tl_panel_lines &group)
     const int flags = group.open ? ImGuiTreeNodeFlags_DefaultOpen : 0;
     const bool is_open = ImGui::CollapsingHeader(group.title, flags);
     tooltip_of_last_item(group.help);
-    if (!is_open || !ImGui::BeginTable(group.title, group.columns, ImGuiTableFlags_SizingStretchProp))
+    if (!is_open || !ImGui::BeginTable(group.title, group.columns, ImGuiTableFlags_None))
         return;
+    for (int column = 0; column < group.columns; column++)
+        ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch,
+                                column + 1 < group.columns ? 1.0f : 2.4f);
     for (size_t i = 0; i < group.count; i++) {
         ImGui::TableNextRow();
         for (int column = 0; column < group.columns; column++) {
@@ -181,6 +184,7 @@ void draw_panel(const tl_panel_input &input, tl_panel_result &result)
     ImGui::Begin("panel", nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_NoBringToFrontOnFocus);
+    ImGui::PushAllowKeyboardFocus(false); /* Tab hides the panel; it must not begin to type into it */
     ImGui::TextUnformatted(input.title);
     draw_message(input);
     draw_buttons(input.buttons, input.button_count, result);
@@ -193,6 +197,7 @@ void draw_panel(const tl_panel_input &input, tl_panel_result &result)
     ImGui::TextDisabled("All options");
     for (size_t i = 0; i < input.binding_count; i++)
         draw_table(input.bindings[i], result);
+    ImGui::PopAllowKeyboardFocus();
     ImGui::End();
 }
 

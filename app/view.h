@@ -63,6 +63,7 @@ struct tl_view {
     float pressed_x, pressed_y;
     float grab_depth_m; /* of the plane, parallel to the image, in which the cloth is pulled */
     uint32_t grab_vertex;
+    vec3s grab_target, grab_at; /* metres: where the pointer is, and where the hand has got to */
 
     char *title;
     char message[1200];
@@ -91,6 +92,9 @@ void tl_view_touch(struct tl_view *view);
 
 /* Handles every waiting event (view_input.c). */
 void tl_view_listen(struct tl_view *view);
+
+/* Before each simulated frame: the hand that pulls on the cloth follows the pointer (view_input.c). */
+void tl_view_move_hand(struct tl_view *view);
 
 /* Carries out a command (view_act.c). */
 void tl_view_act(struct tl_view *view, int command);

@@ -118,16 +118,28 @@ static void fix_camera(struct tl_view *view)
         tl_orbit_take(&view->wanted.camera, &camera);
 }
 
-static void pull(struct tl_view *view, float x, float y)
+/* The pointer in the plane in which the cloth is pulled. */
+static vec3s pull_target(const struct tl_view *view, const struct tl_camera *camera, float x, float y)
 {
+    struct tl_ray ray = ray_under(view, camera, x, y);
+    float depth_per_m = depth_of(camera, glms_vec3_add(camera->eye, ray.direction));
+    return glms_vec3_muladds(ray.direction, view->grab_depth_m / depth_per_m, ray.origin);
+}
+
+/* Where images come slowly the pointer runs away from the simulated time, and a hand that followed at once
+ * would tear the cloth along at many metres a second. */
+void tl_view_move_hand(struct tl_view *view)
+{
+    const float quickest_m_s = 1.5f;
     tl_cloth *cloth = tl_session_cloth(view->session);
-    if (!cloth)
+    if (view->drag != TL_DRAG_CLOTH || !cloth)
         return;
-    struct tl_camera camera = tl_session_frame(view->session).camera;
-    struct tl_ray ray = ray_under(view, &camera, x, y);
-    float depth_per_m = depth_of(&camera, glms_vec3_add(camera.eye, ray.direction));
-    vec3s target = glms_vec3_muladds(ray.direction, view->grab_depth_m / depth_per_m, ray.origin);
-    tl_cloth_grab(cloth, view->grab_vertex, target);
+    float reach_m = quickest_m_s / (float)view->good.cloth.frame_rate;
+    vec3s way = glms_vec3_sub(view->grab_target, view->grab_at);
+    float length_m = glms_vec3_norm(way);
+    float share = length_m > reach_m ? reach_m / length_m : 1;
+    view->grab_at = glms_vec3_muladds(way, share, view->grab_at);
+    tl_cloth_grab(cloth, view->grab_vertex, view->grab_at);
 }
 
 static void begin_pull(struct tl_view *view, float x, float y)
@@ -140,7 +152,7 @@ static void begin_pull(struct tl_view *view, float x, float y)
     }
     view->drag = TL_DRAG_CLOTH;
     view->grab_depth_m = depth_of(&camera, point);
-    pull(view, x, y);
+    view->grab_target = view->grab_at = point;
     if (!view->playing)
         tl_view_act(view, TL_VIEW_PLAY); /* cloth that stands still cannot follow */
     tl_info("view: pulls on vertex %u", (unsigned)view->grab_vertex);
@@ -225,9 +237,11 @@ static void on_move(struct tl_view *view, const struct tl_window_event *event)
         view->wanted.scene.environment_yaw_deg =
             tl_orbit_wrap_deg(view->wanted.scene.environment_yaw_deg - dx * TL_ORBIT_DEG_PER_HEIGHT);
         break;
-    case TL_DRAG_CLOTH:
-        pull(view, event->x, event->y);
+    case TL_DRAG_CLOTH: {
+        struct tl_camera camera = tl_session_frame(view->session).camera;
+        view->grab_target = pull_target(view, &camera, event->x, event->y);
         return;
+    }
     }
     view->changed = true;
     tl_view_touch(view);

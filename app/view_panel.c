@@ -132,7 +132,7 @@ static size_t list_plan(struct tl_view *view, struct tl_panel_line *lines)
         const struct tl_plan_row *row = &plan->rows[i];
         snprintf(lines[i].cells[0], sizeof lines[i].cells[0], "%s", row->name);
         snprintf(lines[i].cells[1], sizeof lines[i].cells[1], "%s", tl_job_action_names[row->action]);
-        if (isfinite(row->predicted_ms))
+        if (row->action == TL_JOB_RUN && isfinite(row->predicted_ms))
             snprintf(lines[i].cells[2], sizeof lines[i].cells[2], "%.1f ms", row->predicted_ms);
         else
             lines[i].cells[2][0] = '\0';

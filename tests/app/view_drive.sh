@@ -1,0 +1,132 @@
+#!/usr/bin/env bash
+# A real window under a virtual display, driven by keys and pointer: it follows, says what it did, takes different
+# screenshots, does not grow, and closes without an error and without a GL message.
+# TOILE is the program. ROUNDS (default 2) repeats the middle part.
+set -eu
+for tool in Xvfb xdotool; do
+    command -v "$tool" >/dev/null || { echo "skipped: $tool is absent"; exit 77; }
+done
+room=$(mktemp -d)
+viewer= display=
+finish() {
+    [ -z "$viewer" ] || kill "$viewer" 2>/dev/null || true
+    [ -z "$display" ] || kill "$display" 2>/dev/null || true
+    wait 2>/dev/null || true
+    rm -rf "$room"
+}
+trap finish EXIT
+cd "$room"
+
+fail() {
+    echo "FAILED $*"
+    echo "--- the log:"
+    tail -n 40 log
+    exit 1
+}
+
+# said TEXT [TIMES]: waits until the log holds the text so many times.
+said() {
+    for _ in $(seq 200); do
+        [ "$(grep -c -e "$1" log)" -ge "${2:-1}" ] && { echo "ok     $1"; return; }
+        kill -0 "$viewer" 2>/dev/null || fail "the window closed before it said: $1"
+        sleep 0.1
+    done
+    fail "never said: $1"
+}
+
+resident_kb() { awk '/^VmRSS/ { print $2 }' "/proc/$viewer/status"; }
+
+# drag BUTTON X0 Y0 X1 Y1: eight steps, as a hand does.
+drag() {
+    xdotool mousemove "$2" "$3" mousedown "$1"
+    for i in 1 2 3 4 5 6 7 8; do
+        xdotool mousemove $(($2 + ($4 - $2) * i / 8)) $(($3 + ($5 - $3) * i / 8))
+        sleep 0.03
+    done
+    xdotool mouseup "$1"
+}
+
+shots=0
+shoot() {
+    shots=$((shots + 1))
+    xdotool key s
+    said "screenshot saved: shots/toile-$(printf %04d $shots).png"
+}
+
+fast="--preset draft --set cloth.edge_m=0.05"
+$TOILE render $fast --size 64x32 --quiet -o light.exr # any picture is an environment
+
+exec 3>number
+Xvfb -displayfd 3 -screen 0 1280x800x24 -nolisten tcp >/dev/null 2>&1 &
+display=$!
+for _ in $(seq 100); do [ -s number ] && break; sleep 0.1; done
+[ -s number ] || { echo "skipped: Xvfb does not start here"; exit 77; }
+export DISPLAY=:$(cat number)
+unset WAYLAND_DISPLAY
+
+: >log
+$TOILE view $fast --env light.exr --screenshots shots >out 2>log &
+viewer=$!
+said "view: ready"
+shoot # 1
+
+drag 1 450 300 600 340
+shoot # 2: turned
+xdotool click --repeat 3 4 click 5
+drag 3 450 300 400 280
+shoot # 3: nearer, and moved
+xdotool key f
+xdotool keydown shift; drag 1 450 300 560 300; xdotool keyup shift
+xdotool key bracketleft bracketright
+said "environment at" 2
+shoot # 4: light from elsewhere
+
+round() {
+    xdotool key 5; said "fabric silk" "$1"
+    xdotool key e; said "environment studio" "$1"
+    shoot
+    xdotool key space; said "plays at" $((2 * $1 - 1))
+    drag 1 450 400 380 420
+    xdotool keydown ctrl; drag 1 440 480 560 440; xdotool keyup ctrl
+    said "pulls on vertex" "$1"
+    sleep 1
+    xdotool key space; said "paused at" $((2 * $1 - 1))
+    shoot
+    xdotool key period; said "view: frame"
+    xdotool key r; said "view: reset" "$1"
+    xdotool key h; sleep 0.2; xdotool key h Tab; sleep 0.3; xdotool key Tab
+    xdotool key 3; said "fabric satin" "$1"
+    xdotool key e; said "environment light.exr" "$1"
+    drag 1 1180 300 1230 300 # somewhere in the panel
+    xdotool key space; said "plays at" $((2 * $1)); sleep 0.5; xdotool key space; said "paused at" $((2 * $1))
+}
+round 1
+warm_kb=$(resident_kb)
+for i in $(seq 2 "${ROUNDS:-2}"); do
+    round "$i"
+    echo "resident: $(resident_kb) kB after round $i"
+done
+grown_kb=$(($(resident_kb) - warm_kb))
+
+xdotool key q
+status=0
+wait "$viewer" || status=$?
+viewer=
+[ "$status" = 0 ] || fail "closed with status $status"
+grep -q "view: closed after" log || fail "no closing line"
+grep -q ", 0 GL messages" log || fail "GL messages"
+! grep -q warning log || fail "a warning"
+[ ! -s out ] || fail "something on standard output"
+tail -n 1 log
+
+# One colour over 900 x 800 pixels is a PNG of less than 10 kB; a picture is more.
+for shot in shots/*.png; do
+    [ "$(stat -c %s "$shot")" -gt 20000 ] || fail "$shot is blank"
+done
+[ "$(cat shots/*.png | wc -c)" -gt 0 ] && [ "$(md5sum shots/*.png | cut -d' ' -f1 | sort -u | wc -l)" -ge 5 ] ||
+    fail "screenshots do not differ"
+# The allocator's and the software driver's play after a warm-up round; a leak of one image a frame would be 100 times
+# that.
+echo "resident: $warm_kb kB after the first round, $grown_kb kB more at the end"
+[ "$grown_kb" -lt 32768 ] || fail "memory grew by $grown_kb kB"
+echo "ok     all"
