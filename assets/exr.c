@@ -299,7 +299,6 @@ static bool read_tiles(struct part *part)
     return true;
 }
 
-/* OpenEXRCore 3.1 has no DWA decoder; the C++ library has. */
 static bool read_with_shim(struct part *part)
 {
     struct tl_exr_plane planes[4];
@@ -367,10 +366,16 @@ static void combine_planes(const struct part *part, tl_image *image)
         }
 }
 
+/* OpenEXRCore 3.1 has no DWA decoder, and its B44 decoder is wrong where a side is not a multiple of four. */
+static bool needs_shim(exr_compression_t compression)
+{
+    return compression == EXR_COMPRESSION_DWAA || compression == EXR_COMPRESSION_DWAB ||
+           compression == EXR_COMPRESSION_B44 || compression == EXR_COMPRESSION_B44A;
+}
+
 static bool read_pixels(struct part *part)
 {
-    bool dwa = part->compression == EXR_COMPRESSION_DWAA || part->compression == EXR_COMPRESSION_DWAB;
-    if (dwa)
+    if (needs_shim(part->compression))
         return read_with_shim(part);
     return part->storage == EXR_STORAGE_TILED ? read_tiles(part) : read_scan_lines(part);
 }

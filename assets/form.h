@@ -9,9 +9,9 @@
 
 /* Landmarks, metres above the floor. */
 #define TL_FORM_BOTTOM   0.70 /* lower edge of the torso */
-#define TL_FORM_HIP      0.86
+#define TL_FORM_HIP      0.85
 #define TL_FORM_WAIST    1.04
-#define TL_FORM_BUST     1.22
+#define TL_FORM_BUST     1.205
 #define TL_FORM_NECK_TOP 1.47
 
 /* Roughly the distance to the torso's surface, negative inside: exact in sign, right to some 20 % near it. */

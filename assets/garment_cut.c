@@ -65,37 +65,39 @@ static void cut_pieces(struct cutting *cutting, double edge_m)
     }
 }
 
-/* The garment's vertex at division `n` of an outline's curve. */
-static uint32_t outline_vertex(const struct cutting *cutting, size_t piece_index, size_t curve, size_t n)
-{
-    const struct tl_cut_piece *piece = &cutting->plan->pieces[piece_index];
-    size_t before = 0;
-    for (size_t c = 0; c < curve; c++)
-        before += (size_t)piece->half[c < piece->half_count ? c : tl_cut_mirror(piece, c)].segments;
-    size_t point = (before + n) % cutting->panels[piece_index].outline_count;
-    return (uint32_t)(cutting->first_vertex[piece_index] + point);
-}
-
 static size_t curve_segments(const struct cutting *cutting, size_t piece_index, size_t curve)
 {
     const struct tl_cut_piece *piece = &cutting->plan->pieces[piece_index];
     return (size_t)piece->half[curve < piece->half_count ? curve : tl_cut_mirror(piece, curve)].segments;
 }
 
+/* The garment's vertex at division `n` of an outline's curve. */
+static uint32_t outline_vertex(const struct cutting *cutting, size_t piece_index, size_t curve, size_t n)
+{
+    size_t point = n;
+    for (size_t c = 0; c < curve; c++)
+        point += curve_segments(cutting, piece_index, c);
+    point %= cutting->panels[piece_index].outline_count;
+    return (uint32_t)(cutting->first_vertex[piece_index] + point);
+}
+
+/* A dart's legs share their point, which needs no stitch: fewer pairs may be used than counted. */
 static void sew(const struct cutting *cutting, tl_garment *garment)
 {
     const struct tl_cut_plan *plan = cutting->plan;
+    size_t most = 0;
     for (size_t s = 0; s < plan->seam_count; s++)
-        garment->seam_count += curve_segments(cutting, plan->seams[s].piece_a, plan->seams[s].curve_a) + 1;
-    garment->seams = TL_NEW_ARRAY(struct tl_seam_pair, garment->seam_count);
-    size_t next = 0;
+        most += curve_segments(cutting, plan->seams[s].piece_a, plan->seams[s].curve_a) + 1;
+    garment->seams = TL_NEW_ARRAY(struct tl_seam_pair, most);
     for (size_t s = 0; s < plan->seam_count; s++) {
         const struct tl_cut_seam *seam = &plan->seams[s];
         size_t segments = curve_segments(cutting, seam->piece_a, seam->curve_a);
-        for (size_t n = 0; n <= segments; n++)
-            garment->seams[next++] =
-                (struct tl_seam_pair){outline_vertex(cutting, seam->piece_a, seam->curve_a, n),
-                                      outline_vertex(cutting, seam->piece_b, seam->curve_b, segments - n)};
+        for (size_t n = 0; n <= segments; n++) {
+            uint32_t a = outline_vertex(cutting, seam->piece_a, seam->curve_a, n);
+            uint32_t b = outline_vertex(cutting, seam->piece_b, seam->curve_b, segments - n);
+            if (a != b)
+                garment->seams[garment->seam_count++] = (struct tl_seam_pair){a, b};
+        }
     }
 }
 

@@ -1,12 +1,11 @@
 #include "assets/garment_cut.h"
 
 #include "assets/form.h"
-#include "config/memory.h"
 
 #include <math.h>
-#include <stdlib.h>
 
-enum { PASSES = 150, PASSES_PER_PUSH = 4 };
+enum { LEAST_PASSES = 100, PASSES_PER_PUSH = 4 };
+#define REACH_M         4.0   /* how far corrections travel: one edge a pass */
 #define SHORT_STIFFNESS 0.15  /* cloth resists stretch, but slack may stay: it would only buckle */
 #define CLEARANCE_M     0.006 /* kept between the cloth and the form */
 
@@ -22,15 +21,13 @@ static void pull(double a[3], double b[3], bool a_fixed, bool b_fixed, double le
     }
 }
 
-/* One step along the distance's gradient; returns the distance before it, so that far points can be left out.
- */
-static double push_out(double p[3])
+/* One step along the distance's gradient, to the clearance as far as the distance is right. */
+static void push_out(double p[3])
 {
     const double step = 1e-4;
-    double distance = tl_form_distance(p);
+    double distance = tl_form_distance(p), gradient[3], norm2 = 0;
     if (distance >= CLEARANCE_M)
-        return distance;
-    double gradient[3], norm2 = 0;
+        return;
     for (int k = 0; k < 3; k++) {
         double q[3] = {p[0], p[1], p[2]};
         q[k] += step;
@@ -39,17 +36,20 @@ static double push_out(double p[3])
     }
     for (int k = 0; k < 3; k++)
         p[k] += (CLEARANCE_M - distance) * gradient[k] / fmax(norm2, 0.1);
-    return distance;
 }
 
 void tl_cut_fit(double (*positions)[3], size_t count, const bool *fixed, const struct tl_fit_edge *edges,
                 size_t edge_count)
 {
-    for (int pass = 0; pass < PASSES; pass++) {
+    double total = 0;
+    for (size_t e = 0; e < edge_count; e++)
+        total += edges[e].length;
+    const int passes = (int)fmax(REACH_M * (double)edge_count / total, LEAST_PASSES);
+    for (int pass = 0; pass < passes; pass++) {
         for (size_t e = 0; e < edge_count; e++)
             pull(positions[edges[e].a], positions[edges[e].b], fixed[edges[e].a], fixed[edges[e].b],
                  edges[e].length);
-        if (pass % PASSES_PER_PUSH)
+        if ((passes - 1 - pass) % PASSES_PER_PUSH) /* the last pass pushes */
             continue;
         for (size_t i = 0; i < count; i++) {
             if (!fixed[i])

@@ -10,7 +10,7 @@
 #define SKIRT_Y      1.045
 #define SKIRT_EASE   0.030 /* waistband less the form's girth: it sits half a centimetre off the canvas */
 #define SKIRT_SLOPE  0.60  /* radians, of the start shape */
-#define SKIRT_FOLDS  14    /* of the start shape */
+#define SKIRT_FOLDS  9     /* of the start shape: with more, or fewer, they cross as they fall */
 
 static void place_flared(const void *context, struct tl_point p, double position[3])
 {

@@ -125,24 +125,38 @@ static void write_bytes(void *stream, void *data, int size)
     fwrite(data, 1, (size_t)size, stream);
 }
 
-static bool png_can_hold(const tl_image *image)
+bool tl_image_encode_png(const char *name, const tl_image *image, void **data, size_t *size, tl_error *error)
 {
-    return image->type == TL_IMAGE_U8 && image->channels != 2 && image->texels;
+    if (image->type != TL_IMAGE_U8 || image->channels == 2 || !image->texels)
+        return tl_fail(error, TL_OUTPUT, "%s: only 8-bit images of 1, 3 or 4 channels become PNG: use .exr",
+                       name);
+    char *bytes = NULL;
+    FILE *stream = open_memstream(&bytes, size);
+    bool encoded =
+        stream && stbi_write_png_to_func(write_bytes, stream, image->width, image->height, image->channels,
+                                         image->texels, image->width * image->channels);
+    if (stream)
+        encoded = fclose(stream) == 0 && encoded;
+    if (!encoded) {
+        free(bytes);
+        return tl_fail(error, TL_OUTPUT, "%s: the image is too large for PNG: make it smaller", name);
+    }
+    *data = bytes;
+    return true;
 }
 
 bool tl_image_save_png(const char *path, const tl_image *image, tl_error *error)
 {
-    if (!png_can_hold(image))
-        return tl_fail(error, TL_OUTPUT, "%s: only 8-bit images of 1, 3 or 4 channels become PNG: use .exr",
-                       path);
     struct tl_writer writer;
+    void *data = NULL;
+    size_t size = 0;
     if (!tl_writer_begin(&writer, path, error))
         return false;
-    int stride = image->width * image->channels;
-    if (!stbi_write_png_to_func(write_bytes, writer.stream, image->width, image->height, image->channels,
-                                image->texels, stride)) {
+    if (!tl_image_encode_png(path, image, &data, &size, error)) {
         tl_writer_abandon(&writer);
-        return tl_fail(error, TL_OUTPUT, "%s: the image is too large for PNG: make it smaller", path);
+        return false;
     }
+    fwrite(data, 1, size, writer.stream); /* a failure is kept by the stream and seen by the commit */
+    free(data);
     return tl_writer_commit(&writer, error);
 }

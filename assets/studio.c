@@ -129,7 +129,7 @@ tl_environment tl_environment_constant(float red, float green, float blue)
                                   .layout = TL_ENV_LATLONG,
                                   .image = tl_image_create(CONSTANT_WIDTH, CONSTANT_HEIGHT, 3, TL_IMAGE_F32)};
     float *texels = tl_image_floats(&environment.image);
-    for (int i = 0; i < CONSTANT_WIDTH * CONSTANT_HEIGHT; i++) {
+    for (size_t i = 0; i < (size_t)CONSTANT_WIDTH * CONSTANT_HEIGHT; i++) {
         texels[3 * i] = red;
         texels[3 * i + 1] = green;
         texels[3 * i + 2] = blue;

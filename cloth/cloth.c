@@ -9,17 +9,35 @@
 
 /* ---- What is refused ---- */
 
+static double read_number(const struct tl_option *row, const void *params)
+{
+    double number = 0;
+    float single;
+    int whole;
+    const char *at = (const char *)params + row->offset;
+    if (row->type == TL_DOUBLE) {
+        memcpy(&number, at, sizeof number);
+        return number;
+    }
+    if (row->type == TL_FLOAT) {
+        memcpy(&single, at, sizeof single);
+        return (double)single;
+    }
+    if (row->type == TL_INT) {
+        memcpy(&whole, at, sizeof whole);
+        return whole;
+    }
+    return row->minimum; /* not a number */
+}
+
 static bool check_params(const struct tl_option_table *table, const void *params, tl_error *error)
 {
     for (size_t i = 0; i < table->row_count; i++) {
         const struct tl_option *row = &table->rows[i];
-        double value;
-        if (row->type != TL_DOUBLE)
-            continue;
-        memcpy(&value, (const char *)params + row->offset, sizeof value);
-        if (!(value >= row->minimum && value <= row->maximum))
-            return tl_fail(error, TL_USAGE, "%s.%s is %g: give a value from %g to %g %s", table->name,
-                           row->name, value, row->minimum, row->maximum, row->unit);
+        double number = read_number(row, params);
+        if (!(number >= row->minimum && number <= row->maximum))
+            return tl_fail(error, TL_USAGE, "%s.%s is %g: give a number from %g to %g %s", table->name,
+                           row->name, number, row->minimum, row->maximum, row->unit);
     }
     return true;
 }
@@ -82,7 +100,7 @@ static void set_constants(tl_cloth *cloth)
     set_inverse_masses(cloth);
     tl_energy_set(&cloth->energy, &cloth->fabric, cloth->particles.w, tl_cloth_substep(cloth));
     tl_contacts_release(&cloth->contacts); /* its planes know the thickness */
-    cloth->contacts = tl_contacts_create(cloth->particles.count);
+    cloth->contacts = tl_contacts_create(&cloth->topology, cloth->rest);
 }
 
 /* A hundredth of the mean edge. */
@@ -224,7 +242,7 @@ bool tl_cloth_set(tl_cloth *cloth, const struct tl_cloth_fabric *fabric, const s
 static void forget_contacts(tl_cloth *cloth)
 {
     tl_contacts_release(&cloth->contacts);
-    cloth->contacts = tl_contacts_create(cloth->particles.count);
+    cloth->contacts = tl_contacts_create(&cloth->topology, cloth->rest);
 }
 
 /* Kept by render vertex: seams that close later change the particles, but not these. */

@@ -19,13 +19,22 @@ struct tl_contact_cache {
     bool near;          /* an anchor was found */
 };
 
+/* A point inside a coarse triangle that must stay outside too: between vertices that touch a round body, its
+ * edge of length e would sink in by e^2 / 8R. */
+struct tl_probe {
+    uint32_t vertices[3];
+    double weights[3]; /* sum 1 */
+};
+
 struct tl_contacts {
-    size_t count;
-    struct tl_contact_cache *caches;
-    uint64_t revision; /* of the collider when the caches were filled */
+    size_t particle_count, probe_count;
+    struct tl_probe *probes;
+    struct tl_contact_cache *caches; /* [particle_count + probe_count] */
+    uint64_t revision;               /* of the collider when the caches were filled */
     const tl_collider *collider;
 };
-struct tl_contacts tl_contacts_create(size_t particle_count);
+/* `rest` shapes decide which triangles are coarse. */
+struct tl_contacts tl_contacts_create(const struct tl_topology *topology, const vec2s (*rest)[3]);
 void tl_contacts_release(struct tl_contacts *contacts);
 
 /* Once per frame: forgets what no longer holds. */
@@ -40,7 +49,8 @@ struct tl_contact_params {
     double h;                   /* s, substep */
 };
 
-/* Moves particles out of the collider; after the constraints, so that nothing is inside at a substep's end.
+/* Moves particles and probes out of the collider; after the constraints, so that nothing is inside at a
+ * substep's end.
  */
 void tl_contacts_solve(struct tl_contacts *contacts, const struct tl_contact_params *params,
                        struct tl_particles *particles);

@@ -189,6 +189,20 @@ static void add_links(struct tl_energy *energy, const uint32_t *vertices, const 
                                                                .rest = edge_length(flat, corner)};
 }
 
+/* Elements that follow each other share no vertex, so that the processor works on several at once. */
+static void *sorted_by_colour(void *elements, size_t size, size_t per_element, size_t count,
+                              size_t vertex_count)
+{
+    uint32_t *order = TL_NEW_ARRAY(uint32_t, count);
+    char *sorted = tl_alloc(count, size);
+    tl_order_by_colour(elements, size / sizeof(uint32_t), per_element, count, vertex_count, order);
+    for (size_t i = 0; i < count; i++)
+        memcpy(sorted + i * size, (const char *)elements + order[i] * size, size);
+    free(order);
+    free(elements);
+    return sorted;
+}
+
 struct tl_energy tl_energy_build(const struct tl_topology *topology, const vec2s (*rest)[3])
 {
     size_t count = topology->triangle_count;
@@ -213,6 +227,10 @@ struct tl_energy tl_energy_build(const struct tl_topology *topology, const vec2s
             energy.bend_count += make_bend(topology, flats, (uint32_t)t, &energy.bends[energy.bend_count]);
     }
     free(flats);
+    energy.membranes = sorted_by_colour(energy.membranes, sizeof *energy.membranes, 3, energy.membrane_count,
+                                        topology->vertex_count);
+    energy.bends = sorted_by_colour(energy.bends, sizeof *energy.bends, TL_BEND_STENCIL, energy.bend_count,
+                                    topology->vertex_count);
     return energy;
 }
 

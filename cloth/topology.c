@@ -217,3 +217,30 @@ void tl_fans_release(struct tl_fans *fans)
     free(fans->items);
     *fans = (struct tl_fans){0};
 }
+
+#define COLOURS 64 /* bits of a mask; the last one takes what is left */
+
+void tl_order_by_colour(const uint32_t *corners, size_t stride_words, size_t per_element, size_t count,
+                        size_t vertex_count, uint32_t *order)
+{
+    uint64_t *used = TL_NEW_ARRAY(uint64_t, vertex_count);
+    uint8_t *colours = TL_NEW_ARRAY(uint8_t, count);
+    size_t first[COLOURS + 1] = {0};
+    for (size_t e = 0; e < count; e++) {
+        const uint32_t *vertices = corners + e * stride_words;
+        uint64_t taken = 0;
+        for (size_t i = 0; i < per_element; i++)
+            taken |= used[vertices[i]];
+        int colour = taken == UINT64_MAX ? COLOURS - 1 : __builtin_ctzll(~taken);
+        for (size_t i = 0; i < per_element; i++)
+            used[vertices[i]] |= (uint64_t)1 << colour;
+        colours[e] = (uint8_t)colour;
+        first[colour + 1]++;
+    }
+    for (int c = 0; c < COLOURS; c++)
+        first[c + 1] += first[c];
+    for (size_t e = 0; e < count; e++)
+        order[first[colours[e]]++] = (uint32_t)e;
+    free(used);
+    free(colours);
+}

@@ -41,6 +41,12 @@ struct tl_fans {
 struct tl_fans tl_fans_build(const uint32_t *corners, size_t corner_count, size_t vertex_count);
 void tl_fans_release(struct tl_fans *fans);
 
+/* An order of elements in which neighbours in the list rarely share a vertex: greedy colours, one after the
+ * other, each in the order given. Such a list can be solved with several elements in flight. Element i has
+ * `per_element` vertices at `corners + i * stride_words`; fills `order` with element numbers. */
+void tl_order_by_colour(const uint32_t *corners, size_t stride_words, size_t per_element, size_t count,
+                        size_t vertex_count, uint32_t *order);
+
 /* Disjoint sets with the lowest member as the representative of each. */
 uint32_t tl_sets_find(uint32_t *parents, uint32_t member);
 void tl_sets_join(uint32_t *parents, uint32_t a, uint32_t b);

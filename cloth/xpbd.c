@@ -68,58 +68,48 @@ void tl_xpbd_finish(struct tl_particles *particles, double h)
         particles->v[i] = vec3d_scale(vec3d_sub(particles->x[i], particles->previous[i]), 1 / h);
 }
 
-/* One direction of stretch: C = |F| - 1 with F = sum row_i x_i, of gradient row_i F/|F|. */
-static inline void solve_stretch(vec3d *a, vec3d *b, vec3d *c, const double w[3], const double row[3],
-                                 double factor)
+/* What a stretch C = |F| - 1 of gradient row_i F/|F| pushes, in units of F. */
+static inline double stretch_push(vec3d f, double factor)
 {
-    vec3d f = vec3d_scale(*a, row[0]);
-    f = vec3d_muladd(vec3d_muladd(f, *b, row[1]), *c, row[2]);
-    double length = vec3d_norm(f);
-    if (length < NO_LENGTH)
-        return;
-    vec3d push = vec3d_scale(f, factor * (length - 1) / length);
-    *a = vec3d_muladd(*a, push, w[0] * row[0]);
-    *b = vec3d_muladd(*b, push, w[1] * row[1]);
-    *c = vec3d_muladd(*c, push, w[2] * row[2]);
+    double squared = vec3d_dot(f, f);
+    return squared > NO_LENGTH * NO_LENGTH ? factor * (1 - 1 / sqrt(squared)) : 0;
 }
 
-/* C = cosine of the angle between the threads, of gradient c_i (v - C u)/|F_u| + d_i (u - C v)/|F_v|. */
-static inline void solve_shear(const struct tl_membrane *m, vec3d *x, const double w[3])
-{
-    vec3d u = vec3d_scale(x[0], m->c[0]), v = vec3d_scale(x[0], m->d[0]);
-    u = vec3d_muladd(vec3d_muladd(u, x[1], m->c[1]), x[2], m->c[2]);
-    v = vec3d_muladd(vec3d_muladd(v, x[1], m->d[1]), x[2], m->d[2]);
-    double uu = vec3d_dot(u, u), vv = vec3d_dot(v, v);
-    if (uu < NO_LENGTH * NO_LENGTH || vv < NO_LENGTH * NO_LENGTH)
-        return;
-    double both = 1 / sqrt(uu * vv), cosine = vec3d_dot(u, v) * both;
-    vec3d along_u = vec3d_muladd(vec3d_scale(v, both), u, -cosine / uu);
-    vec3d along_v = vec3d_muladd(vec3d_scale(u, both), v, -cosine / vv);
-    double gradient = m->cc * vec3d_dot(along_u, along_u) + 2 * m->cd * vec3d_dot(along_u, along_v) +
-                      m->dd * vec3d_dot(along_v, along_v);
-    double sum = gradient + m->shear;
-    if (!(sum > 0))
-        return;
-    double multiplier = -cosine / sum;
-    for (int i = 0; i < 3; i++) {
-        x[i] = vec3d_muladd(x[i], along_u, w[i] * m->c[i] * multiplier);
-        x[i] = vec3d_muladd(x[i], along_v, w[i] * m->d[i] * multiplier);
-    }
-}
-
+/* Both stretches and the shear, one after the other. A push p on row c moves vertex i by w_i c_i p, and so
+ * F_u by cc p and F_v by cd p: the three are solved on F alone, and the vertices move once. */
 static inline void solve_membrane(const struct tl_membrane *m, struct tl_particles *particles)
 {
-    vec3d x[3];
+    vec3d *x[3];
     double w[3];
     for (int i = 0; i < 3; i++) {
-        x[i] = particles->x[m->vertices[i]];
+        x[i] = &particles->x[m->vertices[i]];
         w[i] = particles->w[m->vertices[i]];
     }
-    solve_stretch(&x[0], &x[1], &x[2], w, m->c, m->weft);
-    solve_stretch(&x[0], &x[1], &x[2], w, m->d, m->warp);
-    solve_shear(m, x, w);
+    vec3d u = vec3d_scale(*x[0], m->c[0]), v = vec3d_scale(*x[0], m->d[0]);
+    u = vec3d_muladd(vec3d_muladd(u, *x[1], m->c[1]), *x[2], m->c[2]);
+    v = vec3d_muladd(vec3d_muladd(v, *x[1], m->d[1]), *x[2], m->d[2]);
+
+    vec3d push_c = vec3d_scale(u, stretch_push(u, m->weft));
+    u = vec3d_muladd(u, push_c, m->cc);
+    v = vec3d_muladd(v, push_c, m->cd);
+    vec3d push_d = vec3d_scale(v, stretch_push(v, m->warp));
+    u = vec3d_muladd(u, push_d, m->cd);
+    v = vec3d_muladd(v, push_d, m->dd);
+
+    /* C = cosine between the threads, of gradient c_i (v/|v| - C u/|u|)/|u| + d_i (u/|u| - C v/|v|)/|v|. */
+    double uu = vec3d_dot(u, u), vv = vec3d_dot(v, v);
+    if (uu > NO_LENGTH * NO_LENGTH && vv > NO_LENGTH * NO_LENGTH) {
+        double both = 1 / sqrt(uu * vv), cosine = vec3d_dot(u, v) * both;
+        vec3d along_u = vec3d_muladd(vec3d_scale(v, both), u, -cosine / uu);
+        vec3d along_v = vec3d_muladd(vec3d_scale(u, both), v, -cosine / vv);
+        double gradient = m->cc * vec3d_dot(along_u, along_u) + 2 * m->cd * vec3d_dot(along_u, along_v) +
+                          m->dd * vec3d_dot(along_v, along_v);
+        double sum = gradient + m->shear, multiplier = sum > 0 ? -cosine / sum : 0;
+        push_c = vec3d_muladd(push_c, along_u, multiplier);
+        push_d = vec3d_muladd(push_d, along_v, multiplier);
+    }
     for (int i = 0; i < 3; i++)
-        particles->x[m->vertices[i]] = x[i];
+        *x[i] = vec3d_muladd(vec3d_muladd(*x[i], push_c, w[i] * m->c[i]), push_d, w[i] * m->d[i]);
 }
 
 /* The three components of the curvature: vectors, linear in the positions. */

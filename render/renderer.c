@@ -64,7 +64,7 @@ static void sign_inputs(const tl_frame *frame, const struct tl_render_settings *
     const struct tl_light_params *light = &settings->light;
     const struct tl_image_params *image = &settings->image;
     const uint64_t start = FNV_OFFSET;
-    signatures[TL_INPUT_ENVIRONMENT] = MIX(MIX(start, frame->environment), frame->environment_revision);
+    signatures[TL_INPUT_ENVIRONMENT] = MIX(start, frame->environment_revision);
     signatures[TL_INPUT_YAW] = MIX(start, frame->environment_yaw);
     signatures[TL_INPUT_SHAPES] = shapes_signature(frame);
     signatures[TL_INPUT_MOTION] = motion_signature(frame);
@@ -90,39 +90,46 @@ static struct tl_render_settings usable(const struct tl_render_settings *setting
     return used;
 }
 
-static bool check_sizes(const tl_renderer *renderer, const struct tl_render_settings *settings,
-                        tl_error *error)
+static uint64_t sample_count(const struct tl_image_params *image)
+{
+    return (uint64_t)image->width * (uint64_t)image->height *
+           (uint64_t)(image->supersample * image->supersample);
+}
+
+static bool check_image_size(const tl_renderer *renderer, const struct tl_image_params *image,
+                             tl_error *error)
+{
+    int side = image->supersample * (image->width > image->height ? image->width : image->height);
+    if (side > tl_gpu_texture_side_max(renderer->gpu) ||
+        sample_count(image) * TL_SAMPLE_LAYER_BYTES > TEXTURE_BYTES_MAX)
+        return tl_fail(error, TL_USAGE,
+                       "image: %d x %d pixels with %d samples a side are more than GL can hold: make "
+                       "image.width, image.height or image.supersample smaller",
+                       image->width, image->height, image->supersample);
+    return true;
+}
+
+static bool check_light_size(const struct tl_render_settings *settings, tl_error *error)
 {
     const struct tl_light_params *light = &settings->light;
-    const struct tl_image_params *image = &settings->image;
-    uint64_t side = (uint64_t)image->supersample *
-                    (uint64_t)(image->width > image->height ? image->width : image->height);
-    uint64_t pem =
-        (uint64_t)light->pem_size * (uint64_t)light->pem_size * 8 * TL_PEM_TEXEL_BYTES; /* with mips */
+    /* Six faces and their mips: a third more than 6, so 8. */
+    uint64_t pem = (uint64_t)light->pem_size * (uint64_t)light->pem_size * 8 * TL_PEM_TEXEL_BYTES;
     uint64_t map = (uint64_t)light->map_size * (uint64_t)light->map_size * TL_SHADOW_TEXEL_BYTES;
-    uint64_t passes = (uint64_t)light->pems_per_pass, regions = (uint64_t)light->regions;
-    uint64_t samples = (uint64_t)image->width * (uint64_t)image->height *
-                       (uint64_t)(image->supersample * image->supersample);
-    if (side > (uint64_t)tl_gpu_texture_side_max(renderer->gpu))
-        return tl_fail(error, TL_USAGE,
-                       "image: %d x %d pixels with %d samples a side are more than GL's %d texels: make "
-                       "image.width, image.height or image.supersample smaller",
-                       image->width, image->height, image->supersample,
-                       tl_gpu_texture_side_max(renderer->gpu));
-    if (passes * pem > TEXTURE_BYTES_MAX || passes * map > TEXTURE_BYTES_MAX)
+    uint64_t regions = (uint64_t)light->regions, passes = (uint64_t)light->pems_per_pass;
+    uint64_t in_one_pass = regions < passes ? regions : passes;
+    if (in_one_pass * pem > TEXTURE_BYTES_MAX || in_one_pass * map > TEXTURE_BYTES_MAX)
         return tl_fail(error, TL_USAGE,
                        "light: %d PEMs of %d texels or maps of %d in one pass are more than %d MB: lower "
                        "light.pems_per_pass",
-                       light->pems_per_pass, light->pem_size, light->map_size,
-                       (int)(TEXTURE_BYTES_MAX >> 20));
-    uint64_t bytes =
-        regions * (pem + (light->method == TL_METHOD_UNSHADOWED ? 0 : map)) + samples * TL_SAMPLE_BYTES;
+                       (int)in_one_pass, light->pem_size, light->map_size, (int)(TEXTURE_BYTES_MAX >> 20));
+    uint64_t maps = light->method == TL_METHOD_UNSHADOWED ? 0 : regions * map;
+    uint64_t bytes = regions * pem + maps + sample_count(&settings->image) * TL_SAMPLE_BYTES;
     if (bytes > BYTES_MAX)
-        return tl_fail(
-            error, TL_USAGE,
-            "light: %d regions, PEMs of %d texels, maps of %d and this image need %d MB, more than %d: "
-            "lower light.regions, light.pem_size, light.map_size or image.supersample",
-            light->regions, light->pem_size, light->map_size, (int)(bytes >> 20), (int)(BYTES_MAX >> 20));
+        return tl_fail(error, TL_USAGE,
+                       "light: %d regions, PEMs of %d texels, maps of %d and this image need %d MB, more "
+                       "than %d: lower light.regions, light.pem_size, light.map_size or image.supersample",
+                       light->regions, light->pem_size, light->map_size, (int)(bytes >> 20),
+                       (int)(BYTES_MAX >> 20));
     return true;
 }
 
@@ -223,7 +230,7 @@ bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct
                       tl_error *error)
 {
     struct tl_render_settings used = usable(settings);
-    if (!check_sizes(renderer, &used, error))
+    if (!check_image_size(renderer, &used.image, error) || !check_light_size(&used, error))
         return false;
     reload_shaders(renderer);
     uint64_t signatures[TL_INPUT_COUNT];

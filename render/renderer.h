@@ -13,6 +13,7 @@
 
 enum tl_method { TL_METHOD_PEM, TL_METHOD_UNSHADOWED };
 enum tl_lobe { TL_LOBE_SINGLE, TL_LOBE_DUAL };
+enum tl_background { TL_BACKGROUND_ENVIRONMENT, TL_BACKGROUND_BLURRED, TL_BACKGROUND_GREY };
 
 struct tl_light_params {   /* table "light" */
     int method;            /* enum tl_method */
@@ -41,7 +42,7 @@ struct tl_image_params { /* table "image" */
     int width, height;
     int supersample;   /* samples per pixel side, box filtered in linear light */
     float exposure_ev; /* for show only */
-    int background;    /* enum: environment, blurred, grey: for show only */
+    int background;    /* enum tl_background; for show only */
     bool ground;       /* a ground disc at y = 0 */
 };
 extern const struct tl_option_table tl_image_options;
@@ -81,7 +82,8 @@ bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct
 bool tl_renderer_read(tl_renderer *renderer, tl_image *out, tl_error *error);
 
 /* For show: background, exposure, tone mapping (Khronos PBR Neutral), sRGB. To an image (U8 RGB) or, with
- * `framebuffer`, to the current window's buffer 0 at the given size in pixels. */
+ * `framebuffer`, to the current window's buffer 0 at the given size in pixels. The drawn frame's environment
+ * must still be there. */
 bool tl_renderer_show_image(tl_renderer *renderer, tl_image *out, tl_error *error);
 bool tl_renderer_show_window(tl_renderer *renderer, int width, int height, tl_error *error);
 

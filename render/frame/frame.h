@@ -51,8 +51,9 @@ extern const char *const tl_scene_fact_names[TL_SCENE_FACT_COUNT + 1];
 extern const tl_job tl_frame_jobs[];
 extern const int tl_frame_job_count;
 
-/* Bytes of a sample: G-buffer, its depth, light. */
-#define TL_SAMPLE_BYTES (16 + 3 * 8 + 4 + 16)
+/* Bytes of a sample: in the largest texture, and in all: G-buffer, its depth, light. */
+#define TL_SAMPLE_LAYER_BYTES 16
+#define TL_SAMPLE_BYTES       (16 + 3 * 8 + 4 + 16)
 
 struct tl_renderer {
     tl_gpu *gpu;

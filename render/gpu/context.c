@@ -93,8 +93,7 @@ void tl_gpu_destroy(tl_gpu **gpu)
         eglMakeCurrent((*gpu)->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
         if ((*gpu)->context != EGL_NO_CONTEXT)
             eglDestroyContext((*gpu)->display, (*gpu)->context);
-        eglTerminate((*gpu)->display);
-        eglReleaseThread();
+        /* The display itself is one for the whole process and stays open: another tl_gpu may be using it. */
     }
     free(*gpu);
     *gpu = NULL;

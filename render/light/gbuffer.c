@@ -54,7 +54,7 @@ void tl_gbuffer_draw(struct tl_gbuffer *gbuffer, tl_gpu *gpu, const struct tl_vi
             glUniform4f(FADING_DISC, ground->centre.x, ground->centre.y, ground->centre.z, ground->radius);
         else
             glUniform4f(FADING_DISC, 0, 0, 0, 0);
-        tl_surfaces_draw(surfaces, i);
+        tl_surfaces_draw(surfaces, i, TL_PARTS_ALL);
     }
     tl_gpu_reset_state(gpu);
 }

@@ -7,7 +7,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define PIXELS_PER_DEGREE_MAX 1000 /* filters grow with it; a phone at arm's length has 120 */
+/* Below, FLIP's filters are narrower than a pixel; above, they only cost time (a phone in the hand has 120).
+ */
+#define PIXELS_PER_DEGREE_MIN 10
+#define PIXELS_PER_DEGREE_MAX 1000
 
 /* An image as it is compared: linear RGB, and which of its pixels count. */
 struct plain {
@@ -132,12 +135,12 @@ bool tl_image_compare(const tl_image *a, const tl_image *b, int hdr, double pixe
         return tl_fail(error, TL_INPUT,
                        "compare: one image is %d x %d, the other %d x %d: render both the same", a->width,
                        a->height, b->width, b->height);
-    if (pixels_per_degree > PIXELS_PER_DEGREE_MAX)
-        return tl_fail(error, TL_USAGE, "compare: %g pixels per degree: give at most %d", pixels_per_degree,
-                       PIXELS_PER_DEGREE_MAX);
-    struct tl_flip_frame frame = {a->width, a->height, pixels_per_degree};
-    if (!(pixels_per_degree > 0))
-        frame.pixels_per_degree = TL_FLIP_PIXELS_PER_DEGREE;
+    struct tl_flip_frame frame = {a->width, a->height, TL_FLIP_PIXELS_PER_DEGREE};
+    if (pixels_per_degree > 0)
+        frame.pixels_per_degree = pixels_per_degree;
+    if (frame.pixels_per_degree < PIXELS_PER_DEGREE_MIN || frame.pixels_per_degree > PIXELS_PER_DEGREE_MAX)
+        return tl_fail(error, TL_USAGE, "compare: %g pixels per degree: give %d to %d", pixels_per_degree,
+                       PIXELS_PER_DEGREE_MIN, PIXELS_PER_DEGREE_MAX);
 
     struct plain test = {0}, reference = {0};
     bool done = false;

@@ -9,9 +9,9 @@
 #include "assets/image.h"
 
 struct tl_comparison {
-    size_t covered; /* pixels compared */
-    double
-        rel_rmse; /* sqrt(mean |a-b|^2) / mean luminance-free channel mean of the reference, covered pixels */
+    size_t covered;    /* pixels compared */
+    double rel_rmse;   /* sqrt(mean (a - b)^2) / mean b over covered pixels and their three channels; infinite
+                          against a black reference, unless equal */
     double flip_mean;  /* covered pixels */
     double flip_frame; /* whole frame */
     double max_abs;    /* largest channel difference */
@@ -19,8 +19,10 @@ struct tl_comparison {
     double exposure_start, exposure_stop; /* HDR only, log2 */
 };
 
-/* `a` is tested, `b` the reference. Sizes that differ, or NaN or Inf in either, are TL_INPUT errors. `hdr`:
- * -1 decides by content, 0 LDR, 1 HDR. `pixels_per_degree` <= 0 means FLIP's default, 67. */
+/* `a` is tested, `b` the reference. Sizes that differ, NaN or Inf in either, or
+ * no covered pixel at all are TL_INPUT errors; so is HDR against a reference that is half black, which has no
+ * exposure. 8-bit images are decoded from sRGB. `hdr`:
+ * -1 decides by content, 0 LDR, 1 HDR. `pixels_per_degree` <= 0 means FLIP's default, 67; else 10 to 1000. */
 bool tl_image_compare(const tl_image *a, const tl_image *b, int hdr, double pixels_per_degree,
                       struct tl_comparison *out, tl_error *error);
 

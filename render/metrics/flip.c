@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* -- Colour [HPG 2020, section 4.1] --------------------------------------------------------------------- */
 
@@ -76,13 +77,24 @@ static float hyab_distance(struct colour p, struct colour q)
 
 /* -- Filters -------------------------------------------------------------------------------------------- */
 
-/* All of them separate into sums of products of 1D filters, here [2 radius + 1]. */
+/* All of them separate into (sums of) products of 1D filters. */
+enum kernel_name {
+    ACHROMATIC, /* contrast sensitivity: normalised Gaussians */
+    RED_GREEN,
+    BLUE_YELLOW_WIDE,
+    BLUE_YELLOW_NARROW,
+    SMOOTH, /* features: a Gaussian and its first two derivatives */
+    EDGE,
+    POINT,
+    KERNEL_COUNT
+};
+
 struct filters {
-    int radius;
-    float *achromatic, *red_green, *blue_yellow[2]; /* contrast sensitivity: normalised Gaussians */
-    float blue_yellow_share[2];
-    int feature_radius;
-    float *gauss, *edge, *point; /* a Gaussian and its first two derivatives */
+    struct {
+        int radius;
+        float *weights; /* [2 radius + 1] */
+    } kernels[KERNEL_COUNT];
+    float wide_share; /* of the two Gaussians for blue-yellow */
 };
 
 static float *gaussian(int radius, double sigma)
@@ -120,41 +132,38 @@ static double sensitivity_sigma(double b, double pixels_per_degree)
 
 static struct filters filters_create(double pixels_per_degree)
 {
-    const double achromatic_b = 0.0047, red_green_b = 0.0053;
-    const double blue_yellow_a[2] = {34.1, 13.5}, blue_yellow_b[2] = {0.04, 0.025};
+    const double b[4] = {0.0047, 0.0053, 0.04, 0.025}; /* in the order of enum kernel_name */
+    const double blue_yellow_a[2] = {34.1, 13.5};
     const double feature_width = 0.082; /* degrees, from peak to trough of the edge detector */
 
     struct filters filters = {0};
-    filters.radius = (int)ceil(3 * sensitivity_sigma(blue_yellow_b[0], pixels_per_degree));
-    filters.achromatic = gaussian(filters.radius, sensitivity_sigma(achromatic_b, pixels_per_degree));
-    filters.red_green = gaussian(filters.radius, sensitivity_sigma(red_green_b, pixels_per_degree));
+    int radius = (int)ceil(3 * sensitivity_sigma(b[BLUE_YELLOW_WIDE], pixels_per_degree));
     double volumes[2];
-    for (int i = 0; i < 2; i++) {
-        double sigma = sensitivity_sigma(blue_yellow_b[i], pixels_per_degree);
-        filters.blue_yellow[i] = gaussian(filters.radius, sigma);
-        double sum = (double)(1 / filters.blue_yellow[i][filters.radius]); /* of one whose middle is 1 */
-        volumes[i] = blue_yellow_a[i] * sqrt(M_PI / blue_yellow_b[i]) * sum * sum;
+    for (int i = 0; i < 4; i++) {
+        filters.kernels[i].radius = radius;
+        filters.kernels[i].weights = gaussian(radius, sensitivity_sigma(b[i], pixels_per_degree));
     }
-    for (int i = 0; i < 2; i++)
-        filters.blue_yellow_share[i] = (float)(volumes[i] / (volumes[0] + volumes[1]));
+    for (int i = 0; i < 2; i++) {
+        /* the sum of a Gaussian whose middle is 1 */
+        double sum = 1 / (double)filters.kernels[BLUE_YELLOW_WIDE + i].weights[radius];
+        volumes[i] = blue_yellow_a[i] * sqrt(M_PI / b[BLUE_YELLOW_WIDE + i]) * sum * sum;
+    }
+    filters.wide_share = (float)(volumes[0] / (volumes[0] + volumes[1]));
 
     double sigma = 0.5 * feature_width * pixels_per_degree;
-    filters.feature_radius = (int)ceil(3 * sigma);
-    filters.gauss = gaussian(filters.feature_radius, sigma);
-    filters.edge = derivative(filters.feature_radius, sigma, 1);
-    filters.point = derivative(filters.feature_radius, sigma, 2);
+    int feature_radius = (int)ceil(3 * sigma);
+    for (int i = SMOOTH; i <= POINT; i++)
+        filters.kernels[i].radius = feature_radius;
+    filters.kernels[SMOOTH].weights = gaussian(feature_radius, sigma);
+    filters.kernels[EDGE].weights = derivative(feature_radius, sigma, 1);
+    filters.kernels[POINT].weights = derivative(feature_radius, sigma, 2);
     return filters;
 }
 
 static void filters_release(struct filters *filters)
 {
-    free(filters->achromatic);
-    free(filters->red_green);
-    free(filters->blue_yellow[0]);
-    free(filters->blue_yellow[1]);
-    free(filters->gauss);
-    free(filters->edge);
-    free(filters->point);
+    for (int i = 0; i < KERNEL_COUNT; i++)
+        free(filters->kernels[i].weights);
     *filters = (struct filters){0};
 }
 
@@ -163,127 +172,82 @@ static int clamp_index(int value, int count)
     return value < 0 ? 0 : value >= count ? count - 1 : value;
 }
 
-/* target[y][x] = sum of weights[i] source[y][x + i] (or [y + i][x]). */
-static void filter_rows(const struct tl_flip_frame *frame, const float *source, const float *weights,
-                        int radius, float *target)
-{
-    int width = frame->width;
-#pragma omp parallel for
-    for (int y = 0; y < frame->height; y++) {
-        const float *line = source + (size_t)y * (size_t)width;
-        float *out = target + (size_t)y * (size_t)width;
-        for (int x = 0; x < width; x++)
-            out[x] = 0;
-        for (int i = -radius; i <= radius; i++) {
-            float weight = weights[i + radius];
-            /* the part that reads inside the frame, then what goes on beyond it */
-            int begin = clamp_index(-i, width + 1), end = clamp_index(width - i, width + 1);
-            for (int x = 0; x < begin; x++)
-                out[x] += weight * line[0];
-            for (int x = begin; x < end; x++)
-                out[x] += weight * line[x + i];
-            for (int x = end; x < width; x++)
-                out[x] += weight * line[width - 1];
-        }
-    }
-}
-
-static void filter_columns(const struct tl_flip_frame *frame, const float *source, const float *weights,
-                           int radius, float *target)
-{
-    int width = frame->width;
-#pragma omp parallel for
-    for (int y = 0; y < frame->height; y++) {
-        float *out = target + (size_t)y * (size_t)width;
-        for (int x = 0; x < width; x++)
-            out[x] = 0;
-        for (int i = -radius; i <= radius; i++) {
-            float weight = weights[i + radius];
-            const float *line = source + (size_t)clamp_index(y + i, frame->height) * (size_t)width;
-            for (int x = 0; x < width; x++)
-                out[x] += weight * line[x];
-        }
-    }
-}
-
 /* -- One image ------------------------------------------------------------------------------------------ */
 
-/* What is compared of an image, all [height][width]. */
-struct features {
-    float *opponent[3]; /* unfiltered; the first is overwritten by the achromatic image in [0, 1] */
-    float *colour[3];   /* filtered: opponents, then Hunt-adjusted CIELAB */
-    float *edge[2], *point[2];
-    float *rows, *extra; /* scratch */
+enum plane_name {
+    LUMINANCE, /* opponents as they are */
+    RED_GREEN_OPPONENT,
+    BLUE_YELLOW_OPPONENT,
+    GREY,                         /* the achromatic image in [0, 1] */
+    ROWS,                         /* filtered along x, one plane a kernel */
+    COLOUR = ROWS + KERNEL_COUNT, /* Hunt-adjusted CIELAB of what is seen, three planes */
+    NARROW = COLOUR + 3,          /* scratch: the other blue-yellow Gaussian */
+    EDGES,                        /* along x and along y */
+    POINTS = EDGES + 2,           /* likewise */
+    PLANE_COUNT = POINTS + 2
 };
 
-#define FEATURE_PLANES 12
-static struct features features_create(const struct tl_flip_frame *frame)
+/* What is filtered along x by the kernel of the same number, and what along y then. */
+static const enum plane_name row_sources[KERNEL_COUNT] = {
+    LUMINANCE, RED_GREEN_OPPONENT, BLUE_YELLOW_OPPONENT, BLUE_YELLOW_OPPONENT, GREY, GREY, GREY};
+static const struct {
+    enum kernel_name rows, columns;
+    enum plane_name target;
+} column_passes[] = {
+    {ACHROMATIC, ACHROMATIC, COLOUR},
+    {RED_GREEN, RED_GREEN, COLOUR + 1},
+    {BLUE_YELLOW_WIDE, BLUE_YELLOW_WIDE, COLOUR + 2},
+    {BLUE_YELLOW_NARROW, BLUE_YELLOW_NARROW, NARROW},
+    {EDGE, SMOOTH, EDGES},
+    {SMOOTH, EDGE, EDGES + 1},
+    {POINT, SMOOTH, POINTS},
+    {SMOOTH, POINT, POINTS + 1},
+};
+
+struct analysis {
+    const struct tl_flip_frame *frame;
+    const struct filters *filters;
+    float *planes; /* [PLANE_COUNT][height][width] */
+};
+
+static float *line_of(const struct analysis *analysis, int plane, int y)
 {
-    size_t count = (size_t)frame->width * (size_t)frame->height;
-    float *planes = TL_NEW_ARRAY(float, FEATURE_PLANES *count);
-    struct features features = {0};
-    float **names[FEATURE_PLANES] = {
-        &features.opponent[0], &features.opponent[1], &features.opponent[2], &features.colour[0],
-        &features.colour[1],   &features.colour[2],   &features.edge[0],     &features.edge[1],
-        &features.point[0],    &features.point[1],    &features.rows,        &features.extra,
-    };
-    for (size_t i = 0; i < FEATURE_PLANES; i++)
-        *names[i] = planes + i * count;
-    return features;
+    size_t line = (size_t)plane * (size_t)analysis->frame->height + (size_t)y;
+    return analysis->planes + line * (size_t)analysis->frame->width;
 }
 
-static void features_release(struct features *features)
+/* out[x] = sum of weights[i] line[x + i]: first what reads before the line, then within, then after it. */
+static void filter_row(const struct analysis *analysis, enum kernel_name kernel, int y)
 {
-    free(features->opponent[0]);
-    *features = (struct features){0};
-}
-
-/* `along_x` and `along_y` one after the other. */
-static void filter_plane(const struct tl_flip_frame *frame, struct features *features, const float *source,
-                         const float *along_x, const float *along_y, int radius, float *target)
-{
-    filter_rows(frame, source, along_x, radius, features->rows);
-    filter_columns(frame, features->rows, along_y, radius, target);
-}
-
-static void filter_colours(const struct tl_flip_frame *frame, const struct filters *filters,
-                           struct features *features)
-{
-    int radius = filters->radius, count = frame->width * frame->height;
-    const float *const *blue_yellow = (const float *const *)filters->blue_yellow;
-    filter_plane(frame, features, features->opponent[0], filters->achromatic, filters->achromatic, radius,
-                 features->colour[0]);
-    filter_plane(frame, features, features->opponent[1], filters->red_green, filters->red_green, radius,
-                 features->colour[1]);
-    filter_plane(frame, features, features->opponent[2], blue_yellow[0], blue_yellow[0], radius,
-                 features->colour[2]);
-    filter_plane(frame, features, features->opponent[2], blue_yellow[1], blue_yellow[1], radius,
-                 features->extra);
-#pragma omp parallel for
-    for (int i = 0; i < count; i++) {
-        float blue_yellow_sum = filters->blue_yellow_share[0] * features->colour[2][i] +
-                                filters->blue_yellow_share[1] * features->extra[i];
-        struct colour opponent = {features->colour[0][i], features->colour[1][i], blue_yellow_sum};
-        struct colour hunt = hunt_from_rgb(rgb_from_opponent(opponent));
-        features->colour[0][i] = hunt.a;
-        features->colour[1][i] = hunt.b;
-        features->colour[2][i] = hunt.c;
+    const float *line = line_of(analysis, row_sources[kernel], y);
+    float *out = line_of(analysis, ROWS + (int)kernel, y);
+    int width = analysis->frame->width, radius = analysis->filters->kernels[kernel].radius;
+    memset(out, 0, (size_t)width * sizeof(float));
+    for (int i = -radius; i <= radius; i++) {
+        float weight = analysis->filters->kernels[kernel].weights[i + radius];
+        int begin = clamp_index(-i, width + 1), end = clamp_index(width - i, width + 1);
+        for (int x = 0; x < begin; x++)
+            out[x] += weight * line[0];
+        for (int x = begin; x < end; x++)
+            out[x] += weight * line[x + i];
+        for (int x = end; x < width; x++)
+            out[x] += weight * line[width - 1];
     }
 }
 
-/* Edges and points of the achromatic image [HPG 2020, section 4.2]. */
-static void detect_features(const struct tl_flip_frame *frame, const struct filters *filters,
-                            struct features *features)
+static void filter_column(const struct analysis *analysis, size_t pass, int y)
 {
-    int radius = filters->feature_radius, count = frame->width * frame->height;
-    float *grey = features->opponent[0];
-#pragma omp parallel for
-    for (int i = 0; i < count; i++)
-        grey[i] = (grey[i] + 16) / 116;
-    filter_plane(frame, features, grey, filters->edge, filters->gauss, radius, features->edge[0]);
-    filter_plane(frame, features, grey, filters->gauss, filters->edge, radius, features->edge[1]);
-    filter_plane(frame, features, grey, filters->point, filters->gauss, radius, features->point[0]);
-    filter_plane(frame, features, grey, filters->gauss, filters->point, radius, features->point[1]);
+    enum kernel_name kernel = column_passes[pass].columns;
+    float *out = line_of(analysis, (int)column_passes[pass].target, y);
+    int width = analysis->frame->width, radius = analysis->filters->kernels[kernel].radius;
+    memset(out, 0, (size_t)width * sizeof(float));
+    for (int i = -radius; i <= radius; i++) {
+        float weight = analysis->filters->kernels[kernel].weights[i + radius];
+        int row = clamp_index(y + i, analysis->frame->height);
+        const float *line = line_of(analysis, ROWS + (int)column_passes[pass].rows, row);
+        for (int x = 0; x < width; x++)
+            out[x] += weight * line[x];
+    }
 }
 
 /* Exposure and tone mapping of one channel; without them for LDR. */
@@ -303,21 +267,52 @@ static float show(const struct display *display, float value)
     return clamp_unit((float)(((aces[0] * x + aces[1]) * x) / ((aces[3] * x + aces[4]) * x + aces[5])));
 }
 
-static void analyse(const struct tl_flip_frame *frame, const struct filters *filters,
-                    const struct display *display, const float *rgb, struct features *features)
+static void split_opponents(const struct analysis *analysis, const struct display *display, const float *rgb,
+                            int y)
 {
-    int count = frame->width * frame->height;
-#pragma omp parallel for
-    for (int i = 0; i < count; i++) {
-        const float *texel = rgb + 3 * (size_t)i;
+    const float *texel = rgb + 3 * (size_t)y * (size_t)analysis->frame->width;
+    float *luminance = line_of(analysis, LUMINANCE, y), *grey = line_of(analysis, GREY, y);
+    float *red_green = line_of(analysis, RED_GREEN_OPPONENT, y);
+    float *blue_yellow = line_of(analysis, BLUE_YELLOW_OPPONENT, y);
+    for (int x = 0; x < analysis->frame->width; x++, texel += 3) {
         struct colour shown = {show(display, texel[0]), show(display, texel[1]), show(display, texel[2])};
         struct colour opponent = opponent_from_rgb(shown);
-        features->opponent[0][i] = opponent.a;
-        features->opponent[1][i] = opponent.b;
-        features->opponent[2][i] = opponent.c;
+        luminance[x] = opponent.a;
+        red_green[x] = opponent.b;
+        blue_yellow[x] = opponent.c;
+        grey[x] = (opponent.a + 16) / 116;
     }
-    filter_colours(frame, filters, features);
-    detect_features(frame, filters, features);
+}
+
+static void adjust_colours(const struct analysis *analysis, int y)
+{
+    float *a = line_of(analysis, COLOUR, y), *b = line_of(analysis, COLOUR + 1, y);
+    float *c = line_of(analysis, COLOUR + 2, y);
+    const float *narrow = line_of(analysis, NARROW, y);
+    float share = analysis->filters->wide_share;
+    for (int x = 0; x < analysis->frame->width; x++) {
+        struct colour opponent = {a[x], b[x], share * c[x] + (1 - share) * narrow[x]};
+        struct colour hunt = hunt_from_rgb(rgb_from_opponent(opponent));
+        a[x] = hunt.a;
+        b[x] = hunt.b;
+        c[x] = hunt.c;
+    }
+}
+
+static void analyse(const struct analysis *analysis, const struct display *display, const float *rgb)
+{
+#pragma omp parallel for
+    for (int y = 0; y < analysis->frame->height; y++) {
+        split_opponents(analysis, display, rgb, y);
+        for (int kernel = 0; kernel < KERNEL_COUNT; kernel++)
+            filter_row(analysis, (enum kernel_name)kernel, y);
+    }
+#pragma omp parallel for
+    for (int y = 0; y < analysis->frame->height; y++) {
+        for (size_t pass = 0; pass < TL_COUNT(column_passes); pass++)
+            filter_column(analysis, pass, y);
+        adjust_colours(analysis, y);
+    }
 }
 
 /* -- Two images ----------------------------------------------------------------------------------------- */
@@ -343,48 +338,53 @@ static float colour_difference(struct colour p, struct colour q, float largest)
     return knee_value + (difference - knee) / (largest - knee) * (1 - knee_value);
 }
 
-static float magnitude_difference(float *const p[2], float *const q[2], int i)
+static struct colour colour_at(const struct analysis *analysis, int x, int y)
 {
-    float first = sqrtf(p[0][i] * p[0][i] + p[1][i] * p[1][i]);
-    float second = sqrtf(q[0][i] * q[0][i] + q[1][i] * q[1][i]);
-    return fabsf(first - second);
+    return (struct colour){line_of(analysis, COLOUR, y)[x], line_of(analysis, COLOUR + 1, y)[x],
+                           line_of(analysis, COLOUR + 2, y)[x]};
 }
 
-static struct colour colour_at(const struct features *features, int i)
+/* Length of the two responses that start at `plane`. */
+static float feature_at(const struct analysis *analysis, int plane, int x, int y)
 {
-    return (struct colour){features->colour[0][i], features->colour[1][i], features->colour[2][i]};
+    float along_x = line_of(analysis, plane, y)[x], along_y = line_of(analysis, plane + 1, y)[x];
+    return sqrtf(along_x * along_x + along_y * along_y);
 }
 
 /* Raises `map` to the error of each pixel where that is larger. */
-static void raise_map(const struct tl_flip_frame *frame, const struct features *test,
-                      const struct features *reference, float *map)
+static void raise_map(const struct analysis *test, const struct analysis *reference, float *map)
 {
     float largest = largest_colour_difference();
-    int count = frame->width * frame->height;
+    int width = test->frame->width;
 #pragma omp parallel for
-    for (int i = 0; i < count; i++) {
-        float colour = colour_difference(colour_at(test, i), colour_at(reference, i), largest);
-        float edge = magnitude_difference(test->edge, reference->edge, i);
-        float point = magnitude_difference(test->point, reference->point, i);
-        float feature = powf(fmaxf(edge, point) / sqrtf(2), FEATURE_EXPONENT);
-        map[i] = fmaxf(map[i], powf(colour, 1 - feature));
+    for (int y = 0; y < test->frame->height; y++) {
+        float *out = map + (size_t)y * (size_t)width;
+        for (int x = 0; x < width; x++) {
+            float colour = colour_difference(colour_at(test, x, y), colour_at(reference, x, y), largest);
+            float edge = fabsf(feature_at(test, EDGES, x, y) - feature_at(reference, EDGES, x, y));
+            float point = fabsf(feature_at(test, POINTS, x, y) - feature_at(reference, POINTS, x, y));
+            float feature = powf(fmaxf(edge, point) / sqrtf(2), FEATURE_EXPONENT);
+            out[x] = fmaxf(out[x], powf(colour, 1 - feature));
+        }
     }
 }
 
 static void raise_by_displays(const struct tl_flip_frame *frame, const float *test, const float *reference,
                               const struct display displays[], int display_count, float *map)
 {
+    size_t pixel_count = (size_t)frame->width * (size_t)frame->height;
     struct filters filters = filters_create(frame->pixels_per_degree);
-    struct features test_features = features_create(frame), reference_features = features_create(frame);
-    for (int i = 0; i < frame->width * frame->height; i++)
-        map[i] = 0;
+    struct analysis seen[2];
+    for (int i = 0; i < 2; i++)
+        seen[i] = (struct analysis){frame, &filters, TL_NEW_ARRAY(float, PLANE_COUNT *pixel_count)};
+    memset(map, 0, pixel_count * sizeof(float));
     for (int i = 0; i < display_count; i++) {
-        analyse(frame, &filters, &displays[i], test, &test_features);
-        analyse(frame, &filters, &displays[i], reference, &reference_features);
-        raise_map(frame, &test_features, &reference_features, map);
+        analyse(&seen[0], &displays[i], test);
+        analyse(&seen[1], &displays[i], reference);
+        raise_map(&seen[0], &seen[1], map);
     }
-    features_release(&test_features);
-    features_release(&reference_features);
+    free(seen[0].planes);
+    free(seen[1].planes);
     filters_release(&filters);
 }
 

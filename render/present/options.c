@@ -1,4 +1,3 @@
-#include "render/present/present.h"
 #include "render/renderer.h"
 
 typedef struct tl_image_params image_params;

@@ -7,8 +7,6 @@
 #include "render/gpu/gpu.h"
 #include "render/pem/pems.h"
 
-enum tl_background { TL_BACKGROUND_ENVIRONMENT, TL_BACKGROUND_BLURRED, TL_BACKGROUND_GREY };
-
 struct tl_present {
     tl_program resolve, show;
     tl_target image;     /* RGBA32F: linear, premultiplied, coverage in alpha */

@@ -21,6 +21,7 @@ struct uploaded {
 struct item {
     GLuint vertex_array, buffers[ATTRIBUTES], indices;
     size_t vertex_count, index_count;
+    size_t attribute_counts[ATTRIBUTES]; /* vertices sent; 0 for what the surface does not have */
     uint64_t topology_revision, motion_revision;
     size_t part_count, material_count;
     struct tl_mesh_part *parts;
@@ -167,8 +168,11 @@ static bool upload_material(tl_gpu *gpu, struct item *item, const char *surface,
 static void attach_buffer(struct item *item, enum attribute attribute, const void *data, size_t count)
 {
     static const GLint components[ATTRIBUTES] = {3, 3, 4, 2};
-    if (!data)
-        return; /* the attribute then reads GL's constant, zero */
+    item->attribute_counts[attribute] = data ? count : 0;
+    if (!data) { /* the attribute then reads GL's constant, zero */
+        glDisableVertexArrayAttrib(item->vertex_array, attribute);
+        return;
+    }
     glNamedBufferData(item->buffers[attribute], (GLsizeiptr)(count * attribute_bytes[attribute]), data,
                       attribute == UV ? GL_STATIC_DRAW : GL_STREAM_DRAW);
     glVertexArrayVertexBuffer(item->vertex_array, attribute, item->buffers[attribute], 0,
@@ -297,19 +301,38 @@ static void set_material(const struct item *item, const struct tl_mesh_part *par
     glUniform3fv(TL_UNIFORM_UV_ROWS, 2 * TL_MAP_USES, rows[0]);
 }
 
-bool tl_surfaces_draw(const tl_surfaces *surfaces, size_t index)
+/* GL takes an offset into the bound buffer as a pointer. */
+static const void *offset_of_index(uint32_t index)
 {
-    if (index >= surfaces->count)
-        return false;
+    return (const void *)((uintptr_t)index * sizeof(uint32_t)); /* NOLINT(performance-no-int-to-ptr) */
+}
+
+static enum tl_surface_parts kind_of(const struct item *item, const struct tl_mesh_part *part)
+{
+    return item->materials[part->material].alpha_cutoff > 0 ? TL_PARTS_MASKED : TL_PARTS_OPAQUE;
+}
+
+void tl_surfaces_draw(const tl_surfaces *surfaces, size_t index, enum tl_surface_parts parts)
+{
     const struct item *item = &surfaces->items[index];
     glBindVertexArray(item->vertex_array);
     for (size_t p = 0; p < item->part_count; p++) {
         const struct tl_mesh_part *part = &item->parts[p];
+        if (!(kind_of(item, part) & parts))
+            continue;
         set_material(item, part);
         glDrawElements(GL_TRIANGLES, (GLsizei)part->index_count, GL_UNSIGNED_INT,
-                       (const void *)(part->first_index * sizeof(uint32_t)));
+                       offset_of_index(part->first_index));
     }
-    return true;
+}
+
+bool tl_surfaces_have(const tl_surfaces *surfaces, enum tl_surface_parts parts)
+{
+    for (size_t i = 0; i < surfaces->count; i++)
+        for (size_t p = 0; p < surfaces->items[i].part_count; p++)
+            if (kind_of(&surfaces->items[i], &surfaces->items[i].parts[p]) & parts)
+                return true;
+    return false;
 }
 
 size_t tl_surfaces_bytes(const tl_surfaces *surfaces)
@@ -321,7 +344,7 @@ size_t tl_surfaces_bytes(const tl_surfaces *surfaces)
             bytes += tl_texture_bytes(&item->textures[t].texture);
         bytes += item->index_count * sizeof(uint32_t);
         for (int a = 0; a < ATTRIBUTES; a++)
-            bytes += item->vertex_count * attribute_bytes[a];
+            bytes += item->attribute_counts[a] * attribute_bytes[a];
     }
     return bytes;
 }

@@ -40,8 +40,13 @@ void tl_surfaces_destroy(tl_surfaces **surfaces);
 /* Brings the GPU's copies up to date. Fails when a map is larger than GL can hold. */
 bool tl_surfaces_update(tl_surfaces *surfaces, const tl_surface *const *items, size_t count, tl_error *error);
 
-/* Draws surface `index` with the program in use, which includes surface.glsl. Returns false past the last. */
-bool tl_surfaces_draw(const tl_surfaces *surfaces, size_t index);
+/* Opaque parts, and parts whose alpha map cuts holes. */
+enum tl_surface_parts { TL_PARTS_OPAQUE = 1, TL_PARTS_MASKED = 2, TL_PARTS_ALL = 3 };
+
+/* Draws these parts of surface `index` with the program in use, which includes surface.glsl. */
+void tl_surfaces_draw(const tl_surfaces *surfaces, size_t index, enum tl_surface_parts parts);
+/* Whether any surface has such parts. */
+bool tl_surfaces_have(const tl_surfaces *surfaces, enum tl_surface_parts parts);
 
 size_t tl_surfaces_bytes(const tl_surfaces *surfaces); /* buffers and textures */
 

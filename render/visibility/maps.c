@@ -14,12 +14,12 @@
 
 #define SLOPE_MAX_TEXELS 8.0f /* steeper surfaces (83 degrees) are edges, not slopes */
 
-/* Uniform locations of maps.vert, maps.frag and blur.frag. */
+/* Uniform locations of maps.vert, moments.glsl and blur.frag. */
 enum { MAP_ROWS = 16, SLOPE_MAX = 19, LAYER = 0, DIRECTION = 1, RADIUS = 2, WEIGHTS = 3 };
 
 struct tl_shadow_maps {
     tl_gpu *gpu;
-    tl_program moments, blur;
+    tl_program opaque, masked, blur;
     GLuint framebuffer;
     int count, per_array, size;
     int array_count;
@@ -33,7 +33,8 @@ tl_shadow_maps *tl_shadow_maps_create(tl_gpu *gpu, tl_error *error)
     tl_shadow_maps *maps = TL_NEW(tl_shadow_maps);
     maps->gpu = gpu;
     glCreateFramebuffers(1, &maps->framebuffer);
-    if (!tl_program_create(gpu, tl_embedded_shaders, "maps.vert", "maps.frag", &maps->moments, error) ||
+    if (!tl_program_create(gpu, tl_embedded_shaders, "maps.vert", "maps.frag", &maps->opaque, error) ||
+        !tl_program_create(gpu, tl_embedded_shaders, "maps.vert", "maps_masked.frag", &maps->masked, error) ||
         !tl_program_create(gpu, tl_embedded_shaders, "fullscreen.vert", "blur.frag", &maps->blur, error))
         tl_shadow_maps_destroy(&maps);
     return maps;
@@ -55,7 +56,8 @@ void tl_shadow_maps_destroy(tl_shadow_maps **maps)
     if (!*maps)
         return;
     release_textures(*maps);
-    tl_program_destroy(&(*maps)->moments);
+    tl_program_destroy(&(*maps)->opaque);
+    tl_program_destroy(&(*maps)->masked);
     tl_program_destroy(&(*maps)->blur);
     glDeleteFramebuffers(1, &(*maps)->framebuffer);
     free(*maps);
@@ -64,7 +66,8 @@ void tl_shadow_maps_destroy(tl_shadow_maps **maps)
 
 bool tl_shadow_maps_reload(tl_shadow_maps *maps, tl_error *error)
 {
-    return tl_program_reload(&maps->moments, error) && tl_program_reload(&maps->blur, error);
+    return tl_program_reload(&maps->opaque, error) && tl_program_reload(&maps->masked, error) &&
+           tl_program_reload(&maps->blur, error);
 }
 
 static void allocate(tl_shadow_maps *maps, int count, int per_array, int size)
@@ -130,18 +133,28 @@ static void attach_layer(const tl_shadow_maps *maps, int index)
                                    maps->arrays[index / maps->per_array].id, 0, index % maps->per_array);
 }
 
+static void draw_parts(const tl_shadow_maps *maps, const struct tl_shadow_request *request,
+                       const struct tl_region_view *view, enum tl_surface_parts parts)
+{
+    glUseProgram(parts == TL_PARTS_OPAQUE ? maps->opaque.id : maps->masked.id);
+    glUniform4fv(MAP_ROWS, 3, view->map_rows[0].raw);
+    glUniform1f(SLOPE_MAX, SLOPE_MAX_TEXELS / (float)maps->size);
+    for (size_t i = 0; i < request->surface_count; i++)
+        /* Below the horizon the ground's shadow is found without a map (ground.glsl). Above it the ground
+         * shadows nothing, but as what lies behind the casters it belongs into the moments. */
+        if ((int)i != request->ground_index || view->direction.y > 0)
+            tl_surfaces_draw(request->surfaces, i, parts);
+}
+
 static void draw_one(const tl_shadow_maps *maps, const struct tl_shadow_request *request, vec3s direction)
 {
     struct tl_region_view view = tl_region_view_make(direction, &request->casters, maps->size);
     const float empty[] = {1, 1, 0, 0}, farthest = 1;
     glClearNamedFramebufferfv(maps->framebuffer, GL_COLOR, 0, empty);
     glClearNamedFramebufferfv(maps->framebuffer, GL_DEPTH, 0, &farthest);
-    glUniform4fv(MAP_ROWS, 3, view.map_rows[0].raw);
-    for (size_t i = 0; i < request->surface_count; i++)
-        /* Below the horizon the ground's shadow is found without a map (ground.glsl). Above it the ground
-         * shadows nothing, but as what lies behind the casters it belongs into the moments. */
-        if ((int)i != request->ground_index || direction.y > 0)
-            tl_surfaces_draw(request->surfaces, i);
+    draw_parts(maps, request, &view, TL_PARTS_OPAQUE);
+    if (tl_surfaces_have(request->surfaces, TL_PARTS_MASKED))
+        draw_parts(maps, request, &view, TL_PARTS_MASKED);
 }
 
 void tl_shadow_maps_draw(tl_shadow_maps *maps, const struct tl_shadow_request *request)
@@ -150,8 +163,6 @@ void tl_shadow_maps_draw(tl_shadow_maps *maps, const struct tl_shadow_request *r
     glNamedFramebufferTexture(maps->framebuffer, GL_DEPTH_ATTACHMENT, maps->depth.id, 0);
     glBindFramebuffer(GL_FRAMEBUFFER, maps->framebuffer);
     glViewport(0, 0, maps->size, maps->size);
-    glUseProgram(maps->moments.id);
-    glUniform1f(SLOPE_MAX, SLOPE_MAX_TEXELS / (float)maps->size);
     glEnable(GL_DEPTH_TEST);
     glEnable(GL_DEPTH_CLAMP); /* the ground reaches beyond the casters' sphere; its moments are not clamped */
     glDepthFunc(GL_LEQUAL);

@@ -9,7 +9,7 @@
 
 #include <string.h>
 
-static const float edges_m[] = {0.08f, 0.05f, 0.02f, 0.011f};
+static const float edges_m[] = {0.08f, 0.05f, 0.02f, 0.014f};
 
 static tl_garment cut(const char *name, float edge_m)
 {
@@ -169,7 +169,7 @@ static void check_seams(const tl_garment *garment, const char *name, float edge_
     }
     qsort(sorted, mesh->vertex_count, sizeof *sorted, compare_positions);
     for (size_t v = 1; v < mesh->vertex_count; v++)
-        distinct += memcmp(&sorted[v], &sorted[v - 1], sizeof(vec3s)) != 0;
+        distinct += compare_positions(&sorted[v], &sorted[v - 1]) != 0;
     assert_int_equal(classes, distinct);
     free(sorted);
     free(weld);
@@ -222,7 +222,8 @@ static void test_topology(void **state)
 }
 
 /* The start is near enough to the flat pattern for a gentle settling: mean strain of edges below 2 %, none
- * beyond 20 %. Coarse edges cut corners of folds they cannot follow: twice as much. */
+ * beyond 20 %, everything at least 4 mm off the form (5 mm of ease in the waistband, 6 mm elsewhere). The
+ * bounds are what a settling solver takes in its stride, not what the cut can do. */
 static void check_start(const tl_garment *garment, const char *name, float edge_m)
 {
     const tl_mesh *mesh = &garment->model.mesh;
@@ -243,10 +244,9 @@ static void check_start(const tl_garment *garment, const char *name, float edge_
     }
     printf("%s at %g m: start strain mean %.4f, largest %.3f, nearest to the form %.4f m\n", name,
            (double)edge_m, mean, largest, nearest);
-    double coarse = edge_m > 0.03f ? 2 : 1;
-    assert_true(mean < 0.02 * coarse);
-    assert_true(largest < 0.20 * coarse);
-    assert_true(nearest > 0.003);
+    assert_true(mean < 0.02);
+    assert_true(largest < 0.20);
+    assert_true(nearest > 0.004);
 }
 
 static void test_start(void **state)

@@ -37,7 +37,7 @@ static double texel_solid_angle(const tl_image *image, int y)
 
 static const float *texel(const tl_image *image, int x, int y)
 {
-    return tl_image_floats(image) + 3 * (y * image->width + x);
+    return tl_image_floats(image) + 3 * ((size_t)y * (size_t)image->width + (size_t)x);
 }
 
 /* What the picture shows of one light (the room taken away): integral over the light's own rectangle, grown

@@ -36,13 +36,16 @@ static double height_at(const tl_weave *weave, int column, int row)
 static bool warp_on_top(const tl_weave *weave, int column, int row)
 {
     int side = weave->tint.width;
-    return tl_image_floats(&weave->tint)[3 * (wrapped(row, side) * side + wrapped(column, side))] == 1;
+    return tl_image_floats(&weave->tint)[3 * (size_t)(wrapped(row, side) * side + wrapped(column, side))] ==
+           1;
 }
 
 static double normal_component(const tl_weave *weave, int column, int row, int component)
 {
     int side = weave->normal.width;
-    return 2 * (tl_image_bytes(&weave->normal)[3 * (row * side + column) + component] / 255.0 - 0.5);
+    return 2 *
+           (tl_image_bytes(&weave->normal)[3 * (size_t)(row * side + column) + (size_t)component] / 255.0 -
+            0.5);
 }
 
 static void test_scale(void **state)
@@ -228,7 +231,7 @@ static void test_yarn_values(void **state)
     int side = weave.gloss.width;
     for (int k = 0; k < side * side; k++) {
         float gloss = tl_image_floats(&weave.gloss)[k];
-        const float *tint = tl_image_floats(&weave.tint) + 3 * k;
+        const float *tint = tl_image_floats(&weave.tint) + 3 * (size_t)k;
         bool warp = gloss == 0.1f;
         assert_true(warp || gloss == -0.2f);
         assert_true(tint[0] == (warp ? 1 : 0.125f) && tint[1] == (warp ? 0.5f : 0.25f) &&

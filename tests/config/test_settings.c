@@ -2,6 +2,7 @@
 #include "testing.h"
 
 #include "app/settings.h"
+#include "assets/garment.h"
 #include "config/embedded.h"
 #include "config/file.h"
 #include "config/memory.h"
@@ -110,6 +111,27 @@ static void test_model_in_place_of_a_scene(void **state)
     static const char *const dressed[] = {"scene.garment=shirt.gltf"};
     assert_ok(load("m.gltf", dressed, 1, &error), error);
     assert_string_equal(settings.scene.garment, "shirt.gltf");
+}
+
+/* The names that a scene may use are the garments that can be cut, and "none". */
+static void test_garment_names(void **state)
+{
+    (void)state;
+    tl_error error = {0};
+    size_t count = 0;
+    for (; tl_garment_names[count]; count++) {
+        char *assignment = tl_format("scene.garment=%s", tl_garment_names[count]);
+        const char *const assignments[] = {assignment};
+        assert_ok(load(NULL, assignments, 1, &error), error);
+        assert_string_equal(settings.scene.garment, tl_garment_names[count]);
+        free(assignment);
+    }
+    struct tl_binding bindings[TL_SETTINGS_TABLES];
+    tl_settings_bind(&settings, bindings);
+    const struct tl_option *garment = &bindings[0].table->rows[0];
+    assert_string_equal(garment->name, "garment");
+    assert_null(garment->choices[count + 1]);
+    assert_string_equal(garment->choices[count], "none");
 }
 
 /* A refusal leaves the settings as they were. */
@@ -256,6 +278,7 @@ int main(void)
         cmocka_unit_test_setup(test_built_in_scene, begin),
         cmocka_unit_test_setup(test_each_layer_wins, begin),
         cmocka_unit_test_setup(test_model_in_place_of_a_scene, begin),
+        cmocka_unit_test_setup(test_garment_names, begin),
         cmocka_unit_test_setup(test_refusals, begin),
         cmocka_unit_test_setup(test_shipped_files, begin),
         cmocka_unit_test_setup(test_readme_example, begin),

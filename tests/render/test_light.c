@@ -258,7 +258,7 @@ static void test_twice_the_same_bits(void **state)
     tl_renderer *another = tl_renderer_create(device->gpu, &error);
     assert_non_null(another);
     tl_image second = test_draw(another, &frame, &settings);
-    assert_memory_equal(first.texels, second.texels, 64 * 48 * 4 * sizeof(float));
+    assert_memory_equal(first.texels, second.texels, (size_t)64 * 48 * 4 * sizeof(float));
     tl_renderer_destroy(&another);
     tl_image_release(&first);
     tl_image_release(&second);

@@ -133,7 +133,7 @@ static void test_reuse_changes_nothing(void **state)
     tl_image kept = test_draw(device->renderer, &scene.frame, &scene.settings);
     tl_renderer *fresh = tl_renderer_create(device->gpu, &error);
     tl_image anew = test_draw(fresh, &scene.frame, &scene.settings);
-    assert_memory_equal(kept.texels, anew.texels, 48 * 32 * 4 * sizeof(float));
+    assert_memory_equal(kept.texels, anew.texels, (size_t)48 * 32 * 4 * sizeof(float));
     tl_renderer_destroy(&fresh);
     tl_image_release(&kept);
     tl_image_release(&anew);
@@ -152,20 +152,18 @@ static void test_memory(void **state)
     struct scene scene;
     tl_error error = {0};
     scene_open(&scene, daylight);
-    size_t others = tl_gpu_texture_bytes(device->gpu) - 0;
-    struct tl_render_memory before = tl_renderer_memory(device->renderer);
+    size_t others = tl_gpu_texture_bytes(device->gpu); /* of the group's renderer */
     tl_renderer *renderer = tl_renderer_create(device->gpu, &error);
     scene.settings.image.supersample = 2;
     for (int regions = 24; regions <= 48; regions += 24) {
         scene.settings.light.regions = regions;
         draw(renderer, &scene);
         struct tl_render_memory memory = tl_renderer_memory(renderer);
-        size_t count = (size_t)regions, vertices = 17 * 33 + 17 * 17 + 4,
-               indices = 6 * (16 * 32 + 16 * 16 + 1);
+        size_t count = (size_t)regions, vertices = 17 * 33 + 17 * 17 + 4, quads = 16 * 32 + 16 * 16 + 1;
         assert_int_equal(memory.pems, count * 6 * 8 * chain_texels(32));
         assert_int_equal(memory.maps, (count * 8 + 8 + 4) * 32 * 32);
         assert_int_equal(memory.targets, 48 * 32 * 4 * (16 + 3 * 8 + 4 + 16) + 48 * 32 * (16 + 4));
-        assert_int_equal(memory.surfaces, vertices * (12 + 12 + 16 + 8) + indices * 4);
+        assert_int_equal(memory.surfaces, vertices * (12 + 12 + 16 + 8) + quads * 6 * 4);
         assert_int_equal(memory.other, 256 * 4);
         assert_int_equal(memory.total,
                          memory.pems + memory.maps + memory.targets + memory.surfaces + memory.other);
@@ -173,7 +171,6 @@ static void test_memory(void **state)
     }
     tl_renderer_destroy(&renderer);
     assert_int_equal(tl_gpu_texture_bytes(device->gpu), others);
-    (void)before;
     scene_close(&scene);
 }
 
@@ -202,6 +199,9 @@ static void test_too_large(void **state)
     scene.settings = fine;
     scene.settings.image.width = 16384;
     scene.settings.image.supersample = 4;
+    expect_refusal(device->renderer, &scene, "make image.width");
+    scene.settings.image.height = 16384;
+    scene.settings.image.supersample = 1;
     expect_refusal(device->renderer, &scene, "make image.width");
     scene.settings = fine;
     draw(device->renderer, &scene);
@@ -263,21 +263,22 @@ static void test_extreme_settings(void **state)
     struct test_device *device = *state;
     const struct {
         int regions, pem_size, map_size, per_pass;
-    } cases[] = {{6, 4, 1, 1}, {384, 16, 2, 64}, {6, 32, 2048, 1}, {13, 5, 3, 12}, {6, 512, 16, 1}};
-    for (size_t i = 0; i < TL_COUNT(cases); i++)
-        for (int blur = 0; blur < 2; blur++) {
-            struct scene scene;
-            scene_open(&scene, daylight);
-            scene.settings.light.regions = cases[i].regions;
-            scene.settings.light.pem_size = cases[i].pem_size;
-            scene.settings.light.map_size = cases[i].map_size;
-            scene.settings.light.pems_per_pass = cases[i].per_pass;
-            scene.settings.light.blur_m = blur ? 10 : 0;
-            scene.settings.light.min_variance = 0;
-            scene.settings.light.depth_bias_m = 0;
-            expect_sane(device->renderer, &scene);
-            scene_close(&scene);
-        }
+        float blur_m;
+    } cases[] = {{6, 4, 1, 1, 10},   {384, 16, 2, 64, 10}, {13, 5, 3, 12, 0},
+                 {6, 512, 16, 1, 0}, {6, 8, 256, 6, 10},   {6, 8, 4096, 1, 0}};
+    for (size_t i = 0; i < TL_COUNT(cases); i++) {
+        struct scene scene;
+        scene_open(&scene, daylight);
+        scene.settings.light.regions = cases[i].regions;
+        scene.settings.light.pem_size = cases[i].pem_size;
+        scene.settings.light.map_size = cases[i].map_size;
+        scene.settings.light.pems_per_pass = cases[i].per_pass;
+        scene.settings.light.blur_m = cases[i].blur_m;
+        scene.settings.light.min_variance = 0;
+        scene.settings.light.depth_bias_m = 0;
+        expect_sane(device->renderer, &scene);
+        scene_close(&scene);
+    }
 }
 
 /* Normals of length 0, triangles of no area, no tangents, 1 mm and 100 m, nothing at all. */
@@ -370,7 +371,7 @@ static void test_show(void **state)
     struct scene scene;
     tl_error error = {0};
     scene_open(&scene, daylight);
-    scene.settings.image.background = 2;
+    scene.settings.image.background = TL_BACKGROUND_GREY;
     scene.settings.image.ground = false;
     scene.settings.image.exposure_ev = -20;
     tl_image shown;
@@ -381,6 +382,49 @@ static void test_show(void **state)
     for (int c = 0; c < 3; c++)
         assert_in_range(corner[c], 104, 106);
     tl_image_release(&shown);
+    scene_close(&scene);
+}
+
+static vec3s four_colours(vec3s d)
+{
+    if (fabsf(d.y) > 0.5f)
+        return (vec3s){{0, 0, 0}};
+    if (fabsf(d.x) > fabsf(d.z))
+        return d.x > 0 ? (vec3s){{0.5f, 0, 0}} : (vec3s){{0, 0.5f, 0}};
+    return d.z > 0 ? (vec3s){{0.5f, 0.5f, 0}} : (vec3s){{0, 0, 0.5f}};
+}
+
+static void expect_shown(struct test_device *device, const struct scene *scene, int red, int green, int blue)
+{
+    tl_error error = {0};
+    tl_image shown;
+    draw(device->renderer, scene);
+    assert_ok(tl_renderer_show_image(device->renderer, &shown, &error), error);
+    const uint8_t *middle = tl_image_bytes(&shown) + (size_t)3 * (16 * 48 + 24);
+    assert_near(middle[0], red, 1);
+    assert_near(middle[1], green, 1);
+    assert_near(middle[2], blue, 1);
+    tl_image_release(&shown);
+}
+
+/* The background is where the light comes from: -Z in the middle, +X to the right of it; a quarter of yaw
+ * brings +X there. 0.5 is sRGB 188; the tone mapper's offset is 0 where a channel is 0. */
+static void test_background_direction(void **state)
+{
+    struct test_device *device = *state;
+    struct scene scene;
+    scene_open(&scene, four_colours);
+    scene.frame.surface_count = 0;
+    scene.settings.image.ground = false;
+    scene.settings.image.background = TL_BACKGROUND_ENVIRONMENT;
+    scene.frame.camera.eye = (vec3s){{0, 1, 0}};
+    scene.frame.camera.target = (vec3s){{0, 1, -1}};
+    expect_shown(device, &scene, 0, 0, 188);
+    scene.frame.environment_yaw = (float)M_PI / 2;
+    expect_shown(device, &scene, 188, 0, 0);
+    scene.frame.environment_yaw = 0;
+    scene.frame.camera.target = (vec3s){{-1, 1, 0}};
+    expect_shown(device, &scene, 0, 188, 0);
     scene_close(&scene);
 }
 
@@ -398,6 +442,7 @@ int main(void)
         cmocka_unit_test(test_extreme_cameras),
         cmocka_unit_test(test_coverage),
         cmocka_unit_test(test_show),
+        cmocka_unit_test(test_background_direction),
     };
     return cmocka_run_group_tests(tests, test_device_open, test_device_close);
 }

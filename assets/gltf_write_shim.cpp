@@ -1,0 +1,220 @@
+extern "C" {
+#include "assets/model_export.h"
+#include "config/memory.h"
+}
+
+#include <tiny_gltf.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace
+{
+
+/* One file in the making. Every array goes to the end of the only buffer. */
+struct Writer {
+    tinygltf::Model model;
+    std::map<const tl_image *, int> textures; /* already written */
+};
+
+int add_view(Writer &writer, const void *bytes, size_t size, int target)
+{
+    std::vector<unsigned char> &data = writer.model.buffers[0].data;
+    data.resize((data.size() + 3) / 4 * 4); /* accessors start at multiples of their component's size */
+    tinygltf::BufferView view;
+    view.buffer = 0;
+    view.byteOffset = data.size();
+    view.byteLength = size;
+    view.target = target;
+    const unsigned char *first = static_cast<const unsigned char *>(bytes);
+    data.insert(data.end(), first, first + size);
+    writer.model.bufferViews.push_back(view);
+    return static_cast<int>(writer.model.bufferViews.size() - 1);
+}
+
+int add_accessor(Writer &writer, int view, size_t offset, size_t count, int component, int type)
+{
+    tinygltf::Accessor accessor;
+    accessor.bufferView = view;
+    accessor.byteOffset = offset;
+    accessor.componentType = component;
+    accessor.count = count;
+    accessor.type = type;
+    writer.model.accessors.push_back(accessor);
+    return static_cast<int>(writer.model.accessors.size() - 1);
+}
+
+int add_floats(Writer &writer, const float *values, size_t count, int components, int type)
+{
+    size_t bytes = count * static_cast<size_t>(components) * sizeof(float);
+    int view = add_view(writer, values, bytes, TINYGLTF_TARGET_ARRAY_BUFFER);
+    return add_accessor(writer, view, 0, count, TINYGLTF_COMPONENT_TYPE_FLOAT, type);
+}
+
+/* Positions must state their bounds [glTF 2.0, 3.6.2.5]. */
+int add_positions(Writer &writer, const tl_surface &surface)
+{
+    int index = add_floats(writer, surface.positions[0].raw, surface.vertex_count, 3, TINYGLTF_TYPE_VEC3);
+    tl_box box = tl_box_of(surface.positions, surface.vertex_count);
+    tinygltf::Accessor &accessor = writer.model.accessors[static_cast<size_t>(index)];
+    for (int i = 0; i < 3; i++) {
+        accessor.minValues.push_back(static_cast<double>(box.lower.raw[i]));
+        accessor.maxValues.push_back(static_cast<double>(box.upper.raw[i]));
+    }
+    return index;
+}
+
+/* -1 where there is no picture. Pictures are PNG in the buffer. */
+int add_texture(Writer &writer, const tl_image *image, const char *path, tl_error *error)
+{
+    auto known = writer.textures.find(image);
+    if (known != writer.textures.end())
+        return known->second;
+    void *png;
+    size_t size;
+    if (!tl_image_encode_png(path, image, &png, &size, error))
+        throw std::runtime_error("a map could not be encoded");
+    tinygltf::Image picture;
+    picture.mimeType = "image/png";
+    picture.bufferView = add_view(writer, png, size, 0);
+    std::free(png);
+    writer.model.images.push_back(picture);
+    tinygltf::Texture texture;
+    texture.source = static_cast<int>(writer.model.images.size() - 1);
+    writer.model.textures.push_back(texture);
+    int index = static_cast<int>(writer.model.textures.size() - 1);
+    writer.textures[image] = index;
+    return index;
+}
+
+tinygltf::Value pair_of(const float values[2])
+{
+    tinygltf::Value::Array array;
+    for (int i = 0; i < 2; i++)
+        array.emplace_back(static_cast<double>(values[i]));
+    return tinygltf::Value(array);
+}
+
+template <typename Info>
+void add_map(Writer &writer, const tl_map &map, Info &to, const char *path, tl_error *error)
+{
+    if (!map.image)
+        return;
+    to.index = add_texture(writer, map.image, path, error);
+    const tl_uv_transform &t = map.transform;
+    if (t.offset[0] == 0 && t.offset[1] == 0 && t.scale[0] == 1 && t.scale[1] == 1 && t.rotation == 0)
+        return;
+    tinygltf::Value::Object transform;
+    transform["offset"] = pair_of(t.offset);
+    transform["scale"] = pair_of(t.scale);
+    transform["rotation"] = tinygltf::Value(static_cast<double>(t.rotation));
+    to.extensions["KHR_texture_transform"] = tinygltf::Value(transform);
+    if (writer.model.extensionsUsed.empty())
+        writer.model.extensionsUsed.push_back("KHR_texture_transform");
+}
+
+/* The inverse of tl_glossiness_from_roughness where it has one: alpha^2 = 2 / (4 s + 2), roughness =
+ * alpha^0.5. */
+double roughness_of(float glossiness)
+{
+    double exponent = 1 / std::fmax(1 - static_cast<double>(glossiness), 1e-6);
+    return std::pow(2 / (4 * exponent + 2), 0.25);
+}
+
+/* glTF has one base colour for both lobes: the diffuse one, or for a metal the specular one. Gloss and
+ * specular maps have no place in it and stay behind. */
+int add_material(Writer &writer, const tl_material &from, const char *path, tl_error *error)
+{
+    tinygltf::Material to;
+    to.name = from.name;
+    bool metal = glms_vec3_max(from.diffuse) < 0.5f * glms_vec3_max(from.specular);
+    const vec3s &base = metal ? from.specular : from.diffuse;
+    to.pbrMetallicRoughness.baseColorFactor.clear();
+    for (float channel : base.raw)
+        to.pbrMetallicRoughness.baseColorFactor.push_back(static_cast<double>(channel));
+    to.pbrMetallicRoughness.baseColorFactor.push_back(1);
+    to.pbrMetallicRoughness.metallicFactor = metal ? 1 : 0;
+    to.pbrMetallicRoughness.roughnessFactor = roughness_of(from.glossiness);
+    to.normalTexture.scale = static_cast<double>(from.normal_scale);
+    to.occlusionTexture.strength = static_cast<double>(from.occlusion_strength);
+    to.doubleSided = from.double_sided;
+    if (from.alpha_cutoff > 0) {
+        to.alphaMode = "MASK";
+        to.alphaCutoff = static_cast<double>(from.alpha_cutoff);
+    }
+    add_map(writer, from.diffuse_map, to.pbrMetallicRoughness.baseColorTexture, path, error);
+    add_map(writer, from.normal_map, to.normalTexture, path, error);
+    add_map(writer, from.occlusion_map, to.occlusionTexture, path, error);
+    writer.model.materials.push_back(to);
+    return static_cast<int>(writer.model.materials.size() - 1);
+}
+
+void add_surface(Writer &writer, const tl_surface &surface, const char *path, tl_error *error)
+{
+    size_t count = surface.vertex_count;
+    std::map<std::string, int> attributes;
+    attributes["POSITION"] = add_positions(writer, surface);
+    attributes["NORMAL"] = add_floats(writer, surface.normals[0].raw, count, 3, TINYGLTF_TYPE_VEC3);
+    attributes["TANGENT"] = add_floats(writer, surface.tangents[0].raw, count, 4, TINYGLTF_TYPE_VEC4);
+    attributes["TEXCOORD_0"] = add_floats(writer, surface.uvs[0].raw, count, 2, TINYGLTF_TYPE_VEC2);
+    int indices = add_view(writer, surface.indices, surface.index_count * sizeof(uint32_t),
+                           TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
+    std::map<int, int> materials;
+    tinygltf::Mesh mesh;
+    mesh.name = surface.name;
+    for (size_t i = 0; i < surface.part_count; i++) {
+        const tl_mesh_part &part = surface.parts[i];
+        if (materials.find(part.material) == materials.end())
+            materials[part.material] = add_material(writer, surface.materials[part.material], path, error);
+        tinygltf::Primitive primitive;
+        primitive.attributes = attributes;
+        primitive.material = materials[part.material];
+        primitive.mode = TINYGLTF_MODE_TRIANGLES;
+        primitive.indices =
+            add_accessor(writer, indices, part.first_index * sizeof(uint32_t), part.index_count,
+                         TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR);
+        mesh.primitives.push_back(primitive);
+    }
+    writer.model.meshes.push_back(mesh);
+    tinygltf::Node node;
+    node.name = surface.name;
+    node.mesh = static_cast<int>(writer.model.meshes.size() - 1);
+    writer.model.nodes.push_back(node);
+    writer.model.scenes[0].nodes.push_back(static_cast<int>(writer.model.nodes.size() - 1));
+}
+
+} // namespace
+
+bool gltf_write_glb(const char *path, const tl_surface *surfaces, size_t surface_count, char **data,
+                    size_t *size, tl_error *error)
+{
+    try {
+        Writer writer;
+        writer.model.asset.version = "2.0";
+        writer.model.asset.generator = "toile";
+        writer.model.buffers.resize(1);
+        writer.model.scenes.resize(1);
+        writer.model.defaultScene = 0;
+        for (size_t i = 0; i < surface_count; i++)
+            add_surface(writer, surfaces[i], path, error);
+        std::ostringstream stream;
+        tinygltf::TinyGLTF format;
+        if (!format.WriteGltfSceneToStream(&writer.model, stream, false, true))
+            return tl_fail(error, TL_OUTPUT, "%s: the model could not be written as GLB: make it smaller",
+                           path);
+        const std::string bytes = stream.str();
+        *size = bytes.size();
+        *data = static_cast<char *>(tl_alloc(bytes.size(), 1));
+        std::memcpy(*data, bytes.data(), bytes.size());
+        return true;
+    } catch (const std::exception &failure) {
+        return tl_fail(error, TL_OUTPUT, "%s: the model could not be written as GLB: %s", path,
+                       failure.what());
+    }
+}

@@ -1,0 +1,549 @@
+#include "assets/model.h"
+
+#include "assets/model_read.h"
+#include "assets/rig.h"
+#include "config/memory.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MODE_TRIANGLES = 4, MODE_STRIP = 5, MODE_FAN = 6 };
+
+/* What is being put together. */
+struct builder {
+    const gltf_document *document;
+    tl_model *model;
+    tl_rig *rig;
+    vec3s *normals; /* [vertex_count] before any transform; zero where the file has none */
+    size_t vertex_capacity, index_capacity, part_capacity, slot_capacity;
+};
+
+void model_ignore(tl_model *model, const char *format, ...)
+{
+    char text[256];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    for (size_t i = 0; i < model->ignored_count; i++)
+        if (strcmp(model->ignored[i], text) == 0)
+            return;
+    model->ignored = tl_resize(model->ignored, model->ignored_count + 1, sizeof *model->ignored);
+    model->ignored[model->ignored_count++] = tl_copy_string(text);
+}
+
+/* ---- Slots: what vertices hang on ---- */
+
+static uint32_t add_slot(struct builder *builder, int node, mat4s bind)
+{
+    tl_rig *rig = builder->rig;
+    if (rig->slot_count == builder->slot_capacity) {
+        builder->slot_capacity = 2 * builder->slot_capacity + 64;
+        rig->slots = tl_resize(rig->slots, builder->slot_capacity, sizeof *rig->slots);
+    }
+    rig->slots[rig->slot_count] = (struct rig_slot){node, bind};
+    return (uint32_t)rig->slot_count++;
+}
+
+/* One slot a joint; returns the first. */
+static bool add_skin(struct builder *builder, int index, uint32_t *first, tl_error *error)
+{
+    const gltf_document *document = builder->document;
+    if ((size_t)index >= document->skin_count)
+        return tl_fail(error, TL_INPUT, "%s: skin %d does not exist: export the file again", document->path,
+                       index);
+    const struct gltf_skin *skin = &document->skins[index];
+    float *binds = NULL;
+    size_t bind_count = 0;
+    if (skin->inverse_binds >= 0 &&
+        !gltf_read_floats(document, skin->inverse_binds, "inverse bind matrices", 16,
+                          document->node_count + skin->joint_count, false, &binds, &bind_count, error))
+        return false;
+    *first = (uint32_t)builder->rig->slot_count;
+    bool good = skin->inverse_binds < 0 || bind_count >= skin->joint_count;
+    for (size_t i = 0; good && i < skin->joint_count; i++) {
+        mat4s bind = glms_mat4_identity();
+        if (binds)
+            memcpy(&bind, binds + 16 * i, sizeof bind);
+        good = skin->joints[i] >= 0 && (size_t)skin->joints[i] < document->node_count;
+        if (good)
+            add_slot(builder, skin->joints[i], bind);
+    }
+    free(binds);
+    if (!good)
+        tl_fail(error, TL_INPUT,
+                "%s: skin %d has joints or matrices that do not exist: export the file again", document->path,
+                index);
+    return good;
+}
+
+/* ---- Primitives ---- */
+
+struct primitive {
+    float *positions, *normals, *uvs, *weights;
+    uint32_t *joints, *indices;
+    size_t vertex_count, index_count;
+};
+
+static void release_primitive(struct primitive *primitive)
+{
+    free(primitive->positions);
+    free(primitive->normals);
+    free(primitive->uvs);
+    free(primitive->weights);
+    free(primitive->joints);
+    free(primitive->indices);
+}
+
+static bool read_attribute(const gltf_document *document, const struct gltf_primitive *from,
+                           enum gltf_attribute attribute, const char *what, int components,
+                           size_t vertex_count, float **out, tl_error *error)
+{
+    size_t count;
+    if (from->attributes[attribute] < 0)
+        return true;
+    /* Only positions must be finite: exporters write NaN normals and UVs for degenerate triangles. */
+    if (!gltf_read_floats(document, from->attributes[attribute], what, components, TL_LIMIT_MESH_VERTICES,
+                          true, out, &count, error))
+        return false;
+    if (count != vertex_count)
+        return tl_fail(error, TL_INPUT, "%s: %s: %zu for %zu vertices: export the file again", document->path,
+                       what, count, vertex_count);
+    for (size_t i = 0; i < count * (size_t)components; i++)
+        if (!isfinite((*out)[i]))
+            (*out)[i] = 0;
+    return true;
+}
+
+static bool read_joints(const gltf_document *document, const struct gltf_primitive *from, size_t joint_count,
+                        struct primitive *to, tl_error *error)
+{
+    size_t count;
+    if (!gltf_read_integers(document, from->attributes[GLTF_JOINTS], "joints", 4, TL_LIMIT_MESH_VERTICES,
+                            &to->joints, &count, error) ||
+        !read_attribute(document, from, GLTF_WEIGHTS, "joint weights", 4, to->vertex_count, &to->weights,
+                        error))
+        return false;
+    if (count != to->vertex_count || !to->weights)
+        return tl_fail(error, TL_INPUT, "%s: a skinned mesh lacks joints or weights: export the file again",
+                       document->path);
+    for (size_t i = 0; i < 4 * count; i++)
+        if (to->weights[i] > 0 && to->joints[i] >= joint_count)
+            return tl_fail(error, TL_INPUT, "%s: vertex %zu hangs on joint %u of %zu: export the file again",
+                           document->path, i / 4, to->joints[i], joint_count);
+    return true;
+}
+
+/* Strips and fans become triangles [glTF 2.0, 3.7.2.1]. */
+static void expand(int mode, struct primitive *primitive)
+{
+    if (mode == MODE_TRIANGLES) {
+        primitive->index_count -= primitive->index_count % 3;
+        return;
+    }
+    size_t triangles = primitive->index_count < 3 ? 0 : primitive->index_count - 2;
+    uint32_t *list = TL_NEW_ARRAY(uint32_t, 3 * triangles);
+    for (size_t i = 0; i < triangles; i++) {
+        const uint32_t *from = primitive->indices;
+        list[3 * i] = mode == MODE_STRIP ? from[i] : from[i + 1];
+        list[3 * i + 1] = mode == MODE_STRIP ? from[i + 1 + i % 2] : from[i + 2];
+        list[3 * i + 2] = mode == MODE_STRIP ? from[i + 2 - i % 2] : from[0];
+    }
+    free(primitive->indices);
+    primitive->indices = list;
+    primitive->index_count = 3 * triangles;
+}
+
+static bool read_indices(const gltf_document *document, const struct gltf_primitive *from,
+                         struct primitive *to, tl_error *error)
+{
+    if (from->indices < 0) {
+        to->index_count = to->vertex_count;
+        to->indices = TL_NEW_ARRAY(uint32_t, to->index_count);
+        for (size_t i = 0; i < to->index_count; i++)
+            to->indices[i] = (uint32_t)i;
+    } else if (!gltf_read_integers(document, from->indices, "indices", 1, TL_LIMIT_MESH_INDICES, &to->indices,
+                                   &to->index_count, error)) {
+        return false;
+    }
+    for (size_t i = 0; i < to->index_count; i++)
+        if (to->indices[i] >= to->vertex_count)
+            return tl_fail(error, TL_INPUT,
+                           "%s: index %zu names vertex %u of %zu: out of range, export the file again",
+                           document->path, i, to->indices[i], to->vertex_count);
+    expand(from->mode, to);
+    return true;
+}
+
+static bool read_primitive(const gltf_document *document, const struct gltf_primitive *from,
+                           size_t joint_count, struct primitive *to, tl_error *error)
+{
+    if (!gltf_read_floats(document, from->attributes[GLTF_POSITION], "positions", 3, TL_LIMIT_MESH_VERTICES,
+                          false, &to->positions, &to->vertex_count, error) ||
+        !read_attribute(document, from, GLTF_NORMAL, "normals", 3, to->vertex_count, &to->normals, error) ||
+        !read_attribute(document, from, GLTF_UV, "texture coordinates", 2, to->vertex_count, &to->uvs, error))
+        return false;
+    if (joint_count && from->attributes[GLTF_JOINTS] >= 0 &&
+        !read_joints(document, from, joint_count, to, error))
+        return false;
+    return read_indices(document, from, to, error);
+}
+
+static void note_ignored(struct builder *builder, const struct gltf_primitive *primitive)
+{
+    if (primitive->has_targets)
+        model_ignore(builder->model, "morph targets");
+    if (primitive->has_colours)
+        model_ignore(builder->model, "vertex colours");
+    if (primitive->has_second_uvs)
+        model_ignore(builder->model, "TEXCOORD_1 and beyond");
+    if (primitive->has_second_joints)
+        model_ignore(builder->model, "more than four joints a vertex");
+}
+
+static struct rig_influence influence_of(const struct primitive *primitive, size_t vertex,
+                                         uint32_t first_slot)
+{
+    const float *weights = primitive->weights + 4 * vertex;
+    float sum = 0;
+    for (int i = 0; i < 4; i++)
+        sum += fmaxf(weights[i], 0);
+    struct rig_influence influence = {.slots = {first_slot}, .weights = {1}};
+    for (int i = 0; sum > 0 && i < 4; i++) {
+        influence.weights[i] = fmaxf(weights[i], 0) / sum;
+        influence.slots[i] =
+            influence.weights[i] > 0 ? first_slot + primitive->joints[4 * vertex + (size_t)i] : first_slot;
+    }
+    return influence;
+}
+
+static void reserve(struct builder *builder, size_t vertices, size_t indices)
+{
+    tl_mesh *mesh = &builder->model->mesh;
+    tl_rig *rig = builder->rig;
+    if (mesh->vertex_count + vertices > builder->vertex_capacity) {
+        size_t capacity = builder->vertex_capacity = 2 * (mesh->vertex_count + vertices);
+        mesh->uvs = tl_resize(mesh->uvs, capacity, sizeof *mesh->uvs);
+        builder->normals = tl_resize(builder->normals, capacity, sizeof *builder->normals);
+        rig->local = tl_resize(rig->local, capacity, sizeof *rig->local);
+        rig->influences = tl_resize(rig->influences, capacity, sizeof *rig->influences);
+    }
+    if (mesh->index_count + indices > builder->index_capacity) {
+        builder->index_capacity = 2 * (mesh->index_count + indices);
+        mesh->indices = tl_resize(mesh->indices, builder->index_capacity, sizeof *mesh->indices);
+    }
+    if (mesh->part_count == builder->part_capacity) {
+        builder->part_capacity = 2 * builder->part_capacity + 8;
+        mesh->parts = tl_resize(mesh->parts, builder->part_capacity, sizeof *mesh->parts);
+    }
+}
+
+static void append_primitive(struct builder *builder, const struct primitive *from, int material,
+                             uint32_t first_slot)
+{
+    reserve(builder, from->vertex_count, from->index_count);
+    tl_mesh *mesh = &builder->model->mesh;
+    size_t base = mesh->vertex_count;
+    for (size_t i = 0; i < from->vertex_count; i++) {
+        memcpy(&builder->rig->local[base + i], from->positions + 3 * i, sizeof(vec3s));
+        builder->normals[base + i] = (vec3s){{0, 0, 0}};
+        if (from->normals)
+            memcpy(&builder->normals[base + i], from->normals + 3 * i, sizeof(vec3s));
+        mesh->uvs[base + i] = from->uvs ? (vec2s){{from->uvs[2 * i], from->uvs[2 * i + 1]}} : (vec2s){{0, 0}};
+        builder->rig->influences[base + i] =
+            from->weights ? influence_of(from, i, first_slot)
+                          : (struct rig_influence){.slots = {first_slot}, .weights = {1}};
+    }
+    for (size_t i = 0; i < from->index_count; i++)
+        mesh->indices[mesh->index_count + i] = from->indices[i] + (uint32_t)base;
+    size_t default_material = builder->model->material_count - 1;
+    bool known = material >= 0 && (size_t)material < default_material;
+    mesh->parts[mesh->part_count++] =
+        (struct tl_mesh_part){.first_index = (uint32_t)mesh->index_count,
+                              .index_count = (uint32_t)from->index_count,
+                              .material = known ? material : (int)default_material};
+    mesh->vertex_count += from->vertex_count;
+    mesh->index_count += from->index_count;
+    builder->rig->vertex_count = mesh->vertex_count;
+}
+
+static bool add_primitive(struct builder *builder, const struct gltf_primitive *from, int node, bool skinned,
+                          uint32_t first_joint, tl_error *error)
+{
+    const gltf_document *document = builder->document;
+    if (from->mode < MODE_TRIANGLES || from->mode > MODE_FAN) {
+        model_ignore(builder->model, "points and lines");
+        return true;
+    }
+    if (from->is_draco)
+        return tl_fail(error, TL_INPUT, "%s: is compressed with Draco: export it without compression",
+                       document->path);
+    if (from->attributes[GLTF_POSITION] < 0) {
+        model_ignore(builder->model, "primitives without positions");
+        return true;
+    }
+    note_ignored(builder, from);
+    struct primitive primitive = {0};
+    size_t joint_count = skinned ? builder->rig->slot_count - first_joint : 0;
+    bool good = read_primitive(document, from, joint_count, &primitive, error);
+    if (good && (builder->model->mesh.vertex_count + primitive.vertex_count > TL_LIMIT_MESH_VERTICES ||
+                 builder->model->mesh.index_count + primitive.index_count > TL_LIMIT_MESH_INDICES))
+        good = tl_fail(error, TL_INPUT, "%s: has more than %zu vertices or %zu triangles: simplify it",
+                       document->path, TL_LIMIT_MESH_VERTICES, TL_LIMIT_MESH_INDICES / 3);
+    if (good && primitive.index_count > 0)
+        append_primitive(builder, &primitive, from->material,
+                         primitive.weights ? first_joint : add_slot(builder, node, glms_mat4_identity()));
+    release_primitive(&primitive);
+    return good;
+}
+
+static bool add_node(struct builder *builder, int index, tl_error *error)
+{
+    const gltf_document *document = builder->document;
+    const struct gltf_node *node = &document->nodes[index];
+    if (node->mesh < 0)
+        return true;
+    if ((size_t)node->mesh >= document->mesh_count)
+        return tl_fail(error, TL_INPUT, "%s: mesh %d does not exist: export the file again", document->path,
+                       node->mesh);
+    uint32_t first_joint = 0;
+    bool skinned = node->skin >= 0;
+    if (skinned && !add_skin(builder, node->skin, &first_joint, error))
+        return false;
+    const struct gltf_mesh *mesh = &document->meshes[node->mesh];
+    for (size_t i = 0; i < mesh->primitive_count; i++)
+        if (!add_primitive(builder, &document->primitives[mesh->first_primitive + i], index, skinned,
+                           first_joint, error))
+            return false;
+    return true;
+}
+
+/* Nodes below the scene's roots, parents first. */
+static bool add_scene(struct builder *builder, tl_error *error)
+{
+    const gltf_document *document = builder->document;
+    const tl_rig *rig = builder->rig;
+    bool *shown = TL_NEW_ARRAY(bool, rig->node_count);
+    bool good = true;
+    for (size_t i = 0; good && i < document->root_count; i++) {
+        good = document->roots[i] >= 0 && (size_t)document->roots[i] < rig->node_count;
+        if (good)
+            shown[document->roots[i]] = true;
+        else
+            tl_fail(error, TL_INPUT, "%s: root node %d does not exist: export the file again", document->path,
+                    document->roots[i]);
+    }
+    for (size_t i = 0; good && i < rig->node_count; i++) {
+        int node = rig->order[i], parent = rig->nodes[node].parent;
+        shown[node] = shown[node] || !document->has_scene || (parent >= 0 && shown[parent]);
+        good = !shown[node] || add_node(builder, node, error);
+    }
+    free(shown);
+    return good;
+}
+
+/* ---- The rest pose ---- */
+
+struct by_position {
+    vec3s position;
+    uint32_t vertex;
+};
+
+static int compare_positions(const void *a, const void *b)
+{
+    return memcmp(&((const struct by_position *)a)->position, &((const struct by_position *)b)->position,
+                  sizeof(vec3s));
+}
+
+/* For vertices without a normal: area-weighted over the triangles of all vertices at the same place, because
+ * a garment is smooth across its UV seams. */
+static void smooth_normals(tl_mesh *mesh)
+{
+    size_t count = mesh->vertex_count;
+    vec3s *sums = TL_NEW_ARRAY(vec3s, count);
+    struct by_position *sorted = TL_NEW_ARRAY(struct by_position, count);
+    for (size_t i = 0; i + 2 < mesh->index_count; i += 3) {
+        const uint32_t *v = &mesh->indices[i];
+        vec3s side = glms_vec3_sub(mesh->positions[v[1]], mesh->positions[v[0]]);
+        vec3s area = glms_vec3_cross(side, glms_vec3_sub(mesh->positions[v[2]], mesh->positions[v[0]]));
+        for (int c = 0; c < 3; c++)
+            sums[v[c]] = glms_vec3_add(sums[v[c]], area);
+    }
+    for (size_t i = 0; i < count; i++)
+        sorted[i] =
+            (struct by_position){glms_vec3_adds(mesh->positions[i], 0), (uint32_t)i}; /* -0 becomes 0 */
+    qsort(sorted, count, sizeof *sorted, compare_positions);
+    for (size_t first = 0, end; first < count; first = end) {
+        vec3s sum = {{0, 0, 0}};
+        for (end = first; end < count && compare_positions(&sorted[first], &sorted[end]) == 0; end++)
+            sum = glms_vec3_add(sum, sums[sorted[end].vertex]);
+        float length = glms_vec3_norm(sum);
+        vec3s normal = length > 0 ? glms_vec3_divs(sum, length) : (vec3s){{0, 1, 0}};
+        for (size_t i = first; i < end; i++)
+            if (glms_vec3_norm2(mesh->normals[sorted[i].vertex]) == 0)
+                mesh->normals[sorted[i].vertex] = normal;
+    }
+    free(sorted);
+    free(sums);
+}
+
+/* Columns of the cofactor matrix: normals under any linear map, scaled or mirrored. */
+static vec3s turn_normal(const mat4s *m, vec3s n)
+{
+    vec3s x = {{m->m00, m->m01, m->m02}}, y = {{m->m10, m->m11, m->m12}}, z = {{m->m20, m->m21, m->m22}};
+    vec3s turned = glms_vec3_scale(glms_vec3_cross(y, z), n.x);
+    turned = glms_vec3_muladds(glms_vec3_cross(z, x), n.y, turned);
+    turned = glms_vec3_muladds(glms_vec3_cross(x, y), n.z, turned);
+    if (glms_vec3_dot(glms_vec3_cross(x, y), z) < 0)
+        turned = glms_vec3_negate(turned);
+    return turned;
+}
+
+static void place_normals(const struct builder *builder, const mat4s *world)
+{
+    tl_mesh *mesh = &builder->model->mesh;
+    const tl_rig *rig = builder->rig;
+    for (size_t i = 0; i < mesh->vertex_count; i++) {
+        vec3s sum = {{0, 0, 0}};
+        for (int k = 0; k < 4; k++) {
+            const struct rig_slot *slot = &rig->slots[rig->influences[i].slots[k]];
+            if (rig->influences[i].weights[k] <= 0)
+                continue;
+            mat4s matrix = glms_mat4_mul(world[slot->node], slot->bind);
+            sum = glms_vec3_muladds(turn_normal(&matrix, builder->normals[i]), rig->influences[i].weights[k],
+                                    sum);
+        }
+        float length = glms_vec3_norm(sum);
+        mesh->normals[i] = length > 0 && isfinite(length) ? glms_vec3_divs(sum, length) : (vec3s){{0, 0, 0}};
+    }
+}
+
+/* A mirrored node turns its triangles inside out: their winding is mended [glTF 2.0, 3.7.4]. */
+static void mend_winding(const struct builder *builder, const mat4s *world)
+{
+    tl_mesh *mesh = &builder->model->mesh;
+    for (size_t p = 0; p < mesh->part_count; p++) {
+        uint32_t *indices = &mesh->indices[mesh->parts[p].first_index];
+        const struct rig_slot *slot = &builder->rig->slots[builder->rig->influences[indices[0]].slots[0]];
+        mat4s matrix = glms_mat4_mul(world[slot->node], slot->bind);
+        if (glms_mat4_det(matrix) >= 0)
+            continue;
+        for (uint32_t i = 0; i + 2 < mesh->parts[p].index_count; i += 3) {
+            uint32_t swap = indices[i + 1];
+            indices[i + 1] = indices[i + 2];
+            indices[i + 2] = swap;
+        }
+    }
+}
+
+static bool finish(struct builder *builder, tl_error *error)
+{
+    tl_model *model = builder->model;
+    tl_mesh *mesh = &model->mesh;
+    if (mesh->index_count == 0)
+        return tl_fail(error, TL_INPUT, "%s: holds no mesh with triangles: choose another file",
+                       builder->document->path);
+    mesh->positions = TL_NEW_ARRAY(vec3s, mesh->vertex_count);
+    mesh->normals = TL_NEW_ARRAY(vec3s, mesh->vertex_count);
+    mat4s *world = TL_NEW_ARRAY(mat4s, builder->rig->node_count);
+    rig_world(builder->rig, -1, 0, world);
+    rig_place(builder->rig, world, mesh->positions);
+    mend_winding(builder, world);
+    place_normals(builder, world);
+    free(world);
+    smooth_normals(mesh);
+    tl_mesh_measure_uvs(mesh);
+    const float farthest_m =
+        1e5f; /* beyond it a float has no millimetres left, and scales that overflow end here */
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        if (!(glms_vec3_norm(mesh->positions[i]) <= farthest_m))
+            return tl_fail(error, TL_INPUT,
+                           "%s: vertex %zu lies more than 100 km away or is not finite: check its units",
+                           builder->document->path, i);
+    return true;
+}
+
+/* ---- The whole ---- */
+
+static bool check_extensions(const gltf_document *document, tl_model *model, tl_error *error)
+{
+    static const char *const known[] = {"KHR_texture_transform", "KHR_mesh_quantization"};
+    static const char *const compressed[] = {"KHR_draco_mesh_compression", "EXT_meshopt_compression",
+                                             "KHR_meshopt_compression"};
+    for (size_t i = 0; i < document->required_count; i++)
+        for (size_t k = 0; k < TL_COUNT(compressed); k++)
+            if (strcmp(document->required[i], compressed[k]) == 0)
+                return tl_fail(error, TL_INPUT, "%s: needs %s: export it without compression", document->path,
+                               compressed[k]);
+    for (size_t i = 0; i < document->used_count; i++) {
+        bool has_effect = false;
+        for (size_t k = 0; k < TL_COUNT(known); k++)
+            has_effect |= strcmp(document->used[i], known[k]) == 0;
+        if (!has_effect)
+            model_ignore(model, "%s", document->used[i]);
+    }
+    if (document->has_cameras)
+        model_ignore(model, "cameras");
+    if (document->has_lights)
+        model_ignore(model, "lights");
+    return true;
+}
+
+static void name_clips(const gltf_document *document, tl_model *model)
+{
+    model->clip_count = model->rig->clip_count;
+    model->clips = TL_NEW_ARRAY(struct tl_clip, model->clip_count);
+    for (size_t i = 0; i < model->clip_count; i++) {
+        const char *name = document->animations[i].name;
+        if (name && name[0])
+            snprintf(model->clips[i].name, sizeof model->clips[i].name, "%s", name);
+        else
+            snprintf(model->clips[i].name, sizeof model->clips[i].name, "clip %zu", i);
+        model->clips[i].duration_s = model->rig->clips[i].duration_s;
+    }
+}
+
+bool tl_model_load(const char *path, tl_model *out, tl_error *error)
+{
+    *out = (tl_model){0};
+    gltf_document document;
+    if (!gltf_open(path, &document, error))
+        return false;
+    const char *slash = strrchr(path, '/');
+    out->name = tl_copy_string(slash ? slash + 1 : path);
+    out->rig = TL_NEW(tl_rig);
+    struct builder builder = {.document = &document, .model = out, .rig = out->rig};
+    bool loaded = check_extensions(&document, out, error) && rig_read(&document, out->rig, error);
+    if (loaded) {
+        model_read_materials(&document, out);
+        loaded = add_scene(&builder, error) && finish(&builder, error);
+    }
+    if (loaded)
+        name_clips(&document, out);
+    if (loaded && out->clip_count == 0)
+        rig_destroy(&out->rig);
+    free(builder.normals);
+    gltf_close(&document);
+    if (!loaded)
+        tl_model_release(out);
+    return loaded;
+}
+
+void tl_model_release(tl_model *model)
+{
+    tl_mesh_release(&model->mesh);
+    rig_destroy(&model->rig);
+    for (size_t i = 0; i < model->image_count; i++)
+        tl_image_release(&model->images[i]);
+    for (size_t i = 0; i < model->ignored_count; i++)
+        free(model->ignored[i]);
+    free(model->ignored);
+    free(model->images);
+    free(model->materials);
+    free(model->clips);
+    free(model->name);
+    *model = (tl_model){0};
+}

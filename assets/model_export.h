@@ -1,0 +1,12 @@
+/* tl_model_export_glb's way into tinygltf. Private to assets. */
+#ifndef TOILE_ASSETS_MODEL_EXPORT_H
+#define TOILE_ASSETS_MODEL_EXPORT_H
+
+#include "assets/surface.h"
+#include "config/error.h"
+
+/* The surfaces as one GLB in memory; free(*data). Message on failure names `path`. */
+bool gltf_write_glb(const char *path, const tl_surface *surfaces, size_t surface_count, char **data,
+                    size_t *size, tl_error *error);
+
+#endif

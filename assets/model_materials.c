@@ -1,0 +1,176 @@
+#include "assets/model_read.h"
+#include "config/memory.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What a decoded picture is used for decides how its texels are read. */
+enum use { COLOUR, DATA, GLOSS };
+
+struct loaded {
+    int source; /* glTF image */
+    enum use use;
+    float roughness;       /* GLOSS: factor */
+    float metallic_mean;   /* GLOSS: of the blue channel */
+    bool metallic_varies;  /* GLOSS */
+    const tl_image *image; /* NULL: could not be read */
+};
+
+struct reader {
+    const gltf_document *document;
+    tl_model *model;
+    struct loaded *loaded;
+    size_t loaded_count;
+};
+
+static bool decode(struct reader *reader, int source, tl_image *out)
+{
+    const gltf_document *document = reader->document;
+    tl_error error;
+    if (source < 0 || (size_t)source >= document->image_count) {
+        model_ignore(reader->model, "texture without a picture that can be read");
+        return false;
+    }
+    const struct gltf_image *image = &document->images[source];
+    const uint8_t *bytes = image->data;
+    size_t size = image->size;
+    char name[160];
+    snprintf(name, sizeof name, "image %d %s", source, image->name ? image->name : "");
+    if (!bytes && image->view >= 0 && !gltf_view_bytes(document, image->view, name, &bytes, &size, &error)) {
+        model_ignore(reader->model, "%s", error.message);
+        return false;
+    }
+    if (!bytes) {
+        model_ignore(reader->model, "%s: no such file", name);
+        return false;
+    }
+    if (!tl_image_decode(name, bytes, size, out, &error)) {
+        model_ignore(reader->model, "%s", error.message);
+        return false;
+    }
+    return true;
+}
+
+/* glTF packs roughness in green and metalness in blue. A gloss map holds g of each texel; metalness becomes
+ * its mean, which is exact for cloth (0) and plain metal (1). */
+static void unpack_roughness(const tl_image *packed, struct loaded *to, tl_image *gloss)
+{
+    *gloss = tl_image_create(packed->width, packed->height, 1, TL_IMAGE_U8);
+    gloss->linear = true;
+    size_t texels = (size_t)packed->width * (size_t)packed->height, channels = (size_t)packed->channels;
+    const uint8_t *from = tl_image_bytes(packed);
+    uint8_t table[256];
+    for (int i = 0; i < 256; i++)
+        table[i] = (uint8_t)lrintf(255 * tl_glossiness_from_roughness(to->roughness * (float)i / 255));
+    uint64_t sum = 0;
+    uint8_t lowest = 255, highest = 0;
+    for (size_t i = 0; i < texels; i++) {
+        uint8_t green = from[i * channels + (channels > 2 ? 1 : 0)];
+        uint8_t blue = channels > 2 ? from[i * channels + 2] : 0;
+        tl_image_bytes(gloss)[i] = table[green];
+        sum += blue;
+        lowest = blue < lowest ? blue : lowest;
+        highest = blue > highest ? blue : highest;
+    }
+    to->metallic_mean = (float)((double)sum / (255.0 * (double)texels));
+    to->metallic_varies = highest - lowest > 25;
+}
+
+static const struct loaded *load_image(struct reader *reader, int source, enum use use, float roughness)
+{
+    for (size_t i = 0; i < reader->loaded_count; i++) {
+        const struct loaded *known = &reader->loaded[i];
+        if (known->source == source && known->use == use && (use != GLOSS || known->roughness == roughness))
+            return known;
+    }
+    struct loaded *fresh = &reader->loaded[reader->loaded_count++];
+    *fresh = (struct loaded){.source = source, .use = use, .roughness = roughness};
+    tl_image decoded;
+    if (!decode(reader, source, &decoded))
+        return fresh;
+    tl_image *kept = &reader->model->images[reader->model->image_count++];
+    if (use == GLOSS) {
+        unpack_roughness(&decoded, fresh, kept);
+        tl_image_release(&decoded);
+    } else {
+        *kept = decoded;
+        kept->linear = use == DATA;
+    }
+    fresh->image = kept;
+    return fresh;
+}
+
+static const struct loaded *read_map(struct reader *reader, const struct gltf_texture *texture, enum use use,
+                                     float roughness, struct tl_map *map)
+{
+    static const struct loaded none = {0};
+    if (!texture->used)
+        return &none;
+    if (texture->uv_set != 0) {
+        model_ignore(reader->model, "maps on TEXCOORD_%d", texture->uv_set);
+        return &none;
+    }
+    const struct loaded *loaded = load_image(reader, texture->image, use, roughness);
+    map->image = loaded->image;
+    map->transform = texture->transform;
+    map->clamp_u = texture->clamp_u;
+    map->clamp_v = texture->clamp_v;
+    return loaded;
+}
+
+static float unit(float value, float otherwise)
+{
+    return isfinite(value) ? fminf(fmaxf(value, 0), 1) : otherwise;
+}
+
+/* glTF's metallic-roughness model in two lobes: diffuse = base (1 - metallic), F0 = mix(0.04, base,
+ * metallic). */
+static tl_material read_material(struct reader *reader, const struct gltf_material *from)
+{
+    tl_material to = tl_material_default(from->name && from->name[0] ? from->name : "unnamed");
+    float metallic = unit(from->metallic, 1), roughness = unit(from->roughness, 1);
+    to.double_sided = from->double_sided;
+    to.normal_scale = isfinite(from->normal_scale) ? from->normal_scale : 1;
+    to.occlusion_strength = unit(from->occlusion_strength, 1);
+    to.glossiness = tl_glossiness_from_roughness(roughness);
+    read_map(reader, &from->base_colour_map, COLOUR, 0, &to.diffuse_map);
+    read_map(reader, &from->normal_map, DATA, 0, &to.normal_map);
+    read_map(reader, &from->occlusion_map, DATA, 0, &to.occlusion_map);
+    const struct loaded *packed =
+        read_map(reader, &from->metallic_roughness_map, GLOSS, roughness, &to.gloss_map);
+    if (packed->image) {
+        to.glossiness = 1; /* the map has it all */
+        metallic *= packed->metallic_mean;
+        if (packed->metallic_varies)
+            model_ignore(reader->model, "metalness that varies over a texture (its mean is used)");
+    }
+    for (int i = 0; i < 3; i++) {
+        float base = unit(from->base_colour[i], 1);
+        to.diffuse.raw[i] = base * (1 - metallic);
+        to.specular.raw[i] = 0.04f * (1 - metallic) + base * metallic;
+    }
+    if (from->alpha == GLTF_MASK)
+        to.alpha_cutoff = fmaxf(unit(from->alpha_cutoff, 0.5f), 1e-3f);
+    if (from->alpha == GLTF_BLEND) {
+        to.alpha_cutoff = 0.5f;
+        model_ignore(reader->model, "alpha blending (shown as a mask at 0.5)");
+    }
+    if (from->is_emissive)
+        model_ignore(reader->model, "emission");
+    return to;
+}
+
+void model_read_materials(const gltf_document *document, tl_model *model)
+{
+    size_t count = document->material_count;
+    struct reader reader = {document, model, TL_NEW_ARRAY(struct loaded, 4 * count), 0};
+    model->images = TL_NEW_ARRAY(tl_image, 4 * count); /* never moved: materials point into it */
+    model->materials = TL_NEW_ARRAY(tl_material, count + 1);
+    model->material_count = count + 1;
+    for (size_t i = 0; i < count; i++)
+        model->materials[i] = read_material(&reader, &document->materials[i]);
+    model->materials[count] = tl_material_default("default");
+    free(reader.loaded);
+}

@@ -1,0 +1,15 @@
+/* The parts of tl_model_load: geometry (model.c) and materials (model_materials.c). Private to assets. */
+#ifndef TOILE_ASSETS_MODEL_READ_H
+#define TOILE_ASSETS_MODEL_READ_H
+
+#include "assets/gltf.h"
+#include "assets/model.h"
+
+/* Notes once that something of the file has no effect. */
+void model_ignore(tl_model *model, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* materials, images: one tl_material for each of the file's and a default one after them. An image that is
+ * missing or cannot be decoded is noted, and its map left out. */
+void model_read_materials(const gltf_document *document, tl_model *model);
+
+#endif

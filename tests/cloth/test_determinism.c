@@ -1,0 +1,157 @@
+/* The same bits every time and at any number of threads: an FNV-1a hash of all positions, frame by frame. */
+#include "bodies.h"
+#include "cloth/frames.h"
+#include "cloth/state.h"
+#include "sheets.h"
+#include "testing.h"
+
+#include "config/log.h"
+
+#include <omp.h>
+
+#define FRAMES 12
+
+static uint64_t hash_bytes(uint64_t hash, const void *data, size_t size)
+{
+    const unsigned char *bytes = data;
+    for (size_t i = 0; i < size; i++)
+        hash = (hash ^ bytes[i]) * 1099511628211u;
+    return hash;
+}
+
+static vec3s above(double u, double v)
+{
+    return (vec3s){{(float)(u - 0.3), 0.71f, (float)(0.3 - v)}};
+}
+
+struct run {
+    tl_garment garment;
+    tl_mesh sphere;
+    tl_collider *collider;
+    tl_cloth *cloth;
+    tl_frames *frames;
+};
+
+static void begin(struct run *run)
+{
+    tl_error error = {0};
+    const struct sheet_shape shape = {40, 40, 0.6, 0.6};
+    run->garment = sheet_make(&shape, above); /* the cloth borrows it: it must stay where it is */
+    run->sphere = body_sphere((vec3s){{0, 0.5f, 0}}, 0.2, 24);
+    struct tl_cloth_fabric fabric = fabric_defaults();
+    struct tl_cloth_params params = params_defaults();
+    params.substeps = 5;
+    run->collider = tl_collider_create(&run->sphere, true, &error);
+    run->cloth = tl_cloth_create(&run->garment, &fabric, &params, &error);
+    assert_non_null(run->cloth);
+    run->frames = tl_frames_create(&run->garment.model.mesh, tl_cloth_weld(run->cloth));
+}
+
+/* The sphere sways while the cloth falls on it. */
+static void play(struct run *run, uint64_t hashes[FRAMES])
+{
+    tl_error error = {0};
+    size_t count = run->garment.model.mesh.vertex_count;
+    vec3s *positions = TL_NEW_ARRAY(vec3s, count), *normals = TL_NEW_ARRAY(vec3s, count);
+    vec4s *tangents = TL_NEW_ARRAY(vec4s, count);
+    vec3s *body = TL_NEW_ARRAY(vec3s, run->sphere.vertex_count);
+    for (int frame = 0; frame < FRAMES; frame++) {
+        for (size_t i = 0; i < run->sphere.vertex_count; i++)
+            body[i] = (vec3s){{run->sphere.positions[i].x + 0.02f * sinf(0.5f * (float)frame),
+                               run->sphere.positions[i].y, run->sphere.positions[i].z}};
+        tl_collider_move(run->collider, body);
+        assert_ok(tl_cloth_step(run->cloth, run->collider, &error), error);
+        tl_cloth_positions(run->cloth, positions);
+        tl_frames_update(run->frames, positions, normals, tangents);
+        hashes[frame] = hash_bytes(14695981039346656037u, positions, count * sizeof *positions);
+        hashes[frame] = hash_bytes(hashes[frame], normals, count * sizeof *normals);
+        hashes[frame] = hash_bytes(hashes[frame], tangents, count * sizeof *tangents);
+    }
+    free(positions);
+    free(normals);
+    free(tangents);
+    free(body);
+}
+
+static void end(struct run *run)
+{
+    tl_frames_destroy(&run->frames);
+    tl_cloth_destroy(&run->cloth);
+    tl_collider_destroy(&run->collider);
+    tl_mesh_release(&run->sphere);
+    sheet_free(&run->garment);
+}
+
+static void test_threads(void **state)
+{
+    (void)state;
+    uint64_t hashes[3][FRAMES];
+    for (int threads = 1; threads <= 3; threads++) {
+        omp_set_num_threads(threads);
+        struct run run;
+        begin(&run);
+        play(&run, hashes[threads - 1]);
+        end(&run);
+    }
+    assert_memory_equal(hashes[0], hashes[1], sizeof hashes[0]);
+    assert_memory_equal(hashes[0], hashes[2], sizeof hashes[0]);
+    assert_true(hashes[0][FRAMES - 1] != hashes[0][FRAMES - 2]); /* something moves */
+}
+
+/* After a reset the same frames come again; after a change of material they do not. */
+static void test_reset(void **state)
+{
+    (void)state;
+    tl_error error = {0};
+    uint64_t first[FRAMES], again[FRAMES], other[FRAMES];
+    struct run run;
+    begin(&run);
+    play(&run, first);
+    tl_cloth_reset(run.cloth);
+    tl_collider_move(run.collider, run.sphere.positions);
+    tl_collider_move(run.collider, run.sphere.positions);
+    play(&run, again);
+    assert_memory_equal(first, again, sizeof first);
+    struct tl_cloth_fabric fabric = fabric_defaults();
+    struct tl_cloth_params params = params_defaults();
+    params.substeps = 5;
+    fabric.shear *= 2;
+    assert_ok(tl_cloth_set(run.cloth, &fabric, &params, &error), error);
+    tl_cloth_reset(run.cloth);
+    tl_collider_move(run.collider, run.sphere.positions);
+    tl_collider_move(run.collider, run.sphere.positions);
+    play(&run, other);
+    assert_true(first[FRAMES - 1] != other[FRAMES - 1]);
+    end(&run);
+}
+
+/* A marked start comes back with the same frames after it. */
+static void test_marked_start(void **state)
+{
+    (void)state;
+    uint64_t first[FRAMES], again[FRAMES], away[FRAMES];
+    struct run run;
+    begin(&run);
+    play(&run, away);
+    for (int i = 0; i < 2; i++)
+        tl_collider_move(run.collider, run.sphere.positions);
+    tl_cloth_mark_start(run.cloth);
+    play(&run, first);
+    for (int i = 0; i < 2; i++)
+        tl_collider_move(run.collider, run.sphere.positions);
+    tl_cloth_reset(run.cloth);
+    play(&run, again);
+    assert_memory_equal(first, again, sizeof first);
+    end(&run);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_reset),
+        cmocka_unit_test(test_marked_start),
+    };
+    tl_log_set_level(TL_LOG_WARN);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

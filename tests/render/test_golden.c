@@ -1,0 +1,175 @@
+/* Small linear images, kept in tests/render/golden/. Software GL draws the same everywhere but for the last
+ * bits, so a pixel may differ by a 500th of its value (at least of 1), and one in 200, at the edges of
+ * shapes and shadows, by more. A golden that is missing, or that differs, writes what was drawn beside the
+ * test's executable and fails; look at it, and copy it over the golden when it is right. */
+#include "shapes.h"
+
+#include "assets/exr.h"
+#include "config/memory.h"
+
+#include "testing.h"
+
+#define PIXEL_TOLERANCE  (1 / 500.0)
+#define FAILING_FRACTION (1 / 200.0)
+
+static vec3s room(vec3s d)
+{
+    if (glms_vec3_dot(d, glms_vec3_normalize((vec3s){{0.5f, 0.8f, 0.6f}})) > 0.99f)
+        return (vec3s){{90, 80, 60}};
+    if (d.x < -0.8f && fabsf(d.y) < 0.4f)
+        return (vec3s){{2, 3, 4}};
+    return (vec3s){{0.3f + 0.1f * d.y, 0.3f, 0.35f - 0.1f * d.y}};
+}
+
+static void write_drawn(const char *path, const tl_image *image)
+{
+    static const char *const names[] = {"R", "G", "B", "A"};
+    const struct tl_exr_layer layer = {names, image};
+    tl_error error = {0};
+    assert_ok(tl_exr_save(path, &layer, 1, &error), error);
+}
+
+static size_t differing_pixels(const tl_image *drawn, const tl_image *golden)
+{
+    size_t failing = 0;
+    for (size_t p = 0; p < (size_t)drawn->width * (size_t)drawn->height; p++) {
+        bool same = true;
+        for (size_t c = 4 * p; c < 4 * p + 4; c++) {
+            double expected = (double)tl_image_floats(golden)[c];
+            double difference = fabs((double)tl_image_floats(drawn)[c] - expected);
+            same = same && difference <= PIXEL_TOLERANCE * fmax(1, expected);
+        }
+        failing += !same;
+    }
+    return failing;
+}
+
+static void check_golden(const char *name, const tl_image *drawn)
+{
+    char *golden_path = tl_format("%s/tests/render/golden/%s.exr", TOILE_SOURCE_DIR, name);
+    char *drawn_path = tl_format("%s/%s.exr", TOILE_SCRATCH_DIR, name);
+    tl_error error = {0};
+    tl_image golden = {0};
+    enum tl_exr_envmap envmap;
+    size_t pixels = (size_t)drawn->width * (size_t)drawn->height, failing = pixels;
+    bool found = tl_exr_load(golden_path, &golden, &envmap, &error);
+    if (found && golden.width == drawn->width && golden.height == drawn->height && golden.channels == 4)
+        failing = differing_pixels(drawn, &golden);
+    bool passed = (double)failing <= FAILING_FRACTION * (double)pixels;
+    if (!passed) {
+        write_drawn(drawn_path, drawn);
+        print_error("%s: %zu of %zu pixels differ from %s: drawn is %s\n", found ? name : error.message,
+                    failing, pixels, golden_path, drawn_path);
+    }
+    tl_image_release(&golden);
+    free(golden_path);
+    free(drawn_path);
+    assert_true(passed);
+}
+
+/* A ball under a waved sheet on the ground, half a cloth of coarse weave behind them. */
+struct scene {
+    tl_environment environment;
+    struct test_shape shapes[3];
+    tl_surface surfaces[3];
+    tl_weave weave;
+    tl_frame frame;
+    struct tl_render_settings settings;
+};
+
+/* A plain weave drawn with sines, 8 texels a yarn. */
+static tl_weave coarse_weave(void)
+{
+    tl_weave weave = {.size_m = {0.08f, 0.08f},
+                      .normal = tl_image_create(16, 16, 3, TL_IMAGE_U8),
+                      .height = tl_image_create(16, 16, 1, TL_IMAGE_F32),
+                      .gloss = tl_image_create(16, 16, 1, TL_IMAGE_F32),
+                      .tint = tl_image_create(16, 16, 3, TL_IMAGE_F32)};
+    weave.normal.linear = true;
+    for (int i = 0; i < 16 * 16; i++) {
+        int column = i % 16, row = i / 16;
+        float u = ((float)column + 0.5f) * (float)M_PI / 8, v = ((float)row + 0.5f) * (float)M_PI / 8;
+        vec3s n = glms_vec3_normalize((vec3s){{0.5f * cosf(u) * sinf(v), 0.5f * sinf(u) * cosf(v), 1}});
+        for (int c = 0; c < 3; c++) {
+            tl_image_bytes(&weave.normal)[3 * i + c] = (uint8_t)lroundf(127.5f + 127.5f * n.raw[c]);
+            tl_image_floats(&weave.tint)[3 * i + c] = sinf(u) * sinf(v) > 0 ? 1 : 0.4f + 0.2f * (float)c;
+        }
+        tl_image_floats(&weave.gloss)[i] = 0.2f * sinf(u) * sinf(v);
+    }
+    return weave;
+}
+
+static void scene_open(struct scene *scene)
+{
+    scene->environment = test_environment(128, 64, room);
+    scene->weave = coarse_weave();
+    scene->shapes[0] = test_sphere((vec3s){{0.1f, 0.35f, 0}}, 0.35f, 24);
+    scene->shapes[1] = test_sheet(0.95f, 0.4f, 0.05f, 1.5f, 32);
+    scene->shapes[2] = test_square((vec3s){{-0.6f, 0.5f, -0.3f}}, (vec3s){{0.8f, 0, 0.6f}},
+                                   (vec3s){{-0.6f, 0, 0.8f}}, 0.4f, 4);
+    scene->shapes[0].material.diffuse = (vec3s){{0.1f, 0.1f, 0.4f}};
+    scene->shapes[0].material.specular = (vec3s){{0.5f, 0.5f, 0.5f}};
+    scene->shapes[0].material.glossiness = 0.95f;
+    scene->shapes[1].material.diffuse = (vec3s){{0.6f, 0.2f, 0.1f}};
+    scene->shapes[1].material.glossiness = 0.6f;
+    scene->shapes[2].material.weave = &scene->weave;
+    for (int i = 0; i < 3; i++) {
+        test_shape_refresh(&scene->shapes[i]);
+        scene->surfaces[i] = scene->shapes[i].surface;
+    }
+    scene->frame = test_frame((vec3s){{0.6f, 1.3f, 2.4f}}, (vec3s){{-0.1f, 0.5f, 0}}, 35, scene->surfaces, 3,
+                              &scene->environment);
+    scene->settings = test_settings(96, 64);
+    scene->settings.light.map_size = 128;
+    scene->settings.image.ground = true;
+    scene->settings.image.supersample = 2;
+}
+
+static void scene_close(struct scene *scene)
+{
+    tl_environment_release(&scene->environment);
+    for (int i = 0; i < 3; i++)
+        test_shape_release(&scene->shapes[i]);
+    tl_image_release(&scene->weave.normal);
+    tl_image_release(&scene->weave.height);
+    tl_image_release(&scene->weave.gloss);
+    tl_image_release(&scene->weave.tint);
+}
+
+static void draw_and_check(struct test_device *device, const char *name, enum tl_method method,
+                           enum tl_lobe lobe)
+{
+    struct scene scene;
+    scene_open(&scene);
+    scene.settings.light.method = (int)method;
+    scene.settings.light.lobe = (int)lobe;
+    tl_image image = test_draw(device->renderer, &scene.frame, &scene.settings);
+    scene_close(&scene);
+    check_golden(name, &image);
+    tl_image_release(&image);
+}
+
+static void test_pem_dual(void **state)
+{
+    draw_and_check(*state, "pem_dual", TL_METHOD_PEM, TL_LOBE_DUAL);
+}
+
+static void test_pem_single(void **state)
+{
+    draw_and_check(*state, "pem_single", TL_METHOD_PEM, TL_LOBE_SINGLE);
+}
+
+static void test_unshadowed_dual(void **state)
+{
+    draw_and_check(*state, "unshadowed_dual", TL_METHOD_UNSHADOWED, TL_LOBE_DUAL);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_pem_dual),
+        cmocka_unit_test(test_pem_single),
+        cmocka_unit_test(test_unshadowed_dual),
+    };
+    return cmocka_run_group_tests(tests, test_device_open, test_device_close);
+}
