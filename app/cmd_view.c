@@ -268,21 +268,17 @@ static bool run(struct tl_view *view, int max_frames, tl_error *error)
     return true;
 }
 
-/* Every image of the default quality takes a software driver about a second. Unless quality was asked for, a review
- * there begins with less of it, and says so. */
-static void choose_preset(struct tl_view *view, const struct tl_arguments *arguments)
+/* Every image of the default quality takes a software driver about a second. Unless quality was asked for, a
+ * review there begins with less of it. */
+static bool needs_draft(const struct tl_view *view, const struct tl_arguments *arguments)
 {
-    tl_error error;
-    bool is_chosen = arguments->positional_count > 0; /* a scene means what it says */
+    if (arguments->positional_count > 0 || !strstr(tl_gpu_name(view->gpu), "llvmpipe"))
+        return false; /* a scene means what it says */
     for (size_t i = 0; i < arguments->assignment_count; i++)
-        is_chosen = is_chosen || strncmp(arguments->assignments[i], "scene.preset", 12) == 0 ||
-                    strncmp(arguments->assignments[i], "light.", 6) == 0;
-    if (is_chosen || !strstr(tl_gpu_name(view->gpu), "llvmpipe"))
-        return;
-    if (tl_settings_apply_preset(&view->wanted, "draft", &error))
-        tl_view_say(view, "no graphics card: preset draft instead of review, to stay quick");
-    else
-        tl_view_complain(view, &error);
+        if (strncmp(arguments->assignments[i], "scene.preset", 12) == 0 ||
+            strncmp(arguments->assignments[i], "light.", 6) == 0)
+            return false;
+    return true;
 }
 
 static bool open_window(struct tl_view *view, tl_error *error)
@@ -295,8 +291,9 @@ static bool open_window(struct tl_view *view, tl_error *error)
     glClear(GL_COLOR_BUFFER_BIT);
     tl_window_show(view->window);
     view->gpu = tl_gpu_create_current(error);
-    view->panel = view->gpu ? tl_panel_create(tl_window_handle(view->window), tl_window_scale(view->window), error)
-                            : NULL;
+    view->panel = view->gpu
+                      ? tl_panel_create(tl_window_handle(view->window), tl_window_scale(view->window), error)
+                      : NULL;
     view->renderer = view->panel ? tl_renderer_create(view->gpu, error) : NULL;
     return view->renderer != NULL;
 }
@@ -305,7 +302,9 @@ static bool open_view(struct tl_view *view, const struct tl_arguments *arguments
 {
     if (!tl_stage_settings(arguments, &view->wanted, error) || !open_window(view, error))
         return false;
-    choose_preset(view, arguments);
+    bool is_draft = needs_draft(view, arguments);
+    if (is_draft && !tl_settings_apply_preset(&view->wanted, "draft", error))
+        return false;
     view->session = tl_session_create(&view->wanted, error);
     if (!view->session)
         return false;
@@ -314,7 +313,12 @@ static bool open_view(struct tl_view *view, const struct tl_arguments *arguments
     tl_view_know_environment(view, "studio");
     tl_view_know_environment(view, view->wanted.scene.environment);
     /* The first image must come off: there is nothing good to go back to yet. */
-    return follow(view, 1, error) && draw_image(view, error);
+    if (!follow(view, 1, error) || !draw_image(view, error))
+        return false;
+    tl_info("view: ready with %s; H lists keys and gestures", tl_gpu_name(view->gpu));
+    if (is_draft)
+        tl_view_say(view, "no graphics card: preset draft instead of review, to stay quick");
+    return true;
 }
 
 static void close_view(struct tl_view *view)
@@ -342,7 +346,6 @@ bool tl_command_view(const struct tl_arguments *arguments, tl_error *error)
     if (done) {
         const double megabyte = 1 << 20;
         double before = (double)tl_view_resident_bytes() / megabyte;
-        tl_info("view: ready with %s; H lists keys and gestures", tl_gpu_name(view->gpu));
         done = run(view, arguments->max_frames, error);
         tl_info("view: closed after %d images, %d shown, %zu GL messages, resident %.0f MB at start, %.0f MB "
                 "at end",

@@ -243,6 +243,8 @@ void explain(const tl_binding &binding, const tl_option &row)
     char *text = tl_options_get_text(&usual, &row);
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(ImGui::GetFontSize() * 25.0f);
+    if (is_text(row) && field_of(binding, row)[0])
+        ImGui::TextUnformatted(field_of(binding, row)); /* paths are longer than their widget */
     ImGui::TextUnformatted(row.help);
     ImGui::TextDisabled("%s.%s", binding.table->name, row.name);
     if (row.type == TL_INT || row.type == TL_FLOAT || row.type == TL_DOUBLE)

@@ -185,7 +185,7 @@ void draw_panel(const tl_panel_input &input, tl_panel_result &result)
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_NoBringToFrontOnFocus);
     ImGui::PushAllowKeyboardFocus(false); /* Tab hides the panel; it must not begin to type into it */
-    ImGui::TextUnformatted(input.title);
+    ImGui::TextWrapped("%s", input.title);
     draw_message(input);
     draw_buttons(input.buttons, input.button_count, result);
     ImGui::Separator();

@@ -282,9 +282,12 @@ static void handle(struct tl_view *view, const struct tl_window_event *event)
     case TL_WINDOW_DROP:
         tl_view_drop(view, event->path);
         break;
-    case TL_WINDOW_REDRAW:
-        view->changed = true; /* the picture's size may have */
+    case TL_WINDOW_REDRAW: {
+        int width, height;
+        tl_view_size(view, &width, &height);
+        view->changed |= width != view->good.image.width || height != view->good.image.height;
         break;
+    }
     case TL_WINDOW_CLOSE:
         view->closing = true;
         break;
