@@ -16,7 +16,7 @@ static tl_garment two_panels(double gap)
 {
     tl_garment front = sheet_make(&panel, NULL), back = sheet_make(&panel, NULL);
     tl_mesh *mesh = &front.model.mesh;
-    uint32_t count = (uint32_t)mesh->vertex_count;
+    size_t count = mesh->vertex_count;
     mesh->positions = tl_resize(mesh->positions, 2 * count, sizeof(vec3s));
     mesh->uvs = tl_resize(mesh->uvs, 2 * count, sizeof(vec2s));
     mesh->indices = tl_resize(mesh->indices, 2 * mesh->index_count, sizeof(uint32_t));
