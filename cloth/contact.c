@@ -142,20 +142,13 @@ void tl_contacts_renew(struct tl_contacts *contacts, const vec3d *x, double thic
     if (!collider)
         return;
     bool moves = tl_collider_travel(collider) > 0;
-#pragma omp parallel
-    {
-        unsigned denormals = tl_denormals_off();
-#pragma omp for schedule(dynamic, 128)
-        for (size_t i = 0; i < cache_count(contacts); i++) {
-            struct tl_contact_cache *cache = &contacts->caches[i];
-            if (cache->asked_phase <= 1 && !(cache->near && moves))
-                continue;
-            vec3d at = i < contacts->particle_count
-                           ? x[i]
-                           : probe_point(&contacts->probes[i - contacts->particle_count], x);
-            ask(collider, thickness_m, phase, at, cache);
-        }
-        tl_denormals_restore(denormals);
+    for (size_t i = 0; i < cache_count(contacts); i++) {
+        struct tl_contact_cache *cache = &contacts->caches[i];
+        if (cache->asked_phase <= 1 && !(cache->near && moves))
+            continue;
+        bool is_particle = i < contacts->particle_count;
+        ask(collider, thickness_m, phase,
+            is_particle ? x[i] : probe_point(&contacts->probes[i - contacts->particle_count], x), cache);
     }
 }
 
