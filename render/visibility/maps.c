@@ -12,10 +12,8 @@
 /* Free texels around the casters' sphere, so that a blurred silhouette does not touch the map's border. */
 #define MARGIN_TEXELS 2
 
-#define SLOPE_MAX_TEXELS 8.0f /* steeper surfaces (83 degrees) are edges, not slopes */
-
-/* Uniform locations of maps.vert, moments.glsl and blur.frag. */
-enum { MAP_ROWS = 16, SLOPE_MAX = 19, LAYER = 0, DIRECTION = 1, RADIUS = 2, WEIGHTS = 3 };
+/* Uniform locations of maps.vert and blur.frag. */
+enum { MAP_ROWS = 16, LAYER = 0, DIRECTION = 1, RADIUS = 2, WEIGHTS = 3 };
 
 struct tl_shadow_maps {
     tl_gpu *gpu;
@@ -138,7 +136,6 @@ static void draw_parts(const tl_shadow_maps *maps, const struct tl_shadow_reques
 {
     glUseProgram(parts == TL_PARTS_OPAQUE ? maps->opaque.id : maps->masked.id);
     glUniform4fv(MAP_ROWS, 3, view->map_rows[0].raw);
-    glUniform1f(SLOPE_MAX, SLOPE_MAX_TEXELS / (float)maps->size);
     for (size_t i = 0; i < request->surface_count; i++)
         /* Below the horizon the ground's shadow is found without a map (ground.glsl). Above it the ground
          * shadows nothing, but as what lies behind the casters it belongs into the moments. */

@@ -1,6 +1,5 @@
 #version 450 core
-// A shadow map of parts with holes.
-#include "moments.glsl"
+// As maps.frag, for parts with holes.
 #include "surface.glsl"
 
 in float depth;
@@ -10,7 +9,7 @@ layout(location = 0) out vec2 moments;
 
 void main()
 {
-    moments = depth_moments(depth);
     if (surface_cut_away(surface_colour(uv).a))
         discard;
+    moments = vec2(depth, depth * depth);
 }
