@@ -12,6 +12,7 @@
 
 struct tl_window {
     GLFWwindow *handle;
+    double pointer_x, pointer_y;    /* screen coordinates, as of the event at hand */
     struct tl_window_event *events; /* [first, count) are still to be handed out */
     size_t first, count, capacity;
 };
@@ -34,18 +35,18 @@ static void queue(tl_window *window, struct tl_window_event event)
     window->events[window->count++] = event;
 }
 
-/* The pointer in framebuffer pixels; GLFW counts in screen coordinates. */
-static struct tl_window_event pointer_event(GLFWwindow *handle, enum tl_window_event_type type)
+/* The pointer in framebuffer pixels; GLFW counts in screen coordinates. Where it was at the event, not where
+ * it is: glfwGetCursorPos tells the latter, and a drag that waited behind a slow frame would shrink to a
+ * point. */
+static struct tl_window_event pointer_event(const tl_window *window, enum tl_window_event_type type)
 {
-    double x, y;
     int width, height, pixels_x, pixels_y;
-    glfwGetCursorPos(handle, &x, &y);
-    glfwGetWindowSize(handle, &width, &height);
-    glfwGetFramebufferSize(handle, &pixels_x, &pixels_y);
+    glfwGetWindowSize(window->handle, &width, &height);
+    glfwGetFramebufferSize(window->handle, &pixels_x, &pixels_y);
     return (struct tl_window_event){
         .type = type,
-        .x = width > 0 ? (float)(x * pixels_x / width) : 0,
-        .y = height > 0 ? (float)(y * pixels_y / height) : 0,
+        .x = width > 0 ? (float)(window->pointer_x * pixels_x / width) : 0,
+        .y = height > 0 ? (float)(window->pointer_y * pixels_y / height) : 0,
     };
 }
 
@@ -68,26 +69,29 @@ static void on_key(GLFWwindow *handle, int key, int scancode, int action, int mo
 
 static void on_button(GLFWwindow *handle, int button, int action, int modifiers)
 {
+    tl_window *window = glfwGetWindowUserPointer(handle);
     struct tl_window_event event =
-        pointer_event(handle, action == GLFW_PRESS ? TL_WINDOW_PRESS : TL_WINDOW_RELEASE);
+        pointer_event(window, action == GLFW_PRESS ? TL_WINDOW_PRESS : TL_WINDOW_RELEASE);
     event.button = button;
     event.modifiers = modifiers;
-    queue(glfwGetWindowUserPointer(handle), event);
+    queue(window, event);
 }
 
 static void on_move(GLFWwindow *handle, double x, double y)
 {
-    (void)x;
-    (void)y;
-    queue(glfwGetWindowUserPointer(handle), pointer_event(handle, TL_WINDOW_MOVE));
+    tl_window *window = glfwGetWindowUserPointer(handle);
+    window->pointer_x = x;
+    window->pointer_y = y;
+    queue(window, pointer_event(window, TL_WINDOW_MOVE));
 }
 
 static void on_wheel(GLFWwindow *handle, double x, double y)
 {
     (void)x;
-    struct tl_window_event event = pointer_event(handle, TL_WINDOW_WHEEL);
+    tl_window *window = glfwGetWindowUserPointer(handle);
+    struct tl_window_event event = pointer_event(window, TL_WINDOW_WHEEL);
     event.steps = (float)y;
-    queue(glfwGetWindowUserPointer(handle), event);
+    queue(window, event);
 }
 
 static void on_drop(GLFWwindow *handle, int count, const char **paths)

@@ -38,6 +38,7 @@ resident_kb() { awk '/^VmRSS/ { print $2 }' "/proc/$viewer/status"; }
 
 # drag BUTTON X0 Y0 X1 Y1: eight steps, as a hand does.
 drag() {
+    local i
     xdotool mousemove "$2" "$3" mousedown "$1"
     for i in 1 2 3 4 5 6 7 8; do
         xdotool mousemove $(($2 + ($4 - $2) * i / 8)) $(($3 + ($5 - $3) * i / 8))
