@@ -20,7 +20,7 @@ cd "$room"
 fail() {
     echo "FAILED $*"
     echo "--- the log:"
-    tail -n 40 log
+    tail -n 80 log
     exit 1
 }
 
@@ -66,7 +66,7 @@ export DISPLAY=:$(cat number)
 unset WAYLAND_DISPLAY
 
 : >log
-$TOILE view $fast --env light.exr --screenshots shots >out 2>log &
+$TOILE view $fast --verbose --env light.exr --screenshots shots >out 2>log &
 viewer=$!
 said "view: ready"
 shoot # 1
