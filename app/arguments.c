@@ -198,10 +198,10 @@ bool tl_arguments_parse(int argc, char **argv, unsigned flags, struct tl_argumen
         free(name);
         if (!flag)
             return false;
-        const char *value = equals ? equals + 1 : NULL;
-        if (!flag->value && value)
+        const char *value = equals ? equals + 1 : "";
+        if (!flag->value && equals)
             return tl_fail(error, TL_USAGE, "%s: takes no value: write it alone", flag->name);
-        if (flag->value && !value) {
+        if (flag->value && !equals) {
             if (i + 1 == argc)
                 return tl_fail(error, TL_USAGE, "%s: needs a value: %s %s", flag->name, flag->name,
                                flag->value);

@@ -28,7 +28,8 @@ struct tl_camera tl_camera_frame(const struct tl_camera_params *params, struct t
     return (struct tl_camera){
         .eye = glms_vec3_add(target, glms_vec3_scale(back, distance)),
         .target = target,
-        .up = {{-sinf(yaw) * sinf(pitch), cosf(pitch), -cosf(yaw) * sinf(pitch)}}, /* never parallel to back */
+        .up = {{-sinf(yaw) * sinf(pitch), cosf(pitch),
+                -cosf(yaw) * sinf(pitch)}}, /* never parallel to back */
         .fov_y = fov_y,
         .near_m = fmaxf(0.01f * distance, 1e-4f * reach),
         .far_m = distance + 20 * reach,

@@ -104,7 +104,7 @@ static bool is_slow_change(const struct tl_view *view)
     quick.image.background = view->wanted.image.background;
     quick.image.width = view->wanted.image.width;
     quick.image.height = view->wanted.image.height;
-    return memcmp(&quick, &view->wanted, sizeof quick) != 0;
+    return !tl_settings_equal(&quick, &view->wanted);
 }
 
 static void log_changes(const struct tl_scene_params *old, const struct tl_scene_params *new)
@@ -167,7 +167,7 @@ static bool renew_image(struct tl_view *view, int scale, tl_error *error)
         view->wanted = view->good;
         if (!follow(view, scale, error) || !draw_image(view, error))
             return false;
-    } else if (memcmp(&view->good, &view->wanted, sizeof view->good) != 0) {
+    } else if (!tl_settings_equal(&view->good, &view->wanted)) {
         log_changes(&view->good.scene, &view->wanted.scene);
         view->good = view->wanted;
         if (view->message_is_error)

@@ -350,8 +350,8 @@ bool tl_session_apply(tl_session *session, const struct tl_settings *settings, t
         session->environment = fresh;
         session->environment_revision++;
     }
-    bool new_look = memcmp(&old->weave, &settings->weave, sizeof old->weave) != 0 ||
-                    memcmp(&old->material, &settings->material, sizeof old->material) != 0;
+    bool new_look = !tl_options_equal(&tl_weave_options, &old->weave, &settings->weave) ||
+                    !tl_options_equal(&tl_material_options, &old->material, &settings->material);
     if (session->cloth && !tl_cloth_set(session->cloth, &settings->fabric, &settings->cloth, error))
         return false;
     session->settings = *settings;

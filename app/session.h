@@ -11,7 +11,7 @@ typedef struct tl_session tl_session;
 
 /* Loads and settles; shows progress. */
 tl_session *tl_session_create(const struct tl_settings *settings, tl_error *error);
-void tl_session_destroy(tl_session **session);
+void tl_session_destroy(tl_session **handle); /* nulls it; null is fine */
 
 /* One frame (1/frame_rate s) further: avatar, cloth, normals and tangents. */
 bool tl_session_advance(tl_session *session, tl_error *error);

@@ -257,9 +257,8 @@ static bool decode_chunk(struct part *part, const exr_chunk_info_t *chunk, int x
     if (chunk->packed_size > part->stream->size)
         return false;
     exr_decode_pipeline_t decoder = EXR_DECODE_PIPELINE_INITIALIZER;
-    bool decoded =
-        exr_decoding_initialize(part->file, part->index, chunk, &decoder) == EXR_ERR_SUCCESS &&
-        exr_decoding_choose_default_routines(part->file, part->index, &decoder) == EXR_ERR_SUCCESS;
+    bool decoded = exr_decoding_initialize(part->file, part->index, chunk, &decoder) == EXR_ERR_SUCCESS &&
+                   exr_decoding_choose_default_routines(part->file, part->index, &decoder) == EXR_ERR_SUCCESS;
     decoder.unpack_and_convert_fn = NULL;
     decoded = decoded && exr_decoding_run(part->file, part->index, &decoder) == EXR_ERR_SUCCESS &&
               unpack_chunk(part, &decoder, x, y);

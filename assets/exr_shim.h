@@ -1,5 +1,5 @@
-/* The pixels of OpenEXR parts that OpenEXRCore 3.1 cannot decode (DWAA, DWAB, B44, B44A), through OpenEXR's C++ library.
- * Private to assets/exr.c, which has checked the header before. Exceptions stop here. */
+/* The pixels of OpenEXR parts that OpenEXRCore 3.1 cannot decode (DWAA, DWAB, B44, B44A), through OpenEXR's
+ * C++ library. Private to assets/exr.c, which has checked the header before. Exceptions stop here. */
 #ifndef TOILE_ASSETS_EXR_SHIM_H
 #define TOILE_ASSETS_EXR_SHIM_H
 

@@ -149,7 +149,7 @@ enum { SECTION_SAMPLES = 180 }; /* of half a section, back to front */
 double tl_form_girth(double y)
 {
     /* Upper hull of the half section (-X side): a monotone chain in z, back to front. */
-    double x[SECTION_SAMPLES + 1], z[SECTION_SAMPLES + 1];
+    double x[SECTION_SAMPLES + 1] = {0}, z[SECTION_SAMPLES + 1] = {0};
     int count = 0;
     for (int i = 0; i <= SECTION_SAMPLES; i++) {
         double angle = M_PI * i / SECTION_SAMPLES, r = tl_form_radius(y, angle);

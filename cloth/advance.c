@@ -127,7 +127,9 @@ static void run_steps(tl_cloth *cloth, const tl_collider *collider, double drag)
     int steps = steps_per_frame(&cloth->params), substeps = cloth->params.substeps;
     double total = (double)steps * substeps;
     for (int step = 0; step < steps && !tl_interrupted(); step++) {
-        tl_contacts_renew(&cloth->contacts);
+        tl_contacts_let_through(&cloth->contacts, &cloth->energy, cloth->particles.x);
+        tl_contacts_renew(&cloth->contacts, cloth->particles.x, cloth->fabric.thickness_m,
+                          (double)step / steps);
         for (int sub = 0; sub < substeps; sub++) {
             double done = (double)step * substeps + sub;
             substep(cloth, collider, drag, done / total, (done + 1) / total);

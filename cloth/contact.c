@@ -3,18 +3,23 @@
 #include "config/memory.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* How far from its thickness a particle looks for the avatar. */
 #define REACH_M 0.04
 /* How far a particle slides over a surface before its plane is asked again: over a radius of 3 cm the plane
  * leaves the surface by 2^2 / (2 * 30) mm = 0.07 mm, small against any thickness. */
-#define SLIDE_M 0.002
+#define SLIDE_M    0.002
+#define ROUNDING_M 1e-9
 /* Penetration that was there before is taken out this fast: 14 mm in 0.07 s, and no more energy than a fall
  * from 2 mm. */
 #define PUSH_OUT_SPEED 0.2
 
-/* Edges longer than this are probed: shorter ones sink into a radius of 5 cm by less than 1 mm. */
-#define COARSE_M 0.02
+/* Edges longer than this are probed: shorter ones sink into a radius of 5 cm by no more than 2.3 mm. */
+#define COARSE_M 0.03
+/* Cloth stretched to more than this is caught, between an arm and the body say: its vertices are let through
+ * until it has slipped free, rather than torn. */
+#define SNAG_STRETCH 2.5
 
 static double rest_length(const vec2s rest[3], int corner)
 {
@@ -49,6 +54,7 @@ struct tl_contacts tl_contacts_create(const struct tl_topology *topology, const 
     for (size_t t = 0; t < topology->triangle_count; t++)
         contacts.probe_count +=
             add_probes(topology, rest, (uint32_t)t, &contacts.probes[contacts.probe_count]);
+    contacts.caught = TL_NEW_ARRAY(bool, contacts.particle_count);
     size_t count = contacts.particle_count + contacts.probe_count;
     contacts.caches = TL_NEW_ARRAY(struct tl_contact_cache, count);
     for (size_t i = 0; i < count; i++)
@@ -60,28 +66,8 @@ void tl_contacts_release(struct tl_contacts *contacts)
 {
     free(contacts->caches);
     free(contacts->probes);
+    free(contacts->caught);
     *contacts = (struct tl_contacts){0};
-}
-
-void tl_contacts_begin(struct tl_contacts *contacts, const tl_collider *collider)
-{
-    bool same =
-        collider == contacts->collider && (!collider || tl_collider_revision(collider) == contacts->revision);
-    contacts->collider = collider;
-    if (same)
-        return;
-    contacts->revision = collider ? tl_collider_revision(collider) : 0;
-    for (size_t i = 0; i < contacts->particle_count + contacts->probe_count; i++)
-        contacts->caches[i].asked_phase = HUGE_VAL;
-}
-
-void tl_contacts_renew(struct tl_contacts *contacts)
-{
-    if (!contacts->collider || tl_collider_travel(contacts->collider) == 0)
-        return;
-    for (size_t i = 0; i < contacts->particle_count + contacts->probe_count; i++)
-        if (contacts->caches[i].near)
-            contacts->caches[i].asked_phase = HUGE_VAL;
 }
 
 static vec3d anchor_at(const struct tl_contact_cache *cache, double phase)
@@ -109,6 +95,8 @@ static void ask(const tl_collider *collider, double thickness, double phase, vec
     struct tl_contact contact;
     const double point[3] = {x.x, x.y, x.z};
     double reach = thickness + REACH_M;
+    if (cache->near) /* the old anchor bounds the distance to the new one, and few triangles lie within it */
+        reach = fmin(reach, vec3d_distance(x, anchor_at(cache, phase)) + ROUNDING_M);
     *cache = (struct tl_contact_cache){.asked_at = x, .asked_phase = phase, .clearance = REACH_M};
     if (!tl_collider_query_at(collider, point, phase, reach, &contact))
         return;
@@ -119,6 +107,65 @@ static void ask(const tl_collider *collider, double thickness, double phase, vec
     cache->normal = (vec3d){contact.normal[0], contact.normal[1], contact.normal[2]};
     cache->clearance = fmax(contact.distance_m - thickness, SLIDE_M);
     cache->near = true;
+}
+
+static size_t cache_count(const struct tl_contacts *contacts)
+{
+    return contacts->particle_count + contacts->probe_count;
+}
+
+void tl_contacts_begin(struct tl_contacts *contacts, const tl_collider *collider)
+{
+    uint64_t revision = collider ? tl_collider_revision(collider) : 0;
+    bool same = collider == contacts->collider && revision == contacts->revision;
+    bool next = collider == contacts->collider && revision == contacts->revision + 1;
+    contacts->collider = collider;
+    contacts->revision = revision;
+    for (size_t i = 0; i < cache_count(contacts) && !same; i++) {
+        struct tl_contact_cache *cache = &contacts->caches[i];
+        cache->asked_phase = HUGE_VAL;
+        cache->anchor[0] = cache->anchor[1]; /* where the last frame ended the next begins */
+        cache->near = cache->near && next;
+    }
+}
+
+static vec3d probe_point(const struct tl_probe *probe, const vec3d *x)
+{
+    vec3d sum = vec3d_scale(x[probe->vertices[0]], probe->weights[0]);
+    sum = vec3d_muladd(sum, x[probe->vertices[1]], probe->weights[1]);
+    return vec3d_muladd(sum, x[probe->vertices[2]], probe->weights[2]);
+}
+
+void tl_contacts_renew(struct tl_contacts *contacts, const vec3d *x, double thickness_m, double phase)
+{
+    const tl_collider *collider = contacts->collider;
+    if (!collider)
+        return;
+    bool moves = tl_collider_travel(collider) > 0;
+    for (size_t i = 0; i < cache_count(contacts); i++) {
+        struct tl_contact_cache *cache = &contacts->caches[i];
+        if (cache->asked_phase <= 1 && !(cache->near && moves))
+            continue;
+        bool is_particle = i < contacts->particle_count;
+        ask(collider, thickness_m, phase,
+            is_particle ? x[i] : probe_point(&contacts->probes[i - contacts->particle_count], x), cache);
+    }
+}
+
+void tl_contacts_let_through(struct tl_contacts *contacts, const struct tl_energy *energy, const vec3d *x)
+{
+    memset(contacts->caught, 0, contacts->particle_count * sizeof(bool));
+    for (size_t i = 0; i < energy->membrane_count; i++) {
+        const struct tl_membrane *m = &energy->membranes[i];
+        vec3d u = {0}, v = {0};
+        for (int k = 0; k < 3; k++) {
+            u = vec3d_muladd(u, x[m->vertices[k]], m->c[k]);
+            v = vec3d_muladd(v, x[m->vertices[k]], m->d[k]);
+        }
+        double most = fmax(vec3d_dot(u, u), vec3d_dot(v, v));
+        for (int k = 0; k < 3 && most > SNAG_STRETCH * SNAG_STRETCH; k++)
+            contacts->caught[m->vertices[k]] = true;
+    }
 }
 
 /* Keeps x on the outer side of a plane through `surface`, which was at `surface_before` when the particle was
@@ -166,14 +213,10 @@ static void solve_probe(const tl_collider *collider, const struct tl_probe *prob
                         struct tl_contact_cache *cache, const struct tl_contact_params *params,
                         struct tl_particles *particles)
 {
-    vec3d x = {0}, before = {0};
+    vec3d x = probe_point(probe, particles->x), before = probe_point(probe, particles->previous);
     double sum = 0;
-    for (int i = 0; i < 3; i++) {
-        uint32_t v = probe->vertices[i];
-        x = vec3d_muladd(x, particles->x[v], probe->weights[i]);
-        before = vec3d_muladd(before, particles->previous[v], probe->weights[i]);
-        sum += particles->w[v] * probe->weights[i] * probe->weights[i];
-    }
+    for (int i = 0; i < 3; i++)
+        sum += particles->w[probe->vertices[i]] * probe->weights[i] * probe->weights[i];
     vec3d push = vec3d_sub(keep_out(collider, cache, x, before, params), x);
     if (!(sum > 0) || !(vec3d_dot(push, push) > 0))
         return;
@@ -189,11 +232,15 @@ void tl_contacts_solve(struct tl_contacts *contacts, const struct tl_contact_par
     const tl_collider *collider = contacts->collider;
     if (!collider)
         return;
-    for (size_t i = 0; i < contacts->probe_count; i++)
+    for (size_t i = 0; i < contacts->probe_count; i++) {
+        const uint32_t *v = contacts->probes[i].vertices;
+        if (contacts->caught[v[0]] || contacts->caught[v[1]] || contacts->caught[v[2]])
+            continue;
         solve_probe(collider, &contacts->probes[i], &contacts->caches[contacts->particle_count + i], params,
                     particles);
+    }
     for (size_t i = 0; i < particles->count; i++)
-        if (particles->w[i] > 0)
+        if (particles->w[i] > 0 && !contacts->caught[i])
             particles->x[i] =
                 keep_out(collider, &contacts->caches[i], particles->x[i], particles->previous[i], params);
 }

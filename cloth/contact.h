@@ -30,6 +30,7 @@ struct tl_contacts {
     size_t particle_count, probe_count;
     struct tl_probe *probes;
     struct tl_contact_cache *caches; /* [particle_count + probe_count] */
+    bool *caught;                    /* [particle_count] passes through for now */
     uint64_t revision;               /* of the collider when the caches were filled */
     const tl_collider *collider;
 };
@@ -40,8 +41,13 @@ void tl_contacts_release(struct tl_contacts *contacts);
 /* Once per frame: forgets what no longer holds. */
 void tl_contacts_begin(struct tl_contacts *contacts, const tl_collider *collider);
 
-/* Once per step: a moving collider's planes turn, so near particles ask again. */
-void tl_contacts_renew(struct tl_contacts *contacts);
+/* Once per step, at its start: asks for all who were never asked, and for the near ones when the collider
+ * moves, because its planes turn. On all threads. */
+void tl_contacts_renew(struct tl_contacts *contacts, const vec3d *x, double thickness_m, double phase);
+
+/* Once per step: vertices of triangles that are stretched to a multiple are caught between parts of the
+ * avatar or on its wrong side; they pass through it for this step. */
+void tl_contacts_let_through(struct tl_contacts *contacts, const struct tl_energy *energy, const vec3d *x);
 
 struct tl_contact_params {
     double friction, thickness_m;

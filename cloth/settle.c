@@ -1,27 +1,36 @@
 /* Coming to rest before the first frame. */
 #include "cloth/state.h"
 #include "config/log.h"
+#include "config/memory.h"
 
 #include <string.h>
 
-/* Drag while settling: a fall ends at 2 m/s, a swing of 0.5 m dies within a period. */
-#define SETTLE_DRAG 5.0
-/* A cloth that starts at rest has no speed either: it is given this long to begin to fall. */
-#define LEAST_S 0.25
+/* Settling goes through these drags. Under the first a fall ends at 2 m/s and a swing of 0.5 m dies within a
+ * period; but what creeps slowly in it would still swing free in air, so the second one must be calm too. A
+ * cloth that starts at rest has no speed either: each gets its least time to begin to move. */
+static const struct phase {
+    double drag, least_s;
+} phases[] = {{5, 0.25}, {1, 0.5}};
 
 bool tl_cloth_settle(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
 {
-    const struct tl_advance advance = {.drag = SETTLE_DRAG};
     const struct tl_cloth_params *params = &cloth->params;
     struct tl_progress progress = tl_progress_begin("settling the cloth");
-    double frame_s = 1 / params->frame_rate, hung_s = 0;
+    double frame_s = 1 / params->frame_rate, hung_s = 0, phase_s = 0;
+    size_t phase = 0;
     bool good = true;
     cloth->settled = false;
     while (good && !cloth->settled && hung_s < params->settle_s) {
+        const struct tl_advance advance = {.drag = phases[phase].drag};
         good = tl_cloth_advance(cloth, collider, &advance, error);
-        if (!tl_sewing_pulls(&cloth->sewing))
-            hung_s += frame_s;
-        cloth->settled = good && hung_s > LEAST_S && tl_cloth_max_speed(cloth) < params->settle_speed;
+        double passed_s = tl_sewing_pulls(&cloth->sewing) ? 0 : frame_s;
+        hung_s += passed_s;
+        phase_s += passed_s;
+        bool calm = phase_s > phases[phase].least_s && tl_cloth_max_speed(cloth) < params->settle_speed;
+        if (calm) {
+            phase_s = 0;
+            cloth->settled = good && ++phase == TL_COUNT(phases);
+        }
         tl_progress_update(&progress, hung_s, params->settle_s);
     }
     tl_progress_end(&progress);

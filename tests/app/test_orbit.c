@@ -63,7 +63,8 @@ static void rays_go_where_points_are_seen(void **state)
     struct tl_camera_params orbit = some_orbit();
     struct tl_camera camera = camera_of(&orbit);
     for (int i = 0; i < 9; i++) {
-        float x = view_width * 0.5f * (float)(i % 3), y = view_height * 0.5f * (float)(i / 3);
+        int column = i % 3, row = i / 3;
+        float x = view_width * 0.5f * (float)column, y = view_height * 0.5f * (float)row;
         struct tl_ray ray = tl_orbit_ray(&camera, x, y, view_width, view_height);
         assert_near(glms_vec3_norm(ray.direction), 1, 1e-6);
         vec2s pixel = project(&camera, glms_vec3_muladds(ray.direction, 2.5f, ray.origin));

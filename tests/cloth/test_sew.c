@@ -16,11 +16,11 @@ static tl_garment two_panels(double gap)
 {
     tl_garment front = sheet_make(&panel, NULL), back = sheet_make(&panel, NULL);
     tl_mesh *mesh = &front.model.mesh;
-    uint32_t count = (uint32_t)mesh->vertex_count;
-    mesh->positions = tl_resize(mesh->positions, 2 * count, sizeof(vec3s));
-    mesh->uvs = tl_resize(mesh->uvs, 2 * count, sizeof(vec2s));
+    const uint32_t count = (uint32_t)mesh->vertex_count;
+    mesh->positions = tl_resize(mesh->positions, (size_t)2 * count, sizeof(vec3s));
+    mesh->uvs = tl_resize(mesh->uvs, (size_t)2 * count, sizeof(vec2s));
     mesh->indices = tl_resize(mesh->indices, 2 * mesh->index_count, sizeof(uint32_t));
-    front.pattern = tl_resize(front.pattern, 2 * count, sizeof(vec2s));
+    front.pattern = tl_resize(front.pattern, (size_t)2 * count, sizeof(vec2s));
     for (uint32_t i = 0; i < count; i++) {
         vec3s p = mesh->positions[i];
         mesh->positions[i] = (vec3s){{p.x - 0.3f, p.y + 0.3f, (float)(gap / 2)}};

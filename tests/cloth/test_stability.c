@@ -126,7 +126,7 @@ static void test_bad_triangles(void **state)
     garment.pattern[30] = garment.pattern[31];
     mesh->positions[60].x = mesh->positions[61].x - 1e-6f;
     garment.pattern[60].x = garment.pattern[61].x - 1e-6f;
-    memcpy(mesh->indices + 300, mesh->indices + 303, 3 * sizeof(uint32_t));
+    memmove(mesh->indices + 300, mesh->indices + 303, 3 * sizeof(uint32_t));
     const uint32_t fin[] = {14, 28, 100, 5, 5, 9};
     memcpy(mesh->indices + 60, fin, sizeof fin);
     for (size_t i = 0; i < mesh->index_count; i++)

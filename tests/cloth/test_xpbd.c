@@ -131,7 +131,8 @@ static double angular_drift(int substeps)
     return drift;
 }
 
-/* Pushes act at predicted places and so keep the momentum exactly, the angular momentum to first order in h. */
+/* Pushes act at predicted places and so keep the momentum exactly, the angular momentum to first order in h.
+ */
 static void test_momentum(void **state)
 {
     (void)state;

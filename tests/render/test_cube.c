@@ -280,7 +280,7 @@ static void threads_change_no_bit(void **state)
     omp_set_num_threads(3);
     tl_cube together = tl_cube_from_environment(&environment, 32);
     omp_set_num_threads(threads);
-    assert_memory_equal(alone.texels, together.texels, 18 * 32 * 32 * sizeof(float));
+    assert_memory_equal(alone.texels, together.texels, sizeof(float[18 * 32 * 32]));
     tl_cube_release(&alone);
     tl_cube_release(&together);
     release_environment(&environment);
