@@ -4,8 +4,8 @@
  * state or the settings changed; coarsely while something moves, on machines that need it, and sharply as
  * soon as it rests. */
 #include "app/commands.h"
+#include "app/review.h"
 #include "app/stage.h"
-#include "app/view.h"
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
@@ -21,46 +21,46 @@
 #define WINDOW_WIDTH  1280
 #define WINDOW_HEIGHT 800
 
-void tl_view_size(const struct tl_view *view, int *width, int *height)
+void tl_review_size(const struct tl_review *review, int *width, int *height)
 {
-    tl_window_size(view->window, width, height);
-    *width -= tl_view_panel_width(view);
+    tl_window_size(review->window, width, height);
+    *width -= tl_review_panel_width(review);
 }
 
-static void set_message(struct tl_view *view, bool is_error, const char *text)
+static void set_message(struct tl_review *review, bool is_error, const char *text)
 {
-    snprintf(view->message, sizeof view->message, "%s", text);
-    view->message_is_error = is_error;
+    snprintf(review->message, sizeof review->message, "%s", text);
+    review->message_is_error = is_error;
 }
 
-void tl_view_say(struct tl_view *view, const char *format, ...)
+void tl_review_say(struct tl_review *review, const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
-    char text[sizeof view->message];
+    char text[sizeof review->message];
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    set_message(view, false, text);
+    set_message(review, false, text);
     tl_info("view: %s", text);
 }
 
-void tl_view_complain(struct tl_view *view, const tl_error *error)
+void tl_review_complain(struct tl_review *review, const tl_error *error)
 {
-    set_message(view, true, error->message);
+    set_message(review, true, error->message);
     tl_warn("view: %s", error->message);
-    view->playing = false;
+    review->playing = false;
 }
 
-void tl_view_touch(struct tl_view *view)
+void tl_review_touch(struct tl_review *review)
 {
-    view->moved_s = tl_clock_s();
+    review->moved_s = tl_clock_s();
 }
 
 /* True while coarse images are in order. */
-static bool is_moving(const struct tl_view *view)
+static bool is_moving(const struct tl_review *review)
 {
     const double rest_s = 0.25;
-    return view->playing || view->drag != TL_DRAG_NONE || tl_clock_s() - view->moved_s < rest_s;
+    return review->playing || review->drag != TL_DRAG_NONE || tl_clock_s() - review->moved_s < rest_s;
 }
 
 static const char *base_name(const char *path)
@@ -69,42 +69,42 @@ static const char *base_name(const char *path)
     return slash ? slash + 1 : path;
 }
 
-static void update_title(struct tl_view *view)
+static void update_title(struct tl_review *review)
 {
-    const struct tl_scene_params *scene = &view->good.scene;
+    const struct tl_scene_params *scene = &review->good.scene;
     char *title = tl_format("toile \u2014 %s, %s, %s", base_name(scene->garment), base_name(scene->fabric),
                             base_name(scene->environment));
-    if (!view->title || strcmp(title, view->title) != 0)
-        tl_window_set_title(view->window, title);
-    free(view->title);
-    view->title = title;
+    if (!review->title || strcmp(title, review->title) != 0)
+        tl_window_set_title(review->window, title);
+    free(review->title);
+    review->title = title;
 }
 
 /* Puts the last image, and the panel as it was built, on the screen. */
-static bool present(struct tl_view *view, tl_error *error)
+static bool present(struct tl_review *review, tl_error *error)
 {
     int width, height;
-    tl_view_size(view, &width, &height);
-    if (!tl_renderer_show_window(view->renderer, width, height, error))
+    tl_review_size(review, &width, &height);
+    if (!tl_renderer_show_window(review->renderer, width, height, error))
         return false;
-    tl_panel_draw(view->panel);
-    tl_window_show(view->window);
-    view->shown_count++;
+    tl_panel_draw(review->panel);
+    tl_window_show(review->window);
+    review->shown_count++;
     return true;
 }
 
 /* What makes the cloth or the light anew takes seconds: it waits until a slider is let go. */
-static bool is_slow_change(const struct tl_view *view)
+static bool is_slow_change(const struct tl_review *review)
 {
-    struct tl_settings quick = view->good;
-    quick.camera = view->wanted.camera;
-    quick.material = view->wanted.material;
-    quick.scene.environment_yaw_deg = view->wanted.scene.environment_yaw_deg;
-    quick.image.exposure_ev = view->wanted.image.exposure_ev;
-    quick.image.background = view->wanted.image.background;
-    quick.image.width = view->wanted.image.width;
-    quick.image.height = view->wanted.image.height;
-    return !tl_settings_equal(&quick, &view->wanted);
+    struct tl_settings quick = review->good;
+    quick.camera = review->wanted.camera;
+    quick.material = review->wanted.material;
+    quick.scene.environment_yaw_deg = review->wanted.scene.environment_yaw_deg;
+    quick.image.exposure_ev = review->wanted.image.exposure_ev;
+    quick.image.background = review->wanted.image.background;
+    quick.image.width = review->wanted.image.width;
+    quick.image.height = review->wanted.image.height;
+    return !tl_settings_equal(&quick, &review->wanted);
 }
 
 static void log_changes(const struct tl_scene_params *old, const struct tl_scene_params *new)
@@ -125,154 +125,155 @@ static void log_changes(const struct tl_scene_params *old, const struct tl_scene
 
 /* Brings the session to what is wanted, at a resolution of one texel for scale x scale pixels. On failure it
  * stays at what is good. */
-static bool follow(struct tl_view *view, int scale, tl_error *error)
+static bool follow(struct tl_review *review, int scale, tl_error *error)
 {
     int width, height;
-    tl_view_size(view, &width, &height);
-    view->wanted.image.width = width;
-    view->wanted.image.height = height;
-    struct tl_settings scaled = view->wanted;
+    tl_review_size(review, &width, &height);
+    review->wanted.image.width = width;
+    review->wanted.image.height = height;
+    struct tl_settings scaled = review->wanted;
     scaled.image.width = width > scale ? width / scale : 1;
     scaled.image.height = height > scale ? height / scale : 1;
     if (scale > 1)
         scaled.image.supersample = 1;
-    return tl_session_apply(view->session, &scaled, error);
+    return tl_session_apply(review->session, &scaled, error);
 }
 
-static bool draw_image(struct tl_view *view, tl_error *error)
+static bool draw_image(struct tl_review *review, tl_error *error)
 {
     double started_s = tl_clock_s();
-    tl_frame frame = tl_session_frame(view->session);
-    const struct tl_settings *settings = tl_session_settings(view->session);
+    tl_frame frame = tl_session_frame(review->session);
+    const struct tl_settings *settings = tl_session_settings(review->session);
     const struct tl_render_settings render = {.light = settings->light, .image = settings->image};
-    if (!tl_renderer_draw(view->renderer, &frame, &render, error))
+    if (!tl_renderer_draw(review->renderer, &frame, &render, error))
         return false;
     glFinish(); /* else the time, and with it the coarse scale, would be the driver's, not the image's */
-    view->times.draw = 1e3 * (tl_clock_s() - started_s);
-    view->drawn_count++;
-    tl_debug("view: image %d, frame %d, 1/%d, %.1f ms", view->drawn_count,
-             tl_session_frame_number(view->session), view->scale, view->times.draw);
+    review->times.draw = 1e3 * (tl_clock_s() - started_s);
+    review->drawn_count++;
+    tl_debug("view: image %d, frame %d, 1/%d, %.1f ms", review->drawn_count,
+             tl_session_frame_number(review->session), review->scale, review->times.draw);
     return true;
 }
 
 /* Follows and draws. What cannot be loaded or drawn is reported, and what was good is drawn instead; false
  * only when that fails too. */
-static bool renew_image(struct tl_view *view, int scale, tl_error *error)
+static bool renew_image(struct tl_review *review, int scale, tl_error *error)
 {
-    view->scale = scale;
-    if (!follow(view, scale, error) || !draw_image(view, error)) {
+    review->scale = scale;
+    if (!follow(review, scale, error) || !draw_image(review, error)) {
         if (tl_interrupted())
             return false;
-        tl_view_complain(view, error);
-        view->wanted = view->good;
-        if (!follow(view, scale, error) || !draw_image(view, error))
+        tl_review_complain(review, error);
+        review->wanted = review->good;
+        if (!follow(review, scale, error) || !draw_image(review, error))
             return false;
-    } else if (!tl_settings_equal(&view->good, &view->wanted)) {
-        log_changes(&view->good.scene, &view->wanted.scene);
-        view->good = view->wanted;
-        if (view->message_is_error)
-            set_message(view, false, "");
-        update_title(view);
+    } else if (!tl_settings_equal(&review->good, &review->wanted)) {
+        log_changes(&review->good.scene, &review->wanted.scene);
+        review->good = review->wanted;
+        if (review->message_is_error)
+            set_message(review, false, "");
+        update_title(review);
     }
-    view->changed = view->image_is_old = false;
-    view->redraws = view->redraws > 1 ? view->redraws : 1;
+    review->changed = review->image_is_old = false;
+    review->redraws = review->redraws > 1 ? review->redraws : 1;
     return true;
 }
 
-bool tl_view_draw_sharp(struct tl_view *view, tl_error *error)
+bool tl_review_draw_sharp(struct tl_review *review, tl_error *error)
 {
-    return view->scale == 1 && !view->changed && !view->image_is_old ? true : renew_image(view, 1, error);
+    return review->scale == 1 && !review->changed && !review->image_is_old ? true
+                                                                           : renew_image(review, 1, error);
 }
 
 /* Coarser when a moving image takes too long, finer when there is time to spare. */
-static void adapt_coarse_scale(struct tl_view *view)
+static void adapt_coarse_scale(struct tl_review *review)
 {
     const double slow_ms = 60, quick_ms = 12;
     const int coarsest = 2;
-    if (view->times.draw > slow_ms && view->coarse_scale < coarsest)
-        view->coarse_scale++;
-    else if (view->times.draw < quick_ms && view->coarse_scale > 1)
-        view->coarse_scale--;
+    if (review->times.draw > slow_ms && review->coarse_scale < coarsest)
+        review->coarse_scale++;
+    else if (review->times.draw < quick_ms && review->coarse_scale > 1)
+        review->coarse_scale--;
 }
 
-static bool update_image(struct tl_view *view, tl_error *error)
+static bool update_image(struct tl_review *review, tl_error *error)
 {
-    bool moving = is_moving(view);
-    bool waits = view->changed && view->editing && is_slow_change(view);
-    bool is_due = (view->changed && !waits) || view->image_is_old || (view->scale > 1 && !moving);
+    bool moving = is_moving(review);
+    bool waits = review->changed && review->editing && is_slow_change(review);
+    bool is_due = (review->changed && !waits) || review->image_is_old || (review->scale > 1 && !moving);
     if (!is_due || waits)
         return true;
-    if (!renew_image(view, moving ? view->coarse_scale : 1, error))
+    if (!renew_image(review, moving ? review->coarse_scale : 1, error))
         return false;
     if (moving)
-        adapt_coarse_scale(view);
+        adapt_coarse_scale(review);
     return true;
 }
 
 /* One simulated frame when it is due. A machine that is too slow plays slower, and skips nothing. */
-static void play(struct tl_view *view)
+static void play(struct tl_review *review)
 {
     double now_s = tl_clock_s();
-    if (!view->playing || now_s < view->next_step_s)
+    if (!review->playing || now_s < review->next_step_s)
         return;
     tl_error error;
-    tl_view_move_hand(view);
-    if (!tl_session_advance(view->session, &error))
-        tl_view_complain(view, &error);
-    double frame_s = 1 / view->good.cloth.frame_rate;
-    view->next_step_s = fmax(view->next_step_s + frame_s, now_s);
-    view->times.cloth = 1e3 * (tl_clock_s() - now_s);
-    view->image_is_old = true;
+    tl_review_move_hand(review);
+    if (!tl_session_advance(review->session, &error))
+        tl_review_complain(review, &error);
+    double frame_s = 1 / review->good.cloth.frame_rate;
+    review->next_step_s = fmax(review->next_step_s + frame_s, now_s);
+    review->times.cloth = 1e3 * (tl_clock_s() - now_s);
+    review->image_is_old = true;
 }
 
-static double patience_s(const struct tl_view *view)
+static double patience_s(const struct tl_review *review)
 {
     const double idle_s = 0.5, settling_s = 0.05; /* idle: only Ctrl-C is looked for */
-    if (view->changed || view->image_is_old || view->redraws > 0)
+    if (review->changed || review->image_is_old || review->redraws > 0)
         return 0;
-    if (view->playing)
-        return fmax(0, view->next_step_s - tl_clock_s());
-    return view->scale > 1 ? settling_s : idle_s;
+    if (review->playing)
+        return fmax(0, review->next_step_s - tl_clock_s());
+    return review->scale > 1 ? settling_s : idle_s;
 }
 
-static bool is_minimised(const struct tl_view *view)
+static bool is_minimised(const struct tl_review *review)
 {
     int width, height;
-    tl_view_size(view, &width, &height);
+    tl_review_size(review, &width, &height);
     return width < 1 || height < 1;
 }
 
-static bool run(struct tl_view *view, int max_frames, tl_error *error)
+static bool run(struct tl_review *review, int max_frames, tl_error *error)
 {
-    while (!view->closing && (max_frames == 0 || view->shown_count < max_frames)) {
+    while (!review->closing && (max_frames == 0 || review->shown_count < max_frames)) {
         if (tl_interrupted())
             return tl_fail(error, TL_INTERRUPTED, "view: stopped");
-        tl_window_wait(view->window, max_frames > 0 ? 0 : patience_s(view));
+        tl_window_wait(review->window, max_frames > 0 ? 0 : patience_s(review));
         double started_s = tl_clock_s();
-        tl_view_listen(view);
-        if (is_minimised(view))
+        tl_review_listen(review);
+        if (is_minimised(review))
             continue;
-        int drawn_before = view->drawn_count;
-        play(view);
-        if (!update_image(view, error))
+        int drawn_before = review->drawn_count;
+        play(review);
+        if (!update_image(review, error))
             return false;
-        if (view->redraws == 0 && !view->editing && max_frames == 0)
+        if (review->redraws == 0 && !review->editing && max_frames == 0)
             continue;
-        view->redraws -= view->redraws > 0;
-        tl_view_build_panel(view);
-        if (!present(view, error))
+        review->redraws -= review->redraws > 0;
+        tl_review_build_panel(review);
+        if (!present(review, error))
             return false;
-        if (view->drawn_count > drawn_before)
-            view->times.frame = 1e3 * (tl_clock_s() - started_s);
+        if (review->drawn_count > drawn_before)
+            review->times.frame = 1e3 * (tl_clock_s() - started_s);
     }
     return true;
 }
 
 /* Every image of the default quality takes a software driver about a second. Unless quality was asked for, a
  * review there begins with less of it. */
-static bool needs_draft(const struct tl_view *view, const struct tl_arguments *arguments)
+static bool needs_draft(const struct tl_review *review, const struct tl_arguments *arguments)
 {
-    if (arguments->positional_count > 0 || !strstr(tl_gpu_name(view->gpu), "llvmpipe"))
+    if (arguments->positional_count > 0 || !strstr(tl_gpu_name(review->gpu), "llvmpipe"))
         return false; /* a scene means what it says */
     for (size_t i = 0; i < arguments->assignment_count; i++)
         if (strncmp(arguments->assignments[i], "scene.preset", 12) == 0 ||
@@ -281,78 +282,78 @@ static bool needs_draft(const struct tl_view *view, const struct tl_arguments *a
     return true;
 }
 
-static bool open_window(struct tl_view *view, tl_error *error)
+static bool open_window(struct tl_review *review, tl_error *error)
 {
-    view->window = tl_window_create("toile: loading", WINDOW_WIDTH, WINDOW_HEIGHT, error);
-    if (!view->window)
+    review->window = tl_window_create("toile: loading", WINDOW_WIDTH, WINDOW_HEIGHT, error);
+    if (!review->window)
         return false;
     const float surround = 0.13f; /* the panel's grey */
     glClearColor(surround, surround, surround, 1);
     glClear(GL_COLOR_BUFFER_BIT);
-    tl_window_show(view->window);
-    view->gpu = tl_gpu_create_current(error);
-    view->panel = view->gpu
-                      ? tl_panel_create(tl_window_handle(view->window), tl_window_scale(view->window), error)
-                      : NULL;
-    view->renderer = view->panel ? tl_renderer_create(view->gpu, error) : NULL;
-    return view->renderer != NULL;
+    tl_window_show(review->window);
+    review->gpu = tl_gpu_create_current(error);
+    review->panel = review->gpu ? tl_panel_create(tl_window_handle(review->window),
+                                                  tl_window_scale(review->window), error)
+                                : NULL;
+    review->renderer = review->panel ? tl_renderer_create(review->gpu, error) : NULL;
+    return review->renderer != NULL;
 }
 
-static bool open_view(struct tl_view *view, const struct tl_arguments *arguments, tl_error *error)
+static bool open_review(struct tl_review *review, const struct tl_arguments *arguments, tl_error *error)
 {
-    if (!tl_stage_settings(arguments, &view->wanted, error) || !open_window(view, error))
+    if (!tl_stage_settings(arguments, &review->wanted, error) || !open_window(review, error))
         return false;
-    bool is_draft = needs_draft(view, arguments);
-    if (is_draft && !tl_settings_apply_preset(&view->wanted, "draft", error))
+    bool is_draft = needs_draft(review, arguments);
+    if (is_draft && !tl_settings_apply_preset(&review->wanted, "draft", error))
         return false;
-    view->session = tl_session_create(&view->wanted, error);
-    if (!view->session)
+    review->session = tl_session_create(&review->wanted, error);
+    if (!review->session)
         return false;
-    view->good = view->wanted;
-    update_title(view);
-    tl_view_know_environment(view, "studio");
-    tl_view_know_environment(view, view->wanted.scene.environment);
+    review->good = review->wanted;
+    update_title(review);
+    tl_review_know_environment(review, "studio");
+    tl_review_know_environment(review, review->wanted.scene.environment);
     /* The first image must come off: there is nothing good to go back to yet. */
-    if (!follow(view, 1, error) || !draw_image(view, error))
+    if (!follow(review, 1, error) || !draw_image(review, error))
         return false;
-    tl_info("view: ready with %s; H lists keys and gestures", tl_gpu_name(view->gpu));
+    tl_info("view: ready with %s; H lists keys and gestures", tl_gpu_name(review->gpu));
     if (is_draft)
-        tl_view_say(view, "no graphics card: preset draft instead of review, to stay quick");
+        tl_review_say(review, "no graphics card: preset draft instead of review, to stay quick");
     return true;
 }
 
-static void close_view(struct tl_view *view)
+static void close_review(struct tl_review *review)
 {
-    tl_renderer_destroy(&view->renderer);
-    tl_panel_destroy(&view->panel);
-    tl_gpu_destroy(&view->gpu);
-    tl_window_destroy(&view->window);
-    tl_session_destroy(&view->session);
-    for (size_t i = 0; i < view->environment_count; i++)
-        free(view->environments[i]);
-    free(view->environments);
-    free(view->dropped);
-    free(view->title);
+    tl_renderer_destroy(&review->renderer);
+    tl_panel_destroy(&review->panel);
+    tl_gpu_destroy(&review->gpu);
+    tl_window_destroy(&review->window);
+    tl_session_destroy(&review->session);
+    for (size_t i = 0; i < review->environment_count; i++)
+        free(review->environments[i]);
+    free(review->environments);
+    free(review->dropped);
+    free(review->title);
 }
 
 bool tl_command_view(const struct tl_arguments *arguments, tl_error *error)
 {
-    struct tl_view *view = TL_NEW(struct tl_view);
-    view->scale = view->coarse_scale = 1;
-    view->redraws = 1;
-    view->reported_frame = -1;
-    view->screenshot_folder = arguments->screenshots ? arguments->screenshots : ".";
-    bool done = open_view(view, arguments, error);
+    struct tl_review *review = TL_NEW(struct tl_review);
+    review->scale = review->coarse_scale = 1;
+    review->redraws = 1;
+    review->reported_frame = -1;
+    review->screenshot_folder = arguments->screenshots ? arguments->screenshots : ".";
+    bool done = open_review(review, arguments, error);
     if (done) {
         const double megabyte = 1 << 20;
-        double before = (double)tl_view_resident_bytes() / megabyte;
-        done = run(view, arguments->max_frames, error);
+        double before = (double)tl_review_resident_bytes() / megabyte;
+        done = run(review, arguments->max_frames, error);
         tl_info("view: closed after %d images, %d shown, %zu GL messages, resident %.0f MB at start, %.0f MB "
                 "at end",
-                view->drawn_count, view->shown_count, tl_gpu_message_count(view->gpu), before,
-                (double)tl_view_resident_bytes() / megabyte);
+                review->drawn_count, review->shown_count, tl_gpu_message_count(review->gpu), before,
+                (double)tl_review_resident_bytes() / megabyte);
     }
-    close_view(view);
-    free(view);
+    close_review(review);
+    free(review);
     return done;
 }

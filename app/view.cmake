@@ -4,8 +4,8 @@ target_sources(toile_app PRIVATE
   orbit.c
   panel_rows_shim.cpp
   panel_shim.cpp
-  view_act.c
-  view_input.c
-  view_panel.c
+  review_act.c
+  review_input.c
+  review_panel.c
   window.c)
 target_link_libraries(toile_app PRIVATE PkgConfig::GLFW PkgConfig::IMGUI PkgConfig::EPOXY)

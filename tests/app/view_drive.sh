@@ -20,7 +20,7 @@ cd "$room"
 fail() {
     echo "FAILED $*"
     echo "--- the log:"
-    tail -n 40 log
+    tail -n 80 log
     exit 1
 }
 
@@ -66,7 +66,7 @@ export DISPLAY=:$(cat number)
 unset WAYLAND_DISPLAY
 
 : >log
-$TOILE view $fast --env light.exr --screenshots shots >out 2>log &
+$TOILE view $fast --verbose --env light.exr --screenshots shots >out 2>log &
 viewer=$!
 said "view: ready"
 shoot # 1
@@ -126,8 +126,8 @@ for shot in shots/*.png; do
 done
 [ "$(cat shots/*.png | wc -c)" -gt 0 ] && [ "$(md5sum shots/*.png | cut -d' ' -f1 | sort -u | wc -l)" -ge 5 ] ||
     fail "screenshots do not differ"
-# The allocator's and the software driver's play after a warm-up round; a leak of one image a frame would be 100 times
-# that.
+# Up to 40 MB of play were seen between rounds (the allocator and the software driver keep and return textures), with no
+# trend over eight rounds. One forgotten image a frame, 11 MB, would be over 200 MB a round.
 echo "resident: $warm_kb kB after the first round, $grown_kb kB more at the end"
-[ "$grown_kb" -lt 32768 ] || fail "memory grew by $grown_kb kB"
+[ "$grown_kb" -lt 65536 ] || fail "memory grew by $grown_kb kB"
 echo "ok     all"

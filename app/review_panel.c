@@ -1,5 +1,5 @@
 /* What the panel of the review window shows: options, measures, the plan. */
-#include "app/view.h"
+#include "app/review.h"
 #include "config/log.h"
 #include "config/memory.h"
 
@@ -20,28 +20,28 @@ static const char *const favourites[] = {
 };
 
 static const struct tl_panel_button model_answers[] = {
-    {"Garment", "worn by the avatar", TL_VIEW_USE_GARMENT},
-    {"Avatar", "wears the garment", TL_VIEW_USE_AVATAR},
-    {"Cancel", "", TL_VIEW_USE_NOTHING},
+    {"Garment", "worn by the avatar", TL_REVIEW_USE_GARMENT},
+    {"Avatar", "wears the garment", TL_REVIEW_USE_AVATAR},
+    {"Cancel", "", TL_REVIEW_USE_NOTHING},
 };
 
 static const struct tl_panel_button text_answers[] = {
-    {"Scene", "replaces all options", TL_VIEW_USE_SCENE},
-    {"Fabric", "replaces fabric, weave and material", TL_VIEW_USE_FABRIC},
-    {"Preset", "replaces the quality of light, image and cloth", TL_VIEW_USE_PRESET},
-    {"Cancel", "", TL_VIEW_USE_NOTHING},
+    {"Scene", "replaces all options", TL_REVIEW_USE_SCENE},
+    {"Fabric", "replaces fabric, weave and material", TL_REVIEW_USE_FABRIC},
+    {"Preset", "replaces the quality of light, image and cloth", TL_REVIEW_USE_PRESET},
+    {"Cancel", "", TL_REVIEW_USE_NOTHING},
 };
 
-int tl_view_panel_width(const struct tl_view *view)
+int tl_review_panel_width(const struct tl_review *review)
 {
     const float wished = 380;
     int width, height;
-    tl_window_size(view->window, &width, &height);
-    int panel = (int)(wished * tl_window_scale(view->window));
-    return view->panel_hidden ? 0 : panel < width / 2 ? panel : width / 2;
+    tl_window_size(review->window, &width, &height);
+    int panel = (int)(wished * tl_window_scale(review->window));
+    return review->panel_hidden ? 0 : panel < width / 2 ? panel : width / 2;
 }
 
-size_t tl_view_resident_bytes(void)
+size_t tl_review_resident_bytes(void)
 {
     unsigned long pages = 0;
     FILE *file = fopen("/proc/self/statm", "r");
@@ -73,22 +73,22 @@ static void add_line(struct tl_panel_line *lines, size_t *count, const char *lab
 }
 
 /* Measuring the cloth costs a query a vertex: not for every frame. */
-static const struct tl_cloth_report *cloth_report(struct tl_view *view)
+static const struct tl_cloth_report *cloth_report(struct tl_review *review)
 {
     const double patience_s = 0.5;
-    int frame = tl_session_frame_number(view->session);
+    int frame = tl_session_frame_number(review->session);
     double now_s = tl_clock_s();
-    if (frame != view->reported_frame && (!view->playing || now_s - view->reported_s > patience_s)) {
-        view->report = tl_session_report(view->session);
-        view->reported_frame = frame;
-        view->reported_s = now_s;
+    if (frame != review->reported_frame && (!review->playing || now_s - review->reported_s > patience_s)) {
+        review->report = tl_session_report(review->session);
+        review->reported_frame = frame;
+        review->reported_s = now_s;
     }
-    return &view->report;
+    return &review->report;
 }
 
-static void count_triangles(struct tl_view *view, size_t *triangles, size_t *vertices)
+static void count_triangles(struct tl_review *review, size_t *triangles, size_t *vertices)
 {
-    tl_frame frame = tl_session_frame(view->session);
+    tl_frame frame = tl_session_frame(review->session);
     *triangles = *vertices = 0;
     for (size_t i = 0; i < frame.surface_count; i++) {
         *triangles += frame.surfaces[i].index_count / 3;
@@ -96,38 +96,38 @@ static void count_triangles(struct tl_view *view, size_t *triangles, size_t *ver
     }
 }
 
-static size_t list_measures(struct tl_view *view, struct tl_panel_line *lines)
+static size_t list_measures(struct tl_review *review, struct tl_panel_line *lines)
 {
     size_t count = 0, triangles, vertices;
     int width, height;
-    tl_view_size(view, &width, &height);
-    add_line(lines, &count, "frame", "%d, %.0f ms", tl_session_frame_number(view->session),
-             view->times.frame);
-    add_line(lines, &count, "cloth", "%.1f ms", view->times.cloth);
-    add_line(lines, &count, "drawing", "%.0f ms", view->times.draw);
-    add_line(lines, &count, "image", view->scale > 1 ? "%d x %d at 1/%d" : "%d x %d", width, height,
-             view->scale);
-    count_triangles(view, &triangles, &vertices);
+    tl_review_size(review, &width, &height);
+    add_line(lines, &count, "frame", "%d, %.0f ms", tl_session_frame_number(review->session),
+             review->times.frame);
+    add_line(lines, &count, "cloth", "%.1f ms", review->times.cloth);
+    add_line(lines, &count, "drawing", "%.0f ms", review->times.draw);
+    add_line(lines, &count, "image", review->scale > 1 ? "%d x %d at 1/%d" : "%d x %d", width, height,
+             review->scale);
+    count_triangles(review, &triangles, &vertices);
     add_line(lines, &count, "surfaces", "%zu triangles, %zu vertices", triangles, vertices);
-    if (tl_session_cloth(view->session)) {
-        const struct tl_cloth_report *report = cloth_report(view);
+    if (tl_session_cloth(review->session)) {
+        const struct tl_cloth_report *report = cloth_report(review);
         add_line(lines, &count, "sheet", "%zu vertices, %zu edges", report->vertex_count, report->edge_count);
         add_line(lines, &count, "strain", "%.1f %% at most", 100 * report->max_strain);
         add_line(lines, &count, "speed", "%.2f m/s at most", report->max_speed);
     }
-    struct tl_render_memory memory = tl_renderer_memory(view->renderer);
+    struct tl_render_memory memory = tl_renderer_memory(review->renderer);
     add_line(lines, &count, "GL memory", "%.0f MB: light %.0f, maps %.0f, image %.0f",
              megabytes(memory.total), megabytes(memory.pems), megabytes(memory.maps),
              megabytes(memory.targets));
-    add_line(lines, &count, "memory", "%.0f MB", megabytes(tl_view_resident_bytes()));
-    if (tl_gpu_message_count(view->gpu) > 0)
-        add_line(lines, &count, "GL messages", "%zu, see the log", tl_gpu_message_count(view->gpu));
+    add_line(lines, &count, "memory", "%.0f MB", megabytes(tl_review_resident_bytes()));
+    if (tl_gpu_message_count(review->gpu) > 0)
+        add_line(lines, &count, "GL messages", "%zu, see the log", tl_gpu_message_count(review->gpu));
     return count;
 }
 
-static size_t list_plan(struct tl_view *view, struct tl_panel_line *lines)
+static size_t list_plan(struct tl_review *review, struct tl_panel_line *lines)
 {
-    const tl_plan *plan = tl_renderer_last_plan(view->renderer);
+    const tl_plan *plan = tl_renderer_last_plan(review->renderer);
     for (int i = 0; i < plan->count; i++) {
         const struct tl_plan_row *row = &plan->rows[i];
         snprintf(lines[i].cells[0], sizeof lines[i].cells[0], "%s", row->name);
@@ -141,65 +141,65 @@ static size_t list_plan(struct tl_view *view, struct tl_panel_line *lines)
     return (size_t)plan->count;
 }
 
-static void ask_about_dropped(const struct tl_view *view, char *question, size_t size,
+static void ask_about_dropped(const struct tl_review *review, char *question, size_t size,
                               struct tl_panel_input *input)
 {
-    if (!view->dropped)
+    if (!review->dropped)
         return;
-    const char *slash = strrchr(view->dropped, '/');
-    snprintf(question, size, "%s: use it as", slash ? slash + 1 : view->dropped);
-    bool is_model = strstr(slash ? slash : view->dropped, ".gl") != NULL;
+    const char *slash = strrchr(review->dropped, '/');
+    snprintf(question, size, "%s: use it as", slash ? slash + 1 : review->dropped);
+    bool is_model = strstr(slash ? slash : review->dropped, ".gl") != NULL;
     input->question = question;
     input->answers = is_model ? model_answers : text_answers;
     input->answer_count = is_model ? TL_COUNT(model_answers) : TL_COUNT(text_answers);
 }
 
-static void take_result(struct tl_view *view, const struct tl_panel_result *result)
+static void take_result(struct tl_review *review, const struct tl_panel_result *result)
 {
-    view->editing = result->editing;
+    review->editing = result->editing;
     if (result->changed) {
-        tl_view_layer(view);
-        tl_view_know_environment(view, view->wanted.scene.environment);
-        tl_view_touch(view);
-        view->changed = true;
+        tl_review_layer(review);
+        tl_review_know_environment(review, review->wanted.scene.environment);
+        tl_review_touch(review);
+        review->changed = true;
     }
     if (result->command >= 0)
-        tl_view_act(view, result->command);
+        tl_review_act(review, result->command);
 }
 
-void tl_view_build_panel(struct tl_view *view)
+void tl_review_build_panel(struct tl_review *review)
 {
     const struct tl_panel_button buttons[] = {
-        {view->playing ? "Pause" : "Play", "Space", TL_VIEW_PLAY},
-        {"Step", "one frame on: .", TL_VIEW_STEP},
-        {"Reset", "back to the settled start: R", TL_VIEW_RESET},
-        {"Frame", "frame the whole figure: F", TL_VIEW_FRAME_ALL},
-        {"Next light", "next environment: E", TL_VIEW_NEXT_ENVIRONMENT},
-        {"Picture", "screenshot: S, or Shift+S for a linear EXR", TL_VIEW_SCREENSHOT},
-        {"Keys", "keys and gestures: H", TL_VIEW_HELP},
+        {review->playing ? "Pause" : "Play", "Space", TL_REVIEW_PLAY},
+        {"Step", "one frame on: .", TL_REVIEW_STEP},
+        {"Reset", "back to the settled start: R", TL_REVIEW_RESET},
+        {"Frame", "frame the whole figure: F", TL_REVIEW_FRAME_ALL},
+        {"Next light", "next environment: E", TL_REVIEW_NEXT_ENVIRONMENT},
+        {"Picture", "screenshot: S, or Shift+S for a linear EXR", TL_REVIEW_SCREENSHOT},
+        {"Keys", "keys and gestures: H", TL_REVIEW_HELP},
     };
     struct tl_panel_line measures[MEASURES_MAX], plan[TL_JOBS_MAX], help[HELP_MAX];
     const struct tl_panel_lines groups[] = {
         {.title = "Measures",
          .lines = measures,
-         .count = list_measures(view, measures),
+         .count = list_measures(review, measures),
          .columns = 2,
          .open = true},
         {.title = "Plan",
          .help = "what the last image needed: job, action, usual time, reason",
          .lines = plan,
-         .count = list_plan(view, plan),
+         .count = list_plan(review, plan),
          .columns = 4},
     };
     struct tl_binding bindings[TL_SETTINGS_TABLES];
-    tl_settings_bind(&view->wanted, bindings);
+    tl_settings_bind(&review->wanted, bindings);
     int width, height;
-    tl_view_size(view, &width, &height);
+    tl_review_size(review, &width, &height);
     char question[TL_STRING_SIZE];
     struct tl_panel_input input = {
-        .title = view->title,
-        .message = view->message,
-        .message_is_error = view->message_is_error,
+        .title = review->title,
+        .message = review->message,
+        .message_is_error = review->message_is_error,
         .buttons = buttons,
         .button_count = TL_COUNT(buttons),
         .favourites = favourites,
@@ -209,12 +209,12 @@ void tl_view_build_panel(struct tl_view *view)
         .bindings = bindings,
         .binding_count = TL_SETTINGS_TABLES,
         .help = help,
-        .help_count = view->help_shown ? tl_view_help(help, HELP_MAX) : 0,
+        .help_count = review->help_shown ? tl_review_help(help, HELP_MAX) : 0,
         .x = width,
-        .width = tl_view_panel_width(view),
+        .width = tl_review_panel_width(review),
         .height = height,
     };
-    ask_about_dropped(view, question, sizeof question, &input);
-    struct tl_panel_result result = tl_panel_build(view->panel, &input);
-    take_result(view, &result);
+    ask_about_dropped(review, question, sizeof question, &input);
+    struct tl_panel_result result = tl_panel_build(review->panel, &input);
+    take_result(review, &result);
 }
