@@ -14,6 +14,9 @@
 #define GRAB_STIFFNESS 200.0
 #define GRAB_FORCE     5.0
 
+/* Friction of the weave against itself, in units of the fabric's damping. */
+#define INNER_DAMPING 10
+
 static int steps_per_frame(const struct tl_cloth_params *params)
 {
     const double rounding = 1e-9;
@@ -126,6 +129,8 @@ static void run_steps(tl_cloth *cloth, const tl_collider *collider, double drag)
 {
     int steps = steps_per_frame(&cloth->params), substeps = cloth->params.substeps;
     double total = (double)steps * substeps;
+    double step_s = 1 / (cloth->params.frame_rate * steps);
+    double calm = 1 - exp(-INNER_DAMPING * cloth->fabric.damping * step_s);
     for (int step = 0; step < steps && !tl_interrupted(); step++) {
         tl_contacts_let_through(&cloth->contacts, &cloth->energy, cloth->particles.x);
         tl_contacts_renew(&cloth->contacts, cloth->particles.x, cloth->fabric.thickness_m,
@@ -134,6 +139,8 @@ static void run_steps(tl_cloth *cloth, const tl_collider *collider, double drag)
             double done = (double)step * substeps + sub;
             substep(cloth, collider, drag, done / total, (done + 1) / total);
         }
+        tl_xpbd_calm(&cloth->particles, (const uint32_t(*)[2])cloth->topology.edges,
+                     cloth->topology.edge_count, calm);
     }
 }
 

@@ -2,8 +2,8 @@
  *
  * Render vertices are welded into physics vertices (bitwise equal start position; seams once they are
  * closed), so UV seams do not tear. Results do not depend on the number of threads. Positions are metres,
- * world axes. Ownership: a tl_cloth borrows its garment and must not outlive it. Threads: one at a time per
- * cloth. */
+ * world axes. Cloth does not collide with itself. Ownership: a tl_cloth borrows its garment and must not
+ * outlive it. Threads: one at a time per cloth. */
 #ifndef TOILE_CLOTH_CLOTH_H
 #define TOILE_CLOTH_CLOTH_H
 
@@ -22,7 +22,7 @@ struct tl_cloth_fabric {
     double shear;         /* N/m */
     double bend_weft;     /* N m, bending stiffness B of a strip cut along u */
     double bend_warp;     /* N m, along v */
-    double damping;       /* 1/s, of velocities relative to rigid motion of nothing: plain viscous air drag */
+    double damping;       /* 1/s, drag of the air; ten times it between neighbours */
     double friction;      /* Coulomb coefficient against avatar and ground */
     double thickness_m;   /* kept between the cloth's middle surface and the avatar */
 };
@@ -82,7 +82,9 @@ bool tl_cloth_step(tl_cloth *cloth, const tl_collider *collider, tl_error *error
 void tl_cloth_grab(tl_cloth *cloth, uint32_t render_vertex, vec3s target);
 void tl_cloth_release(tl_cloth *cloth);
 
-/* Current positions of all render vertices, and the physics vertex of each (for tl_frames). */
+/* Current positions of all render vertices, and the physics vertex of each (for tl_frames). The latter
+ * changes when seams close: during settling, or in a step when there was none or something held them apart.
+ */
 void tl_cloth_positions(const tl_cloth *cloth, vec3s *out);
 const uint32_t *tl_cloth_weld(const tl_cloth *cloth);
 

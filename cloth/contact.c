@@ -175,6 +175,8 @@ static vec3d push_out(vec3d x, vec3d before, vec3d surface, vec3d surface_before
                       const struct tl_contact_params *params)
 {
     double depth = params->thickness_m - vec3d_dot(vec3d_sub(x, surface), normal);
+    if (!(depth > 0))
+        return x;
     double depth_before = fmax(params->thickness_m - vec3d_dot(vec3d_sub(before, surface_before), normal), 0);
     double kept = fmax(depth_before - PUSH_OUT_SPEED * params->h, 0);
     double correction = depth - kept;
@@ -195,22 +197,34 @@ static vec3d push_off_ground(vec3d x, vec3d before, const struct tl_contact_para
     return push_out(x, before, origin, origin, up, params);
 }
 
-/* Where a point that is driven from `before` to `x` may go. */
-static vec3d keep_out(const tl_collider *collider, struct tl_contact_cache *cache, vec3d x, vec3d before,
-                      const struct tl_contact_params *params)
+struct surroundings {
+    const tl_collider *collider;
+    bool ground;
+    double travel;
+};
+
+static struct surroundings look_around(const tl_collider *collider)
 {
-    if (stale(cache, tl_collider_travel(collider), params->phase, x))
-        ask(collider, params->thickness_m, params->phase_before, before, cache);
+    return (struct surroundings){collider, collider && tl_collider_has_ground(collider),
+                                 collider ? tl_collider_travel(collider) : 0};
+}
+
+/* Where a point that is driven from `before` to `x` may go. */
+static vec3d keep_out(const struct surroundings *around, struct tl_contact_cache *cache, vec3d x,
+                      vec3d before, const struct tl_contact_params *params)
+{
+    if (stale(cache, around->travel, params->phase, x))
+        ask(around->collider, params->thickness_m, params->phase_before, before, cache);
     if (cache->near)
         x = push_out(x, before, anchor_at(cache, params->phase), anchor_at(cache, params->phase_before),
                      cache->normal, params);
-    if (tl_collider_has_ground(collider) && x.y < params->thickness_m)
+    if (around->ground && x.y < params->thickness_m)
         x = push_off_ground(x, before, params);
     return x;
 }
 
 /* A probe is moved by moving its vertices, each in proportion to its share and inverse mass. */
-static void solve_probe(const tl_collider *collider, const struct tl_probe *probe,
+static void solve_probe(const struct surroundings *around, const struct tl_probe *probe,
                         struct tl_contact_cache *cache, const struct tl_contact_params *params,
                         struct tl_particles *particles)
 {
@@ -218,7 +232,7 @@ static void solve_probe(const tl_collider *collider, const struct tl_probe *prob
     double sum = 0;
     for (int i = 0; i < 3; i++)
         sum += particles->w[probe->vertices[i]] * probe->weights[i] * probe->weights[i];
-    vec3d push = vec3d_sub(keep_out(collider, cache, x, before, params), x);
+    vec3d push = vec3d_sub(keep_out(around, cache, x, before, params), x);
     if (!(sum > 0) || !(vec3d_dot(push, push) > 0))
         return;
     for (int i = 0; i < 3; i++) {
@@ -230,18 +244,18 @@ static void solve_probe(const tl_collider *collider, const struct tl_probe *prob
 void tl_contacts_solve(struct tl_contacts *contacts, const struct tl_contact_params *params,
                        struct tl_particles *particles)
 {
-    const tl_collider *collider = contacts->collider;
-    if (!collider)
+    const struct surroundings around = look_around(contacts->collider);
+    if (!around.collider)
         return;
     for (size_t i = 0; i < contacts->probe_count; i++) {
         const uint32_t *v = contacts->probes[i].vertices;
         if (contacts->caught[v[0]] || contacts->caught[v[1]] || contacts->caught[v[2]])
             continue;
-        solve_probe(collider, &contacts->probes[i], &contacts->caches[contacts->particle_count + i], params,
+        solve_probe(&around, &contacts->probes[i], &contacts->caches[contacts->particle_count + i], params,
                     particles);
     }
     for (size_t i = 0; i < particles->count; i++)
         if (particles->w[i] > 0 && !contacts->caught[i])
             particles->x[i] =
-                keep_out(collider, &contacts->caches[i], particles->x[i], particles->previous[i], params);
+                keep_out(&around, &contacts->caches[i], particles->x[i], particles->previous[i], params);
 }

@@ -5,7 +5,13 @@
  * once; each frame streams positions (CLOTH notes: groups as in mikktspace.c, weights by the angle between
  * projected edges). A vertex whose UVs are degenerate keeps its last tangent, made orthogonal to its normal,
  * or takes any orthogonal direction. Always finite, orthonormal to 1e-5, w = +1 or -1; a zero-area fan keeps
- * its last normal, at first +Y. Threads: one update at a time per object. */
+ * its last normal, at first +Y.
+ *
+ * Cloth is smooth: vertices at one place share a normal even where the file split them, but for the back of a
+ * sheet that is drawn from both sides. MikkTSpace's tangents are per corner; a render vertex whose corners
+ * are in several groups (on a line where UVs mirror) takes the group of most of its corners, the first of
+ * equals. w follows the meshes' v, which runs down: the bitangent points to smaller v, up in a normal map.
+ * Triangles without UV area are in no group. Threads: one update at a time per object. */
 #ifndef TOILE_CLOTH_FRAMES_H
 #define TOILE_CLOTH_FRAMES_H
 
@@ -17,7 +23,8 @@ typedef struct tl_frames tl_frames;
  * Numbers rise in order of first appearance. */
 size_t tl_weld_positions(const vec3s *positions, size_t count, uint32_t *weld);
 
-/* `weld` as above or from tl_cloth_weld: vertex_count entries. Copies what it needs. */
+/* `weld` as above or from tl_cloth_weld, to be made anew when that changes: vertex_count entries. Copies what
+ * it needs. */
 tl_frames *tl_frames_create(const tl_mesh *mesh, const uint32_t *weld);
 void tl_frames_destroy(tl_frames **frames);
 

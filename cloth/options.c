@@ -17,7 +17,8 @@ static const struct tl_option fabric_rows[] = {
                      "bending stiffness of a strip cut along the weft: rounder folds"),
     TL_OPTION_DOUBLE(struct tl_cloth_fabric, bend_warp, 0, 1e3, "N m",
                      "bending stiffness of a strip cut along the warp: rounder folds"),
-    TL_OPTION_DOUBLE(struct tl_cloth_fabric, damping, 0, 1e3, "1/s", "drag of the air: comes to rest sooner"),
+    TL_OPTION_DOUBLE(struct tl_cloth_fabric, damping, 0, 1e3, "1/s",
+                     "drag of the air and, ten times it, of the weave in itself: comes to rest sooner"),
     TL_OPTION_DOUBLE(struct tl_cloth_fabric, friction, 0, 10, "",
                      "Coulomb coefficient against avatar and ground: slides less"),
     TL_OPTION_DOUBLE(struct tl_cloth_fabric, thickness_m, 0, 0.1, "m",
@@ -27,7 +28,7 @@ const struct tl_option_table tl_cloth_fabric_options = TL_OPTION_TABLE(
     "fabric", "what the cloth is made of", fabric_rows, struct tl_cloth_fabric, TL_CLOTH_FABRIC_DEFAULTS);
 
 #define TL_CLOTH_DEFAULTS                                                                                    \
-    .solver = TL_CLOTH_XPBD, .dt = 1.0 / 60, .frame_rate = 30, .substeps = 20, .gravity = 9.81,              \
+    .solver = TL_CLOTH_XPBD, .dt = 1.0 / 60, .frame_rate = 30, .substeps = 30, .gravity = 9.81,              \
     .settle_s = 6, .settle_speed = 0.01, .edge_m = 0.02f
 
 static const char *const solver_names[] = {"xpbd", NULL};

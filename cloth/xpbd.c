@@ -68,6 +68,19 @@ void tl_xpbd_finish(struct tl_particles *particles, double h)
         particles->v[i] = vec3d_scale(vec3d_sub(particles->x[i], particles->previous[i]), 1 / h);
 }
 
+void tl_xpbd_calm(struct tl_particles *particles, const uint32_t (*edges)[2], size_t edge_count, double share)
+{
+    for (size_t i = 0; i < edge_count; i++) {
+        uint32_t a = edges[i][0], b = edges[i][1];
+        double sum = particles->w[a] + particles->w[b];
+        if (!(sum > 0))
+            continue;
+        vec3d impulse = vec3d_scale(vec3d_sub(particles->v[b], particles->v[a]), share / sum);
+        particles->v[a] = vec3d_muladd(particles->v[a], impulse, particles->w[a]);
+        particles->v[b] = vec3d_muladd(particles->v[b], impulse, -particles->w[b]);
+    }
+}
+
 /* ---- Batches ---- */
 
 /* The wider of the two where the processor has it: both give the same bits, as neither contracts. Under the
@@ -141,10 +154,10 @@ INLINE void store(struct lanes3 x, const uint32_t *v, struct tl_particles *parti
 /* What a stretch C = |F| - 1 of gradient row_i F/|F| pushes, in units of F. */
 INLINE lanes stretch_push(struct lanes3 f, lanes factor)
 {
-    const lanes one = {1, 1, 1, 1};
+    const lanes zero = {0}, one = {1, 1, 1, 1};
     lanes squared = dot(f, f);
     mask has_direction = squared > NO_LENGTH * NO_LENGTH;
-    return choose(has_direction, factor * (one - one / root(choose(has_direction, squared, one))), one - one);
+    return choose(has_direction, factor * (one - one / root(choose(has_direction, squared, one))), zero);
 }
 
 /* Both stretches and the shear, one after the other. A push p on row c moves vertex i by w_i c_i p, and so

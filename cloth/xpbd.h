@@ -31,6 +31,11 @@ void tl_xpbd_solve_link(const struct tl_link *link, struct tl_particles *particl
 /* v <- (x - previous) / h. */
 void tl_xpbd_finish(struct tl_particles *particles, double h);
 
+/* Takes the share `share` of the relative velocity out of every edge, one after the other: the inner friction
+ * of the weave, which ends the small quarrels between contact and elastic forces. Keeps the momentum. */
+void tl_xpbd_calm(struct tl_particles *particles, const uint32_t (*edges)[2], size_t edge_count,
+                  double share);
+
 /* Denormals cost up to 150 times a normal operation and mean nothing here: flushed to zero while the solver
  * runs. Returns the state to restore. */
 unsigned tl_denormals_off(void);

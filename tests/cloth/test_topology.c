@@ -67,6 +67,37 @@ static void test_fans_list_every_corner_once(void **state)
     tl_fans_release(&fans);
 }
 
+/* A fan has a vertex in common everywhere: one lane each; a strip of far quads fills its lanes. Every element
+ * is listed once, and no batch has a vertex twice. */
+static void test_batches_share_no_vertex(void **state)
+{
+    (void)state;
+    enum { COUNT = 300 };
+    for (int fan = 0; fan < 2; fan++) {
+        uint32_t triangles[COUNT][3];
+        for (uint32_t i = 0; i < COUNT; i++)
+            for (uint32_t k = 0; k < 3; k++)
+                triangles[i][k] = fan && k == 0 ? 0 : i + k + 1;
+        size_t batches;
+        uint32_t *order = tl_batch_by_colour(&triangles[0][0], 3, 3, COUNT, COUNT + 3, &batches);
+        int seen[COUNT] = {0};
+        for (size_t b = 0; b < batches; b++) {
+            int used[COUNT + 3] = {0};
+            for (size_t lane = 0; lane < TL_LANES; lane++) {
+                uint32_t e = order[b * TL_LANES + lane];
+                for (size_t k = 0; e != TL_NONE && k < 3; k++)
+                    assert_int_equal(used[triangles[e][k]]++, 0);
+                if (e != TL_NONE)
+                    seen[e]++;
+            }
+        }
+        for (size_t e = 0; e < COUNT; e++)
+            assert_int_equal(seen[e], 1);
+        assert_int_equal(batches, fan ? COUNT : COUNT / TL_LANES);
+        free(order);
+    }
+}
+
 static void test_sets(void **state)
 {
     (void)state;
@@ -87,6 +118,7 @@ int main(void)
         cmocka_unit_test(test_repeated_and_collapsed_triangles_are_dropped),
         cmocka_unit_test(test_an_edge_of_three_triangles_is_no_hinge),
         cmocka_unit_test(test_fans_list_every_corner_once),
+        cmocka_unit_test(test_batches_share_no_vertex),
         cmocka_unit_test(test_sets),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
