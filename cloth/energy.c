@@ -102,16 +102,16 @@ static double edge_length(const struct flat *flat, int corner)
     return hypot(flat->x[j] - flat->x[i], flat->y[j] - flat->y[i]);
 }
 
-static struct tl_membrane make_membrane(const uint32_t *vertices, const struct flat *flat)
+static void set_up_membrane(const uint32_t *vertices, const struct flat *flat, struct tl_membrane *m,
+                            size_t lane)
 {
-    struct tl_membrane m = {.area = 0.5 * fabs(flat->signed_double_area)};
-    memcpy(m.vertices, vertices, sizeof m.vertices);
+    m->area[lane] = 0.5 * fabs(flat->signed_double_area);
     for (int i = 0; i < 3; i++) { /* gradients of the barycentric coordinates */
         int j = (i + 1) % 3, k = (i + 2) % 3;
-        m.c[i] = (flat->y[j] - flat->y[k]) / flat->signed_double_area;
-        m.d[i] = (flat->x[k] - flat->x[j]) / flat->signed_double_area;
+        m->vertices[i][lane] = vertices[i];
+        m->c[i][lane] = (flat->y[j] - flat->y[k]) / flat->signed_double_area;
+        m->d[i][lane] = (flat->x[k] - flat->x[j]) / flat->signed_double_area;
     }
-    return m;
 }
 
 /* Cotangent of a triangle's angle at `corner`. */
@@ -123,22 +123,29 @@ static double cotangent(const struct flat *flat, int corner)
     return (ax * bx + ay * by) / fabs(flat->signed_double_area);
 }
 
+/* One triangle's tl_bend. */
+struct stencil {
+    uint32_t vertices[TL_BEND_STENCIL];
+    double rows[3][TL_BEND_STENCIL];
+};
+
 /* Adds a vertex's coefficient to a stencil, merging vertices that are met twice (a closed cone of three
  * triangles has one far corner for all its hinges). */
-static void add_to_stencil(struct tl_bend *bend, int *used, uint32_t vertex, double k, const double unit[3])
+static void add_to_stencil(struct stencil *stencil, int *used, uint32_t vertex, double k,
+                           const double unit[3])
 {
     int slot = 0;
-    while (slot < *used && bend->vertices[slot] != vertex)
+    while (slot < *used && stencil->vertices[slot] != vertex)
         slot++;
     if (slot == *used)
-        bend->vertices[(*used)++] = vertex;
+        stencil->vertices[(*used)++] = vertex;
     for (int row = 0; row < 3; row++)
-        bend->rows[row][slot] += k * unit[row];
+        stencil->rows[row][slot] += k * unit[row];
 }
 
 /* Adds the hinge across the edge that faces `corner`. */
 static void add_hinge(const struct tl_topology *topology, const struct flat *flats, uint32_t triangle,
-                      int corner, struct tl_bend *bend, int *used)
+                      int corner, struct stencil *stencil, int *used)
 {
     uint32_t other = topology->neighbour[triangle][corner];
     if (other == TL_NONE || quality(&flats[other]) < needle)
@@ -158,27 +165,23 @@ static void add_hinge(const struct tl_topology *topology, const struct flat *fla
     double across_start = cotangent(far, far_start) * scale, across_end = cotangent(far, far_end) * scale;
     double spread = 1 / (0.5 * fabs(near->signed_double_area) + 0.5 * fabs(far->signed_double_area));
     const double unit[3] = {spread * nx * nx, spread * ny * ny, spread * M_SQRT2 * nx * ny};
-    add_to_stencil(bend, used, mine[start], near_end + across_end, unit);
-    add_to_stencil(bend, used, mine[end], near_start + across_start, unit);
-    add_to_stencil(bend, used, mine[corner], -near_start - near_end, unit);
-    add_to_stencil(bend, used, theirs[far_corner], -across_start - across_end, unit);
+    add_to_stencil(stencil, used, mine[start], near_end + across_end, unit);
+    add_to_stencil(stencil, used, mine[end], near_start + across_start, unit);
+    add_to_stencil(stencil, used, mine[corner], -near_start - near_end, unit);
+    add_to_stencil(stencil, used, theirs[far_corner], -across_start - across_end, unit);
 }
 
-static bool make_bend(const struct tl_topology *topology, const struct flat *flats, uint32_t triangle,
-                      struct tl_bend *bend)
+static struct stencil make_stencil(const struct tl_topology *topology, const struct flat *flats,
+                                   uint32_t triangle)
 {
-    *bend = (struct tl_bend){.area = 0.5 * fabs(flats[triangle].signed_double_area)};
+    struct stencil stencil = {0};
     int used = 3;
-    memcpy(bend->vertices, topology->triangles[triangle], 3 * sizeof(uint32_t));
-    for (int corner = 0; corner < 3; corner++)
-        add_hinge(topology, flats, triangle, corner, bend, &used);
+    memcpy(stencil.vertices, topology->triangles[triangle], 3 * sizeof(uint32_t));
+    for (int corner = 0; corner < 3 && quality(&flats[triangle]) >= needle; corner++)
+        add_hinge(topology, flats, triangle, corner, &stencil, &used);
     for (; used < TL_BEND_STENCIL; used++)
-        bend->vertices[used] = bend->vertices[0];
-    double size = 0;
-    for (int row = 0; row < 3; row++)
-        for (int i = 0; i < TL_BEND_STENCIL; i++)
-            size += fabs(bend->rows[row][i]);
-    return size > 0;
+        stencil.vertices[used] = stencil.vertices[0];
+    return stencil;
 }
 
 static void add_links(struct tl_energy *energy, const uint32_t *vertices, const struct flat *flat)
@@ -189,48 +192,72 @@ static void add_links(struct tl_energy *energy, const uint32_t *vertices, const 
                                                                .rest = edge_length(flat, corner)};
 }
 
-/* Elements that follow each other share no vertex, so that the processor works on several at once. */
-static void *sorted_by_colour(void *elements, size_t size, size_t per_element, size_t count,
-                              size_t vertex_count)
+/* Membranes of all triangles but slivers, which are listed in `triangles`. */
+static void build_membranes(struct tl_energy *energy, const struct tl_topology *topology,
+                            const struct flat *flats, const uint32_t *triangles, size_t count)
 {
-    uint32_t *order = TL_NEW_ARRAY(uint32_t, count);
-    char *sorted = tl_alloc(count, size);
-    tl_order_by_colour(elements, size / sizeof(uint32_t), per_element, count, vertex_count, order);
+    uint32_t(*corners)[3] = tl_alloc(count, sizeof *corners);
     for (size_t i = 0; i < count; i++)
-        memcpy(sorted + i * size, (const char *)elements + order[i] * size, size);
+        memcpy(corners[i], topology->triangles[triangles[i]], sizeof *corners);
+    uint32_t *order =
+        tl_batch_by_colour(&corners[0][0], 3, 3, count, topology->vertex_count, &energy->membrane_count);
+    energy->membranes = TL_NEW_ARRAY(struct tl_membrane, energy->membrane_count);
+    for (size_t i = 0; i < energy->membrane_count * TL_LANES; i++) {
+        struct tl_membrane *m = &energy->membranes[i / TL_LANES];
+        for (int k = 0; k < 3; k++)
+            m->vertices[k][i % TL_LANES] = (uint32_t)topology->vertex_count;
+        if (order[i] != TL_NONE)
+            set_up_membrane(corners[order[i]], &flats[triangles[order[i]]], m, i % TL_LANES);
+    }
     free(order);
-    free(elements);
-    return sorted;
+    free(corners);
+}
+
+static void build_bends(struct tl_energy *energy, const struct tl_topology *topology,
+                        const struct flat *flats)
+{
+    size_t count = topology->triangle_count;
+    struct stencil *stencils = TL_NEW_ARRAY(struct stencil, count);
+    for (size_t t = 0; t < count; t++)
+        stencils[t] = make_stencil(topology, flats, (uint32_t)t);
+    uint32_t *order = tl_batch_by_colour(stencils[0].vertices, sizeof *stencils / sizeof(uint32_t),
+                                         TL_BEND_STENCIL, count, topology->vertex_count, &energy->bend_count);
+    energy->bends = TL_NEW_ARRAY(struct tl_bend, energy->bend_count);
+    for (size_t i = 0; i < energy->bend_count * TL_LANES; i++) {
+        struct tl_bend *bend = &energy->bends[i / TL_LANES];
+        const struct stencil *from = order[i] != TL_NONE ? &stencils[order[i]] : NULL;
+        size_t lane = i % TL_LANES;
+        for (int k = 0; k < TL_BEND_STENCIL; k++) {
+            bend->vertices[k][lane] = from ? from->vertices[k] : (uint32_t)topology->vertex_count;
+            for (int row = 0; row < 3; row++)
+                bend->rows[row][k][lane] = from ? from->rows[row][k] : 0;
+        }
+        bend->area[lane] = from ? 0.5 * fabs(flats[order[i]].signed_double_area) : 0;
+    }
+    free(order);
+    free(stencils);
 }
 
 struct tl_energy tl_energy_build(const struct tl_topology *topology, const vec2s (*rest)[3])
 {
-    size_t count = topology->triangle_count;
-    struct tl_energy energy = {.membranes = TL_NEW_ARRAY(struct tl_membrane, count),
-                               .bends = TL_NEW_ARRAY(struct tl_bend, count),
+    size_t count = topology->triangle_count, membrane_count = 0;
+    struct tl_energy energy = {.links = TL_NEW_ARRAY(struct tl_link, 3 * count),
                                .masses = TL_NEW_ARRAY(double, topology->vertex_count)};
     struct flat *flats = TL_NEW_ARRAY(struct flat, count);
-    size_t slivers = 0;
+    uint32_t *triangles = TL_NEW_ARRAY(uint32_t, count);
     for (size_t t = 0; t < count; t++) {
         flats[t] = read_flat(rest[t]);
-        slivers += quality(&flats[t]) < sliver;
         for (int i = 0; i < 3; i++)
             energy.masses[topology->triangles[t][i]] += fabs(flats[t].signed_double_area) / 6;
-    }
-    energy.links = TL_NEW_ARRAY(struct tl_link, 3 * slivers);
-    for (size_t t = 0; t < count; t++) {
         if (quality(&flats[t]) < sliver)
             add_links(&energy, topology->triangles[t], &flats[t]);
         else
-            energy.membranes[energy.membrane_count++] = make_membrane(topology->triangles[t], &flats[t]);
-        if (quality(&flats[t]) >= needle)
-            energy.bend_count += make_bend(topology, flats, (uint32_t)t, &energy.bends[energy.bend_count]);
+            triangles[membrane_count++] = (uint32_t)t;
     }
+    build_membranes(&energy, topology, flats, triangles, membrane_count);
+    build_bends(&energy, topology, flats);
+    free(triangles);
     free(flats);
-    energy.membranes = sorted_by_colour(energy.membranes, sizeof *energy.membranes, 3, energy.membrane_count,
-                                        topology->vertex_count);
-    energy.bends = sorted_by_colour(energy.bends, sizeof *energy.bends, TL_BEND_STENCIL, energy.bend_count,
-                                    topology->vertex_count);
     return energy;
 }
 
@@ -255,27 +282,34 @@ static double factor_of(double gradient, double stiffness, double h)
 static void set_membrane(struct tl_membrane *m, const struct tl_cloth_fabric *fabric, const double *w,
                          double h)
 {
-    m->cc = m->cd = m->dd = 0;
-    for (int i = 0; i < 3; i++) {
-        m->cc += w[m->vertices[i]] * m->c[i] * m->c[i];
-        m->cd += w[m->vertices[i]] * m->c[i] * m->d[i];
-        m->dd += w[m->vertices[i]] * m->d[i] * m->d[i];
+    for (int lane = 0; lane < TL_LANES; lane++) {
+        double cc = 0, cd = 0, dd = 0;
+        for (int i = 0; i < 3; i++) {
+            double mobility = w[m->vertices[i][lane]], c = m->c[i][lane], d = m->d[i][lane];
+            cc += mobility * c * c;
+            cd += mobility * c * d;
+            dd += mobility * d * d;
+        }
+        m->cc[lane] = cc;
+        m->cd[lane] = cd;
+        m->dd[lane] = dd;
+        m->weft[lane] = factor_of(cc, fabric->stretch_weft * m->area[lane], h);
+        m->warp[lane] = factor_of(dd, fabric->stretch_warp * m->area[lane], h);
+        m->shear[lane] = 1 / (fabric->shear * m->area[lane] * h * h);
     }
-    m->weft = factor_of(m->cc, fabric->stretch_weft * m->area, h);
-    m->warp = factor_of(m->dd, fabric->stretch_warp * m->area, h);
-    m->shear = 1 / (fabric->shear * m->area * h * h);
 }
 
 static void set_bend(struct tl_bend *bend, const struct tl_cloth_fabric *fabric, const double *w, double h)
 {
     const double stiffness[3] = {fabric->bend_weft, fabric->bend_warp,
                                  sqrt(fabric->bend_weft * fabric->bend_warp)};
-    for (int row = 0; row < 3; row++) {
-        double gradient = 0;
-        for (int i = 0; i < TL_BEND_STENCIL; i++)
-            gradient += w[bend->vertices[i]] * bend->rows[row][i] * bend->rows[row][i];
-        bend->factors[row] = factor_of(gradient, stiffness[row] * bend->area, h);
-    }
+    for (int row = 0; row < 3; row++)
+        for (int lane = 0; lane < TL_LANES; lane++) {
+            double gradient = 0;
+            for (int i = 0; i < TL_BEND_STENCIL; i++)
+                gradient += w[bend->vertices[i][lane]] * bend->rows[row][i][lane] * bend->rows[row][i][lane];
+            bend->factors[row][lane] = factor_of(gradient, stiffness[row] * bend->area[lane], h);
+        }
 }
 
 void tl_energy_set(struct tl_energy *energy, const struct tl_cloth_fabric *fabric,

@@ -25,24 +25,27 @@
 #include "cloth/topology.h"
 #include "cloth/vec3d.h"
 
-/* One triangle's membrane. F_u = sum c_i x_i, F_v = sum d_i x_i. */
+/* Triangles are kept in batches that share no vertex, lane by lane. An empty lane has the vertex one past the
+ * last, which is held, and zeros. */
+
+/* Membranes. F_u = sum c_i x_i, F_v = sum d_i x_i. */
 struct tl_membrane {
-    uint32_t vertices[3];
-    double c[3], d[3]; /* 1/m */
-    double area;       /* m^2, at rest */
-    double cc, cd, dd; /* sums of w c_i c_i, ...: fixed while masses are */
-    double weft, warp; /* what a violation is multiplied by: -1 / (w |grad|^2 + 1 / (k A h^2)) */
-    double shear;      /* 1 / (k A h^2) */
+    uint32_t vertices[3][TL_LANES];
+    double c[3][TL_LANES], d[3][TL_LANES];           /* 1/m */
+    double area[TL_LANES];                           /* m^2, at rest */
+    double cc[TL_LANES], cd[TL_LANES], dd[TL_LANES]; /* sums of w c_i c_i, ...: fixed while masses are */
+    double weft[TL_LANES], warp[TL_LANES];           /* -1 / (w |grad|^2 + 1 / (k A h^2)) */
+    double shear[TL_LANES];                          /* 1 / (k A h^2) */
 };
 
-/* One triangle's curvature: L_uu, L_vv, sqrt(2) L_uv = sum of rows over the stencil's vertices. */
+/* Curvatures: L_uu, L_vv, sqrt(2) L_uv = sum of rows over the stencil's vertices. */
 #define TL_BEND_STENCIL 6
 struct tl_bend {
-    uint32_t vertices[TL_BEND_STENCIL]; /* own three, then across each edge; a missing one repeats the first
-                                           with rows of 0 */
-    double rows[3][TL_BEND_STENCIL];    /* 1/m^2 */
-    double factors[3];                  /* -1 / (sum w row^2 + 1 / (B A h^2)) */
-    double area;
+    uint32_t vertices[TL_BEND_STENCIL][TL_LANES]; /* own three, then across each edge; a missing one repeats
+                                                     the first with rows of 0 */
+    double rows[3][TL_BEND_STENCIL][TL_LANES];    /* 1/m^2 */
+    double factors[3][TL_LANES];                  /* -1 / (sum w row^2 + 1 / (B A h^2)) */
+    double area[TL_LANES];
 };
 
 /* A spring: keeps slivers, which have no usable plane, in shape; closes seams. */
@@ -53,7 +56,7 @@ struct tl_link {
 };
 
 struct tl_energy {
-    size_t membrane_count, bend_count, link_count;
+    size_t membrane_count, bend_count, link_count; /* batches, batches, links */
     struct tl_membrane *membranes;
     struct tl_bend *bends;
     struct tl_link *links;
@@ -64,7 +67,7 @@ struct tl_energy {
 struct tl_energy tl_energy_build(const struct tl_topology *topology, const vec2s (*rest)[3]);
 void tl_energy_release(struct tl_energy *energy);
 
-/* Sets what depends on material, substep `h` seconds and inverse masses. */
+/* Sets what depends on material, substep `h` seconds and inverse masses [vertex_count + 1]. */
 void tl_energy_set(struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
                    const double *inverse_masses, double h);
 

@@ -218,29 +218,42 @@ void tl_fans_release(struct tl_fans *fans)
     *fans = (struct tl_fans){0};
 }
 
-#define COLOURS 64 /* bits of a mask; the last one takes what is left */
+#define COLOURS 64 /* bits of a mask */
 
-void tl_order_by_colour(const uint32_t *corners, size_t stride_words, size_t per_element, size_t count,
-                        size_t vertex_count, uint32_t *order)
+/* A colour that no element at these vertices has; the last one is shared by what finds none. */
+static uint8_t choose_colour(uint64_t *used, const uint32_t *vertices, size_t count)
+{
+    uint64_t taken = 0;
+    for (size_t i = 0; i < count; i++)
+        taken |= used[vertices[i]];
+    int colour = taken == UINT64_MAX ? COLOURS - 1 : __builtin_ctzll(~taken);
+    for (size_t i = 0; i < count; i++)
+        used[vertices[i]] |= (uint64_t)1 << colour;
+    return (uint8_t)colour;
+}
+
+uint32_t *tl_batch_by_colour(const uint32_t *corners, size_t stride, size_t per_element, size_t count,
+                             size_t vertex_count, size_t *batch_count)
 {
     uint64_t *used = TL_NEW_ARRAY(uint64_t, vertex_count);
     uint8_t *colours = TL_NEW_ARRAY(uint8_t, count);
-    size_t first[COLOURS + 1] = {0};
+    size_t sizes[COLOURS] = {0}, next[COLOURS], slots = 0;
     for (size_t e = 0; e < count; e++) {
-        const uint32_t *vertices = corners + e * stride_words;
-        uint64_t taken = 0;
-        for (size_t i = 0; i < per_element; i++)
-            taken |= used[vertices[i]];
-        int colour = taken == UINT64_MAX ? COLOURS - 1 : __builtin_ctzll(~taken);
-        for (size_t i = 0; i < per_element; i++)
-            used[vertices[i]] |= (uint64_t)1 << colour;
-        colours[e] = (uint8_t)colour;
-        first[colour + 1]++;
+        colours[e] = choose_colour(used, corners + e * stride, per_element);
+        sizes[colours[e]]++;
     }
-    for (int c = 0; c < COLOURS; c++)
-        first[c + 1] += first[c];
-    for (size_t e = 0; e < count; e++)
-        order[first[colours[e]]++] = (uint32_t)e;
+    for (size_t c = 0; c < COLOURS; c++) { /* elements of the shared colour get a batch each */
+        next[c] = slots;
+        slots += c == COLOURS - 1 ? sizes[c] * TL_LANES : (sizes[c] + TL_LANES - 1) / TL_LANES * TL_LANES;
+    }
+    uint32_t *order = TL_NEW_ARRAY(uint32_t, slots);
+    memset(order, 0xff, slots * sizeof *order);
+    for (size_t e = 0; e < count; e++) {
+        order[next[colours[e]]] = (uint32_t)e;
+        next[colours[e]] += colours[e] == COLOURS - 1 ? TL_LANES : 1;
+    }
     free(used);
     free(colours);
+    *batch_count = slots / TL_LANES;
+    return order;
 }

@@ -41,11 +41,12 @@ struct tl_fans {
 struct tl_fans tl_fans_build(const uint32_t *corners, size_t corner_count, size_t vertex_count);
 void tl_fans_release(struct tl_fans *fans);
 
-/* An order of elements in which neighbours in the list rarely share a vertex: greedy colours, one after the
- * other, each in the order given. Such a list can be solved with several elements in flight. Element i has
- * `per_element` vertices at `corners + i * stride_words`; fills `order` with element numbers. */
-void tl_order_by_colour(const uint32_t *corners, size_t stride_words, size_t per_element, size_t count,
-                        size_t vertex_count, uint32_t *order);
+/* Batches of TL_LANES elements that share no vertex, so that a batch can be solved as one: greedy colours,
+ * one after the other, each in the order given. Element i has `per_element` vertices at corners + i * stride.
+ * Returns a new array of element numbers, TL_NONE in lanes that stay empty. */
+#define TL_LANES 4
+uint32_t *tl_batch_by_colour(const uint32_t *corners, size_t stride, size_t per_element, size_t count,
+                             size_t vertex_count, size_t *batch_count);
 
 /* Disjoint sets with the lowest member as the representative of each. */
 uint32_t tl_sets_find(uint32_t *parents, uint32_t member);

@@ -34,10 +34,10 @@ void tl_denormals_restore(unsigned state)
 struct tl_particles tl_particles_create(size_t count)
 {
     return (struct tl_particles){.count = count,
-                                 .x = TL_NEW_ARRAY(vec3d, count),
-                                 .previous = TL_NEW_ARRAY(vec3d, count),
-                                 .v = TL_NEW_ARRAY(vec3d, count),
-                                 .w = TL_NEW_ARRAY(double, count)};
+                                 .x = TL_NEW_ARRAY(vec3d, count + 1),
+                                 .previous = TL_NEW_ARRAY(vec3d, count + 1),
+                                 .v = TL_NEW_ARRAY(vec3d, count + 1),
+                                 .w = TL_NEW_ARRAY(double, count + 1)};
 }
 
 void tl_particles_release(struct tl_particles *particles)
@@ -68,71 +68,159 @@ void tl_xpbd_finish(struct tl_particles *particles, double h)
         particles->v[i] = vec3d_scale(vec3d_sub(particles->x[i], particles->previous[i]), 1 / h);
 }
 
-/* What a stretch C = |F| - 1 of gradient row_i F/|F| pushes, in units of F. */
-static inline double stretch_push(vec3d f, double factor)
+/* ---- Batches ---- */
+
+/* The wider of the two where the processor has it: both give the same bits, as neither contracts. Under the
+ * address sanitizer there is one only: resolvers run before it is ready. */
+#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
+#define WIDE __attribute__((target_clones("avx2", "default")))
+#else
+#define WIDE
+#endif
+#define INLINE static inline __attribute__((always_inline))
+
+typedef double lanes __attribute__((vector_size(8 * TL_LANES)));
+typedef double lanes_in_memory __attribute__((vector_size(8 * TL_LANES), aligned(8)));
+typedef long long mask __attribute__((vector_size(8 * TL_LANES)));
+
+struct lanes3 {
+    lanes x, y, z;
+};
+
+INLINE lanes lanes_of(const double *values)
 {
-    double squared = vec3d_dot(f, f);
-    return squared > NO_LENGTH * NO_LENGTH ? factor * (1 - 1 / sqrt(squared)) : 0;
+    return *(const lanes_in_memory *)values;
+}
+
+INLINE lanes choose(mask which, lanes yes, lanes no)
+{
+    return (lanes)((which & (mask)yes) | (~which & (mask)no));
+}
+
+INLINE lanes root(lanes v)
+{
+    for (int i = 0; i < TL_LANES; i++)
+        v[i] = sqrt(v[i]);
+    return v;
+}
+
+INLINE lanes dot(struct lanes3 a, struct lanes3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+INLINE struct lanes3 scale(struct lanes3 a, lanes s)
+{
+    return (struct lanes3){a.x * s, a.y * s, a.z * s};
+}
+
+INLINE struct lanes3 muladd(struct lanes3 a, struct lanes3 b, lanes s)
+{
+    return (struct lanes3){a.x + b.x * s, a.y + b.y * s, a.z + b.z * s};
+}
+
+INLINE struct lanes3 load(const struct tl_particles *particles, const uint32_t *v)
+{
+    const vec3d *x = particles->x;
+    return (struct lanes3){{x[v[0]].x, x[v[1]].x, x[v[2]].x, x[v[3]].x},
+                           {x[v[0]].y, x[v[1]].y, x[v[2]].y, x[v[3]].y},
+                           {x[v[0]].z, x[v[1]].z, x[v[2]].z, x[v[3]].z}};
+}
+
+INLINE lanes load_inverse_masses(const struct tl_particles *particles, const uint32_t *v)
+{
+    return (lanes){particles->w[v[0]], particles->w[v[1]], particles->w[v[2]], particles->w[v[3]]};
+}
+
+INLINE void store(struct lanes3 x, const uint32_t *v, struct tl_particles *particles)
+{
+    for (int lane = 0; lane < TL_LANES; lane++)
+        particles->x[v[lane]] = (vec3d){x.x[lane], x.y[lane], x.z[lane]};
+}
+
+/* What a stretch C = |F| - 1 of gradient row_i F/|F| pushes, in units of F. */
+INLINE lanes stretch_push(struct lanes3 f, lanes factor)
+{
+    const lanes one = {1, 1, 1, 1};
+    lanes squared = dot(f, f);
+    mask has_direction = squared > NO_LENGTH * NO_LENGTH;
+    return choose(has_direction, factor * (one - one / root(choose(has_direction, squared, one))), one - one);
 }
 
 /* Both stretches and the shear, one after the other. A push p on row c moves vertex i by w_i c_i p, and so
  * F_u by cc p and F_v by cd p: the three are solved on F alone, and the vertices move once. */
-static inline void solve_membrane(const struct tl_membrane *m, struct tl_particles *particles)
+INLINE void solve_membrane(const struct tl_membrane *m, struct tl_particles *particles)
 {
-    vec3d *x[3];
-    double w[3];
+    const lanes zero = {0}, one = {1, 1, 1, 1};
+    struct lanes3 x[3] = {0}, u = {0}, v = {0};
     for (int i = 0; i < 3; i++) {
-        x[i] = &particles->x[m->vertices[i]];
-        w[i] = particles->w[m->vertices[i]];
+        x[i] = load(particles, m->vertices[i]);
+        u = muladd(u, x[i], lanes_of(m->c[i]));
+        v = muladd(v, x[i], lanes_of(m->d[i]));
     }
-    vec3d u = vec3d_scale(*x[0], m->c[0]), v = vec3d_scale(*x[0], m->d[0]);
-    u = vec3d_muladd(vec3d_muladd(u, *x[1], m->c[1]), *x[2], m->c[2]);
-    v = vec3d_muladd(vec3d_muladd(v, *x[1], m->d[1]), *x[2], m->d[2]);
-
-    vec3d push_c = vec3d_scale(u, stretch_push(u, m->weft));
-    u = vec3d_muladd(u, push_c, m->cc);
-    v = vec3d_muladd(v, push_c, m->cd);
-    vec3d push_d = vec3d_scale(v, stretch_push(v, m->warp));
-    u = vec3d_muladd(u, push_d, m->cd);
-    v = vec3d_muladd(v, push_d, m->dd);
+    lanes cc = lanes_of(m->cc), cd = lanes_of(m->cd), dd = lanes_of(m->dd);
+    struct lanes3 push_c = scale(u, stretch_push(u, lanes_of(m->weft)));
+    u = muladd(u, push_c, cc);
+    v = muladd(v, push_c, cd);
+    struct lanes3 push_d = scale(v, stretch_push(v, lanes_of(m->warp)));
+    u = muladd(u, push_d, cd);
+    v = muladd(v, push_d, dd);
 
     /* C = cosine between the threads, of gradient c_i (v/|v| - C u/|u|)/|u| + d_i (u/|u| - C v/|v|)/|v|. */
-    double uu = vec3d_dot(u, u), vv = vec3d_dot(v, v);
-    if (uu > NO_LENGTH * NO_LENGTH && vv > NO_LENGTH * NO_LENGTH) {
-        double both = 1 / sqrt(uu * vv), cosine = vec3d_dot(u, v) * both;
-        vec3d along_u = vec3d_muladd(vec3d_scale(v, both), u, -cosine / uu);
-        vec3d along_v = vec3d_muladd(vec3d_scale(u, both), v, -cosine / vv);
-        double gradient = m->cc * vec3d_dot(along_u, along_u) + 2 * m->cd * vec3d_dot(along_u, along_v) +
-                          m->dd * vec3d_dot(along_v, along_v);
-        double sum = gradient + m->shear, multiplier = sum > 0 ? -cosine / sum : 0;
-        push_c = vec3d_muladd(push_c, along_u, multiplier);
-        push_d = vec3d_muladd(push_d, along_v, multiplier);
+    lanes uu = dot(u, u), vv = dot(v, v);
+    mask has_angle = (uu > NO_LENGTH * NO_LENGTH) & (vv > NO_LENGTH * NO_LENGTH);
+    uu = choose(has_angle, uu, one);
+    vv = choose(has_angle, vv, one);
+    lanes both = one / root(uu * vv), cosine = dot(u, v) * both;
+    struct lanes3 along_u = muladd(scale(v, both), u, -cosine / uu);
+    struct lanes3 along_v = muladd(scale(u, both), v, -cosine / vv);
+    lanes sum = lanes_of(m->shear) + cc * dot(along_u, along_u) + 2 * cd * dot(along_u, along_v) +
+                dd * dot(along_v, along_v);
+    mask resists = has_angle & (sum > 0);
+    lanes multiplier = choose(resists, -cosine / choose(resists, sum, one), zero);
+    push_c = muladd(push_c, along_u, multiplier);
+    push_d = muladd(push_d, along_v, multiplier);
+    for (int i = 0; i < 3; i++) {
+        lanes w = load_inverse_masses(particles, m->vertices[i]);
+        x[i] = muladd(muladd(x[i], push_c, w * lanes_of(m->c[i])), push_d, w * lanes_of(m->d[i]));
+        store(x[i], m->vertices[i], particles);
     }
-    for (int i = 0; i < 3; i++)
-        *x[i] = vec3d_muladd(vec3d_muladd(*x[i], push_c, w[i] * m->c[i]), push_d, w[i] * m->d[i]);
+}
+
+WIDE static void solve_membranes(const struct tl_energy *energy, struct tl_particles *particles)
+{
+    for (size_t i = 0; i < energy->membrane_count; i++)
+        solve_membrane(&energy->membranes[i], particles);
 }
 
 /* The three components of the curvature: vectors, linear in the positions. */
-static inline void solve_bend(const struct tl_bend *bend, struct tl_particles *particles)
+INLINE void solve_bend(const struct tl_bend *bend, struct tl_particles *particles)
 {
-    vec3d x[TL_BEND_STENCIL];
-    double w[TL_BEND_STENCIL];
+    struct lanes3 x[TL_BEND_STENCIL] = {0};
+    lanes w[TL_BEND_STENCIL] = {0};
     for (int i = 0; i < TL_BEND_STENCIL; i++) {
-        x[i] = particles->x[bend->vertices[i]];
-        w[i] = particles->w[bend->vertices[i]];
+        x[i] = load(particles, bend->vertices[i]);
+        w[i] = load_inverse_masses(particles, bend->vertices[i]);
     }
     for (int row = 0; row < 3; row++) {
-        const double *r = bend->rows[row];
-        vec3d curvature = vec3d_scale(x[0], r[0]);
+        struct lanes3 curvature = scale(x[0], lanes_of(bend->rows[row][0]));
         for (int i = 1; i < TL_BEND_STENCIL; i++)
-            curvature = vec3d_muladd(curvature, x[i], r[i]);
-        vec3d push = vec3d_scale(curvature, bend->factors[row]);
+            curvature = muladd(curvature, x[i], lanes_of(bend->rows[row][i]));
+        struct lanes3 push = scale(curvature, lanes_of(bend->factors[row]));
         for (int i = 0; i < TL_BEND_STENCIL; i++)
-            x[i] = vec3d_muladd(x[i], push, w[i] * r[i]);
+            x[i] = muladd(x[i], push, w[i] * lanes_of(bend->rows[row][i]));
     }
-    for (int i = TL_BEND_STENCIL - 1; i >= 0; i--) /* last the first: it stands in for missing ones */
-        particles->x[bend->vertices[i]] = x[i];
+    for (int i = TL_BEND_STENCIL - 1; i >= 0; i--) /* the first last: it stands in for missing ones */
+        store(x[i], bend->vertices[i], particles);
 }
+
+WIDE static void solve_bends(const struct tl_energy *energy, struct tl_particles *particles)
+{
+    for (size_t i = 0; i < energy->bend_count; i++)
+        solve_bend(&energy->bends[i], particles);
+}
+
+/* ---- Links and the whole ---- */
 
 void tl_xpbd_solve_link(const struct tl_link *link, struct tl_particles *particles)
 {
@@ -148,10 +236,8 @@ void tl_xpbd_solve_link(const struct tl_link *link, struct tl_particles *particl
 
 void tl_xpbd_solve(const struct tl_energy *energy, struct tl_particles *particles)
 {
-    for (size_t i = 0; i < energy->membrane_count; i++)
-        solve_membrane(&energy->membranes[i], particles);
-    for (size_t i = 0; i < energy->bend_count; i++)
-        solve_bend(&energy->bends[i], particles);
+    solve_membranes(energy, particles);
+    solve_bends(energy, particles);
     for (size_t i = 0; i < energy->link_count; i++)
         tl_xpbd_solve_link(&energy->links[i], particles);
 }

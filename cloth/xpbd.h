@@ -2,8 +2,9 @@
  * "Small Steps in Physics Simulation"): predict, solve each constraint once in a fixed order, take the
  * velocity from the motion. With a fresh multiplier each substep a single spring is exactly implicit Euler.
  *
- * Double throughout: in float gravity vanishes for h <= 7e-5 s at 1.5 m. Serial Gauss-Seidel in file order:
- * the result cannot depend on the number of threads. Threads: pure. */
+ * Double throughout: in float gravity vanishes for h <= 7e-5 s at 1.5 m. Serial Gauss-Seidel over batches
+ * whose elements share no vertex: the result depends neither on the number of threads nor on how wide the
+ * processor is. Threads: pure. */
 #ifndef TOILE_CLOTH_XPBD_H
 #define TOILE_CLOTH_XPBD_H
 
@@ -11,7 +12,7 @@
 #include "cloth/vec3d.h"
 
 struct tl_particles {
-    size_t count;
+    size_t count;    /* the arrays have one more, held, for the empty lanes of batches */
     vec3d *x;        /* m */
     vec3d *previous; /* m, at the start of the substep */
     vec3d *v;        /* m/s */
