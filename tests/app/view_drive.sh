@@ -26,7 +26,7 @@ fail() {
 
 # said TEXT [TIMES]: waits until the log holds the text so many times.
 said() {
-    for _ in $(seq 200); do
+    for _ in $(seq 600); do
         [ "$(grep -c -e "$1" log)" -ge "${2:-1}" ] && { echo "ok     $1"; return; }
         kill -0 "$viewer" 2>/dev/null || fail "the window closed before it said: $1"
         sleep 0.1
