@@ -241,7 +241,8 @@ template <typename Info> gltf_texture copy_texture(const tinygltf::Model &model,
         copy_pair(to.transform.offset, transform.Get("offset"));
         copy_pair(to.transform.scale, transform.Get("scale"));
         to.transform.rotation = number_of(transform.Get("rotation"), 0);
-        to.uv_set = static_cast<int>(number_of(transform.Get("texCoord"), static_cast<float>(to.uv_set)));
+        if (transform.Get("texCoord").IsInt())
+            to.uv_set = transform.Get("texCoord").GetNumberAsInt();
     }
     return to;
 }

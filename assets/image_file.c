@@ -127,9 +127,8 @@ static void write_bytes(void *stream, void *data, int size)
 
 bool tl_image_encode_png(const char *name, const tl_image *image, void **data, size_t *size, tl_error *error)
 {
-    if (image->type != TL_IMAGE_U8 || image->channels == 2 || !image->texels)
-        return tl_fail(error, TL_OUTPUT, "%s: only 8-bit images of 1, 3 or 4 channels become PNG: use .exr",
-                       name);
+    if (image->type != TL_IMAGE_U8 || !image->texels)
+        return tl_fail(error, TL_OUTPUT, "%s: only 8-bit images become PNG: use .exr", name);
     char *bytes = NULL;
     FILE *stream = open_memstream(&bytes, size);
     bool encoded =
