@@ -10,6 +10,7 @@ extern "C" {
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -371,6 +372,8 @@ bool gltf_parse(const char *path, const char *json, size_t json_size, const uint
         if (parser.LoadBinaryFromMemory(&owner->model, &complaint, &warning,
                                         reinterpret_cast<const unsigned char *>(glb.data()),
                                         static_cast<unsigned int>(glb.size()), folder_of(path))) {
+            if (owner->model.asset.version.rfind("2.", 0) != 0)
+                throw std::runtime_error("asset.version is not 2");
             copy_geometry(*owner);
             copy_looks(*owner);
             point_to(*owner, *out);

@@ -11,6 +11,7 @@ extern "C" {
 #include <exception>
 #include <map>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 

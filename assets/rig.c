@@ -248,7 +248,7 @@ void rig_place(const tl_rig *rig, const mat4s *world, vec3s *positions)
     mat4s *palette = TL_NEW_ARRAY(mat4s, rig->slot_count);
     for (size_t i = 0; i < rig->slot_count; i++)
         palette[i] = glms_mat4_mul(world[rig->slots[i].node], rig->slots[i].bind);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (rig->vertex_count > 1024)
     for (size_t v = 0; v < rig->vertex_count; v++) {
         const struct rig_influence *influence = &rig->influences[v];
         vec3s sum = {{0, 0, 0}};
