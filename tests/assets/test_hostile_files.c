@@ -367,7 +367,8 @@ static uint8_t damaged(uint8_t byte, bool text, uint32_t *seed)
 {
     if (text)
         return byte >= '0' && byte <= '9' ? (uint8_t)('0' + next_random(seed) % 10) : byte;
-    return next_random(seed) % 2 ? (uint8_t)next_random(seed) : (uint8_t)(byte ^ 1u << next_random(seed) % 8);
+    uint32_t any = next_random(seed), bit = 1u << next_random(seed) % 8;
+    return (uint8_t)(any & 0x100 ? any : byte ^ bit);
 }
 
 /* Loads `count` copies of a file, each with a few bytes changed; `text`: only digits, and more of them. */
