@@ -224,7 +224,8 @@ static bool store_row(const struct plane *plane, const exr_coding_channel_info_t
         return false;
     float *values = plane->values + ((size_t)top * (size_t)plane->width + (size_t)left) * plane->step;
     for (int i = 0; i < channel->width; i++)
-        values[(size_t)i * plane->step] = value_at(row + i * channel->bytes_per_element, channel->data_type);
+        values[(size_t)i * plane->step] =
+            value_at(row + (size_t)i * (size_t)channel->bytes_per_element, channel->data_type);
     return true;
 }
 
@@ -257,9 +258,8 @@ static bool decode_chunk(struct part *part, const exr_chunk_info_t *chunk, int x
     if (chunk->packed_size > part->stream->size)
         return false;
     exr_decode_pipeline_t decoder = EXR_DECODE_PIPELINE_INITIALIZER;
-    bool decoded =
-        exr_decoding_initialize(part->file, part->index, chunk, &decoder) == EXR_ERR_SUCCESS &&
-        exr_decoding_choose_default_routines(part->file, part->index, &decoder) == EXR_ERR_SUCCESS;
+    bool decoded = exr_decoding_initialize(part->file, part->index, chunk, &decoder) == EXR_ERR_SUCCESS &&
+                   exr_decoding_choose_default_routines(part->file, part->index, &decoder) == EXR_ERR_SUCCESS;
     decoder.unpack_and_convert_fn = NULL;
     decoded = decoded && exr_decoding_run(part->file, part->index, &decoder) == EXR_ERR_SUCCESS &&
               unpack_chunk(part, &decoder, x, y);

@@ -67,7 +67,7 @@ static bool jpeg_is_whole(const uint8_t *bytes, size_t size)
 
 /* Deflate shrinks at most 1032 times, and a byte may hold 8 texels; nothing else that is read here does more.
  */
-#define TEXELS_PER_BYTE (1032 * 8)
+#define TEXELS_PER_BYTE ((uint64_t)1032 * 8)
 
 static bool check_before_decoding(const char *name, const uint8_t *bytes, size_t size, tl_error *error)
 {

@@ -388,8 +388,12 @@ struct by_position {
 
 static int compare_positions(const void *a, const void *b)
 {
-    return memcmp(&((const struct by_position *)a)->position, &((const struct by_position *)b)->position,
-                  sizeof(vec3s));
+    const vec3s *p = &((const struct by_position *)a)->position,
+                *q = &((const struct by_position *)b)->position;
+    for (int c = 0; c < 3; c++)
+        if (p->raw[c] != q->raw[c])
+            return p->raw[c] < q->raw[c] ? -1 : 1;
+    return 0;
 }
 
 /* For vertices without a normal: area-weighted over the triangles of all vertices at the same place, because
@@ -407,8 +411,7 @@ static void smooth_normals(tl_mesh *mesh)
             sums[v[c]] = glms_vec3_add(sums[v[c]], area);
     }
     for (size_t i = 0; i < count; i++)
-        sorted[i] =
-            (struct by_position){glms_vec3_adds(mesh->positions[i], 0), (uint32_t)i}; /* -0 becomes 0 */
+        sorted[i] = (struct by_position){mesh->positions[i], (uint32_t)i};
     qsort(sorted, count, sizeof *sorted, compare_positions);
     for (size_t first = 0, end; first < count; first = end) {
         vec3s sum = {{0, 0, 0}};
@@ -473,10 +476,21 @@ static void mend_winding(const struct builder *builder, const mat4s *world)
     }
 }
 
+static bool check_positions(const char *path, const tl_mesh *mesh, tl_error *error)
+{
+    /* Beyond it a float has no millimetres left, and scales that overflow end here. */
+    const float farthest_m = 1e5f;
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        if (!(glms_vec3_norm(mesh->positions[i]) <= farthest_m))
+            return tl_fail(error, TL_INPUT,
+                           "%s: vertex %zu lies more than 100 km away or is not finite: check its units",
+                           path, i);
+    return true;
+}
+
 static bool finish(struct builder *builder, tl_error *error)
 {
-    tl_model *model = builder->model;
-    tl_mesh *mesh = &model->mesh;
+    tl_mesh *mesh = &builder->model->mesh;
     if (mesh->index_count == 0)
         return tl_fail(error, TL_INPUT, "%s: holds no mesh with triangles: choose another file",
                        builder->document->path);
@@ -485,19 +499,15 @@ static bool finish(struct builder *builder, tl_error *error)
     mat4s *world = TL_NEW_ARRAY(mat4s, builder->rig->node_count);
     rig_world(builder->rig, -1, 0, world);
     rig_place(builder->rig, world, mesh->positions);
-    mend_winding(builder, world);
-    place_normals(builder, world);
+    bool good = check_positions(builder->document->path, mesh, error);
+    if (good) {
+        mend_winding(builder, world);
+        place_normals(builder, world);
+        smooth_normals(mesh);
+        tl_mesh_measure_uvs(mesh);
+    }
     free(world);
-    smooth_normals(mesh);
-    tl_mesh_measure_uvs(mesh);
-    const float farthest_m =
-        1e5f; /* beyond it a float has no millimetres left, and scales that overflow end here */
-    for (size_t i = 0; i < mesh->vertex_count; i++)
-        if (!(glms_vec3_norm(mesh->positions[i]) <= farthest_m))
-            return tl_fail(error, TL_INPUT,
-                           "%s: vertex %zu lies more than 100 km away or is not finite: check its units",
-                           builder->document->path, i);
-    return true;
+    return good;
 }
 
 /* ---- The whole ---- */

@@ -204,7 +204,8 @@ static void a_lying_cube_is_stacked(void **state)
     assert_true(cube.image.width == 2 && cube.image.height == 12);
     for (int y = 0; y < 12; y++)
         for (int x = 0; x < 2; x++) {
-            assert_near(texel(&cube, x, y)[0], 128 + y / 2, 0);
+            int face = y / 2;
+            assert_near(texel(&cube, x, y)[0], 128 + face, 0);
             assert_near(texel(&cube, x, y)[1], 128 + x, 0);
             assert_near(texel(&cube, x, y)[2], 128 + y % 2, 0);
         }

@@ -90,7 +90,7 @@ static void report(const char *what, struct outcome outcome)
 #ifndef __SANITIZE_ADDRESS__
     /* A small file may claim up to 2^22 texels before it is doubted: 64 MiB of colour, as much again while it
      * is copied or decoded, and what the process had. */
-    assert_true(usage.ru_maxrss < 512 * 1024);
+    assert_true(usage.ru_maxrss < 512L * 1024);
 #endif
 }
 
@@ -390,12 +390,11 @@ static void mutate(const char *name, const uint8_t *bytes, size_t size, int coun
     }
     free(copy);
     report(name, outcome);
-    assert_true(outcome.refused > 0);
 }
 
 static void mutate_file(const char *from, const char *name, int count, try_function try)
 {
-    static uint8_t bytes[65536];
+    static uint8_t bytes[1 << 20];
     FILE *stream = fopen(from, "rb");
     assert_non_null(stream);
     size_t size = fread(bytes, 1, sizeof bytes, stream);
@@ -410,8 +409,8 @@ static void mutated_models(void **state)
     struct small_glb glb = small_glb_make();
     uint8_t bytes[16384];
     size_t size = small_glb_bytes(&glb, bytes);
-    mutate("mutated.glb", bytes, size, 2000, false, try_model);
-    mutate("numbers.glb", bytes, size, 2000, true, try_model);
+    mutate("mutated.glb", bytes, size, 4000, false, try_model);
+    mutate("numbers.glb", bytes, size, 6000, true, try_model);
 }
 
 static void mutated_exr(void **state)
@@ -426,8 +425,23 @@ static void mutated_exr(void **state)
     char whole[1024];
     snprintf(whole, sizeof whole, "%s", scratch("whole.exr"));
     assert_ok(tl_exr_save(whole, &layer, 1, &error), error);
-    mutate_file(whole, "mutated.exr", 1500, try_environment);
+    mutate_file(whole, "mutated.exr", 3000, try_environment);
     tl_image_release(&image);
+}
+
+/* The codecs that are not written here. */
+static void mutated_codecs(void **state)
+{
+    (void)state;
+    const struct {
+        const char *file;
+        int count;
+    } files[] = {{"exr-features/DisplayWindow_t01.exr", 300}, {"exr-features/GammaChart.exr", 100},
+                 {"exr-features/comp_b44.exr", 40},           {"exr-features/comp_dwaa_v2.exr", 40},
+                 {"exr-features/comp_dwab_v2.exr", 40},       {"exr-features/Rec709_YC.exr", 40},
+                 {"exr-features/11.deep.exr", 100},           {"exr-features/v1.7.test.planar.exr", 60}};
+    for (size_t i = 0; i < TL_COUNT(files); i++)
+        mutate_file(test_data(files[i].file), "mutated.exr", files[i].count, try_environment);
 }
 
 static void mutated_hdr(void **state)
@@ -445,7 +459,7 @@ static void mutated_hdr(void **state)
             size += sizeof runs;
         }
     }
-    mutate("mutated.hdr", bytes, size, 1000, false, try_environment);
+    mutate("mutated.hdr", bytes, size, 3000, false, try_environment);
 }
 
 static void mutated_png(void **state)
@@ -518,6 +532,7 @@ int main(void)
         cmocka_unit_test(truncated_models),
         cmocka_unit_test(mutated_models),
         cmocka_unit_test(mutated_exr),
+        cmocka_unit_test(mutated_codecs),
         cmocka_unit_test(mutated_hdr),
         cmocka_unit_test(mutated_png),
         cmocka_unit_test(huge_pictures_are_refused),

@@ -202,8 +202,10 @@ static void interpolations(void **state)
     check_pose(&stepped, 2.5, 1, 0, shift(0.1, 0));
     tl_model_release(&stepped);
     tl_model splined = load_data("gltf-conformance/Animation_Node/Animation_Node_04.gltf");
-    for (double t = 0; t <= 1; t += 0.125) /* flat tangents: 3 t^2 - 2 t^3 */
+    for (int i = 0; i <= 8; i++) { /* flat tangents: 3 t^2 - 2 t^3 */
+        double t = i / 8.0;
         check_pose(&splined, t, 1, 0, shift(-0.1 + 0.2 * (3 * t * t - 2 * t * t * t), 0));
+    }
     tl_model_release(&splined);
     tl_model both = load_data("gltf-conformance/Animation_NodeMisc/Animation_NodeMisc_02.gltf");
     check_pose(&both, 0, 1, 90, shift(0, -0.1)); /* before the first keys, and after the last of one */
@@ -287,8 +289,8 @@ static void cesium_man_walks(void **state)
     assert_int_equal(man.clip_count, 1);
     assert_near(man.clips[0].duration_s, 2, 1e-3);
     float lowest = 1, highest_sole = -1;
-    for (double t = 0; t < 2; t += 0.05) {
-        tl_model_pose(&man, 0, t, posed);
+    for (int i = 0; i < 40; i++) {
+        tl_model_pose(&man, 0, i / 20.0, posed);
         struct tl_box box = tl_box_of(posed, count);
         lowest = fminf(lowest, box.lower.y);
         highest_sole = fmaxf(highest_sole, box.lower.y);
@@ -424,7 +426,7 @@ static void check_round_trip(const char *from)
         assert_true(b->double_sided == a->double_sided);
         assert_near(b->alpha_cutoff, a->alpha_cutoff, 1e-6);
         assert_true(!b->diffuse_map.image == !a->diffuse_map.image);
-        if (a->diffuse_map.image)
+        if (a->diffuse_map.image && b->diffuse_map.image)
             assert_memory_equal(b->diffuse_map.image->texels, a->diffuse_map.image->texels,
                                 (size_t)a->diffuse_map.image->width * (size_t)a->diffuse_map.image->height *
                                     (size_t)a->diffuse_map.image->channels);
