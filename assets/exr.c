@@ -224,7 +224,8 @@ static bool store_row(const struct plane *plane, const exr_coding_channel_info_t
         return false;
     float *values = plane->values + ((size_t)top * (size_t)plane->width + (size_t)left) * plane->step;
     for (int i = 0; i < channel->width; i++)
-        values[(size_t)i * plane->step] = value_at(row + i * channel->bytes_per_element, channel->data_type);
+        values[(size_t)i * plane->step] =
+            value_at(row + (size_t)i * (size_t)channel->bytes_per_element, channel->data_type);
     return true;
 }
 

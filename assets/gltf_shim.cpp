@@ -10,6 +10,7 @@ extern "C" {
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -241,7 +242,8 @@ template <typename Info> gltf_texture copy_texture(const tinygltf::Model &model,
         copy_pair(to.transform.offset, transform.Get("offset"));
         copy_pair(to.transform.scale, transform.Get("scale"));
         to.transform.rotation = number_of(transform.Get("rotation"), 0);
-        to.uv_set = static_cast<int>(number_of(transform.Get("texCoord"), static_cast<float>(to.uv_set)));
+        if (transform.Get("texCoord").IsInt())
+            to.uv_set = transform.Get("texCoord").GetNumberAsInt();
     }
     return to;
 }
@@ -370,6 +372,8 @@ bool gltf_parse(const char *path, const char *json, size_t json_size, const uint
         if (parser.LoadBinaryFromMemory(&owner->model, &complaint, &warning,
                                         reinterpret_cast<const unsigned char *>(glb.data()),
                                         static_cast<unsigned int>(glb.size()), folder_of(path))) {
+            if (owner->model.asset.version.rfind("2.", 0) != 0)
+                throw std::runtime_error("asset.version is not 2");
             copy_geometry(*owner);
             copy_looks(*owner);
             point_to(*owner, *out);

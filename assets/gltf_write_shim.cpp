@@ -11,6 +11,7 @@ extern "C" {
 #include <exception>
 #include <map>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -170,6 +171,8 @@ void add_surface(Writer &writer, const tl_surface &surface, const char *path, tl
     mesh.name = surface.name;
     for (size_t i = 0; i < surface.part_count; i++) {
         const tl_mesh_part &part = surface.parts[i];
+        if (part.index_count == 0)
+            continue; /* glTF has no empty accessors */
         if (materials.find(part.material) == materials.end())
             materials[part.material] = add_material(writer, surface.materials[part.material], path, error);
         tinygltf::Primitive primitive;
@@ -202,7 +205,8 @@ bool gltf_write_glb(const char *path, const tl_surface *surfaces, size_t surface
         writer.model.scenes.resize(1);
         writer.model.defaultScene = 0;
         for (size_t i = 0; i < surface_count; i++)
-            add_surface(writer, surfaces[i], path, error);
+            if (surfaces[i].index_count > 0)
+                add_surface(writer, surfaces[i], path, error);
         std::ostringstream stream;
         tinygltf::TinyGLTF format;
         if (!format.WriteGltfSceneToStream(&writer.model, stream, false, true))

@@ -44,7 +44,7 @@ static inline uint8_t *tl_image_bytes(const tl_image *image)
 bool tl_image_decode(const char *name, const void *data, size_t size, tl_image *out, tl_error *error);
 bool tl_image_load(const char *path, tl_image *out, tl_error *error);
 
-/* U8 image (1, 3 or 4 channels) as PNG in memory; free(*data). `name` is for messages. */
+/* U8 image as PNG in memory; free(*data). `name` is for messages. */
 bool tl_image_encode_png(const char *name, const tl_image *image, void **data, size_t *size, tl_error *error);
 /* ... and as a file; atomic. */
 bool tl_image_save_png(const char *path, const tl_image *image, tl_error *error);

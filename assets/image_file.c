@@ -67,7 +67,7 @@ static bool jpeg_is_whole(const uint8_t *bytes, size_t size)
 
 /* Deflate shrinks at most 1032 times, and a byte may hold 8 texels; nothing else that is read here does more.
  */
-#define TEXELS_PER_BYTE (1032 * 8)
+#define TEXELS_PER_BYTE ((uint64_t)1032 * 8)
 
 static bool check_before_decoding(const char *name, const uint8_t *bytes, size_t size, tl_error *error)
 {
@@ -127,9 +127,8 @@ static void write_bytes(void *stream, void *data, int size)
 
 bool tl_image_encode_png(const char *name, const tl_image *image, void **data, size_t *size, tl_error *error)
 {
-    if (image->type != TL_IMAGE_U8 || image->channels == 2 || !image->texels)
-        return tl_fail(error, TL_OUTPUT, "%s: only 8-bit images of 1, 3 or 4 channels become PNG: use .exr",
-                       name);
+    if (image->type != TL_IMAGE_U8 || !image->texels)
+        return tl_fail(error, TL_OUTPUT, "%s: only 8-bit images become PNG: use .exr", name);
     char *bytes = NULL;
     FILE *stream = open_memstream(&bytes, size);
     bool encoded =

@@ -12,12 +12,19 @@
 
 enum { MODE_TRIANGLES = 4, MODE_STRIP = 5, MODE_FAN = 6 };
 
+#define NO_SLOT UINT32_MAX
+
 /* What is being put together. */
 struct builder {
     const gltf_document *document;
     tl_model *model;
     tl_rig *rig;
-    vec3s *normals; /* [vertex_count] before any transform; zero where the file has none */
+    vec3s *normals;       /* [vertex_count] before any transform; zero where the file has none */
+    uint32_t *skin_slots; /* [skin_count] first slot of each skin, or NO_SLOT */
+    /* The vertices added last: primitives of one mesh often share theirs. */
+    const int *last_attributes;
+    int last_node;
+    size_t last_base, last_count;
     size_t vertex_capacity, index_capacity, part_capacity, slot_capacity;
 };
 
@@ -48,13 +55,15 @@ static uint32_t add_slot(struct builder *builder, int node, mat4s bind)
     return (uint32_t)rig->slot_count++;
 }
 
-/* One slot a joint; returns the first. */
-static bool add_skin(struct builder *builder, int index, uint32_t *first, tl_error *error)
+/* One slot a joint, however many nodes use the skin. */
+static bool add_skin(struct builder *builder, int index, tl_error *error)
 {
     const gltf_document *document = builder->document;
     if ((size_t)index >= document->skin_count)
         return tl_fail(error, TL_INPUT, "%s: skin %d does not exist: export the file again", document->path,
                        index);
+    if (builder->skin_slots[index] != NO_SLOT)
+        return true;
     const struct gltf_skin *skin = &document->skins[index];
     float *binds = NULL;
     size_t bind_count = 0;
@@ -62,7 +71,7 @@ static bool add_skin(struct builder *builder, int index, uint32_t *first, tl_err
         !gltf_read_floats(document, skin->inverse_binds, "inverse bind matrices", 16,
                           document->node_count + skin->joint_count, false, &binds, &bind_count, error))
         return false;
-    *first = (uint32_t)builder->rig->slot_count;
+    builder->skin_slots[index] = (uint32_t)builder->rig->slot_count;
     bool good = skin->inverse_binds < 0 || bind_count >= skin->joint_count;
     for (size_t i = 0; good && i < skin->joint_count; i++) {
         mat4s bind = glms_mat4_identity();
@@ -178,18 +187,16 @@ static bool read_indices(const gltf_document *document, const struct gltf_primit
     return true;
 }
 
-static bool read_primitive(const gltf_document *document, const struct gltf_primitive *from,
-                           size_t joint_count, struct primitive *to, tl_error *error)
+static bool read_vertices(const gltf_document *document, const struct gltf_primitive *from,
+                          size_t joint_count, struct primitive *to, tl_error *error)
 {
     if (!gltf_read_floats(document, from->attributes[GLTF_POSITION], "positions", 3, TL_LIMIT_MESH_VERTICES,
                           false, &to->positions, &to->vertex_count, error) ||
         !read_attribute(document, from, GLTF_NORMAL, "normals", 3, to->vertex_count, &to->normals, error) ||
         !read_attribute(document, from, GLTF_UV, "texture coordinates", 2, to->vertex_count, &to->uvs, error))
         return false;
-    if (joint_count && from->attributes[GLTF_JOINTS] >= 0 &&
-        !read_joints(document, from, joint_count, to, error))
-        return false;
-    return read_indices(document, from, to, error);
+    return joint_count == 0 || from->attributes[GLTF_JOINTS] < 0 ||
+           read_joints(document, from, joint_count, to, error);
 }
 
 static void note_ignored(struct builder *builder, const struct gltf_primitive *primitive)
@@ -241,10 +248,8 @@ static void reserve(struct builder *builder, size_t vertices, size_t indices)
     }
 }
 
-static void append_primitive(struct builder *builder, const struct primitive *from, int material,
-                             uint32_t first_slot)
+static void append_vertices(struct builder *builder, const struct primitive *from, uint32_t first_slot)
 {
-    reserve(builder, from->vertex_count, from->index_count);
     tl_mesh *mesh = &builder->model->mesh;
     size_t base = mesh->vertex_count;
     for (size_t i = 0; i < from->vertex_count; i++) {
@@ -257,45 +262,76 @@ static void append_primitive(struct builder *builder, const struct primitive *fr
             from->weights ? influence_of(from, i, first_slot)
                           : (struct rig_influence){.slots = {first_slot}, .weights = {1}};
     }
+    mesh->vertex_count += from->vertex_count;
+    builder->rig->vertex_count = mesh->vertex_count;
+}
+
+static void append_part(struct builder *builder, const struct primitive *from, int material)
+{
+    tl_mesh *mesh = &builder->model->mesh;
     for (size_t i = 0; i < from->index_count; i++)
-        mesh->indices[mesh->index_count + i] = from->indices[i] + (uint32_t)base;
+        mesh->indices[mesh->index_count + i] = from->indices[i] + (uint32_t)builder->last_base;
     size_t default_material = builder->model->material_count - 1;
     bool known = material >= 0 && (size_t)material < default_material;
     mesh->parts[mesh->part_count++] =
         (struct tl_mesh_part){.first_index = (uint32_t)mesh->index_count,
                               .index_count = (uint32_t)from->index_count,
                               .material = known ? material : (int)default_material};
-    mesh->vertex_count += from->vertex_count;
     mesh->index_count += from->index_count;
-    builder->rig->vertex_count = mesh->vertex_count;
 }
 
-static bool add_primitive(struct builder *builder, const struct gltf_primitive *from, int node, bool skinned,
-                          uint32_t first_joint, tl_error *error)
+/* Appends the triangles of `from` at a node; skin: NULL or what its joints are counted in. */
+static bool append_primitive(struct builder *builder, const struct gltf_primitive *from, int node,
+                             const struct gltf_skin *skin, struct primitive *primitive, tl_error *error)
 {
     const gltf_document *document = builder->document;
+    tl_mesh *mesh = &builder->model->mesh;
+    bool shared = builder->last_attributes && builder->last_node == node &&
+                  memcmp(builder->last_attributes, from->attributes, sizeof from->attributes) == 0;
+    if (shared)
+        primitive->vertex_count = builder->last_count;
+    else if (!read_vertices(document, from, skin ? skin->joint_count : 0, primitive, error))
+        return false;
+    if (!read_indices(document, from, primitive, error))
+        return false;
+    size_t added = shared ? 0 : primitive->vertex_count;
+    if (mesh->vertex_count + added > TL_LIMIT_MESH_VERTICES ||
+        mesh->index_count + primitive->index_count > TL_LIMIT_MESH_INDICES)
+        return tl_fail(error, TL_INPUT, "%s: has more than %zu vertices or %zu triangles: simplify it",
+                       document->path, TL_LIMIT_MESH_VERTICES, TL_LIMIT_MESH_INDICES / 3);
+    if (primitive->index_count == 0)
+        return true;
+    reserve(builder, added, primitive->index_count);
+    if (!shared) {
+        builder->last_attributes = from->attributes;
+        builder->last_node = node;
+        builder->last_base = mesh->vertex_count;
+        builder->last_count = primitive->vertex_count;
+        append_vertices(builder, primitive,
+                        primitive->weights ? builder->skin_slots[document->nodes[node].skin]
+                                           : add_slot(builder, node, glms_mat4_identity()));
+    }
+    append_part(builder, primitive, from->material);
+    return true;
+}
+
+static bool add_primitive(struct builder *builder, const struct gltf_primitive *from, int node,
+                          const struct gltf_skin *skin, tl_error *error)
+{
     if (from->mode < MODE_TRIANGLES || from->mode > MODE_FAN) {
         model_ignore(builder->model, "points and lines");
         return true;
     }
     if (from->is_draco)
         return tl_fail(error, TL_INPUT, "%s: is compressed with Draco: export it without compression",
-                       document->path);
+                       builder->document->path);
     if (from->attributes[GLTF_POSITION] < 0) {
         model_ignore(builder->model, "primitives without positions");
         return true;
     }
     note_ignored(builder, from);
     struct primitive primitive = {0};
-    size_t joint_count = skinned ? builder->rig->slot_count - first_joint : 0;
-    bool good = read_primitive(document, from, joint_count, &primitive, error);
-    if (good && (builder->model->mesh.vertex_count + primitive.vertex_count > TL_LIMIT_MESH_VERTICES ||
-                 builder->model->mesh.index_count + primitive.index_count > TL_LIMIT_MESH_INDICES))
-        good = tl_fail(error, TL_INPUT, "%s: has more than %zu vertices or %zu triangles: simplify it",
-                       document->path, TL_LIMIT_MESH_VERTICES, TL_LIMIT_MESH_INDICES / 3);
-    if (good && primitive.index_count > 0)
-        append_primitive(builder, &primitive, from->material,
-                         primitive.weights ? first_joint : add_slot(builder, node, glms_mat4_identity()));
+    bool good = append_primitive(builder, from, node, skin, &primitive, error);
     release_primitive(&primitive);
     return good;
 }
@@ -309,14 +345,12 @@ static bool add_node(struct builder *builder, int index, tl_error *error)
     if ((size_t)node->mesh >= document->mesh_count)
         return tl_fail(error, TL_INPUT, "%s: mesh %d does not exist: export the file again", document->path,
                        node->mesh);
-    uint32_t first_joint = 0;
-    bool skinned = node->skin >= 0;
-    if (skinned && !add_skin(builder, node->skin, &first_joint, error))
+    if (node->skin >= 0 && !add_skin(builder, node->skin, error))
         return false;
+    const struct gltf_skin *skin = node->skin >= 0 ? &document->skins[node->skin] : NULL;
     const struct gltf_mesh *mesh = &document->meshes[node->mesh];
     for (size_t i = 0; i < mesh->primitive_count; i++)
-        if (!add_primitive(builder, &document->primitives[mesh->first_primitive + i], index, skinned,
-                           first_joint, error))
+        if (!add_primitive(builder, &document->primitives[mesh->first_primitive + i], index, skin, error))
             return false;
     return true;
 }
@@ -354,8 +388,12 @@ struct by_position {
 
 static int compare_positions(const void *a, const void *b)
 {
-    return memcmp(&((const struct by_position *)a)->position, &((const struct by_position *)b)->position,
-                  sizeof(vec3s));
+    const vec3s *p = &((const struct by_position *)a)->position,
+                *q = &((const struct by_position *)b)->position;
+    for (int c = 0; c < 3; c++)
+        if (p->raw[c] != q->raw[c])
+            return p->raw[c] < q->raw[c] ? -1 : 1;
+    return 0;
 }
 
 /* For vertices without a normal: area-weighted over the triangles of all vertices at the same place, because
@@ -373,8 +411,7 @@ static void smooth_normals(tl_mesh *mesh)
             sums[v[c]] = glms_vec3_add(sums[v[c]], area);
     }
     for (size_t i = 0; i < count; i++)
-        sorted[i] =
-            (struct by_position){glms_vec3_adds(mesh->positions[i], 0), (uint32_t)i}; /* -0 becomes 0 */
+        sorted[i] = (struct by_position){mesh->positions[i], (uint32_t)i};
     qsort(sorted, count, sizeof *sorted, compare_positions);
     for (size_t first = 0, end; first < count; first = end) {
         vec3s sum = {{0, 0, 0}};
@@ -439,10 +476,21 @@ static void mend_winding(const struct builder *builder, const mat4s *world)
     }
 }
 
+static bool check_positions(const char *path, const tl_mesh *mesh, tl_error *error)
+{
+    /* Beyond it a float has no millimetres left, and scales that overflow end here. */
+    const float farthest_m = 1e5f;
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        if (!(glms_vec3_norm(mesh->positions[i]) <= farthest_m))
+            return tl_fail(error, TL_INPUT,
+                           "%s: vertex %zu lies more than 100 km away or is not finite: check its units",
+                           path, i);
+    return true;
+}
+
 static bool finish(struct builder *builder, tl_error *error)
 {
-    tl_model *model = builder->model;
-    tl_mesh *mesh = &model->mesh;
+    tl_mesh *mesh = &builder->model->mesh;
     if (mesh->index_count == 0)
         return tl_fail(error, TL_INPUT, "%s: holds no mesh with triangles: choose another file",
                        builder->document->path);
@@ -451,19 +499,15 @@ static bool finish(struct builder *builder, tl_error *error)
     mat4s *world = TL_NEW_ARRAY(mat4s, builder->rig->node_count);
     rig_world(builder->rig, -1, 0, world);
     rig_place(builder->rig, world, mesh->positions);
-    mend_winding(builder, world);
-    place_normals(builder, world);
+    bool good = check_positions(builder->document->path, mesh, error);
+    if (good) {
+        mend_winding(builder, world);
+        place_normals(builder, world);
+        smooth_normals(mesh);
+        tl_mesh_measure_uvs(mesh);
+    }
     free(world);
-    smooth_normals(mesh);
-    tl_mesh_measure_uvs(mesh);
-    const float farthest_m =
-        1e5f; /* beyond it a float has no millimetres left, and scales that overflow end here */
-    for (size_t i = 0; i < mesh->vertex_count; i++)
-        if (!(glms_vec3_norm(mesh->positions[i]) <= farthest_m))
-            return tl_fail(error, TL_INPUT,
-                           "%s: vertex %zu lies more than 100 km away or is not finite: check its units",
-                           builder->document->path, i);
-    return true;
+    return good;
 }
 
 /* ---- The whole ---- */
@@ -515,7 +559,12 @@ bool tl_model_load(const char *path, tl_model *out, tl_error *error)
     const char *slash = strrchr(path, '/');
     out->name = tl_copy_string(slash ? slash + 1 : path);
     out->rig = TL_NEW(tl_rig);
-    struct builder builder = {.document = &document, .model = out, .rig = out->rig};
+    struct builder builder = {.document = &document,
+                              .model = out,
+                              .rig = out->rig,
+                              .skin_slots = TL_NEW_ARRAY(uint32_t, document.skin_count)};
+    for (size_t i = 0; i < document.skin_count; i++)
+        builder.skin_slots[i] = NO_SLOT;
     bool loaded = check_extensions(&document, out, error) && rig_read(&document, out->rig, error);
     if (loaded) {
         model_read_materials(&document, out);
@@ -526,6 +575,7 @@ bool tl_model_load(const char *path, tl_model *out, tl_error *error)
     if (loaded && out->clip_count == 0)
         rig_destroy(&out->rig);
     free(builder.normals);
+    free(builder.skin_slots);
     gltf_close(&document);
     if (!loaded)
         tl_model_release(out);

@@ -23,6 +23,7 @@ struct reader {
     tl_model *model;
     struct loaded *loaded;
     size_t loaded_count;
+    uint64_t texel_count; /* decoded so far */
 };
 
 static bool decode(struct reader *reader, int source, tl_image *out)
@@ -90,6 +91,13 @@ static const struct loaded *load_image(struct reader *reader, int source, enum u
     tl_image decoded;
     if (!decode(reader, source, &decoded))
         return fresh;
+    /* A few bytes of file may be a huge plain picture, and many materials may ask for it again. */
+    reader->texel_count += (uint64_t)decoded.width * (uint64_t)decoded.height;
+    if (reader->texel_count > TL_LIMIT_IMAGE_TEXELS) {
+        model_ignore(reader->model, "maps beyond %zu texels in all", TL_LIMIT_IMAGE_TEXELS);
+        tl_image_release(&decoded);
+        return fresh;
+    }
     tl_image *kept = &reader->model->images[reader->model->image_count++];
     if (use == GLOSS) {
         unpack_roughness(&decoded, fresh, kept);
@@ -165,7 +173,8 @@ static tl_material read_material(struct reader *reader, const struct gltf_materi
 void model_read_materials(const gltf_document *document, tl_model *model)
 {
     size_t count = document->material_count;
-    struct reader reader = {document, model, TL_NEW_ARRAY(struct loaded, 4 * count), 0};
+    struct reader reader = {
+        .document = document, .model = model, .loaded = TL_NEW_ARRAY(struct loaded, 4 * count)};
     model->images = TL_NEW_ARRAY(tl_image, 4 * count); /* never moved: materials point into it */
     model->materials = TL_NEW_ARRAY(tl_material, count + 1);
     model->material_count = count + 1;

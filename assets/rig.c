@@ -31,7 +31,7 @@ static bool read_parents(const gltf_document *document, tl_rig *rig, tl_error *e
     return true;
 }
 
-/* Breadth first from the nodes without a parent; what is never reached hangs on itself. */
+/* Breadth first from the nodes without a parent; what is never reached goes in circles. */
 static bool order_nodes(const gltf_document *document, tl_rig *rig, tl_error *error)
 {
     size_t count = 0;
@@ -228,6 +228,7 @@ void rig_world(const tl_rig *rig, int clip, double time_s, mat4s *world)
     if (clip >= 0 && (size_t)clip < rig->clip_count) {
         const struct rig_clip *moving = &rig->clips[clip];
         double looped_s = moving->duration_s > 0 ? fmod(time_s, moving->duration_s) : 0;
+        looped_s += looped_s < 0 ? moving->duration_s : 0;
         for (size_t i = 0; i < moving->channel_count; i++) {
             const struct rig_channel *channel = &rig->channels[moving->first_channel + i];
             apply_channel(channel, (float)looped_s, &locals[channel->node]);
@@ -247,7 +248,7 @@ void rig_place(const tl_rig *rig, const mat4s *world, vec3s *positions)
     mat4s *palette = TL_NEW_ARRAY(mat4s, rig->slot_count);
     for (size_t i = 0; i < rig->slot_count; i++)
         palette[i] = glms_mat4_mul(world[rig->slots[i].node], rig->slots[i].bind);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (rig->vertex_count > 1024)
     for (size_t v = 0; v < rig->vertex_count; v++) {
         const struct rig_influence *influence = &rig->influences[v];
         vec3s sum = {{0, 0, 0}};

@@ -59,7 +59,7 @@ struct tl_rig {
 
 /* Nodes, their order and the clips of a document; slots and vertices are added by the caller. */
 bool rig_read(const gltf_document *document, tl_rig *rig, tl_error *error);
-void rig_destroy(tl_rig **rig);
+void rig_destroy(tl_rig **handle);
 
 /* World matrices [node_count] at a time of a clip (-1: rest). */
 void rig_world(const tl_rig *rig, int clip, double time_s, mat4s *world);
