@@ -22,21 +22,21 @@ struct tl_session {
     tl_environment environment;
     uint64_t environment_revision;
 
-    bool has_avatar;
-    tl_avatar avatar;
+    /* On the heap, because the cloth, the meshes that move and the materials point to them, and a session's
+     * contents move when it takes over another's. */
+    tl_avatar *avatar;   /* NULL: none */
+    tl_garment *garment; /* NULL: none */
+    tl_weave *weave;     /* NULL: the garment shows no yarns */
+
     int clip; /* -1: rest pose */
     struct tl_moving body;
 
-    bool has_garment;
-    tl_garment garment;
     tl_cloth *cloth;
     tl_collider *collider;
     struct tl_moving dress;
 
-    bool woven;
-    tl_weave weave;
     tl_material *materials; /* of the garment: the file's, or what settings.material makes of them */
-    uint64_t material_revision;
+    uint64_t look_revision; /* rises when meshes or materials change */
 
     int frame;
     struct tl_box framed; /* what the camera frames: all there is at frame 0 */
@@ -70,16 +70,18 @@ static bool load_environment(const char *name, tl_environment *out, tl_error *er
 static bool load_avatar(tl_session *session, tl_error *error)
 {
     const char *name = session->settings.scene.avatar;
+    tl_avatar loaded;
     session->clip = -1;
     if (strcmp(name, "none") == 0)
         return true;
     if (strcmp(name, "form") == 0)
-        session->avatar = tl_avatar_form();
-    else if (!tl_avatar_load(name, &session->avatar, error))
+        loaded = tl_avatar_form();
+    else if (!tl_avatar_load(name, &loaded, error))
         return false;
-    session->has_avatar = true;
+    session->avatar = TL_NEW(tl_avatar);
+    *session->avatar = loaded;
     const char *clip = session->settings.scene.clip;
-    const tl_model *model = &session->avatar.model;
+    const tl_model *model = &session->avatar->model;
     if (strcmp(clip, "none") == 0)
         return true;
     session->clip = tl_model_find_clip(model, clip);
@@ -93,35 +95,52 @@ static bool load_avatar(tl_session *session, tl_error *error)
                    clip, model->clips[0].name);
 }
 
+static bool make_garment(tl_session *session, tl_garment *out, tl_error *error)
+{
+    const char *name = session->settings.scene.garment, *wearer = session->settings.scene.avatar;
+    if (!is_built_in_garment(name))
+        return tl_garment_load(name, out, error);
+    if (!tl_garment_cut(name, session->settings.cloth.edge_m, out, error))
+        return false;
+    bool own_body = session->avatar && strcmp(wearer, "form") != 0;
+    if (!own_body || tl_garment_fit(out, wearer, &session->avatar->model.mesh, error))
+        return true;
+    tl_garment_release(out);
+    return false;
+}
+
 static bool load_garment(tl_session *session, tl_error *error)
 {
-    const char *name = session->settings.scene.garment;
-    if (strcmp(name, "none") == 0)
+    tl_garment made;
+    if (strcmp(session->settings.scene.garment, "none") == 0)
         return true;
-    if (is_built_in_garment(name)) {
-        if (!tl_garment_cut(name, session->settings.cloth.edge_m, &session->garment, error))
-            return false;
-        const char *wearer = session->settings.scene.avatar;
-        bool own_body = strcmp(wearer, "form") != 0 && strcmp(wearer, "none") != 0;
-        if (own_body && !tl_garment_fit(&session->garment, wearer, &session->avatar.model.mesh, error)) {
-            tl_garment_release(&session->garment);
-            return false;
-        }
-    } else if (!tl_garment_load(name, &session->garment, error)) {
+    if (!make_garment(session, &made, error))
         return false;
-    }
-    session->has_garment = true;
+    session->garment = TL_NEW(tl_garment);
+    *session->garment = made;
     return true;
+}
+
+static void forget_weave(tl_session *session)
+{
+    if (!session->weave)
+        return;
+    tl_weave_release(session->weave);
+    free(session->weave);
+    session->weave = NULL;
 }
 
 /* The garment's materials from its file and settings.material; the weave they point to. */
 static void make_materials(tl_session *session)
 {
     const struct tl_material_params *look = &session->settings.material;
-    if (session->woven)
-        tl_weave_release(&session->weave);
-    session->woven = !look->use_file && tl_weave_create(&session->settings.weave, &session->weave);
-    const tl_model *model = &session->garment.model;
+    tl_weave made;
+    forget_weave(session);
+    if (!look->use_file && tl_weave_create(&session->settings.weave, &made)) {
+        session->weave = TL_NEW(tl_weave);
+        *session->weave = made;
+    }
+    const tl_model *model = &session->garment->model;
     session->materials = tl_resize(session->materials, model->material_count, sizeof *session->materials);
     for (size_t i = 0; i < model->material_count; i++) {
         tl_material material = model->materials[i];
@@ -133,16 +152,16 @@ static void make_materials(tl_session *session)
             material.glossiness = look->glossiness;
             material.gloss_map.image = NULL;
             material.specular_map.image = NULL;
-            material.weave = session->woven ? &session->weave : NULL;
+            material.weave = session->weave;
         }
         session->materials[i] = material;
     }
-    session->material_revision++;
+    session->look_revision++;
 }
 
 static void pose_avatar(tl_session *session, double time_s)
 {
-    tl_model_pose(&session->avatar.model, session->clip, time_s, session->body.positions);
+    tl_model_pose(&session->avatar->model, session->clip, time_s, session->body.positions);
     tl_moving_update(&session->body);
     if (session->collider)
         tl_collider_move(session->collider, session->body.positions);
@@ -157,10 +176,10 @@ static void pull_cloth(tl_session *session)
 /* From the rest pose to the clip's first pose, vertex by vertex on straight lines. */
 static bool pose_in(tl_session *session, tl_error *error)
 {
-    size_t count = session->avatar.model.mesh.vertex_count;
-    const vec3s *rest = session->avatar.model.mesh.positions;
+    size_t count = session->avatar->model.mesh.vertex_count;
+    const vec3s *rest = session->avatar->model.mesh.positions;
     vec3s *first = TL_NEW_ARRAY(vec3s, count);
-    tl_model_pose(&session->avatar.model, session->clip, 0, first);
+    tl_model_pose(&session->avatar->model, session->clip, 0, first);
     int steps = (int)(POSE_IN_S * session->settings.cloth.frame_rate) + 1;
     bool done = true;
     for (int step = 1; done && step <= steps && !tl_interrupted(); step++) {
@@ -177,17 +196,17 @@ static bool pose_in(tl_session *session, tl_error *error)
 static bool drape(tl_session *session, tl_error *error)
 {
     const struct tl_settings *settings = &session->settings;
-    const tl_mesh *body = session->has_avatar ? &session->avatar.model.mesh : NULL;
+    const tl_mesh *body = session->avatar ? &session->avatar->model.mesh : NULL;
     session->collider = tl_collider_create(body, settings->image.ground, error);
     if (!session->collider)
         return false;
-    session->cloth = tl_cloth_create(&session->garment, &settings->fabric, &settings->cloth, error);
+    session->cloth = tl_cloth_create(session->garment, &settings->fabric, &settings->cloth, error);
     if (!session->cloth || !tl_cloth_settle(session->cloth, session->collider, error))
         return false;
     if (session->clip >= 0 && !pose_in(session, error))
         return false;
     tl_cloth_mark_start(session->cloth);
-    tl_moving_create(&session->dress, &session->garment.model, tl_cloth_weld(session->cloth));
+    tl_moving_create(&session->dress, &session->garment->model, tl_cloth_weld(session->cloth));
     pull_cloth(session);
     return true;
 }
@@ -195,8 +214,8 @@ static bool drape(tl_session *session, tl_error *error)
 static void frame_everything(tl_session *session)
 {
     struct tl_box box = {{{FLT_MAX, FLT_MAX, FLT_MAX}}, {{-FLT_MAX, -FLT_MAX, -FLT_MAX}}};
-    const struct tl_moving *shown[] = {session->has_avatar ? &session->body : NULL,
-                                       session->has_garment ? &session->dress : NULL};
+    const struct tl_moving *shown[] = {session->avatar ? &session->body : NULL,
+                                       session->garment ? &session->dress : NULL};
     for (size_t i = 0; i < TL_COUNT(shown); i++) {
         if (!shown[i])
             continue;
@@ -214,18 +233,18 @@ static bool load_all(tl_session *session, tl_error *error)
     session->environment_revision = 1;
     if (!load_avatar(session, error) || !load_garment(session, error))
         return false;
-    if (!session->has_avatar && !session->has_garment)
+    if (!session->avatar && !session->garment)
         return tl_fail(error, TL_USAGE, "scene: neither a garment nor an avatar: name at least one");
-    if (session->has_avatar)
-        tl_moving_create(&session->body, &session->avatar.model, NULL);
-    if (session->has_garment) {
+    if (session->avatar)
+        tl_moving_create(&session->body, &session->avatar->model, NULL);
+    if (session->garment) {
         make_materials(session);
         if (!drape(session, error))
             return false;
     }
     if (tl_interrupted())
         return tl_fail(error, TL_INTERRUPTED, "stopped while the scene was made ready");
-    if (session->has_avatar)
+    if (session->avatar)
         pose_avatar(session, 0);
     frame_everything(session);
     return true;
@@ -249,11 +268,14 @@ void tl_session_destroy(tl_session **handle)
     tl_moving_release(&session->body);
     tl_cloth_destroy(&session->cloth);
     tl_collider_destroy(&session->collider);
-    tl_garment_release(&session->garment);
-    tl_avatar_release(&session->avatar);
+    if (session->garment)
+        tl_garment_release(session->garment);
+    if (session->avatar)
+        tl_avatar_release(session->avatar);
+    free(session->garment);
+    free(session->avatar);
     tl_environment_release(&session->environment);
-    if (session->woven)
-        tl_weave_release(&session->weave);
+    forget_weave(session);
     free(session->materials);
     free(session);
     *handle = NULL;
@@ -262,9 +284,9 @@ void tl_session_destroy(tl_session **handle)
 bool tl_session_advance(tl_session *session, tl_error *error)
 {
     double time_s = (session->frame + 1) / session->settings.cloth.frame_rate;
-    if (session->has_avatar && (session->clip >= 0 || session->has_garment))
+    if (session->avatar && (session->clip >= 0 || session->garment))
         pose_avatar(session, time_s);
-    if (session->has_garment) {
+    if (session->garment) {
         if (!tl_cloth_step(session->cloth, session->collider, error))
             return false;
         pull_cloth(session);
@@ -277,11 +299,11 @@ bool tl_session_reset(tl_session *session, tl_error *error)
 {
     (void)error;
     session->frame = 0;
-    if (session->has_avatar) {
+    if (session->avatar) {
         pose_avatar(session, 0);
         pose_avatar(session, 0); /* twice: the collider is at rest */
     }
-    if (session->has_garment) {
+    if (session->garment) {
         tl_cloth_reset(session->cloth);
         pull_cloth(session);
     }
@@ -333,7 +355,7 @@ bool tl_session_apply(tl_session *session, const struct tl_settings *settings, t
             return false;
         /* Revisions go on rising, so that the renderer sees everything as new. */
         fresh->environment_revision += session->environment_revision;
-        fresh->material_revision += session->material_revision;
+        fresh->look_revision += session->look_revision + 1;
         fresh->body.motion_revision += session->body.motion_revision;
         fresh->dress.motion_revision += session->dress.motion_revision;
         tl_session swap = *session;
@@ -355,7 +377,7 @@ bool tl_session_apply(tl_session *session, const struct tl_settings *settings, t
     if (session->cloth && !tl_cloth_set(session->cloth, &settings->fabric, &settings->cloth, error))
         return false;
     session->settings = *settings;
-    if (session->has_garment && new_look)
+    if (session->garment && new_look)
         make_materials(session);
     return true;
 }
@@ -368,14 +390,14 @@ const struct tl_settings *tl_session_settings(const tl_session *session)
 tl_frame tl_session_frame(tl_session *session)
 {
     session->surface_count = 0;
-    if (session->has_avatar)
+    if (session->avatar)
         session->surfaces[session->surface_count++] =
-            tl_moving_surface(&session->body, "avatar", session->avatar.model.materials);
-    if (session->has_garment) {
-        tl_surface *garment = &session->surfaces[session->surface_count++];
-        *garment = tl_moving_surface(&session->dress, "garment", session->materials);
-        garment->topology_revision = session->material_revision;
-    }
+            tl_moving_surface(&session->body, "avatar", session->avatar->model.materials);
+    if (session->garment)
+        session->surfaces[session->surface_count++] =
+            tl_moving_surface(&session->dress, "garment", session->materials);
+    for (size_t i = 0; i < session->surface_count; i++)
+        session->surfaces[i].topology_revision = session->look_revision;
     const struct tl_image_params *image = &session->settings.image;
     return (tl_frame){
         .camera = tl_camera_frame(&session->settings.camera, session->framed,
@@ -412,9 +434,9 @@ static bool hit_triangle(vec3s origin, vec3s direction, const vec3s corners[3], 
 bool tl_session_pick(const tl_session *session, vec3s origin, vec3s direction, uint32_t *vertex,
                      float *distance_m)
 {
-    if (!session->has_garment)
+    if (!session->garment)
         return false;
-    const tl_mesh *mesh = &session->garment.model.mesh;
+    const tl_mesh *mesh = &session->garment->model.mesh;
     float nearest = FLT_MAX;
     for (size_t i = 0; i + 2 < mesh->index_count; i += 3) {
         const uint32_t *index = &mesh->indices[i];

@@ -1,0 +1,135 @@
+/* A session takes over changed settings, keeps its state when it cannot, and replays to the bit. */
+#include "testing.h"
+
+#include "app/session.h"
+#include "config/log.h"
+
+#include <string.h>
+
+/* Coarse and quick to settle: what is tested is the bookkeeping. */
+static struct tl_settings quick_settings(void)
+{
+    static const char *const assignments[] = {"cloth.edge_m=0.08", "cloth.settle_s=0.3", "cloth.substeps=8"};
+    const struct tl_settings_source source = {.assignments = assignments, .assignment_count = 3};
+    struct tl_settings settings;
+    tl_error error = {0};
+    assert_ok(tl_settings_load(&settings, &source, &error), error);
+    return settings;
+}
+
+static tl_session *quick_session(void)
+{
+    struct tl_settings settings = quick_settings();
+    tl_error error = {0};
+    tl_session *session = tl_session_create(&settings, &error);
+    assert_ok(session != NULL, error);
+    return session;
+}
+
+/* Touches everything that a frame lends, so that a sanitizer sees what is no longer there. */
+static double sum_of_frame(tl_session *session)
+{
+    tl_frame frame = tl_session_frame(session);
+    double sum = tl_image_floats(&frame.environment->image)[0];
+    for (size_t s = 0; s < frame.surface_count; s++) {
+        const tl_surface *surface = &frame.surfaces[s];
+        for (size_t i = 0; i < surface->vertex_count; i++)
+            sum +=
+                surface->positions[i].y + surface->normals[i].x + surface->tangents[i].w + surface->uvs[i].x;
+        for (size_t p = 0; p < surface->part_count; p++) {
+            const tl_material *material = &surface->materials[surface->parts[p].material];
+            sum +=
+                material->glossiness + (material->weave ? tl_image_floats(&material->weave->height)[0] : 0);
+        }
+    }
+    return sum;
+}
+
+static void new_scenes_and_fabrics_are_taken_over(void **state)
+{
+    (void)state;
+    tl_session *session = quick_session();
+    struct tl_settings settings = *tl_session_settings(session);
+    tl_error error = {0};
+    uint64_t revision = tl_session_frame(session).surfaces[0].topology_revision;
+    assert_true(isfinite(sum_of_frame(session)));
+
+    strcpy(settings.scene.garment, "skirt");
+    assert_ok(tl_session_apply(session, &settings, &error), error);
+    assert_true(isfinite(sum_of_frame(session)));
+    assert_true(tl_session_frame(session).surfaces[0].topology_revision > revision);
+    assert_ok(tl_session_advance(session, &error), error);
+
+    assert_ok(tl_settings_apply_fabric(&settings, "denim", &error), error);
+    assert_ok(tl_session_apply(session, &settings, &error), error);
+    assert_near(tl_session_frame(session).surfaces[1].materials[0].glossiness, settings.material.glossiness,
+                0);
+    assert_true(isfinite(sum_of_frame(session)));
+
+    strcpy(settings.scene.garment, "none");
+    assert_ok(tl_session_apply(session, &settings, &error), error);
+    assert_int_equal(tl_session_frame(session).surface_count, 1);
+    assert_null(tl_session_cloth(session));
+    assert_true(isfinite(sum_of_frame(session)));
+    tl_session_destroy(&session);
+}
+
+static void a_failure_keeps_what_was(void **state)
+{
+    (void)state;
+    tl_session *session = quick_session();
+    struct tl_settings settings = *tl_session_settings(session);
+    double before = sum_of_frame(session);
+    tl_error error = {0};
+    strcpy(settings.scene.environment, "nowhere.exr");
+    assert_false(tl_session_apply(session, &settings, &error));
+    assert_non_null(strstr(error.message, "nowhere.exr"));
+    settings = *tl_session_settings(session);
+    strcpy(settings.scene.avatar, "nowhere.glb");
+    assert_false(tl_session_apply(session, &settings, &error));
+    assert_true(sum_of_frame(session) == before);
+    assert_string_equal(tl_session_settings(session)->scene.avatar, "form");
+    tl_session_destroy(&session);
+}
+
+static void frames_replay_to_the_bit(void **state)
+{
+    (void)state;
+    tl_session *session = quick_session();
+    tl_error error = {0};
+    double start = sum_of_frame(session);
+    assert_ok(tl_session_go_to(session, 5, &error), error);
+    double fifth = sum_of_frame(session);
+    assert_int_equal(tl_session_frame_number(session), 5);
+    assert_ok(tl_session_go_to(session, 0, &error), error);
+    assert_true(sum_of_frame(session) == start);
+    assert_ok(tl_session_go_to(session, 5, &error), error);
+    assert_true(sum_of_frame(session) == fifth);
+    tl_session_destroy(&session);
+}
+
+static void picking_finds_the_front(void **state)
+{
+    (void)state;
+    tl_session *session = quick_session();
+    uint32_t vertex;
+    float distance;
+    assert_true(tl_session_pick(session, (vec3s){{0, 1.1f, 3}}, (vec3s){{0, 0, -1}}, &vertex, &distance));
+    tl_frame frame = tl_session_frame(session);
+    assert_true(distance > 2.5f && distance < 3);
+    assert_true(frame.surfaces[1].positions[vertex].z > 0); /* the side that faces the ray */
+    assert_false(tl_session_pick(session, (vec3s){{0, 1.1f, 3}}, (vec3s){{0, 0, 1}}, &vertex, &distance));
+    tl_session_destroy(&session);
+}
+
+int main(void)
+{
+    tl_log_set_level(TL_LOG_WARN);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(new_scenes_and_fabrics_are_taken_over),
+        cmocka_unit_test(a_failure_keeps_what_was),
+        cmocka_unit_test(frames_replay_to_the_bit),
+        cmocka_unit_test(picking_finds_the_front),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
