@@ -13,15 +13,18 @@ extern "C" {
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace
 {
 
+const float AS_IT_IS = -1;
+
 /* One file in the making. Every array goes to the end of the only buffer. */
 struct Writer {
     tinygltf::Model model;
-    std::map<const tl_image *, int> textures; /* already written */
+    std::map<std::pair<const tl_image *, float>, int> textures; /* written: picture, glossiness or AS_IT_IS */
 };
 
 int add_view(Writer &writer, const void *bytes, size_t size, int target)
@@ -71,12 +74,9 @@ int add_positions(Writer &writer, const tl_surface &surface)
     return index;
 }
 
-/* -1 where there is no picture. Pictures are PNG in the buffer. */
+/* Pictures are PNG in the buffer. */
 int add_texture(Writer &writer, const tl_image *image, const char *path, tl_error *error)
 {
-    auto known = writer.textures.find(image);
-    if (known != writer.textures.end())
-        return known->second;
     void *png;
     size_t size;
     if (!tl_image_encode_png(path, image, &png, &size, error))
@@ -89,8 +89,44 @@ int add_texture(Writer &writer, const tl_image *image, const char *path, tl_erro
     tinygltf::Texture texture;
     texture.source = static_cast<int>(writer.model.images.size() - 1);
     writer.model.textures.push_back(texture);
-    int index = static_cast<int>(writer.model.textures.size() - 1);
-    writer.textures[image] = index;
+    return static_cast<int>(writer.model.textures.size() - 1);
+}
+
+/* The inverse of tl_glossiness_from_roughness where it has one: alpha^2 = 2 / (4 s + 2), roughness =
+ * alpha^0.5. */
+double roughness_of(float glossiness)
+{
+    double exponent = 1 / std::fmax(1 - static_cast<double>(glossiness), 1e-6);
+    return std::pow(2 / (4 * exponent + 2), 0.25);
+}
+
+/* glTF's packed picture for a gloss map: roughness in green; metalness, left to its factor, in blue. */
+int add_roughness_texture(Writer &writer, const tl_image *gloss, float glossiness, const char *path,
+                          tl_error *error)
+{
+    size_t texels = static_cast<size_t>(gloss->width) * static_cast<size_t>(gloss->height);
+    size_t channels = static_cast<size_t>(gloss->channels);
+    std::vector<unsigned char> packed(3 * texels, 255);
+    for (size_t i = 0; i < texels; i++) {
+        float value = glossiness * static_cast<float>(tl_image_bytes(gloss)[i * channels]) / 255;
+        packed[3 * i + 1] = static_cast<unsigned char>(std::lround(255 * roughness_of(value)));
+    }
+    tl_image image = *gloss;
+    image.channels = 3;
+    image.texels = packed.data();
+    return add_texture(writer, &image, path, error);
+}
+
+/* The index of a map's texture; a glossiness other than AS_IT_IS says that it is a gloss map. */
+int find_texture(Writer &writer, const tl_image *image, float glossiness, const char *path, tl_error *error)
+{
+    auto key = std::make_pair(image, glossiness);
+    auto known = writer.textures.find(key);
+    if (known != writer.textures.end())
+        return known->second;
+    int index = glossiness == AS_IT_IS ? add_texture(writer, image, path, error)
+                                       : add_roughness_texture(writer, image, glossiness, path, error);
+    writer.textures[key] = index;
     return index;
 }
 
@@ -103,11 +139,11 @@ tinygltf::Value pair_of(const float values[2])
 }
 
 template <typename Info>
-void add_map(Writer &writer, const tl_map &map, Info &to, const char *path, tl_error *error)
+void add_map(Writer &writer, const tl_map &map, float glossiness, Info &to, const char *path, tl_error *error)
 {
     if (!map.image)
         return;
-    to.index = add_texture(writer, map.image, path, error);
+    to.index = find_texture(writer, map.image, glossiness, path, error);
     const tl_uv_transform &t = map.transform;
     if (t.offset[0] == 0 && t.offset[1] == 0 && t.scale[0] == 1 && t.scale[1] == 1 && t.rotation == 0)
         return;
@@ -120,16 +156,8 @@ void add_map(Writer &writer, const tl_map &map, Info &to, const char *path, tl_e
         writer.model.extensionsUsed.push_back("KHR_texture_transform");
 }
 
-/* The inverse of tl_glossiness_from_roughness where it has one: alpha^2 = 2 / (4 s + 2), roughness =
- * alpha^0.5. */
-double roughness_of(float glossiness)
-{
-    double exponent = 1 / std::fmax(1 - static_cast<double>(glossiness), 1e-6);
-    return std::pow(2 / (4 * exponent + 2), 0.25);
-}
-
-/* glTF has one base colour for both lobes: the diffuse one, or for a metal the specular one. Gloss and
- * specular maps have no place in it and stay behind. */
+/* glTF has one base colour for both lobes: the diffuse one, or for a metal the specular one. Specular
+ * maps have no place in it and stay behind. */
 int add_material(Writer &writer, const tl_material &from, const char *path, tl_error *error)
 {
     tinygltf::Material to;
@@ -141,7 +169,7 @@ int add_material(Writer &writer, const tl_material &from, const char *path, tl_e
         to.pbrMetallicRoughness.baseColorFactor.push_back(static_cast<double>(channel));
     to.pbrMetallicRoughness.baseColorFactor.push_back(1);
     to.pbrMetallicRoughness.metallicFactor = metal ? 1 : 0;
-    to.pbrMetallicRoughness.roughnessFactor = roughness_of(from.glossiness);
+    to.pbrMetallicRoughness.roughnessFactor = from.gloss_map.image ? 1 : roughness_of(from.glossiness);
     to.normalTexture.scale = static_cast<double>(from.normal_scale);
     to.occlusionTexture.strength = static_cast<double>(from.occlusion_strength);
     to.doubleSided = from.double_sided;
@@ -149,9 +177,11 @@ int add_material(Writer &writer, const tl_material &from, const char *path, tl_e
         to.alphaMode = "MASK";
         to.alphaCutoff = static_cast<double>(from.alpha_cutoff);
     }
-    add_map(writer, from.diffuse_map, to.pbrMetallicRoughness.baseColorTexture, path, error);
-    add_map(writer, from.normal_map, to.normalTexture, path, error);
-    add_map(writer, from.occlusion_map, to.occlusionTexture, path, error);
+    tinygltf::PbrMetallicRoughness &pbr = to.pbrMetallicRoughness;
+    add_map(writer, from.diffuse_map, AS_IT_IS, pbr.baseColorTexture, path, error);
+    add_map(writer, from.gloss_map, from.glossiness, pbr.metallicRoughnessTexture, path, error);
+    add_map(writer, from.normal_map, AS_IT_IS, to.normalTexture, path, error);
+    add_map(writer, from.occlusion_map, AS_IT_IS, to.occlusionTexture, path, error);
     writer.model.materials.push_back(to);
     return static_cast<int>(writer.model.materials.size() - 1);
 }
@@ -162,7 +192,8 @@ void add_surface(Writer &writer, const tl_surface &surface, const char *path, tl
     std::map<std::string, int> attributes;
     attributes["POSITION"] = add_positions(writer, surface);
     attributes["NORMAL"] = add_floats(writer, surface.normals[0].raw, count, 3, TINYGLTF_TYPE_VEC3);
-    attributes["TANGENT"] = add_floats(writer, surface.tangents[0].raw, count, 4, TINYGLTF_TYPE_VEC4);
+    if (surface.tangents)
+        attributes["TANGENT"] = add_floats(writer, surface.tangents[0].raw, count, 4, TINYGLTF_TYPE_VEC4);
     attributes["TEXCOORD_0"] = add_floats(writer, surface.uvs[0].raw, count, 2, TINYGLTF_TYPE_VEC2);
     int indices = add_view(writer, surface.indices, surface.index_count * sizeof(uint32_t),
                            TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);

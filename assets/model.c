@@ -534,7 +534,7 @@ static bool check_extensions(const gltf_document *document, tl_model *model, tl_
     if (document->has_cameras)
         model_ignore(model, "cameras");
     if (document->has_lights)
-        model_ignore(model, "lights");
+        model_ignore(model, "KHR_lights_punctual");
     return true;
 }
 

@@ -13,6 +13,7 @@ struct loaded {
     int source; /* glTF image */
     enum use use;
     float roughness;       /* GLOSS: factor */
+    float glossiest;       /* GLOSS: glossiness where the map is 1 */
     float metallic_mean;   /* GLOSS: of the blue channel */
     bool metallic_varies;  /* GLOSS */
     const tl_image *image; /* NULL: could not be read */
@@ -54,27 +55,34 @@ static bool decode(struct reader *reader, int source, tl_image *out)
     return true;
 }
 
-/* glTF packs roughness in green and metalness in blue. A gloss map holds g of each texel; metalness becomes
- * its mean, which is exact for cloth (0) and plain metal (1). */
+/* glTF packs roughness in green and metalness in blue. A gloss map holds g of each texel over the largest g:
+ * 255 must not stand for everything above 0.998, where s = 1 / (1 - g) runs from 500 to infinity. Metalness
+ * becomes its mean, which is exact for cloth (0) and plain metal (1). */
 static void unpack_roughness(const tl_image *packed, struct loaded *to, tl_image *gloss)
 {
     *gloss = tl_image_create(packed->width, packed->height, 1, TL_IMAGE_U8);
     gloss->linear = true;
     size_t texels = (size_t)packed->width * (size_t)packed->height, channels = (size_t)packed->channels;
     const uint8_t *from = tl_image_bytes(packed);
-    uint8_t table[256];
-    for (int i = 0; i < 256; i++)
-        table[i] = (uint8_t)lrintf(255 * tl_glossiness_from_roughness(to->roughness * (float)i / 255));
     uint64_t sum = 0;
-    uint8_t lowest = 255, highest = 0;
+    uint8_t lowest = 255, highest = 0, smoothest = 255;
     for (size_t i = 0; i < texels; i++) {
         uint8_t green = from[i * channels + (channels > 2 ? 1 : 0)];
         uint8_t blue = channels > 2 ? from[i * channels + 2] : 0;
-        tl_image_bytes(gloss)[i] = table[green];
+        tl_image_bytes(gloss)[i] = green;
+        smoothest = green < smoothest ? green : smoothest;
         sum += blue;
         lowest = blue < lowest ? blue : lowest;
         highest = blue > highest ? blue : highest;
     }
+    to->glossiest = tl_glossiness_from_roughness(to->roughness * (float)smoothest / 255);
+    uint8_t table[256] = {0};
+    for (int i = smoothest; i < 256 && to->glossiest > 0; i++) {
+        float glossiness = tl_glossiness_from_roughness(to->roughness * (float)i / 255);
+        table[i] = (uint8_t)lrintf(255 * glossiness / to->glossiest);
+    }
+    for (size_t i = 0; i < texels; i++)
+        tl_image_bytes(gloss)[i] = table[tl_image_bytes(gloss)[i]];
     to->metallic_mean = (float)((double)sum / (255.0 * (double)texels));
     to->metallic_varies = highest - lowest > 25;
 }
@@ -133,6 +141,19 @@ static float unit(float value, float otherwise)
     return isfinite(value) ? fminf(fmaxf(value, 0), 1) : otherwise;
 }
 
+/* The file's alpha is factor times texel; ours is the texel alone, so the factor goes into the cutoff. What
+ * is evenly half transparent stays visible. */
+static float alpha_cutoff(struct reader *reader, const struct gltf_material *from)
+{
+    float factor = fmaxf(unit(from->base_colour[3], 1), 1e-3f);
+    if (from->alpha == GLTF_MASK)
+        return fmaxf(unit(from->alpha_cutoff, 0.5f), 1e-3f) / factor;
+    if (from->alpha == GLTF_OPAQUE)
+        return 0;
+    model_ignore(reader->model, "alpha blending (shown as a mask at 0.5)");
+    return fminf(0.5f / factor, 1);
+}
+
 /* glTF's metallic-roughness model in two lobes: diffuse = base (1 - metallic), F0 = mix(0.04, base,
  * metallic). */
 static tl_material read_material(struct reader *reader, const struct gltf_material *from)
@@ -149,7 +170,7 @@ static tl_material read_material(struct reader *reader, const struct gltf_materi
     const struct loaded *packed =
         read_map(reader, &from->metallic_roughness_map, GLOSS, roughness, &to.gloss_map);
     if (packed->image) {
-        to.glossiness = 1; /* the map has it all */
+        to.glossiness = packed->glossiest;
         metallic *= packed->metallic_mean;
         if (packed->metallic_varies)
             model_ignore(reader->model, "metalness that varies over a texture (its mean is used)");
@@ -159,12 +180,9 @@ static tl_material read_material(struct reader *reader, const struct gltf_materi
         to.diffuse.raw[i] = base * (1 - metallic);
         to.specular.raw[i] = 0.04f * (1 - metallic) + base * metallic;
     }
-    if (from->alpha == GLTF_MASK)
-        to.alpha_cutoff = fmaxf(unit(from->alpha_cutoff, 0.5f), 1e-3f);
-    if (from->alpha == GLTF_BLEND) {
-        to.alpha_cutoff = 0.5f;
-        model_ignore(reader->model, "alpha blending (shown as a mask at 0.5)");
-    }
+    if (metallic > 0.5f)
+        to.specular_map = to.diffuse_map; /* a metal's colour is in what it mirrors */
+    to.alpha_cutoff = alpha_cutoff(reader, from);
     if (from->is_emissive)
         model_ignore(reader->model, "emission");
     return to;

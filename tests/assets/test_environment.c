@@ -43,6 +43,69 @@ static void orientation(void **state)
     tl_environment_release(&painted);
 }
 
+/* The texel of a lat-long map that a direction meets (DESIGN: u = 0.5 + atan2(x, -z) / 2pi, v = acos(y) /
+ * pi). */
+static const float *latlong_towards(const tl_environment *map, const double d[3])
+{
+    double u = 0.5 + atan2(d[0], -d[2]) / (2 * M_PI), v = acos(d[1]) / M_PI;
+    int x = (int)(u * map->image.width), y = (int)(v * map->image.height);
+    return texel(map, x < map->image.width ? x : 0, y < map->image.height ? y : map->image.height - 1);
+}
+
+/* The unit direction through a texel's centre of a GL cube map (OpenGL 4.5, table 8.19). */
+static void cube_direction(int face, double s, double t, double d[3])
+{
+    const double table[6][3] = {{1, -t, -s}, {-1, -t, s}, {s, 1, t}, {s, -1, -t}, {s, -t, 1}, {-s, -t, -1}};
+    double length = sqrt(1 + s * s + t * t);
+    for (int i = 0; i < 3; i++)
+        d[i] = table[face][i] / length;
+}
+
+static double log_luminance(const float *rgb)
+{
+    return log(1e-3 + 0.2126 * (double)rgb[0] + 0.7152 * (double)rgb[1] + 0.0722 * (double)rgb[2]);
+}
+
+/* Root mean square difference of the two maps' log luminance when the lat-long map is looked up in a
+ * direction with these signs. */
+static double difference(const tl_environment *cube, const tl_environment *latlong, const double signs[3])
+{
+    int side = cube->image.width;
+    double sum = 0;
+    for (int row = 0; row < 6 * side; row++)
+        for (int x = 0; x < side; x++) {
+            double d[3];
+            cube_direction(row / side, 2 * (x + 0.5) / side - 1, 2 * (row % side + 0.5) / side - 1, d);
+            for (int i = 0; i < 3; i++)
+                d[i] *= signs[i];
+            double gap = log_luminance(texel(cube, x, row)) - log_luminance(latlong_towards(latlong, d));
+            sum += gap * gap;
+        }
+    return sqrt(sum / (6.0 * side * side));
+}
+
+/* The OpenEXR project's two renditions of one light probe. The right reading differs by resampling only (its
+ * sample positions are half a texel off ours, at edges of a stage full of small lamps); every other sense of
+ * an axis differs by as much as unrelated directions do. */
+static void a_cube_and_a_latlong_of_one_place_agree(void **state)
+{
+    (void)state;
+    tl_environment cube = load(test_data("envmaps/exr/StageEnvCube.exr"));
+    tl_environment latlong = load(test_data("envmaps/exr/StageEnvLatLong.exr"));
+    assert_int_equal(cube.layout, TL_ENV_CUBE);
+    assert_int_equal(latlong.layout, TL_ENV_LATLONG);
+    const double as_is[3] = {1, 1, 1};
+    double right = difference(&cube, &latlong, as_is), best_wrong = INFINITY;
+    for (int wrong = 1; wrong < 8; wrong++) {
+        const double signs[3] = {wrong & 1 ? -1 : 1, wrong & 2 ? -1 : 1, wrong & 4 ? -1 : 1};
+        best_wrong = fmin(best_wrong, difference(&cube, &latlong, signs));
+    }
+    print_message("log luminance differs by %.3f, in the best wrong sense by %.3f\n", right, best_wrong);
+    assert_true(4 * right < best_wrong);
+    tl_environment_release(&cube);
+    tl_environment_release(&latlong);
+}
+
 /* The same place as RGBE and as OpenEXR: RGBE keeps 8 bits of a texel's largest channel, 1/128 of it at
  * worst. */
 static void formats_agree(void **state)
@@ -215,9 +278,13 @@ static void a_lying_cube_is_stacked(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(radiance_encodings),      cmocka_unit_test(radiance_headers),
-        cmocka_unit_test(a_lying_cube_is_stacked), cmocka_unit_test(orientation),
-        cmocka_unit_test(formats_agree),           cmocka_unit_test(cleaned_values_are_counted),
+        cmocka_unit_test(radiance_encodings),
+        cmocka_unit_test(radiance_headers),
+        cmocka_unit_test(a_lying_cube_is_stacked),
+        cmocka_unit_test(orientation),
+        cmocka_unit_test(a_cube_and_a_latlong_of_one_place_agree),
+        cmocka_unit_test(formats_agree),
+        cmocka_unit_test(cleaned_values_are_counted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

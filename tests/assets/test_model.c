@@ -88,6 +88,69 @@ static void small_materials(void **state)
     tl_model_release(&model);
 }
 
+/* The small model with another second material. */
+static tl_model load_with_material(const char *material)
+{
+    static const char path[] = TOILE_SCRATCH_DIR "/model_material.glb";
+    static const char old[] =
+        "{\"name\":\"metal\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,0.25,1,1]}}";
+    struct small_glb glb = small_glb_make();
+    char *at = strstr(glb.json, old);
+    assert_non_null(at);
+    char *rest = tl_copy_string(at + strlen(old));
+    snprintf(at, sizeof glb.json - (size_t)(at - glb.json), "%s%s", material, rest);
+    free(rest);
+    small_glb_write(&glb, path);
+    return load(path);
+}
+
+/* The picture is grey, 10 250 / 30 200: that is roughness times the factor. */
+static void gloss_maps_are_exact_where_glossiest(void **state)
+{
+    (void)state;
+    tl_model model =
+        load_with_material("{\"name\":\"satin\",\"pbrMetallicRoughness\":{\"metallicFactor\":0,"
+                           "\"roughnessFactor\":0.5,\"metallicRoughnessTexture\":{\"index\":0}}}");
+    const tl_material *satin = &model.materials[1];
+    const uint8_t green[] = {10, 250, 30, 200};
+    assert_non_null(satin->gloss_map.image);
+    assert_near(satin->glossiness, tl_glossiness_from_roughness(0.5f * 10 / 255), 0);
+    for (int i = 0; i < 4; i++) {
+        float expected = tl_glossiness_from_roughness(0.5f * green[i] / 255);
+        float map = (float)tl_image_bytes(satin->gloss_map.image)[i] / 255;
+        assert_near(satin->glossiness * map, expected, 0.5 / 255);
+    }
+    tl_model_release(&model);
+}
+
+static void alpha_factors_go_into_the_cutoff(void **state)
+{
+    (void)state;
+    tl_model model = load_with_material("{\"name\":\"mesh\",\"alphaMode\":\"MASK\",\"alphaCutoff\":0.3,"
+                                        "\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,1,1,0.6]}}");
+    assert_near(model.materials[1].alpha_cutoff, 0.5, 1e-6);
+    tl_model_release(&model);
+    /* glass: half transparent everywhere, which a mask cannot show, so it stays */
+    model = load_with_material("{\"name\":\"glass\",\"alphaMode\":\"BLEND\","
+                               "\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,1,1,0.3]}}");
+    assert_near(model.materials[1].alpha_cutoff, 1, 0);
+    tl_model_release(&model);
+}
+
+static void metals_have_their_colour_in_the_mirror(void **state)
+{
+    (void)state;
+    tl_model model =
+        load_with_material("{\"name\":\"gilt\",\"pbrMetallicRoughness\":{"
+                           "\"baseColorFactor\":[1,0.5,0.25,1],\"baseColorTexture\":{\"index\":0}}}");
+    const tl_material *gilt = &model.materials[1];
+    assert_near(gilt->diffuse.x, 0, 0);
+    assert_near(gilt->specular.y, 0.5, 1e-6);
+    assert_non_null(gilt->specular_map.image);
+    assert_ptr_equal(gilt->specular_map.image, gilt->diffuse_map.image);
+    tl_model_release(&model);
+}
+
 /* The clip turns joint 1, on which vertices 2 and 3 hang, by 90 degrees about z from 1 s to 2 s. */
 static void small_clip(void **state)
 {
@@ -402,6 +465,24 @@ static void release_exported(struct exported *e)
     tl_model_release(&e->model);
 }
 
+/* Roughness is stored in steps of 1/255. g = 1 - 2 r^4 / (1 - r^4) is steepest, 8 r^3 / (1 - r^4)^2 = 7.9,
+ * where it leaves 0 (r^4 = 1/3); r is at most half a step off, and the map that is read back another half. */
+static void check_glossiness(const tl_material *a, const tl_material *b)
+{
+    const tl_image *first = a->gloss_map.image, *second = b->gloss_map.image;
+    if (!first || !second) {
+        assert_true(!first && !second);
+        assert_near(b->glossiness, a->glossiness, 1e-4);
+        return;
+    }
+    size_t texels = (size_t)first->width * (size_t)first->height;
+    for (size_t i = 0; i < texels; i++) {
+        double before = (double)a->glossiness * tl_image_bytes(first)[i] / 255;
+        double after = (double)b->glossiness * tl_image_bytes(second)[i] / 255;
+        assert_near(after, before, (7.9 / 2 + 0.5) / 255);
+    }
+}
+
 static void check_round_trip(const char *from)
 {
     static const char path[] = TOILE_SCRATCH_DIR "/model_exported.glb";
@@ -425,6 +506,7 @@ static void check_round_trip(const char *from)
         assert_string_equal(b->name, a->name);
         assert_true(b->double_sided == a->double_sided);
         assert_near(b->alpha_cutoff, a->alpha_cutoff, 1e-6);
+        check_glossiness(a, b);
         assert_true(!b->diffuse_map.image == !a->diffuse_map.image);
         if (a->diffuse_map.image && b->diffuse_map.image)
             assert_memory_equal(b->diffuse_map.image->texels, a->diffuse_map.image->texels,
@@ -479,6 +561,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(small_geometry),
         cmocka_unit_test(small_materials),
+        cmocka_unit_test(gloss_maps_are_exact_where_glossiest),
+        cmocka_unit_test(alpha_factors_go_into_the_cutoff),
+        cmocka_unit_test(metals_have_their_colour_in_the_mirror),
         cmocka_unit_test(small_clip),
         cmocka_unit_test(every_conformance_file_loads),
         cmocka_unit_test(primitive_modes),
