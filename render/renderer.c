@@ -202,7 +202,8 @@ static bool run_plan(tl_renderer *renderer, const struct tl_plan_input *input, t
         }
         /* The CPU's clock around a finished job: GL's own timers are wrong on software drivers. */
         glFinish();
-        tl_cost_add(&renderer->cost, i, plan->rows[i].level, 1000 * (tl_clock_s() - started_s));
+        plan->rows[i].took_ms = 1000 * (tl_clock_s() - started_s);
+        tl_cost_add(&renderer->cost, i, plan->rows[i].level, plan->rows[i].took_ms);
     }
     renderer->valid = tl_plan_valid_after(tl_frame_jobs, tl_frame_job_count, input, plan);
     return true;

@@ -11,24 +11,50 @@
 #include "render/gpu/gpu.h"
 #include "render/plan/plan.h"
 
-enum tl_method { TL_METHOD_PEM, TL_METHOD_UNSHADOWED };
+enum tl_method {
+    TL_METHOD_PEM,    /* the environment's regions, shadowed one by one */
+    TL_METHOD_LIGHTS, /* the regions as directional lights: no prefiltered maps [002, figure 6 and section 7]
+                       */
+    TL_METHOD_AO,     /* unshadowed light times ambient occlusion */
+    TL_METHOD_AO_COLOUR,  /* ... times the occlusion of the diffuse light, by channel */
+    TL_METHOD_UNSHADOWED, /* visibility is 1 everywhere */
+    TL_METHOD_REFERENCE   /* ray traced: render/reference */
+};
 enum tl_lobe { TL_LOBE_SINGLE, TL_LOBE_DUAL };
+enum tl_cut { TL_CUT_FACES, TL_CUT_SPHERE };
+enum tl_prefilter { TL_PREFILTER_CHAIN, TL_PREFILTER_SLICES };
+enum tl_visibility { TL_VISIBILITY_VSM, TL_VISIBILITY_DEPTH, TL_VISIBILITY_RAYS };
+/* sum: VIS_i P_i [002, eq. 5]. difference: E - (1 - VIS_i) P_i. ratio: E x sum VIS_i w_i / sum w_i, w_i being
+ * P_i or what stands for it. E is the exact unshadowed light. */
+enum tl_composition { TL_COMPOSE_SUM, TL_COMPOSE_DIFFERENCE, TL_COMPOSE_RATIO };
 enum tl_background { TL_BACKGROUND_ENVIRONMENT, TL_BACKGROUND_BLURRED, TL_BACKGROUND_GREY };
 
-struct tl_light_params {   /* table "light" */
-    int method;            /* enum tl_method */
-    int lobe;              /* enum tl_lobe */
-    int regions;           /* N, rounded down to a multiple of six */
-    int pem_size;          /* texels per face side, a power of two */
-    int filter;            /* enum tl_chain_filter */
-    int pems_per_pass;     /* 12 in the paper; 1 to 64 */
-    int map_size;          /* texels, side of a shadow map */
-    float blur_m;          /* metres: the Gaussian's sigma is blur_m x tan(cone) */
-    float depth_bias_m;    /* metres */
-    float min_variance;    /* m^2, floor of the VSM variance */
+struct tl_light_params { /* table "light" */
+    int method;          /* enum tl_method */
+    int lobe;            /* enum tl_lobe */
+    int cut;             /* enum tl_cut */
+    int regions;         /* N; cut of the faces: rounded down to a multiple of six */
+    bool sun;            /* suns leave the regions and get shadows of their own */
+    int prefilter;       /* enum tl_prefilter, of the map back-ends; rays use exact lobes */
+    int pem_size;        /* texels per face side, a power of two */
+    int filter;          /* enum tl_chain_filter */
+    int pems_per_pass;   /* 12 in the paper; 1 to 64 */
+    int visibility;      /* enum tl_visibility: the back-end */
+    int composition;     /* enum tl_composition; rays: ratio only */
+    bool jitter;         /* directions vary inside their regions from frame to frame */
+    int rounds;          /* at rest, so many jittered frames are averaged */
+    int refresh;         /* rays: regions traced anew for each point and moving frame; 0: all */
+    int rays;            /* rays: directions a region and refresh */
+    float repair;        /* rays: share of the samples, the least certain, that get rays of their own */
+    bool reflect_scene; /* near mirrors (s >= TL_MIRROR_EXPONENT) see the lit scene; false: black, as [002] */
+    int map_size;       /* texels, side of a shadow map */
+    float blur_m;       /* metres: the Gaussian's sigma is blur_m x tan(cone) */
+    float depth_bias_m; /* metres */
+    float min_variance; /* m^2, floor of the VSM variance */
     float bleed_reduction; /* [0, 1): Chebyshev values below it become 0 */
 };
 extern const struct tl_option_table tl_light_options;
+#define TL_MIRROR_EXPONENT 200.0f
 
 struct tl_material_params { /* table "material": the garment's look, from the fabric or by hand */
     bool use_file;          /* keep the garment file's own materials where it has them */
@@ -46,6 +72,14 @@ struct tl_image_params { /* table "image" */
     bool ground;       /* a ground disc at y = 0 */
 };
 extern const struct tl_option_table tl_image_options;
+
+struct tl_reference_params { /* table "reference" */
+    int strata;              /* directions a replicate takes from the environment */
+    int lobe_samples;        /* ... from the glossy lobe */
+    int replicates;
+    int terminator; /* enum tl_terminator (render/reference/reference.h) */
+};
+extern const struct tl_option_table tl_reference_options;
 
 struct tl_camera {
     vec3s eye, target, up; /* metres */
@@ -67,6 +101,7 @@ typedef struct tl_frame {
 struct tl_render_settings {
     struct tl_light_params light;
     struct tl_image_params image;
+    struct tl_reference_params reference;
 };
 
 typedef struct tl_renderer tl_renderer;

@@ -53,7 +53,7 @@ extern const int tl_frame_job_count;
 
 /* Bytes of a sample: in the largest texture, and in all: G-buffer, its depth, light. */
 #define TL_SAMPLE_LAYER_BYTES 16
-#define TL_SAMPLE_BYTES       (16 + 3 * 8 + 4 + 16)
+#define TL_SAMPLE_BYTES       (16 + 3 * 8 + 4 + 4 + 16)
 
 struct tl_renderer {
     tl_gpu *gpu;

@@ -21,7 +21,8 @@ void tl_gbuffer_release(struct tl_gbuffer *gbuffer)
 
 static void allocate(struct tl_gbuffer *gbuffer, tl_gpu *gpu, int width, int height)
 {
-    static const unsigned formats[TL_GBUFFER_LAYERS] = {GL_RGBA32F, GL_RGBA16F, GL_RGBA16F, GL_RGBA16F};
+    static const unsigned formats[TL_GBUFFER_LAYERS] = {GL_RGBA32F, GL_RGBA16F, GL_RGBA16F, GL_RGBA16F,
+                                                        GL_R32UI};
     if (gbuffer->target.width == width && gbuffer->target.height == height)
         return;
     tl_target_destroy(&gbuffer->target);
@@ -31,8 +32,12 @@ static void allocate(struct tl_gbuffer *gbuffer, tl_gpu *gpu, int width, int hei
 static void clear(const tl_target *target)
 {
     const float nothing[] = {0, 0, 0, 0}, farthest = 1;
+    const GLuint no_triangle[] = {0, 0, 0, 0};
     for (int i = 0; i < target->colour_count; i++)
-        glClearNamedFramebufferfv(target->id, GL_COLOR, i, nothing);
+        if (i == TL_GBUFFER_TRIANGLE)
+            glClearNamedFramebufferuiv(target->id, GL_COLOR, i, no_triangle);
+        else
+            glClearNamedFramebufferfv(target->id, GL_COLOR, i, nothing);
     glClearNamedFramebufferfv(target->id, GL_DEPTH, 0, &farthest);
 }
 

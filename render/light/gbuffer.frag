@@ -13,8 +13,11 @@ in vec2 uv;
 
 layout(location = 0) out vec4 out_point;    // world, metres; coverage
 layout(location = 1) out vec4 out_normal;   // world, unit, towards the viewer's side; glossiness
-layout(location = 2) out vec4 out_diffuse;  // kd with occlusion; unused
-layout(location = 3) out vec4 out_specular; // F ks; unused
+layout(location = 2) out vec4 out_diffuse;  // kd with occlusion; octahedral x of the smooth normal
+layout(location = 3) out vec4 out_specular; // F ks; octahedral y of the smooth normal
+layout(location = 4) out uint out_triangle; // 1 + its number, and TRIANGLE_BACK
+
+const uint TRIANGLE_BACK = 0x80000000u;
 
 // A direction that is never NaN: vectors too short to have one become `fallback`.
 vec3 direction_or(vec3 v, vec3 fallback)
@@ -44,16 +47,23 @@ vec3 tangent_space_normal()
 }
 
 // MikkTSpace: the interpolated frame is used as it is, and normalised once at the end.
-vec3 shading_normal(vec3 facet)
+vec3 shading_normal(vec3 smooth_normal)
 {
-    vec3 smooth_normal = direction_or(normal, facet);
     vec3 n = smooth_normal;
     if ((has_map(MAP_NORMAL) || has_map(MAP_WEAVE)) && dot(tangent.xyz, tangent.xyz) > 0.0) {
         vec3 mapped = tangent_space_normal();
         vec3 bitangent = tangent.w * cross(normal, tangent.xyz);
         n = direction_or(mapped.x * tangent.xyz + mapped.y * bitangent + mapped.z * normal, smooth_normal);
     }
-    return gl_FrontFacing ? n : -n; // a back is a surface of its own: the whole frame turns over
+    return n;
+}
+
+// A unit vector on the octahedron, unfolded into [-1, 1]^2 [Meyer et al. 2010].
+vec2 octahedral(vec3 n)
+{
+    vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
+    vec2 away = vec2(n.x >= 0.0 ? 1.0 : -1.0, n.y >= 0.0 ? 1.0 : -1.0);
+    return n.z >= 0.0 ? p : (1.0 - abs(p.yx)) * away;
 }
 
 float glossiness()
@@ -95,10 +105,14 @@ void main()
     float cover = fading_disc.w > 0.0 ? ground_cover(fading_disc, point.xz) : 1.0;
     if (cover <= 0.0)
         discard;
-    vec3 n = shading_normal(facet);
+    float side = gl_FrontFacing ? 1.0 : -1.0; // a back is a surface of its own: the whole frame turns over
+    vec3 smooth_normal = direction_or(normal, facet);
+    vec3 n = side * shading_normal(smooth_normal);
+    vec2 horizon = octahedral(side * smooth_normal);
     vec3 v = direction_or(eye - point, n);
     out_point = vec4(point, cover);
     out_normal = vec4(n, glossiness());
-    out_diffuse = vec4(diffuse(colour.rgb), 0.0);
-    out_specular = vec4(specular(dot(n, v)), 0.0);
+    out_diffuse = vec4(diffuse(colour.rgb), horizon.x);
+    out_specular = vec4(specular(dot(n, v)), horizon.y);
+    out_triangle = (first_triangle + uint(gl_PrimitiveID) + 1u) | (gl_FrontFacing ? 0u : TRIANGLE_BACK);
 }

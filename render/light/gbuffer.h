@@ -10,8 +10,10 @@
 enum tl_gbuffer_layer {
     TL_GBUFFER_POINT,    /* RGBA32F: world, metres; coverage */
     TL_GBUFFER_NORMAL,   /* RGBA16F: world, unit, on the viewer's side; glossiness */
-    TL_GBUFFER_DIFFUSE,  /* RGBA16F: kd with occlusion */
-    TL_GBUFFER_SPECULAR, /* RGBA16F: F ks */
+    TL_GBUFFER_DIFFUSE,  /* RGBA16F: kd with occlusion; octahedral x of the smooth normal */
+    TL_GBUFFER_SPECULAR, /* RGBA16F: F ks; octahedral y of the smooth normal */
+    TL_GBUFFER_TRIANGLE, /* R32UI: 0 nothing; else 1 + the triangle's number counted through all surfaces, and
+                            TL_SAMPLE_BACK where its back is seen */
     TL_GBUFFER_LAYERS
 };
 

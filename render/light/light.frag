@@ -28,9 +28,9 @@ layout(binding = 0) uniform sampler2D points;
 layout(binding = 1) uniform sampler2D normals;
 layout(binding = 2) uniform sampler2D diffuses;
 layout(binding = 3) uniform sampler2D speculars;
-layout(binding = 4) uniform sampler2D lobe_levels;
-layout(binding = 5) uniform samplerCubeArray pems;
-layout(binding = 6) uniform sampler2DArray maps;
+layout(binding = 5) uniform sampler2D lobe_levels;
+layout(binding = 6) uniform samplerCubeArray pems;
+layout(binding = 7) uniform sampler2DArray maps;
 
 layout(location = 0) out vec4 light;
 

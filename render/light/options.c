@@ -2,17 +2,29 @@
 #include "render/pem/regions.h"
 #include "render/renderer.h"
 
-static const char *const method_names[] = {"pem", "unshadowed", NULL};
+static const char *const method_names[] = {"pem",        "lights",    "ao", "ao_colour",
+                                           "unshadowed", "reference", NULL};
 static const char *const lobe_names[] = {"single", "dual", NULL};
+static const char *const cut_names[] = {"faces", "sphere", NULL};
+static const char *const prefilter_names[] = {"chain", "slices", NULL};
+static const char *const visibility_names[] = {"vsm", "depth", "rays", NULL};
+static const char *const composition_names[] = {"sum", "difference", "ratio", NULL};
 
 typedef struct tl_light_params light_params;
 static const struct tl_option light_rows[] = {
-    TL_OPTION_ENUM(light_params, method, method_names,
-                   "pem: light of each region times its visibility; unshadowed: visibility is 1 everywhere"),
+    TL_OPTION_ENUM(
+        light_params, method, method_names,
+        "pem: light of each region times its visibility; lights: regions as directional lights; ao, "
+        "ao_colour: ambient occlusion; unshadowed: visibility is 1; reference: ray traced"),
     TL_OPTION_ENUM(light_params, lobe, lobe_names,
                    "single: one look-up from diffuse to mirror by glossiness; dual: diffuse plus gloss"),
+    TL_OPTION_ENUM(light_params, cut, cut_names,
+                   "faces: median cut of each cube face; sphere: cut of the whole sphere by variance"),
     TL_OPTION_INT(light_params, regions, 6, TL_REGIONS_MAX, "",
                   "regions of the environment, in sixes; more give truer shadows for more time and memory"),
+    TL_OPTION_BOOL(light_params, sun, "suns leave the regions and get shadows of their own"),
+    TL_OPTION_ENUM(light_params, prefilter, prefilter_names,
+                   "chain: the 2014 filter chain; slices: exact lobes; rays always use exact lobes"),
     TL_OPTION_INT(
         light_params, pem_size, 4, 512, "texels",
         "side of a PEM's cube face, a power of two; larger sharpens mirrors for four times the memory"),
@@ -20,6 +32,23 @@ static const struct tl_option light_rows[] = {
                    "filter between the levels of a PEM; wider ones make glossy highlights rounder"),
     TL_OPTION_INT(light_params, pems_per_pass, 1, 64, "",
                   "regions added up in one drawing pass; more need fewer passes and larger textures"),
+    TL_OPTION_ENUM(light_params, visibility, visibility_names,
+                   "vsm: variance shadow maps; depth: plain shadow maps; rays: rays kept at vertices"),
+    TL_OPTION_ENUM(
+        light_params, composition, composition_names,
+        "sum: of shadowed light; difference: exact light less what is shadowed; ratio: exact light "
+        "times the share that is seen (rays: always)"),
+    TL_OPTION_BOOL(light_params, jitter, "directions vary inside their regions from frame to frame"),
+    TL_OPTION_INT(light_params, rounds, 1, 4096, "frames",
+                  "jittered frames averaged while nothing moves; more make still images truer"),
+    TL_OPTION_INT(light_params, refresh, 0, TL_REGIONS_MAX, "regions",
+                  "rays: regions traced anew for each point and moving frame; 0: all"),
+    TL_OPTION_INT(light_params, rays, 1, 64, "",
+                  "rays: directions traced a region; more are truer and slower"),
+    TL_OPTION_FLOAT(light_params, repair, 0, 1, "",
+                    "rays: share of the samples, the least certain ones, that get rays of their own"),
+    TL_OPTION_BOOL(light_params, reflect_scene,
+                   "near mirrors (exponent 200 and more) show the lit scene; off: black"),
     TL_OPTION_INT(light_params, map_size, 1, 4096, "texels",
                   "side of a shadow map; larger keeps small shadows for more time and memory"),
     TL_OPTION_FLOAT(light_params, blur_m, 0, 10, "m",
@@ -32,11 +61,11 @@ static const struct tl_option light_rows[] = {
     TL_OPTION_FLOAT(light_params, bleed_reduction, 0, 0.95, "",
                     "visibility below it becomes 0; larger leaks less light and hardens soft shadows"),
 };
-const struct tl_option_table tl_light_options =
-    TL_OPTION_TABLE("light", "how the environment lights and shadows the scene", light_rows, light_params,
-                    .method = TL_METHOD_PEM, .lobe = TL_LOBE_DUAL, .regions = 96, .pem_size = 128,
-                    .filter = TL_CHAIN_SQRT_COSINE, .pems_per_pass = 12, .map_size = 256, .blur_m = 0.05f,
-                    .depth_bias_m = 0.004f, .min_variance = 1e-6f, .bleed_reduction = 0.1f);
+const struct tl_option_table tl_light_options = TL_OPTION_TABLE(
+    "light", "how the environment lights and shadows the scene", light_rows, light_params,
+    .method = TL_METHOD_PEM, .lobe = TL_LOBE_DUAL, .regions = 96, .pem_size = 128,
+    .filter = TL_CHAIN_SQRT_COSINE, .pems_per_pass = 12, .rounds = 1, .rays = 1, .map_size = 256,
+    .blur_m = 0.05f, .depth_bias_m = 0.004f, .min_variance = 1e-6f, .bleed_reduction = 0.1f);
 
 typedef struct tl_material_params material_params;
 static const struct tl_option material_rows[] = {

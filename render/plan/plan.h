@@ -42,6 +42,7 @@ struct tl_plan_row {
     int level;
     char reason[120];
     double predicted_ms; /* median of the cost model; NaN while unknown, 0 for what does not run */
+    double took_ms;      /* once carried out; 0 for what did not run */
 };
 
 typedef struct tl_plan {

@@ -7,6 +7,7 @@ layout(location = 2) uniform vec4 material_scalars; // glossiness, normal scale,
 layout(location = 3) uniform int map_flags;
 layout(location = 4) uniform vec2 weave_scale; // repeats per UV unit
 layout(location = 5) uniform vec3 uv_rows[10];
+layout(location = 15) uniform uint first_triangle; // of this draw, counted through all surfaces
 
 layout(binding = 0) uniform sampler2D diffuse_map;
 layout(binding = 1) uniform sampler2D normal_map;

@@ -108,8 +108,8 @@ static tl_texture upload(tl_gpu *gpu, const tl_image *image, bool colour)
         const GLint grey[] = {GL_RED, GL_RED, GL_RED, image->channels == 2 ? GL_GREEN : GL_ONE};
         glTextureParameteriv(texture.id, GL_TEXTURE_SWIZZLE_RGBA, grey);
     }
-    /* Trilinear only: anisotropic filtering makes the G-buffer of a woven dress twenty times slower on software GL,
-     * and an image must not depend on which GL drew it. */
+    /* Trilinear only: anisotropic filtering makes the G-buffer of a woven dress twenty times slower on
+     * software GL, and an image must not depend on which GL drew it. */
     return texture;
 }
 
@@ -313,12 +313,16 @@ static enum tl_surface_parts kind_of(const struct item *item, const struct tl_me
 void tl_surfaces_draw(const tl_surfaces *surfaces, size_t index, enum tl_surface_parts parts)
 {
     const struct item *item = &surfaces->items[index];
+    size_t first_triangle = 0;
+    for (size_t i = 0; i < index; i++)
+        first_triangle += surfaces->items[i].index_count / 3;
     glBindVertexArray(item->vertex_array);
     for (size_t p = 0; p < item->part_count; p++) {
         const struct tl_mesh_part *part = &item->parts[p];
         if (!(kind_of(item, part) & parts))
             continue;
         set_material(item, part);
+        glUniform1ui(TL_UNIFORM_FIRST_TRIANGLE, (GLuint)(first_triangle + part->first_index / 3));
         glDrawElements(GL_TRIANGLES, (GLsizei)part->index_count, GL_UNSIGNED_INT,
                        offset_of_index(part->first_index));
     }

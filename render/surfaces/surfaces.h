@@ -29,7 +29,9 @@ enum tl_surface_uniform {
     TL_UNIFORM_MAP_FLAGS,   /* bits by tl_map_use; the weave's bit is 1 << TL_MAP_USES */
     TL_UNIFORM_WEAVE_SCALE, /* repeats per UV unit */
     TL_UNIFORM_UV_ROWS,     /* 2 vec3 a map: rows of the 2x3 UV transform */
-    TL_UNIFORM_SURFACE_END = TL_UNIFORM_UV_ROWS + 2 * TL_MAP_USES,
+    TL_UNIFORM_FIRST_TRIANGLE =
+        TL_UNIFORM_UV_ROWS + 2 * TL_MAP_USES, /* number of the draw's first triangle */
+    TL_UNIFORM_SURFACE_END,
 };
 
 typedef struct tl_surfaces tl_surfaces;

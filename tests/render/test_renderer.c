@@ -162,7 +162,7 @@ static void test_memory(void **state)
         size_t count = (size_t)regions, vertices = 17 * 33 + 17 * 17 + 4, quads = 16 * 32 + 16 * 16 + 1;
         assert_int_equal(memory.pems, count * 6 * 8 * chain_texels(32));
         assert_int_equal(memory.maps, (count * 8 + 8 + 4) * 32 * 32);
-        assert_int_equal(memory.targets, 48 * 32 * 4 * (16 + 3 * 8 + 4 + 16) + 48 * 32 * (16 + 4));
+        assert_int_equal(memory.targets, 48 * 32 * 4 * (16 + 3 * 8 + 4 + 4 + 16) + 48 * 32 * (16 + 4));
         assert_int_equal(memory.surfaces, vertices * (12 + 12 + 16 + 8) + quads * 6 * 4);
         assert_int_equal(memory.other, 256 * 4);
         assert_int_equal(memory.total,

@@ -1,0 +1,47 @@
+/* The covered samples of a G-buffer, on the CPU. World space, metres. */
+#ifndef TOILE_RENDER_LIGHT_SAMPLES_H
+#define TOILE_RENDER_LIGHT_SAMPLES_H
+
+#include "render/light/gbuffer.h"
+
+/* `triangle` counts through all surfaces in their order; its top bit says that the back is seen. */
+#define TL_SAMPLE_BACK 0x80000000u
+
+typedef struct tl_sample {
+    uint32_t texel;    /* y * width + x, rows upwards as GL has them */
+    uint32_t triangle; /* global number, and TL_SAMPLE_BACK */
+    float weights[3];  /* barycentric, of the triangle's corners; they sum to 1 */
+    float cover;       /* (0, 1] */
+    vec3s point;       /* on the triangle */
+    vec3s normal;      /* shading normal, unit, on the viewer's side */
+    vec3s smooth;      /* interpolated normal without maps, unit, on the viewer's side: the horizon's */
+    vec3s mirror; /* r: the view vector reflected about `normal`, unit; continued where that faces away */
+    float glossiness;
+    vec3s diffuse;  /* kd */
+    vec3s specular; /* F ks */
+} tl_sample;
+
+/* In tiles of 4 x 4 texels, so that sixteen samples in a row are neighbours. */
+struct tl_samples {
+    int width, height; /* of the target */
+    size_t count, capacity;
+    tl_sample *items;
+    float glossiness_min, glossiness_max; /* over all; 0 when there are none */
+};
+
+/* Where global triangle numbers begin, for each surface (with the ground, which comes last). */
+struct tl_triangle_ranges {
+    const tl_surface *const *surfaces;
+    size_t surface_count;
+    uint32_t *first; /* surface_count + 1 numbers */
+};
+/* Which surface holds global triangle `number` (without the top bit), and its three corners there. */
+const tl_surface *tl_triangle_find(const struct tl_triangle_ranges *ranges, uint32_t number,
+                                   uint32_t corners[3], size_t *surface);
+
+/* Reads the G-buffer back. The arrays of `out` are used again from frame to frame. */
+void tl_samples_read(const struct tl_gbuffer *gbuffer, const struct tl_triangle_ranges *ranges, vec3s eye,
+                     struct tl_samples *out);
+void tl_samples_release(struct tl_samples *samples);
+
+#endif

@@ -1,0 +1,31 @@
+/* The oracle: what a pixel truly is (DESIGN 4), ray traced. No GL; none of the renderer's approximations: it
+ * shares the scene, the camera and the definition of a material, and nothing else.
+ *
+ *     c*(x) = integral of L(w) V(x, w) [ kd K_1(n, w) + F ks K_s(r, w) ] dw
+ *
+ * The environment's texels are stratified by power; each replicate takes one direction from every stratum,
+ * and one from the glossy lobe for each of `lobe_samples`, combined by the balance heuristic [Veach 1997].
+ * Replicates are independent: their spread is the standard error. Deterministic at any thread count. Ctrl-C
+ * keeps the replicates that are done. */
+#ifndef TOILE_RENDER_REFERENCE_REFERENCE_H
+#define TOILE_RENDER_REFERENCE_REFERENCE_H
+
+#include "config/options.h"
+#include "render/renderer.h"
+
+enum tl_terminator { TL_TERMINATOR_SMOOTH, TL_TERMINATOR_GEOMETRIC };
+
+struct tl_reference_report {
+    int replicates; /* done */
+    double
+        standard_error; /* of the image: root of the mean square over covered pixels / mean, as rel_rmse is */
+    size_t rays;
+};
+
+/* `surfaces` with the ground last when `ground` is not NULL. Image as tl_renderer_read gives it. False, with
+ * TL_INTERRUPTED, only when nothing was finished. */
+bool tl_reference_draw(const tl_frame *frame, const struct tl_render_settings *settings,
+                       const struct tl_ground *ground, tl_image *out, struct tl_reference_report *report,
+                       tl_error *error);
+
+#endif

@@ -1,0 +1,64 @@
+/* Visibility by rays, kept at points of the surfaces: one number for each point and region, which stays with
+ * the vertex and so survives deformation (FRONTIER method F: a cache that is refreshed by importance and
+ * age).
+ *
+ * A point is a render vertex seen from one side, or an extra point that a sample owns (repair). A sample
+ * reads up to four points with weights. In motion R regions of each visible point are traced anew a frame, in
+ * directions jittered inside the region, and replace what was there; at rest every round is averaged in.
+ * Results do not depend on the number of threads. */
+#ifndef TOILE_RENDER_VISIBILITY_POINTS_H
+#define TOILE_RENDER_VISIBILITY_POINTS_H
+
+#include "render/light/samples.h"
+#include "render/pem/regions.h"
+#include "render/renderer.h"
+#include "render/trace/trace.h"
+
+#define TL_TAPS 4
+
+/* What a sample reads: values of `point[i]` times `weight[i]`; weights sum to 1, unused ones are 0. */
+struct tl_taps {
+    uint32_t point[TL_TAPS];
+    float weight[TL_TAPS];
+};
+
+typedef struct tl_points tl_points;
+
+struct tl_points_request {
+    const tl_trace *trace;
+    const struct tl_triangle_ranges *ranges;
+    const struct tl_samples *samples;
+    const struct tl_regions *regions;
+    uint64_t
+        regions_revision;     /* changes when the regions do: values are carried over to the nearest region */
+    uint64_t shapes_revision; /* changes when vertex numbers do: everything is forgotten */
+    const struct tl_ground *ground;       /* NULL: none */
+    float environment_yaw;                /* rad */
+    const struct tl_light_params *params; /* refresh, rays, rounds, repair */
+    bool moved; /* surfaces, environment or yaw differ from the last frame: values are replaced, not averaged
+                 */
+    int round;  /* frames since something moved */
+};
+
+tl_points *tl_points_create(void);
+void tl_points_destroy(tl_points **points);
+
+void tl_points_update(tl_points *points, const struct tl_points_request *request);
+
+/* After an update. Visibility of region i at point p is values[p * stride + i] / TL_VISIBILITY_ONE; stride is
+ * a multiple of 16 and what lies beyond the regions is 0. One taps entry a sample. */
+#define TL_VISIBILITY_ONE 65535.0f
+const uint16_t *tl_points_values(const tl_points *points, size_t *stride);
+const struct tl_taps *tl_points_taps(const tl_points *points);
+/* Visibility of the sun by sample, [sun][sample], in [0, 1]; NULL when no sun stands apart. */
+const float *tl_points_sun(const tl_points *points, int sun);
+
+/* For `toile plan`, tests and tuning: how much was done in the last update. */
+struct tl_points_report {
+    size_t points, visible_points, repaired_samples, rays;
+    double disagreement; /* mean over samples of the largest difference between a sample's points */
+};
+struct tl_points_report tl_points_report(const tl_points *points);
+size_t tl_points_bytes(const tl_points *points);
+
+#endif
