@@ -6,5 +6,6 @@ add_library(toile_light STATIC
   pem/chain.c
   pem/lobe.c
   pem/regions.c
-  plan/plan.c)
+  plan/plan.c
+  surfaces/ground.c)
 target_link_libraries(toile_light PUBLIC toile_assets)
