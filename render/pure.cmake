@@ -7,6 +7,11 @@ add_library(toile_light STATIC
   pem/lobe.c
   pem/regions.c
   plan/plan.c
+<<<<<<< HEAD
   trace/cutout.c
   trace/trace.c)
 target_link_libraries(toile_light PUBLIC toile_assets PRIVATE embree)
+=======
+  surfaces/ground.c)
+target_link_libraries(toile_light PUBLIC toile_assets)
+>>>>>>> room/oracle
