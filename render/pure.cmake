@@ -7,11 +7,8 @@ add_library(toile_light STATIC
   pem/lobe.c
   pem/regions.c
   plan/plan.c
-<<<<<<< HEAD
+  surfaces/ground.c
   trace/cutout.c
-  trace/trace.c)
+  trace/trace.c
+)
 target_link_libraries(toile_light PUBLIC toile_assets PRIVATE embree)
-=======
-  surfaces/ground.c)
-target_link_libraries(toile_light PUBLIC toile_assets)
->>>>>>> room/oracle
