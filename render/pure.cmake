@@ -6,5 +6,7 @@ add_library(toile_light STATIC
   pem/chain.c
   pem/lobe.c
   pem/regions.c
+  pem/regions_faces.c
+  pem/regions_sphere.c
   plan/plan.c)
 target_link_libraries(toile_light PUBLIC toile_assets)
