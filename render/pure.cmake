@@ -8,5 +8,9 @@ add_library(toile_light STATIC
   pem/regions.c
   pem/regions_faces.c
   pem/regions_sphere.c
-  plan/plan.c)
-target_link_libraries(toile_light PUBLIC toile_assets)
+  plan/plan.c
+  surfaces/ground.c
+  trace/cutout.c
+  trace/trace.c
+)
+target_link_libraries(toile_light PUBLIC toile_assets PRIVATE embree)
