@@ -6,6 +6,8 @@ add_library(toile_light STATIC
   pem/chain.c
   pem/lobe.c
   pem/regions.c
+  pem/regions_faces.c
+  pem/regions_sphere.c
   plan/plan.c
   surfaces/ground.c
   trace/cutout.c
