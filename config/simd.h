@@ -11,6 +11,8 @@
 #include <stdint.h>
 
 #define TL_LANES 16
+typedef float tl_lanes __attribute__((vector_size(TL_LANES * sizeof(float))));
+typedef int32_t tl_lanes_int __attribute__((vector_size(TL_LANES * sizeof(float))));
 
 /* Lanes pass by value only between static inline functions, so that how the ABI passes them is no concern. */
 #pragma GCC diagnostic ignored "-Wpsabi"
