@@ -269,13 +269,18 @@ static bool run_compose(void *context, int level, tl_error *error)
         renderer->light_bytes = bytes;
     }
     memset(renderer->light, 0, bytes);
-    const struct tl_compose_request request = {.samples = samples,
-                                               .regions = &renderer->regions,
-                                               .suns = &renderer->suns,
-                                               .lobes = &renderer->lobes,
-                                               .points = renderer->points,
-                                               .environment_yaw = renderer->frame.environment_yaw,
-                                               .params = &renderer->settings.light};
+    struct tl_compose_request request = {.samples = samples,
+                                         .regions = &renderer->regions,
+                                         .suns = &renderer->suns,
+                                         .lobes = &renderer->lobes,
+                                         .environment_yaw = renderer->frame.environment_yaw,
+                                         .params = &renderer->settings.light};
+    if (renderer->settings.light.method != TL_METHOD_UNSHADOWED) {
+        request.values = tl_points_values(renderer->points, &request.stride);
+        request.taps = tl_points_taps(renderer->points);
+        for (int i = 0; i < renderer->suns.count; i++)
+            request.sun_visibility[i] = tl_points_sun(renderer->points, i);
+    }
     tl_compose(&request, renderer->light);
     tl_lighting_set(&renderer->lighting, renderer->gpu, &renderer->gbuffer, renderer->light);
     return true;

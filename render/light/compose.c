@@ -170,8 +170,7 @@ static void add_suns(const struct tl_compose_request *request, size_t index, con
     const tl_sample *sample = &request->samples->items[index];
     for (int i = 0; i < request->suns->count; i++) {
         const struct tl_sun *sun = &request->suns->items[i];
-        const float *visibility =
-            request->params->method == TL_METHOD_UNSHADOWED ? NULL : tl_points_sun(request->points, i);
+        const float *visibility = request->sun_visibility[i];
         vec3s direction = tl_turn_direction(sun->direction, request->environment_yaw);
         float above = disc_share(glms_vec3_dot(direction, sample->smooth) / fmaxf(sun->radius, 1e-3f));
         /* The mean square angle of a disc is half its radius squared. */
@@ -263,13 +262,13 @@ static void compose_sample(const struct tl_compose_request *request, size_t inde
 #define BLOCK 256 /* samples that a thread takes at a time */
 
 TL_CLONES static void sum_block(const struct tl_compose_request *request, const struct regions *regions,
-                                const uint16_t *values, size_t stride, const struct tl_taps *taps,
                                 size_t first, size_t count, struct sums *sums)
 {
     for (size_t i = 0; i < count; i++) {
         const tl_sample *sample = &request->samples->items[first + i];
         struct lobe gloss = gloss_lobe(sample, request->params->lobe);
-        sums[i] = sum_groups(regions, sample, &gloss, values, stride, &taps[first + i]);
+        sums[i] =
+            sum_groups(regions, sample, &gloss, request->values, request->stride, &request->taps[first + i]);
     }
 }
 
@@ -277,16 +276,14 @@ void tl_compose(const struct tl_compose_request *request, float *light)
 {
     struct regions regions;
     regions_make(request, &regions);
-    size_t stride = 0, sample_count = request->samples->count;
+    size_t sample_count = request->samples->count;
     bool shadowed = request->params->method != TL_METHOD_UNSHADOWED;
-    const uint16_t *values = shadowed ? tl_points_values(request->points, &stride) : NULL;
-    const struct tl_taps *taps = shadowed ? tl_points_taps(request->points) : NULL;
 #pragma omp parallel for schedule(dynamic)
     for (size_t first = 0; first < sample_count; first += BLOCK) {
         struct sums sums[BLOCK] = {0};
         size_t count = sample_count - first < BLOCK ? sample_count - first : BLOCK;
         if (shadowed)
-            sum_block(request, &regions, values, stride, taps, first, count, sums);
+            sum_block(request, &regions, first, count, sums);
         for (size_t i = 0; i < count; i++) {
             struct lobe gloss = gloss_lobe(&request->samples->items[first + i], request->params->lobe);
             compose_sample(request, first + i, &sums[i], &gloss, light);
