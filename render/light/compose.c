@@ -12,12 +12,14 @@
 /* Sixteen regions, one a lane. */
 struct group {
     float x[TL_LANES], y[TL_LANES], z[TL_LANES]; /* towards the region, world */
-    float sine[TL_LANES];   /* of the half-angle over which the region's light is spread */
+    float inverse_sine[TL_LANES],
+        sine[TL_LANES];     /* of the half-angle over which the region's light is spread */
     float spread[TL_LANES]; /* rad, root mean square */
     float power[3][TL_LANES];
 };
 
 struct regions {
+    float turn_cosine, turn_sine; /* of the environment's yaw */
     int group_count;
     struct group groups[GROUPS_MAX];
 };
@@ -44,6 +46,7 @@ static void fill_group(struct group *group, int lane, const struct tl_region *re
     group->y[lane] = direction.y;
     group->z[lane] = direction.z;
     group->sine[lane] = fmaxf(sinf(fminf(sqrtf(2) * spread, 1.5f)), 1e-3f);
+    group->inverse_sine[lane] = 1 / group->sine[lane];
     group->spread[lane] = spread;
     for (int c = 0; c < 3; c++)
         group->power[c][lane] = is_white ? region->solid_angle : region->power.raw[c];
@@ -51,10 +54,12 @@ static void fill_group(struct group *group, int lane, const struct tl_region *re
 
 static void regions_make(const struct tl_compose_request *request, struct regions *out)
 {
-    *out = (struct regions){.group_count = (request->regions->count + TL_LANES - 1) / TL_LANES};
+    *out = (struct regions){.turn_cosine = cosf(request->environment_yaw),
+                            .turn_sine = sinf(request->environment_yaw),
+                            .group_count = (request->regions->count + TL_LANES - 1) / TL_LANES};
     for (int g = 0; g < out->group_count; g++)
-        for (int lane = 0; lane < TL_LANES; lane++)
-            out->groups[g].sine[lane] = 1; /* beyond the last region: no power, and no division by 0 */
+        for (int lane = 0; lane < TL_LANES; lane++) /* beyond the last region there is no power */
+            out->groups[g].sine[lane] = out->groups[g].inverse_sine[lane] = 1;
     for (int i = 0; i < request->regions->count; i++)
         fill_group(&out->groups[i / TL_LANES], i % TL_LANES, &request->regions->items[i],
                    request->environment_yaw, request->params->method);
@@ -76,7 +81,7 @@ TL_INLINE void read_visibility(const uint16_t *values, size_t stride, const stru
     float weights[TL_TAPS];
     for (int t = 0; t < TL_TAPS; t++) {
         rows[t] = values + taps->point[t] * stride + (size_t)g * TL_LANES;
-        weights[t] = taps->weight[t] / TL_VISIBILITY_ONE;
+        weights[t] = taps->weight[t] * (1 / TL_VISIBILITY_ONE);
     }
     for (int lane = 0; lane < TL_LANES; lane++)
         visibility[lane] = weights[0] * (float)rows[0][lane] + weights[1] * (float)rows[1][lane] +
@@ -97,26 +102,43 @@ TL_INLINE void add_weights(float all[TL_LANES], float seen[TL_LANES], const floa
     }
 }
 
+/* By region: the exponent of a lobe that is broadened by the region's spread. */
+struct exponents {
+    float exponent; /* of the lobe */
+    float broadened[GROUPS_MAX][TL_LANES];
+};
+
+TL_INLINE void broaden(struct exponents *exponents, const struct regions *regions, float exponent)
+{
+    if (exponents->exponent == exponent)
+        return;
+    exponents->exponent = exponent;
+    for (int g = 0; g < regions->group_count; g++)
+        for (int lane = 0; lane < TL_LANES; lane++)
+            exponents->broadened[g][lane] =
+                lobe_broadened_exponent(exponent, regions->groups[g].spread[lane]);
+}
+
 /* Light below the plane of the smooth normal does not arrive, even where a map turns the shading normal
  * towards it. A diffuse lobe about the smooth normal ends there by itself. */
 TL_INLINE void add_group(struct accumulator *sums, const struct group *group, const tl_sample *sample,
-                         const struct lobe *gloss, const float visibility[TL_LANES])
+                         bool bumped, const struct lobe *gloss, const float exponents[TL_LANES],
+                         const float visibility[TL_LANES])
 {
     const vec3s smooth = sample->smooth, normal = sample->normal, mirror = gloss->direction;
     float diffuse[TL_LANES], diffuse_part[TL_LANES], glossy[TL_LANES], glossy_part[TL_LANES];
     for (int lane = 0; lane < TL_LANES; lane++) {
-        float x = group->x[lane], y = group->y[lane], z = group->z[lane], sine = group->sine[lane];
-        float inverse = 1.0f / sine;
+        float x = group->x[lane], y = group->y[lane], z = group->z[lane], inverse = group->inverse_sine[lane];
         float above = disc_share((x * smooth.x + y * smooth.y + z * smooth.z) * inverse);
-        float cosine = x * normal.x + y * normal.y + z * normal.z;
-        float facing = disc_share(cosine * inverse);
-        diffuse[lane] = mean_cosine(cosine, cosine * inverse, sine);
-        diffuse_part[lane] = tl_lesser(above / tl_greater(facing, 1e-6f), 1) * visibility[lane];
+        float cosine = x * normal.x + y * normal.y + z * normal.z, both = 1;
+        if (bumped)
+            both = tl_lesser(above / tl_greater(disc_share(cosine * inverse), 1e-6f), 1);
+        diffuse[lane] = mean_cosine(cosine, cosine * inverse, group->sine[lane]);
+        diffuse_part[lane] = both * visibility[lane];
 
         float gloss_cosine = x * mirror.x + y * mirror.y + z * mirror.z;
-        float exponent = lobe_broadened_exponent(gloss->exponent, group->spread[lane]);
-        float base = mean_cosine(gloss_cosine, gloss_cosine * inverse, sine);
-        glossy[lane] = (exponent + 1.0f) * tl_power(base, exponent);
+        float base = mean_cosine(gloss_cosine, gloss_cosine * inverse, group->sine[lane]);
+        glossy[lane] = (exponents[lane] + 1.0f) * tl_power(base, exponents[lane]);
         glossy_part[lane] = above * visibility[lane];
     }
     for (int c = 0; c < 3; c++) {
@@ -125,15 +147,24 @@ TL_INLINE void add_group(struct accumulator *sums, const struct group *group, co
     }
 }
 
-TL_INLINE struct sums sum_groups(const struct regions *regions, const tl_sample *sample,
-                                 const struct lobe *gloss, const uint16_t *values, size_t stride,
-                                 const struct tl_taps *taps)
+/* What a block of samples shares. */
+struct block {
+    const struct tl_compose_request *request;
+    const struct regions *regions;
+    struct exponents exponents;
+};
+
+TL_INLINE struct sums sum_groups(struct block *block, size_t index, bool bumped, const struct lobe *gloss)
 {
+    const struct tl_compose_request *request = block->request;
+    const struct regions *regions = block->regions;
     struct accumulator lanes = {0};
+    broaden(&block->exponents, regions, gloss->exponent);
     for (int g = 0; g < regions->group_count; g++) {
         float visibility[TL_LANES];
-        read_visibility(values, stride, taps, g, visibility);
-        add_group(&lanes, &regions->groups[g], sample, gloss, visibility);
+        read_visibility(request->values, request->stride, &request->taps[index], g, visibility);
+        add_group(&lanes, &regions->groups[g], &request->samples->items[index], bumped, gloss,
+                  block->exponents.broadened[g], visibility);
     }
     struct sums sums;
     for (int kind = 0; kind < 2; kind++)
@@ -154,9 +185,10 @@ static vec3s ratio(const struct sums *sums, int kind)
 }
 
 /* World direction -> direction in the environment, which is turned by its yaw about +Y. */
-static vec3s into_environment(vec3s d, float yaw)
+static vec3s into_environment(vec3s d, const struct regions *regions)
 {
-    return tl_turn_direction(d, -yaw);
+    float c = regions->turn_cosine, s = regions->turn_sine;
+    return (vec3s){{c * d.x - s * d.z, d.y, s * d.x + c * d.z}};
 }
 
 /* What a sample receives through its two lobes, unshadowed and shadowed, before the material's colours. */
@@ -205,9 +237,10 @@ static vec3s colour_of(const tl_sample *sample, int lobe, const vec3s light[2])
                          glms_vec3_mul(sample->specular, light[GLOSSY]));
 }
 
-static struct received receive(const struct tl_compose_request *request, const tl_sample *sample,
-                               const struct lobe *gloss, const struct sums *sums)
+static struct received receive(const struct block *block, const tl_sample *sample, const struct lobe *gloss,
+                               struct tl_exponent_blend blend, const struct sums *sums)
 {
+    const struct tl_compose_request *request = block->request;
     struct received light;
     if (request->params->method == TL_METHOD_LIGHTS) {
         /* A cosine is K_1 times pi; (s + 1) cos^s is K_s times 2 pi. */
@@ -219,11 +252,11 @@ static struct received receive(const struct tl_compose_request *request, const t
             }
         return light;
     }
-    const float yaw = request->environment_yaw;
-    light.unshadowed[DIFFUSE] = tl_lobes_fetch(request->lobes, into_environment(sample->normal, yaw),
-                                               (struct tl_exponent_blend){.index = 0});
-    light.unshadowed[GLOSSY] = tl_lobes_fetch(request->lobes, into_environment(gloss->direction, yaw),
-                                              tl_exponent_blend(gloss->exponent));
+    light.unshadowed[DIFFUSE] =
+        tl_lobes_fetch(request->lobes, into_environment(sample->normal, block->regions),
+                       (struct tl_exponent_blend){.index = 0});
+    light.unshadowed[GLOSSY] =
+        tl_lobes_fetch(request->lobes, into_environment(gloss->direction, block->regions), blend);
     for (int kind = 0; kind < 2; kind++)
         light.shadowed[kind] = glms_vec3_mul(light.unshadowed[kind], ratio(sums, kind));
     return light;
@@ -242,12 +275,13 @@ static void replace_by_occlusion(const struct sums *sums, int method, struct rec
         light->shadowed[kind] = glms_vec3_mul(light->unshadowed[kind], share);
 }
 
-static void compose_sample(const struct tl_compose_request *request, size_t index, const struct sums *sums,
-                           const struct lobe *gloss, float *light)
+static void compose_sample(const struct block *block, size_t index, const struct lobe *gloss,
+                           struct tl_exponent_blend blend, const struct sums *sums, float *light)
 {
+    const struct tl_compose_request *request = block->request;
     const tl_sample *sample = &request->samples->items[index];
     int method = request->params->method;
-    struct received received = receive(request, sample, gloss, sums);
+    struct received received = receive(block, sample, gloss, blend, sums);
     add_suns(request, index, gloss, &received);
     if (method == TL_METHOD_AO || method == TL_METHOD_AO_COLOUR)
         replace_by_occlusion(sums, method, &received);
@@ -261,14 +295,26 @@ static void compose_sample(const struct tl_compose_request *request, size_t inde
 
 #define BLOCK 256 /* samples that a thread takes at a time */
 
-TL_CLONES static void sum_block(const struct tl_compose_request *request, const struct regions *regions,
-                                size_t first, size_t count, struct sums *sums)
+TL_CLONES static void compose_block(const struct tl_compose_request *request, const struct regions *regions,
+                                    size_t first, size_t count, float *light)
 {
-    for (size_t i = 0; i < count; i++) {
-        const tl_sample *sample = &request->samples->items[first + i];
+    struct block block = {.request = request, .regions = regions};
+    bool shadowed = request->params->method != TL_METHOD_UNSHADOWED;
+    struct tl_exponent_blend blend = {0};
+    float blended = 0; /* the exponent that `blend` stands for */
+    for (size_t i = first; i < first + count; i++) {
+        const tl_sample *sample = &request->samples->items[i];
         struct lobe gloss = gloss_lobe(sample, request->params->lobe);
-        sums[i] =
-            sum_groups(regions, sample, &gloss, request->values, request->stride, &request->taps[first + i]);
+        if (gloss.exponent != blended) {
+            blended = gloss.exponent;
+            blend = tl_exponent_blend(blended);
+        }
+        struct sums sums = {0};
+        if (shadowed && glms_vec3_dot(sample->normal, sample->smooth) > 0.99999f)
+            sums = sum_groups(&block, i, false, &gloss);
+        else if (shadowed)
+            sums = sum_groups(&block, i, true, &gloss);
+        compose_sample(&block, i, &gloss, blend, &sums, light);
     }
 }
 
@@ -277,16 +323,8 @@ void tl_compose(const struct tl_compose_request *request, float *light)
     struct regions regions;
     regions_make(request, &regions);
     size_t sample_count = request->samples->count;
-    bool shadowed = request->params->method != TL_METHOD_UNSHADOWED;
 #pragma omp parallel for schedule(dynamic)
-    for (size_t first = 0; first < sample_count; first += BLOCK) {
-        struct sums sums[BLOCK] = {0};
-        size_t count = sample_count - first < BLOCK ? sample_count - first : BLOCK;
-        if (shadowed)
-            sum_block(request, &regions, first, count, sums);
-        for (size_t i = 0; i < count; i++) {
-            struct lobe gloss = gloss_lobe(&request->samples->items[first + i], request->params->lobe);
-            compose_sample(request, first + i, &sums[i], &gloss, light);
-        }
-    }
+    for (size_t first = 0; first < sample_count; first += BLOCK)
+        compose_block(request, &regions, first, sample_count - first < BLOCK ? sample_count - first : BLOCK,
+                      light);
 }
