@@ -53,6 +53,11 @@ static float black(vec3s d)
     return 0;
 }
 
+static float grey_of(const tl_cube *cube, int texel)
+{
+    return cube->texels[3 * (size_t)texel];
+}
+
 static const vec3s blob_centre = {{0.62f, 0.75f, 0.23f}};
 
 /* A sky, and a disc of 2 degrees that holds as much light as it: 3283 times as bright. */
@@ -190,7 +195,7 @@ static void compact_light_is_never_cut(void **state)
         int owner = -1;
         tl_regions_cut_sphere(&cube, count, &regions);
         for (int i = 0; i < 6 * 128 * 128; i++) {
-            if (cube.texels[3 * i] < 1000)
+            if (grey_of(&cube, i) < 1000)
                 continue;
             if (owner < 0)
                 owner = regions.labels[i];
@@ -306,7 +311,7 @@ static void spread_is_the_mean_square_angle(void **state)
         double sum = 0, weights = 0;
         for (uint32_t k = regions.first[i]; k < regions.first[i + 1]; k++) {
             int texel = (int)regions.texels[k];
-            double weight = solid_angle_of(16, texel) * (double)cube.texels[3 * texel];
+            double weight = solid_angle_of(16, texel) * (double)grey_of(&cube, texel);
             for (int p = 0; p < 64; p++) {
                 vec3s d =
                     texel_direction(16, texel, ((float)(p % 8) + 0.5f) / 8, ((float)(p >> 3) + 0.5f) / 8);
@@ -345,11 +350,11 @@ static double chi_square(const struct tl_regions *regions, const tl_cube *cube, 
     *groups = 0;
     for (uint32_t k = regions->first[region]; k < regions->first[region + 1]; k++)
         total += solid_angle_of(cube->size, (int)regions->texels[k]) *
-                 (double)cube->texels[3 * regions->texels[k]];
+                 (double)grey_of(cube, (int)regions->texels[k]);
     int outside = DRAWS;
     for (uint32_t k = regions->first[region]; k < regions->first[region + 1]; k++) {
         int texel = (int)regions->texels[k];
-        expected += DRAWS * solid_angle_of(cube->size, texel) * (double)cube->texels[3 * texel] / total;
+        expected += DRAWS * solid_angle_of(cube->size, texel) * (double)grey_of(cube, texel) / total;
         found += hits[texel];
         outside -= hits[texel];
         if (expected >= 40 || k + 1 == regions->first[region + 1]) {
@@ -414,6 +419,70 @@ static void even_draws_cover_evenly(void **state)
     tl_cube_release(&cube);
 }
 
+/* Root mean square angle between a texel's direction and the centroid of its region, in degrees, weighted by
+ * luminance and by solid angle: what one number for each region loses. */
+static void measure_quantisation(const struct tl_regions *regions, double degrees[2])
+{
+    double squares[2] = {0}, totals[2] = {0};
+    for (int i = 0; i < regions->count; i++) {
+        double sums[2][4] = {{0}};
+        for (uint32_t k = regions->first[i]; k < regions->first[i + 1]; k++) {
+            int texel = (int)regions->texels[k];
+            const double weights[2] = {(double)regions->importance[texel],
+                                       solid_angle_of(regions->size, texel)};
+            vec3s direction = texel_direction(regions->size, texel, 0.5f, 0.5f);
+            for (int m = 0; m < 2; m++) {
+                for (int c = 0; c < 3; c++)
+                    sums[m][c] += weights[m] * (double)direction.raw[c];
+                sums[m][3] += weights[m];
+            }
+        }
+        for (int m = 0; m < 2; m++) {
+            const double *s = sums[m];
+            if (s[3] > 0)
+                squares[m] += s[3] - (s[0] * s[0] + s[1] * s[1] + s[2] * s[2]) / s[3];
+            totals[m] += s[3];
+        }
+    }
+    for (int m = 0; m < 2; m++)
+        degrees[m] = sqrt(squares[m] / totals[m]) * 180 / M_PI;
+}
+
+/* Below 24 regions the faces, which are even by construction, may be the better start. */
+static void the_sphere_loses_less_than_the_faces(void **state)
+{
+    (void)state;
+    const char *const names[] = {"envmaps/exr/brown_photostudio_02_1k_half_piz_rgba.exr",
+                                 "envmaps/exr/kloppenheim_05_1k_float_zip.exr",
+                                 "envmaps/exr/pmndrs_apartment_512.exr"};
+    const char *paths[TL_COUNT(names)];
+    for (size_t n = 0; n < TL_COUNT(names); n++)
+        paths[n] = test_data(names[n]);
+    for (size_t n = 0; n < TL_COUNT(names); n++) {
+        tl_environment environment;
+        tl_error error = {0};
+        assert_ok(tl_environment_load(paths[n], &environment, &error), error);
+        tl_cube cube = tl_cube_from_environment(&environment, 64);
+        struct tl_regions sphere = {0}, faces = {0};
+        printf("%s: degrees from the centroid by luminance, by solid angle\n", names[n]);
+        for (size_t i = 0; i < TL_COUNT(counts); i++) {
+            double of_sphere[2], of_faces[2];
+            tl_regions_cut_sphere(&cube, counts[i], &sphere);
+            tl_regions_cut(&cube, counts[i], &faces);
+            measure_quantisation(&sphere, of_sphere);
+            measure_quantisation(&faces, of_faces);
+            printf("  N = %3d: sphere %5.2f %5.2f, faces %5.2f %5.2f\n", counts[i], of_sphere[0],
+                   of_sphere[1], of_faces[0], of_faces[1]);
+            assert_true(counts[i] < 24 ||
+                        hypot(of_sphere[0], of_sphere[1]) < hypot(of_faces[0], of_faces[1]));
+        }
+        tl_regions_release(&sphere);
+        tl_regions_release(&faces);
+        tl_cube_release(&cube);
+        tl_environment_release(&environment);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -426,6 +495,7 @@ int main(void)
         cmocka_unit_test(spread_is_the_mean_square_angle),
         cmocka_unit_test(directions_are_drawn_by_luminance),
         cmocka_unit_test(even_draws_cover_evenly),
+        cmocka_unit_test(the_sphere_loses_less_than_the_faces),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
