@@ -9,5 +9,12 @@ add_library(toile_light STATIC
   pem/lobe.c
   pem/lobe_error.c
   pem/regions.c
-  plan/plan.c)
-target_link_libraries(toile_light PUBLIC toile_assets)
+  pem/regions_faces.c
+  pem/regions_sphere.c
+  pem/slices.c
+  plan/plan.c
+  surfaces/ground.c
+  trace/cutout.c
+  trace/trace.c
+)
+target_link_libraries(toile_light PUBLIC toile_assets PRIVATE embree)
