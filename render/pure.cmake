@@ -12,6 +12,7 @@ add_library(toile_light STATIC
   pem/regions.c
   pem/regions_faces.c
   pem/regions_sphere.c
+  pem/slices.c
   plan/plan.c
   surfaces/ground.c
   trace/cutout.c

@@ -24,31 +24,39 @@ struct tl_emitters {
     size_t count;
     tl_emitter *items;
     size_t block_count;
-    uint32_t *first; /* [block_count + 1] */
-    float *axes;     /* [blocks / TL_LANES, rounded up][3][TL_LANES]: unit mean directions */
-    float radius;    /* rad: no emitter is farther from its block's axis */
-    float
-        texel_variance; /* rad^2: mean square distance of a texel's points from its centre, along one axis */
+    uint32_t *first;            /* [block_count + 1] */
+    float (*axes)[3][TL_LANES]; /* [blocks / TL_LANES, rounded up]: unit mean directions */
+    float radius;               /* rad: no emitter is farther from its block's axis */
 };
 
-/* The texels of region i go to out[i]; `labels` [6][size][size], or NULL for one region that is all. Black
- * texels are left out; of a texel that is not finite or negative, what is. */
-void tl_emitters_collect(const tl_cube *cube, const uint16_t *labels, int region_count,
-                         struct tl_emitters out[]);
-
-/* Neighbours merged as far as lobes of exponent s allow with an error below 0.2 % [test_lobes.c]. */
-struct tl_emitters tl_emitters_merge(const struct tl_emitters *emitters, int cube_size, float exponent);
+/* All texels of a cube along the curve; free() releases them. */
+uint32_t *tl_emitters_order(int cube_size);
+/* One emitter for each of `texels` [count], which follow the curve: [count], free() releases them.
+ * `solid_angles` is [size][size], of the texels of any face. What is not finite or negative is taken as
+ * black. */
+tl_emitter *tl_emitters_collect(const tl_cube *cube, const float *solid_angles, const uint32_t *texels,
+                                size_t count);
+/* Those of `texels` that are not black, neighbours merged as far as lobes of exponent s allow with an error
+ * below 0.2 % [test_lobes.c]. */
+struct tl_emitters tl_emitters_merge(const tl_emitter *texels, size_t count, int cube_size, float exponent);
 void tl_emitters_release(struct tl_emitters *emitters);
 
 /* Sixteen neighbouring directions to look into, each with an exponent of its own. */
 struct tl_gaze {
-    tl_lanes x, y, z; /* unit */
-    tl_lanes exponent;
+    float x[TL_LANES], y[TL_LANES], z[TL_LANES]; /* unit */
+    float exponent[TL_LANES];
     vec3s axis;   /* unit: the middle of the sixteen */
     float radius; /* rad: none is farther from the axis */
 };
 
+/* Sets axis and radius, and the exponents with which a bilinear fetch of what is gathered has the first
+ * moment of K_s: it widens a lobe by what texels of the target, `steps` (rad, root mean square of both axes)
+ * apart, blur; and a texel of the source is no point. */
+void tl_gaze_set(struct tl_gaze *gaze, const vec3s directions[TL_LANES], const float steps[TL_LANES], float s,
+                 int cube_size);
+
 /* The sum over all emitters of power x K_exponent(direction, emitter), RGB. */
-void tl_emitters_gather(const struct tl_emitters *emitters, const struct tl_gaze *gaze, tl_lanes out[3]);
+void tl_emitters_gather(const struct tl_emitters *emitters, const struct tl_gaze *gaze,
+                        float out[3][TL_LANES]);
 
 #endif
