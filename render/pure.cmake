@@ -1,10 +1,13 @@
 # The parts of render that know neither GL nor the clock.
 add_library(toile_light STATIC
   env/cube.c
+  env/emitters.c
+  env/lobes.c
   metrics/compare.c
   metrics/flip.c
   pem/chain.c
   pem/lobe.c
+  pem/lobe_error.c
   pem/regions.c
   plan/plan.c
   surfaces/ground.c
