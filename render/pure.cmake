@@ -9,6 +9,8 @@ add_library(toile_light STATIC
   pem/lobe.c
   pem/lobe_error.c
   pem/regions.c
+  pem/regions_faces.c
+  pem/regions_sphere.c
   plan/plan.c
   surfaces/ground.c
   trace/cutout.c

@@ -153,6 +153,7 @@ void tl_renderer_destroy(tl_renderer **renderer)
     if (!*renderer)
         return;
     tl_cube_release(&(*renderer)->cube);
+    tl_regions_release(&(*renderer)->regions);
     tl_pems_release(&(*renderer)->pems);
     tl_surfaces_destroy(&(*renderer)->surfaces);
     tl_shadow_maps_destroy(&(*renderer)->maps);
