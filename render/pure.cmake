@@ -3,6 +3,7 @@ add_library(toile_light STATIC
   env/cube.c
   env/emitters.c
   env/lobes.c
+  light/compose.c
   metrics/compare.c
   metrics/flip.c
   pem/chain.c

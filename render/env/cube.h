@@ -26,6 +26,10 @@ tl_cube tl_cube_from_environment(const tl_environment *environment, int size);
 vec3s tl_cube_direction(int face, float s, float t);
 void tl_cube_locate(vec3s direction, int *face, float *s, float *t);
 
+/* World direction of a direction in the environment, which is turned by `yaw` (rad) about +Y,
+ * counter-clockwise from above; -yaw takes it back. */
+vec3s tl_turn_direction(vec3s direction, float yaw);
+
 /* Exact solid angle of texel (x, y), steradians. */
 float tl_cube_solid_angle(int size, int x, int y);
 

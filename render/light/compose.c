@@ -1,6 +1,7 @@
 #include "render/light/compose.h"
 
 #include "config/simd.h"
+#include "render/light/terms.h"
 #include "render/pem/lobe.h"
 #include "render/visibility/maps.h"
 
@@ -11,8 +12,8 @@
 /* Sixteen regions, one a lane. */
 struct group {
     float x[TL_LANES], y[TL_LANES], z[TL_LANES]; /* towards the region, world */
-    float sine[TL_LANES];          /* of the half-angle over which the region's light is spread */
-    float spread_square[TL_LANES]; /* rad^2 */
+    float sine[TL_LANES];   /* of the half-angle over which the region's light is spread */
+    float spread[TL_LANES]; /* rad, root mean square */
     float power[3][TL_LANES];
 };
 
@@ -43,7 +44,7 @@ static void fill_group(struct group *group, int lane, const struct tl_region *re
     group->y[lane] = direction.y;
     group->z[lane] = direction.z;
     group->sine[lane] = fmaxf(sinf(fminf(sqrtf(2) * spread, 1.5f)), 1e-3f);
-    group->spread_square[lane] = spread * spread;
+    group->spread[lane] = spread;
     for (int c = 0; c < 3; c++)
         group->power[c][lane] = is_white ? region->solid_angle : region->power.raw[c];
 }
@@ -59,16 +60,8 @@ static void regions_make(const struct tl_compose_request *request, struct region
                    request->environment_yaw, request->params->method);
 }
 
-/* The part of a disc above the horizon, whose centre is x of its radii above it: the cubic that is nearest to
- * the circle's own share (within 0.02). */
-TL_INLINE float share_above(float x)
-{
-    float t = tl_lesser(tl_greater(0.5f + 0.5f * x, 0), 1);
-    return t * t * (3.0f - 2.0f * t);
-}
-
-/* The mean of max(0, cosine) over a disc, x as above: cosine itself above the horizon, 0 below, and a
- * parabola that joins both smoothly while the disc sets. */
+/* The mean of max(0, cosine) over a disc, whose centre is x of its radii above the horizon: cosine itself
+ * above the horizon, 0 below, and a parabola that joins both smoothly while the disc sets. */
 TL_INLINE float mean_cosine(float cosine, float x, float sine)
 {
     float risen = tl_lesser(tl_greater(x + 1.0f, 0), 2);
@@ -114,14 +107,14 @@ TL_INLINE void add_group(struct accumulator *sums, const struct group *group, co
     for (int lane = 0; lane < TL_LANES; lane++) {
         float x = group->x[lane], y = group->y[lane], z = group->z[lane], sine = group->sine[lane];
         float inverse = 1.0f / sine;
-        float above = share_above((x * smooth.x + y * smooth.y + z * smooth.z) * inverse);
+        float above = disc_share((x * smooth.x + y * smooth.y + z * smooth.z) * inverse);
         float cosine = x * normal.x + y * normal.y + z * normal.z;
-        float facing = share_above(cosine * inverse);
+        float facing = disc_share(cosine * inverse);
         diffuse[lane] = mean_cosine(cosine, cosine * inverse, sine);
         diffuse_part[lane] = tl_lesser(above / tl_greater(facing, 1e-6f), 1) * visibility[lane];
 
         float gloss_cosine = x * mirror.x + y * mirror.y + z * mirror.z;
-        float exponent = gloss->exponent / (1.0f + gloss->exponent * group->spread_square[lane]);
+        float exponent = lobe_broadened_exponent(gloss->exponent, group->spread[lane]);
         float base = mean_cosine(gloss_cosine, gloss_cosine * inverse, sine);
         glossy[lane] = (exponent + 1.0f) * tl_power(base, exponent);
         glossy_part[lane] = above * visibility[lane];
@@ -177,13 +170,13 @@ static void add_suns(const struct tl_compose_request *request, size_t index, con
     const tl_sample *sample = &request->samples->items[index];
     for (int i = 0; i < request->suns->count; i++) {
         const struct tl_sun *sun = &request->suns->items[i];
-        const float *visibility =
-            request->params->method == TL_METHOD_UNSHADOWED ? NULL : tl_points_sun(request->points, i);
+        const float *visibility = request->sun_visibility[i];
         vec3s direction = tl_turn_direction(sun->direction, request->environment_yaw);
-        float above = share_above(glms_vec3_dot(direction, sample->smooth) / fmaxf(sun->radius, 1e-3f));
-        float exponent = gloss->exponent / (1 + 0.5f * gloss->exponent * sun->radius * sun->radius);
-        float lobes[2] = {tl_lobe_cosine(1, glms_vec3_dot(direction, sample->normal)),
-                          tl_lobe_cosine(exponent, glms_vec3_dot(direction, gloss->direction))};
+        float above = disc_share(glms_vec3_dot(direction, sample->smooth) / fmaxf(sun->radius, 1e-3f));
+        /* The mean square angle of a disc is half its radius squared. */
+        float exponent = lobe_broadened_exponent(gloss->exponent, sun->radius * GLM_SQRT1_2f);
+        float lobes[2] = {lobe_cosine(1, glms_vec3_dot(direction, sample->normal)),
+                          lobe_cosine(exponent, glms_vec3_dot(direction, gloss->direction))};
         for (int kind = 0; kind < 2; kind++) {
             vec3s arriving = glms_vec3_scale(sun->power, lobes[kind]);
             light->unshadowed[kind] = glms_vec3_add(light->unshadowed[kind], arriving);
@@ -269,13 +262,13 @@ static void compose_sample(const struct tl_compose_request *request, size_t inde
 #define BLOCK 256 /* samples that a thread takes at a time */
 
 TL_CLONES static void sum_block(const struct tl_compose_request *request, const struct regions *regions,
-                                const uint16_t *values, size_t stride, const struct tl_taps *taps,
                                 size_t first, size_t count, struct sums *sums)
 {
     for (size_t i = 0; i < count; i++) {
         const tl_sample *sample = &request->samples->items[first + i];
         struct lobe gloss = gloss_lobe(sample, request->params->lobe);
-        sums[i] = sum_groups(regions, sample, &gloss, values, stride, &taps[first + i]);
+        sums[i] =
+            sum_groups(regions, sample, &gloss, request->values, request->stride, &request->taps[first + i]);
     }
 }
 
@@ -283,16 +276,14 @@ void tl_compose(const struct tl_compose_request *request, float *light)
 {
     struct regions regions;
     regions_make(request, &regions);
-    size_t stride = 0, sample_count = request->samples->count;
+    size_t sample_count = request->samples->count;
     bool shadowed = request->params->method != TL_METHOD_UNSHADOWED;
-    const uint16_t *values = shadowed ? tl_points_values(request->points, &stride) : NULL;
-    const struct tl_taps *taps = shadowed ? tl_points_taps(request->points) : NULL;
 #pragma omp parallel for schedule(dynamic)
     for (size_t first = 0; first < sample_count; first += BLOCK) {
         struct sums sums[BLOCK] = {0};
         size_t count = sample_count - first < BLOCK ? sample_count - first : BLOCK;
         if (shadowed)
-            sum_block(request, &regions, values, stride, taps, first, count, sums);
+            sum_block(request, &regions, first, count, sums);
         for (size_t i = 0; i < count; i++) {
             struct lobe gloss = gloss_lobe(&request->samples->items[first + i], request->params->lobe);
             compose_sample(request, first + i, &sums[i], &gloss, light);

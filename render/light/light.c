@@ -46,6 +46,14 @@ static void allocate(struct tl_lighting *lighting, tl_gpu *gpu, const tl_target 
     glNamedFramebufferTexture(lighting->target.id, GL_DEPTH_ATTACHMENT, gbuffer->depth.id, 0);
 }
 
+void tl_lighting_set(struct tl_lighting *lighting, tl_gpu *gpu, const struct tl_gbuffer *gbuffer,
+                     const float *light)
+{
+    allocate(lighting, gpu, &gbuffer->target);
+    glTextureSubImage2D(lighting->target.colours[0].id, 0, 0, 0, gbuffer->target.width,
+                        gbuffer->target.height, GL_RGBA, GL_FLOAT, light);
+}
+
 static void set_frame_uniforms(const struct tl_light_request *request)
 {
     const struct tl_light_params *params = request->params;

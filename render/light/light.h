@@ -37,6 +37,9 @@ bool tl_lighting_create(struct tl_lighting *lighting, tl_gpu *gpu, tl_error *err
 void tl_lighting_release(struct tl_lighting *lighting);
 
 void tl_lighting_set_lobe(struct tl_lighting *lighting, tl_gpu *gpu, const struct tl_lobe_table *table);
+/* The light of every sample, as tl_compose writes it, in place of the passes. */
+void tl_lighting_set(struct tl_lighting *lighting, tl_gpu *gpu, const struct tl_gbuffer *gbuffer,
+                     const float *light);
 void tl_lighting_draw(struct tl_lighting *lighting, tl_gpu *gpu, const struct tl_light_request *request);
 
 #endif

@@ -86,12 +86,6 @@ static void allocate(tl_shadow_maps *maps, int count, int per_array, int size)
     maps->scratch = tl_texture_create(maps->gpu, GL_TEXTURE_2D_ARRAY, GL_RG32F, size, size, 1, 1);
 }
 
-vec3s tl_turn_direction(vec3s direction, float yaw)
-{
-    float c = cosf(yaw), s = sinf(yaw);
-    return (vec3s){{c * direction.x + s * direction.z, direction.y, -s * direction.x + c * direction.z}};
-}
-
 /* Row that maps a point to 0.5 + axis . (point - centre) * scale. */
 static vec4s view_row(vec3s axis, vec3s centre, float scale)
 {

@@ -47,8 +47,7 @@ unsigned tl_shadow_maps_texture(const tl_shadow_maps *maps, int index);
 size_t tl_shadow_maps_bytes(const tl_shadow_maps *maps);
 bool tl_shadow_maps_reload(tl_shadow_maps *maps, tl_error *error); /* programs, from disk */
 
-/* World direction of a region under the environment's yaw, and its view of the casters. Pure. */
-vec3s tl_turn_direction(vec3s direction, float yaw);
+/* A region's view of the casters; world direction. Pure. */
 struct tl_region_view tl_region_view_make(vec3s direction, const struct tl_casters *casters, int map_size);
 
 /* The Gaussian's standard deviation in texels: blur_m x tan(cone), on a map of `map_size` over the casters.
