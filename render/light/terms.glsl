@@ -6,7 +6,7 @@
 // K_s(d, w) = (s + 1) / 2 pi max(0, d . w)^s
 TERM float lobe_cosine(float s, float cosine)
 {
-    return 0.15915494f * (s + 1.0f) * pow(max(cosine, 0.0f), s);
+    return 0.15915494f * (s + 1.0f) * pow(max(cosine, 1e-30f), s); // GLSL leaves pow(0, s) to the driver
 }
 
 // Exponent of the cosine lobe that stands for K_s averaged over a region whose directions lie `spread` (root mean
@@ -16,7 +16,15 @@ TERM float lobe_cosine(float s, float cosine)
 // add up to 0.9 spread^2 / sqrt(s): their foot, where the hemisphere cuts them, is no power.
 TERM float lobe_broadened_exponent(float s, float spread)
 {
-    return max((s + 1.0f) / (1.0f + (s + 1.0f) * 0.5f * spread * spread) - 1.0f, 0.0f);
+    return max((s + 1.0f) / (1.0f + (s + 1.0f) * 0.5f * spread * spread) - 1.0f, 0.25f);
+}
+
+// Mean of max(0, cosine) over a disc of this sine of its half-angle, when its centre has this cosine: itself above the
+// horizon, 0 below, a parabola that joins both smoothly while the disc sets.
+TERM float disc_cosine(float cosine, float sine)
+{
+    float risen = clamp(cosine / max(sine, 1e-4f) + 1.0f, 0.0f, 2.0f);
+    return max(cosine, 0.25f * sine * risen * risen);
 }
 
 // Share of a disc above a line that runs at -u radii from its centre: 1/2 + (u sqrt(1 - u^2) + asin u) / pi, within

@@ -64,7 +64,7 @@ static void test_lobe(void **state)
             sum += (double)lobe_cosine(s, cosine) * 2 * M_PI / 20000;
         }
         assert_near(sum, 1, 1e-4);
-        assert_near(lobe_cosine(s, -0.5f), 0, 0);
+        assert_near(lobe_cosine(s, -0.5f), 0, 1e-25);
     }
 }
 
@@ -93,9 +93,28 @@ static void test_broadening_is_continuous_and_bounded(void **state)
     (void)state;
     assert_near(lobe_broadened_exponent(20, 0), 20, 2e-5);
     assert_near(lobe_broadened_exponent(1e6f, 0.1f), 2 / 0.01 - 1, 0.1); /* the region's own width */
-    assert_near(lobe_broadened_exponent(1, 3), 0, 0);
+    assert_near(lobe_broadened_exponent(1, 3), 0.25, 0);
     for (float spread = 0; spread < 3; spread += 0.05f)
         assert_true(lobe_broadened_exponent(50, spread + 0.05f) <= lobe_broadened_exponent(50, spread));
+}
+
+static double clamped(double cosine, double unused)
+{
+    (void)unused;
+    return fmax(cosine, 0);
+}
+
+/* The true mean over a disc of half-angle `cone` also sinks with the disc's own mean cosine: 0.02 at most. */
+static void test_disc_cosine(void **state)
+{
+    (void)state;
+    const double cones[] = {0.05, 0.1, 0.2};
+    for (int c = 0; c < 3; c++)
+        for (int degrees = 0; degrees <= 180; degrees++) {
+            double angle = (double)((float)degrees * RADIANS);
+            assert_near(disc_cosine((float)cos(angle), (float)sin(cones[c])),
+                        disc_mean(cones[c], angle, 0, clamped), 0.03 * cones[c] + 0.3 * cones[c] * cones[c]);
+        }
 }
 
 static void test_disc_share(void **state)
@@ -138,6 +157,7 @@ int main(void)
         cmocka_unit_test(test_lobe),
         cmocka_unit_test(test_broadened_lobe),
         cmocka_unit_test(test_broadening_is_continuous_and_bounded),
+        cmocka_unit_test(test_disc_cosine),
         cmocka_unit_test(test_disc_share),
         cmocka_unit_test(test_horizon_share),
         cmocka_unit_test(test_self_shadow_ramp),
