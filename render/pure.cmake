@@ -4,6 +4,7 @@ add_library(toile_light STATIC
   env/emitters.c
   env/lobes.c
   light/compose.c
+  light/region_lights.c
   metrics/compare.c
   metrics/flip.c
   pem/chain.c
