@@ -7,5 +7,7 @@ add_library(toile_light STATIC
   pem/lobe.c
   pem/regions.c
   plan/plan.c
-  surfaces/ground.c)
-target_link_libraries(toile_light PUBLIC toile_assets)
+  surfaces/ground.c
+  trace/cutout.c
+  trace/trace.c)
+target_link_libraries(toile_light PUBLIC toile_assets PRIVATE embree)
