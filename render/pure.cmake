@@ -1,12 +1,19 @@
 # The parts of render that know neither GL nor the clock.
 add_library(toile_light STATIC
   env/cube.c
+  frame/view.c
   metrics/compare.c
   metrics/flip.c
   pem/chain.c
   pem/lobe.c
   pem/regions.c
   plan/plan.c
+  reference/gather.c
+  reference/options.c
+  reference/reference.c
+  reference/sky.c
+  reference/spot.c
+  reference/texture.c
   surfaces/ground.c
   trace/cutout.c
   trace/trace.c)
