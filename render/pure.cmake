@@ -5,6 +5,7 @@ add_library(toile_light STATIC
   env/lobes.c
   light/compose.c
   light/region_lights.c
+  frame/view.c
   metrics/compare.c
   metrics/flip.c
   pem/chain.c
@@ -15,6 +16,12 @@ add_library(toile_light STATIC
   pem/regions_sphere.c
   pem/slices.c
   plan/plan.c
+  reference/gather.c
+  reference/options.c
+  reference/reference.c
+  reference/sky.c
+  reference/spot.c
+  reference/texture.c
   surfaces/ground.c
   trace/cutout.c
   trace/trace.c
