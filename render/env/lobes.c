@@ -77,7 +77,7 @@ static float square_scale(vec3s p)
     return sum / 2;
 }
 
-static void look(int side, int left, int top, float s, int cube_size, struct tl_gaze *gaze)
+static void look(int side, int left, int top, float s, struct tl_gaze *gaze)
 {
     float step = 2 / (float)side, steps[TL_LANES];
     vec3s directions[TL_LANES];
@@ -88,7 +88,7 @@ static void look(int side, int left, int top, float s, int cube_size, struct tl_
         directions[i] = glms_vec3_normalize(p);
         steps[i] = step * sqrtf(square_scale(p));
     }
-    tl_gaze_set(gaze, directions, steps, s, cube_size);
+    tl_gaze_set(gaze, directions, steps, s);
 }
 
 static float *texel_of(const struct tl_lobe_map *map, int x, int y)
@@ -135,7 +135,7 @@ static struct tl_lobe_map convolve(const tl_emitter *texels, int cube_size, floa
         struct tl_gaze gaze;
         float colour[3][TL_LANES];
         int left = tile % tiles * TILE, top = tile / tiles * TILE;
-        look(map.side, left, top, s, cube_size, &gaze);
+        look(map.side, left, top, s, &gaze);
         tl_emitters_gather(&emitters, &gaze, colour);
         for (int i = 0; i < TL_LANES; i++)
             for (int c = 0; c < 3; c++)
