@@ -204,9 +204,10 @@ void tl_gaze_set(struct tl_gaze *gaze, const vec3s directions[TL_LANES], const f
         gaze->exponent[i] = 1 / (1 - mean) - 2;
     }
     gaze->axis = glms_vec3_normalize(sum);
-    gaze->radius = 0;
+    float farthest = 0;
     for (int i = 0; i < TL_LANES; i++)
-        gaze->radius = fmaxf(gaze->radius, glms_vec3_angle(gaze->axis, directions[i]));
+        farthest = tl_greater(farthest, glms_vec3_distance2(gaze->axis, directions[i]));
+    gaze->radius = 2 * asinf(tl_lesser(sqrtf(farthest) / 2, 1));
 }
 
 /* The angle within which a lobe must be looked at, from the middle of the gaze. */

@@ -9,10 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Texels along the side of a map: they follow the lobe's width, and wide lobes, which end at a horizon rather
- * than fade, need some more. */
-#define SIDE_PER_WIDTH 16
-#define SIDE_LEAST     12
+/* Texels along the side of a map: they follow the lobe's width, and the widest lobes, which end at a horizon
+ * rather than fade, need some more. */
+#define SIDE_PER_WIDTH  16
+#define SIDE_OF_HORIZON 16
 /* Sixteen lanes look at a square of the map. */
 #define TILE 4
 /* Samples along a side of a texel of the environment itself. */
@@ -126,9 +126,10 @@ static int whole_tiles(float side)
 
 static struct tl_lobe_map convolve(const tl_emitter *texels, int cube_size, float s)
 {
+    float width = 1 / sqrtf(s);
     size_t count = 6 * (size_t)cube_size * (size_t)cube_size;
     struct tl_emitters emitters = tl_emitters_merge(texels, count, cube_size, s);
-    struct tl_lobe_map map = create_map(whole_tiles(SIDE_PER_WIDTH * sqrtf(s) + SIDE_LEAST));
+    struct tl_lobe_map map = create_map(whole_tiles(SIDE_PER_WIDTH / width + SIDE_OF_HORIZON * width));
     int tiles = map.side / TILE;
 #pragma omp parallel for schedule(dynamic, 4)
     for (int tile = 0; tile < tiles * tiles; tile++) {

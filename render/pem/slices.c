@@ -8,10 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Distance of texels in widths 1 / sqrt(s) of the lobe. */
-/* Wide lobes, which end at a horizon rather than fade, need more. */
-#define STEP_PER_WIDTH 0.25f
-#define STEP_LESS      0.75f
+/* Texels of a map per radian in its middle: they follow the lobe's width, and the widest lobes, which end at
+ * a horizon rather than fade, need some more. */
+#define DENSITY_PER_WIDTH  4
+#define DENSITY_OF_HORIZON 6
 /* The map ends where the lobe is below this part of its peak; what is lost there is less than that part of
  * the energy, since the lobe's tail beyond holds c^(s + 1). */
 #define CROP 3e-4f
@@ -33,7 +33,7 @@ static vec3s unproject(const struct tl_slice_frame *frame, float x, float y)
     float square = fminf(x * x + y * y, 4), sine = sqrtf(1 - square / 4);
     vec3s d = glms_vec3_scale(frame->direction, 1 - square / 2);
     d = glms_vec3_muladds(frame->right, x * sine, d);
-    return glms_vec3_normalize(glms_vec3_muladds(frame->up, y * sine, d));
+    return glms_vec3_muladds(frame->up, y * sine, d);
 }
 
 /* Mean square over two axes of the angle that a step of 1 in the map turns. */
@@ -104,7 +104,8 @@ static float step_of(int exponent, int cube_size)
 {
     if (exponent == TL_EXPONENT_COUNT)
         return (float)sqrt(4 * M_PI / 6) / (float)cube_size;
-    return STEP_PER_WIDTH / (sqrtf(tl_exponent(exponent)) + STEP_LESS);
+    float width = 1 / sqrtf(tl_exponent(exponent));
+    return 1 / (DENSITY_PER_WIDTH / width + DENSITY_OF_HORIZON * width);
 }
 
 /* Sides and scales of all maps of one exponent: the widest region sets the side. */
