@@ -12,7 +12,7 @@
 #define LOBE_CUT 1e-5f
 
 /* Cells are at most this many lobe widths 1 / sqrt(s) wide. */
-#define MERGE_WIDTH 0.2f
+#define MERGE_WIDTH 0.5f
 
 /* Bits of x or of y in a code; the face stands above them. */
 #define CODE_BITS 13
@@ -26,6 +26,8 @@ static uint32_t compact_bits(uint32_t code)
     code = (code | code >> 4) & 0x00ff00ffu;
     return (code | code >> 8) & 0x0000ffffu;
 }
+
+static const vec3s nowhere = {{NAN, NAN, NAN}};
 
 static float luminance(vec3s colour)
 {
@@ -74,6 +76,7 @@ static tl_emitter emitter_of(const tl_cube *cube, const float *solid_angles, uin
     for (size_t c = 0; c < 3; c++)
         emitter.power.raw[c] = solid_angles[y * size + x] * sane(cube->texels[3 * (size_t)texel + c]);
     emitter.weight = luminance(emitter.power);
+    emitter.variance = solid_angles[y * size + x] / 12; /* of a square */
     return emitter;
 }
 
@@ -85,41 +88,6 @@ tl_emitter *tl_emitters_collect(const tl_cube *cube, const float *solid_angles, 
     for (size_t i = 0; i < count; i++)
         emitters[i] = emitter_of(cube, solid_angles, texels[i]);
     return emitters;
-}
-
-/* Runs of the curve that share their leading bits become blocks: 4 x 4 emitters or what is left of them. */
-static uint32_t block_of(const tl_emitter *emitter)
-{
-    return emitter->code / TL_EMITTER_BLOCK;
-}
-
-static void set_axis(struct tl_emitters *emitters, size_t block)
-{
-    const tl_emitter *items = emitters->items;
-    vec3s sum = {{0, 0, 0}};
-    for (uint32_t i = emitters->first[block]; i < emitters->first[block + 1]; i++)
-        sum = glms_vec3_add(sum, items[i].direction);
-    vec3s axis = glms_vec3_normalize(sum);
-    for (int c = 0; c < 3; c++)
-        emitters->axes[block / TL_LANES][c][block % TL_LANES] = axis.raw[c];
-    for (uint32_t i = emitters->first[block]; i < emitters->first[block + 1]; i++)
-        emitters->radius = fmaxf(emitters->radius, glms_vec3_angle(axis, items[i].direction));
-}
-
-static void make_blocks(struct tl_emitters *emitters)
-{
-    emitters->first = TL_NEW_ARRAY(uint32_t, emitters->count + 1);
-    for (size_t i = 0; i < emitters->count; i++)
-        if (i == 0 || block_of(&emitters->items[i]) != block_of(&emitters->items[i - 1]))
-            emitters->first[emitters->block_count++] = (uint32_t)i;
-    emitters->first[emitters->block_count] = (uint32_t)emitters->count;
-    size_t groups = (emitters->block_count + TL_LANES - 1) / TL_LANES;
-    emitters->axes = tl_alloc(groups, sizeof *emitters->axes);
-    /* Those that fill up the last group are nowhere: no cosine is above theirs. */
-    for (size_t block = emitters->block_count; block < groups * TL_LANES; block++)
-        emitters->axes[block / TL_LANES][0][block % TL_LANES] = NAN;
-    for (size_t block = 0; block < emitters->block_count; block++)
-        set_axis(emitters, block);
 }
 
 static int merges_for(int cube_size, float exponent)
@@ -141,104 +109,168 @@ static tl_emitter merge_run(const tl_emitter *first, const tl_emitter *end, uint
         merged.weight += emitter->weight;
     }
     merged.direction = glms_vec3_normalize(merged.direction);
+    for (const tl_emitter *emitter = first; emitter < end; emitter++)
+        merged.variance += emitter->weight * (emitter->variance +
+                                              glms_vec3_distance2(emitter->direction, merged.direction) / 2);
+    merged.variance /= merged.weight;
     return merged;
+}
+
+/* Merges in place, leaving black ones out; the number that remains. */
+static size_t merge_all(tl_emitter *emitters, size_t count, int shift)
+{
+    size_t remaining = 0, next;
+    for (size_t i = 0; i < count; i = next) {
+        uint32_t code = emitters[i].code >> shift;
+        for (next = i; next < count && emitters[next].code >> shift == code;)
+            next++;
+        tl_emitter merged = merge_run(emitters + i, emitters + next, code);
+        if (merged.weight > 0)
+            emitters[remaining++] = merged;
+    }
+    return remaining;
+}
+
+static void set_direction(struct tl_directions *directions, size_t i, vec3s direction)
+{
+    directions->x[i] = direction.x;
+    directions->y[i] = direction.y;
+    directions->z[i] = direction.z;
+}
+
+static void fill_block(struct tl_emitters *emitters, size_t index, const tl_emitter *items, size_t count)
+{
+    struct tl_emitter_block *block = &emitters->blocks[index];
+    vec3s sum = {{0, 0, 0}};
+    for (size_t i = 0; i < TL_LANES; i++) {
+        set_direction(&block->directions, i, i < count ? items[i].direction : nowhere);
+        if (i >= count)
+            continue;
+        block->variance[i] = items[i].variance;
+        memcpy(block->power[i], items[i].power.raw, sizeof items[i].power.raw);
+        sum = glms_vec3_add(sum, items[i].direction);
+    }
+    vec3s axis = glms_vec3_normalize(sum);
+    set_direction(&emitters->axes[index / TL_LANES], index % TL_LANES, axis);
+    for (size_t i = 0; i < count; i++)
+        emitters->radius = fmaxf(emitters->radius, glms_vec3_angle(axis, items[i].direction));
+}
+
+/* Squares of 4 x 4 emitters, or what is left of them, become blocks: runs of the curve that share their
+ * leading bits. */
+static struct tl_emitters make_blocks(const tl_emitter *items, size_t count)
+{
+    struct tl_emitters emitters = {0};
+    for (size_t i = 0; i < count; i++)
+        emitters.count += i == 0 || items[i].code / TL_LANES != items[i - 1].code / TL_LANES;
+    size_t groups = (emitters.count + TL_LANES - 1) / TL_LANES;
+    emitters.blocks = TL_NEW_ARRAY(struct tl_emitter_block, emitters.count);
+    emitters.axes = TL_NEW_ARRAY(struct tl_directions, groups);
+    for (size_t i = emitters.count; i < groups * TL_LANES; i++)
+        set_direction(&emitters.axes[i / TL_LANES], i % TL_LANES, nowhere);
+    for (size_t index = 0, first = 0, next; first < count; first = next, index++) {
+        for (next = first; next < count && items[next].code / TL_LANES == items[first].code / TL_LANES;)
+            next++;
+        fill_block(&emitters, index, items + first, next - first);
+    }
+    return emitters;
 }
 
 struct tl_emitters tl_emitters_merge(const tl_emitter *texels, size_t count, int cube_size, float exponent)
 {
-    int shift = 2 * merges_for(cube_size, exponent);
-    struct tl_emitters merged = {.items = TL_NEW_ARRAY(tl_emitter, count)};
-    const tl_emitter *end = texels + count;
-    while (texels < end) {
-        const tl_emitter *next = texels;
-        while (next < end && next->code >> shift == texels->code >> shift)
-            next++;
-        tl_emitter cell = merge_run(texels, next, texels->code >> shift);
-        if (cell.weight > 0)
-            merged.items[merged.count++] = cell;
-        texels = next;
-    }
-    make_blocks(&merged);
-    return merged;
+    tl_emitter *items = TL_NEW_ARRAY(tl_emitter, count);
+    memcpy(items, texels, count * sizeof *items);
+    struct tl_emitters emitters =
+        make_blocks(items, merge_all(items, count, 2 * merges_for(cube_size, exponent)));
+    free(items);
+    return emitters;
 }
 
 void tl_emitters_release(struct tl_emitters *emitters)
 {
-    free(emitters->items);
-    free(emitters->first);
+    free(emitters->blocks);
     free(emitters->axes);
     *emitters = (struct tl_emitters){0};
 }
 
-void tl_gaze_set(struct tl_gaze *gaze, const vec3s directions[TL_LANES], const float steps[TL_LANES], float s,
-                 int cube_size)
+void tl_gaze_set(struct tl_gaze *gaze, const vec3s directions[TL_LANES], const float steps[TL_LANES], float s)
 {
-    /* Variances along one axis: each multiplies a lobe's mean cosine, (s + 1) / (s + 2), by 1 - variance. */
-    float source = (float)(4 * M_PI / 6 / 12) / (float)(cube_size * cube_size);
     vec3s sum = {{0, 0, 0}};
-    for (int i = 0; i < TL_LANES; i++) {
-        gaze->x[i] = directions[i].x;
-        gaze->y[i] = directions[i].y;
-        gaze->z[i] = directions[i].z;
+    for (size_t i = 0; i < TL_LANES; i++) {
+        set_direction(&gaze->directions, i, directions[i]);
         sum = glms_vec3_add(sum, directions[i]);
-        float mean = (s + 1) / (s + 2) * (1 - source) / (1 - steps[i] * steps[i] / 6);
+        /* A blur multiplies a lobe's mean cosine, (s + 1) / (s + 2), by 1 - its variance along one axis. */
+        float mean = (s + 1) / (s + 2) / (1 - steps[i] * steps[i] / 6);
         gaze->exponent[i] = 1 / (1 - mean) - 2;
     }
     gaze->axis = glms_vec3_normalize(sum);
-    gaze->radius = 0;
+    float farthest = 0;
     for (int i = 0; i < TL_LANES; i++)
-        gaze->radius = fmaxf(gaze->radius, glms_vec3_angle(gaze->axis, directions[i]));
+        farthest = tl_greater(farthest, glms_vec3_distance2(gaze->axis, directions[i]));
+    gaze->radius = 2 * asinf(tl_lesser(sqrtf(farthest) / 2, 1));
 }
 
-/* Cosine below which a block cannot reach any of the sixteen. */
-static float reach_cosine(const struct tl_emitters *emitters, const struct tl_gaze *gaze)
+/* The angle within which a lobe must be looked at, from the middle of the gaze. */
+static float reach_of(const struct tl_gaze *gaze)
 {
     float least = gaze->exponent[0];
     for (int i = 1; i < TL_LANES; i++)
         least = tl_lesser(least, gaze->exponent[i]);
-    float reach = acosf(powf(LOBE_CUT, 1 / least)) + emitters->radius + gaze->radius;
-    return reach < (float)M_PI ? cosf(reach) : -2;
+    return acosf(powf(LOBE_CUT, 1 / least)) + gaze->radius;
 }
 
-/* Bit i: block i of the group is reached. */
-TL_INLINE uint32_t reached_blocks(const float axes[3][TL_LANES], vec3s axis, float cosine)
+static float cosine_of(float angle)
 {
+    return angle < (float)M_PI ? cosf(angle) : -2;
+}
+
+/* Bit i: direction i is within the cosine of the axis. */
+TL_INLINE uint32_t find_within(const struct tl_directions *directions, vec3s axis, float cosine)
+{
+    static const uint32_t bit[TL_LANES] = {1,        1u << 1,  1u << 2,  1u << 3, 1u << 4,  1u << 5,
+                                           1u << 6,  1u << 7,  1u << 8,  1u << 9, 1u << 10, 1u << 11,
+                                           1u << 12, 1u << 13, 1u << 14, 1u << 15};
     uint32_t bits = 0;
-    for (int i = 0; i < TL_LANES; i++)
-        bits |= (uint32_t)(axes[0][i] * axis.x + axes[1][i] * axis.y + axes[2][i] * axis.z >= cosine) << i;
+    for (int i = 0; i < TL_LANES; i++) {
+        float other = directions->x[i] * axis.x + directions->y[i] * axis.y + directions->z[i] * axis.z;
+        bits |= other >= cosine ? bit[i] : 0;
+    }
     return bits;
 }
 
-TL_INLINE void add_emitters(const tl_emitter *emitter, const tl_emitter *end, const struct tl_gaze *gaze,
-                            float sums[3][TL_LANES])
+TL_INLINE void add_emitter(const struct tl_emitter_block *block, int k, const struct tl_gaze *gaze,
+                           const float widening[TL_LANES], float sums[3][TL_LANES])
 {
-    for (; emitter < end; emitter++) {
-        for (int i = 0; i < TL_LANES; i++) {
-            float cosine = gaze->x[i] * emitter->direction.x + gaze->y[i] * emitter->direction.y +
-                           gaze->z[i] * emitter->direction.z;
-            float lobe = tl_power(cosine, gaze->exponent[i]);
-            sums[0][i] += lobe * emitter->power.x;
-            sums[1][i] += lobe * emitter->power.y;
-            sums[2][i] += lobe * emitter->power.z;
-        }
+    const struct tl_directions *directions = &gaze->directions;
+    for (int i = 0; i < TL_LANES; i++) {
+        float cosine = directions->x[i] * block->directions.x[k] + directions->y[i] * block->directions.y[k] +
+                       directions->z[i] * block->directions.z[k];
+        float exponent = gaze->exponent[i] - widening[i] * block->variance[k];
+        float lobe = (exponent + 1) * tl_power(cosine, exponent);
+        for (int c = 0; c < 3; c++)
+            sums[c][i] += lobe * block->power[k][c];
     }
 }
 
 TL_CLONES void tl_emitters_gather(const struct tl_emitters *emitters, const struct tl_gaze *gaze,
                                   float out[3][TL_LANES])
 {
-    float near = reach_cosine(emitters, gaze), sums[3][TL_LANES] = {{0}};
+    float reach = reach_of(gaze), near = cosine_of(reach), near_block = cosine_of(reach + emitters->radius);
     struct tl_gaze own = *gaze; /* nothing else points to it, so that it stays in registers */
-    size_t groups = (emitters->block_count + TL_LANES - 1) / TL_LANES;
-    for (size_t group = 0; group < groups; group++) {
-        uint32_t reached = reached_blocks(emitters->axes[group], own.axis, near);
-        for (; reached; reached &= reached - 1) {
-            size_t block = group * TL_LANES + (size_t)__builtin_ctz(reached);
-            add_emitters(emitters->items + emitters->first[block],
-                         emitters->items + emitters->first[block + 1], &own, sums);
+    float widening[TL_LANES], sums[3][TL_LANES] = {{0}};
+    for (int i = 0; i < TL_LANES; i++) /* d s / d variance, of the lobe with that mean cosine */
+        widening[i] = (own.exponent[i] + 1) * (own.exponent[i] + 2);
+    for (size_t group = 0; group * TL_LANES < emitters->count; group++) {
+        uint32_t blocks = find_within(&emitters->axes[group], own.axis, near_block);
+        for (; blocks; blocks &= blocks - 1) {
+            const struct tl_emitter_block *block =
+                &emitters->blocks[group * TL_LANES + (size_t)__builtin_ctz(blocks)];
+            uint32_t items = find_within(&block->directions, own.axis, near);
+            for (; items; items &= items - 1)
+                add_emitter(block, __builtin_ctz(items), &own, widening, sums);
         }
     }
     for (int c = 0; c < 3; c++)
         for (int i = 0; i < TL_LANES; i++)
-            out[c][i] = sums[c][i] * (own.exponent[i] + 1) * (float)(1 / (2 * M_PI));
+            out[c][i] = sums[c][i] * (float)(1 / (2 * M_PI));
 }

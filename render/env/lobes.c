@@ -9,10 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Texels along the side of a map: they follow the lobe's width, and wide lobes, which end at a horizon rather
- * than fade, need some more. */
-#define SIDE_PER_WIDTH 16
-#define SIDE_LEAST     12
+/* Texels along the side of a map: they follow the lobe's width, and the widest lobes, which end at a horizon
+ * rather than fade, need some more. */
+#define SIDE_PER_WIDTH  16
+#define SIDE_OF_HORIZON 16
 /* Sixteen lanes look at a square of the map. */
 #define TILE 4
 /* Samples along a side of a texel of the environment itself. */
@@ -77,7 +77,7 @@ static float square_scale(vec3s p)
     return sum / 2;
 }
 
-static void look(int side, int left, int top, float s, int cube_size, struct tl_gaze *gaze)
+static void look(int side, int left, int top, float s, struct tl_gaze *gaze)
 {
     float step = 2 / (float)side, steps[TL_LANES];
     vec3s directions[TL_LANES];
@@ -88,7 +88,7 @@ static void look(int side, int left, int top, float s, int cube_size, struct tl_
         directions[i] = glms_vec3_normalize(p);
         steps[i] = step * sqrtf(square_scale(p));
     }
-    tl_gaze_set(gaze, directions, steps, s, cube_size);
+    tl_gaze_set(gaze, directions, steps, s);
 }
 
 static float *texel_of(const struct tl_lobe_map *map, int x, int y)
@@ -126,16 +126,17 @@ static int whole_tiles(float side)
 
 static struct tl_lobe_map convolve(const tl_emitter *texels, int cube_size, float s)
 {
+    float width = 1 / sqrtf(s);
     size_t count = 6 * (size_t)cube_size * (size_t)cube_size;
     struct tl_emitters emitters = tl_emitters_merge(texels, count, cube_size, s);
-    struct tl_lobe_map map = create_map(whole_tiles(SIDE_PER_WIDTH * sqrtf(s) + SIDE_LEAST));
+    struct tl_lobe_map map = create_map(whole_tiles(SIDE_PER_WIDTH / width + SIDE_OF_HORIZON * width));
     int tiles = map.side / TILE;
 #pragma omp parallel for schedule(dynamic, 4)
     for (int tile = 0; tile < tiles * tiles; tile++) {
         struct tl_gaze gaze;
         float colour[3][TL_LANES];
         int left = tile % tiles * TILE, top = tile / tiles * TILE;
-        look(map.side, left, top, s, cube_size, &gaze);
+        look(map.side, left, top, s, &gaze);
         tl_emitters_gather(&emitters, &gaze, colour);
         for (int i = 0; i < TL_LANES; i++)
             for (int c = 0; c < 3; c++)

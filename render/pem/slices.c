@@ -8,8 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Distance of texels in widths 1 / sqrt(s) of the lobe. */
-#define STEP_PER_WIDTH 0.25f
+/* Texels of a map per radian in its middle: they follow the lobe's width, and the widest lobes, which end at
+ * a horizon rather than fade, need some more. */
+#define DENSITY_PER_WIDTH  4
+#define DENSITY_OF_HORIZON 6
 /* The map ends where the lobe is below this part of its peak; what is lost there is less than that part of
  * the energy, since the lobe's tail beyond holds c^(s + 1). */
 #define CROP 3e-4f
@@ -31,7 +33,7 @@ static vec3s unproject(const struct tl_slice_frame *frame, float x, float y)
     float square = fminf(x * x + y * y, 4), sine = sqrtf(1 - square / 4);
     vec3s d = glms_vec3_scale(frame->direction, 1 - square / 2);
     d = glms_vec3_muladds(frame->right, x * sine, d);
-    return glms_vec3_normalize(glms_vec3_muladds(frame->up, y * sine, d));
+    return glms_vec3_muladds(frame->up, y * sine, d);
 }
 
 /* Mean square over two axes of the angle that a step of 1 in the map turns. */
@@ -102,7 +104,8 @@ static float step_of(int exponent, int cube_size)
 {
     if (exponent == TL_EXPONENT_COUNT)
         return (float)sqrt(4 * M_PI / 6) / (float)cube_size;
-    return STEP_PER_WIDTH / sqrtf(tl_exponent(exponent));
+    float width = 1 / sqrtf(tl_exponent(exponent));
+    return 1 / (DENSITY_PER_WIDTH / width + DENSITY_OF_HORIZON * width);
 }
 
 /* Sides and scales of all maps of one exponent: the widest region sets the side. */
@@ -136,7 +139,7 @@ static bool in_ring(const struct tl_slices *slices, int exponent, int region, in
 }
 
 static void convolve_tile(const struct tl_slices *slices, int exponent, int region, int left, int top,
-                          const struct tl_emitters *emitters, int cube_size)
+                          const struct tl_emitters *emitters)
 {
     const struct tl_slice_frame *frame = &slices->frames[region];
     float step = 1 / (frame->scale[exponent] * (float)slices->side[exponent]);
@@ -150,7 +153,7 @@ static void convolve_tile(const struct tl_slices *slices, int exponent, int regi
     }
     struct tl_gaze gaze;
     float colour[3][TL_LANES];
-    tl_gaze_set(&gaze, directions, steps, tl_exponent(exponent), cube_size);
+    tl_gaze_set(&gaze, directions, steps, tl_exponent(exponent));
     tl_emitters_gather(emitters, &gaze, colour);
     for (int i = 0; i < TL_LANES; i++) {
         int x = left + i % TILE, y = top + i / TILE;
@@ -167,7 +170,7 @@ static void convolve(const struct tl_slices *slices, int exponent, int region, c
         tl_emitters_merge(source->texels, source->count, cube_size, tl_exponent(exponent));
     for (int top = 0; top < slices->side[exponent]; top += TILE)
         for (int left = 0; left < slices->side[exponent]; left += TILE)
-            convolve_tile(slices, exponent, region, left, top, &emitters, cube_size);
+            convolve_tile(slices, exponent, region, left, top, &emitters);
     tl_emitters_release(&emitters);
 }
 

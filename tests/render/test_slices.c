@@ -66,6 +66,7 @@ static void regions_sum_to_the_whole(void **state)
         double worst = 0;
         for (int k = 0; k < TL_EXPONENT_COUNT; k += 1) {
             double peak = peak_of(&lobes.maps[k]);
+            double before = worst;
             for (int probe = 0; probe < 200; probe++) {
                 vec3s direction = probe_direction(probe, 200), sum = {{0, 0, 0}};
                 for (int i = 0; i < regions.count; i++)
@@ -76,6 +77,7 @@ static void regions_sum_to_the_whole(void **state)
                     worst = fmax(worst, (fabs((double)(sum.raw[c] - whole.raw[c])) - 3e-4 * peak) /
                                             (double)whole.raw[c]);
             }
+            if (worst > before) printf("k %d worst %.4f\n", k, worst);
         }
         printf("N = %d: worst %.4f\n", count, worst);
         assert_true(worst < 0.02);
