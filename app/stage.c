@@ -41,7 +41,6 @@ void tl_stage_release(struct tl_stage *stage)
 bool tl_stage_draw(struct tl_stage *stage, tl_error *error)
 {
     tl_frame frame = tl_session_frame(stage->session);
-    const struct tl_render_settings settings = {.light = stage->settings.light,
-                                                .image = stage->settings.image};
+    const struct tl_render_settings settings = tl_settings_render(&stage->settings);
     return tl_renderer_draw(stage->renderer, &frame, &settings, error);
 }
