@@ -6,5 +6,9 @@ add_library(toile_light STATIC
   pem/chain.c
   pem/lobe.c
   pem/regions.c
-  plan/plan.c)
-target_link_libraries(toile_light PUBLIC toile_assets)
+  plan/plan.c
+  surfaces/ground.c
+  trace/cutout.c
+  trace/trace.c
+)
+target_link_libraries(toile_light PUBLIC toile_assets PRIVATE embree)

@@ -163,13 +163,13 @@ void tl_renderer_destroy(tl_renderer **renderer)
     *renderer = NULL;
 }
 
-static uint32_t scene_facts(const struct tl_render_settings *settings)
+static tl_bits scene_facts(const struct tl_render_settings *settings)
 {
     return settings->light.method == TL_METHOD_UNSHADOWED ? 0 : TL_BIT(TL_SCENE_SHADOWED);
 }
 
 static struct tl_plan_input plan_input(const tl_renderer *renderer, const struct tl_render_settings *settings,
-                                       uint32_t changed, enum tl_resource wanted)
+                                       tl_bits changed, enum tl_resource wanted)
 {
     return (struct tl_plan_input){.changed = changed,
                                   .valid = renderer->valid,
@@ -179,9 +179,9 @@ static struct tl_plan_input plan_input(const tl_renderer *renderer, const struct
                                   .resource_names = tl_resource_names};
 }
 
-static uint32_t changed_inputs(const tl_renderer *renderer, const uint64_t signatures[TL_INPUT_COUNT])
+static tl_bits changed_inputs(const tl_renderer *renderer, const uint64_t signatures[TL_INPUT_COUNT])
 {
-    uint32_t changed = 0;
+    tl_bits changed = 0;
     for (int i = 0; i < TL_INPUT_COUNT; i++)
         if (signatures[i] != renderer->signatures[i])
             changed |= TL_BIT(i);
@@ -236,7 +236,7 @@ bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct
     reload_shaders(renderer);
     uint64_t signatures[TL_INPUT_COUNT];
     sign_inputs(frame, &used, signatures);
-    uint32_t changed = changed_inputs(renderer, signatures);
+    tl_bits changed = changed_inputs(renderer, signatures);
     renderer->frame = *frame;
     renderer->settings = used;
     renderer->view = tl_view_make(&frame->camera, used.image.width, used.image.height);

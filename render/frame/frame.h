@@ -39,7 +39,7 @@ enum tl_resource {
     TL_MADE_SHOWN,
     TL_RESOURCE_COUNT
 };
-#define TL_BIT(resource) (1u << (resource))
+#define TL_BIT(resource) ((tl_bits)1 << (resource))
 
 /* Facts about the scene, by bit. */
 enum tl_scene_fact { TL_SCENE_SHADOWED, TL_SCENE_FACT_COUNT };
@@ -81,7 +81,7 @@ struct tl_renderer {
 
     uint64_t signatures[TL_INPUT_COUNT]; /* of the last draw's inputs */
     uint64_t shaders_stamp;
-    uint32_t valid; /* resources that hold what their inputs call for */
+    tl_bits valid; /* resources that hold what their inputs call for */
     tl_plan plan;
     tl_cost cost;
 };

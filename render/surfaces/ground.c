@@ -4,6 +4,10 @@
 #include <string.h>
 
 #define RADIUS_PER_FIGURE 3.0f /* the disc's radius over the figure's height */
+#define WHOLE_TO          0.5f /* share of the radius up to which nothing has faded; as in ground.glsl */
+/* Rings lie at sinh(GROWTH t) / sinh(GROWTH): under a figure of 1.8 m they are 2 to 3 cm apart, at the rim
+ * 70 cm. */
+#define GROWTH 4.0f
 
 bool tl_casters_measure(const tl_surface *surfaces, size_t count, struct tl_casters *out, tl_error *error)
 {
@@ -29,41 +33,96 @@ bool tl_casters_measure(const tl_surface *surfaces, size_t count, struct tl_cast
     return true;
 }
 
-void tl_ground_make(const struct tl_casters *casters, struct tl_ground *out)
+/* One vertex in the middle, then ring by ring outwards. The last ring goes round the disc. */
+static void place_vertices(struct tl_ground *ground)
 {
-    static const uint32_t indices[6] = {0, 2, 1, 0, 3, 2}; /* counter-clockwise seen from above */
-    static const float corners[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
-    float height = fmaxf(casters->centre.y + casters->radius, casters->radius);
-    *out = (struct tl_ground){.radius = RADIUS_PER_FIGURE * height,
-                              .centre = {{casters->centre.x, 0, casters->centre.z}},
-                              .material = tl_material_default("ground"),
-                              .part = {.index_count = 6}};
-    out->material.diffuse = (vec3s){{0.4f, 0.4f, 0.4f}};
-    out->material.specular = (vec3s){{0, 0, 0}};
-    memcpy(out->indices, indices, sizeof indices);
-    for (int i = 0; i < 4; i++) {
-        out->positions[i] = (vec3s){
-            {out->centre.x + corners[i][0] * out->radius, 0, out->centre.z + corners[i][1] * out->radius}};
-        out->normals[i] = (vec3s){{0, 1, 0}};
-        out->tangents[i] = (vec4s){{1, 0, 0, 1}};
-        out->uvs[i] = (vec2s){{corners[i][0], corners[i][1]}};
+    ground->uvs[0] = (vec2s){{0, 0}};
+    for (int ring = 1; ring <= TL_GROUND_RINGS; ring++) {
+        float share = sinhf(GROWTH * (float)ring / TL_GROUND_RINGS) / sinhf(GROWTH);
+        if (ring == TL_GROUND_RINGS)
+            share /= cosf((float)M_PI / TL_GROUND_SEGMENTS);
+        for (int segment = 0; segment < TL_GROUND_SEGMENTS; segment++) {
+            float angle = 2 * (float)M_PI * (float)segment / TL_GROUND_SEGMENTS;
+            ground->uvs[1 + (ring - 1) * TL_GROUND_SEGMENTS + segment] =
+                (vec2s){{share * cosf(angle), share * sinf(angle)}};
+        }
     }
-    /* A quad of fixed shape: only where it lies differs, so its position is its revision. */
-    uint32_t revision[4];
-    memcpy(revision, &(float[4]){out->centre.x, out->centre.y, out->centre.z, out->radius}, sizeof revision);
+    for (int i = 0; i < TL_GROUND_VERTICES; i++) {
+        ground->positions[i] = (vec3s){{ground->centre.x + ground->uvs[i].x * ground->radius, 0,
+                                        ground->centre.z + ground->uvs[i].y * ground->radius}};
+        ground->normals[i] = (vec3s){{0, 1, 0}};
+        ground->tangents[i] = (vec4s){{1, 0, 0, 1}};
+    }
+}
+
+/* Counter-clockwise seen from above, where x is right and z is down. */
+static void join_vertices(uint32_t *indices)
+{
+    for (uint32_t segment = 0; segment < TL_GROUND_SEGMENTS; segment++) {
+        uint32_t next = (segment + 1) % TL_GROUND_SEGMENTS;
+        memcpy(indices, (uint32_t[3]){0, 1 + next, 1 + segment}, 3 * sizeof *indices);
+        indices += 3;
+        for (uint32_t ring = 1; ring < TL_GROUND_RINGS; ring++) {
+            uint32_t inner = 1 + (ring - 1) * TL_GROUND_SEGMENTS, outer = inner + TL_GROUND_SEGMENTS;
+            memcpy(indices,
+                   (uint32_t[6]){inner + segment, inner + next, outer + next, inner + segment, outer + next,
+                                 outer + segment},
+                   6 * sizeof *indices);
+            indices += 6;
+        }
+    }
+}
+
+/* A mesh of fixed shape: only where it lies and its size differ, so these are its revision. */
+static uint64_t revision_of(const struct tl_ground *ground)
+{
+    uint32_t parts[4];
+    memcpy(parts, &(float[4]){ground->centre.x, ground->centre.y, ground->centre.z, ground->radius},
+           sizeof parts);
     uint64_t mixed = 0;
     for (int i = 0; i < 4; i++)
-        mixed = mixed * 1000003 + revision[i];
+        mixed = mixed * 1000003 + parts[i];
+    return mixed;
+}
+
+void tl_ground_make(const struct tl_casters *casters, struct tl_ground *out)
+{
+    float height = fmaxf(casters->centre.y + casters->radius, casters->radius);
+    out->radius = RADIUS_PER_FIGURE * height;
+    out->centre = (vec3s){{casters->centre.x, 0, casters->centre.z}};
+    out->material = tl_material_default("ground");
+    out->material.diffuse = (vec3s){{0.4f, 0.4f, 0.4f}};
+    out->material.specular = (vec3s){{0, 0, 0}};
+    out->part = (struct tl_mesh_part){.index_count = TL_GROUND_INDICES};
+    place_vertices(out);
+    join_vertices(out->indices);
     out->surface = (tl_surface){.name = "ground",
-                                .vertex_count = 4,
+                                .vertex_count = TL_GROUND_VERTICES,
                                 .positions = out->positions,
                                 .normals = out->normals,
                                 .tangents = out->tangents,
                                 .uvs = out->uvs,
-                                .index_count = 6,
+                                .index_count = TL_GROUND_INDICES,
                                 .indices = out->indices,
                                 .part_count = 1,
                                 .parts = &out->part,
                                 .materials = &out->material,
-                                .motion_revision = mixed};
+                                .motion_revision = revision_of(out)};
+}
+
+float tl_ground_cover(const struct tl_ground *ground, float x, float z)
+{
+    if (!ground || !(ground->radius > 0))
+        return 0;
+    float share = hypotf(x - ground->centre.x, z - ground->centre.z) / ground->radius;
+    float t = fminf(fmaxf((share - WHOLE_TO) / (1 - WHOLE_TO), 0), 1);
+    return 1 - t * t * (3 - 2 * t);
+}
+
+float tl_ground_visibility(const struct tl_ground *ground, vec3s point, vec3s direction)
+{
+    if (!ground || direction.y >= 0 || point.y < ground->centre.y)
+        return 1;
+    float distance = (point.y - ground->centre.y) / -direction.y;
+    return 1 - tl_ground_cover(ground, point.x + direction.x * distance, point.z + direction.z * distance);
 }

@@ -16,19 +16,33 @@ struct tl_casters {
 /* Sphere about the middle of the box of all positions. False when a position is not finite. */
 bool tl_casters_measure(const tl_surface *surfaces, size_t count, struct tl_casters *out, tl_error *error);
 
+/* Rings about the middle, close together there: what is kept at vertices (visibility) follows a figure's
+ * shadow. */
+enum {
+    TL_GROUND_RINGS = 32,
+    TL_GROUND_SEGMENTS = 48,
+    TL_GROUND_VERTICES = 1 + TL_GROUND_RINGS * TL_GROUND_SEGMENTS,
+    TL_GROUND_INDICES = 3 * TL_GROUND_SEGMENTS * (2 * TL_GROUND_RINGS - 1)
+};
+
 struct tl_ground {
     tl_surface surface; /* points into this struct */
     vec3s centre;
     float radius; /* metres; nothing is left of the disc beyond it */
     tl_material material;
     struct tl_mesh_part part;
-    vec3s positions[4], normals[4];
-    vec4s tangents[4];
-    vec2s uvs[4];
-    uint32_t indices[6];
+    vec3s positions[TL_GROUND_VERTICES], normals[TL_GROUND_VERTICES];
+    vec4s tangents[TL_GROUND_VERTICES];
+    vec2s uvs[TL_GROUND_VERTICES]; /* place over radius */
+    uint32_t indices[TL_GROUND_INDICES];
 };
 
 /* Fills `out` in place; it must not be moved while its surface is used. */
 void tl_ground_make(const struct tl_casters *casters, struct tl_ground *out);
+
+/* As ground.glsl: how much of the disc is there at a point of its plane; and what it leaves of light from
+ * `direction` at `point`. NULL: there is no ground. */
+float tl_ground_cover(const struct tl_ground *ground, float x, float z);
+float tl_ground_visibility(const struct tl_ground *ground, vec3s point, vec3s direction);
 
 #endif

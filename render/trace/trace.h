@@ -48,6 +48,9 @@ uint32_t tl_trace_occluded_bundle(const tl_trace *trace, const struct tl_trace_b
  * side that is looked at. */
 vec3s tl_smooth_point(vec3s point, const vec3s corners[3], const vec3s normals[3], const float weights[3]);
 
+/* Metres: how far off its own surface a ray may safely start, 1e-4 of the half diagonal of all there is. */
+float tl_trace_offset(const tl_trace *trace);
+
 size_t tl_trace_bytes(const tl_trace *trace); /* of the BVH, as Embree tells */
 
 #endif

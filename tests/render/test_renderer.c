@@ -2,6 +2,7 @@
 #include "shapes.h"
 
 #include "config/memory.h"
+#include "render/surfaces/ground.h"
 
 #include "testing.h"
 
@@ -159,11 +160,12 @@ static void test_memory(void **state)
         scene.settings.light.regions = regions;
         draw(renderer, &scene);
         struct tl_render_memory memory = tl_renderer_memory(renderer);
-        size_t count = (size_t)regions, vertices = 17 * 33 + 17 * 17 + 4, quads = 16 * 32 + 16 * 16 + 1;
+        size_t count = (size_t)regions, vertices = 17 * 33 + 17 * 17 + TL_GROUND_VERTICES;
+        size_t indices = (16 * 32 + 16 * 16) * 6 + TL_GROUND_INDICES;
         assert_int_equal(memory.pems, count * 6 * 8 * chain_texels(32));
         assert_int_equal(memory.maps, (count * 8 + 8 + 4) * 32 * 32);
         assert_int_equal(memory.targets, 48 * 32 * 4 * (16 + 3 * 8 + 4 + 4 + 16) + 48 * 32 * (16 + 4));
-        assert_int_equal(memory.surfaces, vertices * (12 + 12 + 16 + 8) + quads * 6 * 4);
+        assert_int_equal(memory.surfaces, vertices * (12 + 12 + 16 + 8) + indices * 4);
         assert_int_equal(memory.other, 256 * 4);
         assert_int_equal(memory.total,
                          memory.pems + memory.maps + memory.targets + memory.surfaces + memory.other);

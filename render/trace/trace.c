@@ -1,0 +1,352 @@
+#include "render/trace/trace.h"
+
+#include "config/memory.h"
+#include "render/trace/cutout.h"
+
+#include <embree3/rtcore.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define OFFSET_SHARE                                                                                         \
+    1e-4f /* a thousand times the rounding of positions, a tenth of a millimetre of a figure */
+
+/* A surface is up to two geometries, so that what is opaque needs no filter. */
+enum kind { OPAQUE, MASKED, KINDS };
+
+struct piece {
+    RTCGeometry geometry; /* NULL: the surface has no such part */
+    size_t count;
+    uint32_t *triangles; /* numbers of these triangles in the surface */
+};
+
+struct slot {
+    tl_surface surface; /* as last given */
+    RTCBuffer positions;
+    struct piece pieces[KINDS];
+};
+
+struct tl_trace {
+    RTCDevice device;
+    RTCScene scene; /* geometry ids: KINDS x slot + kind */
+    size_t slot_count;
+    struct slot **slots; /* at fixed addresses: the filters hold them */
+    int64_t bytes;
+};
+
+static bool count_bytes(void *user, ssize_t bytes, bool post)
+{
+    (void)post;
+    tl_trace *trace = user;
+    __atomic_fetch_add(&trace->bytes, (int64_t)bytes, __ATOMIC_RELAXED);
+    return true;
+}
+
+/* Built by one thread: the same tree, and so the same answer between equally near triangles, everywhere. */
+tl_trace *tl_trace_create(tl_error *error)
+{
+    tl_trace *trace = TL_NEW(tl_trace);
+    trace->device = rtcNewDevice("threads=1");
+    if (!trace->device) {
+        tl_fail(error, TL_DEVICE, "Embree cannot start (error %d): reinstall libembree3",
+                (int)rtcGetDeviceError(NULL));
+        free(trace);
+        return NULL;
+    }
+    rtcSetDeviceMemoryMonitorFunction(trace->device, count_bytes, trace);
+    trace->scene = rtcNewScene(trace->device);
+    /* Dynamic: every geometry keeps a tree of its own, so that what stands still is not built again. */
+    rtcSetSceneFlags(trace->scene, RTC_SCENE_FLAG_DYNAMIC | RTC_SCENE_FLAG_ROBUST);
+    rtcCommitScene(trace->scene);
+    return trace;
+}
+
+static unsigned geometry_id(size_t slot, enum kind kind)
+{
+    return (unsigned)(KINDS * slot) + (unsigned)kind;
+}
+
+static void empty_slot(tl_trace *trace, size_t index)
+{
+    struct slot *slot = trace->slots[index];
+    for (enum kind kind = 0; kind < KINDS; kind++) {
+        struct piece *piece = &slot->pieces[kind];
+        if (piece->geometry) {
+            rtcDetachGeometry(trace->scene, geometry_id(index, kind));
+            rtcReleaseGeometry(piece->geometry);
+        }
+        free(piece->triangles);
+    }
+    if (slot->positions)
+        rtcReleaseBuffer(slot->positions);
+    *slot = (struct slot){0};
+}
+
+static void resize(tl_trace *trace, size_t count)
+{
+    for (size_t i = count; i < trace->slot_count; i++) {
+        empty_slot(trace, i);
+        free(trace->slots[i]);
+    }
+    trace->slots = tl_resize(trace->slots, count, sizeof *trace->slots);
+    for (size_t i = trace->slot_count; i < count; i++)
+        trace->slots[i] = TL_NEW(struct slot);
+    trace->slot_count = count;
+}
+
+void tl_trace_destroy(tl_trace **trace)
+{
+    if (!*trace)
+        return;
+    resize(*trace, 0);
+    free((*trace)->slots);
+    rtcReleaseScene((*trace)->scene);
+    rtcReleaseDevice((*trace)->device);
+    free(*trace);
+    *trace = NULL;
+}
+
+static const tl_material *material_of(const tl_surface *surface, uint32_t triangle)
+{
+    for (size_t p = 0; p < surface->part_count; p++)
+        if (3 * triangle - surface->parts[p].first_index < surface->parts[p].index_count)
+            return &surface->materials[surface->parts[p].material];
+    return NULL;
+}
+
+static bool in_hole(const struct slot *slot, uint32_t primitive, float u, float v)
+{
+    const tl_surface *surface = &slot->surface;
+    uint32_t triangle = slot->pieces[MASKED].triangles[primitive];
+    const uint32_t *corners = surface->indices + 3 * (size_t)triangle;
+    vec2s uv = glms_vec2_scale(surface->uvs[corners[0]], 1 - u - v);
+    uv = glms_vec2_add(uv, glms_vec2_scale(surface->uvs[corners[1]], u));
+    uv = glms_vec2_add(uv, glms_vec2_scale(surface->uvs[corners[2]], v));
+    return tl_cutout_at(material_of(surface, triangle), uv);
+}
+
+/* A hit of N rays is arrays of N: three of the normal, u, v, primitive (rtcore_ray.h reads them in C++ only).
+ */
+static void skip_holes(const struct RTCFilterFunctionNArguments *arguments)
+{
+    unsigned count = arguments->N;
+    const float *numbers = (const float *)arguments->hit;
+    const uint32_t *primitives = (const uint32_t *)arguments->hit + 5 * (size_t)count;
+    for (unsigned i = 0; i < count; i++)
+        if (arguments->valid[i] && in_hole(arguments->geometryUserPtr, primitives[i], numbers[3 * count + i],
+                                           numbers[4 * count + i]))
+            arguments->valid[i] = 0;
+}
+
+static enum kind kind_of(const tl_surface *surface, const struct tl_mesh_part *part)
+{
+    return surface->materials[part->material].alpha_cutoff > 0 && surface->uvs ? MASKED : OPAQUE;
+}
+
+static void collect_triangles(const tl_surface *surface, enum kind kind, struct piece *piece)
+{
+    piece->triangles = TL_NEW_ARRAY(uint32_t, surface->index_count / 3);
+    for (size_t p = 0; p < surface->part_count; p++) {
+        const struct tl_mesh_part *part = &surface->parts[p];
+        if (kind_of(surface, part) == kind)
+            for (uint32_t i = 0; i < part->index_count / 3; i++)
+                piece->triangles[piece->count++] = part->first_index / 3 + i;
+    }
+}
+
+static void build_piece(tl_trace *trace, size_t index, enum kind kind)
+{
+    struct slot *slot = trace->slots[index];
+    const tl_surface *surface = &slot->surface;
+    struct piece *piece = &slot->pieces[kind];
+    collect_triangles(surface, kind, piece);
+    if (piece->count == 0)
+        return;
+    piece->geometry = rtcNewGeometry(trace->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    rtcSetGeometryBuffer(piece->geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, slot->positions, 0,
+                         sizeof(vec3s), surface->vertex_count);
+    uint32_t *indices = rtcSetNewGeometryBuffer(piece->geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                3 * sizeof(uint32_t), piece->count);
+    if (!indices) /* no memory: the device's error says so to tl_trace_update */
+        return;
+    for (size_t i = 0; i < piece->count; i++)
+        memcpy(indices + 3 * i, surface->indices + 3 * (size_t)piece->triangles[i], 3 * sizeof(uint32_t));
+    if (kind == MASKED) {
+        rtcSetGeometryUserData(piece->geometry, slot);
+        rtcSetGeometryIntersectFilterFunction(piece->geometry, skip_holes);
+        rtcSetGeometryOccludedFilterFunction(piece->geometry, skip_holes);
+    }
+    rtcCommitGeometry(piece->geometry);
+    rtcAttachGeometryByID(trace->scene, piece->geometry, geometry_id(index, kind));
+}
+
+static void copy_positions(const struct slot *slot)
+{
+    memcpy(rtcGetBufferData(slot->positions), slot->surface.positions,
+           slot->surface.vertex_count * sizeof(vec3s));
+}
+
+/* Embree reads 16 bytes from every vertex on, so the buffer is its own and longer. */
+static void build_slot(tl_trace *trace, size_t index, const tl_surface *surface)
+{
+    empty_slot(trace, index);
+    struct slot *slot = trace->slots[index];
+    slot->surface = *surface;
+    slot->positions = rtcNewBuffer(trace->device, (surface->vertex_count + 2) * sizeof(vec3s));
+    if (!slot->positions)
+        return;
+    copy_positions(slot);
+    for (enum kind kind = 0; kind < KINDS; kind++)
+        build_piece(trace, index, kind);
+}
+
+/* What moves once will move again: from now on its tree is built in the quick way. */
+static void move_slot(const struct slot *slot)
+{
+    copy_positions(slot);
+    for (enum kind kind = 0; kind < KINDS; kind++) {
+        RTCGeometry geometry = slot->pieces[kind].geometry;
+        if (!geometry)
+            continue;
+        rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_LOW);
+        rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0);
+        rtcCommitGeometry(geometry);
+    }
+}
+
+static bool update_slot(tl_trace *trace, size_t index, const tl_surface *surface)
+{
+    struct slot *slot = trace->slots[index];
+    const tl_surface *old = &slot->surface;
+    bool fresh = !slot->positions || old->topology_revision != surface->topology_revision ||
+                 old->vertex_count != surface->vertex_count || old->index_count != surface->index_count;
+    bool moved = old->motion_revision != surface->motion_revision;
+    if (fresh) {
+        build_slot(trace, index, surface);
+        return true;
+    }
+    slot->surface = *surface;
+    if (moved)
+        move_slot(slot);
+    return moved;
+}
+
+bool tl_trace_update(tl_trace *trace, const tl_surface *surfaces, size_t count, tl_error *error)
+{
+    bool changed = trace->slot_count != count;
+    resize(trace, count);
+    for (size_t i = 0; i < count; i++)
+        changed |= update_slot(trace, i, &surfaces[i]);
+    if (changed)
+        rtcCommitScene(trace->scene);
+    if (rtcGetDeviceError(trace->device) != RTC_ERROR_NONE)
+        return tl_fail(error, TL_DEVICE, "Embree cannot build the surfaces' tree: give smaller meshes");
+    return true;
+}
+
+static bool is_finite(vec3s v)
+{
+    return isfinite(v.x) && isfinite(v.y) && isfinite(v.z);
+}
+
+static struct RTCRay make_ray(vec3s origin, vec3s direction, float from_m, float to_m)
+{
+    return (struct RTCRay){.org_x = origin.x,
+                           .org_y = origin.y,
+                           .org_z = origin.z,
+                           .tnear = from_m,
+                           .dir_x = direction.x,
+                           .dir_y = direction.y,
+                           .dir_z = direction.z,
+                           .tfar = to_m,
+                           .mask = (unsigned)-1};
+}
+
+struct tl_trace_hit tl_trace_nearest(const tl_trace *trace, vec3s origin, vec3s direction, float from_m,
+                                     float to_m)
+{
+    struct tl_trace_hit none = {.surface = TL_TRACE_NONE};
+    if (!is_finite(origin) || !is_finite(direction))
+        return none;
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    struct RTCRayHit ray = {.ray = make_ray(origin, direction, from_m, to_m),
+                            .hit = {.geomID = RTC_INVALID_GEOMETRY_ID}};
+    rtcIntersect1(trace->scene, &context, &ray);
+    if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID)
+        return none;
+    const struct piece *piece = &trace->slots[ray.hit.geomID / KINDS]->pieces[ray.hit.geomID % KINDS];
+    vec3s normal = {{ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z}};
+    return (struct tl_trace_hit){.surface = ray.hit.geomID / KINDS,
+                                 .triangle = piece->triangles[ray.hit.primID],
+                                 .u = ray.hit.u,
+                                 .v = ray.hit.v,
+                                 .distance_m = ray.ray.tfar,
+                                 .back = glms_vec3_dot(normal, direction) > 0};
+}
+
+bool tl_trace_occluded(const tl_trace *trace, vec3s origin, vec3s direction, float from_m, float to_m)
+{
+    if (!is_finite(origin) || !is_finite(direction))
+        return false;
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    struct RTCRay ray = make_ray(origin, direction, from_m, to_m);
+    rtcOccluded1(trace->scene, &context, &ray);
+    return ray.tfar < 0;
+}
+
+uint32_t tl_trace_occluded_bundle(const tl_trace *trace, const struct tl_trace_bundle *bundle)
+{
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = bundle->coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_NONE;
+    struct RTCRay16 rays = {0};
+    memcpy(rays.org_x, bundle->origin_x, sizeof rays.org_x);
+    memcpy(rays.org_y, bundle->origin_y, sizeof rays.org_y);
+    memcpy(rays.org_z, bundle->origin_z, sizeof rays.org_z);
+    memcpy(rays.dir_x, bundle->direction_x, sizeof rays.dir_x);
+    memcpy(rays.dir_y, bundle->direction_y, sizeof rays.dir_y);
+    memcpy(rays.dir_z, bundle->direction_z, sizeof rays.dir_z);
+    _Alignas(64) int valid[16];
+    for (int i = 0; i < 16; i++) {
+        rays.tnear[i] = bundle->from_m;
+        rays.tfar[i] = bundle->to_m;
+        rays.mask[i] = (unsigned)-1;
+        /* One sum is finite only where all six are, or nearly overflow: such rays hit nothing either. */
+        float sum =
+            rays.org_x[i] + rays.org_y[i] + rays.org_z[i] + rays.dir_x[i] + rays.dir_y[i] + rays.dir_z[i];
+        valid[i] = i < bundle->count && isfinite(sum) ? -1 : 0;
+    }
+    rtcOccluded16(valid, trace->scene, &context, &rays);
+    uint32_t stopped = 0;
+    for (int i = 0; i < 16; i++)
+        stopped |= (uint32_t)(valid[i] && rays.tfar[i] < 0) << i;
+    return stopped;
+}
+
+vec3s tl_smooth_point(vec3s point, const vec3s corners[3], const vec3s normals[3], const float weights[3])
+{
+    vec3s moved = point;
+    for (int i = 0; i < 3; i++) {
+        float height = glms_vec3_dot(glms_vec3_sub(point, corners[i]), normals[i]);
+        moved = glms_vec3_add(moved, glms_vec3_scale(normals[i], -weights[i] * fminf(height, 0)));
+    }
+    return moved;
+}
+
+float tl_trace_offset(const tl_trace *trace)
+{
+    struct RTCBounds box;
+    rtcGetSceneBounds(trace->scene, &box);
+    vec3s lower = {{box.lower_x, box.lower_y, box.lower_z}},
+          upper = {{box.upper_x, box.upper_y, box.upper_z}};
+    float diagonal = glms_vec3_distance(lower, upper);
+    return box.lower_x <= box.upper_x && isfinite(diagonal) ? OFFSET_SHARE * 0.5f * diagonal : OFFSET_SHARE;
+}
+
+size_t tl_trace_bytes(const tl_trace *trace)
+{
+    return (size_t)__atomic_load_n(&trace->bytes, __ATOMIC_RELAXED);
+}
