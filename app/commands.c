@@ -21,6 +21,10 @@ const struct tl_command tl_commands[] = {
      "against "
      "review.",
      TL_FLAGS_SCENE | TL_FLAGS_JSON, tl_command_bench},
+    {"trade", "trade [SCENE] -o FOLDER [--axis light] [--quick] [OPTIONS]",
+     "Measures error against time and memory over many choices of settings: FOLDER/trade.csv and "
+     "report.html.",
+     TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_TRADE, tl_command_trade},
     {"compare", "compare TESTED REFERENCE [--json] [--ldr|--hdr]",
      "Tells how different two images are: relative RMSE, mean FLIP, largest difference.",
      TL_FLAGS_JSON | TL_FLAGS_METRIC, tl_command_compare},
