@@ -78,6 +78,11 @@ bool tl_settings_equal(const struct tl_settings *a, const struct tl_settings *b)
     return true;
 }
 
+struct tl_render_settings tl_settings_render(const struct tl_settings *settings)
+{
+    return (struct tl_render_settings){.light = settings->light, .image = settings->image};
+}
+
 /* One kind of file that can be named or lie on disk. */
 struct layer {
     const char *kind; /* for messages */

@@ -44,6 +44,9 @@ void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[T
 /* True when every option of every table agrees. */
 bool tl_settings_equal(const struct tl_settings *a, const struct tl_settings *b);
 
+/* What of it the renderer takes. */
+struct tl_render_settings tl_settings_render(const struct tl_settings *settings);
+
 /* What the command line says about settings. */
 struct tl_settings_source {
     const char *scene_file;         /* YAML, .glb or .gltf, or NULL: the built-in scene */
