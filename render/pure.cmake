@@ -3,7 +3,6 @@ add_library(toile_light STATIC
   env/cube.c
   env/emitters.c
   env/lobes.c
-  env/sun_stub.c
   light/compose.c
   light/region_lights.c
   frame/view.c
