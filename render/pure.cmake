@@ -6,6 +6,7 @@ add_library(toile_light STATIC
   light/compose.c
   light/region_lights.c
   frame/view.c
+  env/sun.c
   metrics/compare.c
   metrics/flip.c
   pem/chain.c
