@@ -1,5 +1,7 @@
 #include "render/visibility/refresh.h"
 
+#include "config/simd.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -94,24 +96,26 @@ static void place_members(const struct tl_refresh *refresh, const struct tl_clus
             lift(refresh, &cluster->sites[lane_of[k]], lanes, lane_of[k]);
 }
 
-static vec3s mean_normal(const struct lanes *lanes)
+/* The cosine of a direction to the member that faces it most. */
+TL_INLINE float greatest_cosine(const struct lanes *lanes, vec3s direction)
 {
-    vec3s sum = {{0, 0, 0}};
+    float cosines[TL_CLUSTER];
+    for (int i = 0; i < TL_CLUSTER; i++) /* lanes of no member hold zeros */
+        cosines[i] = lanes->nx[i] * direction.x + lanes->ny[i] * direction.y + lanes->nz[i] * direction.z;
+    float greatest = -1;
     for (int i = 0; i < TL_CLUSTER; i++)
-        if (lanes->members >> i & 1)
-            sum = glms_vec3_add(sum, lane_normal(lanes, i));
-    float length = glms_vec3_norm(sum);
-    return length > 0 ? glms_vec3_scale(sum, 1 / length) : sum;
+        greatest = tl_greater(greatest, lanes->members >> i & 1 ? cosines[i] : -1);
+    return greatest;
 }
 
 /* What a stale value of each region costs: its light on the cluster times its age. */
-static void measure_needs(const struct tl_refresh *refresh, const struct tl_cluster *cluster, vec3s normal,
-                          float needs[TL_REGIONS_MAX])
+static void measure_needs(const struct tl_refresh *refresh, const struct tl_cluster *cluster,
+                          const struct lanes *lanes, float needs[TL_REGIONS_MAX])
 {
     int count = refresh->request->regions->count, refreshed = refresh->request->params->refresh;
     uint32_t longest = (uint32_t)(PATIENCE * (count + refreshed - 1) / refreshed);
     for (int i = 0; i < count; i++) {
-        float cosine = glms_vec3_dot(refresh->centres[i], normal);
+        float cosine = greatest_cosine(lanes, refresh->centres[i]);
         uint32_t age = refresh->frame - cluster->stamps[i];
         float weight = refresh->importances[i] * fmaxf(cosine + SINE_BELOW, 0);
         needs[i] = weight * (float)age;
@@ -239,7 +243,7 @@ static size_t replace_some(const struct tl_refresh *refresh, const struct tl_clu
         memset(selected, true, sizeof selected);
     } else {
         float needs[TL_REGIONS_MAX];
-        measure_needs(refresh, cluster, mean_normal(&lanes), needs);
+        measure_needs(refresh, cluster, &lanes, needs);
         select_regions(needs, regions->count, wanted, selected);
     }
     for (int i = 0; i < regions->count; i++) {
