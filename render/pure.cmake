@@ -26,5 +26,6 @@ add_library(toile_light STATIC
   surfaces/ground.c
   trace/cutout.c
   trace/trace.c
+  visibility/fit.c
 )
 target_link_libraries(toile_light PUBLIC toile_assets PRIVATE embree)

@@ -119,6 +119,12 @@ static tl_bits scene_facts(const struct tl_render_settings *settings)
     tl_bits facts = TL_BIT(TL_SCENE_RASTER) | TL_BIT(rays ? TL_SCENE_RAYS : TL_SCENE_PASSES);
     if (shadowed)
         facts |= TL_BIT(TL_SCENE_SHADOWS) | (rays ? 0 : TL_BIT(TL_SCENE_MAPS));
+    if (light->visibility == TL_VISIBILITY_VSM)
+        facts |= TL_BIT(TL_SCENE_BLUR);
+    if (!rays && tl_light_source(light) == TL_LIGHT_CHAIN)
+        facts |= TL_BIT(TL_SCENE_CHAINS);
+    if (rays || tl_light_needs_exact(light))
+        facts |= TL_BIT(TL_SCENE_EXACT);
     return facts;
 }
 
@@ -174,7 +180,7 @@ static void reload_shaders(tl_renderer *renderer)
     tl_error error = {0};
     if (!tl_shadow_maps_reload(renderer->maps, &error) ||
         !tl_program_reload(&renderer->gbuffer.program, &error) ||
-        !tl_program_reload(&renderer->lighting.program, &error) ||
+        !tl_lighting_reload(&renderer->lighting, &error) ||
         !tl_program_reload(&renderer->present.resolve, &error) ||
         !tl_program_reload(&renderer->present.show, &error))
         tl_warn("%s", error.message);
@@ -296,7 +302,7 @@ struct tl_render_memory tl_renderer_memory(const tl_renderer *renderer)
         .targets = tl_target_bytes(&renderer->gbuffer.target) + tl_target_bytes(&renderer->lighting.target) +
                    tl_present_bytes(present),
         .surfaces = tl_surfaces_bytes(renderer->surfaces),
-        .other = tl_texture_bytes(&renderer->lighting.lobe_levels) + tl_texture_bytes(&present->backdrop) +
+        .other = tl_lighting_bytes(&renderer->lighting) + tl_texture_bytes(&present->backdrop) +
                  tl_texture_bytes(&present->blurred),
     };
     memory.total = memory.pems + memory.maps + memory.rays + memory.targets + memory.surfaces + memory.other;

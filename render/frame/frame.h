@@ -30,7 +30,8 @@ enum tl_resource {
     TL_INPUT_PASSES,
     TL_INPUT_MAPS,  /* size and blur of the shadow maps */
     TL_INPUT_RAYS,  /* how rays are spent */
-    TL_INPUT_ROUND, /* which of the jittered frames that are averaged while nothing moves */
+    TL_INPUT_ROUND,       /* which of the jittered frames that are averaged while nothing changes */
+    TL_INPUT_SCENE_ROUND, /* ... while nothing but the camera does */
     TL_INPUT_LIGHT, /* how light is put together */
     TL_INPUT_REFERENCE,
     TL_INPUT_SHOW, /* exposure and background */
@@ -62,6 +63,9 @@ enum tl_scene_fact {
     TL_SCENE_MAPS,    /* ... of shadow maps */
     TL_SCENE_RAYS,    /* the back-end of rays lights the image */
     TL_SCENE_PASSES,  /* passes on the GPU do */
+    TL_SCENE_CHAINS,  /* ... and read filter chains */
+    TL_SCENE_EXACT,   /* exact light of the whole environment is read */
+    TL_SCENE_BLUR,    /* shadow maps are variance maps */
     TL_SCENE_REFERENCE,
     TL_SCENE_FACT_COUNT
 };

@@ -43,6 +43,12 @@ static uint64_t light_signature(const struct tl_light_params *light)
     return MIX(MIX(MIX(hash, light->depth_bias_m), light->min_variance), light->bleed_reduction);
 }
 
+static uint64_t maps_signature(const struct tl_light_params *light)
+{
+    uint64_t hash = MIX(MIX(FNV_OFFSET, light->visibility), light->map_size);
+    return MIX(MIX(hash, light->blur_m), light->jitter);
+}
+
 static uint64_t rays_signature(const struct tl_light_params *light)
 {
     uint64_t hash = MIX(MIX(FNV_OFFSET, light->rays), light->refresh);
@@ -60,7 +66,8 @@ static void count_rest(const struct tl_light_params *light, const uint64_t befor
 {
     bool image_rests = true, scene_rests = true;
     for (int i = 0; i < TL_INPUT_COUNT; i++) {
-        if (i == TL_INPUT_ROUND || i == TL_INPUT_SHOW || signatures[i] == before[i])
+        bool is_outcome = i == TL_INPUT_ROUND || i == TL_INPUT_SCENE_ROUND;
+        if (is_outcome || i == TL_INPUT_SHOW || signatures[i] == before[i])
             continue;
         image_rests = false;
         scene_rests = scene_rests && (i == TL_INPUT_CAMERA || i == TL_INPUT_SIZE);
@@ -89,11 +96,12 @@ void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *setti
     signatures[TL_INPUT_SUN] = MIX(start, light->sun);
     signatures[TL_INPUT_REGIONS] = MIX(MIX(start, light->regions), light->cut);
     signatures[TL_INPUT_PASSES] = MIX(start, light->pems_per_pass);
-    signatures[TL_INPUT_MAPS] = MIX(MIX(MIX(start, light->map_size), light->blur_m), light->jitter);
+    signatures[TL_INPUT_MAPS] = maps_signature(light);
     signatures[TL_INPUT_RAYS] = rays_signature(light);
     signatures[TL_INPUT_LIGHT] = light_signature(light);
     signatures[TL_INPUT_REFERENCE] = reference_signature(&settings->reference);
     signatures[TL_INPUT_SHOW] = MIX(MIX(start, image->exposure_ev), image->background);
     count_rest(light, before, signatures, rest);
-    signatures[TL_INPUT_ROUND] = MIX(MIX(start, rest->image), rest->scene);
+    signatures[TL_INPUT_ROUND] = MIX(start, rest->image);
+    signatures[TL_INPUT_SCENE_ROUND] = MIX(start, rest->scene);
 }

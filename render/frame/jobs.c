@@ -25,6 +25,7 @@ const char *const tl_resource_names[] = {
     [TL_INPUT_MAPS] = "shadow map options",
     [TL_INPUT_RAYS] = "ray options",
     [TL_INPUT_ROUND] = "round",
+    [TL_INPUT_SCENE_ROUND] = "round of the scene",
     [TL_INPUT_LIGHT] = "light options",
     [TL_INPUT_REFERENCE] = "reference options",
     [TL_INPUT_SHOW] = "exposure and background",
@@ -53,6 +54,9 @@ const char *const tl_scene_fact_names[] = {
     [TL_SCENE_MAPS] = "shadow maps",
     [TL_SCENE_RAYS] = "rays",
     [TL_SCENE_PASSES] = "light passes",
+    [TL_SCENE_CHAINS] = "filter chains",
+    [TL_SCENE_EXACT] = "exact light",
+    [TL_SCENE_BLUR] = "variance maps",
     [TL_SCENE_REFERENCE] = "reference",
     NULL,
 };
@@ -121,6 +125,7 @@ static bool run_lobes(void *context, int level, tl_error *error)
     tl_renderer *renderer = context;
     (void)level, (void)error;
     tl_lobes_make(&renderer->lobes, &renderer->cube, exponents_of(&renderer->frame));
+    tl_lighting_set_exact(&renderer->lighting, renderer->gpu, &renderer->lobes);
     return true;
 }
 
@@ -182,16 +187,22 @@ static bool run_surfaces(void *context, int level, tl_error *error)
 static struct tl_shadow_request shadow_request(const tl_renderer *renderer)
 {
     const struct tl_light_params *light = &renderer->settings.light;
+    bool in_passes = tl_light_source(light) == TL_LIGHT_CHAIN;
     return (struct tl_shadow_request){
+        .kind = (enum tl_visibility)light->visibility,
         .regions = &renderer->regions,
+        .suns = &renderer->suns,
         .environment_yaw = renderer->frame.environment_yaw,
+        .caster_surfaces = renderer->frame.surfaces,
+        .caster_count = renderer->frame.surface_count,
         .casters = renderer->casters,
         .surfaces = renderer->surfaces,
         .surface_count = renderer->surface_count,
         .ground_index = renderer->settings.image.ground ? (int)renderer->surface_count - 1 : -1,
         .map_size = light->map_size,
-        .maps_per_array = light->pems_per_pass,
-        .blur_m = light->blur_m};
+        .maps_per_array = in_passes ? light->pems_per_pass : TL_REGIONS_MAX,
+        .blur_m = light->blur_m,
+        .round = renderer->rest.image};
 }
 
 static bool run_maps(void *context, int level, tl_error *error)
@@ -226,18 +237,19 @@ static bool run_gbuffer(void *context, int level, tl_error *error)
 static bool run_light(void *context, int level, tl_error *error)
 {
     tl_renderer *renderer = context;
-    (void)level, (void)error;
+    (void)level;
     const struct tl_light_request request = {.gbuffer = &renderer->gbuffer,
                                              .pems = &renderer->pems,
                                              .regions = &renderer->regions,
+                                             .suns = &renderer->suns,
                                              .maps = renderer->maps,
                                              .casters = renderer->casters,
                                              .ground = ground_of(renderer),
                                              .environment_yaw = renderer->frame.environment_yaw,
                                              .eye = renderer->view.eye,
+                                             .round = renderer->rest.image,
                                              .params = &renderer->settings.light};
-    tl_lighting_draw(&renderer->lighting, renderer->gpu, &request);
-    return true;
+    return tl_lighting_draw(&renderer->lighting, renderer->gpu, &request, error);
 }
 
 static bool run_samples(void *context, int level, tl_error *error)
@@ -376,18 +388,21 @@ const tl_job tl_frame_jobs[] = {
      .what = "calibration of glossiness to chain level",
      .reads = SET2(TL_INPUT_PEM_SIZE, TL_INPUT_FILTER),
      .writes = SET1(TL_MADE_LOBE),
+     .requires_scene = SET1(TL_SCENE_CHAINS),
      .levels = LEVELS_ONE,
      .run = run_lobe},
     {.name = "pems",
      .what = "a filtered copy of the cube for each region",
      .reads = SET4(TL_MADE_CUBE, TL_MADE_REGIONS, TL_INPUT_FILTER, TL_INPUT_PASSES),
      .writes = SET1(TL_MADE_PEMS),
+     .requires_scene = SET1(TL_SCENE_CHAINS),
      .levels = LEVELS_ONE,
      .run = run_pems},
     {.name = "lobes",
      .what = "the whole environment through exact lobes",
      .reads = SET2(TL_MADE_CUBE, TL_INPUT_SHAPES),
      .writes = SET1(TL_MADE_LOBES),
+     .requires_scene = SET1(TL_SCENE_EXACT),
      .levels = LEVELS_ONE,
      .run = run_lobes},
     {.name = "lights",
@@ -404,8 +419,9 @@ const tl_job tl_frame_jobs[] = {
      .levels = LEVELS_ONE,
      .run = run_surfaces},
     {.name = "maps",
-     .what = "a variance shadow map for each region",
-     .reads = SET5(TL_MADE_SURFACES, TL_MADE_REGIONS, TL_INPUT_YAW, TL_INPUT_MAPS, TL_INPUT_PASSES),
+     .what = "a shadow map for each region and sun",
+     .reads = SET5(TL_MADE_SURFACES, TL_MADE_REGIONS, TL_INPUT_YAW, TL_INPUT_MAPS, TL_INPUT_PASSES) |
+              SET1(TL_INPUT_ROUND),
      .writes = SET1(TL_MADE_DEPTHS),
      .requires_scene = SET1(TL_SCENE_MAPS),
      .levels = LEVELS_ONE,
@@ -414,7 +430,7 @@ const tl_job tl_frame_jobs[] = {
      .what = "shadow maps blurred by the size of their regions",
      .reads = SET3(TL_MADE_DEPTHS, TL_MADE_REGIONS, TL_MADE_SURFACES),
      .writes = SET1(TL_MADE_MAPS),
-     .requires_scene = SET1(TL_SCENE_MAPS),
+     .requires_scene = SET2(TL_SCENE_MAPS, TL_SCENE_BLUR),
      .levels = LEVELS_ONE,
      .run = run_blur},
     {.name = "gbuffer",
@@ -433,7 +449,7 @@ const tl_job tl_frame_jobs[] = {
     {.name = "points",
      .what = "rays: visibility of the regions, kept at vertices",
      .reads = SET5(TL_MADE_SAMPLES, TL_MADE_REGIONS, TL_INPUT_SHAPES, TL_INPUT_MOTION, TL_INPUT_GROUND) |
-              SET3(TL_INPUT_YAW, TL_INPUT_RAYS, TL_INPUT_ROUND),
+              SET3(TL_INPUT_YAW, TL_INPUT_RAYS, TL_INPUT_SCENE_ROUND),
      .writes = SET1(TL_MADE_POINTS),
      .requires_scene = SET2(TL_SCENE_RAYS, TL_SCENE_SHADOWS),
      .levels = LEVELS_ONE,
@@ -441,7 +457,8 @@ const tl_job tl_frame_jobs[] = {
     {.name = "light",
      .what = "visibility times PEM, summed over the regions",
      .reads = SET5(TL_MADE_GBUFFER, TL_MADE_PEMS, TL_MADE_REGIONS, TL_MADE_LOBE, TL_MADE_MAPS) |
-              SET5(TL_MADE_SURFACES, TL_INPUT_YAW, TL_INPUT_CAMERA, TL_INPUT_LIGHT, TL_INPUT_GROUND),
+              SET5(TL_MADE_SURFACES, TL_INPUT_YAW, TL_INPUT_CAMERA, TL_INPUT_LIGHT, TL_INPUT_GROUND) |
+              SET3(TL_MADE_LOBES, TL_MADE_DEPTHS, TL_INPUT_ROUND),
      .writes = SET1(TL_MADE_LIGHT),
      .requires_scene = SET1(TL_SCENE_PASSES),
      .levels = LEVELS_ONE,
