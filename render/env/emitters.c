@@ -9,10 +9,10 @@
 
 /* A lobe is cut off where it is below this part of its peak: at the edge of a sun that outshines all the rest
  * ten thousand times that is a tenth of what is there. */
-#define LOBE_CUT 1e-5f
+#define LOBE_CUT 1e-4f
 
 /* Cells are at most this many lobe widths 1 / sqrt(s) wide. */
-#define MERGE_WIDTH 0.5f
+#define MERGE_WIDTH 0.3f
 
 /* Bits of x or of y in a code; the face stands above them. */
 #define CODE_BITS 13
@@ -227,15 +227,16 @@ static float cosine_of(float angle)
 /* Bit i: direction i is within the cosine of the axis. */
 TL_INLINE uint32_t find_within(const struct tl_directions *directions, vec3s axis, float cosine)
 {
-    static const uint32_t bit[TL_LANES] = {1,        1u << 1,  1u << 2,  1u << 3, 1u << 4,  1u << 5,
-                                           1u << 6,  1u << 7,  1u << 8,  1u << 9, 1u << 10, 1u << 11,
-                                           1u << 12, 1u << 13, 1u << 14, 1u << 15};
-    uint32_t bits = 0;
-    for (int i = 0; i < TL_LANES; i++) {
-        float other = directions->x[i] * axis.x + directions->y[i] * axis.y + directions->z[i] * axis.z;
-        bits |= other >= cosine ? bit[i] : 0;
-    }
-    return bits;
+    float cosines[TL_LANES];
+    int32_t within[TL_LANES];
+    for (int i = 0; i < TL_LANES; i++)
+        cosines[i] = directions->x[i] * axis.x + directions->y[i] * axis.y + directions->z[i] * axis.z;
+    for (int i = 0; i < TL_LANES; i++)
+        within[i] = cosines[i] >= cosine ? 1 << i : 0;
+    int32_t bits = 0;
+    for (int i = 0; i < TL_LANES; i++)
+        bits |= within[i];
+    return (uint32_t)bits;
 }
 
 TL_INLINE void add_emitter(const struct tl_emitter_block *block, int k, const struct tl_gaze *gaze,

@@ -12,7 +12,7 @@
 /* Texels along the side of a map: they follow the lobe's width, and the widest lobes, which end at a horizon
  * rather than fade, need some more. */
 #define SIDE_PER_WIDTH  16
-#define SIDE_OF_HORIZON 16
+#define SIDE_OF_HORIZON 32
 /* Sixteen lanes look at a square of the map. */
 #define TILE 4
 /* Samples along a side of a texel of the environment itself. */
@@ -29,7 +29,7 @@ float tl_exponent(int index)
 
 /* The best weights in L1 lie on a straight line over log(s + 1) but for a part that depends little on s: for
  * the ratio sqrt 2 within 0.0003 of the least error [test_slices.c]. */
-#define BLEND_BEND 0.05f
+#define BLEND_BEND 0.033f
 
 struct tl_exponent_blend tl_exponent_blend(float s)
 {

@@ -10,7 +10,7 @@
 
 /* Texels of a map per radian in its middle: they follow the lobe's width, and the widest lobes, which end at
  * a horizon rather than fade, need some more. */
-#define DENSITY_PER_WIDTH  4
+#define DENSITY_PER_WIDTH  3
 #define DENSITY_OF_HORIZON 6
 /* The map ends where the lobe is below this part of its peak; what is lost there is less than that part of
  * the energy, since the lobe's tail beyond holds c^(s + 1). */
