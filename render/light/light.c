@@ -131,10 +131,9 @@ static const tl_program *program_of(struct tl_lighting *lighting, tl_gpu *gpu, e
         [TL_LIGHT_EXACT] = {"#define EXACT\n", "#define EXACT\n", "#define EXACT\n"},
     };
     tl_program *program = &lighting->programs[source][kind];
-    if (!program->id &&
-        !tl_program_create_variant(gpu, tl_embedded_shaders, "fullscreen.vert",
-                                   source == TL_LIGHT_CHAIN ? "chain.frag" : "regions.frag",
-                                   defines[source][kind], program, error))
+    if (!program->id && !tl_program_create_variant(gpu, tl_embedded_shaders, "fullscreen.vert",
+                                                   source == TL_LIGHT_CHAIN ? "chain.frag" : "regions.frag",
+                                                   defines[source][kind], program, error))
         return NULL;
     return program;
 }
@@ -265,8 +264,8 @@ static void use_program(const tl_program *program, const struct tl_light_request
         glUniform4f(GROUND_DISC, 0, 0, 0, 0);
 }
 
-/* The passes of one image add up; images are averaged over the rounds: each new one counts 1 / (round + 1), what is in
- * the target the rest. */
+/* The passes of one image add up; images are averaged over the rounds: each new one counts 1 / (round + 1),
+ * what is in the target the rest. */
 static void draw_pass(tl_gpu *gpu, bool is_first)
 {
     glBlendFunc(GL_CONSTANT_ALPHA, is_first ? GL_ONE_MINUS_CONSTANT_ALPHA : GL_ONE);

@@ -32,10 +32,6 @@ struct Light {
     vec3 diffuse, glossy;
 };
 
-#ifdef SLICES
-#include "slices.glsl"
-#endif
-
 Light lobe_light(Region region, vec3 normal, Lobe gloss)
 {
     float exponent = lobe_broadened_exponent(gloss.exponent, region.power.w);
