@@ -37,13 +37,12 @@ static char *copy_part(const char *begin, const char *end)
 static bool split(const char *text, struct pattern *out, tl_error *error)
 {
     const char *name = file_name(text), *begin = strchr(name, '#');
-    const char *end = begin + strspn(begin, "#");
-    if (strchr(end, '#'))
-        return tl_fail(error, TL_USAGE, "%s: has # in two places: one run of # stands for the frame's number",
-                       text);
-    if (end - begin > DIGITS_MAX)
-        return tl_fail(error, TL_USAGE, "%s: has more than %d #: frame numbers are shorter", text,
-                       DIGITS_MAX);
+    const char *end = begin ? begin + strspn(begin, "#") : name;
+    if (!begin || strchr(end, '#') || end - begin > DIGITS_MAX) {
+        tl_fail(error, TL_USAGE, "%s: is no sequence: one run of up to %d # stands for the frame's number",
+                text, DIGITS_MAX);
+        return false;
+    }
     *out = (struct pattern){.folder = copy_part(text, name),
                             .before = copy_part(name, begin),
                             .after = tl_copy_string(end),

@@ -110,8 +110,9 @@ static void what_is_wrong_is_named(void **state)
     expect_refusal(FOLDER "/gap.##.exr", "gap.03.exr: is missing between frames 1 and 5");
     expect_refusal(FOLDER "/none.##.exr", "none.##.exr: no file has such a name");
     expect_refusal(FOLDER "/nowhere/a.##.exr", "its folder cannot be read");
-    expect_refusal(FOLDER "/a.#.b.#.exr", "two places");
-    expect_refusal(FOLDER "/a.##########.exr", "more than 9");
+    expect_refusal(FOLDER "/a.#.b.#.exr", "one run of up to 9 #");
+    expect_refusal(FOLDER "/a.exr", "one run of up to 9 #");
+    expect_refusal(FOLDER "/a.##########.exr", "one run of up to 9 #");
 
     write_frame("torn.1.exr", 1);
     write_text("torn.2.exr");
