@@ -4,6 +4,7 @@ add_library(toile_light STATIC
   env/emitters.c
   env/lobes.c
   light/compose.c
+  env/sun.c
   metrics/compare.c
   metrics/flip.c
   pem/chain.c

@@ -83,6 +83,21 @@ float tl_cube_solid_angle(int size, int x, int y)
     return (float)rectangle_solid_angle(x * step, y * step, (x + 1) * step, (y + 1) * step);
 }
 
+void tl_cube_solid_angles(int size, float *out)
+{
+    int half = (size + 1) / 2;
+    for (int y = 0; y < half; y++) {
+        for (int x = 0; x <= y; x++) {
+            float value = tl_cube_solid_angle(size, x, y);
+            const int columns[2] = {x, size - 1 - x}, rows[2] = {y, size - 1 - y};
+            for (int i = 0; i < 4; i++) {
+                out[rows[i >> 1] * size + columns[i & 1]] = value;
+                out[columns[i & 1] * size + rows[i >> 1]] = value;
+            }
+        }
+    }
+}
+
 static int clamp_index(int value, int count)
 {
     return value < 0 ? 0 : value >= count ? count - 1 : value;

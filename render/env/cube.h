@@ -32,6 +32,9 @@ vec3s tl_turn_direction(vec3s direction, float yaw);
 
 /* Exact solid angle of texel (x, y), steradians. */
 float tl_cube_solid_angle(int size, int x, int y);
+/* ... of all texels of a face, which are the same on each: [size][size]. To the last bit that of the texel's
+ * mirror image in the first eighth of the face. */
+void tl_cube_solid_angles(int size, float *out);
 
 /* The texels and weights of a seamless bilinear fetch: a cube of `size` reads the same texels for the same
  * direction whatever it holds. */
