@@ -5,6 +5,7 @@ add_library(toile_light STATIC
   env/lobes.c
   light/compose.c
   env/sun.c
+  frame/view.c
   metrics/compare.c
   metrics/flip.c
   pem/chain.c
@@ -14,6 +15,12 @@ add_library(toile_light STATIC
   pem/regions_faces.c
   pem/regions_sphere.c
   plan/plan.c
+  reference/gather.c
+  reference/options.c
+  reference/reference.c
+  reference/sky.c
+  reference/spot.c
+  reference/texture.c
   surfaces/ground.c
   trace/cutout.c
   trace/trace.c
