@@ -14,9 +14,6 @@
 typedef float tl_lanes __attribute__((vector_size(TL_LANES * sizeof(float))));
 typedef int32_t tl_lanes_int __attribute__((vector_size(TL_LANES * sizeof(float))));
 
-/* Lanes pass by value only between static inline functions, so that how the ABI passes them is no concern. */
-#pragma GCC diagnostic ignored "-Wpsabi"
-
 /* Before a hot function's definition: it is compiled for AVX-512, for AVX2 and for any x86-64, and the best
  * is chosen as the program starts. What it calls must be TL_INLINE to go with it. Sanitizers run before such
  * a choice can be made, so with them there is one version. */
@@ -85,8 +82,5 @@ TL_INLINE float tl_power(float a, float b)
 {
     return tl_exp2(b * tl_log2(tl_greater(a, 1e-30f)));
 }
-
-/* For what such a function calls: inlined whatever its size, and so compiled for the same machine. */
-#define TL_LANES_INLINE static inline __attribute__((always_inline))
 
 #endif

@@ -14,6 +14,7 @@ add_library(toile_light STATIC
   pem/regions.c
   pem/regions_faces.c
   pem/regions_sphere.c
+  pem/slices.c
   plan/plan.c
   reference/gather.c
   reference/options.c

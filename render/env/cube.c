@@ -103,7 +103,7 @@ static int clamp_index(int value, int count)
     return value < 0 ? 0 : value >= count ? count - 1 : value;
 }
 
-static int texel_at(int size, vec3s direction)
+int tl_cube_texel(int size, vec3s direction)
 {
     int face;
     float s, t;
@@ -121,7 +121,7 @@ static int texel_across(int size, int face, int x, int y)
     float over = 0.25f / (float)size, step = 1 / (float)size;
     float s = x < 0 ? -over : x >= size ? 1 + over : ((float)x + 0.5f) * step;
     float t = y < 0 ? -over : y >= size ? 1 + over : ((float)y + 0.5f) * step;
-    return texel_at(size, tl_cube_direction(face, s, t));
+    return tl_cube_texel(size, tl_cube_direction(face, s, t));
 }
 
 struct tl_cube_taps tl_cube_taps(int size, vec3s direction)
@@ -317,7 +317,7 @@ static vec3s pour_direction(const struct pour *pour, int x, int y)
 
 static int pour_texel(const struct pour *pour, int x, int y)
 {
-    return texel_at(pour->size, pour_direction(pour, x, y));
+    return tl_cube_texel(pour->size, pour_direction(pour, x, y));
 }
 
 static void pour_whole(const struct pour *pour, const float *colour, const struct cell *cell, double share,

@@ -25,6 +25,8 @@ tl_cube tl_cube_from_environment(const tl_environment *environment, int size);
  * the plane of the face is continued. OpenGL 4.5, table 8.19 inverted. */
 vec3s tl_cube_direction(int face, float s, float t);
 void tl_cube_locate(vec3s direction, int *face, float *s, float *t);
+/* (face * size + y) * size + x of the texel that a direction lies in. */
+int tl_cube_texel(int size, vec3s direction);
 
 /* World direction of a direction in the environment, which is turned by `yaw` (rad) about +Y,
  * counter-clockwise from above; -yaw takes it back. */

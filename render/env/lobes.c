@@ -9,10 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Texels along the side of a map: they follow the lobe's width, and wide lobes, which end at a horizon rather
- * than fade, need some more. */
-#define SIDE_PER_WIDTH 16
-#define SIDE_LEAST     12
+/* Texels along the side of a map: they follow the lobe's width, and the widest lobes, which end at a horizon
+ * rather than fade, need some more. */
+#define SIDE_PER_WIDTH  16
+#define SIDE_OF_HORIZON 32
 /* Sixteen lanes look at a square of the map. */
 #define TILE 4
 /* Samples along a side of a texel of the environment itself. */
@@ -29,7 +29,7 @@ float tl_exponent(int index)
 
 /* The best weights in L1 lie on a straight line over log(s + 1) but for a part that depends little on s: for
  * the ratio sqrt 2 within 0.0003 of the least error [test_slices.c]. */
-#define BLEND_BEND 0.05f
+#define BLEND_BEND 0.033f
 
 struct tl_exponent_blend tl_exponent_blend(float s)
 {
@@ -77,34 +77,18 @@ static float square_scale(vec3s p)
     return sum / 2;
 }
 
-/* The exponent to convolve with so that what a bilinear fetch makes of the samples has the first moment of
- * K_s. Variances along one axis add up as the mean cosine, (s + 1) / (s + 2), is multiplied by 1 - variance
- * each; the fetch adds step^2 / 6, an emitter lacks the extent of its texel. */
-static float sharpened(float s, float step_square, float texel_variance)
+static void look(int side, int left, int top, float s, struct tl_gaze *gaze)
 {
-    float mean = (s + 1) / (s + 2) * (1 - texel_variance) / (1 - step_square / 6);
-    return 1 / (1 - mean) - 2;
-}
-
-static void look(int side, int left, int top, float s, float texel_variance, struct tl_gaze *gaze)
-{
-    float step = 2 / (float)side;
-    vec3s directions[TL_LANES], sum = {{0, 0, 0}};
+    float step = 2 / (float)side, steps[TL_LANES];
+    vec3s directions[TL_LANES];
     for (int i = 0; i < TL_LANES; i++) {
         float u = ((float)(left + i % TILE) + 0.5f) * step - 1,
               v = ((float)(top + i / TILE) + 0.5f) * step - 1;
         vec3s p = unfold(u, v);
         directions[i] = glms_vec3_normalize(p);
-        sum = glms_vec3_add(sum, directions[i]);
-        gaze->x[i] = directions[i].x;
-        gaze->y[i] = directions[i].y;
-        gaze->z[i] = directions[i].z;
-        gaze->exponent[i] = sharpened(s, step * step * square_scale(p), texel_variance);
+        steps[i] = step * sqrtf(square_scale(p));
     }
-    gaze->axis = glms_vec3_normalize(sum);
-    gaze->radius = 0;
-    for (int i = 0; i < TL_LANES; i++)
-        gaze->radius = fmaxf(gaze->radius, glms_vec3_angle(gaze->axis, directions[i]));
+    tl_gaze_set(gaze, directions, steps, s);
 }
 
 static float *texel_of(const struct tl_lobe_map *map, int x, int y)
@@ -140,17 +124,19 @@ static int whole_tiles(float side)
     return TILE * (int)ceilf(side / TILE);
 }
 
-static struct tl_lobe_map convolve(const struct tl_emitters *texels, int cube_size, float s)
+static struct tl_lobe_map convolve(const tl_emitter *texels, int cube_size, float s)
 {
-    struct tl_emitters emitters = tl_emitters_merge(texels, cube_size, s);
-    struct tl_lobe_map map = create_map(whole_tiles(SIDE_PER_WIDTH * sqrtf(s) + SIDE_LEAST));
+    float width = 1 / sqrtf(s);
+    size_t count = 6 * (size_t)cube_size * (size_t)cube_size;
+    struct tl_emitters emitters = tl_emitters_merge(texels, count, cube_size, s);
+    struct tl_lobe_map map = create_map(whole_tiles(SIDE_PER_WIDTH / width + SIDE_OF_HORIZON * width));
     int tiles = map.side / TILE;
 #pragma omp parallel for schedule(dynamic, 4)
     for (int tile = 0; tile < tiles * tiles; tile++) {
         struct tl_gaze gaze;
-        tl_lanes colour[3];
+        float colour[3][TL_LANES];
         int left = tile % tiles * TILE, top = tile / tiles * TILE;
-        look(map.side, left, top, s, emitters.texel_variance, &gaze);
+        look(map.side, left, top, s, &gaze);
         tl_emitters_gather(&emitters, &gaze, colour);
         for (int i = 0; i < TL_LANES; i++)
             for (int c = 0; c < 3; c++)
@@ -159,18 +145,6 @@ static struct tl_lobe_map convolve(const struct tl_emitters *texels, int cube_si
     fill_border(&map);
     tl_emitters_release(&emitters);
     return map;
-}
-
-static const float *nearest_texel(const tl_cube *cube, vec3s direction)
-{
-    int face;
-    float s, t;
-    tl_cube_locate(direction, &face, &s, &t);
-    int last = cube->size - 1;
-    int x = (int)(s * (float)cube->size), y = (int)(t * (float)cube->size);
-    x = x < last ? x : last;
-    y = y < last ? y : last;
-    return cube->texels + 3 * ((size_t)(face * cube->size + y) * (size_t)cube->size + (size_t)x);
 }
 
 /* The environment itself: the mean over every texel. */
@@ -186,7 +160,7 @@ static struct tl_lobe_map sample_area(const tl_cube *cube)
             for (int i = 0; i < AREA_SAMPLES * AREA_SAMPLES; i++) {
                 float u = ((float)(x * AREA_SAMPLES + i % AREA_SAMPLES) + 0.5f) * step - 1;
                 float v = ((float)(y * AREA_SAMPLES + i / AREA_SAMPLES) + 0.5f) * step - 1;
-                const float *source = nearest_texel(cube, unfold(u, v));
+                const float *source = cube->texels + 3 * (size_t)tl_cube_texel(cube->size, unfold(u, v));
                 for (int c = 0; c < 3; c++)
                     texel[c] += source[c] / (AREA_SAMPLES * AREA_SAMPLES);
             }
@@ -194,6 +168,22 @@ static struct tl_lobe_map sample_area(const tl_cube *cube)
     }
     fill_border(&map);
     return map;
+}
+
+static tl_emitter *collect_all(const tl_cube *cube)
+{
+    int size = cube->size, half = (size + 1) / 2;
+    float *solid_angles = TL_NEW_ARRAY(float, (size_t)size *(size_t)size);
+    for (int y = 0; y < half; y++)
+        for (int x = 0; x < half; x++)
+            solid_angles[y * size + x] = solid_angles[y * size + size - 1 - x] =
+                solid_angles[(size - 1 - y) * size + x] = solid_angles[(size - 1 - y) * size + size - 1 - x] =
+                    tl_cube_solid_angle(size, x, y);
+    uint32_t *order = tl_emitters_order(size);
+    tl_emitter *texels = tl_emitters_collect(cube, solid_angles, order, 6 * (size_t)size * (size_t)size);
+    free(order);
+    free(solid_angles);
+    return texels;
 }
 
 void tl_lobes_make(struct tl_lobes *lobes, const tl_cube *cube, uint32_t needed)
@@ -205,12 +195,11 @@ void tl_lobes_make(struct tl_lobes *lobes, const tl_cube *cube, uint32_t needed)
     missing &= (1u << TL_EXPONENT_COUNT) - 1;
     if (!missing)
         return;
-    struct tl_emitters texels;
-    tl_emitters_collect(cube, NULL, 1, &texels);
+    tl_emitter *texels = collect_all(cube);
     for (int i = 0; i < TL_EXPONENT_COUNT; i++)
         if (missing & 1u << i)
-            lobes->maps[i] = convolve(&texels, cube->size, tl_exponent(i));
-    tl_emitters_release(&texels);
+            lobes->maps[i] = convolve(texels, cube->size, tl_exponent(i));
+    free(texels);
 }
 
 void tl_lobes_release(struct tl_lobes *lobes)

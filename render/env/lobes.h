@@ -10,8 +10,8 @@
 
 /* Exponents 1 to 1024 in steps whose ratio is TL_EXPONENT_RATIO; beyond them the environment itself. The
  * ratio is justified by tests/render/test_slices.c. */
-#define TL_EXPONENT_COUNT 21
-#define TL_EXPONENT_RATIO 1.41421356f
+#define TL_EXPONENT_COUNT 31
+#define TL_EXPONENT_RATIO 1.25992105f
 
 /* Which two exponents stand for s, and the weight of the second: fitted so that the blend's lobe is nearest
  * to K_s in L1. index + 1 == TL_EXPONENT_COUNT: between 1024 and the environment itself. */

@@ -8,15 +8,10 @@
 
 struct tl_lobe_source tl_lobe_source(int size, vec3s direction)
 {
-    int face;
-    float s, t;
-    tl_cube_locate(direction, &face, &s, &t);
-    int x = (int)(s * (float)size), y = (int)(t * (float)size);
-    x = x < size ? x : size - 1;
-    y = y < size ? y : size - 1;
+    int texel = tl_cube_texel(size, direction);
+    int face = texel / (size * size), y = texel / size % size, x = texel % size;
     float radiance = 1 / tl_cube_solid_angle(size, x, y);
-    struct tl_lobe_source source = {.texel = (face * size + y) * size + x,
-                                    .power = {{radiance, radiance, radiance}}};
+    struct tl_lobe_source source = {.texel = texel, .power = {{radiance, radiance, radiance}}};
     for (int i = 0; i < TL_LOBE_SOURCE_POINTS; i++) {
         int fine_x = POINTS_ALONG * x + i % POINTS_ALONG, fine_y = POINTS_ALONG * y + i / POINTS_ALONG;
         float step = 1 / (float)(POINTS_ALONG * size);
