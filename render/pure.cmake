@@ -6,6 +6,7 @@ add_library(toile_light STATIC
   light/compose.c
   env/sun.c
   frame/view.c
+  light/region_lights.c
   metrics/compare.c
   metrics/flip.c
   pem/chain.c

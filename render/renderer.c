@@ -94,6 +94,7 @@ void tl_renderer_destroy(tl_renderer **renderer)
     tl_regions_release(&(*renderer)->regions);
     tl_pems_release(&(*renderer)->pems);
     tl_lobes_release(&(*renderer)->lobes);
+    tl_region_lights_release(&(*renderer)->lights);
     tl_surfaces_destroy(&(*renderer)->surfaces);
     tl_triangle_ranges_release(&(*renderer)->ranges);
     tl_samples_release(&(*renderer)->samples);

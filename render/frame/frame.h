@@ -6,6 +6,7 @@
 #include "render/env/sun.h"
 #include "render/light/gbuffer.h"
 #include "render/light/light.h"
+#include "render/light/region_lights.h"
 #include "render/light/samples.h"
 #include "render/present/present.h"
 #include "render/renderer.h"
@@ -40,6 +41,7 @@ enum tl_resource {
     TL_MADE_LOBE,
     TL_MADE_PEMS,
     TL_MADE_LOBES,
+    TL_MADE_LIGHTS, /* regions as lights */
     TL_MADE_SURFACES,
     TL_MADE_DEPTHS,
     TL_MADE_MAPS,
@@ -107,6 +109,7 @@ struct tl_renderer {
     uint64_t regions_revision;
     struct tl_pems pems;
     struct tl_lobes lobes;
+    struct tl_region_lights lights;
     tl_surfaces *surfaces;
     size_t surface_count; /* with the ground, which comes last */
     struct tl_casters casters;

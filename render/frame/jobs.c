@@ -34,6 +34,7 @@ const char *const tl_resource_names[] = {
     [TL_MADE_LOBE] = "lobe table",
     [TL_MADE_PEMS] = "PEMs",
     [TL_MADE_LOBES] = "lobes",
+    [TL_MADE_LIGHTS] = "regions as lights",
     [TL_MADE_SURFACES] = "surfaces",
     [TL_MADE_DEPTHS] = "depths",
     [TL_MADE_MAPS] = "shadow maps",
@@ -140,6 +141,18 @@ static bool run_pems(void *context, int level, tl_error *error)
     (void)level, (void)error;
     tl_pems_build(&renderer->pems, renderer->gpu, &renderer->cube, &renderer->regions,
                   renderer->settings.light.filter, renderer->settings.light.pems_per_pass);
+    return true;
+}
+
+static bool run_lights(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level, (void)error;
+    int method = renderer->settings.light.method;
+    enum tl_region_weight weight = method == TL_METHOD_LIGHTS ? TL_WEIGHT_POINT
+                                   : method == TL_METHOD_AO   ? TL_WEIGHT_WHITE
+                                                              : TL_WEIGHT_POWER;
+    tl_region_lights_make(&renderer->lights, &renderer->regions, weight, &renderer->lobes);
     return true;
 }
 
@@ -277,7 +290,7 @@ static bool run_compose(void *context, int level, tl_error *error)
     }
     memset(renderer->light, 0, bytes);
     struct tl_compose_request request = {.samples = samples,
-                                         .regions = &renderer->regions,
+                                         .lights = &renderer->lights,
                                          .suns = &renderer->suns,
                                          .lobes = &renderer->lobes,
                                          .environment_yaw = renderer->frame.environment_yaw,
@@ -387,6 +400,13 @@ const tl_job tl_frame_jobs[] = {
      .requires_scene = SET1(TL_SCENE_EXACT),
      .levels = LEVELS_ONE,
      .run = run_lobes},
+    {.name = "lights",
+     .what = "the regions as lights that add up to the exact light",
+     .reads = SET3(TL_MADE_REGIONS, TL_MADE_LOBES, TL_INPUT_LIGHT),
+     .writes = SET1(TL_MADE_LIGHTS),
+     .requires_scene = SET2(TL_SCENE_RAYS, TL_SCENE_SHADOWS),
+     .levels = LEVELS_ONE,
+     .run = run_lights},
     {.name = "surfaces",
      .what = "vertices and maps to the GPU",
      .reads = SET3(TL_INPUT_SHAPES, TL_INPUT_MOTION, TL_INPUT_GROUND),
@@ -440,7 +460,7 @@ const tl_job tl_frame_jobs[] = {
      .run = run_light},
     {.name = "compose",
      .what = "exact light times the share of it that is seen",
-     .reads = SET5(TL_MADE_SAMPLES, TL_MADE_POINTS, TL_MADE_REGIONS, TL_MADE_LOBES, TL_MADE_CUBE) |
+     .reads = SET5(TL_MADE_SAMPLES, TL_MADE_POINTS, TL_MADE_LIGHTS, TL_MADE_LOBES, TL_MADE_CUBE) |
               SET2(TL_INPUT_YAW, TL_INPUT_LIGHT),
      .writes = SET1(TL_MADE_LIGHT),
      .requires_scene = SET1(TL_SCENE_RAYS),

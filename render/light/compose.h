@@ -13,13 +13,14 @@
 
 #include "render/env/lobes.h"
 #include "render/env/sun.h"
+#include "render/light/region_lights.h"
 #include "render/light/samples.h"
 #include "render/visibility/points.h"
 
 struct tl_compose_request {
     const struct tl_samples *samples;
-    const struct tl_regions *regions;
-    const struct tl_suns *suns; /* none: count 0 */
+    const struct tl_region_lights *lights; /* whose weight suits the method */
+    const struct tl_suns *suns;            /* none: count 0 */
     const struct tl_lobes *lobes;
     /* As tl_points gives them; unused when the method is UNSHADOWED. */
     const uint16_t *values;

@@ -10,7 +10,7 @@
 
 /* Uniform locations of chain.frag and regions.frag, and what they include. */
 enum { REGION_RANGE = 0, EYE, ENVIRONMENT_TURN, PEM_SCALE, LOBE, ALREADY_THERE, MAP_LIMITS, GROUND_DISC };
-enum { COUNTS = 0, COMPOSITION = 5, LOBE_PLACES = 9 };
+enum { COUNTS = 0, COMPOSITION = 5, LAST_EXPONENT = 8, LOBE_PLACES };
 /* Texture units; the G-buffer's layers without the triangles come first. */
 enum { LEVELS_UNIT = 5, PEMS_UNIT, MAPS_UNIT, LOBES_UNIT, SUN_MAPS_UNIT };
 /* Of regions.frag. */
@@ -284,6 +284,7 @@ static bool draw_regions(struct tl_lighting *lighting, tl_gpu *gpu, const struct
     use_program(program, request);
     glUniform2i(COUNTS, request->regions->count, request->suns->count);
     glUniform1i(COMPOSITION, (int)composition_of(params));
+    glUniform1i(LAST_EXPONENT, TL_EXPONENT_COUNT);
     glUniform2fv(LOBE_PLACES, TL_EXPONENT_COUNT + 1, lighting->lobe_places[0]);
     glBindTextureUnit(LEVELS_UNIT, lighting->exponent_levels.id);
     glBindTextureUnit(LOBES_UNIT, lighting->lobes.id);

@@ -19,12 +19,19 @@ TERM float lobe_broadened_exponent(float s, float spread)
     return max((s + 1.0f) / (1.0f + (s + 1.0f) * 0.5f * spread * spread) - 1.0f, 0.25f);
 }
 
-// Mean of max(0, cosine) over a disc of this sine of its half-angle, when its centre has this cosine: itself above the
-// horizon, 0 below, a parabola that joins both smoothly while the disc sets.
+// Mean height above the horizon of a disc's part that is above it, in radii, when its centre is u radii above: u itself
+// above, 0 below, a parabola that joins both smoothly while the disc sets.
+TERM float disc_height(float u)
+{
+    float risen = clamp(u + 1.0f, 0.0f, 2.0f);
+    return max(u, 0.25f * risen * risen);
+}
+
+// Mean of max(0, cosine) over a disc of this sine of its half-angle, when its centre has this cosine.
 TERM float disc_cosine(float cosine, float sine)
 {
-    float risen = clamp(cosine / max(sine, 1e-4f) + 1.0f, 0.0f, 2.0f);
-    return max(cosine, 0.25f * sine * risen * risen);
+    float radius = max(sine, 1e-4f);
+    return radius * disc_height(cosine / radius);
 }
 
 // Share of a disc above a line that runs at -u radii from its centre: 1/2 + (u sqrt(1 - u^2) + asin u) / pi, within

@@ -48,6 +48,7 @@ struct scene {
     struct tl_regions regions;
     struct tl_suns suns;
     struct tl_lobes lobes;
+    struct tl_region_lights lights;
     struct tl_samples samples;
     struct tl_light_params params;
     uint16_t *values;
@@ -124,6 +125,7 @@ static struct scene scene_open(int regions, float glossiness, bool bumped)
     }
     tl_regions_cut_sphere(&scene.cube, regions, &scene.regions);
     tl_lobes_make(&scene.lobes, &scene.cube, tl_exponents_needed(glossiness, glossiness));
+    tl_region_lights_make(&scene.lights, &scene.regions, TL_WEIGHT_POWER, &scene.lobes);
     fill_values(&scene);
     fill_samples(&scene, glossiness, bumped);
     scene.light = TL_NEW_ARRAY(float, 4 * SAMPLES);
@@ -135,6 +137,7 @@ static void scene_close(struct scene *scene)
     tl_cube_release(&scene->cube);
     tl_regions_release(&scene->regions);
     tl_lobes_release(&scene->lobes);
+    tl_region_lights_release(&scene->lights);
     free(scene->samples.items);
     free(scene->values);
     free(scene->taps);
@@ -144,7 +147,7 @@ static void scene_close(struct scene *scene)
 static void compose(const struct scene *scene)
 {
     const struct tl_compose_request request = {.samples = &scene->samples,
-                                               .regions = &scene->regions,
+                                               .lights = &scene->lights,
                                                .suns = &scene->suns,
                                                .lobes = &scene->lobes,
                                                .values = scene->values,
