@@ -11,11 +11,12 @@
 struct tl_scene_params {              /* table "scene": what to show; names of built-ins or paths */
     char garment[TL_STRING_SIZE];     /* "dress", "skirt", "none", or a glTF file */
     char avatar[TL_STRING_SIZE];      /* "form", "none", or a glTF file */
-    char environment[TL_STRING_SIZE]; /* "studio", or an .exr or .hdr file */
+    char environment[TL_STRING_SIZE]; /* "studio", an .exr or .hdr file, or a pattern: sky.####.exr */
     char fabric[TL_STRING_SIZE];      /* name of an embedded fabric, a YAML file, or "none" */
     char preset[TL_STRING_SIZE];      /* name of an embedded preset, or a YAML file */
     char clip[TL_STRING_SIZE];        /* animation of the avatar; "": the first; "none": the rest pose */
     float environment_yaw_deg;
+    float environment_rate; /* frames of a sequence a second */
 };
 
 struct tl_camera_params { /* table "camera": an orbit about a target */

@@ -4,9 +4,9 @@ add_library(toile_light STATIC
   env/emitters.c
   env/lobes.c
   light/compose.c
-  light/region_lights.c
-  frame/view.c
   env/sun.c
+  frame/view.c
+  light/region_lights.c
   metrics/compare.c
   metrics/flip.c
   pem/chain.c

@@ -28,11 +28,11 @@ enum tl_resource {
     TL_INPUT_SUN,
     TL_INPUT_REGIONS,
     TL_INPUT_PASSES,
-    TL_INPUT_MAPS,  /* size and blur of the shadow maps */
-    TL_INPUT_RAYS,  /* how rays are spent */
+    TL_INPUT_MAPS,        /* size and blur of the shadow maps */
+    TL_INPUT_RAYS,        /* how rays are spent */
     TL_INPUT_ROUND,       /* which of the jittered frames that are averaged while nothing changes */
     TL_INPUT_SCENE_ROUND, /* ... while nothing but the camera does */
-    TL_INPUT_LIGHT, /* how light is put together */
+    TL_INPUT_LIGHT,       /* how light is put together */
     TL_INPUT_REFERENCE,
     TL_INPUT_SHOW, /* exposure and background */
     TL_INPUT_COUNT,

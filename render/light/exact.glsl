@@ -1,11 +1,11 @@
 // The whole environment through exact cosine lobes (env/lobes.h), one octahedral map an exponent, stacked in a texture.
-layout(location = 9) uniform vec2 lobe_places[22]; // by exponent: first row, texels a side without the border
+layout(location = 8) uniform int last_exponent;
+layout(location = 9) uniform vec2 lobe_places[48]; // by exponent: first row, texels a side without the border
 
 layout(binding = 5) uniform sampler2D exponent_levels; // fractional number of the exponent by log2(s) / LOG_RANGE
 layout(binding = 8) uniform sampler2D lobes;
 
 const float EXPONENT_LOG_RANGE = 15.0; // of light.c
-const int LAST_EXPONENT = 21;
 
 float exponent_level(float s)
 {
@@ -32,7 +32,7 @@ vec3 lobe_map(int exponent, vec2 place)
 // E(d, s); d in the environment's frame.
 vec3 exact_light(vec3 d, float level)
 {
-    int exponent = clamp(int(level), 0, LAST_EXPONENT - 1);
+    int exponent = clamp(int(level), 0, last_exponent - 1);
     vec2 place = unfolded(d);
     return mix(lobe_map(exponent, place), lobe_map(exponent + 1, place), clamp(level - float(exponent), 0.0, 1.0));
 }

@@ -10,7 +10,7 @@
 
 /* Uniform locations of chain.frag and regions.frag, and what they include. */
 enum { REGION_RANGE = 0, EYE, ENVIRONMENT_TURN, PEM_SCALE, LOBE, ALREADY_THERE, MAP_LIMITS, GROUND_DISC };
-enum { COUNTS = 0, COMPOSITION = 5, LOBE_PLACES = 9 };
+enum { COUNTS = 0, COMPOSITION = 5, LAST_EXPONENT = 8, LOBE_PLACES };
 /* Texture units; the G-buffer's layers without the triangles come first. */
 enum { LEVELS_UNIT = 5, PEMS_UNIT, MAPS_UNIT, LOBES_UNIT, SUN_MAPS_UNIT };
 /* Of regions.frag. */
@@ -131,10 +131,9 @@ static const tl_program *program_of(struct tl_lighting *lighting, tl_gpu *gpu, e
         [TL_LIGHT_EXACT] = {"#define EXACT\n", "#define EXACT\n", "#define EXACT\n"},
     };
     tl_program *program = &lighting->programs[source][kind];
-    if (!program->id &&
-        !tl_program_create_variant(gpu, tl_embedded_shaders, "fullscreen.vert",
-                                   source == TL_LIGHT_CHAIN ? "chain.frag" : "regions.frag",
-                                   defines[source][kind], program, error))
+    if (!program->id && !tl_program_create_variant(gpu, tl_embedded_shaders, "fullscreen.vert",
+                                                   source == TL_LIGHT_CHAIN ? "chain.frag" : "regions.frag",
+                                                   defines[source][kind], program, error))
         return NULL;
     return program;
 }
@@ -265,8 +264,8 @@ static void use_program(const tl_program *program, const struct tl_light_request
         glUniform4f(GROUND_DISC, 0, 0, 0, 0);
 }
 
-/* The passes of one image add up; images are averaged over the rounds: each new one counts 1 / (round + 1), what is in
- * the target the rest. */
+/* The passes of one image add up; images are averaged over the rounds: each new one counts 1 / (round + 1),
+ * what is in the target the rest. */
 static void draw_pass(tl_gpu *gpu, bool is_first)
 {
     glBlendFunc(GL_CONSTANT_ALPHA, is_first ? GL_ONE_MINUS_CONSTANT_ALPHA : GL_ONE);
@@ -285,6 +284,7 @@ static bool draw_regions(struct tl_lighting *lighting, tl_gpu *gpu, const struct
     use_program(program, request);
     glUniform2i(COUNTS, request->regions->count, request->suns->count);
     glUniform1i(COMPOSITION, (int)composition_of(params));
+    glUniform1i(LAST_EXPONENT, TL_EXPONENT_COUNT);
     glUniform2fv(LOBE_PLACES, TL_EXPONENT_COUNT + 1, lighting->lobe_places[0]);
     glBindTextureUnit(LEVELS_UNIT, lighting->exponent_levels.id);
     glBindTextureUnit(LOBES_UNIT, lighting->lobes.id);

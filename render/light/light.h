@@ -1,12 +1,12 @@
 /* The light passes: the light of every sample of the G-buffer from the regions' light and their shadow maps.
  *
  *     dual:   c = sum VIS_i [ kd P_i(n, 1) + F ks P_i(r, s) ]
- *     single: c = sum VIS_i mix(kd, F ks, g) P_i(mix(n, r, g), s)                                          [002, eq. 5]
+ *     single: c = sum VIS_i mix(kd, F ks, g) P_i(mix(n, r, g), s) [002, eq. 5]
  *
- * chain.frag adds up P_i of the filter chains, some regions a pass, as the paper does. regions.frag takes all regions at
- * once: P_i from exact slices, or what stands for it, the region's power times a cosine lobe broadened by its spread;
- * and puts them together as light.composition says. Light is kept in RGBA32F, where the rounds of a frame that rests
- * are averaged. */
+ * chain.frag adds up P_i of the filter chains, some regions a pass, as the paper does. regions.frag takes all
+ * regions at once: P_i from exact slices, or what stands for it, the region's power times a cosine lobe
+ * broadened by its spread; and puts them together as light.composition says. Light is kept in RGBA32F, where
+ * the rounds of a frame that rests are averaged. */
 #ifndef TOILE_RENDER_LIGHT_LIGHT_H
 #define TOILE_RENDER_LIGHT_LIGHT_H
 
@@ -20,8 +20,8 @@
 /* Where the regions' light comes from. */
 enum tl_light_source { TL_LIGHT_CHAIN, TL_LIGHT_SLICES, TL_LIGHT_LOBES, TL_LIGHT_EXACT, TL_LIGHT_SOURCES };
 
-/* What these settings ask for. The ratio of chains would need all of them in one pass, and its weights need not be
- * exact: there the broadened lobes stand for them. */
+/* What these settings ask for. The ratio of chains would need all of them in one pass, and its weights need
+ * not be exact: there the broadened lobes stand for them. */
 enum tl_light_source tl_light_source(const struct tl_light_params *params);
 /* Whether the exact light of the whole environment is read (env/lobes.h). */
 bool tl_light_needs_exact(const struct tl_light_params *params);
@@ -32,10 +32,10 @@ struct tl_lighting {
     tl_program programs[TL_LIGHT_SOURCES][TL_LIGHT_MAP_KINDS]; /* made when first used */
     unsigned regions_buffer;                                   /* GL name: regions, then suns */
     tl_texture lobe_levels;                                    /* chain level by glossiness */
-    tl_texture exponent_levels; /* fractional number of an exponent by the logarithm of s */
-    tl_texture lobes;           /* maps of the exact light, stacked */
+    tl_texture exponent_levels;                  /* fractional number of an exponent by the logarithm of s */
+    tl_texture lobes;                            /* maps of the exact light, stacked */
     float lobe_places[TL_EXPONENT_COUNT + 1][2]; /* first row and side of each */
-    tl_target target; /* premultiplied by coverage; shares the G-buffer's depth */
+    tl_target target;                            /* premultiplied by coverage; shares the G-buffer's depth */
 };
 
 struct tl_light_request {

@@ -32,15 +32,12 @@ struct Light {
     vec3 diffuse, glossy;
 };
 
-#ifdef SLICES
-#include "slices.glsl"
-#endif
-
 Light lobe_light(Region region, vec3 normal, Lobe gloss)
 {
-    float exponent = lobe_broadened_exponent(gloss.exponent, region.power.w);
-    return Light(0.31830989 * disc_cosine(dot(normal, region.centre.xyz), region.centre.w) * region.power.rgb,
-                 lobe_cosine(exponent, dot(gloss.direction, region.centre.xyz)) * region.power.rgb);
+    float sine = region.centre.w, exponent = lobe_broadened_exponent(gloss.exponent, region.power.w);
+    float facing = disc_cosine(dot(normal, region.centre.xyz), sine);
+    float shining = disc_cosine(dot(gloss.direction, region.centre.xyz), sine);
+    return Light(0.31830989 * facing * region.power.rgb, lobe_cosine(exponent, shining) * region.power.rgb);
 }
 
 // Where nothing shines there is nothing to shadow.

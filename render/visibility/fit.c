@@ -88,17 +88,16 @@ static vec4s fit_row(const struct tl_caster_cloud *cloud, vec3s axis, float shar
 {
     struct range range = range_along(cloud, axis);
     float scale = share / tl_greater(range.high - range.low, EXTENT_MIN);
-    return (vec4s){{axis.x * scale, axis.y * scale, axis.z * scale,
-                    0.5f - scale * 0.5f * (range.low + range.high)}};
+    return (vec4s){
+        {axis.x * scale, axis.y * scale, axis.z * scale, 0.5f - scale * 0.5f * (range.low + range.high)}};
 }
 
 struct tl_region_view tl_region_view_fit(vec3s direction, const struct tl_caster_cloud *cloud, int map_size)
 {
     vec3s right, up;
     tl_view_axes(direction, &right, &up);
-    float inner = map_size > 4 * TL_MAP_MARGIN_TEXELS
-                      ? 1 - 2.0f * TL_MAP_MARGIN_TEXELS / (float)map_size
-                      : 0.5f;
+    float inner =
+        map_size > 4 * TL_MAP_MARGIN_TEXELS ? 1 - 2.0f * TL_MAP_MARGIN_TEXELS / (float)map_size : 0.5f;
     return (struct tl_region_view){
         .map_rows = {fit_row(cloud, right, inner), fit_row(cloud, up, inner),
                      fit_row(cloud, glms_vec3_negate(direction), 1 - 2 * DEPTH_MARGIN)},

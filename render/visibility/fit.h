@@ -1,11 +1,12 @@
-/* Views of the casters along a direction, fitted to what is seen along it: two to three times the resolution of a view
- * of their sphere for a standing figure. Pure. */
+/* Views of the casters along a direction, fitted to what is seen along it: two to three times the resolution
+ * of a view of their sphere for a standing figure. Pure. */
 #ifndef TOILE_RENDER_VISIBILITY_FIT_H
 #define TOILE_RENDER_VISIBILITY_FIT_H
 
 #include "assets/surface.h"
 
-/* Free texels around what is seen, so that neither a blurred silhouette nor a look-up from outside touches it. */
+/* Free texels around what is seen, so that neither a blurred silhouette nor a look-up from outside touches
+ * it. */
 #define TL_MAP_MARGIN_TEXELS 2
 
 struct tl_region_view {
@@ -27,7 +28,8 @@ void tl_view_axes(vec3s direction, vec3s *right, vec3s *up);
 /* World point -> 0.5 + axis . (point - centre) * scale. */
 vec4s tl_view_row(vec3s axis, vec3s centre, float scale);
 
-/* The map holds the cloud's shadow from edge to edge but for the margin; depth 0 and 1 lie a little beyond it. */
+/* The map holds the cloud's shadow from edge to edge but for the margin; depth 0 and 1 lie a little beyond
+ * it. */
 struct tl_region_view tl_region_view_fit(vec3s direction, const struct tl_caster_cloud *cloud, int map_size);
 
 #endif

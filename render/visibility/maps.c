@@ -9,8 +9,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* A depth map's texel is pushed back by this many times its surface's own slope across a texel, so that no surface
- * shadows itself where a look-up blends texels beside it. */
+/* A depth map's texel is pushed back by this many times its surface's own slope across a texel, so that no
+ * surface shadows itself where a look-up blends texels beside it. */
 #define SLOPE_OFFSET 2.0f
 
 /* Uniform locations of maps.vert and blur.frag. */
@@ -43,10 +43,11 @@ tl_shadow_maps *tl_shadow_maps_create(tl_gpu *gpu, tl_error *error)
     glCreateFramebuffers(1, &maps->framebuffer);
     glCreateFramebuffers(1, &maps->depth_framebuffer);
     glNamedFramebufferDrawBuffer(maps->depth_framebuffer, GL_NONE);
-    bool fine = tl_program_create(gpu, tl_embedded_shaders, "fullscreen.vert", "blur.frag", &maps->blur, error);
+    bool fine =
+        tl_program_create(gpu, tl_embedded_shaders, "fullscreen.vert", "blur.frag", &maps->blur, error);
     for (int i = 0; fine && i < PROGRAM_COUNT; i++)
-        fine = tl_program_create_variant(gpu, tl_embedded_shaders, "maps.vert", "maps.frag", program_defines[i],
-                                         &maps->programs[i], error);
+        fine = tl_program_create_variant(gpu, tl_embedded_shaders, "maps.vert", "maps.frag",
+                                         program_defines[i], &maps->programs[i], error);
     if (!fine)
         tl_shadow_maps_destroy(&maps);
     return maps;
@@ -154,7 +155,8 @@ struct tl_region_view tl_region_view_make(vec3s direction, const struct tl_caste
     tl_view_axes(direction, &right, &up);
     float depth_scale = 0.5f / casters->radius, map_scale = depth_scale * inner_share(map_size);
     return (struct tl_region_view){
-        .map_rows = {tl_view_row(right, casters->centre, map_scale), tl_view_row(up, casters->centre, map_scale),
+        .map_rows = {tl_view_row(right, casters->centre, map_scale),
+                     tl_view_row(up, casters->centre, map_scale),
                      tl_view_row(glms_vec3_negate(direction), casters->centre, depth_scale)},
         .direction = {{direction.x, direction.y, direction.z, 0}},
     };
@@ -166,8 +168,8 @@ static float fraction(double x)
     return fminf((float)(x - floor(x)), 0x1.fffffep-1f);
 }
 
-/* Rounds follow the additive sequence of the plastic number [Roberts 2018], which is even over any number of rounds;
- * each region begins at a place of its own, so that no two jitter in step. */
+/* Rounds follow the additive sequence of the plastic number [Roberts 2018], which is even over any number of
+ * rounds; each region begins at a place of its own, so that no two jitter in step. */
 vec3s tl_region_seen_direction(const struct tl_regions *regions, int i, int round)
 {
     const double step_u = 0.7548776662466927, step_v = 0.5698402909980532; /* 1 / p and 1 / p^2 */
@@ -192,7 +194,8 @@ static void make_views(tl_shadow_maps *maps, const struct tl_shadow_request *req
     }
     for (int i = 0; i < request->suns->count; i++) {
         const struct tl_sun *sun = &request->suns->items[i];
-        vec3s seen = sun->sample_count > 0 ? sun->samples[request->round % sun->sample_count] : sun->direction;
+        vec3s seen =
+            sun->sample_count > 0 ? sun->samples[request->round % sun->sample_count] : sun->direction;
         maps->sun_views[i] = tl_region_view_fit(tl_turn_direction(seen, request->environment_yaw),
                                                 &maps->cloud, maps->sun_array.width);
     }

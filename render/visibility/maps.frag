@@ -4,10 +4,11 @@
 // half the speed).
 #include "surface.glsl" // its uniforms are set for every program that draws surfaces
 
-in float depth;
+#ifdef MASKED
 in vec2 uv;
-
+#endif
 #ifdef MOMENTS
+in float depth;
 layout(location = 0) out vec2 moments;
 #endif
 

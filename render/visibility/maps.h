@@ -1,16 +1,17 @@
 /* Shadow maps of the regions, each seen along one direction of its region, of two kinds:
  *
- * vsm: a variance shadow map a region, fitted to the casters' sphere and blurred by a Gaussian that follows the
- * region's cone [002, sections 3.3 and 4]. Depth is linear, 0 and 1 where the sphere begins and ends, so one unit is
- * its diameter. RG32F: in half precision a depth of 1 m has steps of 1 mm and, worse, its variance a floor of several
- * centimetres.
+ * vsm: a variance shadow map a region, fitted to the casters' sphere and blurred by a Gaussian that follows
+ * the region's cone [002, sections 3.3 and 4]. Depth is linear, 0 and 1 where the sphere begins and ends, so
+ * one unit is its diameter. RG32F: in half precision a depth of 1 m has steps of 1 mm and, worse, its
+ * variance a floor of several centimetres.
  *
- * depth: a plain depth map a region, fitted to the casters as they are seen along its direction; four texels compared
- * and blended by a look-up. A blur wider than that costs more truth than it gives beauty (FRONTIER: hard maps 3.9 %,
- * blurred ones 6 to 11 %); soft shadows come from many regions, and from directions that vary from round to round.
+ * depth: a plain depth map a region, fitted to the casters as they are seen along its direction; four texels
+ * compared and blended by a look-up. A blur wider than that costs more truth than it gives beauty (FRONTIER:
+ * hard maps 3.9 %, blurred ones 6 to 11 %); soft shadows come from many regions, and from directions that
+ * vary from round to round.
  *
- * Suns have depth maps of their own, of higher resolution, whatever the kind of the regions' maps. Receivers outside
- * of a map are lit. */
+ * Suns have depth maps of their own, of higher resolution, whatever the kind of the regions' maps. Receivers
+ * outside of a map are lit. */
 #ifndef TOILE_RENDER_VISIBILITY_MAPS_H
 #define TOILE_RENDER_VISIBILITY_MAPS_H
 
