@@ -45,26 +45,10 @@ static void allocate(int size, struct tl_regions *out)
     out->cumulative = TL_NEW_ARRAY(float, texel_count(out));
 }
 
-/* One eighth of a face is computed; the others are its mirror images. */
-static void fill_solid_angles(int size, float *solid_angles)
-{
-    int half = (size + 1) / 2;
-    for (int y = 0; y < half; y++) {
-        for (int x = 0; x <= y; x++) {
-            float value = tl_cube_solid_angle(size, x, y);
-            const int columns[2] = {x, size - 1 - x}, rows[2] = {y, size - 1 - y};
-            for (int i = 0; i < 4; i++) {
-                solid_angles[rows[i >> 1] * size + columns[i & 1]] = value;
-                solid_angles[columns[i & 1] * size + rows[i >> 1]] = value;
-            }
-        }
-    }
-}
-
 void tl_regions_begin(const tl_cube *cube, struct tl_regions *out)
 {
     allocate(cube->size, out);
-    fill_solid_angles(cube->size, out->solid_angles);
+    tl_cube_solid_angles(cube->size, out->solid_angles);
     for (size_t i = 0; i < texel_count(out); i++) {
         const float *colour = cube->texels + 3 * i;
         double luminance =

@@ -395,7 +395,7 @@ void tl_regions_cut_sphere(const tl_cube *cube, int count, struct tl_regions *ou
 void tl_regions_merge(const struct tl_regions *from, int count, struct tl_regions *out)
 {
     assert(count >= 1 && count <= from->count && from->node_count > 0 && out != from);
-    int region_of[2 * TL_REGIONS_MAX], merged[TL_REGIONS_MAX];
+    int region_of[2 * TL_REGIONS_MAX], merged[TL_REGIONS_MAX] = {0};
     tl_regions_begin_like(from, out);
     keep_nodes(from->nodes, from->node_count, count, out, region_of);
     for (int i = 0; i < from->node_count; i++)
