@@ -45,7 +45,8 @@ static uint64_t light_signature(const struct tl_light_params *light)
 
 static uint64_t maps_signature(const struct tl_light_params *light)
 {
-    uint64_t hash = MIX(MIX(FNV_OFFSET, light->visibility), light->map_size);
+    bool in_passes = tl_light_source(light) == TL_LIGHT_CHAIN; /* so many maps to an array as PEMs to a pass */
+    uint64_t hash = MIX(MIX(MIX(FNV_OFFSET, light->visibility), light->map_size), in_passes);
     return MIX(MIX(hash, light->blur_m), light->jitter);
 }
 

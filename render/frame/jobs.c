@@ -70,7 +70,7 @@ static bool run_cube(void *context, int level, tl_error *error)
     renderer->cube = tl_cube_from_environment(renderer->frame.environment, renderer->settings.light.pem_size);
     renderer->suns = (struct tl_suns){0};
     if (renderer->settings.light.sun)
-        tl_suns_take(&renderer->cube, &renderer->suns);
+        tl_suns_take(&renderer->cube, renderer->frame.environment, &renderer->suns);
     return true;
 }
 
