@@ -300,7 +300,8 @@ struct tl_render_memory tl_renderer_memory(const tl_renderer *renderer)
 {
     const struct tl_present *present = &renderer->present;
     struct tl_render_memory memory = {
-        .pems = tl_pems_bytes(&renderer->pems) + tl_lobes_bytes(&renderer->lobes) + tl_slice_maps_bytes(&renderer->slice_maps),
+        .pems = tl_pems_bytes(&renderer->pems) + tl_lobes_bytes(&renderer->lobes) +
+                tl_slice_maps_bytes(&renderer->slice_maps),
         .maps = tl_shadow_maps_bytes(renderer->maps),
         .rays = tl_trace_bytes(renderer->trace) + tl_points_bytes(renderer->points),
         .targets = tl_target_bytes(&renderer->gbuffer.target) + tl_target_bytes(&renderer->lighting.target) +

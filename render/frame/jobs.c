@@ -50,12 +50,17 @@ const char *const tl_resource_names[] = {
 };
 
 const char *const tl_scene_fact_names[] = {
-    [TL_SCENE_RASTER] = "drawn image",  [TL_SCENE_SHADOWS] = "shadows",
-    [TL_SCENE_MAPS] = "shadow maps",    [TL_SCENE_RAYS] = "rays",
-    [TL_SCENE_PASSES] = "light passes", [TL_SCENE_CHAINS] = "filter chains",
+    [TL_SCENE_RASTER] = "drawn image",
+    [TL_SCENE_SHADOWS] = "shadows",
+    [TL_SCENE_MAPS] = "shadow maps",
+    [TL_SCENE_RAYS] = "rays",
+    [TL_SCENE_PASSES] = "light passes",
+    [TL_SCENE_CHAINS] = "filter chains",
     [TL_SCENE_SLICES] = "exact slices",
-    [TL_SCENE_EXACT] = "exact light",   [TL_SCENE_BLUR] = "variance maps",
-    [TL_SCENE_REFERENCE] = "reference", NULL,
+    [TL_SCENE_EXACT] = "exact light",
+    [TL_SCENE_BLUR] = "variance maps",
+    [TL_SCENE_REFERENCE] = "reference",
+    NULL,
 };
 
 static const struct tl_ground *ground_of(const tl_renderer *renderer)
