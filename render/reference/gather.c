@@ -7,10 +7,10 @@
 #include <string.h>
 
 /* What a reflected point is lit by: few directions, because there are many such points. */
-#define REFLECTED_STRATA       8
+#define REFLECTED_STRATA       32
 #define REFLECTED_LOBE_SAMPLES 1
-#define LOBE_END               40.0f /* exp(-40) of a lobe's peak is nothing */
-#define GOLDEN                 0.61803398874989485
+#define LOBE_END               40.0f               /* exp(-40) of a lobe's peak is nothing */
+#define GOLDEN                 0.61803398874989485 /* of a turn: leaves no gaps however many follow */
 
 void tl_spots_add(struct tl_spots *spots, const struct tl_spot *spot)
 {
@@ -32,6 +32,7 @@ struct gathering {
     const struct tl_reference_scene *scene;
     const struct tl_spots *spots;
     bool diffuse[TL_SPOTS], glossy[TL_SPOTS]; /* whether the spot has such a lobe at all */
+    double turn[TL_SPOTS];                    /* where about its axis a spot's first lobe sample lies */
     struct tl_random shared, own;
     float (*light)[TL_SPOTS];
     size_t rays;
@@ -146,8 +147,7 @@ static void gather_strata(struct gathering *gathering)
         int turn = (int)(tl_random_unit(&gathering->shared) * asked->slots);
         int slot = (asked->slot + turn) % asked->slots;
         double within = (slot + tl_random_unit(&gathering->own)) / asked->slots;
-        double x = tl_random_unit(&gathering->own), y = tl_random_unit(&gathering->own);
-        struct tl_skylight sky = tl_sky_draw(&gathering->scene->sky, (i + within) / asked->strata, x, y);
+        struct tl_skylight sky = tl_sky_draw(&gathering->scene->sky, (i + within) / asked->strata);
         gather_stratum(gathering, &sky);
     }
 }
@@ -218,15 +218,17 @@ static void gather_lobes(struct gathering *gathering, int sample)
     struct reflections reflections = {0};
     for (int i = 0; i < spots->count; i++) {
         double height = (sample + tl_random_unit(&gathering->own)) / asked->lobe_samples;
-        double turn = tl_random_unit(&gathering->own);
         if (!gathering->glossy[i])
             continue;
         float off;
+        double turn = gathering->turn[i] + sample * GOLDEN;
         vec3s direction = draw_lobe(spots, i, fmin(height, 1 - DBL_EPSILON), turn, &off);
         if (!(dot_of(spots->horizon, i, direction) > 0))
             continue;
         struct tl_skylight sky = tl_sky_look(&gathering->scene->sky, direction);
         float lobe = lobe_value(spots->exponent[i], off);
+        if (!(lobe > 0))
+            continue;
         float glossy = lobe / ((float)asked->strata * sky.density + (float)asked->lobe_samples * lobe);
         vec3s light = weigh(spots, i, sky.radiance, 0, glossy);
         if (asked->reflect && spots->exponent[i] >= TL_MIRROR_EXPONENT)
@@ -251,6 +253,7 @@ size_t tl_gather(const struct tl_gathering *asked, const struct tl_spots *spots,
         gathering.diffuse[i] =
             spots->diffuse[0][i] > 0 || spots->diffuse[1][i] > 0 || spots->diffuse[2][i] > 0;
         gathering.glossy[i] = spots->glossy[0][i] > 0 || spots->glossy[1][i] > 0 || spots->glossy[2][i] > 0;
+        gathering.turn[i] = tl_random_unit(&gathering.own);
         any_glossy |= gathering.glossy[i];
     }
     memset(light, 0, 3 * sizeof light[0]);
