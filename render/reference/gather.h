@@ -29,7 +29,6 @@ struct tl_gathering {
 };
 
 /* Radiance towards the viewer by channel, then by spot. Returns how many rays it took. */
-size_t tl_gather(const struct tl_gathering *gathering, const struct tl_spots *spots,
-                 float light[3][TL_SPOTS]);
+size_t tl_gather(const struct tl_gathering *asked, const struct tl_spots *spots, float light[3][TL_SPOTS]);
 
 #endif

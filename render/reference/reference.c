@@ -10,7 +10,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define TILE 4 /* pixels a side: a bundle holds the same sample of each */
+/* Pixels a side: a bundle holds the same sample of each. */
+enum { TILE = 4, TILE_PIXELS = TILE * TILE };
 
 struct drawing {
     const struct tl_reference_scene *scene;
@@ -54,7 +55,7 @@ static struct bundle find_spots(const struct drawing *drawing, int tile, int sam
     int side = drawing->settings->image.supersample;
     int left = tile % drawing->tiles_x * TILE, top = tile / drawing->tiles_x * TILE;
     struct bundle bundle = {0};
-    for (int i = 0; i < TILE * TILE; i++) {
+    for (int i = 0; i < TILE_PIXELS; i++) {
         int x = left + i % TILE, y = top + i / TILE;
         if (x >= drawing->width || y >= drawing->height)
             continue;
@@ -75,7 +76,7 @@ static size_t draw_sample(const struct drawing *drawing, int replicate, int tile
     int side = drawing->settings->image.supersample, samples = side * side;
     struct bundle bundle = find_spots(drawing, tile, sample);
     if (bundle.spots.count == 0)
-        return TILE * TILE;
+        return TILE_PIXELS;
     uint64_t key = (uint64_t)replicate << 32 | (uint32_t)tile;
     const struct tl_gathering gathering = {.scene = drawing->scene,
                                            .strata = params->strata,
@@ -93,7 +94,7 @@ static size_t draw_sample(const struct drawing *drawing, int replicate, int tile
             pixel[c] = fminf(pixel[c] + share * light[c][i], FLT_MAX);
         pixel[3] += share;
     }
-    return rays + TILE * TILE;
+    return rays + TILE_PIXELS;
 }
 
 /* Tiles own their pixels, so the number of threads does not show. False when interrupted. */

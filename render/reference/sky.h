@@ -1,7 +1,7 @@
 /* The environment as the oracle sees it: every texel of its own layout is a patch of constant radiance, the
  * mean of what the texel stands for (the renderer's cubes are area averages of the same patches). Directions
- * are drawn from it with a density that follows the texels' brightness, a tenth of it uniform over the sphere,
- * along a curve that keeps neighbours together, so that an interval of the curve is a compact region.
+ * are drawn from it with a density that follows the texels' brightness, a tenth of it uniform over the
+ * sphere, along a curve that keeps neighbours together, so that an interval of the curve is a compact region.
  *
  * World space. Borrows the environment. Threads: pure once made. */
 #ifndef TOILE_RENDER_REFERENCE_SKY_H

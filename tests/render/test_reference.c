@@ -282,7 +282,8 @@ static double texel_integral(vec3s axis, float exponent, float yaw)
     double sum = 0;
     for (int i = 0; i < steps * steps; i++) {
         double phi = 2 * M_PI * ((ONE_COLUMN + (i % steps + 0.5) / steps) / ONE_WIDTH - 0.5) - (double)yaw;
-        double y = lower + (upper - lower) * ((double)(i / steps) + 0.5) / steps, r = sqrt(1 - y * y);
+        int row = i / steps;
+        double y = lower + (upper - lower) * (row + 0.5) / steps, r = sqrt(1 - y * y);
         double cosine = r * sin(phi) * (double)axis.x + y * (double)axis.y - r * cos(phi) * (double)axis.z;
         sum += cosine > 0 ? pow(cosine, (double)exponent) : 0;
     }
@@ -480,7 +481,7 @@ static void test_extreme_light(void **state)
         tl_environment_release(&scene->environment);
         scene->environment = test_environment(64, 32, lights[i]);
         tl_image image = draw(scene, &report);
-        for (size_t v = 0; v < 4 * 37 * 30; v++)
+        for (size_t v = 0; v < (size_t)4 * 37 * 30; v++)
             assert_true(isfinite(tl_image_floats(&image)[v]));
         assert_true(isfinite(report.standard_error));
         tl_image_release(&image);

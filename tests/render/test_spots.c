@@ -26,7 +26,8 @@ static tl_image pattern(int width, int height, int channels, bool linear)
     tl_image image = tl_image_create(width, height, channels, TL_IMAGE_U8);
     image.linear = linear;
     for (int i = 0; i < width * height; i++) {
-        float u = ((float)(i % width) + 0.5f) / (float)width, v = ((float)(i / width) + 0.5f) / (float)height;
+        int row = i / width;
+        float u = ((float)(i % width) + 0.5f) / (float)width, v = ((float)row + 0.5f) / (float)height;
         const float values[4] = {0.5f + 0.4f * sinf(6.2832f * u), 0.5f + 0.4f * sinf(6.2832f * v),
                                  0.6f + 0.3f * sinf(6.2832f * (u + 2 * v)),
                                  hypotf(u - 0.5f, v - 0.5f) < 0.45f ? 1.0f : 0.0f};
@@ -42,7 +43,8 @@ static tl_image bumps(int side)
     tl_image image = tl_image_create(side, side, 3, TL_IMAGE_U8);
     image.linear = true;
     for (int i = 0; i < side * side; i++) {
-        float u = ((float)(i % side) + 0.5f) / (float)side, v = ((float)(i / side) + 0.5f) / (float)side;
+        int row = i / side;
+        float u = ((float)(i % side) + 0.5f) / (float)side, v = ((float)row + 0.5f) / (float)side;
         vec3s n = {{0.5f * sinf(6.2832f * u), 0.3f * cosf(6.2832f * v), 1}};
         n = glms_vec3_normalize(n);
         for (int c = 0; c < 3; c++)
@@ -155,7 +157,7 @@ static void compare(struct tally *tally, const struct tl_spot *spot, const struc
 
 /* Edges may fall to either side, and software GL chooses mip levels and mixes them roughly: one sample in a
  * hundred may be beyond the tolerances, which are a few steps of what the maps' bytes hold. A transform, wrap
- * or factor that is wrong moves most samples by ten times as much. */
+ * or factor that is wrong moves hundreds. */
 static void check(const struct tally *tally)
 {
     printf("%d samples; beyond tolerance: cover %d, point %d, normal %d, gloss %d, diffuse %d, specular %d\n",
