@@ -249,7 +249,7 @@ static void test_before_a_wall(void **state)
                                         (vec3s){{distance, 0, 0}}, 0.5f);
         scene_add(scene, test_square(origin, x_axis, y_axis, half, 1));
         scene_add(scene, test_square((vec3s){{0, height - half, 0}}, z_axis, x_axis, half, 1));
-        scene->settings.reference.strata = 1 << 13;
+        scene->settings.reference.strata = 1 << 14;
         double expected = 0;
         for (int p = 0; p < SIZE * SIZE; p++) {
             vec3s point = pixel_point(scene, p % SIZE, p / SIZE, origin, y_axis);
