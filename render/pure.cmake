@@ -1,6 +1,7 @@
 # The parts of render that know neither GL nor the clock.
 add_library(toile_light STATIC
   env/cube.c
+  env/pour.c
   env/sun.c
   metrics/compare.c
   metrics/flip.c
