@@ -277,7 +277,8 @@ bool tl_session_advance(tl_session *session, tl_error *error)
     double position = light_position(&session->settings, session->frame + 1);
     if (!tl_moving_light_follow(&session->light, position, error))
         return false;
-    if (session->avatar && (session->clip >= 0 || session->garment))
+    if (session->clip >=
+        0) /* else it stands as it stood, and nothing that follows from it need be done again */
         pose_avatar(session, time_s);
     if (session->garment) {
         if (!tl_cloth_step(session->cloth, session->collider, error))
@@ -443,6 +444,11 @@ bool tl_session_pick(const tl_session *session, vec3s origin, vec3s direction, u
     }
     *distance_m = nearest;
     return nearest < FLT_MAX;
+}
+
+bool tl_session_plays_clip(const tl_session *session)
+{
+    return session->clip >= 0;
 }
 
 tl_cloth *tl_session_cloth(tl_session *session)

@@ -36,14 +36,18 @@ struct tl_settings {
     struct tl_material_params material;
     struct tl_light_params light;
     struct tl_image_params image;
+    struct tl_reference_params reference;
 };
 
-#define TL_SETTINGS_TABLES 8
+#define TL_SETTINGS_TABLES 9
 /* The bindings of a settings value, in the order of the reference page. */
 void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[TL_SETTINGS_TABLES]);
 
 /* True when every option of every table agrees. */
 bool tl_settings_equal(const struct tl_settings *a, const struct tl_settings *b);
+
+/* What of it the renderer takes. */
+struct tl_render_settings tl_settings_render(const struct tl_settings *settings);
 
 /* What the command line says about settings. */
 struct tl_settings_source {

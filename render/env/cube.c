@@ -71,6 +71,12 @@ static double rectangle_solid_angle(double s0, double t0, double s1, double t1)
            corner_solid_angle(u0, v0);
 }
 
+vec3s tl_turn_direction(vec3s direction, float yaw)
+{
+    float c = cosf(yaw), s = sinf(yaw);
+    return (vec3s){{c * direction.x + s * direction.z, direction.y, -s * direction.x + c * direction.z}};
+}
+
 float tl_cube_solid_angle(int size, int x, int y)
 {
     double step = 1.0 / size;

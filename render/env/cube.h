@@ -38,6 +38,10 @@ vec3s tl_cube_texel_direction(int size, int texel);
 /* Texel (x, y) of a face, which may lie one step over its borders: then the one that touches it there. */
 int tl_cube_texel_across(int size, int face, int x, int y);
 
+/* World direction of a direction in the environment, which is turned by `yaw` (rad) about +Y,
+ * counter-clockwise from above; -yaw takes it back. */
+vec3s tl_turn_direction(vec3s direction, float yaw);
+
 /* Exact solid angle of texel (x, y), steradians. */
 float tl_cube_solid_angle(int size, int x, int y);
 /* ... of all texels of a face, which are the same on each: [size][size]. To the last bit that of the texel's
