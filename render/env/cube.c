@@ -71,10 +71,31 @@ static double rectangle_solid_angle(double s0, double t0, double s1, double t1)
            corner_solid_angle(u0, v0);
 }
 
+vec3s tl_turn_direction(vec3s direction, float yaw)
+{
+    float c = cosf(yaw), s = sinf(yaw);
+    return (vec3s){{c * direction.x + s * direction.z, direction.y, -s * direction.x + c * direction.z}};
+}
+
 float tl_cube_solid_angle(int size, int x, int y)
 {
     double step = 1.0 / size;
     return (float)rectangle_solid_angle(x * step, y * step, (x + 1) * step, (y + 1) * step);
+}
+
+void tl_cube_solid_angles(int size, float *out)
+{
+    int half = (size + 1) / 2;
+    for (int y = 0; y < half; y++) {
+        for (int x = 0; x <= y; x++) {
+            float value = tl_cube_solid_angle(size, x, y);
+            const int columns[2] = {x, size - 1 - x}, rows[2] = {y, size - 1 - y};
+            for (int i = 0; i < 4; i++) {
+                out[rows[i >> 1] * size + columns[i & 1]] = value;
+                out[columns[i & 1] * size + rows[i >> 1]] = value;
+            }
+        }
+    }
 }
 
 static int clamp_index(int value, int count)
@@ -82,7 +103,7 @@ static int clamp_index(int value, int count)
     return value < 0 ? 0 : value >= count ? count - 1 : value;
 }
 
-static int texel_at(int size, vec3s direction)
+int tl_cube_texel(int size, vec3s direction)
 {
     int face;
     float s, t;
@@ -100,7 +121,7 @@ static int texel_across(int size, int face, int x, int y)
     float over = 0.25f / (float)size, step = 1 / (float)size;
     float s = x < 0 ? -over : x >= size ? 1 + over : ((float)x + 0.5f) * step;
     float t = y < 0 ? -over : y >= size ? 1 + over : ((float)y + 0.5f) * step;
-    return texel_at(size, tl_cube_direction(face, s, t));
+    return tl_cube_texel(size, tl_cube_direction(face, s, t));
 }
 
 struct tl_cube_taps tl_cube_taps(int size, vec3s direction)
@@ -296,7 +317,7 @@ static vec3s pour_direction(const struct pour *pour, int x, int y)
 
 static int pour_texel(const struct pour *pour, int x, int y)
 {
-    return texel_at(pour->size, pour_direction(pour, x, y));
+    return tl_cube_texel(pour->size, pour_direction(pour, x, y));
 }
 
 static void pour_whole(const struct pour *pour, const float *colour, const struct cell *cell, double share,

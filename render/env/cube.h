@@ -25,9 +25,18 @@ tl_cube tl_cube_from_environment(const tl_environment *environment, int size);
  * the plane of the face is continued. OpenGL 4.5, table 8.19 inverted. */
 vec3s tl_cube_direction(int face, float s, float t);
 void tl_cube_locate(vec3s direction, int *face, float *s, float *t);
+/* (face * size + y) * size + x of the texel that a direction lies in. */
+int tl_cube_texel(int size, vec3s direction);
+
+/* World direction of a direction in the environment, which is turned by `yaw` (rad) about +Y,
+ * counter-clockwise from above; -yaw takes it back. */
+vec3s tl_turn_direction(vec3s direction, float yaw);
 
 /* Exact solid angle of texel (x, y), steradians. */
 float tl_cube_solid_angle(int size, int x, int y);
+/* ... of all texels of a face, which are the same on each: [size][size]. To the last bit that of the texel's
+ * mirror image in the first eighth of the face. */
+void tl_cube_solid_angles(int size, float *out);
 
 /* The texels and weights of a seamless bilinear fetch: a cube of `size` reads the same texels for the same
  * direction whatever it holds. */
