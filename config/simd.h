@@ -11,8 +11,6 @@
 #include <stdint.h>
 
 #define TL_LANES 16
-typedef float tl_lanes __attribute__((vector_size(TL_LANES * sizeof(float))));
-typedef int32_t tl_lanes_int __attribute__((vector_size(TL_LANES * sizeof(float))));
 
 /* Before a hot function's definition: it is compiled for AVX-512, for AVX2 and for any x86-64, and the best
  * is chosen as the program starts. What it calls must be TL_INLINE to go with it. Sanitizers run before such

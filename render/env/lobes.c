@@ -245,9 +245,10 @@ static inline struct place place_of(vec3s direction)
 {
     float scale = 0.5f / (fabsf(direction.x) + fabsf(direction.y) + fabsf(direction.z));
     float u = direction.x * scale, v = direction.z * scale;
-    float folded_u = copysignf(0.5f - fabsf(v), u), folded_v = copysignf(0.5f - fabsf(u), v);
-    u = direction.y < 0 ? folded_u : u;
-    v = direction.y < 0 ? folded_v : v;
+    /* Below the horizon 1 - |v| = |u| + |y|. */
+    float outwards = direction.y < 0 ? -direction.y * scale : 0;
+    u += copysignf(outwards, u);
+    v += copysignf(outwards, v);
     return (struct place){u + 0.5f, v + 0.5f};
 }
 

@@ -5,6 +5,8 @@
 #include "render/visibility/maps.h"
 #include "render/visibility/refresh.h"
 #include "render/visibility/sites.h"
+#include "render/visibility/starts.h"
+#include "render/visibility/sun_rays.h"
 
 #include <assert.h>
 #include <math.h>
@@ -40,6 +42,9 @@ struct tl_points {
     struct tl_taps *taps;
     size_t sample_count, sample_capacity;
     size_t ray_count;
+
+    struct tl_starts starts; /* made when suns or repair need them */
+    struct tl_sun_rays suns;
 };
 
 tl_points *tl_points_create(void)
@@ -77,6 +82,8 @@ void tl_points_destroy(tl_points **points)
         return;
     forget_sites(*points);
     free((*points)->taps);
+    tl_starts_release(&(*points)->starts);
+    tl_sun_rays_release(&(*points)->suns);
     free(*points);
     *points = NULL;
 }
@@ -339,6 +346,19 @@ static void trace_clusters(tl_points *points, const struct tl_points_request *re
         points->ray_count += points->ray_counts[i];
 }
 
+/* Rays from the samples themselves. */
+static void trace_samples(tl_points *points, const struct tl_points_request *request)
+{
+    bool has_suns = request->suns && request->suns->count > 0;
+    uint64_t before = points->starts.samples;
+    points->suns.count = has_suns ? points->suns.count : 0;
+    if (!has_suns)
+        return;
+    tl_starts_make(request, &points->starts);
+    bool again = !request->moved && points->starts.samples == before;
+    points->ray_count += tl_sun_rays_update(&points->suns, request, &points->starts, again);
+}
+
 void tl_points_update(tl_points *points, const struct tl_points_request *request)
 {
     assert(request->regions->count > 0 && request->params->rays > 0);
@@ -347,6 +367,7 @@ void tl_points_update(tl_points *points, const struct tl_points_request *request
     activate_clusters(points);
     resolve_taps(points);
     trace_clusters(points, request);
+    trace_samples(points, request);
 }
 
 const uint16_t *tl_points_values(const tl_points *points, size_t *stride)
@@ -362,9 +383,7 @@ const struct tl_taps *tl_points_taps(const tl_points *points)
 
 const float *tl_points_sun(const tl_points *points, int sun)
 {
-    (void)points;
-    (void)sun;
-    return NULL;
+    return sun < points->suns.count ? points->suns.visible[sun] : NULL;
 }
 
 /* The largest difference between the points that a sample reads, over the regions. */
@@ -400,5 +419,6 @@ size_t tl_points_bytes(const tl_points *points)
     return sites * (sizeof(struct tl_site) + sizeof(uint32_t)) + vertices * sizeof(uint32_t) +
            points->sites.cluster_count * 3 * sizeof(uint32_t) +
            slots * TL_CLUSTER * (points->stride * sizeof(uint16_t) + sizeof(uint16_t) + sizeof(uint32_t)) +
-           slots * points->stride * sizeof(uint32_t) + points->sample_capacity * sizeof(struct tl_taps);
+           slots * points->stride * sizeof(uint32_t) + points->sample_capacity * sizeof(struct tl_taps) +
+           points->starts.capacity * sizeof(vec3s) + tl_sun_rays_bytes(&points->suns);
 }

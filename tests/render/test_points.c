@@ -385,6 +385,90 @@ static void results_do_not_depend_on_threads(void **state)
     stage_close(&many);
 }
 
+/* A sun of `radius` rad, its places on a spiral of equal areas. */
+static struct tl_suns make_sun(vec3s direction, float radius)
+{
+    struct tl_suns suns = {.count = 1, .items = {{.radius = radius, .sample_count = TL_SUN_SAMPLES_MAX}}};
+    struct tl_sun *sun = &suns.items[0];
+    vec3s right = glms_vec3_normalize(glms_vec3_cross(direction, (vec3s){{0, 1, 0.1f}}));
+    vec3s up = glms_vec3_cross(right, direction);
+    sun->direction = direction;
+    for (int i = 0; i < TL_SUN_SAMPLES_MAX; i++) {
+        float r = radius * sqrtf((float)i / (TL_SUN_SAMPLES_MAX - 1)), angle = 2.39996f * (float)i;
+        vec3s across = glms_vec3_add(glms_vec3_scale(right, cosf(angle)), glms_vec3_scale(up, sinf(angle)));
+        sun->samples[i] = glms_vec3_normalize(glms_vec3_add(direction, glms_vec3_scale(across, r)));
+    }
+    return suns;
+}
+
+/* The edge of a square plate throws a penumbra on a floor: samples in a line across it see what part of the
+ * sun stands above the edge. One row of the image; brute force goes to the same sixteen places. */
+static void suns_have_their_penumbrae(void **state)
+{
+    (void)state;
+    enum { SIDE = 64 };
+    tl_error error = {0};
+    struct stage stage;
+    stage_open(&stage, 6);
+    struct test_shape floor = test_square((vec3s){{0, 0, 0}}, (vec3s){{1, 0, 0}}, (vec3s){{0, 1, 0}}, 2, 1);
+    struct test_shape plate =
+        test_square((vec3s){{-1, 0.5f, 0}}, (vec3s){{1, 0, 0}}, (vec3s){{0, 1, 0}}, 1, 1);
+    test_shape_refresh(&floor);
+    test_shape_refresh(&plate);
+    const tl_surface shapes[2] = {floor.surface, plate.surface};
+    const tl_surface *all[2] = {&shapes[0], &shapes[1]};
+    assert_ok(tl_trace_update(stage.trace, shapes, 2, &error), error);
+    tl_triangle_ranges_make(all, 2, &stage.ranges);
+    struct tl_suns suns = make_sun((vec3s){{0, 1, 0}}, 0.2f); /* a penumbra of 2 x 0.1 m */
+    stage.request.suns = &suns;
+    stage.request.ground = NULL;
+    stage.request.shapes_revision++;
+    free(stage.samples.items);
+    stage.samples = (struct tl_samples){.width = SIDE, .height = SIDE, .count = SIDE * SIDE};
+    stage.samples.items = TL_NEW_ARRAY(tl_sample, SIDE * SIDE);
+    for (uint32_t i = 0; i < SIDE * SIDE; i++) {
+        float x = ((float)(i % SIDE) + 0.5f) / SIDE - 0.5f, z = ((float)(i / SIDE) + 0.5f) / SIDE - 0.5f;
+        float u = 0.5f + x / 4,
+              v = 0.5f + z / 4; /* the square's diagonal runs from the right back to the left */
+        bool second = u + v > 1;
+        stage.samples.items[i] = (tl_sample){.texel = i,
+                                             .triangle = second,
+                                             .weights = {1 / 3.0f, 1 / 3.0f, 1 / 3.0f},
+                                             .cover = 1,
+                                             .point = {{x, 0, z}},
+                                             .normal = {{0, 1, 0}},
+                                             .smooth = {{0, 1, 0}},
+                                             .mirror = {{0, 1, 0}}};
+    }
+    double errors[2] = {0};
+    for (int run = 0; run < 2; run++) {
+        for (int frame = 0; frame < (run ? 16 : 1); frame++)
+            step(&stage, run == 0);
+        const float *seen = tl_points_sun(stage.points, 0);
+        assert_non_null(seen);
+        assert_null(tl_points_sun(stage.points, 1));
+        for (int i = 0; i < SIDE * SIDE; i++) {
+            const tl_sample *sample = &stage.samples.items[i];
+            vec3s start = glms_vec3_add(sample->point, (vec3s){{0, tl_trace_offset(stage.trace), 0}});
+            float expected = 0;
+            for (int k = 0; k < TL_SUN_SAMPLES_MAX; k++)
+                expected += !tl_trace_occluded(stage.trace, start, suns.items[0].samples[k], 0, INFINITY);
+            double difference = (double)seen[i] - (double)expected / TL_SUN_SAMPLES_MAX;
+            errors[run] += difference * difference / (SIDE * SIDE);
+            if (fabsf(sample->point.x) > 0.1f)
+                assert_true(seen[i] == (sample->point.x > 0)); /* the core and the open */
+        }
+    }
+    /* One frame: nine of sixteen places where neighbours disagree, and one in the rest of the penumbra, which
+     * is a fifth of the image and so wide that neighbours agree in half of it: there the error is at most
+     * 1/2, on average a fifth. Sixteen rounds go to every place as often. */
+    assert_true(sqrt(errors[0]) < 0.2 * sqrt(0.2));
+    assert_true(sqrt(errors[1]) < 0.25 * sqrt(errors[0]));
+    test_shape_release(&floor);
+    test_shape_release(&plate);
+    stage_close(&stage);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -393,6 +477,7 @@ int main(void)
         cmocka_unit_test(every_region_has_its_turn),
         cmocka_unit_test(motion_replaces),
         cmocka_unit_test(values_follow_a_turn_and_new_regions),
+        cmocka_unit_test(suns_have_their_penumbrae),
         cmocka_unit_test(results_do_not_depend_on_threads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
