@@ -77,7 +77,7 @@ static struct axis make_axis(double low, double high, bool logarithmic, double f
         axis.low = 1;
         axis.high = 10;
     } else if (logarithmic) {
-        double margin = fmax(pow(high / low, 0.07), 1.15);
+        double margin = high > low ? fmax(pow(high / low, 0.07), 1.05) : 2;
         axis.low = low / margin;
         axis.high = high * margin;
     } else {
@@ -138,7 +138,8 @@ static size_t linear_ticks(const struct axis *axis, struct tick ticks[TICKS_MAX]
 
 static size_t find_ticks(const struct axis *axis, struct tick ticks[TICKS_MAX])
 {
-    return axis->logarithmic ? log_ticks(axis, ticks) : linear_ticks(axis, ticks);
+    size_t count = axis->logarithmic ? log_ticks(axis, ticks) : 0;
+    return count < 3 ? linear_ticks(axis, ticks) : count; /* a narrow range holds none of the round numbers */
 }
 
 static void print_axes(const struct canvas *canvas, const struct tl_plot *plot)

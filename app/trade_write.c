@@ -268,10 +268,14 @@ static void add_group_line(struct lines *lines, const struct tl_trade *trade, co
         add_point(lines, row, x, y);
 }
 
+/* A quick run leaves single points, which make no line. */
 static void print_lines(struct lines *lines, const char *x_label, const char *y_label, const char *caption,
                         FILE *out)
 {
-    if (lines->series_count)
+    bool joined = false;
+    for (size_t i = 0; i < lines->series_count; i++)
+        joined |= lines->series[i].count > 1;
+    if (joined)
         tl_report_plot(out,
                        &(struct tl_plot){x_label, y_label, true, true, lines->series, lines->series_count},
                        caption);
