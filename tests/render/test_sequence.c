@@ -1,4 +1,4 @@
-/* Moving light: a renderer that has followed a sequence of environments draws, at every frame, what a new
+/* Moving light: a renderer that has followed a sequence of environments draws what a new
  * renderer draws that knows that frame only. No region, PEM or map is left over from an earlier one. */
 #include "shapes.h"
 
@@ -131,7 +131,7 @@ static void pems_follow(void **state)
 {
     struct tl_light_params light = small_light();
     light.method = TL_METHOD_UNSHADOWED;
-    play(*state, &light, 1);
+    play(*state, &light, 4);
 }
 
 /* All PEMs, each with its own shadow. */
@@ -139,7 +139,7 @@ static void shadows_follow(void **state)
 {
     struct tl_light_params light = small_light();
     light.lobe = TL_LOBE_SINGLE;
-    play(*state, &light, 4);
+    play(*state, &light, 8);
 }
 
 /* Suns with maps of their own, which come and go with the sky, regions of the sphere, the ratio. */
