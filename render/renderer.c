@@ -90,6 +90,7 @@ void tl_renderer_destroy(tl_renderer **renderer)
 {
     if (!*renderer)
         return;
+    tl_pour_release(&(*renderer)->pour);
     tl_cube_release(&(*renderer)->cube);
     tl_regions_release(&(*renderer)->regions);
     tl_pems_release(&(*renderer)->pems);

@@ -3,6 +3,7 @@
 #define TOILE_RENDER_FRAME_FRAME_H
 
 #include "render/env/lobes.h"
+#include "render/env/pour.h"
 #include "render/env/sun.h"
 #include "render/light/gbuffer.h"
 #include "render/light/light.h"
@@ -112,7 +113,8 @@ struct tl_renderer {
     struct tl_render_settings settings;
     struct tl_view view;
 
-    tl_cube cube; /* without the suns */
+    struct tl_pour pour; /* from environments of one size to the cube */
+    tl_cube cube;        /* without the suns */
     struct tl_suns suns;
     struct tl_regions regions;
     uint64_t regions_revision;

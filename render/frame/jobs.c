@@ -76,7 +76,8 @@ static bool run_cube(void *context, int level, tl_error *error)
     (void)level, (void)error;
     tl_cube_release(&renderer->cube);
     tl_lobes_release(&renderer->lobes);
-    renderer->cube = tl_cube_from_environment(renderer->frame.environment, renderer->settings.light.pem_size);
+    renderer->cube = tl_cube_from_environment_with(renderer->frame.environment,
+                                                   renderer->settings.light.pem_size, &renderer->pour);
     renderer->suns = (struct tl_suns){0};
     if (renderer->settings.light.sun)
         tl_suns_take(&renderer->cube, renderer->frame.environment, &renderer->suns);
