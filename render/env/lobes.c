@@ -16,7 +16,7 @@
 /* Sixteen lanes look at a square of the map. */
 #define TILE 4
 /* Samples along a side of a texel of the environment itself. */
-#define AREA_SAMPLES 4
+#define AREA_SAMPLES 8
 
 float tl_exponent(int index)
 {
@@ -162,7 +162,7 @@ static struct tl_lobe_map sample_area(const tl_cube *cube)
                 float v = ((float)(y * AREA_SAMPLES + i / AREA_SAMPLES) + 0.5f) * step - 1;
                 const float *source = cube->texels + 3 * (size_t)tl_cube_texel(cube->size, unfold(u, v));
                 for (int c = 0; c < 3; c++)
-                    texel[c] += source[c] / (AREA_SAMPLES * AREA_SAMPLES);
+                    texel[c] += tl_emitter_radiance(source[c]) / (AREA_SAMPLES * AREA_SAMPLES);
             }
         }
     }
@@ -230,12 +230,10 @@ static inline struct place place_of(vec3s direction)
 static inline quad fetch(const struct tl_lobe_map *map, struct place place)
 {
     float x = place.u * (float)map->side + 0.5f, y = place.v * (float)map->side + 0.5f,
-          last = (float)map->side;
+          last = (float)map->side + 0.5f;
     x = x > 0 ? x < last ? x : last : 0; /* also what is not a number */
     y = y > 0 ? y < last ? y : last : 0;
     int column = (int)x, row = (int)y;
-    column -= column == map->side;
-    row -= row == map->side;
     float right = x - (float)column, below = y - (float)row;
     const quad *top = (const quad *)map->texels + (size_t)row * (size_t)(map->side + 2) + (size_t)column;
     const quad *bottom = top + map->side + 2;

@@ -192,7 +192,7 @@ static void sample_area(const struct tl_slices *slices, int region, const tl_cub
             continue;
         float *target = texel_of(slices, TL_EXPONENT_COUNT, region, texel % side, texel / side);
         for (size_t c = 0; c < 3; c++)
-            target[c] += cube->texels[3 * source + c] / (AREA_SAMPLES * AREA_SAMPLES);
+            target[c] += tl_emitter_radiance(cube->texels[3 * source + c]) / (AREA_SAMPLES * AREA_SAMPLES);
     }
 }
 

@@ -56,6 +56,8 @@ static void integrate(const tl_cube *cube, const float *fine_angles, vec3s direc
     }
 }
 
+/* Merging costs less than 0.2 % on average, where neighbours differ most in strength and colour; in a
+ * direction that few of them light it is more. Without it the error is that of a texel's shape. */
 static void merged_light_is_that_of_all_texels(void **state)
 {
     (void)state;
@@ -87,6 +89,7 @@ static void merged_light_is_that_of_all_texels(void **state)
         printf("s = %5.1f: %zu blocks, error mean %.3f %%, worst %.3f %%\n", (double)s, emitters.count,
                100 * sum, 100 * worst);
         tl_emitters_release(&emitters);
+        assert_true(sum < 0.002 && worst < 0.01);
     }
     free(texels);
     free(order);
