@@ -266,10 +266,11 @@ vec3s tl_slices_fetch(const struct tl_slices *slices, int region, vec3s directio
                       struct tl_exponent_blend blend)
 {
     const struct tl_slice_frame *frame = &slices->frames[region];
-    float z = glms_vec3_dot(direction, frame->direction);
-    float stretch = sqrtf(2 / fmaxf(1 + z, 1e-6f));
-    float x = glms_vec3_dot(direction, frame->right) * stretch,
-          y = glms_vec3_dot(direction, frame->up) * stretch;
+    float above = 1 + glms_vec3_dot(direction, frame->direction), x = 2, y = 0; /* the antipode */
+    if (above > 1e-6f) {
+        x = glms_vec3_dot(direction, frame->right) * sqrtf(2 / above);
+        y = glms_vec3_dot(direction, frame->up) * sqrtf(2 / above);
+    }
     vec3s colour = fetch(slices, blend.index, region, x, y);
     if (blend.weight > 0) /* the next one need not be there otherwise */
         colour = glms_vec3_lerp(colour, fetch(slices, blend.index + 1, region, x, y), blend.weight);
