@@ -20,6 +20,18 @@ tl_material tl_material_default(const char *name)
     return material;
 }
 
+/* The rotation is counter-clockwise with v down, as KHR_texture_transform has it. */
+void tl_uv_transform_rows(const struct tl_uv_transform *transform, float rows[6])
+{
+    float c = cosf(transform->rotation), s = sinf(transform->rotation);
+    rows[0] = c * transform->scale[0];
+    rows[1] = s * transform->scale[1];
+    rows[2] = transform->offset[0];
+    rows[3] = -s * transform->scale[0];
+    rows[4] = c * transform->scale[1];
+    rows[5] = transform->offset[1];
+}
+
 float tl_glossiness_from_roughness(float roughness)
 {
     float alpha = roughness * roughness;

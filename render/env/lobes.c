@@ -202,6 +202,31 @@ void tl_lobes_make(struct tl_lobes *lobes, const tl_cube *cube, uint32_t needed)
     free(texels);
 }
 
+struct tl_lobes tl_lobes_changed(const struct tl_lobes *from, uint32_t which, tl_lobe_change *change,
+                                 const void *context)
+{
+    struct tl_lobes lobes = {.made = from->made & which};
+    for (int k = 0; k <= TL_EXPONENT_COUNT; k++) {
+        if (!(lobes.made & 1u << k))
+            continue;
+        const struct tl_lobe_map *source = &from->maps[k];
+        lobes.maps[k] = create_map(source->side);
+        float exponent = k < TL_EXPONENT_COUNT ? tl_exponent(k) : MIRROR_EXPONENT;
+        float step = 2 / (float)source->side;
+#pragma omp parallel for schedule(dynamic, 4)
+        for (int y = 0; y < source->side; y++)
+            for (int x = 0; x < source->side; x++) {
+                const float *light = texel_of(source, x, y);
+                vec3s direction = unfold(((float)x + 0.5f) * step - 1, ((float)y + 0.5f) * step - 1);
+                vec3s changed = change(glms_vec3_normalize(direction), exponent,
+                                       (vec3s){{light[0], light[1], light[2]}}, context);
+                memcpy(texel_of(&lobes.maps[k], x, y), changed.raw, sizeof changed);
+            }
+        fill_border(&lobes.maps[k]);
+    }
+    return lobes;
+}
+
 void tl_lobes_release(struct tl_lobes *lobes)
 {
     for (size_t i = 0; i < TL_COUNT(lobes->maps); i++)

@@ -38,6 +38,12 @@ struct tl_lobes {
 void tl_lobes_make(struct tl_lobes *lobes, const tl_cube *cube, uint32_t needed);
 void tl_lobes_release(struct tl_lobes *lobes);
 
+/* Maps laid out as those of `from` are, of the exponents in `which`: each texel is what `change` makes of it.
+ * May be called from several threads at once. */
+typedef vec3s tl_lobe_change(vec3s direction, float exponent, vec3s light, const void *context);
+struct tl_lobes tl_lobes_changed(const struct tl_lobes *from, uint32_t which, tl_lobe_change *change,
+                                 const void *context);
+
 /* E(d, s); d unit, in the environment's frame. The exponents that s needs must have been made. */
 vec3s tl_lobes_fetch(const struct tl_lobes *lobes, vec3s direction, struct tl_exponent_blend blend);
 size_t tl_lobes_bytes(const struct tl_lobes *lobes);

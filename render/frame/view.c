@@ -31,5 +31,7 @@ struct tl_view tl_view_make(const struct tl_camera *camera, int width, int heigh
                             .eye = camera->eye,
                             .forward = forward,
                             .right = glms_vec3_scale(right, half_height * aspect),
-                            .up = glms_vec3_scale(up, half_height)};
+                            .up = glms_vec3_scale(up, half_height),
+                            .near_m = near_m,
+                            .far_m = far_m};
 }

@@ -10,6 +10,7 @@ struct tl_view {
     vec3s eye;
     /* From the eye to the plane at distance 1: its middle, and from there to the right and upper edge. */
     vec3s forward, right, up;
+    float near_m, far_m; /* depths along `forward` */
 };
 
 struct tl_view tl_view_make(const struct tl_camera *camera, int width, int height);

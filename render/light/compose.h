@@ -13,16 +13,21 @@
 
 #include "render/env/lobes.h"
 #include "render/env/sun.h"
+#include "render/light/region_lights.h"
 #include "render/light/samples.h"
 #include "render/visibility/points.h"
 
 struct tl_compose_request {
     const struct tl_samples *samples;
-    const struct tl_regions *regions;
-    const struct tl_suns *suns; /* none: count 0 */
+    const struct tl_region_lights *lights; /* whose weight suits the method */
+    const struct tl_suns *suns;            /* none: count 0 */
     const struct tl_lobes *lobes;
-    const tl_points *points; /* updated for these samples; unused when the method is UNSHADOWED */
-    float environment_yaw;   /* rad */
+    /* As tl_points gives them; unused when the method is UNSHADOWED. */
+    const uint16_t *values;
+    size_t stride;
+    const struct tl_taps *taps;
+    const float *sun_visibility[TL_SUNS_MAX];
+    float environment_yaw; /* rad */
     const struct tl_light_params *params;
 };
 

@@ -1,6 +1,7 @@
 #include "render/light/samples.h"
 
 #include "config/memory.h"
+#include "config/simd.h"
 
 #include <epoxy/gl.h>
 
@@ -13,9 +14,9 @@
 struct layers {
     int width, height;
     const float *points;       /* [height][width][4] */
-    const _Float16 *normals;   /* [height][width][4] */
-    const _Float16 *diffuses;  /* ... */
-    const _Float16 *speculars; /* ... */
+    const uint16_t *normals;   /* [height][width][4] */
+    const uint16_t *diffuses;  /* ... */
+    const uint16_t *speculars; /* ... */
     const uint32_t *triangles; /* [height][width] */
 };
 
@@ -70,9 +71,17 @@ static vec3s normalized_or(vec3s v, vec3s fallback)
     return square > 1e-20f ? glms_vec3_scale(v, 1 / sqrtf(square)) : fallback;
 }
 
-static vec3s half_vector(const _Float16 *texel)
+/* A finite half float: its bits lie in a float's thirteen further up, and its exponent is 112 less. */
+static float from_half(uint16_t half)
 {
-    return (vec3s){{(float)texel[0], (float)texel[1], (float)texel[2]}};
+    const float scale = 0x1p112f;
+    union tl_float_bits magnitude = {.bits = (half & 0x7fff) << 13};
+    return half & 0x8000 ? -scale * magnitude.value : scale * magnitude.value;
+}
+
+static vec3s half_vector(const uint16_t *texel)
+{
+    return (vec3s){{from_half(texel[0]), from_half(texel[1]), from_half(texel[2])}};
 }
 
 /* The inverse of octahedral() in gbuffer.frag. */
@@ -90,19 +99,19 @@ static tl_sample read_sample(const struct layers *layers, size_t texel,
                              const struct tl_triangle_ranges *ranges, vec3s eye)
 {
     const float *point = layers->points + 4 * texel;
-    const _Float16 *normal = layers->normals + 4 * texel, *diffuse = layers->diffuses + 4 * texel,
+    const uint16_t *normal = layers->normals + 4 * texel, *diffuse = layers->diffuses + 4 * texel,
                    *specular = layers->speculars + 4 * texel;
     uint32_t stored = layers->triangles[texel];
     tl_sample sample = {.texel = (uint32_t)texel,
                         .triangle = ((stored & ~TL_SAMPLE_BACK) - 1) | (stored & TL_SAMPLE_BACK),
                         .cover = point[3],
                         .point = {{point[0], point[1], point[2]}},
-                        .glossiness = (float)normal[3],
+                        .glossiness = from_half(normal[3]),
                         .diffuse = half_vector(diffuse),
                         .specular = half_vector(specular)};
     const vec3s up = {{0, 1, 0}};
     sample.normal = normalized_or(half_vector(normal), up);
-    sample.smooth = normalized_or(from_octahedral((float)diffuse[3], (float)specular[3]), up);
+    sample.smooth = normalized_or(from_octahedral(from_half(diffuse[3]), from_half(specular[3])), up);
     vec3s view = normalized_or(glms_vec3_sub(eye, sample.point), sample.normal);
     /* As in light.frag: where a normal turns away from the viewer, r passes straight on instead of flipping.
      */

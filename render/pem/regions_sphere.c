@@ -68,7 +68,7 @@ static void fill_points(const struct tl_regions *regions, struct points *points)
     for (size_t i = 0; i < 6 * face_texels; i++) {
         double area = (double)regions->solid_angles[i % face_texels] / (4 * M_PI);
         double light = luminance > 0 ? (double)regions->importance[i] / luminance : area;
-        vec3s direction = tl_regions_texel_direction(regions->size, (uint32_t)i);
+        vec3s direction = tl_cube_texel_direction(regions->size, (int)i);
         points->x[i] = direction.x;
         points->y[i] = direction.y;
         points->z[i] = direction.z;
@@ -395,7 +395,7 @@ void tl_regions_cut_sphere(const tl_cube *cube, int count, struct tl_regions *ou
 void tl_regions_merge(const struct tl_regions *from, int count, struct tl_regions *out)
 {
     assert(count >= 1 && count <= from->count && from->node_count > 0 && out != from);
-    int region_of[2 * TL_REGIONS_MAX], merged[TL_REGIONS_MAX];
+    int region_of[2 * TL_REGIONS_MAX], merged[TL_REGIONS_MAX] = {0};
     tl_regions_begin_like(from, out);
     keep_nodes(from->nodes, from->node_count, count, out, region_of);
     for (int i = 0; i < from->node_count; i++)

@@ -196,25 +196,45 @@ static void sample_area(const struct tl_slices *slices, int region, const tl_cub
     }
 }
 
+static struct region *prepare_all(const tl_cube *cube, const struct tl_regions *regions,
+                                  struct tl_slice_frame *frames)
+{
+    struct region *sources = TL_NEW_ARRAY(struct region, (size_t)regions->count);
+#pragma omp parallel for schedule(dynamic)
+    for (int i = 0; i < regions->count; i++)
+        sources[i] = prepare(cube, regions, i, &frames[i]);
+    return sources;
+}
+
+static void release_all(struct region *sources, int count)
+{
+    for (int i = 0; i < count; i++)
+        free(sources[i].texels);
+    free(sources);
+}
+
+static void lay_out_all(struct tl_slices *slices, const struct region *sources, uint32_t exponents,
+                        int cube_size)
+{
+    for (int k = 0; k <= TL_EXPONENT_COUNT; k++)
+        if (exponents & 1u << k)
+            lay_out(slices, sources, k, cube_size);
+    slices->made |= exponents;
+}
+
 void tl_slices_make(struct tl_slices *slices, const tl_cube *cube, const struct tl_regions *regions,
                     uint32_t needed)
 {
     uint32_t missing = needed & ~slices->made;
     if (!missing)
         return;
-    slices->made |= missing;
     slices->region_count = regions->count;
-    struct region *sources = TL_NEW_ARRAY(struct region, (size_t)regions->count);
-#pragma omp parallel for schedule(dynamic)
-    for (int i = 0; i < regions->count; i++)
-        sources[i] = prepare(cube, regions, i, &slices->frames[i]);
-    for (int k = 0; k <= TL_EXPONENT_COUNT; k++) {
-        if (!(missing & 1u << k))
-            continue;
-        lay_out(slices, sources, k, cube->size);
-        size_t side = (size_t)slices->side[k];
-        slices->texels[k] = TL_NEW_ARRAY(float, 3 * (size_t)regions->count * side * side);
-    }
+    struct region *sources = prepare_all(cube, regions, slices->frames);
+    lay_out_all(slices, sources, missing, cube->size);
+    for (int k = 0; k <= TL_EXPONENT_COUNT; k++)
+        if (missing & 1u << k)
+            slices->texels[k] = TL_NEW_ARRAY(float, 3 * (size_t)regions->count * (size_t)slices->side[k] *
+                                                        (size_t)slices->side[k]);
 #pragma omp parallel for collapse(2) schedule(dynamic)
     for (int k = TL_EXPONENT_COUNT; k >= 0; k--) { /* the longest first */
         for (int i = 0; i < regions->count; i++) {
@@ -226,9 +246,29 @@ void tl_slices_make(struct tl_slices *slices, const tl_cube *cube, const struct 
                 convolve(slices, k, i, &sources[i], cube->size);
         }
     }
+    release_all(sources, regions->count);
+}
+
+size_t tl_slices_bytes_of(const tl_cube *cube, const struct tl_regions *regions, uint32_t exponents)
+{
+    struct tl_slices *slices = TL_NEW(struct tl_slices);
+    slices->region_count = regions->count;
+    struct region *sources = prepare_all(cube, regions, slices->frames);
+    lay_out_all(slices, sources, exponents, cube->size);
+    size_t bytes = tl_slices_bytes(slices);
+    release_all(sources, regions->count);
+    free(slices);
+    return bytes;
+}
+
+void tl_slices_radii(const tl_cube *cube, const struct tl_regions *regions, float radii[])
+{
+    struct tl_slice_frame *frames = TL_NEW_ARRAY(struct tl_slice_frame, (size_t)regions->count);
+    struct region *sources = prepare_all(cube, regions, frames);
     for (int i = 0; i < regions->count; i++)
-        free(sources[i].texels);
-    free(sources);
+        radii[i] = sources[i].radius;
+    release_all(sources, regions->count);
+    free(frames);
 }
 
 void tl_slices_release(struct tl_slices *slices)

@@ -12,6 +12,7 @@
 
 #include "config/options.h"
 #include "render/renderer.h"
+#include "render/surfaces/ground.h"
 
 enum tl_terminator { TL_TERMINATOR_SMOOTH, TL_TERMINATOR_GEOMETRIC };
 

@@ -4,7 +4,6 @@
 
 #include <epoxy/gl.h>
 
-#include <math.h>
 #include <stdlib.h>
 
 enum attribute { POSITION, NORMAL, TANGENT, UV, ATTRIBUTES };
@@ -254,19 +253,6 @@ static void bind(GLuint unit, const tl_texture *texture, bool clamp_u, bool clam
     glBindTextureUnit(unit, texture->id);
 }
 
-/* Rows of uv' = offset + R(rotation) (scale uv); the rotation is counter-clockwise with v down, as
- * KHR_texture_transform has it. */
-static void uv_rows(const struct tl_uv_transform *transform, float rows[6])
-{
-    float c = cosf(transform->rotation), s = sinf(transform->rotation);
-    rows[0] = c * transform->scale[0];
-    rows[1] = s * transform->scale[1];
-    rows[2] = transform->offset[0];
-    rows[3] = -s * transform->scale[0];
-    rows[4] = c * transform->scale[1];
-    rows[5] = transform->offset[1];
-}
-
 static int bind_weave(const struct item *item, const tl_weave *weave, float uv_metres)
 {
     if (!weave || !(uv_metres > 0) || !(weave->size_m[0] > 0) || !(weave->size_m[1] > 0))
@@ -285,7 +271,7 @@ static void set_material(const struct item *item, const struct tl_mesh_part *par
     float rows[TL_MAP_USES][6];
     for (enum tl_map_use use = 0; use < TL_MAP_USES; use++) {
         const struct tl_map *map = map_of(material, use);
-        uv_rows(&map->transform, rows[use]);
+        tl_uv_transform_rows(&map->transform, rows[use]);
         if (!map->image)
             continue;
         bind((GLuint)use, find_texture(item, map->image, is_colour(use)), map->clamp_u, map->clamp_v);

@@ -1,6 +1,8 @@
 #include "render/pem/slice_maps.h"
 
-#include "config/memory.h"
+#include "render/pem/chain.h"
+#include "render/pem/memory.h"
+#include "render/pem/pems.h"
 #include "render/shaders.h"
 
 #include "testing.h"
@@ -160,11 +162,26 @@ static void a_sun_stays_in_range(void **state)
     fetches_agree(*state, 1e7f, 256);
 }
 
+/* pem/memory.h computes what is allocated. */
+static void chains_take_what_is_computed(void **state)
+{
+    tl_gpu *gpu = *state;
+    tl_cube cube = bright_cube(1);
+    tl_regions_cut(&cube, REGIONS, &regions);
+    struct tl_pems pems = {0};
+    tl_pems_build(&pems, gpu, &cube, &regions, TL_CHAIN_SQRT_COSINE, 12);
+    assert_int_equal(tl_pems_bytes(&pems), tl_memory_chains(REGIONS, SIZE));
+    tl_pems_release(&pems);
+    tl_regions_release(&regions);
+    tl_cube_release(&cube);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_shader_fetches_as_the_cpu),
         cmocka_unit_test(a_sun_stays_in_range),
+        cmocka_unit_test(chains_take_what_is_computed),
     };
     return cmocka_run_group_tests(tests, open_gpu, close_gpu);
 }

@@ -1,0 +1,252 @@
+#include "render/reference/reference.h"
+
+#include "config/interrupt.h"
+#include "config/log.h"
+#include "config/memory.h"
+#include "render/frame/view.h"
+#include "render/reference/gather.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+
+/* Pixels a side: a bundle holds the same sample of each. */
+enum { TILE = 4, TILE_PIXELS = TILE * TILE };
+
+#define GROUPS_MAX     64
+#define DIRECTIONS_MAX (1 << 20) /* of all groups, where one is not more */
+
+struct drawing {
+    const struct tl_reference_scene *scene;
+    const struct tl_render_settings *settings;
+    struct tl_view view;
+    int width, height; /* pixels */
+    int tiles_x, tiles_y;
+    /* Of the current replicate: `groups` times a set of directions for each sample of a pixel. Tiles take
+     * them in turn, because drawing them costs as much as tracing them. */
+    int groups;
+    struct tl_skylight *directions; /* [groups][samples][strata] */
+    float *replicate;               /* [height][width][4], of the one that is being drawn */
+    double *sums;                   /* [height][width][4], over the replicates that are done */
+    double *squares;                /* [height][width][3] */
+    size_t rays;
+    struct tl_progress progress;
+};
+
+/* Through the middle of sample (x, y), counted from the image's upper left corner. */
+static struct tl_ray camera_ray(const struct drawing *drawing, int x, int y)
+{
+    int side = drawing->settings->image.supersample;
+    const struct tl_view *view = &drawing->view;
+    float step_x = 2 / (float)(drawing->width * side), step_y = 2 / (float)(drawing->height * side);
+    vec3s along = glms_vec3_add(view->forward, glms_vec3_scale(view->right, ((float)x + 0.5f) * step_x - 1));
+    along = glms_vec3_add(along, glms_vec3_scale(view->up, 1 - ((float)y + 0.5f) * step_y));
+    float length = glms_vec3_norm(along); /* metres of the ray for each metre of depth */
+    return (struct tl_ray){.origin = view->eye,
+                           .direction = glms_vec3_divs(along, length),
+                           .from_m = view->near_m * length,
+                           .to_m = view->far_m * length,
+                           .across = glms_vec3_scale(view->right, step_x / length),
+                           .down = glms_vec3_scale(view->up, -step_y / length)};
+}
+
+/* What one sample of each of a tile's pixels sees. */
+struct bundle {
+    struct tl_spots spots;
+    size_t pixel[TL_SPOTS];
+    float cover[TL_SPOTS];
+};
+
+static struct bundle find_spots(const struct drawing *drawing, int tile, int sample)
+{
+    int side = drawing->settings->image.supersample;
+    int left = tile % drawing->tiles_x * TILE, top = tile / drawing->tiles_x * TILE;
+    struct bundle bundle = {0};
+    for (int i = 0; i < TILE_PIXELS; i++) {
+        int x = left + i % TILE, y = top + i / TILE;
+        if (x >= drawing->width || y >= drawing->height)
+            continue;
+        struct tl_ray ray = camera_ray(drawing, x * side + sample % side, y * side + sample / side);
+        struct tl_spot spot = tl_spot_find(drawing->scene, &ray);
+        if (!(spot.cover > 0))
+            continue;
+        bundle.pixel[bundle.spots.count] = (size_t)y * (size_t)drawing->width + (size_t)x;
+        bundle.cover[bundle.spots.count] = spot.cover;
+        tl_spots_add(&bundle.spots, &spot);
+    }
+    return bundle;
+}
+
+static struct tl_skylight *directions_of(const struct drawing *drawing, int group, int sample)
+{
+    int side = drawing->settings->image.supersample;
+    size_t set = (size_t)group * (size_t)(side * side) + (size_t)sample;
+    return drawing->directions + set * (size_t)drawing->settings->reference.strata;
+}
+
+/* Every so many tiles have one group each; then the order is shifted, so that columns do not share them. */
+static const struct tl_skylight *directions_for(const struct drawing *drawing, int tile, int sample)
+{
+    const int shift = 37;
+    return directions_of(drawing, (tile + tile / drawing->groups * shift) % drawing->groups, sample);
+}
+
+static void draw_directions(const struct drawing *drawing, int replicate)
+{
+    int side = drawing->settings->image.supersample, samples = side * side;
+    int strata = drawing->settings->reference.strata;
+#pragma omp parallel for schedule(dynamic)
+    for (int set = 0; set < drawing->groups * samples; set++) {
+        int group = set / samples, sample = set % samples;
+        uint64_t key = (uint64_t)(replicate + 1) << 32 | (uint32_t)group;
+        tl_gather_directions(&drawing->scene->sky, strata, sample, samples, tl_random_begin(~key, 0),
+                             tl_random_begin(~key, 1 + (uint64_t)sample),
+                             directions_of(drawing, group, sample));
+    }
+}
+
+static size_t draw_sample(const struct drawing *drawing, int replicate, int tile, int sample)
+{
+    const struct tl_reference_params *params = &drawing->settings->reference;
+    int side = drawing->settings->image.supersample, samples = side * side;
+    struct bundle bundle = find_spots(drawing, tile, sample);
+    if (bundle.spots.count == 0)
+        return TILE_PIXELS;
+    const struct tl_gathering gathering = {
+        .scene = drawing->scene,
+        .strata = params->strata,
+        .sky = directions_for(drawing, tile, sample),
+        .lobe_samples = params->lobe_samples,
+        .reflect = drawing->scene->reflect,
+        .random = tl_random_begin((uint64_t)replicate << 32 | (uint32_t)tile, (uint64_t)sample)};
+    float light[3][TL_SPOTS];
+    size_t rays = tl_gather(&gathering, &bundle.spots, light);
+    for (int i = 0; i < bundle.spots.count; i++) {
+        float *pixel = drawing->replicate + 4 * bundle.pixel[i], share = bundle.cover[i] / (float)samples;
+        for (int c = 0; c < 3; c++)
+            pixel[c] = fminf(pixel[c] + share * light[c][i], FLT_MAX);
+        pixel[3] += share;
+    }
+    return rays + TILE_PIXELS;
+}
+
+/* Tiles own their pixels, so the number of threads does not show. False when interrupted. */
+static bool draw_replicate(struct drawing *drawing, int replicate)
+{
+    int tiles = drawing->tiles_x * drawing->tiles_y, done = 0;
+    int samples = drawing->settings->image.supersample * drawing->settings->image.supersample;
+    size_t rays = 0;
+    for (size_t i = 0; i < 4 * (size_t)drawing->width * (size_t)drawing->height; i++)
+        drawing->replicate[i] = 0;
+    draw_directions(drawing, replicate);
+#pragma omp parallel for schedule(dynamic) reduction(+ : rays)
+    for (int tile = 0; tile < tiles; tile++) {
+        if (tl_interrupted())
+            continue;
+        for (int sample = 0; sample < samples; sample++)
+            rays += draw_sample(drawing, replicate, tile, sample);
+#pragma omp critical
+        tl_progress_update(&drawing->progress, (double)replicate * tiles + ++done,
+                           (double)drawing->settings->reference.replicates * tiles);
+    }
+    drawing->rays += rays;
+    return !tl_interrupted();
+}
+
+static void keep_replicate(struct drawing *drawing)
+{
+#pragma omp parallel for
+    for (size_t p = 0; p < (size_t)drawing->width * (size_t)drawing->height; p++) {
+        for (size_t c = 0; c < 4; c++) {
+            double value = (double)drawing->replicate[4 * p + c];
+            drawing->sums[4 * p + c] += value;
+            if (c < 3)
+                drawing->squares[3 * p + c] += value * value;
+        }
+    }
+}
+
+/* The variance of a pixel's mean, from the spread of the replicates. */
+static double variance_of_mean(double sum, double squares, int replicates)
+{
+    double count = replicates;
+    return fmax(squares - sum * sum / count, 0) / (count * (count - 1));
+}
+
+static double standard_error(const struct drawing *drawing, int replicates)
+{
+    double variances = 0, mean = 0, values = 0;
+    for (size_t p = 0; replicates > 1 && p < (size_t)drawing->width * (size_t)drawing->height; p++) {
+        if (!(drawing->sums[4 * p + 3] > 0))
+            continue;
+        for (size_t c = 0; c < 3; c++) {
+            double sum = drawing->sums[4 * p + c];
+            variances += variance_of_mean(sum, drawing->squares[3 * p + c], replicates);
+            mean += sum / replicates;
+            values++;
+        }
+    }
+    return mean > 0 ? sqrt(variances / values) / (mean / values) : 0;
+}
+
+static tl_image mean_image(const struct drawing *drawing, int replicates)
+{
+    tl_image image = tl_image_create(drawing->width, drawing->height, 4, TL_IMAGE_F32);
+    for (size_t i = 0; i < 4 * (size_t)drawing->width * (size_t)drawing->height; i++)
+        tl_image_floats(&image)[i] = (float)(drawing->sums[i] / replicates);
+    return image;
+}
+
+static int draw_replicates(struct drawing *drawing)
+{
+    int done = 0;
+    drawing->progress = tl_progress_begin("tracing the reference");
+    while (done < drawing->settings->reference.replicates && draw_replicate(drawing, done)) {
+        keep_replicate(drawing);
+        done++;
+    }
+    tl_progress_end(&drawing->progress);
+    return done;
+}
+
+static void allocate_directions(struct drawing *drawing)
+{
+    int side = drawing->settings->image.supersample;
+    int64_t one = (int64_t)side * side * drawing->settings->reference.strata;
+    int64_t groups = one > 0 ? DIRECTIONS_MAX / one : 1;
+    drawing->groups = (int)(groups < 1 ? 1 : groups > GROUPS_MAX ? GROUPS_MAX : groups);
+    drawing->directions = TL_NEW_ARRAY(struct tl_skylight, (size_t)(drawing->groups * one));
+}
+
+bool tl_reference_draw(const tl_frame *frame, const struct tl_render_settings *settings,
+                       const struct tl_ground *ground, tl_image *out, struct tl_reference_report *report,
+                       tl_error *error)
+{
+    struct tl_reference_scene scene;
+    if (!tl_reference_scene_make(frame, settings, ground, &scene, error))
+        return false;
+    int width = settings->image.width, height = settings->image.height;
+    size_t pixels = (size_t)width * (size_t)height;
+    struct drawing drawing = {.scene = &scene,
+                              .settings = settings,
+                              .view = tl_view_make(&frame->camera, width, height),
+                              .width = width,
+                              .height = height,
+                              .tiles_x = (width + TILE - 1) / TILE,
+                              .tiles_y = (height + TILE - 1) / TILE,
+                              .replicate = TL_NEW_ARRAY(float, 4 * pixels),
+                              .sums = TL_NEW_ARRAY(double, 4 * pixels),
+                              .squares = TL_NEW_ARRAY(double, 3 * pixels)};
+    allocate_directions(&drawing);
+    int done = draw_replicates(&drawing);
+    *report = (struct tl_reference_report){done, standard_error(&drawing, done), drawing.rays};
+    if (done > 0)
+        *out = mean_image(&drawing, done);
+    free(drawing.directions);
+    free(drawing.replicate);
+    free(drawing.sums);
+    free(drawing.squares);
+    tl_reference_scene_release(&scene);
+    return done > 0 ||
+           tl_fail(error, TL_INTERRUPTED, "the reference: interrupted before its first replicate");
+}

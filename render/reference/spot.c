@@ -1,0 +1,418 @@
+#include "render/reference/spot.h"
+
+#include "config/memory.h"
+#include "render/pem/lobe.h"
+#include "render/surfaces/surfaces.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Of the distance that is safe at any price: still a hundred times the rounding of positions, and what rests
+ * on a surface is seen as resting on it. */
+#define OFFSET_SHARE 0.1f
+
+struct look_map {
+    const struct tl_map_texture *texture; /* NULL: none */
+    bool clamp_u, clamp_v;
+    float rows[6]; /* of its UV transform */
+};
+
+struct look_material {
+    struct look_map maps[TL_MAP_USES];
+    const struct tl_map_texture *weave[TL_WEAVE_USES];
+};
+
+struct tl_look {
+    struct look_material *materials;
+};
+
+static const struct tl_map_texture *find_texture(struct tl_reference_scene *scene, const tl_image *image,
+                                                 bool colour)
+{
+    if (!image)
+        return NULL;
+    for (size_t i = 0; i < scene->texture_count; i++)
+        if (scene->textures[i]->image == image && scene->textures[i]->colour == colour)
+            return scene->textures[i];
+    scene->textures = tl_resize(scene->textures, scene->texture_count + 1, sizeof(struct tl_map_texture *));
+    struct tl_map_texture *texture = TL_NEW(struct tl_map_texture);
+    *texture = tl_map_texture_make(image, colour);
+    scene->textures[scene->texture_count++] = texture;
+    return texture;
+}
+
+static struct look_material make_material(struct tl_reference_scene *scene, const tl_material *material)
+{
+    const struct tl_map *maps[TL_MAP_USES] = {[TL_MAP_DIFFUSE] = &material->diffuse_map,
+                                              [TL_MAP_NORMAL] = &material->normal_map,
+                                              [TL_MAP_GLOSS] = &material->gloss_map,
+                                              [TL_MAP_SPECULAR] = &material->specular_map,
+                                              [TL_MAP_OCCLUSION] = &material->occlusion_map};
+    struct look_material look = {0};
+    for (enum tl_map_use use = 0; use < TL_MAP_USES; use++) {
+        bool colour = use == TL_MAP_DIFFUSE || use == TL_MAP_SPECULAR;
+        look.maps[use] = (struct look_map){.texture = find_texture(scene, maps[use]->image, colour),
+                                           .clamp_u = maps[use]->clamp_u,
+                                           .clamp_v = maps[use]->clamp_v};
+        tl_uv_transform_rows(&maps[use]->transform, look.maps[use].rows);
+    }
+    const tl_weave *weave = material->weave;
+    if (weave && weave->size_m[0] > 0 && weave->size_m[1] > 0) {
+        look.weave[TL_WEAVE_NORMAL] = find_texture(scene, &weave->normal, false);
+        look.weave[TL_WEAVE_GLOSS] = find_texture(scene, &weave->gloss, false);
+        look.weave[TL_WEAVE_TINT] = find_texture(scene, &weave->tint, false);
+    }
+    return look;
+}
+
+static struct tl_look make_look(struct tl_reference_scene *scene, const tl_surface *surface)
+{
+    size_t count = 0;
+    for (size_t p = 0; p < surface->part_count; p++) {
+        size_t needed = (size_t)surface->parts[p].material + 1;
+        count = needed > count ? needed : count;
+    }
+    struct tl_look look = {TL_NEW_ARRAY(struct look_material, count)};
+    for (size_t m = 0; m < count; m++)
+        look.materials[m] = make_material(scene, &surface->materials[m]);
+    return look;
+}
+
+bool tl_reference_scene_make(const tl_frame *frame, const struct tl_render_settings *settings,
+                             const struct tl_ground *ground, struct tl_reference_scene *out, tl_error *error)
+{
+    *out = (struct tl_reference_scene){.surfaces = frame->surfaces,
+                                       .surface_count = frame->surface_count - (ground ? 1 : 0),
+                                       .ground = ground,
+                                       .lobe = settings->light.lobe,
+                                       .terminator = settings->reference.terminator,
+                                       .reflect = settings->light.reflect_scene};
+    out->looks = TL_NEW_ARRAY(struct tl_look, out->surface_count + 1);
+    for (size_t i = 0; i < out->surface_count; i++)
+        out->looks[i] = make_look(out, &frame->surfaces[i]);
+    if (ground)
+        out->looks[out->surface_count] = make_look(out, &ground->surface);
+    tl_sky_make(frame->environment, frame->environment_yaw, &out->sky);
+    out->trace = tl_trace_create(error);
+    if (!out->trace || !tl_trace_update(out->trace, out->surfaces, out->surface_count, error)) {
+        tl_reference_scene_release(out);
+        return false;
+    }
+    out->offset_m = OFFSET_SHARE * tl_trace_offset(out->trace);
+    return true;
+}
+
+void tl_reference_scene_release(struct tl_reference_scene *scene)
+{
+    for (size_t i = 0; scene->looks && i <= scene->surface_count; i++)
+        free(scene->looks[i].materials);
+    free(scene->looks);
+    for (size_t i = 0; i < scene->texture_count; i++) {
+        tl_map_texture_release(scene->textures[i]);
+        free(scene->textures[i]);
+    }
+    free(scene->textures);
+    tl_sky_release(&scene->sky);
+    tl_trace_destroy(&scene->trace);
+    *scene = (struct tl_reference_scene){0};
+}
+
+/* A point of a surface with all that its material is asked with. */
+struct place {
+    const tl_material *material;
+    const struct look_material *look;
+    bool woven;
+    float weave_scale[2]; /* repeats per UV unit */
+    struct tl_footprint footprint;
+    vec3s point, facet; /* normal of the triangle, on the viewer's side */
+    vec3s normal;       /* interpolated, towards the outside, as long as it comes out */
+    vec4s tangent;
+    float
+        side; /* 1, or -1 where the back is seen: it is a surface of its own, whose whole frame turns over */
+};
+
+static vec3s direction_or(vec3s v, vec3s fallback)
+{
+    float square = glms_vec3_norm2(v);
+    return square > 1e-30f && isfinite(square) ? glms_vec3_scale(v, 1 / sqrtf(square)) : fallback;
+}
+
+static struct tl_footprint through_rows(const struct tl_footprint *at, const float *rows)
+{
+    const vec2s given[3] = {at->uv, at->across, at->down};
+    vec2s made[3];
+    for (int i = 0; i < 3; i++)
+        made[i] = (vec2s){{rows[0] * given[i].x + rows[1] * given[i].y + (i == 0 ? rows[2] : 0),
+                           rows[3] * given[i].x + rows[4] * given[i].y + (i == 0 ? rows[5] : 0)}};
+    return (struct tl_footprint){made[0], made[1], made[2]};
+}
+
+static bool has_map(const struct place *place, enum tl_map_use use)
+{
+    return place->look->maps[use].texture != NULL;
+}
+
+static vec4s map_at(const struct place *place, enum tl_map_use use)
+{
+    const struct look_map *map = &place->look->maps[use];
+    struct tl_footprint at = through_rows(&place->footprint, map->rows);
+    return tl_map_texture_fetch(map->texture, &at, map->clamp_u, map->clamp_v);
+}
+
+static vec4s weave_at(const struct place *place, enum tl_weave_use use)
+{
+    const float rows[6] = {place->weave_scale[0], 0, 0, 0, place->weave_scale[1], 0};
+    struct tl_footprint at = through_rows(&place->footprint, rows);
+    return tl_map_texture_fetch(place->look->weave[use], &at, false, false);
+}
+
+static vec3s decoded(vec4s texel)
+{
+    return (vec3s){{2 * texel.x - 1, 2 * texel.y - 1, 2 * texel.z - 1}};
+}
+
+/* Tangent-space normal: the file's map and the weave, their slopes added as the heights behind them would be.
+ */
+static vec3s tangent_space_normal(const struct place *place)
+{
+    vec3s n = {{0, 0, 1}};
+    if (has_map(place, TL_MAP_NORMAL)) {
+        n = decoded(map_at(place, TL_MAP_NORMAL));
+        n.x *= place->material->normal_scale;
+        n.y *= place->material->normal_scale;
+    }
+    if (place->woven) {
+        vec3s weave = decoded(weave_at(place, TL_WEAVE_NORMAL));
+        n = (vec3s){{n.x * weave.z + weave.x * n.z, n.y * weave.z + weave.y * n.z, n.z * weave.z}};
+    }
+    return n;
+}
+
+static vec3s shading_normal(const struct place *place, vec3s smooth)
+{
+    vec3s tangent = {{place->tangent.x, place->tangent.y, place->tangent.z}};
+    if (!(has_map(place, TL_MAP_NORMAL) || place->woven) || !(glms_vec3_norm2(tangent) > 0))
+        return smooth;
+    vec3s mapped = tangent_space_normal(place);
+    vec3s bitangent = glms_vec3_scale(glms_vec3_cross(place->normal, tangent), place->tangent.w);
+    vec3s sum = glms_vec3_scale(tangent, mapped.x);
+    sum = glms_vec3_add(sum, glms_vec3_scale(bitangent, mapped.y));
+    sum = glms_vec3_add(sum, glms_vec3_scale(place->normal, mapped.z));
+    return direction_or(sum, smooth);
+}
+
+static float glossiness_of(const struct place *place)
+{
+    float g = place->material->glossiness;
+    if (has_map(place, TL_MAP_GLOSS))
+        g *= map_at(place, TL_MAP_GLOSS).x;
+    if (place->woven)
+        g += weave_at(place, TL_WEAVE_GLOSS).x;
+    return fminf(fmaxf(g, 0), 1);
+}
+
+static vec3s times_map(vec3s colour, vec4s texel)
+{
+    return (vec3s){{colour.x * texel.x, colour.y * texel.y, colour.z * texel.z}};
+}
+
+static vec3s diffuse_of(const struct place *place)
+{
+    vec3s colour = place->material->diffuse;
+    if (has_map(place, TL_MAP_DIFFUSE))
+        colour = times_map(colour, map_at(place, TL_MAP_DIFFUSE));
+    if (place->woven)
+        colour = times_map(colour, weave_at(place, TL_WEAVE_TINT));
+    if (has_map(place, TL_MAP_OCCLUSION)) {
+        float open = map_at(place, TL_MAP_OCCLUSION).x;
+        colour = glms_vec3_scale(colour, 1 + (open - 1) * place->material->occlusion_strength);
+    }
+    return colour;
+}
+
+/* Schlick's Fresnel term with f90 = min(50 F0, 1). */
+static vec3s specular_of(const struct place *place, float n_dot_v)
+{
+    vec3s f0 = place->material->specular;
+    if (has_map(place, TL_MAP_SPECULAR))
+        f0 = times_map(f0, map_at(place, TL_MAP_SPECULAR));
+    float away = 1 - fminf(fmaxf(n_dot_v, 0), 1), fifth = away * away * away * away * away;
+    for (int c = 0; c < 3; c++)
+        f0.raw[c] += (fminf(50 * f0.raw[c], 1) - f0.raw[c]) * fifth;
+    return f0;
+}
+
+static void set_lobes(const struct place *place, const struct tl_reference_scene *scene, vec3s viewer,
+                      vec3s smooth, struct tl_spot *spot)
+{
+    vec3s n = glms_vec3_scale(shading_normal(place, smooth), place->side);
+    float n_dot_v = glms_vec3_dot(n, viewer);
+    vec3s mirror = glms_vec3_sub(glms_vec3_scale(n, 2 * fmaxf(n_dot_v, 0)), viewer);
+    float g = glossiness_of(place);
+    spot->normal = n;
+    spot->axis = direction_or(mirror, n);
+    spot->exponent = tl_lobe_exponent(g);
+    spot->diffuse = diffuse_of(place);
+    spot->glossy = specular_of(place, n_dot_v);
+    if (scene->lobe == TL_LOBE_SINGLE) {
+        spot->axis = direction_or(glms_vec3_lerp(n, mirror, g), n);
+        spot->glossy = glms_vec3_lerp(spot->diffuse, spot->glossy, g);
+        spot->diffuse = (vec3s){{0, 0, 0}};
+    }
+}
+
+static struct tl_spot spot_of(const struct place *place, const struct tl_reference_scene *scene,
+                              const struct tl_ray *ray, vec3s smooth_point)
+{
+    struct tl_spot spot = {.cover = 1};
+    vec3s smooth = direction_or(place->normal, glms_vec3_scale(place->facet, place->side));
+    set_lobes(place, scene, glms_vec3_negate(ray->direction), smooth, &spot);
+    bool geometric = scene->terminator == TL_TERMINATOR_GEOMETRIC;
+    spot.horizon = geometric ? place->facet : glms_vec3_scale(smooth, place->side);
+    spot.point = geometric ? place->point : smooth_point;
+    return spot;
+}
+
+/* A triangle that was hit. */
+struct corners {
+    vec3s positions[3], normals[3];
+    vec4s tangents[3];
+    vec2s uvs[3];
+};
+
+static struct corners corners_of(const tl_surface *surface, uint32_t triangle)
+{
+    struct corners corners = {0};
+    for (size_t i = 0; i < 3; i++) {
+        uint32_t vertex = surface->indices[3 * (size_t)triangle + i];
+        corners.positions[i] = surface->positions[vertex];
+        if (surface->normals)
+            corners.normals[i] = surface->normals[vertex];
+        if (surface->tangents)
+            corners.tangents[i] = surface->tangents[vertex];
+        if (surface->uvs)
+            corners.uvs[i] = surface->uvs[vertex];
+    }
+    return corners;
+}
+
+static const struct tl_mesh_part *part_of(const tl_surface *surface, uint32_t triangle)
+{
+    size_t part = 0;
+    while (part + 1 < surface->part_count &&
+           3 * triangle - surface->parts[part].first_index >= surface->parts[part].index_count)
+        part++;
+    return &surface->parts[part];
+}
+
+/* How far the point where a ray meets a plane moves when the ray's direction changes by `change`. */
+static vec3s shift_on_plane(const struct tl_ray *ray, float distance, vec3s normal, vec3s change)
+{
+    float slope = glms_vec3_dot(normal, change) / glms_vec3_dot(normal, ray->direction);
+    return glms_vec3_scale(glms_vec3_sub(change, glms_vec3_scale(ray->direction, slope)), distance);
+}
+
+/* How far (u, v) moves when a point moves within its triangle: the plane's coordinates by least squares. */
+static vec2s shift_of_uv(const struct corners *corners, vec3s move)
+{
+    vec3s e1 = glms_vec3_sub(corners->positions[1], corners->positions[0]);
+    vec3s e2 = glms_vec3_sub(corners->positions[2], corners->positions[0]);
+    float a = glms_vec3_norm2(e1), b = glms_vec3_dot(e1, e2), c = glms_vec3_norm2(e2);
+    float p = glms_vec3_dot(e1, move), q = glms_vec3_dot(e2, move), determinant = a * c - b * b;
+    float s = (c * p - b * q) / determinant, t = (a * q - b * p) / determinant;
+    vec2s along = glms_vec2_scale(glms_vec2_sub(corners->uvs[1], corners->uvs[0]), s);
+    return glms_vec2_add(along, glms_vec2_scale(glms_vec2_sub(corners->uvs[2], corners->uvs[0]), t));
+}
+
+static struct tl_footprint footprint_of(const struct corners *corners, const float weights[3],
+                                        const struct tl_ray *ray, float distance, vec3s facet)
+{
+    struct tl_footprint footprint = {0};
+    for (int i = 0; i < 3; i++)
+        footprint.uv = glms_vec2_add(footprint.uv, glms_vec2_scale(corners->uvs[i], weights[i]));
+    if (glms_vec3_norm2(ray->across) > 0) {
+        footprint.across = shift_of_uv(corners, shift_on_plane(ray, distance, facet, ray->across));
+        footprint.down = shift_of_uv(corners, shift_on_plane(ray, distance, facet, ray->down));
+    }
+    return footprint;
+}
+
+static void set_material(const struct tl_reference_scene *scene, const struct tl_trace_hit *hit,
+                         struct place *place)
+{
+    const tl_surface *surface = &scene->surfaces[hit->surface];
+    const struct tl_mesh_part *part = part_of(surface, hit->triangle);
+    place->material = &surface->materials[part->material];
+    place->look = &scene->looks[hit->surface].materials[part->material];
+    place->woven = place->look->weave[TL_WEAVE_NORMAL] && part->uv_metres > 0;
+    for (int i = 0; place->woven && i < 2; i++)
+        place->weave_scale[i] = part->uv_metres / place->material->weave->size_m[i];
+}
+
+static struct tl_spot surface_spot(const struct tl_reference_scene *scene, const struct tl_ray *ray,
+                                   const struct tl_trace_hit *hit)
+{
+    struct corners corners = corners_of(&scene->surfaces[hit->surface], hit->triangle);
+    const float weights[3] = {1 - hit->u - hit->v, hit->u, hit->v};
+    vec3s across = glms_vec3_cross(glms_vec3_sub(corners.positions[1], corners.positions[0]),
+                                   glms_vec3_sub(corners.positions[2], corners.positions[0]));
+    struct place place = {.side = hit->back ? -1.0f : 1.0f};
+    set_material(scene, hit, &place);
+    place.facet = glms_vec3_scale(direction_or(across, glms_vec3_negate(ray->direction)), place.side);
+    for (int i = 0; i < 3; i++) {
+        place.point = glms_vec3_add(place.point, glms_vec3_scale(corners.positions[i], weights[i]));
+        place.normal = glms_vec3_add(place.normal, glms_vec3_scale(corners.normals[i], weights[i]));
+        place.tangent = glms_vec4_add(place.tangent, glms_vec4_scale(corners.tangents[i], weights[i]));
+        corners.normals[i] = direction_or(glms_vec3_scale(corners.normals[i], place.side), place.facet);
+    }
+    place.footprint = footprint_of(&corners, weights, ray, hit->distance_m, place.facet);
+    vec3s smooth = tl_smooth_point(place.point, corners.positions, corners.normals, weights);
+    struct tl_spot spot = spot_of(&place, scene, ray, smooth);
+    spot.point = glms_vec3_add(spot.point, glms_vec3_scale(place.facet, scene->offset_m));
+    return spot;
+}
+
+/* How far along the ray the ground's plane is met; infinite when it is not. */
+static float distance_to_ground(const struct tl_reference_scene *scene, const struct tl_ray *ray)
+{
+    if (!scene->ground || fabsf(ray->direction.y) < 1e-12f)
+        return INFINITY;
+    float distance = (scene->ground->centre.y - ray->origin.y) / ray->direction.y;
+    return distance > ray->from_m && distance < ray->to_m ? distance : INFINITY;
+}
+
+static struct tl_spot ground_spot(const struct tl_reference_scene *scene, const struct tl_ray *ray,
+                                  float distance)
+{
+    const struct tl_ground *ground = scene->ground;
+    vec3s point = glms_vec3_add(ray->origin, glms_vec3_scale(ray->direction, distance));
+    point.y = ground->centre.y;
+    float cover = tl_ground_cover(ground, point.x, point.z), side = ray->direction.y < 0 ? 1.0f : -1.0f;
+    const struct place place = {
+        .material = &ground->material,
+        .look = &scene->looks[scene->surface_count].materials[0],
+        .footprint.uv = {{(point.x - ground->centre.x) / ground->radius,
+                          (point.z - ground->centre.z) / ground->radius}},
+        .point = point,
+        .facet = {{0, side, 0}},
+        .normal = {{0, 1, 0}},
+        .tangent = {{1, 0, 0, 1}},
+        .side = side,
+    };
+    struct tl_spot spot = spot_of(&place, scene, ray, point);
+    spot.cover = cover;
+    return spot;
+}
+
+struct tl_spot tl_spot_find(const struct tl_reference_scene *scene, const struct tl_ray *ray)
+{
+    struct tl_trace_hit hit =
+        tl_trace_nearest(scene->trace, ray->origin, ray->direction, ray->from_m, ray->to_m);
+    float to_ground = distance_to_ground(scene, ray);
+    if (to_ground < (hit.surface == TL_TRACE_NONE ? INFINITY : hit.distance_m)) {
+        struct tl_spot spot = ground_spot(scene, ray, to_ground);
+        if (spot.cover > 0)
+            return spot;
+    }
+    return hit.surface == TL_TRACE_NONE ? (struct tl_spot){0} : surface_spot(scene, ray, &hit);
+}

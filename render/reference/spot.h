@@ -1,0 +1,54 @@
+/* What a ray of the oracle finds: a point of a surface or of the ground, and what it does with light, as the
+ * G-buffer's shaders define it (render/light/gbuffer.frag) but without the G-buffer's rounding.
+ *
+ * World space, metres. Borrows the surfaces. Threads: pure once made. */
+#ifndef TOILE_RENDER_REFERENCE_SPOT_H
+#define TOILE_RENDER_REFERENCE_SPOT_H
+
+#include "render/reference/reference.h"
+#include "render/reference/sky.h"
+#include "render/reference/texture.h"
+#include "render/surfaces/ground.h"
+#include "render/trace/trace.h"
+
+struct tl_look; /* a surface's materials, made ready */
+
+struct tl_reference_scene {
+    const tl_surface *surfaces; /* without the ground */
+    size_t surface_count;
+    const struct tl_ground *ground; /* NULL: none */
+    tl_trace *trace;
+    struct tl_look *looks; /* by surface; the ground's comes last */
+    size_t texture_count;
+    struct tl_map_texture **textures;
+    struct tl_sky sky;
+    float offset_m; /* how far off a surface its rays start */
+    int lobe;       /* enum tl_lobe */
+    int terminator; /* enum tl_terminator */
+    bool reflect;   /* near mirrors see the lit scene */
+};
+
+bool tl_reference_scene_make(const tl_frame *frame, const struct tl_render_settings *settings,
+                             const struct tl_ground *ground, struct tl_reference_scene *out, tl_error *error);
+void tl_reference_scene_release(struct tl_reference_scene *scene);
+
+struct tl_ray {
+    vec3s origin, direction; /* unit */
+    float from_m, to_m;
+    vec3s across, down; /* how `direction` changes from sample to sample; zero: maps at their finest level */
+};
+
+/* One lobe, or two: c = integral of L V [diffuse K_1(normal, w) + glossy K_s(axis, w)] dw */
+struct tl_spot {
+    float cover;   /* share of what is seen there; 0: the ray meets nothing */
+    vec3s point;   /* where rays to the light start */
+    vec3s horizon; /* normal of the plane above which light counts; unit, as all directions here */
+    vec3s normal, axis;
+    float exponent; /* s */
+    vec3s diffuse, glossy;
+};
+
+/* What the ray meets first. */
+struct tl_spot tl_spot_find(const struct tl_reference_scene *scene, const struct tl_ray *ray);
+
+#endif
