@@ -101,8 +101,8 @@ vec3s tl_lobe_probe(int i, int count)
     const int awkward = 26;
     if (i < awkward) { /* the points of a 3 x 3 x 3 grid but for its middle */
         int place = i < awkward / 2 ? i : i + 1;
-        return glms_vec3_normalize(
-            (vec3s){{(float)(place % 3 - 1), (float)(place / 3 % 3 - 1), (float)(place / 9 - 1)}});
+        int x = place % 3 - 1, y = place / 3 % 3 - 1, z = place / 9 - 1;
+        return glms_vec3_normalize((vec3s){{(float)x, (float)y, (float)z}});
     }
     float y = 1 - 2 * ((float)(i - awkward) + 0.5f) / (float)(count - awkward);
     float phi = 2.39996323f * (float)i, radius = sqrtf(1 - y * y); /* golden angle */

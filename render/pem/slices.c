@@ -147,7 +147,8 @@ static void convolve_tile(const struct tl_slices *slices, int exponent, int regi
     vec3s directions[TL_LANES];
     float steps[TL_LANES];
     for (int i = 0; i < TL_LANES; i++) {
-        float x = ((float)(left + i % TILE) - middle) * step, y = ((float)(top + i / TILE) - middle) * step;
+        int column = left + i % TILE, row = top + i / TILE;
+        float x = ((float)column - middle) * step, y = ((float)row - middle) * step;
         directions[i] = unproject(frame, x, y);
         steps[i] = step * sqrtf(square_scale(x, y));
     }
@@ -179,18 +180,16 @@ static void sample_area(const struct tl_slices *slices, int region, const tl_cub
                         const struct tl_regions *regions)
 {
     const struct tl_slice_frame *frame = &slices->frames[region];
-    int side = slices->side[TL_EXPONENT_COUNT];
-    float step = 1 / (frame->scale[TL_EXPONENT_COUNT] * (float)side);
-    for (int i = 0; i < side * side * AREA_SAMPLES * AREA_SAMPLES; i++) {
-        int sample = i % (AREA_SAMPLES * AREA_SAMPLES), texel = i / (AREA_SAMPLES * AREA_SAMPLES);
-        float x = (float)(texel % side) + ((float)(sample % AREA_SAMPLES) + 0.5f) / AREA_SAMPLES;
-        float y = (float)(texel / side) + ((float)(sample / AREA_SAMPLES) + 0.5f) / AREA_SAMPLES;
-        float middle = (float)side / 2;
-        vec3s direction = unproject(frame, (x - middle) * step, (y - middle) * step);
+    int side = slices->side[TL_EXPONENT_COUNT], fine = side * AREA_SAMPLES;
+    float step = 1 / (frame->scale[TL_EXPONENT_COUNT] * (float)fine), middle = (float)fine / 2 - 0.5f;
+    for (int i = 0; i < fine * fine; i++) {
+        int column = i % fine, row = i / fine;
+        vec3s direction = unproject(frame, ((float)column - middle) * step, ((float)row - middle) * step);
         size_t source = (size_t)tl_cube_texel(cube->size, direction);
         if (regions->labels[source] != region)
             continue;
-        float *target = texel_of(slices, TL_EXPONENT_COUNT, region, texel % side, texel / side);
+        float *target =
+            texel_of(slices, TL_EXPONENT_COUNT, region, column / AREA_SAMPLES, row / AREA_SAMPLES);
         for (size_t c = 0; c < 3; c++)
             target[c] += tl_emitter_radiance(cube->texels[3 * source + c]) / (AREA_SAMPLES * AREA_SAMPLES);
     }

@@ -90,7 +90,8 @@ static void no_seam_below_the_horizon(void **state)
     for (int i = 0; i <= TL_EXPONENT_COUNT; i++) {
         vec3s pole = tl_lobes_fetch(&lobes, (vec3s){{0, -1, 0}}, node(i));
         for (int k = 0; k < 100; k++) {
-            float turn = (float)(k / 4 + 1) / 27 * (float)M_PI, small = 1e-5f;
+            int turns = k / 4 + 1;
+            float turn = (float)turns / 27 * (float)M_PI, small = 1e-5f;
             float along = -cosf(turn), out = sinf(turn);
             vec3s ahead = {{out, along, small}}, behind = {{out, along, -small}};
             if (k & 1)

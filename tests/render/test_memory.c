@@ -78,7 +78,7 @@ static void a_paraboloid_fits_its_region(void **state)
         vec3s d = glms_vec3_normalize(
             tl_cube_direction(i / 4096, ((float)(i % 64) + 0.5f) / 64, ((float)(i / 64 % 64) + 0.5f) / 64));
         if (d.y > cosf((float)M_PI / 6))
-            cap.texels[3 * i] = 1;
+            cap.texels[3 * (size_t)i] = 1;
     }
     float radius;
     tl_slices_radii(&cap, &regions, &radius);

@@ -76,6 +76,12 @@ static void quantise(float colour[3], float scale)
 static struct tl_regions regions;
 static struct tl_slices slices;
 
+static size_t texel_count(int exponent)
+{
+    size_t side = (size_t)slices.side[exponent];
+    return side * side * (size_t)regions.count;
+}
+
 /* The texture holds what the format makes of the CPU's texels, and the shader fetches as the CPU does: what
  * remains is how finely software GL interpolates. */
 static void fetches_agree(tl_gpu *gpu, float lamp, float scale)
@@ -87,8 +93,7 @@ static void fetches_agree(tl_gpu *gpu, float lamp, float scale)
     struct tl_slice_maps maps = {0};
     tl_slice_maps_upload(&maps, gpu, &slices);
     for (int k = 0; k <= TL_EXPONENT_COUNT; k++)
-        for (size_t i = 0; slices.texels[k] && i < (size_t)(regions.count * slices.side[k] * slices.side[k]);
-             i++)
+        for (size_t i = 0; i < (slices.texels[k] ? texel_count(k) : 0); i++)
             quantise(slices.texels[k] + 3 * i, scale);
 
     const struct tl_embedded *vertex = tl_embedded_find(tl_embedded_shaders, "fullscreen.vert");

@@ -28,9 +28,10 @@ static tl_cube room(int size)
                                                   ((float)(i / size % size) + 0.5f) / (float)size));
         float noise = (float)(((uint32_t)i * 2654435761u) >> 16) / 65536;
         float lamp = glms_vec3_dot(d, (vec3s){{0.6f, 0.64f, 0.48f}}) > 0.99f ? 30 : 0;
-        cube.texels[3 * i] = noise + lamp;
-        cube.texels[3 * i + 1] = noise * (1.5f + d.y) + lamp;
-        cube.texels[3 * i + 2] = noise * (1.2f - d.x);
+        float *texel = cube.texels + 3 * (size_t)i;
+        texel[0] = noise + lamp;
+        texel[1] = noise * (1.5f + d.y) + lamp;
+        texel[2] = noise * (1.2f - d.x);
     }
     return cube;
 }
