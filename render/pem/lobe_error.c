@@ -68,29 +68,54 @@ static double ring_place(double place, double s)
     return near * pow(2 / near, (place - RINGS_NEAR) / RINGS_FAR);
 }
 
+#define SAMPLES (RINGS * SPOKES)
+
+/* Where the lobes are compared: directions, what they should show, the solid angles that they stand for as
+ * parts of the lobe's volume. */
+struct quadrature {
+    vec3s directions[SAMPLES];
+    double wanted[SAMPLES], shares[SAMPLES];
+};
+
+static void set_quadrature(const struct tl_lobe_source *source, float s, struct quadrature *out)
+{
+    double volume = 0;
+    for (int i = 0; i < SAMPLES; i++) {
+        int ring = i / SPOKES, spoke = i % SPOKES;
+        double cosine = 1 - ring_place(ring + 0.5, (double)s);
+        /* Rings are turned by the golden section, lest spokes follow a texel grid. */
+        double turn = fmod(ring * 0.6180339887498949, 1);
+        out->directions[i] = around(source_axis(source), cosine, 2 * M_PI * (turn + spoke) / SPOKES);
+        out->wanted[i] = wanted_lobe(source, s, out->directions[i]);
+        out->shares[i] = 2 * M_PI * (ring_place(ring + 1, (double)s) - ring_place(ring, (double)s)) / SPOKES;
+        volume += out->shares[i] * out->wanted[i];
+    }
+    for (int i = 0; i < SAMPLES; i++)
+        out->shares[i] /= volume;
+}
+
+static struct tl_lobe_error compare(const struct quadrature *quadrature, const double shown[SAMPLES])
+{
+    struct tl_lobe_error result = {0};
+    for (int i = 0; i < SAMPLES; i++)
+        result.energy += quadrature->shares[i] * shown[i];
+    for (int i = 0; i < SAMPLES; i++) {
+        double share = quadrature->shares[i], wanted = quadrature->wanted[i];
+        result.error += share * fabs(shown[i] - wanted);
+        result.same_volume += share * fabs(shown[i] / result.energy - wanted);
+    }
+    return result;
+}
+
 struct tl_lobe_error tl_lobe_measure(const struct tl_lobe_source *source, float s, tl_lobe_response *response,
                                      const void *prefilter)
 {
-    double shown[RINGS * SPOKES], wanted[RINGS * SPOKES], shares[RINGS], shown_sum = 0, wanted_sum = 0;
-    for (int i = 0; i < RINGS * SPOKES; i++) {
-        int ring = i / SPOKES, spoke = i % SPOKES;
-        double cosine = 1 - ring_place(ring + 0.5, (double)s);
-        shares[ring] = 2 * M_PI * (ring_place(ring + 1, (double)s) - ring_place(ring, (double)s)) / SPOKES;
-        /* Rings are turned by the golden section, lest spokes follow a texel grid. */
-        double turn = fmod(ring * 0.6180339887498949, 1);
-        vec3s direction = around(source_axis(source), cosine, 2 * M_PI * (turn + spoke) / SPOKES);
-        shown[i] = response(prefilter, direction);
-        wanted[i] = wanted_lobe(source, s, direction);
-        shown_sum += shares[ring] * shown[i];
-        wanted_sum += shares[ring] * wanted[i];
-    }
-    struct tl_lobe_error result = {.energy = shown_sum / wanted_sum};
-    for (int i = 0; i < RINGS * SPOKES; i++) {
-        double share = shares[i / SPOKES] / wanted_sum;
-        result.error += share * fabs(shown[i] - wanted[i]);
-        result.same_volume += share * fabs(shown[i] / result.energy - wanted[i]);
-    }
-    return result;
+    struct quadrature quadrature;
+    double shown[SAMPLES];
+    set_quadrature(source, s, &quadrature);
+    for (int i = 0; i < SAMPLES; i++)
+        shown[i] = response(prefilter, quadrature.directions[i]);
+    return compare(&quadrature, shown);
 }
 
 const char *const tl_lobe_method_names[] = {"none",        "gauss",  "cosine", "box",
@@ -287,6 +312,53 @@ void tl_lobe_curve(const struct tl_lobe_curves *curves, int method, struct tl_lo
             point.energy_high = fmax(point.energy_high, error->energy);
         }
         out[i] = point;
+    }
+    free(errors);
+}
+
+/* Levels tried between two of the chain. */
+#define LEVEL_STEPS 8
+
+static double least_error(const struct tl_chain *chain, const struct tl_lobe_source *source, float s)
+{
+    struct quadrature quadrature;
+    set_quadrature(source, s, &quadrature);
+    double(*levels)[SAMPLES] = tl_alloc((size_t)chain->level_count, sizeof *levels), least = INFINITY;
+    for (int level = 0; level < chain->level_count; level++)
+        for (int i = 0; i < SAMPLES; i++)
+            levels[level][i] = (double)tl_cube_sample(&chain->levels[level], quadrature.directions[i]).x;
+    for (int step = 0; step < (chain->level_count - 1) * LEVEL_STEPS; step++) {
+        const double *fine = levels[step / LEVEL_STEPS], *coarse = levels[step / LEVEL_STEPS + 1];
+        double part = (double)(step % LEVEL_STEPS) / LEVEL_STEPS, shown[SAMPLES];
+        for (int i = 0; i < SAMPLES; i++)
+            shown[i] = fine[i] + part * (coarse[i] - fine[i]);
+        least = fmin(least, compare(&quadrature, shown).same_volume);
+    }
+    free(levels);
+    return least;
+}
+
+void tl_lobe_least_error(const struct tl_lobe_curves *curves, int method, double *mean, double *worst)
+{
+    assert(method < TL_LOBE_SLICES);
+    size_t exponents = (size_t)curves->exponent_count, directions = (size_t)curves->direction_count;
+    double *errors = TL_NEW_ARRAY(double, exponents *directions);
+#pragma omp parallel for schedule(dynamic)
+    for (int i = 0; i < curves->direction_count; i++) {
+        struct tl_lobe_source source =
+            tl_lobe_source(curves->cube_size, tl_lobe_probe(i, curves->direction_count));
+        struct prefilter prefilter = {.method = method};
+        prepare(&prefilter, curves->cube_size, &source, 0);
+        for (size_t k = 0; k < exponents; k++)
+            errors[k * directions + (size_t)i] = least_error(&prefilter.chain, &source, curves->exponents[k]);
+        tl_chain_release(&prefilter.chain);
+    }
+    for (size_t k = 0; k < exponents; k++) {
+        mean[k] = worst[k] = 0;
+        for (size_t i = 0; i < directions; i++) {
+            mean[k] += errors[k * directions + i] / (double)directions;
+            worst[k] = fmax(worst[k], errors[k * directions + i]);
+        }
     }
     free(errors);
 }
