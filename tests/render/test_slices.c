@@ -7,8 +7,8 @@
 #include <omp.h>
 #include <string.h>
 
-#define ALL       0xffffffffu
-#define EXPONENTS ((1u << TL_EXPONENT_COUNT) - 1)
+/* Every third exponent, an octave apart, and the environment itself. */
+#define OCTAVES 0xc9249249u
 
 static struct tl_regions regions;
 static struct tl_slices slices;
@@ -49,16 +49,16 @@ static double peak_of(const struct tl_lobe_map *map)
  * more than the light around it. */
 static void sums_are_the_whole(const tl_cube *cube, const struct tl_lobes *lobes)
 {
-    tl_slices_make(&slices, cube, &regions, ALL);
+    tl_slices_make(&slices, cube, &regions, OCTAVES);
     double worst = 0;
-    for (int k = 0; k <= TL_EXPONENT_COUNT; k++) {
+    for (int k = 0; k < TL_EXPONENT_COUNT; k += 3) {
         double peak = peak_of(&lobes->maps[k]);
         for (int probe = 0; probe < 100; probe++) {
             vec3s direction = tl_lobe_probe(probe, 100), sum = {{0, 0, 0}};
             for (int i = 0; i < regions.count; i++)
                 sum = glms_vec3_add(sum, tl_slices_fetch(&slices, i, direction, node(k)));
             vec3s whole = tl_lobes_fetch(lobes, direction, node(k));
-            for (int c = 0; c < 3 && k < TL_EXPONENT_COUNT; c++)
+            for (int c = 0; c < 3; c++)
                 worst = fmax(worst, fabs((double)(sum.raw[c] - whole.raw[c])) / peak);
         }
     }
@@ -74,9 +74,9 @@ static void regions_sum_to_the_whole(void **state)
     (void)state;
     tl_cube cube = room(64);
     struct tl_lobes lobes = {0};
-    tl_lobes_make(&lobes, &cube, ALL);
-    const int counts[] = {6, 24, 96, 384};
-    for (int i = 0; i < 4; i++) {
+    tl_lobes_make(&lobes, &cube, OCTAVES);
+    const int counts[] = {6, 96, 384};
+    for (int i = 0; i < 3; i++) {
         tl_regions_cut_sphere(&cube, counts[i], &regions);
         sums_are_the_whole(&cube, &lobes);
     }
@@ -95,8 +95,8 @@ static void an_even_sky_adds_up_to_one(void **state)
     for (int i = 0; i < 18 * 64 * 64; i++)
         cube.texels[i] = 1;
     tl_regions_cut_sphere(&cube, 48, &regions);
-    tl_slices_make(&slices, &cube, &regions, EXPONENTS);
-    for (int k = 0; k < TL_EXPONENT_COUNT; k++) {
+    tl_slices_make(&slices, &cube, &regions, OCTAVES);
+    for (int k = 0; k < TL_EXPONENT_COUNT; k += 3) {
         for (int probe = 0; probe < 100; probe++) {
             double sum = 0;
             for (int i = 0; i < regions.count; i++) {
@@ -183,15 +183,16 @@ static void threads_change_no_bit(void **state)
     tl_regions_cut_sphere(&cube, 24, &regions);
     int threads = omp_get_max_threads();
     omp_set_num_threads(1);
-    tl_slices_make(&slices, &cube, &regions, ALL);
+    tl_slices_make(&slices, &cube, &regions, OCTAVES);
     omp_set_num_threads(3);
     tl_slices_make(&three, &cube, &regions, 0xffff);
-    tl_slices_make(&three, &cube, &regions, ALL);
+    tl_slices_make(&three, &cube, &regions, OCTAVES);
     omp_set_num_threads(threads);
     assert_memory_equal(slices.frames, three.frames, 24 * sizeof *slices.frames);
     for (int k = 0; k <= TL_EXPONENT_COUNT; k++)
-        assert_memory_equal(slices.texels[k], three.texels[k],
-                            sizeof(float) * 3 * 24 * (size_t)(slices.side[k] * slices.side[k]));
+        if (OCTAVES >> k & 1)
+            assert_memory_equal(slices.texels[k], three.texels[k],
+                                sizeof(float) * 3 * 24 * (size_t)(slices.side[k] * slices.side[k]));
     tl_slices_release(&slices);
     tl_slices_release(&three);
     tl_regions_release(&regions);
@@ -208,10 +209,10 @@ static void nothing_but_numbers_comes_out(void **state)
         cube.texels[i] = i < 6 * 6 * 9 ? strange[i % 8] : 0; /* the other half is black */
     }
     tl_regions_cut_sphere(&even, 24, &regions);
-    tl_slices_make(&slices, &cube, &regions, ALL);
+    tl_slices_make(&slices, &cube, &regions, OCTAVES);
     const vec3s directions[] = {{{0, 0, 0}}, {{NAN, 0, 1}}, {{0, INFINITY, 0}}, {{0, -1, 0}}};
     for (int k = 0; k <= TL_EXPONENT_COUNT; k++) {
-        for (int i = 0; i < regions.count; i++) {
+        for (int i = 0; i < regions.count && slices.made >> k & 1; i++) {
             for (int probe = 0; probe < 54; probe++) {
                 vec3s d = probe < 4 ? directions[probe] : tl_lobe_probe(probe - 4, 50);
                 vec3s got = tl_slices_fetch(&slices, i, d, node(k));
