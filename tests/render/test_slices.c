@@ -185,7 +185,7 @@ static void threads_change_no_bit(void **state)
     omp_set_num_threads(1);
     tl_slices_make(&slices, &cube, &regions, OCTAVES);
     omp_set_num_threads(3);
-    tl_slices_make(&three, &cube, &regions, 0xffff);
+    tl_slices_make(&three, &cube, &regions, OCTAVES & 0xffff);
     tl_slices_make(&three, &cube, &regions, OCTAVES);
     omp_set_num_threads(threads);
     assert_memory_equal(slices.frames, three.frames, 24 * sizeof *slices.frames);
