@@ -20,6 +20,8 @@ enum flag_kind {
     FLAG_HDR,
     FLAG_SCREENSHOTS,
     FLAG_MAX_FRAMES,
+    FLAG_AXIS,
+    FLAG_QUICK,
     FLAG_QUIET,
     FLAG_VERBOSE,
     FLAG_HELP,
@@ -44,12 +46,14 @@ static const struct flag flags_known[] = {
     {"--fabric", TL_FLAGS_SCENE, FLAG_ASSIGN, "scene.fabric", "NAME|FILE",
      "a fabric: `toile info fabrics` lists them"},
     {"--preset", TL_FLAGS_SCENE, FLAG_ASSIGN, "scene.preset", "NAME|FILE", "paper, draft, review or final"},
-    {"--method", TL_FLAGS_SCENE, FLAG_ASSIGN, "light.method", "METHOD", "how light is computed"},
+    {"--method", TL_FLAGS_SCENE, FLAG_ASSIGN, "light.method", "METHOD",
+     "pem, lights, ao, ao_colour, unshadowed or reference"},
     {"--size", TL_FLAGS_SCENE, FLAG_SIZE, NULL, "WxH", "size of the image in pixels"},
     {"--set", TL_FLAGS_SCENE, FLAG_SET, NULL, "TABLE.KEY=VALUE",
      "any option: `toile help options` lists them"},
     {"-o", TL_FLAGS_OUTPUT, FLAG_OUTPUT, NULL, "FILE", "where the result goes"},
-    {"--frame", TL_FLAGS_FRAME, FLAG_FRAME, NULL, "N", "frame of the animation; 0 is the settled start"},
+    {"--frame", TL_FLAGS_FRAME, FLAG_FRAME, NULL, "N",
+     "still image of the animation's frame N; 0 is the settled start"},
     {"--frames", TL_FLAGS_FRAMES, FLAG_FRAMES, NULL, "A:B",
      "all frames from A to B; OUT.png becomes OUT.0001.png ..."},
     {"--json", TL_FLAGS_JSON, FLAG_JSON, NULL, NULL, "print one JSON object and nothing else"},
@@ -57,6 +61,8 @@ static const struct flag flags_known[] = {
     {"--hdr", TL_FLAGS_METRIC, FLAG_HDR, NULL, NULL, "compare over all exposures that the reference holds"},
     {"--screenshots", TL_FLAGS_WINDOW, FLAG_SCREENSHOTS, NULL, "FOLDER", "where screenshots go"},
     {"--max-frames", TL_FLAGS_WINDOW, FLAG_MAX_FRAMES, NULL, "N", "close after N frames"},
+    {"--axis", TL_FLAGS_TRADE, FLAG_AXIS, NULL, "NAME", "what is varied: light"},
+    {"--quick", TL_FLAGS_TRADE, FLAG_QUICK, NULL, NULL, "a few choices and frames only"},
     {"--quiet", 0, FLAG_QUIET, NULL, NULL, "say nothing but errors"},
     {"--verbose", 0, FLAG_VERBOSE, NULL, NULL, "say more"},
     {"--help", 0, FLAG_HELP, NULL, NULL, "what the command does and takes"},
@@ -166,6 +172,12 @@ static bool take_flag(const struct flag *flag, const char *value, struct tl_argu
         return true;
     case FLAG_MAX_FRAMES:
         return read_whole("--max-frames", value, NULL, 1, &out->max_frames, error);
+    case FLAG_AXIS:
+        out->axis = value;
+        return true;
+    case FLAG_QUICK:
+        out->quick = true;
+        return true;
     case FLAG_QUIET:
         out->quiet = true;
         return true;

@@ -17,6 +17,7 @@ enum tl_flag_set {                      /* which groups of flags a command takes
                    TL_FLAGS_JSON = 16,  /* --json */
                    TL_FLAGS_METRIC = 32, /* --ldr --hdr */
                    TL_FLAGS_WINDOW = 64, /* --screenshots DIR --max-frames N */
+                   TL_FLAGS_TRADE = 128, /* --axis NAME --quick */
 };
 
 struct tl_arguments {
@@ -31,6 +32,8 @@ struct tl_arguments {
     int hdr;                 /* -1 by content, 0 --ldr, 1 --hdr */
     const char *screenshots; /* folder for screenshots */
     int max_frames;          /* 0: no limit */
+    const char *axis;        /* NULL: not given */
+    bool quick;
 };
 
 bool tl_arguments_parse(int argc, char **argv, unsigned flags, struct tl_arguments *out, tl_error *error);

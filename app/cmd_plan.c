@@ -64,8 +64,7 @@ bool tl_command_plan(const struct tl_arguments *arguments, tl_error *error)
                tl_session_advance(stage.session, error);
     if (done) {
         tl_frame next = tl_session_frame(stage.session);
-        const struct tl_render_settings settings = {.light = stage.settings.light,
-                                                    .image = stage.settings.image};
+        const struct tl_render_settings settings = tl_settings_render(&stage.settings);
         tl_plan plan;
         tl_renderer_plan(stage.renderer, &next, &settings, &plan);
         done = tl_stage_draw(&stage, error); /* memory is what the frame really holds */

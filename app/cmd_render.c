@@ -70,7 +70,9 @@ static bool render_frames(struct tl_stage *stage, const struct tl_arguments *arg
             done = tl_session_advance(stage->session, error);
         if (done && frame >= first) {
             char *path = frame_path(arguments, frame);
-            done = tl_stage_draw(stage, error) && save_frame(stage, path, error);
+            done =
+                (arguments->frames_given ? tl_stage_draw(stage, error) : tl_stage_draw_still(stage, error)) &&
+                save_frame(stage, path, error);
             free(path);
         }
         tl_progress_update(&progress, frame + 1, last + 1);

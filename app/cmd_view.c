@@ -144,7 +144,7 @@ static bool draw_image(struct tl_review *review, tl_error *error)
     double started_s = tl_clock_s();
     tl_frame frame = tl_session_frame(review->session);
     const struct tl_settings *settings = tl_session_settings(review->session);
-    const struct tl_render_settings render = {.light = settings->light, .image = settings->image};
+    const struct tl_render_settings render = tl_settings_render(settings);
     if (!tl_renderer_draw(review->renderer, &frame, &render, error))
         return false;
     glFinish(); /* else the time, and with it the coarse scale, would be the driver's, not the image's */

@@ -16,6 +16,18 @@ const struct tl_command tl_commands[] = {
     {"plan", "plan [SCENE] [--json] [OPTIONS]",
      "Prints what would run for a frame, why, at what cost and in how much memory.",
      TL_FLAGS_SCENE | TL_FLAGS_FRAME | TL_FLAGS_JSON, tl_command_plan},
+    {"bench", "bench light [SCENE] [--json] [OPTIONS]",
+     "Measures ratios side by side in one run: light: the presets' CPU time and error in motion, paper "
+     "against "
+     "review.",
+     TL_FLAGS_SCENE | TL_FLAGS_JSON, tl_command_bench},
+    {"trade", "trade [SCENE] -o FOLDER [--axis light] [--quick] [OPTIONS]",
+     "Measures error against time and memory over many choices of settings: FOLDER/trade.csv and "
+     "report.html.",
+     TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_TRADE, tl_command_trade},
+    {"stability", "stability light [--json] [OPTIONS]",
+     "Draws the extremes, cell by cell: exact, within a stated bound, or refused with a clear message.",
+     TL_FLAGS_SCENE | TL_FLAGS_JSON, tl_command_stability},
     {"compare", "compare TESTED REFERENCE [--json] [--ldr|--hdr]",
      "Tells how different two images are: relative RMSE, mean FLIP, largest difference.",
      TL_FLAGS_JSON | TL_FLAGS_METRIC, tl_command_compare},

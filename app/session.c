@@ -2,6 +2,7 @@
 
 #include "app/camera.h"
 #include "app/moving.h"
+#include "app/moving_light.h"
 #include "assets/avatar.h"
 #include "assets/fit.h"
 #include "config/interrupt.h"
@@ -19,8 +20,7 @@
 struct tl_session {
     struct tl_settings settings;
 
-    tl_environment environment;
-    uint64_t environment_revision;
+    struct tl_moving_light light;
 
     /* On the heap, because the cloth, the meshes that move and the materials point to them, and a session's
      * contents move when it takes over another's. */
@@ -50,21 +50,6 @@ static bool is_built_in_garment(const char *name)
         if (strcmp(*known, name) == 0)
             return true;
     return false;
-}
-
-static bool load_environment(const char *name, tl_environment *out, tl_error *error)
-{
-    if (strcmp(name, "studio") == 0) {
-        *out = tl_environment_studio();
-        return true;
-    }
-    if (!tl_environment_load(name, out, error))
-        return false;
-    size_t cleaned = out->negative_count + out->nan_count + out->inf_count;
-    if (cleaned)
-        tl_warn("%s: cleaned %zu negative, %zu NaN and %zu infinite values", out->name, out->negative_count,
-                out->nan_count, out->inf_count);
-    return true;
 }
 
 static bool load_avatar(tl_session *session, tl_error *error)
@@ -211,6 +196,12 @@ static bool drape(tl_session *session, tl_error *error)
     return true;
 }
 
+/* How far a sequence of environments has played at frame `number`, in its own frames. */
+static double light_position(const struct tl_settings *settings, int number)
+{
+    return number / settings->cloth.frame_rate * (double)settings->scene.environment_rate;
+}
+
 static void frame_everything(tl_session *session)
 {
     struct tl_box box = {{{FLT_MAX, FLT_MAX, FLT_MAX}}, {{-FLT_MAX, -FLT_MAX, -FLT_MAX}}};
@@ -228,10 +219,9 @@ static void frame_everything(tl_session *session)
 
 static bool load_all(tl_session *session, tl_error *error)
 {
-    if (!load_environment(session->settings.scene.environment, &session->environment, error))
-        return false;
-    session->environment_revision = 1;
-    if (!load_avatar(session, error) || !load_garment(session, error))
+    const char *environment = session->settings.scene.environment;
+    if (!tl_moving_light_open(&session->light, environment, 0, error) || !load_avatar(session, error) ||
+        !load_garment(session, error))
         return false;
     if (!session->avatar && !session->garment)
         return tl_fail(error, TL_USAGE, "scene: neither a garment nor an avatar: name at least one");
@@ -274,7 +264,7 @@ void tl_session_destroy(tl_session **handle)
         tl_avatar_release(session->avatar);
     free(session->garment);
     free(session->avatar);
-    tl_environment_release(&session->environment);
+    tl_moving_light_release(&session->light);
     forget_weave(session);
     free(session->materials);
     free(session);
@@ -284,7 +274,11 @@ void tl_session_destroy(tl_session **handle)
 bool tl_session_advance(tl_session *session, tl_error *error)
 {
     double time_s = (session->frame + 1) / session->settings.cloth.frame_rate;
-    if (session->avatar && (session->clip >= 0 || session->garment))
+    double position = light_position(&session->settings, session->frame + 1);
+    if (!tl_moving_light_follow(&session->light, position, error))
+        return false;
+    if (session->clip >=
+        0) /* else it stands as it stood, and nothing that follows from it need be done again */
         pose_avatar(session, time_s);
     if (session->garment) {
         if (!tl_cloth_step(session->cloth, session->collider, error))
@@ -297,7 +291,8 @@ bool tl_session_advance(tl_session *session, tl_error *error)
 
 bool tl_session_reset(tl_session *session, tl_error *error)
 {
-    (void)error;
+    if (!tl_moving_light_follow(&session->light, 0, error))
+        return false;
     session->frame = 0;
     if (session->avatar) {
         pose_avatar(session, 0);
@@ -354,7 +349,7 @@ bool tl_session_apply(tl_session *session, const struct tl_settings *settings, t
         if (!fresh)
             return false;
         /* Revisions go on rising, so that the renderer sees everything as new. */
-        fresh->environment_revision += session->environment_revision;
+        fresh->light.revision += session->light.revision;
         fresh->look_revision += session->look_revision + 1;
         fresh->body.motion_revision += session->body.motion_revision;
         fresh->dress.motion_revision += session->dress.motion_revision;
@@ -364,14 +359,12 @@ bool tl_session_apply(tl_session *session, const struct tl_settings *settings, t
         tl_session_destroy(&fresh);
         return true;
     }
-    if (!same_text(old->scene.environment, settings->scene.environment)) {
-        tl_environment fresh;
-        if (!load_environment(settings->scene.environment, &fresh, error))
-            return false;
-        tl_environment_release(&session->environment);
-        session->environment = fresh;
-        session->environment_revision++;
-    }
+    double position = light_position(settings, session->frame);
+    const char *environment = settings->scene.environment;
+    if (same_text(old->scene.environment, environment)
+            ? !tl_moving_light_follow(&session->light, position, error)
+            : !tl_moving_light_open(&session->light, environment, position, error))
+        return false;
     bool new_look = !tl_options_equal(&tl_weave_options, &old->weave, &settings->weave) ||
                     !tl_options_equal(&tl_material_options, &old->material, &settings->material);
     if (session->cloth && !tl_cloth_set(session->cloth, &settings->fabric, &settings->cloth, error))
@@ -404,8 +397,8 @@ tl_frame tl_session_frame(tl_session *session)
                                   (float)image->width / (float)image->height),
         .surfaces = session->surfaces,
         .surface_count = session->surface_count,
-        .environment = &session->environment,
-        .environment_revision = session->environment_revision,
+        .environment = &session->light.environment,
+        .environment_revision = session->light.revision,
         .environment_yaw = glm_rad(session->settings.scene.environment_yaw_deg),
         .time_s = session->frame / session->settings.cloth.frame_rate,
     };
@@ -451,6 +444,11 @@ bool tl_session_pick(const tl_session *session, vec3s origin, vec3s direction, u
     }
     *distance_m = nearest;
     return nearest < FLT_MAX;
+}
+
+bool tl_session_plays_clip(const tl_session *session)
+{
+    return session->clip >= 0;
 }
 
 tl_cloth *tl_session_cloth(tl_session *session)

@@ -34,7 +34,8 @@ tl_frame tl_session_frame(tl_session *session);
  * misses. */
 bool tl_session_pick(const tl_session *session, vec3s origin, vec3s direction, uint32_t *vertex,
                      float *distance_m);
-tl_cloth *tl_session_cloth(tl_session *session); /* NULL when the scene has no garment */
+bool tl_session_plays_clip(const tl_session *session); /* the avatar's */
+tl_cloth *tl_session_cloth(tl_session *session);       /* NULL when the scene has no garment */
 struct tl_cloth_report tl_session_report(const tl_session *session);
 
 #endif

@@ -12,7 +12,8 @@ static const char *const garment_names[] = {"dress", "skirt", "none", NULL};
 static const char *const avatar_names[] = {"form", "none", NULL};
 static const char *const environment_names[] = {"studio", NULL};
 
-#define TL_SCENE_DEFAULTS .garment = "dress", .avatar = "form", .environment = "studio", .preset = "review"
+#define TL_SCENE_DEFAULTS                                                                                    \
+    .garment = "dress", .avatar = "form", .environment = "studio", .environment_rate = 30, .preset = "review"
 
 static const struct tl_option scene_rows[] = {
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, garment, garment_names,
@@ -20,7 +21,8 @@ static const struct tl_option scene_rows[] = {
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, avatar, avatar_names,
                            "who wears it: built in, or a glTF file"),
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, environment, environment_names,
-                           "the light: built in, or an .exr or .hdr file"),
+                           "the light: built in, an .exr or .hdr file, or a sequence of them, sky.####.exr: "
+                           "each # is a digit of the frame's number"),
     TL_OPTION_NAME_OR_PATH(
         struct tl_scene_params, fabric, tl_embedded_fabrics_names,
         "sets the tables fabric, weave and material: built in, or a YAML file; left out: satin on built-in "
@@ -31,6 +33,8 @@ static const struct tl_option scene_rows[] = {
                      "animation of the avatar; empty: its first; none: the rest pose"),
     TL_OPTION_FLOAT(struct tl_scene_params, environment_yaw_deg, -3600, 3600, "degrees",
                     "turns the environment about the vertical, counter-clockwise from above"),
+    TL_OPTION_FLOAT(struct tl_scene_params, environment_rate, 0, 1000, "1/s",
+                    "frames of a sequence of environments a second; 0 stays at its first"),
 };
 static const struct tl_option_table scene_table =
     TL_OPTION_TABLE("scene", "what is shown", scene_rows, struct tl_scene_params, TL_SCENE_DEFAULTS);
@@ -52,7 +56,7 @@ static const struct tl_option_table camera_table = TL_OPTION_TABLE(
     "camera", "an orbit about a target", camera_rows, struct tl_camera_params, TL_CAMERA_DEFAULTS);
 
 /* The reference page's order. A preset sets CLOTH, LIGHT and IMAGE; a fabric FABRIC, WEAVE and MATERIAL. */
-enum { SCENE, CAMERA, CLOTH, FABRIC, WEAVE, MATERIAL, LIGHT, IMAGE };
+enum { SCENE, CAMERA, CLOTH, FABRIC, WEAVE, MATERIAL, LIGHT, IMAGE, REFERENCE };
 
 void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[TL_SETTINGS_TABLES])
 {
@@ -64,6 +68,13 @@ void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[T
     bindings[MATERIAL] = (struct tl_binding){&tl_material_options, &settings->material};
     bindings[LIGHT] = (struct tl_binding){&tl_light_options, &settings->light};
     bindings[IMAGE] = (struct tl_binding){&tl_image_options, &settings->image};
+    bindings[REFERENCE] = (struct tl_binding){&tl_reference_options, &settings->reference};
+}
+
+struct tl_render_settings tl_settings_render(const struct tl_settings *settings)
+{
+    return (struct tl_render_settings){
+        .light = settings->light, .image = settings->image, .reference = settings->reference};
 }
 
 bool tl_settings_equal(const struct tl_settings *a, const struct tl_settings *b)

@@ -11,11 +11,12 @@
 struct tl_scene_params {              /* table "scene": what to show; names of built-ins or paths */
     char garment[TL_STRING_SIZE];     /* "dress", "skirt", "none", or a glTF file */
     char avatar[TL_STRING_SIZE];      /* "form", "none", or a glTF file */
-    char environment[TL_STRING_SIZE]; /* "studio", or an .exr or .hdr file */
+    char environment[TL_STRING_SIZE]; /* "studio", an .exr or .hdr file, or a pattern: sky.####.exr */
     char fabric[TL_STRING_SIZE];      /* name of an embedded fabric, a YAML file, or "none" */
     char preset[TL_STRING_SIZE];      /* name of an embedded preset, or a YAML file */
     char clip[TL_STRING_SIZE];        /* animation of the avatar; "": the first; "none": the rest pose */
     float environment_yaw_deg;
+    float environment_rate; /* frames of a sequence a second */
 };
 
 struct tl_camera_params { /* table "camera": an orbit about a target */
@@ -35,14 +36,18 @@ struct tl_settings {
     struct tl_material_params material;
     struct tl_light_params light;
     struct tl_image_params image;
+    struct tl_reference_params reference;
 };
 
-#define TL_SETTINGS_TABLES 8
+#define TL_SETTINGS_TABLES 9
 /* The bindings of a settings value, in the order of the reference page. */
 void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[TL_SETTINGS_TABLES]);
 
 /* True when every option of every table agrees. */
 bool tl_settings_equal(const struct tl_settings *a, const struct tl_settings *b);
+
+/* What of it the renderer takes. */
+struct tl_render_settings tl_settings_render(const struct tl_settings *settings);
 
 /* What the command line says about settings. */
 struct tl_settings_source {

@@ -1,5 +1,6 @@
 #include "app/stage.h"
 
+#include "config/interrupt.h"
 #include "config/log.h"
 
 bool tl_stage_settings(const struct tl_arguments *arguments, struct tl_settings *out, tl_error *error)
@@ -41,7 +42,20 @@ void tl_stage_release(struct tl_stage *stage)
 bool tl_stage_draw(struct tl_stage *stage, tl_error *error)
 {
     tl_frame frame = tl_session_frame(stage->session);
-    const struct tl_render_settings settings = {.light = stage->settings.light,
-                                                .image = stage->settings.image};
+    const struct tl_render_settings settings = tl_settings_render(&stage->settings);
     return tl_renderer_draw(stage->renderer, &frame, &settings, error);
+}
+
+bool tl_stage_draw_still(struct tl_stage *stage, tl_error *error)
+{
+    const struct tl_light_params *light = &stage->settings.light;
+    int rounds = light->jitter ? light->rounds : 1;
+    struct tl_progress progress = tl_progress_begin("averaging");
+    bool drawn = tl_stage_draw(stage, error);
+    for (int round = 1; drawn && round < rounds && !tl_interrupted(); round++) {
+        drawn = tl_stage_draw(stage, error);
+        tl_progress_update(&progress, round + 1, rounds);
+    }
+    tl_progress_end(&progress);
+    return drawn;
 }

@@ -1,12 +1,22 @@
 # The parts of render that know neither GL nor the clock.
 add_library(toile_light STATIC
   env/cube.c
+  env/emitters.c
+  env/lobes.c
+  light/compose.c
+  env/pour.c
+  env/sun.c
   frame/view.c
+  light/region_lights.c
   metrics/compare.c
   metrics/flip.c
   pem/chain.c
   pem/lobe.c
+  pem/lobe_error.c
   pem/regions.c
+  pem/regions_faces.c
+  pem/regions_sphere.c
+  pem/slices.c
   plan/plan.c
   reference/gather.c
   reference/options.c
@@ -16,5 +26,7 @@ add_library(toile_light STATIC
   reference/texture.c
   surfaces/ground.c
   trace/cutout.c
-  trace/trace.c)
+  trace/trace.c
+  visibility/fit.c
+)
 target_link_libraries(toile_light PUBLIC toile_assets PRIVATE embree)

@@ -15,76 +15,12 @@
 #define BYTES_MAX         ((uint64_t)4 << 30) /* all together */
 #define TEXTURE_BYTES_MAX ((uint64_t)1 << 30) /* one texture */
 
-#define FNV_OFFSET 14695981039346656037u
-#define FNV_PRIME  1099511628211u
-
-static uint64_t mix(uint64_t hash, const void *data, size_t size)
-{
-    const unsigned char *bytes = data;
-    for (size_t i = 0; i < size; i++)
-        hash = (hash ^ bytes[i]) * FNV_PRIME;
-    return hash;
-}
-#define MIX(hash, field) mix(hash, &(field), sizeof(field))
-
-static uint64_t shapes_signature(const tl_frame *frame)
-{
-    uint64_t hash = MIX(FNV_OFFSET, frame->surface_count);
-    for (size_t i = 0; i < frame->surface_count; i++) {
-        const tl_surface *surface = &frame->surfaces[i];
-        hash = MIX(MIX(MIX(hash, surface->topology_revision), surface->vertex_count), surface->index_count);
-    }
-    return hash;
-}
-
-static uint64_t motion_signature(const tl_frame *frame)
-{
-    uint64_t hash = FNV_OFFSET;
-    for (size_t i = 0; i < frame->surface_count; i++)
-        hash = MIX(hash, frame->surfaces[i].motion_revision);
-    return hash;
-}
-
-static uint64_t camera_signature(const struct tl_camera *camera)
-{
-    uint64_t hash = MIX(MIX(MIX(FNV_OFFSET, camera->eye), camera->target), camera->up);
-    return MIX(MIX(MIX(hash, camera->fov_y), camera->near_m), camera->far_m);
-}
-
-static uint64_t light_signature(const struct tl_light_params *light)
-{
-    uint64_t hash = MIX(MIX(FNV_OFFSET, light->method), light->lobe);
-    return MIX(MIX(MIX(hash, light->depth_bias_m), light->min_variance), light->bleed_reduction);
-}
-
-/* One number for each input of the frame: an input has changed when its number has. */
-static void sign_inputs(const tl_frame *frame, const struct tl_render_settings *settings,
-                        uint64_t signatures[TL_INPUT_COUNT])
-{
-    const struct tl_light_params *light = &settings->light;
-    const struct tl_image_params *image = &settings->image;
-    const uint64_t start = FNV_OFFSET;
-    signatures[TL_INPUT_ENVIRONMENT] = MIX(start, frame->environment_revision);
-    signatures[TL_INPUT_YAW] = MIX(start, frame->environment_yaw);
-    signatures[TL_INPUT_SHAPES] = shapes_signature(frame);
-    signatures[TL_INPUT_MOTION] = motion_signature(frame);
-    signatures[TL_INPUT_CAMERA] = camera_signature(&frame->camera);
-    signatures[TL_INPUT_SIZE] = MIX(MIX(MIX(start, image->width), image->height), image->supersample);
-    signatures[TL_INPUT_GROUND] = MIX(start, image->ground);
-    signatures[TL_INPUT_PEM_SIZE] = MIX(start, light->pem_size);
-    signatures[TL_INPUT_FILTER] = MIX(start, light->filter);
-    signatures[TL_INPUT_REGIONS] = MIX(start, light->regions);
-    signatures[TL_INPUT_PASSES] = MIX(start, light->pems_per_pass);
-    signatures[TL_INPUT_MAPS] = MIX(MIX(start, light->map_size), light->blur_m);
-    signatures[TL_INPUT_LIGHT] = light_signature(light);
-    signatures[TL_INPUT_SHOW] = MIX(MIX(start, image->exposure_ev), image->background);
-}
-
 /* Settings as the algorithm can use them: regions in sixes, sizes in powers of two. */
 static struct tl_render_settings usable(const struct tl_render_settings *settings)
 {
     struct tl_render_settings used = *settings;
-    used.light.regions = used.light.regions / 6 * 6;
+    if (used.light.cut == TL_CUT_FACES)
+        used.light.regions = used.light.regions / 6 * 6;
     while (used.light.pem_size & (used.light.pem_size - 1))
         used.light.pem_size &= used.light.pem_size - 1;
     return used;
@@ -138,9 +74,11 @@ tl_renderer *tl_renderer_create(tl_gpu *gpu, tl_error *error)
     tl_renderer *renderer = TL_NEW(tl_renderer);
     renderer->gpu = gpu;
     renderer->surfaces = tl_surfaces_create(gpu);
+    renderer->points = tl_points_create();
+    renderer->trace = tl_trace_create(error);
     renderer->maps = tl_shadow_maps_create(gpu, error);
     renderer->shaders_stamp = tl_shaders_stamp(tl_embedded_shaders);
-    if (!renderer->maps || !tl_gbuffer_create(&renderer->gbuffer, gpu, error) ||
+    if (!renderer->trace || !renderer->maps || !tl_gbuffer_create(&renderer->gbuffer, gpu, error) ||
         !tl_lighting_create(&renderer->lighting, gpu, error) ||
         !tl_present_create(&renderer->present, gpu, error) ||
         !tl_jobs_check(tl_frame_jobs, tl_frame_job_count, error))
@@ -153,8 +91,19 @@ void tl_renderer_destroy(tl_renderer **renderer)
     if (!*renderer)
         return;
     tl_cube_release(&(*renderer)->cube);
+    tl_regions_release(&(*renderer)->regions);
     tl_pems_release(&(*renderer)->pems);
+    tl_lobes_release(&(*renderer)->lobes);
+    tl_slices_release(&(*renderer)->slices);
+    tl_slice_maps_release(&(*renderer)->slice_maps);
+    tl_region_lights_release(&(*renderer)->lights);
     tl_surfaces_destroy(&(*renderer)->surfaces);
+    tl_triangle_ranges_release(&(*renderer)->ranges);
+    tl_samples_release(&(*renderer)->samples);
+    tl_trace_destroy(&(*renderer)->trace);
+    tl_points_destroy(&(*renderer)->points);
+    free((*renderer)->drawn);
+    free((*renderer)->light);
     tl_shadow_maps_destroy(&(*renderer)->maps);
     tl_gbuffer_release(&(*renderer)->gbuffer);
     tl_lighting_release(&(*renderer)->lighting);
@@ -163,13 +112,28 @@ void tl_renderer_destroy(tl_renderer **renderer)
     *renderer = NULL;
 }
 
-static uint32_t scene_facts(const struct tl_render_settings *settings)
+static tl_bits scene_facts(const struct tl_render_settings *settings)
 {
-    return settings->light.method == TL_METHOD_UNSHADOWED ? 0 : TL_BIT(TL_SCENE_SHADOWED);
+    const struct tl_light_params *light = &settings->light;
+    if (light->method == TL_METHOD_REFERENCE)
+        return TL_BIT(TL_SCENE_REFERENCE);
+    bool shadowed = light->method != TL_METHOD_UNSHADOWED, rays = light->visibility == TL_VISIBILITY_RAYS;
+    tl_bits facts = TL_BIT(TL_SCENE_RASTER) | TL_BIT(rays ? TL_SCENE_RAYS : TL_SCENE_PASSES);
+    if (shadowed)
+        facts |= TL_BIT(TL_SCENE_SHADOWS) | (rays ? 0 : TL_BIT(TL_SCENE_MAPS));
+    if (light->visibility == TL_VISIBILITY_VSM)
+        facts |= TL_BIT(TL_SCENE_BLUR);
+    if (!rays && tl_light_source(light) == TL_LIGHT_CHAIN)
+        facts |= TL_BIT(TL_SCENE_CHAINS);
+    if (!rays && tl_light_source(light) == TL_LIGHT_SLICES)
+        facts |= TL_BIT(TL_SCENE_SLICES);
+    if (rays || tl_light_needs_exact(light))
+        facts |= TL_BIT(TL_SCENE_EXACT);
+    return facts;
 }
 
 static struct tl_plan_input plan_input(const tl_renderer *renderer, const struct tl_render_settings *settings,
-                                       uint32_t changed, enum tl_resource wanted)
+                                       tl_bits changed, enum tl_resource wanted)
 {
     return (struct tl_plan_input){.changed = changed,
                                   .valid = renderer->valid,
@@ -179,9 +143,9 @@ static struct tl_plan_input plan_input(const tl_renderer *renderer, const struct
                                   .resource_names = tl_resource_names};
 }
 
-static uint32_t changed_inputs(const tl_renderer *renderer, const uint64_t signatures[TL_INPUT_COUNT])
+static tl_bits changed_inputs(const tl_renderer *renderer, const uint64_t signatures[TL_INPUT_COUNT])
 {
-    uint32_t changed = 0;
+    tl_bits changed = 0;
     for (int i = 0; i < TL_INPUT_COUNT; i++)
         if (signatures[i] != renderer->signatures[i])
             changed |= TL_BIT(i);
@@ -220,7 +184,7 @@ static void reload_shaders(tl_renderer *renderer)
     tl_error error = {0};
     if (!tl_shadow_maps_reload(renderer->maps, &error) ||
         !tl_program_reload(&renderer->gbuffer.program, &error) ||
-        !tl_program_reload(&renderer->lighting.program, &error) ||
+        !tl_lighting_reload(&renderer->lighting, &error) ||
         !tl_program_reload(&renderer->present.resolve, &error) ||
         !tl_program_reload(&renderer->present.show, &error))
         tl_warn("%s", error.message);
@@ -235,12 +199,13 @@ bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct
         return false;
     reload_shaders(renderer);
     uint64_t signatures[TL_INPUT_COUNT];
-    sign_inputs(frame, &used, signatures);
-    uint32_t changed = changed_inputs(renderer, signatures);
+    tl_frame_sign(frame, &used, renderer->signatures, &renderer->rest, signatures);
+    tl_bits changed = changed_inputs(renderer, signatures);
     renderer->frame = *frame;
     renderer->settings = used;
     renderer->view = tl_view_make(&frame->camera, used.image.width, used.image.height);
     memcpy(renderer->signatures, signatures, sizeof signatures);
+    tl_frame_list_surfaces(renderer);
     const struct tl_plan_input input = plan_input(renderer, &used, changed, TL_MADE_IMAGE);
     return run_plan(renderer, &input, &renderer->plan, error);
 }
@@ -310,10 +275,20 @@ void tl_renderer_plan(const tl_renderer *renderer, const tl_frame *frame,
 {
     struct tl_render_settings used = usable(settings);
     uint64_t signatures[TL_INPUT_COUNT];
-    sign_inputs(frame, &used, signatures);
+    struct tl_rest rest = renderer->rest;
+    tl_frame_sign(frame, &used, renderer->signatures, &rest, signatures);
     const struct tl_plan_input input =
         plan_input(renderer, &used, changed_inputs(renderer, signatures), TL_MADE_IMAGE);
     tl_plan_make(tl_frame_jobs, tl_frame_job_count, &input, &renderer->cost, out);
+}
+
+bool tl_renderer_is_at_rest(const tl_renderer *renderer)
+{
+    const struct tl_light_params *light = &renderer->settings.light;
+    bool jitters =
+        light->jitter && light->method != TL_METHOD_REFERENCE && light->method != TL_METHOD_UNSHADOWED;
+    int rounds = light->visibility == TL_VISIBILITY_RAYS ? renderer->rest.scene : renderer->rest.image;
+    return renderer->valid & TL_BIT(TL_MADE_IMAGE) && (!jitters || rounds >= light->rounds - 1);
 }
 
 const tl_plan *tl_renderer_last_plan(const tl_renderer *renderer)
@@ -325,14 +300,16 @@ struct tl_render_memory tl_renderer_memory(const tl_renderer *renderer)
 {
     const struct tl_present *present = &renderer->present;
     struct tl_render_memory memory = {
-        .pems = tl_pems_bytes(&renderer->pems),
+        .pems = tl_pems_bytes(&renderer->pems) + tl_lobes_bytes(&renderer->lobes) +
+                tl_slice_maps_bytes(&renderer->slice_maps),
         .maps = tl_shadow_maps_bytes(renderer->maps),
+        .rays = tl_trace_bytes(renderer->trace) + tl_points_bytes(renderer->points),
         .targets = tl_target_bytes(&renderer->gbuffer.target) + tl_target_bytes(&renderer->lighting.target) +
                    tl_present_bytes(present),
         .surfaces = tl_surfaces_bytes(renderer->surfaces),
-        .other = tl_texture_bytes(&renderer->lighting.lobe_levels) + tl_texture_bytes(&present->backdrop) +
+        .other = tl_lighting_bytes(&renderer->lighting) + tl_texture_bytes(&present->backdrop) +
                  tl_texture_bytes(&present->blurred),
     };
-    memory.total = memory.pems + memory.maps + memory.targets + memory.surfaces + memory.other;
+    memory.total = memory.pems + memory.maps + memory.rays + memory.targets + memory.surfaces + memory.other;
     return memory;
 }

@@ -113,6 +113,9 @@ void tl_renderer_destroy(tl_renderer **renderer);
 bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct tl_render_settings *settings,
                       tl_error *error);
 
+/* True once drawing the same frame again would change nothing: no jittered round is left to be averaged. */
+bool tl_renderer_is_at_rest(const tl_renderer *renderer);
+
 /* The HDR image: F32 RGBA, linear, alpha = coverage, premultiplied, black where nothing is. */
 bool tl_renderer_read(tl_renderer *renderer, tl_image *out, tl_error *error);
 
@@ -130,7 +133,7 @@ const tl_plan *tl_renderer_last_plan(const tl_renderer *renderer);
 
 /* Bytes by use, summed from what is allocated. */
 struct tl_render_memory {
-    size_t pems, maps, targets, surfaces, other, total;
+    size_t pems, maps, rays, targets, surfaces, other, total;
 };
 struct tl_render_memory tl_renderer_memory(const tl_renderer *renderer);
 

@@ -10,8 +10,8 @@
 
 /* Exponents 1 to 1024 in steps whose ratio is TL_EXPONENT_RATIO; beyond them the environment itself. The
  * ratio is justified by tests/render/test_slices.c. */
-#define TL_EXPONENT_COUNT 21
-#define TL_EXPONENT_RATIO 1.41421356f
+#define TL_EXPONENT_COUNT 31
+#define TL_EXPONENT_RATIO 1.25992105f
 
 /* Which two exponents stand for s, and the weight of the second: fitted so that the blend's lobe is nearest
  * to K_s in L1. index + 1 == TL_EXPONENT_COUNT: between 1024 and the environment itself. */
@@ -37,6 +37,12 @@ struct tl_lobes {
 /* Makes those of `needed` that are not there yet. Call tl_lobes_release when the cube changes. */
 void tl_lobes_make(struct tl_lobes *lobes, const tl_cube *cube, uint32_t needed);
 void tl_lobes_release(struct tl_lobes *lobes);
+
+/* Maps laid out as those of `from` are, of the exponents in `which`: each texel is what `change` makes of it.
+ * May be called from several threads at once. */
+typedef vec3s tl_lobe_change(vec3s direction, float exponent, vec3s light, const void *context);
+struct tl_lobes tl_lobes_changed(const struct tl_lobes *from, uint32_t which, tl_lobe_change *change,
+                                 const void *context);
 
 /* E(d, s); d unit, in the environment's frame. The exponents that s needs must have been made. */
 vec3s tl_lobes_fetch(const struct tl_lobes *lobes, vec3s direction, struct tl_exponent_blend blend);

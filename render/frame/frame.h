@@ -2,11 +2,17 @@
 #ifndef TOILE_RENDER_FRAME_FRAME_H
 #define TOILE_RENDER_FRAME_FRAME_H
 
+#include "render/env/lobes.h"
+#include "render/env/sun.h"
 #include "render/light/gbuffer.h"
 #include "render/light/light.h"
+#include "render/light/region_lights.h"
+#include "render/light/samples.h"
 #include "render/present/present.h"
 #include "render/renderer.h"
+#include "render/trace/trace.h"
 #include "render/visibility/maps.h"
+#include "render/visibility/points.h"
 
 /* Resources, by bit. The first ones are inputs of the frame, which no job writes. */
 enum tl_resource {
@@ -19,30 +25,52 @@ enum tl_resource {
     TL_INPUT_GROUND,
     TL_INPUT_PEM_SIZE,
     TL_INPUT_FILTER,
+    TL_INPUT_SUN,
     TL_INPUT_REGIONS,
     TL_INPUT_PASSES,
-    TL_INPUT_MAPS,  /* size and blur of the shadow maps */
-    TL_INPUT_LIGHT, /* how the light passes read what they read */
-    TL_INPUT_SHOW,  /* exposure and background */
+    TL_INPUT_MAPS,        /* size and blur of the shadow maps */
+    TL_INPUT_RAYS,        /* how rays are spent */
+    TL_INPUT_ROUND,       /* which of the jittered frames that are averaged while nothing changes */
+    TL_INPUT_SCENE_ROUND, /* ... while nothing but the camera does */
+    TL_INPUT_LIGHT,       /* how light is put together */
+    TL_INPUT_REFERENCE,
+    TL_INPUT_SHOW, /* exposure and background */
     TL_INPUT_COUNT,
-    TL_MADE_CUBE = TL_INPUT_COUNT,
+    TL_MADE_CUBE = TL_INPUT_COUNT, /* and the suns taken from it */
     TL_MADE_REGIONS,
     TL_MADE_LOBE,
     TL_MADE_PEMS,
+    TL_MADE_LOBES,
+    TL_MADE_SLICES,
+    TL_MADE_LIGHTS, /* regions as lights */
     TL_MADE_SURFACES,
     TL_MADE_DEPTHS,
     TL_MADE_MAPS,
     TL_MADE_GBUFFER,
+    TL_MADE_SAMPLES,
+    TL_MADE_POINTS,
     TL_MADE_LIGHT,
     TL_MADE_IMAGE,
     TL_MADE_BACKDROP,
     TL_MADE_SHOWN,
     TL_RESOURCE_COUNT
 };
-#define TL_BIT(resource) (1u << (resource))
+#define TL_BIT(resource) ((tl_bits)1 << (resource))
 
 /* Facts about the scene, by bit. */
-enum tl_scene_fact { TL_SCENE_SHADOWED, TL_SCENE_FACT_COUNT };
+enum tl_scene_fact {
+    TL_SCENE_RASTER,  /* anything but the reference */
+    TL_SCENE_SHADOWS, /* somebody asks for visibility */
+    TL_SCENE_MAPS,    /* ... of shadow maps */
+    TL_SCENE_RAYS,    /* the back-end of rays lights the image */
+    TL_SCENE_PASSES,  /* passes on the GPU do */
+    TL_SCENE_CHAINS,  /* ... and read filter chains */
+    TL_SCENE_SLICES,  /* ... and read exact slices of the regions */
+    TL_SCENE_EXACT,   /* exact light of the whole environment is read */
+    TL_SCENE_BLUR,    /* shadow maps are variance maps */
+    TL_SCENE_REFERENCE,
+    TL_SCENE_FACT_COUNT
+};
 
 extern const char *const tl_resource_names[TL_RESOURCE_COUNT + 1];
 extern const char *const tl_scene_fact_names[TL_SCENE_FACT_COUNT + 1];
@@ -55,6 +83,20 @@ extern const int tl_frame_job_count;
 #define TL_SAMPLE_LAYER_BYTES 16
 #define TL_SAMPLE_BYTES       (16 + 3 * 8 + 4 + 4 + 16)
 
+/* How many frames have been drawn since something changed: anything, and anything but the camera. */
+struct tl_rest {
+    int image, scene;
+};
+
+/* One number for each input of the frame: an input has changed when its number has. `rest` becomes that of
+ * this frame. */
+void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *settings,
+                   const uint64_t before[TL_INPUT_COUNT], struct tl_rest *rest,
+                   uint64_t signatures[TL_INPUT_COUNT]);
+
+/* Lists what is drawn, with the ground last when it is drawn. */
+void tl_frame_list_surfaces(tl_renderer *renderer);
+
 struct tl_renderer {
     tl_gpu *gpu;
 
@@ -63,15 +105,28 @@ struct tl_renderer {
     struct tl_render_settings settings;
     struct tl_view view;
 
-    tl_cube cube;
+    tl_cube cube; /* without the suns */
+    struct tl_suns suns;
     struct tl_regions regions;
+    uint64_t regions_revision;
     struct tl_pems pems;
+    struct tl_lobes lobes;
+    struct tl_slices slices;
+    struct tl_slice_maps slice_maps;
+    struct tl_region_lights lights;
     tl_surfaces *surfaces;
     size_t surface_count; /* with the ground, which comes last */
     struct tl_casters casters;
     struct tl_ground ground;
     tl_shadow_maps *maps;
     struct tl_gbuffer gbuffer;
+    const tl_surface **drawn; /* what is drawn, with the ground last */
+    struct tl_triangle_ranges ranges;
+    struct tl_samples samples;
+    tl_trace *trace;
+    tl_points *points;
+    float *light; /* [height][width][4] of samples, composed on the CPU */
+    size_t light_bytes;
     struct tl_lighting lighting;
     struct tl_present present;
 
@@ -80,8 +135,9 @@ struct tl_renderer {
     int show_width, show_height;
 
     uint64_t signatures[TL_INPUT_COUNT]; /* of the last draw's inputs */
+    struct tl_rest rest;
     uint64_t shaders_stamp;
-    uint32_t valid; /* resources that hold what their inputs call for */
+    tl_bits valid; /* resources that hold what their inputs call for */
     tl_plan plan;
     tl_cost cost;
 };

@@ -1,8 +1,13 @@
 #include "render/frame/frame.h"
 
+#include "config/log.h"
 #include "config/memory.h"
+#include "render/light/compose.h"
+#include "render/reference/reference.h"
 
+#include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 const char *const tl_resource_names[] = {
     [TL_INPUT_ENVIRONMENT] = "environment",
@@ -14,19 +19,29 @@ const char *const tl_resource_names[] = {
     [TL_INPUT_GROUND] = "ground option",
     [TL_INPUT_PEM_SIZE] = "PEM size",
     [TL_INPUT_FILTER] = "filter option",
-    [TL_INPUT_REGIONS] = "number of regions",
+    [TL_INPUT_SUN] = "sun option",
+    [TL_INPUT_REGIONS] = "regions options",
     [TL_INPUT_PASSES] = "PEMs per pass",
     [TL_INPUT_MAPS] = "shadow map options",
+    [TL_INPUT_RAYS] = "ray options",
+    [TL_INPUT_ROUND] = "round",
+    [TL_INPUT_SCENE_ROUND] = "round of the scene",
     [TL_INPUT_LIGHT] = "light options",
+    [TL_INPUT_REFERENCE] = "reference options",
     [TL_INPUT_SHOW] = "exposure and background",
     [TL_MADE_CUBE] = "cube",
     [TL_MADE_REGIONS] = "regions",
     [TL_MADE_LOBE] = "lobe table",
     [TL_MADE_PEMS] = "PEMs",
+    [TL_MADE_LOBES] = "lobes",
+    [TL_MADE_SLICES] = "slices",
+    [TL_MADE_LIGHTS] = "regions as lights",
     [TL_MADE_SURFACES] = "surfaces",
     [TL_MADE_DEPTHS] = "depths",
     [TL_MADE_MAPS] = "shadow maps",
     [TL_MADE_GBUFFER] = "G-buffer",
+    [TL_MADE_SAMPLES] = "samples",
+    [TL_MADE_POINTS] = "visibility at points",
     [TL_MADE_LIGHT] = "light",
     [TL_MADE_IMAGE] = "image",
     [TL_MADE_BACKDROP] = "backdrop",
@@ -34,7 +49,19 @@ const char *const tl_resource_names[] = {
     NULL,
 };
 
-const char *const tl_scene_fact_names[] = {[TL_SCENE_SHADOWED] = "shadows", NULL};
+const char *const tl_scene_fact_names[] = {
+    [TL_SCENE_RASTER] = "drawn image",
+    [TL_SCENE_SHADOWS] = "shadows",
+    [TL_SCENE_MAPS] = "shadow maps",
+    [TL_SCENE_RAYS] = "rays",
+    [TL_SCENE_PASSES] = "light passes",
+    [TL_SCENE_CHAINS] = "filter chains",
+    [TL_SCENE_SLICES] = "exact slices",
+    [TL_SCENE_EXACT] = "exact light",
+    [TL_SCENE_BLUR] = "variance maps",
+    [TL_SCENE_REFERENCE] = "reference",
+    NULL,
+};
 
 static const struct tl_ground *ground_of(const tl_renderer *renderer)
 {
@@ -46,15 +73,72 @@ static bool run_cube(void *context, int level, tl_error *error)
     tl_renderer *renderer = context;
     (void)level, (void)error;
     tl_cube_release(&renderer->cube);
+    tl_lobes_release(&renderer->lobes);
     renderer->cube = tl_cube_from_environment(renderer->frame.environment, renderer->settings.light.pem_size);
+    renderer->suns = (struct tl_suns){0};
+    if (renderer->settings.light.sun)
+        tl_suns_take(&renderer->cube, renderer->frame.environment, &renderer->suns);
     return true;
 }
 
 static bool run_regions(void *context, int level, tl_error *error)
 {
     tl_renderer *renderer = context;
+    const struct tl_light_params *light = &renderer->settings.light;
     (void)level, (void)error;
-    tl_regions_cut(&renderer->cube, renderer->settings.light.regions, &renderer->regions);
+    if (light->cut == TL_CUT_SPHERE)
+        tl_regions_cut_sphere(&renderer->cube, light->regions, &renderer->regions);
+    else
+        tl_regions_cut(&renderer->cube, light->regions, &renderer->regions);
+    renderer->regions_revision++;
+    return true;
+}
+
+/* The least and the largest glossiness that a material's maps can make of it. */
+static void glossiness_range(const tl_material *material, float *low, float *high)
+{
+    float least = material->gloss_map.image ? 0 : material->glossiness, most = material->glossiness;
+    if (material->weave) {
+        const tl_image *gloss = &material->weave->gloss;
+        float added_low = INFINITY, added_high = -INFINITY;
+        for (size_t i = 0; i < (size_t)gloss->width * (size_t)gloss->height; i++) {
+            added_low = fminf(added_low, tl_image_floats(gloss)[i]);
+            added_high = fmaxf(added_high, tl_image_floats(gloss)[i]);
+        }
+        least += added_low;
+        most += added_high;
+    }
+    *low = fminf(*low, fminf(fmaxf(least, 0), 1));
+    *high = fmaxf(*high, fminf(fmaxf(most, 0), 1));
+}
+
+static uint32_t exponents_of(const tl_frame *frame)
+{
+    float low = 1, high = 0;
+    for (size_t s = 0; s < frame->surface_count; s++)
+        for (size_t p = 0; p < frame->surfaces[s].part_count; p++)
+            glossiness_range(&frame->surfaces[s].materials[frame->surfaces[s].parts[p].material], &low,
+                             &high);
+    return tl_exponents_needed(fminf(low, high), high);
+}
+
+static bool run_lobes(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level, (void)error;
+    tl_lobes_make(&renderer->lobes, &renderer->cube, exponents_of(&renderer->frame));
+    tl_lighting_set_exact(&renderer->lighting, renderer->gpu, &renderer->lobes);
+    return true;
+}
+
+/* Slices of other regions, or of another cube, are of no use. */
+static bool run_slices(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level, (void)error;
+    tl_slices_release(&renderer->slices);
+    tl_slices_make(&renderer->slices, &renderer->cube, &renderer->regions, exponents_of(&renderer->frame));
+    tl_slice_maps_upload(&renderer->slice_maps, renderer->gpu, &renderer->slices);
     return true;
 }
 
@@ -78,6 +162,29 @@ static bool run_pems(void *context, int level, tl_error *error)
     return true;
 }
 
+static bool run_lights(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level, (void)error;
+    int method = renderer->settings.light.method;
+    enum tl_region_weight weight = method == TL_METHOD_LIGHTS ? TL_WEIGHT_POINT
+                                   : method == TL_METHOD_AO   ? TL_WEIGHT_WHITE
+                                                              : TL_WEIGHT_POWER;
+    tl_region_lights_make(&renderer->lights, &renderer->regions, weight, &renderer->lobes);
+    return true;
+}
+
+void tl_frame_list_surfaces(tl_renderer *renderer)
+{
+    const tl_frame *frame = &renderer->frame;
+    renderer->drawn = tl_resize(renderer->drawn, frame->surface_count + 1, sizeof *renderer->drawn);
+    for (size_t i = 0; i < frame->surface_count; i++)
+        renderer->drawn[i] = &frame->surfaces[i];
+    renderer->drawn[frame->surface_count] = &renderer->ground.surface;
+    renderer->surface_count = frame->surface_count + (renderer->settings.image.ground ? 1 : 0);
+    tl_triangle_ranges_make(renderer->drawn, renderer->surface_count, &renderer->ranges);
+}
+
 static bool run_surfaces(void *context, int level, tl_error *error)
 {
     tl_renderer *renderer = context;
@@ -86,29 +193,29 @@ static bool run_surfaces(void *context, int level, tl_error *error)
     if (!tl_casters_measure(frame->surfaces, frame->surface_count, &renderer->casters, error))
         return false;
     tl_ground_make(&renderer->casters, &renderer->ground);
-    const tl_surface **items = TL_NEW_ARRAY(const tl_surface *, frame->surface_count + 1);
-    for (size_t i = 0; i < frame->surface_count; i++)
-        items[i] = &frame->surfaces[i];
-    items[frame->surface_count] = &renderer->ground.surface;
-    renderer->surface_count = frame->surface_count + (renderer->settings.image.ground ? 1 : 0);
-    bool fine = tl_surfaces_update(renderer->surfaces, items, renderer->surface_count, error);
-    free(items);
-    return fine;
+    tl_frame_list_surfaces(renderer);
+    return tl_surfaces_update(renderer->surfaces, renderer->drawn, renderer->surface_count, error);
 }
 
 static struct tl_shadow_request shadow_request(const tl_renderer *renderer)
 {
     const struct tl_light_params *light = &renderer->settings.light;
+    bool in_passes = tl_light_source(light) == TL_LIGHT_CHAIN;
     return (struct tl_shadow_request){
+        .kind = (enum tl_visibility)light->visibility,
         .regions = &renderer->regions,
+        .suns = &renderer->suns,
         .environment_yaw = renderer->frame.environment_yaw,
+        .caster_surfaces = renderer->frame.surfaces,
+        .caster_count = renderer->frame.surface_count,
         .casters = renderer->casters,
         .surfaces = renderer->surfaces,
         .surface_count = renderer->surface_count,
         .ground_index = renderer->settings.image.ground ? (int)renderer->surface_count - 1 : -1,
         .map_size = light->map_size,
-        .maps_per_array = light->pems_per_pass,
-        .blur_m = light->blur_m};
+        .maps_per_array = in_passes ? light->pems_per_pass : TL_REGIONS_MAX,
+        .blur_m = light->blur_m,
+        .round = renderer->rest.image};
 }
 
 static bool run_maps(void *context, int level, tl_error *error)
@@ -143,17 +250,94 @@ static bool run_gbuffer(void *context, int level, tl_error *error)
 static bool run_light(void *context, int level, tl_error *error)
 {
     tl_renderer *renderer = context;
-    (void)level, (void)error;
+    (void)level;
     const struct tl_light_request request = {.gbuffer = &renderer->gbuffer,
                                              .pems = &renderer->pems,
+                                             .slices = &renderer->slice_maps,
                                              .regions = &renderer->regions,
+                                             .suns = &renderer->suns,
                                              .maps = renderer->maps,
                                              .casters = renderer->casters,
                                              .ground = ground_of(renderer),
                                              .environment_yaw = renderer->frame.environment_yaw,
                                              .eye = renderer->view.eye,
+                                             .round = renderer->rest.image,
                                              .params = &renderer->settings.light};
-    tl_lighting_draw(&renderer->lighting, renderer->gpu, &request);
+    return tl_lighting_draw(&renderer->lighting, renderer->gpu, &request, error);
+}
+
+static bool run_samples(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level, (void)error;
+    tl_samples_read(&renderer->gbuffer, &renderer->ranges, renderer->view.eye, &renderer->samples);
+    return true;
+}
+
+static bool run_points(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level;
+    if (!tl_trace_update(renderer->trace, renderer->frame.surfaces, renderer->frame.surface_count, error))
+        return false;
+    const struct tl_points_request request = {.trace = renderer->trace,
+                                              .ranges = &renderer->ranges,
+                                              .samples = &renderer->samples,
+                                              .regions = &renderer->regions,
+                                              .suns = &renderer->suns,
+                                              .regions_revision = renderer->regions_revision,
+                                              .shapes_revision = renderer->signatures[TL_INPUT_SHAPES],
+                                              .ground = ground_of(renderer),
+                                              .environment_yaw = renderer->frame.environment_yaw,
+                                              .params = &renderer->settings.light,
+                                              .moved = renderer->rest.scene == 0,
+                                              .round = renderer->rest.scene};
+    tl_points_update(renderer->points, &request);
+    return true;
+}
+
+static bool run_compose(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level, (void)error;
+    const struct tl_samples *samples = &renderer->samples;
+    size_t bytes = (size_t)samples->width * (size_t)samples->height * 4 * sizeof(float);
+    if (bytes != renderer->light_bytes) {
+        free(renderer->light);
+        renderer->light = tl_alloc(bytes, 1);
+        renderer->light_bytes = bytes;
+    }
+    memset(renderer->light, 0, bytes);
+    struct tl_compose_request request = {.samples = samples,
+                                         .lights = &renderer->lights,
+                                         .suns = &renderer->suns,
+                                         .lobes = &renderer->lobes,
+                                         .environment_yaw = renderer->frame.environment_yaw,
+                                         .params = &renderer->settings.light};
+    if (renderer->settings.light.method != TL_METHOD_UNSHADOWED) {
+        request.values = tl_points_values(renderer->points, &request.stride);
+        request.taps = tl_points_taps(renderer->points);
+        for (int i = 0; i < renderer->suns.count; i++)
+            request.sun_visibility[i] = tl_points_sun(renderer->points, i);
+    }
+    tl_compose(&request, renderer->light);
+    tl_lighting_set(&renderer->lighting, renderer->gpu, &renderer->gbuffer, renderer->light);
+    return true;
+}
+
+static bool run_reference(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level;
+    tl_image image;
+    struct tl_reference_report report;
+    if (!tl_reference_draw(&renderer->frame, &renderer->settings, ground_of(renderer), &image, &report,
+                           error))
+        return false;
+    tl_info("reference: %d replicates, %.3g million rays, standard error %.2g %%", report.replicates,
+            1e-6 * (double)report.rays, 100 * report.standard_error);
+    tl_present_set_image(&renderer->present, renderer->gpu, &image);
+    tl_image_release(&image);
     return true;
 }
 
@@ -190,90 +374,149 @@ static bool run_show(void *context, int level, tl_error *error)
     return true;
 }
 
-#define BITS2(a, b)             (TL_BIT(a) | TL_BIT(b))
-#define BITS3(a, b, c)          (BITS2(a, b) | TL_BIT(c))
-#define BITS4(a, b, c, d)       (BITS2(a, b) | BITS2(c, d))
-#define BITS6(a, b, c, d, e, f) (BITS4(a, b, c, d) | BITS2(e, f))
+/* Sets of resources. */
+#define SET1(a)             TL_BIT(a)
+#define SET2(a, b)          (SET1(a) | SET1(b))
+#define SET3(a, b, c)       (SET2(a, b) | SET1(c))
+#define SET4(a, b, c, d)    (SET2(a, b) | SET2(c, d))
+#define SET5(a, b, c, d, e) (SET4(a, b, c, d) | SET1(e))
 #define LEVELS_ONE                                                                                           \
     {                                                                                                        \
-        "paper"                                                                                              \
+        "only"                                                                                               \
     }
 
 const tl_job tl_frame_jobs[] = {
     {.name = "cube",
-     .what = "environment to a cube map",
-     .reads = BITS2(TL_INPUT_ENVIRONMENT, TL_INPUT_PEM_SIZE),
-     .writes = TL_BIT(TL_MADE_CUBE),
+     .what = "environment to a cube map; its suns taken out",
+     .reads = SET3(TL_INPUT_ENVIRONMENT, TL_INPUT_PEM_SIZE, TL_INPUT_SUN),
+     .writes = SET1(TL_MADE_CUBE),
      .levels = LEVELS_ONE,
      .run = run_cube},
     {.name = "regions",
-     .what = "median cut of the cube's six faces",
-     .reads = BITS2(TL_MADE_CUBE, TL_INPUT_REGIONS),
-     .writes = TL_BIT(TL_MADE_REGIONS),
+     .what = "the cube cut into regions",
+     .reads = SET2(TL_MADE_CUBE, TL_INPUT_REGIONS),
+     .writes = SET1(TL_MADE_REGIONS),
      .levels = LEVELS_ONE,
      .run = run_regions},
     {.name = "lobe",
      .what = "calibration of glossiness to chain level",
-     .reads = BITS2(TL_INPUT_PEM_SIZE, TL_INPUT_FILTER),
-     .writes = TL_BIT(TL_MADE_LOBE),
+     .reads = SET2(TL_INPUT_PEM_SIZE, TL_INPUT_FILTER),
+     .writes = SET1(TL_MADE_LOBE),
+     .requires_scene = SET1(TL_SCENE_CHAINS),
      .levels = LEVELS_ONE,
      .run = run_lobe},
     {.name = "pems",
      .what = "a filtered copy of the cube for each region",
-     .reads = BITS4(TL_MADE_CUBE, TL_MADE_REGIONS, TL_INPUT_FILTER, TL_INPUT_PASSES),
-     .writes = TL_BIT(TL_MADE_PEMS),
+     .reads = SET4(TL_MADE_CUBE, TL_MADE_REGIONS, TL_INPUT_FILTER, TL_INPUT_PASSES),
+     .writes = SET1(TL_MADE_PEMS),
+     .requires_scene = SET1(TL_SCENE_CHAINS),
      .levels = LEVELS_ONE,
      .run = run_pems},
+    {.name = "lobes",
+     .what = "the whole environment through exact lobes",
+     .reads = SET2(TL_MADE_CUBE, TL_INPUT_SHAPES),
+     .writes = SET1(TL_MADE_LOBES),
+     .requires_scene = SET1(TL_SCENE_EXACT),
+     .levels = LEVELS_ONE,
+     .run = run_lobes},
+    {.name = "slices",
+     .what = "the regions through exact lobes",
+     .reads = SET3(TL_MADE_CUBE, TL_MADE_REGIONS, TL_INPUT_SHAPES),
+     .writes = SET1(TL_MADE_SLICES),
+     .requires_scene = SET1(TL_SCENE_SLICES),
+     .levels = LEVELS_ONE,
+     .run = run_slices},
+    {.name = "lights",
+     .what = "the regions as lights that add up to the exact light",
+     .reads = SET3(TL_MADE_REGIONS, TL_MADE_LOBES, TL_INPUT_LIGHT),
+     .writes = SET1(TL_MADE_LIGHTS),
+     .requires_scene = SET2(TL_SCENE_RAYS, TL_SCENE_SHADOWS),
+     .levels = LEVELS_ONE,
+     .run = run_lights},
     {.name = "surfaces",
      .what = "vertices and maps to the GPU",
-     .reads = BITS3(TL_INPUT_SHAPES, TL_INPUT_MOTION, TL_INPUT_GROUND),
-     .writes = TL_BIT(TL_MADE_SURFACES),
+     .reads = SET3(TL_INPUT_SHAPES, TL_INPUT_MOTION, TL_INPUT_GROUND),
+     .writes = SET1(TL_MADE_SURFACES),
      .levels = LEVELS_ONE,
      .run = run_surfaces},
     {.name = "maps",
-     .what = "a variance shadow map for each region",
-     .reads = BITS2(TL_MADE_SURFACES, TL_MADE_REGIONS) | BITS3(TL_INPUT_YAW, TL_INPUT_MAPS, TL_INPUT_PASSES),
-     .writes = TL_BIT(TL_MADE_DEPTHS),
-     .requires_scene = TL_BIT(TL_SCENE_SHADOWED),
+     .what = "a shadow map for each region and sun",
+     .reads = SET5(TL_MADE_SURFACES, TL_MADE_REGIONS, TL_INPUT_YAW, TL_INPUT_MAPS, TL_INPUT_PASSES) |
+              SET1(TL_INPUT_ROUND),
+     .writes = SET1(TL_MADE_DEPTHS),
+     .requires_scene = SET1(TL_SCENE_MAPS),
      .levels = LEVELS_ONE,
      .run = run_maps},
     {.name = "blur",
      .what = "shadow maps blurred by the size of their regions",
-     .reads = BITS3(TL_MADE_DEPTHS, TL_MADE_REGIONS, TL_MADE_SURFACES),
-     .writes = TL_BIT(TL_MADE_MAPS),
-     .requires_scene = TL_BIT(TL_SCENE_SHADOWED),
+     .reads = SET3(TL_MADE_DEPTHS, TL_MADE_REGIONS, TL_MADE_SURFACES),
+     .writes = SET1(TL_MADE_MAPS),
+     .requires_scene = SET2(TL_SCENE_MAPS, TL_SCENE_BLUR),
      .levels = LEVELS_ONE,
      .run = run_blur},
     {.name = "gbuffer",
      .what = "nearest point, normal and material of every sample",
-     .reads = BITS4(TL_MADE_SURFACES, TL_INPUT_CAMERA, TL_INPUT_SIZE, TL_INPUT_GROUND),
-     .writes = TL_BIT(TL_MADE_GBUFFER),
+     .reads = SET4(TL_MADE_SURFACES, TL_INPUT_CAMERA, TL_INPUT_SIZE, TL_INPUT_GROUND),
+     .writes = SET1(TL_MADE_GBUFFER),
      .levels = LEVELS_ONE,
      .run = run_gbuffer},
+    {.name = "samples",
+     .what = "the covered samples to the CPU",
+     .reads = SET3(TL_MADE_GBUFFER, TL_INPUT_CAMERA, TL_INPUT_SHAPES),
+     .writes = SET1(TL_MADE_SAMPLES),
+     .requires_scene = SET1(TL_SCENE_RAYS),
+     .levels = LEVELS_ONE,
+     .run = run_samples},
+    {.name = "points",
+     .what = "rays: visibility of the regions, kept at vertices",
+     .reads = SET5(TL_MADE_SAMPLES, TL_MADE_REGIONS, TL_INPUT_SHAPES, TL_INPUT_MOTION, TL_INPUT_GROUND) |
+              SET3(TL_INPUT_YAW, TL_INPUT_RAYS, TL_INPUT_SCENE_ROUND),
+     .writes = SET1(TL_MADE_POINTS),
+     .requires_scene = SET2(TL_SCENE_RAYS, TL_SCENE_SHADOWS),
+     .levels = LEVELS_ONE,
+     .run = run_points},
     {.name = "light",
      .what = "visibility times PEM, summed over the regions",
-     .reads =
-         BITS6(TL_MADE_GBUFFER, TL_MADE_PEMS, TL_MADE_REGIONS, TL_MADE_LOBE, TL_MADE_MAPS, TL_MADE_SURFACES) |
-         BITS4(TL_INPUT_YAW, TL_INPUT_CAMERA, TL_INPUT_LIGHT, TL_INPUT_GROUND),
-     .writes = TL_BIT(TL_MADE_LIGHT),
+     .reads = SET5(TL_MADE_GBUFFER, TL_MADE_PEMS, TL_MADE_REGIONS, TL_MADE_LOBE, TL_MADE_MAPS) |
+              SET5(TL_MADE_SURFACES, TL_INPUT_YAW, TL_INPUT_CAMERA, TL_INPUT_LIGHT, TL_INPUT_GROUND) |
+              SET4(TL_MADE_LOBES, TL_MADE_SLICES, TL_MADE_DEPTHS, TL_INPUT_ROUND),
+     .writes = SET1(TL_MADE_LIGHT),
+     .requires_scene = SET1(TL_SCENE_PASSES),
      .levels = LEVELS_ONE,
      .run = run_light},
+    {.name = "compose",
+     .what = "exact light times the share of it that is seen",
+     .reads = SET5(TL_MADE_SAMPLES, TL_MADE_POINTS, TL_MADE_LIGHTS, TL_MADE_LOBES, TL_MADE_CUBE) |
+              SET2(TL_INPUT_YAW, TL_INPUT_LIGHT),
+     .writes = SET1(TL_MADE_LIGHT),
+     .requires_scene = SET1(TL_SCENE_RAYS),
+     .levels = LEVELS_ONE,
+     .run = run_compose},
     {.name = "resolve",
      .what = "samples to pixels",
-     .reads = BITS3(TL_MADE_LIGHT, TL_MADE_GBUFFER, TL_INPUT_SIZE),
-     .writes = TL_BIT(TL_MADE_IMAGE),
+     .reads = SET3(TL_MADE_LIGHT, TL_MADE_GBUFFER, TL_INPUT_SIZE),
+     .writes = SET1(TL_MADE_IMAGE),
+     .requires_scene = SET1(TL_SCENE_RASTER),
      .levels = LEVELS_ONE,
      .run = run_resolve},
+    {.name = "reference",
+     .what = "the image, ray traced",
+     .reads = SET5(TL_INPUT_ENVIRONMENT, TL_INPUT_YAW, TL_INPUT_CAMERA, TL_INPUT_SIZE, TL_INPUT_LIGHT) |
+              SET3(TL_MADE_SURFACES, TL_INPUT_GROUND, TL_INPUT_REFERENCE),
+     .writes = SET1(TL_MADE_IMAGE),
+     .requires_scene = SET1(TL_SCENE_REFERENCE),
+     .levels = LEVELS_ONE,
+     .run = run_reference},
     {.name = "backdrop",
      .what = "the environment as it is seen behind",
-     .reads = BITS3(TL_INPUT_ENVIRONMENT, TL_MADE_CUBE, TL_INPUT_FILTER),
-     .writes = TL_BIT(TL_MADE_BACKDROP),
+     .reads = SET3(TL_INPUT_ENVIRONMENT, TL_MADE_CUBE, TL_INPUT_FILTER),
+     .writes = SET1(TL_MADE_BACKDROP),
      .levels = LEVELS_ONE,
      .run = run_backdrop},
     {.name = "show",
      .what = "background, exposure, tone mapping",
-     .reads = BITS2(TL_MADE_IMAGE, TL_MADE_BACKDROP) | BITS3(TL_INPUT_SHOW, TL_INPUT_YAW, TL_INPUT_CAMERA),
-     .writes = TL_BIT(TL_MADE_SHOWN),
+     .reads = SET5(TL_MADE_IMAGE, TL_MADE_BACKDROP, TL_INPUT_SHOW, TL_INPUT_YAW, TL_INPUT_CAMERA),
+     .writes = SET1(TL_MADE_SHOWN),
      .levels = LEVELS_ONE,
      .run = run_show},
 };

@@ -62,9 +62,13 @@ typedef struct tl_program {
     char name[64];
     const struct tl_embedded *shaders;
     const char *vertex, *fragment; /* file names; must live as long as the program */
+    const char *defines; /* lines that follow #version in both files, or NULL; must live as long */
 } tl_program;
 bool tl_program_create(tl_gpu *gpu, const struct tl_embedded *shaders, const char *vertex,
                        const char *fragment, tl_program *out, tl_error *error);
+/* One of several programs that are made from the same files by what is #defined. */
+bool tl_program_create_variant(tl_gpu *gpu, const struct tl_embedded *shaders, const char *vertex,
+                               const char *fragment, const char *defines, tl_program *out, tl_error *error);
 void tl_program_destroy(tl_program *program);
 /* Builds the program again from its files; on failure the old one stays in use. */
 bool tl_program_reload(tl_program *program, tl_error *error);

@@ -18,6 +18,7 @@
 /* One shader's text with its includes in place. */
 struct source {
     const struct tl_embedded *shaders;
+    const char *defines; /* or NULL */
     const char *files[FILES_MAX];
     int file_count;
     char *text; /* grows */
@@ -109,6 +110,10 @@ static bool expand(struct source *source, const struct tl_embedded *file, tl_err
         } else {
             append(source, start, length);
             append(source, "\n", 1);
+            if (number == 0 && line == 1 && source->defines) { /* after #version */
+                append(source, source->defines, strlen(source->defines));
+                append_line_directive(source, 2, 0);
+            }
         }
         start += length + (start[length] == '\n');
     }
@@ -128,10 +133,10 @@ static bool fail_with_log(const struct source *source, const char *log, tl_error
     return tl_fail(error, TL_INPUT, "%s: %.*s", source->files[0], length, log);
 }
 
-static GLuint compile(GLenum kind, const struct tl_embedded *shaders, const char *name, tl_error *error)
+static GLuint compile(GLenum kind, const tl_program *program, const char *name, tl_error *error)
 {
-    const struct tl_embedded *file = tl_embedded_find(shaders, name);
-    struct source source = {.shaders = shaders};
+    const struct tl_embedded *file = tl_embedded_find(program->shaders, name);
+    struct source source = {.shaders = program->shaders, .defines = program->defines};
     GLuint shader = 0;
     if (!file) {
         tl_fail(error, TL_INPUT, "%s: no shader file has this name: add it to toile_embed", name);
@@ -159,9 +164,9 @@ done:
 static GLuint build(const tl_program *program, tl_error *error)
 {
     GLuint id = 0, vertex = 0, fragment = 0;
-    vertex = compile(GL_VERTEX_SHADER, program->shaders, program->vertex, error);
+    vertex = compile(GL_VERTEX_SHADER, program, program->vertex, error);
     if (vertex)
-        fragment = compile(GL_FRAGMENT_SHADER, program->shaders, program->fragment, error);
+        fragment = compile(GL_FRAGMENT_SHADER, program, program->fragment, error);
     if (fragment) {
         id = glCreateProgram();
         glAttachShader(id, vertex);
@@ -186,8 +191,14 @@ static GLuint build(const tl_program *program, tl_error *error)
 bool tl_program_create(tl_gpu *gpu, const struct tl_embedded *shaders, const char *vertex,
                        const char *fragment, tl_program *out, tl_error *error)
 {
+    return tl_program_create_variant(gpu, shaders, vertex, fragment, NULL, out, error);
+}
+
+bool tl_program_create_variant(tl_gpu *gpu, const struct tl_embedded *shaders, const char *vertex,
+                               const char *fragment, const char *defines, tl_program *out, tl_error *error)
+{
     (void)gpu; /* current on this thread */
-    *out = (tl_program){.shaders = shaders, .vertex = vertex, .fragment = fragment};
+    *out = (tl_program){.shaders = shaders, .vertex = vertex, .fragment = fragment, .defines = defines};
     snprintf(out->name, sizeof out->name, "%s", fragment);
     out->id = build(out, error);
     return out->id != 0;

@@ -1,32 +1,141 @@
 #include "render/light/light.h"
 
+#include "config/memory.h"
 #include "render/shaders.h"
 
 #include <epoxy/gl.h>
 
 #include <math.h>
+#include <stdlib.h>
 
-/* Uniform locations and texture units of light.frag. */
-enum { REGION_COUNT, EYE, ENVIRONMENT_TURN, PEM_SCALE, LOBE, SHADOWED, MAP_LIMITS, GROUND_DISC };
-enum { LOBE_LEVELS_UNIT = TL_GBUFFER_LAYERS, PEMS_UNIT, MAPS_UNIT };
+/* Uniform locations of chain.frag and regions.frag, and what they include. */
+enum { REGION_RANGE = 0, EYE, ENVIRONMENT_TURN, PEM_SCALE, LOBE, ALREADY_THERE, MAP_LIMITS, GROUND_DISC };
+enum { COUNTS = 0, COMPOSITION = 5, LAST_EXPONENT = 8, LOBE_PLACES };
+/* Texture units; the G-buffer's layers without the triangles come first. */
+enum { LEVELS_UNIT = 5, PEMS_UNIT, MAPS_UNIT, LOBES_UNIT, SUN_MAPS_UNIT };
+/* Of regions.frag. */
+enum composition { SUM, DIFFERENCE, RATIO, OCCLUSION, OCCLUSION_COLOUR, UNSHADOWED };
+
+/* exact.glsl: log2 of the largest exponent that the table of levels tells apart. */
+#define EXPONENT_LOG_RANGE 15.0f
+#define EXPONENT_STEPS     512
+
+/* std430: struct Region in region.glsl. */
+struct region_light {
+    vec4s map_rows[3];
+    vec4s direction;
+    vec4s centre; /* w: sine of the half-angle over which the light is spread */
+    vec4s power;  /* w: spread, rad */
+};
+
+enum tl_light_source tl_light_source(const struct tl_light_params *params)
+{
+    bool chain = params->prefilter == TL_PREFILTER_CHAIN, ratio = params->composition == TL_COMPOSE_RATIO;
+    switch (params->method) {
+    case TL_METHOD_LIGHTS:
+    case TL_METHOD_AO:
+    case TL_METHOD_AO_COLOUR:
+        return TL_LIGHT_LOBES;
+    case TL_METHOD_UNSHADOWED:
+        return chain && params->composition == TL_COMPOSE_SUM && !params->sun ? TL_LIGHT_CHAIN
+                                                                              : TL_LIGHT_EXACT;
+    default:
+        return !chain ? TL_LIGHT_SLICES : ratio ? TL_LIGHT_LOBES : TL_LIGHT_CHAIN;
+    }
+}
+
+/* Chains stand alone, unless a pass of regions.frag goes before them. */
+static bool begins_exact(const struct tl_light_params *params)
+{
+    return params->composition == TL_COMPOSE_DIFFERENCE || params->sun;
+}
+
+bool tl_light_needs_exact(const struct tl_light_params *params)
+{
+    return tl_light_source(params) != TL_LIGHT_CHAIN || begins_exact(params);
+}
+
+static enum composition composition_of(const struct tl_light_params *params)
+{
+    switch (params->method) {
+    case TL_METHOD_LIGHTS:
+        return SUM;
+    case TL_METHOD_AO:
+        return OCCLUSION;
+    case TL_METHOD_AO_COLOUR:
+        return OCCLUSION_COLOUR;
+    case TL_METHOD_UNSHADOWED:
+        return UNSHADOWED;
+    default:
+        return (enum composition)params->composition;
+    }
+}
 
 bool tl_lighting_create(struct tl_lighting *lighting, tl_gpu *gpu, tl_error *error)
 {
+    (void)error;
+    float levels[EXPONENT_STEPS];
+    for (int i = 0; i < EXPONENT_STEPS; i++) {
+        struct tl_exponent_blend blend =
+            tl_exponent_blend(exp2f(EXPONENT_LOG_RANGE * (float)i / (EXPONENT_STEPS - 1)));
+        levels[i] = (float)blend.index + blend.weight;
+    }
+    lighting->exponent_levels = tl_texture_create(gpu, GL_TEXTURE_2D, GL_R32F, EXPONENT_STEPS, 1, 1, 1);
+    glTextureSubImage2D(lighting->exponent_levels.id, 0, 0, 0, EXPONENT_STEPS, 1, GL_RED, GL_FLOAT, levels);
     glCreateBuffers(1, &lighting->regions_buffer);
-    glNamedBufferStorage(lighting->regions_buffer, TL_PASS_REGIONS_MAX * sizeof(struct tl_region_view), NULL,
+    glNamedBufferStorage(lighting->regions_buffer,
+                         (TL_REGIONS_MAX + TL_SUNS_MAX) * sizeof(struct region_light), NULL,
                          GL_DYNAMIC_STORAGE_BIT);
-    return tl_program_create(gpu, tl_embedded_shaders, "fullscreen.vert", "light.frag", &lighting->program,
-                             error);
+    return true;
 }
 
 void tl_lighting_release(struct tl_lighting *lighting)
 {
-    tl_program_destroy(&lighting->program);
+    for (int source = 0; source < TL_LIGHT_SOURCES; source++)
+        for (int kind = 0; kind < TL_LIGHT_MAP_KINDS; kind++)
+            tl_program_destroy(&lighting->programs[source][kind]);
     tl_texture_destroy(&lighting->lobe_levels);
+    tl_texture_destroy(&lighting->exponent_levels);
+    tl_texture_destroy(&lighting->lobes);
     tl_target_destroy(&lighting->target);
     if (lighting->regions_buffer)
         glDeleteBuffers(1, &lighting->regions_buffer);
     lighting->regions_buffer = 0;
+}
+
+bool tl_lighting_reload(struct tl_lighting *lighting, tl_error *error)
+{
+    bool fine = true;
+    for (int source = 0; source < TL_LIGHT_SOURCES; source++)
+        for (int kind = 0; kind < TL_LIGHT_MAP_KINDS; kind++)
+            if (lighting->programs[source][kind].id)
+                fine = fine && tl_program_reload(&lighting->programs[source][kind], error);
+    return fine;
+}
+
+size_t tl_lighting_bytes(const struct tl_lighting *lighting)
+{
+    return tl_texture_bytes(&lighting->lobe_levels) + tl_texture_bytes(&lighting->exponent_levels) +
+           tl_texture_bytes(&lighting->lobes);
+}
+
+/* The program of a source under a kind of maps (RAYS: none). */
+static const tl_program *program_of(struct tl_lighting *lighting, tl_gpu *gpu, enum tl_light_source source,
+                                    enum tl_visibility kind, tl_error *error)
+{
+    static const char *const defines[TL_LIGHT_SOURCES][TL_LIGHT_MAP_KINDS] = {
+        [TL_LIGHT_CHAIN] = {"#define VSM\n", "#define DEPTH\n", NULL},
+        [TL_LIGHT_SLICES] = {"#define SLICES\n#define VSM\n", "#define SLICES\n#define DEPTH\n",
+                             "#define SLICES\n"},
+        [TL_LIGHT_LOBES] = {"#define VSM\n", "#define DEPTH\n", NULL},
+        [TL_LIGHT_EXACT] = {"#define EXACT\n", "#define EXACT\n", "#define EXACT\n"},
+    };
+    tl_program *program = &lighting->programs[source][kind];
+    if (!program->id && !tl_program_create_variant(gpu, tl_embedded_shaders, "fullscreen.vert",
+                                                   source == TL_LIGHT_CHAIN ? "chain.frag" : "regions.frag",
+                                                   defines[source][kind], program, error))
+        return NULL;
+    return program;
 }
 
 void tl_lighting_set_lobe(struct tl_lighting *lighting, tl_gpu *gpu, const struct tl_lobe_table *table)
@@ -34,6 +143,28 @@ void tl_lighting_set_lobe(struct tl_lighting *lighting, tl_gpu *gpu, const struc
     if (!lighting->lobe_levels.id)
         lighting->lobe_levels = tl_texture_create(gpu, GL_TEXTURE_2D, GL_R32F, TL_LOBE_STEPS, 1, 1, 1);
     glTextureSubImage2D(lighting->lobe_levels.id, 0, 0, 0, TL_LOBE_STEPS, 1, GL_RED, GL_FLOAT, table->level);
+}
+
+void tl_lighting_set_exact(struct tl_lighting *lighting, tl_gpu *gpu, const struct tl_lobes *lobes)
+{
+    int width = 0, height = 0;
+    for (int i = 0; i <= TL_EXPONENT_COUNT; i++) {
+        int side = lobes->made & 1u << i ? lobes->maps[i].side : 0;
+        lighting->lobe_places[i][0] = (float)height;
+        lighting->lobe_places[i][1] = (float)side;
+        width = side > 0 && side + 2 > width ? side + 2 : width;
+        height += side > 0 ? side + 2 : 0;
+    }
+    if (lighting->lobes.width != width || lighting->lobes.height != height) {
+        tl_texture_destroy(&lighting->lobes);
+        lighting->lobes = tl_texture_create(gpu, GL_TEXTURE_2D, GL_RGBA32F, width, height, 1, 1);
+    }
+    for (int i = 0; i <= TL_EXPONENT_COUNT; i++) {
+        int side = (int)lighting->lobe_places[i][1];
+        if (side > 0)
+            glTextureSubImage2D(lighting->lobes.id, 0, 0, (int)lighting->lobe_places[i][0], side + 2,
+                                side + 2, GL_RGBA, GL_FLOAT, lobes->maps[i].texels);
+    }
 }
 
 static void allocate(struct tl_lighting *lighting, tl_gpu *gpu, const tl_target *gbuffer)
@@ -46,16 +177,85 @@ static void allocate(struct tl_lighting *lighting, tl_gpu *gpu, const tl_target 
     glNamedFramebufferTexture(lighting->target.id, GL_DEPTH_ATTACHMENT, gbuffer->depth.id, 0);
 }
 
-static void set_frame_uniforms(const struct tl_light_request *request)
+void tl_lighting_set(struct tl_lighting *lighting, tl_gpu *gpu, const struct tl_gbuffer *gbuffer,
+                     const float *light)
+{
+    allocate(lighting, gpu, &gbuffer->target);
+    glTextureSubImage2D(lighting->target.colours[0].id, 0, 0, 0, gbuffer->target.width,
+                        gbuffer->target.height, GL_RGBA, GL_FLOAT, light);
+}
+
+static vec4s vec4_of(vec3s v, float w)
+{
+    return (vec4s){{v.x, v.y, v.z, w}};
+}
+
+/* The view of a depth map with the bias taken off the depth of what is looked up. */
+static void copy_view(const struct tl_region_view *view, float bias_m, struct region_light *out)
+{
+    for (int row = 0; row < 3; row++)
+        out->map_rows[row] = view->map_rows[row];
+    const vec4s *depth = &view->map_rows[2];
+    out->map_rows[2].w -= bias_m * glms_vec3_norm((vec3s){{depth->x, depth->y, depth->z}});
+    out->direction = view->direction;
+}
+
+static struct region_light light_of_region(const struct tl_light_request *request, int i)
+{
+    const struct tl_region *region = &request->regions->items[i];
+    int method = request->params->method;
+    bool is_white = method == TL_METHOD_AO;
+    float spread = method == TL_METHOD_LIGHTS ? 0 : region->spread;
+    /* A disc whose mean square angle is spread^2 has the radius sqrt(2) spread. */
+    float sine = sinf(fminf(sqrtf(2) * spread, GLM_PI_2f));
+    vec3s white = {{region->solid_angle, region->solid_angle, region->solid_angle}};
+    return (struct region_light){
+        .centre = vec4_of(tl_turn_direction(region->direction, request->environment_yaw), sine),
+        .power = vec4_of(is_white ? white : region->power, spread)};
+}
+
+static struct region_light light_of_sun(const struct tl_light_request *request, int i)
+{
+    const struct tl_sun *sun = &request->suns->items[i];
+    return (struct region_light){
+        .centre = vec4_of(tl_turn_direction(sun->direction, request->environment_yaw), sinf(sun->radius)),
+        .power = vec4_of(sun->power, sun->radius / sqrtf(2))};
+}
+
+/* Regions, then suns. */
+static void upload_regions(const struct tl_lighting *lighting, const struct tl_light_request *request)
+{
+    const struct tl_light_params *params = request->params;
+    bool shadowed = params->method != TL_METHOD_UNSHADOWED;
+    /* A variance map's bias is a uniform: there it is the paper's, in units of the casters' sphere. */
+    float bias_m = params->visibility == TL_VISIBILITY_DEPTH ? params->depth_bias_m : 0;
+    int regions = request->regions->count, suns = request->suns->count;
+    struct region_light *lights = TL_NEW_ARRAY(struct region_light, (size_t)(regions + suns));
+    for (int i = 0; i < regions; i++) {
+        lights[i] = light_of_region(request, i);
+        if (shadowed)
+            copy_view(&tl_shadow_maps_views(request->maps)[i], bias_m, &lights[i]);
+    }
+    for (int i = 0; i < suns; i++) {
+        lights[regions + i] = light_of_sun(request, i);
+        if (shadowed)
+            copy_view(&tl_shadow_maps_sun_views(request->maps)[i], params->depth_bias_m,
+                      &lights[regions + i]);
+    }
+    glNamedBufferSubData(lighting->regions_buffer, 0, (GLsizeiptr)((size_t)(regions + suns) * sizeof *lights),
+                         lights);
+    free(lights);
+}
+
+static void use_program(const tl_program *program, const struct tl_light_request *request)
 {
     const struct tl_light_params *params = request->params;
     const struct tl_ground *ground = request->ground;
-    float unit_m = 2 * request->casters.radius; /* one unit of depth */
+    float unit_m = 2 * request->casters.radius; /* one unit of depth of a variance map */
+    glUseProgram(program->id);
     glUniform3fv(EYE, 1, request->eye.raw);
     glUniform2f(ENVIRONMENT_TURN, cosf(request->environment_yaw), sinf(request->environment_yaw));
-    glUniform1f(PEM_SCALE, request->pems->scale);
     glUniform1i(LOBE, params->lobe);
-    glUniform1i(SHADOWED, params->method != TL_METHOD_UNSHADOWED);
     glUniform3f(MAP_LIMITS, params->depth_bias_m / unit_m, params->min_variance / (unit_m * unit_m),
                 params->bleed_reduction);
     if (ground)
@@ -64,46 +264,88 @@ static void set_frame_uniforms(const struct tl_light_request *request)
         glUniform4f(GROUND_DISC, 0, 0, 0, 0);
 }
 
-static void draw_pass(const struct tl_lighting *lighting, tl_gpu *gpu, const struct tl_light_request *request,
-                      int pass)
+/* The passes of one image add up; images are averaged over the rounds: each new one counts 1 / (round + 1),
+ * what is in the target the rest. */
+static void draw_pass(tl_gpu *gpu, bool is_first)
 {
-    struct tl_region_view views[TL_PASS_REGIONS_MAX];
-    int first = pass * request->pems->per_array;
-    int count = request->regions->count - first;
-    count = count < request->pems->per_array ? count : request->pems->per_array;
-    for (int i = 0; i < count; i++) {
-        vec3s direction =
-            tl_turn_direction(request->regions->items[first + i].direction, request->environment_yaw);
-        views[i] = tl_region_view_make(direction, &request->casters, request->params->map_size);
-    }
-    glNamedBufferSubData(lighting->regions_buffer, 0, (GLsizeiptr)((size_t)count * sizeof views[0]), views);
-    glBindTextureUnit(PEMS_UNIT, request->pems->arrays[pass].id);
-    if (request->params->method != TL_METHOD_UNSHADOWED)
-        glBindTextureUnit(MAPS_UNIT, tl_shadow_maps_texture(request->maps, pass));
-    glUniform1i(REGION_COUNT, count);
+    glBlendFunc(GL_CONSTANT_ALPHA, is_first ? GL_ONE_MINUS_CONSTANT_ALPHA : GL_ONE);
     tl_gpu_draw_fullscreen(gpu);
 }
 
-void tl_lighting_draw(struct tl_lighting *lighting, tl_gpu *gpu, const struct tl_light_request *request)
+static bool draw_regions(struct tl_lighting *lighting, tl_gpu *gpu, const struct tl_light_request *request,
+                         enum tl_light_source source, tl_error *error)
+{
+    const struct tl_light_params *params = request->params;
+    bool shadowed = params->method != TL_METHOD_UNSHADOWED;
+    const tl_program *program =
+        program_of(lighting, gpu, source, (enum tl_visibility)params->visibility, error);
+    if (!program)
+        return false;
+    use_program(program, request);
+    glUniform2i(COUNTS, request->regions->count, request->suns->count);
+    glUniform1i(COMPOSITION, (int)composition_of(params));
+    glUniform1i(LAST_EXPONENT, TL_EXPONENT_COUNT);
+    glUniform2fv(LOBE_PLACES, TL_EXPONENT_COUNT + 1, lighting->lobe_places[0]);
+    glBindTextureUnit(LEVELS_UNIT, lighting->exponent_levels.id);
+    glBindTextureUnit(LOBES_UNIT, lighting->lobes.id);
+    if (source == TL_LIGHT_SLICES)
+        tl_slice_maps_bind(request->slices);
+    if (shadowed) {
+        glBindTextureUnit(MAPS_UNIT, tl_shadow_maps_texture(request->maps, 0));
+        glBindTextureUnit(SUN_MAPS_UNIT, tl_shadow_maps_sun_texture(request->maps));
+    }
+    draw_pass(gpu, true);
+    return true;
+}
+
+static bool draw_chains(struct tl_lighting *lighting, tl_gpu *gpu, const struct tl_light_request *request,
+                        tl_error *error)
+{
+    const struct tl_light_params *params = request->params;
+    const struct tl_pems *pems = request->pems;
+    bool shadowed = params->method != TL_METHOD_UNSHADOWED, exact_first = begins_exact(params);
+    const tl_program *program =
+        program_of(lighting, gpu, TL_LIGHT_CHAIN,
+                   shadowed ? (enum tl_visibility)params->visibility : TL_VISIBILITY_RAYS, error);
+    if (!program || (exact_first && !draw_regions(lighting, gpu, request, TL_LIGHT_EXACT, error)))
+        return false;
+    use_program(program, request);
+    glUniform1f(PEM_SCALE, pems->scale);
+    glUniform1f(ALREADY_THERE, params->composition == TL_COMPOSE_DIFFERENCE ? 1 : 0);
+    glBindTextureUnit(LEVELS_UNIT, lighting->lobe_levels.id);
+    for (int pass = 0; pass < pems->array_count; pass++) {
+        int first = pass * pems->per_array, left = pems->count - first;
+        glUniform2i(REGION_RANGE, first, left < pems->per_array ? left : pems->per_array);
+        glBindTextureUnit(PEMS_UNIT, pems->arrays[pass].id);
+        if (shadowed)
+            glBindTextureUnit(MAPS_UNIT, tl_shadow_maps_texture(request->maps, pass));
+        draw_pass(gpu, pass == 0 && !exact_first);
+    }
+    return true;
+}
+
+bool tl_lighting_draw(struct tl_lighting *lighting, tl_gpu *gpu, const struct tl_light_request *request,
+                      tl_error *error)
 {
     const tl_target *gbuffer = &request->gbuffer->target;
+    enum tl_light_source source = tl_light_source(request->params);
     const float black[] = {0, 0, 0, 0};
     allocate(lighting, gpu, gbuffer);
-    glClearNamedFramebufferfv(lighting->target.id, GL_COLOR, 0, black);
+    upload_regions(lighting, request);
+    if (request->round == 0)
+        glClearNamedFramebufferfv(lighting->target.id, GL_COLOR, 0, black);
     glBindFramebuffer(GL_FRAMEBUFFER, lighting->target.id);
     glViewport(0, 0, gbuffer->width, gbuffer->height);
     glEnable(GL_DEPTH_TEST); /* the full-screen triangle lies at depth 1: this keeps to what is covered */
     glDepthFunc(GL_GREATER);
     glDepthMask(GL_FALSE);
     glEnable(GL_BLEND);
-    glBlendFunc(GL_ONE, GL_ONE);
-    glUseProgram(lighting->program.id);
-    for (GLuint i = 0; i < TL_GBUFFER_LAYERS; i++)
+    glBlendColor(0, 0, 0, 1 / (float)(request->round + 1));
+    for (GLuint i = 0; i < TL_GBUFFER_TRIANGLE; i++)
         glBindTextureUnit(i, gbuffer->colours[i].id);
-    glBindTextureUnit(LOBE_LEVELS_UNIT, lighting->lobe_levels.id);
-    glBindBufferBase(GL_UNIFORM_BUFFER, 0, lighting->regions_buffer);
-    set_frame_uniforms(request);
-    for (int pass = 0; pass < request->pems->array_count; pass++)
-        draw_pass(lighting, gpu, request, pass);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, lighting->regions_buffer);
+    bool fine = source == TL_LIGHT_CHAIN ? draw_chains(lighting, gpu, request, error)
+                                         : draw_regions(lighting, gpu, request, source, error);
     tl_gpu_reset_state(gpu);
+    return fine;
 }

@@ -27,14 +27,19 @@ struct tl_samples {
     size_t count, capacity;
     tl_sample *items;
     float glossiness_min, glossiness_max; /* over all; 0 when there are none */
+    void *staging;                        /* the G-buffer as it was read */
+    size_t staging_bytes;
 };
 
 /* Where global triangle numbers begin, for each surface (with the ground, which comes last). */
 struct tl_triangle_ranges {
     const tl_surface *const *surfaces;
     size_t surface_count;
-    uint32_t *first; /* surface_count + 1 numbers */
+    uint32_t *first; /* surface_count + 1 numbers; owned */
 };
+/* The surfaces must outlive the ranges; `out` is used again from frame to frame. */
+void tl_triangle_ranges_make(const tl_surface *const *surfaces, size_t count, struct tl_triangle_ranges *out);
+void tl_triangle_ranges_release(struct tl_triangle_ranges *ranges);
 /* Which surface holds global triangle `number` (without the top bit), and its three corners there. */
 const tl_surface *tl_triangle_find(const struct tl_triangle_ranges *ranges, uint32_t number,
                                    uint32_t corners[3], size_t *surface);

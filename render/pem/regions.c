@@ -1,167 +1,229 @@
 #include "render/pem/regions.h"
 
 #include "config/memory.h"
+#include "render/pem/regions_build.h"
 
-#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
-struct rectangle {
-    int x0, y0, x1, y1;
-};
-
-/* What the cuts of one face read, by texel. */
-struct face {
-    int index, size;
-    double *importance;  /* integral of luminance [Rec. 709] */
-    double *solid_angle; /* sr */
-};
-
-static struct face face_create(const tl_cube *cube, int index)
+static size_t texel_count(const struct tl_regions *regions)
 {
-    size_t texel_count = (size_t)cube->size * (size_t)cube->size;
-    struct face face = {.index = index,
-                        .size = cube->size,
-                        .importance = TL_NEW_ARRAY(double, texel_count),
-                        .solid_angle = TL_NEW_ARRAY(double, texel_count)};
-    const float *texel = cube->texels + 3 * (size_t)index * texel_count;
-    for (size_t i = 0; i < texel_count; i++, texel += 3) {
-        double luminance = 0.2126 * (double)texel[0] + 0.7152 * (double)texel[1] + 0.0722 * (double)texel[2];
-        face.solid_angle[i] =
-            (double)tl_cube_solid_angle(cube->size, (int)i % cube->size, (int)i / cube->size);
-        face.importance[i] = luminance * face.solid_angle[i];
+    return 6 * (size_t)regions->size * (size_t)regions->size;
+}
+
+static float solid_angle_of(const struct tl_regions *regions, uint32_t texel)
+{
+    return regions->solid_angles[texel % ((uint32_t)regions->size * (uint32_t)regions->size)];
+}
+
+void tl_regions_release(struct tl_regions *regions)
+{
+    free(regions->labels);
+    free(regions->solid_angles);
+    free(regions->importance);
+    free(regions->texels);
+    free(regions->cumulative);
+    *regions = (struct tl_regions){0};
+}
+
+static void allocate(int size, struct tl_regions *out)
+{
+    tl_regions_release(out);
+    out->size = size;
+    out->labels = TL_NEW_ARRAY(uint16_t, texel_count(out));
+    out->solid_angles = TL_NEW_ARRAY(float, texel_count(out) / 6);
+    out->importance = TL_NEW_ARRAY(float, texel_count(out));
+    out->texels = TL_NEW_ARRAY(uint32_t, texel_count(out));
+    out->cumulative = TL_NEW_ARRAY(float, texel_count(out));
+}
+
+void tl_regions_begin(const tl_cube *cube, struct tl_regions *out)
+{
+    allocate(cube->size, out);
+    tl_cube_solid_angles(cube->size, out->solid_angles);
+    for (size_t i = 0; i < texel_count(out); i++) {
+        const float *colour = cube->texels + 3 * i;
+        double luminance =
+            0.2126 * (double)colour[0] + 0.7152 * (double)colour[1] + 0.0722 * (double)colour[2];
+        out->importance[i] = (float)(luminance * (double)solid_angle_of(out, (uint32_t)i));
     }
-    return face;
 }
 
-static void face_release(struct face *face)
+void tl_regions_begin_like(const struct tl_regions *from, struct tl_regions *out)
 {
-    free(face->importance);
-    free(face->solid_angle);
-    *face = (struct face){0};
+    allocate(from->size, out);
+    memcpy(out->solid_angles, from->solid_angles, texel_count(out) / 6 * sizeof *out->solid_angles);
+    memcpy(out->importance, from->importance, texel_count(out) * sizeof *out->importance);
 }
 
-/* x, y in texels. */
-static vec3s face_direction(const struct face *face, float x, float y)
+/* The even bits of a Morton code. */
+static int even_bits(uint32_t code)
 {
-    return glms_vec3_normalize(tl_cube_direction(face->index, x / (float)face->size, y / (float)face->size));
+    int value = 0;
+    for (int bit = 0; bit < 16; bit++)
+        value |= (int)(code >> (2 * bit) & 1) << bit;
+    return value;
 }
 
-static struct tl_region make_region(const struct face *face, struct rectangle r)
+/* Texels in Morton order within each face, dealt out to their regions. */
+void tl_regions_order(struct tl_regions *regions)
+{
+    uint32_t next[TL_REGIONS_MAX] = {0}; /* first counts, then places */
+    int size = regions->size;
+    for (size_t i = 0; i < texel_count(regions); i++)
+        next[regions->labels[i]]++;
+    uint32_t place = 0;
+    for (int i = 0; i < regions->count; i++) {
+        regions->first[i] = place;
+        place += next[i];
+        next[i] = regions->first[i];
+    }
+    regions->first[regions->count] = place;
+
+    uint32_t side = 1;
+    while (side < (uint32_t)size)
+        side *= 2;
+    for (int face = 0; face < 6; face++) {
+        for (uint32_t code = 0; code < side * side; code++) {
+            int x = even_bits(code), y = even_bits(code >> 1);
+            if (x >= size || y >= size)
+                continue;
+            int texel = (face * size + y) * size + x;
+            regions->texels[next[regions->labels[texel]]++] = (uint32_t)texel;
+        }
+    }
+}
+
+static void measure(struct tl_regions *regions, int index)
 {
     double importance = 0, solid_angle = 0;
     double bright[3] = {0}, plain[3] = {0}; /* sums of directions, weighted by either */
-    for (int y = r.y0; y < r.y1; y++) {
-        for (int x = r.x0; x < r.x1; x++) {
-            int i = y * face->size + x;
-            vec3s direction = face_direction(face, (float)x + 0.5f, (float)y + 0.5f);
-            importance += face->importance[i];
-            solid_angle += face->solid_angle[i];
-            for (int c = 0; c < 3; c++) {
-                bright[c] += face->importance[i] * (double)direction.raw[c];
-                plain[c] += face->solid_angle[i] * (double)direction.raw[c];
-            }
+    vec3s direction = {{0, 1, 0}};
+    for (uint32_t i = regions->first[index]; i < regions->first[index + 1]; i++) {
+        uint32_t texel = regions->texels[i];
+        double weight = (double)regions->importance[texel];
+        double area = (double)solid_angle_of(regions, texel);
+        direction = tl_cube_texel_direction(regions->size, (int)texel);
+        importance += weight;
+        solid_angle += area;
+        for (int c = 0; c < 3; c++) {
+            bright[c] += weight * (double)direction.raw[c];
+            plain[c] += area * (double)direction.raw[c];
         }
     }
     const double *sum = importance > 0 ? bright : plain;
     double length = sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
-    vec3s direction = face_direction(face, (float)r.x0 + 0.5f, (float)r.y0 + 0.5f);
-    if (length > 0)
+    /* What cancels out (a whole sphere) looks at one of its texels. */
+    if (length > 1e-9 * (importance > 0 ? importance : solid_angle))
         for (int c = 0; c < 3; c++)
             direction.raw[c] = (float)(sum[c] / length);
-    return (struct tl_region){.face = face->index,
-                              .x0 = r.x0,
-                              .y0 = r.y0,
-                              .x1 = r.x1,
-                              .y1 = r.y1,
-                              .direction = direction,
-                              .solid_angle = (float)solid_angle,
-                              .importance = (float)importance,
-                              .cone = (float)acos(1 - solid_angle / (2 * M_PI))};
+    regions->items[index] = (struct tl_region){
+        .face = -1,
+        .direction = direction,
+        .solid_angle = (float)solid_angle,
+        .importance = (float)importance,
+        .cone = (float)acos(fmax(1 - solid_angle / (2 * M_PI), -1)),
+    };
 }
 
-/* By the angles that the rectangle subtends across its middle. */
-static bool is_wide(const struct face *face, struct rectangle r)
+void tl_regions_measure(struct tl_regions *regions)
 {
-    float xm = 0.5f * (float)(r.x0 + r.x1), ym = 0.5f * (float)(r.y0 + r.y1);
-    float width = glms_vec3_dot(face_direction(face, (float)r.x0, ym), face_direction(face, (float)r.x1, ym));
-    float height =
-        glms_vec3_dot(face_direction(face, xm, (float)r.y0), face_direction(face, xm, (float)r.y1));
-    return width <= height; /* cosines */
+#pragma omp parallel for schedule(dynamic)
+    for (int i = 0; i < regions->count; i++)
+        measure(regions, i);
 }
 
-/* The number of columns (or rows) left of the cut that comes closest to `share` of the importance. Where
- * importance does not decide, as in the dark, solid angle does. */
-static int find_cut(const struct face *face, struct rectangle r, bool wide, double share)
+static double squared_angle(vec3s a, vec3s b)
 {
-    int count = wide ? r.x1 - r.x0 : r.y1 - r.y0;
-    double *importance = TL_NEW_ARRAY(double, (size_t)count + 1); /* of what lies before slice i */
-    double *solid_angle = TL_NEW_ARRAY(double, (size_t)count + 1);
-    for (int y = r.y0; y < r.y1; y++) {
-        for (int x = r.x0; x < r.x1; x++) {
-            int slice = wide ? x - r.x0 : y - r.y0;
-            importance[slice + 1] += face->importance[y * face->size + x];
-            solid_angle[slice + 1] += face->solid_angle[y * face->size + x];
-        }
-    }
-    for (int i = 0; i < count; i++) {
-        importance[i + 1] += importance[i];
-        solid_angle[i + 1] += solid_angle[i];
-    }
-    int best = 1;
-    double best_error = INFINITY, best_tie = INFINITY;
-    for (int cut = 1; cut < count; cut++) {
-        double error = fabs(importance[cut] - share * importance[count]);
-        double tie = fabs(solid_angle[cut] - share * solid_angle[count]);
-        if (error < best_error || (error == best_error && tie < best_tie))
-            best = cut, best_error = error, best_tie = tie;
-    }
-    free(importance);
-    free(solid_angle);
-    return best;
+    double half_chord = 0.5 * sqrt((double)glms_vec3_distance2(a, b));
+    double angle = 2 * asin(fmin(half_chord, 1));
+    return angle * angle;
 }
 
-/* Median cut: `count` regions into out[0 .. count). */
-static void cut_rectangle(const struct face *face, struct rectangle r, int count, struct tl_region *out)
+/* What stands for a texel's light where the region is chosen from: its solid angle in a black region. */
+static double weight_of(const struct tl_regions *regions, uint32_t texel, bool black)
 {
-    int width = r.x1 - r.x0, height = r.y1 - r.y0;
-    if (count == 1 || width * height <= 1) { /* fewer texels than regions leave some empty */
-        struct rectangle empty = {r.x0, r.y0, r.x0, r.y0};
-        for (int i = 0; i < count; i++)
-            out[i] = make_region(face, i == 0 ? r : empty);
+    return (double)(black ? solid_angle_of(regions, texel) : regions->importance[texel]);
+}
+
+static void weigh(struct tl_regions *regions, int index)
+{
+    uint32_t first = regions->first[index], last = regions->first[index + 1];
+    struct tl_region *region = &regions->items[index];
+    if (first == last)
         return;
+    double importance = 0, solid_angle = 0;
+    for (uint32_t i = first; i < last; i++) {
+        importance += weight_of(regions, regions->texels[i], false);
+        solid_angle += weight_of(regions, regions->texels[i], true);
     }
-    bool wide = height == 1 || (width > 1 && is_wide(face, r));
-    int first_count = count / 2;
-    int cut = find_cut(face, r, wide, (double)first_count / count);
-    struct rectangle first = r, second = r;
-    if (wide)
-        first.x1 = second.x0 = r.x0 + cut;
-    else
-        first.y1 = second.y0 = r.y0 + cut;
-    /* No half gets more regions than it has texels, while the other can take them. */
-    int first_texels = (first.x1 - first.x0) * (first.y1 - first.y0);
-    int second_texels = width * height - first_texels;
-    if (count <= width * height) {
-        if (first_count > first_texels)
-            first_count = first_texels;
-        if (count - first_count > second_texels)
-            first_count = count - second_texels;
+    bool black = !(importance > 0);
+    double total = black ? solid_angle : importance, sum = 0, squares = 0;
+    for (uint32_t i = first; i < last; i++) {
+        uint32_t texel = regions->texels[i];
+        double weight = weight_of(regions, texel, black);
+        double angle2 = squared_angle(tl_cube_texel_direction(regions->size, (int)texel), region->direction);
+        sum += weight;
+        /* The mean square distance from the centre of a square is a sixth of its area. */
+        squares += weight * (angle2 + (double)solid_angle_of(regions, texel) / 6);
+        regions->cumulative[i] = (float)(sum / total);
     }
-    cut_rectangle(face, first, first_count, out);
-    cut_rectangle(face, second, count - first_count, out + first_count);
+    regions->cumulative[last - 1] = 1;
+    region->spread = (float)sqrt(squares / total);
 }
 
-void tl_regions_cut(const tl_cube *cube, int count, struct tl_regions *out)
+void tl_regions_weigh(struct tl_regions *regions)
 {
-    assert(count >= 6 && count <= TL_REGIONS_MAX && count % 6 == 0);
-    int face_count = count / 6;
-    out->count = count;
-#pragma omp parallel for
-    for (int i = 0; i < 6; i++) {
-        struct face face = face_create(cube, i);
-        cut_rectangle(&face, (struct rectangle){0, 0, cube->size, cube->size}, face_count,
-                      out->items + (size_t)i * (size_t)face_count);
-        face_release(&face);
+#pragma omp parallel for schedule(dynamic)
+    for (int i = 0; i < regions->count; i++)
+        weigh(regions, i);
+}
+
+static vec3s power_of(const tl_cube *cube, const struct tl_regions *regions, int index)
+{
+    double power[3] = {0};
+    for (uint32_t i = regions->first[index]; i < regions->first[index + 1]; i++) {
+        uint32_t texel = regions->texels[i];
+        const float *colour = cube->texels + 3 * (size_t)texel;
+        for (int c = 0; c < 3; c++)
+            power[c] += (double)solid_angle_of(regions, texel) * (double)colour[c];
     }
+    return (vec3s){{(float)power[0], (float)power[1], (float)power[2]}};
+}
+
+void tl_regions_colour(const tl_cube *cube, struct tl_regions *regions)
+{
+#pragma omp parallel for schedule(dynamic)
+    for (int i = 0; i < regions->count; i++)
+        regions->items[i].power = power_of(cube, regions, i);
+}
+
+/* The texel of region i at `u`: the first whose share of what lies at or before it is more. */
+static uint32_t place_of(const struct tl_regions *regions, int i, float u)
+{
+    uint32_t low = regions->first[i], high = regions->first[i + 1] - 1;
+    while (low < high) {
+        uint32_t middle = low + (high - low) / 2;
+        if (regions->cumulative[middle] > u)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    return low;
+}
+
+vec3s tl_region_direction(const struct tl_regions *regions, int i, float u, float v)
+{
+    if (regions->first[i] == regions->first[i + 1])
+        return regions->items[i].direction;
+    uint32_t place = place_of(regions, i, u);
+    float before = place > regions->first[i] ? regions->cumulative[place - 1] : 0;
+    float share = regions->cumulative[place] - before;
+    /* Where u lies within the texel's own share is uniform again. */
+    float within = share > 0 ? fminf(fmaxf((u - before) / share, 0), 1) : 0.5f;
+    int size = regions->size, texel = (int)regions->texels[place];
+    int x = texel % size, line = texel / size;
+    return glms_vec3_normalize(tl_cube_direction(line / size, ((float)x + within) / (float)size,
+                                                 ((float)(line % size) + v) / (float)size));
 }

@@ -42,7 +42,7 @@ bool tl_jobs_check(const tl_job *jobs, int count, tl_error *error)
         if (!jobs[i].levels[0])
             return tl_fail(error, TL_USAGE, "job table: %s: has no level: name at least one", jobs[i].name);
         /* What a job reads and only itself writes is what it left behind in the last frame. */
-        uint32_t known = jobs[i].writes;
+        tl_bits known = jobs[i].writes;
         for (int k = 0; k < i; k++)
             known |= jobs[k].writes;
         for (int k = i + 1; k < count; k++)
@@ -55,12 +55,12 @@ bool tl_jobs_check(const tl_job *jobs, int count, tl_error *error)
 }
 
 /* "camera, surfaces" from bits; what does not fit is left out. */
-static void name_bits(uint32_t bits, const char *const *names, char *out, size_t size)
+static void name_bits(tl_bits bits, const char *const *names, char *out, size_t size)
 {
     size_t length = 0;
     out[0] = '\0';
-    for (int bit = 0; bit < 32; bit++) {
-        if (!(bits & (uint32_t)1 << bit))
+    for (int bit = 0; bit < 64; bit++) {
+        if (!(bits & (tl_bits)1 << bit))
             continue;
         const char *name = names && names[bit] ? names[bit] : "?";
         int added = snprintf(out + length, size - length, "%s%s", length ? ", " : "", name);
@@ -72,7 +72,7 @@ static void name_bits(uint32_t bits, const char *const *names, char *out, size_t
     }
 }
 
-static void give_reason(struct tl_plan_row *row, const char *before, uint32_t bits, const char *const *names,
+static void give_reason(struct tl_plan_row *row, const char *before, tl_bits bits, const char *const *names,
                         const char *after)
 {
     char list[90];
@@ -90,9 +90,9 @@ static int level_count(const tl_job *job)
 
 /* What each job finds changed when its turn comes, were all jobs to run that have reason to. */
 static void spread_changes(const tl_job *jobs, int count, const struct tl_plan_input *input,
-                           uint32_t changed_reads[])
+                           tl_bits changed_reads[])
 {
-    uint32_t changed = input->changed;
+    tl_bits changed = input->changed;
     for (int i = 0; i < count; i++) {
         bool allowed = (jobs[i].requires_scene & ~input->scene) == 0;
         changed_reads[i] = jobs[i].reads & changed;
@@ -101,15 +101,15 @@ static void spread_changes(const tl_job *jobs, int count, const struct tl_plan_i
     }
 }
 
-static void plan_row(const tl_job *job, const struct tl_plan_input *input, uint32_t changed_reads,
-                     uint32_t needed, struct tl_plan_row *row)
+static void plan_row(const tl_job *job, const struct tl_plan_input *input, tl_bits changed_reads,
+                     tl_bits needed, struct tl_plan_row *row)
 {
-    uint32_t missing_facts = job->requires_scene & ~input->scene, missing = job->writes & ~input->valid;
+    tl_bits missing_facts = job->requires_scene & ~input->scene, missing = job->writes & ~input->valid;
     /* Until there is a budget nothing speaks for less than the most exact level. */
     *row = (struct tl_plan_row){.name = job->name, .level = level_count(job) - 1};
     if (missing_facts) {
         row->action = TL_JOB_DROP;
-        give_reason(row, "no ", missing_facts, input->scene_fact_names, " in the scene");
+        give_reason(row, "no ", missing_facts, input->scene_fact_names, " here");
     } else if (!(job->writes & needed)) {
         row->action = TL_JOB_DROP;
         give_reason(row, "nobody reads ", job->writes, input->resource_names, "");
@@ -129,7 +129,7 @@ void tl_plan_make(const tl_job *jobs, int count, const struct tl_plan_input *inp
                   tl_plan *out)
 {
     assert(count >= 0 && count <= TL_JOBS_MAX);
-    uint32_t changed_reads[TL_JOBS_MAX], needed = input->wanted;
+    tl_bits changed_reads[TL_JOBS_MAX], needed = input->wanted;
     spread_changes(jobs, count, input, changed_reads);
     *out = (tl_plan){.count = count};
     for (int i = count - 1; i >= 0; i--) { /* backwards: readers say what is needed */
@@ -142,16 +142,19 @@ void tl_plan_make(const tl_job *jobs, int count, const struct tl_plan_input *inp
     }
 }
 
-uint32_t tl_plan_valid_after(const tl_job *jobs, int count, const struct tl_plan_input *input,
-                             const tl_plan *plan)
+tl_bits tl_plan_valid_after(const tl_job *jobs, int count, const struct tl_plan_input *input,
+                            const tl_plan *plan)
 {
-    uint32_t changed = input->changed, valid = input->valid;
+    tl_bits changed = input->changed, valid = input->valid, kept = 0;
+    for (int i = 0; i < count; i++)
+        if (plan->rows[i].action != TL_JOB_DROP)
+            kept |= jobs[i].writes; /* several jobs may be ways to make one thing */
     for (int i = 0; i < count; i++) {
         enum tl_job_action action = plan->rows[i].action;
         if (action == TL_JOB_RUN)
             valid |= jobs[i].writes;
         else if (action == TL_JOB_DROP && jobs[i].reads & changed)
-            valid &= ~jobs[i].writes;
+            valid &= ~(jobs[i].writes & ~kept);
         else
             continue;
         changed |= jobs[i].writes;

@@ -14,24 +14,26 @@
 #define TL_JOBS_MAX       32
 #define TL_JOB_LEVELS_MAX 6
 
+typedef uint64_t tl_bits; /* a set of resources or facts */
+
 enum tl_job_action { TL_JOB_RUN, TL_JOB_REUSE, TL_JOB_DROP };
 extern const char *const tl_job_action_names[]; /* run reuse drop */
 
 typedef struct tl_job {
     const char *name; /* "regions", "maps", "light" ... */
     const char *what; /* one line for people */
-    uint32_t reads;   /* bits of resources; a resource that no job writes is an input of the frame */
-    uint32_t writes;
-    uint32_t requires_scene;               /* bits of scene facts that must all hold, else dropped */
+    tl_bits reads;    /* bits of resources; a resource that no job writes is an input of the frame */
+    tl_bits writes;
+    tl_bits requires_scene;                /* bits of scene facts that must all hold, else dropped */
     const char *levels[TL_JOB_LEVELS_MAX]; /* names, cost grows and error falls; at least one */
     bool (*run)(void *context, int level, tl_error *error);
 } tl_job;
 
 struct tl_plan_input {
-    uint32_t changed;                    /* resources (inputs of the frame) that differ from the last frame */
-    uint32_t valid;                      /* resources that an earlier frame left behind */
-    uint32_t scene;                      /* facts about the scene */
-    uint32_t wanted;                     /* resources that somebody outside reads at the end */
+    tl_bits changed;                     /* resources (inputs of the frame) that differ from the last frame */
+    tl_bits valid;                       /* resources that an earlier frame left behind */
+    tl_bits scene;                       /* facts about the scene */
+    tl_bits wanted;                      /* resources that somebody outside reads at the end */
     const char *const *scene_fact_names; /* by bit, for reasons */
     const char *const *resource_names;   /* by bit */
 };
@@ -66,7 +68,7 @@ void tl_plan_make(const tl_job *jobs, int count, const struct tl_plan_input *inp
 
 /* The resources that are up to date once the plan has been carried out: the next frame's `valid`. What a job
  * wrote earlier goes stale when the job is dropped while something that it reads changes. */
-uint32_t tl_plan_valid_after(const tl_job *jobs, int count, const struct tl_plan_input *input,
-                             const tl_plan *plan);
+tl_bits tl_plan_valid_after(const tl_job *jobs, int count, const struct tl_plan_input *input,
+                            const tl_plan *plan);
 
 #endif

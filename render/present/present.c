@@ -26,16 +26,29 @@ void tl_present_release(struct tl_present *present)
     tl_texture_destroy(&present->blurred);
 }
 
+static void allocate(struct tl_present *present, tl_gpu *gpu, int width, int height)
+{
+    const unsigned linear = GL_RGBA32F, encoded = GL_RGBA8;
+    if (present->image.width == width && present->image.height == height)
+        return;
+    tl_target_destroy(&present->image);
+    tl_target_destroy(&present->shown);
+    present->image = tl_target_create(gpu, width, height, &linear, 1, false);
+    present->shown = tl_target_create(gpu, width, height, &encoded, 1, false);
+}
+
+void tl_present_set_image(struct tl_present *present, tl_gpu *gpu, const tl_image *image)
+{
+    allocate(present, gpu, image->width, image->height);
+    for (int y = 0; y < image->height; y++) /* GL's rows run upwards */
+        glTextureSubImage2D(present->image.colours[0].id, 0, 0, image->height - 1 - y, image->width, 1,
+                            GL_RGBA, GL_FLOAT, tl_image_floats(image) + 4 * (size_t)y * (size_t)image->width);
+}
+
 void tl_present_resolve(struct tl_present *present, tl_gpu *gpu, const tl_texture *lights,
                         const tl_texture *points, int width, int height, int side)
 {
-    const unsigned linear = GL_RGBA32F, encoded = GL_RGBA8;
-    if (present->image.width != width || present->image.height != height) {
-        tl_target_destroy(&present->image);
-        tl_target_destroy(&present->shown);
-        present->image = tl_target_create(gpu, width, height, &linear, 1, false);
-        present->shown = tl_target_create(gpu, width, height, &encoded, 1, false);
-    }
+    allocate(present, gpu, width, height);
     glBindFramebuffer(GL_FRAMEBUFFER, present->image.id);
     glViewport(0, 0, width, height);
     glUseProgram(present->resolve.id);

@@ -31,6 +31,9 @@ void tl_present_release(struct tl_present *present);
 void tl_present_resolve(struct tl_present *present, tl_gpu *gpu, const tl_texture *lights,
                         const tl_texture *points, int width, int height, int side);
 
+/* The image as it was made elsewhere: F32 RGBA, rows downwards. */
+void tl_present_set_image(struct tl_present *present, tl_gpu *gpu, const tl_image *image);
+
 /* Makes the backdrop from the environment. False when the environment is larger than GL can hold. */
 bool tl_present_set_backdrop(struct tl_present *present, tl_gpu *gpu, const tl_environment *environment,
                              const tl_cube *cube, int filter, tl_error *error);

@@ -9,20 +9,30 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Free texels around the casters' sphere, so that a blurred silhouette does not touch the map's border. */
-#define MARGIN_TEXELS 2
+/* A depth map's texel is pushed back by this many times its surface's own slope across a texel, so that no
+ * surface shadows itself where a look-up blends texels beside it. */
+#define SLOPE_OFFSET 2.0f
 
 /* Uniform locations of maps.vert and blur.frag. */
 enum { MAP_ROWS = 16, LAYER = 0, DIRECTION = 1, RADIUS = 2, WEIGHTS = 3 };
 
+/* Programs by what they keep and draw. */
+enum { OPAQUE_DEPTH, MASKED_DEPTH, OPAQUE_MOMENTS, MASKED_MOMENTS, PROGRAM_COUNT };
+static const char *const program_defines[PROGRAM_COUNT] = {NULL, "#define MASKED\n", "#define MOMENTS\n",
+                                                           "#define MOMENTS\n#define MASKED\n"};
+
 struct tl_shadow_maps {
     tl_gpu *gpu;
-    tl_program opaque, masked, blur;
-    GLuint framebuffer;
+    tl_program programs[PROGRAM_COUNT], blur;
+    GLuint framebuffer, depth_framebuffer; /* the second has no colours */
+    enum tl_visibility kind;
     int count, per_array, size;
     int array_count;
     tl_texture *arrays; /* 2D arrays, per_array layers each; the last one fewer */
     tl_texture depth, scratch;
+    tl_texture sun_array;
+    struct tl_caster_cloud cloud;
+    struct tl_region_view views[TL_REGIONS_MAX], sun_views[TL_SUNS_MAX];
     bool warned;
 };
 
@@ -31,9 +41,14 @@ tl_shadow_maps *tl_shadow_maps_create(tl_gpu *gpu, tl_error *error)
     tl_shadow_maps *maps = TL_NEW(tl_shadow_maps);
     maps->gpu = gpu;
     glCreateFramebuffers(1, &maps->framebuffer);
-    if (!tl_program_create(gpu, tl_embedded_shaders, "maps.vert", "maps.frag", &maps->opaque, error) ||
-        !tl_program_create(gpu, tl_embedded_shaders, "maps.vert", "maps_masked.frag", &maps->masked, error) ||
-        !tl_program_create(gpu, tl_embedded_shaders, "fullscreen.vert", "blur.frag", &maps->blur, error))
+    glCreateFramebuffers(1, &maps->depth_framebuffer);
+    glNamedFramebufferDrawBuffer(maps->depth_framebuffer, GL_NONE);
+    bool fine =
+        tl_program_create(gpu, tl_embedded_shaders, "fullscreen.vert", "blur.frag", &maps->blur, error);
+    for (int i = 0; fine && i < PROGRAM_COUNT; i++)
+        fine = tl_program_create_variant(gpu, tl_embedded_shaders, "maps.vert", "maps.frag",
+                                         program_defines[i], &maps->programs[i], error);
+    if (!fine)
         tl_shadow_maps_destroy(&maps);
     return maps;
 }
@@ -54,30 +69,38 @@ void tl_shadow_maps_destroy(tl_shadow_maps **maps)
     if (!*maps)
         return;
     release_textures(*maps);
-    tl_program_destroy(&(*maps)->opaque);
-    tl_program_destroy(&(*maps)->masked);
+    tl_texture_destroy(&(*maps)->sun_array);
+    tl_caster_cloud_release(&(*maps)->cloud);
+    for (int i = 0; i < PROGRAM_COUNT; i++)
+        tl_program_destroy(&(*maps)->programs[i]);
     tl_program_destroy(&(*maps)->blur);
     glDeleteFramebuffers(1, &(*maps)->framebuffer);
+    glDeleteFramebuffers(1, &(*maps)->depth_framebuffer);
     free(*maps);
     *maps = NULL;
 }
 
 bool tl_shadow_maps_reload(tl_shadow_maps *maps, tl_error *error)
 {
-    return tl_program_reload(&maps->opaque, error) && tl_program_reload(&maps->masked, error) &&
-           tl_program_reload(&maps->blur, error);
+    bool fine = tl_program_reload(&maps->blur, error);
+    for (int i = 0; i < PROGRAM_COUNT; i++)
+        fine = fine && tl_program_reload(&maps->programs[i], error);
+    return fine;
 }
 
-static void allocate(tl_shadow_maps *maps, int count, int per_array, int size)
+/* A look-up compares four texels with a depth and blends the answers. */
+static tl_texture create_depth_array(tl_gpu *gpu, int size, int layers)
 {
-    if (maps->count == count && maps->per_array == per_array && maps->size == size)
-        return;
-    release_textures(maps);
-    maps->count = count;
-    maps->per_array = per_array;
-    maps->size = size;
-    maps->array_count = (count + per_array - 1) / per_array;
-    maps->arrays = TL_NEW_ARRAY(tl_texture, (size_t)maps->array_count);
+    tl_texture array =
+        tl_texture_create(gpu, GL_TEXTURE_2D_ARRAY, GL_DEPTH_COMPONENT32F, size, size, layers, 1);
+    glTextureParameteri(array.id, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+    glTextureParameteri(array.id, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+    return array;
+}
+
+static void allocate_moments(tl_shadow_maps *maps)
+{
+    int count = maps->count, per_array = maps->per_array, size = maps->size;
     for (int i = 0; i < maps->array_count; i++) {
         int layers = i + 1 < maps->array_count ? per_array : count - i * per_array;
         maps->arrays[i] = tl_texture_create(maps->gpu, GL_TEXTURE_2D_ARRAY, GL_RG32F, size, size, layers, 1);
@@ -86,36 +109,96 @@ static void allocate(tl_shadow_maps *maps, int count, int per_array, int size)
     maps->scratch = tl_texture_create(maps->gpu, GL_TEXTURE_2D_ARRAY, GL_RG32F, size, size, 1, 1);
 }
 
-vec3s tl_turn_direction(vec3s direction, float yaw)
+static void allocate(tl_shadow_maps *maps, const struct tl_shadow_request *request)
 {
-    float c = cosf(yaw), s = sinf(yaw);
-    return (vec3s){{c * direction.x + s * direction.z, direction.y, -s * direction.x + c * direction.z}};
+    int count = request->regions->count, per_array = request->maps_per_array, size = request->map_size;
+    if (maps->kind == request->kind && maps->count == count && maps->per_array == per_array &&
+        maps->size == size)
+        return;
+    release_textures(maps);
+    maps->kind = request->kind;
+    maps->count = count;
+    maps->per_array = per_array;
+    maps->size = size;
+    maps->array_count = (count + per_array - 1) / per_array;
+    maps->arrays = TL_NEW_ARRAY(tl_texture, (size_t)maps->array_count);
+    if (maps->kind == TL_VISIBILITY_VSM)
+        allocate_moments(maps);
+    else
+        for (int i = 0; i < maps->array_count; i++)
+            maps->arrays[i] = create_depth_array(
+                maps->gpu, size, i + 1 < maps->array_count ? per_array : count - i * per_array);
 }
 
-/* Row that maps a point to 0.5 + axis . (point - centre) * scale. */
-static vec4s view_row(vec3s axis, vec3s centre, float scale)
+static void allocate_suns(tl_shadow_maps *maps, const struct tl_shadow_request *request)
 {
-    return (vec4s){
-        {axis.x * scale, axis.y * scale, axis.z * scale, 0.5f - scale * glms_vec3_dot(axis, centre)}};
+    int size = 2 * request->map_size, most = tl_gpu_texture_side_max(maps->gpu);
+    size = size < TL_SUN_MAP_SIZE_MIN ? TL_SUN_MAP_SIZE_MIN : size;
+    size = size > most ? most : size;
+    int count = request->suns->count;
+    if (maps->sun_array.layers == count && (count == 0 || maps->sun_array.width == size))
+        return;
+    tl_texture_destroy(&maps->sun_array);
+    if (count > 0)
+        maps->sun_array = create_depth_array(maps->gpu, size, count);
 }
 
 /* Share of the map's side that the casters' sphere takes. */
 static float inner_share(int map_size)
 {
-    return map_size > 4 * MARGIN_TEXELS ? 1 - 2.0f * MARGIN_TEXELS / (float)map_size : 1;
+    return map_size > 4 * TL_MAP_MARGIN_TEXELS ? 1 - 2.0f * TL_MAP_MARGIN_TEXELS / (float)map_size : 1;
 }
 
 struct tl_region_view tl_region_view_make(vec3s direction, const struct tl_casters *casters, int map_size)
 {
-    vec3s helper = fabsf(direction.y) < 0.9f ? (vec3s){{0, 1, 0}} : (vec3s){{1, 0, 0}};
-    vec3s right = glms_vec3_normalize(glms_vec3_cross(helper, direction));
-    vec3s up = glms_vec3_cross(direction, right);
+    vec3s right, up;
+    tl_view_axes(direction, &right, &up);
     float depth_scale = 0.5f / casters->radius, map_scale = depth_scale * inner_share(map_size);
     return (struct tl_region_view){
-        .map_rows = {view_row(right, casters->centre, map_scale), view_row(up, casters->centre, map_scale),
-                     view_row(glms_vec3_negate(direction), casters->centre, depth_scale)},
+        .map_rows = {tl_view_row(right, casters->centre, map_scale),
+                     tl_view_row(up, casters->centre, map_scale),
+                     tl_view_row(glms_vec3_negate(direction), casters->centre, depth_scale)},
         .direction = {{direction.x, direction.y, direction.z, 0}},
     };
+}
+
+/* The fractional part, in [0, 1). */
+static float fraction(double x)
+{
+    return fminf((float)(x - floor(x)), 0x1.fffffep-1f);
+}
+
+/* Rounds follow the additive sequence of the plastic number [Roberts 2018], which is even over any number of
+ * rounds; each region begins at a place of its own, so that no two jitter in step. */
+vec3s tl_region_seen_direction(const struct tl_regions *regions, int i, int round)
+{
+    const double step_u = 0.7548776662466927, step_v = 0.5698402909980532; /* 1 / p and 1 / p^2 */
+    if (round == 0)
+        return regions->items[i].direction;
+    double begin_u = 0.5 + i * 0.6180339887498949, begin_v = 0.5 + i * 0.4142135623730950;
+    return tl_region_direction(regions, i, fraction(begin_u + round * step_u),
+                               fraction(begin_v + round * step_v));
+}
+
+static void make_views(tl_shadow_maps *maps, const struct tl_shadow_request *request)
+{
+    bool fits = request->kind == TL_VISIBILITY_DEPTH || request->suns->count > 0;
+    if (fits)
+        tl_caster_cloud_fill(&maps->cloud, request->caster_surfaces, request->caster_count);
+    for (int i = 0; i < maps->count; i++) {
+        vec3s direction = tl_turn_direction(tl_region_seen_direction(request->regions, i, request->round),
+                                            request->environment_yaw);
+        maps->views[i] = request->kind == TL_VISIBILITY_DEPTH
+                             ? tl_region_view_fit(direction, &maps->cloud, maps->size)
+                             : tl_region_view_make(direction, &request->casters, maps->size);
+    }
+    for (int i = 0; i < request->suns->count; i++) {
+        const struct tl_sun *sun = &request->suns->items[i];
+        vec3s seen =
+            sun->sample_count > 0 ? sun->samples[request->round % sun->sample_count] : sun->direction;
+        maps->sun_views[i] = tl_region_view_fit(tl_turn_direction(seen, request->environment_yaw),
+                                                &maps->cloud, maps->sun_array.width);
+    }
 }
 
 float tl_shadow_sigma(const struct tl_region *region, const struct tl_casters *casters, int map_size,
@@ -131,43 +214,72 @@ static void attach_layer(const tl_shadow_maps *maps, int index)
                                    maps->arrays[index / maps->per_array].id, 0, index % maps->per_array);
 }
 
-static void draw_parts(const tl_shadow_maps *maps, const struct tl_shadow_request *request,
-                       const struct tl_region_view *view, enum tl_surface_parts parts)
+static void draw_parts(const tl_program *program, const struct tl_shadow_request *request,
+                       const struct tl_region_view *view, enum tl_surface_parts parts, bool ground)
 {
-    glUseProgram(parts == TL_PARTS_OPAQUE ? maps->opaque.id : maps->masked.id);
+    glUseProgram(program->id);
     glUniform4fv(MAP_ROWS, 3, view->map_rows[0].raw);
     for (size_t i = 0; i < request->surface_count; i++)
-        /* Below the horizon the ground's shadow is found without a map (ground.glsl). Above it the ground
-         * shadows nothing, but as what lies behind the casters it belongs into the moments. */
-        if ((int)i != request->ground_index || view->direction.y > 0)
+        if ((int)i != request->ground_index || ground)
             tl_surfaces_draw(request->surfaces, i, parts);
 }
 
-static void draw_one(const tl_shadow_maps *maps, const struct tl_shadow_request *request, vec3s direction)
+static void draw_view(const tl_program programs[2], const struct tl_shadow_request *request,
+                      const struct tl_region_view *view, bool ground)
 {
-    struct tl_region_view view = tl_region_view_make(direction, &request->casters, maps->size);
-    const float empty[] = {1, 1, 0, 0}, farthest = 1;
-    glClearNamedFramebufferfv(maps->framebuffer, GL_COLOR, 0, empty);
-    glClearNamedFramebufferfv(maps->framebuffer, GL_DEPTH, 0, &farthest);
-    draw_parts(maps, request, &view, TL_PARTS_OPAQUE);
+    draw_parts(&programs[0], request, view, TL_PARTS_OPAQUE, ground);
     if (tl_surfaces_have(request->surfaces, TL_PARTS_MASKED))
-        draw_parts(maps, request, &view, TL_PARTS_MASKED);
+        draw_parts(&programs[1], request, view, TL_PARTS_MASKED, ground);
+}
+
+static void draw_moments(const tl_shadow_maps *maps, const struct tl_shadow_request *request)
+{
+    const float empty[] = {1, 1, 0, 0}, farthest = 1;
+    glNamedFramebufferTexture(maps->framebuffer, GL_DEPTH_ATTACHMENT, maps->depth.id, 0);
+    glBindFramebuffer(GL_FRAMEBUFFER, maps->framebuffer);
+    glViewport(0, 0, maps->size, maps->size);
+    glEnable(GL_DEPTH_CLAMP); /* the ground reaches beyond the casters' sphere; its moments are not clamped */
+    for (int i = 0; i < maps->count; i++) {
+        attach_layer(maps, i);
+        glClearNamedFramebufferfv(maps->framebuffer, GL_COLOR, 0, empty);
+        glClearNamedFramebufferfv(maps->framebuffer, GL_DEPTH, 0, &farthest);
+        /* Below the horizon the ground's shadow is found without a map (ground.glsl). Above it the ground
+         * shadows nothing, but as what lies behind the casters it belongs into the moments. */
+        draw_view(&maps->programs[OPAQUE_MOMENTS], request, &maps->views[i], maps->views[i].direction.y > 0);
+    }
+}
+
+/* Layer i of `array` sees views[i]. The ground's shadow needs no map. */
+static void draw_depths(const tl_shadow_maps *maps, const struct tl_shadow_request *request,
+                        const tl_texture *array, const struct tl_region_view *views)
+{
+    const float farthest = 1;
+    glBindFramebuffer(GL_FRAMEBUFFER, maps->depth_framebuffer);
+    glViewport(0, 0, array->width, array->height);
+    glEnable(GL_POLYGON_OFFSET_FILL);
+    glPolygonOffset(SLOPE_OFFSET, 0);
+    for (int layer = 0; layer < array->layers; layer++) {
+        glNamedFramebufferTextureLayer(maps->depth_framebuffer, GL_DEPTH_ATTACHMENT, array->id, 0, layer);
+        glClearNamedFramebufferfv(maps->depth_framebuffer, GL_DEPTH, 0, &farthest);
+        draw_view(&maps->programs[OPAQUE_DEPTH], request, &views[layer], false);
+    }
+    glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
 void tl_shadow_maps_draw(tl_shadow_maps *maps, const struct tl_shadow_request *request)
 {
-    allocate(maps, request->regions->count, request->maps_per_array, request->map_size);
-    glNamedFramebufferTexture(maps->framebuffer, GL_DEPTH_ATTACHMENT, maps->depth.id, 0);
-    glBindFramebuffer(GL_FRAMEBUFFER, maps->framebuffer);
-    glViewport(0, 0, maps->size, maps->size);
+    allocate(maps, request);
+    allocate_suns(maps, request);
+    make_views(maps, request);
     glEnable(GL_DEPTH_TEST);
-    glEnable(GL_DEPTH_CLAMP); /* the ground reaches beyond the casters' sphere; its moments are not clamped */
     glDepthFunc(GL_LEQUAL);
-    for (int i = 0; i < maps->count; i++) {
-        attach_layer(maps, i);
-        draw_one(maps, request,
-                 tl_turn_direction(request->regions->items[i].direction, request->environment_yaw));
-    }
+    if (maps->kind == TL_VISIBILITY_VSM)
+        draw_moments(maps, request);
+    else
+        for (int i = 0; i < maps->array_count; i++)
+            draw_depths(maps, request, &maps->arrays[i], maps->views + i * maps->per_array);
+    if (request->suns->count > 0)
+        draw_depths(maps, request, &maps->sun_array, maps->sun_views);
     tl_gpu_reset_state(maps->gpu);
 }
 
@@ -207,6 +319,8 @@ static void blur_one(const tl_shadow_maps *maps, int index, float sigma)
 
 void tl_shadow_maps_blur(tl_shadow_maps *maps, const struct tl_shadow_request *request)
 {
+    if (maps->kind != TL_VISIBILITY_VSM)
+        return;
     glNamedFramebufferTexture(maps->framebuffer, GL_DEPTH_ATTACHMENT, 0, 0);
     glBindFramebuffer(GL_FRAMEBUFFER, maps->framebuffer);
     glViewport(0, 0, maps->size, maps->size);
@@ -231,9 +345,25 @@ unsigned tl_shadow_maps_texture(const tl_shadow_maps *maps, int index)
     return maps->arrays[index].id;
 }
 
+unsigned tl_shadow_maps_sun_texture(const tl_shadow_maps *maps)
+{
+    return maps->sun_array.id;
+}
+
+const struct tl_region_view *tl_shadow_maps_views(const tl_shadow_maps *maps)
+{
+    return maps->views;
+}
+
+const struct tl_region_view *tl_shadow_maps_sun_views(const tl_shadow_maps *maps)
+{
+    return maps->sun_views;
+}
+
 size_t tl_shadow_maps_bytes(const tl_shadow_maps *maps)
 {
-    size_t bytes = tl_texture_bytes(&maps->depth) + tl_texture_bytes(&maps->scratch);
+    size_t bytes = tl_texture_bytes(&maps->depth) + tl_texture_bytes(&maps->scratch) +
+                   tl_texture_bytes(&maps->sun_array);
     for (int i = 0; i < maps->array_count; i++)
         bytes += tl_texture_bytes(&maps->arrays[i]);
     return bytes;

@@ -1,55 +1,74 @@
-/* Shadow maps of the regions: one variance shadow map a region, seen along its direction, blurred by a
- * Gaussian that follows the region's cone [002, sections 3.3 and 4].
+/* Shadow maps of the regions, each seen along one direction of its region, of two kinds:
  *
- * The maps are fitted to the sphere of the casters; receivers outside of it are lit. Depth is linear, 0 and 1
- * where the sphere begins and ends, so one unit is its diameter. RG32F: in half precision a depth of 1 m has
- * steps of 1 mm and, worse, its variance a floor of several centimetres. */
+ * vsm: a variance shadow map a region, fitted to the casters' sphere and blurred by a Gaussian that follows
+ * the region's cone [002, sections 3.3 and 4]. Depth is linear, 0 and 1 where the sphere begins and ends, so
+ * one unit is its diameter. RG32F: in half precision a depth of 1 m has steps of 1 mm and, worse, its
+ * variance a floor of several centimetres.
+ *
+ * depth: a plain depth map a region, fitted to the casters as they are seen along its direction; four texels
+ * compared and blended by a look-up. A blur wider than that costs more truth than it gives beauty (FRONTIER:
+ * hard maps 3.9 %, blurred ones 6 to 11 %); soft shadows come from many regions, and from directions that
+ * vary from round to round.
+ *
+ * Suns have depth maps of their own, of higher resolution, whatever the kind of the regions' maps. Receivers
+ * outside of a map are lit. */
 #ifndef TOILE_RENDER_VISIBILITY_MAPS_H
 #define TOILE_RENDER_VISIBILITY_MAPS_H
 
+#include "render/env/sun.h"
 #include "render/pem/regions.h"
+#include "render/renderer.h"
 #include "render/surfaces/ground.h"
 #include "render/surfaces/surfaces.h"
+#include "render/visibility/fit.h"
 
 #define TL_BLUR_RADIUS_MAX    64   /* texels; a wider Gaussian is cut to it, with a warning */
 #define TL_BLUR_SIGMA_MIN     0.3f /* texels; a narrower one would change the third digit only */
-#define TL_SHADOW_TEXEL_BYTES 8
-
-/* What the light passes read of one region (std140: struct Region in light.frag). */
-struct tl_region_view {
-    vec4s map_rows[3]; /* world point -> map u, map v, depth */
-    vec4s direction;   /* towards the light, world, unit */
-};
+#define TL_SHADOW_TEXEL_BYTES 8    /* of a variance map; a depth map takes half */
+#define TL_SUN_MAP_SIZE_MIN   1024 /* texels: a sun is sharp; 1 to 2 mm on a dress */
 
 typedef struct tl_shadow_maps tl_shadow_maps;
 
 struct tl_shadow_request {
+    enum tl_visibility kind; /* VSM or DEPTH */
     const struct tl_regions *regions;
+    const struct tl_suns *suns;
     float environment_yaw; /* rad */
+    /* What casts shadows, without the ground. */
+    const tl_surface *caster_surfaces;
+    size_t caster_count;
     struct tl_casters casters;
+    /* What is drawn, with it. */
     const tl_surfaces *surfaces;
     size_t surface_count;
     int ground_index; /* which of them is the ground; -1: none */
     int map_size;     /* texels */
     int maps_per_array;
     float blur_m;
+    int round; /* 0: regions are seen along their own direction; else one that is jittered inside them */
 };
 
 tl_shadow_maps *tl_shadow_maps_create(tl_gpu *gpu, tl_error *error);
 void tl_shadow_maps_destroy(tl_shadow_maps **maps);
 
-/* Draws every region's map; then blurs what was drawn, in place. */
+/* Draws every region's and every sun's map; then blurs variance maps that were drawn, in place. */
 void tl_shadow_maps_draw(tl_shadow_maps *maps, const struct tl_shadow_request *request);
 void tl_shadow_maps_blur(tl_shadow_maps *maps, const struct tl_shadow_request *request);
 
-/* The array texture that holds the maps of pass `index`. */
+/* The array texture that holds the maps of pass `index`; that of the suns' maps. */
 unsigned tl_shadow_maps_texture(const tl_shadow_maps *maps, int index);
+unsigned tl_shadow_maps_sun_texture(const tl_shadow_maps *maps);
+/* How each region, each sun, was seen in the last draw. */
+const struct tl_region_view *tl_shadow_maps_views(const tl_shadow_maps *maps);
+const struct tl_region_view *tl_shadow_maps_sun_views(const tl_shadow_maps *maps);
 size_t tl_shadow_maps_bytes(const tl_shadow_maps *maps);
 bool tl_shadow_maps_reload(tl_shadow_maps *maps, tl_error *error); /* programs, from disk */
 
-/* World direction of a region under the environment's yaw, and its view of the casters. Pure. */
-vec3s tl_turn_direction(vec3s direction, float yaw);
+/* A region's view of the casters' sphere; world direction. Pure. */
 struct tl_region_view tl_region_view_make(vec3s direction, const struct tl_casters *casters, int map_size);
+
+/* The direction along which region i is seen in a round, environment's frame. Pure. */
+vec3s tl_region_seen_direction(const struct tl_regions *regions, int i, int round);
 
 /* The Gaussian's standard deviation in texels: blur_m x tan(cone), on a map of `map_size` over the casters.
  */

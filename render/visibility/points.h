@@ -9,6 +9,7 @@
 #ifndef TOILE_RENDER_VISIBILITY_POINTS_H
 #define TOILE_RENDER_VISIBILITY_POINTS_H
 
+#include "render/env/sun.h"
 #include "render/light/samples.h"
 #include "render/pem/regions.h"
 #include "render/renderer.h"
@@ -29,6 +30,7 @@ struct tl_points_request {
     const struct tl_triangle_ranges *ranges;
     const struct tl_samples *samples;
     const struct tl_regions *regions;
+    const struct tl_suns *suns; /* NULL: none stand apart */
     uint64_t
         regions_revision;     /* changes when the regions do: values are carried over to the nearest region */
     uint64_t shapes_revision; /* changes when vertex numbers do: everything is forgotten */

@@ -61,6 +61,9 @@ glb lies.glb "${mesh//\"count\":3/\"count\":357913941}" good.bin
 head -c 60 good.glb >truncated.glb
 { printf glTF; le32 2; printf '\377\377\377\377'; tail -c +13 good.glb; } >huge.glb
 printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 0 +X 0\n' >zero.hdr
+light='#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n\200\200\200\201\200\200\200\201'
+for name in gap.1 gap.3 torn.1; do printf "$light" >$name.hdr; done
+printf 'no light\n' >torn.2.hdr
 printf 'light:\n  regionz: 24\n' >key.yaml
 printf 'light:\n  regions: 7000\n' >range.yaml
 printf 'light:\n  regions: many\n' >type.yaml
@@ -83,6 +86,9 @@ done
 refuse "missing environment" 'nowhere\.exr.*no such file' render -o a.png --env nowhere.exr
 refuse "text as environment" 'text\.glb' render -o a.png --env text.glb
 refuse "zero-sized image" 'zero\.hdr' render -o a.png --env zero.hdr
+refuse "sequence without frames" 'sky\.##\.exr.*no file' render -o a.png --env 'sky.##.exr'
+refuse "sequence with a gap" 'gap\.2\.hdr.*missing' render -o a.png --env 'gap.#.hdr'
+refuse "sequence with a broken frame" 'torn\.2\.hdr' render -o a.png --env 'torn.#.hdr' --garment none --frame 1
 refuse "unknown key" 'key\.yaml:2.*regionz.*regions' render key.yaml -o a.png
 refuse "value out of range" 'range\.yaml:2.*light\.regions' render range.yaml -o a.png
 refuse "wrong type" 'type\.yaml:2.*light\.regions' render type.yaml -o a.png

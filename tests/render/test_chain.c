@@ -145,7 +145,7 @@ static void pems_add_up_to_the_whole(void **state)
 {
     (void)state;
     tl_cube cube = noise_cube(32), black = tl_cube_create(32);
-    struct tl_regions regions;
+    struct tl_regions regions = {0};
     tl_regions_cut(&cube, 24, &regions);
     struct tl_chain whole = tl_chain_build(&cube, TL_CHAIN_SQRT_COSINE);
     struct tl_chain sums = tl_chain_build(&black, TL_CHAIN_SQRT_COSINE);
@@ -163,6 +163,7 @@ static void pems_add_up_to_the_whole(void **state)
             assert_near(sums.levels[level].texels[k], whole.levels[level].texels[k], 16 * 2e-6);
     tl_chain_release(&whole);
     tl_chain_release(&sums);
+    tl_regions_release(&regions);
     tl_cube_release(&cube);
     tl_cube_release(&black);
 }
@@ -173,7 +174,7 @@ static void skipping_black_changes_no_bit(void **state)
 {
     (void)state;
     tl_cube cube = noise_cube(64);
-    struct tl_regions regions;
+    struct tl_regions regions = {0};
     tl_regions_cut(&cube, 96, &regions);
     for (int i = 0; i < regions.count; i += 7) {
         tl_cube pem = tl_pem_cut(&cube, &regions.items[i]), dense = tl_pem_cut(&cube, &regions.items[i]);
@@ -194,6 +195,7 @@ static void skipping_black_changes_no_bit(void **state)
         tl_cube_release(&pem);
         tl_cube_release(&dense);
     }
+    tl_regions_release(&regions);
     tl_cube_release(&cube);
 }
 

@@ -6,7 +6,7 @@
 
 /* A renderer in small: inputs of the frame, then what jobs make. */
 enum { ENVIRONMENT, SURFACES, CAMERA, REGIONS, PEMS, SLICES, MAPS, IMAGE, CHART };
-#define BIT(name) ((uint32_t)1 << (name))
+#define BIT(name) ((tl_bits)1 << (name))
 static const char *const resources[] = {"environment", "surfaces", "camera", "regions", "PEMs",
                                         "slices",      "maps",     "image",  "chart"};
 enum { GLOSSY, OPEN_SKY };
@@ -35,7 +35,7 @@ static const tl_job jobs[] = {
 
 struct plan_case {
     const char *name;
-    uint32_t changed, valid, scene, wanted;
+    tl_bits changed, valid, scene, wanted;
     enum tl_job_action expected[JOBS]; /* regions pems slices maps light chart */
     int reason_of;                     /* a job and its reason in full */
     const char *reason;
@@ -76,7 +76,7 @@ static const struct plan_case cases[] = {
      BIT(IMAGE),
      {R, R, D, R, R, D},
      2,
-     "no glossy material in the scene"},
+     "no glossy material here"},
     {"only maps are read",
      BIT(ENVIRONMENT),
      ALL,
@@ -212,15 +212,15 @@ static void tables_out_of_order_are_refused(void **state)
     assert_false(tl_jobs_check(jobs, TL_JOBS_MAX + 1, &error));
 }
 
-/* Thirty-two long names do not fit in a reason: it is cut between names and stays whole. */
+/* Sixty-four long names do not fit in a reason: it is cut between names and stays whole. */
 static void long_reasons_are_cut(void **state)
 {
     (void)state;
-    const char *names[32];
-    for (int i = 0; i < 32; i++)
+    const char *names[64];
+    for (int i = 0; i < 64; i++)
         names[i] = "a resource of quite some name";
-    const tl_job greedy[] = {{"greedy", "", 0x7fffffff, (uint32_t)1 << 31, 0, {"only"}, NULL}};
-    struct tl_plan_input input = {0x7fffffff, (uint32_t)1 << 31, 0, (uint32_t)1 << 31, NULL, names};
+    const tl_job greedy[] = {{"greedy", "", 0x7fffffffffffffff, (tl_bits)1 << 63, 0, {"only"}, NULL}};
+    struct tl_plan_input input = {0x7fffffffffffffff, (tl_bits)1 << 63, 0, (tl_bits)1 << 63, NULL, names};
     tl_plan plan;
     tl_plan_make(greedy, 1, &input, NULL, &plan);
     assert_string_equal(plan.rows[0].reason,

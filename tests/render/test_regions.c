@@ -63,11 +63,12 @@ static void partitions_are_exact(void **state)
 {
     (void)state;
     tl_cube cube = smooth_cube(64);
-    struct tl_regions regions;
+    struct tl_regions regions = {0};
     for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
         tl_regions_cut(&cube, counts[i], &regions);
         check_partition(&cube, &regions, counts[i]);
     }
+    tl_regions_release(&regions);
     tl_cube_release(&cube);
 }
 
@@ -78,7 +79,7 @@ static void importances_of_a_smooth_environment_are_equal(void **state)
 {
     (void)state;
     tl_cube cube = smooth_cube(128);
-    struct tl_regions regions;
+    struct tl_regions regions = {0};
     for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
         tl_regions_cut(&cube, counts[i], &regions);
         double worst = 1;
@@ -94,6 +95,7 @@ static void importances_of_a_smooth_environment_are_equal(void **state)
         printf("N = %3d: largest over smallest importance of a face %.3f\n", counts[i], worst);
         assert_true(worst < 1.25);
     }
+    tl_regions_release(&regions);
     tl_cube_release(&cube);
 }
 
@@ -102,7 +104,7 @@ static void directions_are_centroids(void **state)
 {
     (void)state;
     tl_cube cube = smooth_cube(32);
-    struct tl_regions regions;
+    struct tl_regions regions = {0};
     tl_regions_cut(&cube, 6, &regions);
     for (int face = 0; face < 6; face++) {
         double sum[3] = {0};
@@ -118,6 +120,7 @@ static void directions_are_centroids(void **state)
         for (int c = 0; c < 3; c++)
             assert_near(regions.items[face].direction.raw[c], sum[c] / length, 1e-6);
     }
+    tl_regions_release(&regions);
     tl_cube_release(&cube);
 }
 
@@ -127,7 +130,7 @@ static void black_is_cut_by_solid_angle(void **state)
 {
     (void)state;
     tl_cube cube = tl_cube_create(64);
-    struct tl_regions regions;
+    struct tl_regions regions = {0};
     for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
         tl_regions_cut(&cube, counts[i], &regions);
         check_partition(&cube, &regions, counts[i]);
@@ -143,6 +146,7 @@ static void black_is_cut_by_solid_angle(void **state)
             assert_true(t * 64 > (float)region->y0 && t * 64 < (float)region->y1);
         }
     }
+    tl_regions_release(&regions);
     tl_cube_release(&cube);
 }
 
@@ -158,7 +162,7 @@ static void a_sun_is_cut_out(void **state)
         int x = 41, y = 7;
         for (int c = 0; c < 3; c++)
             cube.texels[3 * ((2 * 64 + y) * 64 + x) + c] = 1e6f;
-        struct tl_regions regions;
+        struct tl_regions regions = {0};
         tl_regions_cut(&cube, 96, &regions);
         check_partition(&cube, &regions, 96);
         for (int i = 0; i < 96; i++) {
@@ -169,6 +173,7 @@ static void a_sun_is_cut_out(void **state)
             assert_true(glms_vec3_dot(sun, region->direction) > 0.9999f);
             assert_true(region->cone < 0.25f);
         }
+        tl_regions_release(&regions);
         tl_cube_release(&cube);
     }
 }
@@ -178,13 +183,15 @@ static void small_faces_are_shared_out(void **state)
 {
     (void)state;
     tl_cube cube = smooth_cube(3);
-    struct tl_regions regions;
+    struct tl_regions regions = {0};
     tl_regions_cut(&cube, 54, &regions);
     check_partition(&cube, &regions, 54);
+    tl_regions_release(&regions);
     tl_cube_release(&cube);
     cube = smooth_cube(8);
     tl_regions_cut(&cube, 384, &regions);
     check_partition(&cube, &regions, 384);
+    tl_regions_release(&regions);
     tl_cube_release(&cube);
 }
 
@@ -193,7 +200,7 @@ static void surplus_regions_are_empty(void **state)
 {
     (void)state;
     tl_cube cube = smooth_cube(1);
-    struct tl_regions regions;
+    struct tl_regions regions = {0};
     tl_regions_cut(&cube, 24, &regions);
     double solid_angle = 0;
     for (int i = 0; i < 24; i++) {
@@ -203,6 +210,7 @@ static void surplus_regions_are_empty(void **state)
         assert_true((regions.items[i].importance > 0) == (i % 4 == 0));
     }
     assert_near(solid_angle, 4 * M_PI, 1e-5);
+    tl_regions_release(&regions);
     tl_cube_release(&cube);
 }
 

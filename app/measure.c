@@ -1,0 +1,93 @@
+#include "app/measure.h"
+
+#include "config/memory.h"
+#include "render/metrics/compare.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static bool choose(const struct tl_choice *choice, const struct tl_settings *scene,
+                   struct tl_render_settings *out, tl_error *error)
+{
+    struct tl_settings chosen = *scene;
+    if (choice->preset && !tl_settings_apply_preset(&chosen, choice->preset, error))
+        return false;
+    struct tl_binding bindings[TL_SETTINGS_TABLES];
+    tl_settings_bind(&chosen, bindings);
+    for (size_t i = 0; i < TL_COUNT(choice->assignments) && choice->assignments[i]; i++)
+        if (!tl_options_set_assignment(bindings, TL_SETTINGS_TABLES, choice->assignments[i], error))
+            return false;
+    chosen.image = scene->image;
+    *out = tl_settings_render(&chosen);
+    return true;
+}
+
+bool tl_contender_create(struct tl_contender *contender, tl_gpu *gpu, const struct tl_choice *choice,
+                         const struct tl_settings *scene, tl_error *error)
+{
+    *contender = (struct tl_contender){.name = choice->name};
+    if (!choose(choice, scene, &contender->settings, error))
+        return false;
+    contender->renderer = tl_renderer_create(gpu, error);
+    return contender->renderer != NULL;
+}
+
+void tl_contender_release(struct tl_contender *contender)
+{
+    tl_renderer_destroy(&contender->renderer);
+    *contender = (struct tl_contender){0};
+}
+
+bool tl_contender_remembers(const struct tl_contender *contender)
+{
+    const struct tl_light_params *light = &contender->settings.light;
+    return light->visibility == TL_VISIBILITY_RAYS || light->jitter;
+}
+
+bool tl_contender_draw(struct tl_contender *contender, const tl_frame *frame, struct tl_taken *taken,
+                       tl_error *error)
+{
+    struct tl_stopwatch watch = tl_stopwatch_start();
+    bool drawn = tl_renderer_draw(contender->renderer, frame, &contender->settings, error);
+    *taken = tl_stopwatch_read(&watch);
+    return drawn;
+}
+
+struct tl_choice tl_choice_oracle(void)
+{
+    return (struct tl_choice){.name = "reference",
+                              .assignments = {"light.method=reference", "light.lobe=dual"}};
+}
+
+bool tl_contender_compare(struct tl_contender *contender, const tl_image *truth,
+                          struct tl_measured_error *out, tl_error *error)
+{
+    tl_image image = {0};
+    struct tl_comparison result;
+    bool done = tl_renderer_read(contender->renderer, &image, error) &&
+                tl_image_compare(&image, truth, -1, 0, &result, error);
+    if (done)
+        *out = (struct tl_measured_error){.rel_rmse = result.rel_rmse,
+                                          .flip_mean = result.flip_mean,
+                                          .max_abs = result.max_abs,
+                                          .covered = result.covered};
+    tl_image_release(&image);
+    return done;
+}
+
+bool tl_topic_take(const char *command, const struct tl_arguments *arguments, const char *const *topics,
+                   const char *scene, struct tl_arguments *out, int *topic, tl_error *error)
+{
+    const char *named = arguments->positional_count ? arguments->positionals[0] : "";
+    for (*topic = 0; topics[*topic] && strcmp(topics[*topic], named) != 0; ++*topic)
+        ;
+    if (!topics[*topic])
+        return tl_fail(error, TL_USAGE, "%s: expected a topic: toile %s %s [SCENE]", command, command,
+                       topics[0]);
+    *out = *arguments;
+    out->positional_count--;
+    memmove(&out->positionals[0], &out->positionals[1], out->positional_count * sizeof out->positionals[0]);
+    if (out->positional_count == 0)
+        out->positionals[out->positional_count++] = scene;
+    return true;
+}

@@ -1,0 +1,54 @@
+/* Methods of light measured against the oracle: what bench, trade and stability share.
+ *
+ * A contender is one choice of light settings with a renderer of its own, so that its history is its own too.
+ * Errors are those of render/metrics/compare.h, over covered pixels. Threads: the one that the GL context is
+ * current on. */
+#ifndef TOILE_APP_MEASURE_H
+#define TOILE_APP_MEASURE_H
+
+#include "app/cost.h"
+#include "app/motion.h"
+#include "app/stage.h"
+
+/* One choice of light: a preset's light table, then single options. */
+struct tl_choice {
+    const char *name;
+    const char *preset;         /* NULL: the scene's own light */
+    const char *assignments[6]; /* "light.key=value"; NULL ends them */
+};
+
+struct tl_contender {
+    const char *name; /* borrowed */
+    struct tl_render_settings settings;
+    tl_renderer *renderer;
+};
+
+/* `scene` gives all that a choice leaves open, the image's size and samples among it. */
+bool tl_contender_create(struct tl_contender *contender, tl_gpu *gpu, const struct tl_choice *choice,
+                         const struct tl_settings *scene, tl_error *error);
+void tl_contender_release(struct tl_contender *contender);
+
+/* True when a frame's image depends on the frames before it. */
+bool tl_contender_remembers(const struct tl_contender *contender);
+
+/* Draws and tells what it took. */
+bool tl_contender_draw(struct tl_contender *contender, const tl_frame *frame, struct tl_taken *taken,
+                       tl_error *error);
+
+/* The settings that draw a contender's picture by the oracle. */
+struct tl_choice tl_choice_oracle(void);
+
+struct tl_measured_error {
+    double rel_rmse, flip_mean, max_abs;
+    size_t covered; /* pixels */
+};
+/* Of the image that the contender drew last against `truth`. */
+bool tl_contender_compare(struct tl_contender *contender, const tl_image *truth,
+                          struct tl_measured_error *out, tl_error *error);
+
+/* `toile COMMAND TOPIC [SCENE]`: takes the topic off; without a scene the built-in one called `scene` is
+ * meant. `out` borrows from `arguments`. */
+bool tl_topic_take(const char *command, const struct tl_arguments *arguments, const char *const *topics,
+                   const char *scene, struct tl_arguments *out, int *topic, tl_error *error);
+
+#endif

@@ -1,0 +1,26 @@
+/* Reports: one self-contained HTML file for people, with plots (app/plot.h), tables and pictures inside it;
+ * no script, light and dark as the reader's screen is. The caller opens and commits the stream (tl_writer).
+ * Pure but for the stream. */
+#ifndef TOILE_APP_REPORT_H
+#define TOILE_APP_REPORT_H
+
+#include "app/plot.h"
+
+void tl_report_begin(FILE *out, const char *title, const char *subtitle);
+void tl_report_end(FILE *out);
+
+void tl_report_heading(FILE *out, const char *text);
+void tl_report_paragraph(FILE *out, const char *text);
+
+/* cells[row][column]; the first row is the heads, the first column names what the row is about. */
+void tl_report_table(FILE *out, const char *const *cells, size_t rows, size_t columns);
+
+/* A plot with a caption below it. */
+void tl_report_plot(FILE *out, const struct tl_plot *plot, const char *caption);
+
+/* Pictures side by side, as many as fit. */
+void tl_report_pictures_begin(FILE *out);
+void tl_report_picture(FILE *out, const void *png, size_t size, const char *name, const char *caption);
+void tl_report_pictures_end(FILE *out);
+
+#endif

@@ -1,0 +1,277 @@
+#include "render/env/emitters.h"
+
+#include "config/memory.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A lobe is cut off where it is below this part of its peak: at the edge of a sun that outshines all the rest
+ * ten thousand times that is a tenth of what is there. */
+#define LOBE_CUT 1e-4f
+
+/* Cells are at most this many lobe widths 1 / sqrt(s) wide. */
+#define MERGE_WIDTH 0.3f
+
+/* Bits of x or of y in a code; the face stands above them. */
+#define CODE_BITS 13
+
+/* Every second bit of a code. */
+static uint32_t compact_bits(uint32_t code)
+{
+    code &= 0x55555555u;
+    code = (code | code >> 1) & 0x33333333u;
+    code = (code | code >> 2) & 0x0f0f0f0fu;
+    code = (code | code >> 4) & 0x00ff00ffu;
+    return (code | code >> 8) & 0x0000ffffu;
+}
+
+static const vec3s nowhere = {{NAN, NAN, NAN}};
+
+static float luminance(vec3s colour)
+{
+    return 0.2126f * colour.x + 0.7152f * colour.y + 0.0722f * colour.z;
+}
+
+static float sane(float radiance)
+{
+    return radiance > 0 && isfinite(radiance) ? radiance : 0;
+}
+
+/* The opposite: room for another number's bits between those of one. */
+static uint32_t spread_bits(uint32_t number)
+{
+    number = (number | number << 8) & 0x00ff00ffu;
+    number = (number | number << 4) & 0x0f0f0f0fu;
+    number = (number | number << 2) & 0x33333333u;
+    return (number | number << 1) & 0x55555555u;
+}
+
+uint32_t *tl_emitters_order(int cube_size)
+{
+    assert(cube_size <= 1 << CODE_BITS);
+    uint32_t size = (uint32_t)cube_size, side = 1, count = 0;
+    uint32_t *texels = TL_NEW_ARRAY(uint32_t, 6 * (size_t)size * size);
+    while (side < size)
+        side *= 2;
+    for (uint32_t face = 0; face < 6; face++) {
+        for (uint32_t code = 0; code < side * side; code++) {
+            uint32_t x = compact_bits(code), y = compact_bits(code >> 1);
+            if (x < size && y < size)
+                texels[count++] = (face * size + y) * size + x;
+        }
+    }
+    return texels;
+}
+
+static tl_emitter emitter_of(const tl_cube *cube, const float *solid_angles, uint32_t texel)
+{
+    uint32_t size = (uint32_t)cube->size, x = texel % size, y = texel / size % size,
+             face = texel / (size * size);
+    float step = 1 / (float)size;
+    tl_emitter emitter = {.code = face << 2 * CODE_BITS | spread_bits(y) << 1 | spread_bits(x)};
+    emitter.direction =
+        glms_vec3_normalize(tl_cube_direction((int)face, ((float)x + 0.5f) * step, ((float)y + 0.5f) * step));
+    for (size_t c = 0; c < 3; c++)
+        emitter.power.raw[c] = solid_angles[y * size + x] * sane(cube->texels[3 * (size_t)texel + c]);
+    emitter.weight = luminance(emitter.power);
+    emitter.variance = solid_angles[y * size + x] / 12; /* of a square */
+    return emitter;
+}
+
+tl_emitter *tl_emitters_collect(const tl_cube *cube, const float *solid_angles, const uint32_t *texels,
+                                size_t count)
+{
+    tl_emitter *emitters = TL_NEW_ARRAY(tl_emitter, count);
+#pragma omp parallel for schedule(static)
+    for (size_t i = 0; i < count; i++)
+        emitters[i] = emitter_of(cube, solid_angles, texels[i]);
+    return emitters;
+}
+
+static int merges_for(int cube_size, float exponent)
+{
+    float texel = (float)M_PI_2 / (float)cube_size, widest = MERGE_WIDTH / sqrtf(exponent);
+    int merges = 0;
+    while (texel * (float)(2 << merges) <= widest)
+        merges++;
+    return merges;
+}
+
+/* The emitters [first, end) as one. */
+static tl_emitter merge_run(const tl_emitter *first, const tl_emitter *end, uint32_t code)
+{
+    tl_emitter merged = {.code = code};
+    for (const tl_emitter *emitter = first; emitter < end; emitter++) {
+        merged.direction = glms_vec3_muladds(emitter->direction, emitter->weight, merged.direction);
+        merged.power = glms_vec3_add(merged.power, emitter->power);
+        merged.weight += emitter->weight;
+    }
+    merged.direction = glms_vec3_normalize(merged.direction);
+    for (const tl_emitter *emitter = first; emitter < end; emitter++)
+        merged.variance += emitter->weight * (emitter->variance +
+                                              glms_vec3_distance2(emitter->direction, merged.direction) / 2);
+    merged.variance /= merged.weight;
+    return merged;
+}
+
+/* Merges in place, leaving black ones out; the number that remains. */
+static size_t merge_all(tl_emitter *emitters, size_t count, int shift)
+{
+    size_t remaining = 0, next;
+    for (size_t i = 0; i < count; i = next) {
+        uint32_t code = emitters[i].code >> shift;
+        for (next = i; next < count && emitters[next].code >> shift == code;)
+            next++;
+        tl_emitter merged = merge_run(emitters + i, emitters + next, code);
+        if (merged.weight > 0)
+            emitters[remaining++] = merged;
+    }
+    return remaining;
+}
+
+static void set_direction(struct tl_directions *directions, size_t i, vec3s direction)
+{
+    directions->x[i] = direction.x;
+    directions->y[i] = direction.y;
+    directions->z[i] = direction.z;
+}
+
+static void fill_block(struct tl_emitters *emitters, size_t index, const tl_emitter *items, size_t count)
+{
+    struct tl_emitter_block *block = &emitters->blocks[index];
+    vec3s sum = {{0, 0, 0}};
+    for (size_t i = 0; i < TL_LANES; i++) {
+        set_direction(&block->directions, i, i < count ? items[i].direction : nowhere);
+        if (i >= count)
+            continue;
+        block->variance[i] = items[i].variance;
+        memcpy(block->power[i], items[i].power.raw, sizeof items[i].power.raw);
+        sum = glms_vec3_add(sum, items[i].direction);
+    }
+    vec3s axis = glms_vec3_normalize(sum);
+    set_direction(&emitters->axes[index / TL_LANES], index % TL_LANES, axis);
+    for (size_t i = 0; i < count; i++)
+        emitters->radius = fmaxf(emitters->radius, glms_vec3_angle(axis, items[i].direction));
+}
+
+/* Squares of 4 x 4 emitters, or what is left of them, become blocks: runs of the curve that share their
+ * leading bits. */
+static struct tl_emitters make_blocks(const tl_emitter *items, size_t count)
+{
+    struct tl_emitters emitters = {0};
+    for (size_t i = 0; i < count; i++)
+        emitters.count += i == 0 || items[i].code / TL_LANES != items[i - 1].code / TL_LANES;
+    size_t groups = (emitters.count + TL_LANES - 1) / TL_LANES;
+    emitters.blocks = TL_NEW_ARRAY(struct tl_emitter_block, emitters.count);
+    emitters.axes = TL_NEW_ARRAY(struct tl_directions, groups);
+    for (size_t i = emitters.count; i < groups * TL_LANES; i++)
+        set_direction(&emitters.axes[i / TL_LANES], i % TL_LANES, nowhere);
+    for (size_t index = 0, first = 0, next; first < count; first = next, index++) {
+        for (next = first; next < count && items[next].code / TL_LANES == items[first].code / TL_LANES;)
+            next++;
+        fill_block(&emitters, index, items + first, next - first);
+    }
+    return emitters;
+}
+
+struct tl_emitters tl_emitters_merge(const tl_emitter *texels, size_t count, int cube_size, float exponent)
+{
+    tl_emitter *items = TL_NEW_ARRAY(tl_emitter, count);
+    memcpy(items, texels, count * sizeof *items);
+    struct tl_emitters emitters =
+        make_blocks(items, merge_all(items, count, 2 * merges_for(cube_size, exponent)));
+    free(items);
+    return emitters;
+}
+
+void tl_emitters_release(struct tl_emitters *emitters)
+{
+    free(emitters->blocks);
+    free(emitters->axes);
+    *emitters = (struct tl_emitters){0};
+}
+
+void tl_gaze_set(struct tl_gaze *gaze, const vec3s directions[TL_LANES], const float steps[TL_LANES], float s)
+{
+    vec3s sum = {{0, 0, 0}};
+    for (size_t i = 0; i < TL_LANES; i++) {
+        set_direction(&gaze->directions, i, directions[i]);
+        sum = glms_vec3_add(sum, directions[i]);
+        /* A blur multiplies a lobe's mean cosine, (s + 1) / (s + 2), by 1 - its variance along one axis. */
+        float mean = (s + 1) / (s + 2) / (1 - steps[i] * steps[i] / 6);
+        gaze->exponent[i] = 1 / (1 - mean) - 2;
+    }
+    gaze->axis = glms_vec3_normalize(sum);
+    float farthest = 0;
+    for (int i = 0; i < TL_LANES; i++)
+        farthest = tl_greater(farthest, glms_vec3_distance2(gaze->axis, directions[i]));
+    gaze->radius = 2 * asinf(tl_lesser(sqrtf(farthest) / 2, 1));
+}
+
+/* The angle within which a lobe must be looked at, from the middle of the gaze. */
+static float reach_of(const struct tl_gaze *gaze)
+{
+    float least = gaze->exponent[0];
+    for (int i = 1; i < TL_LANES; i++)
+        least = tl_lesser(least, gaze->exponent[i]);
+    return acosf(powf(LOBE_CUT, 1 / least)) + gaze->radius;
+}
+
+static float cosine_of(float angle)
+{
+    return angle < (float)M_PI ? cosf(angle) : -2;
+}
+
+/* Bit i: direction i is within the cosine of the axis. */
+TL_INLINE uint32_t find_within(const struct tl_directions *directions, vec3s axis, float cosine)
+{
+    float cosines[TL_LANES];
+    int32_t within[TL_LANES];
+    for (int i = 0; i < TL_LANES; i++)
+        cosines[i] = directions->x[i] * axis.x + directions->y[i] * axis.y + directions->z[i] * axis.z;
+    for (int i = 0; i < TL_LANES; i++)
+        within[i] = cosines[i] >= cosine ? 1 << i : 0;
+    int32_t bits = 0;
+    for (int i = 0; i < TL_LANES; i++)
+        bits |= within[i];
+    return (uint32_t)bits;
+}
+
+TL_INLINE void add_emitter(const struct tl_emitter_block *block, int k, const struct tl_gaze *gaze,
+                           const float widening[TL_LANES], float sums[3][TL_LANES])
+{
+    const struct tl_directions *directions = &gaze->directions;
+    for (int i = 0; i < TL_LANES; i++) {
+        float cosine = directions->x[i] * block->directions.x[k] + directions->y[i] * block->directions.y[k] +
+                       directions->z[i] * block->directions.z[k];
+        float exponent = gaze->exponent[i] - widening[i] * block->variance[k];
+        float lobe = (exponent + 1) * tl_power(cosine, exponent);
+        for (int c = 0; c < 3; c++)
+            sums[c][i] += lobe * block->power[k][c];
+    }
+}
+
+TL_CLONES void tl_emitters_gather(const struct tl_emitters *emitters, const struct tl_gaze *gaze,
+                                  float out[3][TL_LANES])
+{
+    float reach = reach_of(gaze), near = cosine_of(reach), near_block = cosine_of(reach + emitters->radius);
+    struct tl_gaze own = *gaze; /* nothing else points to it, so that it stays in registers */
+    float widening[TL_LANES], sums[3][TL_LANES] = {{0}};
+    for (int i = 0; i < TL_LANES; i++) /* d s / d variance, of the lobe with that mean cosine */
+        widening[i] = (own.exponent[i] + 1) * (own.exponent[i] + 2);
+    for (size_t group = 0; group * TL_LANES < emitters->count; group++) {
+        uint32_t blocks = find_within(&emitters->axes[group], own.axis, near_block);
+        for (; blocks; blocks &= blocks - 1) {
+            const struct tl_emitter_block *block =
+                &emitters->blocks[group * TL_LANES + (size_t)__builtin_ctz(blocks)];
+            uint32_t items = find_within(&block->directions, own.axis, near);
+            for (; items; items &= items - 1)
+                add_emitter(block, __builtin_ctz(items), &own, widening, sums);
+        }
+    }
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < TL_LANES; i++)
+            out[c][i] = sums[c][i] * (float)(1 / (2 * M_PI));
+}

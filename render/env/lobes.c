@@ -1,0 +1,288 @@
+#include "render/env/lobes.h"
+
+#include "config/memory.h"
+#include "render/env/emitters.h"
+#include "render/pem/lobe.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Texels along the side of a map: they follow the lobe's width, and the widest lobes, which end at a horizon
+ * rather than fade, need some more. */
+#define SIDE_PER_WIDTH  16
+#define SIDE_OF_HORIZON 32
+/* Sixteen lanes look at a square of the map. */
+#define TILE 4
+/* Samples along a side of a texel of the environment itself. */
+#define AREA_SAMPLES 4
+
+float tl_exponent(int index)
+{
+    return powf(TL_EXPONENT_RATIO, (float)index);
+}
+
+/* The lobe that the environment itself has for the blend beyond the last exponent: that of a texel of 128 a
+ * face, fetched bilinearly. */
+#define MIRROR_EXPONENT 32768.0f
+
+/* The best weights in L1 lie on a straight line over log(s + 1) but for a part that depends little on s: for
+ * the ratio sqrt 2 within 0.0003 of the least error [test_slices.c]. */
+#define BLEND_BEND 0.033f
+
+struct tl_exponent_blend tl_exponent_blend(float s)
+{
+    float last = tl_exponent(TL_EXPONENT_COUNT - 1);
+    s = s > 1 ? fminf(s, MIRROR_EXPONENT) : 1;
+    int index = TL_EXPONENT_COUNT - 1;
+    if (s < last)
+        index = (int)(logf(s) / logf(TL_EXPONENT_RATIO));
+    float low = tl_exponent(index),
+          high = index + 1 < TL_EXPONENT_COUNT ? tl_exponent(index + 1) : MIRROR_EXPONENT;
+    float t = logf((s + 1) / (low + 1)) / logf((high + 1) / (low + 1));
+    t = fminf(fmaxf(t, 0), 1);
+    return (struct tl_exponent_blend){index, t - BLEND_BEND * t * (1 - t)};
+}
+
+uint32_t tl_exponents_needed(float glossiness_low, float glossiness_high)
+{
+    struct tl_exponent_blend low = tl_exponent_blend(tl_lobe_exponent(glossiness_low));
+    struct tl_exponent_blend high = tl_exponent_blend(tl_lobe_exponent(glossiness_high));
+    uint32_t needed = 1;
+    for (int i = low.index; i <= high.index + (high.weight > 0); i++)
+        needed |= 1u << i;
+    return needed;
+}
+
+/* The octahedron |x| + |y| + |z| = 1 unfolded about +Y: u and v in [-1, 1]; below the horizon the corners
+ * are folded outwards. */
+static vec3s unfold(float u, float v)
+{
+    float y = 1 - fabsf(u) - fabsf(v);
+    if (y >= 0)
+        return (vec3s){{u, y, v}};
+    return (vec3s){{copysignf(1 - fabsf(v), u), y, copysignf(1 - fabsf(u), v)}};
+}
+
+/* Mean square, over the two axes of the map, of the angle that a step of 1 in u or v turns: at a point p of
+ * the octahedron a step (1, -1, 0) turns |step - (step . w) w| / |p|. */
+static float square_scale(vec3s p)
+{
+    float square = glms_vec3_norm2(p), sum = 0;
+    for (int axis = 0; axis < 3; axis += 2) {
+        float along = fabsf(p.raw[axis]) - fabsf(p.y); /* step . p, but for the signs that both have */
+        sum += (2 - along * along / square) / square;
+    }
+    return sum / 2;
+}
+
+static void look(int side, int left, int top, float s, struct tl_gaze *gaze)
+{
+    float step = 2 / (float)side, steps[TL_LANES];
+    vec3s directions[TL_LANES];
+    for (int i = 0; i < TL_LANES; i++) {
+        float u = ((float)(left + i % TILE) + 0.5f) * step - 1,
+              v = ((float)(top + i / TILE) + 0.5f) * step - 1;
+        vec3s p = unfold(u, v);
+        directions[i] = glms_vec3_normalize(p);
+        steps[i] = step * sqrtf(square_scale(p));
+    }
+    tl_gaze_set(gaze, directions, steps, s);
+}
+
+static float *texel_of(const struct tl_lobe_map *map, int x, int y)
+{
+    return map->texels + 4 * ((size_t)(y + 1) * (size_t)(map->side + 2) + (size_t)(x + 1));
+}
+
+/* Beyond a side of the unfolded octahedron the same side goes on, backwards. */
+static void fill_border(const struct tl_lobe_map *map)
+{
+    int last = map->side - 1;
+    for (int i = 0; i <= last; i++) {
+        memcpy(texel_of(map, i, -1), texel_of(map, last - i, 0), 4 * sizeof(float));
+        memcpy(texel_of(map, i, last + 1), texel_of(map, last - i, last), 4 * sizeof(float));
+        memcpy(texel_of(map, -1, i), texel_of(map, 0, last - i), 4 * sizeof(float));
+        memcpy(texel_of(map, last + 1, i), texel_of(map, last, last - i), 4 * sizeof(float));
+    }
+    for (int corner = 0; corner < 4; corner++) {
+        int x = corner & 1 ? last : 0, y = corner & 2 ? last : 0;
+        memcpy(texel_of(map, x ? last + 1 : -1, y ? last + 1 : -1), texel_of(map, last - x, last - y),
+               4 * sizeof(float));
+    }
+}
+
+static struct tl_lobe_map create_map(int side)
+{
+    size_t texels = (size_t)(side + 2) * (size_t)(side + 2);
+    return (struct tl_lobe_map){side, TL_NEW_ARRAY(float, 4 * texels)};
+}
+
+static int whole_tiles(float side)
+{
+    return TILE * (int)ceilf(side / TILE);
+}
+
+static struct tl_lobe_map convolve(const tl_emitter *texels, int cube_size, float s)
+{
+    float width = 1 / sqrtf(s);
+    size_t count = 6 * (size_t)cube_size * (size_t)cube_size;
+    struct tl_emitters emitters = tl_emitters_merge(texels, count, cube_size, s);
+    struct tl_lobe_map map = create_map(whole_tiles(SIDE_PER_WIDTH / width + SIDE_OF_HORIZON * width));
+    int tiles = map.side / TILE;
+#pragma omp parallel for schedule(dynamic, 4)
+    for (int tile = 0; tile < tiles * tiles; tile++) {
+        struct tl_gaze gaze;
+        float colour[3][TL_LANES];
+        int left = tile % tiles * TILE, top = tile / tiles * TILE;
+        look(map.side, left, top, s, &gaze);
+        tl_emitters_gather(&emitters, &gaze, colour);
+        for (int i = 0; i < TL_LANES; i++)
+            for (int c = 0; c < 3; c++)
+                texel_of(&map, left + i % TILE, top + i / TILE)[c] = colour[c][i];
+    }
+    fill_border(&map);
+    tl_emitters_release(&emitters);
+    return map;
+}
+
+/* The environment itself: the mean over every texel. */
+static struct tl_lobe_map sample_area(const tl_cube *cube)
+{
+    /* As many texels as the cube has. */
+    struct tl_lobe_map map = create_map(whole_tiles(sqrtf(6) * (float)cube->size));
+    float step = 2 / (float)(map.side * AREA_SAMPLES);
+#pragma omp parallel for
+    for (int y = 0; y < map.side; y++) {
+        for (int x = 0; x < map.side; x++) {
+            float *texel = texel_of(&map, x, y);
+            for (int i = 0; i < AREA_SAMPLES * AREA_SAMPLES; i++) {
+                float u = ((float)(x * AREA_SAMPLES + i % AREA_SAMPLES) + 0.5f) * step - 1;
+                float v = ((float)(y * AREA_SAMPLES + i / AREA_SAMPLES) + 0.5f) * step - 1;
+                const float *source = cube->texels + 3 * (size_t)tl_cube_texel(cube->size, unfold(u, v));
+                for (int c = 0; c < 3; c++)
+                    texel[c] += source[c] / (AREA_SAMPLES * AREA_SAMPLES);
+            }
+        }
+    }
+    fill_border(&map);
+    return map;
+}
+
+static tl_emitter *collect_all(const tl_cube *cube)
+{
+    int size = cube->size, half = (size + 1) / 2;
+    float *solid_angles = TL_NEW_ARRAY(float, (size_t)size *(size_t)size);
+    for (int y = 0; y < half; y++)
+        for (int x = 0; x < half; x++)
+            solid_angles[y * size + x] = solid_angles[y * size + size - 1 - x] =
+                solid_angles[(size - 1 - y) * size + x] = solid_angles[(size - 1 - y) * size + size - 1 - x] =
+                    tl_cube_solid_angle(size, x, y);
+    uint32_t *order = tl_emitters_order(size);
+    tl_emitter *texels = tl_emitters_collect(cube, solid_angles, order, 6 * (size_t)size * (size_t)size);
+    free(order);
+    free(solid_angles);
+    return texels;
+}
+
+void tl_lobes_make(struct tl_lobes *lobes, const tl_cube *cube, uint32_t needed)
+{
+    uint32_t missing = needed & ~lobes->made;
+    lobes->made |= missing;
+    if (missing & 1u << TL_EXPONENT_COUNT)
+        lobes->maps[TL_EXPONENT_COUNT] = sample_area(cube);
+    missing &= (1u << TL_EXPONENT_COUNT) - 1;
+    if (!missing)
+        return;
+    tl_emitter *texels = collect_all(cube);
+    for (int i = 0; i < TL_EXPONENT_COUNT; i++)
+        if (missing & 1u << i)
+            lobes->maps[i] = convolve(texels, cube->size, tl_exponent(i));
+    free(texels);
+}
+
+struct tl_lobes tl_lobes_changed(const struct tl_lobes *from, uint32_t which, tl_lobe_change *change,
+                                 const void *context)
+{
+    struct tl_lobes lobes = {.made = from->made & which};
+    for (int k = 0; k <= TL_EXPONENT_COUNT; k++) {
+        if (!(lobes.made & 1u << k))
+            continue;
+        const struct tl_lobe_map *source = &from->maps[k];
+        lobes.maps[k] = create_map(source->side);
+        float exponent = k < TL_EXPONENT_COUNT ? tl_exponent(k) : MIRROR_EXPONENT;
+        float step = 2 / (float)source->side;
+#pragma omp parallel for schedule(dynamic, 4)
+        for (int y = 0; y < source->side; y++)
+            for (int x = 0; x < source->side; x++) {
+                const float *light = texel_of(source, x, y);
+                vec3s direction = unfold(((float)x + 0.5f) * step - 1, ((float)y + 0.5f) * step - 1);
+                vec3s changed = change(glms_vec3_normalize(direction), exponent,
+                                       (vec3s){{light[0], light[1], light[2]}}, context);
+                memcpy(texel_of(&lobes.maps[k], x, y), changed.raw, sizeof changed);
+            }
+        fill_border(&lobes.maps[k]);
+    }
+    return lobes;
+}
+
+void tl_lobes_release(struct tl_lobes *lobes)
+{
+    for (size_t i = 0; i < TL_COUNT(lobes->maps); i++)
+        free(lobes->maps[i].texels);
+    *lobes = (struct tl_lobes){0};
+}
+
+typedef float quad __attribute__((vector_size(4 * sizeof(float)), aligned(4)));
+
+/* Point of the unfolded octahedron, u and v in [0, 1]. */
+struct place {
+    float u, v;
+};
+
+static inline struct place place_of(vec3s direction)
+{
+    float scale = 0.5f / (fabsf(direction.x) + fabsf(direction.y) + fabsf(direction.z));
+    float u = direction.x * scale, v = direction.z * scale;
+    /* Below the horizon 1 - |v| = |u| + |y|. */
+    float outwards = direction.y < 0 ? -direction.y * scale : 0;
+    u += copysignf(outwards, u);
+    v += copysignf(outwards, v);
+    return (struct place){u + 0.5f, v + 0.5f};
+}
+
+static inline quad fetch(const struct tl_lobe_map *map, struct place place)
+{
+    float x = place.u * (float)map->side + 0.5f, y = place.v * (float)map->side + 0.5f,
+          last = (float)map->side;
+    x = x > 0 ? x < last ? x : last : 0; /* also what is not a number */
+    y = y > 0 ? y < last ? y : last : 0;
+    int column = (int)x, row = (int)y;
+    column -= column == map->side;
+    row -= row == map->side;
+    float right = x - (float)column, below = y - (float)row;
+    const quad *top = (const quad *)map->texels + (size_t)row * (size_t)(map->side + 2) + (size_t)column;
+    const quad *bottom = top + map->side + 2;
+    quad upper = top[0] + right * (top[1] - top[0]), lower = bottom[0] + right * (bottom[1] - bottom[0]);
+    return upper + below * (lower - upper);
+}
+
+vec3s tl_lobes_fetch(const struct tl_lobes *lobes, vec3s direction, struct tl_exponent_blend blend)
+{
+    assert(lobes->maps[blend.index].side);
+    struct place place = place_of(direction);
+    quad colour = fetch(&lobes->maps[blend.index], place);
+    if (blend.weight > 0) /* the next one need not be there otherwise */
+        colour += blend.weight * (fetch(&lobes->maps[blend.index + 1], place) - colour);
+    return (vec3s){{colour[0], colour[1], colour[2]}};
+}
+
+size_t tl_lobes_bytes(const struct tl_lobes *lobes)
+{
+    size_t texels = 0;
+    for (size_t i = 0; i < TL_COUNT(lobes->maps); i++)
+        if (lobes->maps[i].side)
+            texels += (size_t)(lobes->maps[i].side + 2) * (size_t)(lobes->maps[i].side + 2);
+    return texels * 4 * sizeof(float);
+}

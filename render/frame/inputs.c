@@ -1,0 +1,109 @@
+#include "render/frame/frame.h"
+
+#define FNV_OFFSET 14695981039346656037u
+#define FNV_PRIME  1099511628211u
+
+static uint64_t mix(uint64_t hash, const void *data, size_t size)
+{
+    const unsigned char *bytes = data;
+    for (size_t i = 0; i < size; i++)
+        hash = (hash ^ bytes[i]) * FNV_PRIME;
+    return hash;
+}
+#define MIX(hash, field) mix(hash, &(field), sizeof(field))
+
+static uint64_t shapes_signature(const tl_frame *frame)
+{
+    uint64_t hash = MIX(FNV_OFFSET, frame->surface_count);
+    for (size_t i = 0; i < frame->surface_count; i++) {
+        const tl_surface *surface = &frame->surfaces[i];
+        hash = MIX(MIX(MIX(hash, surface->topology_revision), surface->vertex_count), surface->index_count);
+    }
+    return hash;
+}
+
+static uint64_t motion_signature(const tl_frame *frame)
+{
+    uint64_t hash = FNV_OFFSET;
+    for (size_t i = 0; i < frame->surface_count; i++)
+        hash = MIX(hash, frame->surfaces[i].motion_revision);
+    return hash;
+}
+
+static uint64_t camera_signature(const struct tl_camera *camera)
+{
+    uint64_t hash = MIX(MIX(MIX(FNV_OFFSET, camera->eye), camera->target), camera->up);
+    return MIX(MIX(MIX(hash, camera->fov_y), camera->near_m), camera->far_m);
+}
+
+static uint64_t light_signature(const struct tl_light_params *light)
+{
+    uint64_t hash = MIX(MIX(MIX(FNV_OFFSET, light->method), light->lobe), light->prefilter);
+    hash = MIX(MIX(MIX(hash, light->visibility), light->composition), light->reflect_scene);
+    return MIX(MIX(MIX(hash, light->depth_bias_m), light->min_variance), light->bleed_reduction);
+}
+
+static uint64_t maps_signature(const struct tl_light_params *light)
+{
+    bool in_passes =
+        tl_light_source(light) == TL_LIGHT_CHAIN; /* so many maps to an array as PEMs to a pass */
+    uint64_t hash = MIX(MIX(MIX(FNV_OFFSET, light->visibility), light->map_size), in_passes);
+    return MIX(MIX(hash, light->blur_m), light->jitter);
+}
+
+static uint64_t rays_signature(const struct tl_light_params *light)
+{
+    uint64_t hash = MIX(MIX(FNV_OFFSET, light->rays), light->refresh);
+    return MIX(MIX(hash, light->repair), light->jitter);
+}
+
+static uint64_t reference_signature(const struct tl_reference_params *reference)
+{
+    uint64_t hash = MIX(MIX(FNV_OFFSET, reference->strata), reference->lobe_samples);
+    return MIX(MIX(hash, reference->replicates), reference->terminator);
+}
+
+static void count_rest(const struct tl_light_params *light, const uint64_t before[TL_INPUT_COUNT],
+                       const uint64_t signatures[TL_INPUT_COUNT], struct tl_rest *rest)
+{
+    bool image_rests = true, scene_rests = true;
+    for (int i = 0; i < TL_INPUT_COUNT; i++) {
+        bool is_outcome = i == TL_INPUT_ROUND || i == TL_INPUT_SCENE_ROUND;
+        if (is_outcome || i == TL_INPUT_SHOW || signatures[i] == before[i])
+            continue;
+        image_rests = false;
+        scene_rests = scene_rests && (i == TL_INPUT_CAMERA || i == TL_INPUT_SIZE);
+    }
+    int last = light->jitter ? light->rounds - 1 : 0;
+    rest->image = !image_rests ? 0 : rest->image < last ? rest->image + 1 : last;
+    rest->scene = !scene_rests ? 0 : rest->scene < last ? rest->scene + 1 : last;
+}
+
+void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *settings,
+                   const uint64_t before[TL_INPUT_COUNT], struct tl_rest *rest,
+                   uint64_t signatures[TL_INPUT_COUNT])
+{
+    const struct tl_light_params *light = &settings->light;
+    const struct tl_image_params *image = &settings->image;
+    const uint64_t start = FNV_OFFSET;
+    signatures[TL_INPUT_ENVIRONMENT] = MIX(start, frame->environment_revision);
+    signatures[TL_INPUT_YAW] = MIX(start, frame->environment_yaw);
+    signatures[TL_INPUT_SHAPES] = shapes_signature(frame);
+    signatures[TL_INPUT_MOTION] = motion_signature(frame);
+    signatures[TL_INPUT_CAMERA] = camera_signature(&frame->camera);
+    signatures[TL_INPUT_SIZE] = MIX(MIX(MIX(start, image->width), image->height), image->supersample);
+    signatures[TL_INPUT_GROUND] = MIX(start, image->ground);
+    signatures[TL_INPUT_PEM_SIZE] = MIX(start, light->pem_size);
+    signatures[TL_INPUT_FILTER] = MIX(MIX(start, light->filter), light->prefilter);
+    signatures[TL_INPUT_SUN] = MIX(start, light->sun);
+    signatures[TL_INPUT_REGIONS] = MIX(MIX(start, light->regions), light->cut);
+    signatures[TL_INPUT_PASSES] = MIX(start, light->pems_per_pass);
+    signatures[TL_INPUT_MAPS] = maps_signature(light);
+    signatures[TL_INPUT_RAYS] = rays_signature(light);
+    signatures[TL_INPUT_LIGHT] = light_signature(light);
+    signatures[TL_INPUT_REFERENCE] = reference_signature(&settings->reference);
+    signatures[TL_INPUT_SHOW] = MIX(MIX(start, image->exposure_ev), image->background);
+    count_rest(light, before, signatures, rest);
+    signatures[TL_INPUT_ROUND] = MIX(start, rest->image);
+    signatures[TL_INPUT_SCENE_ROUND] = MIX(start, rest->scene);
+}

@@ -1,0 +1,53 @@
+#version 450 core
+// One additive pass over some of the regions, their light from filter chains [002, eq. 5]: c += VIS_i PEM_i; or, after
+// the exact light, what is missing: c += (VIS_i - 1) PEM_i.
+#include "sample.glsl"
+#include "visibility.glsl"
+
+const int LOBE_SINGLE = 0;
+
+layout(location = 0) uniform ivec2 region_range;   // the first one's number, and how many
+layout(location = 3) uniform float pem_scale;      // what the stored radiance is multiplied by
+layout(location = 4) uniform int lobe;
+layout(location = 5) uniform float already_there;  // 0, or 1 after the exact light
+
+layout(binding = 5) uniform sampler2D lobe_levels;
+layout(binding = 6) uniform samplerCubeArray pems;
+
+layout(location = 0) out vec4 light;
+
+float lobe_level(float glossiness)
+{
+    float steps = float(textureSize(lobe_levels, 0).x);
+    return texture(lobe_levels, vec2((glossiness * (steps - 1.0) + 0.5) / steps, 0.5)).r;
+}
+
+float share(int i, Sample place)
+{
+    Region region = regions[region_range.x + i];
+    return visibility(i, region, place.point, place.smooth_normal) - already_there;
+}
+
+void main()
+{
+    Sample place = read_sample(ivec2(gl_FragCoord.xy));
+    vec3 sum = vec3(0.0);
+    if (lobe == LOBE_SINGLE) {
+        // One look-up for direction and glossiness [002, section 3.4]; its direction and its colour go from
+        // diffuse (n, kd) at g = 0 to mirror (r, F ks) at g = 1. n.r >= 0, so the mean never vanishes.
+        vec3 d = into_environment(mix(place.normal, place.mirror, place.glossiness));
+        float level = lobe_level(place.glossiness);
+        for (int i = 0; i < region_range.y; i++)
+            sum += share(i, place) * textureLod(pems, vec4(d, float(i)), level).rgb;
+        sum *= mix(place.kd, place.ks, place.glossiness);
+    } else {
+        vec3 d = into_environment(place.normal), m = into_environment(place.mirror);
+        float diffuse_level = lobe_level(0.0), gloss_level = lobe_level(place.glossiness);
+        for (int i = 0; i < region_range.y; i++) {
+            vec3 pem = place.kd * textureLod(pems, vec4(d, float(i)), diffuse_level).rgb +
+                       place.ks * textureLod(pems, vec4(m, float(i)), gloss_level).rgb;
+            sum += share(i, place) * pem;
+        }
+    }
+    light = vec4(sum * pem_scale * place.cover, 0.0);
+}

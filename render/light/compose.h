@@ -1,0 +1,39 @@
+/* The light of every sample from visibility that is kept at points (render/visibility/points.h), on the CPU.
+ *
+ * What is interpolated is never the light but the share of it that is seen:
+ *
+ *     c = kd E(n, 1) sum v_i w_i / sum w_i  +  F ks E(r, s) sum v_i u_i / sum u_i        (by colour channel)
+ *
+ * E is the exact unshadowed light (env/lobes.h); w_i and u_i stand for P_i: the region's power times the
+ * lobe, broadened by the region's spread. v_i is the visibility of region i at the sample, clipped at the
+ * sample's own horizon (FRONTIER, findings 1 and 2). Suns stand apart: power times lobe times their own
+ * visibility. The other methods of enum tl_method are made of the same sums. */
+#ifndef TOILE_RENDER_LIGHT_COMPOSE_H
+#define TOILE_RENDER_LIGHT_COMPOSE_H
+
+#include "render/env/lobes.h"
+#include "render/env/sun.h"
+#include "render/light/region_lights.h"
+#include "render/light/samples.h"
+#include "render/visibility/points.h"
+
+struct tl_compose_request {
+    const struct tl_samples *samples;
+    const struct tl_region_lights *lights; /* whose weight suits the method */
+    const struct tl_suns *suns;            /* none: count 0 */
+    const struct tl_lobes *lobes;
+    /* As tl_points gives them; unused when the method is UNSHADOWED. */
+    const uint16_t *values;
+    size_t stride;
+    const struct tl_taps *taps;
+    const float *sun_visibility[TL_SUNS_MAX];
+    float environment_yaw; /* rad */
+    const struct tl_light_params *params;
+};
+
+/* Writes light[4 * texel], premultiplied by cover, of every sample; other texels are left alone. The
+ * exponents that the samples' glossiness needs must be in `lobes`. Results do not depend on the number of
+ * threads. */
+void tl_compose(const struct tl_compose_request *request, float *light);
+
+#endif

@@ -1,0 +1,11 @@
+// What the light passes know of a region or a sun (light.h: struct tl_region_light).
+struct Region {
+    vec4 map_rows[3]; // world point -> map u, map v, depth (of depth maps: less the bias)
+    vec4 direction;   // towards the light, as its map sees it, world
+    vec4 centre;      // world; sine of the half-angle over which its light is spread
+    vec4 power;       // RGB; spread, rad
+};
+layout(std430, binding = 0) readonly buffer Regions
+{
+    Region regions[];
+};

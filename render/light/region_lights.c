@@ -1,0 +1,106 @@
+#include "render/light/region_lights.h"
+
+#include <math.h>
+
+static void fill_lane(struct tl_region_group *group, int lane, const struct tl_region *region,
+                      enum tl_region_weight weight)
+{
+    /* A disc whose mean square angle is spread^2 has the radius sqrt(2) spread. */
+    float spread = weight == TL_WEIGHT_POINT ? 0 : region->spread;
+    group->x[lane] = region->direction.x;
+    group->y[lane] = region->direction.y;
+    group->z[lane] = region->direction.z;
+    group->sine[lane] = fmaxf(sinf(fminf(sqrtf(2) * spread, 1.5f)), 1e-3f);
+    group->inverse_sine[lane] = 1 / group->sine[lane];
+    group->spread[lane] = spread;
+    for (int c = 0; c < 3; c++)
+        group->power[c][lane] = weight == TL_WEIGHT_WHITE ? region->solid_angle : region->power.raw[c];
+}
+
+/* Lanes beyond the last region have no power, and must not divide by 0. */
+static void fill_group(struct tl_region_group *group, const struct tl_region *regions, int count,
+                       enum tl_region_weight weight)
+{
+    vec3s sum = {{0, 0, 0}};
+    for (int lane = 0; lane < TL_LANES; lane++)
+        group->sine[lane] = group->inverse_sine[lane] = 1;
+    for (int lane = 0; lane < count; lane++) {
+        fill_lane(group, lane, &regions[lane], weight);
+        sum = glms_vec3_add(sum, regions[lane].direction);
+    }
+    group->axis = glms_vec3_normalize(sum);
+    float reach = 0;
+    for (int lane = 0; lane < count; lane++) {
+        float cosine = fminf(fmaxf(glms_vec3_dot(group->axis, regions[lane].direction), -1), 1);
+        reach = fmaxf(reach, acosf(cosine) + asinf(group->sine[lane]));
+    }
+    group->reach_sine = reach < GLM_PI_2f ? sinf(reach) : 2;
+}
+
+/* The sum that the exact light is divided by; see tl_lobe_change. */
+TL_CLONES static void sum_lobes(const struct tl_region_lights *lights, vec3s d, float s, bool diffuse,
+                                float sum[3])
+{
+    float lanes[3][TL_LANES] = {{0}};
+    for (int g = 0; g < lights->group_count; g++) {
+        const struct tl_region_group *group = &lights->groups[g];
+        float lobe[TL_LANES];
+        for (int lane = 0; lane < TL_LANES; lane++) {
+            float cosine = group->x[lane] * d.x + group->y[lane] * d.y + group->z[lane] * d.z;
+            float exponent = lobe_broadened_exponent(s, group->spread[lane]);
+            lobe[lane] = diffuse
+                             ? tl_region_lobe_diffuse(cosine, group->sine[lane], group->inverse_sine[lane])
+                             : tl_region_lobe(cosine, group->sine[lane], group->inverse_sine[lane], exponent);
+        }
+        for (int c = 0; c < 3; c++)
+            for (int lane = 0; lane < TL_LANES; lane++)
+                lanes[c][lane] += group->power[c][lane] * lobe[lane];
+    }
+    for (int c = 0; c < 3; c++)
+        sum[c] = tl_sum_lanes(lanes[c]);
+}
+
+/* Where no region shines there is nothing to correct. */
+static vec3s divide(vec3s light, const float sum[3])
+{
+    vec3s gain;
+    for (int c = 0; c < 3; c++)
+        gain.raw[c] = sum[c] > 1e-20f ? light.raw[c] / sum[c] : 1;
+    return gain;
+}
+
+static vec3s gain_of(vec3s direction, float exponent, vec3s light, const void *context)
+{
+    float sum[3];
+    sum_lobes(context, direction, tl_lesser(exponent, TL_REGION_LOBE_MAX), false, sum);
+    return divide(light, sum);
+}
+
+static vec3s diffuse_gain_of(vec3s direction, float exponent, vec3s light, const void *context)
+{
+    float sum[3];
+    sum_lobes(context, direction, exponent, true, sum);
+    return divide(light, sum);
+}
+
+void tl_region_lights_make(struct tl_region_lights *lights, const struct tl_regions *regions,
+                           enum tl_region_weight weight, const struct tl_lobes *lobes)
+{
+    tl_region_lights_release(lights);
+    lights->group_count = (regions->count + TL_LANES - 1) / TL_LANES;
+    for (int g = 0; g < lights->group_count; g++) {
+        int first = g * TL_LANES, left = regions->count - first;
+        fill_group(&lights->groups[g], &regions->items[first], left < TL_LANES ? left : TL_LANES, weight);
+    }
+    if (weight != TL_WEIGHT_POWER)
+        return;
+    lights->gain = tl_lobes_changed(lobes, ~0u, gain_of, lights);
+    lights->diffuse_gain = tl_lobes_changed(lobes, 1u, diffuse_gain_of, lights);
+}
+
+void tl_region_lights_release(struct tl_region_lights *lights)
+{
+    tl_lobes_release(&lights->gain);
+    tl_lobes_release(&lights->diffuse_gain);
+    *lights = (struct tl_region_lights){0};
+}

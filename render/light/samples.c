@@ -1,0 +1,222 @@
+#include "render/light/samples.h"
+
+#include "config/memory.h"
+#include "config/simd.h"
+
+#include <epoxy/gl.h>
+
+#include <math.h>
+#include <stdlib.h>
+
+#define TILE 4 /* texels a side: 16 samples, as many as a bundle of rays */
+
+/* The G-buffer's textures as GL keeps them. */
+struct layers {
+    int width, height;
+    const float *points;       /* [height][width][4] */
+    const uint16_t *normals;   /* [height][width][4] */
+    const uint16_t *diffuses;  /* ... */
+    const uint16_t *speculars; /* ... */
+    const uint32_t *triangles; /* [height][width] */
+};
+
+const tl_surface *tl_triangle_find(const struct tl_triangle_ranges *ranges, uint32_t number,
+                                   uint32_t corners[3], size_t *surface)
+{
+    size_t s = 0;
+    while (s + 1 < ranges->surface_count && number >= ranges->first[s + 1])
+        s++;
+    const uint32_t *indices = ranges->surfaces[s]->indices + 3 * (size_t)(number - ranges->first[s]);
+    for (int i = 0; i < 3; i++)
+        corners[i] = indices[i];
+    *surface = s;
+    return ranges->surfaces[s];
+}
+
+void tl_triangle_ranges_make(const tl_surface *const *surfaces, size_t count, struct tl_triangle_ranges *out)
+{
+    out->surfaces = surfaces;
+    out->surface_count = count;
+    out->first = tl_resize(out->first, count + 1, sizeof(uint32_t));
+    out->first[0] = 0;
+    for (size_t i = 0; i < count; i++)
+        out->first[i + 1] = out->first[i] + (uint32_t)(surfaces[i]->index_count / 3);
+}
+
+void tl_triangle_ranges_release(struct tl_triangle_ranges *ranges)
+{
+    free(ranges->first);
+    *ranges = (struct tl_triangle_ranges){0};
+}
+
+/* Barycentric weights of the point of the triangle's plane that is nearest to `p`, inside the triangle. */
+static void weigh(vec3s p, vec3s a, vec3s b, vec3s c, float weights[3])
+{
+    vec3s ab = glms_vec3_sub(b, a), ac = glms_vec3_sub(c, a), ap = glms_vec3_sub(p, a);
+    float d00 = glms_vec3_dot(ab, ab), d01 = glms_vec3_dot(ab, ac), d11 = glms_vec3_dot(ac, ac);
+    float d20 = glms_vec3_dot(ap, ab), d21 = glms_vec3_dot(ap, ac);
+    float area = d00 * d11 - d01 * d01;
+    if (!(area > 0)) { /* a triangle without an area is drawn by nobody but for rounding */
+        weights[0] = 1, weights[1] = weights[2] = 0;
+        return;
+    }
+    float v = fminf(fmaxf((d11 * d20 - d01 * d21) / area, 0), 1);
+    float w = fminf(fmaxf((d00 * d21 - d01 * d20) / area, 0), 1 - v);
+    weights[0] = 1 - v - w, weights[1] = v, weights[2] = w;
+}
+
+static vec3s normalized_or(vec3s v, vec3s fallback)
+{
+    float square = glms_vec3_dot(v, v);
+    return square > 1e-20f ? glms_vec3_scale(v, 1 / sqrtf(square)) : fallback;
+}
+
+/* A finite half float: its bits lie in a float's thirteen further up, and its exponent is 112 less. */
+static float from_half(uint16_t half)
+{
+    const float scale = 0x1p112f;
+    union tl_float_bits magnitude = {.bits = (half & 0x7fff) << 13};
+    return half & 0x8000 ? -scale * magnitude.value : scale * magnitude.value;
+}
+
+static vec3s half_vector(const uint16_t *texel)
+{
+    return (vec3s){{from_half(texel[0]), from_half(texel[1]), from_half(texel[2])}};
+}
+
+/* The inverse of octahedral() in gbuffer.frag. */
+static vec3s from_octahedral(float x, float y)
+{
+    vec3s n = {{x, y, 1 - fabsf(x) - fabsf(y)}};
+    if (n.z < 0) {
+        n.x = (1 - fabsf(y)) * (x >= 0 ? 1.0f : -1.0f);
+        n.y = (1 - fabsf(x)) * (y >= 0 ? 1.0f : -1.0f);
+    }
+    return n;
+}
+
+static tl_sample read_sample(const struct layers *layers, size_t texel,
+                             const struct tl_triangle_ranges *ranges, vec3s eye)
+{
+    const float *point = layers->points + 4 * texel;
+    const uint16_t *normal = layers->normals + 4 * texel, *diffuse = layers->diffuses + 4 * texel,
+                   *specular = layers->speculars + 4 * texel;
+    uint32_t stored = layers->triangles[texel];
+    tl_sample sample = {.texel = (uint32_t)texel,
+                        .triangle = ((stored & ~TL_SAMPLE_BACK) - 1) | (stored & TL_SAMPLE_BACK),
+                        .cover = point[3],
+                        .point = {{point[0], point[1], point[2]}},
+                        .glossiness = from_half(normal[3]),
+                        .diffuse = half_vector(diffuse),
+                        .specular = half_vector(specular)};
+    const vec3s up = {{0, 1, 0}};
+    sample.normal = normalized_or(half_vector(normal), up);
+    sample.smooth = normalized_or(from_octahedral(from_half(diffuse[3]), from_half(specular[3])), up);
+    vec3s view = normalized_or(glms_vec3_sub(eye, sample.point), sample.normal);
+    /* As in light.frag: where a normal turns away from the viewer, r passes straight on instead of flipping.
+     */
+    float cosine = fmaxf(glms_vec3_dot(sample.normal, view), 0);
+    sample.mirror =
+        normalized_or(glms_vec3_sub(glms_vec3_scale(sample.normal, 2 * cosine), view), sample.normal);
+    uint32_t corners[3];
+    size_t index;
+    const tl_surface *surface = tl_triangle_find(ranges, sample.triangle & ~TL_SAMPLE_BACK, corners, &index);
+    weigh(sample.point, surface->positions[corners[0]], surface->positions[corners[1]],
+          surface->positions[corners[2]], sample.weights);
+    return sample;
+}
+
+/* Visits the covered texels of one row of tiles; fills `out` when it is there. Returns how many there are. */
+static size_t read_tile_row(const struct layers *layers, int row, const struct tl_triangle_ranges *ranges,
+                            vec3s eye, tl_sample *out)
+{
+    size_t count = 0;
+    for (int x0 = 0; x0 < layers->width; x0 += TILE)
+        for (int y = row * TILE; y < layers->height && y < (row + 1) * TILE; y++)
+            for (int x = x0; x < layers->width && x < x0 + TILE; x++) {
+                size_t texel = (size_t)y * (size_t)layers->width + (size_t)x;
+                if (layers->triangles[texel] == 0)
+                    continue;
+                if (out)
+                    out[count] = read_sample(layers, texel, ranges, eye);
+                count++;
+            }
+    return count;
+}
+
+static void measure_glossiness(struct tl_samples *samples)
+{
+    float low = samples->count ? samples->items[0].glossiness : 0, high = low;
+    for (size_t i = 1; i < samples->count; i++) {
+        low = fminf(low, samples->items[i].glossiness);
+        high = fmaxf(high, samples->items[i].glossiness);
+    }
+    samples->glossiness_min = low;
+    samples->glossiness_max = high;
+}
+
+static void gather(const struct layers *layers, const struct tl_triangle_ranges *ranges, vec3s eye,
+                   struct tl_samples *out)
+{
+    int row_count = (layers->height + TILE - 1) / TILE;
+    size_t *first = TL_NEW_ARRAY(size_t, (size_t)row_count + 1);
+#pragma omp parallel for
+    for (int row = 0; row < row_count; row++)
+        first[row + 1] = read_tile_row(layers, row, ranges, eye, NULL);
+    for (int row = 0; row < row_count; row++)
+        first[row + 1] += first[row];
+    out->count = first[row_count];
+    if (out->count > out->capacity) {
+        out->capacity = out->count + out->count / 4;
+        free(out->items);
+        out->items = TL_NEW_ARRAY(tl_sample, out->capacity);
+    }
+#pragma omp parallel for schedule(dynamic)
+    for (int row = 0; row < row_count; row++)
+        read_tile_row(layers, row, ranges, eye, out->items + first[row]);
+    free(first);
+}
+
+static const void *read_layer(const struct tl_gbuffer *gbuffer, int layer, GLenum format, GLenum type,
+                              size_t texel_bytes, char **at)
+{
+    const tl_target *target = &gbuffer->target;
+    size_t bytes = (size_t)target->width * (size_t)target->height * texel_bytes;
+    void *data = *at;
+    glGetTextureImage(target->colours[layer].id, 0, format, type, (GLsizei)bytes, data);
+    *at += bytes;
+    return data;
+}
+
+void tl_samples_read(const struct tl_gbuffer *gbuffer, const struct tl_triangle_ranges *ranges, vec3s eye,
+                     struct tl_samples *out)
+{
+    const tl_target *target = &gbuffer->target;
+    out->width = target->width;
+    out->height = target->height;
+    size_t bytes = (size_t)target->width * (size_t)target->height * (16 + 3 * 8 + 4);
+    if (bytes != out->staging_bytes) {
+        free(out->staging);
+        out->staging = tl_alloc(bytes, 1);
+        out->staging_bytes = bytes;
+    }
+    char *at = out->staging;
+    const struct layers layers = {
+        .width = target->width,
+        .height = target->height,
+        .points = read_layer(gbuffer, TL_GBUFFER_POINT, GL_RGBA, GL_FLOAT, 16, &at),
+        .normals = read_layer(gbuffer, TL_GBUFFER_NORMAL, GL_RGBA, GL_HALF_FLOAT, 8, &at),
+        .diffuses = read_layer(gbuffer, TL_GBUFFER_DIFFUSE, GL_RGBA, GL_HALF_FLOAT, 8, &at),
+        .speculars = read_layer(gbuffer, TL_GBUFFER_SPECULAR, GL_RGBA, GL_HALF_FLOAT, 8, &at),
+        .triangles = read_layer(gbuffer, TL_GBUFFER_TRIANGLE, GL_RED_INTEGER, GL_UNSIGNED_INT, 4, &at),
+    };
+    gather(&layers, ranges, eye, out);
+    measure_glossiness(out);
+}
+
+void tl_samples_release(struct tl_samples *samples)
+{
+    free(samples->items);
+    free(samples->staging);
+    *samples = (struct tl_samples){0};
+}

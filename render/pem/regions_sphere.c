@@ -1,0 +1,413 @@
+#include "config/memory.h"
+#include "render/pem/regions_build.h"
+
+#include <assert.h>
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Places where a node may be cut: far finer than what is cut, so that none runs through a compact light. */
+#define BINS 256
+
+/* Texels in a structure of arrays; a node's lie side by side. `weight` is the mixed measure: half the share
+ * of all luminance, half that of the sphere. */
+struct points {
+    float *x, *y, *z, *weight;
+    uint32_t *texel;
+};
+
+/* Weighted sums of a node's directions d: 1, d, and d d^T. */
+struct moments {
+    double weight, mean[3];
+    double xx, yy, zz, xy, xz, yz;
+};
+
+/* A node while the tree grows. All nodes of a depth come before those of the next, left before right, so that
+ * the order of two nodes does not depend on how many others there are. */
+struct growth {
+    uint32_t first, last; /* its points */
+    struct moments moments;
+    double variance; /* weighted sum of squared distances from the centroid; never more than its parent's */
+    int parent, children[2];
+    int rank;
+};
+
+struct tree {
+    struct points points, spare;
+    float *along; /* of each point: where it lies on its node's axis */
+    struct growth *nodes;
+    int count, capacity;
+};
+
+static struct points points_create(size_t count)
+{
+    return (struct points){.x = TL_NEW_ARRAY(float, count),
+                           .y = TL_NEW_ARRAY(float, count),
+                           .z = TL_NEW_ARRAY(float, count),
+                           .weight = TL_NEW_ARRAY(float, count),
+                           .texel = TL_NEW_ARRAY(uint32_t, count)};
+}
+
+static void points_release(struct points *points)
+{
+    free(points->x);
+    free(points->y);
+    free(points->z);
+    free(points->weight);
+    free(points->texel);
+}
+
+static void fill_points(const struct tl_regions *regions, struct points *points)
+{
+    size_t face_texels = (size_t)regions->size * (size_t)regions->size;
+    double luminance = 0;
+    for (size_t i = 0; i < 6 * face_texels; i++)
+        luminance += (double)regions->importance[i];
+#pragma omp parallel for
+    for (size_t i = 0; i < 6 * face_texels; i++) {
+        double area = (double)regions->solid_angles[i % face_texels] / (4 * M_PI);
+        double light = luminance > 0 ? (double)regions->importance[i] / luminance : area;
+        vec3s direction = tl_cube_texel_direction(regions->size, (int)i);
+        points->x[i] = direction.x;
+        points->y[i] = direction.y;
+        points->z[i] = direction.z;
+        points->weight[i] = (float)(0.5 * (area + light));
+        points->texel[i] = (uint32_t)i;
+    }
+}
+
+static void add_moments(struct moments *sum, const struct points *points, uint32_t i)
+{
+    double weight = (double)points->weight[i];
+    double x = (double)points->x[i], y = (double)points->y[i], z = (double)points->z[i];
+    double wx = weight * x, wy = weight * y, wz = weight * z;
+    sum->weight += weight;
+    sum->mean[0] += wx;
+    sum->mean[1] += wy;
+    sum->mean[2] += wz;
+    sum->xx += wx * x;
+    sum->yy += wy * y;
+    sum->zz += wz * z;
+    sum->xy += wx * y;
+    sum->xz += wx * z;
+    sum->yz += wy * z;
+}
+
+static double squared_length(const double v[3])
+{
+    return v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+}
+
+static double variance_of(const struct moments *m)
+{
+    return fmax(m->xx + m->yy + m->zz - squared_length(m->mean) / m->weight, 0);
+}
+
+static void multiply(double a[3][3])
+{
+    double product[3][3];
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            product[i][j] = a[i][0] * a[0][j] + a[i][1] * a[1][j] + a[i][2] * a[2][j];
+    memcpy(a, product, sizeof product);
+}
+
+/* The direction of most variance, by power iteration: squaring the covariance matrix over and over leaves the
+ * columns along it. Any direction will do where several tie. */
+static void find_axis(const struct moments *m, double axis[3])
+{
+    const double w = m->weight, *s = m->mean;
+    double a[3][3] = {{m->xx - s[0] * s[0] / w, m->xy - s[0] * s[1] / w, m->xz - s[0] * s[2] / w},
+                      {m->xy - s[0] * s[1] / w, m->yy - s[1] * s[1] / w, m->yz - s[1] * s[2] / w},
+                      {m->xz - s[0] * s[2] / w, m->yz - s[1] * s[2] / w, m->zz - s[2] * s[2] / w}};
+    for (int round = 0; round < 6; round++) {
+        double trace = a[0][0] + a[1][1] + a[2][2];
+        for (int i = 0; i < 9; i++)
+            a[i / 3][i % 3] /= trace > 0 ? trace : 1;
+        multiply(a);
+    }
+    int longest = 0;
+    for (int i = 1; i < 3; i++)
+        if (squared_length(a[i]) > squared_length(a[longest]))
+            longest = i;
+    double length = sqrt(squared_length(a[longest]));
+    for (int i = 0; i < 3; i++)
+        axis[i] = length > 0 ? a[longest][i] / length : i == 0;
+}
+
+/* Projects a node's points on the axis; returns the range in which they lie. */
+static void project(const struct points *points, uint32_t first, uint32_t last, const double axis[3],
+                    float *along, float range[2])
+{
+    float ax = (float)axis[0], ay = (float)axis[1], az = (float)axis[2];
+    float low = FLT_MAX, high = -FLT_MAX;
+    for (uint32_t i = first; i < last; i++) {
+        along[i] = ax * points->x[i] + ay * points->y[i] + az * points->z[i];
+        low = along[i] < low ? along[i] : low;
+        high = along[i] > high ? along[i] : high;
+    }
+    range[0] = low;
+    range[1] = high;
+}
+
+static int bin_of(float along, float low, float scale)
+{
+    int bin = (int)((along - low) * scale);
+    return bin < BINS - 1 ? bin : BINS - 1;
+}
+
+/* The bin before which a cut leaves the least variance: of all that is cut, the sum of |sum w d|^2 / sum w of
+ * the two sides is the largest. The first and the last bin are never empty. */
+static int find_cut(const struct points *points, uint32_t first, uint32_t last, const float *along, float low,
+                    float scale)
+{
+    double bins[BINS][4] = {{0}};
+    double total[4] = {0}, before[4] = {0};
+    for (uint32_t i = first; i < last; i++) {
+        double *bin = bins[bin_of(along[i], low, scale)], weight = (double)points->weight[i];
+        bin[0] += weight * (double)points->x[i];
+        bin[1] += weight * (double)points->y[i];
+        bin[2] += weight * (double)points->z[i];
+        bin[3] += weight;
+    }
+    for (int i = 0; i < BINS; i++)
+        for (int c = 0; c < 4; c++)
+            total[c] += bins[i][c];
+    int best = 1;
+    double most = -1;
+    for (int i = 1; i < BINS; i++) {
+        double after[4];
+        for (int c = 0; c < 4; c++) {
+            before[c] += bins[i - 1][c];
+            after[c] = total[c] - before[c];
+        }
+        double gain = squared_length(before) / before[3] + squared_length(after) / after[3];
+        if (gain > most)
+            best = i, most = gain;
+    }
+    return best;
+}
+
+static void move_point(const struct points *from, uint32_t i, struct points *to, uint32_t place)
+{
+    to->x[place] = from->x[i];
+    to->y[place] = from->y[i];
+    to->z[place] = from->z[i];
+    to->weight[place] = from->weight[i];
+    to->texel[place] = from->texel[i];
+}
+
+/* Parts the points of `node` into those of its two children, in place; both keep their order. */
+static void cut_node(struct tree *tree, const struct growth *node, struct growth children[2])
+{
+    struct points *points = &tree->points, *spare = &tree->spare;
+    double axis[3];
+    float range[2];
+    find_axis(&node->moments, axis);
+    project(points, node->first, node->last, axis, tree->along, range);
+    float scale = BINS / (range[1] - range[0]);
+    bool flat = !isfinite(scale); /* points that the axis cannot tell apart: halved as they come */
+    int cut = flat ? 0 : find_cut(points, node->first, node->last, tree->along, range[0], scale);
+    uint32_t middle = node->first + (node->last - node->first) / 2;
+    uint32_t left = node->first, right = node->first; /* places in `points` and in `spare` */
+    for (uint32_t i = node->first; i < node->last; i++) {
+        bool before = flat ? i < middle : bin_of(tree->along[i], range[0], scale) < cut;
+        add_moments(&children[!before].moments, points, i);
+        if (before)
+            move_point(points, i, points, left++);
+        else
+            move_point(points, i, spare, right++);
+    }
+    children[0].first = node->first;
+    children[0].last = children[1].first = left;
+    children[1].last = node->last;
+    for (uint32_t i = node->first; i < right; i++)
+        move_point(spare, i, points, left++);
+    for (int i = 0; i < 2; i++)
+        children[i].variance = fmin(variance_of(&children[i].moments), node->variance);
+}
+
+struct rank {
+    double variance;
+    int node;
+};
+
+static int compare_ranks(const void *a, const void *b)
+{
+    const struct rank *first = a, *second = b;
+    if (first->variance != second->variance)
+        return first->variance > second->variance ? -1 : 1;
+    return first->node < second->node ? -1 : 1;
+}
+
+/* Ranks all nodes that can be cut: the one with the largest variance is the first to be. As no child has more
+ * than its parent, none comes before it. */
+static void rank_nodes(struct tree *tree)
+{
+    struct rank *ranks = TL_NEW_ARRAY(struct rank, (size_t)tree->count);
+    size_t count = 0;
+    for (int i = 0; i < tree->count; i++) {
+        tree->nodes[i].rank = -1;
+        if (tree->nodes[i].last - tree->nodes[i].first > 1)
+            ranks[count++] = (struct rank){tree->nodes[i].variance, i};
+    }
+    qsort(ranks, count, sizeof *ranks, compare_ranks);
+    for (size_t i = 0; i < count; i++)
+        tree->nodes[ranks[i].node].rank = (int)i;
+    free(ranks);
+}
+
+static bool is_cut(int rank, int count)
+{
+    return rank >= 0 && rank < count - 1;
+}
+
+static int add_child(struct tree *tree, int parent)
+{
+    if (tree->count == tree->capacity) {
+        tree->capacity *= 2;
+        tree->nodes = tl_resize(tree->nodes, (size_t)tree->capacity, sizeof *tree->nodes);
+    }
+    tree->nodes[tree->count] = (struct growth){.parent = parent, .children = {-1, -1}};
+    return tree->count++;
+}
+
+/* Depth by depth, so that there is work for many threads: everything is cut that may be among the first
+ * `count` - 1 by what is known so far; what deeper nodes push out of them is not used in the end. */
+static void grow(struct tree *tree, int count)
+{
+    int begin = 0, end = tree->count;
+    for (rank_nodes(tree); begin < end; rank_nodes(tree)) {
+        for (int i = begin; i < end; i++) {
+            if (!is_cut(tree->nodes[i].rank, count))
+                continue;
+            int child = add_child(tree, i);
+            add_child(tree, i);
+            tree->nodes[i].children[0] = child;
+            tree->nodes[i].children[1] = child + 1;
+        }
+#pragma omp parallel for schedule(dynamic)
+        for (int i = begin; i < end; i++)
+            if (tree->nodes[i].children[0] >= 0)
+                cut_node(tree, &tree->nodes[i], &tree->nodes[tree->nodes[i].children[0]]);
+        begin = end;
+        end = tree->count;
+    }
+}
+
+static void plant(struct tree *tree, const struct tl_regions *regions)
+{
+    size_t count = 6 * (size_t)regions->size * (size_t)regions->size;
+    *tree = (struct tree){.points = points_create(count),
+                          .spare = points_create(count),
+                          .along = TL_NEW_ARRAY(float, count),
+                          .nodes = TL_NEW_ARRAY(struct growth, 64),
+                          .count = 1,
+                          .capacity = 64};
+    fill_points(regions, &tree->points);
+    struct growth *root = &tree->nodes[0];
+    *root = (struct growth){.last = (uint32_t)count, .parent = -1, .children = {-1, -1}};
+    for (uint32_t i = 0; i < count; i++)
+        add_moments(&root->moments, &tree->points, i);
+    root->variance = variance_of(&root->moments);
+}
+
+static void fell(struct tree *tree)
+{
+    points_release(&tree->points);
+    points_release(&tree->spare);
+    free(tree->along);
+    free(tree->nodes);
+}
+
+/* Regions are numbered from left to right, so that what merges is next to each other. */
+static void number_leaves(struct tl_regions *regions, int node)
+{
+    struct tl_region_node *item = &regions->nodes[node];
+    if (item->children[0] < 0) {
+        item->region = regions->count++;
+        return;
+    }
+    number_leaves(regions, item->children[0]);
+    number_leaves(regions, item->children[1]);
+}
+
+/* The nodes that a cut into `count` regions has, in their order. `region_of`, for each node of `from` at or
+ * below a leaf: the region that it belongs to; for one above them -1. */
+static void keep_nodes(const struct tl_region_node *from, int from_count, int count, struct tl_regions *out,
+                       int *region_of)
+{
+    int *kept = TL_NEW_ARRAY(int, (size_t)from_count);
+    for (int i = 0; i < from_count; i++) {
+        int parent = from[i].parent;
+        kept[i] = -1;
+        if (parent >= 0 && !(kept[parent] >= 0 && is_cut(from[parent].rank, count)))
+            continue;
+        struct tl_region_node *node = &out->nodes[out->node_count];
+        *node = (struct tl_region_node){
+            .children = {-1, -1}, .parent = parent < 0 ? -1 : kept[parent], .region = -1, .rank = -1};
+        if (is_cut(from[i].rank, count))
+            node->rank = from[i].rank;
+        if (parent >= 0)
+            out->nodes[node->parent].children[from[parent].children[1] == i] = out->node_count;
+        kept[i] = out->node_count++;
+    }
+    number_leaves(out, 0);
+    for (int i = 0; i < from_count; i++) /* parents come first */
+        region_of[i] = kept[i] >= 0 ? out->nodes[kept[i]].region : region_of[from[i].parent];
+    free(kept);
+}
+
+static void label_points(const struct tree *tree, int count, struct tl_regions *out)
+{
+    struct tl_region_node *nodes = TL_NEW_ARRAY(struct tl_region_node, (size_t)tree->count);
+    int *region_of = TL_NEW_ARRAY(int, (size_t)tree->count);
+    for (int i = 0; i < tree->count; i++) {
+        const struct growth *node = &tree->nodes[i];
+        nodes[i] = (struct tl_region_node){
+            .children = {node->children[0], node->children[1]}, .parent = node->parent, .rank = node->rank};
+    }
+    keep_nodes(nodes, tree->count, count, out, region_of);
+    for (int i = 0; i < tree->count; i++)
+        if (region_of[i] >= 0)
+            for (uint32_t k = tree->nodes[i].first; k < tree->nodes[i].last; k++)
+                out->labels[tree->points.texel[k]] = (uint16_t)region_of[i];
+    free(nodes);
+    free(region_of);
+}
+
+void tl_regions_cut_sphere(const tl_cube *cube, int count, struct tl_regions *out)
+{
+    assert(count >= 1 && count <= TL_REGIONS_MAX);
+    struct tree tree;
+    tl_regions_begin(cube, out);
+    plant(&tree, out);
+    grow(&tree, count);
+    label_points(&tree, count, out);
+    fell(&tree);
+    tl_regions_order(out);
+    tl_regions_measure(out);
+    tl_regions_weigh(out);
+    tl_regions_colour(cube, out);
+}
+
+void tl_regions_merge(const struct tl_regions *from, int count, struct tl_regions *out)
+{
+    assert(count >= 1 && count <= from->count && from->node_count > 0 && out != from);
+    int region_of[2 * TL_REGIONS_MAX], merged[TL_REGIONS_MAX] = {0};
+    tl_regions_begin_like(from, out);
+    keep_nodes(from->nodes, from->node_count, count, out, region_of);
+    for (int i = 0; i < from->node_count; i++)
+        if (from->nodes[i].region >= 0)
+            merged[from->nodes[i].region] = region_of[i];
+    for (size_t i = 0; i < 6 * (size_t)from->size * (size_t)from->size; i++)
+        out->labels[i] = (uint16_t)merged[from->labels[i]];
+    tl_regions_order(out);
+    tl_regions_measure(out);
+    tl_regions_weigh(out);
+    for (int i = 0; i < from->count; i++) {
+        vec3s *power = &out->items[merged[i]].power;
+        *power = glms_vec3_add(*power, from->items[i].power);
+    }
+}

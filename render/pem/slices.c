@@ -1,0 +1,286 @@
+#include "render/pem/slices.h"
+
+#include "config/memory.h"
+#include "render/env/emitters.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Texels of a map per radian in its middle: they follow the lobe's width, and the widest lobes, which end at
+ * a horizon rather than fade, need some more. */
+#define DENSITY_PER_WIDTH  3
+#define DENSITY_OF_HORIZON 6
+/* The map ends where the lobe is below this part of its peak; what is lost there is less than that part of
+ * the energy, since the lobe's tail beyond holds c^(s + 1). */
+#define CROP 3e-4f
+/* A ring of black texels around the map, so that a fetch beyond it, clamped to it, finds nothing. */
+#define RING 1
+#define TILE 4
+/* Samples along a side of a texel of the region itself. */
+#define AREA_SAMPLES 4
+
+/* Distance from the middle of Lambert's map of the directions `angle` from its axis. */
+static float lambert(float angle)
+{
+    return 2 * sinf(fminf(angle, (float)M_PI) / 2);
+}
+
+/* Beyond the antipode, which is the circle of radius 2, it goes on. */
+static vec3s unproject(const struct tl_slice_frame *frame, float x, float y)
+{
+    float square = fminf(x * x + y * y, 4), sine = sqrtf(1 - square / 4);
+    vec3s d = glms_vec3_scale(frame->direction, 1 - square / 2);
+    d = glms_vec3_muladds(frame->right, x * sine, d);
+    return glms_vec3_muladds(frame->up, y * sine, d);
+}
+
+/* Mean square over two axes of the angle that a step of 1 in the map turns. */
+static float square_scale(float x, float y)
+{
+    float square =
+        fmaxf(1 - (x * x + y * y) / 4, 0.05f); /* the stretch grows without bound at the antipode */
+    return (1 / square + square) / 2;
+}
+
+/* The middle of the smallest cone around the directions, nearly: stepping towards the farthest, ever less
+ * [Badoiu and Clarkson 2003]. */
+#define CENTRE_STEPS 60
+static vec3s middle_of(const tl_emitter *emitters, size_t count, vec3s start)
+{
+    vec3s centre = start;
+    for (int step = 1; step <= CENTRE_STEPS && count > 0; step++) {
+        size_t farthest = 0;
+        float least = 2;
+        for (size_t i = 0; i < count; i++) {
+            float cosine = emitters[i].weight > 0 ? glms_vec3_dot(emitters[i].direction, centre) : 2;
+            if (cosine < least) {
+                least = cosine;
+                farthest = i;
+            }
+        }
+        vec3s towards = glms_vec3_sub(emitters[farthest].direction, centre);
+        centre = glms_vec3_normalize(glms_vec3_muladds(towards, 1 / (float)(step + 1), centre));
+    }
+    return centre;
+}
+
+struct region {
+    size_t count;
+    tl_emitter *texels;
+    float radius; /* rad: of the cone about the frame's direction that holds them */
+};
+
+static float angle_between(vec3s a, vec3s b)
+{
+    return 2 * asinf(fminf(glms_vec3_distance(a, b) / 2, 1));
+}
+
+static struct region prepare(const tl_cube *cube, const struct tl_regions *regions, int i,
+                             struct tl_slice_frame *frame)
+{
+    struct region region = {.count = regions->first[i + 1] - regions->first[i]};
+    region.texels =
+        tl_emitters_collect(cube, regions->solid_angles, regions->texels + regions->first[i], region.count);
+    frame->direction = middle_of(region.texels, region.count, regions->items[i].direction);
+    frame->right = glms_vec3_normalize(glms_vec3_ortho(frame->direction));
+    frame->up = glms_vec3_cross(frame->direction, frame->right);
+    for (size_t k = 0; k < region.count; k++)
+        if (region.texels[k].weight > 0)
+            region.radius = fmaxf(region.radius, angle_between(frame->direction, region.texels[k].direction));
+    return region;
+}
+
+/* How far the lobe reaches. */
+static float reach(int exponent, int cube_size)
+{
+    if (exponent == TL_EXPONENT_COUNT)
+        return 1.5f / (float)cube_size; /* half a texel's diagonal in the middle of a face */
+    return acosf(powf(CROP, 1 / tl_exponent(exponent)));
+}
+
+static float step_of(int exponent, int cube_size)
+{
+    if (exponent == TL_EXPONENT_COUNT)
+        return (float)sqrt(4 * M_PI / 6) / (float)cube_size;
+    float width = 1 / sqrtf(tl_exponent(exponent));
+    return 1 / (DENSITY_PER_WIDTH / width + DENSITY_OF_HORIZON * width);
+}
+
+/* Sides and scales of all maps of one exponent: the widest region sets the side. */
+static void lay_out(struct tl_slices *slices, const struct region *regions, int exponent, int cube_size)
+{
+    float lobe = reach(exponent, cube_size), widest = 0;
+    for (int i = 0; i < slices->region_count; i++)
+        widest = fmaxf(widest, lambert(regions[i].radius + lobe));
+    int inner = (int)ceilf(2 * widest / step_of(exponent, cube_size)) + 1;
+    int side = TILE * ((inner + 2 * RING + TILE - 1) / TILE);
+    slices->side[exponent] = side;
+    for (int i = 0; i < slices->region_count; i++) {
+        /* The lobe's end lies on centres of the outermost texels within the ring. */
+        float half = lambert(regions[i].radius + lobe) * (float)side / (float)(side - 1 - 2 * RING);
+        slices->frames[i].scale[exponent] = 0.5f / half;
+    }
+}
+
+static float *texel_of(const struct tl_slices *slices, int exponent, int region, int x, int y)
+{
+    size_t side = (size_t)slices->side[exponent];
+    return slices->texels[exponent] + 3 * (((size_t)region * side + (size_t)y) * side + (size_t)x);
+}
+
+/* Whether nothing but light beyond the reach is left out by the ring: a map of all directions has none. */
+static bool in_ring(const struct tl_slices *slices, int exponent, int region, int x, int y)
+{
+    int last = slices->side[exponent] - 1;
+    bool border = x < RING || y < RING || x > last - RING || y > last - RING;
+    return border && slices->frames[region].scale[exponent] > 0.25f;
+}
+
+static void convolve_tile(const struct tl_slices *slices, int exponent, int region, int left, int top,
+                          const struct tl_emitters *emitters)
+{
+    const struct tl_slice_frame *frame = &slices->frames[region];
+    float step = 1 / (frame->scale[exponent] * (float)slices->side[exponent]);
+    float middle = (float)slices->side[exponent] / 2 - 0.5f;
+    vec3s directions[TL_LANES];
+    float steps[TL_LANES];
+    for (int i = 0; i < TL_LANES; i++) {
+        float x = ((float)(left + i % TILE) - middle) * step, y = ((float)(top + i / TILE) - middle) * step;
+        directions[i] = unproject(frame, x, y);
+        steps[i] = step * sqrtf(square_scale(x, y));
+    }
+    struct tl_gaze gaze;
+    float colour[3][TL_LANES];
+    tl_gaze_set(&gaze, directions, steps, tl_exponent(exponent));
+    tl_emitters_gather(emitters, &gaze, colour);
+    for (int i = 0; i < TL_LANES; i++) {
+        int x = left + i % TILE, y = top + i / TILE;
+        bool black = in_ring(slices, exponent, region, x, y);
+        for (int c = 0; c < 3; c++)
+            texel_of(slices, exponent, region, x, y)[c] = black ? 0 : colour[c][i];
+    }
+}
+
+static void convolve(const struct tl_slices *slices, int exponent, int region, const struct region *source,
+                     int cube_size)
+{
+    struct tl_emitters emitters =
+        tl_emitters_merge(source->texels, source->count, cube_size, tl_exponent(exponent));
+    for (int top = 0; top < slices->side[exponent]; top += TILE)
+        for (int left = 0; left < slices->side[exponent]; left += TILE)
+            convolve_tile(slices, exponent, region, left, top, &emitters);
+    tl_emitters_release(&emitters);
+}
+
+/* The region itself: the mean over every texel. */
+static void sample_area(const struct tl_slices *slices, int region, const tl_cube *cube,
+                        const struct tl_regions *regions)
+{
+    const struct tl_slice_frame *frame = &slices->frames[region];
+    int side = slices->side[TL_EXPONENT_COUNT];
+    float step = 1 / (frame->scale[TL_EXPONENT_COUNT] * (float)side);
+    for (int i = 0; i < side * side * AREA_SAMPLES * AREA_SAMPLES; i++) {
+        int sample = i % (AREA_SAMPLES * AREA_SAMPLES), texel = i / (AREA_SAMPLES * AREA_SAMPLES);
+        float x = (float)(texel % side) + ((float)(sample % AREA_SAMPLES) + 0.5f) / AREA_SAMPLES;
+        float y = (float)(texel / side) + ((float)(sample / AREA_SAMPLES) + 0.5f) / AREA_SAMPLES;
+        float middle = (float)side / 2;
+        vec3s direction = unproject(frame, (x - middle) * step, (y - middle) * step);
+        size_t source = (size_t)tl_cube_texel(cube->size, direction);
+        if (regions->labels[source] != region)
+            continue;
+        float *target = texel_of(slices, TL_EXPONENT_COUNT, region, texel % side, texel / side);
+        for (size_t c = 0; c < 3; c++)
+            target[c] += cube->texels[3 * source + c] / (AREA_SAMPLES * AREA_SAMPLES);
+    }
+}
+
+void tl_slices_make(struct tl_slices *slices, const tl_cube *cube, const struct tl_regions *regions,
+                    uint32_t needed)
+{
+    uint32_t missing = needed & ~slices->made;
+    if (!missing)
+        return;
+    slices->made |= missing;
+    slices->region_count = regions->count;
+    struct region *sources = TL_NEW_ARRAY(struct region, (size_t)regions->count);
+#pragma omp parallel for schedule(dynamic)
+    for (int i = 0; i < regions->count; i++)
+        sources[i] = prepare(cube, regions, i, &slices->frames[i]);
+    for (int k = 0; k <= TL_EXPONENT_COUNT; k++) {
+        if (!(missing & 1u << k))
+            continue;
+        lay_out(slices, sources, k, cube->size);
+        size_t side = (size_t)slices->side[k];
+        slices->texels[k] = TL_NEW_ARRAY(float, 3 * (size_t)regions->count * side * side);
+    }
+#pragma omp parallel for collapse(2) schedule(dynamic)
+    for (int k = TL_EXPONENT_COUNT; k >= 0; k--) { /* the longest first */
+        for (int i = 0; i < regions->count; i++) {
+            if (!(missing & 1u << k))
+                continue;
+            if (k == TL_EXPONENT_COUNT)
+                sample_area(slices, i, cube, regions);
+            else
+                convolve(slices, k, i, &sources[i], cube->size);
+        }
+    }
+    for (int i = 0; i < regions->count; i++)
+        free(sources[i].texels);
+    free(sources);
+}
+
+void tl_slices_release(struct tl_slices *slices)
+{
+    for (size_t i = 0; i < TL_COUNT(slices->texels); i++)
+        free(slices->texels[i]);
+    *slices = (struct tl_slices){0};
+}
+
+/* Bilinear; beyond the map its outermost texels, which are black. */
+static vec3s fetch(const struct tl_slices *slices, int exponent, int region, float x, float y)
+{
+    assert(slices->texels[exponent]);
+    int side = slices->side[exponent];
+    float last = (float)(side - 1), scale = slices->frames[region].scale[exponent];
+    x = (0.5f + x * scale) * (float)side - 0.5f;
+    y = (0.5f + y * scale) * (float)side - 0.5f;
+    x = x > 0 ? x < last ? x : last : 0; /* also what is not a number */
+    y = y > 0 ? y < last ? y : last : 0;
+    int column = (int)x, row = (int)y;
+    column -= column == side - 1;
+    row -= row == side - 1;
+    float right = x - (float)column, below = y - (float)row;
+    const float *top = texel_of(slices, exponent, region, column, row), *bottom = top + 3 * (size_t)side;
+    vec3s colour;
+    for (int c = 0; c < 3; c++) {
+        float upper = top[c] + right * (top[c + 3] - top[c]);
+        float lower = bottom[c] + right * (bottom[c + 3] - bottom[c]);
+        colour.raw[c] = upper + below * (lower - upper);
+    }
+    return colour;
+}
+
+vec3s tl_slices_fetch(const struct tl_slices *slices, int region, vec3s direction,
+                      struct tl_exponent_blend blend)
+{
+    const struct tl_slice_frame *frame = &slices->frames[region];
+    float z = glms_vec3_dot(direction, frame->direction);
+    float stretch = sqrtf(2 / fmaxf(1 + z, 1e-6f));
+    float x = glms_vec3_dot(direction, frame->right) * stretch,
+          y = glms_vec3_dot(direction, frame->up) * stretch;
+    vec3s colour = fetch(slices, blend.index, region, x, y);
+    if (blend.weight > 0) /* the next one need not be there otherwise */
+        colour = glms_vec3_lerp(colour, fetch(slices, blend.index + 1, region, x, y), blend.weight);
+    return colour;
+}
+
+size_t tl_slices_bytes(const struct tl_slices *slices)
+{
+    size_t texels = 0;
+    for (size_t i = 0; i < TL_COUNT(slices->side); i++)
+        if (slices->made & 1u << i)
+            texels += (size_t)slices->side[i] * (size_t)slices->side[i];
+    return 4 * texels * (size_t)slices->region_count;
+}

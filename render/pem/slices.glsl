@@ -1,0 +1,35 @@
+// P_i(d, s) of the regions' slices (pem/slices.h), as pem/slice_maps.c has put them into a texture.
+const int SLICE_EXPONENTS = 32; // TL_EXPONENT_COUNT + 1
+
+struct SliceFrame {
+    vec4 right, up, direction; // environment's frame; fourth: unused
+    float scale[SLICE_EXPONENTS];
+};
+layout(std430, binding = 1) readonly buffer SliceFrames
+{
+    vec4 slice_places[SLICE_EXPONENTS]; // first column, first row, side: texels; what a stored 1 stands for
+    SliceFrame slice_frames[];          // by region
+};
+layout(binding = 10) uniform sampler2DArray slice_maps;
+
+vec3 slice_map(int region, int exponent, vec2 p)
+{
+    vec4 place = slice_places[exponent];
+    vec2 texel = (0.5 + p * slice_frames[region].scale[exponent]) * place.z;
+    texel = place.xy + clamp(texel, 0.5, place.z - 0.5); // the outermost texels are black
+    vec2 size = vec2(textureSize(slice_maps, 0).xy);
+    return place.w * textureLod(slice_maps, vec3(texel / size, float(region)), 0.0).rgb;
+}
+
+// P_region(d, s); d unit, in the environment's frame. `level` is the fractional number of the exponent: index + weight
+// of tl_exponent_blend(s). The exponents on both sides of it must have been made, or the one that it meets.
+vec3 slice_fetch(int region, vec3 d, float level)
+{
+    SliceFrame frame = slice_frames[region];
+    float stretch = sqrt(2.0 / max(1.0 + dot(d, frame.direction.xyz), 1e-6));
+    vec2 p = vec2(dot(d, frame.right.xyz), dot(d, frame.up.xyz)) * stretch;
+    int exponent = clamp(int(level), 0, SLICE_EXPONENTS - 1);
+    float part = level - float(exponent);
+    vec3 light = slice_map(region, exponent, p);
+    return part > 0.0 ? mix(light, slice_map(region, exponent + 1, p), part) : light;
+}

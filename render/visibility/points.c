@@ -1,0 +1,424 @@
+#include "render/visibility/points.h"
+
+#include "config/memory.h"
+#include "config/simd.h"
+#include "render/visibility/maps.h"
+#include "render/visibility/refresh.h"
+#include "render/visibility/sites.h"
+#include "render/visibility/starts.h"
+#include "render/visibility/sun_rays.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A point that was out of sight for so many moving frames is as good as new. */
+#define FORGET_FRAMES 8
+
+enum { NO_SLOT = UINT32_MAX };
+
+struct tl_points {
+    uint64_t regions_revision, shapes_revision;
+    bool known; /* the revisions are of something */
+    float yaw;
+    struct tl_regions regions; /* directions only: those that the values belong to */
+    uint32_t frame;            /* counts updates, from 1 */
+    uint32_t motion;           /* counts moving frames, from 1 */
+
+    struct tl_sites sites;
+    uint32_t *seen;       /* [sites]: frame when last visible */
+    uint32_t *slots;      /* [clusters]: where its values are; NO_SLOT: nowhere yet */
+    uint32_t *active;     /* [active_count]: clusters with visible sites */
+    uint32_t *ray_counts; /* by active cluster */
+    size_t active_count, visible_count;
+
+    size_t slot_count, slot_capacity, stride;
+    uint16_t *values; /* [slots][TL_CLUSTER][stride] */
+    uint16_t *rounds; /* [slots][TL_CLUSTER]: frames at rest in each point's mean */
+    uint32_t *traced; /* [slots][TL_CLUSTER]: `motion` when a point was last traced; 0: never */
+    uint32_t *stamps; /* [slots][stride]: frame when a region was last traced */
+
+    struct tl_taps *taps;
+    size_t sample_count, sample_capacity;
+    size_t ray_count;
+
+    struct tl_starts starts; /* made when suns or repair need them */
+    struct tl_sun_rays suns;
+};
+
+tl_points *tl_points_create(void)
+{
+    return TL_NEW(tl_points);
+}
+
+static void forget_values(tl_points *points)
+{
+    free(points->values);
+    free(points->rounds);
+    free(points->traced);
+    free(points->stamps);
+    points->values = NULL;
+    points->rounds = NULL;
+    points->traced = points->stamps = NULL;
+    points->slot_count = points->slot_capacity = 0;
+    for (size_t i = 0; i < points->sites.cluster_count; i++)
+        points->slots[i] = NO_SLOT;
+}
+
+static void forget_sites(tl_points *points)
+{
+    forget_values(points);
+    tl_sites_release(&points->sites);
+    free(points->seen);
+    free(points->slots);
+    free(points->active);
+    free(points->ray_counts);
+}
+
+void tl_points_destroy(tl_points **points)
+{
+    if (!*points)
+        return;
+    forget_sites(*points);
+    free((*points)->taps);
+    tl_starts_release(&(*points)->starts);
+    tl_sun_rays_release(&(*points)->suns);
+    free(*points);
+    *points = NULL;
+}
+
+static void build_sites(tl_points *points, const struct tl_points_request *request)
+{
+    forget_sites(points);
+    tl_sites_build(request->ranges, &points->sites);
+    size_t count = points->sites.cluster_count;
+    points->seen = TL_NEW_ARRAY(uint32_t, count * TL_CLUSTER);
+    points->slots = TL_NEW_ARRAY(uint32_t, count);
+    points->active = TL_NEW_ARRAY(uint32_t, count);
+    points->ray_counts = TL_NEW_ARRAY(uint32_t, count);
+    for (size_t i = 0; i < count; i++)
+        points->slots[i] = NO_SLOT;
+}
+
+static size_t stride_of(int region_count)
+{
+    return ((size_t)region_count + TL_LANES - 1) / TL_LANES * TL_LANES;
+}
+
+/* source[i]: the old region that is nearest to region i, in the world. */
+static void find_sources(const tl_points *points, const struct tl_points_request *request,
+                         int source[TL_REGIONS_MAX])
+{
+    float turn = request->environment_yaw - points->yaw;
+#pragma omp parallel for
+    for (int i = 0; i < request->regions->count; i++) {
+        vec3s direction = tl_turn_direction(request->regions->items[i].direction, turn);
+        float best = -2;
+        source[i] = 0;
+        for (int k = 0; k < points->regions.count; k++) {
+            float cosine = glms_vec3_dot(direction, points->regions.items[k].direction);
+            if (cosine > best) {
+                best = cosine;
+                source[i] = k;
+            }
+        }
+    }
+}
+
+/* Values move to the regions that are now where theirs were, and count as old: the most important ones are
+ * traced first. */
+static void carry_over(tl_points *points, const struct tl_points_request *request)
+{
+    int source[TL_REGIONS_MAX], count = request->regions->count;
+    size_t stride = stride_of(count);
+    find_sources(points, request, source);
+    uint16_t *values = TL_NEW_ARRAY(uint16_t, points->slot_capacity * TL_CLUSTER * stride);
+    uint32_t *stamps = TL_NEW_ARRAY(uint32_t, points->slot_capacity * stride);
+#pragma omp parallel for
+    for (size_t p = 0; p < points->slot_count * TL_CLUSTER; p++)
+        for (int i = 0; i < count; i++)
+            values[p * stride + (size_t)i] = points->values[p * points->stride + (size_t)source[i]];
+    free(points->values);
+    free(points->stamps);
+    points->values = values;
+    points->stamps = stamps;
+    points->stride = stride;
+}
+
+static bool is_where_it_was(const int source[TL_REGIONS_MAX], int count)
+{
+    for (int i = 0; i < count; i++)
+        if (source[i] != i)
+            return false;
+    return true;
+}
+
+/* A small turn leaves the values where they are: they are traced anew before it has gone far. */
+static bool has_turned_far(const tl_points *points, const struct tl_points_request *request)
+{
+    int source[TL_REGIONS_MAX];
+    if (request->environment_yaw == points->yaw) // NOLINT
+        return false;
+    find_sources(points, request, source);
+    return !is_where_it_was(source, request->regions->count);
+}
+
+static void follow_changes(tl_points *points, const struct tl_points_request *request)
+{
+    if (!points->known || points->shapes_revision != request->shapes_revision) {
+        build_sites(points, request);
+        points->stride = stride_of(request->regions->count);
+    } else if (points->regions_revision != request->regions_revision || has_turned_far(points, request)) {
+        carry_over(points, request);
+    }
+    points->known = true;
+    points->shapes_revision = request->shapes_revision;
+    points->regions_revision = request->regions_revision;
+    points->yaw = request->environment_yaw;
+    points->regions.count = request->regions->count;
+    memcpy(points->regions.items, request->regions->items,
+           (size_t)request->regions->count * sizeof *request->regions->items);
+    points->frame++;
+    points->motion += request->moved || points->motion == 0;
+}
+
+static void mark_sample(tl_points *points, const struct tl_points_request *request, size_t index)
+{
+    const tl_sample *sample = &request->samples->items[index];
+    struct tl_taps *taps = &points->taps[index];
+    uint32_t corners[3];
+    size_t surface;
+    tl_triangle_find(request->ranges, sample->triangle & ~TL_SAMPLE_BACK, corners, &surface);
+    bool back = sample->triangle & TL_SAMPLE_BACK;
+    *taps = (struct tl_taps){0};
+    for (int i = 0; i < 3; i++) {
+        taps->point[i] = tl_site_of(&points->sites, surface, corners[i], back);
+        taps->weight[i] = sample->weights[i];
+        /* Threads may mark one site at once: they write the same. */
+        __atomic_store_n(&points->seen[taps->point[i]], points->frame, __ATOMIC_RELAXED);
+    }
+    taps->point[3] = taps->point[0];
+}
+
+static void mark_samples(tl_points *points, const struct tl_points_request *request)
+{
+    points->sample_count = request->samples->count;
+    if (points->sample_count > points->sample_capacity) {
+        points->sample_capacity = points->sample_count + points->sample_count / 4;
+        free(points->taps);
+        points->taps = TL_NEW_ARRAY(struct tl_taps, points->sample_capacity);
+    }
+#pragma omp parallel for schedule(static)
+    for (size_t i = 0; i < points->sample_count; i++)
+        mark_sample(points, request, i);
+}
+
+static void reserve_slots(tl_points *points, size_t count)
+{
+    if (count <= points->slot_capacity)
+        return;
+    points->slot_capacity = count + count / 4;
+    size_t capacity = points->slot_capacity, used = points->slot_count;
+    points->values = tl_resize(points->values, capacity * TL_CLUSTER * points->stride, sizeof(uint16_t));
+    points->rounds = tl_resize(points->rounds, capacity * TL_CLUSTER, sizeof(uint16_t));
+    points->traced = tl_resize(points->traced, capacity * TL_CLUSTER, sizeof(uint32_t));
+    points->stamps = tl_resize(points->stamps, capacity * points->stride, sizeof(uint32_t));
+    size_t added = capacity - used;
+    memset(points->values + used * TL_CLUSTER * points->stride, 0,
+           added * TL_CLUSTER * points->stride * sizeof(uint16_t));
+    memset(points->rounds + used * TL_CLUSTER, 0, added * TL_CLUSTER * sizeof(uint16_t));
+    memset(points->traced + used * TL_CLUSTER, 0, added * TL_CLUSTER * sizeof(uint32_t));
+    memset(points->stamps + used * points->stride, 0, added * points->stride * sizeof(uint32_t));
+}
+
+static uint32_t visible_members(const tl_points *points, size_t cluster)
+{
+    uint32_t members = 0;
+    for (size_t i = 0; i < TL_CLUSTER; i++)
+        members |= (uint32_t)(points->seen[cluster * TL_CLUSTER + i] == points->frame) << i;
+    return members;
+}
+
+/* Lists the clusters in sight and gives each a slot. */
+static void activate_clusters(tl_points *points)
+{
+    size_t slot_count = points->slot_count;
+    points->active_count = points->visible_count = 0;
+    for (size_t c = 0; c < points->sites.cluster_count; c++) {
+        uint32_t members = visible_members(points, c);
+        if (!members)
+            continue;
+        points->active[points->active_count++] = (uint32_t)c;
+        points->visible_count += (size_t)__builtin_popcount(members);
+        if (points->slots[c] == NO_SLOT)
+            points->slots[c] = (uint32_t)slot_count++;
+    }
+    reserve_slots(points, slot_count);
+    points->slot_count = slot_count;
+}
+
+/* Sites become points. */
+static void resolve_taps(tl_points *points)
+{
+#pragma omp parallel for schedule(static)
+    for (size_t i = 0; i < points->sample_count; i++)
+        for (int t = 0; t < TL_TAPS; t++) {
+            uint32_t site = points->taps[i].point[t];
+            points->taps[i].point[t] = points->slots[site / TL_CLUSTER] * TL_CLUSTER + site % TL_CLUSTER;
+        }
+}
+
+/* Number i of a sequence that fills the square evenly [Roberts 2018, "The unreasonable effectiveness of
+ * quasirandom sequences": R2], begun elsewhere for every region. Fixed point: exact at any i. */
+static vec2s jitter(uint32_t region, uint32_t i)
+{
+    uint32_t hash = (region + 1) * 0x9e3779b1u;
+    hash = (hash ^ hash >> 15) * 0x85ebca77u;
+    uint32_t x = hash + i * 3242174889u, y = (hash ^ hash >> 13) * 0xc2b2ae3du + i * 2447445414u;
+    return (vec2s){{(float)(x >> 8) / (float)(1 << 24), (float)(y >> 8) / (float)(1 << 24)}};
+}
+
+static vec3s *jitter_directions(const tl_points *points, const struct tl_points_request *request)
+{
+    int count = request->regions->count, rays = request->params->rays;
+    vec3s *directions = TL_NEW_ARRAY(vec3s, (size_t)count * (size_t)rays);
+#pragma omp parallel for
+    for (int i = 0; i < count; i++)
+        for (int k = 0; k < rays; k++) {
+            vec2s at = jitter((uint32_t)i, points->frame * (uint32_t)rays + (uint32_t)k);
+            vec3s direction = tl_region_direction(request->regions, i, at.x, at.y);
+            directions[i * rays + k] = tl_turn_direction(direction, request->environment_yaw);
+        }
+    return directions;
+}
+
+/* Where a point's mean stands in this frame, and whether it holds anything. */
+static bool begin_point(tl_points *points, size_t point, bool moved)
+{
+    bool fresh = points->traced[point] == 0 || points->motion - points->traced[point] > FORGET_FRAMES;
+    if (moved || points->traced[point] != points->motion)
+        points->rounds[point] = 0;
+    points->traced[point] = points->motion;
+    return fresh;
+}
+
+static struct tl_cluster open_cluster(tl_points *points, size_t number, bool moved)
+{
+    size_t slot = points->slots[number];
+    struct tl_cluster cluster = {.sites = points->sites.items + number * TL_CLUSTER,
+                                 .members = visible_members(points, number),
+                                 .values = points->values + slot * TL_CLUSTER * points->stride,
+                                 .rounds = points->rounds + slot * TL_CLUSTER,
+                                 .stamps = points->stamps + slot * points->stride};
+    for (size_t i = 0; i < TL_CLUSTER; i++)
+        if (cluster.members >> i & 1)
+            cluster.fresh |= (uint32_t)begin_point(points, slot * TL_CLUSTER + i, moved) << i;
+    return cluster;
+}
+
+static void trace_clusters(tl_points *points, const struct tl_points_request *request)
+{
+    int count = request->regions->count;
+    vec3s centres[TL_REGIONS_MAX];
+    float importances[TL_REGIONS_MAX];
+    for (int i = 0; i < count; i++) {
+        const struct tl_region *region = &request->regions->items[i];
+        centres[i] = tl_turn_direction(region->direction, request->environment_yaw);
+        importances[i] = request->params->method == TL_METHOD_AO ? region->solid_angle : region->importance;
+    }
+    vec3s *directions = jitter_directions(points, request);
+    const struct tl_refresh refresh = {.request = request,
+                                       .stride = points->stride,
+                                       .directions = directions,
+                                       .centres = centres,
+                                       .importances = importances,
+                                       .offset_m = tl_trace_offset(request->trace),
+                                       .frame = points->frame};
+#pragma omp parallel for schedule(dynamic, 4)
+    for (size_t i = 0; i < points->active_count; i++) {
+        struct tl_cluster cluster = open_cluster(points, points->active[i], request->moved);
+        points->ray_counts[i] = (uint32_t)tl_cluster_refresh(&refresh, &cluster);
+    }
+    free(directions);
+    points->ray_count = 0;
+    for (size_t i = 0; i < points->active_count; i++)
+        points->ray_count += points->ray_counts[i];
+}
+
+/* Rays from the samples themselves. */
+static void trace_samples(tl_points *points, const struct tl_points_request *request)
+{
+    bool has_suns = request->suns && request->suns->count > 0;
+    uint64_t before = points->starts.samples;
+    points->suns.count = has_suns ? points->suns.count : 0;
+    if (!has_suns)
+        return;
+    tl_starts_make(request, &points->starts);
+    bool again = !request->moved && points->starts.samples == before;
+    points->ray_count += tl_sun_rays_update(&points->suns, request, &points->starts, again);
+}
+
+void tl_points_update(tl_points *points, const struct tl_points_request *request)
+{
+    assert(request->regions->count > 0 && request->params->rays > 0);
+    follow_changes(points, request);
+    mark_samples(points, request);
+    activate_clusters(points);
+    resolve_taps(points);
+    trace_clusters(points, request);
+    trace_samples(points, request);
+}
+
+const uint16_t *tl_points_values(const tl_points *points, size_t *stride)
+{
+    *stride = points->stride;
+    return points->values;
+}
+
+const struct tl_taps *tl_points_taps(const tl_points *points)
+{
+    return points->taps;
+}
+
+const float *tl_points_sun(const tl_points *points, int sun)
+{
+    return sun < points->suns.count ? points->suns.visible[sun] : NULL;
+}
+
+/* The largest difference between the points that a sample reads, over the regions. */
+static float disagreement(const tl_points *points, const struct tl_taps *taps)
+{
+    int largest = 0;
+    for (size_t i = 0; i < points->stride; i++) {
+        int low = UINT16_MAX, high = 0;
+        for (int t = 0; t < TL_TAPS; t++) {
+            int value = points->values[taps->point[t] * points->stride + i];
+            low = value < low ? value : low;
+            high = value > high ? value : high;
+        }
+        largest = high - low > largest ? high - low : largest;
+    }
+    return (float)largest / TL_VISIBILITY_ONE;
+}
+
+struct tl_points_report tl_points_report(const tl_points *points)
+{
+    struct tl_points_report report = {.points = points->slot_count * TL_CLUSTER,
+                                      .visible_points = points->visible_count,
+                                      .rays = points->ray_count};
+    for (size_t i = 0; i < points->sample_count; i++)
+        report.disagreement += (double)disagreement(points, &points->taps[i]) / (double)points->sample_count;
+    return report;
+}
+
+size_t tl_points_bytes(const tl_points *points)
+{
+    size_t sites = points->sites.cluster_count * TL_CLUSTER, slots = points->slot_capacity;
+    size_t vertices = points->sites.cluster_count > 0 ? sites : 0;
+    return sites * (sizeof(struct tl_site) + sizeof(uint32_t)) + vertices * sizeof(uint32_t) +
+           points->sites.cluster_count * 3 * sizeof(uint32_t) +
+           slots * TL_CLUSTER * (points->stride * sizeof(uint16_t) + sizeof(uint16_t) + sizeof(uint32_t)) +
+           slots * points->stride * sizeof(uint32_t) + points->sample_capacity * sizeof(struct tl_taps) +
+           points->starts.capacity * sizeof(vec3s) + tl_sun_rays_bytes(&points->suns);
+}

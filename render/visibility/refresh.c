@@ -1,0 +1,270 @@
+#include "render/visibility/refresh.h"
+
+#include "config/simd.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A pixel's horizon differs from its vertices' by up to half the bend of a triangle: regions are traced to 17
+ * degrees below a vertex's tangent plane, and clipped at the pixel's (FRONTIER, finding 1).
+ * What is clipped there must not be counted as hidden here too, so a value stands for what lies above the
+ * horizon: a direction below it is mirrored at the vertex's plane. (Review at rest: 3.3 to 3.1 % in a
+ * studio, 1.8 to 1.6 % in the sun; mean FLIP 0.041 to 0.033, 0.033 to 0.027.) */
+#define SINE_BELOW 0.2924f
+
+/* A region that waits for so many times the average round goes before all that do not. */
+#define PATIENCE 2
+#define OVERDUE  1e6f
+
+/* Points that are buried in another surface by a little, as a waist in a hip, look out from above it: by up
+ * to so many offsets, 1 cm of a figure. */
+#define LIFT_OFFSETS 100
+
+/* The members of a cluster, one a lane. */
+struct lanes {
+    uint32_t members;
+    float x[TL_CLUSTER], y[TL_CLUSTER], z[TL_CLUSTER];    /* where rays start, world */
+    float nx[TL_CLUSTER], ny[TL_CLUSTER], nz[TL_CLUSTER]; /* on the point's side, unit */
+};
+
+static vec3s lane_normal(const struct lanes *lanes, int i)
+{
+    return (vec3s){{lanes->nx[i], lanes->ny[i], lanes->nz[i]}};
+}
+
+static vec3s lane_origin(const struct lanes *lanes, int i)
+{
+    return (vec3s){{lanes->x[i], lanes->y[i], lanes->z[i]}};
+}
+
+static void set_lane(struct lanes *lanes, int i, vec3s origin, vec3s normal)
+{
+    lanes->x[i] = origin.x, lanes->y[i] = origin.y, lanes->z[i] = origin.z;
+    lanes->nx[i] = normal.x, lanes->ny[i] = normal.y, lanes->nz[i] = normal.z;
+}
+
+/* Adds member i's ray to a bundle. */
+static void push_ray(struct tl_trace_bundle *bundle, const struct lanes *lanes, int i, vec3s direction)
+{
+    int k = bundle->count++;
+    bundle->origin_x[k] = lanes->x[i];
+    bundle->origin_y[k] = lanes->y[i];
+    bundle->origin_z[k] = lanes->z[i];
+    bundle->direction_x[k] = direction.x;
+    bundle->direction_y[k] = direction.y;
+    bundle->direction_z[k] = direction.z;
+}
+
+/* Moves a point out of a body that it is just inside of: there the back of one and the same other surface is
+ * seen both ways. (Under a dress a body sees the dress's back one way only, and a pleat sees its own
+ * surface.)
+ */
+static void lift(const struct tl_refresh *refresh, const struct tl_site *site, struct lanes *lanes, int i)
+{
+    const tl_trace *trace = refresh->request->trace;
+    vec3s origin = lane_origin(lanes, i), normal = lane_normal(lanes, i);
+    struct tl_trace_hit out = tl_trace_nearest(trace, origin, normal, 0, LIFT_OFFSETS * refresh->offset_m);
+    if (out.surface == TL_TRACE_NONE || !out.back || out.surface == site->surface)
+        return;
+    vec3s below = glms_vec3_sub(origin, glms_vec3_scale(normal, 2 * refresh->offset_m));
+    struct tl_trace_hit in = tl_trace_nearest(trace, below, glms_vec3_negate(normal), 0, INFINITY);
+    if (in.surface == out.surface && in.back)
+        set_lane(lanes, i, glms_vec3_add(origin, glms_vec3_scale(normal, out.distance_m + refresh->offset_m)),
+                 normal);
+}
+
+static void place_members(const struct tl_refresh *refresh, const struct tl_cluster *cluster,
+                          struct lanes *lanes)
+{
+    *lanes = (struct lanes){.members = cluster->members};
+    struct tl_trace_bundle up = {.to_m = LIFT_OFFSETS * refresh->offset_m, .coherent = true};
+    int lane_of[TL_CLUSTER];
+    for (int i = 0; i < TL_CLUSTER; i++) {
+        if (!(lanes->members >> i & 1))
+            continue;
+        const struct tl_site *site = &cluster->sites[i];
+        const tl_surface *surface = refresh->request->ranges->surfaces[site->surface];
+        vec3s normal = surface->normals[site->vertex];
+        if (site->back)
+            normal = glms_vec3_negate(normal);
+        vec3s origin =
+            glms_vec3_add(surface->positions[site->vertex], glms_vec3_scale(normal, refresh->offset_m));
+        set_lane(lanes, i, origin, normal);
+        lane_of[up.count] = i;
+        push_ray(&up, lanes, i, normal);
+    }
+    uint32_t near = tl_trace_occluded_bundle(refresh->request->trace, &up);
+    for (int k = 0; k < up.count; k++)
+        if (near >> k & 1)
+            lift(refresh, &cluster->sites[lane_of[k]], lanes, lane_of[k]);
+}
+
+/* The cosine of a direction to the member that faces it most. */
+TL_INLINE float greatest_cosine(const struct lanes *lanes, vec3s direction)
+{
+    float cosines[TL_CLUSTER];
+    for (int i = 0; i < TL_CLUSTER; i++) /* lanes of no member hold zeros */
+        cosines[i] = lanes->nx[i] * direction.x + lanes->ny[i] * direction.y + lanes->nz[i] * direction.z;
+    float greatest = -1;
+    for (int i = 0; i < TL_CLUSTER; i++)
+        greatest = tl_greater(greatest, lanes->members >> i & 1 ? cosines[i] : -1);
+    return greatest;
+}
+
+/* What a stale value of each region costs: its light on the cluster times its age. */
+static void measure_needs(const struct tl_refresh *refresh, const struct tl_cluster *cluster,
+                          const struct lanes *lanes, float needs[TL_REGIONS_MAX])
+{
+    int count = refresh->request->regions->count, refreshed = refresh->request->params->refresh;
+    uint32_t longest = (uint32_t)(PATIENCE * (count + refreshed - 1) / refreshed);
+    for (int i = 0; i < count; i++) {
+        float cosine = greatest_cosine(lanes, refresh->centres[i]);
+        uint32_t age = refresh->frame - cluster->stamps[i];
+        float weight = refresh->importances[i] * fmaxf(cosine + SINE_BELOW, 0);
+        needs[i] = weight * (float)age;
+        if (age >= longest)
+            needs[i] *= OVERDUE;
+    }
+}
+
+/* Marks the `wanted` regions of greatest need; of equals the first. */
+static void select_regions(const float needs[TL_REGIONS_MAX], int count, int wanted,
+                           bool selected[TL_REGIONS_MAX])
+{
+    float sorted[TL_REGIONS_MAX];
+    int kept = 0; /* the greatest so far, falling */
+    for (int i = 0; i < count; i++) {
+        if (!(needs[i] > 0) || (kept == wanted && needs[i] <= sorted[kept - 1]))
+            continue;
+        int at = kept < wanted ? kept++ : kept - 1;
+        while (at > 0 && sorted[at - 1] < needs[i]) {
+            sorted[at] = sorted[at - 1];
+            at--;
+        }
+        sorted[at] = needs[i];
+    }
+    int left = kept;
+    for (int i = 0; i < count && kept > 0; i++) {
+        selected[i] = needs[i] > sorted[kept - 1];
+        left -= selected[i];
+    }
+    for (int i = 0; i < count && left > 0; i++)
+        if (!selected[i] && needs[i] == sorted[kept - 1]) {
+            selected[i] = true;
+            left--;
+        }
+}
+
+/* Adds what each of `lanes_wanted` sees along a direction to `visible`; returns the number of rays. Nothing
+ * is seen from under the surface. */
+static size_t look(const struct tl_refresh *refresh, const struct lanes *lanes, uint32_t lanes_wanted,
+                   vec3s direction, float visible[TL_CLUSTER])
+{
+    struct tl_trace_bundle bundle = {.to_m = INFINITY, .coherent = true};
+    int lane_of[TL_CLUSTER];
+    float through_ground[TL_CLUSTER];
+    for (int i = 0; i < TL_CLUSTER; i++) {
+        float cosine = glms_vec3_dot(lane_normal(lanes, i), direction);
+        if (!(lanes_wanted >> i & 1) || cosine < -SINE_BELOW)
+            continue;
+        vec3s ahead = direction;
+        if (cosine < 0) /* in the plane's mirror: see SINE_BELOW */
+            ahead = glms_vec3_sub(direction, glms_vec3_scale(lane_normal(lanes, i), 2 * cosine));
+        float share = tl_ground_visibility(refresh->request->ground, lane_origin(lanes, i), direction);
+        if (share <= 0)
+            continue;
+        through_ground[bundle.count] = share;
+        lane_of[bundle.count] = i;
+        push_ray(&bundle, lanes, i, ahead);
+    }
+    if (bundle.count == 0)
+        return 0;
+    uint32_t stopped = tl_trace_occluded_bundle(refresh->request->trace, &bundle);
+    for (int k = 0; k < bundle.count; k++)
+        if (!(stopped >> k & 1))
+            visible[lane_of[k]] += through_ground[k];
+    return (size_t)bundle.count;
+}
+
+static void store(const struct tl_refresh *refresh, const struct tl_cluster *cluster, uint32_t lanes_wanted,
+                  int region, const float visible[TL_CLUSTER])
+{
+    float scale = TL_VISIBILITY_ONE / (float)refresh->request->params->rays;
+    for (int i = 0; i < TL_CLUSTER; i++) {
+        if (!(lanes_wanted >> i & 1))
+            continue;
+        uint16_t *value = &cluster->values[(size_t)i * refresh->stride + (size_t)region];
+        float old = *value, rounds = refresh->request->moved ? 0 : cluster->rounds[i];
+        *value = (uint16_t)(old + (scale * visible[i] - old) / (rounds + 1) + 0.5f);
+    }
+}
+
+static size_t trace_region(const struct tl_refresh *refresh, const struct tl_cluster *cluster,
+                           const struct lanes *lanes, uint32_t lanes_wanted, int region)
+{
+    int ray_count = refresh->request->params->rays;
+    float visible[TL_CLUSTER] = {0};
+    size_t rays = 0;
+    for (int k = 0; k < ray_count; k++)
+        rays += look(refresh, lanes, lanes_wanted, refresh->directions[region * ray_count + k], visible);
+    store(refresh, cluster, lanes_wanted, region, visible);
+    return rays;
+}
+
+/* Members whose mean is not complete. */
+static uint32_t unfinished(const struct tl_refresh *refresh, const struct tl_cluster *cluster)
+{
+    uint32_t wanted = cluster->members;
+    for (int i = 0; i < TL_CLUSTER; i++)
+        if (cluster->rounds[i] >= refresh->request->params->rounds)
+            wanted &= ~(1u << i);
+    return wanted;
+}
+
+static size_t average_all(const struct tl_refresh *refresh, struct tl_cluster cluster)
+{
+    size_t rays = 0;
+    cluster.members = unfinished(refresh, &cluster);
+    if (!cluster.members)
+        return 0;
+    struct lanes lanes;
+    place_members(refresh, &cluster, &lanes);
+    for (int i = 0; i < refresh->request->regions->count; i++) {
+        rays += trace_region(refresh, &cluster, &lanes, cluster.members, i);
+        cluster.stamps[i] = refresh->frame;
+    }
+    for (int i = 0; i < TL_CLUSTER; i++)
+        cluster.rounds[i] = (uint16_t)(cluster.rounds[i] + (cluster.members >> i & 1));
+    return rays;
+}
+
+static size_t replace_some(const struct tl_refresh *refresh, const struct tl_cluster *cluster)
+{
+    const struct tl_regions *regions = refresh->request->regions;
+    int wanted = refresh->request->params->refresh;
+    bool selected[TL_REGIONS_MAX] = {0};
+    struct lanes lanes;
+    size_t rays = 0;
+    place_members(refresh, cluster, &lanes);
+    if (wanted == 0 || wanted >= regions->count) {
+        memset(selected, true, sizeof selected);
+    } else {
+        float needs[TL_REGIONS_MAX];
+        measure_needs(refresh, cluster, &lanes, needs);
+        select_regions(needs, regions->count, wanted, selected);
+    }
+    for (int i = 0; i < regions->count; i++) {
+        uint32_t lanes_wanted = selected[i] ? cluster->members : cluster->fresh;
+        if (!lanes_wanted)
+            continue;
+        rays += trace_region(refresh, cluster, &lanes, lanes_wanted, i);
+        if (lanes_wanted == cluster->members)
+            cluster->stamps[i] = refresh->frame;
+    }
+    return rays;
+}
+
+size_t tl_cluster_refresh(const struct tl_refresh *refresh, const struct tl_cluster *cluster)
+{
+    return refresh->request->moved ? replace_some(refresh, cluster) : average_all(refresh, *cluster);
+}

@@ -1,0 +1,34 @@
+/* The rays of the visibility cache: one cluster of points at a time, all its members in one direction at
+ * once. Part of points.c. Threads: different clusters at the same time. */
+#ifndef TOILE_RENDER_VISIBILITY_REFRESH_H
+#define TOILE_RENDER_VISIBILITY_REFRESH_H
+
+#include "render/visibility/points.h"
+#include "render/visibility/sites.h"
+
+/* What every cluster's rays share in one update. */
+struct tl_refresh {
+    const struct tl_points_request *request;
+    size_t stride;            /* of values, and of the arrays by region */
+    const vec3s *directions;  /* [regions][params->rays]: jittered, world */
+    const vec3s *centres;     /* [regions]: world */
+    const float *importances; /* [regions] */
+    float offset_m;           /* where rays start above their surface */
+    uint32_t frame;           /* counts updates, from 1 */
+};
+
+/* A cluster in use. */
+struct tl_cluster {
+    const struct tl_site *sites; /* TL_CLUSTER of them */
+    uint32_t members;            /* bit i: site i is visible */
+    uint32_t fresh;              /* bit i: ... and holds nothing of use yet: every region is traced */
+    uint16_t *values;            /* [TL_CLUSTER][stride] */
+    uint16_t *rounds;            /* [TL_CLUSTER]: frames at rest that are averaged in the values; 0: none */
+    uint32_t *stamps;            /* [stride]: frame when each region was last traced */
+};
+
+/* In motion: traces the regions that the cluster needs most and replaces their values; fresh members get all.
+ * At rest: traces all regions and averages. Returns the number of rays. */
+size_t tl_cluster_refresh(const struct tl_refresh *refresh, const struct tl_cluster *cluster);
+
+#endif

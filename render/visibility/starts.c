@@ -1,0 +1,68 @@
+#include "render/visibility/starts.h"
+
+#include "config/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define BLOCK 1024 /* samples that are hashed in one go, so that the sum does not depend on threads */
+
+static vec3s start_of(const struct tl_points_request *request, const tl_sample *sample, float offset_m)
+{
+    uint32_t numbers[3];
+    size_t index;
+    const tl_surface *surface =
+        tl_triangle_find(request->ranges, sample->triangle & ~TL_SAMPLE_BACK, numbers, &index);
+    bool back = sample->triangle & TL_SAMPLE_BACK;
+    vec3s corners[3], normals[3];
+    for (int i = 0; i < 3; i++) {
+        corners[i] = surface->positions[numbers[i]];
+        normals[i] = surface->normals[numbers[i]];
+        if (back)
+            normals[i] = glms_vec3_negate(normals[i]);
+    }
+    vec3s point = tl_smooth_point(sample->point, corners, normals, sample->weights);
+    return glms_vec3_add(point, glms_vec3_scale(sample->smooth, offset_m));
+}
+
+static uint64_t mix(uint64_t hash, vec3s point)
+{
+    for (int i = 0; i < 3; i++) {
+        uint32_t bits;
+        memcpy(&bits, &point.raw[i], sizeof bits);
+        hash = (hash ^ bits) * 0x9e3779b97f4a7c15ull;
+        hash ^= hash >> 32;
+    }
+    return hash;
+}
+
+void tl_starts_make(const struct tl_points_request *request, struct tl_starts *out)
+{
+    size_t count = request->samples->count, block_count = (count + BLOCK - 1) / BLOCK;
+    float offset_m = tl_trace_offset(request->trace);
+    if (count > out->capacity) {
+        out->capacity = count + count / 4;
+        free(out->points);
+        out->points = TL_NEW_ARRAY(vec3s, out->capacity);
+    }
+    uint64_t *hashes = TL_NEW_ARRAY(uint64_t, block_count);
+#pragma omp parallel for schedule(static)
+    for (size_t block = 0; block < block_count; block++) {
+        size_t end = (block + 1) * BLOCK < count ? (block + 1) * BLOCK : count;
+        for (size_t i = block * BLOCK; i < end; i++) {
+            const tl_sample *sample = &request->samples->items[i];
+            out->points[i] = start_of(request, sample, offset_m);
+            hashes[block] = mix(hashes[block] + sample->texel, out->points[i]);
+        }
+    }
+    out->samples = count;
+    for (size_t block = 0; block < block_count; block++)
+        out->samples = (out->samples ^ hashes[block]) * 0x9e3779b97f4a7c15ull;
+    free(hashes);
+}
+
+void tl_starts_release(struct tl_starts *starts)
+{
+    free(starts->points);
+    *starts = (struct tl_starts){0};
+}

@@ -1,0 +1,70 @@
+#!/usr/bin/env bash
+# What measures light writes what it says: bench, trade and their refusals, on a scene small enough for seconds.
+# Figures are not judged here (time never is; errors have their own tests), only that they are there and finite.
+set -eu
+room=$(mktemp -d)
+trap 'rm -rf "$room"' EXIT
+cd "$room"
+small="--size 96x96 --set cloth.edge_m=0.06 --quiet"
+
+check() { # NAME COMMAND...
+    local name=$1
+    shift
+    "$@" || { echo "FAILED $name"; exit 1; }
+    echo "ok     $name"
+}
+refused() { # MESSAGE COMMAND...
+    local message=$1
+    shift
+    "$@" 2>refusal && return 1
+    [ $? -eq 2 ] && grep -q -- "$message" refusal
+}
+
+check "trade without a folder" refused "add -o FOLDER" $TOILE trade --quick
+check "trade along nothing known" refused "expected light" $TOILE trade --axis wind -o measured
+check "bench of nothing" refused "expected a topic" $TOILE bench
+check "stability of nothing known" refused "expected a topic" $TOILE stability wind
+
+check "trade" $TOILE trade $small --quick -o measured
+check "both files" test -s measured/trade.csv -a -s measured/report.html
+check "nothing else" test "$(ls measured | wc -l)" -eq 2
+if command -v python3 >/dev/null; then
+    check "finite numbers in every row" python3 - <<'PYTHON'
+import csv, math
+rows = list(csv.DictReader(open("measured/trade.csv")))
+assert len(rows) >= 10, len(rows)
+for row in rows:
+    assert None not in row and None not in row.values(), row
+    for key in ("cpu_ms_per_frame", "total_bytes", "relative_rmse", "mean_flip", "covered_pixels"):
+        assert math.isfinite(float(row[key])) and float(row[key]) >= 0, (key, row)
+    assert float(row["total_bytes"]) > 0 and int(row["covered_pixels"]) > 500, row
+assert {"moving", "rest"} == {row["state"] for row in rows}
+PYTHON
+    check "a report that is well formed, whole and alone" python3 - <<'PYTHON'
+import re, xml.etree.ElementTree as tree
+text = open("measured/report.html").read()
+root = tree.fromstring(text)
+assert any(e.get("class") == "plot" for e in root.iter("svg"))
+assert any(e.get("src", "").startswith("data:image/png;base64,") for e in root.iter("img"))
+assert not list(root.iter("script")) and not re.search(r'(src|href)="(?!data:)', text)
+assert "nan" not in text.lower().replace("nanmean", "") or not re.search(r'[ "(]-?nan[ ",)]', text)
+PYTHON
+    check "bench --json" sh -c "$TOILE bench light $small --json | python3 -c '
+import json, math, sys
+bench = json.load(sys.stdin)
+for key in (\"time_ratio\", \"error_ratio\", \"flip_ratio\"):
+    assert math.isfinite(bench[key]) and bench[key] > 0, key
+assert bench[\"mean_step_m\"] > 5e-4, \"the cloth stands still\"
+assert len(bench[\"rows\"]) >= 5'"
+else
+    echo "skipped: files are not parsed: python3 is absent"
+fi
+
+# Ctrl-C in the middle: exit status 130, and what was measured is there.
+$TOILE trade $small -o stopped & trade=$!
+sleep 8
+kill -INT $trade
+status=0
+wait $trade || status=$?
+check "interrupted: status 130" test $status -eq 130
+check "interrupted: what was measured is kept" test "$(wc -l <stopped/trade.csv)" -ge 2 -a -s stopped/report.html

@@ -1,0 +1,485 @@
+#include "render/visibility/points.h"
+
+#include "config/memory.h"
+#include "render/visibility/maps.h"
+
+#include "shapes.h"
+#include "testing.h"
+
+#include <omp.h>
+#include <string.h>
+
+/* A folded sheet over a sphere on the ground, in an environment of a few regions, with one sample in the
+ * middle of every triangle of sheet and ground. */
+struct stage {
+    struct test_shape sheet, sphere;
+    struct tl_casters casters;
+    struct tl_ground ground;
+    tl_surface shapes[2];
+    const tl_surface *all[3];
+    struct tl_triangle_ranges ranges;
+    tl_cube cube;
+    struct tl_regions regions;
+    struct tl_samples samples;
+    tl_trace *trace;
+    tl_points *points;
+    struct tl_light_params params;
+    struct tl_points_request request;
+};
+
+static vec3s smooth_sky(vec3s d)
+{
+    float light = 1 + 0.6f * d.y + 0.3f * d.x * d.z;
+    return (vec3s){{light, light, 0.5f * light}};
+}
+
+static tl_cube make_cube(vec3s (*radiance)(vec3s direction))
+{
+    tl_cube cube = tl_cube_create(16);
+    for (int i = 0; i < 6 * 256; i++) {
+        float s = ((float)(i % 16) + 0.5f) / 16, t = ((float)(i / 16 % 16) + 0.5f) / 16;
+        vec3s light = radiance(glms_vec3_normalize(tl_cube_direction(i / 256, s, t)));
+        memcpy(cube.texels + 3 * (size_t)i, light.raw, sizeof light);
+    }
+    return cube;
+}
+
+/* Seen from the side that faces the front of the triangle, or its back. */
+static void add_sample(struct stage *stage, uint32_t triangle, bool back)
+{
+    uint32_t corners[3];
+    size_t index;
+    const tl_surface *surface = tl_triangle_find(&stage->ranges, triangle, corners, &index);
+    tl_sample *sample = &stage->samples.items[stage->samples.count];
+    *sample = (tl_sample){.texel = (uint32_t)stage->samples.count++,
+                          .triangle = triangle | (back ? TL_SAMPLE_BACK : 0),
+                          .weights = {0.5f, 0.3f, 0.2f},
+                          .cover = 1,
+                          .glossiness = 0.5f,
+                          .diffuse = {{1, 1, 1}},
+                          .specular = {{1, 1, 1}}};
+    for (int i = 0; i < 3; i++) {
+        vec3s normal = surface->normals[corners[i]];
+        sample->point =
+            glms_vec3_add(sample->point, glms_vec3_scale(surface->positions[corners[i]], sample->weights[i]));
+        sample->normal = glms_vec3_add(
+            sample->normal, glms_vec3_scale(normal, back ? -sample->weights[i] : sample->weights[i]));
+    }
+    sample->normal = sample->smooth = sample->mirror = glms_vec3_normalize(sample->normal);
+}
+
+static void make_samples(struct stage *stage)
+{
+    uint32_t sheet = stage->ranges.first[1], ground = stage->ranges.first[2], end = stage->ranges.first[3];
+    stage->samples.count = 0;
+    stage->samples.capacity = 2 * end;
+    free(stage->samples.items);
+    stage->samples.items = TL_NEW_ARRAY(tl_sample, stage->samples.capacity);
+    for (uint32_t i = 0; i < sheet; i++)
+        add_sample(stage, i, i % 7 == 0);
+    for (uint32_t i = ground; i < end; i++)
+        add_sample(stage, i, false);
+    stage->samples.width = 64;
+    stage->samples.height = ((int)stage->samples.count + 63) / 64;
+}
+
+/* The sheet's waves travel with `phase`. */
+static void move_sheet(struct stage *stage, float phase)
+{
+    tl_mesh *mesh = &stage->sheet.mesh;
+    for (size_t i = 0; i < mesh->vertex_count; i++) {
+        vec3s *p = &mesh->positions[i];
+        float k = 9, x = p->x + phase, dx = 0.12f * k * cosf(k * x) * cosf(k * p->z);
+        float dz = -0.12f * k * sinf(k * x) * sinf(k * p->z);
+        p->y = 0.9f + 0.12f * sinf(k * x) * cosf(k * p->z);
+        mesh->normals[i] = glms_vec3_normalize((vec3s){{-dx, 1, -dz}});
+    }
+    stage->sheet.surface.motion_revision++;
+}
+
+static void refresh_scene(struct stage *stage)
+{
+    tl_error error = {0};
+    stage->shapes[0] = stage->sheet.surface;
+    stage->shapes[1] = stage->sphere.surface;
+    assert_ok(tl_trace_update(stage->trace, stage->shapes, 2, &error), error);
+    tl_triangle_ranges_make(stage->all, 3, &stage->ranges);
+    make_samples(stage);
+}
+
+static void use_regions(struct stage *stage, int count)
+{
+    stage->regions = (struct tl_regions){0};
+    tl_regions_cut_sphere(&stage->cube, count, &stage->regions);
+    stage->request.regions_revision++;
+}
+
+static void stage_open(struct stage *stage, int region_count)
+{
+    tl_error error = {0};
+    *stage = (struct stage){.params = *(const struct tl_light_params *)tl_light_options.defaults,
+                            .cube = make_cube(smooth_sky),
+                            .trace = tl_trace_create(&error),
+                            .points = tl_points_create()};
+    stage->sheet = test_sheet(0.9f, 0.6f, 0.12f, 1, 20);
+    stage->sphere = test_sphere((vec3s){{0.1f, 0.4f, 0}}, 0.35f, 12);
+    test_shape_refresh(&stage->sheet);
+    test_shape_refresh(&stage->sphere);
+    stage->shapes[0] = stage->sheet.surface;
+    stage->shapes[1] = stage->sphere.surface;
+    assert_ok(tl_casters_measure(stage->shapes, 2, &stage->casters, &error), error);
+    tl_ground_make(&stage->casters, &stage->ground);
+    stage->all[0] = &stage->shapes[0];
+    stage->all[1] = &stage->shapes[1];
+    stage->all[2] = &stage->ground.surface;
+    move_sheet(stage, 0);
+    stage->params.rays = 1;
+    stage->params.refresh = 0;
+    stage->params.repair = 0;
+    stage->params.rounds = 4096;
+    stage->request = (struct tl_points_request){.trace = stage->trace,
+                                                .ranges = &stage->ranges,
+                                                .samples = &stage->samples,
+                                                .regions = &stage->regions,
+                                                .shapes_revision = 1,
+                                                .ground = &stage->ground,
+                                                .params = &stage->params,
+                                                .moved = true};
+    refresh_scene(stage);
+    use_regions(stage, region_count);
+}
+
+static void stage_close(struct stage *stage)
+{
+    tl_points_destroy(&stage->points);
+    assert_null(stage->points);
+    tl_trace_destroy(&stage->trace);
+    tl_regions_release(&stage->regions);
+    tl_cube_release(&stage->cube);
+    tl_triangle_ranges_release(&stage->ranges);
+    free(stage->samples.items);
+    test_shape_release(&stage->sheet);
+    test_shape_release(&stage->sphere);
+}
+
+static void step(struct stage *stage, bool moved)
+{
+    stage->request.moved = moved;
+    stage->request.round = moved ? 0 : stage->request.round + 1;
+    tl_points_update(stage->points, &stage->request);
+}
+
+static float value_at(const struct stage *stage, size_t sample, int tap, int region)
+{
+    size_t stride;
+    const uint16_t *values = tl_points_values(stage->points, &stride);
+    const struct tl_taps *taps = tl_points_taps(stage->points) + sample;
+    return (float)values[taps->point[tap] * stride + (size_t)region] / TL_VISIBILITY_ONE;
+}
+
+/* Visibility of a region at a sample's corner by brute force: rays from the vertex over the region's light,
+ * as many as they are asked for. The starting point and the lower limit are the cache's own definition. */
+static float true_value(const struct stage *stage, size_t sample, int corner, int region, int ray_count)
+{
+    const tl_sample *s = &stage->samples.items[sample];
+    uint32_t corners[3];
+    size_t index;
+    const tl_surface *surface =
+        tl_triangle_find(&stage->ranges, s->triangle & ~TL_SAMPLE_BACK, corners, &index);
+    vec3s normal = surface->normals[corners[corner]];
+    if (s->triangle & TL_SAMPLE_BACK)
+        normal = glms_vec3_negate(normal);
+    vec3s origin = glms_vec3_add(surface->positions[corners[corner]],
+                                 glms_vec3_scale(normal, tl_trace_offset(stage->trace)));
+    float seen = 0;
+    for (int i = 0; i < ray_count; i++) {
+        float u = ((float)i + 0.5f) / (float)ray_count, v = fmodf(0.618034f * (float)i, 1);
+        vec3s direction = tl_turn_direction(tl_region_direction(&stage->regions, region, u, v),
+                                            stage->request.environment_yaw);
+        float cosine = glms_vec3_dot(direction, normal);
+        vec3s ahead = glms_vec3_sub(direction, glms_vec3_scale(normal, cosine < 0 ? 2 * cosine : 0));
+        if (cosine > -0.2924f && !tl_trace_occluded(stage->trace, origin, ahead, 0, INFINITY))
+            seen += tl_ground_visibility(&stage->ground, origin, direction);
+    }
+    return seen / (float)ray_count;
+}
+
+/* Root mean square of the difference to brute force, over some samples, all corners and regions. */
+static double measure_error(const struct stage *stage, int ray_count)
+{
+    double sum = 0;
+    size_t count = 0;
+    for (size_t s = 0; s < stage->samples.count; s += 23)
+        for (int corner = 0; corner < 3; corner++)
+            for (int i = 0; i < stage->regions.count; i++, count++) {
+                double difference = (double)value_at(stage, s, corner, i) -
+                                    (double)true_value(stage, s, corner, i, ray_count);
+                sum += difference * difference;
+            }
+    return sqrt(sum / (double)count);
+}
+
+/* One ray of a region that is half seen is wrong by 1/2; the mean of n even ones by less than 1 / (2 sqrt n).
+ * Regions are seen in part at every edge: with 24 of them about a third. */
+static void values_converge_to_brute_force(void **state)
+{
+    (void)state;
+    struct stage stage;
+    stage_open(&stage, 24);
+    step(&stage, true);
+    double one = measure_error(&stage, 256);
+    assert_true(one > 0.05 && one < 0.35);
+    for (int i = 0; i < 64; i++)
+        step(&stage, false);
+    double many = measure_error(&stage, 256);
+    assert_true(many < one / 8);
+    assert_true(many < 0.02);
+
+    stage.params.rays = 64; /* the same in one frame */
+    step(&stage, true);
+    assert_true(measure_error(&stage, 256) < 0.02);
+    struct tl_points_report report = tl_points_report(stage.points);
+    assert_true(report.rays > 64 * report.visible_points);
+    assert_true(report.disagreement > 0.1 && report.disagreement <= 1);
+    stage_close(&stage);
+}
+
+static void taps_are_the_samples_corners(void **state)
+{
+    (void)state;
+    struct stage stage;
+    size_t stride;
+    stage_open(&stage, 20);
+    step(&stage, true);
+    tl_points_values(stage.points, &stride);
+    assert_int_equal(stride, 32);
+    const struct tl_taps *taps = tl_points_taps(stage.points);
+    struct tl_points_report report = tl_points_report(stage.points);
+    for (size_t i = 0; i < stage.samples.count; i++) {
+        float sum = 0;
+        for (int t = 0; t < TL_TAPS; t++) {
+            assert_true(taps[i].point[t] < report.points);
+            sum += taps[i].weight[t];
+        }
+        assert_near(sum, 1, 1e-6);
+        for (int region = 20; region < 32; region++)
+            assert_true(value_at(&stage, i, 0, region) == 0);
+    }
+    assert_true(report.visible_points <= report.points);
+    assert_true(tl_points_bytes(stage.points) > report.points * stride * sizeof(uint16_t));
+    stage_close(&stage);
+}
+
+/* Everything turns black: who still sees a region has not been traced since. */
+static void every_region_has_its_turn(void **state)
+{
+    (void)state;
+    struct stage stage;
+    stage_open(&stage, 96);
+    stage.params.refresh = 12;
+    step(&stage, true);
+    struct test_shape box = test_sphere((vec3s){{0, 0, 0}}, 50, 8);
+    test_shape_refresh(&box);
+    tl_error error = {0};
+    const tl_surface dark[3] = {stage.shapes[0], stage.shapes[1], box.surface};
+    assert_ok(tl_trace_update(stage.trace, dark, 3, &error), error);
+    for (int i = 0; i < 2 * 96 / 12 + 96 / 12; i++)
+        step(&stage, true);
+    struct tl_points_report report = tl_points_report(stage.points);
+    assert_true(report.rays <= 12 * report.visible_points);
+    for (size_t s = 0; s < stage.samples.count; s++)
+        for (int region = 0; region < 96; region++)
+            for (int corner = 0; corner < 3; corner++)
+                if (value_at(&stage, s, corner, region) > 0) {
+                    /* Only what lies too low to be asked may be old. */
+                    uint32_t corners[3];
+                    size_t index;
+                    const tl_sample *sample = &stage.samples.items[s];
+                    const tl_surface *surface =
+                        tl_triangle_find(&stage.ranges, sample->triangle & ~TL_SAMPLE_BACK, corners, &index);
+                    float sign = sample->triangle & TL_SAMPLE_BACK ? -1 : 1;
+                    float cosine = sign * glms_vec3_dot(surface->normals[corners[corner]],
+                                                        stage.regions.items[region].direction);
+                    assert_true(cosine < -0.29f);
+                }
+    test_shape_release(&box);
+    stage_close(&stage);
+}
+
+/* After motion the values are those of a cache that never saw the past; before, they are not. */
+static void motion_replaces(void **state)
+{
+    (void)state;
+    struct stage old, new;
+    stage_open(&old, 24);
+    stage_open(&new, 24);
+    for (int i = 0; i < 8; i++)
+        step(&old, i == 0);
+    struct stage *both[] = {&old, &new};
+    for (int i = 0; i < 2; i++) {
+        move_sheet(both[i], 0.3f);
+        refresh_scene(both[i]);
+        both[i]->params.rays = 16;
+    }
+    double before = measure_error(&old, 64);
+    step(&old, true);
+    step(&new, true);
+    double after = measure_error(&old, 64), fresh = measure_error(&new, 64);
+    assert_true(before > 3 * after);
+    assert_near(after, fresh, 0.2 * fresh); /* the same number of rays, other ones */
+    stage_close(&old);
+    stage_close(&new);
+}
+
+/* The environment turns by a right angle: carried over, values are far nearer to the truth than before,
+ * though hardly a ray has been traced; and other regions of the same sky take them over. */
+static void values_follow_a_turn_and_new_regions(void **state)
+{
+    (void)state;
+    struct stage stage;
+    stage_open(&stage, 96);
+    stage.params.rays = 16;
+    step(&stage, true);
+    stage.params.refresh = 1;
+    stage.request.environment_yaw = (float)M_PI / 2;
+    double before = measure_error(&stage, 32);
+    step(&stage, true);
+    double turned = measure_error(&stage, 32);
+    /* The nearest of 96 regions is half a region off, 0.09 rad: edges of shadows stay wrong by that much. */
+    assert_true(turned < 0.7 * before);
+    tl_regions_release(&stage.regions);
+    use_regions(&stage, 64);
+    step(&stage, true);
+    double other = measure_error(&stage, 32);
+    assert_true(other < before);
+    stage_close(&stage);
+}
+
+static void results_do_not_depend_on_threads(void **state)
+{
+    (void)state;
+    int threads = omp_get_max_threads();
+    struct stage one, many;
+    stage_open(&one, 48);
+    stage_open(&many, 48);
+    one.params.refresh = many.params.refresh = 8;
+    one.params.repair = many.params.repair = 0.1f;
+    for (int i = 0; i < 8; i++) {
+        omp_set_num_threads(1);
+        move_sheet(&one, 0.01f * (float)i);
+        refresh_scene(&one);
+        step(&one, i < 5);
+        omp_set_num_threads(4);
+        move_sheet(&many, 0.01f * (float)i);
+        refresh_scene(&many);
+        step(&many, i < 5);
+    }
+    omp_set_num_threads(threads);
+    size_t stride, other;
+    const uint16_t *a = tl_points_values(one.points, &stride), *b = tl_points_values(many.points, &other);
+    assert_int_equal(stride, other);
+    assert_int_equal(tl_points_report(one.points).points, tl_points_report(many.points).points);
+    assert_memory_equal(a, b, tl_points_report(one.points).points * stride * sizeof *a);
+    assert_memory_equal(tl_points_taps(one.points), tl_points_taps(many.points),
+                        one.samples.count * sizeof(struct tl_taps));
+    stage_close(&one);
+    stage_close(&many);
+}
+
+/* A sun of `radius` rad, its places on a spiral of equal areas. */
+static struct tl_suns make_sun(vec3s direction, float radius)
+{
+    struct tl_suns suns = {.count = 1, .items = {{.radius = radius, .sample_count = TL_SUN_SAMPLES_MAX}}};
+    struct tl_sun *sun = &suns.items[0];
+    vec3s right = glms_vec3_normalize(glms_vec3_cross(direction, (vec3s){{0, 1, 0.1f}}));
+    vec3s up = glms_vec3_cross(right, direction);
+    sun->direction = direction;
+    for (int i = 0; i < TL_SUN_SAMPLES_MAX; i++) {
+        float r = radius * sqrtf((float)i / (TL_SUN_SAMPLES_MAX - 1)), angle = 2.39996f * (float)i;
+        vec3s across = glms_vec3_add(glms_vec3_scale(right, cosf(angle)), glms_vec3_scale(up, sinf(angle)));
+        sun->samples[i] = glms_vec3_normalize(glms_vec3_add(direction, glms_vec3_scale(across, r)));
+    }
+    return suns;
+}
+
+/* The edge of a square plate throws a penumbra on a floor: samples in a line across it see what part of the
+ * sun stands above the edge. One row of the image; brute force goes to the same sixteen places. */
+static void suns_have_their_penumbrae(void **state)
+{
+    (void)state;
+    enum { SIDE = 64 };
+    tl_error error = {0};
+    struct stage stage;
+    stage_open(&stage, 6);
+    struct test_shape floor = test_square((vec3s){{0, 0, 0}}, (vec3s){{1, 0, 0}}, (vec3s){{0, 1, 0}}, 2, 1);
+    struct test_shape plate =
+        test_square((vec3s){{-1, 0.5f, 0}}, (vec3s){{1, 0, 0}}, (vec3s){{0, 1, 0}}, 1, 1);
+    test_shape_refresh(&floor);
+    test_shape_refresh(&plate);
+    const tl_surface shapes[2] = {floor.surface, plate.surface};
+    const tl_surface *all[2] = {&shapes[0], &shapes[1]};
+    assert_ok(tl_trace_update(stage.trace, shapes, 2, &error), error);
+    tl_triangle_ranges_make(all, 2, &stage.ranges);
+    struct tl_suns suns = make_sun((vec3s){{0, 1, 0}}, 0.2f); /* a penumbra of 2 x 0.1 m */
+    stage.request.suns = &suns;
+    stage.request.ground = NULL;
+    stage.request.shapes_revision++;
+    free(stage.samples.items);
+    stage.samples = (struct tl_samples){.width = SIDE, .height = SIDE, .count = SIDE * SIDE};
+    stage.samples.items = TL_NEW_ARRAY(tl_sample, SIDE * SIDE);
+    for (uint32_t i = 0; i < SIDE * SIDE; i++) {
+        float x = ((float)(i % SIDE) + 0.5f) / SIDE - 0.5f, z = ((float)(i / SIDE) + 0.5f) / SIDE - 0.5f;
+        float u = 0.5f + x / 4,
+              v = 0.5f + z / 4; /* the square's diagonal runs from the right back to the left */
+        bool second = u + v > 1;
+        stage.samples.items[i] = (tl_sample){.texel = i,
+                                             .triangle = second,
+                                             .weights = {1 / 3.0f, 1 / 3.0f, 1 / 3.0f},
+                                             .cover = 1,
+                                             .point = {{x, 0, z}},
+                                             .normal = {{0, 1, 0}},
+                                             .smooth = {{0, 1, 0}},
+                                             .mirror = {{0, 1, 0}}};
+    }
+    double errors[2] = {0};
+    for (int run = 0; run < 2; run++) {
+        for (int frame = 0; frame < (run ? 16 : 1); frame++)
+            step(&stage, run == 0);
+        const float *seen = tl_points_sun(stage.points, 0);
+        assert_non_null(seen);
+        assert_null(tl_points_sun(stage.points, 1));
+        for (int i = 0; i < SIDE * SIDE; i++) {
+            const tl_sample *sample = &stage.samples.items[i];
+            vec3s start = glms_vec3_add(sample->point, (vec3s){{0, tl_trace_offset(stage.trace), 0}});
+            float expected = 0;
+            for (int k = 0; k < TL_SUN_SAMPLES_MAX; k++)
+                expected += !tl_trace_occluded(stage.trace, start, suns.items[0].samples[k], 0, INFINITY);
+            double difference = (double)seen[i] - (double)expected / TL_SUN_SAMPLES_MAX;
+            errors[run] += difference * difference / (SIDE * SIDE);
+            if (fabsf(sample->point.x) > 0.1f)
+                assert_true(seen[i] == (sample->point.x > 0)); /* the core and the open */
+        }
+    }
+    /* One frame: nine of sixteen places where neighbours disagree, and one in the rest of the penumbra, which
+     * is a fifth of the image and so wide that neighbours agree in half of it: there the error is at most
+     * 1/2, on average a fifth. Sixteen rounds go to every place as often. */
+    assert_true(sqrt(errors[0]) < 0.2 * sqrt(0.2));
+    assert_true(sqrt(errors[1]) < 0.25 * sqrt(errors[0]));
+    test_shape_release(&floor);
+    test_shape_release(&plate);
+    stage_close(&stage);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(values_converge_to_brute_force),
+        cmocka_unit_test(taps_are_the_samples_corners),
+        cmocka_unit_test(every_region_has_its_turn),
+        cmocka_unit_test(motion_replaces),
+        cmocka_unit_test(values_follow_a_turn_and_new_regions),
+        cmocka_unit_test(suns_have_their_penumbrae),
+        cmocka_unit_test(results_do_not_depend_on_threads),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
