@@ -317,6 +317,7 @@ static bool run_reference(void *context, int level, tl_error *error)
         return false;
     tl_info("reference: %d replicates, %.3g million rays, standard error %.2g %%", report.replicates,
             1e-6 * (double)report.rays, 100 * report.standard_error);
+    renderer->standard_error = report.standard_error;
     tl_present_set_image(&renderer->present, renderer->gpu, &image);
     tl_image_release(&image);
     return true;
