@@ -4,6 +4,7 @@ add_library(toile_light STATIC
   env/emitters.c
   env/lobes.c
   light/compose.c
+  env/pour.c
   env/sun.c
   frame/view.c
   light/region_lights.c

@@ -94,6 +94,8 @@ void tl_renderer_destroy(tl_renderer **renderer)
     tl_regions_release(&(*renderer)->regions);
     tl_pems_release(&(*renderer)->pems);
     tl_lobes_release(&(*renderer)->lobes);
+    tl_slices_release(&(*renderer)->slices);
+    tl_slice_maps_release(&(*renderer)->slice_maps);
     tl_region_lights_release(&(*renderer)->lights);
     tl_surfaces_destroy(&(*renderer)->surfaces);
     tl_triangle_ranges_release(&(*renderer)->ranges);
@@ -123,6 +125,8 @@ static tl_bits scene_facts(const struct tl_render_settings *settings)
         facts |= TL_BIT(TL_SCENE_BLUR);
     if (!rays && tl_light_source(light) == TL_LIGHT_CHAIN)
         facts |= TL_BIT(TL_SCENE_CHAINS);
+    if (!rays && tl_light_source(light) == TL_LIGHT_SLICES)
+        facts |= TL_BIT(TL_SCENE_SLICES);
     if (rays || tl_light_needs_exact(light))
         facts |= TL_BIT(TL_SCENE_EXACT);
     return facts;
@@ -316,7 +320,8 @@ struct tl_render_memory tl_renderer_memory(const tl_renderer *renderer)
 {
     const struct tl_present *present = &renderer->present;
     struct tl_render_memory memory = {
-        .pems = tl_pems_bytes(&renderer->pems) + tl_lobes_bytes(&renderer->lobes),
+        .pems = tl_pems_bytes(&renderer->pems) + tl_lobes_bytes(&renderer->lobes) +
+                tl_slice_maps_bytes(&renderer->slice_maps),
         .maps = tl_shadow_maps_bytes(renderer->maps),
         .rays = tl_trace_bytes(renderer->trace) + tl_points_bytes(renderer->points),
         .targets = tl_target_bytes(&renderer->gbuffer.target) + tl_target_bytes(&renderer->lighting.target) +

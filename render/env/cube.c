@@ -1,6 +1,7 @@
 #include "render/env/cube.h"
 
 #include "config/memory.h"
+#include "render/env/pour.h"
 
 #include <assert.h>
 #include <math.h>
@@ -38,8 +39,7 @@ vec3s tl_cube_direction(int face, float s, float t)
     }
 }
 
-/* Where a direction meets the plane of a face (OpenGL 4.5, table 8.19). */
-static void project(int face, vec3s direction, float *s, float *t)
+void tl_cube_project(int face, vec3s direction, float *s, float *t)
 {
     float x = direction.x, y = direction.y, z = direction.z;
     const float sc[6] = {-z, z, x, x, x, -x}, tc[6] = {-y, -y, z, -z, -y, -y};
@@ -55,7 +55,7 @@ void tl_cube_locate(vec3s direction, int *face, float *s, float *t)
     float ax = fabsf(direction.x), ay = fabsf(direction.y), az = fabsf(direction.z);
     int axis = ax >= ay && ax >= az ? 0 : ay >= az ? 1 : 2;
     *face = 2 * axis + (direction.raw[axis] < 0);
-    project(*face, direction, s, t);
+    tl_cube_project(*face, direction, s, t);
 }
 
 /* Solid angle of the rectangle between the centre of a face at distance 1 and (u, v) on it, signed. */
@@ -112,8 +112,14 @@ int tl_cube_texel(int size, vec3s direction)
     return (face * size + y) * size + x;
 }
 
-/* Index of a texel that may lie one step over one border of its face: then the one that touches it there. */
-static int texel_across(int size, int face, int x, int y)
+vec3s tl_cube_texel_direction(int size, int texel)
+{
+    int x = texel % size, line = texel / size;
+    return glms_vec3_normalize(tl_cube_direction(line / size, ((float)x + 0.5f) / (float)size,
+                                                 ((float)(line % size) + 0.5f) / (float)size));
+}
+
+int tl_cube_texel_across(int size, int face, int x, int y)
 {
     if (x >= 0 && x < size && y >= 0 && y < size)
         return (face * size + y) * size + x;
@@ -141,7 +147,7 @@ struct tl_cube_taps tl_cube_taps(int size, vec3s direction)
         if (outside_x && outside_y)
             missing = i;
         else
-            taps.texel[i] = texel_across(size, face, tap_x, tap_y);
+            taps.texel[i] = tl_cube_texel_across(size, face, tap_x, tap_y);
     }
     if (missing >= 0) { /* three faces meet: the texel that does not exist is the mean of those that do */
         float share = taps.weight[missing] / 3;
@@ -239,196 +245,7 @@ static void average_cube(const tl_cube *source, tl_cube *target)
     }
 }
 
-/* Lat-long to cube: every source texel is poured into the cube texels that it covers. Where all its corners
- * lie in one it goes there whole; otherwise it is halved, down to cells of an eighth of a cube texel, which
- * are shared out by area. So nothing is missed, however thin the source texels are (at the poles), and each
- * keeps its exact solid angle. */
-#define CELLS_PER_TEXEL 8
-/* Corners say where a cell lies only while its sides are nearly straight. */
-#define TURN_CELLS_MIN 64
-/* Fixed blocks of rows, each with sums of its own, so that the result does not depend on the threads. */
-#define POUR_BLOCKS 4
-
-struct pour {
-    const tl_image *image;
-    int size;                  /* of the target cube */
-    int steps_x, steps_y;      /* per source texel, powers of two; the smallest cell has two */
-    int widest, highest;       /* steps of a cell that its corners may judge */
-    double *sin_phi, *cos_phi; /* [width * steps_x + 1] where phi = atan2(x, -z) */
-    double *y, *radius;        /* [height * steps_y + 1] of the unit sphere, radius from the axis */
-};
-
-struct cell {
-    int x0, y0, x1, y1; /* steps */
-    int corners[4];     /* target texel at (x0, y0), (x1, y0), (x0, y1), (x1, y1) */
-};
-
-static int steps_for(int texels, int wanted)
-{
-    int steps = 2;
-    while (texels * steps < wanted)
-        steps *= 2;
-    return steps;
-}
-
-static struct pour pour_create(const tl_image *image, int size)
-{
-    int turn = 4 * size * CELLS_PER_TEXEL; /* cells; four faces are one turn */
-    if (turn < TURN_CELLS_MIN)
-        turn = TURN_CELLS_MIN;
-    struct pour pour = {.image = image,
-                        .size = size,
-                        .steps_x = steps_for(image->width, 2 * turn),
-                        .steps_y = steps_for(image->height, turn)};
-    int columns = image->width * pour.steps_x, rows = image->height * pour.steps_y;
-    pour.widest = columns / TURN_CELLS_MIN;
-    pour.highest = 2 * rows / TURN_CELLS_MIN;
-    pour.sin_phi = TL_NEW_ARRAY(double, (size_t)columns + 1);
-    pour.cos_phi = TL_NEW_ARRAY(double, (size_t)columns + 1);
-    pour.y = TL_NEW_ARRAY(double, (size_t)rows + 1);
-    pour.radius = TL_NEW_ARRAY(double, (size_t)rows + 1);
-    for (int i = 0; i <= columns; i++) {
-        double phi = ((double)i / columns - 0.5) * 2 * M_PI;
-        pour.sin_phi[i] = sin(phi);
-        pour.cos_phi[i] = cos(phi);
-    }
-    for (int i = 0; i <= rows; i++) {
-        pour.y[i] = cos(M_PI * i / rows);
-        pour.radius[i] = sin(M_PI * i / rows);
-    }
-    return pour;
-}
-
-static void pour_release(struct pour *pour)
-{
-    free(pour->sin_phi);
-    free(pour->cos_phi);
-    free(pour->y);
-    free(pour->radius);
-    *pour = (struct pour){0};
-}
-
-static vec3s pour_direction(const struct pour *pour, int x, int y)
-{
-    double radius = pour->radius[y];
-    return (vec3s){
-        {(float)(radius * pour->sin_phi[x]), (float)pour->y[y], (float)(-radius * pour->cos_phi[x])}};
-}
-
-static int pour_texel(const struct pour *pour, int x, int y)
-{
-    return tl_cube_texel(pour->size, pour_direction(pour, x, y));
-}
-
-static void pour_whole(const struct pour *pour, const float *colour, const struct cell *cell, double share,
-                       double sum[4])
-{
-    double step = 2 * M_PI / ((double)pour->image->width * pour->steps_x);
-    double weight = share * (cell->x1 - cell->x0) * step * (pour->y[cell->y0] - pour->y[cell->y1]);
-    for (int c = 0; c < 3; c++)
-        sum[c] += weight * (double)colour[c];
-    sum[3] += weight;
-}
-
-/* Part of [centre - reach, centre + reach] that lies above the border. */
-static double share_above(double centre, double reach, double border)
-{
-    return fmin(fmax((centre + reach - border) / (2 * reach), 0), 1);
-}
-
-/* The smallest cell, taken for the box around it on the plane of its face. Borders of cube texels run along
- * lines of the map on four of the faces, so that sending it whole to where its centre lies would err the same
- * way for all cells of a column. */
-static void pour_smallest(const struct pour *pour, const float *colour, const struct cell *cell,
-                          double (*sums)[4])
-{
-    int face;
-    float s, t;
-    tl_cube_locate(pour_direction(pour, cell->x0 + 1, cell->y0 + 1), &face, &s, &t);
-    double reach_x = 0, reach_y = 0;
-    for (int i = 0; i < 4; i++) {
-        float corner_s, corner_t;
-        vec3s corner = pour_direction(pour, i & 1 ? cell->x1 : cell->x0, i & 2 ? cell->y1 : cell->y0);
-        project(face, corner, &corner_s, &corner_t);
-        reach_x = fmax(reach_x, pour->size * fabs((double)(corner_s - s)));
-        reach_y = fmax(reach_y, pour->size * fabs((double)(corner_t - t)));
-    }
-    double x = pour->size * (double)s, y = pour->size * (double)t;
-    int border_x = (int)(x + 0.5), border_y = (int)(y + 0.5);
-    double above_x = share_above(x, reach_x, border_x), above_y = share_above(y, reach_y, border_y);
-    for (int i = 0; i < 4; i++) {
-        double share = (i & 1 ? above_x : 1 - above_x) * (i & 2 ? above_y : 1 - above_y);
-        if (share > 0)
-            pour_whole(pour, colour, cell, share,
-                       sums[texel_across(pour->size, face, border_x - !(i & 1), border_y - !(i & 2))]);
-    }
-}
-
-static void pour_cell(const struct pour *pour, const float *colour, const struct cell *cell,
-                      double (*sums)[4])
-{
-    const int *corners = cell->corners;
-    int x0 = cell->x0, y0 = cell->y0, x1 = cell->x1, y1 = cell->y1;
-    bool uniform = corners[0] == corners[1] && corners[0] == corners[2] && corners[0] == corners[3];
-    if (uniform && x1 - x0 <= pour->widest && y1 - y0 <= pour->highest) {
-        pour_whole(pour, colour, cell, 1, sums[corners[0]]);
-    } else if (x1 - x0 == 2 && y1 - y0 == 2) {
-        pour_smallest(pour, colour, cell, sums);
-    } else if (x1 - x0 >= y1 - y0) {
-        int middle = (x0 + x1) / 2, top = pour_texel(pour, middle, y0), bottom = pour_texel(pour, middle, y1);
-        pour_cell(pour, colour, &(struct cell){x0, y0, middle, y1, {corners[0], top, corners[2], bottom}},
-                  sums);
-        pour_cell(pour, colour, &(struct cell){middle, y0, x1, y1, {top, corners[1], bottom, corners[3]}},
-                  sums);
-    } else {
-        int middle = (y0 + y1) / 2, left = pour_texel(pour, x0, middle), right = pour_texel(pour, x1, middle);
-        pour_cell(pour, colour, &(struct cell){x0, y0, x1, middle, {corners[0], corners[1], left, right}},
-                  sums);
-        pour_cell(pour, colour, &(struct cell){x0, middle, x1, y1, {left, right, corners[2], corners[3]}},
-                  sums);
-    }
-}
-
-static void pour_rows(const struct pour *pour, int begin, int end, double (*sums)[4])
-{
-    for (int row = begin; row < end; row++) {
-        const float *colour = tl_image_floats(pour->image) + 3 * (size_t)row * (size_t)pour->image->width;
-        int y0 = row * pour->steps_y, y1 = y0 + pour->steps_y;
-        struct cell cell = {0, y0, 0, y1, {0, pour_texel(pour, 0, y0), 0, pour_texel(pour, 0, y1)}};
-        for (int column = 0; column < pour->image->width; column++, colour += 3) {
-            cell.x0 = cell.x1;
-            cell.x1 += pour->steps_x;
-            cell.corners[0] = cell.corners[1];
-            cell.corners[2] = cell.corners[3];
-            cell.corners[1] = pour_texel(pour, cell.x1, y0);
-            cell.corners[3] = pour_texel(pour, cell.x1, y1);
-            pour_cell(pour, colour, &cell, sums);
-        }
-    }
-}
-
-static void average_latlong(const tl_image *image, tl_cube *target)
-{
-    struct pour pour = pour_create(image, target->size);
-    size_t texel_count = 6 * (size_t)target->size * (size_t)target->size;
-    double(*sums)[4] = tl_alloc(POUR_BLOCKS * texel_count, sizeof *sums);
-#pragma omp parallel for schedule(dynamic)
-    for (int block = 0; block < POUR_BLOCKS; block++)
-        pour_rows(&pour, image->height * block / POUR_BLOCKS, image->height * (block + 1) / POUR_BLOCKS,
-                  sums + (size_t)block * texel_count);
-    for (size_t i = 0; i < texel_count; i++) {
-        double total[4] = {0, 0, 0, 0};
-        for (size_t block = 0; block < POUR_BLOCKS; block++)
-            for (int c = 0; c < 4; c++)
-                total[c] += sums[block * texel_count + i][c];
-        for (size_t c = 0; c < 3; c++)
-            target->texels[3 * i + c] = (float)(total[c] / total[3]);
-    }
-    free(sums);
-    pour_release(&pour);
-}
-
-tl_cube tl_cube_from_environment(const tl_environment *environment, int size)
+tl_cube tl_cube_from_environment_with(const tl_environment *environment, int size, struct tl_pour *kept)
 {
     assert(environment->image.type == TL_IMAGE_F32 && environment->image.channels == 3);
     tl_cube target = tl_cube_create(size);
@@ -436,7 +253,15 @@ tl_cube tl_cube_from_environment(const tl_environment *environment, int size)
         tl_cube source = environment_as_cube(environment);
         average_cube(&source, &target);
     } else {
-        average_latlong(&environment->image, &target);
+        tl_pour_latlong(&environment->image, size, target.texels, kept);
     }
     return target;
+}
+
+tl_cube tl_cube_from_environment(const tl_environment *environment, int size)
+{
+    struct tl_pour pour = {0};
+    tl_cube cube = tl_cube_from_environment_with(environment, size, &pour);
+    tl_pour_release(&pour);
+    return cube;
 }

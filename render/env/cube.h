@@ -20,13 +20,23 @@ void tl_cube_release(tl_cube *cube);
 /* Area average of the environment over every texel (supersampled so that no source texel is missed: a single
  * bright texel keeps its energy within 1 %). */
 tl_cube tl_cube_from_environment(const tl_environment *environment, int size);
+/* The same, bit for bit, for one environment after the other: what depends on their size only is kept in
+ * `kept` (zeroed at first; tl_pour_release), which makes the next some fifty times as fast. */
+struct tl_pour;
+tl_cube tl_cube_from_environment_with(const tl_environment *environment, int size, struct tl_pour *kept);
 
 /* Direction (not normalised, largest component 1) of face coordinates s, t in [0, 1]; outside of that range
  * the plane of the face is continued. OpenGL 4.5, table 8.19 inverted. */
 vec3s tl_cube_direction(int face, float s, float t);
 void tl_cube_locate(vec3s direction, int *face, float *s, float *t);
-/* (face * size + y) * size + x of the texel that a direction lies in. */
+/* Where a direction meets the plane of a given face. */
+void tl_cube_project(int face, vec3s direction, float *s, float *t);
+/* The texel in a direction: (face * size + y) * size + x. */
 int tl_cube_texel(int size, vec3s direction);
+/* Towards the centre of that texel; unit. */
+vec3s tl_cube_texel_direction(int size, int texel);
+/* Texel (x, y) of a face, which may lie one step over its borders: then the one that touches it there. */
+int tl_cube_texel_across(int size, int face, int x, int y);
 
 /* World direction of a direction in the environment, which is turned by `yaw` (rad) about +Y,
  * counter-clockwise from above; -yaw takes it back. */

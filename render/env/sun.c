@@ -51,37 +51,17 @@ static float luminance_of(const float *colour)
     return 0.2126f * colour[0] + 0.7152f * colour[1] + 0.0722f * colour[2];
 }
 
-static vec3s texel_direction(int size, int texel)
-{
-    int x = texel % size, line = texel / size;
-    return glms_vec3_normalize(tl_cube_direction(line / size, ((float)x + 0.5f) / (float)size,
-                                                 ((float)(line % size) + 0.5f) / (float)size));
-}
-
 static double solid_angle(const struct search *search, int texel)
 {
     return (double)search->solid_angles[texel % (search->cube->size * search->cube->size)];
 }
 
-/* The texel one step away, over the borders of faces too. */
-static int neighbour(int size, int texel, int dx, int dy)
-{
-    int line = texel / size, face = line / size, x = texel % size + dx, y = line % size + dy;
-    if (x >= 0 && x < size && y >= 0 && y < size)
-        return (face * size + y) * size + x;
-    /* A point just over the border lies in the texel that touches it. */
-    float s = fminf(fmaxf((float)x + 0.5f, -0.25f), (float)size + 0.25f) / (float)size;
-    float t = fminf(fmaxf((float)y + 0.5f, -0.25f), (float)size + 0.25f) / (float)size;
-    tl_cube_locate(tl_cube_direction(face, s, t), &face, &s, &t);
-    x = (int)(s * (float)size);
-    y = (int)(t * (float)size);
-    return (face * size + (y < size ? y : size - 1)) * size + (x < size ? x : size - 1);
-}
-
-static int step(int size, int texel, int i)
+/* The i-th of the eight texels around one, over the borders of faces too. */
+static int neighbour(int size, int texel, int i)
 {
     static const int steps[8][2] = {{-1, -1}, {0, -1}, {1, -1}, {-1, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}};
-    return neighbour(size, texel, steps[i][0], steps[i][1]);
+    int line = texel / size;
+    return tl_cube_texel_across(size, line / size, texel % size + steps[i][0], line % size + steps[i][1]);
 }
 
 static void add_to_patch(struct search *search, int texel)
@@ -102,14 +82,14 @@ static void clear_patch(struct search *search)
 static bool flood(struct search *search, int peak, float least)
 {
     int size = search->cube->size;
-    vec3s centre = texel_direction(size, peak);
+    vec3s centre = tl_cube_texel_direction(size, peak);
     clear_patch(search);
     add_to_patch(search, peak);
     for (int next = 0; next < search->count; next++) {
-        if (glms_vec3_distance(texel_direction(size, search->patch[next]), centre) > (float)REACH_MAX)
+        if (glms_vec3_distance(tl_cube_texel_direction(size, search->patch[next]), centre) > (float)REACH_MAX)
             return false;
         for (int i = 0; i < 8; i++) {
-            int texel = step(size, search->patch[next], i);
+            int texel = neighbour(size, search->patch[next], i);
             if (!search->inside[texel] && search->luminance[texel] >= least)
                 add_to_patch(search, texel);
         }
@@ -117,7 +97,7 @@ static bool flood(struct search *search, int peak, float least)
     int bright = search->count;
     for (int next = 0; next < bright; next++)
         for (int i = 0; i < 8; i++) {
-            int texel = step(size, search->patch[next], i);
+            int texel = neighbour(size, search->patch[next], i);
             if (!search->inside[texel])
                 add_to_patch(search, texel);
         }
@@ -131,7 +111,7 @@ static vec3s surroundings(const struct search *search)
     int count = 0, size = search->cube->size;
     for (int k = 0; k < search->count; k++) {
         for (int i = 0; i < 8; i++) {
-            int texel = step(size, search->patch[k], i);
+            int texel = neighbour(size, search->patch[k], i);
             if (search->inside[texel])
                 continue;
             for (size_t c = 0; c < 3; c++)
@@ -173,15 +153,6 @@ static vec3s environment_direction(const tl_environment *environment, double x, 
     return (vec3s){{(float)(sin(theta) * sin(phi)), (float)cos(theta), (float)(-sin(theta) * cos(phi))}};
 }
 
-static bool in_patch(const struct search *search, vec3s direction)
-{
-    int size = search->cube->size, face;
-    float s, t;
-    tl_cube_locate(direction, &face, &s, &t);
-    int x = (int)(s * (float)size), y = (int)(t * (float)size);
-    return search->inside[(face * size + (y < size ? y : size - 1)) * size + (x < size ? x : size - 1)];
-}
-
 static void add_point(struct points *points, vec3s direction, double weight)
 {
     if (points->count == points->capacity) {
@@ -205,7 +176,7 @@ static void add_texel(const struct search *search, int x, int y, int side, float
             double density;
             vec3s direction = environment_direction(search->environment, x + (column + 0.5) / side,
                                                     y + (row + 0.5) / side, &density);
-            if (in_patch(search, direction))
+            if (search->inside[tl_cube_texel(search->cube->size, direction)])
                 add_point(points, direction, (double)excess * density / (side * side));
         }
     }
@@ -362,7 +333,7 @@ static bool take_sun(struct search *search, int peak, float depth, struct tl_sun
     if (luminance < SHARE_MIN * search->total)
         return false;
     struct points points =
-        see_points(search, texel_direction(search->cube->size, peak), luminance_of(around.raw));
+        see_points(search, tl_cube_texel_direction(search->cube->size, peak), luminance_of(around.raw));
     struct tl_sun sun = {.power = {{(float)power[0], (float)power[1], (float)power[2]}}};
     if (points.count > 0) {
         sun.direction = centroid(points.items, points.count);

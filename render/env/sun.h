@@ -23,10 +23,11 @@ struct tl_suns {
     struct tl_sun items[TL_SUNS_MAX];
 };
 
-/* Finds the suns of `cube` and removes them from it: the light of cube and suns together is what it was. A sun
- * is a connected patch, compact against the regions' size, that holds a share of all light worth its own rays;
- * what counts as such, and why, stands in sun.c. How much light it holds is the cube's; where within the patch
- * it comes from is read from `environment`, of which the cube was made and whose texels may be finer. */
+/* Finds the suns of `cube` and removes them from it: the light of cube and suns together is what it was. A
+ * sun is a connected patch, compact against the regions' size, that holds a share of all light worth its own
+ * rays; what counts as such, and why, stands in sun.c. How much light it holds is the cube's; where within
+ * the patch it comes from is read from `environment`, of which the cube was made and whose texels may be
+ * finer. */
 void tl_suns_take(tl_cube *cube, const tl_environment *environment, struct tl_suns *out);
 
 #endif

@@ -41,6 +41,7 @@ enum tl_resource {
     TL_MADE_LOBE,
     TL_MADE_PEMS,
     TL_MADE_LOBES,
+    TL_MADE_SLICES,
     TL_MADE_LIGHTS, /* regions as lights */
     TL_MADE_SURFACES,
     TL_MADE_DEPTHS,
@@ -64,6 +65,7 @@ enum tl_scene_fact {
     TL_SCENE_RAYS,    /* the back-end of rays lights the image */
     TL_SCENE_PASSES,  /* passes on the GPU do */
     TL_SCENE_CHAINS,  /* ... and read filter chains */
+    TL_SCENE_SLICES,  /* ... and read exact slices of the regions */
     TL_SCENE_EXACT,   /* exact light of the whole environment is read */
     TL_SCENE_BLUR,    /* shadow maps are variance maps */
     TL_SCENE_REFERENCE,
@@ -109,6 +111,8 @@ struct tl_renderer {
     uint64_t regions_revision;
     struct tl_pems pems;
     struct tl_lobes lobes;
+    struct tl_slices slices;
+    struct tl_slice_maps slice_maps;
     struct tl_region_lights lights;
     tl_surfaces *surfaces;
     size_t surface_count; /* with the ground, which comes last */

@@ -38,14 +38,16 @@ static uint64_t camera_signature(const struct tl_camera *camera)
 
 static uint64_t light_signature(const struct tl_light_params *light)
 {
-    uint64_t hash = MIX(MIX(FNV_OFFSET, light->method), light->lobe);
+    uint64_t hash = MIX(MIX(MIX(FNV_OFFSET, light->method), light->lobe), light->prefilter);
     hash = MIX(MIX(MIX(hash, light->visibility), light->composition), light->reflect_scene);
     return MIX(MIX(MIX(hash, light->depth_bias_m), light->min_variance), light->bleed_reduction);
 }
 
 static uint64_t maps_signature(const struct tl_light_params *light)
 {
-    uint64_t hash = MIX(MIX(FNV_OFFSET, light->visibility), light->map_size);
+    bool in_passes =
+        tl_light_source(light) == TL_LIGHT_CHAIN; /* so many maps to an array as PEMs to a pass */
+    uint64_t hash = MIX(MIX(MIX(FNV_OFFSET, light->visibility), light->map_size), in_passes);
     return MIX(MIX(hash, light->blur_m), light->jitter);
 }
 

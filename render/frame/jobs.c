@@ -34,6 +34,7 @@ const char *const tl_resource_names[] = {
     [TL_MADE_LOBE] = "lobe table",
     [TL_MADE_PEMS] = "PEMs",
     [TL_MADE_LOBES] = "lobes",
+    [TL_MADE_SLICES] = "slices",
     [TL_MADE_LIGHTS] = "regions as lights",
     [TL_MADE_SURFACES] = "surfaces",
     [TL_MADE_DEPTHS] = "depths",
@@ -49,11 +50,17 @@ const char *const tl_resource_names[] = {
 };
 
 const char *const tl_scene_fact_names[] = {
-    [TL_SCENE_RASTER] = "drawn image",  [TL_SCENE_SHADOWS] = "shadows",
-    [TL_SCENE_MAPS] = "shadow maps",    [TL_SCENE_RAYS] = "rays",
-    [TL_SCENE_PASSES] = "light passes", [TL_SCENE_CHAINS] = "filter chains",
-    [TL_SCENE_EXACT] = "exact light",   [TL_SCENE_BLUR] = "variance maps",
-    [TL_SCENE_REFERENCE] = "reference", NULL,
+    [TL_SCENE_RASTER] = "drawn image",
+    [TL_SCENE_SHADOWS] = "shadows",
+    [TL_SCENE_MAPS] = "shadow maps",
+    [TL_SCENE_RAYS] = "rays",
+    [TL_SCENE_PASSES] = "light passes",
+    [TL_SCENE_CHAINS] = "filter chains",
+    [TL_SCENE_SLICES] = "exact slices",
+    [TL_SCENE_EXACT] = "exact light",
+    [TL_SCENE_BLUR] = "variance maps",
+    [TL_SCENE_REFERENCE] = "reference",
+    NULL,
 };
 
 static const struct tl_ground *ground_of(const tl_renderer *renderer)
@@ -121,6 +128,17 @@ static bool run_lobes(void *context, int level, tl_error *error)
     (void)level, (void)error;
     tl_lobes_make(&renderer->lobes, &renderer->cube, exponents_of(&renderer->frame));
     tl_lighting_set_exact(&renderer->lighting, renderer->gpu, &renderer->lobes);
+    return true;
+}
+
+/* Slices of other regions, or of another cube, are of no use. */
+static bool run_slices(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level, (void)error;
+    tl_slices_release(&renderer->slices);
+    tl_slices_make(&renderer->slices, &renderer->cube, &renderer->regions, exponents_of(&renderer->frame));
+    tl_slice_maps_upload(&renderer->slice_maps, renderer->gpu, &renderer->slices);
     return true;
 }
 
@@ -235,6 +253,7 @@ static bool run_light(void *context, int level, tl_error *error)
     (void)level;
     const struct tl_light_request request = {.gbuffer = &renderer->gbuffer,
                                              .pems = &renderer->pems,
+                                             .slices = &renderer->slice_maps,
                                              .regions = &renderer->regions,
                                              .suns = &renderer->suns,
                                              .maps = renderer->maps,
@@ -401,6 +420,13 @@ const tl_job tl_frame_jobs[] = {
      .requires_scene = SET1(TL_SCENE_EXACT),
      .levels = LEVELS_ONE,
      .run = run_lobes},
+    {.name = "slices",
+     .what = "the regions through exact lobes",
+     .reads = SET3(TL_MADE_CUBE, TL_MADE_REGIONS, TL_INPUT_SHAPES),
+     .writes = SET1(TL_MADE_SLICES),
+     .requires_scene = SET1(TL_SCENE_SLICES),
+     .levels = LEVELS_ONE,
+     .run = run_slices},
     {.name = "lights",
      .what = "the regions as lights that add up to the exact light",
      .reads = SET3(TL_MADE_REGIONS, TL_MADE_LOBES, TL_INPUT_LIGHT),
@@ -454,7 +480,7 @@ const tl_job tl_frame_jobs[] = {
      .what = "visibility times PEM, summed over the regions",
      .reads = SET5(TL_MADE_GBUFFER, TL_MADE_PEMS, TL_MADE_REGIONS, TL_MADE_LOBE, TL_MADE_MAPS) |
               SET5(TL_MADE_SURFACES, TL_INPUT_YAW, TL_INPUT_CAMERA, TL_INPUT_LIGHT, TL_INPUT_GROUND) |
-              SET3(TL_MADE_LOBES, TL_MADE_DEPTHS, TL_INPUT_ROUND),
+              SET4(TL_MADE_LOBES, TL_MADE_SLICES, TL_MADE_DEPTHS, TL_INPUT_ROUND),
      .writes = SET1(TL_MADE_LIGHT),
      .requires_scene = SET1(TL_SCENE_PASSES),
      .levels = LEVELS_ONE,

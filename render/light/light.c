@@ -288,6 +288,8 @@ static bool draw_regions(struct tl_lighting *lighting, tl_gpu *gpu, const struct
     glUniform2fv(LOBE_PLACES, TL_EXPONENT_COUNT + 1, lighting->lobe_places[0]);
     glBindTextureUnit(LEVELS_UNIT, lighting->exponent_levels.id);
     glBindTextureUnit(LOBES_UNIT, lighting->lobes.id);
+    if (source == TL_LIGHT_SLICES)
+        tl_slice_maps_bind(request->slices);
     if (shadowed) {
         glBindTextureUnit(MAPS_UNIT, tl_shadow_maps_texture(request->maps, 0));
         glBindTextureUnit(SUN_MAPS_UNIT, tl_shadow_maps_sun_texture(request->maps));

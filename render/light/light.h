@@ -15,6 +15,7 @@
 #include "render/light/gbuffer.h"
 #include "render/pem/lobe.h"
 #include "render/pem/pems.h"
+#include "render/pem/slice_maps.h"
 #include "render/visibility/maps.h"
 
 /* Where the regions' light comes from. */
@@ -40,7 +41,8 @@ struct tl_lighting {
 
 struct tl_light_request {
     const struct tl_gbuffer *gbuffer;
-    const struct tl_pems *pems; /* of CHAIN */
+    const struct tl_pems *pems;         /* of CHAIN */
+    const struct tl_slice_maps *slices; /* of SLICES */
     const struct tl_regions *regions;
     const struct tl_suns *suns;
     const tl_shadow_maps *maps; /* drawn, unless the method is UNSHADOWED */

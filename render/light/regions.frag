@@ -9,6 +9,7 @@
 // and the light that comes of them on `composition` (light.h).
 #include "exact.glsl"
 #include "sample.glsl"
+#include "slices.glsl"
 #include "visibility.glsl"
 
 const int LOBE_SINGLE = 0;
@@ -74,7 +75,7 @@ void main()
         Region region = regions[i];
         float vis = visibility(i, region, place.point, place.smooth_normal);
 #ifdef SLICES
-        Light part = Light(slice(i, d, 0.0), slice(i, m, level));
+        Light part = Light(slice_fetch(i, d, 0.0), slice_fetch(i, m, level));
 #else
         Light part = lobe_light(region, place.normal, gloss);
 #endif

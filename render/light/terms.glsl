@@ -50,8 +50,8 @@ TERM float horizon_share(float cosine, float cone)
 }
 
 // A bumped surface's own shadow: 0 where the light lies below the plane of the smooth normal, a steep ramp above, which
-// flickers less than a step does [001, eq. 7].
+// flickers less than a step does [001, eq. 7]. Its steepness costs light: with 8 an image is 0.7 % darker than with 32.
 TERM float self_shadow_ramp(float cosine)
 {
-    return clamp(8.0f * cosine, 0.0f, 1.0f);
+    return clamp(32.0f * cosine, 0.0f, 1.0f);
 }

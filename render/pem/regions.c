@@ -17,13 +17,6 @@ static float solid_angle_of(const struct tl_regions *regions, uint32_t texel)
     return regions->solid_angles[texel % ((uint32_t)regions->size * (uint32_t)regions->size)];
 }
 
-vec3s tl_regions_texel_direction(int size, uint32_t texel)
-{
-    int x = (int)texel % size, line = (int)texel / size;
-    return glms_vec3_normalize(tl_cube_direction(line / size, ((float)x + 0.5f) / (float)size,
-                                                 ((float)(line % size) + 0.5f) / (float)size));
-}
-
 void tl_regions_release(struct tl_regions *regions)
 {
     free(regions->labels);
@@ -111,7 +104,7 @@ static void measure(struct tl_regions *regions, int index)
         uint32_t texel = regions->texels[i];
         double weight = (double)regions->importance[texel];
         double area = (double)solid_angle_of(regions, texel);
-        direction = tl_regions_texel_direction(regions->size, texel);
+        direction = tl_cube_texel_direction(regions->size, (int)texel);
         importance += weight;
         solid_angle += area;
         for (int c = 0; c < 3; c++) {
@@ -170,7 +163,7 @@ static void weigh(struct tl_regions *regions, int index)
     for (uint32_t i = first; i < last; i++) {
         uint32_t texel = regions->texels[i];
         double weight = weight_of(regions, texel, black);
-        double angle2 = squared_angle(tl_regions_texel_direction(regions->size, texel), region->direction);
+        double angle2 = squared_angle(tl_cube_texel_direction(regions->size, (int)texel), region->direction);
         sum += weight;
         /* The mean square distance from the centre of a square is a sixth of its area. */
         squares += weight * (angle2 + (double)solid_angle_of(regions, texel) / 6);

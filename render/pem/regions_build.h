@@ -19,7 +19,4 @@ void tl_regions_weigh(struct tl_regions *regions);
 /* power of the items. */
 void tl_regions_colour(const tl_cube *cube, struct tl_regions *regions);
 
-/* Direction of the centre of texel `texel` = (face * size + y) * size + x; unit. */
-vec3s tl_regions_texel_direction(int size, uint32_t texel);
-
 #endif

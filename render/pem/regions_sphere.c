@@ -68,7 +68,7 @@ static void fill_points(const struct tl_regions *regions, struct points *points)
     for (size_t i = 0; i < 6 * face_texels; i++) {
         double area = (double)regions->solid_angles[i % face_texels] / (4 * M_PI);
         double light = luminance > 0 ? (double)regions->importance[i] / luminance : area;
-        vec3s direction = tl_regions_texel_direction(regions->size, (uint32_t)i);
+        vec3s direction = tl_cube_texel_direction(regions->size, (int)i);
         points->x[i] = direction.x;
         points->y[i] = direction.y;
         points->z[i] = direction.z;

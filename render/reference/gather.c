@@ -7,10 +7,10 @@
 #include <string.h>
 
 /* What a reflected point is lit by: few directions, because there are many such points. */
-#define REFLECTED_STRATA       8
+#define REFLECTED_STRATA       32
 #define REFLECTED_LOBE_SAMPLES 1
-#define LOBE_END               40.0f /* exp(-40) of a lobe's peak is nothing */
-#define GOLDEN                 0.61803398874989485
+#define LOBE_END               40.0f               /* exp(-40) of a lobe's peak is nothing */
+#define GOLDEN                 0.61803398874989485 /* of a turn: leaves no gaps however many follow */
 
 void tl_spots_add(struct tl_spots *spots, const struct tl_spot *spot)
 {
@@ -32,7 +32,8 @@ struct gathering {
     const struct tl_reference_scene *scene;
     const struct tl_spots *spots;
     bool diffuse[TL_SPOTS], glossy[TL_SPOTS]; /* whether the spot has such a lobe at all */
-    struct tl_random shared, own;
+    double turn[TL_SPOTS];                    /* where about its axis a spot's first lobe sample lies */
+    struct tl_random random;
     float (*light)[TL_SPOTS];
     size_t rays;
 };
@@ -43,13 +44,6 @@ static float lobe_value(float exponent, float off)
     if (off >= 1 || exponent * off > LOBE_END)
         return 0;
     return (exponent + 1) / (2 * (float)M_PI) * expf(exponent * log1pf(-off));
-}
-
-/* 1 - cosine of the angle between two directions, without cancellation where they are close. */
-static float off_axis(const struct tl_spots *spots, int i, vec3s w)
-{
-    float x = spots->axis[0][i] - w.x, y = spots->axis[1][i] - w.y, z = spots->axis[2][i] - w.z;
-    return 0.5f * (x * x + y * y + z * z);
 }
 
 static float dot_of(const float v[3][TL_SPOTS], int i, vec3s w)
@@ -68,6 +62,15 @@ struct volley {
     int spot[TL_SPOTS];
     vec3s light[TL_SPOTS];
 };
+
+/* Directions stay unset where there is no ray. */
+static void begin_volley(struct volley *volley, bool coherent)
+{
+    volley->bundle.count = 0;
+    volley->bundle.from_m = 0;
+    volley->bundle.to_m = INFINITY;
+    volley->bundle.coherent = coherent;
+}
 
 static void add_ray(struct volley *volley, const struct gathering *gathering, int spot, vec3s direction,
                     vec3s light)
@@ -102,12 +105,17 @@ static void fire(struct gathering *gathering, struct volley *volley)
     gathering->rays += (size_t)volley->bundle.count;
 }
 
+static float finite(float value)
+{
+    return value < FLT_MAX ? value : FLT_MAX;
+}
+
 static vec3s weigh(const struct tl_spots *spots, int i, vec3s radiance, float diffuse, float glossy)
 {
     vec3s light;
     for (int c = 0; c < 3; c++)
         light.raw[c] =
-            fminf(radiance.raw[c] * (spots->diffuse[c][i] * diffuse + spots->glossy[c][i] * glossy), FLT_MAX);
+            finite(radiance.raw[c] * (spots->diffuse[c][i] * diffuse + spots->glossy[c][i] * glossy));
     return light;
 }
 
@@ -116,20 +124,40 @@ static bool is_dark(vec3s light)
     return !(light.x > 0 || light.y > 0 || light.z > 0);
 }
 
+/* Cosines of a direction with every spot's horizon and normal, and 1 - its cosine with the axis. */
+struct angles {
+    float horizon[TL_SPOTS], normal[TL_SPOTS], off_axis[TL_SPOTS];
+};
+
+TL_CLONES static void measure_angles(const struct tl_spots *spots, vec3s w, struct angles *out)
+{
+    for (int i = 0; i < TL_SPOTS; i++) {
+        out->horizon[i] =
+            spots->horizon[0][i] * w.x + spots->horizon[1][i] * w.y + spots->horizon[2][i] * w.z;
+        out->normal[i] = spots->normal[0][i] * w.x + spots->normal[1][i] * w.y + spots->normal[2][i] * w.z;
+        /* Without cancellation where the two are close. */
+        float x = spots->axis[0][i] - w.x, y = spots->axis[1][i] - w.y, z = spots->axis[2][i] - w.z;
+        out->off_axis[i] = 0.5f * (x * x + y * y + z * z);
+    }
+}
+
 /* One direction from the environment, for all spots. */
 static void gather_stratum(struct gathering *gathering, const struct tl_skylight *sky)
 {
     const struct tl_spots *spots = gathering->spots;
     float draws = (float)gathering->asked->strata * sky->density;
-    struct volley volley = {.bundle = {.to_m = INFINITY, .coherent = true}};
+    struct volley volley;
+    struct angles angles;
+    measure_angles(spots, sky->direction, &angles);
+    begin_volley(&volley, true);
     for (int i = 0; i < spots->count; i++) {
-        if (!(dot_of(spots->horizon, i, sky->direction) > 0))
+        if (!(angles.horizon[i] > 0))
             continue;
         float diffuse = 0, glossy = 0;
-        if (gathering->diffuse[i])
-            diffuse = fmaxf(dot_of(spots->normal, i, sky->direction), 0) / (float)M_PI / draws;
+        if (gathering->diffuse[i] && angles.normal[i] > 0)
+            diffuse = angles.normal[i] / (float)M_PI / draws;
         if (gathering->glossy[i]) {
-            float lobe = lobe_value(spots->exponent[i], off_axis(spots, i, sky->direction));
+            float lobe = lobe_value(spots->exponent[i], angles.off_axis[i]);
             glossy = lobe / (draws + (float)gathering->asked->lobe_samples * lobe);
         }
         vec3s light = weigh(spots, i, sky->radiance, diffuse, glossy);
@@ -139,16 +167,13 @@ static void gather_stratum(struct gathering *gathering, const struct tl_skylight
     fire(gathering, &volley);
 }
 
-static void gather_strata(struct gathering *gathering)
+void tl_gather_directions(const struct tl_sky *sky, int count, int slot, int slots, struct tl_random shared,
+                          struct tl_random own, struct tl_skylight *out)
 {
-    const struct tl_gathering *asked = gathering->asked;
-    for (int i = 0; i < asked->strata; i++) {
-        int turn = (int)(tl_random_unit(&gathering->shared) * asked->slots);
-        int slot = (asked->slot + turn) % asked->slots;
-        double within = (slot + tl_random_unit(&gathering->own)) / asked->slots;
-        double x = tl_random_unit(&gathering->own), y = tl_random_unit(&gathering->own);
-        struct tl_skylight sky = tl_sky_draw(&gathering->scene->sky, (i + within) / asked->strata, x, y);
-        gather_stratum(gathering, &sky);
+    for (int i = 0; i < count; i++) {
+        int turn = (int)(tl_random_unit(&shared) * slots);
+        double within = ((slot + turn) % slots + tl_random_unit(&own)) / slots;
+        out[i] = tl_sky_draw(sky, (i + within) / count);
     }
 }
 
@@ -195,12 +220,14 @@ static void light_reflections(struct gathering *gathering, const struct reflecti
 {
     if (reflections->spots.count == 0)
         return;
+    struct tl_skylight sky[REFLECTED_STRATA];
+    struct tl_random random = tl_random_begin(gathering->random.state, 1);
+    tl_gather_directions(&gathering->scene->sky, REFLECTED_STRATA, 0, 1, random, gathering->random, sky);
     const struct tl_gathering inner = {.scene = gathering->scene,
                                        .strata = REFLECTED_STRATA,
+                                       .sky = sky,
                                        .lobe_samples = REFLECTED_LOBE_SAMPLES,
-                                       .slots = 1,
-                                       .shared = gathering->own,
-                                       .own = tl_random_begin(gathering->own.state, 1)};
+                                       .random = random};
     float light[3][TL_SPOTS];
     gathering->rays += tl_gather(&inner, &reflections->spots, light);
     for (int r = 0; r < reflections->spots.count; r++)
@@ -214,19 +241,22 @@ static void gather_lobes(struct gathering *gathering, int sample)
 {
     const struct tl_spots *spots = gathering->spots;
     const struct tl_gathering *asked = gathering->asked;
-    struct volley volley = {.bundle = {.to_m = INFINITY}};
+    struct volley volley;
     struct reflections reflections = {0};
+    begin_volley(&volley, false);
     for (int i = 0; i < spots->count; i++) {
-        double height = (sample + tl_random_unit(&gathering->own)) / asked->lobe_samples;
-        double turn = tl_random_unit(&gathering->own);
+        double height = (sample + tl_random_unit(&gathering->random)) / asked->lobe_samples;
         if (!gathering->glossy[i])
             continue;
         float off;
+        double turn = gathering->turn[i] + sample * GOLDEN;
         vec3s direction = draw_lobe(spots, i, fmin(height, 1 - DBL_EPSILON), turn, &off);
         if (!(dot_of(spots->horizon, i, direction) > 0))
             continue;
         struct tl_skylight sky = tl_sky_look(&gathering->scene->sky, direction);
         float lobe = lobe_value(spots->exponent[i], off);
+        if (!(lobe > 0))
+            continue;
         float glossy = lobe / ((float)asked->strata * sky.density + (float)asked->lobe_samples * lobe);
         vec3s light = weigh(spots, i, sky.radiance, 0, glossy);
         if (asked->reflect && spots->exponent[i] >= TL_MIRROR_EXPONENT)
@@ -240,25 +270,23 @@ static void gather_lobes(struct gathering *gathering, int sample)
 
 size_t tl_gather(const struct tl_gathering *asked, const struct tl_spots *spots, float light[3][TL_SPOTS])
 {
-    struct gathering gathering = {.asked = asked,
-                                  .scene = asked->scene,
-                                  .spots = spots,
-                                  .shared = asked->shared,
-                                  .own = asked->own,
-                                  .light = light};
+    struct gathering gathering = {
+        .asked = asked, .scene = asked->scene, .spots = spots, .random = asked->random, .light = light};
     bool any_glossy = false;
     for (int i = 0; i < spots->count; i++) {
         gathering.diffuse[i] =
             spots->diffuse[0][i] > 0 || spots->diffuse[1][i] > 0 || spots->diffuse[2][i] > 0;
         gathering.glossy[i] = spots->glossy[0][i] > 0 || spots->glossy[1][i] > 0 || spots->glossy[2][i] > 0;
+        gathering.turn[i] = tl_random_unit(&gathering.random);
         any_glossy |= gathering.glossy[i];
     }
     memset(light, 0, 3 * sizeof light[0]);
-    gather_strata(&gathering);
+    for (int i = 0; i < asked->strata; i++)
+        gather_stratum(&gathering, &asked->sky[i]);
     for (int i = 0; any_glossy && i < asked->lobe_samples; i++)
         gather_lobes(&gathering, i);
     for (int c = 0; c < 3; c++) /* no infinity goes on, so that nothing times zero makes a NaN */
         for (int i = 0; i < spots->count; i++)
-            light[c][i] = fminf(light[c][i], FLT_MAX);
+            light[c][i] = finite(light[c][i]);
     return gathering.rays;
 }

@@ -18,18 +18,21 @@ struct tl_spots {
 
 void tl_spots_add(struct tl_spots *spots, const struct tl_spot *spot);
 
+/* `count` directions from as many strata of the environment's curve. Every stratum is parted again among
+ * `slots` calls with the same `shared` numbers, of which this is number `slot`. */
+void tl_gather_directions(const struct tl_sky *sky, int count, int slot, int slots, struct tl_random shared,
+                          struct tl_random own, struct tl_skylight *out);
+
 struct tl_gathering {
     const struct tl_reference_scene *scene;
-    int strata;       /* directions from the environment, one from each part of its curve */
-    int lobe_samples; /* directions from the lobe */
-    bool reflect;     /* near mirrors see the directly lit scene */
-    /* Every stratum is parted again among `slots` gatherings that share `shared`; this is number `slot`. */
-    int slot, slots;
-    struct tl_random shared, own;
+    int strata;
+    const struct tl_skylight *sky; /* one direction from each stratum */
+    int lobe_samples;              /* directions from the lobe */
+    bool reflect;                  /* near mirrors see the directly lit scene */
+    struct tl_random random;
 };
 
 /* Radiance towards the viewer by channel, then by spot. Returns how many rays it took. */
-size_t tl_gather(const struct tl_gathering *gathering, const struct tl_spots *spots,
-                 float light[3][TL_SPOTS]);
+size_t tl_gather(const struct tl_gathering *asked, const struct tl_spots *spots, float light[3][TL_SPOTS]);
 
 #endif

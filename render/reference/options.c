@@ -15,5 +15,5 @@ static const struct tl_option reference_rows[] = {
                    "horizon of the interpolated normal, rays from the smooth surface; or of the triangle"),
 };
 const struct tl_option_table tl_reference_options =
-    TL_OPTION_TABLE("reference", "the ray-traced truth", reference_rows, reference_params, .strata = 64,
-                    .lobe_samples = 4, .replicates = 8, .terminator = TL_TERMINATOR_SMOOTH);
+    TL_OPTION_TABLE("reference", "the ray-traced truth", reference_rows, reference_params, .strata = 512,
+                    .lobe_samples = 4, .replicates = 4, .terminator = TL_TERMINATOR_SMOOTH);

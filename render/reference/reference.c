@@ -10,7 +10,11 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define TILE 4 /* pixels a side: a bundle holds the same sample of each */
+/* Pixels a side: a bundle holds the same sample of each. */
+enum { TILE = 4, TILE_PIXELS = TILE * TILE };
+
+#define GROUPS_MAX     64
+#define DIRECTIONS_MAX (1 << 20) /* of all groups, where one is not more */
 
 struct drawing {
     const struct tl_reference_scene *scene;
@@ -18,9 +22,13 @@ struct drawing {
     struct tl_view view;
     int width, height; /* pixels */
     int tiles_x, tiles_y;
-    float *replicate; /* [height][width][4], of the one that is being drawn */
-    double *sums;     /* [height][width][4], over the replicates that are done */
-    double *squares;  /* [height][width][3] */
+    /* Of the current replicate: `groups` times a set of directions for each sample of a pixel. Tiles take
+     * them in turn, because drawing them costs as much as tracing them. */
+    int groups;
+    struct tl_skylight *directions; /* [groups][samples][strata] */
+    float *replicate;               /* [height][width][4], of the one that is being drawn */
+    double *sums;                   /* [height][width][4], over the replicates that are done */
+    double *squares;                /* [height][width][3] */
     size_t rays;
     struct tl_progress progress;
 };
@@ -54,7 +62,7 @@ static struct bundle find_spots(const struct drawing *drawing, int tile, int sam
     int side = drawing->settings->image.supersample;
     int left = tile % drawing->tiles_x * TILE, top = tile / drawing->tiles_x * TILE;
     struct bundle bundle = {0};
-    for (int i = 0; i < TILE * TILE; i++) {
+    for (int i = 0; i < TILE_PIXELS; i++) {
         int x = left + i % TILE, y = top + i / TILE;
         if (x >= drawing->width || y >= drawing->height)
             continue;
@@ -69,22 +77,48 @@ static struct bundle find_spots(const struct drawing *drawing, int tile, int sam
     return bundle;
 }
 
+static struct tl_skylight *directions_of(const struct drawing *drawing, int group, int sample)
+{
+    int side = drawing->settings->image.supersample;
+    size_t set = (size_t)group * (size_t)(side * side) + (size_t)sample;
+    return drawing->directions + set * (size_t)drawing->settings->reference.strata;
+}
+
+/* Every so many tiles have one group each; then the order is shifted, so that columns do not share them. */
+static const struct tl_skylight *directions_for(const struct drawing *drawing, int tile, int sample)
+{
+    const int shift = 37;
+    return directions_of(drawing, (tile + tile / drawing->groups * shift) % drawing->groups, sample);
+}
+
+static void draw_directions(const struct drawing *drawing, int replicate)
+{
+    int side = drawing->settings->image.supersample, samples = side * side;
+    int strata = drawing->settings->reference.strata;
+#pragma omp parallel for schedule(dynamic)
+    for (int set = 0; set < drawing->groups * samples; set++) {
+        int group = set / samples, sample = set % samples;
+        uint64_t key = (uint64_t)(replicate + 1) << 32 | (uint32_t)group;
+        tl_gather_directions(&drawing->scene->sky, strata, sample, samples, tl_random_begin(~key, 0),
+                             tl_random_begin(~key, 1 + (uint64_t)sample),
+                             directions_of(drawing, group, sample));
+    }
+}
+
 static size_t draw_sample(const struct drawing *drawing, int replicate, int tile, int sample)
 {
     const struct tl_reference_params *params = &drawing->settings->reference;
     int side = drawing->settings->image.supersample, samples = side * side;
     struct bundle bundle = find_spots(drawing, tile, sample);
     if (bundle.spots.count == 0)
-        return TILE * TILE;
-    uint64_t key = (uint64_t)replicate << 32 | (uint32_t)tile;
-    const struct tl_gathering gathering = {.scene = drawing->scene,
-                                           .strata = params->strata,
-                                           .lobe_samples = params->lobe_samples,
-                                           .reflect = drawing->scene->reflect,
-                                           .slot = sample,
-                                           .slots = samples,
-                                           .shared = tl_random_begin(key, 0),
-                                           .own = tl_random_begin(key, 1 + (uint64_t)sample)};
+        return TILE_PIXELS;
+    const struct tl_gathering gathering = {
+        .scene = drawing->scene,
+        .strata = params->strata,
+        .sky = directions_for(drawing, tile, sample),
+        .lobe_samples = params->lobe_samples,
+        .reflect = drawing->scene->reflect,
+        .random = tl_random_begin((uint64_t)replicate << 32 | (uint32_t)tile, (uint64_t)sample)};
     float light[3][TL_SPOTS];
     size_t rays = tl_gather(&gathering, &bundle.spots, light);
     for (int i = 0; i < bundle.spots.count; i++) {
@@ -93,7 +127,7 @@ static size_t draw_sample(const struct drawing *drawing, int replicate, int tile
             pixel[c] = fminf(pixel[c] + share * light[c][i], FLT_MAX);
         pixel[3] += share;
     }
-    return rays + TILE * TILE;
+    return rays + TILE_PIXELS;
 }
 
 /* Tiles own their pixels, so the number of threads does not show. False when interrupted. */
@@ -104,6 +138,7 @@ static bool draw_replicate(struct drawing *drawing, int replicate)
     size_t rays = 0;
     for (size_t i = 0; i < 4 * (size_t)drawing->width * (size_t)drawing->height; i++)
         drawing->replicate[i] = 0;
+    draw_directions(drawing, replicate);
 #pragma omp parallel for schedule(dynamic) reduction(+ : rays)
     for (int tile = 0; tile < tiles; tile++) {
         if (tl_interrupted())
@@ -174,6 +209,15 @@ static int draw_replicates(struct drawing *drawing)
     return done;
 }
 
+static void allocate_directions(struct drawing *drawing)
+{
+    int side = drawing->settings->image.supersample;
+    int64_t one = (int64_t)side * side * drawing->settings->reference.strata;
+    int64_t groups = one > 0 ? DIRECTIONS_MAX / one : 1;
+    drawing->groups = (int)(groups < 1 ? 1 : groups > GROUPS_MAX ? GROUPS_MAX : groups);
+    drawing->directions = TL_NEW_ARRAY(struct tl_skylight, (size_t)(drawing->groups * one));
+}
+
 bool tl_reference_draw(const tl_frame *frame, const struct tl_render_settings *settings,
                        const struct tl_ground *ground, tl_image *out, struct tl_reference_report *report,
                        tl_error *error)
@@ -193,10 +237,12 @@ bool tl_reference_draw(const tl_frame *frame, const struct tl_render_settings *s
                               .replicate = TL_NEW_ARRAY(float, 4 * pixels),
                               .sums = TL_NEW_ARRAY(double, 4 * pixels),
                               .squares = TL_NEW_ARRAY(double, 3 * pixels)};
+    allocate_directions(&drawing);
     int done = draw_replicates(&drawing);
     *report = (struct tl_reference_report){done, standard_error(&drawing, done), drawing.rays};
     if (done > 0)
         *out = mean_image(&drawing, done);
+    free(drawing.directions);
     free(drawing.replicate);
     free(drawing.sums);
     free(drawing.squares);

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define BRIGHT_SHARE 0.5 /* of the draws; the others are uniform, for dim light on whatever faces it */
+#define BRIGHT_SHARE 0.9 /* of the draws; the others are uniform, for dim light on whatever faces it */
 
 /* Hilbert's curve over a square, from `corner` along `a`, in half texels; texels outside of the map (or of a
  * cube's face) are left out. */
@@ -192,7 +192,18 @@ static struct tl_skylight draw_latlong(const struct tl_sky *sky, size_t texel, d
     return seen(sky, texel, into_world(sky, direction), density_of(sky, texel));
 }
 
-struct tl_skylight tl_sky_draw(const struct tl_sky *sky, double share, double x, double y)
+/* Every second bit, from the lowest on, as a number in (0, 1). */
+static double every_second_bit(uint32_t bits)
+{
+    bits &= 0x55555555;
+    bits = (bits | bits >> 1) & 0x33333333;
+    bits = (bits | bits >> 2) & 0x0f0f0f0f;
+    bits = (bits | bits >> 4) & 0x00ff00ff;
+    bits = (bits | bits >> 8) & 0x0000ffff;
+    return (bits + 0.5) / 65536;
+}
+
+struct tl_skylight tl_sky_draw(const struct tl_sky *sky, double share)
 {
     size_t guide = (size_t)fmin(share * TL_SKY_GUIDES, TL_SKY_GUIDES - 1); /* shares may round to 1 */
     size_t low = sky->guide[guide], high = (size_t)sky->guide[guide + 1] + 1;
@@ -203,6 +214,11 @@ struct tl_skylight tl_sky_draw(const struct tl_sky *sky, double share, double x,
         else
             high = middle;
     }
+    /* What is left of the share goes through the texel in Z order, so that a sun of one texel is stratified
+     * too. */
+    double left = (share - sky->before[low]) / (sky->before[low + 1] - sky->before[low]);
+    uint32_t bits = (uint32_t)fmin(fmax(left, 0) * 0x1p32, 0x1p32 - 1);
+    double x = every_second_bit(bits), y = every_second_bit(bits >> 1);
     size_t texel = sky->order[low];
     return is_cube(sky) ? draw_cube(sky, texel, x, y) : draw_latlong(sky, texel, x, y);
 }

@@ -1,7 +1,7 @@
 /* The environment as the oracle sees it: every texel of its own layout is a patch of constant radiance, the
  * mean of what the texel stands for (the renderer's cubes are area averages of the same patches). Directions
- * are drawn from it with a density that is half the brightness of the texels, half uniform over the sphere,
- * along a curve that keeps neighbours together, so that an interval of the curve is a compact region.
+ * are drawn from it with a density that follows the texels' brightness, a tenth of it uniform over the
+ * sphere, along a curve that keeps neighbours together, so that an interval of the curve is a compact region.
  *
  * World space. Borrows the environment. Threads: pure once made. */
 #ifndef TOILE_RENDER_REFERENCE_SKY_H
@@ -31,8 +31,8 @@ struct tl_skylight {
 void tl_sky_make(const tl_environment *environment, float yaw, struct tl_sky *out);
 void tl_sky_release(struct tl_sky *sky);
 
-/* The direction at `share` of the curve, [0, 1); x and y, [0, 1), place it within its texel. */
-struct tl_skylight tl_sky_draw(const struct tl_sky *sky, double share, double x, double y);
+/* The direction at `share` of the curve, [0, 1), which goes on inside the texels. */
+struct tl_skylight tl_sky_draw(const struct tl_sky *sky, double share);
 struct tl_skylight tl_sky_look(const struct tl_sky *sky, vec3s direction);
 
 #endif

@@ -7,6 +7,10 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Of the distance that is safe at any price: still a hundred times the rounding of positions, and what rests
+ * on a surface is seen as resting on it. */
+#define OFFSET_SHARE 0.1f
+
 struct look_map {
     const struct tl_map_texture *texture; /* NULL: none */
     bool clamp_u, clamp_v;
@@ -94,7 +98,7 @@ bool tl_reference_scene_make(const tl_frame *frame, const struct tl_render_setti
         tl_reference_scene_release(out);
         return false;
     }
-    out->offset_m = tl_trace_offset(out->trace);
+    out->offset_m = OFFSET_SHARE * tl_trace_offset(out->trace);
     return true;
 }
 

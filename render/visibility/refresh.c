@@ -6,7 +6,10 @@
 #include <string.h>
 
 /* A pixel's horizon differs from its vertices' by up to half the bend of a triangle: regions are traced to 17
- * degrees below a vertex's tangent plane, and clipped at the pixel's (FRONTIER, finding 1). */
+ * degrees below a vertex's tangent plane, and clipped at the pixel's (FRONTIER, finding 1).
+ * What is clipped there must not be counted as hidden here too, so a value stands for what lies above the
+ * horizon: a direction below it is mirrored at the vertex's plane. (Review at rest: 3.3 to 3.1 % in a
+ * studio, 1.8 to 1.6 % in the sun; mean FLIP 0.041 to 0.033, 0.033 to 0.027.) */
 #define SINE_BELOW 0.2924f
 
 /* A region that waits for so many times the average round goes before all that do not. */
@@ -161,14 +164,18 @@ static size_t look(const struct tl_refresh *refresh, const struct lanes *lanes, 
     int lane_of[TL_CLUSTER];
     float through_ground[TL_CLUSTER];
     for (int i = 0; i < TL_CLUSTER; i++) {
-        if (!(lanes_wanted >> i & 1) || glms_vec3_dot(lane_normal(lanes, i), direction) < -SINE_BELOW)
+        float cosine = glms_vec3_dot(lane_normal(lanes, i), direction);
+        if (!(lanes_wanted >> i & 1) || cosine < -SINE_BELOW)
             continue;
+        vec3s ahead = direction;
+        if (cosine < 0) /* in the plane's mirror: see SINE_BELOW */
+            ahead = glms_vec3_sub(direction, glms_vec3_scale(lane_normal(lanes, i), 2 * cosine));
         float share = tl_ground_visibility(refresh->request->ground, lane_origin(lanes, i), direction);
         if (share <= 0)
             continue;
         through_ground[bundle.count] = share;
         lane_of[bundle.count] = i;
-        push_ray(&bundle, lanes, i, direction);
+        push_ray(&bundle, lanes, i, ahead);
     }
     if (bundle.count == 0)
         return 0;

@@ -1,5 +1,7 @@
 #include "render/env/cube.h"
 
+#include "render/env/pour.h"
+
 #include "testing.h"
 
 #include <omp.h>
@@ -286,6 +288,62 @@ static void threads_change_no_bit(void **state)
     release_environment(&environment);
 }
 
+static void expect_same_cube(const tl_environment *environment, int size, struct tl_pour *kept)
+{
+    tl_cube with = tl_cube_from_environment_with(environment, size, kept);
+    tl_cube without = tl_cube_from_environment(environment, size);
+    assert_memory_equal(with.texels, without.texels, sizeof(float) * 18 * (size_t)size * (size_t)size);
+    tl_cube_release(&with);
+    tl_cube_release(&without);
+}
+
+/* One environment after the other, of changing values, sizes and layouts, with what was kept of the last. */
+static void what_is_kept_changes_no_bit(void **state)
+{
+    (void)state;
+    struct tl_pour kept = {0};
+    const struct {
+        int width, height, size;
+    } cases[] = {{64, 32, 16}, {64, 32, 16}, {64, 32, 8}, {32, 64, 8}, {2, 1, 8}, {64, 32, 16}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        tl_environment latlong = make_environment(TL_ENV_LATLONG, cases[i].width, cases[i].height);
+        for (int k = 0; k < 3 * cases[i].width * cases[i].height; k++)
+            tl_image_floats(&latlong.image)[k] = (float)(((uint32_t)k + i) * 2654435761u >> 8);
+        expect_same_cube(&latlong, cases[i].size, &kept);
+        tl_environment cube = make_environment(TL_ENV_CUBE, 4, 24);
+        expect_same_cube(&cube, cases[i].size, &kept);
+        release_environment(&cube);
+        release_environment(&latlong);
+    }
+    tl_pour_release(&kept);
+}
+
+/* So large that it is poured in bands, of which nothing is kept: a constant stays constant, and what lies in
+ * either band arrives. Red grows downwards, so that the top face is darker than the bottom. */
+static void large_images_are_poured_in_bands(void **state)
+{
+    (void)state;
+    struct tl_pour kept = {0};
+    tl_environment large = make_environment(TL_ENV_LATLONG, 2048, 1024);
+    float *colour = tl_image_floats(&large.image);
+    for (int y = 0; y < 1024; y++) {
+        for (int x = 0; x < 2048; x++, colour += 3) {
+            colour[0] = (float)y / 1024;
+            colour[1] = colour[2] = 1;
+        }
+    }
+    tl_cube cube = tl_cube_from_environment_with(&large, 8, &kept);
+    assert_int_equal(kept.width, 0);
+    for (int i = 0; i < 6 * 64; i++) {
+        /* red is v = theta / pi; on average over a texel, which spans up to 0.25 rad, within its range */
+        vec3s direction = tl_cube_texel_direction(8, i);
+        assert_near(cube.texels[3 * (size_t)i], acos((double)direction.y) / M_PI, 0.02);
+        assert_near(cube.texels[3 * (size_t)i + 1], 1, 1e-6);
+    }
+    tl_cube_release(&cube);
+    release_environment(&large);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -301,6 +359,8 @@ int main(void)
         cmocka_unit_test(a_corner_is_the_mean_of_three),
         cmocka_unit_test(layouts_agree_on_a_real_scene),
         cmocka_unit_test(threads_change_no_bit),
+        cmocka_unit_test(what_is_kept_changes_no_bit),
+        cmocka_unit_test(large_images_are_poured_in_bands),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

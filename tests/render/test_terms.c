@@ -147,7 +147,7 @@ static void test_self_shadow_ramp(void **state)
 {
     (void)state;
     assert_near(self_shadow_ramp(-0.1f), 0, 0);
-    assert_near(self_shadow_ramp(0.0625f), 0.5, 0);
+    assert_near(self_shadow_ramp(0.015625f), 0.5, 0);
     assert_near(self_shadow_ramp(0.5f), 1, 0);
 }
 
