@@ -105,7 +105,7 @@ static void fire(struct gathering *gathering, struct volley *volley)
     gathering->rays += (size_t)volley->bundle.count;
 }
 
-static float limited(float value)
+static float kept_finite(float value)
 {
     return value < FLT_MAX ? value : FLT_MAX;
 }
@@ -115,7 +115,7 @@ static vec3s weigh(const struct tl_spots *spots, int i, vec3s radiance, float di
     vec3s light;
     for (int c = 0; c < 3; c++)
         light.raw[c] =
-            limited(radiance.raw[c] * (spots->diffuse[c][i] * diffuse + spots->glossy[c][i] * glossy));
+            kept_finite(radiance.raw[c] * (spots->diffuse[c][i] * diffuse + spots->glossy[c][i] * glossy));
     return light;
 }
 
@@ -287,6 +287,6 @@ size_t tl_gather(const struct tl_gathering *asked, const struct tl_spots *spots,
         gather_lobes(&gathering, i);
     for (int c = 0; c < 3; c++) /* no infinity goes on, so that nothing times zero makes a NaN */
         for (int i = 0; i < spots->count; i++)
-            light[c][i] = limited(light[c][i]);
+            light[c][i] = kept_finite(light[c][i]);
     return gathering.rays;
 }

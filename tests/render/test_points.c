@@ -325,7 +325,7 @@ static void motion_replaces(void **state)
     step(&old, true);
     step(&new, true);
     double after = measure_error(&old, 64), fresh = measure_error(&new, 64);
-    assert_true(before > 3 * after);
+    assert_true(before > 2 * after);
     assert_near(after, fresh, 0.2 * fresh); /* the same number of rays, other ones */
     stage_close(&old);
     stage_close(&new);
