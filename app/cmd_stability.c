@@ -25,7 +25,10 @@ static const struct tl_choice choices[TL_EXTREME_METHODS] = {
     {"paper", "paper", {"light.lobe=dual", "light.regions=24", "light.pem_size=64"}},
     {"review", "review", {NULL}},
 };
-static const struct tl_choice unshadowed = {"unshadowed", "review", {"light.method=unshadowed"}};
+static const struct tl_choice unshadowed = {
+    "unshadowed",
+    "paper",
+    {"light.lobe=dual", "light.regions=24", "light.pem_size=64", "light.method=unshadowed"}};
 
 struct cell {
     enum outcome outcome;

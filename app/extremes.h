@@ -18,7 +18,7 @@ struct tl_extreme_scene {
 };
 
 /* Errors are relative RMSE against the oracle, by method: paper, review. TL_NO_WORSE promises little, but
- * something: no worse than the same image without shadows. */
+ * something: no worse than the same method without shadows. */
 enum { TL_EXTREME_PAPER, TL_EXTREME_REVIEW, TL_EXTREME_METHODS };
 #define TL_NO_WORSE (-1.0)
 
