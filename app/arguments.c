@@ -42,7 +42,7 @@ static const struct flag flags_known[] = {
     {"--avatar", TL_FLAGS_SCENE, FLAG_ASSIGN, "scene.avatar", "NAME|FILE",
      "form, none, or a .glb or .gltf file"},
     {"--env", TL_FLAGS_SCENE, FLAG_ASSIGN, "scene.environment", "NAME|FILE",
-     "studio, or an .exr or .hdr file"},
+     "studio, an .exr or .hdr file, or a sequence of them: sky.####.exr"},
     {"--fabric", TL_FLAGS_SCENE, FLAG_ASSIGN, "scene.fabric", "NAME|FILE",
      "a fabric: `toile info fabrics` lists them"},
     {"--preset", TL_FLAGS_SCENE, FLAG_ASSIGN, "scene.preset", "NAME|FILE", "paper, draft, review or final"},

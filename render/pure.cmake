@@ -4,6 +4,7 @@ add_library(toile_light STATIC
   env/emitters.c
   env/lobes.c
   light/compose.c
+  light/mirrors.c
   env/pour.c
   env/sun.c
   frame/view.c

@@ -90,6 +90,7 @@ void tl_renderer_destroy(tl_renderer **renderer)
 {
     if (!*renderer)
         return;
+    tl_pour_release(&(*renderer)->pour);
     tl_cube_release(&(*renderer)->cube);
     tl_regions_release(&(*renderer)->regions);
     tl_pems_release(&(*renderer)->pems);
@@ -100,6 +101,7 @@ void tl_renderer_destroy(tl_renderer **renderer)
     tl_surfaces_destroy(&(*renderer)->surfaces);
     tl_triangle_ranges_release(&(*renderer)->ranges);
     tl_samples_release(&(*renderer)->samples);
+    tl_mirrors_release(&(*renderer)->mirrors);
     tl_trace_destroy(&(*renderer)->trace);
     tl_points_destroy(&(*renderer)->points);
     free((*renderer)->drawn);
@@ -112,32 +114,13 @@ void tl_renderer_destroy(tl_renderer **renderer)
     *renderer = NULL;
 }
 
-static tl_bits scene_facts(const struct tl_render_settings *settings)
-{
-    const struct tl_light_params *light = &settings->light;
-    if (light->method == TL_METHOD_REFERENCE)
-        return TL_BIT(TL_SCENE_REFERENCE);
-    bool shadowed = light->method != TL_METHOD_UNSHADOWED, rays = light->visibility == TL_VISIBILITY_RAYS;
-    tl_bits facts = TL_BIT(TL_SCENE_RASTER) | TL_BIT(rays ? TL_SCENE_RAYS : TL_SCENE_PASSES);
-    if (shadowed)
-        facts |= TL_BIT(TL_SCENE_SHADOWS) | (rays ? 0 : TL_BIT(TL_SCENE_MAPS));
-    if (light->visibility == TL_VISIBILITY_VSM)
-        facts |= TL_BIT(TL_SCENE_BLUR);
-    if (!rays && tl_light_source(light) == TL_LIGHT_CHAIN)
-        facts |= TL_BIT(TL_SCENE_CHAINS);
-    if (!rays && tl_light_source(light) == TL_LIGHT_SLICES)
-        facts |= TL_BIT(TL_SCENE_SLICES);
-    if (rays || tl_light_needs_exact(light))
-        facts |= TL_BIT(TL_SCENE_EXACT);
-    return facts;
-}
-
-static struct tl_plan_input plan_input(const tl_renderer *renderer, const struct tl_render_settings *settings,
-                                       tl_bits changed, enum tl_resource wanted)
+static struct tl_plan_input plan_input(const tl_renderer *renderer, const tl_frame *frame,
+                                       const struct tl_render_settings *settings, tl_bits changed,
+                                       enum tl_resource wanted)
 {
     return (struct tl_plan_input){.changed = changed,
                                   .valid = renderer->valid,
-                                  .scene = scene_facts(settings),
+                                  .scene = tl_frame_facts(frame, settings),
                                   .wanted = TL_BIT(wanted),
                                   .scene_fact_names = tl_scene_fact_names,
                                   .resource_names = tl_resource_names};
@@ -221,7 +204,7 @@ bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct
     renderer->view = tl_view_make(&frame->camera, used.image.width, used.image.height);
     memcpy(renderer->signatures, signatures, sizeof signatures);
     tl_frame_list_surfaces(renderer);
-    const struct tl_plan_input input = plan_input(renderer, &used, changed, TL_MADE_IMAGE);
+    const struct tl_plan_input input = plan_input(renderer, frame, &used, changed, TL_MADE_IMAGE);
     return run_plan(renderer, &input, &renderer->plan, error);
 }
 
@@ -263,7 +246,8 @@ static bool show(tl_renderer *renderer, unsigned framebuffer, int width, int hei
     renderer->valid &=
         ~TL_BIT(TL_MADE_SHOWN); /* a window's buffer holds nothing from one frame to the next */
     tl_plan plan;
-    const struct tl_plan_input input = plan_input(renderer, &renderer->settings, 0, TL_MADE_SHOWN);
+    const struct tl_plan_input input =
+        plan_input(renderer, &renderer->frame, &renderer->settings, 0, TL_MADE_SHOWN);
     return run_plan(renderer, &input, &plan, error);
 }
 
@@ -293,7 +277,7 @@ void tl_renderer_plan(const tl_renderer *renderer, const tl_frame *frame,
     struct tl_rest rest = renderer->rest;
     tl_frame_sign(frame, &used, renderer->signatures, &rest, signatures);
     const struct tl_plan_input input =
-        plan_input(renderer, &used, changed_inputs(renderer, signatures), TL_MADE_IMAGE);
+        plan_input(renderer, frame, &used, changed_inputs(renderer, signatures), TL_MADE_IMAGE);
     tl_plan_make(tl_frame_jobs, tl_frame_job_count, &input, &renderer->cost, out);
 }
 
