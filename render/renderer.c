@@ -189,11 +189,26 @@ static void reload_shaders(tl_renderer *renderer)
     forget(renderer);
 }
 
+static bool check_camera(const struct tl_camera *camera, tl_error *error)
+{
+    vec3s view = glms_vec3_sub(camera->target, camera->eye);
+    float upright = glms_vec3_norm(glms_vec3_cross(view, camera->up));
+    if (!(upright > 1e-6f * glms_vec3_norm(view) * glms_vec3_norm(camera->up)))
+        return tl_fail(error, TL_USAGE,
+                       "camera: eye, target and up direction lie on one line: there is no upright to see by");
+    if (!(camera->near_m > 0 && camera->far_m > camera->near_m && isfinite(camera->far_m)))
+        return tl_fail(error, TL_USAGE,
+                       "camera: near plane at %g m and far plane at %g m: 0 < near < far is needed",
+                       (double)camera->near_m, (double)camera->far_m);
+    return true;
+}
+
 bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct tl_render_settings *settings,
                       tl_error *error)
 {
     struct tl_render_settings used = usable(settings);
-    if (!check_image_size(renderer, &used.image, error) || !check_light_size(&used, error))
+    if (!check_camera(&frame->camera, error) || !check_image_size(renderer, &used.image, error) ||
+        !check_light_size(&used, error))
         return false;
     reload_shaders(renderer);
     uint64_t signatures[TL_INPUT_COUNT];
@@ -279,6 +294,11 @@ void tl_renderer_plan(const tl_renderer *renderer, const tl_frame *frame,
     const struct tl_plan_input input =
         plan_input(renderer, frame, &used, changed_inputs(renderer, signatures), TL_MADE_IMAGE);
     tl_plan_make(tl_frame_jobs, tl_frame_job_count, &input, &renderer->cost, out);
+}
+
+double tl_renderer_standard_error(const tl_renderer *renderer)
+{
+    return renderer->standard_error;
 }
 
 bool tl_renderer_is_at_rest(const tl_renderer *renderer)

@@ -139,6 +139,7 @@ struct tl_renderer {
     size_t light_bytes;
     struct tl_lighting lighting;
     struct tl_present present;
+    double standard_error; /* of the last reference */
 
     /* where the show job draws */
     unsigned show_framebuffer;

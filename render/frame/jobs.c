@@ -334,11 +334,21 @@ static bool run_reference(void *context, int level, tl_error *error)
     (void)level;
     tl_image image;
     struct tl_reference_report report;
-    if (!tl_reference_draw(&renderer->frame, &renderer->settings, ground_of(renderer), &image, &report,
-                           error))
+    tl_frame frame = renderer->frame;
+    const struct tl_ground *ground = ground_of(renderer);
+    tl_surface *surfaces =
+        TL_NEW_ARRAY(tl_surface, frame.surface_count + 1); /* it wants the ground among them */
+    memcpy(surfaces, frame.surfaces, frame.surface_count * sizeof *surfaces);
+    frame.surfaces = surfaces;
+    if (ground)
+        surfaces[frame.surface_count++] = ground->surface;
+    bool drawn = tl_reference_draw(&frame, &renderer->settings, ground, &image, &report, error);
+    free(surfaces);
+    if (!drawn)
         return false;
     tl_info("reference: %d replicates, %.3g million rays, standard error %.2g %%", report.replicates,
             1e-6 * (double)report.rays, 100 * report.standard_error);
+    renderer->standard_error = report.standard_error;
     tl_present_set_image(&renderer->present, renderer->gpu, &image);
     tl_image_release(&image);
     return true;
