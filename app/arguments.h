@@ -17,7 +17,8 @@ enum tl_flag_set {                      /* which groups of flags a command takes
                    TL_FLAGS_JSON = 16,  /* --json */
                    TL_FLAGS_METRIC = 32, /* --ldr --hdr */
                    TL_FLAGS_WINDOW = 64, /* --screenshots DIR --max-frames N */
-                   TL_FLAGS_TRADE = 128, /* --axis NAME --quick */
+                   TL_FLAGS_AXIS = 128,  /* --axis NAME */
+                   TL_FLAGS_QUICK = 256, /* --quick */
 };
 
 struct tl_arguments {

@@ -187,7 +187,9 @@ static void light_behind_viewer(struct tl_extreme_scene *scene)
 
 static void light_before_viewer(struct tl_extreme_scene *scene)
 {
-    light_from(scene, glms_vec3_sub(scene->camera.target, scene->camera.eye));
+    vec3s view = glms_vec3_sub(scene->camera.target, scene->camera.eye);
+    view.y = 0.2f; /* above the floor, which would hide it from everything */
+    light_from(scene, view);
 }
 
 static void light_overhead(struct tl_extreme_scene *scene)
@@ -382,66 +384,75 @@ static void up_is_view(struct tl_extreme_scene *scene)
     scene->camera.up = glms_vec3_sub(scene->camera.target, scene->camera.eye);
 }
 
+/* FRONTIER.md's figures for 24 regions with blurred variance maps (25 %), and for rays moving (5.5 %), with a
+ * margin for a scene that it did not measure and images of so few pixels. A sun: half of the pixels at its
+ * shadow's edge may be wrong. */
+#define PAPER  0.30
+#define REVIEW 0.08
+#define SUN    0.12
+/* The chain makes 0.51 to 3.14 times of one texel's light, by its place (LIGHT.md, finding 1). */
+#define CHAIN    2.14
+#define ORDINARY "what the methods are known for"
+#define POINT                                                                                                \
+    "a point of light: its shadow's edge is a map's texel, or a ray's grain, wide; the chain makes 0.51 to " \
+    "3.14 times of it"
+#define MIRROR "folds seen in folds: what is mirrored is black, or lit by the cache"
+
 /* clang-format off: one extreme a line, or two. */
 const struct tl_extreme tl_extremes[] = {
-    {"ordinary scene", .bounds = {0.10, 0.06}, .why = "the measure of the others"},
+    {"ordinary scene", .bounds = {PAPER, REVIEW}, .why = ORDINARY},
     {"environment all black", .change = black, .bounds = {0, 0}, .why = "there is no light"},
-    {"one texel of 65504", .change = texel_half, .bounds = {0.5, 0.1},
-     .why = "its penumbra is one map texel, or one vertex, wide"},
-    {"one texel of 1e6", .change = texel_million, .bounds = {0.5, 0.1}, .why = "the same light, brighter"},
-    {"map of 1 x 1 texel", .change = one_texel_map, .bounds = {0.1, 0.06}, .why = "as the ordinary scene"},
-    {"map of 8192 x 4096", .change = large_map, .bounds = {0.3, 0.1},
-     .why = "a point of light in a grey sky"},
-    {"NaN, Inf, negative texels", .change = dirty_texels, .bounds = {0.1, 0.06}, .from_file = true,
-     .why = "cleaned by the reader; then ordinary"},
-    {"light behind the viewer", .change = light_behind_viewer, .bounds = {0.5, 0.1},
-     .why = "one texel's penumbra"},
-    {"light before the viewer", .change = light_before_viewer, .bounds = {0.5, 0.1},
-     .why = "one texel's penumbra"},
-    {"light along the normal", .change = light_overhead, .bounds = {0.5, 0.1}, .why = "one texel's penumbra"},
-    {"light in the floor's plane", .change = light_in_floor, .bounds = {0.5, 0.1},
-     .why = "one texel's penumbra"},
-    {"sheet edge-on to the light", .change = sheet_edge_on, .bounds = {0.5, 0.1},
-     .why = "one texel's penumbra"},
-    {"N = 6", .assignments = {"light.regions=6"}, .bounds = {0.3, 0.3},
+    {"one texel of 65504", .change = texel_half, .bounds = {CHAIN, SUN}, .why = POINT},
+    {"one texel of 1e6", .change = texel_million, .bounds = {CHAIN, SUN}, .why = POINT},
+    {"map of 1 x 1 texel", .change = one_texel_map, .bounds = {PAPER, 0.10},
+     .why = "light from below the floor too: more of it is hidden"},
+    {"map of 8192 x 4096", .change = large_map, .bounds = {PAPER, 0.10},
+     .why = "the same, with a point of light"},
+    {"NaN, Inf, negative texels", .change = dirty_texels, .bounds = {PAPER, REVIEW}, .from_file = true,
+     .why = "cleaned by the reader; then as the ordinary scene"},
+    {"light behind the viewer", .change = light_behind_viewer, .bounds = {CHAIN, SUN}, .why = POINT},
+    {"light before the viewer", .change = light_before_viewer, .bounds = {CHAIN, SUN}, .why = POINT},
+    {"light along the normal", .change = light_overhead, .bounds = {CHAIN, SUN}, .why = POINT},
+    {"light in the floor's plane", .change = light_in_floor, .bounds = {CHAIN, SUN}, .why = POINT},
+    {"sheet edge-on to the light", .change = sheet_edge_on, .bounds = {CHAIN, SUN}, .why = POINT},
+    {"N = 6", .assignments = {"light.regions=6"}, .bounds = {TL_NO_WORSE, 0.25},
      .why = "few shadows for all of the light"},
-    {"N = 384", .assignments = {"light.regions=384"}, .bounds = {0.1, 0.06}, .why = "as the ordinary scene"},
-    {"shadow maps of 1 texel", .assignments = {"light.map_size=1"}, .bounds = {0.6, 0.06},
-     .why = "maps: nearly no shadows"},
+    {"N = 384", .assignments = {"light.regions=384"}, .bounds = {PAPER, REVIEW}, .why = ORDINARY},
+    {"shadow maps of 1 texel", .assignments = {"light.map_size=1"}, .bounds = {TL_NO_WORSE, REVIEW},
+     .why = "maps have no place for a shadow; rays need none"},
     {"shadow maps of 4096", .assignments = {"light.map_size=4096", "light.regions=6", "light.blur_m=0"},
-     .bounds = {0.3, 0.3}, .why = "as N = 6"},
-    {"g = 0", .change = matt, .bounds = {0.1, 0.06}, .why = "as the ordinary scene"},
-    {"s = 200", .change = s_200, .bounds = {0.3, 0.15},
-     .why = "paper: one level of the chain stands for the lobe"},
-    {"s = 1e6", .change = s_million, .bounds = {0.6, 0.15}, .why = "paper: what is mirrored is black"},
-    {"g = 1", .change = mirror, .bounds = {0.6, 0.15}, .why = "paper: what is mirrored is black"},
+     .bounds = {TL_NO_WORSE, 0.25}, .why = "as N = 6"},
+    {"g = 0", .change = matt, .bounds = {PAPER, REVIEW}, .why = ORDINARY},
+    {"s = 200", .change = s_200, .bounds = {PAPER, 0.15}, .why = MIRROR},
+    {"s = 1e6", .change = s_million, .bounds = {TL_NO_WORSE, 0.20}, .why = MIRROR},
+    {"g = 1", .change = mirror, .bounds = {TL_NO_WORSE, 0.20}, .why = MIRROR},
     {"black material", .change = black_material, .bounds = {0, 0}, .why = "nothing is reflected"},
-    {"grazing view", .change = grazing_view, .bounds = {0.3, 0.1}, .why = "a pixel spans many shadow texels"},
-    {"garment of 1 mm", .change = one_millimetre, .bounds = {0.6, 0.06},
-     .why = "paper: the bias in metres hides all shadows"},
-    {"garment of 100 m", .change = hundred_metres, .bounds = {0.3, 0.06},
-     .why = "paper: the bias in metres is none"},
-    {"receivers outside of the maps", .change = with_ground, .bounds = {0.2, 0.1},
-     .why = "they are lit, the oracle agrees"},
-    {"depth ratio of 1e6", .change = depth_ratio, .bounds = {0.6, 0.1},
-     .why = "paper: maps are fitted to a kilometre"},
-    {"normals of length 0", .change = zero_normals, .bounds = {0.3, 0.3},
-     .why = "what a missing normal means is free"},
-    {"degenerate UVs", .change = degenerate_uvs, .bounds = {0.1, 0.06}, .why = "no map reads them"},
-    {"zero-area and double triangles", .change = degenerate_triangles, .bounds = {0.1, 0.06},
-     .why = "as the ordinary scene"},
-    {"one triangle", .change = one_triangle, .bounds = {0.1, 0.06}, .why = "nothing to be shadowed by"},
-    {"a million triangles", .change = million_triangles,
-     .assignments = {"light.regions=6", "light.map_size=64"}, .bounds = {0.5, 0.3}, .why = "as N = 6"},
+    {"grazing view", .change = grazing_view, .bounds = {TL_NO_WORSE, 0.12},
+     .why = "a pixel spans many points of the floor"},
+    {"garment of 1 mm", .change = one_millimetre, .bounds = {TL_NO_WORSE, REVIEW},
+     .why = "paper: a bias of 4 mm leaves no shadow; rays know no metres"},
+    {"garment of 100 m", .change = hundred_metres, .bounds = {PAPER, REVIEW},
+     .why = "as the ordinary scene: maps are fitted to what there is"},
+    {"receivers outside of the maps", .change = with_ground, .bounds = {PAPER, REVIEW}, .why = ORDINARY},
+    {"depth ratio of 1e6", .change = depth_ratio, .bounds = {TL_NO_WORSE, 0.20},
+     .why = "maps fitted to a kilometre; a triangle of 800 m keeps three points"},
+    {"normals of length 0", .change = zero_normals, .bounds = {PAPER, REVIEW},
+     .why = "the triangle's own normal stands in"},
+    {"degenerate UVs", .change = degenerate_uvs, .bounds = {PAPER, REVIEW},
+     .why = "as the ordinary scene: no map reads them"},
+    {"zero-area and double triangles", .change = degenerate_triangles, .bounds = {PAPER, REVIEW},
+     .why = ORDINARY},
+    {"one triangle", .change = one_triangle, .bounds = {PAPER, REVIEW}, .why = "nothing shadows it"},
+    {"a million triangles", .assignments = {"light.regions=6", "light.map_size=64"},
+     .change = million_triangles, .bounds = {TL_NO_WORSE, 0.40}, .why = "as N = 6"},
     {"no triangle at all", .change = nothing, .bounds = {0, 0}, .why = "nothing is drawn"},
-    {"camera inside of the cloth", .change = camera_inside, .bounds = {0.3, 0.1},
-     .why = "cloth fills the view"},
-    {"camera at the origin", .change = camera_at_origin, .bounds = {0.3, 0.1},
-     .why = "on the floor, looking up"},
+    {"camera inside of the cloth", .change = camera_inside, .bounds = {PAPER, REVIEW}, .why = ORDINARY},
+    {"camera at the origin", .change = camera_at_origin, .bounds = {TL_NO_WORSE, 0.10},
+     .why = "at the foot of the curtain, where little light comes"},
     {"near plane = far plane", .change = near_is_far, .refused = true, .why = "there is no depth to draw in"},
     {"eye = target", .change = eye_is_target, .refused = true, .why = "there is no direction to look in"},
     {"up = direction of view", .change = up_is_view, .refused = true, .why = "there is no upright"},
-    {"ordinary scene again", .bounds = {0.10, 0.06}, .why = "no extreme leaves a trace"},
+    {"ordinary scene again", .bounds = {PAPER, REVIEW}, .why = "no extreme leaves a trace"},
 };
 /* clang-format on */
 const size_t tl_extreme_count = TL_COUNT(tl_extremes);

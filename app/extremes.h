@@ -17,8 +17,10 @@ struct tl_extreme_scene {
     bool ground;
 };
 
-/* Errors are relative RMSE against the oracle, by method: paper, review. */
+/* Errors are relative RMSE against the oracle, by method: paper, review. TL_NO_WORSE promises little, but
+ * something: no worse than the same method without shadows. */
 enum { TL_EXTREME_PAPER, TL_EXTREME_REVIEW, TL_EXTREME_METHODS };
+#define TL_NO_WORSE (-1.0)
 
 struct tl_extreme {
     const char *name;

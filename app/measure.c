@@ -3,7 +3,7 @@
 #include "config/memory.h"
 #include "render/metrics/compare.h"
 
-#include <stdio.h>
+#include <math.h>
 #include <string.h>
 
 static bool choose(const struct tl_choice *choice, const struct tl_settings *scene,
@@ -59,18 +59,37 @@ struct tl_choice tl_choice_oracle(void)
                               .assignments = {"light.method=reference", "light.lobe=dual"}};
 }
 
-bool tl_contender_compare(struct tl_contender *contender, const tl_image *truth,
+bool tl_truth_draw(struct tl_contender *oracle, const tl_frame *frame, struct tl_truth *out, tl_error *error)
+{
+    struct tl_taken unused;
+    if (!tl_contender_draw(oracle, frame, &unused, error) ||
+        !tl_renderer_read(oracle->renderer, &out->image, error))
+        return false;
+    out->standard_error = tl_renderer_standard_error(oracle->renderer);
+    return true;
+}
+
+void tl_truth_release(struct tl_truth *truth)
+{
+    tl_image_release(&truth->image);
+    truth->standard_error = 0;
+}
+
+bool tl_contender_compare(struct tl_contender *contender, const struct tl_truth *truth,
                           struct tl_measured_error *out, tl_error *error)
 {
     tl_image image = {0};
     struct tl_comparison result;
     bool done = tl_renderer_read(contender->renderer, &image, error) &&
-                tl_image_compare(&image, truth, -1, 0, &result, error);
-    if (done)
-        *out = (struct tl_measured_error){.rel_rmse = result.rel_rmse,
+                tl_image_compare(&image, &truth->image, -1, 0, &result, error);
+    if (done) {
+        double square = result.rel_rmse * result.rel_rmse - truth->standard_error * truth->standard_error;
+        *out = (struct tl_measured_error){.rel_rmse = sqrt(fmax(square, 0)),
+                                          .standard_error = truth->standard_error,
                                           .flip_mean = result.flip_mean,
                                           .max_abs = result.max_abs,
                                           .covered = result.covered};
+    }
     tl_image_release(&image);
     return done;
 }

@@ -38,12 +38,24 @@ bool tl_contender_draw(struct tl_contender *contender, const tl_frame *frame, st
 /* The settings that draw a contender's picture by the oracle. */
 struct tl_choice tl_choice_oracle(void);
 
+/* What the oracle says of a frame. */
+struct tl_truth {
+    tl_image image; /* as tl_renderer_read gives it; no texels: not drawn yet */
+    double standard_error;
+};
+bool tl_truth_draw(struct tl_contender *oracle, const tl_frame *frame, struct tl_truth *out, tl_error *error);
+void tl_truth_release(struct tl_truth *truth);
+
 struct tl_measured_error {
-    double rel_rmse, flip_mean, max_abs;
+    double
+        rel_rmse; /* less the oracle's own: sqrt(measured^2 - standard error^2), for they are independent */
+    double standard_error; /* the oracle's */
+    double flip_mean;      /* with what the oracle's noise adds to it */
+    double max_abs;
     size_t covered; /* pixels */
 };
-/* Of the image that the contender drew last against `truth`. */
-bool tl_contender_compare(struct tl_contender *contender, const tl_image *truth,
+/* Of the image that the contender drew last. */
+bool tl_contender_compare(struct tl_contender *contender, const struct tl_truth *truth,
                           struct tl_measured_error *out, tl_error *error);
 
 /* `toile COMMAND TOPIC [SCENE]`: takes the topic off; without a scene the built-in one called `scene` is

@@ -48,13 +48,11 @@ bool tl_stage_draw(struct tl_stage *stage, tl_error *error)
 
 bool tl_stage_draw_still(struct tl_stage *stage, tl_error *error)
 {
-    const struct tl_light_params *light = &stage->settings.light;
-    int rounds = light->jitter ? light->rounds : 1;
     struct tl_progress progress = tl_progress_begin("averaging");
     bool drawn = tl_stage_draw(stage, error);
-    for (int round = 1; drawn && round < rounds && !tl_interrupted(); round++) {
+    for (int round = 1; drawn && !tl_renderer_is_at_rest(stage->renderer) && !tl_interrupted(); round++) {
         drawn = tl_stage_draw(stage, error);
-        tl_progress_update(&progress, round + 1, rounds);
+        tl_progress_update(&progress, round + 1, stage->settings.light.rounds);
     }
     tl_progress_end(&progress);
     return drawn;

@@ -111,7 +111,8 @@ struct run {
     tl_film *film;
     tl_environment sky;
     struct tl_contender oracle;
-    tl_image truths[2]; /* of the current look: the first and the last measured frame; empty until needed */
+    struct tl_truth
+        truths[2]; /* of the current look: the first and the last measured frame; empty until needed */
     int look;
 };
 
@@ -146,24 +147,22 @@ static bool keep_picture(struct run *run, struct tl_contender *contender, const 
     return true;
 }
 
-static bool need_truth(struct run *run, int number, const tl_image **truth, tl_error *error)
+static bool need_truth(struct run *run, int number, const struct tl_truth **truth, tl_error *error)
 {
     bool last = number == last_frame(run);
-    tl_image *kept = &run->truths[last];
+    struct tl_truth *kept = &run->truths[last];
     *truth = kept;
-    if (kept->texels)
+    if (kept->image.texels)
         return true;
-    struct tl_taken unused;
     tl_frame frame = frame_of(run, number);
-    return tl_contender_draw(&run->oracle, &frame, &unused, error) &&
-           tl_renderer_read(run->oracle.renderer, kept, error) &&
+    return tl_truth_draw(&run->oracle, &frame, kept, error) &&
            (!last || keep_picture(run, &run->oracle, "the truth", &(struct tl_measured_error){0}, error));
 }
 
 static bool compare(struct run *run, struct tl_contender *contender, int number,
                     struct tl_measured_error *out, tl_error *error)
 {
-    const tl_image *truth;
+    const struct tl_truth *truth;
     return need_truth(run, number, &truth, error) && tl_contender_compare(contender, truth, out, error);
 }
 
@@ -218,9 +217,11 @@ static bool measure_motion(struct run *run, const struct contender_row *row, str
     if (!compare(run, contender, warm + count - 1, &last, error))
         return false;
     add_row(run, row, contender, 1, cpu_ms, wall_ms, count,
-            (struct tl_measured_error){0.5 * (first.rel_rmse + last.rel_rmse),
-                                       0.5 * (first.flip_mean + last.flip_mean),
-                                       fmax(first.max_abs, last.max_abs), last.covered});
+            (struct tl_measured_error){.rel_rmse = 0.5 * (first.rel_rmse + last.rel_rmse),
+                                       .standard_error = 0.5 * (first.standard_error + last.standard_error),
+                                       .flip_mean = 0.5 * (first.flip_mean + last.flip_mean),
+                                       .max_abs = fmax(first.max_abs, last.max_abs),
+                                       .covered = last.covered});
     return !row->picture || keep_picture(run, contender, row->choice.name, &last, error);
 }
 
@@ -309,8 +310,8 @@ static bool begin_look(struct run *run, int look, tl_error *error)
 {
     struct tl_material_params *material = &run->stage->settings.material;
     run->look = look;
-    tl_image_release(&run->truths[0]);
-    tl_image_release(&run->truths[1]);
+    tl_truth_release(&run->truths[0]);
+    tl_truth_release(&run->truths[1]);
     *material = (struct tl_material_params){.glossiness = tl_looks[look].glossiness};
     for (int c = 0; c < 3; c++) {
         material->diffuse[c] = tl_looks[look].diffuse;
@@ -356,8 +357,8 @@ bool tl_trade_light(struct tl_stage *stage, bool quick, struct tl_trade *out, tl
         done = out->complete = measure_all(&run, error);
     }
     tl_contender_release(&run.oracle);
-    tl_image_release(&run.truths[0]);
-    tl_image_release(&run.truths[1]);
+    tl_truth_release(&run.truths[0]);
+    tl_truth_release(&run.truths[1]);
     tl_environment_release(&run.sky);
     tl_film_destroy(&run.film);
     return done;

@@ -20,21 +20,23 @@ static const char *choice_name(const char *key, int index)
 void tl_trade_write_csv(const struct tl_trade *trade, FILE *out)
 {
     fputs("group,name,look,state,draws,method,visibility,prefilter,composition,cut,regions,map_size_texels,"
-          "filter,cpu_ms_per_frame,wall_ms_per_frame,pem_bytes,map_bytes,total_bytes,relative_rmse,mean_flip,"
+          "filter,cpu_ms_per_frame,wall_ms_per_frame,pem_bytes,map_bytes,total_bytes,relative_rmse,standard_"
+          "error,mean_flip,"
           "largest_difference,covered_pixels\n",
           out);
     for (size_t i = 0; i < trade->row_count; i++) {
         const struct tl_trade_row *row = &trade->rows[i];
         const struct tl_light_params *light = &row->light;
-        fprintf(out,
-                "\"%s\",\"%s\",%s,%s,%d,%s,%s,%s,%s,%s,%d,%d,%s,%.3f,%.3f,%zu,%zu,%zu,%.6g,%.6g,%.6g,%zu\n",
-                row->group, row->name, tl_looks[row->look].name, row->rest ? "rest" : "moving", row->draws,
-                choice_name("method", light->method), choice_name("visibility", light->visibility),
-                choice_name("prefilter", light->prefilter), choice_name("composition", light->composition),
-                choice_name("cut", light->cut), light->regions, light->map_size,
-                choice_name("filter", light->filter), row->taken.cpu_ms, row->taken.wall_ms, row->memory.pems,
-                row->memory.maps, row->memory.total, row->error.rel_rmse, row->error.flip_mean,
-                row->error.max_abs, row->error.covered);
+        fprintf(
+            out,
+            "\"%s\",\"%s\",%s,%s,%d,%s,%s,%s,%s,%s,%d,%d,%s,%.3f,%.3f,%zu,%zu,%zu,%.6g,%.6g,%.6g,%.6g,%zu\n",
+            row->group, row->name, tl_looks[row->look].name, row->rest ? "rest" : "moving", row->draws,
+            choice_name("method", light->method), choice_name("visibility", light->visibility),
+            choice_name("prefilter", light->prefilter), choice_name("composition", light->composition),
+            choice_name("cut", light->cut), light->regions, light->map_size,
+            choice_name("filter", light->filter), row->taken.cpu_ms, row->taken.wall_ms, row->memory.pems,
+            row->memory.maps, row->memory.total, row->error.rel_rmse, row->error.standard_error,
+            row->error.flip_mean, row->error.max_abs, row->error.covered);
     }
 }
 

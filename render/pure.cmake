@@ -4,6 +4,7 @@ add_library(toile_light STATIC
   env/emitters.c
   env/lobes.c
   light/compose.c
+  light/mirrors.c
   env/pour.c
   env/sun.c
   frame/view.c
@@ -13,6 +14,7 @@ add_library(toile_light STATIC
   pem/chain.c
   pem/lobe.c
   pem/lobe_error.c
+  pem/memory.c
   pem/regions.c
   pem/regions_faces.c
   pem/regions_sphere.c

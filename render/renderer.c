@@ -45,21 +45,29 @@ static bool check_image_size(const tl_renderer *renderer, const struct tl_image_
     return true;
 }
 
+static uint64_t map_texel_bytes(const struct tl_light_params *light)
+{
+    if (light->method == TL_METHOD_UNSHADOWED || light->visibility == TL_VISIBILITY_RAYS)
+        return 0;
+    return light->visibility == TL_VISIBILITY_DEPTH ? TL_SHADOW_TEXEL_BYTES / 2 : TL_SHADOW_TEXEL_BYTES;
+}
+
 static bool check_light_size(const struct tl_render_settings *settings, tl_error *error)
 {
     const struct tl_light_params *light = &settings->light;
     /* Six faces and their mips: a third more than 6, so 8. */
-    uint64_t pem = (uint64_t)light->pem_size * (uint64_t)light->pem_size * 8 * TL_PEM_TEXEL_BYTES;
-    uint64_t map = (uint64_t)light->map_size * (uint64_t)light->map_size * TL_SHADOW_TEXEL_BYTES;
+    bool chains = light->visibility != TL_VISIBILITY_RAYS && tl_light_source(light) == TL_LIGHT_CHAIN;
+    uint64_t pem =
+        chains ? (uint64_t)light->pem_size * (uint64_t)light->pem_size * 8 * TL_PEM_TEXEL_BYTES : 0;
+    uint64_t map = (uint64_t)light->map_size * (uint64_t)light->map_size * map_texel_bytes(light);
     uint64_t regions = (uint64_t)light->regions, passes = (uint64_t)light->pems_per_pass;
-    uint64_t in_one_pass = regions < passes ? regions : passes;
+    uint64_t in_one_pass = chains && passes < regions ? passes : regions;
     if (in_one_pass * pem > TEXTURE_BYTES_MAX || in_one_pass * map > TEXTURE_BYTES_MAX)
         return tl_fail(error, TL_USAGE,
                        "light: %d PEMs of %d texels or maps of %d in one pass are more than %d MB: lower "
-                       "light.pems_per_pass",
+                       "light.pems_per_pass or light.map_size",
                        (int)in_one_pass, light->pem_size, light->map_size, (int)(TEXTURE_BYTES_MAX >> 20));
-    uint64_t maps = light->method == TL_METHOD_UNSHADOWED ? 0 : regions * map;
-    uint64_t bytes = regions * pem + maps + sample_count(&settings->image) * TL_SAMPLE_BYTES;
+    uint64_t bytes = regions * (pem + map) + sample_count(&settings->image) * TL_SAMPLE_BYTES;
     if (bytes > BYTES_MAX)
         return tl_fail(error, TL_USAGE,
                        "light: %d regions, PEMs of %d texels, maps of %d and this image need %d MB, more "
@@ -90,6 +98,7 @@ void tl_renderer_destroy(tl_renderer **renderer)
 {
     if (!*renderer)
         return;
+    tl_pour_release(&(*renderer)->pour);
     tl_cube_release(&(*renderer)->cube);
     tl_regions_release(&(*renderer)->regions);
     tl_pems_release(&(*renderer)->pems);
@@ -100,6 +109,7 @@ void tl_renderer_destroy(tl_renderer **renderer)
     tl_surfaces_destroy(&(*renderer)->surfaces);
     tl_triangle_ranges_release(&(*renderer)->ranges);
     tl_samples_release(&(*renderer)->samples);
+    tl_mirrors_release(&(*renderer)->mirrors);
     tl_trace_destroy(&(*renderer)->trace);
     tl_points_destroy(&(*renderer)->points);
     free((*renderer)->drawn);
@@ -112,32 +122,13 @@ void tl_renderer_destroy(tl_renderer **renderer)
     *renderer = NULL;
 }
 
-static tl_bits scene_facts(const struct tl_render_settings *settings)
-{
-    const struct tl_light_params *light = &settings->light;
-    if (light->method == TL_METHOD_REFERENCE)
-        return TL_BIT(TL_SCENE_REFERENCE);
-    bool shadowed = light->method != TL_METHOD_UNSHADOWED, rays = light->visibility == TL_VISIBILITY_RAYS;
-    tl_bits facts = TL_BIT(TL_SCENE_RASTER) | TL_BIT(rays ? TL_SCENE_RAYS : TL_SCENE_PASSES);
-    if (shadowed)
-        facts |= TL_BIT(TL_SCENE_SHADOWS) | (rays ? 0 : TL_BIT(TL_SCENE_MAPS));
-    if (light->visibility == TL_VISIBILITY_VSM)
-        facts |= TL_BIT(TL_SCENE_BLUR);
-    if (!rays && tl_light_source(light) == TL_LIGHT_CHAIN)
-        facts |= TL_BIT(TL_SCENE_CHAINS);
-    if (!rays && tl_light_source(light) == TL_LIGHT_SLICES)
-        facts |= TL_BIT(TL_SCENE_SLICES);
-    if (rays || tl_light_needs_exact(light))
-        facts |= TL_BIT(TL_SCENE_EXACT);
-    return facts;
-}
-
-static struct tl_plan_input plan_input(const tl_renderer *renderer, const struct tl_render_settings *settings,
-                                       tl_bits changed, enum tl_resource wanted)
+static struct tl_plan_input plan_input(const tl_renderer *renderer, const tl_frame *frame,
+                                       const struct tl_render_settings *settings, tl_bits changed,
+                                       enum tl_resource wanted)
 {
     return (struct tl_plan_input){.changed = changed,
                                   .valid = renderer->valid,
-                                  .scene = scene_facts(settings),
+                                  .scene = tl_frame_facts(frame, settings),
                                   .wanted = TL_BIT(wanted),
                                   .scene_fact_names = tl_scene_fact_names,
                                   .resource_names = tl_resource_names};
@@ -152,6 +143,13 @@ static tl_bits changed_inputs(const tl_renderer *renderer, const uint64_t signat
     return changed;
 }
 
+/* Nothing holds, and the next frame begins anew: rounds are never averaged into what another frame left. */
+static void forget(tl_renderer *renderer)
+{
+    renderer->valid = 0;
+    memset(renderer->signatures, 0, sizeof renderer->signatures);
+}
+
 static bool run_plan(tl_renderer *renderer, const struct tl_plan_input *input, tl_plan *plan, tl_error *error)
 {
     tl_plan_make(tl_frame_jobs, tl_frame_job_count, input, &renderer->cost, plan);
@@ -161,7 +159,7 @@ static bool run_plan(tl_renderer *renderer, const struct tl_plan_input *input, t
             continue;
         double started_s = tl_clock_s();
         if (!tl_frame_jobs[i].run(renderer, plan->rows[i].level, error)) {
-            renderer->valid = 0;
+            forget(renderer);
             return false;
         }
         /* The CPU's clock around a finished job: GL's own timers are wrong on software drivers. */
@@ -188,14 +186,29 @@ static void reload_shaders(tl_renderer *renderer)
         !tl_program_reload(&renderer->present.resolve, &error) ||
         !tl_program_reload(&renderer->present.show, &error))
         tl_warn("%s", error.message);
-    renderer->valid = 0;
+    forget(renderer);
+}
+
+static bool check_camera(const struct tl_camera *camera, tl_error *error)
+{
+    vec3s view = glms_vec3_sub(camera->target, camera->eye);
+    float upright = glms_vec3_norm(glms_vec3_cross(view, camera->up));
+    if (!(upright > 1e-6f * glms_vec3_norm(view) * glms_vec3_norm(camera->up)))
+        return tl_fail(error, TL_USAGE,
+                       "camera: eye, target and up direction lie on one line: there is no upright to see by");
+    if (!(camera->near_m > 0 && camera->far_m > camera->near_m && isfinite(camera->far_m)))
+        return tl_fail(error, TL_USAGE,
+                       "camera: near plane at %g m and far plane at %g m: 0 < near < far is needed",
+                       (double)camera->near_m, (double)camera->far_m);
+    return true;
 }
 
 bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct tl_render_settings *settings,
                       tl_error *error)
 {
     struct tl_render_settings used = usable(settings);
-    if (!check_image_size(renderer, &used.image, error) || !check_light_size(&used, error))
+    if (!check_camera(&frame->camera, error) || !check_image_size(renderer, &used.image, error) ||
+        !check_light_size(&used, error))
         return false;
     reload_shaders(renderer);
     uint64_t signatures[TL_INPUT_COUNT];
@@ -206,7 +219,7 @@ bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct
     renderer->view = tl_view_make(&frame->camera, used.image.width, used.image.height);
     memcpy(renderer->signatures, signatures, sizeof signatures);
     tl_frame_list_surfaces(renderer);
-    const struct tl_plan_input input = plan_input(renderer, &used, changed, TL_MADE_IMAGE);
+    const struct tl_plan_input input = plan_input(renderer, frame, &used, changed, TL_MADE_IMAGE);
     return run_plan(renderer, &input, &renderer->plan, error);
 }
 
@@ -248,7 +261,8 @@ static bool show(tl_renderer *renderer, unsigned framebuffer, int width, int hei
     renderer->valid &=
         ~TL_BIT(TL_MADE_SHOWN); /* a window's buffer holds nothing from one frame to the next */
     tl_plan plan;
-    const struct tl_plan_input input = plan_input(renderer, &renderer->settings, 0, TL_MADE_SHOWN);
+    const struct tl_plan_input input =
+        plan_input(renderer, &renderer->frame, &renderer->settings, 0, TL_MADE_SHOWN);
     return run_plan(renderer, &input, &plan, error);
 }
 
@@ -278,8 +292,13 @@ void tl_renderer_plan(const tl_renderer *renderer, const tl_frame *frame,
     struct tl_rest rest = renderer->rest;
     tl_frame_sign(frame, &used, renderer->signatures, &rest, signatures);
     const struct tl_plan_input input =
-        plan_input(renderer, &used, changed_inputs(renderer, signatures), TL_MADE_IMAGE);
+        plan_input(renderer, frame, &used, changed_inputs(renderer, signatures), TL_MADE_IMAGE);
     tl_plan_make(tl_frame_jobs, tl_frame_job_count, &input, &renderer->cost, out);
+}
+
+double tl_renderer_standard_error(const tl_renderer *renderer)
+{
+    return renderer->standard_error;
 }
 
 bool tl_renderer_is_at_rest(const tl_renderer *renderer)

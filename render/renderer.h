@@ -54,7 +54,7 @@ struct tl_light_params { /* table "light" */
     float bleed_reduction; /* [0, 1): Chebyshev values below it become 0 */
 };
 extern const struct tl_option_table tl_light_options;
-#define TL_MIRROR_EXPONENT 200.0f
+#define TL_MIRROR_EXPONENT 199.0f /* a glossiness of 0.995, however it is rounded */
 
 struct tl_material_params { /* table "material": the garment's look, from the fabric or by hand */
     bool use_file;          /* keep the garment file's own materials where it has them */
@@ -112,6 +112,9 @@ void tl_renderer_destroy(tl_renderer **renderer);
 /* Draws the frame into the renderer's own HDR target. Work that nothing changed is not repeated. */
 bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct tl_render_settings *settings,
                       tl_error *error);
+
+/* Of the image by TL_METHOD_REFERENCE that was drawn last, as rel_rmse of render/metrics/compare.h; 0 before. */
+double tl_renderer_standard_error(const tl_renderer *renderer);
 
 /* True once drawing the same frame again would change nothing: no jittered round is left to be averaged. */
 bool tl_renderer_is_at_rest(const tl_renderer *renderer);

@@ -3,9 +3,11 @@
 #define TOILE_RENDER_FRAME_FRAME_H
 
 #include "render/env/lobes.h"
+#include "render/env/pour.h"
 #include "render/env/sun.h"
 #include "render/light/gbuffer.h"
 #include "render/light/light.h"
+#include "render/light/mirrors.h"
 #include "render/light/region_lights.h"
 #include "render/light/samples.h"
 #include "render/present/present.h"
@@ -48,6 +50,7 @@ enum tl_resource {
     TL_MADE_MAPS,
     TL_MADE_GBUFFER,
     TL_MADE_SAMPLES,
+    TL_MADE_MIRRORS, /* what near mirrors show */
     TL_MADE_POINTS,
     TL_MADE_LIGHT,
     TL_MADE_IMAGE,
@@ -63,6 +66,7 @@ enum tl_scene_fact {
     TL_SCENE_SHADOWS, /* somebody asks for visibility */
     TL_SCENE_MAPS,    /* ... of shadow maps */
     TL_SCENE_RAYS,    /* the back-end of rays lights the image */
+    TL_SCENE_MIRRORS, /* ... and something is so glossy that rays follow what it shows */
     TL_SCENE_PASSES,  /* passes on the GPU do */
     TL_SCENE_CHAINS,  /* ... and read filter chains */
     TL_SCENE_SLICES,  /* ... and read exact slices of the regions */
@@ -94,6 +98,10 @@ void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *setti
                    const uint64_t before[TL_INPUT_COUNT], struct tl_rest *rest,
                    uint64_t signatures[TL_INPUT_COUNT]);
 
+/* Facts about the scene and how it is to be drawn, and the least and largest glossiness in it. */
+tl_bits tl_frame_facts(const tl_frame *frame, const struct tl_render_settings *settings);
+void tl_frame_glossiness(const tl_frame *frame, float *low, float *high);
+
 /* Lists what is drawn, with the ground last when it is drawn. */
 void tl_frame_list_surfaces(tl_renderer *renderer);
 
@@ -105,7 +113,8 @@ struct tl_renderer {
     struct tl_render_settings settings;
     struct tl_view view;
 
-    tl_cube cube; /* without the suns */
+    struct tl_pour pour; /* from environments of one size to the cube */
+    tl_cube cube;        /* without the suns */
     struct tl_suns suns;
     struct tl_regions regions;
     uint64_t regions_revision;
@@ -123,12 +132,14 @@ struct tl_renderer {
     const tl_surface **drawn; /* what is drawn, with the ground last */
     struct tl_triangle_ranges ranges;
     struct tl_samples samples;
+    struct tl_mirrors mirrors;
     tl_trace *trace;
     tl_points *points;
     float *light; /* [height][width][4] of samples, composed on the CPU */
     size_t light_bytes;
     struct tl_lighting lighting;
     struct tl_present present;
+    double standard_error; /* of the last reference */
 
     /* where the show job draws */
     unsigned show_framebuffer;

@@ -1,4 +1,7 @@
 #include "render/frame/frame.h"
+#include "render/pem/lobe.h"
+
+#include <math.h>
 
 #define FNV_OFFSET 14695981039346656037u
 #define FNV_PRIME  1099511628211u
@@ -106,4 +109,56 @@ void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *setti
     count_rest(light, before, signatures, rest);
     signatures[TL_INPUT_ROUND] = MIX(start, rest->image);
     signatures[TL_INPUT_SCENE_ROUND] = MIX(start, rest->scene);
+}
+
+/* The least and the largest glossiness that a material's maps can make of it. */
+static void glossiness_range(const tl_material *material, float *low, float *high)
+{
+    float least = material->gloss_map.image ? 0 : material->glossiness, most = material->glossiness;
+    if (material->weave) {
+        const tl_image *gloss = &material->weave->gloss;
+        float added_low = INFINITY, added_high = -INFINITY;
+        for (size_t i = 0; i < (size_t)gloss->width * (size_t)gloss->height; i++) {
+            added_low = fminf(added_low, tl_image_floats(gloss)[i]);
+            added_high = fmaxf(added_high, tl_image_floats(gloss)[i]);
+        }
+        least += added_low;
+        most += added_high;
+    }
+    *low = fminf(*low, fminf(fmaxf(least, 0), 1));
+    *high = fmaxf(*high, fminf(fmaxf(most, 0), 1));
+}
+
+void tl_frame_glossiness(const tl_frame *frame, float *low, float *high)
+{
+    *low = 1, *high = 0;
+    for (size_t s = 0; s < frame->surface_count; s++)
+        for (size_t p = 0; p < frame->surfaces[s].part_count; p++)
+            glossiness_range(&frame->surfaces[s].materials[frame->surfaces[s].parts[p].material], low, high);
+    *low = fminf(*low, *high);
+}
+
+tl_bits tl_frame_facts(const tl_frame *frame, const struct tl_render_settings *settings)
+{
+    const struct tl_light_params *light = &settings->light;
+    if (light->method == TL_METHOD_REFERENCE)
+        return TL_BIT(TL_SCENE_REFERENCE);
+    bool shadowed = light->method != TL_METHOD_UNSHADOWED, rays = light->visibility == TL_VISIBILITY_RAYS;
+    tl_bits facts = TL_BIT(TL_SCENE_RASTER) | TL_BIT(rays ? TL_SCENE_RAYS : TL_SCENE_PASSES);
+    if (shadowed)
+        facts |= TL_BIT(TL_SCENE_SHADOWS) | (rays ? 0 : TL_BIT(TL_SCENE_MAPS));
+    if (light->visibility == TL_VISIBILITY_VSM)
+        facts |= TL_BIT(TL_SCENE_BLUR);
+    if (!rays && tl_light_source(light) == TL_LIGHT_CHAIN)
+        facts |= TL_BIT(TL_SCENE_CHAINS);
+    if (!rays && tl_light_source(light) == TL_LIGHT_SLICES)
+        facts |= TL_BIT(TL_SCENE_SLICES);
+    if (rays || tl_light_needs_exact(light))
+        facts |= TL_BIT(TL_SCENE_EXACT);
+    float low, high;
+    tl_frame_glossiness(frame, &low, &high);
+    if (rays && light->method == TL_METHOD_PEM && light->reflect_scene &&
+        tl_mirror_ray_count(tl_lobe_exponent(high)) > 0)
+        facts |= TL_BIT(TL_SCENE_MIRRORS);
+    return facts;
 }

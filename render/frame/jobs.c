@@ -41,6 +41,7 @@ const char *const tl_resource_names[] = {
     [TL_MADE_MAPS] = "shadow maps",
     [TL_MADE_GBUFFER] = "G-buffer",
     [TL_MADE_SAMPLES] = "samples",
+    [TL_MADE_MIRRORS] = "what mirrors show",
     [TL_MADE_POINTS] = "visibility at points",
     [TL_MADE_LIGHT] = "light",
     [TL_MADE_IMAGE] = "image",
@@ -54,6 +55,7 @@ const char *const tl_scene_fact_names[] = {
     [TL_SCENE_SHADOWS] = "shadows",
     [TL_SCENE_MAPS] = "shadow maps",
     [TL_SCENE_RAYS] = "rays",
+    [TL_SCENE_MIRRORS] = "near mirrors by rays",
     [TL_SCENE_PASSES] = "light passes",
     [TL_SCENE_CHAINS] = "filter chains",
     [TL_SCENE_SLICES] = "exact slices",
@@ -74,7 +76,8 @@ static bool run_cube(void *context, int level, tl_error *error)
     (void)level, (void)error;
     tl_cube_release(&renderer->cube);
     tl_lobes_release(&renderer->lobes);
-    renderer->cube = tl_cube_from_environment(renderer->frame.environment, renderer->settings.light.pem_size);
+    renderer->cube = tl_cube_from_environment_with(renderer->frame.environment,
+                                                   renderer->settings.light.pem_size, &renderer->pour);
     renderer->suns = (struct tl_suns){0};
     if (renderer->settings.light.sun)
         tl_suns_take(&renderer->cube, renderer->frame.environment, &renderer->suns);
@@ -94,39 +97,17 @@ static bool run_regions(void *context, int level, tl_error *error)
     return true;
 }
 
-/* The least and the largest glossiness that a material's maps can make of it. */
-static void glossiness_range(const tl_material *material, float *low, float *high)
-{
-    float least = material->gloss_map.image ? 0 : material->glossiness, most = material->glossiness;
-    if (material->weave) {
-        const tl_image *gloss = &material->weave->gloss;
-        float added_low = INFINITY, added_high = -INFINITY;
-        for (size_t i = 0; i < (size_t)gloss->width * (size_t)gloss->height; i++) {
-            added_low = fminf(added_low, tl_image_floats(gloss)[i]);
-            added_high = fmaxf(added_high, tl_image_floats(gloss)[i]);
-        }
-        least += added_low;
-        most += added_high;
-    }
-    *low = fminf(*low, fminf(fmaxf(least, 0), 1));
-    *high = fmaxf(*high, fminf(fmaxf(most, 0), 1));
-}
-
-static uint32_t exponents_of(const tl_frame *frame)
-{
-    float low = 1, high = 0;
-    for (size_t s = 0; s < frame->surface_count; s++)
-        for (size_t p = 0; p < frame->surfaces[s].part_count; p++)
-            glossiness_range(&frame->surfaces[s].materials[frame->surfaces[s].parts[p].material], &low,
-                             &high);
-    return tl_exponents_needed(fminf(low, high), high);
-}
-
 static bool run_lobes(void *context, int level, tl_error *error)
 {
     tl_renderer *renderer = context;
     (void)level, (void)error;
-    tl_lobes_make(&renderer->lobes, &renderer->cube, exponents_of(&renderer->frame));
+    float low, high;
+    tl_frame_glossiness(&renderer->frame, &low, &high);
+    uint32_t needed = tl_exponents_needed(low, high);
+    if (tl_mirror_ray_count(tl_lobe_exponent(high)) >
+        0) /* lobes along the rays of mirrors are narrower still */
+        needed |= tl_exponents_needed(high, 1);
+    tl_lobes_make(&renderer->lobes, &renderer->cube, needed);
     tl_lighting_set_exact(&renderer->lighting, renderer->gpu, &renderer->lobes);
     return true;
 }
@@ -137,7 +118,9 @@ static bool run_slices(void *context, int level, tl_error *error)
     tl_renderer *renderer = context;
     (void)level, (void)error;
     tl_slices_release(&renderer->slices);
-    tl_slices_make(&renderer->slices, &renderer->cube, &renderer->regions, exponents_of(&renderer->frame));
+    float low, high;
+    tl_frame_glossiness(&renderer->frame, &low, &high);
+    tl_slices_make(&renderer->slices, &renderer->cube, &renderer->regions, tl_exponents_needed(low, high));
     tl_slice_maps_upload(&renderer->slice_maps, renderer->gpu, &renderer->slices);
     return true;
 }
@@ -274,11 +257,28 @@ static bool run_samples(void *context, int level, tl_error *error)
     return true;
 }
 
+/* Whoever asks the rays first in a frame brings them up to date; that costs nothing when they are. */
+static bool follow_motion(tl_renderer *renderer, tl_error *error)
+{
+    return tl_trace_update(renderer->trace, renderer->frame.surfaces, renderer->frame.surface_count, error);
+}
+
+static bool run_mirrors(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level;
+    if (!follow_motion(renderer, error))
+        return false;
+    tl_mirrors_trace(&renderer->mirrors, renderer->trace, &renderer->ranges, ground_of(renderer),
+                     &renderer->samples);
+    return true;
+}
+
 static bool run_points(void *context, int level, tl_error *error)
 {
     tl_renderer *renderer = context;
     (void)level;
-    if (!tl_trace_update(renderer->trace, renderer->frame.surfaces, renderer->frame.surface_count, error))
+    if (!follow_motion(renderer, error))
         return false;
     const struct tl_points_request request = {.trace = renderer->trace,
                                               .ranges = &renderer->ranges,
@@ -312,11 +312,14 @@ static bool run_compose(void *context, int level, tl_error *error)
                                          .lights = &renderer->lights,
                                          .suns = &renderer->suns,
                                          .lobes = &renderer->lobes,
+                                         .environment = renderer->frame.environment,
                                          .environment_yaw = renderer->frame.environment_yaw,
                                          .params = &renderer->settings.light};
     if (renderer->settings.light.method != TL_METHOD_UNSHADOWED) {
         request.values = tl_points_values(renderer->points, &request.stride);
         request.taps = tl_points_taps(renderer->points);
+        if (tl_frame_facts(&renderer->frame, &renderer->settings) & TL_BIT(TL_SCENE_MIRRORS))
+            request.mirrors = renderer->mirrors.items;
         for (int i = 0; i < renderer->suns.count; i++)
             request.sun_visibility[i] = tl_points_sun(renderer->points, i);
     }
@@ -331,11 +334,21 @@ static bool run_reference(void *context, int level, tl_error *error)
     (void)level;
     tl_image image;
     struct tl_reference_report report;
-    if (!tl_reference_draw(&renderer->frame, &renderer->settings, ground_of(renderer), &image, &report,
-                           error))
+    tl_frame frame = renderer->frame;
+    const struct tl_ground *ground = ground_of(renderer);
+    tl_surface *surfaces =
+        TL_NEW_ARRAY(tl_surface, frame.surface_count + 1); /* it wants the ground among them */
+    memcpy(surfaces, frame.surfaces, frame.surface_count * sizeof *surfaces);
+    frame.surfaces = surfaces;
+    if (ground)
+        surfaces[frame.surface_count++] = ground->surface;
+    bool drawn = tl_reference_draw(&frame, &renderer->settings, ground, &image, &report, error);
+    free(surfaces);
+    if (!drawn)
         return false;
     tl_info("reference: %d replicates, %.3g million rays, standard error %.2g %%", report.replicates,
             1e-6 * (double)report.rays, 100 * report.standard_error);
+    renderer->standard_error = report.standard_error;
     tl_present_set_image(&renderer->present, renderer->gpu, &image);
     tl_image_release(&image);
     return true;
@@ -467,10 +480,17 @@ const tl_job tl_frame_jobs[] = {
      .requires_scene = SET1(TL_SCENE_RAYS),
      .levels = LEVELS_ONE,
      .run = run_samples},
+    {.name = "mirrors",
+     .what = "rays: what near mirrors show",
+     .reads = SET4(TL_MADE_SAMPLES, TL_INPUT_SHAPES, TL_INPUT_MOTION, TL_INPUT_GROUND),
+     .writes = SET1(TL_MADE_MIRRORS),
+     .requires_scene = SET1(TL_SCENE_MIRRORS),
+     .levels = LEVELS_ONE,
+     .run = run_mirrors},
     {.name = "points",
      .what = "rays: visibility of the regions, kept at vertices",
      .reads = SET5(TL_MADE_SAMPLES, TL_MADE_REGIONS, TL_INPUT_SHAPES, TL_INPUT_MOTION, TL_INPUT_GROUND) |
-              SET3(TL_INPUT_YAW, TL_INPUT_RAYS, TL_INPUT_SCENE_ROUND),
+              SET4(TL_MADE_MIRRORS, TL_INPUT_YAW, TL_INPUT_RAYS, TL_INPUT_SCENE_ROUND),
      .writes = SET1(TL_MADE_POINTS),
      .requires_scene = SET2(TL_SCENE_RAYS, TL_SCENE_SHADOWS),
      .levels = LEVELS_ONE,
@@ -487,7 +507,7 @@ const tl_job tl_frame_jobs[] = {
     {.name = "compose",
      .what = "exact light times the share of it that is seen",
      .reads = SET5(TL_MADE_SAMPLES, TL_MADE_POINTS, TL_MADE_LIGHTS, TL_MADE_LOBES, TL_MADE_CUBE) |
-              SET2(TL_INPUT_YAW, TL_INPUT_LIGHT),
+              SET3(TL_MADE_MIRRORS, TL_INPUT_YAW, TL_INPUT_LIGHT),
      .writes = SET1(TL_MADE_LIGHT),
      .requires_scene = SET1(TL_SCENE_RAYS),
      .levels = LEVELS_ONE,

@@ -1,8 +1,11 @@
 #include "render/light/compose.h"
 
+#include "config/memory.h"
 #include "render/pem/lobe.h"
 
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 /* A sample, in the environment's frame, in which all of this is done. */
 struct frame {
@@ -23,7 +26,8 @@ struct block {
     const struct tl_compose_request *request;
     float turn_cosine, turn_sine; /* of the environment's yaw */
     struct tl_region_exponents exponents;
-    float blended; /* the exponent that `blend` stands for */
+    float blended;          /* the exponent that `blend` stands for */
+    const vec3s *reflected; /* light of the samples that mirrors show, by index less primary_count */
     struct tl_exponent_blend blend;
 };
 
@@ -183,6 +187,46 @@ static void receive_shadowed(const struct block *block, const struct frame *fram
             light[kind].raw[c] = gains[kind].raw[c] * sums->seen[kind][c];
 }
 
+static vec3s perfect_mirror_light(const struct block *block, const struct tl_mirror *mirror)
+{
+    const struct tl_compose_request *request = block->request;
+    uint32_t hit = mirror->hits[0];
+    if (hit == TL_MIRROR_BLACK)
+        return (vec3s){{0, 0, 0}};
+    vec3s light = tl_environment_texel(request->environment, into_environment(block, mirror->directions[0]));
+    if (hit == TL_MIRROR_OPEN)
+        return light;
+    return glms_vec3_add(glms_vec3_scale(light, 1 - request->samples->items[hit].cover),
+                         block->reflected[hit - request->samples->primary_count]);
+}
+
+/* The glossy light of a near mirror, but for suns: see mirrors.h. */
+static vec3s mirror_light(const struct block *block, const struct tl_mirror *mirror,
+                          const struct frame *frame)
+{
+    const struct tl_compose_request *request = block->request;
+    struct tl_exponent_blend blend = tl_exponent_blend(frame->exponent * (float)mirror->ray_count);
+    vec3s all = {{0, 0, 0}}, open = all, scene = all;
+    for (int m = 0; m < mirror->ray_count; m++) {
+        vec3s light = tl_lobes_fetch(request->lobes, into_environment(block, mirror->directions[m]), blend);
+        uint32_t hit = mirror->hits[m];
+        float cover = hit == TL_MIRROR_OPEN    ? 0
+                      : hit == TL_MIRROR_BLACK ? 1
+                                               : request->samples->items[hit].cover;
+        all = glms_vec3_add(all, light);
+        open = glms_vec3_add(open, glms_vec3_scale(light, 1 - cover));
+        if (hit < TL_MIRROR_BLACK)
+            scene = glms_vec3_add(scene, block->reflected[hit - request->samples->primary_count]);
+    }
+    vec3s exact = tl_lobes_fetch(request->lobes, frame->gloss, frame->blend);
+    vec3s light;
+    for (int c = 0; c < 3; c++) {
+        float share = all.raw[c] > 0 ? open.raw[c] / all.raw[c] : 0;
+        light.raw[c] = exact.raw[c] * share + scene.raw[c] / (float)mirror->ray_count;
+    }
+    return light;
+}
+
 /* Ambient occlusion knows one share for all light. Under white light of 1 the share is what arrives. */
 static void replace_by_occlusion(const struct sums *sums, int method, struct received *light)
 {
@@ -198,7 +242,8 @@ static void replace_by_occlusion(const struct sums *sums, int method, struct rec
         light->shadowed[kind] = glms_vec3_mul(light->unshadowed[kind], share);
 }
 
-TL_INLINE void compose_sample(struct block *block, size_t index, float *light)
+/* Light of a sample, premultiplied by cover. */
+TL_INLINE vec3s compose_sample(struct block *block, size_t index)
 {
     const struct tl_compose_request *request = block->request;
     const tl_sample *sample = &request->samples->items[index];
@@ -214,33 +259,52 @@ TL_INLINE void compose_sample(struct block *block, size_t index, float *light)
         sums = bumped ? sum_groups(block, index, &frame, true) : sum_groups(block, index, &frame, false);
         receive_shadowed(block, &frame, &sums, received.shadowed);
     }
+    const struct tl_mirror *mirror =
+        request->mirrors && index < request->samples->primary_count ? &request->mirrors[index] : NULL;
+    if (mirror && mirror->ray_count > 0)
+        received.shadowed[GLOSSY] = mirror_light(block, mirror, &frame);
     add_suns(block, index, &frame, &received);
+    if (mirror && mirror->ray_count > 0 && frame.exponent >= TL_PERFECT_EXPONENT)
+        received.shadowed[GLOSSY] = perfect_mirror_light(block, mirror);
     if (by_occlusion)
         replace_by_occlusion(&sums, method, &received);
     const vec3s *arriving = method == TL_METHOD_UNSHADOWED ? received.unshadowed : received.shadowed;
-    vec3s colour = colour_of(sample, request->params->lobe, arriving);
-    float *texel = light + 4 * (size_t)sample->texel;
-    for (int c = 0; c < 3; c++)
-        texel[c] = colour.raw[c] * sample->cover;
-    texel[3] = 0;
+    return glms_vec3_scale(colour_of(sample, request->params->lobe, arriving), sample->cover);
 }
 
 #define BLOCK 256 /* samples that a thread takes at a time */
 
-TL_CLONES static void compose_block(const struct tl_compose_request *request, size_t first, size_t count,
-                                    float *light)
+/* Samples first .. last - 1 of the camera into `light`, or of what mirrors show into `reflected`. */
+TL_CLONES static void compose_block(const struct tl_compose_request *request, size_t first, size_t last,
+                                    float *light, vec3s *reflected)
 {
     struct block block = {.request = request,
                           .turn_cosine = cosf(request->environment_yaw),
-                          .turn_sine = sinf(request->environment_yaw)};
-    for (size_t i = first; i < first + count; i++)
-        compose_sample(&block, i, light);
+                          .turn_sine = sinf(request->environment_yaw),
+                          .reflected = reflected};
+    size_t primary_count = request->samples->primary_count;
+    for (size_t i = first; i < last; i++) {
+        vec3s colour = compose_sample(&block, i);
+        if (i < primary_count)
+            memcpy(light + 4 * (size_t)request->samples->items[i].texel, colour.raw, sizeof colour);
+        else
+            reflected[i - primary_count] = colour;
+    }
+}
+
+static void compose_range(const struct tl_compose_request *request, size_t begin, size_t end, float *light,
+                          vec3s *reflected)
+{
+#pragma omp parallel for schedule(dynamic)
+    for (size_t first = begin; first < end; first += BLOCK)
+        compose_block(request, first, end - first < BLOCK ? end : first + BLOCK, light, reflected);
 }
 
 void tl_compose(const struct tl_compose_request *request, float *light)
 {
-    size_t sample_count = request->samples->count;
-#pragma omp parallel for schedule(dynamic)
-    for (size_t first = 0; first < sample_count; first += BLOCK)
-        compose_block(request, first, sample_count - first < BLOCK ? sample_count - first : BLOCK, light);
+    size_t primary_count = request->samples->primary_count, count = request->samples->count;
+    vec3s *reflected = TL_NEW_ARRAY(vec3s, count - primary_count);
+    compose_range(request, primary_count, count, light, reflected);
+    compose_range(request, 0, primary_count, light, reflected);
+    free(reflected);
 }

@@ -13,6 +13,7 @@
 
 #include "render/env/lobes.h"
 #include "render/env/sun.h"
+#include "render/light/mirrors.h"
 #include "render/light/region_lights.h"
 #include "render/light/samples.h"
 #include "render/visibility/points.h"
@@ -27,13 +28,15 @@ struct tl_compose_request {
     size_t stride;
     const struct tl_taps *taps;
     const float *sun_visibility[TL_SUNS_MAX];
-    float environment_yaw; /* rad */
+    const tl_environment *environment; /* what perfect mirrors show */
+    const struct tl_mirror *mirrors;   /* by sample of the camera; NULL: none */
+    float environment_yaw;             /* rad */
     const struct tl_light_params *params;
 };
 
-/* Writes light[4 * texel], premultiplied by cover, of every sample; other texels are left alone. The
- * exponents that the samples' glossiness needs must be in `lobes`. Results do not depend on the number of
- * threads. */
+/* Writes light[4 * texel], premultiplied by cover, of every sample of the camera; other texels are left
+ * alone. The exponents that the samples' glossiness needs must be in `lobes`. Results do not depend on the
+ * number of threads. */
 void tl_compose(const struct tl_compose_request *request, float *light);
 
 #endif

@@ -165,12 +165,8 @@ static void gather(const struct layers *layers, const struct tl_triangle_ranges 
         first[row + 1] = read_tile_row(layers, row, ranges, eye, NULL);
     for (int row = 0; row < row_count; row++)
         first[row + 1] += first[row];
-    out->count = first[row_count];
-    if (out->count > out->capacity) {
-        out->capacity = out->count + out->count / 4;
-        free(out->items);
-        out->items = TL_NEW_ARRAY(tl_sample, out->capacity);
-    }
+    out->count = out->primary_count = first[row_count];
+    tl_samples_reserve(out, out->count);
 #pragma omp parallel for schedule(dynamic)
     for (int row = 0; row < row_count; row++)
         read_tile_row(layers, row, ranges, eye, out->items + first[row]);
@@ -212,6 +208,14 @@ void tl_samples_read(const struct tl_gbuffer *gbuffer, const struct tl_triangle_
     };
     gather(&layers, ranges, eye, out);
     measure_glossiness(out);
+}
+
+void tl_samples_reserve(struct tl_samples *samples, size_t count)
+{
+    if (count <= samples->capacity && samples->items)
+        return;
+    samples->capacity = count + count / 4 + 1;
+    samples->items = tl_resize(samples->items, samples->capacity, sizeof *samples->items);
 }
 
 void tl_samples_release(struct tl_samples *samples)

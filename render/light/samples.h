@@ -24,6 +24,8 @@ typedef struct tl_sample {
 /* In tiles of 4 x 4 texels, so that sixteen samples in a row are neighbours. */
 struct tl_samples {
     int width, height; /* of the target */
+    size_t
+        primary_count; /* of the camera; what mirrors show comes after them, with the texel of the mirror */
     size_t count, capacity;
     tl_sample *items;
     float glossiness_min, glossiness_max; /* over all; 0 when there are none */
@@ -47,6 +49,8 @@ const tl_surface *tl_triangle_find(const struct tl_triangle_ranges *ranges, uint
 /* Reads the G-buffer back. The arrays of `out` are used again from frame to frame. */
 void tl_samples_read(const struct tl_gbuffer *gbuffer, const struct tl_triangle_ranges *ranges, vec3s eye,
                      struct tl_samples *out);
+/* Makes room for `count` samples and keeps those that are there. */
+void tl_samples_reserve(struct tl_samples *samples, size_t count);
 void tl_samples_release(struct tl_samples *samples);
 
 #endif

@@ -129,7 +129,7 @@ static void measure(struct tl_regions *regions, int index)
 
 void tl_regions_measure(struct tl_regions *regions)
 {
-#pragma omp parallel for schedule(dynamic)
+#pragma omp parallel for schedule(dynamic) if (texel_count(regions) >= TL_REGIONS_PARALLEL_TEXELS)
     for (int i = 0; i < regions->count; i++)
         measure(regions, i);
 }
@@ -175,7 +175,7 @@ static void weigh(struct tl_regions *regions, int index)
 
 void tl_regions_weigh(struct tl_regions *regions)
 {
-#pragma omp parallel for schedule(dynamic)
+#pragma omp parallel for schedule(dynamic) if (texel_count(regions) >= TL_REGIONS_PARALLEL_TEXELS)
     for (int i = 0; i < regions->count; i++)
         weigh(regions, i);
 }
@@ -194,7 +194,7 @@ static vec3s power_of(const tl_cube *cube, const struct tl_regions *regions, int
 
 void tl_regions_colour(const tl_cube *cube, struct tl_regions *regions)
 {
-#pragma omp parallel for schedule(dynamic)
+#pragma omp parallel for schedule(dynamic) if (texel_count(regions) >= TL_REGIONS_PARALLEL_TEXELS)
     for (int i = 0; i < regions->count; i++)
         regions->items[i].power = power_of(cube, regions, i);
 }

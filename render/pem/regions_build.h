@@ -4,6 +4,9 @@
 
 #include "render/pem/regions.h"
 
+/* Cubes of fewer texels are done before other threads have woken up. */
+#define TL_REGIONS_PARALLEL_TEXELS 16384
+
 /* In this order: a cut begins, sets `count`, `labels` and the nodes it has, then lets the rest be made. */
 
 /* Releases what `out` held, allocates, and fills in `size`, `solid_angles` and `importance`. */

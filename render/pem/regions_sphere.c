@@ -64,7 +64,7 @@ static void fill_points(const struct tl_regions *regions, struct points *points)
     double luminance = 0;
     for (size_t i = 0; i < 6 * face_texels; i++)
         luminance += (double)regions->importance[i];
-#pragma omp parallel for
+#pragma omp parallel for if (6 * face_texels >= TL_REGIONS_PARALLEL_TEXELS)
     for (size_t i = 0; i < 6 * face_texels; i++) {
         double area = (double)regions->solid_angles[i % face_texels] / (4 * M_PI);
         double light = luminance > 0 ? (double)regions->importance[i] / luminance : area;
@@ -287,7 +287,7 @@ static void grow(struct tree *tree, int count)
             tree->nodes[i].children[0] = child;
             tree->nodes[i].children[1] = child + 1;
         }
-#pragma omp parallel for schedule(dynamic)
+#pragma omp parallel for schedule(dynamic) if (tree->nodes[0].last >= TL_REGIONS_PARALLEL_TEXELS)
         for (int i = begin; i < end; i++)
             if (tree->nodes[i].children[0] >= 0)
                 cut_node(tree, &tree->nodes[i], &tree->nodes[tree->nodes[i].children[0]]);

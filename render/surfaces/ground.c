@@ -126,3 +126,38 @@ float tl_ground_visibility(const struct tl_ground *ground, vec3s point, vec3s di
     float distance = (point.y - ground->centre.y) / -direction.y;
     return 1 - tl_ground_cover(ground, point.x + direction.x * distance, point.z + direction.z * distance);
 }
+
+/* Weights of (x, z) in a triangle, seen from above; all are at least -1e-4 inside. */
+static bool weigh(const struct tl_ground *ground, uint32_t triangle, float x, float z, float weights[3])
+{
+    const uint32_t *corners = ground->indices + 3 * (size_t)triangle;
+    vec3s a = ground->positions[corners[0]], b = ground->positions[corners[1]],
+          c = ground->positions[corners[2]];
+    float area = (b.x - a.x) * (c.z - a.z) - (c.x - a.x) * (b.z - a.z);
+    weights[1] = ((x - a.x) * (c.z - a.z) - (c.x - a.x) * (z - a.z)) / area;
+    weights[2] = ((b.x - a.x) * (z - a.z) - (x - a.x) * (b.z - a.z)) / area;
+    weights[0] = 1 - weights[1] - weights[2];
+    return weights[0] > -1e-4f && weights[1] > -1e-4f && weights[2] > -1e-4f;
+}
+
+bool tl_ground_meet(const struct tl_ground *ground, vec3s origin, vec3s direction, vec3s *point,
+                    uint32_t *triangle, float weights[3])
+{
+    if (!ground || direction.y >= 0 || origin.y < ground->centre.y)
+        return false;
+    float distance = (origin.y - ground->centre.y) / -direction.y;
+    *point = glms_vec3_add(origin, glms_vec3_scale(direction, distance));
+    point->y = ground->centre.y;
+    if (!(tl_ground_cover(ground, point->x, point->z) > 0))
+        return false;
+    /* The triangles of a segment follow each other from the middle outwards. */
+    float turn = atan2f(point->z - ground->centre.z, point->x - ground->centre.x) / (2 * (float)M_PI);
+    uint32_t in_segment = 2 * TL_GROUND_RINGS - 1;
+    uint32_t segment = (uint32_t)((turn < 0 ? turn + 1 : turn) * TL_GROUND_SEGMENTS) % TL_GROUND_SEGMENTS;
+    for (uint32_t i = 0; i < in_segment; i++) {
+        *triangle = segment * in_segment + i;
+        if (weigh(ground, *triangle, point->x, point->z, weights))
+            return true;
+    }
+    return false;
+}

@@ -45,4 +45,9 @@ void tl_ground_make(const struct tl_casters *casters, struct tl_ground *out);
 float tl_ground_cover(const struct tl_ground *ground, float x, float z);
 float tl_ground_visibility(const struct tl_ground *ground, vec3s point, vec3s direction);
 
+/* Where a ray from above meets the disc: the point, the mesh's triangle there and the point's weights of its
+ * corners. False when it does not, or there is no ground. */
+bool tl_ground_meet(const struct tl_ground *ground, vec3s origin, vec3s direction, vec3s *point,
+                    uint32_t *triangle, float weights[3]);
+
 #endif

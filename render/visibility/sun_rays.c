@@ -95,7 +95,7 @@ static size_t look_once(struct tl_sun_rays *rays, const struct tl_points_request
         ray_count += look(request, starts, samples, size, direction, seen);
         for (int i = 0; i < size; i++) {
             /* Where the sun has not risen there is nothing to disagree about: the horizon's share is zero. */
-            if (seen[i] >= 0)
+            if (seen[i] >= 0 && first + (size_t)i < request->samples->primary_count)
                 rays->marks[request->samples->items[first + (size_t)i].texel] = seen[i] > 0.5f ? LIT : DARK;
             seen[i] = fmaxf(seen[i], 0);
         }

@@ -91,7 +91,8 @@ static void fill_values(struct scene *scene)
 static void fill_samples(struct scene *scene, float glossiness, bool bumped)
 {
     uint32_t state = 7;
-    scene->samples = (struct tl_samples){.width = SAMPLES, .height = 1, .count = SAMPLES};
+    scene->samples =
+        (struct tl_samples){.width = SAMPLES, .height = 1, .primary_count = SAMPLES, .count = SAMPLES};
     scene->samples.items = TL_NEW_ARRAY(tl_sample, SAMPLES);
     scene->taps = TL_NEW_ARRAY(struct tl_taps, SAMPLES);
     for (uint32_t i = 0; i < SAMPLES; i++) {

@@ -1,4 +1,4 @@
-/* Moving light: a renderer that has followed a sequence of environments draws, at every frame, what a new
+/* Moving light: a renderer that has followed a sequence of environments draws what a new
  * renderer draws that knows that frame only. No region, PEM or map is left over from an earlier one. */
 #include "shapes.h"
 
@@ -48,8 +48,6 @@ static void scene_open(struct scene *scene)
     scene->frame =
         test_frame((vec3s){{1, 1.5f, 2}}, (vec3s){{0, 0.6f, 0}}, 40, scene->surfaces, 2, &scene->environment);
     scene->settings = test_settings(48, 32);
-    scene->settings.light.map_size = 32;
-    scene->settings.light.pem_size = 16;
     scene->settings.image.ground = true;
 }
 
@@ -94,16 +92,14 @@ static void expect_fresh(struct test_device *device, tl_renderer *renderer, cons
     tl_image_release(&anew);
 }
 
-/* A new renderer takes a while: it is asked `every` so many frames, and at the end. Shadowed and not: the sum
- * of all PEMs in the one, with the maps of all regions in the other. The image must also change from frame to
- * frame, or the test would see nothing. */
-static void play(struct test_device *device, int method, int lobe, int every)
+/* The image must also change from frame to frame, or the test would see nothing. A new renderer takes a
+ * while: it is asked `every` so many frames, and at the end. */
+static void play(struct test_device *device, const struct tl_light_params *light, int every)
 {
     tl_error error = {0};
     struct scene scene;
     scene_open(&scene);
-    scene.settings.light.method = method;
-    scene.settings.light.lobe = lobe;
+    scene.settings.light = *light;
     tl_renderer *renderer = tl_renderer_create(device->gpu, &error);
     assert_non_null(renderer);
     tl_image before = test_draw(renderer, &scene.frame, &scene.settings);
@@ -122,14 +118,106 @@ static void play(struct test_device *device, int method, int lobe, int every)
     scene_close(&scene);
 }
 
-static void pems_follow(void **state)
+static struct tl_light_params small_light(void)
 {
-    play(*state, TL_METHOD_UNSHADOWED, TL_LOBE_DUAL, 1);
+    struct tl_light_params light = test_settings(1, 1).light;
+    light.map_size = 32;
+    light.pem_size = 16;
+    return light;
 }
 
+/* The sum of all PEMs. */
+static void pems_follow(void **state)
+{
+    struct tl_light_params light = small_light();
+    light.method = TL_METHOD_UNSHADOWED;
+    play(*state, &light, 4);
+}
+
+/* All PEMs, each with its own shadow. */
 static void shadows_follow(void **state)
 {
-    play(*state, TL_METHOD_PEM, TL_LOBE_SINGLE, 4);
+    struct tl_light_params light = small_light();
+    light.lobe = TL_LOBE_SINGLE;
+    play(*state, &light, 8);
+}
+
+/* Suns with maps of their own, which come and go with the sky, regions of the sphere, the ratio. */
+static void suns_follow(void **state)
+{
+    struct tl_light_params light = small_light();
+    light.cut = TL_CUT_SPHERE;
+    light.sun = true;
+    light.pem_size = 32;
+    light.visibility = TL_VISIBILITY_DEPTH;
+    light.composition = TL_COMPOSE_RATIO;
+    play(*state, &light, 8);
+}
+
+static double distance(const tl_image *a, const tl_image *b)
+{
+    double sum = 0;
+    for (size_t i = 0; i < 4 * (size_t)a->width * (size_t)a->height; i++) {
+        double difference = (double)tl_image_floats(a)[i] - (double)tl_image_floats(b)[i];
+        sum += difference * difference;
+    }
+    return sqrt(sum);
+}
+
+/* What a renderer draws that has drawn `last` before; NULL: nothing. */
+static tl_image draw_after(struct test_device *device, const tl_frame *last, const struct scene *scene)
+{
+    tl_error error = {0};
+    tl_renderer *renderer = tl_renderer_create(device->gpu, &error);
+    assert_non_null(renderer);
+    if (last)
+        assert_ok(tl_renderer_draw(renderer, last, &scene->settings, &error), error);
+    tl_image image = test_draw(renderer, &scene->frame, &scene->settings);
+    tl_renderer_destroy(&renderer);
+    return image;
+}
+
+/* Rays, all of which are traced anew in every frame, in directions that differ from frame to frame: what was
+ * followed differs from what a new renderer draws by the noise of that choice only. How much that is, a
+ * renderer shows that draws the same environment twice, under two revisions. Eight frames at a time turn the
+ * sun by 45 degrees, which would be seen. */
+static void rays_follow(void **state)
+{
+    struct test_device *device = *state;
+    tl_error error = {0};
+    struct scene scene;
+    scene_open(&scene);
+    scene.settings.light = small_light();
+    scene.settings.light.cut = TL_CUT_SPHERE;
+    scene.settings.light.sun = true;
+    scene.settings.light.regions = 96;
+    scene.settings.light.pem_size = 32;
+    scene.settings.light.visibility = TL_VISIBILITY_RAYS;
+    scene.settings.light.composition = TL_COMPOSE_RATIO;
+    scene.settings.light.refresh = 0;
+    tl_renderer *renderer = tl_renderer_create(device->gpu, &error);
+    assert_non_null(renderer);
+    tl_image before = test_draw(renderer, &scene.frame, &scene.settings);
+    double stale = 0, noise = 0, change = 0;
+    for (int number = 8; number < FRAMES; number += 8) {
+        scene_step(&scene, number);
+        tl_image followed = test_draw(renderer, &scene.frame, &scene.settings);
+        tl_frame last = scene.frame;
+        last.environment_revision--;
+        tl_image anew = draw_after(device, NULL, &scene), again = draw_after(device, &last, &scene);
+        stale += distance(&followed, &anew);
+        noise += distance(&again, &anew);
+        change += distance(&before, &anew);
+        tl_image_release(&anew);
+        tl_image_release(&again);
+        tl_image_release(&before);
+        before = followed;
+    }
+    printf("rays: off by %.3f of the change; noise alone %.3f\n", stale / change, noise / change);
+    assert_true(stale < 1.25 * noise && noise < 0.25 * change);
+    tl_image_release(&before);
+    tl_renderer_destroy(&renderer);
+    scene_close(&scene);
 }
 
 /* The environment as it is seen behind belongs to the frame too. */
@@ -141,6 +229,7 @@ static void the_background_follows(void **state)
     scene_open(&scene);
     scene.frame.surface_count = 0;
     scene.settings.image.ground = false;
+    scene.settings.light = small_light();
     scene.settings.light.method = TL_METHOD_UNSHADOWED;
     scene.settings.image.background = TL_BACKGROUND_BLURRED;
     tl_renderer *renderer = tl_renderer_create(device->gpu, &error);
@@ -167,6 +256,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pems_follow),
         cmocka_unit_test(shadows_follow),
+        cmocka_unit_test(suns_follow),
+        cmocka_unit_test(rays_follow),
         cmocka_unit_test(the_background_follows),
     };
     return cmocka_run_group_tests(tests, test_device_open, test_device_close);

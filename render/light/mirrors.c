@@ -1,0 +1,237 @@
+#include "render/light/mirrors.h"
+
+#include "config/memory.h"
+#include "render/pem/lobe.h"
+#include "render/renderer.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define SHARP_EXPONENT 1600.0f /* M s at least */
+
+int tl_mirror_ray_count(float exponent)
+{
+    if (exponent < TL_MIRROR_EXPONENT)
+        return 0;
+    return (int)fminf(fmaxf(ceilf(SHARP_EXPONENT / exponent), 1), TL_MIRROR_RAYS_MAX);
+}
+
+/* Direction m of M of a cosine lobe: even shares of its volume, turned by the golden angle. */
+static vec3s lobe_direction(vec3s axis, float exponent, int m, int ray_count)
+{
+    const float golden_angle = 2.39996323f;
+    if (ray_count == 1)
+        return axis;
+    float share = ((float)m + 0.5f) / (float)ray_count, angle = golden_angle * (float)m;
+    float cosine = powf(1 - share, 1 / (exponent + 1)), sine = sqrtf(fmaxf(1 - cosine * cosine, 0));
+    vec3s helper = fabsf(axis.y) < 0.9f ? (vec3s){{0, 1, 0}} : (vec3s){{1, 0, 0}};
+    vec3s right = glms_vec3_normalize(glms_vec3_cross(helper, axis)), up = glms_vec3_cross(axis, right);
+    vec3s side = glms_vec3_add(glms_vec3_scale(right, cosf(angle)), glms_vec3_scale(up, sinf(angle)));
+    return glms_vec3_add(glms_vec3_scale(axis, cosine), glms_vec3_scale(side, sine));
+}
+
+static const tl_material *material_of(const tl_surface *surface, uint32_t triangle)
+{
+    for (size_t p = 0; p + 1 < surface->part_count; p++)
+        if (3 * triangle < surface->parts[p].first_index + surface->parts[p].index_count &&
+            3 * triangle >= surface->parts[p].first_index)
+            return &surface->materials[surface->parts[p].material];
+    return &surface->materials[surface->parts[surface->part_count - 1].material];
+}
+
+/* The map's colour at its nearest texel. */
+static vec3s map_colour(const struct tl_map *map, vec2s uv)
+{
+    const tl_image *image = map->image;
+    const struct tl_uv_transform *to = &map->transform;
+    if (!image || image->type != TL_IMAGE_U8)
+        return (vec3s){{1, 1, 1}};
+    float c = cosf(to->rotation), s = sinf(to->rotation);
+    float u = to->scale[0] * uv.x, v = to->scale[1] * uv.y;
+    float at[2] = {to->offset[0] + c * u + s * v, to->offset[1] - s * u + c * v};
+    int place[2], sizes[2] = {image->width, image->height};
+    for (int i = 0; i < 2; i++) {
+        bool clamps = i == 0 ? map->clamp_u : map->clamp_v;
+        float t = clamps ? fminf(fmaxf(at[i], 0), 1) : at[i] - floorf(at[i]);
+        int texel = isfinite(t) ? (int)(t * (float)sizes[i]) : 0;
+        place[i] = texel < sizes[i] ? texel : sizes[i] - 1;
+    }
+    const uint8_t *texel =
+        tl_image_bytes(image) +
+        ((size_t)place[1] * (size_t)image->width + (size_t)place[0]) * (size_t)image->channels;
+    vec3s colour;
+    for (int k = 0; k < 3; k++) {
+        float value = (float)texel[image->channels < 3 ? 0 : k] / 255;
+        colour.raw[k] = image->linear ? value : tl_srgb_to_linear(value);
+    }
+    return colour;
+}
+
+/* Schlick's term as gbuffer.frag has it. */
+static vec3s reflectance(vec3s f0, float cosine)
+{
+    float rest = 1 - fminf(fmaxf(cosine, 0), 1), fifth = rest * rest * rest * rest * rest;
+    vec3s f;
+    for (int c = 0; c < 3; c++)
+        f.raw[c] = f0.raw[c] + (fminf(50 * f0.raw[c], 1) - f0.raw[c]) * fifth;
+    return f;
+}
+
+/* A point of a triangle as it is seen along `direction`. */
+static tl_sample seen_sample(const tl_surface *surface, uint32_t triangle, const float weights[3], bool back,
+                             vec3s direction)
+{
+    const uint32_t *corners = surface->indices + 3 * (size_t)triangle;
+    const tl_material *material = material_of(surface, triangle);
+    tl_sample sample = {.weights = {weights[0], weights[1], weights[2]}, .cover = 1};
+    vec2s uv = {{0, 0}};
+    for (int i = 0; i < 3; i++) {
+        sample.point =
+            glms_vec3_add(sample.point, glms_vec3_scale(surface->positions[corners[i]], weights[i]));
+        sample.smooth =
+            glms_vec3_add(sample.smooth, glms_vec3_scale(surface->normals[corners[i]], weights[i]));
+        uv = glms_vec2_add(uv, glms_vec2_scale(surface->uvs[corners[i]], weights[i]));
+    }
+    sample.smooth = glms_vec3_normalize(back ? glms_vec3_negate(sample.smooth) : sample.smooth);
+    sample.normal = sample.smooth;
+    float cosine = fmaxf(-glms_vec3_dot(sample.normal, direction), 0);
+    sample.mirror = glms_vec3_normalize(glms_vec3_add(direction, glms_vec3_scale(sample.normal, 2 * cosine)));
+    sample.glossiness = material->glossiness;
+    sample.diffuse = glms_vec3_mul(material->diffuse, map_colour(&material->diffuse_map, uv));
+    sample.specular =
+        reflectance(glms_vec3_mul(material->specular, map_colour(&material->specular_map, uv)), cosine);
+    return sample;
+}
+
+/* Where rays of a sample start: on the smooth surface, a little above it. */
+static vec3s start_of(const tl_sample *sample, const struct tl_triangle_ranges *ranges, float offset_m)
+{
+    uint32_t numbers[3];
+    size_t index;
+    const tl_surface *surface = tl_triangle_find(ranges, sample->triangle & ~TL_SAMPLE_BACK, numbers, &index);
+    vec3s corners[3], normals[3];
+    for (int i = 0; i < 3; i++) {
+        corners[i] = surface->positions[numbers[i]];
+        normals[i] = surface->normals[numbers[i]];
+        if (sample->triangle & TL_SAMPLE_BACK)
+            normals[i] = glms_vec3_negate(normals[i]);
+    }
+    vec3s point = tl_smooth_point(sample->point, corners, normals, sample->weights);
+    return glms_vec3_add(point, glms_vec3_scale(sample->smooth, offset_m));
+}
+
+/* What a block of samples hits, before it has its place behind all samples. */
+struct block {
+    size_t count, capacity;
+    tl_sample *items;
+};
+
+static uint32_t keep(struct block *block, const tl_sample *sample)
+{
+    if (block->count == block->capacity) {
+        block->capacity = block->capacity ? 2 * block->capacity : 64;
+        block->items = tl_resize(block->items, block->capacity, sizeof *block->items);
+    }
+    block->items[block->count] = *sample;
+    return (uint32_t)block->count++;
+}
+
+struct scene {
+    const tl_trace *trace;
+    const struct tl_triangle_ranges *ranges;
+    const struct tl_ground *ground;
+};
+
+/* Numbers within the block; TL_MIRROR_OPEN where the environment is seen. */
+static uint32_t follow(const struct scene *scene, const tl_sample *sample, vec3s origin, vec3s direction,
+                       struct block *block)
+{
+    if (glms_vec3_dot(direction, sample->smooth) <= 0)
+        return TL_MIRROR_BLACK;
+    struct tl_trace_hit hit = tl_trace_nearest(scene->trace, origin, direction, 0, INFINITY);
+    tl_sample seen;
+    if (hit.surface != TL_TRACE_NONE) {
+        const float weights[3] = {1 - hit.u - hit.v, hit.u, hit.v};
+        seen = seen_sample(scene->ranges->surfaces[hit.surface], hit.triangle, weights, hit.back, direction);
+        seen.triangle = (scene->ranges->first[hit.surface] + hit.triangle) | (hit.back ? TL_SAMPLE_BACK : 0);
+    } else {
+        uint32_t triangle;
+        float weights[3];
+        vec3s point;
+        if (!tl_ground_meet(scene->ground, origin, direction, &point, &triangle, weights))
+            return TL_MIRROR_OPEN;
+        seen = seen_sample(&scene->ground->surface, triangle, weights, false, direction);
+        seen.point = point;
+        seen.triangle = scene->ranges->first[scene->ranges->surface_count - 1] + triangle;
+        seen.cover = tl_ground_cover(scene->ground, point.x, point.z);
+    }
+    seen.texel = sample->texel;
+    return keep(block, &seen);
+}
+
+static void trace_sample(const struct scene *scene, const tl_sample *sample, float offset_m,
+                         struct block *block, struct tl_mirror *mirror)
+{
+    float exponent = tl_lobe_exponent(sample->glossiness);
+    mirror->ray_count = tl_mirror_ray_count(exponent);
+    if (mirror->ray_count == 0)
+        return;
+    vec3s origin = start_of(sample, scene->ranges, offset_m);
+    for (int m = 0; m < mirror->ray_count; m++) {
+        mirror->directions[m] = lobe_direction(sample->mirror, exponent, m, mirror->ray_count);
+        mirror->hits[m] = follow(scene, sample, origin, mirror->directions[m], block);
+    }
+}
+
+/* Behind the camera's samples, block by block; numbers within blocks become indices. */
+static void append(struct tl_mirrors *mirrors, struct block *blocks, size_t block_count, size_t block_size,
+                   struct tl_samples *samples)
+{
+    size_t total = samples->primary_count;
+    for (size_t b = 0; b < block_count; b++) {
+        size_t end =
+            (b + 1) * block_size < samples->primary_count ? (b + 1) * block_size : samples->primary_count;
+        for (size_t i = b * block_size; i < end; i++)
+            for (int m = 0; m < mirrors->items[i].ray_count; m++)
+                if (mirrors->items[i].hits[m] < TL_MIRROR_BLACK)
+                    mirrors->items[i].hits[m] += (uint32_t)total;
+        total += blocks[b].count;
+    }
+    tl_samples_reserve(samples, total);
+    samples->count = samples->primary_count;
+    for (size_t b = 0; b < block_count; b++) {
+        if (blocks[b].count > 0)
+            memcpy(samples->items + samples->count, blocks[b].items, blocks[b].count * sizeof(tl_sample));
+        samples->count += blocks[b].count;
+        free(blocks[b].items);
+    }
+}
+
+void tl_mirrors_trace(struct tl_mirrors *mirrors, const tl_trace *trace,
+                      const struct tl_triangle_ranges *ranges, const struct tl_ground *ground,
+                      struct tl_samples *samples)
+{
+    const size_t block_size = 1024;
+    size_t count = samples->primary_count, block_count = (count + block_size - 1) / block_size;
+    const struct scene scene = {trace, ranges, ground};
+    float offset_m = tl_trace_offset(trace);
+    if (count > mirrors->capacity || !mirrors->items) {
+        mirrors->capacity = count + count / 4 + 1;
+        free(mirrors->items);
+        mirrors->items = TL_NEW_ARRAY(struct tl_mirror, mirrors->capacity);
+    }
+    struct block *blocks = TL_NEW_ARRAY(struct block, block_count);
+#pragma omp parallel for schedule(dynamic)
+    for (size_t b = 0; b < block_count; b++)
+        for (size_t i = b * block_size; i < count && i < (b + 1) * block_size; i++)
+            trace_sample(&scene, &samples->items[i], offset_m, &blocks[b], &mirrors->items[i]);
+    append(mirrors, blocks, block_count, block_size, samples);
+    free(blocks);
+}
+
+void tl_mirrors_release(struct tl_mirrors *mirrors)
+{
+    free(mirrors->items);
+    *mirrors = (struct tl_mirrors){0};
+}

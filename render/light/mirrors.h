@@ -1,0 +1,43 @@
+/* Near mirrors: samples whose lobe is so narrow that one visibility a region is too coarse for it get rays
+ * along the lobe. What such a ray hits is lit like any other sample, instead of black as in [002, section 7]:
+ * it becomes a sample itself, behind the camera's own.
+ *
+ *     F ks [ E(r, s) sum v_m E(w_m, M s) / sum E(w_m, M s)  +  1/M sum (1 - v_m) L(hit_m) ]
+ *
+ * with M directions w_m spread over the lobe. What is hit shows its plain material: no weave, no normal map,
+ * maps at their nearest texel. World space, metres. Results do not depend on the number of threads. */
+#ifndef TOILE_RENDER_LIGHT_MIRRORS_H
+#define TOILE_RENDER_LIGHT_MIRRORS_H
+
+#include "render/light/samples.h"
+#include "render/trace/trace.h"
+
+#define TL_MIRROR_RAYS_MAX 8
+/* From here on a lobe is narrower than the texels of most environments: its ray sees the environment itself,
+ * suns and all. */
+#define TL_PERFECT_EXPONENT 1e5f
+
+/* What a ray along the lobe met. */
+enum { TL_MIRROR_OPEN = 0xffffffff, TL_MIRROR_BLACK = 0xfffffffe };
+
+struct tl_mirror {
+    int ray_count; /* M; 0: no mirror */
+    vec3s directions[TL_MIRROR_RAYS_MAX];
+    uint32_t hits[TL_MIRROR_RAYS_MAX]; /* index into the samples; TL_MIRROR_OPEN: the environment */
+};
+
+struct tl_mirrors {
+    size_t capacity;
+    struct tl_mirror *items; /* one a sample of the camera; NULL: none of them is a mirror */
+};
+
+/* How many rays a lobe gets: they stand for it once M s is beyond what the exact lobes resolve. */
+int tl_mirror_ray_count(float exponent);
+
+/* Traces, and appends what is hit to `samples`. `ground` NULL: none. */
+void tl_mirrors_trace(struct tl_mirrors *mirrors, const tl_trace *trace,
+                      const struct tl_triangle_ranges *ranges, const struct tl_ground *ground,
+                      struct tl_samples *samples);
+void tl_mirrors_release(struct tl_mirrors *mirrors);
+
+#endif
