@@ -14,6 +14,7 @@ add_library(toile_light STATIC
   pem/chain.c
   pem/lobe.c
   pem/lobe_error.c
+  pem/memory.c
   pem/regions.c
   pem/regions_faces.c
   pem/regions_sphere.c

@@ -45,21 +45,29 @@ static bool check_image_size(const tl_renderer *renderer, const struct tl_image_
     return true;
 }
 
+static uint64_t map_texel_bytes(const struct tl_light_params *light)
+{
+    if (light->method == TL_METHOD_UNSHADOWED || light->visibility == TL_VISIBILITY_RAYS)
+        return 0;
+    return light->visibility == TL_VISIBILITY_DEPTH ? TL_SHADOW_TEXEL_BYTES / 2 : TL_SHADOW_TEXEL_BYTES;
+}
+
 static bool check_light_size(const struct tl_render_settings *settings, tl_error *error)
 {
     const struct tl_light_params *light = &settings->light;
     /* Six faces and their mips: a third more than 6, so 8. */
-    uint64_t pem = (uint64_t)light->pem_size * (uint64_t)light->pem_size * 8 * TL_PEM_TEXEL_BYTES;
-    uint64_t map = (uint64_t)light->map_size * (uint64_t)light->map_size * TL_SHADOW_TEXEL_BYTES;
+    bool chains = light->visibility != TL_VISIBILITY_RAYS && tl_light_source(light) == TL_LIGHT_CHAIN;
+    uint64_t pem =
+        chains ? (uint64_t)light->pem_size * (uint64_t)light->pem_size * 8 * TL_PEM_TEXEL_BYTES : 0;
+    uint64_t map = (uint64_t)light->map_size * (uint64_t)light->map_size * map_texel_bytes(light);
     uint64_t regions = (uint64_t)light->regions, passes = (uint64_t)light->pems_per_pass;
-    uint64_t in_one_pass = regions < passes ? regions : passes;
+    uint64_t in_one_pass = chains && passes < regions ? passes : regions;
     if (in_one_pass * pem > TEXTURE_BYTES_MAX || in_one_pass * map > TEXTURE_BYTES_MAX)
         return tl_fail(error, TL_USAGE,
                        "light: %d PEMs of %d texels or maps of %d in one pass are more than %d MB: lower "
-                       "light.pems_per_pass",
+                       "light.pems_per_pass or light.map_size",
                        (int)in_one_pass, light->pem_size, light->map_size, (int)(TEXTURE_BYTES_MAX >> 20));
-    uint64_t maps = light->method == TL_METHOD_UNSHADOWED ? 0 : regions * map;
-    uint64_t bytes = regions * pem + maps + sample_count(&settings->image) * TL_SAMPLE_BYTES;
+    uint64_t bytes = regions * (pem + map) + sample_count(&settings->image) * TL_SAMPLE_BYTES;
     if (bytes > BYTES_MAX)
         return tl_fail(error, TL_USAGE,
                        "light: %d regions, PEMs of %d texels, maps of %d and this image need %d MB, more "
@@ -135,6 +143,13 @@ static tl_bits changed_inputs(const tl_renderer *renderer, const uint64_t signat
     return changed;
 }
 
+/* Nothing holds, and the next frame begins anew: rounds are never averaged into what another frame left. */
+static void forget(tl_renderer *renderer)
+{
+    renderer->valid = 0;
+    memset(renderer->signatures, 0, sizeof renderer->signatures);
+}
+
 static bool run_plan(tl_renderer *renderer, const struct tl_plan_input *input, tl_plan *plan, tl_error *error)
 {
     tl_plan_make(tl_frame_jobs, tl_frame_job_count, input, &renderer->cost, plan);
@@ -144,7 +159,7 @@ static bool run_plan(tl_renderer *renderer, const struct tl_plan_input *input, t
             continue;
         double started_s = tl_clock_s();
         if (!tl_frame_jobs[i].run(renderer, plan->rows[i].level, error)) {
-            renderer->valid = 0;
+            forget(renderer);
             return false;
         }
         /* The CPU's clock around a finished job: GL's own timers are wrong on software drivers. */
@@ -171,7 +186,7 @@ static void reload_shaders(tl_renderer *renderer)
         !tl_program_reload(&renderer->present.resolve, &error) ||
         !tl_program_reload(&renderer->present.show, &error))
         tl_warn("%s", error.message);
-    renderer->valid = 0;
+    forget(renderer);
 }
 
 static bool check_camera(const struct tl_camera *camera, tl_error *error)

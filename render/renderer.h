@@ -54,7 +54,7 @@ struct tl_light_params { /* table "light" */
     float bleed_reduction; /* [0, 1): Chebyshev values below it become 0 */
 };
 extern const struct tl_option_table tl_light_options;
-#define TL_MIRROR_EXPONENT 200.0f
+#define TL_MIRROR_EXPONENT 199.0f /* a glossiness of 0.995, however it is rounded */
 
 struct tl_material_params { /* table "material": the garment's look, from the fabric or by hand */
     bool use_file;          /* keep the garment file's own materials where it has them */

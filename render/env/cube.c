@@ -215,6 +215,26 @@ vec3s tl_environment_sample(const tl_environment *environment, vec3s direction)
     return sample_latlong(&environment->image, direction);
 }
 
+vec3s tl_environment_texel(const tl_environment *environment, vec3s direction)
+{
+    const tl_image *image = &environment->image;
+    int column, row;
+    if (environment->layout == TL_ENV_CUBE) {
+        int face;
+        float s, t;
+        tl_cube_locate(direction, &face, &s, &t);
+        column = clamp_index((int)(s * (float)image->width), image->width);
+        row = face * image->width + clamp_index((int)(t * (float)image->width), image->width);
+    } else {
+        float u = 0.5f + atan2f(direction.x, -direction.z) / (float)(2 * M_PI);
+        float v = acosf(fminf(fmaxf(direction.y, -1), 1)) / (float)M_PI;
+        column = clamp_index((int)(u * (float)image->width), image->width);
+        row = clamp_index((int)(v * (float)image->height), image->height);
+    }
+    const float *texel = tl_image_floats(image) + 3 * ((size_t)row * (size_t)image->width + (size_t)column);
+    return (vec3s){{texel[0], texel[1], texel[2]}};
+}
+
 /* Cube to cube: texels of both are rectangles of the same plane, so overlaps are exact. */
 static void average_cube(const tl_cube *source, tl_cube *target)
 {

@@ -61,6 +61,10 @@ vec3s tl_cube_fetch(const tl_cube *cube, const struct tl_cube_taps *taps);
  * exist). */
 vec3s tl_cube_sample(const tl_cube *cube, vec3s direction);
 
+/* The environment's own texel in a unit direction: its radiance, as the oracle defines it, is constant over
+ * each. */
+vec3s tl_environment_texel(const tl_environment *environment, vec3s direction);
+
 /* Bilinear fetch of the environment itself in its own layout. */
 vec3s tl_environment_sample(const tl_environment *environment, vec3s direction);
 

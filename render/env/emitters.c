@@ -12,7 +12,7 @@
 #define LOBE_CUT 1e-4f
 
 /* Cells are at most this many lobe widths 1 / sqrt(s) wide. */
-#define MERGE_WIDTH 0.3f
+#define MERGE_WIDTH 0.25f
 
 /* Bits of x or of y in a code; the face stands above them. */
 #define CODE_BITS 13
@@ -32,11 +32,6 @@ static const vec3s nowhere = {{NAN, NAN, NAN}};
 static float luminance(vec3s colour)
 {
     return 0.2126f * colour.x + 0.7152f * colour.y + 0.0722f * colour.z;
-}
-
-static float sane(float radiance)
-{
-    return radiance > 0 && isfinite(radiance) ? radiance : 0;
 }
 
 /* The opposite: room for another number's bits between those of one. */
@@ -74,7 +69,8 @@ static tl_emitter emitter_of(const tl_cube *cube, const float *solid_angles, uin
     emitter.direction =
         glms_vec3_normalize(tl_cube_direction((int)face, ((float)x + 0.5f) * step, ((float)y + 0.5f) * step));
     for (size_t c = 0; c < 3; c++)
-        emitter.power.raw[c] = solid_angles[y * size + x] * sane(cube->texels[3 * (size_t)texel + c]);
+        emitter.power.raw[c] =
+            solid_angles[y * size + x] * tl_emitter_radiance(cube->texels[3 * (size_t)texel + c]);
     emitter.weight = luminance(emitter.power);
     emitter.variance = solid_angles[y * size + x] / 12; /* of a square */
     return emitter;
@@ -104,16 +100,29 @@ static tl_emitter merge_run(const tl_emitter *first, const tl_emitter *end, uint
 {
     tl_emitter merged = {.code = code};
     for (const tl_emitter *emitter = first; emitter < end; emitter++) {
-        merged.direction = glms_vec3_muladds(emitter->direction, emitter->weight, merged.direction);
         merged.power = glms_vec3_add(merged.power, emitter->power);
         merged.weight += emitter->weight;
     }
-    merged.direction = glms_vec3_normalize(merged.direction);
+    if (merged.weight <= 0)
+        return merged;
     for (const tl_emitter *emitter = first; emitter < end; emitter++)
-        merged.variance += emitter->weight * (emitter->variance +
-                                              glms_vec3_distance2(emitter->direction, merged.direction) / 2);
-    merged.variance /= merged.weight;
+        merged.direction =
+            glms_vec3_muladds(emitter->direction, emitter->weight / merged.weight, merged.direction);
+    merged.direction = glms_vec3_normalize(merged.direction);
+    for (const tl_emitter *emitter = first; emitter < end; emitter++) {
+        float square = glms_vec3_distance2(emitter->direction, merged.direction);
+        merged.variance += emitter->weight / merged.weight * (emitter->variance + square / 2);
+    }
     return merged;
+}
+
+/* By how much a lobe's exponent falls as it is blurred: that multiplies its mean cosine, (s + 1) / (s + 2),
+ * by 1 - the variance along one axis. In parts of (s + 1)(s + 2), as it is for a small variance. A lobe much
+ * narrower than a texel cannot be had by blurring. */
+static float fall_of(float s, float variance)
+{
+    float blurred = 1 / (1 - (s + 1) / (s + 2) * (1 - fminf(variance, 0.5f))) - 2;
+    return fminf(s - blurred, s / 2) / ((s + 1) * (s + 2));
 }
 
 /* Merges in place, leaving black ones out; the number that remains. */
@@ -138,7 +147,8 @@ static void set_direction(struct tl_directions *directions, size_t i, vec3s dire
     directions->z[i] = direction.z;
 }
 
-static void fill_block(struct tl_emitters *emitters, size_t index, const tl_emitter *items, size_t count)
+static void fill_block(struct tl_emitters *emitters, size_t index, const tl_emitter *items, size_t count,
+                       float exponent)
 {
     struct tl_emitter_block *block = &emitters->blocks[index];
     vec3s sum = {{0, 0, 0}};
@@ -146,7 +156,7 @@ static void fill_block(struct tl_emitters *emitters, size_t index, const tl_emit
         set_direction(&block->directions, i, i < count ? items[i].direction : nowhere);
         if (i >= count)
             continue;
-        block->variance[i] = items[i].variance;
+        block->fall[i] = fall_of(exponent, items[i].variance);
         memcpy(block->power[i], items[i].power.raw, sizeof items[i].power.raw);
         sum = glms_vec3_add(sum, items[i].direction);
     }
@@ -158,7 +168,7 @@ static void fill_block(struct tl_emitters *emitters, size_t index, const tl_emit
 
 /* Squares of 4 x 4 emitters, or what is left of them, become blocks: runs of the curve that share their
  * leading bits. */
-static struct tl_emitters make_blocks(const tl_emitter *items, size_t count)
+static struct tl_emitters make_blocks(const tl_emitter *items, size_t count, float exponent)
 {
     struct tl_emitters emitters = {0};
     for (size_t i = 0; i < count; i++)
@@ -171,7 +181,7 @@ static struct tl_emitters make_blocks(const tl_emitter *items, size_t count)
     for (size_t index = 0, first = 0, next; first < count; first = next, index++) {
         for (next = first; next < count && items[next].code / TL_LANES == items[first].code / TL_LANES;)
             next++;
-        fill_block(&emitters, index, items + first, next - first);
+        fill_block(&emitters, index, items + first, next - first, exponent);
     }
     return emitters;
 }
@@ -180,8 +190,8 @@ struct tl_emitters tl_emitters_merge(const tl_emitter *texels, size_t count, int
 {
     tl_emitter *items = TL_NEW_ARRAY(tl_emitter, count);
     memcpy(items, texels, count * sizeof *items);
-    struct tl_emitters emitters =
-        make_blocks(items, merge_all(items, count, 2 * merges_for(cube_size, exponent)));
+    size_t remaining = merge_all(items, count, 2 * merges_for(cube_size, exponent));
+    struct tl_emitters emitters = make_blocks(items, remaining, exponent);
     free(items);
     return emitters;
 }
@@ -199,7 +209,6 @@ void tl_gaze_set(struct tl_gaze *gaze, const vec3s directions[TL_LANES], const f
     for (size_t i = 0; i < TL_LANES; i++) {
         set_direction(&gaze->directions, i, directions[i]);
         sum = glms_vec3_add(sum, directions[i]);
-        /* A blur multiplies a lobe's mean cosine, (s + 1) / (s + 2), by 1 - its variance along one axis. */
         float mean = (s + 1) / (s + 2) / (1 - steps[i] * steps[i] / 6);
         gaze->exponent[i] = 1 / (1 - mean) - 2;
     }
@@ -246,7 +255,7 @@ TL_INLINE void add_emitter(const struct tl_emitter_block *block, int k, const st
     for (int i = 0; i < TL_LANES; i++) {
         float cosine = directions->x[i] * block->directions.x[k] + directions->y[i] * block->directions.y[k] +
                        directions->z[i] * block->directions.z[k];
-        float exponent = gaze->exponent[i] - widening[i] * block->variance[k];
+        float exponent = gaze->exponent[i] - widening[i] * block->fall[k];
         float lobe = (exponent + 1) * tl_power(cosine, exponent);
         for (int c = 0; c < 3; c++)
             sums[c][i] += lobe * block->power[k][c];
@@ -259,7 +268,7 @@ TL_CLONES void tl_emitters_gather(const struct tl_emitters *emitters, const stru
     float reach = reach_of(gaze), near = cosine_of(reach), near_block = cosine_of(reach + emitters->radius);
     struct tl_gaze own = *gaze; /* nothing else points to it, so that it stays in registers */
     float widening[TL_LANES], sums[3][TL_LANES] = {{0}};
-    for (int i = 0; i < TL_LANES; i++) /* d s / d variance, of the lobe with that mean cosine */
+    for (int i = 0; i < TL_LANES; i++)
         widening[i] = (own.exponent[i] + 1) * (own.exponent[i] + 2);
     for (size_t group = 0; group * TL_LANES < emitters->count; group++) {
         uint32_t blocks = find_within(&emitters->axes[group], own.axis, near_block);

@@ -12,6 +12,8 @@
 
 #include "config/simd.h"
 
+#include <math.h>
+
 typedef struct tl_emitter {
     vec3s direction; /* unit, environment's frame */
     vec3s power;     /* radiance x solid angle, summed over what was merged */
@@ -26,7 +28,8 @@ struct tl_directions {
 };
 struct tl_emitter_block {
     struct tl_directions directions;
-    float variance[TL_LANES], power[TL_LANES][3];
+    float fall[TL_LANES]; /* of the exponent, for the emitter's variance, in parts of (s + 1)(s + 2) */
+    float power[TL_LANES][3];
 };
 
 struct tl_emitters {
@@ -36,11 +39,16 @@ struct tl_emitters {
     float radius;               /* rad: no emitter is farther from its block's middle */
 };
 
+/* The light of a texel: what is not finite or negative is black. */
+static inline float tl_emitter_radiance(float value)
+{
+    return value > 0 && isfinite(value) ? value : 0;
+}
+
 /* All texels of a cube along the curve; free() releases them. */
 uint32_t *tl_emitters_order(int cube_size);
 /* One emitter for each of `texels` [count], which follow the curve: [count], free() releases them.
- * `solid_angles` is [size][size], of the texels of any face. What is not finite or negative is taken as
- * black. */
+ * `solid_angles` is [size][size], of the texels of any face. */
 tl_emitter *tl_emitters_collect(const tl_cube *cube, const float *solid_angles, const uint32_t *texels,
                                 size_t count);
 /* Those of `texels` that are not black, neighbours merged as far as lobes of exponent s allow with an error

@@ -16,7 +16,7 @@
 /* Sixteen lanes look at a square of the map. */
 #define TILE 4
 /* Samples along a side of a texel of the environment itself. */
-#define AREA_SAMPLES 4
+#define AREA_SAMPLES 8
 
 float tl_exponent(int index)
 {
@@ -49,10 +49,8 @@ uint32_t tl_exponents_needed(float glossiness_low, float glossiness_high)
 {
     struct tl_exponent_blend low = tl_exponent_blend(tl_lobe_exponent(glossiness_low));
     struct tl_exponent_blend high = tl_exponent_blend(tl_lobe_exponent(glossiness_high));
-    uint32_t needed = 1;
-    for (int i = low.index; i <= high.index + (high.weight > 0); i++)
-        needed |= 1u << i;
-    return needed;
+    int last = high.index + (high.weight > 0);
+    return 1 | ((2u << last) - (1u << low.index));
 }
 
 /* The octahedron |x| + |y| + |z| = 1 unfolded about +Y: u and v in [-1, 1]; below the horizon the corners
@@ -82,9 +80,8 @@ static void look(int side, int left, int top, float s, struct tl_gaze *gaze)
     float step = 2 / (float)side, steps[TL_LANES];
     vec3s directions[TL_LANES];
     for (int i = 0; i < TL_LANES; i++) {
-        float u = ((float)(left + i % TILE) + 0.5f) * step - 1,
-              v = ((float)(top + i / TILE) + 0.5f) * step - 1;
-        vec3s p = unfold(u, v);
+        int column = left + i % TILE, row = top + i / TILE;
+        vec3s p = unfold(((float)column + 0.5f) * step - 1, ((float)row + 0.5f) * step - 1);
         directions[i] = glms_vec3_normalize(p);
         steps[i] = step * sqrtf(square_scale(p));
     }
@@ -158,11 +155,11 @@ static struct tl_lobe_map sample_area(const tl_cube *cube)
         for (int x = 0; x < map.side; x++) {
             float *texel = texel_of(&map, x, y);
             for (int i = 0; i < AREA_SAMPLES * AREA_SAMPLES; i++) {
-                float u = ((float)(x * AREA_SAMPLES + i % AREA_SAMPLES) + 0.5f) * step - 1;
-                float v = ((float)(y * AREA_SAMPLES + i / AREA_SAMPLES) + 0.5f) * step - 1;
-                const float *source = cube->texels + 3 * (size_t)tl_cube_texel(cube->size, unfold(u, v));
+                int column = x * AREA_SAMPLES + i % AREA_SAMPLES, row = y * AREA_SAMPLES + i / AREA_SAMPLES;
+                vec3s p = unfold(((float)column + 0.5f) * step - 1, ((float)row + 0.5f) * step - 1);
+                const float *source = cube->texels + 3 * (size_t)tl_cube_texel(cube->size, p);
                 for (int c = 0; c < 3; c++)
-                    texel[c] += source[c] / (AREA_SAMPLES * AREA_SAMPLES);
+                    texel[c] += tl_emitter_radiance(source[c]) / (AREA_SAMPLES * AREA_SAMPLES);
             }
         }
     }
@@ -255,12 +252,10 @@ static inline struct place place_of(vec3s direction)
 static inline quad fetch(const struct tl_lobe_map *map, struct place place)
 {
     float x = place.u * (float)map->side + 0.5f, y = place.v * (float)map->side + 0.5f,
-          last = (float)map->side;
+          last = (float)map->side + 0.5f;
     x = x > 0 ? x < last ? x : last : 0; /* also what is not a number */
     y = y > 0 ? y < last ? y : last : 0;
     int column = (int)x, row = (int)y;
-    column -= column == map->side;
-    row -= row == map->side;
     float right = x - (float)column, below = y - (float)row;
     const quad *top = (const quad *)map->texels + (size_t)row * (size_t)(map->side + 2) + (size_t)column;
     const quad *bottom = top + map->side + 2;

@@ -312,6 +312,7 @@ static bool run_compose(void *context, int level, tl_error *error)
                                          .lights = &renderer->lights,
                                          .suns = &renderer->suns,
                                          .lobes = &renderer->lobes,
+                                         .environment = renderer->frame.environment,
                                          .environment_yaw = renderer->frame.environment_yaw,
                                          .params = &renderer->settings.light};
     if (renderer->settings.light.method != TL_METHOD_UNSHADOWED) {

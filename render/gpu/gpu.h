@@ -62,7 +62,7 @@ typedef struct tl_program {
     char name[64];
     const struct tl_embedded *shaders;
     const char *vertex, *fragment; /* file names; must live as long as the program */
-    const char *defines; /* lines that follow #version in both files, or NULL; must live as long */
+    const char *defines;           /* lines that follow #version in both files, or NULL; must live as long */
 } tl_program;
 bool tl_program_create(tl_gpu *gpu, const struct tl_embedded *shaders, const char *vertex,
                        const char *fragment, tl_program *out, tl_error *error);

@@ -187,7 +187,20 @@ static void receive_shadowed(const struct block *block, const struct frame *fram
             light[kind].raw[c] = gains[kind].raw[c] * sums->seen[kind][c];
 }
 
-/* The glossy light of a near mirror: see mirrors.h. */
+static vec3s perfect_mirror_light(const struct block *block, const struct tl_mirror *mirror)
+{
+    const struct tl_compose_request *request = block->request;
+    uint32_t hit = mirror->hits[0];
+    if (hit == TL_MIRROR_BLACK)
+        return (vec3s){{0, 0, 0}};
+    vec3s light = tl_environment_texel(request->environment, into_environment(block, mirror->directions[0]));
+    if (hit == TL_MIRROR_OPEN)
+        return light;
+    return glms_vec3_add(glms_vec3_scale(light, 1 - request->samples->items[hit].cover),
+                         block->reflected[hit - request->samples->primary_count]);
+}
+
+/* The glossy light of a near mirror, but for suns: see mirrors.h. */
 static vec3s mirror_light(const struct block *block, const struct tl_mirror *mirror,
                           const struct frame *frame)
 {
@@ -245,12 +258,14 @@ TL_INLINE vec3s compose_sample(struct block *block, size_t index)
         bool bumped = glms_vec3_dot(sample->normal, sample->smooth) < 0.99999f;
         sums = bumped ? sum_groups(block, index, &frame, true) : sum_groups(block, index, &frame, false);
         receive_shadowed(block, &frame, &sums, received.shadowed);
-        const struct tl_mirror *mirror =
-            request->mirrors && index < request->samples->primary_count ? &request->mirrors[index] : NULL;
-        if (mirror && mirror->ray_count > 0)
-            received.shadowed[GLOSSY] = mirror_light(block, mirror, &frame);
     }
+    const struct tl_mirror *mirror =
+        request->mirrors && index < request->samples->primary_count ? &request->mirrors[index] : NULL;
+    if (mirror && mirror->ray_count > 0)
+        received.shadowed[GLOSSY] = mirror_light(block, mirror, &frame);
     add_suns(block, index, &frame, &received);
+    if (mirror && mirror->ray_count > 0 && frame.exponent >= TL_PERFECT_EXPONENT)
+        received.shadowed[GLOSSY] = perfect_mirror_light(block, mirror);
     if (by_occlusion)
         replace_by_occlusion(&sums, method, &received);
     const vec3s *arriving = method == TL_METHOD_UNSHADOWED ? received.unshadowed : received.shadowed;

@@ -28,8 +28,9 @@ struct tl_compose_request {
     size_t stride;
     const struct tl_taps *taps;
     const float *sun_visibility[TL_SUNS_MAX];
-    const struct tl_mirror *mirrors; /* by sample of the camera; NULL: none */
-    float environment_yaw;           /* rad */
+    const tl_environment *environment; /* what perfect mirrors show */
+    const struct tl_mirror *mirrors;   /* by sample of the camera; NULL: none */
+    float environment_yaw;             /* rad */
     const struct tl_light_params *params;
 };
 

@@ -235,6 +235,7 @@ static void upload_regions(const struct tl_lighting *lighting, const struct tl_l
         lights[i] = light_of_region(request, i);
         if (shadowed)
             copy_view(&tl_shadow_maps_views(request->maps)[i], bias_m, &lights[i]);
+        lights[i].direction.w = request->round > 0 ? 1 : 0;
     }
     for (int i = 0; i < suns; i++) {
         lights[regions + i] = light_of_sun(request, i);

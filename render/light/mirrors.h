@@ -13,6 +13,9 @@
 #include "render/trace/trace.h"
 
 #define TL_MIRROR_RAYS_MAX 8
+/* From here on a lobe is narrower than the texels of most environments: its ray sees the environment itself,
+ * suns and all. */
+#define TL_PERFECT_EXPONENT 1e5f
 
 /* What a ray along the lobe met. */
 enum { TL_MIRROR_OPEN = 0xffffffff, TL_MIRROR_BLACK = 0xfffffffe };

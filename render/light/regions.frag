@@ -81,7 +81,10 @@ void main()
 #endif
         all.diffuse += part.diffuse;
         all.glossy += part.glossy;
-        seen.diffuse += vis * part.diffuse;
+        // A part's own mean over the region holds its share below the horizon already, as visibility does again. Rounds
+        // know better: what is seen along this direction is weighed by its own cosine.
+        float facing = 0.31830989 * max(dot(place.normal, region.direction.xyz), 0.0);
+        seen.diffuse += vis * mix(part.diffuse, facing * region.power.rgb, region.direction.w);
         seen.glossy += vis * part.glossy;
     }
 #endif

@@ -116,7 +116,7 @@ static void upload_frames(unsigned buffer, const struct tl_slices *slices,
         memcpy(frames[i].scale, frame->scale, sizeof frame->scale);
     }
     GLsizeiptr head = sizeof table, body = (GLsizeiptr)(count * sizeof *frames);
-    glNamedBufferData(buffer, head + body, NULL, GL_STATIC_DRAW);
+    glNamedBufferData(buffer, head + body, NULL, GL_DYNAMIC_DRAW);
     glNamedBufferSubData(buffer, 0, head, table);
     glNamedBufferSubData(buffer, head, body, frames);
     free(frames);

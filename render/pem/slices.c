@@ -147,7 +147,8 @@ static void convolve_tile(const struct tl_slices *slices, int exponent, int regi
     vec3s directions[TL_LANES];
     float steps[TL_LANES];
     for (int i = 0; i < TL_LANES; i++) {
-        float x = ((float)(left + i % TILE) - middle) * step, y = ((float)(top + i / TILE) - middle) * step;
+        int column = left + i % TILE, row = top + i / TILE;
+        float x = ((float)column - middle) * step, y = ((float)row - middle) * step;
         directions[i] = unproject(frame, x, y);
         steps[i] = step * sqrtf(square_scale(x, y));
     }
@@ -179,21 +180,45 @@ static void sample_area(const struct tl_slices *slices, int region, const tl_cub
                         const struct tl_regions *regions)
 {
     const struct tl_slice_frame *frame = &slices->frames[region];
-    int side = slices->side[TL_EXPONENT_COUNT];
-    float step = 1 / (frame->scale[TL_EXPONENT_COUNT] * (float)side);
-    for (int i = 0; i < side * side * AREA_SAMPLES * AREA_SAMPLES; i++) {
-        int sample = i % (AREA_SAMPLES * AREA_SAMPLES), texel = i / (AREA_SAMPLES * AREA_SAMPLES);
-        float x = (float)(texel % side) + ((float)(sample % AREA_SAMPLES) + 0.5f) / AREA_SAMPLES;
-        float y = (float)(texel / side) + ((float)(sample / AREA_SAMPLES) + 0.5f) / AREA_SAMPLES;
-        float middle = (float)side / 2;
-        vec3s direction = unproject(frame, (x - middle) * step, (y - middle) * step);
+    int side = slices->side[TL_EXPONENT_COUNT], fine = side * AREA_SAMPLES;
+    float step = 1 / (frame->scale[TL_EXPONENT_COUNT] * (float)fine), middle = (float)fine / 2 - 0.5f;
+    for (int i = 0; i < fine * fine; i++) {
+        int column = i % fine, row = i / fine;
+        vec3s direction = unproject(frame, ((float)column - middle) * step, ((float)row - middle) * step);
         size_t source = (size_t)tl_cube_texel(cube->size, direction);
         if (regions->labels[source] != region)
             continue;
-        float *target = texel_of(slices, TL_EXPONENT_COUNT, region, texel % side, texel / side);
+        float *target =
+            texel_of(slices, TL_EXPONENT_COUNT, region, column / AREA_SAMPLES, row / AREA_SAMPLES);
         for (size_t c = 0; c < 3; c++)
-            target[c] += cube->texels[3 * source + c] / (AREA_SAMPLES * AREA_SAMPLES);
+            target[c] += tl_emitter_radiance(cube->texels[3 * source + c]) / (AREA_SAMPLES * AREA_SAMPLES);
     }
+}
+
+static struct region *prepare_all(const tl_cube *cube, const struct tl_regions *regions,
+                                  struct tl_slice_frame *frames)
+{
+    struct region *sources = TL_NEW_ARRAY(struct region, (size_t)regions->count);
+#pragma omp parallel for schedule(dynamic)
+    for (int i = 0; i < regions->count; i++)
+        sources[i] = prepare(cube, regions, i, &frames[i]);
+    return sources;
+}
+
+static void release_all(struct region *sources, int count)
+{
+    for (int i = 0; i < count; i++)
+        free(sources[i].texels);
+    free(sources);
+}
+
+static void lay_out_all(struct tl_slices *slices, const struct region *sources, uint32_t exponents,
+                        int cube_size)
+{
+    for (int k = 0; k <= TL_EXPONENT_COUNT; k++)
+        if (exponents & 1u << k)
+            lay_out(slices, sources, k, cube_size);
+    slices->made |= exponents;
 }
 
 void tl_slices_make(struct tl_slices *slices, const tl_cube *cube, const struct tl_regions *regions,
@@ -202,19 +227,13 @@ void tl_slices_make(struct tl_slices *slices, const tl_cube *cube, const struct 
     uint32_t missing = needed & ~slices->made;
     if (!missing)
         return;
-    slices->made |= missing;
     slices->region_count = regions->count;
-    struct region *sources = TL_NEW_ARRAY(struct region, (size_t)regions->count);
-#pragma omp parallel for schedule(dynamic)
-    for (int i = 0; i < regions->count; i++)
-        sources[i] = prepare(cube, regions, i, &slices->frames[i]);
-    for (int k = 0; k <= TL_EXPONENT_COUNT; k++) {
-        if (!(missing & 1u << k))
-            continue;
-        lay_out(slices, sources, k, cube->size);
-        size_t side = (size_t)slices->side[k];
-        slices->texels[k] = TL_NEW_ARRAY(float, 3 * (size_t)regions->count * side * side);
-    }
+    struct region *sources = prepare_all(cube, regions, slices->frames);
+    lay_out_all(slices, sources, missing, cube->size);
+    for (int k = 0; k <= TL_EXPONENT_COUNT; k++)
+        if (missing & 1u << k)
+            slices->texels[k] = TL_NEW_ARRAY(float, 3 * (size_t)regions->count * (size_t)slices->side[k] *
+                                                        (size_t)slices->side[k]);
 #pragma omp parallel for collapse(2) schedule(dynamic)
     for (int k = TL_EXPONENT_COUNT; k >= 0; k--) { /* the longest first */
         for (int i = 0; i < regions->count; i++) {
@@ -226,9 +245,29 @@ void tl_slices_make(struct tl_slices *slices, const tl_cube *cube, const struct 
                 convolve(slices, k, i, &sources[i], cube->size);
         }
     }
+    release_all(sources, regions->count);
+}
+
+size_t tl_slices_bytes_of(const tl_cube *cube, const struct tl_regions *regions, uint32_t exponents)
+{
+    struct tl_slices *slices = TL_NEW(struct tl_slices);
+    slices->region_count = regions->count;
+    struct region *sources = prepare_all(cube, regions, slices->frames);
+    lay_out_all(slices, sources, exponents, cube->size);
+    size_t bytes = tl_slices_bytes(slices);
+    release_all(sources, regions->count);
+    free(slices);
+    return bytes;
+}
+
+void tl_slices_radii(const tl_cube *cube, const struct tl_regions *regions, float radii[])
+{
+    struct tl_slice_frame *frames = TL_NEW_ARRAY(struct tl_slice_frame, (size_t)regions->count);
+    struct region *sources = prepare_all(cube, regions, frames);
     for (int i = 0; i < regions->count; i++)
-        free(sources[i].texels);
-    free(sources);
+        radii[i] = sources[i].radius;
+    release_all(sources, regions->count);
+    free(frames);
 }
 
 void tl_slices_release(struct tl_slices *slices)
@@ -266,10 +305,11 @@ vec3s tl_slices_fetch(const struct tl_slices *slices, int region, vec3s directio
                       struct tl_exponent_blend blend)
 {
     const struct tl_slice_frame *frame = &slices->frames[region];
-    float z = glms_vec3_dot(direction, frame->direction);
-    float stretch = sqrtf(2 / fmaxf(1 + z, 1e-6f));
-    float x = glms_vec3_dot(direction, frame->right) * stretch,
-          y = glms_vec3_dot(direction, frame->up) * stretch;
+    float above = 1 + glms_vec3_dot(direction, frame->direction), x = 2, y = 0; /* the antipode */
+    if (above > 1e-6f) {
+        x = glms_vec3_dot(direction, frame->right) * sqrtf(2 / above);
+        y = glms_vec3_dot(direction, frame->up) * sqrtf(2 / above);
+    }
     vec3s colour = fetch(slices, blend.index, region, x, y);
     if (blend.weight > 0) /* the next one need not be there otherwise */
         colour = glms_vec3_lerp(colour, fetch(slices, blend.index + 1, region, x, y), blend.weight);

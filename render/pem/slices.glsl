@@ -26,8 +26,10 @@ vec3 slice_map(int region, int exponent, vec2 p)
 vec3 slice_fetch(int region, vec3 d, float level)
 {
     SliceFrame frame = slice_frames[region];
-    float stretch = sqrt(2.0 / max(1.0 + dot(d, frame.direction.xyz), 1e-6));
-    vec2 p = vec2(dot(d, frame.right.xyz), dot(d, frame.up.xyz)) * stretch;
+    float above = 1.0 + dot(d, frame.direction.xyz);
+    vec2 p = vec2(2.0, 0.0); // the antipode
+    if (above > 1e-6)
+        p = vec2(dot(d, frame.right.xyz), dot(d, frame.up.xyz)) * sqrt(2.0 / above);
     int exponent = clamp(int(level), 0, SLICE_EXPONENTS - 1);
     float part = level - float(exponent);
     vec3 light = slice_map(region, exponent, p);

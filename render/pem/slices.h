@@ -35,7 +35,11 @@ void tl_slices_release(struct tl_slices *slices);
 vec3s tl_slices_fetch(const struct tl_slices *slices, int region, vec3s direction,
                       struct tl_exponent_blend blend);
 
-/* Bytes as they are kept on the GPU (4 a texel). */
+/* Bytes as they are kept on the GPU (4 a texel); and what they will be, without making them. */
 size_t tl_slices_bytes(const struct tl_slices *slices);
+size_t tl_slices_bytes_of(const tl_cube *cube, const struct tl_regions *regions, uint32_t exponents);
+/* Half-angles (rad, by region) of the smallest cones that hold what is lit in them, about the directions of
+ * the frames. */
+void tl_slices_radii(const tl_cube *cube, const struct tl_regions *regions, float radii[]);
 
 #endif

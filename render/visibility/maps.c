@@ -277,7 +277,7 @@ void tl_shadow_maps_draw(tl_shadow_maps *maps, const struct tl_shadow_request *r
         draw_moments(maps, request);
     else
         for (int i = 0; i < maps->array_count; i++)
-            draw_depths(maps, request, &maps->arrays[i], maps->views + i * maps->per_array);
+            draw_depths(maps, request, &maps->arrays[i], maps->views + (ptrdiff_t)i * maps->per_array);
     if (request->suns->count > 0)
         draw_depths(maps, request, &maps->sun_array, maps->sun_views);
     tl_gpu_reset_state(maps->gpu);

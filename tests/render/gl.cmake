@@ -7,6 +7,7 @@ target_compile_definitions(toile_test_shapes PRIVATE TOILE_DATA_DIR="") # testin
 toile_test(gpu gpu toile_render PkgConfig::EPOXY)
 toile_test(light gpu toile_test_shapes)
 toile_test(maps gpu toile_test_shapes)
+toile_test(methods gpu toile_test_shapes)
 toile_test(slice_maps gpu toile_render PkgConfig::EPOXY)
 toile_test(renderer gpu toile_test_shapes)
 toile_test(points truth toile_test_shapes)

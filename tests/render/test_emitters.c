@@ -4,7 +4,8 @@
 
 #include "testing.h"
 
-#define SIZE 64
+#define SIZE   64
+#define TEXELS ((size_t)6 * SIZE * SIZE)
 
 /* Lights of very different strength and colour, mostly dim: one texel in 50 outshines its neighbours a
  * thousand times. */
@@ -17,16 +18,15 @@ static tl_cube sparks(void)
         hash *= 2246822519u;
         hash ^= hash >> 13;
         float strength = hash % 50 == 0 ? 1000 : 1;
-        cube.texels[3 * i] = strength * (float)(hash >> 8 & 255) / 255;
-        cube.texels[3 * i + 1] = strength * (float)(hash >> 16 & 255) / 255;
-        cube.texels[3 * i + 2] = strength * (float)(hash >> 24 & 255) / 255;
+        for (size_t c = 0; c < 3; c++)
+            cube.texels[3 * (size_t)i + c] = strength * (float)(hash >> (8 + 8 * c) & 255) / 255;
     }
     return cube;
 }
 
 static float *solid_angles(int size)
 {
-    float *angles = calloc((size_t)(size * size), sizeof *angles);
+    float *angles = calloc((size_t)size * (size_t)size, sizeof *angles);
     for (int i = 0; i < size * size; i++)
         angles[i] = tl_cube_solid_angle(size, i % size, i / size);
     return angles;
@@ -56,17 +56,19 @@ static void integrate(const tl_cube *cube, const float *fine_angles, vec3s direc
     }
 }
 
+/* Merging costs less than 0.2 % on average, where neighbours differ most in strength and colour; in a
+ * direction that few of them light it is more. Without it the error is that of a texel's shape. */
 static void merged_light_is_that_of_all_texels(void **state)
 {
     (void)state;
     tl_cube cube = sparks();
     float *angles = solid_angles(SIZE), *fine_angles = solid_angles(FINE * SIZE);
     uint32_t *order = tl_emitters_order(SIZE);
-    tl_emitter *texels = tl_emitters_collect(&cube, angles, order, 6 * SIZE * SIZE);
+    tl_emitter *texels = tl_emitters_collect(&cube, angles, order, TEXELS);
     const float exponents[] = {1, 1.4f, 2, 4, 8, 16, 25, 40, 64, 128, 400};
     for (size_t e = 0; e < sizeof exponents / sizeof *exponents; e++) {
         float s = exponents[e], steps[TL_LANES] = {0};
-        struct tl_emitters emitters = tl_emitters_merge(texels, 6 * SIZE * SIZE, SIZE, s);
+        struct tl_emitters emitters = tl_emitters_merge(texels, TEXELS, SIZE, s);
         double worst = 0, sum = 0;
         struct tl_gaze gaze;
         vec3s directions[TL_LANES];
@@ -87,6 +89,7 @@ static void merged_light_is_that_of_all_texels(void **state)
         printf("s = %5.1f: %zu blocks, error mean %.3f %%, worst %.3f %%\n", (double)s, emitters.count,
                100 * sum, 100 * worst);
         tl_emitters_release(&emitters);
+        assert_true(sum < 0.002 && worst < 0.01);
     }
     free(texels);
     free(order);

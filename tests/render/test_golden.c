@@ -21,6 +21,15 @@ static vec3s room(vec3s d)
     return (vec3s){{0.3f + 0.1f * d.y, 0.3f, 0.35f - 0.1f * d.y}};
 }
 
+/* ... whose lamp is a sun, a degree across. */
+static vec3s sunny_room(vec3s d)
+{
+    vec3s light = room(d);
+    if (glms_vec3_dot(d, glms_vec3_normalize((vec3s){{0.5f, 0.8f, 0.6f}})) > 0.9995f)
+        return (vec3s){{1800, 1600, 1200}};
+    return light.x > 80 ? (vec3s){{0.3f, 0.3f, 0.3f}} : light;
+}
+
 static void write_drawn(const char *path, const tl_image *image)
 {
     static const char *const names[] = {"R", "G", "B", "A"};
@@ -99,9 +108,9 @@ static tl_weave coarse_weave(void)
     return weave;
 }
 
-static void scene_open(struct scene *scene)
+static void scene_open(struct scene *scene, bool has_sun)
 {
-    scene->environment = test_environment(128, 64, room);
+    scene->environment = has_sun ? test_environment(256, 128, sunny_room) : test_environment(128, 64, room);
     scene->weave = coarse_weave();
     scene->shapes[0] = test_sphere((vec3s){{0.1f, 0.35f, 0}}, 0.35f, 24);
     scene->shapes[1] = test_sheet(0.95f, 0.4f, 0.05f, 1.5f, 32);
@@ -140,13 +149,102 @@ static void draw_and_check(struct test_device *device, const char *name, enum tl
                            enum tl_lobe lobe)
 {
     struct scene scene;
-    scene_open(&scene);
+    scene_open(&scene, false);
     scene.settings.light.method = (int)method;
     scene.settings.light.lobe = (int)lobe;
     tl_image image = test_draw(device->renderer, &scene.frame, &scene.settings);
     scene_close(&scene);
     check_golden(name, &image);
     tl_image_release(&image);
+}
+
+/* The map back-end in its best form, as a GPU has it. */
+static struct tl_light_params best_maps(struct tl_light_params light)
+{
+    light.lobe = TL_LOBE_DUAL;
+    light.visibility = TL_VISIBILITY_DEPTH;
+    light.cut = TL_CUT_SPHERE;
+    light.composition = TL_COMPOSE_RATIO;
+    light.depth_bias_m = 0.0005f;
+    return light;
+}
+
+static void in_rounds(struct tl_light_params *light)
+{
+    light->jitter = true;
+    light->rounds = 16;
+}
+
+static void from_slices(struct tl_light_params *light)
+{
+    light->prefilter = TL_PREFILTER_SLICES;
+    light->composition = TL_COMPOSE_SUM;
+}
+
+static void with_sun(struct tl_light_params *light)
+{
+    light->sun = true;
+    light->pem_size = 64;
+}
+
+/* Draws until nothing changes any more. */
+static void draw_variant(struct test_device *device, const char *name, enum tl_method method,
+                         void (*change)(struct tl_light_params *))
+{
+    struct scene scene;
+    scene_open(&scene, change == with_sun);
+    scene.settings.light = best_maps(scene.settings.light);
+    scene.settings.light.method = (int)method;
+    if (change)
+        change(&scene.settings.light);
+    tl_image image = test_draw(device->renderer, &scene.frame, &scene.settings);
+    while (!tl_renderer_is_at_rest(device->renderer)) {
+        tl_image_release(&image);
+        image = test_draw(device->renderer, &scene.frame, &scene.settings);
+    }
+    scene_close(&scene);
+    check_golden(name, &image);
+    tl_image_release(&image);
+}
+
+static void test_depth_ratio(void **state)
+{
+    draw_variant(*state, "depth_ratio", TL_METHOD_PEM, NULL);
+}
+
+static void test_depth_rounds(void **state)
+{
+    draw_variant(*state, "depth_rounds", TL_METHOD_PEM, in_rounds);
+}
+
+static void test_depth_slices(void **state)
+{
+    draw_variant(*state, "depth_slices", TL_METHOD_PEM, from_slices);
+}
+
+static void test_depth_sun(void **state)
+{
+    draw_variant(*state, "depth_sun", TL_METHOD_PEM, with_sun);
+}
+
+static void test_lights(void **state)
+{
+    draw_variant(*state, "lights", TL_METHOD_LIGHTS, NULL);
+}
+
+static void test_ao(void **state)
+{
+    draw_variant(*state, "ao", TL_METHOD_AO, NULL);
+}
+
+static void test_ao_colour(void **state)
+{
+    draw_variant(*state, "ao_colour", TL_METHOD_AO_COLOUR, NULL);
+}
+
+static void test_unshadowed_exact(void **state)
+{
+    draw_variant(*state, "unshadowed_exact", TL_METHOD_UNSHADOWED, NULL);
 }
 
 static void test_pem_dual(void **state)
@@ -170,6 +268,14 @@ int main(void)
         cmocka_unit_test(test_pem_dual),
         cmocka_unit_test(test_pem_single),
         cmocka_unit_test(test_unshadowed_dual),
+        cmocka_unit_test(test_depth_ratio),
+        cmocka_unit_test(test_depth_rounds),
+        cmocka_unit_test(test_depth_slices),
+        cmocka_unit_test(test_depth_sun),
+        cmocka_unit_test(test_lights),
+        cmocka_unit_test(test_ao),
+        cmocka_unit_test(test_ao_colour),
+        cmocka_unit_test(test_unshadowed_exact),
     };
     return cmocka_run_group_tests(tests, test_device_open, test_device_close);
 }

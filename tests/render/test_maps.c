@@ -181,9 +181,10 @@ static void test_no_acne(void **state)
     struct tl_render_settings settings = settings_of_six(64, 64);
     settings.light.depth_bias_m = 0.004f;
     for (int size = 64; size <= 1024; size *= 4)
-        for (int blur = 0; blur < 2; blur++) {
+        for (int kind = 0; kind < 3; kind++) { /* variance maps without and with blur, depth maps */
             settings.light.map_size = size;
-            settings.light.blur_m = blur ? 0.05f : 0;
+            settings.light.blur_m = kind == 1 ? 0.05f : 0;
+            settings.light.visibility = kind == 2 ? TL_VISIBILITY_DEPTH : TL_VISIBILITY_VSM;
             tl_image visibility = visibility_image(device, &frame, settings);
             for (int y = 8; y < 56; y++)
                 for (int x = 8; x < 56; x++) {
@@ -266,6 +267,160 @@ static void test_region_view(void **state)
     assert_near(turned.z, -1, 1e-6);
 }
 
+/* Depth maps, everything else as little as can be. */
+static struct tl_render_settings depth_of_six(int width, int height)
+{
+    struct tl_render_settings settings = settings_of_six(width, height);
+    settings.light.visibility = TL_VISIBILITY_DEPTH;
+    settings.light.composition = TL_COMPOSE_RATIO;
+    return settings;
+}
+
+/* A ground sheet, and one at height 1 that covers x < 0, seen from beside and below it. */
+static void open_half_plane(struct test_shape shapes[2], tl_surface surfaces[2])
+{
+    shapes[0] = test_square((vec3s){{0, 0, 0}}, (vec3s){{1, 0, 0}}, (vec3s){{0, 1, 0}}, 2, 8);
+    shapes[1] = test_square((vec3s){{-1, 1, 0}}, (vec3s){{1, 0, 0}}, (vec3s){{0, 1, 0}}, 1, 4);
+    for (int i = 0; i < 2; i++) {
+        shapes[i].material.specular = (vec3s){{0, 0, 0}};
+        test_shape_refresh(&shapes[i]);
+        surfaces[i] = shapes[i].surface;
+    }
+}
+
+static tl_frame half_plane_frame(const tl_surface surfaces[2], const tl_environment *environment)
+{
+    return test_frame((vec3s){{0, 0.7f, 1.9f}}, (vec3s){{0, 0, 0}}, 45, surfaces, 2, environment);
+}
+
+/* Of a depth map the edge is there where it is, sharp but for the two texels that a look-up blends: the
+ * casters are 4 m wide on 252 texels. The light's direction is the patch's centre of light on the cube, off
+ * by up to a hundredth of a texel of 32 a face; the sheet's slope is none, so its offset is none. */
+static void test_depth_half_plane(void **state)
+{
+    struct test_device *device = *state;
+    patch_direction = (vec3s){{0, 1, 0}};
+    tl_environment environment = test_environment(128, 64, bright_patch);
+    struct test_shape shapes[2];
+    tl_surface surfaces[2];
+    open_half_plane(shapes, surfaces);
+    struct tl_render_settings settings = depth_of_six(64, 16);
+    tl_frame frame = half_plane_frame(surfaces, &environment);
+    tl_image visibility = visibility_image(device, &frame, settings);
+    int dark = 0, bright = 0;
+    for (int y = 0; y < settings.image.height; y++)
+        for (int x = 0; x < settings.image.width; x++) {
+            vec3s point = ground_point(&frame.camera, &settings, x, y);
+            if (fabsf(point.z) > 0.4f || fabsf(point.x) > 1.2f || fabsf(point.x) < 2 * 4.0f / 252)
+                continue;
+            assert_near(test_pixel(&visibility, x, y)[0], point.x > 0, 1e-5);
+            dark += point.x < 0;
+            bright += point.x > 0;
+        }
+    assert_true(dark > 20 && bright > 20);
+    tl_image_release(&visibility);
+    test_shape_release(&shapes[0]);
+    test_shape_release(&shapes[1]);
+    tl_environment_release(&environment);
+}
+
+/* The share of the patch's light, as the cube holds it, that comes past the edge to a point of the ground:
+ * from directions with d.x / d.y > -x. */
+static double area_visibility(const tl_cube *cube, float x)
+{
+    const int up = 2, parts = 8;
+    double seen = 0, all = 0;
+    for (int row = 0; row < cube->size; row++)
+        for (int column = 0; column < cube->size; column++) {
+            float light = cube->texels[3 * ((up * cube->size + row) * cube->size + column)];
+            light *= tl_cube_solid_angle(cube->size, column, row);
+            for (int part = 0; light > 0 && part < parts * parts; part++) {
+                vec3s d = tl_cube_direction(
+                    up, ((float)column + ((float)(part % parts) + 0.5f) / (float)parts) / (float)cube->size,
+                    ((float)row + ((float)part / (float)parts + 0.5f) / (float)parts) / (float)cube->size);
+                all += (double)light;
+                seen += d.x > -x * d.y ? (double)light : 0;
+            }
+        }
+    return seen / all;
+}
+
+/* Averaged over rounds, hard shadows along directions inside a region become the region's own soft shadow. 64
+ * rounds of an even sequence know a share to about 1/64 times the logarithm of 64; a texel of the map is 0.04
+ * of the penumbra. */
+static void test_rounds_become_area_light(void **state)
+{
+    struct test_device *device = *state;
+    patch_direction = (vec3s){{0, 1, 0}};
+    tl_environment environment = test_environment(256, 128, bright_patch);
+    struct test_shape shapes[2];
+    tl_surface surfaces[2];
+    open_half_plane(shapes, surfaces);
+    struct tl_render_settings settings = depth_of_six(128, 64);
+    settings.light.pem_size = 64;
+    settings.light.jitter = true;
+    settings.light.rounds = 64;
+    tl_frame frame = half_plane_frame(surfaces, &environment);
+    for (int round = 0; round + 1 < settings.light.rounds; round++) {
+        tl_image image = test_draw(device->renderer, &frame, &settings);
+        tl_image_release(&image);
+        assert_false(tl_renderer_is_at_rest(device->renderer));
+    }
+    tl_image shadowed = test_draw(device->renderer, &frame, &settings);
+    assert_true(tl_renderer_is_at_rest(device->renderer));
+    settings.light.method = TL_METHOD_UNSHADOWED;
+    tl_image lit = test_draw(device->renderer, &frame, &settings);
+    tl_cube cube = tl_cube_from_environment(&environment, settings.light.pem_size);
+    int between = 0;
+    for (int y = 0; y < settings.image.height; y++)
+        for (int x = 0; x < settings.image.width; x++) {
+            vec3s point = ground_point(&frame.camera, &settings, x, y);
+            if (fabsf(point.z) > 0.4f || fabsf(point.x) > 1)
+                continue;
+            double actual = (double)(test_pixel(&shadowed, x, y)[0] / test_pixel(&lit, x, y)[0]);
+            assert_near(actual, area_visibility(&cube, point.x), 0.07);
+            between += actual > 0.1 && actual < 0.9;
+        }
+    assert_true(between > 10);
+    tl_cube_release(&cube);
+    tl_image_release(&shadowed);
+    tl_image_release(&lit);
+    test_shape_release(&shapes[0]);
+    test_shape_release(&shapes[1]);
+    tl_environment_release(&environment);
+}
+
+/* Directions of rounds lie inside their region, the first is its own, and their mean tends to it. */
+static void test_rounds_stay_inside(void **state)
+{
+    (void)state;
+    patch_direction = glms_vec3_normalize((vec3s){{0.3f, 1, 0.2f}});
+    tl_environment environment = test_environment(128, 64, bright_patch);
+    tl_cube cube = tl_cube_from_environment(&environment, 32);
+    struct tl_regions regions = {0};
+    tl_regions_cut(&cube, 6, &regions);
+    for (int i = 0; i < regions.count; i++) {
+        vec3s sum = {{0, 0, 0}}, first = tl_region_seen_direction(&regions, i, 0);
+        assert_memory_equal(&first, &regions.items[i].direction, sizeof first);
+        for (int round = 1; round <= 128; round++) {
+            vec3s d = tl_region_seen_direction(&regions, i, round);
+            int face;
+            float s, t;
+            tl_cube_locate(d, &face, &s, &t);
+            int column = (int)(s * 32) < 31 ? (int)(s * 32) : 31,
+                row = (int)(t * 32) < 31 ? (int)(t * 32) : 31;
+            assert_int_equal(regions.labels[(face * 32 + row) * 32 + column], i);
+            sum = glms_vec3_add(sum, d);
+        }
+        /* A black region is a whole face, 1.6 rad wide: the mean of 128 even draws is within a few
+         * hundredths. */
+        assert_near(glms_vec3_angle(sum, regions.items[i].direction), 0, 0.05);
+    }
+    tl_regions_release(&regions);
+    tl_cube_release(&cube);
+    tl_environment_release(&environment);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -275,6 +430,9 @@ int main(void)
         cmocka_unit_test(test_no_acne),
         cmocka_unit_test(test_mask_lets_light_through),
         cmocka_unit_test(test_region_view),
+        cmocka_unit_test(test_depth_half_plane),
+        cmocka_unit_test(test_rounds_become_area_light),
+        cmocka_unit_test(test_rounds_stay_inside),
     };
     return cmocka_run_group_tests(tests, test_device_open, test_device_close);
 }

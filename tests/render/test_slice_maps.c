@@ -1,6 +1,8 @@
 #include "render/pem/slice_maps.h"
 
-#include "config/memory.h"
+#include "render/pem/chain.h"
+#include "render/pem/memory.h"
+#include "render/pem/pems.h"
 #include "render/shaders.h"
 
 #include "testing.h"
@@ -74,6 +76,12 @@ static void quantise(float colour[3], float scale)
 static struct tl_regions regions;
 static struct tl_slices slices;
 
+static size_t texel_count(int exponent)
+{
+    size_t side = (size_t)slices.side[exponent];
+    return side * side * (size_t)regions.count;
+}
+
 /* The texture holds what the format makes of the CPU's texels, and the shader fetches as the CPU does: what
  * remains is how finely software GL interpolates. */
 static void fetches_agree(tl_gpu *gpu, float lamp, float scale)
@@ -85,8 +93,7 @@ static void fetches_agree(tl_gpu *gpu, float lamp, float scale)
     struct tl_slice_maps maps = {0};
     tl_slice_maps_upload(&maps, gpu, &slices);
     for (int k = 0; k <= TL_EXPONENT_COUNT; k++)
-        for (size_t i = 0; slices.texels[k] && i < (size_t)(regions.count * slices.side[k] * slices.side[k]);
-             i++)
+        for (size_t i = 0; i < (slices.texels[k] ? texel_count(k) : 0); i++)
             quantise(slices.texels[k] + 3 * i, scale);
 
     const struct tl_embedded *vertex = tl_embedded_find(tl_embedded_shaders, "fullscreen.vert");
@@ -160,11 +167,26 @@ static void a_sun_stays_in_range(void **state)
     fetches_agree(*state, 1e7f, 256);
 }
 
+/* pem/memory.h computes what is allocated. */
+static void chains_take_what_is_computed(void **state)
+{
+    tl_gpu *gpu = *state;
+    tl_cube cube = bright_cube(1);
+    tl_regions_cut(&cube, REGIONS, &regions);
+    struct tl_pems pems = {0};
+    tl_pems_build(&pems, gpu, &cube, &regions, TL_CHAIN_SQRT_COSINE, 12);
+    assert_int_equal(tl_pems_bytes(&pems), tl_memory_chains(REGIONS, SIZE));
+    tl_pems_release(&pems);
+    tl_regions_release(&regions);
+    tl_cube_release(&cube);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_shader_fetches_as_the_cpu),
         cmocka_unit_test(a_sun_stays_in_range),
+        cmocka_unit_test(chains_take_what_is_computed),
     };
     return cmocka_run_group_tests(tests, open_gpu, close_gpu);
 }

@@ -1,0 +1,55 @@
+#include "render/pem/memory.h"
+
+#include "config/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#define RGBA16F_BYTES 8
+
+const int tl_paper_pem_sizes[TL_PAPER_PEMS] = {128, 256};
+const int tl_paper_map_sizes[TL_PAPER_MAPS] = {64, 128, 256, 512, 1024};
+const struct tl_paper_memory tl_paper_memory[TL_PAPER_ROWS] = {
+    {1, {1.5, 6}, {0.015625, 0.0625, 0.25, 1, 4}}, {12, {18, 72}, {0.1875, 0.75, 3, 12, 48}},
+    {32, {48, 192}, {0.5, 2, 8, 32, 128}},         {64, {96, 384}, {1, 4, 16, 64, 256}},
+    {128, {192, 768}, {2, 8, 32, 128, 512}},       {256, {384, 1536}, {4, 16, 64, 256, 1024}},
+};
+
+/* Texels of a square and of all its mips. */
+static size_t chain_texels(int side)
+{
+    size_t texels = 0;
+    for (; side > 0; side /= 2)
+        texels += (size_t)side * (size_t)side;
+    return texels;
+}
+
+size_t tl_memory_cubes(int regions, int size)
+{
+    return (size_t)regions * 6 * (size_t)size * (size_t)size * RGBA16F_BYTES;
+}
+
+size_t tl_memory_chains(int regions, int size)
+{
+    return (size_t)regions * 6 * chain_texels(size) * RGBA16F_BYTES;
+}
+
+size_t tl_memory_shadow_maps(int regions, int size, size_t texel_bytes)
+{
+    return (size_t)regions * (size_t)size * (size_t)size * texel_bytes;
+}
+
+size_t tl_memory_paraboloids(const tl_cube *cube, const struct tl_regions *regions)
+{
+    float *radii = TL_NEW_ARRAY(float, (size_t)regions->count);
+    tl_slices_radii(cube, regions, radii);
+    size_t texels = 0;
+    for (int i = 0; i < regions->count; i++) {
+        /* A paraboloid holds one half of all directions; its coordinate, tan(angle / 2), turns by 2 in the
+         * middle, as that of a cube's face from -1 to 1 does by 1. */
+        float reach = tanf(fminf(radii[i], (float)M_PI_2) / 2);
+        texels += chain_texels((int)ceilf(2 * reach * (float)cube->size));
+    }
+    free(radii);
+    return texels * RGBA16F_BYTES;
+}
