@@ -1,9 +1,9 @@
+#include "app/cells.h"
 #include "app/report.h"
 #include "app/trade.h"
 #include "config/memory.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -40,33 +40,6 @@ void tl_trade_write_csv(const struct tl_trade *trade, FILE *out)
     }
 }
 
-/* Cells of a table, filled row by row. */
-struct cells {
-    char **texts;
-    size_t count;
-};
-
-static void add_cell(struct cells *cells, const char *format, ...) __attribute__((format(printf, 2, 3)));
-static void add_cell(struct cells *cells, const char *format, ...)
-{
-    char text[160];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    cells->texts = tl_resize(cells->texts, cells->count + 1, sizeof *cells->texts);
-    cells->texts[cells->count++] = tl_copy_string(text);
-}
-
-static void print_cells(struct cells *cells, size_t columns, FILE *out)
-{
-    tl_report_table(out, (const char *const *)cells->texts, cells->count / columns, columns);
-    for (size_t i = 0; i < cells->count; i++)
-        free(cells->texts[i]);
-    free(cells->texts);
-    *cells = (struct cells){0};
-}
-
 /* Of a group (NULL: any), in order. `after` NULL begins; returns NULL at the end. */
 static const struct tl_trade_row *next_row(const struct tl_trade *trade, const struct tl_trade_row *after,
                                            const char *group, int look, bool rest)
@@ -89,44 +62,44 @@ static const struct tl_trade_row *sibling(const struct tl_trade *trade, const st
     return found;
 }
 
-static void add_error_cell(struct cells *cells, const struct tl_trade_row *row)
+static void add_error_cell(struct tl_cells *cells, const struct tl_trade_row *row)
 {
     if (row)
-        add_cell(cells, "%.2f %% / %.3f", 100 * row->error.rel_rmse, row->error.flip_mean);
+        tl_cells_add(cells, "%.2f %% / %.3f", 100 * row->error.rel_rmse, row->error.flip_mean);
     else
-        add_cell(cells, "-");
+        tl_cells_add(cells, "-");
 }
 
 /* Names of one group, what they take at one look, and their errors in all. */
 static void print_group_table(const struct tl_trade *trade, const char *group, int look, FILE *out)
 {
     static const char *const heads[] = {"", "CPU ms", "at rest", "MiB"};
-    struct cells cells = {0};
+    struct tl_cells cells = {0};
     for (size_t i = 0; i < TL_COUNT(heads); i++)
-        add_cell(&cells, "%s", heads[i]);
+        tl_cells_add(&cells, "%s", heads[i]);
     size_t columns = TL_COUNT(heads);
     bool shown[TL_LOOK_COUNT];
     for (int l = 0; l < TL_LOOK_COUNT; l++) {
         shown[l] = next_row(trade, NULL, group, l, false) != NULL;
         if (!shown[l])
             continue;
-        add_cell(&cells, "%s, moving", tl_looks[l].title);
-        add_cell(&cells, "at rest");
+        tl_cells_add(&cells, "%s, moving", tl_looks[l].title);
+        tl_cells_add(&cells, "at rest");
         columns += 2;
     }
     for (const struct tl_trade_row *row = NULL; (row = next_row(trade, row, group, look, false));) {
         const struct tl_trade_row *rest = sibling(trade, row, look, true);
-        add_cell(&cells, "%s", row->name);
-        add_cell(&cells, "%.1f", row->taken.cpu_ms);
-        add_cell(&cells, "%.1f", rest ? rest->taken.cpu_ms : NAN);
-        add_cell(&cells, "%.1f", (double)row->memory.total / MEBIBYTE);
+        tl_cells_add(&cells, "%s", row->name);
+        tl_cells_add(&cells, "%.1f", row->taken.cpu_ms);
+        tl_cells_add(&cells, "%.1f", rest ? rest->taken.cpu_ms : NAN);
+        tl_cells_add(&cells, "%.1f", (double)row->memory.total / MEBIBYTE);
         for (int l = 0; l < TL_LOOK_COUNT; l++)
             if (shown[l]) {
                 add_error_cell(&cells, sibling(trade, row, l, false));
                 add_error_cell(&cells, sibling(trade, row, l, true));
             }
     }
-    print_cells(&cells, columns, out);
+    tl_cells_print(&cells, columns, out);
 }
 
 /* Points of a plot by group, with room for the Pareto front. */
@@ -180,18 +153,18 @@ static void release_scatter(struct scatter *scatter)
 static void print_front(const struct scatter *scatter, FILE *out)
 {
     static const char *const heads[] = {"on the Pareto front", "CPU ms", "rel. RMSE", "mean FLIP", "MiB"};
-    struct cells cells = {0};
+    struct tl_cells cells = {0};
     for (size_t i = 0; i < TL_COUNT(heads); i++)
-        add_cell(&cells, "%s", heads[i]);
+        tl_cells_add(&cells, "%s", heads[i]);
     for (size_t i = 0; i < scatter->front_count; i++) {
         const struct tl_trade_row *row = scatter->rows[scatter->front[i]];
-        add_cell(&cells, "%s", row->name);
-        add_cell(&cells, "%.1f", row->taken.cpu_ms);
-        add_cell(&cells, "%.2f %%", 100 * row->error.rel_rmse);
-        add_cell(&cells, "%.4f", row->error.flip_mean);
-        add_cell(&cells, "%.1f", (double)row->memory.total / MEBIBYTE);
+        tl_cells_add(&cells, "%s", row->name);
+        tl_cells_add(&cells, "%.1f", row->taken.cpu_ms);
+        tl_cells_add(&cells, "%.2f %%", 100 * row->error.rel_rmse);
+        tl_cells_add(&cells, "%.4f", row->error.flip_mean);
+        tl_cells_add(&cells, "%.1f", (double)row->memory.total / MEBIBYTE);
     }
-    print_cells(&cells, TL_COUNT(heads), out);
+    tl_cells_print(&cells, TL_COUNT(heads), out);
 }
 
 static void print_scatters(const struct tl_trade *trade, FILE *out)

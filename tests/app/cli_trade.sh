@@ -60,9 +60,12 @@ else
     echo "skipped: files are not parsed: python3 is absent"
 fi
 
-# Ctrl-C in the middle: exit status 130, and what was measured is there.
-$TOILE trade $small -o stopped & trade=$!
-sleep 8
+# Ctrl-C once the first choice of settings is measured: exit status 130, and what was measured is there.
+$TOILE trade --size 32x32 --set cloth.edge_m=0.06 --set reference.replicates=2 -o stopped 2>progress & trade=$!
+until grep -q "measuring the trade" progress; do
+    kill -0 $trade 2>/dev/null || { cat progress; echo "FAILED trade ended early"; exit 1; }
+    sleep 1
+done
 kill -INT $trade
 status=0
 wait $trade || status=$?
