@@ -84,15 +84,16 @@ static vec3s half_vector(const uint16_t *texel)
     return (vec3s){{from_half(texel[0]), from_half(texel[1]), from_half(texel[2])}};
 }
 
-/* The inverse of octahedral() in gbuffer.frag. */
-static vec3s from_octahedral(float x, float y)
+/* The normal of the smooth surface, on the side that is seen. The G-buffer's half floats hold it to 0.03
+ * degrees only, which a mirror would show. */
+static vec3s smooth_normal(const tl_surface *surface, const uint32_t corners[3], const float weights[3],
+                           bool back)
 {
-    vec3s n = {{x, y, 1 - fabsf(x) - fabsf(y)}};
-    if (n.z < 0) {
-        n.x = (1 - fabsf(y)) * (x >= 0 ? 1.0f : -1.0f);
-        n.y = (1 - fabsf(x)) * (y >= 0 ? 1.0f : -1.0f);
-    }
-    return n;
+    vec3s sum = {{0, 0, 0}};
+    for (int i = 0; i < 3; i++)
+        sum = glms_vec3_add(sum,
+                            glms_vec3_scale(surface->normals[corners[i]], back ? -weights[i] : weights[i]));
+    return sum;
 }
 
 static tl_sample read_sample(const struct layers *layers, size_t texel,
@@ -109,20 +110,24 @@ static tl_sample read_sample(const struct layers *layers, size_t texel,
                         .glossiness = 1 - from_half(normal[3]),
                         .diffuse = half_vector(diffuse),
                         .specular = half_vector(specular)};
-    const vec3s up = {{0, 1, 0}};
-    sample.normal = normalized_or(half_vector(normal), up);
-    sample.smooth = normalized_or(from_octahedral(from_half(diffuse[3]), from_half(specular[3])), up);
-    vec3s view = normalized_or(glms_vec3_sub(eye, sample.point), sample.normal);
-    /* As in light.frag: where a normal turns away from the viewer, r passes straight on instead of flipping.
-     */
-    float cosine = fmaxf(glms_vec3_dot(sample.normal, view), 0);
-    sample.mirror =
-        normalized_or(glms_vec3_sub(glms_vec3_scale(sample.normal, 2 * cosine), view), sample.normal);
     uint32_t corners[3];
     size_t index;
     const tl_surface *surface = tl_triangle_find(ranges, sample.triangle & ~TL_SAMPLE_BACK, corners, &index);
     weigh(sample.point, surface->positions[corners[0]], surface->positions[corners[1]],
           surface->positions[corners[2]], sample.weights);
+    const float rounding = 1e-3f; /* of half floats */
+    const vec3s up = {{0, 1, 0}};
+    sample.normal = normalized_or(half_vector(normal), up);
+    sample.smooth = normalized_or(
+        smooth_normal(surface, corners, sample.weights, sample.triangle & TL_SAMPLE_BACK), sample.normal);
+    if (glms_vec3_distance(sample.normal, sample.smooth) < rounding)
+        sample.normal = sample.smooth;
+    vec3s view = normalized_or(glms_vec3_sub(eye, sample.point), sample.normal);
+    /* As in the light passes: where a normal turns away from the viewer, r passes straight on instead of
+     * flipping. */
+    float cosine = fmaxf(glms_vec3_dot(sample.normal, view), 0);
+    sample.mirror =
+        normalized_or(glms_vec3_sub(glms_vec3_scale(sample.normal, 2 * cosine), view), sample.normal);
     return sample;
 }
 
