@@ -12,7 +12,7 @@ in vec4 tangent;
 in vec2 uv;
 
 layout(location = 0) out vec4 out_point;    // world, metres; coverage
-layout(location = 1) out vec4 out_normal;   // world, unit, towards the viewer's side; glossiness
+layout(location = 1) out vec4 out_normal;   // world, unit, towards the viewer's side; 1 - glossiness
 layout(location = 2) out vec4 out_diffuse;  // kd with occlusion; octahedral x of the smooth normal
 layout(location = 3) out vec4 out_specular; // F ks; octahedral y of the smooth normal
 layout(location = 4) out uint out_triangle; // 1 + its number, and TRIANGLE_BACK
@@ -111,7 +111,7 @@ void main()
     vec2 horizon = octahedral(side * smooth_normal);
     vec3 v = direction_or(eye - point, n);
     out_point = vec4(point, cover);
-    out_normal = vec4(n, glossiness());
+    out_normal = vec4(n, 1.0 - glossiness());
     out_diffuse = vec4(diffuse(colour.rgb), horizon.x);
     out_specular = vec4(specular(dot(n, v)), horizon.y);
     out_triangle = (first_triangle + uint(gl_PrimitiveID) + 1u) | (gl_FrontFacing ? 0u : TRIANGLE_BACK);

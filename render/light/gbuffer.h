@@ -9,7 +9,8 @@
 /* Colours of the target. Half floats hold directions to 0.03 degrees, a fortieth of a PEM's texel. */
 enum tl_gbuffer_layer {
     TL_GBUFFER_POINT,    /* RGBA32F: world, metres; coverage */
-    TL_GBUFFER_NORMAL,   /* RGBA16F: world, unit, on the viewer's side; glossiness */
+    TL_GBUFFER_NORMAL,   /* RGBA16F: world, unit, on the viewer's side; 1 - glossiness, of which a half keeps
+                            the   third digit where it decides a mirror's exponent */
     TL_GBUFFER_DIFFUSE,  /* RGBA16F: kd with occlusion; octahedral x of the smooth normal */
     TL_GBUFFER_SPECULAR, /* RGBA16F: F ks; octahedral y of the smooth normal */
     TL_GBUFFER_TRIANGLE, /* R32UI: 0 nothing; else 1 + the triangle's number counted through all surfaces, and

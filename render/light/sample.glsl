@@ -43,6 +43,6 @@ Sample read_sample(ivec2 texel)
     vec3 v = to_eye * inversesqrt(max(dot(to_eye, to_eye), 1e-30));
     // Where an interpolated normal turns away from the viewer, r passes straight on instead of flipping.
     vec3 r = 2.0 * max(dot(normal.xyz, v), 0.0) * normal.xyz - v;
-    return Sample(point.xyz, point.w, normal.xyz, normal.w, from_octahedral(vec2(diffuse.a, specular.a)), r, diffuse.rgb,
+    return Sample(point.xyz, point.w, normal.xyz, 1.0 - normal.w, from_octahedral(vec2(diffuse.a, specular.a)), r, diffuse.rgb,
                   specular.rgb);
 }

@@ -106,7 +106,7 @@ static tl_sample read_sample(const struct layers *layers, size_t texel,
                         .triangle = ((stored & ~TL_SAMPLE_BACK) - 1) | (stored & TL_SAMPLE_BACK),
                         .cover = point[3],
                         .point = {{point[0], point[1], point[2]}},
-                        .glossiness = from_half(normal[3]),
+                        .glossiness = 1 - from_half(normal[3]),
                         .diffuse = half_vector(diffuse),
                         .specular = half_vector(specular)};
     const vec3s up = {{0, 1, 0}};
@@ -142,17 +142,6 @@ static size_t read_tile_row(const struct layers *layers, int row, const struct t
                 count++;
             }
     return count;
-}
-
-static void measure_glossiness(struct tl_samples *samples)
-{
-    float low = samples->count ? samples->items[0].glossiness : 0, high = low;
-    for (size_t i = 1; i < samples->count; i++) {
-        low = fminf(low, samples->items[i].glossiness);
-        high = fmaxf(high, samples->items[i].glossiness);
-    }
-    samples->glossiness_min = low;
-    samples->glossiness_max = high;
 }
 
 static void gather(const struct layers *layers, const struct tl_triangle_ranges *ranges, vec3s eye,
@@ -207,7 +196,6 @@ void tl_samples_read(const struct tl_gbuffer *gbuffer, const struct tl_triangle_
         .triangles = read_layer(gbuffer, TL_GBUFFER_TRIANGLE, GL_RED_INTEGER, GL_UNSIGNED_INT, 4, &at),
     };
     gather(&layers, ranges, eye, out);
-    measure_glossiness(out);
 }
 
 void tl_samples_reserve(struct tl_samples *samples, size_t count)

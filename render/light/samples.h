@@ -28,7 +28,6 @@ struct tl_samples {
         primary_count; /* of the camera; what mirrors show comes after them, with the texel of the mirror */
     size_t count, capacity;
     tl_sample *items;
-    float glossiness_min, glossiness_max; /* over all; 0 when there are none */
     void *staging;                        /* the G-buffer as it was read */
     size_t staging_bytes;
 };

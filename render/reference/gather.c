@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* What a reflected point is lit by: few directions, because there are many such points. */
-#define REFLECTED_STRATA       32
+#define REFLECTED_STRATA       64
 #define REFLECTED_LOBE_SAMPLES 1
 #define LOBE_END               40.0f               /* exp(-40) of a lobe's peak is nothing */
 #define GOLDEN                 0.61803398874989485 /* of a turn: leaves no gaps however many follow */

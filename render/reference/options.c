@@ -16,4 +16,4 @@ static const struct tl_option reference_rows[] = {
 };
 const struct tl_option_table tl_reference_options =
     TL_OPTION_TABLE("reference", "the ray-traced truth", reference_rows, reference_params, .strata = 512,
-                    .lobe_samples = 4, .replicates = 4, .terminator = TL_TERMINATOR_SMOOTH);
+                    .lobe_samples = 8, .replicates = 4, .terminator = TL_TERMINATOR_SMOOTH);

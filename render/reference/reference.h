@@ -3,10 +3,10 @@
  *
  *     c*(x) = integral of L(w) V(x, w) [ kd K_1(n, w) + F ks K_s(r, w) ] dw
  *
- * The environment's texels are stratified by power; each replicate takes one direction from every stratum,
- * and one from the glossy lobe for each of `lobe_samples`, combined by the balance heuristic [Veach 1997].
- * Replicates are independent: their spread is the standard error. Deterministic at any thread count. Ctrl-C
- * keeps the replicates that are done. */
+ * The environment is constant over each of its own texels. These are stratified by power; each replicate
+ * takes one direction from every stratum, and one from the glossy lobe for each of `lobe_samples`, combined
+ * by the balance heuristic [Veach 1997]. Replicates are independent: their spread is the standard error.
+ * Deterministic at any thread count. Ctrl-C keeps the replicates that are done. */
 #ifndef TOILE_RENDER_REFERENCE_REFERENCE_H
 #define TOILE_RENDER_REFERENCE_REFERENCE_H
 

@@ -16,6 +16,8 @@
 /* A point that was out of sight for so many moving frames is as good as new. */
 #define FORGET_FRAMES 8
 
+#define SAMPLE_BLOCK 1024 /* samples that a thread takes at a time */
+
 enum { NO_SLOT = UINT32_MAX };
 
 struct tl_points {
@@ -34,10 +36,11 @@ struct tl_points {
     size_t active_count, visible_count;
 
     size_t slot_count, slot_capacity, stride;
-    uint16_t *values; /* [slots][TL_CLUSTER][stride] */
-    uint16_t *rounds; /* [slots][TL_CLUSTER]: frames at rest in each point's mean */
-    uint32_t *traced; /* [slots][TL_CLUSTER]: `motion` when a point was last traced; 0: never */
-    uint32_t *stamps; /* [slots][stride]: frame when a region was last traced */
+    uint16_t *values;  /* [slots][TL_CLUSTER][stride] */
+    uint16_t *rounds;  /* [slots][TL_CLUSTER]: frames at rest in each point's mean */
+    uint32_t *traced;  /* [slots][TL_CLUSTER]: `motion` when a point was last traced; 0: never */
+    uint16_t *covered; /* [slots]: bit i: something lies close above point i */
+    uint32_t *stamps;  /* [slots][stride]: frame when a region was last traced */
 
     struct tl_taps *taps;
     size_t sample_count, sample_capacity;
@@ -57,9 +60,10 @@ static void forget_values(tl_points *points)
     free(points->values);
     free(points->rounds);
     free(points->traced);
+    free(points->covered);
     free(points->stamps);
     points->values = NULL;
-    points->rounds = NULL;
+    points->rounds = points->covered = NULL;
     points->traced = points->stamps = NULL;
     points->slot_count = points->slot_capacity = 0;
     for (size_t i = 0; i < points->sites.cluster_count; i++)
@@ -223,12 +227,14 @@ static void reserve_slots(tl_points *points, size_t count)
     points->values = tl_resize(points->values, capacity * TL_CLUSTER * points->stride, sizeof(uint16_t));
     points->rounds = tl_resize(points->rounds, capacity * TL_CLUSTER, sizeof(uint16_t));
     points->traced = tl_resize(points->traced, capacity * TL_CLUSTER, sizeof(uint32_t));
+    points->covered = tl_resize(points->covered, capacity, sizeof(uint16_t));
     points->stamps = tl_resize(points->stamps, capacity * points->stride, sizeof(uint32_t));
     size_t added = capacity - used;
     memset(points->values + used * TL_CLUSTER * points->stride, 0,
            added * TL_CLUSTER * points->stride * sizeof(uint16_t));
     memset(points->rounds + used * TL_CLUSTER, 0, added * TL_CLUSTER * sizeof(uint16_t));
     memset(points->traced + used * TL_CLUSTER, 0, added * TL_CLUSTER * sizeof(uint32_t));
+    memset(points->covered + used, 0, added * sizeof(uint16_t));
     memset(points->stamps + used * points->stride, 0, added * points->stride * sizeof(uint32_t));
 }
 
@@ -310,6 +316,7 @@ static struct tl_cluster open_cluster(tl_points *points, size_t number, bool mov
                                  .members = visible_members(points, number),
                                  .values = points->values + slot * TL_CLUSTER * points->stride,
                                  .rounds = points->rounds + slot * TL_CLUSTER,
+                                 .covered = points->covered + slot,
                                  .stamps = points->stamps + slot * points->stride};
     for (size_t i = 0; i < TL_CLUSTER; i++)
         if (cluster.members >> i & 1)
@@ -346,6 +353,71 @@ static void trace_clusters(tl_points *points, const struct tl_points_request *re
         points->ray_count += points->ray_counts[i];
 }
 
+static bool is_covered(const tl_points *points, uint32_t point)
+{
+    return points->covered[point / TL_CLUSTER] >> point % TL_CLUSTER & 1;
+}
+
+/* Whether a sample reads points that are covered and points that are not. */
+static bool is_mixed(const tl_points *points, const struct tl_taps *taps)
+{
+    int covered = 0;
+    for (int t = 0; t < 3; t++)
+        covered += is_covered(points, taps->point[t]);
+    return covered == 1 || covered == 2;
+}
+
+/* Leaves only the points that are (or are not) covered, as the sample is. */
+static void keep_alike(const tl_points *points, struct tl_taps *taps, bool covered)
+{
+    float sum = 0;
+    for (int t = 0; t < 3; t++)
+        sum += is_covered(points, taps->point[t]) == covered ? taps->weight[t] + 1e-6f : 0;
+    for (int t = 0; t < 3; t++)
+        taps->weight[t] = is_covered(points, taps->point[t]) == covered ? (taps->weight[t] + 1e-6f) / sum : 0;
+}
+
+/* Tests whether samples are covered, up to a bundle of them, and mends their taps. */
+static void mend_some(tl_points *points, const struct tl_points_request *request, const uint32_t *samples,
+                      int count)
+{
+    float offset_m = tl_trace_offset(request->trace);
+    struct tl_trace_bundle up = {.count = count, .to_m = TL_COVER_OFFSETS * offset_m};
+    for (int i = 0; i < count; i++) {
+        const tl_sample *sample = &request->samples->items[samples[i]];
+        vec3s start = tl_start_of(request, sample, offset_m);
+        up.origin_x[i] = start.x, up.origin_y[i] = start.y, up.origin_z[i] = start.z;
+        up.direction_x[i] = sample->smooth.x;
+        up.direction_y[i] = sample->smooth.y;
+        up.direction_z[i] = sample->smooth.z;
+    }
+    uint32_t covered = tl_trace_occluded_bundle(request->trace, &up);
+    for (int i = 0; i < count; i++)
+        keep_alike(points, &points->taps[samples[i]], covered >> i & 1);
+}
+
+/* Where cloth begins to lie on a body, a triangle has corners in the open and corners under the cloth, and
+ * whatever lies between them would be half dark. A sample reads only those that lie as it does. */
+static void mend_taps(tl_points *points, const struct tl_points_request *request)
+{
+#pragma omp parallel for schedule(dynamic)
+    for (size_t first = 0; first < points->sample_count; first += SAMPLE_BLOCK) {
+        size_t end = first + SAMPLE_BLOCK;
+        uint32_t mixed[16];
+        int count = 0;
+        for (size_t i = first; i < end && i < points->sample_count; i++) {
+            if (is_mixed(points, &points->taps[i]))
+                mixed[count++] = (uint32_t)i;
+            if (count == 16) {
+                mend_some(points, request, mixed, count);
+                count = 0;
+            }
+        }
+        if (count > 0)
+            mend_some(points, request, mixed, count);
+    }
+}
+
 /* Rays from the samples themselves. */
 static void trace_samples(tl_points *points, const struct tl_points_request *request)
 {
@@ -367,6 +439,7 @@ void tl_points_update(tl_points *points, const struct tl_points_request *request
     activate_clusters(points);
     resolve_taps(points);
     trace_clusters(points, request);
+    mend_taps(points, request);
     trace_samples(points, request);
 }
 
@@ -417,7 +490,7 @@ size_t tl_points_bytes(const tl_points *points)
     size_t sites = points->sites.cluster_count * TL_CLUSTER, slots = points->slot_capacity;
     size_t vertices = points->sites.cluster_count > 0 ? sites : 0;
     return sites * (sizeof(struct tl_site) + sizeof(uint32_t)) + vertices * sizeof(uint32_t) +
-           points->sites.cluster_count * 3 * sizeof(uint32_t) +
+           points->sites.cluster_count * 3 * sizeof(uint32_t) + slots * sizeof(uint16_t) +
            slots * TL_CLUSTER * (points->stride * sizeof(uint16_t) + sizeof(uint16_t) + sizeof(uint32_t)) +
            slots * points->stride * sizeof(uint32_t) + points->sample_capacity * sizeof(struct tl_taps) +
            points->starts.capacity * sizeof(vec3s) + tl_sun_rays_bytes(&points->suns);

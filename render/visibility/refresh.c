@@ -16,10 +16,6 @@
 #define PATIENCE 2
 #define OVERDUE  1e6f
 
-/* Points that are buried in another surface by a little, as a waist in a hip, look out from above it: by up
- * to so many offsets, 1 cm of a figure. */
-#define LIFT_OFFSETS 100
-
 /* The members of a cluster, one a lane. */
 struct lanes {
     uint32_t members;
@@ -55,29 +51,32 @@ static void push_ray(struct tl_trace_bundle *bundle, const struct lanes *lanes, 
     bundle->direction_z[k] = direction.z;
 }
 
-/* Moves a point out of a body that it is just inside of: there the back of one and the same other surface is
- * seen both ways. (Under a dress a body sees the dress's back one way only, and a pleat sees its own
- * surface.)
+/* Moves a point out of a body that it is just inside of, as a waist of a hip: there the back of one and the
+ * same other surface is seen both ways. (Under a dress a body sees the dress's back one way only, and a pleat
+ * sees its own surface.)
  */
-static void lift(const struct tl_refresh *refresh, const struct tl_site *site, struct lanes *lanes, int i)
+static bool lift(const struct tl_refresh *refresh, const struct tl_site *site, struct lanes *lanes, int i)
 {
     const tl_trace *trace = refresh->request->trace;
     vec3s origin = lane_origin(lanes, i), normal = lane_normal(lanes, i);
-    struct tl_trace_hit out = tl_trace_nearest(trace, origin, normal, 0, LIFT_OFFSETS * refresh->offset_m);
+    struct tl_trace_hit out =
+        tl_trace_nearest(trace, origin, normal, 0, TL_COVER_OFFSETS * refresh->offset_m);
     if (out.surface == TL_TRACE_NONE || !out.back || out.surface == site->surface)
-        return;
+        return false;
     vec3s below = glms_vec3_sub(origin, glms_vec3_scale(normal, 2 * refresh->offset_m));
     struct tl_trace_hit in = tl_trace_nearest(trace, below, glms_vec3_negate(normal), 0, INFINITY);
-    if (in.surface == out.surface && in.back)
-        set_lane(lanes, i, glms_vec3_add(origin, glms_vec3_scale(normal, out.distance_m + refresh->offset_m)),
-                 normal);
+    if (in.surface != out.surface || !in.back)
+        return false;
+    origin = glms_vec3_add(origin, glms_vec3_scale(normal, out.distance_m + refresh->offset_m));
+    set_lane(lanes, i, origin, normal);
+    return true;
 }
 
 static void place_members(const struct tl_refresh *refresh, const struct tl_cluster *cluster,
                           struct lanes *lanes)
 {
     *lanes = (struct lanes){.members = cluster->members};
-    struct tl_trace_bundle up = {.to_m = LIFT_OFFSETS * refresh->offset_m, .coherent = true};
+    struct tl_trace_bundle up = {.to_m = TL_COVER_OFFSETS * refresh->offset_m, .coherent = true};
     int lane_of[TL_CLUSTER];
     for (int i = 0; i < TL_CLUSTER; i++) {
         if (!(lanes->members >> i & 1))
@@ -94,9 +93,11 @@ static void place_members(const struct tl_refresh *refresh, const struct tl_clus
         push_ray(&up, lanes, i, normal);
     }
     uint32_t near = tl_trace_occluded_bundle(refresh->request->trace, &up);
-    for (int k = 0; k < up.count; k++)
-        if (near >> k & 1)
-            lift(refresh, &cluster->sites[lane_of[k]], lanes, lane_of[k]);
+    for (int k = 0; k < up.count; k++) {
+        int i = lane_of[k];
+        bool covered = near >> k & 1 && !lift(refresh, &cluster->sites[i], lanes, i);
+        *cluster->covered = (uint16_t)((*cluster->covered & ~(1u << i)) | (uint32_t)covered << i);
+    }
 }
 
 /* The cosine of a direction to the member that faces it most. */

@@ -17,6 +17,10 @@ struct tl_refresh {
     uint32_t frame;           /* counts updates, from 1 */
 };
 
+/* What lies so near above a point that the point says nothing about places that it does not lie above: so
+ * many offsets, 1 cm of a figure. */
+#define TL_COVER_OFFSETS 100
+
 /* A cluster in use. */
 struct tl_cluster {
     const struct tl_site *sites; /* TL_CLUSTER of them */
@@ -24,6 +28,7 @@ struct tl_cluster {
     uint32_t fresh;              /* bit i: ... and holds nothing of use yet: every region is traced */
     uint16_t *values;            /* [TL_CLUSTER][stride] */
     uint16_t *rounds;            /* [TL_CLUSTER]: frames at rest that are averaged in the values; 0: none */
+    uint16_t *covered;           /* bit i: something lies close above site i; kept up to date */
     uint32_t *stamps;            /* [stride]: frame when each region was last traced */
 };
 

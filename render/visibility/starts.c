@@ -7,7 +7,7 @@
 
 #define BLOCK 1024 /* samples that are hashed in one go, so that the sum does not depend on threads */
 
-static vec3s start_of(const struct tl_points_request *request, const tl_sample *sample, float offset_m)
+vec3s tl_start_of(const struct tl_points_request *request, const tl_sample *sample, float offset_m)
 {
     uint32_t numbers[3];
     size_t index;
@@ -51,7 +51,7 @@ void tl_starts_make(const struct tl_points_request *request, struct tl_starts *o
         size_t end = (block + 1) * BLOCK < count ? (block + 1) * BLOCK : count;
         for (size_t i = block * BLOCK; i < end; i++) {
             const tl_sample *sample = &request->samples->items[i];
-            out->points[i] = start_of(request, sample, offset_m);
+            out->points[i] = tl_start_of(request, sample, offset_m);
             hashes[block] = mix(hashes[block] + sample->texel, out->points[i]);
         }
     }

@@ -385,7 +385,7 @@ static void test_reflected_scene(void **state)
         mirror->specular = (vec3s){{0.5f, 0.5f, 0.5f}};
         mirror->glossiness = 1;
         scene->settings.light.reflect_scene = reflect;
-        scene->settings.reference.lobe_samples = 5000;
+        scene->settings.reference.lobe_samples = 2000;
         if (reflect)
             check(scene, 0.5 * 0.5 * (1 - disc_factor((double)radius, (double)height, 0)));
         else
