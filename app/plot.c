@@ -17,6 +17,7 @@
 #define LETTER_WIDTH  6.3 /* of the names, on average */
 #define LETTER_HEIGHT 13.0
 #define TICKS_MAX     32
+#define CURVE_POINTS  40 /* a line of more is a curve, whose points have no marks */
 
 struct axis {
     double low, high; /* values at its ends */
@@ -126,9 +127,10 @@ static size_t log_ticks(const struct axis *axis, struct tick ticks[TICKS_MAX])
 
 static size_t linear_ticks(const struct axis *axis, struct tick ticks[TICKS_MAX])
 {
-    double step = pow(10, floor(log10((axis->high - axis->low) / 4)));
-    while ((axis->high - axis->low) / step > 8)
-        step *= 2;
+    static const double factors[] = {1, 2, 5, 10};
+    double decade = pow(10, floor(log10((axis->high - axis->low) / 8))), step = decade;
+    for (size_t i = 0; i < TL_COUNT(factors) && (axis->high - axis->low) / step > 8; i++)
+        step = factors[i] * decade;
     size_t count = 0;
     for (double value = ceil(axis->low / step) * step; value <= axis->high && count < TICKS_MAX;
          value += step)
@@ -307,7 +309,7 @@ void tl_plot_print(FILE *out, const struct tl_plot *plot)
         if (plot->series[s].line || plot->series[s].front)
             print_line(&canvas, plot, &plot->series[s], s % TL_PLOT_STYLES);
     for (size_t s = 0; s < plot->series_count; s++)
-        if (!plot->series[s].front)
+        if (!plot->series[s].front && !(plot->series[s].line && plot->series[s].count > CURVE_POINTS))
             print_marks(&canvas, plot, &plot->series[s], s % TL_PLOT_STYLES);
     print_names(&canvas, plot);
     fputs("</svg>\n", out);

@@ -41,9 +41,10 @@ struct tl_trade {
     char **refusals; /* "name: message" of contenders that the renderer refused */
     size_t refusal_count;
     bool complete; /* false: interrupted */
+    bool quick;
+    const tl_environment *environment; /* borrowed from the session */
     struct tl_film_report film;
     int width, height;
-    char environment[TL_STRING_SIZE];
 };
 
 /* Measures light (trade_light.c). `quick`: a few contenders and frames, to see that all is well. Interrupted:

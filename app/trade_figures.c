@@ -3,6 +3,7 @@
 #include "app/cells.h"
 #include "app/report.h"
 #include "config/memory.h"
+#include "render/pem/chain.h"
 #include "render/pem/lobe_error.h"
 #include "render/pem/memory.h"
 
@@ -12,8 +13,11 @@
 #define MEBIBYTE  1048576.0
 #define CUBE_SIZE 128 /* texels, of the PEMs that are judged */
 
-/* The filters that the paper has in its figures, and the slices. */
-static const int methods[] = {1, 2, 3, 4, TL_LOBE_SLICES};
+/* The filters that the paper has in its figures, and exact lobes: of the whole environment and of its
+ * regions. */
+static const int methods[] = {TL_CHAIN_GAUSS,       TL_CHAIN_COSINE, TL_CHAIN_BOX,
+                              TL_CHAIN_SQRT_COSINE, TL_LOBE_WHOLE,   TL_LOBE_SLICES};
+#define SECTIONS (TL_COUNT(methods) - 1) /* a section is of the whole environment */
 
 /* Figure 4: one lit texel seen along a great circle through it. */
 static void write_sections(FILE *out)
@@ -21,10 +25,10 @@ static void write_sections(FILE *out)
     enum { ANGLES = 181 };
     const float s = 4;
     float shown[ANGLES], wanted[ANGLES];
-    struct tl_plot_point points[TL_COUNT(methods) + 1][ANGLES];
-    struct tl_plot_series series[TL_COUNT(methods) + 1];
-    for (size_t m = 0; m <= TL_COUNT(methods); m++) {
-        bool truth = m == TL_COUNT(methods);
+    struct tl_plot_point points[SECTIONS + 1][ANGLES];
+    struct tl_plot_series series[SECTIONS + 1];
+    for (size_t m = 0; m <= SECTIONS; m++) {
+        bool truth = m == SECTIONS;
         if (!truth)
             tl_lobe_section(CUBE_SIZE, methods[m], s, ANGLES, shown, wanted);
         const char *name = truth ? "the cosine lobe" : tl_lobe_method_names[methods[m]];

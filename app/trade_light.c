@@ -348,8 +348,10 @@ bool tl_trade_light(struct tl_stage *stage, bool quick, struct tl_trade *out, tl
         .sky = tl_environment_constant(1, 1, 1),
     };
     const struct tl_choice truth = tl_choice_oracle();
-    *out = (struct tl_trade){.width = stage->settings.image.width, .height = stage->settings.image.height};
-    strcpy(out->environment, stage->settings.scene.environment);
+    *out = (struct tl_trade){.width = stage->settings.image.width,
+                             .height = stage->settings.image.height,
+                             .quick = quick,
+                             .environment = tl_session_frame(stage->session).environment};
     run.film = tl_film_record(stage->session, run.schedule.warm + run.schedule.measured, error);
     bool done = run.film && tl_contender_create(&run.oracle, stage->gpu, &truth, &stage->settings, error);
     if (done) {

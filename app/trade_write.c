@@ -1,6 +1,7 @@
 #include "app/cells.h"
 #include "app/report.h"
 #include "app/trade.h"
+#include "app/trade_figures.h"
 #include "config/memory.h"
 
 #include <math.h>
@@ -349,7 +350,7 @@ void tl_trade_write_html(const struct tl_trade *trade, FILE *out)
              "toile trade --axis light: %d x %d pixels, %zu garment triangles that move %.1f mm a frame on "
              "average, environment %.120s%s",
              trade->width, trade->height, trade->film.garment_triangles, 1e3 * trade->film.mean_step_m,
-             trade->environment, trade->complete ? "" : "; interrupted: what was measured until then");
+             trade->environment->name, trade->complete ? "" : "; interrupted: what was measured until then");
     tl_report_begin(out, "The trade of light: error against time", subtitle);
     int look = next_row(trade, NULL, NULL, TL_LOOK_SATIN, false) ? TL_LOOK_SATIN : TL_LOOK_MATT;
     tl_report_heading(out, "The presets");
@@ -358,6 +359,10 @@ void tl_trade_write_html(const struct tl_trade *trade, FILE *out)
     print_rest(trade, out);
     print_sweeps(trade, out);
     print_pictures(trade, out);
+    if (trade->complete) { /* Ctrl-C asks for haste */
+        tl_trade_write_lobes(trade->quick, out);
+        tl_trade_write_memory(trade->environment, out);
+    }
     print_tables(trade, look, out);
     tl_report_end(out);
 }
