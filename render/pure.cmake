@@ -9,6 +9,7 @@ add_library(toile_light STATIC
   env/sun.c
   frame/view.c
   light/region_lights.c
+  light/samples.c
   metrics/compare.c
   metrics/flip.c
   pem/chain.c

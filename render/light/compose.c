@@ -187,13 +187,20 @@ static void receive_shadowed(const struct block *block, const struct frame *fram
             light[kind].raw[c] = gains[kind].raw[c] * sums->seen[kind][c];
 }
 
-static vec3s perfect_mirror_light(const struct block *block, const struct tl_mirror *mirror)
+/* One ray tells whether the lobe is open; what it shows is the mean over the lobe, for bright texels have
+ * edges. */
+static vec3s perfect_mirror_light(const struct block *block, const struct tl_mirror *mirror, float exponent)
 {
     const struct tl_compose_request *request = block->request;
     uint32_t hit = mirror->hits[0];
     if (hit == TL_MIRROR_BLACK)
         return (vec3s){{0, 0, 0}};
-    vec3s light = tl_environment_texel(request->environment, into_environment(block, mirror->directions[0]));
+    vec3s light = {{0, 0, 0}};
+    for (int m = 0; m < TL_MIRROR_RAYS_MAX; m++) {
+        vec3s d = tl_mirror_direction(mirror->directions[0], exponent, m, TL_MIRROR_RAYS_MAX);
+        vec3s texel = tl_environment_texel(request->environment, into_environment(block, d));
+        light = glms_vec3_add(light, glms_vec3_scale(texel, 1.0f / TL_MIRROR_RAYS_MAX));
+    }
     if (hit == TL_MIRROR_OPEN)
         return light;
     return glms_vec3_add(glms_vec3_scale(light, 1 - request->samples->items[hit].cover),
@@ -259,13 +266,12 @@ TL_INLINE vec3s compose_sample(struct block *block, size_t index)
         sums = bumped ? sum_groups(block, index, &frame, true) : sum_groups(block, index, &frame, false);
         receive_shadowed(block, &frame, &sums, received.shadowed);
     }
-    const struct tl_mirror *mirror =
-        request->mirrors && index < request->samples->primary_count ? &request->mirrors[index] : NULL;
+    const struct tl_mirror *mirror = request->mirrors ? &request->mirrors[index] : NULL;
     if (mirror && mirror->ray_count > 0)
         received.shadowed[GLOSSY] = mirror_light(block, mirror, &frame);
     add_suns(block, index, &frame, &received);
     if (mirror && mirror->ray_count > 0 && frame.exponent >= TL_PERFECT_EXPONENT)
-        received.shadowed[GLOSSY] = perfect_mirror_light(block, mirror);
+        received.shadowed[GLOSSY] = perfect_mirror_light(block, mirror, frame.exponent);
     if (by_occlusion)
         replace_by_occlusion(&sums, method, &received);
     const vec3s *arriving = method == TL_METHOD_UNSHADOWED ? received.unshadowed : received.shadowed;

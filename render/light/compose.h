@@ -29,7 +29,7 @@ struct tl_compose_request {
     const struct tl_taps *taps;
     const float *sun_visibility[TL_SUNS_MAX];
     const tl_environment *environment; /* what perfect mirrors show */
-    const struct tl_mirror *mirrors;   /* by sample of the camera; NULL: none */
+    const struct tl_mirror *mirrors;   /* by sample; NULL: none */
     float environment_yaw;             /* rad */
     const struct tl_light_params *params;
 };

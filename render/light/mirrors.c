@@ -17,13 +17,12 @@ int tl_mirror_ray_count(float exponent)
     return (int)fminf(fmaxf(ceilf(SHARP_EXPONENT / exponent), 1), TL_MIRROR_RAYS_MAX);
 }
 
-/* Direction m of M of a cosine lobe: even shares of its volume, turned by the golden angle. */
-static vec3s lobe_direction(vec3s axis, float exponent, int m, int ray_count)
+vec3s tl_mirror_direction(vec3s axis, float exponent, int m, int count)
 {
     const float golden_angle = 2.39996323f;
-    if (ray_count == 1)
+    if (count == 1)
         return axis;
-    float share = ((float)m + 0.5f) / (float)ray_count, angle = golden_angle * (float)m;
+    float share = ((float)m + 0.5f) / (float)count, angle = golden_angle * (float)m;
     float cosine = powf(1 - share, 1 / (exponent + 1)), sine = sqrtf(fmaxf(1 - cosine * cosine, 0));
     vec3s helper = fabsf(axis.y) < 0.9f ? (vec3s){{0, 1, 0}} : (vec3s){{1, 0, 0}};
     vec3s right = glms_vec3_normalize(glms_vec3_cross(helper, axis)), up = glms_vec3_cross(axis, right);
@@ -170,6 +169,17 @@ static uint32_t follow(const struct scene *scene, const tl_sample *sample, vec3s
     return keep(block, &seen);
 }
 
+/* A mirror in a mirror. */
+static uint32_t follow_to_the_end(const struct scene *scene, const tl_sample *sample, vec3s origin,
+                                  vec3s direction)
+{
+    bool open = glms_vec3_dot(direction, sample->smooth) > 0 &&
+                tl_ground_visibility(scene->ground, origin, direction) > 0.5f &&
+                !tl_trace_occluded(scene->trace, origin, direction, 0, INFINITY);
+    return open ? TL_MIRROR_OPEN : TL_MIRROR_BLACK;
+}
+
+/* `block` NULL: of a sample that is shown by a mirror itself. */
 static void trace_sample(const struct scene *scene, const tl_sample *sample, float offset_m,
                          struct block *block, struct tl_mirror *mirror)
 {
@@ -179,9 +189,19 @@ static void trace_sample(const struct scene *scene, const tl_sample *sample, flo
         return;
     vec3s origin = start_of(sample, scene->ranges, offset_m);
     for (int m = 0; m < mirror->ray_count; m++) {
-        mirror->directions[m] = lobe_direction(sample->mirror, exponent, m, mirror->ray_count);
-        mirror->hits[m] = follow(scene, sample, origin, mirror->directions[m], block);
+        vec3s direction = tl_mirror_direction(sample->mirror, exponent, m, mirror->ray_count);
+        mirror->directions[m] = direction;
+        mirror->hits[m] = block ? follow(scene, sample, origin, direction, block)
+                                : follow_to_the_end(scene, sample, origin, direction);
     }
+}
+
+static void reserve(struct tl_mirrors *mirrors, size_t count)
+{
+    if (count <= mirrors->capacity && mirrors->items)
+        return;
+    mirrors->capacity = count + count / 4 + 1;
+    mirrors->items = tl_resize(mirrors->items, mirrors->capacity, sizeof *mirrors->items);
 }
 
 /* Behind the camera's samples, block by block; numbers within blocks become indices. */
@@ -216,11 +236,7 @@ void tl_mirrors_trace(struct tl_mirrors *mirrors, const tl_trace *trace,
     size_t count = samples->primary_count, block_count = (count + block_size - 1) / block_size;
     const struct scene scene = {trace, ranges, ground};
     float offset_m = tl_trace_offset(trace);
-    if (count > mirrors->capacity || !mirrors->items) {
-        mirrors->capacity = count + count / 4 + 1;
-        free(mirrors->items);
-        mirrors->items = TL_NEW_ARRAY(struct tl_mirror, mirrors->capacity);
-    }
+    reserve(mirrors, count);
     struct block *blocks = TL_NEW_ARRAY(struct block, block_count);
 #pragma omp parallel for schedule(dynamic)
     for (size_t b = 0; b < block_count; b++)
@@ -228,6 +244,10 @@ void tl_mirrors_trace(struct tl_mirrors *mirrors, const tl_trace *trace,
             trace_sample(&scene, &samples->items[i], offset_m, &blocks[b], &mirrors->items[i]);
     append(mirrors, blocks, block_count, block_size, samples);
     free(blocks);
+    reserve(mirrors, samples->count);
+#pragma omp parallel for schedule(dynamic, 256)
+    for (size_t i = count; i < samples->count; i++)
+        trace_sample(&scene, &samples->items[i], offset_m, NULL, &mirrors->items[i]);
 }
 
 void tl_mirrors_release(struct tl_mirrors *mirrors)

@@ -5,7 +5,8 @@
  *     F ks [ E(r, s) sum v_m E(w_m, M s) / sum E(w_m, M s)  +  1/M sum (1 - v_m) L(hit_m) ]
  *
  * with M directions w_m spread over the lobe. What is hit shows its plain material: no weave, no normal map,
- * maps at their nearest texel. World space, metres. Results do not depend on the number of threads. */
+ * maps at their nearest texel. A mirror in a mirror shows the environment only. World space, metres. Results
+ * do not depend on the number of threads. */
 #ifndef TOILE_RENDER_LIGHT_MIRRORS_H
 #define TOILE_RENDER_LIGHT_MIRRORS_H
 
@@ -28,11 +29,14 @@ struct tl_mirror {
 
 struct tl_mirrors {
     size_t capacity;
-    struct tl_mirror *items; /* one a sample of the camera; NULL: none of them is a mirror */
+    struct tl_mirror *items; /* one a sample, those that mirrors show included */
 };
 
 /* How many rays a lobe gets: they stand for it once M s is beyond what the exact lobes resolve. */
 int tl_mirror_ray_count(float exponent);
+
+/* Direction m of `count` that stand for a lobe: even shares of its volume. `axis` unit. */
+vec3s tl_mirror_direction(vec3s axis, float exponent, int m, int count);
 
 /* Traces, and appends what is hit to `samples`. `ground` NULL: none. */
 void tl_mirrors_trace(struct tl_mirrors *mirrors, const tl_trace *trace,

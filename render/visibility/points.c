@@ -3,7 +3,8 @@
 #include "config/memory.h"
 #include "config/simd.h"
 #include "render/visibility/maps.h"
-#include "render/visibility/refresh.h"
+#include "render/visibility/mend.h"
+#include "render/visibility/repair.h"
 #include "render/visibility/sites.h"
 #include "render/visibility/starts.h"
 #include "render/visibility/sun_rays.h"
@@ -16,13 +17,12 @@
 /* A point that was out of sight for so many moving frames is as good as new. */
 #define FORGET_FRAMES 8
 
-#define SAMPLE_BLOCK 1024 /* samples that a thread takes at a time */
-
 enum { NO_SLOT = UINT32_MAX };
 
 struct tl_points {
     uint64_t regions_revision, shapes_revision;
-    bool known; /* the revisions are of something */
+    bool known;   /* the revisions are of something */
+    bool carried; /* in this update: values are not where they were in the last one */
     float yaw;
     struct tl_regions regions; /* directions only: those that the values belong to */
     uint32_t frame;            /* counts updates, from 1 */
@@ -48,6 +48,7 @@ struct tl_points {
 
     struct tl_starts starts; /* made when suns or repair need them */
     struct tl_sun_rays suns;
+    struct tl_repair repair; /* its points come after those of the slots */
 };
 
 tl_points *tl_points_create(void)
@@ -88,6 +89,7 @@ void tl_points_destroy(tl_points **points)
     free((*points)->taps);
     tl_starts_release(&(*points)->starts);
     tl_sun_rays_release(&(*points)->suns);
+    tl_repair_release(&(*points)->repair);
     free(*points);
     *points = NULL;
 }
@@ -170,11 +172,14 @@ static bool has_turned_far(const tl_points *points, const struct tl_points_reque
 
 static void follow_changes(tl_points *points, const struct tl_points_request *request)
 {
+    points->carried = false;
     if (!points->known || points->shapes_revision != request->shapes_revision) {
         build_sites(points, request);
         points->stride = stride_of(request->regions->count);
+        points->carried = true;
     } else if (points->regions_revision != request->regions_revision || has_turned_far(points, request)) {
         carry_over(points, request);
+        points->carried = true;
     }
     points->known = true;
     points->shapes_revision = request->shapes_revision;
@@ -247,7 +252,7 @@ static uint32_t visible_members(const tl_points *points, size_t cluster)
 }
 
 /* Lists the clusters in sight and gives each a slot. */
-static void activate_clusters(tl_points *points)
+static void activate_clusters(tl_points *points, size_t repair_count)
 {
     size_t slot_count = points->slot_count;
     points->active_count = points->visible_count = 0;
@@ -260,7 +265,7 @@ static void activate_clusters(tl_points *points)
         if (points->slots[c] == NO_SLOT)
             points->slots[c] = (uint32_t)slot_count++;
     }
-    reserve_slots(points, slot_count);
+    reserve_slots(points, slot_count + (repair_count + TL_CLUSTER - 1) / TL_CLUSTER);
     points->slot_count = slot_count;
 }
 
@@ -324,17 +329,63 @@ static struct tl_cluster open_cluster(tl_points *points, size_t number, bool mov
     return cluster;
 }
 
-static void trace_clusters(tl_points *points, const struct tl_points_request *request)
+static void trace_clusters(tl_points *points, const struct tl_refresh *refresh)
 {
-    int count = request->regions->count;
-    vec3s centres[TL_REGIONS_MAX];
+#pragma omp parallel for schedule(dynamic, 4)
+    for (size_t i = 0; i < points->active_count; i++) {
+        struct tl_cluster cluster = open_cluster(points, points->active[i], refresh->request->moved);
+        points->ray_counts[i] = (uint32_t)tl_cluster_refresh(refresh, &cluster);
+    }
+    points->ray_count = 0;
+    for (size_t i = 0; i < points->active_count; i++)
+        points->ray_count += points->ray_counts[i];
+}
+
+/* Gives the samples that need it points of their own, after those of the slots. */
+static void repair_samples(tl_points *points, const struct tl_refresh *refresh, bool again, size_t wanted)
+{
+    struct tl_repair *repair = &points->repair;
+    size_t first = points->slot_count * TL_CLUSTER;
+    if (!again)
+        tl_repair_choose(repair, refresh, points->taps, points->values, wanted);
+    points->ray_count +=
+        tl_repair_trace(repair, refresh, &points->starts, points->values + first * points->stride);
+    for (size_t i = 0; i < repair->count; i++) {
+        uint32_t point = (uint32_t)(first + i);
+        points->taps[repair->samples[i]] =
+            (struct tl_taps){.point = {point, point, point, point}, .weight = {1}};
+    }
+}
+
+/* Rays from the samples themselves. */
+static void trace_samples(tl_points *points, const struct tl_refresh *refresh, size_t repair_count)
+{
+    const struct tl_points_request *request = refresh->request;
+    bool has_suns = request->suns && request->suns->count > 0;
+    uint64_t before = points->starts.samples;
+    if (!has_suns)
+        points->suns.count = 0;
+    if (repair_count == 0)
+        points->repair.count = 0;
+    if (!has_suns && repair_count == 0)
+        return;
+    tl_starts_make(request, &points->starts);
+    bool again = !request->moved && !points->carried && points->starts.samples == before;
+    if (has_suns)
+        points->ray_count += tl_sun_rays_update(&points->suns, request, &points->starts, again);
+    if (repair_count > 0)
+        repair_samples(points, refresh, again && points->repair.count > 0, repair_count);
+}
+
+static void trace_all(tl_points *points, const struct tl_points_request *request, size_t repair_count)
+{
+    vec3s centres[TL_REGIONS_MAX], *directions = jitter_directions(points, request);
     float importances[TL_REGIONS_MAX];
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < request->regions->count; i++) {
         const struct tl_region *region = &request->regions->items[i];
         centres[i] = tl_turn_direction(region->direction, request->environment_yaw);
         importances[i] = request->params->method == TL_METHOD_AO ? region->solid_angle : region->importance;
     }
-    vec3s *directions = jitter_directions(points, request);
     const struct tl_refresh refresh = {.request = request,
                                        .stride = points->stride,
                                        .directions = directions,
@@ -342,105 +393,21 @@ static void trace_clusters(tl_points *points, const struct tl_points_request *re
                                        .importances = importances,
                                        .offset_m = tl_trace_offset(request->trace),
                                        .frame = points->frame};
-#pragma omp parallel for schedule(dynamic, 4)
-    for (size_t i = 0; i < points->active_count; i++) {
-        struct tl_cluster cluster = open_cluster(points, points->active[i], request->moved);
-        points->ray_counts[i] = (uint32_t)tl_cluster_refresh(&refresh, &cluster);
-    }
+    trace_clusters(points, &refresh);
+    tl_taps_mend(request, points->covered, points->taps);
+    trace_samples(points, &refresh, repair_count);
     free(directions);
-    points->ray_count = 0;
-    for (size_t i = 0; i < points->active_count; i++)
-        points->ray_count += points->ray_counts[i];
-}
-
-static bool is_covered(const tl_points *points, uint32_t point)
-{
-    return points->covered[point / TL_CLUSTER] >> point % TL_CLUSTER & 1;
-}
-
-/* Whether a sample reads points that are covered and points that are not. */
-static bool is_mixed(const tl_points *points, const struct tl_taps *taps)
-{
-    int covered = 0;
-    for (int t = 0; t < 3; t++)
-        covered += is_covered(points, taps->point[t]);
-    return covered == 1 || covered == 2;
-}
-
-/* Leaves only the points that are (or are not) covered, as the sample is. */
-static void keep_alike(const tl_points *points, struct tl_taps *taps, bool covered)
-{
-    float sum = 0;
-    for (int t = 0; t < 3; t++)
-        sum += is_covered(points, taps->point[t]) == covered ? taps->weight[t] + 1e-6f : 0;
-    for (int t = 0; t < 3; t++)
-        taps->weight[t] = is_covered(points, taps->point[t]) == covered ? (taps->weight[t] + 1e-6f) / sum : 0;
-}
-
-/* Tests whether samples are covered, up to a bundle of them, and mends their taps. */
-static void mend_some(tl_points *points, const struct tl_points_request *request, const uint32_t *samples,
-                      int count)
-{
-    float offset_m = tl_trace_offset(request->trace);
-    struct tl_trace_bundle up = {.count = count, .to_m = TL_COVER_OFFSETS * offset_m};
-    for (int i = 0; i < count; i++) {
-        const tl_sample *sample = &request->samples->items[samples[i]];
-        vec3s start = tl_start_of(request, sample, offset_m);
-        up.origin_x[i] = start.x, up.origin_y[i] = start.y, up.origin_z[i] = start.z;
-        up.direction_x[i] = sample->smooth.x;
-        up.direction_y[i] = sample->smooth.y;
-        up.direction_z[i] = sample->smooth.z;
-    }
-    uint32_t covered = tl_trace_occluded_bundle(request->trace, &up);
-    for (int i = 0; i < count; i++)
-        keep_alike(points, &points->taps[samples[i]], covered >> i & 1);
-}
-
-/* Where cloth begins to lie on a body, a triangle has corners in the open and corners under the cloth, and
- * whatever lies between them would be half dark. A sample reads only those that lie as it does. */
-static void mend_taps(tl_points *points, const struct tl_points_request *request)
-{
-#pragma omp parallel for schedule(dynamic)
-    for (size_t first = 0; first < points->sample_count; first += SAMPLE_BLOCK) {
-        size_t end = first + SAMPLE_BLOCK;
-        uint32_t mixed[16];
-        int count = 0;
-        for (size_t i = first; i < end && i < points->sample_count; i++) {
-            if (is_mixed(points, &points->taps[i]))
-                mixed[count++] = (uint32_t)i;
-            if (count == 16) {
-                mend_some(points, request, mixed, count);
-                count = 0;
-            }
-        }
-        if (count > 0)
-            mend_some(points, request, mixed, count);
-    }
-}
-
-/* Rays from the samples themselves. */
-static void trace_samples(tl_points *points, const struct tl_points_request *request)
-{
-    bool has_suns = request->suns && request->suns->count > 0;
-    uint64_t before = points->starts.samples;
-    points->suns.count = has_suns ? points->suns.count : 0;
-    if (!has_suns)
-        return;
-    tl_starts_make(request, &points->starts);
-    bool again = !request->moved && points->starts.samples == before;
-    points->ray_count += tl_sun_rays_update(&points->suns, request, &points->starts, again);
 }
 
 void tl_points_update(tl_points *points, const struct tl_points_request *request)
 {
     assert(request->regions->count > 0 && request->params->rays > 0);
+    size_t repair_count = (size_t)(request->params->repair * (float)request->samples->count);
     follow_changes(points, request);
     mark_samples(points, request);
-    activate_clusters(points);
+    activate_clusters(points, repair_count);
     resolve_taps(points);
-    trace_clusters(points, request);
-    mend_taps(points, request);
-    trace_samples(points, request);
+    trace_all(points, request, repair_count);
 }
 
 const uint16_t *tl_points_values(const tl_points *points, size_t *stride)
@@ -477,8 +444,9 @@ static float disagreement(const tl_points *points, const struct tl_taps *taps)
 
 struct tl_points_report tl_points_report(const tl_points *points)
 {
-    struct tl_points_report report = {.points = points->slot_count * TL_CLUSTER,
+    struct tl_points_report report = {.points = points->slot_count * TL_CLUSTER + points->repair.count,
                                       .visible_points = points->visible_count,
+                                      .repaired_samples = points->repair.count,
                                       .rays = points->ray_count};
     for (size_t i = 0; i < points->sample_count; i++)
         report.disagreement += (double)disagreement(points, &points->taps[i]) / (double)points->sample_count;
@@ -493,5 +461,6 @@ size_t tl_points_bytes(const tl_points *points)
            points->sites.cluster_count * 3 * sizeof(uint32_t) + slots * sizeof(uint16_t) +
            slots * TL_CLUSTER * (points->stride * sizeof(uint16_t) + sizeof(uint16_t) + sizeof(uint32_t)) +
            slots * points->stride * sizeof(uint32_t) + points->sample_capacity * sizeof(struct tl_taps) +
-           points->starts.capacity * sizeof(vec3s) + tl_sun_rays_bytes(&points->suns);
+           points->starts.capacity * sizeof(vec3s) + tl_sun_rays_bytes(&points->suns) +
+           tl_repair_bytes(&points->repair);
 }

@@ -195,7 +195,7 @@ static void store(const struct tl_refresh *refresh, const struct tl_cluster *clu
         if (!(lanes_wanted >> i & 1))
             continue;
         uint16_t *value = &cluster->values[(size_t)i * refresh->stride + (size_t)region];
-        float old = *value, rounds = refresh->request->moved ? 0 : cluster->rounds[i];
+        float old = *value, rounds = cluster->rounds[i];
         *value = (uint16_t)(old + (scale * visible[i] - old) / (rounds + 1) + 0.5f);
     }
 }
@@ -268,4 +268,20 @@ static size_t replace_some(const struct tl_refresh *refresh, const struct tl_clu
 size_t tl_cluster_refresh(const struct tl_refresh *refresh, const struct tl_cluster *cluster)
 {
     return refresh->request->moved ? replace_some(refresh, cluster) : average_all(refresh, *cluster);
+}
+
+size_t tl_places_trace(const struct tl_refresh *refresh, const vec3s *origins, const vec3s *normals,
+                       int count, uint16_t *values, int rounds)
+{
+    uint16_t same[TL_CLUSTER];
+    struct lanes lanes = {.members = (1u << count) - 1};
+    const struct tl_cluster cluster = {.members = lanes.members, .values = values, .rounds = same};
+    size_t rays = 0;
+    for (int i = 0; i < count; i++) {
+        set_lane(&lanes, i, origins[i], normals[i]);
+        same[i] = (uint16_t)rounds;
+    }
+    for (int i = 0; i < refresh->request->regions->count; i++)
+        rays += trace_region(refresh, &cluster, &lanes, lanes.members, i);
+    return rays;
 }

@@ -36,4 +36,9 @@ struct tl_cluster {
  * At rest: traces all regions and averages. Returns the number of rays. */
 size_t tl_cluster_refresh(const struct tl_refresh *refresh, const struct tl_cluster *cluster);
 
+/* Traces all regions from up to TL_CLUSTER places of their own, `normals` on the side that is looked at; the
+ * mean of `rounds` frames is in `values` [count][stride] already. Returns the number of rays. */
+size_t tl_places_trace(const struct tl_refresh *refresh, const vec3s *origins, const vec3s *normals,
+                       int count, uint16_t *values, int rounds);
+
 #endif

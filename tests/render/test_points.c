@@ -178,8 +178,23 @@ static float value_at(const struct stage *stage, size_t sample, int tap, int reg
     return (float)values[taps->point[tap] * stride + (size_t)region] / TL_VISIBILITY_ONE;
 }
 
-/* Visibility of a region at a sample's corner by brute force: rays from the vertex over the region's light,
- * as many as they are asked for. The starting point and the lower limit are the cache's own definition. */
+/* Visibility of a region by brute force: rays from a place over the region's light, as many as they are asked
+ * for. The lower limit is the cache's own definition. */
+static float seen_from(const struct stage *stage, vec3s origin, vec3s normal, int region, int ray_count)
+{
+    float seen = 0;
+    for (int i = 0; i < ray_count; i++) {
+        float u = ((float)i + 0.5f) / (float)ray_count, v = fmodf(0.618034f * (float)i, 1);
+        vec3s direction = tl_turn_direction(tl_region_direction(&stage->regions, region, u, v),
+                                            stage->request.environment_yaw);
+        if (glms_vec3_dot(direction, normal) > -0.2924f &&
+            !tl_trace_occluded(stage->trace, origin, direction, 0, INFINITY))
+            seen += tl_ground_visibility(&stage->ground, origin, direction);
+    }
+    return seen / (float)ray_count;
+}
+
+/* ... at a sample's corner, as far above it as the cache's rays start. */
 static float true_value(const struct stage *stage, size_t sample, int corner, int region, int ray_count)
 {
     const tl_sample *s = &stage->samples.items[sample];
@@ -203,6 +218,7 @@ static float true_value(const struct stage *stage, size_t sample, int corner, in
             seen += tl_ground_visibility(&stage->ground, origin, direction);
     }
     return seen / (float)ray_count;
+    return seen_from(stage, origin, normal, region, ray_count);
 }
 
 /* Root mean square of the difference to brute force, over some samples, all corners and regions. */
@@ -471,6 +487,119 @@ static void suns_have_their_penumbrae(void **state)
     stage_close(&stage);
 }
 
+/* Light that a sample's three points disagree about; what repair is to find. */
+static double doubt_of(const struct stage *stage, size_t s)
+{
+    double sum = 0;
+    for (int i = 0; i < stage->regions.count; i++) {
+        float a = value_at(stage, s, 0, i), b = value_at(stage, s, 1, i), c = value_at(stage, s, 2, i);
+        float cosine =
+            fmaxf(glms_vec3_dot(stage->regions.items[i].direction, stage->samples.items[s].smooth), 0);
+        sum += (double)(stage->regions.items[i].importance * cosine *
+                        (fmaxf(fmaxf(a, b), c) - fminf(fminf(a, b), c)));
+    }
+    return sum;
+}
+
+/* A tenth of the samples is repaired: none in less doubt than one that is not, but for the width of a bin
+ * (1/256) and for samples that read only some of their corners; and what they read is then what brute force
+ * sees from the sample itself. */
+static void repair_finds_and_mends_the_worst(void **state)
+{
+    (void)state;
+    struct stage plain, mended;
+    stage_open(&plain, 24);
+    stage_open(&mended, 24);
+    plain.params.rays = mended.params.rays = 64;
+    mended.params.repair = 0.1f;
+    step(&plain, true);
+    step(&mended, true);
+    size_t count = plain.samples.count, repaired = 0, wanted = (size_t)(0.1f * (float)count);
+    assert_int_equal(tl_points_report(mended.points).repaired_samples, wanted);
+    const struct tl_taps *before = tl_points_taps(plain.points), *after = tl_points_taps(mended.points);
+    double least = INFINITY, most = 0, error = 0;
+    for (size_t s = 0; s < count; s++) {
+        const tl_sample *sample = &plain.samples.items[s];
+        bool own = memcmp(&before[s], &after[s], sizeof *before) != 0;
+        double doubt = doubt_of(&plain, s);
+        repaired += own;
+        if (memcmp(before[s].weight, sample->weights, sizeof sample->weights) != 0)
+            continue;
+        if (!own) {
+            most = fmax(most, doubt);
+            continue;
+        }
+        least = fmin(least, doubt);
+        if (repaired % 5)
+            continue;
+        uint32_t numbers[3];
+        size_t index;
+        bool back = sample->triangle & TL_SAMPLE_BACK;
+        const tl_surface *surface =
+            tl_triangle_find(&plain.ranges, sample->triangle & ~TL_SAMPLE_BACK, numbers, &index);
+        vec3s corners[3], normals[3];
+        for (int i = 0; i < 3; i++) {
+            corners[i] = surface->positions[numbers[i]];
+            normals[i] = back ? glms_vec3_negate(surface->normals[numbers[i]]) : surface->normals[numbers[i]];
+        }
+        vec3s start = tl_smooth_point(sample->point, corners, normals, sample->weights);
+        start = glms_vec3_add(start, glms_vec3_scale(sample->smooth, tl_trace_offset(plain.trace)));
+        for (int i = 0; i < plain.regions.count; i++) {
+            float truth = seen_from(&plain, start, sample->smooth, i, 256);
+            error = fmax(error, fabs((double)value_at(&mended, s, 0, i) - (double)truth));
+        }
+    }
+    assert_int_equal(repaired, wanted);
+    assert_true(most <= least * (1 + 1.0 / 256));
+    assert_true(error <
+                0.2); /* 64 even rays of a shadow's edge: 1 / sqrt(64) at worst, and as much for 256 */
+    stage_close(&plain);
+    stage_close(&mended);
+}
+
+/* A square lies on another, larger one, a millimetre above. The large one's corners by its edge lie in the
+ * open or under it: samples read their like, and are as bright as brute force from themselves has it. */
+static void samples_at_an_edge_read_their_like(void **state)
+{
+    (void)state;
+    tl_error error = {0};
+    struct stage stage;
+    stage_open(&stage, 24);
+    struct test_shape body = test_square((vec3s){{0, 0, 0}}, (vec3s){{1, 0, 0}}, (vec3s){{0, 1, 0}}, 1, 10);
+    struct test_shape cloth =
+        test_square((vec3s){{-0.53f, 0.001f, 0}}, (vec3s){{1, 0, 0}}, (vec3s){{0, 1, 0}}, 0.5f, 4);
+    test_shape_refresh(&body);
+    test_shape_refresh(&cloth);
+    const tl_surface shapes[2] = {body.surface, cloth.surface};
+    const tl_surface *all[2] = {&shapes[0], &shapes[1]};
+    assert_ok(tl_trace_update(stage.trace, shapes, 2, &error), error);
+    tl_triangle_ranges_make(all, 2, &stage.ranges);
+    stage.request.shapes_revision++;
+    stage.request.ground = NULL;
+    stage.samples.count = 0;
+    for (uint32_t i = 0; i < stage.ranges.first[1]; i++)
+        add_sample(&stage, i, false);
+    step(&stage, true);
+    size_t mixed = 0;
+    const struct tl_taps *taps = tl_points_taps(stage.points);
+    for (size_t s = 0; s < stage.samples.count; s++) {
+        const tl_sample *sample = &stage.samples.items[s];
+        bool under = sample->point.x > -1.03f && sample->point.x < -0.03f && fabsf(sample->point.z) < 0.5f;
+        mixed += memcmp(taps[s].weight, sample->weights, sizeof sample->weights) != 0;
+        for (int i = 0; i < stage.regions.count; i++) {
+            float value = 0;
+            for (int t = 0; t < 3; t++)
+                value += taps[s].weight[t] * value_at(&stage, s, t, i);
+            if (stage.regions.items[i].direction.y > 0.7f) /* and so the whole region above the horizon */
+                assert_near(value, under ? 0 : 1, 1e-4);
+        }
+    }
+    assert_in_range(mixed, 20, 100); /* 10 cells along three edges, two triangles each, and their corners */
+    test_shape_release(&body);
+    test_shape_release(&cloth);
+    stage_close(&stage);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -480,6 +609,8 @@ int main(void)
         cmocka_unit_test(motion_replaces),
         cmocka_unit_test(values_follow_a_turn_and_new_regions),
         cmocka_unit_test(suns_have_their_penumbrae),
+        cmocka_unit_test(repair_finds_and_mends_the_worst),
+        cmocka_unit_test(samples_at_an_edge_read_their_like),
         cmocka_unit_test(results_do_not_depend_on_threads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,171 @@
+#include "render/visibility/repair.h"
+
+#include "config/memory.h"
+#include "config/simd.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define BLOCK     1024 /* samples that a thread takes at a time */
+#define BIN_SHIFT 15   /* a positive float's upper bits, in order: 1/256 of its value */
+#define BINS      (1u << 16)
+
+/* The regions' light, in lanes. */
+struct weights {
+    float x[TL_REGIONS_MAX], y[TL_REGIONS_MAX], z[TL_REGIONS_MAX]; /* world */
+    float importance[TL_REGIONS_MAX];
+};
+
+static struct weights make_weights(const struct tl_refresh *refresh)
+{
+    struct weights weights = {0};
+    for (int i = 0; i < refresh->request->regions->count; i++) {
+        weights.x[i] = refresh->centres[i].x;
+        weights.y[i] = refresh->centres[i].y;
+        weights.z[i] = refresh->centres[i].z;
+        weights.importance[i] = refresh->importances[i];
+    }
+    return weights;
+}
+
+/* The light on a normal that three points disagree about. */
+TL_INLINE float spread_of(const struct weights *weights, vec3s normal, const uint16_t *const rows[3],
+                          size_t stride)
+{
+    float sums[TL_LANES] = {0};
+    for (size_t first = 0; first < stride; first += TL_LANES)
+        for (size_t lane = 0; lane < TL_LANES; lane++) {
+            size_t i = first + lane;
+            uint16_t a = rows[0][i], b = rows[1][i], c = rows[2][i];
+            uint16_t high = a > b ? a : b, low = a > b ? b : a;
+            high = high > c ? high : c;
+            low = low < c ? low : c;
+            float cosine = weights->x[i] * normal.x + weights->y[i] * normal.y + weights->z[i] * normal.z;
+            sums[lane] += weights->importance[i] * tl_greater(cosine, 0) * (float)(high - low);
+        }
+    return tl_sum_lanes(sums);
+}
+
+/* Half-way between its corners a sample knows least, at a corner most. Where it reads only some of them it is
+ * known that they do not fit. */
+static float share_unknown(const float weights[TL_TAPS], const float corners[3])
+{
+    float square = 0;
+    bool mended = false;
+    for (int i = 0; i < 3; i++) {
+        square += weights[i] * weights[i];
+        mended |= weights[i] != corners[i];
+    }
+    return mended ? 1 : 1 - square;
+}
+
+/* Samples of one triangle follow one another, and share what their corners disagree about. */
+TL_CLONES static void measure_block(const struct weights *weights, const struct tl_samples *samples,
+                                    const struct tl_taps *taps, const uint16_t *values, size_t stride,
+                                    size_t first, size_t end, float *doubts)
+{
+    uint32_t triangle = UINT32_MAX;
+    float spread = 0;
+    for (size_t i = first; i < end; i++) {
+        const tl_sample *sample = &samples->items[i];
+        if (sample->triangle != triangle) {
+            const uint16_t *const rows[3] = {values + taps[i].point[0] * stride,
+                                             values + taps[i].point[1] * stride,
+                                             values + taps[i].point[2] * stride};
+            triangle = sample->triangle;
+            spread = spread_of(weights, sample->smooth, rows, stride);
+        }
+        doubts[i] = spread * share_unknown(taps[i].weight, sample->weights);
+    }
+}
+
+static uint32_t bin_of(float doubt)
+{
+    uint32_t bits;
+    memcpy(&bits, &doubt, sizeof bits);
+    return doubt > 0 ? bits >> BIN_SHIFT : 0;
+}
+
+/* The bin in which the `wanted` greatest end, and how many are taken of it; bin 0 holds those in no doubt. */
+static uint32_t find_limit(const float *doubts, size_t count, size_t wanted, size_t *left)
+{
+    uint32_t *bins = TL_NEW_ARRAY(uint32_t, BINS), bin = BINS - 1;
+    for (size_t i = 0; i < count; i++)
+        bins[bin_of(doubts[i])]++;
+    *left = wanted;
+    while (bin > 0 && bins[bin] <= *left)
+        *left -= bins[bin--];
+    free(bins);
+    return bin;
+}
+
+static void collect(struct tl_repair *repair, size_t sample_count, size_t wanted)
+{
+    size_t left;
+    uint32_t limit = find_limit(repair->doubts, sample_count, wanted, &left);
+    if (wanted > repair->capacity) {
+        repair->capacity = wanted + wanted / 4;
+        free(repair->samples);
+        repair->samples = TL_NEW_ARRAY(uint32_t, repair->capacity);
+    }
+    repair->count = 0;
+    for (size_t i = 0; i < sample_count; i++) {
+        uint32_t bin = bin_of(repair->doubts[i]);
+        bool last = bin == limit && limit > 0 && left > 0;
+        left -= last;
+        if (last || bin > limit)
+            repair->samples[repair->count++] = (uint32_t)i;
+    }
+}
+
+void tl_repair_choose(struct tl_repair *repair, const struct tl_refresh *refresh, const struct tl_taps *taps,
+                      const uint16_t *values, size_t wanted)
+{
+    const struct tl_samples *samples = refresh->request->samples;
+    struct weights weights = make_weights(refresh);
+    repair->rounds = 0;
+    if (samples->count > repair->doubt_capacity) {
+        repair->doubt_capacity = samples->count + samples->count / 4;
+        free(repair->doubts);
+        repair->doubts = TL_NEW_ARRAY(float, repair->doubt_capacity);
+    }
+#pragma omp parallel for schedule(dynamic)
+    for (size_t first = 0; first < samples->count; first += BLOCK) {
+        size_t end = first + BLOCK < samples->count ? first + BLOCK : samples->count;
+        measure_block(&weights, samples, taps, values, refresh->stride, first, end, repair->doubts);
+    }
+    collect(repair, samples->count, wanted);
+}
+
+size_t tl_repair_trace(struct tl_repair *repair, const struct tl_refresh *refresh,
+                       const struct tl_starts *starts, uint16_t *values)
+{
+    size_t rays = 0;
+    if (repair->rounds >= refresh->request->params->rounds)
+        return 0;
+#pragma omp parallel for schedule(dynamic, 4) reduction(+ : rays)
+    for (size_t first = 0; first < repair->count; first += TL_CLUSTER) {
+        vec3s origins[TL_CLUSTER], normals[TL_CLUSTER];
+        int count = 0;
+        for (size_t i = first; i < repair->count && count < TL_CLUSTER; i++, count++) {
+            origins[count] = starts->points[repair->samples[i]];
+            normals[count] = refresh->request->samples->items[repair->samples[i]].smooth;
+        }
+        rays += tl_places_trace(refresh, origins, normals, count, values + first * refresh->stride,
+                                repair->rounds);
+    }
+    repair->rounds++;
+    return rays;
+}
+
+void tl_repair_release(struct tl_repair *repair)
+{
+    free(repair->samples);
+    free(repair->doubts);
+    *repair = (struct tl_repair){0};
+}
+
+size_t tl_repair_bytes(const struct tl_repair *repair)
+{
+    return repair->capacity * sizeof(uint32_t) + repair->doubt_capacity * sizeof(float);
+}

@@ -1,0 +1,29 @@
+/* Points of samples' own, for the few whose triangle's corners disagree most: what lies between them would be
+ * guessed (FRONTIER: nearly all of the error sits in one pixel of a hundred, where folds and cloth on a body
+ * touch). Made anew in every moving frame, averaged at rest. Part of points.c. */
+#ifndef TOILE_RENDER_VISIBILITY_REPAIR_H
+#define TOILE_RENDER_VISIBILITY_REPAIR_H
+
+#include "render/visibility/refresh.h"
+#include "render/visibility/starts.h"
+
+struct tl_repair {
+    size_t capacity, count;
+    uint32_t *samples; /* [count]: rising */
+    size_t doubt_capacity;
+    float *doubts; /* by sample: how much light its corners disagree about */
+    int rounds;    /* frames in the mean */
+};
+
+/* Chooses the `wanted` most doubtful samples, fewer when fewer are in doubt. `taps` are of the triangles'
+ * corners. */
+void tl_repair_choose(struct tl_repair *repair, const struct tl_refresh *refresh, const struct tl_taps *taps,
+                      const uint16_t *values, size_t wanted);
+
+/* Traces them into `values` [count][stride]; returns the number of rays. */
+size_t tl_repair_trace(struct tl_repair *repair, const struct tl_refresh *refresh,
+                       const struct tl_starts *starts, uint16_t *values);
+void tl_repair_release(struct tl_repair *repair);
+size_t tl_repair_bytes(const struct tl_repair *repair);
+
+#endif
