@@ -167,9 +167,9 @@ static void large_map(struct tl_extreme_scene *scene)
 static void dirty_texels(struct tl_extreme_scene *scene)
 {
     float *texels = tl_image_floats(&scene->environment.image);
-    texels[3 * 1000] = NAN;
-    texels[3 * 2000 + 1] = INFINITY;
-    texels[3 * 3000 + 2] = -5;
+    texels[3000] = NAN;
+    texels[6001] = INFINITY;
+    texels[9002] = -5;
 }
 
 /* A light at the texel that `direction` points to. */

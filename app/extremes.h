@@ -29,6 +29,7 @@ struct tl_extreme {
     double bounds[TL_EXTREME_METHODS];
     bool refused;    /* a clear message is the promise */
     const char *why; /* of the bound, or of the refusal */
+    bool refused;    /* a clear message is the promise */
     bool from_file;  /* the environment comes from a file */
 };
 
