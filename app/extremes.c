@@ -452,9 +452,9 @@ const struct tl_extreme tl_extremes[] = {
     {"camera inside of the cloth", .change = camera_inside, .bounds = {PAPER, REVIEW}, .why = ORDINARY},
     {"camera at the origin", .change = camera_at_origin, .bounds = {TL_NO_WORSE, 0.10},
      .why = "at the foot of the curtain, where little light comes"},
-    {"near plane = far plane", .change = near_is_far, .refused = true, .why = "there is no depth to draw in"},
-    {"eye = target", .change = eye_is_target, .refused = true, .why = "there is no direction to look in"},
-    {"up = direction of view", .change = up_is_view, .refused = true, .why = "there is no upright"},
+    {"near plane = far plane", .change = near_is_far, .why = "there is no depth to draw in", .refused = true},
+    {"eye = target", .change = eye_is_target, .why = "there is no direction to look in", .refused = true},
+    {"up = direction of view", .change = up_is_view, .why = "there is no upright", .refused = true},
     {"ordinary scene again", .bounds = {PAPER, REVIEW}, .why = "no extreme leaves a trace"},
 };
 /* clang-format on */

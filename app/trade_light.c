@@ -202,7 +202,7 @@ static bool measure_motion(struct run *run, const struct contender_row *row, str
     int warm = run->schedule.warm, count = run->schedule.measured;
     double cpu_ms[FRAMES_MAX], wall_ms[FRAMES_MAX];
     struct tl_taken taken = {0};
-    struct tl_measured_error first, last;
+    struct tl_measured_error first = {0}, last;
     for (int number = tl_contender_remembers(contender) ? 0 : warm - 1; number < warm; number++)
         if (!draw(run, contender, number, &taken, error))
             return false;
@@ -325,7 +325,7 @@ static bool begin_look(struct run *run, int look, tl_error *error)
 static bool measure_all(struct run *run, tl_error *error)
 {
     struct tl_progress progress = tl_progress_begin("measuring the trade of light");
-    const double contender_count = (double)TL_COUNT(contenders);
+    const double contender_count = (int)TL_COUNT(contenders);
     bool done = true;
     for (int i = 0; done && i < run->schedule.looks; i++) {
         done = begin_look(run, run->quick ? TL_LOOK_SATIN : i, error);
@@ -333,7 +333,7 @@ static bool measure_all(struct run *run, tl_error *error)
             if (!run->quick || contenders[c].quick)
                 done = measure_contender(run, &contenders[c], error);
             tl_progress_update(&progress, i * contender_count + (double)c + 1,
-                               run->schedule.looks * contender_count);
+                               contender_count * run->schedule.looks);
         }
     }
     tl_progress_end(&progress);
