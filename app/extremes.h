@@ -27,8 +27,8 @@ struct tl_extreme {
     const char *assignments[3];                     /* "light.key=value" */
     void (*change)(struct tl_extreme_scene *scene); /* makes the ordinary scene extreme; NULL: leaves it */
     double bounds[TL_EXTREME_METHODS];
-    bool refused;    /* a clear message is the promise */
     const char *why; /* of the bound, or of the refusal */
+    bool refused;    /* a clear message is the promise */
     bool from_file;  /* the environment comes from a file */
 };
 

@@ -31,7 +31,7 @@ typedef struct tl_film tl_film;
 
 /* Records frames 0 to count - 1; shows progress. */
 tl_film *tl_film_record(tl_session *session, int count, tl_error *error);
-void tl_film_destroy(tl_film **film);
+void tl_film_destroy(tl_film **handle);
 
 /* Frame `number`, valid until the next call for this film or one that changes its session. */
 tl_frame tl_film_frame(tl_film *film, int number);

@@ -116,9 +116,10 @@ static size_t log_ticks(const struct axis *axis, struct tick ticks[TICKS_MAX])
     static const double steps[] = {1, 2, 5};
     bool all = log10(axis->high / axis->low) < 2.6;
     size_t count = 0;
-    for (double decade = pow(10, floor(log10(axis->low))); decade <= axis->high; decade *= 10)
+    int first = (int)floor(log10(axis->low)), last = (int)floor(log10(axis->high));
+    for (int decade = first; decade <= last; decade++)
         for (size_t i = 0; i < TL_COUNT(steps); i++) {
-            double value = decade * steps[i];
+            double value = pow(10, decade) * steps[i];
             if (value >= axis->low && value <= axis->high && count < TICKS_MAX)
                 ticks[count++] = (struct tick){value, all || i == 0};
         }
@@ -132,9 +133,11 @@ static size_t linear_ticks(const struct axis *axis, struct tick ticks[TICKS_MAX]
     for (size_t i = 0; i < TL_COUNT(factors) && (axis->high - axis->low) / step > 8; i++)
         step = factors[i] * decade;
     size_t count = 0;
-    for (double value = ceil(axis->low / step) * step; value <= axis->high && count < TICKS_MAX;
-         value += step)
-        ticks[count++] = (struct tick){value, true};
+    double first = ceil(axis->low / step);
+    while (count < TICKS_MAX && (first + (double)count) * step <= axis->high) {
+        ticks[count] = (struct tick){(first + (double)count) * step, true};
+        count++;
+    }
     return count;
 }
 

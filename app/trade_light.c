@@ -201,8 +201,8 @@ static bool measure_motion(struct run *run, const struct contender_row *row, str
 {
     int warm = run->schedule.warm, count = run->schedule.measured;
     double cpu_ms[FRAMES_MAX], wall_ms[FRAMES_MAX];
-    struct tl_taken taken;
-    struct tl_measured_error first, last;
+    struct tl_taken taken = {0};
+    struct tl_measured_error first = {0}, last;
     for (int number = tl_contender_remembers(contender) ? 0 : warm - 1; number < warm; number++)
         if (!draw(run, contender, number, &taken, error))
             return false;
@@ -225,23 +225,25 @@ static bool measure_motion(struct run *run, const struct contender_row *row, str
     return !row->picture || keep_picture(run, contender, row->choice.name, &last, error);
 }
 
-/* The last frame again and again; a row whenever the number of its draws has doubled, and at the end. */
+/* The last frame again until nothing is left to average; a row whenever its draws have doubled, and at the
+ * end. */
 static bool measure_rest(struct run *run, const struct contender_row *row, struct tl_contender *contender,
                          tl_error *error)
 {
     const struct tl_light_params *light = &contender->settings.light;
-    int draws = light->jitter && light->rounds > 2 ? light->rounds : 2, since = 0;
+    int draws = light->rounds > 2 ? light->rounds : 2, since = 0;
     double *cpu_ms = TL_NEW_ARRAY(double, (size_t)draws), *wall_ms = TL_NEW_ARRAY(double, (size_t)draws);
     if (run->quick && draws > QUICK_ROUNDS)
         draws = QUICK_ROUNDS;
-    bool done = true;
-    for (int drawn = 2; done && drawn <= draws; drawn++) {
-        struct tl_taken taken;
+    bool done = true, at_rest = false;
+    for (int drawn = 2; done && !at_rest && drawn <= draws; drawn++) {
+        struct tl_taken taken = {0};
         struct tl_measured_error measured;
         done = draw(run, contender, last_frame(run), &taken, error);
         cpu_ms[since] = taken.cpu_ms;
         wall_ms[since++] = taken.wall_ms;
-        if (!done || ((drawn & (drawn - 1)) != 0 && drawn != draws))
+        at_rest = tl_renderer_is_at_rest(contender->renderer);
+        if (!done || ((drawn & (drawn - 1)) != 0 && drawn != draws && !at_rest))
             continue;
         done = compare(run, contender, last_frame(run), &measured, error);
         if (done)
@@ -323,15 +325,15 @@ static bool begin_look(struct run *run, int look, tl_error *error)
 static bool measure_all(struct run *run, tl_error *error)
 {
     struct tl_progress progress = tl_progress_begin("measuring the trade of light");
-    double total = (double)TL_COUNT(contenders) * run->schedule.looks;
+    const double contender_count = (int)TL_COUNT(contenders);
     bool done = true;
-    for (int i = 0, look; done && i < run->schedule.looks; i++) {
-        look = run->quick ? TL_LOOK_SATIN : i;
-        done = begin_look(run, look, error);
+    for (int i = 0; done && i < run->schedule.looks; i++) {
+        done = begin_look(run, run->quick ? TL_LOOK_SATIN : i, error);
         for (size_t c = 0; done && c < TL_COUNT(contenders); c++) {
             if (!run->quick || contenders[c].quick)
                 done = measure_contender(run, &contenders[c], error);
-            tl_progress_update(&progress, (double)i * (double)TL_COUNT(contenders) + (double)c + 1, total);
+            tl_progress_update(&progress, i * contender_count + (double)c + 1,
+                               contender_count * run->schedule.looks);
         }
     }
     tl_progress_end(&progress);
