@@ -187,8 +187,9 @@ static float seen_from(const struct stage *stage, vec3s origin, vec3s normal, in
         float u = ((float)i + 0.5f) / (float)ray_count, v = fmodf(0.618034f * (float)i, 1);
         vec3s direction = tl_turn_direction(tl_region_direction(&stage->regions, region, u, v),
                                             stage->request.environment_yaw);
-        if (glms_vec3_dot(direction, normal) > -0.2924f &&
-            !tl_trace_occluded(stage->trace, origin, direction, 0, INFINITY))
+        float cosine = glms_vec3_dot(direction, normal);
+        vec3s ahead = glms_vec3_sub(direction, glms_vec3_scale(normal, cosine < 0 ? 2 * cosine : 0));
+        if (cosine > -0.2924f && !tl_trace_occluded(stage->trace, origin, ahead, 0, INFINITY))
             seen += tl_ground_visibility(&stage->ground, origin, direction);
     }
     return seen / (float)ray_count;
