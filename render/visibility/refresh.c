@@ -12,9 +12,10 @@
  * studio, 1.8 to 1.6 % in the sun; mean FLIP 0.041 to 0.033, 0.033 to 0.027.) */
 #define SINE_BELOW 0.2924f
 
-/* A region that waits for so many times the average round goes before all that do not. */
-#define PATIENCE 2
-#define OVERDUE  1e6f
+/* A region that has waited for so many average rounds is late. So many of the regions traced in a frame may
+ * be late ones: all of them at once would leave none for what matters. */
+#define PATIENCE   4
+#define LATE_SHARE 4
 
 /* The members of a cluster, one a lane. */
 struct lanes {
@@ -112,48 +113,58 @@ TL_INLINE float greatest_cosine(const struct lanes *lanes, vec3s direction)
     return greatest;
 }
 
-/* What a stale value of each region costs: its light on the cluster times its age. */
+/* What a stale value of each region costs: its light on the cluster times its age. And the age of what is
+ * late, as a need of its own; 0 for all else. */
 static void measure_needs(const struct tl_refresh *refresh, const struct tl_cluster *cluster,
-                          const struct lanes *lanes, float needs[TL_REGIONS_MAX])
+                          const struct lanes *lanes, float needs[TL_REGIONS_MAX], float late[TL_REGIONS_MAX])
 {
     int count = refresh->request->regions->count, refreshed = refresh->request->params->refresh;
     uint32_t longest = (uint32_t)(PATIENCE * (count + refreshed - 1) / refreshed);
     for (int i = 0; i < count; i++) {
         float cosine = greatest_cosine(lanes, refresh->centres[i]);
         uint32_t age = refresh->frame - cluster->stamps[i];
-        float weight = refresh->importances[i] * fmaxf(cosine + SINE_BELOW, 0);
-        needs[i] = weight * (float)age;
-        if (age >= longest)
-            needs[i] *= OVERDUE;
+        needs[i] = refresh->importances[i] * fmaxf(cosine + SINE_BELOW, 0) * (float)age;
+        late[i] = cosine > -SINE_BELOW && age > longest ? (float)age : 0;
     }
 }
 
-/* Marks the `wanted` regions of greatest need; of equals the first. */
-static void select_regions(const float needs[TL_REGIONS_MAX], int count, int wanted,
-                           bool selected[TL_REGIONS_MAX])
+/* Selects up to `wanted` more regions, of greatest need; of equals the first. Returns how many. */
+static int select_regions(const float needs[TL_REGIONS_MAX], int count, int wanted,
+                          bool selected[TL_REGIONS_MAX])
 {
-    float sorted[TL_REGIONS_MAX];
-    int kept = 0; /* the greatest so far, falling */
+    float greatest[TL_REGIONS_MAX]; /* so far, falling */
+    int kept = 0;
     for (int i = 0; i < count; i++) {
-        if (!(needs[i] > 0) || (kept == wanted && needs[i] <= sorted[kept - 1]))
+        if (selected[i] || !(needs[i] > 0) || (kept == wanted && needs[i] <= greatest[kept - 1]))
             continue;
         int at = kept < wanted ? kept++ : kept - 1;
-        while (at > 0 && sorted[at - 1] < needs[i]) {
-            sorted[at] = sorted[at - 1];
-            at--;
-        }
-        sorted[at] = needs[i];
+        for (; at > 0 && greatest[at - 1] < needs[i]; at--)
+            greatest[at] = greatest[at - 1];
+        greatest[at] = needs[i];
     }
-    int left = kept;
-    for (int i = 0; i < count && kept > 0; i++) {
-        selected[i] = needs[i] > sorted[kept - 1];
-        left -= selected[i];
+    if (kept == 0)
+        return 0;
+    float least = greatest[kept - 1];
+    int equals = 1;
+    while (equals < kept && greatest[kept - 1 - equals] <= least)
+        equals++;
+    for (int i = 0; i < count; i++) {
+        bool equal = !selected[i] && needs[i] == least && equals > 0;
+        equals -= equal;
+        selected[i] |= equal || needs[i] > least;
     }
-    for (int i = 0; i < count && left > 0; i++)
-        if (!selected[i] && needs[i] == sorted[kept - 1]) {
-            selected[i] = true;
-            left--;
-        }
+    return kept;
+}
+
+static void select_by_need(const struct tl_refresh *refresh, const struct tl_cluster *cluster,
+                           const struct lanes *lanes, bool selected[TL_REGIONS_MAX])
+{
+    float needs[TL_REGIONS_MAX], late[TL_REGIONS_MAX];
+    int count = refresh->request->regions->count, wanted = refresh->request->params->refresh;
+    measure_needs(refresh, cluster, lanes, needs, late);
+    wanted -= select_regions(late, count, (wanted + LATE_SHARE - 1) / LATE_SHARE, selected);
+    if (wanted > 0)
+        select_regions(needs, count, wanted, selected);
 }
 
 /* Adds what each of `lanes_wanted` sees along a direction to `visible`; returns the number of rays. Nothing
@@ -250,9 +261,7 @@ static size_t replace_some(const struct tl_refresh *refresh, const struct tl_clu
     if (wanted == 0 || wanted >= regions->count) {
         memset(selected, true, sizeof selected);
     } else {
-        float needs[TL_REGIONS_MAX];
-        measure_needs(refresh, cluster, &lanes, needs);
-        select_regions(needs, regions->count, wanted, selected);
+        select_by_need(refresh, cluster, &lanes, selected);
     }
     for (int i = 0; i < regions->count; i++) {
         uint32_t lanes_wanted = selected[i] ? cluster->members : cluster->fresh;

@@ -301,7 +301,7 @@ static void every_region_has_its_turn(void **state)
     tl_error error = {0};
     const tl_surface dark[3] = {stage.shapes[0], stage.shapes[1], box.surface};
     assert_ok(tl_trace_update(stage.trace, dark, 3, &error), error);
-    for (int i = 0; i < 2 * 96 / 12 + 96 / 12; i++)
+    for (int i = 0; i < 4 * 96 / 12 + 4 * 96 / 12 + 1; i++) /* late after 4 rounds; all traced in 4 more */
         step(&stage, true);
     struct tl_points_report report = tl_points_report(stage.points);
     assert_true(report.rays <= 12 * report.visible_points);
