@@ -85,6 +85,7 @@ static void empty_slot(tl_trace *trace, size_t index)
             rtcReleaseGeometry(piece->geometry);
         }
         free(piece->triangles);
+        *piece = (struct piece){0};
     }
     if (slot->positions)
         rtcReleaseBuffer(slot->positions);
@@ -97,7 +98,7 @@ static void resize(tl_trace *trace, size_t count)
         empty_slot(trace, i);
         free(trace->slots[i]);
     }
-    trace->slots = tl_resize(trace->slots, count, sizeof *trace->slots);
+    trace->slots = tl_resize(trace->slots, count, sizeof(struct slot *));
     for (size_t i = trace->slot_count; i < count; i++)
         trace->slots[i] = TL_NEW(struct slot);
     trace->slot_count = count;
@@ -152,7 +153,7 @@ static enum kind kind_of(const tl_surface *surface, const struct tl_mesh_part *p
     return surface->materials[part->material].alpha_cutoff > 0 && surface->uvs ? MASKED : OPAQUE;
 }
 
-static void collect_triangles(const tl_surface *surface, enum kind kind, struct piece *piece)
+static const uint32_t *collect_triangles(const tl_surface *surface, enum kind kind, struct piece *piece)
 {
     piece->triangles = TL_NEW_ARRAY(uint32_t, surface->index_count / 3);
     for (size_t p = 0; p < surface->part_count; p++) {
@@ -161,6 +162,7 @@ static void collect_triangles(const tl_surface *surface, enum kind kind, struct 
             for (uint32_t i = 0; i < part->index_count / 3; i++)
                 piece->triangles[piece->count++] = part->first_index / 3 + i;
     }
+    return piece->triangles;
 }
 
 static void build_piece(tl_trace *trace, size_t index, enum kind kind)
@@ -168,7 +170,7 @@ static void build_piece(tl_trace *trace, size_t index, enum kind kind)
     struct slot *slot = trace->slots[index];
     const tl_surface *surface = &slot->surface;
     struct piece *piece = &slot->pieces[kind];
-    collect_triangles(surface, kind, piece);
+    const uint32_t *triangles = collect_triangles(surface, kind, piece);
     if (piece->count == 0)
         return;
     piece->geometry = rtcNewGeometry(trace->device, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -179,7 +181,7 @@ static void build_piece(tl_trace *trace, size_t index, enum kind kind)
     if (!indices) /* no memory: the device's error says so to tl_trace_update */
         return;
     for (size_t i = 0; i < piece->count; i++)
-        memcpy(indices + 3 * i, surface->indices + 3 * (size_t)piece->triangles[i], 3 * sizeof(uint32_t));
+        memcpy(indices + 3 * i, surface->indices + 3 * (size_t)triangles[i], 3 * sizeof(uint32_t));
     if (kind == MASKED) {
         rtcSetGeometryUserData(piece->geometry, slot);
         rtcSetGeometryIntersectFilterFunction(piece->geometry, skip_holes);

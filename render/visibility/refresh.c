@@ -134,6 +134,8 @@ static int select_regions(const float needs[TL_REGIONS_MAX], int count, int want
 {
     float greatest[TL_REGIONS_MAX]; /* so far, falling */
     int kept = 0;
+    if (wanted <= 0)
+        return 0;
     for (int i = 0; i < count; i++) {
         if (selected[i] || !(needs[i] > 0) || (kept == wanted && needs[i] <= greatest[kept - 1]))
             continue;
@@ -163,8 +165,7 @@ static void select_by_need(const struct tl_refresh *refresh, const struct tl_clu
     int count = refresh->request->regions->count, wanted = refresh->request->params->refresh;
     measure_needs(refresh, cluster, lanes, needs, late);
     wanted -= select_regions(late, count, (wanted + LATE_SHARE - 1) / LATE_SHARE, selected);
-    if (wanted > 0)
-        select_regions(needs, count, wanted, selected);
+    select_regions(needs, count, wanted, selected);
 }
 
 /* Adds what each of `lanes_wanted` sees along a direction to `visible`; returns the number of rays. Nothing
@@ -282,7 +283,7 @@ size_t tl_cluster_refresh(const struct tl_refresh *refresh, const struct tl_clus
 size_t tl_places_trace(const struct tl_refresh *refresh, const vec3s *origins, const vec3s *normals,
                        int count, uint16_t *values, int rounds)
 {
-    uint16_t same[TL_CLUSTER];
+    uint16_t same[TL_CLUSTER] = {0};
     struct lanes lanes = {.members = (1u << count) - 1};
     const struct tl_cluster cluster = {.members = lanes.members, .values = values, .rounds = same};
     size_t rays = 0;

@@ -4,7 +4,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #define KEY_BITS 10
 #define NORMAL_SHARE                                                                                         \
@@ -61,7 +60,8 @@ static struct order *sort_vertices(const tl_surface *surface)
 
 static bool are_one(const tl_surface *surface, uint32_t a, uint32_t b)
 {
-    return memcmp(&surface->positions[a], &surface->positions[b], sizeof(vec3s)) == 0 &&
+    vec3s p = surface->positions[a], q = surface->positions[b];
+    return p.x == q.x && p.y == q.y && p.z == q.z &&
            glms_vec3_dot(surface->normals[a], surface->normals[b]) > SAME_NORMAL;
 }
 
@@ -119,7 +119,8 @@ void tl_sites_build(const struct tl_triangle_ranges *ranges, struct tl_sites *ou
     for (size_t s = 0; s < ranges->surface_count; s++)
         out->first_vertex[s + 1] = out->first_vertex[s] + (uint32_t)ranges->surfaces[s]->vertex_count;
     out->of_vertex = TL_NEW_ARRAY(uint32_t, 2 * (size_t)out->first_vertex[ranges->surface_count]);
-    size_t capacity = 0;
+    size_t capacity = 0; /* of items, in clusters */
+    out->items = NULL;
     for (size_t s = 0; s < ranges->surface_count; s++) {
         const tl_surface *surface = ranges->surfaces[s];
         struct order *order = sort_vertices(surface);

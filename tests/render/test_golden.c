@@ -187,12 +187,35 @@ static void with_sun(struct tl_light_params *light)
     light->pem_size = 64;
 }
 
+/* As the presets review and final have it, with fewer regions. */
+static void by_rays(struct tl_light_params *light)
+{
+    in_rounds(light);
+    light->visibility = TL_VISIBILITY_RAYS;
+    light->sun = true;
+    light->regions = 96;
+    light->rays = 1;
+    light->rounds = 4;
+    light->repair = 0.05f;
+}
+
+static void by_rays_with_mirrors(struct tl_light_params *light)
+{
+    by_rays(light);
+    light->reflect_scene = true;
+}
+
 /* Draws until nothing changes any more. */
 static void draw_variant(struct test_device *device, const char *name, enum tl_method method,
                          void (*change)(struct tl_light_params *))
 {
     struct scene scene;
-    scene_open(&scene, change == with_sun);
+    scene_open(&scene, change == with_sun || change == by_rays);
+    if (change == by_rays_with_mirrors) {
+        scene.shapes[0].material.glossiness = 1;
+        test_shape_refresh(&scene.shapes[0]);
+        scene.surfaces[0] = scene.shapes[0].surface;
+    }
     scene.settings.light = best_maps(scene.settings.light);
     scene.settings.light.method = (int)method;
     if (change)
@@ -225,6 +248,21 @@ static void test_depth_slices(void **state)
 static void test_depth_sun(void **state)
 {
     draw_variant(*state, "depth_sun", TL_METHOD_PEM, with_sun);
+}
+
+static void test_rays(void **state)
+{
+    draw_variant(*state, "rays", TL_METHOD_PEM, by_rays);
+}
+
+static void test_rays_mirrors(void **state)
+{
+    draw_variant(*state, "rays_mirrors", TL_METHOD_PEM, by_rays_with_mirrors);
+}
+
+static void test_reference(void **state)
+{
+    draw_variant(*state, "reference", TL_METHOD_REFERENCE, by_rays_with_mirrors);
 }
 
 static void test_lights(void **state)
@@ -265,17 +303,13 @@ static void test_unshadowed_dual(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_pem_dual),
-        cmocka_unit_test(test_pem_single),
-        cmocka_unit_test(test_unshadowed_dual),
-        cmocka_unit_test(test_depth_ratio),
-        cmocka_unit_test(test_depth_rounds),
-        cmocka_unit_test(test_depth_slices),
-        cmocka_unit_test(test_depth_sun),
-        cmocka_unit_test(test_lights),
-        cmocka_unit_test(test_ao),
-        cmocka_unit_test(test_ao_colour),
-        cmocka_unit_test(test_unshadowed_exact),
+        cmocka_unit_test(test_pem_dual),        cmocka_unit_test(test_pem_single),
+        cmocka_unit_test(test_unshadowed_dual), cmocka_unit_test(test_depth_ratio),
+        cmocka_unit_test(test_depth_rounds),    cmocka_unit_test(test_depth_slices),
+        cmocka_unit_test(test_depth_sun),       cmocka_unit_test(test_rays),
+        cmocka_unit_test(test_rays_mirrors),    cmocka_unit_test(test_reference),
+        cmocka_unit_test(test_lights),          cmocka_unit_test(test_ao),
+        cmocka_unit_test(test_ao_colour),       cmocka_unit_test(test_unshadowed_exact),
     };
     return cmocka_run_group_tests(tests, test_device_open, test_device_close);
 }
