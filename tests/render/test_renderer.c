@@ -318,29 +318,40 @@ static void test_extreme_shapes(void **state)
     scene_close(&scene);
 }
 
+static void expect_camera_refusal(tl_renderer *renderer, const struct scene *scene)
+{
+    tl_error error = {0};
+    assert_false(tl_renderer_draw(renderer, &scene->frame, &scene->settings, &error));
+    assert_int_equal(error.code, TL_USAGE);
+    assert_non_null(strstr(error.message, "camera"));
+}
+
+/* Anywhere is fine; what has no upright, or no depth, is refused. */
 static void test_extreme_cameras(void **state)
 {
     struct test_device *device = *state;
     struct scene scene;
     scene_open(&scene, daylight);
     const struct tl_camera usual = scene.frame.camera;
-    const vec3s eyes[] = {{{0, 0, 0}}, {{0, 0.5f, 0}}, {{0, 1.1f, 0}},
-                          {{0, 5, 0}}, {{0, 0.6f, 0}}, {{1, 0, 1}}};
+    const vec3s eyes[] = {{{0, 0, 0}}, {{0.1f, 0.5f, 0}}, {{0.1f, 1.1f, 0}}, {{1, 0, 1}}};
     for (size_t i = 0; i < TL_COUNT(eyes); i++) {
         scene.frame.camera = usual;
-        scene.frame.camera.eye =
-            eyes[i]; /* inside the ball, in the sheet, above, on the target, in the ground */
+        scene.frame.camera.eye = eyes[i]; /* inside the ball, in the sheet, above, in the ground */
+        scene.frame.camera.target = (vec3s){{0, 0.6f, 0.2f}};
         expect_sane(device->renderer, &scene);
     }
-    scene.frame.camera = usual;
-    scene.frame.camera.far_m = scene.frame.camera.near_m;
-    expect_sane(device->renderer, &scene);
     scene.frame.camera = usual;
     scene.frame.camera.fov_y = 0;
     expect_sane(device->renderer, &scene);
     scene.frame.camera = usual;
+    scene.frame.camera.eye = usual.target;
+    expect_camera_refusal(device->renderer, &scene);
+    scene.frame.camera = usual;
+    scene.frame.camera.far_m = scene.frame.camera.near_m;
+    expect_camera_refusal(device->renderer, &scene);
+    scene.frame.camera = usual;
     scene.frame.camera.up = (vec3s){{0, 0, 0}};
-    expect_sane(device->renderer, &scene);
+    expect_camera_refusal(device->renderer, &scene);
     scene_close(&scene);
 }
 

@@ -148,7 +148,7 @@ static void compare(struct tally *tally, const struct tl_spot *spot, const struc
         return;
     tally->point += largest_difference(spot->point.raw, layers->point[i]) > 2e-4f;
     tally->normal += largest_difference(spot->normal.raw, layers->normal[i]) > 0.03f;
-    tally->gloss += fabsf(1 - 1 / spot->exponent - layers->normal[i][3]) > 0.01f;
+    tally->gloss += fabsf(1 / spot->exponent - layers->normal[i][3]) > 0.01f;
     tally->diffuse += largest_difference(spot->diffuse.raw, layers->diffuse[i]) > 0.01f;
     /* At grazing angles Schlick's term magnifies what the normals differ by. */
     bool grazing = glms_vec3_dot(spot->normal, spot->axis) < 0.5f;
