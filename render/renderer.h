@@ -113,7 +113,8 @@ void tl_renderer_destroy(tl_renderer **renderer);
 bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct tl_render_settings *settings,
                       tl_error *error);
 
-/* Of the image by TL_METHOD_REFERENCE that was drawn last, as rel_rmse of render/metrics/compare.h; 0 before. */
+/* Of the image by TL_METHOD_REFERENCE that was drawn last, as rel_rmse of render/metrics/compare.h; 0 before.
+ */
 double tl_renderer_standard_error(const tl_renderer *renderer);
 
 /* True once drawing the same frame again would change nothing: no jittered round is left to be averaged. */

@@ -103,23 +103,6 @@ static tl_sample seen_sample(const tl_surface *surface, uint32_t triangle, const
     return sample;
 }
 
-/* Where rays of a sample start: on the smooth surface, a little above it. */
-static vec3s start_of(const tl_sample *sample, const struct tl_triangle_ranges *ranges, float offset_m)
-{
-    uint32_t numbers[3];
-    size_t index;
-    const tl_surface *surface = tl_triangle_find(ranges, sample->triangle & ~TL_SAMPLE_BACK, numbers, &index);
-    vec3s corners[3], normals[3];
-    for (int i = 0; i < 3; i++) {
-        corners[i] = surface->positions[numbers[i]];
-        normals[i] = surface->normals[numbers[i]];
-        if (sample->triangle & TL_SAMPLE_BACK)
-            normals[i] = glms_vec3_negate(normals[i]);
-    }
-    vec3s point = tl_smooth_point(sample->point, corners, normals, sample->weights);
-    return glms_vec3_add(point, glms_vec3_scale(sample->smooth, offset_m));
-}
-
 /* What a block of samples hits, before it has its place behind all samples. */
 struct block {
     size_t count, capacity;
@@ -187,7 +170,7 @@ static void trace_sample(const struct scene *scene, const tl_sample *sample, flo
     mirror->ray_count = tl_mirror_ray_count(exponent);
     if (mirror->ray_count == 0)
         return;
-    vec3s origin = start_of(sample, scene->ranges, offset_m);
+    vec3s origin = tl_sample_start(sample, scene->ranges, offset_m);
     for (int m = 0; m < mirror->ray_count; m++) {
         vec3s direction = tl_mirror_direction(sample->mirror, exponent, m, mirror->ray_count);
         mirror->directions[m] = direction;

@@ -1,6 +1,7 @@
 #include "render/light/samples.h"
 
 #include "config/memory.h"
+#include "render/trace/trace.h"
 
 #include <stdlib.h>
 
@@ -31,6 +32,23 @@ void tl_triangle_ranges_release(struct tl_triangle_ranges *ranges)
 {
     free(ranges->first);
     *ranges = (struct tl_triangle_ranges){0};
+}
+
+vec3s tl_sample_start(const tl_sample *sample, const struct tl_triangle_ranges *ranges, float offset_m)
+{
+    uint32_t numbers[3];
+    size_t index;
+    const tl_surface *surface = tl_triangle_find(ranges, sample->triangle & ~TL_SAMPLE_BACK, numbers, &index);
+    bool back = sample->triangle & TL_SAMPLE_BACK;
+    vec3s corners[3], normals[3];
+    for (int i = 0; i < 3; i++) {
+        corners[i] = surface->positions[numbers[i]];
+        normals[i] = surface->normals[numbers[i]];
+        if (back)
+            normals[i] = glms_vec3_negate(normals[i]);
+    }
+    vec3s point = tl_smooth_point(sample->point, corners, normals, sample->weights);
+    return glms_vec3_add(point, glms_vec3_scale(sample->smooth, offset_m));
 }
 
 void tl_samples_reserve(struct tl_samples *samples, size_t count)

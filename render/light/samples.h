@@ -28,7 +28,7 @@ struct tl_samples {
         primary_count; /* of the camera; what mirrors show comes after them, with the texel of the mirror */
     size_t count, capacity;
     tl_sample *items;
-    void *staging;                        /* the G-buffer as it was read */
+    void *staging; /* the G-buffer as it was read */
     size_t staging_bytes;
 };
 
@@ -44,6 +44,9 @@ void tl_triangle_ranges_release(struct tl_triangle_ranges *ranges);
 /* Which surface holds global triangle `number` (without the top bit), and its three corners there. */
 const tl_surface *tl_triangle_find(const struct tl_triangle_ranges *ranges, uint32_t number,
                                    uint32_t corners[3], size_t *surface);
+
+/* Where a sample's rays start: on the smooth surface that its triangle stands for, `offset_m` above it. */
+vec3s tl_sample_start(const tl_sample *sample, const struct tl_triangle_ranges *ranges, float offset_m);
 
 /* Reads the G-buffer back. The arrays of `out` are used again from frame to frame. */
 void tl_samples_read(const struct tl_gbuffer *gbuffer, const struct tl_triangle_ranges *ranges, vec3s eye,

@@ -37,7 +37,7 @@ static void mend_some(const struct tl_points_request *request, const uint16_t *c
     struct tl_trace_bundle up = {.count = count, .to_m = TL_COVER_OFFSETS * offset_m};
     for (int i = 0; i < count; i++) {
         const tl_sample *sample = &request->samples->items[samples[i]];
-        vec3s start = tl_start_of(request, sample, offset_m);
+        vec3s start = tl_sample_start(sample, request->ranges, offset_m);
         up.origin_x[i] = start.x, up.origin_y[i] = start.y, up.origin_z[i] = start.z;
         up.direction_x[i] = sample->smooth.x;
         up.direction_y[i] = sample->smooth.y;

@@ -7,24 +7,6 @@
 
 #define BLOCK 1024 /* samples that are hashed in one go, so that the sum does not depend on threads */
 
-vec3s tl_start_of(const struct tl_points_request *request, const tl_sample *sample, float offset_m)
-{
-    uint32_t numbers[3];
-    size_t index;
-    const tl_surface *surface =
-        tl_triangle_find(request->ranges, sample->triangle & ~TL_SAMPLE_BACK, numbers, &index);
-    bool back = sample->triangle & TL_SAMPLE_BACK;
-    vec3s corners[3], normals[3];
-    for (int i = 0; i < 3; i++) {
-        corners[i] = surface->positions[numbers[i]];
-        normals[i] = surface->normals[numbers[i]];
-        if (back)
-            normals[i] = glms_vec3_negate(normals[i]);
-    }
-    vec3s point = tl_smooth_point(sample->point, corners, normals, sample->weights);
-    return glms_vec3_add(point, glms_vec3_scale(sample->smooth, offset_m));
-}
-
 static uint64_t mix(uint64_t hash, vec3s point)
 {
     for (int i = 0; i < 3; i++) {
@@ -51,7 +33,7 @@ void tl_starts_make(const struct tl_points_request *request, struct tl_starts *o
         size_t end = (block + 1) * BLOCK < count ? (block + 1) * BLOCK : count;
         for (size_t i = block * BLOCK; i < end; i++) {
             const tl_sample *sample = &request->samples->items[i];
-            out->points[i] = tl_start_of(request, sample, offset_m);
+            out->points[i] = tl_sample_start(sample, request->ranges, offset_m);
             hashes[block] = mix(hashes[block] + sample->texel, out->points[i]);
         }
     }

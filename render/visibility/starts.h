@@ -11,9 +11,6 @@ struct tl_starts {
     uint64_t samples; /* a hash of what they start from */
 };
 
-/* Of one sample. */
-vec3s tl_start_of(const struct tl_points_request *request, const tl_sample *sample, float offset_m);
-
 void tl_starts_make(const struct tl_points_request *request, struct tl_starts *out);
 void tl_starts_release(struct tl_starts *starts);
 

@@ -443,7 +443,8 @@ static void suns_have_their_penumbrae(void **state)
     stage.request.ground = NULL;
     stage.request.shapes_revision++;
     free(stage.samples.items);
-    stage.samples = (struct tl_samples){.width = SIDE, .height = SIDE, .primary_count = SIDE * SIDE, .count = SIDE * SIDE};
+    stage.samples = (struct tl_samples){
+        .width = SIDE, .height = SIDE, .primary_count = SIDE * SIDE, .count = SIDE * SIDE};
     stage.samples.items = TL_NEW_ARRAY(tl_sample, SIDE * SIDE);
     for (uint32_t i = 0; i < SIDE * SIDE; i++) {
         float x = ((float)(i % SIDE) + 0.5f) / SIDE - 0.5f, z = ((float)(i / SIDE) + 0.5f) / SIDE - 0.5f;
