@@ -166,6 +166,7 @@ static bool run_plan(tl_renderer *renderer, const struct tl_plan_input *input, t
         glFinish();
         plan->rows[i].took_ms = 1000 * (tl_clock_s() - started_s);
         tl_cost_add(&renderer->cost, i, plan->rows[i].level, plan->rows[i].took_ms);
+        tl_debug("%s: %.2f ms", plan->rows[i].name, plan->rows[i].took_ms);
     }
     renderer->valid = tl_plan_valid_after(tl_frame_jobs, tl_frame_job_count, input, plan);
     return true;

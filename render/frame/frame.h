@@ -98,9 +98,10 @@ void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *setti
                    const uint64_t before[TL_INPUT_COUNT], struct tl_rest *rest,
                    uint64_t signatures[TL_INPUT_COUNT]);
 
-/* Facts about the scene and how it is to be drawn, and the least and largest glossiness in it. */
+/* Facts about the scene and how it is to be drawn, and the exponents that its materials need (env/lobes.h).
+ */
 tl_bits tl_frame_facts(const tl_frame *frame, const struct tl_render_settings *settings);
-void tl_frame_glossiness(const tl_frame *frame, float *low, float *high);
+uint32_t tl_frame_exponents(const tl_frame *frame);
 
 /* Lists what is drawn, with the ground last when it is drawn. */
 void tl_frame_list_surfaces(tl_renderer *renderer);

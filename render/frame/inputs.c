@@ -125,17 +125,40 @@ static void glossiness_range(const tl_material *material, float *low, float *hig
         least += added_low;
         most += added_high;
     }
-    *low = fminf(*low, fminf(fmaxf(least, 0), 1));
-    *high = fmaxf(*high, fminf(fmaxf(most, 0), 1));
+    *low = fminf(fmaxf(least, 0), 1);
+    *high = fminf(fmaxf(most, 0), 1);
 }
 
-void tl_frame_glossiness(const tl_frame *frame, float *low, float *high)
+/* The G-buffer rounds 1 - glossiness to a half. */
+#define ROUNDING 1e-3f
+
+uint32_t tl_frame_exponents(const tl_frame *frame)
 {
-    *low = 1, *high = 0;
+    uint32_t needed = 1;
     for (size_t s = 0; s < frame->surface_count; s++)
-        for (size_t p = 0; p < frame->surfaces[s].part_count; p++)
-            glossiness_range(&frame->surfaces[s].materials[frame->surfaces[s].parts[p].material], low, high);
-    *low = fminf(*low, *high);
+        for (size_t p = 0; p < frame->surfaces[s].part_count; p++) {
+            float low, high;
+            glossiness_range(&frame->surfaces[s].materials[frame->surfaces[s].parts[p].material], &low,
+                             &high);
+            needed |= tl_exponents_needed(1 - (1 - low) * (1 + ROUNDING), 1 - (1 - high) * (1 - ROUNDING));
+            if (tl_mirror_ray_count(tl_lobe_exponent(high)) >
+                0) /* lobes along a mirror's rays are narrower still */
+                needed |= tl_exponents_needed(high, 1);
+        }
+    return needed;
+}
+
+static float greatest_glossiness(const tl_frame *frame)
+{
+    float greatest = 0;
+    for (size_t s = 0; s < frame->surface_count; s++)
+        for (size_t p = 0; p < frame->surfaces[s].part_count; p++) {
+            float low, high;
+            glossiness_range(&frame->surfaces[s].materials[frame->surfaces[s].parts[p].material], &low,
+                             &high);
+            greatest = fmaxf(greatest, high);
+        }
+    return greatest;
 }
 
 tl_bits tl_frame_facts(const tl_frame *frame, const struct tl_render_settings *settings)
@@ -155,10 +178,8 @@ tl_bits tl_frame_facts(const tl_frame *frame, const struct tl_render_settings *s
         facts |= TL_BIT(TL_SCENE_SLICES);
     if (rays || tl_light_needs_exact(light))
         facts |= TL_BIT(TL_SCENE_EXACT);
-    float low, high;
-    tl_frame_glossiness(frame, &low, &high);
     if (rays && light->method == TL_METHOD_PEM && light->reflect_scene &&
-        tl_mirror_ray_count(tl_lobe_exponent(high)) > 0)
+        tl_mirror_ray_count(tl_lobe_exponent(greatest_glossiness(frame))) > 0)
         facts |= TL_BIT(TL_SCENE_MIRRORS);
     return facts;
 }

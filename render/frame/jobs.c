@@ -101,13 +101,7 @@ static bool run_lobes(void *context, int level, tl_error *error)
 {
     tl_renderer *renderer = context;
     (void)level, (void)error;
-    float low, high;
-    tl_frame_glossiness(&renderer->frame, &low, &high);
-    uint32_t needed = tl_exponents_needed(low, high);
-    if (tl_mirror_ray_count(tl_lobe_exponent(high)) >
-        0) /* lobes along the rays of mirrors are narrower still */
-        needed |= tl_exponents_needed(high, 1);
-    tl_lobes_make(&renderer->lobes, &renderer->cube, needed);
+    tl_lobes_make(&renderer->lobes, &renderer->cube, tl_frame_exponents(&renderer->frame));
     tl_lighting_set_exact(&renderer->lighting, renderer->gpu, &renderer->lobes);
     return true;
 }
@@ -118,9 +112,8 @@ static bool run_slices(void *context, int level, tl_error *error)
     tl_renderer *renderer = context;
     (void)level, (void)error;
     tl_slices_release(&renderer->slices);
-    float low, high;
-    tl_frame_glossiness(&renderer->frame, &low, &high);
-    tl_slices_make(&renderer->slices, &renderer->cube, &renderer->regions, tl_exponents_needed(low, high));
+    tl_slices_make(&renderer->slices, &renderer->cube, &renderer->regions,
+                   tl_frame_exponents(&renderer->frame));
     tl_slice_maps_upload(&renderer->slice_maps, renderer->gpu, &renderer->slices);
     return true;
 }
