@@ -153,7 +153,8 @@ static bool run_lights(void *context, int level, tl_error *error)
 void tl_frame_list_surfaces(tl_renderer *renderer)
 {
     const tl_frame *frame = &renderer->frame;
-    renderer->drawn = tl_resize(renderer->drawn, frame->surface_count + 1, sizeof *renderer->drawn);
+    renderer->drawn = tl_resize(renderer->drawn, frame->surface_count + 1,
+                                sizeof *renderer->drawn); // NOLINT(bugprone-sizeof-expression): of a pointer
     for (size_t i = 0; i < frame->surface_count; i++)
         renderer->drawn[i] = &frame->surfaces[i];
     renderer->drawn[frame->surface_count] = &renderer->ground.surface;

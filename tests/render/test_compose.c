@@ -60,8 +60,9 @@ struct scene {
 static vec3s texel_direction(uint32_t texel)
 {
     int face = (int)(texel / (CUBE_SIZE * CUBE_SIZE)), rest = (int)(texel % (CUBE_SIZE * CUBE_SIZE));
+    int row = rest / CUBE_SIZE;
     return glms_vec3_normalize(tl_cube_direction(face, ((float)(rest % CUBE_SIZE) + 0.5f) / CUBE_SIZE,
-                                                 ((float)(rest / CUBE_SIZE) + 0.5f) / CUBE_SIZE));
+                                                 ((float)row + 0.5f) / CUBE_SIZE));
 }
 
 static float texel_solid_angle(uint32_t texel)
@@ -129,7 +130,7 @@ static struct scene scene_open(int regions, float glossiness, bool bumped)
     tl_region_lights_make(&scene.lights, &scene.regions, TL_WEIGHT_POWER, &scene.lobes);
     fill_values(&scene);
     fill_samples(&scene, glossiness, bumped);
-    scene.light = TL_NEW_ARRAY(float, 4 * SAMPLES);
+    scene.light = TL_NEW_ARRAY(float, (size_t)4 * SAMPLES);
     return scene;
 }
 

@@ -332,7 +332,7 @@ static double area_visibility(const tl_cube *cube, float x)
     double seen = 0, all = 0;
     for (int row = 0; row < cube->size; row++)
         for (int column = 0; column < cube->size; column++) {
-            float light = cube->texels[3 * ((up * cube->size + row) * cube->size + column)];
+            float light = cube->texels[3 * (size_t)((up * cube->size + row) * cube->size + column)];
             light *= tl_cube_solid_angle(cube->size, column, row);
             for (int part = 0; light > 0 && part < parts * parts; part++) {
                 vec3s d = tl_cube_direction(

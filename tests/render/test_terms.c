@@ -57,7 +57,7 @@ static double broadening_error(double exponent, double cone)
 static void test_lobe(void **state)
 {
     (void)state;
-    for (float s = 1; s < 2000; s *= 3) {
+    for (float s = 1; s < 2000; s *= 3) { // NOLINT: a few steps
         double sum = 0;
         for (int i = 0; i < 20000; i++) { /* midpoints of the cosine over the hemisphere */
             float cosine = ((float)i + 0.5f) / 20000;
@@ -94,7 +94,7 @@ static void test_broadening_is_continuous_and_bounded(void **state)
     assert_near(lobe_broadened_exponent(20, 0), 20, 2e-5);
     assert_near(lobe_broadened_exponent(1e6f, 0.1f), 2 / 0.01 - 1, 0.1); /* the region's own width */
     assert_near(lobe_broadened_exponent(1, 3), 0.25, 0);
-    for (float spread = 0; spread < 3; spread += 0.05f)
+    for (float spread = 0; spread < 3; spread += 0.05f) // NOLINT: a few steps
         assert_true(lobe_broadened_exponent(50, spread + 0.05f) <= lobe_broadened_exponent(50, spread));
 }
 
