@@ -38,3 +38,10 @@ float tl_glossiness_from_roughness(float roughness)
     float exponent = (2 / fmaxf(alpha * alpha, 1e-12f) - 2) / 4;
     return 1 - 1 / fmaxf(exponent, 1);
 }
+
+vec2s tl_uv_transformed(const struct tl_uv_transform *transform, vec2s uv)
+{
+    float rows[6];
+    tl_uv_transform_rows(transform, rows);
+    return (vec2s){{rows[0] * uv.x + rows[1] * uv.y + rows[2], rows[3] * uv.x + rows[4] * uv.y + rows[5]}};
+}

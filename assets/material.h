@@ -20,6 +20,8 @@ struct tl_uv_transform {
 
 /* As the rows of a 2x3 matrix: u' = rows[0] u + rows[1] v + rows[2], v' = rows[3] u + rows[4] v + rows[5]. */
 void tl_uv_transform_rows(const struct tl_uv_transform *transform, float rows[6]);
+/* ... and applied. */
+vec2s tl_uv_transformed(const struct tl_uv_transform *transform, vec2s uv);
 
 struct tl_map {
     const tl_image *image; /* NULL: none */

@@ -43,16 +43,13 @@ static const tl_material *material_of(const tl_surface *surface, uint32_t triang
 static vec3s map_colour(const struct tl_map *map, vec2s uv)
 {
     const tl_image *image = map->image;
-    const struct tl_uv_transform *to = &map->transform;
     if (!image || image->type != TL_IMAGE_U8)
         return (vec3s){{1, 1, 1}};
-    float c = cosf(to->rotation), s = sinf(to->rotation);
-    float u = to->scale[0] * uv.x, v = to->scale[1] * uv.y;
-    float at[2] = {to->offset[0] + c * u + s * v, to->offset[1] - s * u + c * v};
+    vec2s at = tl_uv_transformed(&map->transform, uv);
     int place[2], sizes[2] = {image->width, image->height};
     for (int i = 0; i < 2; i++) {
         bool clamps = i == 0 ? map->clamp_u : map->clamp_v;
-        float t = clamps ? fminf(fmaxf(at[i], 0), 1) : at[i] - floorf(at[i]);
+        float t = clamps ? fminf(fmaxf(at.raw[i], 0), 1) : at.raw[i] - floorf(at.raw[i]);
         int texel = isfinite(t) ? (int)(t * (float)sizes[i]) : 0;
         place[i] = texel < sizes[i] ? texel : sizes[i] - 1;
     }

@@ -24,18 +24,10 @@ static bool has_alpha(const tl_image *image)
     return image && (image->channels == 2 || image->channels == 4);
 }
 
-/* uv' = offset + R(rotation) (scale uv), counter-clockwise with v down (KHR_texture_transform). */
-static vec2s transformed(const struct tl_uv_transform *t, vec2s uv)
-{
-    float c = cosf(t->rotation), s = sinf(t->rotation);
-    float u = t->scale[0] * uv.x, v = t->scale[1] * uv.y;
-    return (vec2s){{t->offset[0] + c * u + s * v, t->offset[1] - s * u + c * v}};
-}
-
 static float bilinear_alpha(const struct tl_map *map, vec2s uv)
 {
     const tl_image *image = map->image;
-    vec2s at = transformed(&map->transform, uv);
+    vec2s at = tl_uv_transformed(&map->transform, uv);
     float x = at.x * (float)image->width - 0.5f, y = at.y * (float)image->height - 0.5f;
     if (!isfinite(x) || !isfinite(y))
         return 1;
