@@ -200,7 +200,10 @@ static bool update_image(struct tl_review *review, tl_error *error)
 {
     bool moving = is_moving(review);
     bool waits = review->changed && review->editing && is_slow_change(review);
-    bool is_due = (review->changed && !waits) || review->image_is_old || (review->scale > 1 && !moving);
+    bool improves =
+        !moving && !tl_renderer_is_at_rest(review->renderer); /* jittered rounds are left to average */
+    bool is_due =
+        (review->changed && !waits) || review->image_is_old || (review->scale > 1 && !moving) || improves;
     if (!is_due || waits)
         return true;
     if (!renew_image(review, moving ? review->coarse_scale : 1, error))
@@ -233,6 +236,8 @@ static double patience_s(const struct tl_review *review)
         return 0;
     if (review->playing)
         return fmax(0, review->next_step_s - tl_clock_s());
+    if (!is_moving(review) && !tl_renderer_is_at_rest(review->renderer))
+        return 0;
     return review->scale > 1 ? settling_s : idle_s;
 }
 
