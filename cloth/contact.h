@@ -8,7 +8,8 @@
 #define TOILE_CLOTH_CONTACT_H
 
 #include "cloth/collider.h"
-#include "cloth/xpbd.h"
+#include "cloth/energy.h"
+#include "cloth/particles.h"
 
 struct tl_contact_cache {
     vec3d asked_at;     /* where the particle was when the collider was asked */

@@ -1,4 +1,4 @@
-/* The cloth's elastic energy as constraints for XPBD: membrane and bending of triangles, and links.
+/* The cloth's elastic energy, the same for every solver: membrane and bending of triangles, and links.
  *
  * Membrane, per triangle, with the deformation gradient F = [F_u F_v] from the flat rest shape of area A:
  *     E = A/2 [ k_weft (|F_u| - 1)^2 + k_warp (|F_v| - 1)^2 + k_shear c^2 ],  c = F_u.F_v / (|F_u| |F_v|)
@@ -70,6 +70,16 @@ void tl_energy_release(struct tl_energy *energy);
 /* Sets what depends on material, substep `h` seconds and inverse masses [vertex_count + 1]. */
 void tl_energy_set(struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
                    const double *inverse_masses, double h);
+
+/* The elastic energy (J) at positions `x` [vertex_count]; writes its forces -dE/dx (N) to `forces`
+ * [vertex_count]. A link's energy is k/2 (length - rest)^2 with the warp's stretch stiffness. */
+double tl_energy_forces(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
+                        size_t vertex_count, const vec3d *x, vec3d *forces);
+
+/* The longest step (s) at which explicit integration is stable, from below: 2 / omega_max, omega_max^2 by
+ * Gershgorin's bound on the rows of M^-1 K at rest. Infinite when nothing resists. */
+double tl_energy_critical_step(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
+                               size_t vertex_count, const double *inverse_masses);
 
 /* Flat rest shapes of the physics triangles: from the garment's pattern, else from the start shape turned so
  * that x follows the UVs' u direction (an arbitrary one where UVs are degenerate). New array. */

@@ -1,5 +1,6 @@
 #include "cloth/sew.h"
 
+#include "cloth/xpbd.h"
 #include "config/memory.h"
 
 #include <stdlib.h>

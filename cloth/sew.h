@@ -6,7 +6,8 @@
 #ifndef TOILE_CLOTH_SEW_H
 #define TOILE_CLOTH_SEW_H
 
-#include "cloth/xpbd.h"
+#include "cloth/energy.h"
+#include "cloth/particles.h"
 
 struct tl_sewing {
     size_t pair_count;     /* open pairs */
