@@ -167,7 +167,7 @@ static void advance_reference(tl_cloth *cloth, const struct tl_substep *substep)
     place_pins(cloth, substep->collider, substep->phase);
     constrain(cloth, substep);
     find_forces(cloth);
-    tl_verlet_kick(&cloth->particles, cloth->forces, substep->gravity, substep->h);
+    tl_verlet_kick(&cloth->particles, cloth->forces, substep->gravity, substep->drag, substep->h);
 }
 
 static void run_step(tl_cloth *cloth, const tl_collider *collider, double drag, int step)
