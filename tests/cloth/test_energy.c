@@ -178,7 +178,7 @@ static void check_rigid_motion(tl_cloth *cloth, const tl_garment *garment)
     }
     double energy = forces_of(cloth, x, forces);
     const double unit = 20;
-    assert_near(energy, 0, 1e-20 * unit);
+    assert_near(energy, 0, 1e-19 * unit);
     assert_near(largest(forces, count), 0, 1e-11 * unit);
     free(x);
     free(forces);
