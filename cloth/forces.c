@@ -118,11 +118,7 @@ static double add_rare(const struct tl_energy *energy, double stiffness)
     return sum;
 }
 
-struct pull {
-    double x, y, z, unused; /* of four, so that it is added at once */
-};
-
-TL_INLINE void add_pull(const double *from, const double *to, double strength, struct pull *sum)
+TL_INLINE void add_pull(const double *from, const double *to, double strength, struct tl_pull *sum)
 {
     double x = to[0] - from[0], y = to[1] - from[1], z = to[2] - from[2], unused = to[3] - from[3];
     sum->x += strength * x;
@@ -131,18 +127,35 @@ TL_INLINE void add_pull(const double *from, const double *to, double strength, s
     sum->unused += strength * unused;
 }
 
+TL_INLINE void add_others(const struct tl_pulls *pulls, size_t vertex, struct tl_pull *sum)
+{
+    const double *at = &pulls->places[4 * vertex];
+    for (uint32_t k = pulls->others_first[vertex]; k < pulls->others_first[vertex + 1]; k++)
+        add_pull(at, &pulls->places[4 * (size_t)pulls->others[k]], pulls->bending[k], sum);
+}
+
+TL_INLINE void add_block(const struct tl_pulls *pulls, struct range block, vec3d *forces)
+{
+    for (size_t i = block.from; i < block.to; i++) {
+        const double *at = &pulls->places[4 * i];
+        struct tl_pull sum = {0};
+        for (uint32_t k = pulls->along_first[i]; k < pulls->along_first[i + 1]; k++) {
+            const struct tl_along *along = &pulls->along[k];
+            add_pull(at, &pulls->places[4 * (size_t)along->other],
+                     along->bending + pulls->along_edges[along->edge], &sum);
+        }
+        add_others(pulls, i, &sum);
+        pulls->sums[i] = sum;
+    }
+    for (size_t i = block.from; i < block.to; i++)
+        forces[i] = (vec3d){pulls->sums[i].x, pulls->sums[i].y, pulls->sums[i].z};
+}
+
 TL_CLONES static void add_forces(const struct tl_pulls *pulls, struct range range, vec3d *forces)
 {
-    for (size_t i = range.from; i < range.to; i++) {
-        const double *at = &pulls->places[4 * i];
-        struct pull sum = {0};
-        uint32_t k = pulls->first[2 * i], near_end = pulls->first[2 * i + 1], end = pulls->first[2 * i + 2];
-        for (; k < near_end; k++)
-            add_pull(at, &pulls->places[4 * (size_t)pulls->others[k]],
-                     pulls->bending[k] + pulls->along_edges[pulls->along[k]], &sum);
-        for (; k < end; k++)
-            add_pull(at, &pulls->places[4 * (size_t)pulls->others[k]], pulls->bending[k], &sum);
-        forces[i] = (vec3d){sum.x, sum.y, sum.z};
+    for (size_t from = range.from; from < range.to; from += TL_PULLS_BLOCK) {
+        size_t to = from + TL_PULLS_BLOCK;
+        add_block(pulls, (struct range){from, to < range.to ? to : range.to}, forces);
     }
 }
 
@@ -153,9 +166,10 @@ TL_CLONES static double bending_energy(const struct tl_pulls *pulls, struct rang
     const double *origin = pulls->places;
     for (size_t i = range.from; i < range.to; i++) {
         const double *at = &pulls->places[4 * i];
-        struct pull sum = {0};
-        for (uint32_t k = pulls->first[2 * i]; k < pulls->first[2 * i + 2]; k++)
-            add_pull(at, &pulls->places[4 * (size_t)pulls->others[k]], pulls->bending[k], &sum);
+        struct tl_pull sum = {0};
+        for (uint32_t k = pulls->along_first[i]; k < pulls->along_first[i + 1]; k++)
+            add_pull(at, &pulls->places[4 * (size_t)pulls->along[k].other], pulls->along[k].bending, &sum);
+        add_others(pulls, i, &sum);
         energy -=
             0.5 * (sum.x * (at[0] - origin[0]) + sum.y * (at[1] - origin[1]) + sum.z * (at[2] - origin[2]));
     }
