@@ -301,7 +301,7 @@ static void set_membrane(struct tl_membrane *m, const struct tl_cloth_fabric *fa
     for (int lane = 0; lane < TL_BATCH; lane++) {
         double cc = 0, cd = 0, dd = 0;
         for (int i = 0; i < 3; i++) {
-            double mobility = w[m->vertices[i][lane]], c = m->c[i][lane], d = m->d[i][lane];
+            double mobility = m->w[i][lane] = w[m->vertices[i][lane]], c = m->c[i][lane], d = m->d[i][lane];
             cc += mobility * c * c;
             cd += mobility * c * d;
             dd += mobility * d * d;
@@ -319,11 +319,14 @@ static void set_bend(struct tl_bend *bend, const struct tl_cloth_fabric *fabric,
 {
     double stiffness[3];
     tl_bend_stiffness(fabric, stiffness);
+    for (int i = 0; i < TL_BEND_STENCIL; i++)
+        for (int lane = 0; lane < TL_BATCH; lane++)
+            bend->w[i][lane] = w[bend->vertices[i][lane]];
     for (int row = 0; row < 3; row++)
         for (int lane = 0; lane < TL_BATCH; lane++) {
             double gradient = 0;
             for (int i = 0; i < TL_BEND_STENCIL; i++)
-                gradient += w[bend->vertices[i][lane]] * bend->rows[row][i][lane] * bend->rows[row][i][lane];
+                gradient += bend->w[i][lane] * bend->rows[row][i][lane] * bend->rows[row][i][lane];
             bend->factors[row][lane] = factor_of(gradient, stiffness[row] * bend->area[lane], h);
         }
 }

@@ -34,6 +34,7 @@ struct tl_membrane {
     uint32_t vertices[3][TL_BATCH];
     double c[3][TL_BATCH], d[3][TL_BATCH];           /* 1/m */
     double area[TL_BATCH];                           /* m^2, at rest */
+    double w[3][TL_BATCH];                           /* 1/kg, of the vertices */
     double cc[TL_BATCH], cd[TL_BATCH], dd[TL_BATCH]; /* sums of w c_i c_i, ...: fixed while masses are */
     double weft[TL_BATCH], warp[TL_BATCH];           /* -1 / (w |grad|^2 + 1 / (k A h^2)) */
     double shear[TL_BATCH];                          /* 1 / (k A h^2) */
@@ -45,6 +46,7 @@ struct tl_bend {
     uint32_t vertices[TL_BEND_STENCIL][TL_BATCH]; /* own three, then across each edge; a missing one repeats
                                                      the first with rows of 0 */
     double rows[3][TL_BEND_STENCIL][TL_BATCH];    /* 1/m^2 */
+    double w[TL_BEND_STENCIL][TL_BATCH];          /* 1/kg */
     double factors[3][TL_BATCH];                  /* -1 / (sum w row^2 + 1 / (B A h^2)) */
     double area[TL_BATCH];
 };

@@ -6,8 +6,8 @@
 #include <omp.h>
 #include <string.h>
 
-/* What is squeezed to less than this share of its rest length has no direction to push along. */
-#define NO_LENGTH 1e-6
+/* What is squeezed to less than this share of its rest length pushes no harder than at it. */
+#define LEAST_LENGTH 1e-6
 /* Below this, threads cost more than they bring. */
 #define PARALLEL_VERTICES 2000
 
@@ -52,30 +52,31 @@ struct stretching {
  *     e = k_weft/2 (sqrt(m_uu) - 1)^2 + k_warp/2 (sqrt(m_vv) - 1)^2 + k_shear/2 m_uv^2 / (m_uu m_vv):
  * 2A de/d(l_k^2) for each edge k, and A e. */
 TL_INLINE void differentiate(const struct tl_metric *metric, const struct stretching *k,
-                             const double squared[3][TL_BATCH], double shares[3][TL_BATCH],
+                             const double squared[3][TL_BATCH], double *restrict shares,
                              double energies[TL_BATCH])
 {
     for (int lane = 0; lane < TL_BATCH; lane++) {
         double c0 = metric->c[0][lane], c1 = metric->c[1][lane], c2 = -(c0 + c1);
         double d0 = metric->d[0][lane], d1 = metric->d[1][lane], d2 = -(d0 + d1);
         double l0 = squared[0][lane], l1 = squared[1][lane], l2 = squared[2][lane];
+        double uu0 = c1 * c2, uu1 = c2 * c0, uu2 = c0 * c1;
+        double vv0 = d1 * d2, vv1 = d2 * d0, vv2 = d0 * d1;
         double uv0 = c1 * d2 + c2 * d1, uv1 = c2 * d0 + c0 * d2, uv2 = c0 * d1 + c1 * d0;
-        double uu = -(c1 * c2 * l0 + c2 * c0 * l1 + c0 * c1 * l2);
-        double vv = -(d1 * d2 * l0 + d2 * d0 * l1 + d0 * d1 * l2);
+        double uu = -(uu0 * l0 + uu1 * l1 + uu2 * l2);
+        double vv = -(vv0 * l0 + vv1 * l1 + vv2 * l2);
         double uv = -0.5 * (uv0 * l0 + uv1 * l1 + uv2 * l2);
-        double has_u = uu > NO_LENGTH * NO_LENGTH ? 1.0 : 0.0, has_v = vv > NO_LENGTH * NO_LENGTH ? 1.0 : 0.0;
-        double length_u = sqrt(has_u > 0 ? uu : 1.0), length_v = sqrt(has_v > 0 ? vv : 1.0);
+        double length_u = sqrt(uu > LEAST_LENGTH * LEAST_LENGTH ? uu : LEAST_LENGTH * LEAST_LENGTH);
+        double length_v = sqrt(vv > LEAST_LENGTH * LEAST_LENGTH ? vv : LEAST_LENGTH * LEAST_LENGTH);
         double inverse_u = 1 / length_u, inverse_v = 1 / length_v;
-        double cosine = has_u * has_v * uv * inverse_u * inverse_v;
-        double slant = k->shear * cosine;
+        double cosine = uv * inverse_u * inverse_v, slant = k->shear * cosine;
         double by_uu = k->weft * (1 - inverse_u) - slant * cosine * inverse_u * inverse_u; /* 2 de/dm_uu */
         double by_vv = k->warp * (1 - inverse_v) - slant * cosine * inverse_v * inverse_v;
         double by_uv = slant * inverse_u * inverse_v; /* de/dm_uv */
         double area = metric->area[lane];
-        shares[0][lane] = -area * (by_uu * (c1 * c2) + by_vv * (d1 * d2) + by_uv * uv0);
-        shares[1][lane] = -area * (by_uu * (c2 * c0) + by_vv * (d2 * d0) + by_uv * uv1);
-        shares[2][lane] = -area * (by_uu * (c0 * c1) + by_vv * (d0 * d1) + by_uv * uv2);
-        double weft = has_u * length_u - 1, warp = has_v * length_v - 1;
+        shares[lane] = -area * (by_uu * uu0 + by_vv * vv0 + by_uv * uv0);
+        shares[TL_BATCH + lane] = -area * (by_uu * uu1 + by_vv * vv1 + by_uv * uv1);
+        shares[2 * TL_BATCH + lane] = -area * (by_uu * uu2 + by_vv * vv2 + by_uv * uv2);
+        double weft = length_u - 1, warp = length_v - 1;
         energies[lane] = 0.5 * area * (k->weft * weft * weft + k->warp * warp * warp + slant * cosine);
     }
 }
@@ -84,12 +85,13 @@ TL_CLONES static void differentiate_all(const struct tl_pulls *pulls, struct str
 {
     for (size_t i = range.from; i < range.to; i++) {
         const struct tl_metric *metric = &pulls->metrics[i];
-        double squared[3][TL_BATCH], shares[3][TL_BATCH], energies[TL_BATCH], sum = 0;
+        double squared[3][TL_BATCH], energies[TL_BATCH];
         for (int corner = 0; corner < 3; corner++)
             for (int lane = 0; lane < TL_BATCH; lane++)
                 squared[corner][lane] = pulls->squared[metric->edges[corner][lane]];
-        differentiate(metric, &k, (const double(*)[TL_BATCH])squared, shares, energies);
-        memcpy(&pulls->shares[i * 3 * TL_BATCH], shares, sizeof shares);
+        differentiate(metric, &k, (const double(*)[TL_BATCH])squared, &pulls->shares[i * 3 * TL_BATCH],
+                      energies);
+        double sum = 0;
         for (int lane = 0; lane < TL_BATCH; lane++)
             sum += energies[lane];
         pulls->parts[i] = sum;
@@ -111,8 +113,8 @@ static double add_rare(const struct tl_energy *energy, double stiffness)
         pulls->along_edges[pulls->excess[i][0]] += pulls->shares[pulls->excess[i][1]];
     for (size_t i = 0; i < energy->link_count; i++) {
         double rest = energy->links[i].rest, length = sqrt(pulls->squared[pulls->link_edges[i]]);
-        if (length > NO_LENGTH * rest)
-            pulls->along_edges[pulls->link_edges[i]] += stiffness * (1 - rest / length);
+        double share = length > LEAST_LENGTH * rest ? rest / length : 1 / LEAST_LENGTH;
+        pulls->along_edges[pulls->link_edges[i]] += stiffness * (1 - share);
         sum += 0.5 * stiffness * (length - rest) * (length - rest);
     }
     return sum;

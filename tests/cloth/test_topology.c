@@ -72,7 +72,7 @@ static void test_fans_list_every_corner_once(void **state)
 static void test_batches_share_no_vertex(void **state)
 {
     (void)state;
-    enum { COUNT = 300 };
+    enum { COUNT = 240 };
     for (int fan = 0; fan < 2; fan++) {
         uint32_t triangles[COUNT][3];
         for (uint32_t i = 0; i < COUNT; i++)
