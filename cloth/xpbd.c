@@ -32,6 +32,13 @@ TL_INLINE vec3d at(const struct places *places, int lane)
     return (vec3d){places->x[lane], places->y[lane], places->z[lane]};
 }
 
+/* Away from 0, for it is divided by. */
+TL_INLINE double length_of(vec3d v)
+{
+    double squared = vec3d_dot(v, v);
+    return sqrt(squared > NO_LENGTH * NO_LENGTH ? squared : NO_LENGTH * NO_LENGTH);
+}
+
 TL_INLINE void move(struct places *places, int lane, vec3d by, double share)
 {
     places->x[lane] += by.x * share;
@@ -39,20 +46,15 @@ TL_INLINE void move(struct places *places, int lane, vec3d by, double share)
     places->z[lane] += by.z * share;
 }
 
-/* The square of a length that is divided by. */
-TL_INLINE double clear_of_zero(double squared)
-{
-    return squared > NO_LENGTH * NO_LENGTH ? squared : NO_LENGTH * NO_LENGTH;
-}
-
-/* What a stretch C = |F| - 1 of gradient row_i F/|F| pushes, in units of F. */
-TL_INLINE double stretch_push(vec3d f, double factor)
-{
-    return factor * (1 - 1 / sqrt(clear_of_zero(vec3d_dot(f, f))));
-}
-
-/* Both stretches and the shear, one after the other. A push p on row c moves vertex i by w_i c_i p, and so
- * F_u by cc p and F_v by cd p: the three are solved on F alone, and the vertices move once. */
+/* Both stretches at once, then the shear. A push p on row c moves vertex i by w_i c_i p, and so F_u by cc p
+ * and F_v by cd p: they are solved on F alone, and the vertices move once.
+ *
+ * A stretch C = |F_u| - 1 pushes by factor C along F_u/|F_u|. At once, the two overshoot by no more than the
+ * cosine between the threads, and one root and one division less are waited for.
+ *
+ * The shear's C = cos = g/sqrt(p), with g = u.v, a = |u|^2, b = |v|^2, p = a b, has the gradient
+ * c_i (v a - u g) / (a sqrt(p)) + d_i (u b - v g) / (b sqrt(p)), of weighted square
+ * (p - g^2) (cc b - 2 cd g + dd a) / p^2: its push needs no root, and one division. */
 TL_INLINE void solve_lane(const struct tl_membrane *m, int lane, struct places x[3])
 {
     vec3d origin = at(&x[0], lane), side = vec3d_sub(at(&x[1], lane), origin);
@@ -60,27 +62,23 @@ TL_INLINE void solve_lane(const struct tl_membrane *m, int lane, struct places x
     vec3d u = vec3d_muladd(vec3d_scale(side, m->c[1][lane]), other, m->c[2][lane]);
     vec3d v = vec3d_muladd(vec3d_scale(side, m->d[1][lane]), other, m->d[2][lane]);
     double cc = m->cc[lane], cd = m->cd[lane], dd = m->dd[lane];
-    vec3d push_c = vec3d_scale(u, stretch_push(u, m->weft[lane]));
-    u = vec3d_muladd(u, push_c, cc);
-    v = vec3d_muladd(v, push_c, cd);
-    vec3d push_d = vec3d_scale(v, stretch_push(v, m->warp[lane]));
-    u = vec3d_muladd(u, push_d, cd);
-    v = vec3d_muladd(v, push_d, dd);
+    double length_u = length_of(u), length_v = length_of(v), inverse = 1 / (length_u * length_v);
+    vec3d push_c = vec3d_scale(u, m->weft[lane] * (1 - inverse * length_v));
+    vec3d push_d = vec3d_scale(v, m->warp[lane] * (1 - inverse * length_u));
+    u = vec3d_muladd(vec3d_muladd(u, push_c, cc), push_d, cd);
+    v = vec3d_muladd(vec3d_muladd(v, push_c, cd), push_d, dd);
 
-    /* C = cosine between the threads, of gradient c_i a + d_i b with a = (v/|v| - C u/|u|)/|u| and
-     * b = (u/|u| - C v/|v|)/|v|: a.a = (1 - C^2)/|u|^2, b.b = (1 - C^2)/|v|^2, a.b = -C (1 - C^2)/(|u| |v|).
-     */
-    double uu = 1 / clear_of_zero(vec3d_dot(u, u)), vv = 1 / clear_of_zero(vec3d_dot(v, v));
-    double both = sqrt(uu * vv), cosine = vec3d_dot(u, v) * both;
-    double sum = m->shear[lane] + (1 - cosine * cosine) * (cc * uu - 2 * cd * cosine * both + dd * vv);
-    double multiplier = sum > 0 ? -cosine / sum : 0;
-    vec3d along_u = vec3d_muladd(vec3d_scale(v, both), u, -cosine * uu);
-    vec3d along_v = vec3d_muladd(vec3d_scale(u, both), v, -cosine * vv);
-    push_c = vec3d_muladd(push_c, along_u, multiplier);
-    push_d = vec3d_muladd(push_d, along_v, multiplier);
-    for (int i = 0; i < 3; i++) {
-        move(&x[i], lane, push_c, m->w[i][lane] * m->c[i][lane]);
-        move(&x[i], lane, push_d, m->w[i][lane] * m->d[i][lane]);
+    double a = vec3d_dot(u, u), b = vec3d_dot(v, v), g = vec3d_dot(u, v), p = a * b;
+    double sum = m->shear[lane] * p * p + (p - g * g) * (cc * b - 2 * cd * g + dd * a);
+    double multiplier = sum > 0 ? -g / sum : 0;
+    push_c = vec3d_muladd(vec3d_muladd(push_c, v, multiplier * p), u, -multiplier * b * g);
+    push_d = vec3d_muladd(vec3d_muladd(push_d, u, multiplier * p), v, -multiplier * a * g);
+
+    double c0 = -(m->c[1][lane] + m->c[2][lane]), d0 = -(m->d[1][lane] + m->d[2][lane]);
+    move(&x[0], lane, vec3d_muladd(vec3d_scale(push_c, c0), push_d, d0), m->w[0][lane]);
+    for (int i = 1; i < 3; i++) {
+        vec3d push = vec3d_muladd(vec3d_scale(push_c, m->c[i][lane]), push_d, m->d[i][lane]);
+        move(&x[i], lane, push, m->w[i][lane]);
     }
 }
 
