@@ -2,12 +2,17 @@
 
 #include "config/memory.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* Height over the longest edge. Below `sliver` a triangle's plane is rounding noise: its edges become links.
  * Below `needle` its cotangents are too large to say anything of curvature: it does not bend. */
 static const double sliver = 1e-4, needle = 0.02;
+
+/* Bending is a force, not a constraint, where omega h of its fastest wave is no more than this; beside
+ * constraints it would blow up above 2. */
+#define FORCE_LIMIT 1.4
 
 /* ---- Rest shapes ---- */
 
@@ -331,6 +336,21 @@ static void set_bend(struct tl_bend *bend, const struct tl_cloth_fabric *fabric,
         }
 }
 
+/* Gershgorin's bound on omega^2 of bending. */
+static double fastest_bending(const struct tl_pulls *pulls, const double *w)
+{
+    double fastest = 0;
+    for (size_t i = 0; i < pulls->vertex_count; i++) {
+        double sum = 0;
+        for (uint32_t k = pulls->along_first[i]; k < pulls->along_first[i + 1]; k++)
+            sum += fabs(pulls->along[k].bending);
+        for (uint32_t k = pulls->others_first[i]; k < pulls->others_first[i + 1]; k++)
+            sum += fabs(pulls->bending[k]);
+        fastest = fmax(fastest, 2 * sum * w[i]);
+    }
+    return fastest;
+}
+
 void tl_energy_set(struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
                    const double *inverse_masses, double h)
 {
@@ -338,6 +358,9 @@ void tl_energy_set(struct tl_energy *energy, const struct tl_cloth_fabric *fabri
         set_membrane(&energy->membranes[i], fabric, inverse_masses, h);
     for (size_t i = 0; i < energy->bend_count; i++)
         set_bend(&energy->bends[i], fabric, inverse_masses, h);
+    energy->bends_as_force = h * sqrt(fastest_bending(&energy->pulls, inverse_masses)) <= FORCE_LIMIT;
+    if (getenv("PRINT"))
+        printf("h %g bend crit %g\n", h, 2 / sqrt(fastest_bending(&energy->pulls, inverse_masses)));
     for (size_t i = 0; i < energy->link_count; i++)
         energy->links[i].compliance = 1 / (fabric->stretch_warp * h * h);
 }

@@ -65,6 +65,7 @@ struct tl_energy {
     struct tl_link *links;
     double *masses; /* [vertex_count] kg per areal density: a third of the area around */
     struct tl_pulls pulls;
+    bool bends_as_force; /* preview's substep is short enough for bending as an explicit force */
 };
 
 /* `rest` gives every physics triangle's flat rest shape. */
@@ -87,6 +88,9 @@ double tl_energy_forces(const struct tl_energy *energy, const struct tl_cloth_fa
 /* The forces alone, in two thirds of the time. */
 void tl_energy_pull(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric, const vec3d *x,
                     vec3d *forces);
+
+/* The forces of bending alone. */
+void tl_energy_bending_forces(const struct tl_energy *energy, const vec3d *x, vec3d *forces);
 
 /* Stiffness against L_uu, L_vv and sqrt(2) L_uv, N m. */
 void tl_bend_stiffness(const struct tl_cloth_fabric *fabric, double out[3]);

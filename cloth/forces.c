@@ -136,16 +136,21 @@ TL_INLINE void add_others(const struct tl_pulls *pulls, size_t vertex, struct tl
         add_pull(at, &pulls->places[4 * (size_t)pulls->others[k]], pulls->bending[k], sum);
 }
 
-TL_INLINE void add_block(const struct tl_pulls *pulls, struct range block, vec3d *forces)
+TL_INLINE void add_along(const struct tl_pulls *pulls, size_t vertex, bool bending_alone, struct tl_pull *sum)
+{
+    const double *at = &pulls->places[4 * vertex];
+    for (uint32_t k = pulls->along_first[vertex]; k < pulls->along_first[vertex + 1]; k++) {
+        const struct tl_along *along = &pulls->along[k];
+        double strength = along->bending + (bending_alone ? 0 : pulls->along_edges[along->edge]);
+        add_pull(at, &pulls->places[4 * (size_t)along->other], strength, sum);
+    }
+}
+
+TL_INLINE void add_block(const struct tl_pulls *pulls, struct range block, bool bending_alone, vec3d *forces)
 {
     for (size_t i = block.from; i < block.to; i++) {
-        const double *at = &pulls->places[4 * i];
         struct tl_pull sum = {0};
-        for (uint32_t k = pulls->along_first[i]; k < pulls->along_first[i + 1]; k++) {
-            const struct tl_along *along = &pulls->along[k];
-            add_pull(at, &pulls->places[4 * (size_t)along->other],
-                     along->bending + pulls->along_edges[along->edge], &sum);
-        }
+        add_along(pulls, i, bending_alone, &sum);
         add_others(pulls, i, &sum);
         pulls->sums[i] = sum;
     }
@@ -153,12 +158,22 @@ TL_INLINE void add_block(const struct tl_pulls *pulls, struct range block, vec3d
         forces[i] = (vec3d){pulls->sums[i].x, pulls->sums[i].y, pulls->sums[i].z};
 }
 
+static struct range block_from(size_t from, struct range range)
+{
+    size_t to = from + TL_PULLS_BLOCK;
+    return (struct range){from, to < range.to ? to : range.to};
+}
+
 TL_CLONES static void add_forces(const struct tl_pulls *pulls, struct range range, vec3d *forces)
 {
-    for (size_t from = range.from; from < range.to; from += TL_PULLS_BLOCK) {
-        size_t to = from + TL_PULLS_BLOCK;
-        add_block(pulls, (struct range){from, to < range.to ? to : range.to}, forces);
-    }
+    for (size_t from = range.from; from < range.to; from += TL_PULLS_BLOCK)
+        add_block(pulls, block_from(from, range), false, forces);
+}
+
+TL_CLONES static void add_bending_forces(const struct tl_pulls *pulls, struct range range, vec3d *forces)
+{
+    for (size_t from = range.from; from < range.to; from += TL_PULLS_BLOCK)
+        add_block(pulls, block_from(from, range), true, forces);
 }
 
 /* x.Kx/2 of a block of vertices. Forces add up to nothing, so that x may be measured from anywhere. */
@@ -169,8 +184,7 @@ TL_CLONES static double bending_energy(const struct tl_pulls *pulls, struct rang
     for (size_t i = range.from; i < range.to; i++) {
         const double *at = &pulls->places[4 * i];
         struct tl_pull sum = {0};
-        for (uint32_t k = pulls->along_first[i]; k < pulls->along_first[i + 1]; k++)
-            add_pull(at, &pulls->places[4 * (size_t)pulls->along[k].other], pulls->along[k].bending, &sum);
+        add_along(pulls, i, true, &sum);
         add_others(pulls, i, &sum);
         energy -=
             0.5 * (sum.x * (at[0] - origin[0]) + sum.y * (at[1] - origin[1]) + sum.z * (at[2] - origin[2]));
@@ -181,11 +195,9 @@ TL_CLONES static double bending_energy(const struct tl_pulls *pulls, struct rang
 static void add_energies(const struct tl_pulls *pulls)
 {
     struct range mine = my_part(pulls->vertex_count, TL_PULLS_BLOCK);
-    for (size_t from = mine.from; from < mine.to; from += TL_PULLS_BLOCK) {
-        size_t to = from + TL_PULLS_BLOCK < mine.to ? from + TL_PULLS_BLOCK : mine.to;
+    for (size_t from = mine.from; from < mine.to; from += TL_PULLS_BLOCK)
         pulls->parts[pulls->metric_count + from / TL_PULLS_BLOCK] =
-            bending_energy(pulls, (struct range){from, to});
-    }
+            bending_energy(pulls, block_from(from, mine));
 }
 
 /* Returns the links' energy, and leaves the triangles' in pulls->parts, the bending's too if it is wanted. */
@@ -223,6 +235,20 @@ void tl_energy_pull(const struct tl_energy *energy, const struct tl_cloth_fabric
                     vec3d *forces)
 {
     evaluate(energy, fabric, x, false, forces);
+}
+
+void tl_energy_bending_forces(const struct tl_energy *energy, const vec3d *x, vec3d *forces)
+{
+    const struct tl_pulls *pulls = &energy->pulls;
+#pragma omp parallel if (pulls->vertex_count >= PARALLEL_VERTICES)
+    {
+        unsigned denormals = tl_denormals_off();
+        struct range mine = my_part(pulls->vertex_count, TL_PULLS_BLOCK);
+        copy_places(x, mine, pulls->places);
+#pragma omp barrier
+        add_bending_forces(pulls, mine, forces);
+        tl_denormals_restore(denormals);
+    }
 }
 
 double tl_energy_forces(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,

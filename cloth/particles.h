@@ -22,6 +22,9 @@ void tl_particles_release(struct tl_particles *particles);
 /* v <- (v + h g) exp(-drag h), previous <- x, x <- x + h v. */
 void tl_particles_predict(struct tl_particles *particles, double gravity, double drag, double h);
 
+/* v <- v + h w f, with forces f in N. */
+void tl_particles_push(struct tl_particles *particles, const vec3d *forces, double h);
+
 /* v <- (x - previous) / h. */
 void tl_particles_finish(struct tl_particles *particles, double h);
 

@@ -138,7 +138,8 @@ void tl_xpbd_solve_link(const struct tl_link *link, struct tl_particles *particl
 void tl_xpbd_solve(const struct tl_energy *energy, struct tl_particles *particles)
 {
     solve_membranes(energy->membranes, energy->membrane_count, particles->x);
-    solve_bends(energy->bends, energy->bend_count, particles->x);
+    if (!energy->bends_as_force)
+        solve_bends(energy->bends, energy->bend_count, particles->x);
     for (size_t i = 0; i < energy->link_count; i++)
         tl_xpbd_solve_link(&energy->links[i], particles);
 }
