@@ -204,17 +204,21 @@ static void build_membranes(struct tl_energy *energy, const struct tl_topology *
     uint32_t(*corners)[3] = tl_alloc(count, sizeof *corners);
     for (size_t i = 0; i < count; i++)
         memcpy(corners[i], topology->triangles[triangles[i]], sizeof *corners);
-    uint32_t *order =
-        tl_batch_by_colour(&corners[0][0], 3, 3, count, topology->vertex_count, &energy->membrane_count);
+    struct tl_batches batches = tl_batches_build(&corners[0][0], 3, 3, count, topology->vertex_count);
+    energy->membrane_count = batches.count;
+    energy->membrane_run_count = batches.run_count;
+    energy->membrane_run_ends = batches.run_ends;
+    batches.run_ends = NULL;
     energy->membranes = TL_NEW_ARRAY(struct tl_membrane, energy->membrane_count);
     for (size_t i = 0; i < energy->membrane_count * TL_BATCH; i++) {
         struct tl_membrane *m = &energy->membranes[i / TL_BATCH];
         for (int k = 0; k < 3; k++)
             m->vertices[k][i % TL_BATCH] = (uint32_t)topology->vertex_count;
-        if (order[i] != TL_NONE)
-            set_up_membrane(corners[order[i]], &flats[triangles[order[i]]], m, i % TL_BATCH);
+        uint32_t element = batches.elements[i];
+        if (element != TL_NONE)
+            set_up_membrane(corners[element], &flats[triangles[element]], m, i % TL_BATCH);
     }
-    free(order);
+    tl_batches_release(&batches);
     free(corners);
 }
 
@@ -225,21 +229,23 @@ static void build_bends(struct tl_energy *energy, const struct tl_topology *topo
     struct stencil *stencils = TL_NEW_ARRAY(struct stencil, count);
     for (size_t t = 0; t < count; t++)
         stencils[t] = make_stencil(topology, flats, (uint32_t)t);
-    uint32_t *order = tl_batch_by_colour(stencils[0].vertices, sizeof *stencils / sizeof(uint32_t),
-                                         TL_BEND_STENCIL, count, topology->vertex_count, &energy->bend_count);
+    struct tl_batches batches = tl_batches_build(stencils[0].vertices, sizeof *stencils / sizeof(uint32_t),
+                                                 TL_BEND_STENCIL, count, topology->vertex_count);
+    energy->bend_count = batches.count;
     energy->bends = TL_NEW_ARRAY(struct tl_bend, energy->bend_count);
     for (size_t i = 0; i < energy->bend_count * TL_BATCH; i++) {
         struct tl_bend *bend = &energy->bends[i / TL_BATCH];
-        const struct stencil *from = order[i] != TL_NONE ? &stencils[order[i]] : NULL;
+        uint32_t element = batches.elements[i];
+        const struct stencil *from = element != TL_NONE ? &stencils[element] : NULL;
         size_t lane = i % TL_BATCH;
         for (int k = 0; k < TL_BEND_STENCIL; k++) {
             bend->vertices[k][lane] = from ? from->vertices[k] : (uint32_t)topology->vertex_count;
             for (int row = 0; row < 3; row++)
                 bend->rows[row][k][lane] = from ? from->rows[row][k] : 0;
         }
-        bend->area[lane] = from ? 0.5 * fabs(flats[order[i]].signed_double_area) : 0;
+        bend->area[lane] = from ? 0.5 * fabs(flats[element].signed_double_area) : 0;
     }
-    free(order);
+    tl_batches_release(&batches);
     free(stencils);
 }
 
@@ -270,6 +276,7 @@ struct tl_energy tl_energy_build(const struct tl_topology *topology, const vec2s
 void tl_energy_release(struct tl_energy *energy)
 {
     free(energy->membranes);
+    free(energy->membrane_run_ends);
     free(energy->bends);
     free(energy->links);
     free(energy->masses);

@@ -82,16 +82,33 @@ TL_INLINE void solve_lane(const struct tl_membrane *m, int lane, struct places x
     }
 }
 
-TL_CLONES static void solve_membranes(const struct tl_membrane *membranes, size_t count, vec3d *particles)
+/* Batches of one run. All are loaded before the first is solved: one batch's roots and divisions are then not
+ * waited for by the next. */
+#define GROUP 8
+
+TL_CLONES static void solve_run(const struct tl_membrane *membranes, size_t count, vec3d *particles)
 {
-    for (const struct tl_membrane *m = membranes; m < membranes + count; m++) {
-        struct places x[3];
-        for (int i = 0; i < 3; i++)
-            load(particles, m->vertices[i], &x[i]);
-        for (int lane = 0; lane < TL_BATCH; lane++)
-            solve_lane(m, lane, x);
-        for (int i = 0; i < 3; i++)
-            store(&x[i], m->vertices[i], particles);
+    struct places x[GROUP][3];
+    for (size_t first = 0; first < count; first += GROUP) {
+        const struct tl_membrane *m = membranes + first;
+        size_t size = count - first < GROUP ? count - first : GROUP;
+        for (size_t k = 0; k < size; k++)
+            for (int i = 0; i < 3; i++)
+                load(particles, m[k].vertices[i], &x[k][i]);
+        for (size_t k = 0; k < size; k++)
+            for (int lane = 0; lane < TL_BATCH; lane++)
+                solve_lane(&m[k], lane, x[k]);
+        for (size_t k = 0; k < size; k++)
+            for (int i = 0; i < 3; i++)
+                store(&x[k][i], m[k].vertices[i], particles);
+    }
+}
+
+static void solve_membranes(const struct tl_energy *energy, vec3d *particles)
+{
+    for (size_t run = 0, from = 0; run < energy->membrane_run_count; run++) {
+        solve_run(energy->membranes + from, energy->membrane_run_ends[run] - from, particles);
+        from = energy->membrane_run_ends[run];
     }
 }
 
@@ -137,7 +154,7 @@ void tl_xpbd_solve_link(const struct tl_link *link, struct tl_particles *particl
 
 void tl_xpbd_solve(const struct tl_energy *energy, struct tl_particles *particles)
 {
-    solve_membranes(energy->membranes, energy->membrane_count, particles->x);
+    solve_membranes(energy, particles->x);
     if (!energy->bends_as_force)
         solve_bends(energy->bends, energy->bend_count, particles->x);
     for (size_t i = 0; i < energy->link_count; i++)
