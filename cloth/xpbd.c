@@ -32,76 +32,109 @@ TL_INLINE vec3d at(const struct places *places, int lane)
     return (vec3d){places->x[lane], places->y[lane], places->z[lane]};
 }
 
-/* Away from 0, for it is divided by. */
-TL_INLINE double length_of(vec3d v)
+TL_INLINE void put(struct places *places, int lane, vec3d v)
 {
-    double squared = vec3d_dot(v, v);
-    return sqrt(squared > NO_LENGTH * NO_LENGTH ? squared : NO_LENGTH * NO_LENGTH);
+    places->x[lane] = v.x;
+    places->y[lane] = v.y;
+    places->z[lane] = v.z;
 }
 
 TL_INLINE void move(struct places *places, int lane, vec3d by, double share)
 {
-    places->x[lane] += by.x * share;
-    places->y[lane] += by.y * share;
-    places->z[lane] += by.z * share;
+    put(places, lane, vec3d_muladd(at(places, lane), by, share));
 }
 
-/* Both stretches at once, then the shear. A push p on row c moves vertex i by w_i c_i p, and so F_u by cc p
- * and F_v by cd p: they are solved on F alone, and the vertices move once.
- *
- * A stretch C = |F_u| - 1 pushes by factor C along F_u/|F_u|. At once, the two overshoot by no more than the
- * cosine between the threads, and one root and one division less are waited for.
- *
- * The shear's C = cos = g/sqrt(p), with g = u.v, a = |u|^2, b = |v|^2, p = a b, has the gradient
- * c_i (v a - u g) / (a sqrt(p)) + d_i (u b - v g) / (b sqrt(p)), of weighted square
- * (p - g^2) (cc b - 2 cd g + dd a) / p^2: its push needs no root, and one division. */
-TL_INLINE void solve_lane(const struct tl_membrane *m, int lane, struct places x[3])
+/* One membrane of each lane on its way: a push p on row c moves vertex i by w_i c_i p, and so F_u by cc p and
+ * F_v by cd p. Both stretches and the shear are solved, one after the other, on F alone, and the vertices
+ * move once. In four stages: what one stage of a batch waits for, roots and divisions, the same stage of the
+ * next batches need not. */
+struct membrane_work {
+    struct places x[3], u, v, push_c, push_d;
+};
+
+/* A stretch C = |F| - 1 pushes by factor C along F/|F|: in units of F. */
+TL_INLINE double stretch_push(vec3d f, double factor)
 {
-    vec3d origin = at(&x[0], lane), side = vec3d_sub(at(&x[1], lane), origin);
-    vec3d other = vec3d_sub(at(&x[2], lane), origin);
+    double squared = vec3d_dot(f, f);
+    return factor * (1 - 1 / sqrt(squared > NO_LENGTH * NO_LENGTH ? squared : NO_LENGTH * NO_LENGTH));
+}
+
+TL_INLINE void solve_weft(const struct tl_membrane *m, int lane, struct membrane_work *work)
+{
+    vec3d origin = at(&work->x[0], lane), side = vec3d_sub(at(&work->x[1], lane), origin);
+    vec3d other = vec3d_sub(at(&work->x[2], lane), origin);
     vec3d u = vec3d_muladd(vec3d_scale(side, m->c[1][lane]), other, m->c[2][lane]);
     vec3d v = vec3d_muladd(vec3d_scale(side, m->d[1][lane]), other, m->d[2][lane]);
-    double cc = m->cc[lane], cd = m->cd[lane], dd = m->dd[lane];
-    double length_u = length_of(u), length_v = length_of(v), inverse = 1 / (length_u * length_v);
-    vec3d push_c = vec3d_scale(u, m->weft[lane] * (1 - inverse * length_v));
-    vec3d push_d = vec3d_scale(v, m->warp[lane] * (1 - inverse * length_u));
-    u = vec3d_muladd(vec3d_muladd(u, push_c, cc), push_d, cd);
-    v = vec3d_muladd(vec3d_muladd(v, push_c, cd), push_d, dd);
-
-    double a = vec3d_dot(u, u), b = vec3d_dot(v, v), g = vec3d_dot(u, v), p = a * b;
-    double sum = m->shear[lane] * p * p + (p - g * g) * (cc * b - 2 * cd * g + dd * a);
-    double multiplier = sum > 0 ? -g / sum : 0;
-    push_c = vec3d_muladd(vec3d_muladd(push_c, v, multiplier * p), u, -multiplier * b * g);
-    push_d = vec3d_muladd(vec3d_muladd(push_d, u, multiplier * p), v, -multiplier * a * g);
-
-    double c0 = -(m->c[1][lane] + m->c[2][lane]), d0 = -(m->d[1][lane] + m->d[2][lane]);
-    move(&x[0], lane, vec3d_muladd(vec3d_scale(push_c, c0), push_d, d0), m->w[0][lane]);
-    for (int i = 1; i < 3; i++) {
-        vec3d push = vec3d_muladd(vec3d_scale(push_c, m->c[i][lane]), push_d, m->d[i][lane]);
-        move(&x[i], lane, push, m->w[i][lane]);
-    }
+    vec3d push = vec3d_scale(u, stretch_push(u, m->weft[lane]));
+    put(&work->push_c, lane, push);
+    put(&work->u, lane, vec3d_muladd(u, push, m->cc[lane]));
+    put(&work->v, lane, vec3d_muladd(v, push, m->cd[lane]));
 }
 
-/* Batches of one run. All are loaded before the first is solved: one batch's roots and divisions are then not
- * waited for by the next. */
+TL_INLINE void solve_warp(const struct tl_membrane *m, int lane, struct membrane_work *work)
+{
+    vec3d u = at(&work->u, lane), v = at(&work->v, lane);
+    vec3d push = vec3d_scale(v, stretch_push(v, m->warp[lane]));
+    put(&work->push_d, lane, push);
+    put(&work->u, lane, vec3d_muladd(u, push, m->cd[lane]));
+    put(&work->v, lane, vec3d_muladd(v, push, m->dd[lane]));
+}
+
+/* C = g/sqrt(p), with g = u.v, a = |u|^2, b = |v|^2, p = a b, has the gradient
+ * c_i (v a - u g) / (a sqrt(p)) + d_i (u b - v g) / (b sqrt(p)), of weighted square
+ * (p - g^2) (cc b - 2 cd g + dd a) / p^2: its push needs no root, and one division. */
+TL_INLINE void solve_shear(const struct tl_membrane *m, int lane, struct membrane_work *work)
+{
+    vec3d u = at(&work->u, lane), v = at(&work->v, lane);
+    double a = vec3d_dot(u, u), b = vec3d_dot(v, v), g = vec3d_dot(u, v), p = a * b;
+    double square = (p - g * g) * (m->cc[lane] * b - 2 * m->cd[lane] * g + m->dd[lane] * a);
+    double sum = m->shear[lane] * p * p + square, multiplier = sum > 0 ? -g / sum : 0;
+    vec3d push_c = vec3d_muladd(at(&work->push_c, lane), v, multiplier * p);
+    vec3d push_d = vec3d_muladd(at(&work->push_d, lane), u, multiplier * p);
+    put(&work->push_c, lane, vec3d_muladd(push_c, u, -multiplier * b * g));
+    put(&work->push_d, lane, vec3d_muladd(push_d, v, -multiplier * a * g));
+}
+
+TL_INLINE void move_corners(const struct tl_membrane *m, int lane, struct membrane_work *work)
+{
+    vec3d push_c = at(&work->push_c, lane), push_d = at(&work->push_d, lane), pushes[3];
+    for (int i = 1; i < 3; i++)
+        pushes[i] = vec3d_muladd(vec3d_scale(push_c, m->c[i][lane]), push_d, m->d[i][lane]);
+    pushes[0] = vec3d_scale(vec3d_add(pushes[1], pushes[2]), -1);
+    for (int i = 0; i < 3; i++)
+        move(&work->x[i], lane, pushes[i], m->w[i][lane]);
+}
+
+/* Batches of a run that are solved side by side. */
 #define GROUP 8
 
-TL_CLONES static void solve_run(const struct tl_membrane *membranes, size_t count, vec3d *particles)
+TL_INLINE void solve_group(const struct tl_membrane *m, size_t count, vec3d *x)
 {
-    struct places x[GROUP][3];
-    for (size_t first = 0; first < count; first += GROUP) {
-        const struct tl_membrane *m = membranes + first;
-        size_t size = count - first < GROUP ? count - first : GROUP;
-        for (size_t k = 0; k < size; k++)
-            for (int i = 0; i < 3; i++)
-                load(particles, m[k].vertices[i], &x[k][i]);
-        for (size_t k = 0; k < size; k++)
-            for (int lane = 0; lane < TL_BATCH; lane++)
-                solve_lane(&m[k], lane, x[k]);
-        for (size_t k = 0; k < size; k++)
-            for (int i = 0; i < 3; i++)
-                store(&x[k][i], m[k].vertices[i], particles);
-    }
+    struct membrane_work work[GROUP];
+    for (size_t k = 0; k < count; k++)
+        for (int i = 0; i < 3; i++)
+            load(x, m[k].vertices[i], &work[k].x[i]);
+    for (size_t k = 0; k < count; k++)
+        for (int lane = 0; lane < TL_BATCH; lane++)
+            solve_weft(&m[k], lane, &work[k]);
+    for (size_t k = 0; k < count; k++)
+        for (int lane = 0; lane < TL_BATCH; lane++)
+            solve_warp(&m[k], lane, &work[k]);
+    for (size_t k = 0; k < count; k++)
+        for (int lane = 0; lane < TL_BATCH; lane++)
+            solve_shear(&m[k], lane, &work[k]);
+    for (size_t k = 0; k < count; k++)
+        for (int lane = 0; lane < TL_BATCH; lane++)
+            move_corners(&m[k], lane, &work[k]);
+    for (size_t k = 0; k < count; k++)
+        for (int i = 0; i < 3; i++)
+            store(&work[k].x[i], m[k].vertices[i], x);
+}
+
+TL_CLONES static void solve_run(const struct tl_membrane *membranes, size_t count, vec3d *x)
+{
+    for (size_t first = 0; first < count; first += GROUP)
+        solve_group(membranes + first, count - first < GROUP ? count - first : GROUP, x);
 }
 
 static void solve_membranes(const struct tl_energy *energy, vec3d *particles)
