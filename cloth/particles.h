@@ -4,6 +4,7 @@
 #ifndef TOILE_CLOTH_PARTICLES_H
 #define TOILE_CLOTH_PARTICLES_H
 
+#include "cloth/threads.h"
 #include "cloth/vec3d.h"
 
 #include <stddef.h>
@@ -18,6 +19,10 @@ struct tl_particles {
 };
 struct tl_particles tl_particles_create(size_t count);
 void tl_particles_release(struct tl_particles *particles);
+
+/* Calls `move` on all threads, each for its own part of the particles, denormals off. */
+typedef void tl_particles_mover(struct tl_particles *particles, struct tl_range part, const void *how);
+void tl_particles_share(struct tl_particles *particles, tl_particles_mover *move, const void *how);
 
 /* v <- (v + h g) exp(-drag h), previous <- x, x <- x + h v. */
 void tl_particles_predict(struct tl_particles *particles, double gravity, double drag, double h);
