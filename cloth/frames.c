@@ -55,9 +55,9 @@ static struct fans fans_of(const tl_frames *frames, size_t block, const vec3s *p
     return (struct fans){rows, rows + 1, gradients, b->spoke_count, positions};
 }
 
-/* Edges from each lane's vertex, metres. */
+/* Edges from each lane's vertex, metres: LANES of one spoke, then those of the next. */
 struct edges {
-    float x[KEPT][LANES], y[KEPT][LANES], z[KEPT][LANES];
+    float x[KEPT * LANES], y[KEPT * LANES], z[KEPT * LANES];
 };
 
 /* Edges to spokes `first` to first + KEPT - 1; returns how many there are. Copying vertices whole and parting
@@ -69,21 +69,20 @@ TL_INLINE size_t fetch_edges(const struct fans *fans, size_t first, struct edges
     for (size_t k = 0; k < count; k++)
         for (size_t i = 0; i < LANES; i++)
             places[k * LANES + i] = fans->positions[fans->spokes[first + k][i]];
-    float *x = out->x[0], *y = out->y[0], *z = out->z[0];
     for (size_t i = 0; i < count * LANES; i++) {
-        x[i] = places[i].x;
-        y[i] = places[i].y;
-        z[i] = places[i].z;
+        out->x[i] = places[i].x;
+        out->y[i] = places[i].y;
+        out->z[i] = places[i].z;
     }
     float centres[3][LANES];
     for (int i = 0; i < LANES; i++)
         for (int c = 0; c < 3; c++)
             centres[c][i] = fans->positions[fans->centres[0][i]].raw[c];
     for (size_t k = 0; k < count; k++)
-        for (int i = 0; i < LANES; i++) {
-            out->x[k][i] -= centres[0][i];
-            out->y[k][i] -= centres[1][i];
-            out->z[k][i] -= centres[2][i];
+        for (size_t i = 0; i < LANES; i++) {
+            out->x[k * LANES + i] -= centres[0][i];
+            out->y[k * LANES + i] -= centres[1][i];
+            out->z[k * LANES + i] -= centres[2][i];
         }
     return count;
 }
@@ -114,8 +113,9 @@ TL_INLINE void add_normals(const struct edges *edges, size_t count, float sum[3]
 {
     for (size_t k = 0; k + 1 < count; k++)
         for (int i = 0; i < LANES; i++) {
-            float ax = edges->x[k][i], ay = edges->y[k][i], az = edges->z[k][i];
-            float bx = edges->x[k + 1][i], by = edges->y[k + 1][i], bz = edges->z[k + 1][i];
+            const size_t a = k * LANES + (size_t)i, b = a + LANES;
+            float ax = edges->x[a], ay = edges->y[a], az = edges->z[a];
+            float bx = edges->x[b], by = edges->y[b], bz = edges->z[b];
             float x = ay * bz - az * by, y = az * bx - ax * bz, z = ax * by - ay * bx;
             float area = sqrtf(x * x + y * y + z * z + NOTHING * NOTHING);
             float weight = angle_over(area, ax * bx + ay * by + az * bz, area);
@@ -137,7 +137,8 @@ TL_INLINE void add_tangents(const struct edges *edges, size_t count, const float
     float across[2][LANES];
     for (size_t k = 0; k < count; k++)
         for (int i = 0; i < LANES; i++) {
-            float x = edges->x[k][i], y = edges->y[k][i], z = edges->z[k][i];
+            const size_t b = k * LANES + (size_t)i;
+            float x = edges->x[b], y = edges->y[b], z = edges->z[b];
             float bu = x * planes->u[0][i] + y * planes->u[1][i] + z * planes->u[2][i];
             float bv = x * planes->v[0][i] + y * planes->v[1][i] + z * planes->v[2][i];
             if (k > 0) {
