@@ -157,8 +157,7 @@ static void advance_preview(tl_cloth *cloth, const struct tl_substep *substep)
 
 static void find_forces(tl_cloth *cloth)
 {
-    tl_energy_forces(&cloth->energy, &cloth->fabric, cloth->particles.count, cloth->particles.x,
-                     cloth->forces);
+    tl_energy_pull(&cloth->energy, &cloth->fabric, cloth->particles.x, cloth->forces);
 }
 
 static void advance_reference(tl_cloth *cloth, const struct tl_substep *substep)
@@ -167,7 +166,7 @@ static void advance_reference(tl_cloth *cloth, const struct tl_substep *substep)
     place_pins(cloth, substep->collider, substep->phase);
     constrain(cloth, substep);
     find_forces(cloth);
-    tl_verlet_kick(&cloth->particles, cloth->forces, substep->gravity, substep->h);
+    tl_verlet_kick(&cloth->particles, cloth->forces, substep->gravity, substep->drag, substep->h);
 }
 
 static void run_step(tl_cloth *cloth, const tl_collider *collider, double drag, int step)

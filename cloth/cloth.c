@@ -98,6 +98,7 @@ static void set_inverse_masses(tl_cloth *cloth)
 static void set_constants(tl_cloth *cloth)
 {
     set_inverse_masses(cloth);
+    tl_energy_set_fabric(&cloth->energy, &cloth->fabric);
     cloth->critical_step =
         tl_energy_critical_step(&cloth->energy, &cloth->fabric, cloth->particles.count, cloth->particles.w);
     cloth->forces = tl_resize(cloth->forces, cloth->particles.count, sizeof *cloth->forces);

@@ -155,9 +155,9 @@ void tl_contacts_renew(struct tl_contacts *contacts, const vec3d *x, double thic
 void tl_contacts_let_through(struct tl_contacts *contacts, const struct tl_energy *energy, const vec3d *x)
 {
     memset(contacts->caught, 0, contacts->particle_count * sizeof(bool));
-    for (size_t i = 0; i < energy->membrane_count * TL_LANES; i++) {
-        const struct tl_membrane *m = &energy->membranes[i / TL_LANES];
-        size_t lane = i % TL_LANES;
+    for (size_t i = 0; i < energy->membrane_count * TL_BATCH; i++) {
+        const struct tl_membrane *m = &energy->membranes[i / TL_BATCH];
+        size_t lane = i % TL_BATCH;
         vec3d u = {0}, v = {0};
         for (int k = 0; k < 3; k++) {
             u = vec3d_muladd(u, x[m->vertices[k][lane]], m->c[k][lane]);
