@@ -76,6 +76,9 @@ void tl_energy_set(struct tl_energy *energy, const struct tl_cloth_fabric *fabri
 double tl_energy_forces(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
                         size_t vertex_count, const vec3d *x, vec3d *forces);
 
+/* The energy k/2 (length - rest)^2 of one link; adds its forces. */
+double tl_energy_link(const struct tl_link *link, double stiffness, const vec3d *x, vec3d *forces);
+
 /* The longest step (s) at which explicit integration is stable, from below: 2 / omega_max, omega_max^2 by
  * Gershgorin's bound on the rows of M^-1 K at rest. Infinite when nothing resists. */
 double tl_energy_critical_step(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,

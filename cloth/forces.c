@@ -74,7 +74,7 @@ static double add_bend(const struct tl_bend *bend, size_t lane, const double sti
     return energy;
 }
 
-static double add_link(const struct tl_link *link, double stiffness, const vec3d *x, vec3d *forces)
+double tl_energy_link(const struct tl_link *link, double stiffness, const vec3d *x, vec3d *forces)
 {
     vec3d apart = vec3d_sub(x[link->b], x[link->a]);
     double length = vec3d_norm(apart), stretch = length - link->rest;
@@ -106,7 +106,7 @@ double tl_energy_forces(const struct tl_energy *energy, const struct tl_cloth_fa
         if (energy->bends[i / TL_LANES].area[i % TL_LANES] > 0)
             total += add_bend(&energy->bends[i / TL_LANES], i % TL_LANES, stiffness, x, forces);
     for (size_t i = 0; i < energy->link_count; i++)
-        total += add_link(&energy->links[i], fabric->stretch_warp, x, forces);
+        total += tl_energy_link(&energy->links[i], fabric->stretch_warp, x, forces);
     return total;
 }
 
