@@ -7,7 +7,9 @@
 
 /* Shorter than this a vector has no direction. */
 #define NO_LENGTH 1e-12
-#define CORNERS   3 /* of a membrane; a link repeats its second end */
+/* Fewer vertices are done before other threads have woken up. */
+#define SERIAL  1000
+#define CORNERS 3 /* of a membrane; a link repeats its second end */
 
 /* Second derivative by F_u, F_v: block (i, j) = c_i c_j uu + d_i d_j vv + c_i d_j uv + d_i c_j uv^T. */
 struct tl_piece {
@@ -276,7 +278,7 @@ void tl_stiffness_assemble(struct tl_stiffness *stiffness, const struct tl_energ
                            const vec3d *x)
 {
     size_t lanes = energy->membrane_count * TL_LANES, own = lanes + energy->link_count;
-#pragma omp parallel
+#pragma omp parallel if (stiffness->vertex_count > SERIAL)
     {
 #pragma omp for schedule(static)
         for (size_t i = 0; i < stiffness->element_count; i++) {

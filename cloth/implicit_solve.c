@@ -7,6 +7,8 @@
 
 /* Vertices of one partial sum. */
 #define RUN 256
+/* Fewer vertices are done before other threads have woken up. */
+#define SERIAL 1000
 
 struct tl_solve_space tl_solve_space_create(size_t vertex_count)
 {
@@ -131,7 +133,7 @@ static double add_up(const struct tl_solve_space *space)
 /* z = P^-1 r; returns r.z. */
 static double condition(const struct tl_system *system, struct tl_solve_space *space)
 {
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (space->vertex_count > SERIAL)
     for (size_t run = 0; run < run_count(space); run++) {
         double sum = 0;
         for (size_t i = run * RUN; i < run_end(space, run); i++) {
@@ -146,7 +148,7 @@ static double condition(const struct tl_system *system, struct tl_solve_space *s
 /* product = A p; returns p.Ap. */
 static double multiply(const struct tl_system *system, struct tl_solve_space *space, const vec3d *p)
 {
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (space->vertex_count > SERIAL)
     for (size_t run = 0; run < run_count(space); run++) {
         double sum = 0;
         for (size_t i = run * RUN; i < run_end(space, run); i++) {
@@ -161,7 +163,7 @@ static double multiply(const struct tl_system *system, struct tl_solve_space *sp
 /* r = S (b - A step), or S b without a step. */
 static void find_residual(const struct tl_system *system, struct tl_solve_space *space, const vec3d *step)
 {
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (space->vertex_count > SERIAL)
     for (size_t i = 0; i < space->vertex_count; i++) {
         vec3d left = step ? vec3d_scale(tl_solve_reaction(system, i, step), -1) : system->load[i];
         space->residual[i] = filtered(&system->filters[i], left);
@@ -171,7 +173,7 @@ static void find_residual(const struct tl_system *system, struct tl_solve_space 
 /* step += share p, r -= share S A p, z = P^-1 r; returns r.z. */
 static double advance(const struct tl_system *system, struct tl_solve_space *space, double share, vec3d *step)
 {
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (space->vertex_count > SERIAL)
     for (size_t run = 0; run < run_count(space); run++) {
         double sum = 0;
         for (size_t i = run * RUN; i < run_end(space, run); i++) {
@@ -188,7 +190,7 @@ static double advance(const struct tl_system *system, struct tl_solve_space *spa
 
 static void turn(struct tl_solve_space *space, double share)
 {
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (space->vertex_count > SERIAL)
     for (size_t i = 0; i < space->vertex_count; i++)
         space->direction[i] = vec3d_muladd(space->conditioned[i], space->direction[i], share);
 }
@@ -196,7 +198,7 @@ static void turn(struct tl_solve_space *space, double share)
 struct tl_solve_result tl_solve(const struct tl_system *system, struct tl_solve_space *space, vec3d *step)
 {
     struct tl_solve_result result = {0};
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (space->vertex_count > SERIAL)
     for (size_t i = 0; i < space->vertex_count; i++)
         condition_vertex(system, i, space->inverse[i]);
     find_residual(system, space, NULL);
