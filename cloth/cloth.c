@@ -356,6 +356,7 @@ struct tl_cloth_report tl_cloth_measure(const tl_cloth *cloth, const tl_collider
                                      .max_strain = tl_cloth_max_strain(cloth),
                                      .critical_step_s = cloth->critical_step,
                                      .substep_s = tl_cloth_substep(cloth),
+                                     .caught_count = cloth->contacts.caught_count,
                                      .settled = cloth->settled};
     vec3d *forces = TL_NEW_ARRAY(vec3d, cloth->particles.count);
     report.elastic_energy =

@@ -58,6 +58,8 @@ struct tl_cloth_report {
     double critical_step_s;  /* the longest stable step of an explicit solver */
     double substep_s;        /* what the chosen solver takes */
     double deepest_m;        /* deepest penetration below the avatar's surface, 0 when none */
+    size_t caught_count; /* particles pinched between parts of the avatar during the last frame: kept outside,
+                            or slipped past one, at the price of strain */
     bool settled;
 };
 
