@@ -120,3 +120,28 @@ tl_garment tl_tube_make(const struct tl_tube *tube, const double *sink, double s
         garment.pins[garment.pin_count++] = (uint32_t)i;
     return garment;
 }
+
+/* ---- The triangle ---- */
+
+double tl_triangle_sink(const struct tl_cloth_fabric *fabric, double gravity)
+{
+    return fabric->areal_density * gravity / (3 * fabric->stretch_warp);
+}
+
+tl_garment tl_triangle_make(double sink, double scramble)
+{
+    tl_garment garment = make_empty(3, 1);
+    const uint32_t corners[3] = {0, 2, 1};
+    memcpy(garment.model.mesh.indices, corners, sizeof corners);
+    place(&garment, 0, (vec3s){{0, 0, 0}}, 0, 0);
+    place(&garment, 1, (vec3s){{1, 0, 0}}, 1, 0);
+    vec3s shift = {{noise(2, 0), noise(2, 1), noise(2, 2)}};
+    vec3s lowest = glms_vec3_scale(shift, (float)scramble);
+    lowest.x += 0.5f;
+    lowest.y -= (float)(1 + sink);
+    place(&garment, 2, lowest, 0.5, 1);
+    garment.pins = TL_NEW_ARRAY(uint32_t, 2);
+    garment.pins[1] = 1;
+    garment.pin_count = 2;
+    return garment;
+}

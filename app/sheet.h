@@ -34,4 +34,9 @@ void tl_tube_sink(const struct tl_tube *tube, const struct tl_cloth_fabric *fabr
  * cell's sides, by a fixed hash. */
 tl_garment tl_tube_make(const struct tl_tube *tube, const double *sink, double scramble);
 
+/* One triangle of 1 m, hung by its upper edge, which ends a metre below: its lower corner carries a third of
+ * the weight and sinks by density * gravity / 3k metres. */
+double tl_triangle_sink(const struct tl_cloth_fabric *fabric, double gravity);
+tl_garment tl_triangle_make(double sink, double scramble);
+
 #endif
