@@ -1,126 +1,63 @@
 /* The extremes of cloth: the envelope over stiffness, step, mass ratio and size, then single extremes. */
-#include "app/envelope.h"
+#include "app/envelope_sweep.h"
+#include "app/extremes_cloth.h"
+#include "config/file.h"
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
 
 #include <math.h>
-#include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
-#define TUBE_M 1.0
-/* Of the sizes that are not run whole. */
-#define LARGE_STEP 2 /* 1 ms */
+struct single {
+    enum tl_outcome outcome;
+    tl_error error;
+};
 
 struct suite {
-    bool quick;
-    struct tl_envelope_cell *cells; /* [solver][size][ratio][step][stiffness] */
+    struct tl_envelope_sweep sweep;
+    struct single *singles; /* [tl_cloth_extreme_count][TL_CLOTH_SOLVER_COUNT] */
 };
 
-struct place {
-    int solver, ratio, step, stiffness;
-    size_t size;
-};
-
-static struct tl_envelope_cell *cell_at(const struct suite *suite, struct place at)
+static bool run_singles(struct suite *suite, tl_error *error)
 {
-    size_t index = (size_t)at.solver * tl_envelope_size_count + at.size;
-    index = index * TL_ENVELOPE_RATIOS + (size_t)at.ratio;
-    index = index * TL_ENVELOPE_STEPS + (size_t)at.step;
-    return &suite->cells[index * TL_ENVELOPE_STIFFNESSES + (size_t)at.stiffness];
-}
-
-static struct place place_of(size_t index)
-{
-    struct place at;
-    at.stiffness = (int)(index % TL_ENVELOPE_STIFFNESSES);
-    index /= TL_ENVELOPE_STIFFNESSES;
-    at.step = (int)(index % TL_ENVELOPE_STEPS);
-    index /= TL_ENVELOPE_STEPS;
-    at.ratio = (int)(index % TL_ENVELOPE_RATIOS);
-    index /= TL_ENVELOPE_RATIOS;
-    at.size = index % tl_envelope_size_count;
-    at.solver = (int)(index / tl_envelope_size_count);
-    return at;
-}
-
-static size_t cell_count(void)
-{
-    return TL_CLOTH_SOLVER_COUNT * tl_envelope_size_count * TL_ENVELOPE_RATIOS * TL_ENVELOPE_STEPS *
-           TL_ENVELOPE_STIFFNESSES;
-}
-
-/* Large sizes: the softest, an ordinary and the stiffest cloth, evenly meshed. */
-static bool is_asked_for(const struct suite *suite, struct place at)
-{
-    const struct tl_envelope_size *size = &tl_envelope_sizes[at.size];
-    if (suite->quick && (!size->quick || at.stiffness % 3 != 2 || at.step % 2))
-        return false;
-    if (size->columns == 0 && at.ratio > 0)
-        return false; /* a triangle's masses are alike */
-    bool sparse = at.ratio == 0 && at.step == LARGE_STEP &&
-                  (at.stiffness == 0 || at.stiffness == 5 || at.stiffness == TL_ENVELOPE_STIFFNESSES - 1);
-    return size->whole || sparse;
-}
-
-static bool run_envelope(struct suite *suite, tl_error *error)
-{
-    struct tl_progress progress = tl_progress_begin("sweeping the envelope of cloth");
-    size_t count = cell_count();
-    bool done = true;
-    suite->cells = TL_NEW_ARRAY(struct tl_envelope_cell, count);
-    for (size_t i = 0; done && i < count; i++) {
-        struct place at = place_of(i);
-        const struct tl_envelope_case tested = {
-            .size = &tl_envelope_sizes[at.size],
-            .solver = at.solver,
-            .stiffness = tl_envelope_stiffnesses[at.stiffness],
-            .dt = tl_envelope_steps[at.step],
-            .mass_ratio = tl_envelope_ratios[at.ratio],
-            .height_m = TUBE_M,
-        };
-        if (is_asked_for(suite, at))
-            suite->cells[i] = tl_envelope_run(&tested);
-        if (tl_interrupted())
-            done = tl_fail(error, TL_INTERRUPTED, "stability: stopped at cell %zu of %zu", i, count);
+    struct tl_progress progress = tl_progress_begin("trying the extremes of cloth");
+    size_t count = tl_cloth_extreme_count * TL_CLOTH_SOLVER_COUNT;
+    suite->singles = TL_NEW_ARRAY(struct single, count);
+    for (size_t i = 0; i < count && !tl_interrupted(); i++) {
+        struct single *single = &suite->singles[i];
+        single->outcome =
+            tl_cloth_extreme_run(i / TL_CLOTH_SOLVER_COUNT, (int)(i % TL_CLOTH_SOLVER_COUNT), &single->error);
         tl_progress_update(&progress, (double)i + 1, (double)count);
     }
     tl_progress_end(&progress);
-    return done;
+    return !tl_interrupted() ||
+           tl_fail(error, TL_INTERRUPTED, "stability: stopped among the extremes of cloth");
 }
 
-static const char letters[TL_OUTCOME_COUNT + 1] = "=b.S!";
-
-static void print_maps(const struct suite *suite)
+static void print_singles(const struct suite *suite)
 {
-    printf("the envelope of cloth, stiffness 1e-2 to 1e9 N/m from left to right:\n"
-           "= exact   b bounded   . refused   S SILENT   ! NaN   (space: not asked for)\n\n%-12s%-12s%-8s",
-           "solver", "particles", "dt");
-    for (int ratio = 0; ratio < TL_ENVELOPE_RATIOS; ratio++)
-        printf("  masses 1:%-4.0g", tl_envelope_ratios[ratio]);
-    putchar('\n');
-    for (int solver = 0; solver < TL_CLOTH_SOLVER_COUNT; solver++)
-        for (size_t size = 0; size < tl_envelope_size_count; size++)
-            for (int step = 0; step < TL_ENVELOPE_STEPS; step++) {
-                char lines[TL_ENVELOPE_RATIOS][TL_ENVELOPE_STIFFNESSES + 1] = {0};
-                bool any = false;
-                for (int ratio = 0; ratio < TL_ENVELOPE_RATIOS; ratio++)
-                    for (int k = 0; k < TL_ENVELOPE_STIFFNESSES; k++) {
-                        const struct tl_envelope_cell *cell =
-                            cell_at(suite, (struct place){solver, ratio, step, k, size});
-                        lines[ratio][k] = cell->run ? letters[cell->outcome] : ' ';
-                        any |= cell->run;
-                    }
-                if (!any)
-                    continue;
-                printf("%-12s%-12s%-8g", tl_cloth_solver_names[solver], tl_envelope_sizes[size].name,
-                       tl_envelope_steps[step]);
-                for (int ratio = 0; ratio < TL_ENVELOPE_RATIOS; ratio++)
-                    printf("  %s", lines[ratio]);
-                putchar('\n');
-            }
+    printf("\n%-36s%-12s%s\n", "extreme", "solver", "");
+    for (size_t i = 0; i < tl_cloth_extreme_count; i++)
+        for (size_t s = 0; s < TL_CLOTH_SOLVER_COUNT; s++) {
+            const struct single *single = &suite->singles[i * TL_CLOTH_SOLVER_COUNT + s];
+            printf("%-36s%-12s%-8s %s\n", s == 0 ? tl_cloth_extreme_name(i) : "", tl_cloth_solver_names[s],
+                   tl_outcome_names[single->outcome], single->error.message);
+        }
+}
+
+static void print_failures(const struct tl_envelope_sweep *sweep)
+{
+    for (size_t i = 0; i < sweep->count; i++) {
+        const struct tl_envelope_cell *cell = &sweep->cells[i];
+        struct tl_envelope_place at = tl_envelope_place_of(i);
+        if (cell->run && cell->outcome >= TL_OUTCOME_SILENT)
+            printf("%s: %s, %s particles, k %g, dt %g, masses 1:%g: %s\n", tl_outcome_names[cell->outcome],
+                   tl_cloth_solver_names[at.solver], tl_envelope_sizes[at.size].name,
+                   tl_envelope_stiffnesses[at.stiffness], tl_envelope_steps[at.step],
+                   tl_envelope_ratios[at.ratio], cell->error.message);
+    }
 }
 
 static cJSON *number_or_null(double number)
@@ -130,9 +67,10 @@ static cJSON *number_or_null(double number)
 
 static void add_cells(const struct suite *suite, struct tl_stability *out)
 {
-    for (size_t i = 0, count = cell_count(); i < count; i++) {
-        const struct tl_envelope_cell *cell = &suite->cells[i];
-        struct place at = place_of(i);
+    const struct tl_envelope_sweep *sweep = &suite->sweep;
+    for (size_t i = 0; i < sweep->count; i++) {
+        const struct tl_envelope_cell *cell = &sweep->cells[i];
+        struct tl_envelope_place at = tl_envelope_place_of(i);
         if (!cell->run)
             continue;
         cJSON *row = tl_stability_add(out, "cloth", cell->outcome);
@@ -146,16 +84,39 @@ static void add_cells(const struct suite *suite, struct tl_stability *out)
         cJSON_AddNumberToObject(row, "cpu_ms", cell->cpu_ms);
         cJSON_AddStringToObject(row, "why", cell->error.message);
     }
+    for (size_t i = 0; i < tl_cloth_extreme_count * TL_CLOTH_SOLVER_COUNT; i++) {
+        const struct single *single = &suite->singles[i];
+        cJSON *row = tl_stability_add(out, "cloth", single->outcome);
+        cJSON_AddStringToObject(row, "extreme", tl_cloth_extreme_name(i / TL_CLOTH_SOLVER_COUNT));
+        cJSON_AddStringToObject(row, "solver", tl_cloth_solver_names[i % TL_CLOTH_SOLVER_COUNT]);
+        cJSON_AddStringToObject(row, "why", single->error.message);
+    }
+}
+
+static bool save_picture(const struct tl_envelope_sweep *sweep, const char *folder, tl_error *error)
+{
+    tl_image picture = tl_envelope_picture(sweep);
+    char *path = tl_format("%s/cloth.png", folder);
+    bool saved = tl_folder_make(folder, error) && tl_image_save_png(path, &picture, error);
+    free(path);
+    tl_image_release(&picture);
+    return saved;
 }
 
 bool tl_stability_cloth(const struct tl_arguments *arguments, struct tl_stability *out, tl_error *error)
 {
-    struct suite suite = {.quick = arguments->quick};
-    bool done = run_envelope(&suite, error);
-    if (done && !arguments->json)
-        print_maps(&suite);
+    struct suite suite = {0};
+    bool done = tl_envelope_sweep_run(arguments->quick, &suite.sweep, error) && run_singles(&suite, error);
+    if (done && !arguments->json) {
+        tl_envelope_print(&suite.sweep);
+        print_failures(&suite.sweep);
+        print_singles(&suite);
+    }
     if (done)
         add_cells(&suite, out);
-    free(suite.cells);
+    if (done && arguments->output)
+        done = save_picture(&suite.sweep, arguments->output, error);
+    tl_envelope_sweep_release(&suite.sweep);
+    free(suite.singles);
     return done;
 }
