@@ -57,6 +57,11 @@ void tl_playback_close(tl_playback **handle)
     *handle = NULL;
 }
 
+float tl_playback_lowest(const tl_playback *playback)
+{
+    return tl_point_cache_facts(playback->cache)->box.lower.y;
+}
+
 bool tl_playback_pose(tl_playback *playback, const struct tl_settings *settings, int number, vec3s *positions,
                       tl_error *error)
 {

@@ -15,6 +15,9 @@ typedef struct tl_playback tl_playback;
 tl_playback *tl_playback_open(const struct tl_settings *settings, const tl_model *model, tl_error *error);
 void tl_playback_close(tl_playback **playback); /* nulls it; null is fine */
 
+/* The lowest height that it is known to reach, metres: of a sequence in its first frame. */
+float tl_playback_lowest(const tl_playback *playback);
+
 /* Render vertices at frame `number` of the animation, metres. */
 bool tl_playback_pose(tl_playback *playback, const struct tl_settings *settings, int number, vec3s *positions,
                       tl_error *error);

@@ -220,6 +220,16 @@ static bool play_back(tl_session *session, int number, tl_error *error)
     return true;
 }
 
+/* Other programs put the floor elsewhere. */
+static void tell_ground(const tl_session *session)
+{
+    const float noticed_m = 0.01f;
+    float lowest_m = tl_playback_lowest(session->playback);
+    if (session->settings.image.ground && lowest_m < -noticed_m)
+        tl_info("%s: reaches %.2g m below the ground, which hides it there: image.ground=false leaves it out",
+                session->settings.scene.motion, (double)-lowest_m);
+}
+
 /* The motion's first sample says what is sewn together: a garment that was cut as panels has closed its seams
  * there. */
 static bool begin_playback(tl_session *session, tl_error *error)
@@ -238,6 +248,8 @@ static bool begin_playback(tl_session *session, tl_error *error)
     }
     free(weld);
     free(first);
+    if (posed)
+        tell_ground(session);
     return posed;
 }
 
