@@ -1,5 +1,6 @@
 /* XPBD and its energy against closed forms. */
 #include "cloth/state.h"
+#include "cloth/xpbd.h"
 #include "sheets.h"
 #include "testing.h"
 
@@ -45,9 +46,9 @@ static void test_one_spring_is_implicit_euler(void **state)
     struct tl_link link = {0, 1, rest, 1 / (k * h * h)};
     double stretch = 0.1, v = 0;
     for (int i = 0; i < 1000; i++) {
-        tl_xpbd_predict(&particles, 0, 0, h);
+        tl_particles_predict(&particles, 0, 0, h);
         tl_xpbd_solve_link(&link, &particles);
-        tl_xpbd_finish(&particles, h);
+        tl_particles_finish(&particles, h);
         v = (v - h * k / m * stretch) / (1 + h * h * k / m);
         stretch += h * v;
         assert_near(particles.x[1].x - rest, stretch, 1e-12);
@@ -162,9 +163,9 @@ static void test_shear_force(void **state)
     for (size_t i = 0; i < p->count; i++)
         p->x[i].x += tan(angle) * p->x[i].y;
     double top = 0;
-    tl_xpbd_predict(p, 0, 0, h);
+    tl_particles_predict(p, 0, 0, h);
     tl_xpbd_solve(&cloth->energy, p);
-    tl_xpbd_finish(p, h);
+    tl_particles_finish(p, h);
     for (size_t i = 2; i < 4; i++)
         top += p->v[i].x / h / p->w[i];
     /* E = A/2 k sin^2(angle) for a top edge displaced by d = l tan(angle): F = -dE/dd. */
