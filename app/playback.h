@@ -13,7 +13,7 @@ typedef struct tl_playback tl_playback;
 /* Opens scene.motion for the garment's model; refuses one with another number of points. Says how it is read
  * where that is not plain. */
 tl_playback *tl_playback_open(const struct tl_settings *settings, const tl_model *model, tl_error *error);
-void tl_playback_close(tl_playback **playback); /* nulls it; null is fine */
+void tl_playback_close(tl_playback **handle); /* nulls it; null is fine */
 
 /* The lowest height that it is known to reach, metres: of a sequence in its first frame. */
 float tl_playback_lowest(const tl_playback *playback);

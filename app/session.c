@@ -204,7 +204,7 @@ static bool drape(tl_session *session, tl_error *error)
     session->cloth = tl_cloth_create(session->garment, &settings->fabric, &settings->cloth, error);
     if (!session->cloth || !tl_cloth_settle(session->cloth, session->collider, error))
         return false;
-    if (session->clip >= 0 && !pose_in(session, error))
+    if (session->avatar && session->clip >= 0 && !pose_in(session, error))
         return false;
     tl_cloth_mark_start(session->cloth);
     tl_moving_create(&session->dress, &session->garment->model, tl_cloth_weld(session->cloth));

@@ -32,7 +32,7 @@ struct tl_point_cache_facts {
 
 /* By the extension, or a pattern; `metres` of one unit of the file. NULL on failure. */
 tl_point_cache *tl_point_cache_open(const char *name, double metres, tl_error *error);
-void tl_point_cache_destroy(tl_point_cache **cache);
+void tl_point_cache_destroy(tl_point_cache **handle);
 bool tl_point_cache_is_file(const char *name); /* by the extension, or a pattern of OBJ files */
 
 const struct tl_point_cache_facts *tl_point_cache_facts(const tl_point_cache *cache);
@@ -56,7 +56,7 @@ tl_point_cache_writer *tl_point_cache_create(const char *path, size_t point_coun
 /* Points as they are written; as often as sample_count says. */
 void tl_point_cache_add(tl_point_cache_writer *writer, const vec3s *points);
 /* Both release the writer. */
-bool tl_point_cache_commit(tl_point_cache_writer **writer, tl_error *error);
-void tl_point_cache_abandon(tl_point_cache_writer **writer);
+bool tl_point_cache_commit(tl_point_cache_writer **handle, tl_error *error);
+void tl_point_cache_abandon(tl_point_cache_writer **handle);
 
 #endif

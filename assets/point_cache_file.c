@@ -91,7 +91,7 @@ static bool scan(tl_point_cache *cache, tl_error *error)
 bool point_cache_open_pc2(tl_point_cache *cache, tl_error *error)
 {
     uint8_t header[PC2_HEADER_BYTES];
-    uint64_t size;
+    uint64_t size = 0;
     cache->data_offset = PC2_HEADER_BYTES;
     if (!open_file(cache, header, sizeof header, &size, error))
         return false;
@@ -139,7 +139,7 @@ static bool read_times(tl_point_cache *cache, size_t count, tl_error *error)
 bool point_cache_open_mdd(tl_point_cache *cache, tl_error *error)
 {
     uint8_t header[MDD_HEADER_BYTES];
-    uint64_t size;
+    uint64_t size = 0;
     if (!open_file(cache, header, sizeof header, &size, error))
         return false;
     uint32_t samples = word_at(header, true), points = word_at(header + 4, true);

@@ -11,10 +11,10 @@
 /* True when the file name (not its folder) holds a #, and no file has that very name. */
 bool tl_sequence_is_pattern(const char *name);
 
-/* The numbers of the files there are, rising; at least one; free(*numbers). */
-bool tl_sequence_list(const char *pattern, int **numbers, size_t *count, tl_error *error);
+/* The numbers of the files that a pattern `text` stands for, rising; at least one; free(*numbers). */
+bool tl_sequence_list(const char *text, int **numbers, size_t *count, tl_error *error);
 
-/* The file of a number, for a pattern that tl_sequence_list took; new string. */
-char *tl_sequence_path(const char *pattern, int number);
+/* The file of a number, for a text that tl_sequence_list took; new string. */
+char *tl_sequence_path(const char *text, int number);
 
 #endif

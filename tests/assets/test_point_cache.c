@@ -125,8 +125,8 @@ static void time_becomes_samples(void **state)
         assert_near(tl_point_cache_position(mdd, rows[i].time_s, 30, rows[i].own_rate), rows[i].mdd, 1e-5);
     }
     for (int frame = 0; frame < SAMPLES; frame++) /* whole, whatever the division leaves */
-        for (double rate = 1; rate < 121; rate++)
-            assert_true(tl_point_cache_position(pc2, frame / rate, rate, 0) == frame);
+        for (int rate = 1; rate < 121; rate++)
+            assert_true(tl_point_cache_position(pc2, frame / (double)rate, rate, 0) == frame);
     tl_point_cache_destroy(&mdd);
     tl_point_cache_destroy(&pc2);
 }
