@@ -96,6 +96,7 @@ typedef struct tl_frame {
     uint64_t environment_revision; /* changes when the environment does */
     float environment_yaw;         /* rad: the environment turned about +Y, counter-clockwise from above */
     double time_s;
+    bool still; /* drawn until it rests: every round is taken whole, however long that takes */
 } tl_frame;
 
 struct tl_render_settings {

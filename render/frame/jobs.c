@@ -285,8 +285,9 @@ static bool run_points(void *context, int level, tl_error *error)
                                               .environment_yaw = renderer->frame.environment_yaw,
                                               .params = &renderer->settings.light,
                                               .moved = renderer->rest.scene == 0,
-                                              .round = renderer->rest.scene};
+                                              .whole_rounds = renderer->frame.still};
     tl_points_update(renderer->points, &request);
+    renderer->rest.is_done = tl_points_are_done(renderer->points);
     return true;
 }
 

@@ -138,11 +138,13 @@ void tl_repair_choose(struct tl_repair *repair, const struct tl_refresh *refresh
 }
 
 size_t tl_repair_trace(struct tl_repair *repair, const struct tl_refresh *refresh,
-                       const struct tl_starts *starts, uint16_t *values)
+                       const struct tl_starts *starts, uint16_t *values, uint16_t *weights)
 {
     size_t rays = 0;
     if (repair->rounds >= refresh->request->params->rounds)
         return 0;
+    if (repair->rounds == 0)
+        memset(weights, 0, repair->count * refresh->stride * sizeof *weights);
 #pragma omp parallel for schedule(dynamic, 4) reduction(+ : rays)
     for (size_t first = 0; first < repair->count; first += TL_CLUSTER) {
         vec3s origins[TL_CLUSTER], normals[TL_CLUSTER];
@@ -152,7 +154,7 @@ size_t tl_repair_trace(struct tl_repair *repair, const struct tl_refresh *refres
             normals[count] = refresh->request->samples->items[repair->samples[i]].smooth;
         }
         rays += tl_places_trace(refresh, origins, normals, count, values + first * refresh->stride,
-                                repair->rounds);
+                                weights + first * refresh->stride);
     }
     repair->rounds++;
     return rays;

@@ -20,9 +20,9 @@ struct tl_repair {
 void tl_repair_choose(struct tl_repair *repair, const struct tl_refresh *refresh, const struct tl_taps *taps,
                       const uint16_t *values, size_t wanted);
 
-/* Traces them into `values` [count][stride]; returns the number of rays. */
+/* Traces them into `values` and `weights` [count][stride]; returns the number of rays. */
 size_t tl_repair_trace(struct tl_repair *repair, const struct tl_refresh *refresh,
-                       const struct tl_starts *starts, uint16_t *values);
+                       const struct tl_starts *starts, uint16_t *values, uint16_t *weights);
 void tl_repair_release(struct tl_repair *repair);
 size_t tl_repair_bytes(const struct tl_repair *repair);
 

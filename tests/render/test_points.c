@@ -166,7 +166,6 @@ static void stage_close(struct stage *stage)
 static void step(struct stage *stage, bool moved)
 {
     stage->request.moved = moved;
-    stage->request.round = moved ? 0 : stage->request.round + 1;
     tl_points_update(stage->points, &stage->request);
 }
 
