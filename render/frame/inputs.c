@@ -57,7 +57,7 @@ static uint64_t maps_signature(const struct tl_light_params *light)
 static uint64_t rays_signature(const struct tl_light_params *light)
 {
     uint64_t hash = MIX(MIX(FNV_OFFSET, light->rays), light->refresh);
-    return MIX(MIX(hash, light->repair), light->jitter);
+    return MIX(MIX(MIX(hash, light->repair), light->repair_rest), light->jitter);
 }
 
 static uint64_t reference_signature(const struct tl_reference_params *reference)

@@ -46,7 +46,8 @@ struct tl_points {
     struct tl_taps *taps;
     size_t sample_count, sample_capacity;
     size_t ray_count;
-    bool is_done; /* at rest: every mean has its rounds */
+    /* At rest: of the points of the slots, each region has been looked at; has had its rounds; and all else. */
+    bool have_begun, are_done, is_done;
 
     struct tl_starts starts; /* made when suns or repair need them */
     struct tl_sun_rays suns;
@@ -362,55 +363,131 @@ static struct tl_cluster open_cluster(tl_points *points, size_t number, const st
 static void trace_clusters(tl_points *points, const struct tl_refresh *refresh)
 {
     bool moved = refresh->request->moved;
-    size_t left = 0, rays = 0;
-#pragma omp parallel for schedule(dynamic, 4) reduction(+ : left, rays)
+    size_t begun = 0, done = 0, rays = 0;
+#pragma omp parallel for schedule(dynamic, 4) reduction(+ : begun, done, rays)
     for (size_t i = 0; i < points->active_count; i++) {
         struct tl_cluster cluster = open_cluster(points, points->active[i], refresh);
-        if (moved || !tl_cluster_is_done(refresh, &cluster))
+        int rounds = refresh->request->params->rounds;
+        if (moved || tl_cluster_rounds(refresh, &cluster) < rounds)
             rays += tl_cluster_refresh(refresh, &cluster);
-        left += moved || !tl_cluster_is_done(refresh, &cluster);
+        begun += !moved && tl_cluster_rounds(refresh, &cluster) > 0;
+        done += !moved && tl_cluster_rounds(refresh, &cluster) >= rounds;
     }
     points->ray_count = rays;
-    points->is_done = left == 0;
+    points->have_begun = begun == points->active_count;
+    points->are_done = done == points->active_count;
 }
 
-/* Gives the samples that need it points of their own, after those of the slots. */
-static void repair_samples(tl_points *points, const struct tl_refresh *refresh, bool again, size_t wanted)
+static size_t share_of(float share, const struct tl_points_request *request)
+{
+    return (size_t)(share * (float)request->samples->count);
+}
+
+/* Samples with points of their own: in motion, and once nothing moves. */
+static size_t repaired_in_motion(const struct tl_points_request *request)
+{
+    return share_of(request->params->repair, request);
+}
+
+static size_t repaired_at_rest(const struct tl_points_request *request)
+{
+    return share_of(fmaxf(request->params->repair, request->params->repair_rest), request);
+}
+
+/* So many bundles of samples take as many rays as the points do in a frame. */
+static size_t bundles_of_a_frame(const tl_points *points, const struct tl_refresh *refresh)
+{
+    const struct tl_points_request *request = refresh->request;
+    if (refresh->whole_rounds || request->moved)
+        return SIZE_MAX;
+    size_t rays = points->visible_count * (size_t)request->params->refresh;
+    return rays / ((size_t)request->regions->count * TL_CLUSTER) + 1;
+}
+
+/* What one image shows is chosen once in motion and once at rest, when the points know what to doubt. */
+static void choose_samples(tl_points *points, const struct tl_refresh *refresh, bool again)
 {
     struct tl_repair *repair = &points->repair;
+    size_t in_motion = repaired_in_motion(refresh->request), at_rest = repaired_at_rest(refresh->request);
+    if (!again && in_motion == 0)
+        repair->count = 0;
+    else if (!again)
+        tl_repair_choose(repair, refresh, points->taps, points->values, in_motion);
+    else if (at_rest > in_motion && !repair->at_rest && points->have_begun)
+        tl_repair_choose(repair, refresh, points->taps, points->values, at_rest);
+    repair->at_rest = again && (repair->at_rest || points->have_begun);
+}
+
+/* Gives the samples that need it points of their own, after those of the slots. They are read once every
+ * region has been looked at. */
+static void repair_samples(tl_points *points, const struct tl_refresh *refresh)
+{
+    struct tl_repair *repair = &points->repair;
+    size_t first = points->slot_count * TL_CLUSTER, row = first * points->stride;
+    if (repair->count > 0 && repair->rounds < refresh->request->params->rounds)
+        points->ray_count +=
+            tl_repair_trace(repair, refresh, &points->starts, bundles_of_a_frame(points, refresh),
+                            points->values + row, points->weights + row);
+}
+
+static void read_repaired(tl_points *points)
+{
+    const struct tl_repair *repair = &points->repair;
     size_t first = points->slot_count * TL_CLUSTER;
-    if (!again)
-        tl_repair_choose(repair, refresh, points->taps, points->values, wanted);
-    points->ray_count +=
-        tl_repair_trace(repair, refresh, &points->starts, points->values + first * points->stride,
-                        points->weights + first * points->stride);
-    for (size_t i = 0; i < repair->count; i++) {
+    for (size_t i = 0; repair->rounds > 0 && i < repair->count; i++) {
         uint32_t point = (uint32_t)(first + i);
         points->taps[repair->samples[i]] =
             (struct tl_taps){.point = {point, point, point, point}, .weight = {1}};
     }
 }
 
-/* Rays from the samples themselves. */
-static void trace_samples(tl_points *points, const struct tl_refresh *refresh, size_t repair_count)
+/* Where samples' rays start; true when nothing has changed since these were made. */
+static bool follow_samples(tl_points *points, const struct tl_points_request *request)
 {
-    const struct tl_points_request *request = refresh->request;
     bool has_suns = request->suns && request->suns->count > 0;
+    size_t repaired = request->moved && !request->whole_rounds ? repaired_in_motion(request)
+                                                               : repaired_at_rest(request);
     uint64_t before = points->starts.samples;
-    if (!has_suns)
-        points->suns.count = 0;
-    if (repair_count == 0)
-        points->repair.count = 0;
-    if (!has_suns && repair_count == 0)
-        return;
+    points->starts.samples = 0;
+    if (!has_suns && repaired == 0)
+        return false;
     tl_starts_make(request, &points->starts);
-    bool again = !request->moved && !points->carried && points->starts.samples == before;
-    if (has_suns)
+    return !request->moved && !points->carried && points->starts.samples == before;
+}
+
+static void trace_suns(tl_points *points, const struct tl_points_request *request, bool again)
+{
+    if (request->suns && request->suns->count > 0)
         points->ray_count += tl_sun_rays_update(&points->suns, request, &points->starts, again);
-    if (repair_count > 0)
-        repair_samples(points, refresh, again && points->repair.count > 0, repair_count);
-    points->is_done &= !has_suns || points->suns.rounds >= request->params->rounds;
-    points->is_done &= repair_count == 0 || points->repair.rounds >= request->params->rounds;
+    else
+        points->suns.count = 0;
+}
+
+/* A frame at rest is to cost no more than one in motion: points and samples of their own take turns. Points
+ * go first until each region has been looked at, then the samples' first round, then points to their end. */
+static void trace_in_turn(tl_points *points, const struct tl_refresh *refresh)
+{
+    bool again = follow_samples(points, refresh->request);
+    const struct tl_repair *repair = &points->repair;
+    bool samples_first = again && repair->at_rest && repair->count > 0 && repair->rounds == 0;
+    points->ray_count = 0;
+    if (refresh->whole_rounds || !samples_first)
+        trace_clusters(points, refresh);
+    tl_taps_mend(refresh->request, points->covered, points->taps);
+    trace_suns(points, refresh->request, again);
+    choose_samples(points, refresh, again);
+    if (refresh->whole_rounds || !again || samples_first || points->are_done)
+        repair_samples(points, refresh);
+    read_repaired(points);
+}
+
+static bool is_all_done(const tl_points *points, const struct tl_points_request *request)
+{
+    int rounds = request->params->rounds;
+    const struct tl_repair *repair = &points->repair;
+    bool repaired = repair->at_rest && (repair->count == 0 || repair->rounds >= rounds);
+    return points->are_done && (points->suns.count == 0 || points->suns.rounds >= rounds) &&
+           (repaired || repaired_at_rest(request) == 0);
 }
 
 static bool takes_whole_rounds(const struct tl_points_request *request)
@@ -419,7 +496,7 @@ static bool takes_whole_rounds(const struct tl_points_request *request)
     return request->whole_rounds || wanted == 0 || wanted >= request->regions->count;
 }
 
-static void trace_all(tl_points *points, const struct tl_points_request *request, size_t repair_count)
+static void trace_all(tl_points *points, const struct tl_points_request *request)
 {
     vec3s centres[TL_REGIONS_MAX], *directions = jitter_directions(points, request);
     float importances[TL_REGIONS_MAX];
@@ -436,21 +513,20 @@ static void trace_all(tl_points *points, const struct tl_points_request *request
                                        .offset_m = tl_trace_offset(request->trace),
                                        .frame = points->frame,
                                        .whole_rounds = takes_whole_rounds(request)};
-    trace_clusters(points, &refresh);
-    tl_taps_mend(request, points->covered, points->taps);
-    trace_samples(points, &refresh, repair_count);
+    trace_in_turn(points, &refresh);
+    points->is_done = is_all_done(points, request);
     free(directions);
 }
 
 void tl_points_update(tl_points *points, const struct tl_points_request *request)
 {
     assert(request->regions->count > 0 && request->params->rays > 0);
-    size_t repair_count = (size_t)(request->params->repair * (float)request->samples->count);
     follow_changes(points, request);
     mark_samples(points, request);
-    activate_clusters(points, repair_count);
+    activate_clusters(points,
+                      request->moved ? repaired_in_motion(request) : repaired_at_rest(request));
     resolve_taps(points);
-    trace_all(points, request, repair_count);
+    trace_all(points, request);
 }
 
 const uint16_t *tl_points_values(const tl_points *points, size_t *stride)

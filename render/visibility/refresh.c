@@ -20,7 +20,7 @@
 /* Weights of directions are kept in sixteen bits: a thousand rounds fill them, and from then on the mean is a
  * running one. */
 #define WEIGHT_ONE   64.0f
-#define LEAST_WEIGHT 0.1f
+#define LEAST_WEIGHT 0.03125f
 
 /* The members of a cluster, one a lane. */
 struct lanes {
@@ -279,12 +279,12 @@ static size_t trace_region(const struct tl_refresh *refresh, const struct tl_clu
     return rays;
 }
 
-bool tl_cluster_is_done(const struct tl_refresh *refresh, const struct tl_cluster *cluster)
+int tl_cluster_rounds(const struct tl_refresh *refresh, const struct tl_cluster *cluster)
 {
-    for (int i = 0; i < refresh->request->regions->count; i++)
-        if (cluster->rounds[i] < refresh->request->params->rounds)
-            return false;
-    return true;
+    int least = cluster->rounds[0];
+    for (int i = 1; i < refresh->request->regions->count; i++)
+        least = cluster->rounds[i] < least ? cluster->rounds[i] : least;
+    return least;
 }
 
 size_t tl_cluster_refresh(const struct tl_refresh *refresh, const struct tl_cluster *cluster)

@@ -39,8 +39,8 @@ struct tl_cluster {
  * rays. */
 size_t tl_cluster_refresh(const struct tl_refresh *refresh, const struct tl_cluster *cluster);
 
-/* At rest: every region has had its rounds. */
-bool tl_cluster_is_done(const struct tl_refresh *refresh, const struct tl_cluster *cluster);
+/* At rest: the least rounds of a region. */
+int tl_cluster_rounds(const struct tl_refresh *refresh, const struct tl_cluster *cluster);
 
 /* Traces all regions from up to TL_CLUSTER places of their own, `normals` on the side that is looked at.
  * `values` and `weights` are [count][stride]. Returns the number of rays. */
