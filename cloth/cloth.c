@@ -98,6 +98,11 @@ static void set_inverse_masses(tl_cloth *cloth)
 static void set_constants(tl_cloth *cloth)
 {
     set_inverse_masses(cloth);
+    tl_energy_set_fabric(&cloth->energy, &cloth->fabric);
+    cloth->critical_step =
+        tl_energy_critical_step(&cloth->energy, &cloth->fabric, cloth->particles.count, cloth->particles.w);
+    cloth->forces = tl_resize(cloth->forces, cloth->particles.count, sizeof *cloth->forces);
+    tl_implicit_destroy(&cloth->implicit);
     tl_energy_set(&cloth->energy, &cloth->fabric, cloth->particles.w, tl_cloth_substep(cloth));
     tl_contacts_release(&cloth->contacts); /* its planes know the thickness */
     cloth->contacts = tl_contacts_create(&cloth->topology, cloth->rest);
@@ -160,10 +165,13 @@ static void release_state(tl_cloth *cloth)
     tl_particles_release(&cloth->particles);
     tl_contacts_release(&cloth->contacts);
     tl_sewing_release(&cloth->sewing);
+    tl_implicit_destroy(&cloth->implicit);
     free(cloth->rest);
     free(cloth->pins);
+    free(cloth->forces);
     cloth->rest = NULL;
     cloth->pins = NULL;
+    cloth->forces = NULL;
 }
 
 void tl_cloth_join(tl_cloth *cloth, const uint32_t *joined, size_t joined_count)
@@ -349,11 +357,22 @@ struct tl_cloth_report tl_cloth_measure(const tl_cloth *cloth, const tl_collider
                                      .time_s = cloth->time_s,
                                      .max_speed = tl_cloth_max_speed(cloth),
                                      .max_strain = tl_cloth_max_strain(cloth),
+                                     .critical_step_s = cloth->critical_step,
+                                     .substep_s = tl_cloth_substep(cloth),
+                                     .unconverged_steps = cloth->tally.unconverged,
+                                     .shortened_steps = cloth->tally.shortened,
+                                     .caught_count = cloth->contacts.caught_count,
                                      .settled = cloth->settled};
-    for (size_t i = 0; i < cloth->particles.count; i++)
-        if (cloth->particles.w[i] > 0)
-            report.kinetic_energy +=
-                0.5 / cloth->particles.w[i] * vec3d_dot(cloth->particles.v[i], cloth->particles.v[i]);
+    vec3d *forces = TL_NEW_ARRAY(vec3d, cloth->particles.count);
+    report.elastic_energy =
+        tl_energy_forces(&cloth->energy, &cloth->fabric, cloth->particles.count, cloth->particles.x, forces);
+    free(forces);
+    for (size_t i = 0; i < cloth->particles.count; i++) {
+        vec3d x = cloth->particles.x[i], v = cloth->particles.v[i];
+        double mass = cloth->particles.w[i] > 0 ? 1 / cloth->particles.w[i] : 0;
+        report.kinetic_energy += 0.5 * mass * vec3d_dot(v, v);
+        report.potential_energy += mass * cloth->params.gravity * x.y;
+    }
     if (collider)
         report.deepest_m = deepest(cloth, collider);
     return report;

@@ -1,85 +1,7 @@
 #include "cloth/xpbd.h"
 
-#include "config/memory.h"
-
-#include <stdlib.h>
-#include <string.h>
-#ifdef __SSE2__
-#include <xmmintrin.h>
-#endif
-
 /* Shorter than this a vector has no direction to push along. */
 #define NO_LENGTH 1e-12
-
-unsigned tl_denormals_off(void)
-{
-#ifdef __SSE2__
-    unsigned state = _mm_getcsr();
-    _mm_setcsr(state | 0x8040); /* FTZ | DAZ */
-    return state;
-#else
-    return 0;
-#endif
-}
-
-void tl_denormals_restore(unsigned state)
-{
-#ifdef __SSE2__
-    _mm_setcsr(state);
-#else
-    (void)state;
-#endif
-}
-
-struct tl_particles tl_particles_create(size_t count)
-{
-    return (struct tl_particles){.count = count,
-                                 .x = TL_NEW_ARRAY(vec3d, count + 1),
-                                 .previous = TL_NEW_ARRAY(vec3d, count + 1),
-                                 .v = TL_NEW_ARRAY(vec3d, count + 1),
-                                 .w = TL_NEW_ARRAY(double, count + 1)};
-}
-
-void tl_particles_release(struct tl_particles *particles)
-{
-    free(particles->x);
-    free(particles->previous);
-    free(particles->v);
-    free(particles->w);
-    *particles = (struct tl_particles){0};
-}
-
-void tl_xpbd_predict(struct tl_particles *particles, double gravity, double drag, double h)
-{
-    double keep = exp(-drag * h);
-    for (size_t i = 0; i < particles->count; i++) {
-        vec3d v = particles->w[i] > 0 ? particles->v[i] : (vec3d){0};
-        if (particles->w[i] > 0)
-            v.y -= gravity * h;
-        particles->v[i] = vec3d_scale(v, keep);
-        particles->previous[i] = particles->x[i];
-        particles->x[i] = vec3d_muladd(particles->x[i], particles->v[i], h);
-    }
-}
-
-void tl_xpbd_finish(struct tl_particles *particles, double h)
-{
-    for (size_t i = 0; i < particles->count; i++)
-        particles->v[i] = vec3d_scale(vec3d_sub(particles->x[i], particles->previous[i]), 1 / h);
-}
-
-void tl_xpbd_calm(struct tl_particles *particles, const uint32_t (*edges)[2], size_t edge_count, double share)
-{
-    for (size_t i = 0; i < edge_count; i++) {
-        uint32_t a = edges[i][0], b = edges[i][1];
-        double sum = particles->w[a] + particles->w[b];
-        if (!(sum > 0))
-            continue;
-        vec3d impulse = vec3d_scale(vec3d_sub(particles->v[b], particles->v[a]), share / sum);
-        particles->v[a] = vec3d_muladd(particles->v[a], impulse, particles->w[a]);
-        particles->v[b] = vec3d_muladd(particles->v[b], impulse, -particles->w[b]);
-    }
-}
 
 /* ---- Batches ---- */
 
@@ -92,9 +14,9 @@ void tl_xpbd_calm(struct tl_particles *particles, const uint32_t (*edges)[2], si
 #endif
 #define INLINE static inline __attribute__((always_inline))
 
-typedef double lanes __attribute__((vector_size(8 * TL_LANES)));
-typedef double lanes_in_memory __attribute__((vector_size(8 * TL_LANES), aligned(8)));
-typedef long long mask __attribute__((vector_size(8 * TL_LANES)));
+typedef double lanes __attribute__((vector_size(8 * TL_BATCH)));
+typedef double lanes_in_memory __attribute__((vector_size(8 * TL_BATCH), aligned(8)));
+typedef long long mask __attribute__((vector_size(8 * TL_BATCH)));
 
 struct lanes3 {
     lanes x, y, z;
@@ -112,7 +34,7 @@ INLINE lanes choose(mask which, lanes yes, lanes no)
 
 INLINE lanes root(lanes v)
 {
-    for (int i = 0; i < TL_LANES; i++)
+    for (int i = 0; i < TL_BATCH; i++)
         v[i] = sqrt(v[i]);
     return v;
 }
@@ -147,7 +69,7 @@ INLINE lanes load_inverse_masses(const struct tl_particles *particles, const uin
 
 INLINE void store(struct lanes3 x, const uint32_t *v, struct tl_particles *particles)
 {
-    for (int lane = 0; lane < TL_LANES; lane++)
+    for (int lane = 0; lane < TL_BATCH; lane++)
         particles->x[v[lane]] = (vec3d){x.x[lane], x.y[lane], x.z[lane]};
 }
 
