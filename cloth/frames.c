@@ -2,14 +2,13 @@
 
 #include "cloth/frames_lay.h"
 #include "config/memory.h"
-#include "config/simd.h"
 
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define LANES TL_FRAME_LANES
+#define LANES TL_LANES
 
 tl_frames *tl_frames_create(const tl_mesh *mesh, const uint32_t *weld)
 {

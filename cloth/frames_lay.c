@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LANES TL_FRAME_LANES
+#define LANES TL_LANES
 
 struct item {
     uint32_t normal, group; /* group: TL_NONE where the normal has none */

@@ -124,7 +124,7 @@ static void assert_orthonormal(const struct buffers *b, size_t count)
 
 struct errors {
     double worst_normal, worst_tangent, normals, tangents; /* degrees; the latter two are sums */
-    size_t normal_count, tangent_count;
+    size_t normal_count, tangent_count, undetermined;
 };
 
 /* The corner of a vertex whose group most of its corners are in, the first of equals. */
@@ -153,16 +153,24 @@ static void compare(const tl_mesh *mesh, const struct buffers *b, struct errors 
         size_t any = o.first_at[b->weld[v]], shown = showing_corner(&o, v);
         while (any != ORACLE_NONE && oracle_vertex(&o, any) != v)
             any = o.next_at[any];
-        vec3d normal = any == ORACLE_NONE ? (vec3d){0} : oracle_normal_sum(&o, any);
-        if (vec3d_norm(normal) < cancelled)
+        if (any == ORACLE_NONE)
+            continue; /* in no triangle */
+        vec3d normal = oracle_normal_sum(&o, any);
+        if (vec3d_norm(normal) < cancelled) {
+            errors->undetermined++;
             continue;
+        }
         double off = degrees_between(normal, vec3d_from(b->normals[v]));
         errors->worst_normal = fmax(errors->worst_normal, off);
         errors->normals += off;
         errors->normal_count++;
-        vec3d tangent = shown == ORACLE_NONE ? (vec3d){0} : oracle_tangent_sum(&o, shown);
-        if (vec3d_norm(tangent) < cancelled)
+        if (shown == ORACLE_NONE)
+            continue; /* no UV area around it */
+        vec3d tangent = oracle_tangent_sum(&o, shown);
+        if (vec3d_norm(tangent) < cancelled) {
+            errors->undetermined++;
             continue;
+        }
         off = degrees_between(tangent, tangent_at(b, v));
         errors->worst_tangent = fmax(errors->worst_tangent, off);
         errors->tangents += off;
@@ -174,14 +182,16 @@ static void compare(const tl_mesh *mesh, const struct buffers *b, struct errors 
 
 static void print_errors(const char *name, const tl_mesh *mesh, const struct errors *e)
 {
-    printf("%s, %zu vertices: normals %.1e deg (mean %.1e), tangents %.1e deg (mean %.1e)\n", name,
-           mesh->vertex_count, e->worst_normal, e->normals / (double)e->normal_count, e->worst_tangent,
-           e->tangents / (double)(e->tangent_count > 0 ? e->tangent_count : 1));
+    printf("%s, %zu vertices: normals %.1e deg (mean %.1e)", name, mesh->vertex_count, e->worst_normal,
+           e->normals / (double)e->normal_count);
+    if (e->tangent_count > 0)
+        printf(", tangents %.1e deg (mean %.1e)", e->worst_tangent, e->tangents / (double)e->tangent_count);
+    printf("\n");
 }
 
 #define ALLOWED_DEG 0.05
 
-/* Deformed by waves with little and with much noise. All or nearly all vertices must have been compared. */
+/* Deformed by waves with little and with much noise. */
 static void check_deformations(const char *name, const tl_mesh *mesh, uint32_t seeds)
 {
     struct buffers b = make_buffers(mesh);
@@ -196,7 +206,8 @@ static void check_deformations(const char *name, const tl_mesh *mesh, uint32_t s
     print_errors(name, mesh, &errors);
     assert_true(errors.worst_normal <= ALLOWED_DEG);
     assert_true(errors.worst_tangent <= ALLOWED_DEG);
-    printf("%zu %zu of %zu\n", errors.normal_count, errors.tangent_count, seeds * mesh->vertex_count);
+    assert_true(errors.normal_count > 0);
+    assert_true(errors.undetermined <= errors.normal_count / 500);
     tl_frames_destroy(&frames);
     free_buffers(&b);
 }
@@ -239,27 +250,24 @@ static void check_file(const char *path)
     tl_garment garment;
     tl_error error;
     assert_ok(tl_garment_load(test_data(path), &garment, &error), error);
-    check_deformations(path, &garment.model.mesh, 4);
+    check_deformations(path, &garment.model.mesh, garment.model.mesh.vertex_count > 20000 ? 2 : 4);
     tl_garment_release(&garment);
 }
 
-static void test_female_sportsuit(void **state)
-{
-    (void)state;
-    check_file("garments/mh_female_sportsuit01.glb");
-}
-
-static void test_male_casualsuit(void **state)
-{
-    (void)state;
-    check_file("garments/mh_male_casualsuit06.glb");
-}
-
-static void test_folds(void **state)
-{
-    (void)state;
-    check_file("garments/bjs_clothFolds.glb");
-}
+#define FILE_TEST(name, path)                                                                                \
+    static void test_##name(void **state)                                                                    \
+    {                                                                                                        \
+        (void)state;                                                                                         \
+        check_file("garments/" path);                                                                        \
+    }
+FILE_TEST(female_sportsuit, "mh_female_sportsuit01.glb")
+FILE_TEST(male_casualsuit, "mh_male_casualsuit06.glb")
+FILE_TEST(folds, "bjs_clothFolds.glb")
+FILE_TEST(knife_pleats, "cipc_dress_knife_stage.obj")
+FILE_TEST(draped_dress, "diffcloth_dress-handsup-drape.obj")
+FILE_TEST(long_sleeved_dress, "diffcloth_dress-v5k-f10k.obj")
+FILE_TEST(plain_skirt, "diffcloth_skirt3448.obj")
+FILE_TEST(tshirt, "diffcloth_tshirt1000-tri.obj")
 
 static void test_built_in_garments(void **state)
 {
@@ -362,6 +370,150 @@ static void test_both_sides(void **state)
     free_buffers(&b);
 }
 
+/* An open fan and a ring of 100 triangles that touch in one vertex, which is more spokes than are held at a
+ * time, in two pieces. */
+static void test_long_fans(void **state)
+{
+    (void)state;
+    enum { SIDES = 100 };
+    vec3s positions[2 * SIDES + 2] = {{{0}}};
+    vec2s uvs[2 * SIDES + 2] = {{{0}}};
+    uint32_t indices[6 * SIDES];
+    for (uint32_t i = 0; i <= SIDES; i++) { /* 1 .. SIDES + 1: the fan's rim; then the ring's */
+        double turn = 0.9 * M_PI * i / SIDES, round = 2 * M_PI * i / SIDES;
+        positions[1 + i] = (vec3s){{(float)cos(turn), (float)sin(turn), 0.2f * (float)sin(7 * turn)}};
+        if (i < SIDES)
+            positions[2 + SIDES + i] = (vec3s){{(float)cos(round), -1 + (float)sin(round), 0.3f}};
+    }
+    for (uint32_t i = 0; i < 2 * SIDES + 2; i++)
+        uvs[i] = (vec2s){{positions[i].x + positions[i].z, -positions[i].y}};
+    for (uint32_t i = 0; i < SIDES; i++) {
+        const uint32_t fan[3] = {0, 1 + i, 2 + i};
+        const uint32_t ring[3] = {0, 2 + SIDES + i, 2 + SIDES + (i + 1) % SIDES};
+        memcpy(indices + (size_t)3 * i, fan, sizeof fan);
+        memcpy(indices + (size_t)3 * (SIDES + i), ring, sizeof ring);
+    }
+    const tl_mesh mesh = {.vertex_count = 2 * SIDES + 2,
+                          .positions = positions,
+                          .uvs = uvs,
+                          .index_count = 6 * SIDES,
+                          .indices = indices};
+    check_deformations("long fans", &mesh, 6);
+}
+
+/* Directions do not depend on size, even where squares of areas come near the ends of float. */
+static void test_sizes(void **state)
+{
+    (void)state;
+    tl_garment garment = mirrored_and_cut();
+    tl_mesh *mesh = &garment.model.mesh;
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        mesh->positions[i] = glms_vec3_scale(mesh->positions[i], 1e-6f);
+    check_deformations("a thousandth of a millimetre", mesh, 2);
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        mesh->positions[i] = glms_vec3_scale(mesh->positions[i], 1e12f);
+    check_deformations("a thousand kilometres", mesh, 2);
+    sheet_free(&garment);
+}
+
+/* What is around a vertex that is nowhere keeps its frame, and the rest moves on. */
+static void test_positions_that_are_not_finite(void **state)
+{
+    (void)state;
+    const float bad[] = {NAN, INFINITY, -INFINITY, 3e38f};
+    tl_garment garment = mirrored_and_cut();
+    const tl_mesh *mesh = &garment.model.mesh;
+    struct buffers b = make_buffers(mesh), clean = make_buffers(mesh);
+    tl_frames *frames = tl_frames_create(mesh, b.weld);
+    deform(mesh, b.weld, 1, 0.1, b.positions);
+    tl_frames_update(frames, b.positions, clean.normals, clean.tangents);
+    const uint32_t middle = 4 * 13 + 8; /* row and column of no cut and no mirror */
+    for (size_t i = 0; i < TL_COUNT(bad); i++) {
+        vec3s kept = b.positions[middle];
+        b.positions[middle].y = bad[i];
+        tl_frames_update(frames, b.positions, b.normals, b.tangents);
+        assert_orthonormal(&b, mesh->vertex_count);
+        b.positions[middle] = kept;
+        for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+            int rows = abs((int)(v / 13) - 4), columns = abs((int)(v % 13) - 8);
+            bool far = rows > 1 || columns > 1, kept_frame = rows + columns <= 1 && !isfinite(bad[i]);
+            if (far || kept_frame)
+                assert_memory_equal(&b.normals[v], &clean.normals[v], sizeof(vec3s));
+        }
+        tl_frames_update(frames, b.positions, b.normals, b.tangents);
+        assert_memory_equal(b.normals, clean.normals, mesh->vertex_count * sizeof(vec3s));
+        assert_memory_equal(b.tangents, clean.tangents, mesh->vertex_count * sizeof(vec4s));
+    }
+    tl_frames_destroy(&frames);
+    free_buffers(&b);
+    free_buffers(&clean);
+    sheet_free(&garment);
+}
+
+static vec3s wave(double u, double v)
+{
+    return (vec3s){{(float)u, (float)v, (float)(0.05 * sin(9 * u + 4 * v))}};
+}
+
+static void test_threads_do_not_matter(void **state)
+{
+    (void)state;
+    const struct sheet_shape shape = {120, 120, 1, 1};
+    tl_garment garment = sheet_make(&shape, wave);
+    const tl_mesh *mesh = &garment.model.mesh;
+    struct buffers b = make_buffers(mesh), one = make_buffers(mesh);
+    int threads = omp_get_max_threads();
+    for (int count = 1; count <= 3; count++) {
+        tl_frames *frames = tl_frames_create(mesh, b.weld);
+        struct buffers *to = count == 1 ? &one : &b;
+        omp_set_num_threads(count);
+        tl_frames_update(frames, b.positions, to->normals, to->tangents);
+        assert_memory_equal(to->normals, one.normals, mesh->vertex_count * sizeof(vec3s));
+        assert_memory_equal(to->tangents, one.tangents, mesh->vertex_count * sizeof(vec4s));
+        tl_frames_destroy(&frames);
+    }
+    omp_set_num_threads(threads);
+    free_buffers(&b);
+    free_buffers(&one);
+    sheet_free(&garment);
+}
+
+static double thread_seconds(void)
+{
+    struct timespec time;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+/* Prints the time of one core, the best of many; no claim is made of it. */
+static void test_print_speed(void **state)
+{
+    (void)state;
+    const int sides[] = {99, 315}, repeats[] = {300, 30};
+    int threads = omp_get_max_threads();
+    omp_set_num_threads(1);
+    for (size_t i = 0; i < TL_COUNT(sides); i++) {
+        const struct sheet_shape shape = {sides[i], sides[i], 1, 1};
+        tl_garment garment = sheet_make(&shape, wave);
+        const tl_mesh *mesh = &garment.model.mesh;
+        struct buffers b = make_buffers(mesh);
+        tl_frames *frames = tl_frames_create(mesh, b.weld);
+        double best = INFINITY;
+        for (int k = 0; k < repeats[i]; k++) {
+            double begin = thread_seconds();
+            tl_frames_update(frames, b.positions, b.normals, b.tangents);
+            best = fmin(best, thread_seconds() - begin);
+        }
+        assert_orthonormal(&b, mesh->vertex_count);
+        printf("%zu vertices: %.3f ms, %.1f ns a vertex\n", mesh->vertex_count, 1e3 * best,
+               1e9 * best / (double)mesh->vertex_count);
+        tl_frames_destroy(&frames);
+        free_buffers(&b);
+        sheet_free(&garment);
+    }
+    omp_set_num_threads(threads);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -370,10 +522,20 @@ int main(void)
         cmocka_unit_test(test_female_sportsuit),
         cmocka_unit_test(test_male_casualsuit),
         cmocka_unit_test(test_folds),
+        cmocka_unit_test(test_knife_pleats),
+        cmocka_unit_test(test_draped_dress),
+        cmocka_unit_test(test_long_sleeved_dress),
+        cmocka_unit_test(test_plain_skirt),
+        cmocka_unit_test(test_tshirt),
         cmocka_unit_test(test_built_in_garments),
         cmocka_unit_test(test_cylinder),
         cmocka_unit_test(test_degenerate_input_stays_finite),
         cmocka_unit_test(test_both_sides),
+        cmocka_unit_test(test_long_fans),
+        cmocka_unit_test(test_sizes),
+        cmocka_unit_test(test_positions_that_are_not_finite),
+        cmocka_unit_test(test_threads_do_not_matter),
+        cmocka_unit_test(test_print_speed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
