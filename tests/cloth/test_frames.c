@@ -175,7 +175,8 @@ static void compare(const tl_mesh *mesh, const struct buffers *b, struct errors 
         errors->worst_tangent = fmax(errors->worst_tangent, off);
         errors->tangents += off;
         errors->tangent_count++;
-        assert_near(b->tangents[v].w, -o.hand[shown / 3], 0); /* v runs down */
+        int hand = o.hand[shown / 3];
+        assert_near(b->tangents[v].w, -hand, 0); /* v runs down */
     }
     oracle_release(&o);
 }
@@ -393,10 +394,10 @@ static void test_long_fans(void **state)
         memcpy(indices + (size_t)3 * i, fan, sizeof fan);
         memcpy(indices + (size_t)3 * (SIDES + i), ring, sizeof ring);
     }
-    const tl_mesh mesh = {.vertex_count = 2 * SIDES + 2,
+    const tl_mesh mesh = {.vertex_count = TL_COUNT(positions),
                           .positions = positions,
                           .uvs = uvs,
-                          .index_count = 6 * SIDES,
+                          .index_count = TL_COUNT(indices),
                           .indices = indices};
     check_deformations("long fans", &mesh, 6);
 }
