@@ -46,7 +46,7 @@ struct fans {
     const vec3s *positions;
 };
 
-static struct fans fans_of(const tl_frames *frames, size_t block, const vec3s *positions)
+TL_INLINE struct fans fans_of(const tl_frames *frames, size_t block, const vec3s *positions)
 {
     const struct tl_frame_block *b = &frames->blocks[block];
     const uint32_t(*rows)[LANES] = (const uint32_t(*)[LANES])frames->rows + b->first_row;
@@ -88,8 +88,8 @@ TL_INLINE size_t fetch_edges(const struct fans *fans, size_t first, struct edges
 
 /* ---- Sums over corners ---- */
 
-/* Far below the rounding of garments' coordinates, metres squared: added to what divides, to keep it above 0.
- */
+/* Square metres, far below what the rounding of a garment's coordinates leaves of an area: keeps divisors
+ * above 0. */
 #define NOTHING 1e-18f
 
 /* atan2(sine, cosine) / length for sine > 0: the angle at a corner over the length of what it weighs. The
@@ -236,8 +236,8 @@ TL_INLINE void borrow_normals(const tl_frames *frames, const uint32_t lenders[LA
             normal[c][i] = frames->states[lenders[i] / LANES].normal[c][lenders[i] % LANES];
 }
 
-/* Asks for what a block reads in sequence while the one before it is being summed: half of the time of large
- * meshes would be spent on waiting. */
+/* Asks for what a block reads in sequence while the one before it is being summed: large meshes would wait
+ * for a third of the time. */
 TL_INLINE void prefetch_block(const tl_frames *frames, size_t index)
 {
     if (index >= frames->block_count)
