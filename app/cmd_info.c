@@ -84,7 +84,7 @@ static cJSON *describe_material(const tl_material *material)
 static void describe_units(cJSON *object, const tl_model *model)
 {
     cJSON_AddStringToObject(object, "units", tl_units_names[model->units.units]);
-    char *lines[] = {tl_units_describe(model->name, &model->units),
+    char *lines[] = {tl_units_describe(model->name, &model->units, "--units"),
                      tl_units_describe_up(model->name, &model->units)};
     const char *const keys[] = {"units_note", "up_note"};
     for (size_t i = 0; i < TL_COUNT(lines); i++) {

@@ -56,21 +56,22 @@ struct tl_units_reading tl_units_read(struct tl_box box, enum tl_units wanted, b
         reading.units = TL_UNITS_M;
     else
         guess(&reading);
+    reading.absurd = is_metric && reading.guessed;
     return reading;
 }
 
-char *tl_units_describe(const char *name, const struct tl_units_reading *reading)
+char *tl_units_describe(const char *name, const struct tl_units_reading *reading, const char *option)
 {
     if (!reading->guessed)
         return NULL;
     double length = (double)reading->longest;
-    char *taken = tl_format("%s: %.4g units at its longest: %s%s (%.3g m)", name, length,
-                            reading->fits ? "taken as " : "no unit fits: taken as ", plurals[reading->units],
-                            length * tl_units_metres(reading->units));
-    char *line = reading->other
-                     ? tl_format("%s, though %s would do: --units tells", taken, plurals[reading->other])
-                     : tl_format("%s; --units tells otherwise", taken);
-    free(taken);
+    const char *why = reading->absurd ? "absurd as metres: " : reading->fits ? "" : "no unit fits: ";
+    char *other =
+        reading->other ? tl_format(", though %s would do", plurals[reading->other]) : tl_copy_string("");
+    char *line =
+        tl_format("%s: %.4g units at its longest: %staken as %s (%.3g m)%s; %s tells otherwise", name, length,
+                  why, plurals[reading->units], length * tl_units_metres(reading->units), other, option);
+    free(other);
     return line;
 }
 
