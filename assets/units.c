@@ -37,12 +37,13 @@ static void guess(struct tl_units_reading *reading)
         reading->other = reading->units == TL_UNITS_IN ? TL_UNITS_DM : TL_UNITS_IN;
 }
 
-/* A person stands on the ground about the vertical through the origin: a box that does so along Z, and is far
- * longer along it, was made where Z is up. */
+/* Far longer along Z than along Y, and about Y = 0: a body's depth. Then either longest along Z, or standing
+ * on Z = 0. A wide skirt with Y up is as long along X, and centred along Z. */
 static bool looks_z_up(struct tl_box box)
 {
     vec3s size = glms_vec3_sub(box.upper, box.lower), middle = glms_vec3_lerp(box.lower, box.upper, 0.5f);
-    return size.z > 1.5f * size.y && box.lower.z > -0.05f * size.z && fabsf(middle.y) < 0.25f * size.y;
+    bool shallow = size.z > 1.5f * size.y && fabsf(middle.y) < 0.25f * size.y;
+    return shallow && (size.z > 1.1f * size.x || box.lower.z > -0.05f * size.z);
 }
 
 struct tl_units_reading tl_units_read(struct tl_box box, enum tl_units wanted, bool is_metric)

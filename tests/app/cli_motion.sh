@@ -30,7 +30,7 @@ $TOILE export $played skirt.pc2 -o played.glb --frame 3 --quiet
 check "a played frame as GLB" $TOILE info played.glb
 
 check "info of a PC2" sh -c "$TOILE info skirt.pc2 | grep -Eq '^samples +5$' && $TOILE info skirt.pc2 | grep -Eq '^first_frame +2$'"
-check "info of an MDD" sh -c "$TOILE info skirt.mdd | grep -Eq '^samples_per_s +30$'"
+check "info of an MDD" sh -c "$TOILE info skirt.mdd | grep -Eq '^rate +30$' && $TOILE info skirt.mdd | grep -Eq '^rate_per +second$'"
 check "info of a sequence" sh -c "$TOILE info 'frame.#.obj' | grep -Eq '^format +OBJ sequence$'"
 check "info of an OBJ" sh -c "$TOILE info skirt.obj | grep -Eq '^units +m$'"
 

@@ -97,16 +97,20 @@ static void the_guess_is_said(void **state)
     free(line);
 }
 
-/* A person who lies along Z with feet at z = 0; the same upright; a wide skirt; a garment in front of the
- * origin. */
+/* A person who lies along Z with feet at z = 0, and with arms spread; panels about one whose waist is there;
+ * upright; a wide skirt; a garment in front of the origin. */
 static void lying_boxes_are_noticed(void **state)
 {
     (void)state;
     const struct tl_box lying = {{{-0.3f, -0.15f, 0}}, {{0.3f, 0.15f, 1.7f}}};
+    const struct tl_box spread = {{{-0.85f, -0.15f, 0}}, {{0.85f, 0.15f, 1.7f}}};
+    const struct tl_box panels = {{{-0.33f, -0.1f, -0.2f}}, {{0.32f, 0.2f, 0.58f}}};
     const struct tl_box upright = {{{-0.3f, 0, -0.15f}}, {{0.3f, 1.7f, 0.15f}}};
     const struct tl_box skirt = {{{-0.5f, 0.7f, -0.5f}}, {{0.5f, 1, 0.5f}}};
     const struct tl_box before = {{{-0.3f, 1, 1}}, {{0.3f, 1.4f, 2}}};
     assert_true(tl_units_read(lying, TL_UNITS_M, false).z_up);
+    assert_true(tl_units_read(spread, TL_UNITS_AUTO, false).z_up);
+    assert_true(tl_units_read(panels, TL_UNITS_AUTO, false).z_up);
     assert_false(tl_units_read(lying, TL_UNITS_AUTO, true).z_up); /* glTF says which way is up */
     assert_false(tl_units_read(upright, TL_UNITS_AUTO, false).z_up);
     assert_false(tl_units_read(skirt, TL_UNITS_AUTO, false).z_up);
