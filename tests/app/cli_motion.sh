@@ -26,6 +26,10 @@ check "... and by way of MDD" sh -c '[ "$(cmp -l skirt.pc2 again.pc2 | awk "\$1 
 for n in 0 1 2 3 4; do $TOILE export $played skirt.pc2 -o frame.$n.obj --frame $n --quiet; done
 $TOILE export $played 'frame.#.obj' -o again.pc2 --frames 0:4 --quiet
 check "... and by way of OBJ files" sh -c '[ "$(cmp -l skirt.pc2 again.pc2 | awk "\$1 < 21 || \$1 > 24" | wc -l)" = 0 ]'
+mkdir sub && cp skirt.obj frame.?.obj sub
+printf 'scene:\n  garment: skirt.obj\n  motion: frame.#.obj\n  avatar: none\n' >sub/scene.yaml
+$TOILE export sub/scene.yaml -o scene.pc2 --frames 0:4 --quiet
+check "a scene file names its motion beside itself" cmp scene.pc2 again.pc2
 $TOILE export $played skirt.pc2 -o played.glb --frame 3 --quiet
 check "a played frame as GLB" $TOILE info played.glb
 

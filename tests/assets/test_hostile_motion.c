@@ -192,6 +192,7 @@ static void objects_that_lie_are_refused(void **state)
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1//1 2//1 3//1\n",
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1/ 2/1/ 3/1/\n",
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1/1/1 2/1 3/1\n",
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/-2 2/1 3/1\n",
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0\nf 1 2 3\n",
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 1\nf 1 2 3\n",
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\n",
