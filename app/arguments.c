@@ -22,6 +22,7 @@ enum flag_kind {
     FLAG_MAX_FRAMES,
     FLAG_AXIS,
     FLAG_QUICK,
+    FLAG_FULL,
     FLAG_QUIET,
     FLAG_VERBOSE,
     FLAG_HELP,
@@ -65,8 +66,9 @@ static const struct flag flags_known[] = {
     {"--hdr", TL_FLAGS_METRIC, FLAG_HDR, NULL, NULL, "compare over all exposures that the reference holds"},
     {"--screenshots", TL_FLAGS_WINDOW, FLAG_SCREENSHOTS, NULL, "FOLDER", "where screenshots go"},
     {"--max-frames", TL_FLAGS_WINDOW, FLAG_MAX_FRAMES, NULL, "N", "close after N frames"},
-    {"--axis", TL_FLAGS_AXIS, FLAG_AXIS, NULL, "NAME", "what is varied: light"},
+    {"--axis", TL_FLAGS_AXIS, FLAG_AXIS, NULL, "NAME", "what is varied: light or cloth"},
     {"--quick", TL_FLAGS_QUICK, FLAG_QUICK, NULL, NULL, "a few choices and frames only"},
+    {"--full", TL_FLAGS_FULL, FLAG_FULL, NULL, NULL, "what takes minutes too"},
     {"--quiet", 0, FLAG_QUIET, NULL, NULL, "say nothing but errors"},
     {"--verbose", 0, FLAG_VERBOSE, NULL, NULL, "say more"},
     {"--help", 0, FLAG_HELP, NULL, NULL, "what the command does and takes"},
@@ -181,6 +183,9 @@ static bool take_flag(const struct flag *flag, const char *value, struct tl_argu
         return true;
     case FLAG_QUICK:
         out->quick = true;
+        return true;
+    case FLAG_FULL:
+        out->full = true;
         return true;
     case FLAG_QUIET:
         out->quiet = true;

@@ -21,6 +21,7 @@ enum tl_flag_set { /* which groups of flags a command takes */
                    TL_FLAGS_WINDOW = 64, /* --screenshots DIR --max-frames N */
                    TL_FLAGS_AXIS = 128,  /* --axis NAME */
                    TL_FLAGS_QUICK = 256, /* --quick */
+                   TL_FLAGS_FULL = 512,  /* --full */
 };
 
 struct tl_arguments {
@@ -36,7 +37,7 @@ struct tl_arguments {
     const char *screenshots; /* folder for screenshots */
     int max_frames;          /* 0: no limit */
     const char *axis;        /* NULL: not given */
-    bool quick;
+    bool quick, full;
 };
 
 bool tl_arguments_parse(int argc, char **argv, unsigned flags, struct tl_arguments *out, tl_error *error);
