@@ -7,8 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define FRAMES      10
-#define FRAMES_WORK 3e6 /* particle-substeps, beyond which fewer frames do */
+/* As many frames as a cell's work allows, for what grows may do so slowly. */
+#define FRAMES_MIN  2
+#define FRAMES_MAX  100
+#define FRAMES_WORK 1e6 /* particle-substeps */
+#define SOLVE_WORK  100 /* of a step of settle, in substeps of the others */
 #define EXACT_SHARE 1e-3
 #define FLOAT_SHARE 1e-6
 #define SCRAMBLE    0.2
@@ -136,8 +139,10 @@ static int frame_count(const tl_cloth *cloth, const struct subject *subject)
     struct tl_cloth_report report = tl_cloth_measure(cloth, NULL);
     if (!subject->tested->size->whole)
         return 1;
-    double substeps = 1 / (subject->params.frame_rate * report.substep_s);
-    return (int)fmin(fmax(FRAMES_WORK / (substeps * (double)report.vertex_count), 2), FRAMES);
+    double work = (double)report.vertex_count / (subject->params.frame_rate * report.substep_s);
+    if (subject->params.solver == TL_CLOTH_SETTLE)
+        work *= SOLVE_WORK;
+    return (int)fmin(fmax(FRAMES_WORK / work, FRAMES_MIN), FRAMES_MAX);
 }
 
 static double farthest_from(const tl_cloth *cloth, const tl_garment *garment)
