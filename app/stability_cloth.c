@@ -1,4 +1,5 @@
 /* The extremes of cloth: the envelope over stiffness, step, mass ratio and size, then single extremes. */
+#include "app/cost.h"
 #include "app/envelope_sweep.h"
 #include "app/extremes_cloth.h"
 #include "config/file.h"
@@ -13,6 +14,7 @@
 struct single {
     bool run;
     enum tl_outcome outcome;
+    double cpu_ms;
     tl_error error;
 };
 
@@ -28,11 +30,13 @@ static bool run_singles(struct suite *suite, bool quick, tl_error *error)
     suite->singles = TL_NEW_ARRAY(struct single, count);
     for (size_t i = 0; i < count && !tl_interrupted(); i++) {
         struct single *single = &suite->singles[i];
+        struct tl_stopwatch watch = tl_stopwatch_start();
         size_t extreme = i / TL_CLOTH_SOLVER_COUNT;
         int solver = (int)(i % TL_CLOTH_SOLVER_COUNT);
-        single->run = !(quick && solver == TL_CLOTH_REFERENCE && tl_cloth_extreme_is_slow(extreme));
+        single->run = !(quick && solver != TL_CLOTH_PREVIEW && tl_cloth_extreme_is_slow(extreme));
         if (single->run)
             single->outcome = tl_cloth_extreme_run(extreme, solver, &single->error);
+        single->cpu_ms = tl_stopwatch_read(&watch).cpu_ms;
         tl_progress_update(&progress, (double)i + 1, (double)count);
     }
     tl_progress_end(&progress);
@@ -96,6 +100,7 @@ static void add_cells(const struct suite *suite, struct tl_stability *out)
         cJSON *row = tl_stability_add(out, "cloth", single->outcome);
         cJSON_AddStringToObject(row, "extreme", tl_cloth_extreme_name(i / TL_CLOTH_SOLVER_COUNT));
         cJSON_AddStringToObject(row, "solver", tl_cloth_solver_names[i % TL_CLOTH_SOLVER_COUNT]);
+        cJSON_AddNumberToObject(row, "cpu_ms", single->cpu_ms);
         cJSON_AddStringToObject(row, "why", single->error.message);
     }
 }
