@@ -11,9 +11,9 @@
 /* As many frames as a cell's work allows, for what grows may do so slowly. */
 #define FRAMES_MIN  2
 #define FRAMES_MAX  100
-#define FRAMES_WORK 4e5 /* particle-substeps */
+#define FRAMES_WORK 1e6 /* particle-substeps */
 #define LEAST_WORK  20  /* of a substep, in particles */
-#define SOLVE_WORK  300 /* of a step of settle, in substeps of the others */
+#define SOLVE_WORK  800 /* of a step of settle, in substeps of the others */
 #define EXACT_SHARE 1e-3
 #define FLOAT_SHARE 1e-6
 #define SCRAMBLE    0.2
