@@ -30,9 +30,11 @@ const struct tl_command tl_commands[] = {
     {"compare", "compare TESTED REFERENCE [--json] [--ldr|--hdr]",
      "Tells how different two images are: relative RMSE, mean FLIP, largest difference.",
      TL_FLAGS_JSON | TL_FLAGS_METRIC, tl_command_compare},
-    {"export", "export [SCENE] -o OUT.glb [OPTIONS]",
-     "Writes the draped garment and its avatar as a GLB file.",
-     TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_FRAME, tl_command_export},
+    {"export", "export [SCENE] -o OUT.glb|OUT.obj|OUT.pc2|OUT.mdd [OPTIONS]",
+     "Writes a frame: the garment and its avatar as .glb, the garment as .obj; or with --frames the "
+     "garment's "
+     "motion as .pc2 or .mdd.",
+     TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_FRAME | TL_FLAGS_FRAMES, tl_command_export},
     {"info", "info FILE|fabrics|presets|garments [--json]",
      "Tells what a file holds and how it will be read, or lists what is built in.", TL_FLAGS_JSON,
      tl_command_info},
@@ -71,7 +73,7 @@ bool tl_command_help(const struct tl_arguments *arguments, tl_error *error)
     if (topic)
         return print_command_help(topic, error);
     printf("toile %s: garment review. usage: toile COMMAND [SCENE] [OPTIONS]\n\n"
-           "SCENE is a YAML file, a .glb or .gltf model, or nothing: the built-in scene.\n\n",
+           "SCENE is a YAML file, a .glb, .gltf or .obj model, or nothing: the built-in scene.\n\n",
            TOILE_VERSION);
     for (const struct tl_command *command = tl_commands; command->name; command++)
         printf("  %-9s %s\n", command->name, command->help);
