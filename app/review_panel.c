@@ -112,6 +112,8 @@ static size_t list_measures(struct tl_review *review, struct tl_panel_line *line
     if (tl_session_cloth(review->session)) {
         const struct tl_cloth_report *report = cloth_report(review);
         add_line(lines, &count, "sheet", "%zu vertices, %zu edges", report->vertex_count, report->edge_count);
+        add_line(lines, &count, "substep", "%.3g ms; critical %.3g ms", 1000 * report->substep_s,
+                 1000 * report->critical_step_s);
         add_line(lines, &count, "strain", "%.1f %% at most", 100 * report->max_strain);
         add_line(lines, &count, "speed", "%.2f m/s at most", report->max_speed);
     }
