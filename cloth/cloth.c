@@ -361,6 +361,7 @@ struct tl_cloth_report tl_cloth_measure(const tl_cloth *cloth, const tl_collider
                                      .substep_s = tl_cloth_substep(cloth),
                                      .unconverged_steps = cloth->tally.unconverged,
                                      .shortened_steps = cloth->tally.shortened,
+                                     .caught_count = cloth->contacts.caught_count,
                                      .settled = cloth->settled};
     vec3d *forces = TL_NEW_ARRAY(vec3d, cloth->particles.count);
     report.elastic_energy =

@@ -33,7 +33,8 @@ struct tl_particles tl_particles_create(size_t count)
                                  .x = TL_NEW_ARRAY(vec3d, count + 1),
                                  .previous = TL_NEW_ARRAY(vec3d, count + 1),
                                  .v = TL_NEW_ARRAY(vec3d, count + 1),
-                                 .w = TL_NEW_ARRAY(double, count + 1)};
+                                 .w = TL_NEW_ARRAY(double, count + 1),
+                                 .driven = TL_NEW_ARRAY(bool, count + 1)};
 }
 
 void tl_particles_release(struct tl_particles *particles)
@@ -42,6 +43,7 @@ void tl_particles_release(struct tl_particles *particles)
     free(particles->previous);
     free(particles->v);
     free(particles->w);
+    free(particles->driven);
     *particles = (struct tl_particles){0};
 }
 

@@ -15,6 +15,7 @@ struct tl_particles {
     vec3d *previous; /* m, at the start of the substep */
     vec3d *v;        /* m/s */
     double *w;       /* 1/kg; 0: held */
+    bool *driven;    /* held by a pin that the avatar carries, and that may push it aside */
 };
 struct tl_particles tl_particles_create(size_t count);
 void tl_particles_release(struct tl_particles *particles);
