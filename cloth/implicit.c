@@ -372,11 +372,11 @@ static bool guard(tl_implicit *implicit, const struct tl_implicit_problem *probl
     return shortened;
 }
 
-/* Residuals (J) that are rounding: of a step of 1e-11 m, and of forces as large as the stiffness makes them.
+/* Residuals (J) that are rounding: of a step of 1e-15 m, and of forces as large as the stiffness makes them.
  */
 static double residual_floor(const tl_implicit *implicit)
 {
-    const double least_m = 1e-11;
+    const double least_m = 1e-15;
     double inertia = 0;
     for (size_t i = 0; i < implicit->count; i++)
         inertia += implicit->inertia[i];
