@@ -1,4 +1,5 @@
 /* Time: a frame is made of equal steps, a step of equal substeps. */
+#include "cloth/snag.h"
 #include "cloth/state.h"
 #include "cloth/verlet.h"
 #include "cloth/xpbd.h"
@@ -95,7 +96,9 @@ static void bind_pins(tl_cloth *cloth, const tl_collider *collider)
         pin->triangle = contact.triangle;
         memcpy(pin->barycentric, contact.barycentric, sizeof pin->barycentric);
         struct carrier carrier = carrier_at(collider, pin, 0);
-        vec3d offset = vec3d_sub(pin->at, carrier.origin);
+        vec3d normal = {contact.normal[0], contact.normal[1], contact.normal[2]};
+        double sunk = fmax(cloth->fabric.thickness_m - contact.distance_m, 0);
+        vec3d offset = vec3d_sub(vec3d_muladd(pin->at, normal, sunk), carrier.origin);
         pin->offset = (vec3d){vec3d_dot(offset, carrier.axes[0]), vec3d_dot(offset, carrier.axes[1]),
                               vec3d_dot(offset, carrier.axes[2])};
     }
@@ -114,6 +117,7 @@ static void place_pins(tl_cloth *cloth, const tl_collider *collider, double phas
             at = vec3d_muladd(at, carrier.axes[2], pin->offset.z);
         }
         cloth->particles.x[pin->particle] = at;
+        cloth->particles.driven[pin->particle] = pin->triangle != TL_NONE;
     }
 }
 
@@ -203,8 +207,7 @@ static void advance_settle(tl_cloth *cloth, const struct tl_substep *substep)
 
 static void find_forces(tl_cloth *cloth)
 {
-    tl_energy_forces(&cloth->energy, &cloth->fabric, cloth->particles.count, cloth->particles.x,
-                     cloth->forces);
+    tl_energy_pull(&cloth->energy, &cloth->fabric, cloth->particles.x, cloth->forces);
 }
 
 static void advance_reference(tl_cloth *cloth, const struct tl_substep *substep)
@@ -213,7 +216,7 @@ static void advance_reference(tl_cloth *cloth, const struct tl_substep *substep)
     place_pins(cloth, substep->collider, substep->phase);
     constrain(cloth, substep);
     find_forces(cloth);
-    tl_verlet_kick(&cloth->particles, cloth->forces, substep->gravity, substep->h);
+    tl_verlet_kick(&cloth->particles, cloth->forces, substep->gravity, substep->drag, substep->h);
 }
 
 static void run_step(tl_cloth *cloth, const tl_collider *collider, double drag, int step)
@@ -240,15 +243,28 @@ static void run_step(tl_cloth *cloth, const tl_collider *collider, double drag, 
     }
 }
 
+/* Only what moves catches: a soft cloth may hang from a body at rest at any length. */
+static void slip_free(tl_cloth *cloth, const tl_collider *collider)
+{
+    if (collider && tl_collider_travel(collider) > 0)
+        tl_snag_release(&cloth->topology, (const vec2s(*)[3])cloth->rest, cloth->shortest_edge,
+                        &cloth->particles, cloth->contacts.slipped);
+}
+
 static void run_steps(tl_cloth *cloth, const tl_collider *collider, double drag)
 {
     int steps = steps_per_frame(&cloth->params);
     double calm = 1 - exp(-INNER_DAMPING * cloth->fabric.damping * step_seconds(cloth));
     for (int step = 0; step < steps && !tl_interrupted(); step++) {
-        tl_contacts_let_through(&cloth->contacts, &cloth->energy, cloth->particles.x);
+        const struct tl_contact_params contact = {.thickness_m = cloth->fabric.thickness_m,
+                                                  .phase_before = (double)step / steps,
+                                                  .phase = (step + 1.0) / steps,
+                                                  .h = step_seconds(cloth)};
         tl_contacts_renew(&cloth->contacts, cloth->particles.x, cloth->fabric.thickness_m,
                           (double)step / steps);
         run_step(cloth, collider, drag, step);
+        slip_free(cloth, collider);
+        tl_contacts_enforce(&cloth->contacts, &contact, &cloth->particles);
         tl_particles_calm(&cloth->particles, (const uint32_t(*)[2])cloth->topology.edges,
                           cloth->topology.edge_count, calm);
     }

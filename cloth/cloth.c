@@ -98,6 +98,7 @@ static void set_inverse_masses(tl_cloth *cloth)
 static void set_constants(tl_cloth *cloth)
 {
     set_inverse_masses(cloth);
+    tl_energy_set_fabric(&cloth->energy, &cloth->fabric);
     cloth->critical_step =
         tl_energy_critical_step(&cloth->energy, &cloth->fabric, cloth->particles.count, cloth->particles.w);
     cloth->forces = tl_resize(cloth->forces, cloth->particles.count, sizeof *cloth->forces);
@@ -360,6 +361,7 @@ struct tl_cloth_report tl_cloth_measure(const tl_cloth *cloth, const tl_collider
                                      .substep_s = tl_cloth_substep(cloth),
                                      .unconverged_steps = cloth->tally.unconverged,
                                      .shortened_steps = cloth->tally.shortened,
+                                     .caught_count = cloth->contacts.caught_count,
                                      .settled = cloth->settled};
     vec3d *forces = TL_NEW_ARRAY(vec3d, cloth->particles.count);
     report.elastic_energy =

@@ -63,6 +63,8 @@ struct tl_cloth_report {
     size_t unconverged_steps; /* settle: iterations cut short, since creation: bounded, not exact */
     size_t shortened_steps;   /* settle: would have gained energy */
     double deepest_m;         /* deepest penetration below the avatar's surface, 0 when none */
+    size_t caught_count; /* particles pinched between parts of the avatar during the last frame: kept outside,
+                            or slipped past one, at the price of strain */
     bool settled;
 };
 

@@ -82,13 +82,24 @@ static double add_pull(const struct tl_pull *pull, const vec3d *x, vec3d *forces
     return force < most ? 0.5 * k * length * length : most * length - 0.5 * most * most / k;
 }
 
+/* k/2 (length - rest)^2. */
+static double add_spring(const struct tl_link *link, double stiffness, const vec3d *x, vec3d *forces)
+{
+    vec3d apart = vec3d_sub(x[link->b], x[link->a]);
+    double stretch = vec3d_norm(apart) - link->rest;
+    vec3d pull = vec3d_scale(vec3d_unit_or(apart, (vec3d){0}), stiffness * stretch);
+    forces[link->a] = vec3d_add(forces[link->a], pull);
+    forces[link->b] = vec3d_sub(forces[link->b], pull);
+    return 0.5 * stiffness * stretch * stretch;
+}
+
 /* Of all that pulls, with its forces. */
 static double elastic_energy(const struct tl_implicit_problem *problem, size_t count, const vec3d *x,
                              vec3d *forces)
 {
     double energy = tl_energy_forces(problem->energy, problem->fabric, count, x, forces);
     for (size_t i = 0; i < problem->springs.count; i++)
-        energy += tl_energy_link(&problem->springs.links[i], problem->springs.stiffness, x, forces);
+        energy += add_spring(&problem->springs.links[i], problem->springs.stiffness, x, forces);
     return energy + add_pull(&problem->pull, x, forces);
 }
 

@@ -41,9 +41,9 @@ static void add_membranes(struct sum *sum, const struct tl_energy *energy,
                           const struct tl_cloth_fabric *fabric)
 {
     double weft = fabric->stretch_weft + fabric->shear, warp = fabric->stretch_warp + fabric->shear;
-    for (size_t i = 0; i < energy->membrane_count * TL_LANES; i++) {
-        const struct tl_membrane *m = &energy->membranes[i / TL_LANES];
-        size_t lane = i % TL_LANES;
+    for (size_t i = 0; i < energy->membrane_count * TL_BATCH; i++) {
+        const struct tl_membrane *m = &energy->membranes[i / TL_BATCH];
+        size_t lane = i % TL_BATCH;
         for (int a = 0; a < 3 && m->area[lane] > 0; a++)
             for (int b = 0; b < 3; b++)
                 add_entry(sum, m->vertices[a][lane], m->vertices[b][lane],
@@ -88,7 +88,7 @@ tl_factor *tl_factor_create(const struct tl_energy *energy, const struct tl_clot
     size_t count = stiffness->vertex_count;
     cholmod_start(common);
     common->supernodal = CHOLMOD_SIMPLICIAL; /* no BLAS: its sums may depend on the threads */
-    size_t most = 9 * TL_LANES * energy->membrane_count + stiffness->bends.first[count] +
+    size_t most = 9 * TL_BATCH * energy->membrane_count + stiffness->bends.first[count] +
                   3 * (energy->link_count + springs->count) + count;
     const int lower = -1; /* CHOLMOD's word for it */
     struct sum sum = {.entries = cholmod_allocate_triplet(count, count, most, lower, CHOLMOD_REAL, common),

@@ -93,11 +93,11 @@ static void release_gather(struct tl_gather *gather)
 static uint32_t *list_corners(const struct tl_energy *energy, const struct tl_springs *springs,
                               size_t *element_count)
 {
-    size_t lanes = energy->membrane_count * TL_LANES, count = lanes + energy->link_count + springs->count;
+    size_t lanes = energy->membrane_count * TL_BATCH, count = lanes + energy->link_count + springs->count;
     uint32_t *corners = TL_NEW_ARRAY(uint32_t, CORNERS * count);
     for (size_t i = 0; i < lanes; i++)
         for (int k = 0; k < CORNERS; k++)
-            corners[CORNERS * i + (size_t)k] = energy->membranes[i / TL_LANES].vertices[k][i % TL_LANES];
+            corners[CORNERS * i + (size_t)k] = energy->membranes[i / TL_BATCH].vertices[k][i % TL_BATCH];
     for (size_t i = lanes; i < count; i++) {
         size_t link = i - lanes;
         const struct tl_link *from =
@@ -119,8 +119,8 @@ static void gather_bends(const struct tl_gather *gather, const struct tl_energy 
     for (size_t v = 0; v < vertex_count; v++)
         for (uint32_t item = gather->fans.first[v]; item < gather->fans.first[v + 1]; item++) {
             uint32_t element = gather->fans.items[item] / TL_BEND_STENCIL;
-            uint32_t corner = gather->fans.items[item] % TL_BEND_STENCIL, lane = element % TL_LANES;
-            const struct tl_bend *bend = &energy->bends[element / TL_LANES];
+            uint32_t corner = gather->fans.items[item] % TL_BEND_STENCIL, lane = element % TL_BATCH;
+            const struct tl_bend *bend = &energy->bends[element / TL_BATCH];
             for (size_t k = 0; k < TL_BEND_STENCIL; k++)
                 for (int row = 0; row < 3; row++)
                     values[gather->slots[item * TL_BEND_STENCIL + k]] += stiffness[row] * bend->area[lane] *
@@ -132,11 +132,11 @@ static void gather_bends(const struct tl_gather *gather, const struct tl_energy 
 static void build_bends(struct tl_stiffness *stiffness, const struct tl_energy *energy,
                         const struct tl_cloth_fabric *fabric)
 {
-    size_t count = energy->bend_count * TL_LANES;
+    size_t count = energy->bend_count * TL_BATCH;
     uint32_t *corners = TL_NEW_ARRAY(uint32_t, TL_BEND_STENCIL * count);
     for (size_t i = 0; i < count; i++)
         for (int k = 0; k < TL_BEND_STENCIL; k++)
-            corners[TL_BEND_STENCIL * i + (size_t)k] = energy->bends[i / TL_LANES].vertices[k][i % TL_LANES];
+            corners[TL_BEND_STENCIL * i + (size_t)k] = energy->bends[i / TL_BATCH].vertices[k][i % TL_BATCH];
     struct tl_gather gather =
         make_gather(corners, TL_BEND_STENCIL, count, stiffness->vertex_count, &stiffness->bends);
     stiffness->bend_values = TL_NEW_ARRAY(double, stiffness->bends.first[stiffness->vertex_count]);
@@ -271,14 +271,14 @@ void tl_stiffness_assemble(struct tl_stiffness *stiffness, const struct tl_energ
                            const struct tl_cloth_fabric *fabric, const struct tl_springs *springs,
                            const vec3d *x)
 {
-    size_t lanes = energy->membrane_count * TL_LANES, own = lanes + energy->link_count;
+    size_t lanes = energy->membrane_count * TL_BATCH, own = lanes + energy->link_count;
 #pragma omp parallel if (stiffness->vertex_count > TL_SERIAL)
     {
 #pragma omp for schedule(static)
         for (size_t i = 0; i < stiffness->element_count; i++) {
             if (i < lanes)
                 stiffness->pieces[i] =
-                    membrane_piece(&energy->membranes[i / TL_LANES], i % TL_LANES, fabric, x);
+                    membrane_piece(&energy->membranes[i / TL_BATCH], i % TL_BATCH, fabric, x);
             else if (i < own)
                 stiffness->pieces[i] = link_piece(&energy->links[i - lanes], fabric->stretch_warp, x);
             else

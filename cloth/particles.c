@@ -33,7 +33,8 @@ struct tl_particles tl_particles_create(size_t count)
                                  .x = TL_NEW_ARRAY(vec3d, count + 1),
                                  .previous = TL_NEW_ARRAY(vec3d, count + 1),
                                  .v = TL_NEW_ARRAY(vec3d, count + 1),
-                                 .w = TL_NEW_ARRAY(double, count + 1)};
+                                 .w = TL_NEW_ARRAY(double, count + 1),
+                                 .driven = TL_NEW_ARRAY(bool, count + 1)};
 }
 
 void tl_particles_release(struct tl_particles *particles)
@@ -42,6 +43,7 @@ void tl_particles_release(struct tl_particles *particles)
     free(particles->previous);
     free(particles->v);
     free(particles->w);
+    free(particles->driven);
     *particles = (struct tl_particles){0};
 }
 
@@ -49,10 +51,10 @@ void tl_particles_predict(struct tl_particles *particles, double gravity, double
 {
     double keep = exp(-drag * h);
     for (size_t i = 0; i < particles->count; i++) {
-        vec3d v = particles->w[i] > 0 ? particles->v[i] : (vec3d){0};
+        vec3d v = particles->w[i] > 0 ? vec3d_scale(particles->v[i], keep) : (vec3d){0};
         if (particles->w[i] > 0)
             v.y -= gravity * h;
-        particles->v[i] = vec3d_scale(v, keep);
+        particles->v[i] = v;
         particles->previous[i] = particles->x[i];
         particles->x[i] = vec3d_muladd(particles->x[i], particles->v[i], h);
     }
