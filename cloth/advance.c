@@ -185,8 +185,6 @@ static void advance_settle(tl_cloth *cloth, const struct tl_substep *substep)
     if (cloth->sewing.pair_count > 0)
         tl_sewing_shrink(&cloth->sewing, substep->h);
     const struct tl_springs springs = tl_cloth_springs(cloth);
-    if (!cloth->implicit)
-        cloth->implicit = tl_implicit_create(&cloth->energy, &cloth->fabric, &springs, particles->count);
     const struct tl_implicit_problem problem = {
         .energy = &cloth->energy,
         .fabric = &cloth->fabric,
@@ -202,6 +200,8 @@ static void advance_settle(tl_cloth *cloth, const struct tl_substep *substep)
         .h = substep->h,
         .tolerance = cloth->params.cg_tolerance,
         .most_iterations = cloth->params.cg_iterations};
+    if (!cloth->implicit)
+        cloth->implicit = tl_implicit_create(&problem, particles);
     memcpy(particles->previous, particles->x, particles->count * sizeof *particles->x);
     place_pins(cloth, substep->collider, substep->phase);
     tl_implicit_step(cloth->implicit, &problem, particles, &cloth->tally);
