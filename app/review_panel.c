@@ -13,10 +13,18 @@
 #define HELP_MAX     40
 
 static const char *const favourites[] = {
-    "scene.garment",       "scene.avatar",      "scene.fabric",
-    "material.glossiness", "scene.environment", "scene.environment_yaw_deg",
-    "scene.preset",        "light.method",      "light.regions",
-    "image.exposure_ev",   "image.background",
+    "scene.garment",
+    "scene.motion",
+    "scene.avatar",
+    "scene.fabric",
+    "material.glossiness",
+    "scene.environment",
+    "scene.environment_yaw_deg",
+    "scene.preset",
+    "light.method",
+    "light.regions",
+    "image.exposure_ev",
+    "image.background",
 };
 
 static const struct tl_panel_button model_answers[] = {
@@ -150,7 +158,7 @@ static void ask_about_dropped(const struct tl_review *review, char *question, si
         return;
     const char *slash = strrchr(review->dropped, '/');
     snprintf(question, size, "%s: use it as", slash ? slash + 1 : review->dropped);
-    bool is_model = strstr(slash ? slash : review->dropped, ".gl") != NULL;
+    bool is_model = tl_model_is_file(review->dropped);
     input->question = question;
     input->answers = is_model ? model_answers : text_answers;
     input->answer_count = is_model ? TL_COUNT(model_answers) : TL_COUNT(text_answers);

@@ -1,4 +1,5 @@
 /* Time: a frame is made of equal steps, a step of equal substeps. */
+#include "cloth/snag.h"
 #include "cloth/state.h"
 #include "cloth/verlet.h"
 #include "cloth/xpbd.h"
@@ -35,6 +36,8 @@ static double substeps_per_step(const tl_cloth *cloth)
 {
     if (cloth->params.solver == TL_CLOTH_PREVIEW)
         return cloth->params.substeps;
+    if (cloth->params.solver == TL_CLOTH_SETTLE)
+        return 1;
     return fmax(ceil(step_seconds(cloth) / (TL_VERLET_SAFETY * cloth->critical_step)), 1);
 }
 
@@ -93,7 +96,9 @@ static void bind_pins(tl_cloth *cloth, const tl_collider *collider)
         pin->triangle = contact.triangle;
         memcpy(pin->barycentric, contact.barycentric, sizeof pin->barycentric);
         struct carrier carrier = carrier_at(collider, pin, 0);
-        vec3d offset = vec3d_sub(pin->at, carrier.origin);
+        vec3d normal = {contact.normal[0], contact.normal[1], contact.normal[2]};
+        double sunk = fmax(cloth->fabric.thickness_m - contact.distance_m, 0);
+        vec3d offset = vec3d_sub(vec3d_muladd(pin->at, normal, sunk), carrier.origin);
         pin->offset = (vec3d){vec3d_dot(offset, carrier.axes[0]), vec3d_dot(offset, carrier.axes[1]),
                               vec3d_dot(offset, carrier.axes[2])};
     }
@@ -112,6 +117,7 @@ static void place_pins(tl_cloth *cloth, const tl_collider *collider, double phas
             at = vec3d_muladd(at, carrier.axes[2], pin->offset.z);
         }
         cloth->particles.x[pin->particle] = at;
+        cloth->particles.driven[pin->particle] = pin->triangle != TL_NONE;
     }
 }
 
@@ -131,15 +137,20 @@ static void pull_grabbed(tl_cloth *cloth, double h)
     cloth->particles.x[i] = vec3d_muladd(cloth->particles.x[i], way, w * impulse / length);
 }
 
+static struct tl_contact_params contact_params(const tl_cloth *cloth, const struct tl_substep *substep)
+{
+    return (struct tl_contact_params){.friction =
+                                          tl_sewing_pulls(&cloth->sewing) ? 0 : cloth->fabric.friction,
+                                      .thickness_m = cloth->fabric.thickness_m,
+                                      .phase_before = substep->phase_before,
+                                      .phase = substep->phase,
+                                      .h = substep->h};
+}
+
 /* What the energy does not know of: seams, the hand, the avatar. Moves positions. */
 static void constrain(tl_cloth *cloth, const struct tl_substep *substep)
 {
-    const struct tl_contact_params contact = {
-        .friction = tl_sewing_pulls(&cloth->sewing) ? 0 : cloth->fabric.friction,
-        .thickness_m = cloth->fabric.thickness_m,
-        .phase_before = substep->phase_before,
-        .phase = substep->phase,
-        .h = substep->h};
+    const struct tl_contact_params contact = contact_params(cloth, substep);
     if (cloth->sewing.pair_count > 0)
         tl_sewing_solve(&cloth->sewing, &cloth->particles, substep->h);
     pull_grabbed(cloth, substep->h);
@@ -148,15 +159,54 @@ static void constrain(tl_cloth *cloth, const struct tl_substep *substep)
 
 static void advance_preview(tl_cloth *cloth, const struct tl_substep *substep)
 {
-    if (cloth->energy.bends_as_force) {
+    bool bends = cloth->energy.bends_as_force;
+    if (bends)
         tl_energy_bending_forces(&cloth->energy, cloth->particles.x, cloth->forces);
-        tl_particles_push(&cloth->particles, cloth->forces, substep->h);
-    }
-    tl_particles_predict(&cloth->particles, substep->gravity, substep->drag, substep->h);
+    tl_particles_predict(&cloth->particles, bends ? cloth->forces : NULL, substep->gravity, substep->drag,
+                         substep->h);
     place_pins(cloth, substep->collider, substep->phase);
     tl_xpbd_solve(&cloth->energy, &cloth->particles);
     constrain(cloth, substep);
     tl_particles_finish(&cloth->particles, substep->h);
+}
+
+/* Seams that close pull as stiff springs: they must close against what the fabric resists. */
+struct tl_springs tl_cloth_springs(const tl_cloth *cloth)
+{
+    const double firmer = 10, least = 1000;
+    return (struct tl_springs){.count = cloth->sewing.pair_count,
+                               .links = cloth->sewing.links,
+                               .stiffness = fmax(firmer * cloth->fabric.stretch_warp, least)};
+}
+
+static void advance_settle(tl_cloth *cloth, const struct tl_substep *substep)
+{
+    struct tl_particles *particles = &cloth->particles;
+    if (cloth->sewing.pair_count > 0)
+        tl_sewing_shrink(&cloth->sewing, substep->h);
+    const struct tl_springs springs = tl_cloth_springs(cloth);
+    const struct tl_implicit_problem problem = {
+        .energy = &cloth->energy,
+        .fabric = &cloth->fabric,
+        .springs = springs,
+        .pull = {.particle = cloth->grabbed ? cloth->topology.weld[cloth->grabbed_vertex] : TL_NONE,
+                 .target = cloth->grab_target,
+                 .stiffness = GRAB_STIFFNESS,
+                 .most_force = GRAB_FORCE},
+        .contacts = &cloth->contacts,
+        .contact = contact_params(cloth, substep),
+        .gravity = substep->gravity,
+        .drag = substep->drag,
+        .h = substep->h,
+        .tolerance = cloth->params.cg_tolerance,
+        .most_iterations = cloth->params.cg_iterations};
+    if (!cloth->implicit)
+        cloth->implicit = tl_implicit_create(&problem, particles);
+    memcpy(particles->previous, particles->x, particles->count * sizeof *particles->x);
+    place_pins(cloth, substep->collider, substep->phase);
+    tl_implicit_step(cloth->implicit, &problem, particles, &cloth->tally);
+    tl_contacts_solve(&cloth->contacts, &problem.contact, particles);
+    tl_particles_finish(particles, substep->h);
 }
 
 static void find_forces(tl_cloth *cloth)
@@ -190,9 +240,19 @@ static void run_step(tl_cloth *cloth, const tl_collider *collider, double drag, 
                                            .collider = collider};
         if (cloth->params.solver == TL_CLOTH_REFERENCE)
             advance_reference(cloth, &substep);
+        else if (cloth->params.solver == TL_CLOTH_SETTLE)
+            advance_settle(cloth, &substep);
         else
             advance_preview(cloth, &substep);
     }
+}
+
+/* Only what moves catches: a soft cloth may hang from a body at rest at any length. */
+static void slip_free(tl_cloth *cloth, const tl_collider *collider)
+{
+    if (collider && tl_collider_travel(collider) > 0)
+        tl_snag_release(&cloth->topology, (const vec2s(*)[3])cloth->rest, cloth->shortest_edge,
+                        &cloth->particles, cloth->contacts.slipped);
 }
 
 static void run_steps(tl_cloth *cloth, const tl_collider *collider, double drag)
@@ -200,10 +260,15 @@ static void run_steps(tl_cloth *cloth, const tl_collider *collider, double drag)
     int steps = steps_per_frame(&cloth->params);
     double calm = 1 - exp(-INNER_DAMPING * cloth->fabric.damping * step_seconds(cloth));
     for (int step = 0; step < steps && !tl_interrupted(); step++) {
-        tl_contacts_let_through(&cloth->contacts, &cloth->energy, cloth->particles.x);
+        const struct tl_contact_params contact = {.thickness_m = cloth->fabric.thickness_m,
+                                                  .phase_before = (double)step / steps,
+                                                  .phase = (step + 1.0) / steps,
+                                                  .h = step_seconds(cloth)};
         tl_contacts_renew(&cloth->contacts, cloth->particles.x, cloth->fabric.thickness_m,
                           (double)step / steps);
         run_step(cloth, collider, drag, step);
+        slip_free(cloth, collider);
+        tl_contacts_enforce(&cloth->contacts, &contact, &cloth->particles);
         tl_particles_calm(&cloth->particles, (const uint32_t(*)[2])cloth->topology.edges,
                           cloth->topology.edge_count, calm);
     }

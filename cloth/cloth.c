@@ -102,6 +102,7 @@ static void set_constants(tl_cloth *cloth)
     cloth->critical_step =
         tl_energy_critical_step(&cloth->energy, &cloth->fabric, cloth->particles.count, cloth->particles.w);
     cloth->forces = tl_resize(cloth->forces, cloth->particles.count, sizeof *cloth->forces);
+    tl_implicit_destroy(&cloth->implicit);
     tl_energy_set(&cloth->energy, &cloth->fabric, cloth->particles.w, tl_cloth_substep(cloth));
     tl_contacts_release(&cloth->contacts); /* its planes know the thickness */
     cloth->contacts = tl_contacts_create(&cloth->topology, cloth->rest);
@@ -164,6 +165,7 @@ static void release_state(tl_cloth *cloth)
     tl_particles_release(&cloth->particles);
     tl_contacts_release(&cloth->contacts);
     tl_sewing_release(&cloth->sewing);
+    tl_implicit_destroy(&cloth->implicit);
     free(cloth->rest);
     free(cloth->pins);
     free(cloth->forces);
@@ -357,6 +359,9 @@ struct tl_cloth_report tl_cloth_measure(const tl_cloth *cloth, const tl_collider
                                      .max_strain = tl_cloth_max_strain(cloth),
                                      .critical_step_s = cloth->critical_step,
                                      .substep_s = tl_cloth_substep(cloth),
+                                     .unconverged_steps = cloth->tally.unconverged,
+                                     .shortened_steps = cloth->tally.shortened,
+                                     .caught_count = cloth->contacts.caught_count,
                                      .settled = cloth->settled};
     vec3d *forces = TL_NEW_ARRAY(vec3d, cloth->particles.count);
     report.elastic_energy =

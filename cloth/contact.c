@@ -17,9 +17,10 @@
 
 /* Edges longer than this are probed: shorter ones sink into a radius of 5 cm by no more than 2.3 mm. */
 #define COARSE_M 0.03
-/* Cloth stretched to more than this is caught, between an arm and the body say: its vertices are let through
- * until it has slipped free, rather than torn. */
-#define SNAG_STRETCH 2.5
+/* A particle that is put back outside is put this share of its thickness above the surface, and half as far
+ * after each answer that there it is inside of another part. */
+#define PUT_BACK_SHARE 0.5
+#define PUT_BACK_TRIES 8
 
 static double rest_length(const vec2s rest[3], int corner)
 {
@@ -54,7 +55,11 @@ struct tl_contacts tl_contacts_create(const struct tl_topology *topology, const 
     for (size_t t = 0; t < topology->triangle_count; t++)
         contacts.probe_count +=
             add_probes(topology, rest, (uint32_t)t, &contacts.probes[contacts.probe_count]);
+    contacts.allowed = TL_NEW_ARRAY(double, contacts.particle_count);
     contacts.caught = TL_NEW_ARRAY(bool, contacts.particle_count);
+    contacts.slipped = TL_NEW_ARRAY(bool, contacts.particle_count);
+    for (size_t i = 0; i < contacts.particle_count; i++)
+        contacts.allowed[i] = HUGE_VAL;
     size_t count = contacts.particle_count + contacts.probe_count;
     contacts.caches = TL_NEW_ARRAY(struct tl_contact_cache, count);
     for (size_t i = 0; i < count; i++)
@@ -66,7 +71,9 @@ void tl_contacts_release(struct tl_contacts *contacts)
 {
     free(contacts->caches);
     free(contacts->probes);
+    free(contacts->allowed);
     free(contacts->caught);
+    free(contacts->slipped);
     *contacts = (struct tl_contacts){0};
 }
 
@@ -105,7 +112,7 @@ static void ask(const tl_collider *collider, double thickness, double phase, vec
     for (int i = 0; i < 2; i++)
         cache->anchor[i] = (vec3d){ends[i][0], ends[i][1], ends[i][2]};
     cache->normal = (vec3d){contact.normal[0], contact.normal[1], contact.normal[2]};
-    cache->clearance = fmax(contact.distance_m - thickness, SLIDE_M);
+    cache->clearance = fmax(contact.distance_m - thickness, fmin(SLIDE_M, fmax(thickness / 2, ROUNDING_M)));
     cache->near = true;
 }
 
@@ -121,6 +128,8 @@ void tl_contacts_begin(struct tl_contacts *contacts, const tl_collider *collider
     bool next = collider == contacts->collider && revision == contacts->revision + 1;
     contacts->collider = collider;
     contacts->revision = revision;
+    contacts->caught_count = 0;
+    memset(contacts->caught, 0, contacts->particle_count * sizeof(bool));
     for (size_t i = 0; i < cache_count(contacts) && !same; i++) {
         struct tl_contact_cache *cache = &contacts->caches[i];
         cache->asked_phase = HUGE_VAL;
@@ -136,6 +145,12 @@ static vec3d probe_point(const struct tl_probe *probe, const vec3d *x)
     return vec3d_muladd(sum, x[probe->vertices[2]], probe->weights[2]);
 }
 
+/* Signed, to the plane that the cache holds. */
+static double distance_to(const struct tl_contact_cache *cache, vec3d x, double phase)
+{
+    return cache->near ? vec3d_dot(vec3d_sub(x, anchor_at(cache, phase)), cache->normal) : HUGE_VAL;
+}
+
 void tl_contacts_renew(struct tl_contacts *contacts, const vec3d *x, double thickness_m, double phase)
 {
     const tl_collider *collider = contacts->collider;
@@ -149,24 +164,55 @@ void tl_contacts_renew(struct tl_contacts *contacts, const vec3d *x, double thic
         bool is_particle = i < contacts->particle_count;
         ask(collider, thickness_m, phase,
             is_particle ? x[i] : probe_point(&contacts->probes[i - contacts->particle_count], x), cache);
+        if (is_particle && isinf(contacts->allowed[i]))
+            contacts->allowed[i] = fmax(thickness_m - distance_to(cache, x[i], phase), 0);
     }
 }
 
-void tl_contacts_let_through(struct tl_contacts *contacts, const struct tl_energy *energy, const vec3d *x)
+/* One particle; whether it had to be put back. */
+static bool put_back(struct tl_contacts *contacts, size_t i, double thickness, double phase,
+                     struct tl_particles *particles)
 {
-    memset(contacts->caught, 0, contacts->particle_count * sizeof(bool));
-    for (size_t i = 0; i < energy->membrane_count * TL_BATCH; i++) {
-        const struct tl_membrane *m = &energy->membranes[i / TL_BATCH];
-        size_t lane = i % TL_BATCH;
-        vec3d u = {0}, v = {0};
-        for (int k = 0; k < 3; k++) {
-            u = vec3d_muladd(u, x[m->vertices[k][lane]], m->c[k][lane]);
-            v = vec3d_muladd(v, x[m->vertices[k][lane]], m->d[k][lane]);
-        }
-        double most = fmax(vec3d_dot(u, u), vec3d_dot(v, v));
-        for (int k = 0; k < 3 && most > SNAG_STRETCH * SNAG_STRETCH; k++)
-            contacts->caught[m->vertices[k][lane]] = true;
+    struct tl_contact_cache *cache = &contacts->caches[i];
+    double deepest = fmin(thickness - contacts->allowed[i], 0), share = PUT_BACK_SHARE;
+    for (int tries = 0; tries <= PUT_BACK_TRIES; tries++) {
+        vec3d x = particles->x[i], v = particles->v[i];
+        if (cache->asked_phase != phase || vec3d_distance(cache->asked_at, x) > 0)
+            ask(contacts->collider, thickness, phase, x, cache);
+        double distance = distance_to(cache, x, phase);
+        if (distance >= deepest)
+            return tries > 0;
+        particles->x[i] =
+            vec3d_muladd(x, cache->normal, (deepest < 0 ? deepest : share * thickness) - distance);
+        particles->v[i] = vec3d_muladd(v, cache->normal, fmax(-vec3d_dot(v, cache->normal), 0));
+        share /= 2;
     }
+    return true;
+}
+
+static void enforce_one(struct tl_contacts *contacts, size_t i, const struct tl_contact_params *step,
+                        struct tl_particles *particles)
+{
+    bool moves = tl_collider_travel(contacts->collider) > 0, slipped = contacts->slipped[i];
+    contacts->allowed[i] = fmax(contacts->allowed[i] - PUSH_OUT_SPEED * step->h, 0);
+    if (slipped) { /* it may be anywhere */
+        contacts->caches[i].near = false;
+        ask(contacts->collider, step->thickness_m, step->phase, particles->x[i], &contacts->caches[i]);
+    }
+    bool held = !(particles->w[i] > 0) && !particles->driven[i];
+    if (held || !contacts->caches[i].near || !(moves || slipped || contacts->allowed[i] > 0))
+        return;
+    bool caught = put_back(contacts, i, step->thickness_m, step->phase, particles) || slipped;
+    contacts->caught_count += caught && !contacts->caught[i];
+    contacts->caught[i] = contacts->caught[i] || caught;
+}
+
+void tl_contacts_enforce(struct tl_contacts *contacts, const struct tl_contact_params *step,
+                         struct tl_particles *particles)
+{
+    for (size_t i = 0; contacts->collider && i < contacts->particle_count; i++)
+        enforce_one(contacts, i, step, particles);
+    memset(contacts->slipped, 0, contacts->particle_count * sizeof(bool));
 }
 
 /* Keeps x on the outer side of a plane through `surface`, which was at `surface_before` when the particle was
@@ -223,6 +269,16 @@ static vec3d keep_out(const struct surroundings *around, struct tl_contact_cache
     return x;
 }
 
+/* Where a pin goes that is driven to `x`, whatever its way there. */
+static vec3d set_aside(const struct surroundings *around, struct tl_contact_cache *cache, vec3d x,
+                       const struct tl_contact_params *params)
+{
+    if (stale(cache, around->travel, params->phase, x))
+        ask(around->collider, params->thickness_m, params->phase, x, cache);
+    double depth = PUT_BACK_SHARE * params->thickness_m - distance_to(cache, x, params->phase);
+    return depth > 0 ? vec3d_muladd(x, cache->normal, depth) : x;
+}
+
 /* A probe is moved by moving its vertices, each in proportion to its share and inverse mass. */
 static void solve_probe(const struct surroundings *around, const struct tl_probe *probe,
                         struct tl_contact_cache *cache, const struct tl_contact_params *params,
@@ -247,15 +303,43 @@ void tl_contacts_solve(struct tl_contacts *contacts, const struct tl_contact_par
     const struct surroundings around = look_around(contacts->collider);
     if (!around.collider)
         return;
-    for (size_t i = 0; i < contacts->probe_count; i++) {
-        const uint32_t *v = contacts->probes[i].vertices;
-        if (contacts->caught[v[0]] || contacts->caught[v[1]] || contacts->caught[v[2]])
-            continue;
+    for (size_t i = 0; i < contacts->probe_count; i++)
         solve_probe(&around, &contacts->probes[i], &contacts->caches[contacts->particle_count + i], params,
                     particles);
+    for (size_t i = 0; i < particles->count; i++) {
+        struct tl_contact_cache *cache = &contacts->caches[i];
+        if (particles->w[i] > 0)
+            particles->x[i] = keep_out(&around, cache, particles->x[i], particles->previous[i], params);
+        else if (particles->driven[i])
+            particles->x[i] = set_aside(&around, cache, particles->x[i], params);
     }
-    for (size_t i = 0; i < particles->count; i++)
-        if (particles->w[i] > 0 && !contacts->caught[i])
-            particles->x[i] =
-                keep_out(&around, &contacts->caches[i], particles->x[i], particles->previous[i], params);
+}
+
+/* ---- For solvers that heed planes themselves ---- */
+
+static struct tl_contact_plane plane_of(vec3d x, vec3d surface, vec3d surface_before, vec3d normal,
+                                        const struct tl_contact_params *params)
+{
+    vec3d motion = vec3d_sub(surface, surface_before);
+    double depth = params->thickness_m - vec3d_dot(vec3d_sub(x, surface_before), normal);
+    double pushed = depth > 0 ? fmin(depth, PUSH_OUT_SPEED * params->h) : depth;
+    return (struct tl_contact_plane){normal, motion, vec3d_dot(motion, normal) + pushed};
+}
+
+size_t tl_contacts_planes(struct tl_contacts *contacts, const struct tl_contact_params *params,
+                          size_t particle, vec3d x, struct tl_contact_plane out[TL_CONTACT_PLANES])
+{
+    const struct surroundings around = look_around(contacts->collider);
+    size_t count = 0;
+    if (!around.collider)
+        return 0;
+    struct tl_contact_cache *cache = &contacts->caches[particle];
+    if (stale(cache, around.travel, params->phase_before, x))
+        ask(around.collider, params->thickness_m, params->phase_before, x, cache);
+    if (cache->near)
+        out[count++] = plane_of(x, anchor_at(cache, params->phase), anchor_at(cache, params->phase_before),
+                                cache->normal, params);
+    if (around.ground)
+        out[count++] = plane_of(x, (vec3d){0}, (vec3d){0}, (vec3d){0, 1, 0}, params);
+    return count;
 }

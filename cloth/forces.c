@@ -106,7 +106,7 @@ static double add_rare(const struct tl_energy *energy, double stiffness)
     return sum;
 }
 
-TL_INLINE void add_pull(const double *from, const double *to, double strength, struct tl_pull *sum)
+TL_INLINE void add_pull(const double *from, const double *to, double strength, struct tl_wide_force *sum)
 {
     double x = to[0] - from[0], y = to[1] - from[1], z = to[2] - from[2], unused = to[3] - from[3];
     sum->x += strength * x;
@@ -115,14 +115,15 @@ TL_INLINE void add_pull(const double *from, const double *to, double strength, s
     sum->unused += strength * unused;
 }
 
-TL_INLINE void add_others(const struct tl_pulls *pulls, size_t vertex, struct tl_pull *sum)
+TL_INLINE void add_others(const struct tl_pulls *pulls, size_t vertex, struct tl_wide_force *sum)
 {
     const double *at = &pulls->places[4 * vertex];
     for (uint32_t k = pulls->others_first[vertex]; k < pulls->others_first[vertex + 1]; k++)
         add_pull(at, &pulls->places[4 * (size_t)pulls->others[k]], pulls->bending[k], sum);
 }
 
-TL_INLINE void add_along(const struct tl_pulls *pulls, size_t vertex, bool bending_alone, struct tl_pull *sum)
+TL_INLINE void add_along(const struct tl_pulls *pulls, size_t vertex, bool bending_alone,
+                         struct tl_wide_force *sum)
 {
     const double *at = &pulls->places[4 * vertex];
     for (uint32_t k = pulls->along_first[vertex]; k < pulls->along_first[vertex + 1]; k++) {
@@ -136,7 +137,7 @@ TL_INLINE void add_block(const struct tl_pulls *pulls, struct tl_range block, bo
                          vec3d *forces)
 {
     for (size_t i = block.from; i < block.to; i++) {
-        struct tl_pull sum = {0};
+        struct tl_wide_force sum = {0};
         add_along(pulls, i, bending_alone, &sum);
         add_others(pulls, i, &sum);
         pulls->sums[i] = sum;
@@ -170,7 +171,7 @@ TL_CLONES static double bending_energy(const struct tl_pulls *pulls, struct tl_r
     const double *origin = pulls->places;
     for (size_t i = range.from; i < range.to; i++) {
         const double *at = &pulls->places[4 * i];
-        struct tl_pull sum = {0};
+        struct tl_wide_force sum = {0};
         add_along(pulls, i, true, &sum);
         add_others(pulls, i, &sum);
         energy -=

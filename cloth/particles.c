@@ -34,7 +34,8 @@ struct tl_particles tl_particles_create(size_t count)
                                  .x = TL_NEW_ARRAY(vec3d, count + 1),
                                  .previous = TL_NEW_ARRAY(vec3d, count + 1),
                                  .v = TL_NEW_ARRAY(vec3d, count + 1),
-                                 .w = TL_NEW_ARRAY(double, count + 1)};
+                                 .w = TL_NEW_ARRAY(double, count + 1),
+                                 .driven = TL_NEW_ARRAY(bool, count + 1)};
 }
 
 void tl_particles_release(struct tl_particles *particles)
@@ -43,6 +44,7 @@ void tl_particles_release(struct tl_particles *particles)
     free(particles->previous);
     free(particles->v);
     free(particles->w);
+    free(particles->driven);
     *particles = (struct tl_particles){0};
 }
 
@@ -56,46 +58,32 @@ void tl_particles_share(struct tl_particles *particles, tl_particles_mover *move
     }
 }
 
-struct fall {
-    double by, keep, h; /* m/s, share of v that is left, s */
+struct prediction {
+    const vec3d *forces;  /* or NULL */
+    double fall, keep, h; /* m/s, share of v that the drag leaves, s */
 };
 
 static void predict(struct tl_particles *particles, struct tl_range part, const void *how)
 {
-    const struct fall fall = *(const struct fall *)how;
+    const struct prediction to = *(const struct prediction *)how;
     for (size_t i = part.from; i < part.to; i++) {
-        vec3d x = particles->x[i], v = particles->w[i] > 0 ? particles->v[i] : (vec3d){0};
-        if (particles->w[i] > 0)
-            v.y -= fall.by;
-        v = vec3d_scale(v, fall.keep);
+        double w = particles->w[i];
+        vec3d x = particles->x[i], v = w > 0 ? vec3d_scale(particles->v[i], to.keep) : (vec3d){0};
+        if (w > 0)
+            v.y -= to.fall;
+        if (to.forces)
+            v = vec3d_muladd(v, to.forces[i], w * to.h);
         particles->v[i] = v;
         particles->previous[i] = x;
-        particles->x[i] = vec3d_muladd(x, v, fall.h);
+        particles->x[i] = vec3d_muladd(x, v, to.h);
     }
 }
 
-void tl_particles_predict(struct tl_particles *particles, double gravity, double drag, double h)
+void tl_particles_predict(struct tl_particles *particles, const vec3d *forces, double gravity, double drag,
+                          double h)
 {
-    const struct fall fall = {gravity * h, exp(-drag * h), h};
-    tl_particles_share(particles, predict, &fall);
-}
-
-struct push {
-    const vec3d *forces;
-    double h;
-};
-
-static void push(struct tl_particles *particles, struct tl_range part, const void *how)
-{
-    const struct push by = *(const struct push *)how;
-    for (size_t i = part.from; i < part.to; i++)
-        particles->v[i] = vec3d_muladd(particles->v[i], by.forces[i], particles->w[i] * by.h);
-}
-
-void tl_particles_push(struct tl_particles *particles, const vec3d *forces, double h)
-{
-    const struct push by = {forces, h};
-    tl_particles_share(particles, push, &by);
+    const struct prediction to = {forces, gravity * h, exp(-drag * h), h};
+    tl_particles_share(particles, predict, &to);
 }
 
 static void finish(struct tl_particles *particles, struct tl_range part, const void *how)

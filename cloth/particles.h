@@ -16,6 +16,7 @@ struct tl_particles {
     vec3d *previous; /* m, at the start of the substep */
     vec3d *v;        /* m/s */
     double *w;       /* 1/kg; 0: held */
+    bool *driven;    /* held by a pin that the avatar carries, and that may push it aside */
 };
 struct tl_particles tl_particles_create(size_t count);
 void tl_particles_release(struct tl_particles *particles);
@@ -24,11 +25,10 @@ void tl_particles_release(struct tl_particles *particles);
 typedef void tl_particles_mover(struct tl_particles *particles, struct tl_range part, const void *how);
 void tl_particles_share(struct tl_particles *particles, tl_particles_mover *move, const void *how);
 
-/* v <- (v + h g) exp(-drag h), previous <- x, x <- x + h v. */
-void tl_particles_predict(struct tl_particles *particles, double gravity, double drag, double h);
-
-/* v <- v + h w f, with forces f in N. */
-void tl_particles_push(struct tl_particles *particles, const vec3d *forces, double h);
+/* v <- v exp(-drag h) + h (g + w f), previous <- x, x <- x + h v, with `forces` f in N, or none when NULL.
+ * What is at rest feels its whole weight, whatever the drag. */
+void tl_particles_predict(struct tl_particles *particles, const vec3d *forces, double gravity, double drag,
+                          double h);
 
 /* v <- (x - previous) / h. */
 void tl_particles_finish(struct tl_particles *particles, double h);
