@@ -5,7 +5,7 @@
  * size of triangles, so a stiff fabric takes thousands of substeps a frame, and beyond
  * cloth.reference_substeps it is refused.
  *
- * Cost: about 24 ns a particle and substep on one core of 3.7 GHz with registers of 512 bits (10,000
+ * Cost: 24 to 27 ns a particle and substep on one core of 3.7 GHz with registers of 512 bits (10,000
  * vertices, two triangles each; 129 ns as plain loops), of which bending and the sum of forces 10,
  * membranes 5. Threads: its loops share the particles out. */
 #ifndef TOILE_CLOTH_VERLET_H
