@@ -11,6 +11,7 @@
 
 #define FRAMES_MAX 12 /* measured ones */
 #define TRUTHS_MAX 3
+#define REST_MAX   1024 /* frames at rest */
 
 struct schedule {
     int warm;        /* frames of history before the first measured one; FRONTIER.md measured with 16 */
@@ -41,7 +42,15 @@ struct row {
     size_t memory_bytes;
 };
 
+/* The last frame again until nothing is left to average, and once more. */
+struct rest {
+    int frames;
+    double cpu_ms, done_cpu_ms; /* of a frame on the way (median), and of the one after */
+    struct tl_measured_error error;
+};
+
 struct bench {
+    struct rest rest; /* of review */
     struct schedule schedule;
     struct tl_stage stage;
     tl_film *film;
@@ -117,12 +126,33 @@ static bool warm_up(struct bench *bench, int number, tl_error *error)
     return true;
 }
 
+static bool come_to_rest(struct bench *bench, const tl_frame *frame, const struct tl_truth *truth,
+                         tl_error *error)
+{
+    struct tl_contender *contender = &bench->rows[REVIEW].contender;
+    struct rest *rest = &bench->rest;
+    struct tl_taken taken;
+    double cpu_ms[REST_MAX];
+    while (rest->frames < REST_MAX && !tl_renderer_is_at_rest(contender->renderer)) {
+        if (!tl_contender_draw(contender, frame, &taken, error))
+            return false;
+        cpu_ms[rest->frames++] = taken.cpu_ms;
+    }
+    rest->cpu_ms = rest->frames ? tl_median(cpu_ms, (size_t)rest->frames) : 0;
+    if (!tl_contender_draw(contender, frame, &taken, error))
+        return false;
+    rest->done_cpu_ms = taken.cpu_ms;
+    return tl_contender_compare(contender, truth, &rest->error, error);
+}
+
 static bool compare_all(struct bench *bench, const tl_frame *frame, int at, tl_error *error)
 {
     struct tl_truth truth = {0};
     bool done = tl_truth_draw(&bench->oracle, frame, &truth, error);
     for (int i = 0; done && i < CHOICES; i++)
         done = tl_contender_compare(&bench->rows[i].contender, &truth, &bench->rows[i].error[at], error);
+    if (done && at == truth_count(bench) - 1)
+        done = come_to_rest(bench, frame, &truth, error);
     tl_truth_release(&truth);
     return done;
 }
@@ -176,6 +206,10 @@ static void print_table(const struct bench *bench)
                (double)bench->rows[i].memory_bytes / (1 << 20));
     }
     printf("%-24s %10.1f\n\n", "(the cloth's solver)", film.cloth_cpu_ms);
+    const struct rest *rest = &bench->rest;
+    printf("review at rest: %.1f ms of CPU a frame for %d frames, then %.1f; rel. RMSE %.2f %%, mean FLIP "
+           "%.4f\n",
+           rest->cpu_ms, rest->frames, rest->done_cpu_ms, 100 * rest->error.rel_rmse, rest->error.flip_mean);
     struct row_summary paper = summarise(bench, PAPER), review = summarise(bench, REVIEW);
     printf("paper takes %.1f times review's time; review has %.2f of paper's error (FLIP %.2f)\n",
            paper.cpu_ms / review.cpu_ms, review.rel_rmse / paper.rel_rmse,
@@ -195,6 +229,12 @@ static void print_json(const struct bench *bench)
     cJSON_AddNumberToObject(object, "mean_step_m", film.mean_step_m);
     cJSON_AddNumberToObject(object, "cloth_cpu_ms", film.cloth_cpu_ms);
     cJSON_AddNumberToObject(object, "standard_error", bench->rows[PAPER].error[0].standard_error);
+    cJSON *rest = cJSON_AddObjectToObject(object, "review_at_rest");
+    cJSON_AddNumberToObject(rest, "frames", bench->rest.frames);
+    cJSON_AddNumberToObject(rest, "cpu_ms", bench->rest.cpu_ms);
+    cJSON_AddNumberToObject(rest, "cpu_ms_done", bench->rest.done_cpu_ms);
+    cJSON_AddNumberToObject(rest, "rel_rmse", bench->rest.error.rel_rmse);
+    cJSON_AddNumberToObject(rest, "flip_mean", bench->rest.error.flip_mean);
     cJSON *rows = cJSON_AddArrayToObject(object, "rows");
     for (int i = 0; i < CHOICES; i++) {
         struct row_summary summary = summarise(bench, i);
