@@ -2,6 +2,7 @@
 
 #include "config/embedded.h"
 #include "config/file.h"
+#include "config/log.h"
 #include "config/memory.h"
 
 #include <stdlib.h>
@@ -174,6 +175,16 @@ static void choose_fabric(struct tl_scene_params *scene)
 
 /* The topmost layers name the preset and the fabric that lie below them, so they are read twice: once to
  * learn these names, and once more in their place. */
+/* What was asked for and will not be done is said. */
+static void tell_what_is_unused(const struct tl_light_params *light)
+{
+    if (light->method == TL_METHOD_PEM && light->visibility == TL_VISIBILITY_RAYS &&
+        light->composition != TL_COMPOSE_RATIO)
+        tl_warn(
+            "light.composition: rays always compose by ratio; this option is for light.visibility vsm and "
+            "depth");
+}
+
 bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *source, tl_error *error)
 {
     struct tl_settings settings;
@@ -190,6 +201,7 @@ bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *
         !apply_source(all, source, error))
         return false;
     settings.scene = named;
+    tell_what_is_unused(&settings.light);
     *out = settings;
     return true;
 }
