@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdio.h>
 
-static void print_plan(const tl_plan *plan, const struct tl_render_memory *memory)
+static void print_plan(const tl_plan *plan, const struct tl_render_memory *memory, const char *self_repulsion)
 {
     printf("%-12s %-6s %5s %10s  %s\n", "job", "action", "level", "ms", "reason");
     for (int i = 0; i < plan->count; i++) {
@@ -22,9 +22,30 @@ static void print_plan(const tl_plan *plan, const struct tl_render_memory *memor
            (double)memory->pems / mebibyte, (double)memory->maps / mebibyte,
            (double)memory->targets / mebibyte, (double)memory->surfaces / mebibyte,
            (double)memory->other / mebibyte, (double)memory->total / mebibyte);
+    if (self_repulsion[0])
+        printf("cloth against itself: %s\n", self_repulsion);
 }
 
-static void print_plan_json(const tl_plan *plan, const struct tl_render_memory *memory)
+/* What the cloth is kept from passing through, and at what cost. */
+static void describe_self_repulsion(const struct tl_settings *settings, const struct tl_cloth_report *cloth,
+                                    char *out, size_t size)
+{
+    const char *price = "about two thirds more time for the cloth";
+    if (settings->cloth.self_repulsion)
+        snprintf(out, size, "on: %zu piece%s in %zu layer%s, and folds, keep their distance: %s",
+                 cloth->piece_count, cloth->piece_count == 1 ? "" : "s", cloth->layer_count,
+                 cloth->layer_count == 1 ? "" : "s", price);
+    else if (cloth->piece_count > 1)
+        snprintf(out, size,
+                 "off: the garment's %zu pieces, and folds, pass through one another; "
+                 "cloth.self_repulsion true keeps them apart for %s",
+                 cloth->piece_count, price);
+    else
+        snprintf(out, size, "off: folds pass through one another");
+}
+
+static void print_plan_json(const tl_plan *plan, const struct tl_render_memory *memory,
+                            const char *self_repulsion)
 {
     cJSON *object = cJSON_CreateObject();
     cJSON *jobs = cJSON_AddArrayToObject(object, "jobs");
@@ -47,6 +68,8 @@ static void print_plan_json(const tl_plan *plan, const struct tl_render_memory *
     cJSON_AddNumberToObject(bytes, "surfaces", (double)memory->surfaces);
     cJSON_AddNumberToObject(bytes, "other", (double)memory->other);
     cJSON_AddNumberToObject(bytes, "total", (double)memory->total);
+    if (self_repulsion[0])
+        cJSON_AddStringToObject(object, "cloth_self_repulsion", self_repulsion);
     tl_json_print(object);
 }
 
@@ -69,10 +92,14 @@ bool tl_command_plan(const struct tl_arguments *arguments, tl_error *error)
         tl_renderer_plan(stage.renderer, &next, &settings, &plan);
         done = tl_stage_draw(&stage, error); /* memory is what the frame really holds */
         struct tl_render_memory memory = tl_renderer_memory(stage.renderer);
+        char self_repulsion[256] = "";
+        const struct tl_cloth_report cloth = tl_session_report(stage.session);
+        if (tl_session_cloth(stage.session))
+            describe_self_repulsion(&stage.settings, &cloth, self_repulsion, sizeof self_repulsion);
         if (done && arguments->json)
-            print_plan_json(&plan, &memory);
+            print_plan_json(&plan, &memory, self_repulsion);
         else if (done)
-            print_plan(&plan, &memory);
+            print_plan(&plan, &memory, self_repulsion);
     }
     tl_stage_release(&stage);
     return done;
