@@ -47,7 +47,7 @@ static const struct tl_option cloth_rows[] = {
     TL_OPTION_INT(struct tl_cloth_params, cg_iterations, 1, 1000000, "",
                   "settle: most iterations of a step's solve: slower, less often cut short"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, cg_tolerance, 1e-12, 0.5, "",
-                     "settle: residual that is left of a step's load: faster, less exact motion"),
+                     "settle: residual that is left of a step's first one: faster, less exact motion"),
     TL_OPTION_INT(struct tl_cloth_params, reference_substeps, 1, 100000000, "",
                   "reference: most substeps per frame; a fabric that needs more is refused"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, gravity, -100, 100, "m/s^2", "along -Y: hangs more heavily"),

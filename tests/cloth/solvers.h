@@ -20,11 +20,13 @@ static inline bool solver_rests_exactly(int solver)
     return solver != TL_CLOTH_PREVIEW;
 }
 
-/* Steps of `h` seconds, of one substep each. */
+/* Steps of `h` seconds, of one substep each, solved to rounding. */
 static inline void params_set_step(struct tl_cloth_params *params, double h)
 {
     params->dt = h;
     params->substeps = 1;
+    params->cg_tolerance = 1e-10;
+    params->cg_iterations = 10000;
 }
 
 static inline void cloth_run(tl_cloth *cloth, const tl_collider *collider, double seconds)
