@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdio.h>
 
-static void print_plan(const tl_plan *plan, const struct tl_render_memory *memory, const char *self_repulsion)
+static void print_plan(const tl_plan *plan, const struct tl_render_memory *memory)
 {
     printf("%-12s %-6s %5s %10s  %s\n", "job", "action", "level", "ms", "reason");
     for (int i = 0; i < plan->count; i++) {
@@ -22,8 +22,6 @@ static void print_plan(const tl_plan *plan, const struct tl_render_memory *memor
            (double)memory->pems / mebibyte, (double)memory->maps / mebibyte,
            (double)memory->targets / mebibyte, (double)memory->surfaces / mebibyte,
            (double)memory->other / mebibyte, (double)memory->total / mebibyte);
-    if (self_repulsion[0])
-        printf("cloth against itself: %s\n", self_repulsion);
 }
 
 /* What the cloth is kept from passing through, and at what cost. */
@@ -44,8 +42,39 @@ static void describe_self_repulsion(const struct tl_settings *settings, const st
         snprintf(out, size, "off: folds pass through one another");
 }
 
+static int substeps_per_frame(const struct tl_settings *settings, const struct tl_cloth_report *report)
+{
+    return (int)lround(1 / (settings->cloth.frame_rate * report->substep_s));
+}
+
+static void print_cloth(const struct tl_settings *settings, const struct tl_cloth_report *report)
+{
+    printf("cloth: %zu vertices, critical step %.3g ms, %s %d substeps of %.3g ms a frame\n",
+           report->vertex_count, 1000 * report->critical_step_s,
+           tl_cloth_solver_names[settings->cloth.solver], substeps_per_frame(settings, report),
+           1000 * report->substep_s);
+    char self_repulsion[256];
+    describe_self_repulsion(settings, report, self_repulsion, sizeof self_repulsion);
+    printf("cloth against itself: %s\n", self_repulsion);
+}
+
+static void add_cloth(cJSON *object, const struct tl_settings *settings, const struct tl_cloth_report *report)
+{
+    cJSON *cloth = cJSON_AddObjectToObject(object, "cloth");
+    cJSON_AddNumberToObject(cloth, "vertices", (double)report->vertex_count);
+    cJSON_AddItemToObject(cloth, "critical_step_s",
+                          isfinite(report->critical_step_s) ? cJSON_CreateNumber(report->critical_step_s)
+                                                            : cJSON_CreateNull());
+    cJSON_AddStringToObject(cloth, "solver", tl_cloth_solver_names[settings->cloth.solver]);
+    cJSON_AddNumberToObject(cloth, "substeps", substeps_per_frame(settings, report));
+    cJSON_AddNumberToObject(cloth, "substep_s", report->substep_s);
+    char self_repulsion[256];
+    describe_self_repulsion(settings, report, self_repulsion, sizeof self_repulsion);
+    cJSON_AddStringToObject(cloth, "self_repulsion", self_repulsion);
+}
+
 static void print_plan_json(const tl_plan *plan, const struct tl_render_memory *memory,
-                            const char *self_repulsion)
+                            const struct tl_settings *settings, const struct tl_cloth_report *report)
 {
     cJSON *object = cJSON_CreateObject();
     cJSON *jobs = cJSON_AddArrayToObject(object, "jobs");
@@ -68,8 +97,8 @@ static void print_plan_json(const tl_plan *plan, const struct tl_render_memory *
     cJSON_AddNumberToObject(bytes, "surfaces", (double)memory->surfaces);
     cJSON_AddNumberToObject(bytes, "other", (double)memory->other);
     cJSON_AddNumberToObject(bytes, "total", (double)memory->total);
-    if (self_repulsion[0])
-        cJSON_AddStringToObject(object, "cloth_self_repulsion", self_repulsion);
+    if (report->vertex_count > 0)
+        add_cloth(object, settings, report);
     tl_json_print(object);
 }
 
@@ -92,14 +121,13 @@ bool tl_command_plan(const struct tl_arguments *arguments, tl_error *error)
         tl_renderer_plan(stage.renderer, &next, &settings, &plan);
         done = tl_stage_draw(&stage, error); /* memory is what the frame really holds */
         struct tl_render_memory memory = tl_renderer_memory(stage.renderer);
-        char self_repulsion[256] = "";
-        const struct tl_cloth_report cloth = tl_session_report(stage.session);
-        if (tl_session_cloth(stage.session))
-            describe_self_repulsion(&stage.settings, &cloth, self_repulsion, sizeof self_repulsion);
+        struct tl_cloth_report report = tl_session_report(stage.session);
         if (done && arguments->json)
-            print_plan_json(&plan, &memory, self_repulsion);
+            print_plan_json(&plan, &memory, &stage.settings, &report);
         else if (done)
-            print_plan(&plan, &memory, self_repulsion);
+            print_plan(&plan, &memory);
+        if (done && !arguments->json && report.vertex_count > 0)
+            print_cloth(&stage.settings, &report);
     }
     tl_stage_release(&stage);
     return done;

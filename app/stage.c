@@ -6,7 +6,8 @@
 bool tl_stage_settings(const struct tl_arguments *arguments, struct tl_settings *out, tl_error *error)
 {
     if (arguments->positional_count > 1)
-        return tl_fail(error, TL_USAGE, "%s: one scene at a time: name a YAML, .glb or .gltf file, or none",
+        return tl_fail(error, TL_USAGE,
+                       "%s: one scene at a time: name a YAML, .glb, .gltf or .obj file, or none",
                        arguments->positionals[1]);
     const struct tl_settings_source source = {
         .scene_file = arguments->positional_count ? arguments->positionals[0] : NULL,
@@ -39,19 +40,25 @@ void tl_stage_release(struct tl_stage *stage)
     tl_session_destroy(&stage->session);
 }
 
-bool tl_stage_draw(struct tl_stage *stage, tl_error *error)
+static bool draw(struct tl_stage *stage, bool still, tl_error *error)
 {
     tl_frame frame = tl_session_frame(stage->session);
+    frame.still = still;
     const struct tl_render_settings settings = tl_settings_render(&stage->settings);
     return tl_renderer_draw(stage->renderer, &frame, &settings, error);
+}
+
+bool tl_stage_draw(struct tl_stage *stage, tl_error *error)
+{
+    return draw(stage, false, error);
 }
 
 bool tl_stage_draw_still(struct tl_stage *stage, tl_error *error)
 {
     struct tl_progress progress = tl_progress_begin("averaging");
-    bool drawn = tl_stage_draw(stage, error);
+    bool drawn = draw(stage, true, error);
     for (int round = 1; drawn && !tl_renderer_is_at_rest(stage->renderer) && !tl_interrupted(); round++) {
-        drawn = tl_stage_draw(stage, error);
+        drawn = draw(stage, true, error);
         tl_progress_update(&progress, round + 1, stage->settings.light.rounds);
     }
     tl_progress_end(&progress);

@@ -36,6 +36,8 @@ static double substeps_per_step(const tl_cloth *cloth)
 {
     if (cloth->params.solver == TL_CLOTH_PREVIEW)
         return cloth->params.substeps;
+    if (cloth->params.solver == TL_CLOTH_SETTLE)
+        return 1;
     return fmax(ceil(step_seconds(cloth) / (TL_VERLET_SAFETY * cloth->critical_step)), 1);
 }
 
@@ -135,24 +137,35 @@ static void pull_grabbed(tl_cloth *cloth, double h)
     cloth->particles.x[i] = vec3d_muladd(cloth->particles.x[i], way, w * impulse / length);
 }
 
+static struct tl_contact_params contact_params(const tl_cloth *cloth, const struct tl_substep *substep)
+{
+    return (struct tl_contact_params){.friction =
+                                          tl_sewing_pulls(&cloth->sewing) ? 0 : cloth->fabric.friction,
+                                      .thickness_m = cloth->fabric.thickness_m,
+                                      .push_out_speed = TL_PUSH_OUT_SPEED,
+                                      .phase_before = substep->phase_before,
+                                      .phase = substep->phase,
+                                      .h = substep->h};
+}
+
+/* The cloth from itself, then from the avatar, which has the last word. */
+static void keep_apart(tl_cloth *cloth, const struct tl_contact_params *contact)
+{
+    if (cloth->params.self_repulsion) {
+        tl_repulsion_solve(&cloth->repulsion, contact->friction, contact->h, &cloth->particles);
+        tl_layers_solve(&cloth->layers, contact, &cloth->particles);
+    }
+    tl_contacts_solve(&cloth->contacts, contact, &cloth->particles);
+}
+
 /* What the energy does not know of: seams, the hand, the avatar. Moves positions. */
 static void constrain(tl_cloth *cloth, const struct tl_substep *substep)
 {
-    const struct tl_contact_params contact = {
-        .friction = tl_sewing_pulls(&cloth->sewing) ? 0 : cloth->fabric.friction,
-        .thickness_m = cloth->fabric.thickness_m,
-        .push_out_speed = TL_PUSH_OUT_SPEED,
-        .phase_before = substep->phase_before,
-        .phase = substep->phase,
-        .h = substep->h};
+    const struct tl_contact_params contact = contact_params(cloth, substep);
     if (cloth->sewing.pair_count > 0)
         tl_sewing_solve(&cloth->sewing, &cloth->particles, substep->h);
     pull_grabbed(cloth, substep->h);
-    if (cloth->params.self_repulsion) {
-        tl_repulsion_solve(&cloth->repulsion, cloth->fabric.friction, substep->h, &cloth->particles);
-        tl_layers_solve(&cloth->layers, &contact, &cloth->particles);
-    }
-    tl_contacts_solve(&cloth->contacts, &contact, &cloth->particles);
+    keep_apart(cloth, &contact);
 }
 
 static void advance_preview(tl_cloth *cloth, const struct tl_substep *substep)
@@ -164,10 +177,48 @@ static void advance_preview(tl_cloth *cloth, const struct tl_substep *substep)
     tl_particles_finish(&cloth->particles, substep->h);
 }
 
+/* Seams that close pull as stiff springs: they must close against what the fabric resists. */
+struct tl_springs tl_cloth_springs(const tl_cloth *cloth)
+{
+    const double firmer = 10, least = 1000;
+    return (struct tl_springs){.count = cloth->sewing.pair_count,
+                               .links = cloth->sewing.links,
+                               .stiffness = fmax(firmer * cloth->fabric.stretch_warp, least)};
+}
+
+static void advance_settle(tl_cloth *cloth, const struct tl_substep *substep)
+{
+    struct tl_particles *particles = &cloth->particles;
+    if (cloth->sewing.pair_count > 0)
+        tl_sewing_shrink(&cloth->sewing, substep->h);
+    const struct tl_springs springs = tl_cloth_springs(cloth);
+    if (!cloth->implicit)
+        cloth->implicit = tl_implicit_create(&cloth->energy, &cloth->fabric, &springs, particles->count);
+    const struct tl_implicit_problem problem = {
+        .energy = &cloth->energy,
+        .fabric = &cloth->fabric,
+        .springs = springs,
+        .pull = {.particle = cloth->grabbed ? cloth->topology.weld[cloth->grabbed_vertex] : TL_NONE,
+                 .target = cloth->grab_target,
+                 .stiffness = GRAB_STIFFNESS,
+                 .most_force = GRAB_FORCE},
+        .contacts = &cloth->contacts,
+        .contact = contact_params(cloth, substep),
+        .gravity = substep->gravity,
+        .drag = substep->drag,
+        .h = substep->h,
+        .tolerance = cloth->params.cg_tolerance,
+        .most_iterations = cloth->params.cg_iterations};
+    memcpy(particles->previous, particles->x, particles->count * sizeof *particles->x);
+    place_pins(cloth, substep->collider, substep->phase);
+    tl_implicit_step(cloth->implicit, &problem, particles, &cloth->tally);
+    keep_apart(cloth, &problem.contact);
+    tl_particles_finish(particles, substep->h);
+}
+
 static void find_forces(tl_cloth *cloth)
 {
-    tl_energy_forces(&cloth->energy, &cloth->fabric, cloth->particles.count, cloth->particles.x,
-                     cloth->forces);
+    tl_energy_pull(&cloth->energy, &cloth->fabric, cloth->particles.x, cloth->forces);
 }
 
 static void advance_reference(tl_cloth *cloth, const struct tl_substep *substep)
@@ -176,7 +227,7 @@ static void advance_reference(tl_cloth *cloth, const struct tl_substep *substep)
     place_pins(cloth, substep->collider, substep->phase);
     constrain(cloth, substep);
     find_forces(cloth);
-    tl_verlet_kick(&cloth->particles, cloth->forces, substep->gravity, substep->h);
+    tl_verlet_kick(&cloth->particles, cloth->forces, substep->gravity, substep->drag, substep->h);
 }
 
 static void run_step(tl_cloth *cloth, const tl_collider *collider, double drag, int step)
@@ -196,6 +247,8 @@ static void run_step(tl_cloth *cloth, const tl_collider *collider, double drag, 
                                            .collider = collider};
         if (cloth->params.solver == TL_CLOTH_REFERENCE)
             advance_reference(cloth, &substep);
+        else if (cloth->params.solver == TL_CLOTH_SETTLE)
+            advance_settle(cloth, &substep);
         else
             advance_preview(cloth, &substep);
     }

@@ -98,9 +98,11 @@ static void set_inverse_masses(tl_cloth *cloth)
 static void set_constants(tl_cloth *cloth)
 {
     set_inverse_masses(cloth);
+    tl_energy_set_fabric(&cloth->energy, &cloth->fabric);
     cloth->critical_step =
         tl_energy_critical_step(&cloth->energy, &cloth->fabric, cloth->particles.count, cloth->particles.w);
     cloth->forces = tl_resize(cloth->forces, cloth->particles.count, sizeof *cloth->forces);
+    tl_implicit_destroy(&cloth->implicit);
     tl_energy_set(&cloth->energy, &cloth->fabric, cloth->particles.w, tl_cloth_substep(cloth));
     tl_contacts_release(&cloth->contacts); /* its planes know the thickness */
     cloth->contacts = tl_contacts_create(&cloth->topology, cloth->rest);
@@ -170,6 +172,7 @@ static void release_state(tl_cloth *cloth)
     tl_layers_release(&cloth->layers);
     tl_repulsion_release(&cloth->repulsion);
     tl_sewing_release(&cloth->sewing);
+    tl_implicit_destroy(&cloth->implicit);
     free(cloth->rest);
     free(cloth->made_at);
     free(cloth->pins);
@@ -367,6 +370,8 @@ struct tl_cloth_report tl_cloth_measure(const tl_cloth *cloth, const tl_collider
                                      .max_strain = tl_cloth_max_strain(cloth),
                                      .critical_step_s = cloth->critical_step,
                                      .substep_s = tl_cloth_substep(cloth),
+                                     .unconverged_steps = cloth->tally.unconverged,
+                                     .shortened_steps = cloth->tally.shortened,
                                      .caught_count = cloth->contacts.caught_count,
                                      .settled = cloth->settled};
     vec3d *forces = TL_NEW_ARRAY(vec3d, cloth->particles.count);

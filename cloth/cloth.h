@@ -30,14 +30,17 @@ struct tl_cloth_fabric {
 };
 extern const struct tl_option_table tl_cloth_fabric_options;
 
-/* How it is solved. Table "cloth". preview: cloth/xpbd.h; reference: cloth/verlet.h. */
-enum tl_cloth_solver { TL_CLOTH_PREVIEW, TL_CLOTH_REFERENCE, TL_CLOTH_SOLVER_COUNT };
+/* How it is solved. Table "cloth". preview: cloth/xpbd.h; settle: cloth/implicit.h; reference:
+ * cloth/verlet.h. */
+enum tl_cloth_solver { TL_CLOTH_PREVIEW, TL_CLOTH_SETTLE, TL_CLOTH_REFERENCE, TL_CLOTH_SOLVER_COUNT };
 extern const char *const tl_cloth_solver_names[]; /* NULL-terminated */
 struct tl_cloth_params {
     int solver;             /* enum tl_cloth_solver */
     double dt;              /* s, one step; a frame is made of whole steps: see frame_rate */
     double frame_rate;      /* frames per second of the animation */
     int substeps;           /* preview: per step */
+    int cg_iterations;      /* settle: most per solve */
+    double cg_tolerance;    /* settle: of the residual, to the load */
     int reference_substeps; /* reference: most per frame, beyond which it is refused */
     bool self_repulsion;    /* layers of a garment, and folds, keep their distance: layers.h, repulsion.h */
     double gravity;         /* m/s^2, along -Y */
@@ -50,19 +53,21 @@ extern const struct tl_option_table tl_cloth_options;
 /* What can be measured of the state; tests, `toile plan` and the panel read it. */
 struct tl_cloth_report {
     size_t vertex_count, edge_count, triangle_count; /* physics mesh */
-    size_t piece_count;      /* connected components; they and folds pass through one another without
-                                self_repulsion */
-    size_t layer_count;      /* told apart by self_repulsion; 0: not yet, or off */
-    size_t open_seams;       /* seam pairs not yet welded */
-    double time_s;           /* simulated since creation or reset, settling excluded */
-    double max_speed;        /* m/s */
-    double max_strain;       /* largest |length / rest length - 1| over edges that are not seams */
-    double kinetic_energy;   /* J */
-    double elastic_energy;   /* J */
-    double potential_energy; /* J, in gravity, of what is not held; 0 at y = 0 */
-    double critical_step_s;  /* the longest stable step of an explicit solver */
-    double substep_s;        /* what the chosen solver takes */
-    double deepest_m;        /* deepest penetration below the avatar's surface, 0 when none */
+    size_t piece_count;       /* connected components; they and folds pass through one another without
+                                 self_repulsion */
+    size_t layer_count;       /* told apart by self_repulsion; 0: not yet, or off */
+    size_t open_seams;        /* seam pairs not yet welded */
+    double time_s;            /* simulated since creation or reset, settling excluded */
+    double max_speed;         /* m/s */
+    double max_strain;        /* largest |length / rest length - 1| over edges that are not seams */
+    double kinetic_energy;    /* J */
+    double elastic_energy;    /* J */
+    double potential_energy;  /* J, in gravity, of what is not held; 0 at y = 0 */
+    double critical_step_s;   /* the longest stable step of an explicit solver */
+    double substep_s;         /* what the chosen solver takes */
+    size_t unconverged_steps; /* settle: iterations cut short, since creation: bounded, not exact */
+    size_t shortened_steps;   /* settle: would have gained energy */
+    double deepest_m;         /* deepest penetration below the avatar's surface, 0 when none */
     size_t caught_count; /* particles pinched between parts of the avatar during the last frame: kept outside,
                             or slipped past one, at the price of strain */
     bool settled;

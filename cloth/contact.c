@@ -266,3 +266,32 @@ void tl_contacts_solve(struct tl_contacts *contacts, const struct tl_contact_par
             particles->x[i] = set_aside(&around, cache, particles->x[i], params);
     }
 }
+
+/* ---- For solvers that heed planes themselves ---- */
+
+static struct tl_contact_plane plane_of(vec3d x, vec3d surface, vec3d surface_before, vec3d normal,
+                                        const struct tl_contact_params *params)
+{
+    vec3d motion = vec3d_sub(surface, surface_before);
+    double depth = params->thickness_m - vec3d_dot(vec3d_sub(x, surface_before), normal);
+    double pushed = depth > 0 ? fmin(depth, params->push_out_speed * params->h) : depth;
+    return (struct tl_contact_plane){normal, motion, vec3d_dot(motion, normal) + pushed};
+}
+
+size_t tl_contacts_planes(struct tl_contacts *contacts, const struct tl_contact_params *params,
+                          size_t particle, vec3d x, struct tl_contact_plane out[TL_CONTACT_PLANES])
+{
+    const struct surroundings around = look_around(contacts->collider);
+    size_t count = 0;
+    if (!around.collider)
+        return 0;
+    struct tl_contact_cache *cache = &contacts->caches[particle];
+    if (stale(cache, around.travel, params->phase_before, x))
+        ask(around.collider, params->thickness_m, params->phase_before, x, cache);
+    if (cache->near)
+        out[count++] = plane_of(x, anchor_at(cache, params->phase), anchor_at(cache, params->phase_before),
+                                cache->normal, params);
+    if (around.ground)
+        out[count++] = plane_of(x, (vec3d){0}, (vec3d){0}, (vec3d){0, 1, 0}, params);
+    return count;
+}

@@ -55,6 +55,19 @@ void tl_contacts_begin(struct tl_contacts *contacts, const tl_collider *collider
  * moves, because its planes turn. On all threads. */
 void tl_contacts_renew(struct tl_contacts *contacts, const vec3d *x, double thickness_m, double phase);
 
+/* A plane that a particle may not pass during a substep, for a solver that heeds it while it solves: its way
+ * d (m) obeys d.normal >= least. */
+struct tl_contact_plane {
+    vec3d normal; /* outward, unit */
+    vec3d motion; /* m, of the surface during the substep */
+    double least; /* m; starting penetration is taken out at a limited speed */
+};
+#define TL_CONTACT_PLANES 2 /* the avatar's and the ground's */
+
+/* Those of a particle that starts at x; returns how many. */
+size_t tl_contacts_planes(struct tl_contacts *contacts, const struct tl_contact_params *params,
+                          size_t particle, vec3d x, struct tl_contact_plane out[TL_CONTACT_PLANES]);
+
 /* Moves particles and probes out of the collider; after the constraints, so that nothing is inside at a
  * substep's end.
  */

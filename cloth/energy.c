@@ -202,12 +202,12 @@ static void build_membranes(struct tl_energy *energy, const struct tl_topology *
     uint32_t *order =
         tl_batch_by_colour(&corners[0][0], 3, 3, count, topology->vertex_count, &energy->membrane_count);
     energy->membranes = TL_NEW_ARRAY(struct tl_membrane, energy->membrane_count);
-    for (size_t i = 0; i < energy->membrane_count * TL_LANES; i++) {
-        struct tl_membrane *m = &energy->membranes[i / TL_LANES];
+    for (size_t i = 0; i < energy->membrane_count * TL_BATCH; i++) {
+        struct tl_membrane *m = &energy->membranes[i / TL_BATCH];
         for (int k = 0; k < 3; k++)
-            m->vertices[k][i % TL_LANES] = (uint32_t)topology->vertex_count;
+            m->vertices[k][i % TL_BATCH] = (uint32_t)topology->vertex_count;
         if (order[i] != TL_NONE)
-            set_up_membrane(corners[order[i]], &flats[triangles[order[i]]], m, i % TL_LANES);
+            set_up_membrane(corners[order[i]], &flats[triangles[order[i]]], m, i % TL_BATCH);
     }
     free(order);
     free(corners);
@@ -223,10 +223,10 @@ static void build_bends(struct tl_energy *energy, const struct tl_topology *topo
     uint32_t *order = tl_batch_by_colour(stencils[0].vertices, sizeof *stencils / sizeof(uint32_t),
                                          TL_BEND_STENCIL, count, topology->vertex_count, &energy->bend_count);
     energy->bends = TL_NEW_ARRAY(struct tl_bend, energy->bend_count);
-    for (size_t i = 0; i < energy->bend_count * TL_LANES; i++) {
-        struct tl_bend *bend = &energy->bends[i / TL_LANES];
+    for (size_t i = 0; i < energy->bend_count * TL_BATCH; i++) {
+        struct tl_bend *bend = &energy->bends[i / TL_BATCH];
         const struct stencil *from = order[i] != TL_NONE ? &stencils[order[i]] : NULL;
-        size_t lane = i % TL_LANES;
+        size_t lane = i % TL_BATCH;
         for (int k = 0; k < TL_BEND_STENCIL; k++) {
             bend->vertices[k][lane] = from ? from->vertices[k] : (uint32_t)topology->vertex_count;
             for (int row = 0; row < 3; row++)
@@ -256,6 +256,7 @@ struct tl_energy tl_energy_build(const struct tl_topology *topology, const vec2s
     }
     build_membranes(&energy, topology, flats, triangles, membrane_count);
     build_bends(&energy, topology, flats);
+    energy.pulls = tl_pulls_build(topology, &energy);
     free(triangles);
     free(flats);
     return energy;
@@ -267,10 +268,25 @@ void tl_energy_release(struct tl_energy *energy)
     free(energy->bends);
     free(energy->links);
     free(energy->masses);
+    tl_pulls_release(&energy->pulls);
     *energy = (struct tl_energy){0};
 }
 
 /* ---- Material ---- */
+
+void tl_bend_stiffness(const struct tl_cloth_fabric *fabric, double out[3])
+{
+    out[0] = fabric->bend_weft;
+    out[1] = fabric->bend_warp;
+    out[2] = sqrt(fabric->bend_weft * fabric->bend_warp);
+}
+
+void tl_energy_set_fabric(struct tl_energy *energy, const struct tl_cloth_fabric *fabric)
+{
+    double stiffness[3];
+    tl_bend_stiffness(fabric, stiffness);
+    tl_pulls_set(&energy->pulls, energy, stiffness);
+}
 
 /* -1 / (gradient + 1/(stiffness h^2)), 0 where nothing can move or resist. */
 static double factor_of(double gradient, double stiffness, double h)
@@ -282,7 +298,7 @@ static double factor_of(double gradient, double stiffness, double h)
 static void set_membrane(struct tl_membrane *m, const struct tl_cloth_fabric *fabric, const double *w,
                          double h)
 {
-    for (int lane = 0; lane < TL_LANES; lane++) {
+    for (int lane = 0; lane < TL_BATCH; lane++) {
         double cc = 0, cd = 0, dd = 0;
         for (int i = 0; i < 3; i++) {
             double mobility = w[m->vertices[i][lane]], c = m->c[i][lane], d = m->d[i][lane];
@@ -301,10 +317,10 @@ static void set_membrane(struct tl_membrane *m, const struct tl_cloth_fabric *fa
 
 static void set_bend(struct tl_bend *bend, const struct tl_cloth_fabric *fabric, const double *w, double h)
 {
-    const double stiffness[3] = {fabric->bend_weft, fabric->bend_warp,
-                                 sqrt(fabric->bend_weft * fabric->bend_warp)};
+    double stiffness[3];
+    tl_bend_stiffness(fabric, stiffness);
     for (int row = 0; row < 3; row++)
-        for (int lane = 0; lane < TL_LANES; lane++) {
+        for (int lane = 0; lane < TL_BATCH; lane++) {
             double gradient = 0;
             for (int i = 0; i < TL_BEND_STENCIL; i++)
                 gradient += w[bend->vertices[i][lane]] * bend->rows[row][i][lane] * bend->rows[row][i][lane];

@@ -1,160 +1,221 @@
-/* The energy as a number, its forces and how stiff it is. */
+/* The energy as a number, and its forces. */
 #include "cloth/energy.h"
-#include "config/memory.h"
+#include "cloth/particles.h"
+#include "config/simd.h"
 
-#include <stdlib.h>
+#include <omp.h>
 #include <string.h>
 
-/* Shorter than this a vector has no direction to push along. */
-#define NO_LENGTH 1e-12
+/* What is squeezed to less than this share of its rest length has no direction to push along. */
+#define NO_LENGTH 1e-6
+/* Below this, threads cost more than they bring. */
+#define PARALLEL_VERTICES 2000
 
-struct tension {
-    vec3d u, v; /* dE/dF_u, dE/dF_v per stiffness and area */
-    double energy;
+struct range {
+    size_t from, to;
 };
 
-/* Adds E = k/2 (|f| - 1)^2 of a column of F. */
-static void add_stretch(vec3d f, double stiffness, vec3d *gradient, double *energy)
+/* This thread's part of `count`, in whole multiples of `unit`. */
+static struct range my_part(size_t count, size_t unit)
 {
-    double length = vec3d_norm(f);
-    *energy += 0.5 * stiffness * (length - 1) * (length - 1);
-    if (length > NO_LENGTH)
-        *gradient = vec3d_muladd(*gradient, f, stiffness * (1 - 1 / length));
+    size_t units = (count + unit - 1) / unit;
+    size_t thread = (size_t)omp_get_thread_num(), threads = (size_t)omp_get_num_threads();
+    size_t from = thread * units / threads * unit, to = (thread + 1) * units / threads * unit;
+    return (struct range){from, to < count ? to : count};
 }
 
-static void add_shear(vec3d u, vec3d v, double stiffness, struct tension *tension)
+/* Places are read four numbers at a time. */
+TL_CLONES static void copy_places(const vec3d *x, struct range range, double *places)
 {
-    double uu = vec3d_dot(u, u), vv = vec3d_dot(v, v);
-    if (!(uu > NO_LENGTH * NO_LENGTH && vv > NO_LENGTH * NO_LENGTH))
-        return;
-    double both = 1 / sqrt(uu * vv), cosine = vec3d_dot(u, v) * both;
-    vec3d along_u = vec3d_muladd(vec3d_scale(v, both), u, -cosine / uu);
-    vec3d along_v = vec3d_muladd(vec3d_scale(u, both), v, -cosine / vv);
-    tension->u = vec3d_muladd(tension->u, along_u, stiffness * cosine);
-    tension->v = vec3d_muladd(tension->v, along_v, stiffness * cosine);
-    tension->energy += 0.5 * stiffness * cosine * cosine;
-}
-
-static double add_membrane(const struct tl_membrane *m, size_t lane, const struct tl_cloth_fabric *fabric,
-                           const vec3d *x, vec3d *forces)
-{
-    vec3d u = {0}, v = {0};
-    struct tension tension = {0};
-    for (int i = 0; i < 3; i++) {
-        u = vec3d_muladd(u, x[m->vertices[i][lane]], m->c[i][lane]);
-        v = vec3d_muladd(v, x[m->vertices[i][lane]], m->d[i][lane]);
+    for (size_t i = range.from; i < range.to; i++) {
+        places[4 * i] = x[i].x;
+        places[4 * i + 1] = x[i].y;
+        places[4 * i + 2] = x[i].z;
     }
-    add_stretch(u, fabric->stretch_weft, &tension.u, &tension.energy);
-    add_stretch(v, fabric->stretch_warp, &tension.v, &tension.energy);
-    add_shear(u, v, fabric->shear, &tension);
-    double area = m->area[lane];
-    for (int i = 0; i < 3; i++) {
-        vec3d *force = &forces[m->vertices[i][lane]];
-        *force = vec3d_muladd(*force, tension.u, -area * m->c[i][lane]);
-        *force = vec3d_muladd(*force, tension.v, -area * m->d[i][lane]);
-    }
-    return area * tension.energy;
 }
 
-static double add_bend(const struct tl_bend *bend, size_t lane, const double stiffness[3], const vec3d *x,
-                       vec3d *forces)
+TL_CLONES static void square_lengths(const vec3d *x, const uint32_t (*edges)[2], struct range range,
+                                     double *squared)
+{
+    for (size_t e = range.from; e < range.to; e++) {
+        vec3d apart = vec3d_sub(x[edges[e][1]], x[edges[e][0]]);
+        squared[e] = vec3d_dot(apart, apart);
+    }
+}
+
+/* Area times stiffness. */
+struct stretching {
+    double weft, warp, shear;
+};
+
+/* With m = (|F_u|^2, F_u.F_v, |F_v|^2) and the energy per area
+ *     e = k_weft/2 (sqrt(m_uu) - 1)^2 + k_warp/2 (sqrt(m_vv) - 1)^2 + k_shear/2 m_uv^2 / (m_uu m_vv):
+ * 2A de/d(l_k^2) for each edge k, and A e. */
+TL_INLINE void differentiate(const struct tl_metric *metric, const struct stretching *k,
+                             const double squared[3][TL_BATCH], double shares[3][TL_BATCH],
+                             double energies[TL_BATCH])
+{
+    for (int lane = 0; lane < TL_BATCH; lane++) {
+        double c0 = metric->c[0][lane], c1 = metric->c[1][lane], c2 = -(c0 + c1);
+        double d0 = metric->d[0][lane], d1 = metric->d[1][lane], d2 = -(d0 + d1);
+        double l0 = squared[0][lane], l1 = squared[1][lane], l2 = squared[2][lane];
+        double uv0 = c1 * d2 + c2 * d1, uv1 = c2 * d0 + c0 * d2, uv2 = c0 * d1 + c1 * d0;
+        double uu = -(c1 * c2 * l0 + c2 * c0 * l1 + c0 * c1 * l2);
+        double vv = -(d1 * d2 * l0 + d2 * d0 * l1 + d0 * d1 * l2);
+        double uv = -0.5 * (uv0 * l0 + uv1 * l1 + uv2 * l2);
+        double has_u = uu > NO_LENGTH * NO_LENGTH ? 1.0 : 0.0, has_v = vv > NO_LENGTH * NO_LENGTH ? 1.0 : 0.0;
+        double length_u = sqrt(has_u > 0 ? uu : 1.0), length_v = sqrt(has_v > 0 ? vv : 1.0);
+        double inverse_u = 1 / length_u, inverse_v = 1 / length_v;
+        double cosine = has_u * has_v * uv * inverse_u * inverse_v;
+        double slant = k->shear * cosine;
+        double by_uu = k->weft * (1 - inverse_u) - slant * cosine * inverse_u * inverse_u; /* 2 de/dm_uu */
+        double by_vv = k->warp * (1 - inverse_v) - slant * cosine * inverse_v * inverse_v;
+        double by_uv = slant * inverse_u * inverse_v; /* de/dm_uv */
+        double area = metric->area[lane];
+        shares[0][lane] = -area * (by_uu * (c1 * c2) + by_vv * (d1 * d2) + by_uv * uv0);
+        shares[1][lane] = -area * (by_uu * (c2 * c0) + by_vv * (d2 * d0) + by_uv * uv1);
+        shares[2][lane] = -area * (by_uu * (c0 * c1) + by_vv * (d0 * d1) + by_uv * uv2);
+        double weft = has_u * length_u - 1, warp = has_v * length_v - 1;
+        energies[lane] = 0.5 * area * (k->weft * weft * weft + k->warp * warp * warp + slant * cosine);
+    }
+}
+
+TL_CLONES static void differentiate_all(const struct tl_pulls *pulls, struct stretching k, struct range range)
+{
+    for (size_t i = range.from; i < range.to; i++) {
+        const struct tl_metric *metric = &pulls->metrics[i];
+        double squared[3][TL_BATCH], shares[3][TL_BATCH], energies[TL_BATCH], sum = 0;
+        for (int corner = 0; corner < 3; corner++)
+            for (int lane = 0; lane < TL_BATCH; lane++)
+                squared[corner][lane] = pulls->squared[metric->edges[corner][lane]];
+        differentiate(metric, &k, (const double(*)[TL_BATCH])squared, shares, energies);
+        memcpy(&pulls->shares[i * 3 * TL_BATCH], shares, sizeof shares);
+        for (int lane = 0; lane < TL_BATCH; lane++)
+            sum += energies[lane];
+        pulls->parts[i] = sum;
+    }
+}
+
+TL_CLONES static void add_shares(const struct tl_pulls *pulls, struct range range)
+{
+    for (size_t e = range.from; e < range.to; e++)
+        pulls->along_edges[e] = pulls->shares[pulls->slots[e][0]] + pulls->shares[pulls->slots[e][1]];
+}
+
+/* What few edges have: more than two triangles, and links. Returns the links' energy. */
+static double add_rare(const struct tl_energy *energy, double stiffness)
+{
+    const struct tl_pulls *pulls = &energy->pulls;
+    double sum = 0;
+    for (size_t i = 0; i < pulls->excess_count; i++)
+        pulls->along_edges[pulls->excess[i][0]] += pulls->shares[pulls->excess[i][1]];
+    for (size_t i = 0; i < energy->link_count; i++) {
+        double rest = energy->links[i].rest, length = sqrt(pulls->squared[pulls->link_edges[i]]);
+        if (length > NO_LENGTH * rest)
+            pulls->along_edges[pulls->link_edges[i]] += stiffness * (1 - rest / length);
+        sum += 0.5 * stiffness * (length - rest) * (length - rest);
+    }
+    return sum;
+}
+
+struct pull {
+    double x, y, z, unused; /* of four, so that it is added at once */
+};
+
+TL_INLINE void add_pull(const double *from, const double *to, double strength, struct pull *sum)
+{
+    double x = to[0] - from[0], y = to[1] - from[1], z = to[2] - from[2], unused = to[3] - from[3];
+    sum->x += strength * x;
+    sum->y += strength * y;
+    sum->z += strength * z;
+    sum->unused += strength * unused;
+}
+
+TL_CLONES static void add_forces(const struct tl_pulls *pulls, struct range range, vec3d *forces)
+{
+    for (size_t i = range.from; i < range.to; i++) {
+        const double *at = &pulls->places[4 * i];
+        struct pull sum = {0};
+        uint32_t k = pulls->first[2 * i], near_end = pulls->first[2 * i + 1], end = pulls->first[2 * i + 2];
+        for (; k < near_end; k++)
+            add_pull(at, &pulls->places[4 * (size_t)pulls->others[k]],
+                     pulls->bending[k] + pulls->along_edges[pulls->along[k]], &sum);
+        for (; k < end; k++)
+            add_pull(at, &pulls->places[4 * (size_t)pulls->others[k]], pulls->bending[k], &sum);
+        forces[i] = (vec3d){sum.x, sum.y, sum.z};
+    }
+}
+
+/* x.Kx/2 of a block of vertices. Forces add up to nothing, so that x may be measured from anywhere. */
+TL_CLONES static double bending_energy(const struct tl_pulls *pulls, struct range range)
 {
     double energy = 0;
-    for (int row = 0; row < 3; row++) {
-        vec3d curvature = {0};
-        for (int i = 0; i < TL_BEND_STENCIL; i++)
-            curvature = vec3d_muladd(curvature, x[bend->vertices[i][lane]], bend->rows[row][i][lane]);
-        double k = stiffness[row] * bend->area[lane];
-        energy += 0.5 * k * vec3d_dot(curvature, curvature);
-        for (int i = 0; i < TL_BEND_STENCIL; i++) {
-            vec3d *force = &forces[bend->vertices[i][lane]];
-            *force = vec3d_muladd(*force, curvature, -k * bend->rows[row][i][lane]);
-        }
+    const double *origin = pulls->places;
+    for (size_t i = range.from; i < range.to; i++) {
+        const double *at = &pulls->places[4 * i];
+        struct pull sum = {0};
+        for (uint32_t k = pulls->first[2 * i]; k < pulls->first[2 * i + 2]; k++)
+            add_pull(at, &pulls->places[4 * (size_t)pulls->others[k]], pulls->bending[k], &sum);
+        energy -=
+            0.5 * (sum.x * (at[0] - origin[0]) + sum.y * (at[1] - origin[1]) + sum.z * (at[2] - origin[2]));
     }
     return energy;
 }
 
-static double add_link(const struct tl_link *link, double stiffness, const vec3d *x, vec3d *forces)
+static void add_energies(const struct tl_pulls *pulls)
 {
-    vec3d apart = vec3d_sub(x[link->b], x[link->a]);
-    double length = vec3d_norm(apart), stretch = length - link->rest;
-    if (length > NO_LENGTH) {
-        vec3d pull = vec3d_scale(apart, stiffness * stretch / length);
-        forces[link->a] = vec3d_add(forces[link->a], pull);
-        forces[link->b] = vec3d_sub(forces[link->b], pull);
+    struct range mine = my_part(pulls->vertex_count, TL_PULLS_BLOCK);
+    for (size_t from = mine.from; from < mine.to; from += TL_PULLS_BLOCK) {
+        size_t to = from + TL_PULLS_BLOCK < mine.to ? from + TL_PULLS_BLOCK : mine.to;
+        pulls->parts[pulls->metric_count + from / TL_PULLS_BLOCK] =
+            bending_energy(pulls, (struct range){from, to});
     }
-    return 0.5 * stiffness * stretch * stretch;
 }
 
-static void bend_stiffness(const struct tl_cloth_fabric *fabric, double out[3])
+/* Returns the links' energy, and leaves the triangles' in pulls->parts, the bending's too if it is wanted. */
+static double evaluate(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric, const vec3d *x,
+                       bool wants_energy, vec3d *forces)
 {
-    out[0] = fabric->bend_weft;
-    out[1] = fabric->bend_warp;
-    out[2] = sqrt(fabric->bend_weft * fabric->bend_warp);
+    const struct tl_pulls *pulls = &energy->pulls;
+    const struct stretching k = {fabric->stretch_weft, fabric->stretch_warp, fabric->shear};
+    double links = 0;
+#pragma omp parallel if (pulls->vertex_count >= PARALLEL_VERTICES)
+    {
+        unsigned denormals = tl_denormals_off();
+        copy_places(x, my_part(pulls->vertex_count, TL_PULLS_BLOCK), pulls->places);
+        square_lengths(x, (const uint32_t(*)[2])pulls->edges, my_part(pulls->edge_count, TL_BATCH),
+                       pulls->squared);
+#pragma omp barrier
+        differentiate_all(pulls, k, my_part(pulls->metric_count, 1));
+#pragma omp barrier
+        add_shares(pulls, my_part(pulls->edge_count, TL_BATCH));
+        if (pulls->excess_count + energy->link_count > 0) {
+#pragma omp barrier
+#pragma omp single
+            links = add_rare(energy, fabric->stretch_warp);
+        }
+#pragma omp barrier
+        add_forces(pulls, my_part(pulls->vertex_count, TL_PULLS_BLOCK), forces);
+        if (wants_energy)
+            add_energies(pulls);
+        tl_denormals_restore(denormals);
+    }
+    return links;
+}
+
+void tl_energy_pull(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric, const vec3d *x,
+                    vec3d *forces)
+{
+    evaluate(energy, fabric, x, false, forces);
 }
 
 double tl_energy_forces(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
                         size_t vertex_count, const vec3d *x, vec3d *forces)
 {
-    double stiffness[3], total = 0;
-    bend_stiffness(fabric, stiffness);
-    memset(forces, 0, vertex_count * sizeof *forces);
-    for (size_t i = 0; i < energy->membrane_count * TL_LANES; i++)
-        if (energy->membranes[i / TL_LANES].area[i % TL_LANES] > 0)
-            total += add_membrane(&energy->membranes[i / TL_LANES], i % TL_LANES, fabric, x, forces);
-    for (size_t i = 0; i < energy->bend_count * TL_LANES; i++)
-        if (energy->bends[i / TL_LANES].area[i % TL_LANES] > 0)
-            total += add_bend(&energy->bends[i / TL_LANES], i % TL_LANES, stiffness, x, forces);
-    for (size_t i = 0; i < energy->link_count; i++)
-        total += add_link(&energy->links[i], fabric->stretch_warp, x, forces);
+    const struct tl_pulls *pulls = &energy->pulls;
+    size_t blocks = (vertex_count + TL_PULLS_BLOCK - 1) / TL_PULLS_BLOCK;
+    double total = evaluate(energy, fabric, x, true, forces);
+    for (size_t i = 0; i < pulls->metric_count + blocks; i++)
+        total += pulls->parts[i];
     return total;
-}
-
-/* ---- Stiffness ---- */
-
-/* Adds to each vertex its row of |K| for an energy k/2 |sum rows x|^2. */
-static void add_rows(const double *rows, size_t stride, const uint32_t *vertices, size_t count,
-                     double stiffness, double *sums)
-{
-    double total = 0;
-    for (size_t i = 0; i < count; i++)
-        total += fabs(rows[i * stride]);
-    for (size_t i = 0; i < count; i++)
-        sums[vertices[i * TL_LANES]] += stiffness * fabs(rows[i * stride]) * total;
-}
-
-static void add_membrane_rows(const struct tl_membrane *m, size_t lane, const struct tl_cloth_fabric *fabric,
-                              double *sums)
-{
-    double area = m->area[lane], shear[3 * TL_LANES] = {0};
-    for (int i = 0; i < 3; i++)
-        shear[i * TL_LANES] = fabs(m->c[i][lane]) + fabs(m->d[i][lane]);
-    add_rows(&m->c[0][lane], TL_LANES, &m->vertices[0][lane], 3, area * fabric->stretch_weft, sums);
-    add_rows(&m->d[0][lane], TL_LANES, &m->vertices[0][lane], 3, area * fabric->stretch_warp, sums);
-    add_rows(shear, TL_LANES, &m->vertices[0][lane], 3, area * fabric->shear, sums);
-}
-
-double tl_energy_critical_step(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
-                               size_t vertex_count, const double *inverse_masses)
-{
-    double stiffness[3], fastest = 0;
-    double *sums = TL_NEW_ARRAY(double, vertex_count + 1);
-    bend_stiffness(fabric, stiffness);
-    for (size_t i = 0; i < energy->membrane_count * TL_LANES; i++)
-        add_membrane_rows(&energy->membranes[i / TL_LANES], i % TL_LANES, fabric, sums);
-    for (size_t i = 0; i < energy->bend_count * TL_LANES; i++) {
-        const struct tl_bend *bend = &energy->bends[i / TL_LANES];
-        size_t lane = i % TL_LANES;
-        for (int row = 0; row < 3; row++)
-            add_rows(&bend->rows[row][0][lane], TL_LANES, &bend->vertices[0][lane], TL_BEND_STENCIL,
-                     stiffness[row] * bend->area[lane], sums);
-    }
-    for (size_t i = 0; i < energy->link_count; i++) {
-        sums[energy->links[i].a] += 2 * fabric->stretch_warp;
-        sums[energy->links[i].b] += 2 * fabric->stretch_warp;
-    }
-    for (size_t i = 0; i < vertex_count; i++)
-        fastest = fmax(fastest, inverse_masses[i] * sums[i]);
-    free(sums);
-    return 2 / sqrt(fastest);
 }

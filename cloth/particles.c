@@ -51,10 +51,10 @@ void tl_particles_predict(struct tl_particles *particles, double gravity, double
 {
     double keep = exp(-drag * h);
     for (size_t i = 0; i < particles->count; i++) {
-        vec3d v = particles->w[i] > 0 ? particles->v[i] : (vec3d){0};
+        vec3d v = particles->w[i] > 0 ? vec3d_scale(particles->v[i], keep) : (vec3d){0};
         if (particles->w[i] > 0)
             v.y -= gravity * h;
-        particles->v[i] = vec3d_scale(v, keep);
+        particles->v[i] = v;
         particles->previous[i] = particles->x[i];
         particles->x[i] = vec3d_muladd(particles->x[i], particles->v[i], h);
     }

@@ -20,7 +20,8 @@ struct tl_particles {
 struct tl_particles tl_particles_create(size_t count);
 void tl_particles_release(struct tl_particles *particles);
 
-/* v <- (v + h g) exp(-drag h), previous <- x, x <- x + h v. */
+/* v <- v exp(-drag h) + h g, previous <- x, x <- x + h v. What is at rest feels its whole weight, whatever
+ * the drag. */
 void tl_particles_predict(struct tl_particles *particles, double gravity, double drag, double h);
 
 /* v <- (x - previous) / h. */

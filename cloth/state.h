@@ -4,6 +4,7 @@
 
 #include "cloth/cloth.h"
 #include "cloth/contact.h"
+#include "cloth/implicit.h"
 #include "cloth/layers.h"
 #include "cloth/repulsion.h"
 #include "cloth/sew.h"
@@ -28,7 +29,9 @@ struct tl_cloth {
     struct tl_energy energy;
     double critical_step; /* s */
     struct tl_particles particles;
-    vec3d *forces; /* [particles.count] N, elastic; reference only, good within a step */
+    vec3d *forces;         /* [particles.count] N, elastic; reference only, good within a step */
+    tl_implicit *implicit; /* settle only */
+    struct tl_implicit_tally tally;
     struct tl_contacts contacts;
     struct tl_layers layers;       /* with params.self_repulsion */
     struct tl_repulsion repulsion; /* the same */
@@ -64,6 +67,7 @@ struct tl_substep {
 
 /* Seconds of one substep of the chosen solver, so that a frame is a whole number of equal ones. */
 double tl_cloth_substep(const tl_cloth *cloth);
+struct tl_springs tl_cloth_springs(const tl_cloth *cloth);
 double tl_cloth_max_speed(const tl_cloth *cloth);
 double tl_cloth_max_strain(const tl_cloth *cloth);
 

@@ -244,16 +244,16 @@ uint32_t *tl_batch_by_colour(const uint32_t *corners, size_t stride, size_t per_
     }
     for (size_t c = 0; c < COLOURS; c++) { /* elements of the shared colour get a batch each */
         next[c] = slots;
-        slots += c == COLOURS - 1 ? sizes[c] * TL_LANES : (sizes[c] + TL_LANES - 1) / TL_LANES * TL_LANES;
+        slots += c == COLOURS - 1 ? sizes[c] * TL_BATCH : (sizes[c] + TL_BATCH - 1) / TL_BATCH * TL_BATCH;
     }
     uint32_t *order = TL_NEW_ARRAY(uint32_t, slots);
     memset(order, 0xff, slots * sizeof *order);
     for (size_t e = 0; e < count; e++) {
         order[next[colours[e]]] = (uint32_t)e;
-        next[colours[e]] += colours[e] == COLOURS - 1 ? TL_LANES : 1;
+        next[colours[e]] += colours[e] == COLOURS - 1 ? TL_BATCH : 1;
     }
     free(used);
     free(colours);
-    *batch_count = slots / TL_LANES;
+    *batch_count = slots / TL_BATCH;
     return order;
 }

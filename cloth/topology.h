@@ -41,10 +41,10 @@ struct tl_fans {
 struct tl_fans tl_fans_build(const uint32_t *corners, size_t corner_count, size_t vertex_count);
 void tl_fans_release(struct tl_fans *fans);
 
-/* Batches of TL_LANES elements that share no vertex, so that a batch can be solved as one: greedy colours,
+/* Batches of TL_BATCH elements that share no vertex, so that a batch can be solved as one: greedy colours,
  * one after the other, each in the order given. Element i has `per_element` vertices at corners + i * stride.
  * Returns a new array of element numbers, TL_NONE in lanes that stay empty. */
-#define TL_LANES 4
+#define TL_BATCH 4
 uint32_t *tl_batch_by_colour(const uint32_t *corners, size_t stride, size_t per_element, size_t count,
                              size_t vertex_count, size_t *batch_count);
 

@@ -11,12 +11,14 @@
 
 #define TL_VERLET_SAFETY 0.9 /* of the critical step */
 
-/* x and v at the substep's start, with `forces` (N) at x. v <- v exp(-drag h) + h/2 a; previous <- x;
- * x <- x + h v. */
+/* x and v at the substep's start, with `forces` (N) at x. v <- v exp(-drag h/2) + h/2 a; previous <- x;
+ * x <- x + h v. Then constraints may move x. */
 void tl_verlet_drift(struct tl_particles *particles, const vec3d *forces, double gravity, double drag,
                      double h);
 
-/* v <- (x - previous) / h + h/2 a, with `forces` at the new x. */
-void tl_verlet_kick(struct tl_particles *particles, const vec3d *forces, double gravity, double h);
+/* What constraints moved x by, over h, is added to v; then v <- (v + h/2 a) exp(-drag h/2), with `forces` at
+ * the new x. */
+void tl_verlet_kick(struct tl_particles *particles, const vec3d *forces, double gravity, double drag,
+                    double h);
 
 #endif

@@ -14,9 +14,9 @@
 #endif
 #define INLINE static inline __attribute__((always_inline))
 
-typedef double lanes __attribute__((vector_size(8 * TL_LANES)));
-typedef double lanes_in_memory __attribute__((vector_size(8 * TL_LANES), aligned(8)));
-typedef long long mask __attribute__((vector_size(8 * TL_LANES)));
+typedef double lanes __attribute__((vector_size(8 * TL_BATCH)));
+typedef double lanes_in_memory __attribute__((vector_size(8 * TL_BATCH), aligned(8)));
+typedef long long mask __attribute__((vector_size(8 * TL_BATCH)));
 
 struct lanes3 {
     lanes x, y, z;
@@ -34,7 +34,7 @@ INLINE lanes choose(mask which, lanes yes, lanes no)
 
 INLINE lanes root(lanes v)
 {
-    for (int i = 0; i < TL_LANES; i++)
+    for (int i = 0; i < TL_BATCH; i++)
         v[i] = sqrt(v[i]);
     return v;
 }
@@ -69,7 +69,7 @@ INLINE lanes load_inverse_masses(const struct tl_particles *particles, const uin
 
 INLINE void store(struct lanes3 x, const uint32_t *v, struct tl_particles *particles)
 {
-    for (int lane = 0; lane < TL_LANES; lane++)
+    for (int lane = 0; lane < TL_BATCH; lane++)
         particles->x[v[lane]] = (vec3d){x.x[lane], x.y[lane], x.z[lane]};
 }
 

@@ -305,10 +305,9 @@ double tl_renderer_standard_error(const tl_renderer *renderer)
 bool tl_renderer_is_at_rest(const tl_renderer *renderer)
 {
     const struct tl_light_params *light = &renderer->settings.light;
-    bool jitters =
-        light->jitter && light->method != TL_METHOD_REFERENCE && light->method != TL_METHOD_UNSHADOWED;
-    int rounds = light->visibility == TL_VISIBILITY_RAYS ? renderer->rest.scene : renderer->rest.image;
-    return renderer->valid & TL_BIT(TL_MADE_IMAGE) && (!jitters || rounds >= light->rounds - 1);
+    bool is_done = light->visibility == TL_VISIBILITY_RAYS ? renderer->rest.is_done
+                                                           : renderer->rest.image >= light->rounds - 1;
+    return renderer->valid & TL_BIT(TL_MADE_IMAGE) && (is_done || !tl_light_averages(light));
 }
 
 const tl_plan *tl_renderer_last_plan(const tl_renderer *renderer)

@@ -46,6 +46,7 @@ struct tl_light_params { /* table "light" */
     int refresh;         /* rays: regions traced anew for each point and moving frame; 0: all */
     int rays;            /* rays: directions a region and refresh */
     float repair;        /* rays: share of the samples, the least certain, that get rays of their own */
+    float repair_rest;   /* ... once nothing moves, when it is more */
     bool reflect_scene; /* near mirrors (s >= TL_MIRROR_EXPONENT) see the lit scene; false: black, as [002] */
     int map_size;       /* texels, side of a shadow map */
     float blur_m;       /* metres: the Gaussian's sigma is blur_m x tan(cone) */
@@ -96,6 +97,7 @@ typedef struct tl_frame {
     uint64_t environment_revision; /* changes when the environment does */
     float environment_yaw;         /* rad: the environment turned about +Y, counter-clockwise from above */
     double time_s;
+    bool still; /* drawn until it rests: every round is taken whole, however long that takes */
 } tl_frame;
 
 struct tl_render_settings {

@@ -90,7 +90,11 @@ extern const int tl_frame_job_count;
 /* How many frames have been drawn since something changed: anything, and anything but the camera. */
 struct tl_rest {
     int image, scene;
+    bool is_done; /* rays: all rounds of this image are in */
 };
+
+/* Whether rounds at rest change the image. */
+bool tl_light_averages(const struct tl_light_params *light);
 
 /* One number for each input of the frame: an input has changed when its number has. `rest` becomes that of
  * this frame. */

@@ -57,13 +57,18 @@ static uint64_t maps_signature(const struct tl_light_params *light)
 static uint64_t rays_signature(const struct tl_light_params *light)
 {
     uint64_t hash = MIX(MIX(FNV_OFFSET, light->rays), light->refresh);
-    return MIX(MIX(hash, light->repair), light->jitter);
+    return MIX(MIX(MIX(hash, light->repair), light->repair_rest), light->jitter);
 }
 
 static uint64_t reference_signature(const struct tl_reference_params *reference)
 {
     uint64_t hash = MIX(MIX(FNV_OFFSET, reference->strata), reference->lobe_samples);
     return MIX(MIX(hash, reference->replicates), reference->terminator);
+}
+
+bool tl_light_averages(const struct tl_light_params *light)
+{
+    return light->jitter && light->method != TL_METHOD_REFERENCE && light->method != TL_METHOD_UNSHADOWED;
 }
 
 static void count_rest(const struct tl_light_params *light, const uint64_t before[TL_INPUT_COUNT],
@@ -77,9 +82,14 @@ static void count_rest(const struct tl_light_params *light, const uint64_t befor
         image_rests = false;
         scene_rests = scene_rests && (i == TL_INPUT_CAMERA || i == TL_INPUT_SIZE);
     }
-    int last = light->jitter ? light->rounds - 1 : 0;
+    int last = tl_light_averages(light) ? light->rounds - 1 : 0;
     rest->image = !image_rests ? 0 : rest->image < last ? rest->image + 1 : last;
-    rest->scene = !scene_rests ? 0 : rest->scene < last ? rest->scene + 1 : last;
+    rest->is_done = rest->is_done && image_rests;
+    bool is_done = light->visibility == TL_VISIBILITY_RAYS ? rest->is_done : rest->scene >= last;
+    if (!scene_rests)
+        rest->scene = 0;
+    else if (tl_light_averages(light) && !is_done)
+        rest->scene++;
 }
 
 void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *settings,

@@ -1,5 +1,6 @@
 #include "render/frame/frame.h"
 
+#include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
 #include "render/light/compose.h"
@@ -268,13 +269,29 @@ static bool run_mirrors(void *context, int level, tl_error *error)
     return true;
 }
 
+/* A still image takes all its rounds before it is lit. */
+static void update_points(tl_renderer *renderer, struct tl_points_request *request)
+{
+    const struct tl_light_params *light = &renderer->settings.light;
+    struct tl_progress progress = tl_progress_begin("averaging");
+    tl_points_update(renderer->points, request);
+    bool goes_on = renderer->frame.still && tl_light_averages(light);
+    for (int round = 1; goes_on && !tl_points_are_done(renderer->points) && !tl_interrupted(); round++) {
+        request->moved = false;
+        tl_points_update(renderer->points, request);
+        tl_progress_update(&progress, round, light->rounds);
+    }
+    tl_progress_end(&progress);
+    renderer->rest.is_done = tl_points_are_done(renderer->points);
+}
+
 static bool run_points(void *context, int level, tl_error *error)
 {
     tl_renderer *renderer = context;
     (void)level;
     if (!follow_motion(renderer, error))
         return false;
-    const struct tl_points_request request = {.trace = renderer->trace,
+    struct tl_points_request request = {.trace = renderer->trace,
                                               .ranges = &renderer->ranges,
                                               .samples = &renderer->samples,
                                               .regions = &renderer->regions,
@@ -285,8 +302,8 @@ static bool run_points(void *context, int level, tl_error *error)
                                               .environment_yaw = renderer->frame.environment_yaw,
                                               .params = &renderer->settings.light,
                                               .moved = renderer->rest.scene == 0,
-                                              .round = renderer->rest.scene};
-    tl_points_update(renderer->points, &request);
+                                              .whole_rounds = renderer->frame.still};
+    update_points(renderer, &request);
     return true;
 }
 

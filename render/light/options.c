@@ -47,6 +47,8 @@ static const struct tl_option light_rows[] = {
                   "rays: directions traced a region; more are truer and slower"),
     TL_OPTION_FLOAT(light_params, repair, 0, 1, "",
                     "rays: share of the samples, the least certain ones, that get rays of their own"),
+    TL_OPTION_FLOAT(light_params, repair_rest, 0, 1, "",
+                    "rays: the same once nothing moves, when it is more: spread over frames at rest"),
     TL_OPTION_BOOL(light_params, reflect_scene,
                    "near mirrors (exponent 200 and more) show the lit scene; off: black"),
     TL_OPTION_INT(light_params, map_size, 1, 4096, "texels",

@@ -32,12 +32,13 @@ struct tl_points {
     uint32_t *seen;       /* [sites]: frame when last visible */
     uint32_t *slots;      /* [clusters]: where its values are; NO_SLOT: nowhere yet */
     uint32_t *active;     /* [active_count]: clusters with visible sites */
-    uint32_t *ray_counts; /* by active cluster */
     size_t active_count, visible_count;
 
     size_t slot_count, slot_capacity, stride;
     uint16_t *values;  /* [slots][TL_CLUSTER][stride] */
-    uint16_t *rounds;  /* [slots][TL_CLUSTER]: frames at rest in each point's mean */
+    uint16_t *weights; /* ... : of the directions in each mean at rest */
+    uint16_t *rounds;  /* [slots][stride]: frames at rest in which a region was traced */
+    uint32_t *rested;  /* [slots]: `motion` when the weights and rounds were begun */
     uint32_t *traced;  /* [slots][TL_CLUSTER]: `motion` when a point was last traced; 0: never */
     uint16_t *covered; /* [slots]: bit i: something lies close above point i */
     uint32_t *stamps;  /* [slots][stride]: frame when a region was last traced */
@@ -45,6 +46,8 @@ struct tl_points {
     struct tl_taps *taps;
     size_t sample_count, sample_capacity;
     size_t ray_count;
+    /* At rest: of the points of the slots, each region has been looked at; has had its rounds; and all else. */
+    bool have_begun, are_done, is_done;
 
     struct tl_starts starts; /* made when suns or repair need them */
     struct tl_sun_rays suns;
@@ -59,13 +62,14 @@ tl_points *tl_points_create(void)
 static void forget_values(tl_points *points)
 {
     free(points->values);
+    free(points->weights);
     free(points->rounds);
+    free(points->rested);
     free(points->traced);
     free(points->covered);
     free(points->stamps);
-    points->values = NULL;
-    points->rounds = points->covered = NULL;
-    points->traced = points->stamps = NULL;
+    points->values = points->weights = points->rounds = points->covered = NULL;
+    points->rested = points->traced = points->stamps = NULL;
     points->slot_count = points->slot_capacity = 0;
     for (size_t i = 0; i < points->sites.cluster_count; i++)
         points->slots[i] = NO_SLOT;
@@ -78,7 +82,6 @@ static void forget_sites(tl_points *points)
     free(points->seen);
     free(points->slots);
     free(points->active);
-    free(points->ray_counts);
 }
 
 void tl_points_destroy(tl_points **points)
@@ -102,7 +105,6 @@ static void build_sites(tl_points *points, const struct tl_points_request *reque
     points->seen = TL_NEW_ARRAY(uint32_t, count * TL_CLUSTER);
     points->slots = TL_NEW_ARRAY(uint32_t, count);
     points->active = TL_NEW_ARRAY(uint32_t, count);
-    points->ray_counts = TL_NEW_ARRAY(uint32_t, count);
     for (size_t i = 0; i < count; i++)
         points->slots[i] = NO_SLOT;
 }
@@ -141,13 +143,19 @@ static void carry_over(tl_points *points, const struct tl_points_request *reques
     find_sources(points, request, source);
     uint16_t *values = TL_NEW_ARRAY(uint16_t, points->slot_capacity * TL_CLUSTER * stride);
     uint32_t *stamps = TL_NEW_ARRAY(uint32_t, points->slot_capacity * stride);
+    uint16_t *weights = TL_NEW_ARRAY(uint16_t, points->slot_capacity * TL_CLUSTER * stride);
+    uint16_t *rounds = TL_NEW_ARRAY(uint16_t, points->slot_capacity * stride);
 #pragma omp parallel for
     for (size_t p = 0; p < points->slot_count * TL_CLUSTER; p++)
         for (int i = 0; i < count; i++)
             values[p * stride + (size_t)i] = points->values[p * points->stride + (size_t)source[i]];
     free(points->values);
+    free(points->weights);
+    free(points->rounds);
     free(points->stamps);
     points->values = values;
+    points->weights = weights;
+    points->rounds = rounds;
     points->stamps = stamps;
     points->stride = stride;
 }
@@ -223,24 +231,28 @@ static void mark_samples(tl_points *points, const struct tl_points_request *requ
         mark_sample(points, request, i);
 }
 
+/* An array of `used` items grows to `count`; what is added is 0. */
+static void *grow(void *items, size_t used, size_t count, size_t size)
+{
+    char *grown = tl_resize(items, count, size);
+    memset(grown + used * size, 0, (count - used) * size);
+    return grown;
+}
+
 static void reserve_slots(tl_points *points, size_t count)
 {
     if (count <= points->slot_capacity)
         return;
-    points->slot_capacity = count + count / 4;
-    size_t capacity = points->slot_capacity, used = points->slot_count;
-    points->values = tl_resize(points->values, capacity * TL_CLUSTER * points->stride, sizeof(uint16_t));
-    points->rounds = tl_resize(points->rounds, capacity * TL_CLUSTER, sizeof(uint16_t));
-    points->traced = tl_resize(points->traced, capacity * TL_CLUSTER, sizeof(uint32_t));
-    points->covered = tl_resize(points->covered, capacity, sizeof(uint16_t));
-    points->stamps = tl_resize(points->stamps, capacity * points->stride, sizeof(uint32_t));
-    size_t added = capacity - used;
-    memset(points->values + used * TL_CLUSTER * points->stride, 0,
-           added * TL_CLUSTER * points->stride * sizeof(uint16_t));
-    memset(points->rounds + used * TL_CLUSTER, 0, added * TL_CLUSTER * sizeof(uint16_t));
-    memset(points->traced + used * TL_CLUSTER, 0, added * TL_CLUSTER * sizeof(uint32_t));
-    memset(points->covered + used, 0, added * sizeof(uint16_t));
-    memset(points->stamps + used * points->stride, 0, added * points->stride * sizeof(uint32_t));
+    size_t used = points->slot_count, capacity = count + count / 4, stride = points->stride;
+    size_t row = TL_CLUSTER * stride;
+    points->slot_capacity = capacity;
+    points->values = grow(points->values, used * row, capacity * row, sizeof(uint16_t));
+    points->weights = grow(points->weights, used * row, capacity * row, sizeof(uint16_t));
+    points->rounds = grow(points->rounds, used * stride, capacity * stride, sizeof(uint16_t));
+    points->rested = grow(points->rested, used, capacity, sizeof(uint32_t));
+    points->traced = grow(points->traced, used * TL_CLUSTER, capacity * TL_CLUSTER, sizeof(uint32_t));
+    points->covered = grow(points->covered, used, capacity, sizeof(uint16_t));
+    points->stamps = grow(points->stamps, used * stride, capacity * stride, sizeof(uint32_t));
 }
 
 static uint32_t visible_members(const tl_points *points, size_t cluster)
@@ -304,80 +316,187 @@ static vec3s *jitter_directions(const tl_points *points, const struct tl_points_
     return directions;
 }
 
-/* Where a point's mean stands in this frame, and whether it holds anything. */
-static bool begin_point(tl_points *points, size_t point, bool moved)
+/* The means begin anew when something has moved since the last rest. A point that comes into sight
+ * has its cluster's rounds begun again: the others' means only grow. */
+static void begin_rest(tl_points *points, size_t slot, uint32_t members)
+{
+    uint16_t *rounds = points->rounds + slot * points->stride;
+    bool joined = false;
+    if (points->rested[slot] != points->motion) {
+        points->rested[slot] = points->motion;
+        memset(points->weights + slot * TL_CLUSTER * points->stride, 0,
+               TL_CLUSTER * points->stride * sizeof(uint16_t));
+        joined = true;
+    }
+    for (size_t i = 0; i < TL_CLUSTER; i++)
+        joined |= members >> i & 1 && points->traced[slot * TL_CLUSTER + i] != points->motion;
+    if (joined)
+        memset(rounds, 0, points->stride * sizeof *rounds);
+}
+
+/* Notes that a point is traced in this frame; true when it holds nothing of use. */
+static bool begin_point(tl_points *points, size_t point)
 {
     bool fresh = points->traced[point] == 0 || points->motion - points->traced[point] > FORGET_FRAMES;
-    if (moved || points->traced[point] != points->motion)
-        points->rounds[point] = 0;
     points->traced[point] = points->motion;
     return fresh;
 }
 
-static struct tl_cluster open_cluster(tl_points *points, size_t number, bool moved)
+static struct tl_cluster open_cluster(tl_points *points, size_t number, const struct tl_refresh *refresh)
 {
-    size_t slot = points->slots[number];
+    size_t slot = points->slots[number], first = slot * TL_CLUSTER;
     struct tl_cluster cluster = {.sites = points->sites.items + number * TL_CLUSTER,
                                  .members = visible_members(points, number),
-                                 .values = points->values + slot * TL_CLUSTER * points->stride,
-                                 .rounds = points->rounds + slot * TL_CLUSTER,
+                                 .values = points->values + first * points->stride,
+                                 .weights = points->weights + first * points->stride,
+                                 .rounds = points->rounds + slot * points->stride,
                                  .covered = points->covered + slot,
                                  .stamps = points->stamps + slot * points->stride};
+    if (refresh->whole_rounds || !refresh->request->moved)
+        begin_rest(points, slot, cluster.members);
     for (size_t i = 0; i < TL_CLUSTER; i++)
         if (cluster.members >> i & 1)
-            cluster.fresh |= (uint32_t)begin_point(points, slot * TL_CLUSTER + i, moved) << i;
+            cluster.fresh |= (uint32_t)begin_point(points, first + i) << i;
     return cluster;
 }
 
 static void trace_clusters(tl_points *points, const struct tl_refresh *refresh)
 {
-#pragma omp parallel for schedule(dynamic, 4)
+    bool moved = refresh->request->moved;
+    size_t begun = 0, done = 0, rays = 0;
+#pragma omp parallel for schedule(dynamic, 4) reduction(+ : begun, done, rays)
     for (size_t i = 0; i < points->active_count; i++) {
-        struct tl_cluster cluster = open_cluster(points, points->active[i], refresh->request->moved);
-        points->ray_counts[i] = (uint32_t)tl_cluster_refresh(refresh, &cluster);
+        struct tl_cluster cluster = open_cluster(points, points->active[i], refresh);
+        int rounds = refresh->request->params->rounds;
+        if (moved || tl_cluster_rounds(refresh, &cluster) < rounds)
+            rays += tl_cluster_refresh(refresh, &cluster);
+        begun += !moved && tl_cluster_rounds(refresh, &cluster) > 0;
+        done += !moved && tl_cluster_rounds(refresh, &cluster) >= rounds;
     }
-    points->ray_count = 0;
-    for (size_t i = 0; i < points->active_count; i++)
-        points->ray_count += points->ray_counts[i];
+    points->ray_count = rays;
+    points->have_begun = begun == points->active_count;
+    points->are_done = done == points->active_count;
 }
 
-/* Gives the samples that need it points of their own, after those of the slots. */
-static void repair_samples(tl_points *points, const struct tl_refresh *refresh, bool again, size_t wanted)
+static size_t share_of(float share, const struct tl_points_request *request)
+{
+    return (size_t)(share * (float)request->samples->count);
+}
+
+/* Samples with points of their own: in motion, and once nothing moves. */
+static size_t repaired_in_motion(const struct tl_points_request *request)
+{
+    return share_of(request->params->repair, request);
+}
+
+static size_t repaired_at_rest(const struct tl_points_request *request)
+{
+    return share_of(fmaxf(request->params->repair, request->params->repair_rest), request);
+}
+
+/* So many bundles of samples take as many rays as the points do in a frame. */
+static size_t bundles_of_a_frame(const tl_points *points, const struct tl_refresh *refresh)
+{
+    const struct tl_points_request *request = refresh->request;
+    if (refresh->whole_rounds || request->moved)
+        return SIZE_MAX;
+    size_t rays = points->visible_count * (size_t)request->params->refresh;
+    return rays / ((size_t)request->regions->count * TL_CLUSTER) + 1;
+}
+
+/* What one image shows is chosen once in motion and once at rest, when the points know what to doubt. */
+static void choose_samples(tl_points *points, const struct tl_refresh *refresh, bool again)
 {
     struct tl_repair *repair = &points->repair;
+    size_t in_motion = repaired_in_motion(refresh->request), at_rest = repaired_at_rest(refresh->request);
+    if (!again && in_motion == 0)
+        repair->count = 0;
+    else if (!again)
+        tl_repair_choose(repair, refresh, points->taps, points->values, in_motion);
+    else if (at_rest > in_motion && !repair->at_rest && points->have_begun)
+        tl_repair_choose(repair, refresh, points->taps, points->values, at_rest);
+    repair->at_rest = again && (repair->at_rest || points->have_begun);
+}
+
+/* Gives the samples that need it points of their own, after those of the slots. They are read once every
+ * region has been looked at. */
+static void repair_samples(tl_points *points, const struct tl_refresh *refresh)
+{
+    struct tl_repair *repair = &points->repair;
+    size_t first = points->slot_count * TL_CLUSTER, row = first * points->stride;
+    if (repair->count > 0 && repair->rounds < refresh->request->params->rounds)
+        points->ray_count +=
+            tl_repair_trace(repair, refresh, &points->starts, bundles_of_a_frame(points, refresh),
+                            points->values + row, points->weights + row);
+}
+
+static void read_repaired(tl_points *points)
+{
+    const struct tl_repair *repair = &points->repair;
     size_t first = points->slot_count * TL_CLUSTER;
-    if (!again)
-        tl_repair_choose(repair, refresh, points->taps, points->values, wanted);
-    points->ray_count +=
-        tl_repair_trace(repair, refresh, &points->starts, points->values + first * points->stride);
-    for (size_t i = 0; i < repair->count; i++) {
+    for (size_t i = 0; repair->rounds > 0 && i < repair->count; i++) {
         uint32_t point = (uint32_t)(first + i);
         points->taps[repair->samples[i]] =
             (struct tl_taps){.point = {point, point, point, point}, .weight = {1}};
     }
 }
 
-/* Rays from the samples themselves. */
-static void trace_samples(tl_points *points, const struct tl_refresh *refresh, size_t repair_count)
+/* Where samples' rays start; true when nothing has changed since these were made. */
+static bool follow_samples(tl_points *points, const struct tl_points_request *request)
 {
-    const struct tl_points_request *request = refresh->request;
     bool has_suns = request->suns && request->suns->count > 0;
+    size_t repaired = request->moved && !request->whole_rounds ? repaired_in_motion(request)
+                                                               : repaired_at_rest(request);
     uint64_t before = points->starts.samples;
-    if (!has_suns)
-        points->suns.count = 0;
-    if (repair_count == 0)
-        points->repair.count = 0;
-    if (!has_suns && repair_count == 0)
-        return;
+    points->starts.samples = 0;
+    if (!has_suns && repaired == 0)
+        return false;
     tl_starts_make(request, &points->starts);
-    bool again = !request->moved && !points->carried && points->starts.samples == before;
-    if (has_suns)
-        points->ray_count += tl_sun_rays_update(&points->suns, request, &points->starts, again);
-    if (repair_count > 0)
-        repair_samples(points, refresh, again && points->repair.count > 0, repair_count);
+    return !request->moved && !points->carried && points->starts.samples == before;
 }
 
-static void trace_all(tl_points *points, const struct tl_points_request *request, size_t repair_count)
+static void trace_suns(tl_points *points, const struct tl_points_request *request, bool again)
+{
+    if (request->suns && request->suns->count > 0)
+        points->ray_count += tl_sun_rays_update(&points->suns, request, &points->starts, again);
+    else
+        points->suns.count = 0;
+}
+
+/* A frame at rest is to cost no more than one in motion: points and samples of their own take turns. Points
+ * go first until each region has been looked at, then the samples' first round, then points to their end. */
+static void trace_in_turn(tl_points *points, const struct tl_refresh *refresh)
+{
+    bool again = follow_samples(points, refresh->request);
+    const struct tl_repair *repair = &points->repair;
+    bool samples_first = again && repair->at_rest && repair->count > 0 && repair->rounds == 0;
+    points->ray_count = 0;
+    if (refresh->whole_rounds || !samples_first)
+        trace_clusters(points, refresh);
+    tl_taps_mend(refresh->request, points->covered, points->taps);
+    trace_suns(points, refresh->request, again);
+    choose_samples(points, refresh, again);
+    if (refresh->whole_rounds || !again || samples_first || points->are_done)
+        repair_samples(points, refresh);
+    read_repaired(points);
+}
+
+static bool is_all_done(const tl_points *points, const struct tl_points_request *request)
+{
+    int rounds = request->params->rounds;
+    const struct tl_repair *repair = &points->repair;
+    bool repaired = repair->at_rest && (repair->count == 0 || repair->rounds >= rounds);
+    return points->are_done && (points->suns.count == 0 || points->suns.rounds >= rounds) &&
+           (repaired || repaired_at_rest(request) == 0);
+}
+
+static bool takes_whole_rounds(const struct tl_points_request *request)
+{
+    int wanted = request->params->refresh;
+    return request->whole_rounds || wanted == 0 || wanted >= request->regions->count;
+}
+
+static void trace_all(tl_points *points, const struct tl_points_request *request)
 {
     vec3s centres[TL_REGIONS_MAX], *directions = jitter_directions(points, request);
     float importances[TL_REGIONS_MAX];
@@ -392,22 +511,22 @@ static void trace_all(tl_points *points, const struct tl_points_request *request
                                        .centres = centres,
                                        .importances = importances,
                                        .offset_m = tl_trace_offset(request->trace),
-                                       .frame = points->frame};
-    trace_clusters(points, &refresh);
-    tl_taps_mend(request, points->covered, points->taps);
-    trace_samples(points, &refresh, repair_count);
+                                       .frame = points->frame,
+                                       .whole_rounds = takes_whole_rounds(request)};
+    trace_in_turn(points, &refresh);
+    points->is_done = is_all_done(points, request);
     free(directions);
 }
 
 void tl_points_update(tl_points *points, const struct tl_points_request *request)
 {
     assert(request->regions->count > 0 && request->params->rays > 0);
-    size_t repair_count = (size_t)(request->params->repair * (float)request->samples->count);
     follow_changes(points, request);
     mark_samples(points, request);
-    activate_clusters(points, repair_count);
+    activate_clusters(points,
+                      request->moved ? repaired_in_motion(request) : repaired_at_rest(request));
     resolve_taps(points);
-    trace_all(points, request, repair_count);
+    trace_all(points, request);
 }
 
 const uint16_t *tl_points_values(const tl_points *points, size_t *stride)
@@ -419,6 +538,11 @@ const uint16_t *tl_points_values(const tl_points *points, size_t *stride)
 const struct tl_taps *tl_points_taps(const tl_points *points)
 {
     return points->taps;
+}
+
+bool tl_points_are_done(const tl_points *points)
+{
+    return points->is_done;
 }
 
 const float *tl_points_sun(const tl_points *points, int sun)
@@ -458,9 +582,9 @@ size_t tl_points_bytes(const tl_points *points)
     size_t sites = points->sites.cluster_count * TL_CLUSTER, slots = points->slot_capacity;
     size_t vertices = points->sites.cluster_count > 0 ? sites : 0;
     return sites * (sizeof(struct tl_site) + sizeof(uint32_t)) + vertices * sizeof(uint32_t) +
-           points->sites.cluster_count * 3 * sizeof(uint32_t) + slots * sizeof(uint16_t) +
-           slots * TL_CLUSTER * (points->stride * sizeof(uint16_t) + sizeof(uint16_t) + sizeof(uint32_t)) +
-           slots * points->stride * sizeof(uint32_t) + points->sample_capacity * sizeof(struct tl_taps) +
+           points->sites.cluster_count * 2 * sizeof(uint32_t) + slots * (sizeof(uint16_t) + sizeof(uint32_t)) +
+           slots * TL_CLUSTER * (points->stride * 2 * sizeof(uint16_t) + sizeof(uint32_t)) +
+           slots * points->stride * (sizeof(uint16_t) + sizeof(uint32_t)) + points->sample_capacity * sizeof(struct tl_taps) +
            points->starts.capacity * sizeof(vec3s) + tl_sun_rays_bytes(&points->suns) +
            tl_repair_bytes(&points->repair);
 }

@@ -4,8 +4,8 @@
  *
  * A point is a render vertex seen from one side, or an extra point that a sample owns (repair). A sample
  * reads up to four points with weights. In motion R regions of each visible point are traced anew a frame, in
- * directions jittered inside the region, and replace what was there; at rest every round is averaged in.
- * Results do not depend on the number of threads. */
+ * directions jittered inside the region, and replace what was there; at rest as many are averaged in, until
+ * every region has had its rounds. Results do not depend on the number of threads. */
 #ifndef TOILE_RENDER_VISIBILITY_POINTS_H
 #define TOILE_RENDER_VISIBILITY_POINTS_H
 
@@ -39,13 +39,15 @@ struct tl_points_request {
     const struct tl_light_params *params; /* refresh, rays, rounds, repair */
     bool moved; /* surfaces, environment or yaw differ from the last frame: values are replaced, not averaged
                  */
-    int round;  /* frames since something moved */
+    bool whole_rounds; /* every frame traces all regions, however long that takes */
 };
 
 tl_points *tl_points_create(void);
 void tl_points_destroy(tl_points **points);
 
 void tl_points_update(tl_points *points, const struct tl_points_request *request);
+/* After an update at rest: another would change nothing. */
+bool tl_points_are_done(const tl_points *points);
 
 /* After an update. Visibility of region i at point p is values[p * stride + i] / TL_VISIBILITY_ONE; stride is
  * a multiple of 16 and what lies beyond the regions is 0. One taps entry a sample. */

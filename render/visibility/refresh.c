@@ -17,6 +17,11 @@
 #define PATIENCE   4
 #define LATE_SHARE 4
 
+/* Weights of directions are kept in sixteen bits: a thousand rounds fill them, and from then on the mean is a
+ * running one. */
+#define WEIGHT_ONE   64.0f
+#define LEAST_WEIGHT 0.03125f
+
 /* The members of a cluster, one a lane. */
 struct lanes {
     uint32_t members;
@@ -158,8 +163,8 @@ static int select_regions(const float needs[TL_REGIONS_MAX], int count, int want
     return kept;
 }
 
-static void select_by_need(const struct tl_refresh *refresh, const struct tl_cluster *cluster,
-                           const struct lanes *lanes, bool selected[TL_REGIONS_MAX])
+static void select_in_motion(const struct tl_refresh *refresh, const struct tl_cluster *cluster,
+                             const struct lanes *lanes, bool selected[TL_REGIONS_MAX])
 {
     float needs[TL_REGIONS_MAX], late[TL_REGIONS_MAX];
     int count = refresh->request->regions->count, wanted = refresh->request->params->refresh;
@@ -168,10 +173,55 @@ static void select_by_need(const struct tl_refresh *refresh, const struct tl_clu
     select_regions(needs, count, wanted, selected);
 }
 
-/* Adds what each of `lanes_wanted` sees along a direction to `visible`; returns the number of rays. Nothing
- * is seen from under the surface. */
+/* As many as in motion, and by the same need, until each has had its rounds. As many again of those that have
+ * set: they take hardly a ray, but a part of one may stand above the horizon. */
+static void select_at_rest(const struct tl_refresh *refresh, const struct tl_cluster *cluster,
+                           const struct lanes *lanes, bool selected[TL_REGIONS_MAX])
+{
+    float needs[TL_REGIONS_MAX], set[TL_REGIONS_MAX];
+    int count = refresh->request->regions->count, wanted = refresh->request->params->refresh;
+    measure_needs(refresh, cluster, lanes, needs, set);
+    for (int i = 0; i < count; i++) {
+        bool left = cluster->rounds[i] < refresh->request->params->rounds;
+        set[i] = left && !(needs[i] > 0) ? (float)(refresh->frame - cluster->stamps[i]) : 0;
+        needs[i] = left ? needs[i] : 0;
+    }
+    select_regions(needs, count, wanted, selected);
+    select_regions(set, count, wanted, selected);
+}
+
+static void select_for(const struct tl_refresh *refresh, const struct tl_cluster *cluster,
+                       const struct lanes *lanes, bool selected[TL_REGIONS_MAX])
+{
+    const struct tl_points_request *request = refresh->request;
+    for (int i = 0; refresh->whole_rounds && i < request->regions->count; i++)
+        selected[i] = request->moved || cluster->rounds[i] < request->params->rounds;
+    if (refresh->whole_rounds)
+        return;
+    if (request->moved)
+        select_in_motion(refresh, cluster, lanes, selected);
+    else
+        select_at_rest(refresh, cluster, lanes, selected);
+}
+
+/* What members saw of a region in one frame. */
+struct glance {
+    float seen[TL_CLUSTER];   /* sum of weights x visibility */
+    float weight[TL_CLUSTER]; /* sum of weights, in 1 / WEIGHT_ONE */
+};
+
+/* A region counts for less near the horizon, where it is more often hidden: the mean over it is taken by the
+ * cosine that light arrives with, or it would be too dark. A glossy lobe leans to one side, so that nothing
+ * counts for nothing. */
+static float weight_of(float cosine)
+{
+    return floorf(WEIGHT_ONE * fmaxf(fabsf(cosine), LEAST_WEIGHT) + 0.5f);
+}
+
+/* Adds what each of `lanes_wanted` sees along a direction; returns the number of rays. Nothing is seen from
+ * under the surface. */
 static size_t look(const struct tl_refresh *refresh, const struct lanes *lanes, uint32_t lanes_wanted,
-                   vec3s direction, float visible[TL_CLUSTER])
+                   vec3s direction, struct glance *glance)
 {
     struct tl_trace_bundle bundle = {.to_m = INFINITY, .coherent = true};
     int lane_of[TL_CLUSTER];
@@ -180,13 +230,15 @@ static size_t look(const struct tl_refresh *refresh, const struct lanes *lanes, 
         float cosine = glms_vec3_dot(lane_normal(lanes, i), direction);
         if (!(lanes_wanted >> i & 1) || cosine < -SINE_BELOW)
             continue;
+        float weight = weight_of(cosine);
+        glance->weight[i] += weight;
         vec3s ahead = direction;
         if (cosine < 0) /* in the plane's mirror: see SINE_BELOW */
             ahead = glms_vec3_sub(direction, glms_vec3_scale(lane_normal(lanes, i), 2 * cosine));
         float share = tl_ground_visibility(refresh->request->ground, lane_origin(lanes, i), direction);
         if (share <= 0)
             continue;
-        through_ground[bundle.count] = share;
+        through_ground[bundle.count] = share * weight;
         lane_of[bundle.count] = i;
         push_ray(&bundle, lanes, i, ahead);
     }
@@ -195,20 +247,23 @@ static size_t look(const struct tl_refresh *refresh, const struct lanes *lanes, 
     uint32_t stopped = tl_trace_occluded_bundle(refresh->request->trace, &bundle);
     for (int k = 0; k < bundle.count; k++)
         if (!(stopped >> k & 1))
-            visible[lane_of[k]] += through_ground[k];
+            glance->seen[lane_of[k]] += through_ground[k];
     return (size_t)bundle.count;
 }
 
+/* In motion a glance replaces what was there, at rest it is averaged in. */
 static void store(const struct tl_refresh *refresh, const struct tl_cluster *cluster, uint32_t lanes_wanted,
-                  int region, const float visible[TL_CLUSTER])
+                  int region, const struct glance *glance)
 {
-    float scale = TL_VISIBILITY_ONE / (float)refresh->request->params->rays;
     for (int i = 0; i < TL_CLUSTER; i++) {
         if (!(lanes_wanted >> i & 1))
             continue;
-        uint16_t *value = &cluster->values[(size_t)i * refresh->stride + (size_t)region];
-        float old = *value, rounds = cluster->rounds[i];
-        *value = (uint16_t)(old + (scale * visible[i] - old) / (rounds + 1) + 0.5f);
+        size_t at = (size_t)i * refresh->stride + (size_t)region;
+        float before = refresh->request->moved ? 0 : cluster->weights[at];
+        float all = before + glance->weight[i], mean = cluster->values[at];
+        mean = all > 0 ? (mean * before + TL_VISIBILITY_ONE * glance->seen[i]) / all : 0;
+        cluster->values[at] = (uint16_t)(mean + 0.5f);
+        cluster->weights[at] = (uint16_t)fminf(all, UINT16_MAX);
     }
 }
 
@@ -216,81 +271,49 @@ static size_t trace_region(const struct tl_refresh *refresh, const struct tl_clu
                            const struct lanes *lanes, uint32_t lanes_wanted, int region)
 {
     int ray_count = refresh->request->params->rays;
-    float visible[TL_CLUSTER] = {0};
+    struct glance glance = {0};
     size_t rays = 0;
     for (int k = 0; k < ray_count; k++)
-        rays += look(refresh, lanes, lanes_wanted, refresh->directions[region * ray_count + k], visible);
-    store(refresh, cluster, lanes_wanted, region, visible);
+        rays += look(refresh, lanes, lanes_wanted, refresh->directions[region * ray_count + k], &glance);
+    store(refresh, cluster, lanes_wanted, region, &glance);
     return rays;
 }
 
-/* Members whose mean is not complete. */
-static uint32_t unfinished(const struct tl_refresh *refresh, const struct tl_cluster *cluster)
+int tl_cluster_rounds(const struct tl_refresh *refresh, const struct tl_cluster *cluster)
 {
-    uint32_t wanted = cluster->members;
-    for (int i = 0; i < TL_CLUSTER; i++)
-        if (cluster->rounds[i] >= refresh->request->params->rounds)
-            wanted &= ~(1u << i);
-    return wanted;
+    int least = cluster->rounds[0];
+    for (int i = 1; i < refresh->request->regions->count; i++)
+        least = cluster->rounds[i] < least ? cluster->rounds[i] : least;
+    return least;
 }
 
-static size_t average_all(const struct tl_refresh *refresh, struct tl_cluster cluster)
+size_t tl_cluster_refresh(const struct tl_refresh *refresh, const struct tl_cluster *cluster)
 {
-    size_t rays = 0;
-    cluster.members = unfinished(refresh, &cluster);
-    if (!cluster.members)
-        return 0;
-    struct lanes lanes;
-    place_members(refresh, &cluster, &lanes);
-    for (int i = 0; i < refresh->request->regions->count; i++) {
-        rays += trace_region(refresh, &cluster, &lanes, cluster.members, i);
-        cluster.stamps[i] = refresh->frame;
-    }
-    for (int i = 0; i < TL_CLUSTER; i++)
-        cluster.rounds[i] = (uint16_t)(cluster.rounds[i] + (cluster.members >> i & 1));
-    return rays;
-}
-
-static size_t replace_some(const struct tl_refresh *refresh, const struct tl_cluster *cluster)
-{
-    const struct tl_regions *regions = refresh->request->regions;
-    int wanted = refresh->request->params->refresh;
-    bool selected[TL_REGIONS_MAX] = {0};
+    bool selected[TL_REGIONS_MAX] = {0}, counts = refresh->whole_rounds || !refresh->request->moved;
     struct lanes lanes;
     size_t rays = 0;
     place_members(refresh, cluster, &lanes);
-    if (wanted == 0 || wanted >= regions->count) {
-        memset(selected, true, sizeof selected);
-    } else {
-        select_by_need(refresh, cluster, &lanes, selected);
-    }
-    for (int i = 0; i < regions->count; i++) {
+    select_for(refresh, cluster, &lanes, selected);
+    for (int i = 0; i < refresh->request->regions->count; i++) {
         uint32_t lanes_wanted = selected[i] ? cluster->members : cluster->fresh;
         if (!lanes_wanted)
             continue;
         rays += trace_region(refresh, cluster, &lanes, lanes_wanted, i);
         if (lanes_wanted == cluster->members)
             cluster->stamps[i] = refresh->frame;
+        cluster->rounds[i] = (uint16_t)(cluster->rounds[i] + (selected[i] && counts));
     }
     return rays;
 }
 
-size_t tl_cluster_refresh(const struct tl_refresh *refresh, const struct tl_cluster *cluster)
-{
-    return refresh->request->moved ? replace_some(refresh, cluster) : average_all(refresh, *cluster);
-}
-
 size_t tl_places_trace(const struct tl_refresh *refresh, const vec3s *origins, const vec3s *normals,
-                       int count, uint16_t *values, int rounds)
+                       int count, uint16_t *values, uint16_t *weights)
 {
-    uint16_t same[TL_CLUSTER] = {0};
     struct lanes lanes = {.members = (1u << count) - 1};
-    const struct tl_cluster cluster = {.members = lanes.members, .values = values, .rounds = same};
+    const struct tl_cluster cluster = {.members = lanes.members, .values = values, .weights = weights};
     size_t rays = 0;
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; i++)
         set_lane(&lanes, i, origins[i], normals[i]);
-        same[i] = (uint16_t)rounds;
-    }
     for (int i = 0; i < refresh->request->regions->count; i++)
         rays += trace_region(refresh, &cluster, &lanes, lanes.members, i);
     return rays;

@@ -15,6 +15,7 @@ struct tl_refresh {
     const float *importances; /* [regions] */
     float offset_m;           /* where rays start above their surface */
     uint32_t frame;           /* counts updates, from 1 */
+    bool whole_rounds;        /* all regions are traced; in motion this is the first round of a rest */
 };
 
 /* What lies so near above a point that the point says nothing about places that it does not lie above: so
@@ -27,18 +28,23 @@ struct tl_cluster {
     uint32_t members;            /* bit i: site i is visible */
     uint32_t fresh;              /* bit i: ... and holds nothing of use yet: every region is traced */
     uint16_t *values;            /* [TL_CLUSTER][stride] */
-    uint16_t *rounds;            /* [TL_CLUSTER]: frames at rest that are averaged in the values; 0: none */
+    uint16_t *weights;           /* [TL_CLUSTER][stride]: at rest: of all directions in a mean; 0: none */
+    uint16_t *rounds;            /* [stride]: frames at rest in which a region was traced */
     uint16_t *covered;           /* bit i: something lies close above site i; kept up to date */
     uint32_t *stamps;            /* [stride]: frame when each region was last traced */
 };
 
-/* In motion: traces the regions that the cluster needs most and replaces their values; fresh members get all.
- * At rest: traces all regions and averages. Returns the number of rays. */
+/* Traces the regions that the cluster needs most, and all of them for fresh members: in motion what is seen
+ * replaces the values, at rest it is averaged in until every region has had its rounds. Returns the number of
+ * rays. */
 size_t tl_cluster_refresh(const struct tl_refresh *refresh, const struct tl_cluster *cluster);
 
-/* Traces all regions from up to TL_CLUSTER places of their own, `normals` on the side that is looked at; the
- * mean of `rounds` frames is in `values` [count][stride] already. Returns the number of rays. */
+/* At rest: the least rounds of a region. */
+int tl_cluster_rounds(const struct tl_refresh *refresh, const struct tl_cluster *cluster);
+
+/* Traces all regions from up to TL_CLUSTER places of their own, `normals` on the side that is looked at.
+ * `values` and `weights` are [count][stride]. Returns the number of rays. */
 size_t tl_places_trace(const struct tl_refresh *refresh, const vec3s *origins, const vec3s *normals,
-                       int count, uint16_t *values, int rounds);
+                       int count, uint16_t *values, uint16_t *weights);
 
 #endif

@@ -124,6 +124,7 @@ void tl_repair_choose(struct tl_repair *repair, const struct tl_refresh *refresh
     const struct tl_samples *samples = refresh->request->samples;
     struct weights weights = make_weights(refresh);
     repair->rounds = 0;
+    repair->next = 0;
     if (samples->count > repair->doubt_capacity) {
         repair->doubt_capacity = samples->count + samples->count / 4;
         free(repair->doubts);
@@ -137,24 +138,31 @@ void tl_repair_choose(struct tl_repair *repair, const struct tl_refresh *refresh
     collect(repair, samples->count, wanted);
 }
 
-size_t tl_repair_trace(struct tl_repair *repair, const struct tl_refresh *refresh,
-                       const struct tl_starts *starts, uint16_t *values)
+static size_t trace_bundle(const struct tl_repair *repair, const struct tl_refresh *refresh,
+                           const struct tl_starts *starts, size_t bundle, uint16_t *values, uint16_t *weights)
 {
-    size_t rays = 0;
-    if (repair->rounds >= refresh->request->params->rounds)
-        return 0;
-#pragma omp parallel for schedule(dynamic, 4) reduction(+ : rays)
-    for (size_t first = 0; first < repair->count; first += TL_CLUSTER) {
-        vec3s origins[TL_CLUSTER], normals[TL_CLUSTER];
-        int count = 0;
-        for (size_t i = first; i < repair->count && count < TL_CLUSTER; i++, count++) {
-            origins[count] = starts->points[repair->samples[i]];
-            normals[count] = refresh->request->samples->items[repair->samples[i]].smooth;
-        }
-        rays += tl_places_trace(refresh, origins, normals, count, values + first * refresh->stride,
-                                repair->rounds);
+    vec3s origins[TL_CLUSTER], normals[TL_CLUSTER];
+    size_t first = bundle * TL_CLUSTER, row = first * refresh->stride;
+    int count = 0;
+    for (size_t i = first; i < repair->count && count < TL_CLUSTER; i++, count++) {
+        origins[count] = starts->points[repair->samples[i]];
+        normals[count] = refresh->request->samples->items[repair->samples[i]].smooth;
     }
-    repair->rounds++;
+    return tl_places_trace(refresh, origins, normals, count, values + row, weights + row);
+}
+
+size_t tl_repair_trace(struct tl_repair *repair, const struct tl_refresh *refresh,
+                       const struct tl_starts *starts, size_t bundles, uint16_t *values, uint16_t *weights)
+{
+    size_t rays = 0, all = (repair->count + TL_CLUSTER - 1) / TL_CLUSTER, first = repair->next;
+    size_t end = bundles < all - first ? first + bundles : all;
+    if (repair->rounds == 0 && first == 0)
+        memset(weights, 0, repair->count * refresh->stride * sizeof *weights);
+#pragma omp parallel for schedule(dynamic, 4) reduction(+ : rays)
+    for (size_t bundle = first; bundle < end; bundle++)
+        rays += trace_bundle(repair, refresh, starts, bundle, values, weights);
+    repair->next = end < all ? end : 0;
+    repair->rounds += end == all;
     return rays;
 }
 

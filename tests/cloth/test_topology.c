@@ -83,8 +83,8 @@ static void test_batches_share_no_vertex(void **state)
         int seen[COUNT] = {0};
         for (size_t b = 0; b < batches; b++) {
             int used[COUNT + 3] = {0};
-            for (size_t lane = 0; lane < TL_LANES; lane++) {
-                uint32_t e = order[b * TL_LANES + lane];
+            for (size_t lane = 0; lane < TL_BATCH; lane++) {
+                uint32_t e = order[b * TL_BATCH + lane];
                 for (size_t k = 0; e != TL_NONE && k < 3; k++)
                     assert_int_equal(used[triangles[e][k]]++, 0);
                 if (e != TL_NONE)
@@ -93,7 +93,7 @@ static void test_batches_share_no_vertex(void **state)
         }
         for (size_t e = 0; e < COUNT; e++)
             assert_int_equal(seen[e], 1);
-        assert_int_equal(batches, fan ? COUNT : COUNT / TL_LANES);
+        assert_int_equal(batches, fan ? COUNT : COUNT / TL_BATCH);
         free(order);
     }
 }

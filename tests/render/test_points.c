@@ -166,7 +166,6 @@ static void stage_close(struct stage *stage)
 static void step(struct stage *stage, bool moved)
 {
     stage->request.moved = moved;
-    stage->request.round = moved ? 0 : stage->request.round + 1;
     tl_points_update(stage->points, &stage->request);
 }
 
@@ -179,24 +178,30 @@ static float value_at(const struct stage *stage, size_t sample, int tap, int reg
 }
 
 /* Visibility of a region by brute force: rays from a place over the region's light, as many as they are asked
- * for. The lower limit is the cache's own definition. */
-static float seen_from(const struct stage *stage, vec3s origin, vec3s normal, int region, int ray_count)
+ * for. The mean by the cosine that light arrives with, no less than 1/32, and the lower limit are the cache's
+ * own definition. `arriving`: the mean of these weights. */
+static float seen_from(const struct stage *stage, vec3s origin, vec3s normal, int region, int ray_count,
+                       float *arriving)
 {
-    float seen = 0;
+    float seen = 0, all = 0;
     for (int i = 0; i < ray_count; i++) {
         float u = ((float)i + 0.5f) / (float)ray_count, v = fmodf(0.618034f * (float)i, 1);
         vec3s direction = tl_turn_direction(tl_region_direction(&stage->regions, region, u, v),
                                             stage->request.environment_yaw);
         float cosine = glms_vec3_dot(direction, normal);
         vec3s ahead = glms_vec3_sub(direction, glms_vec3_scale(normal, cosine < 0 ? 2 * cosine : 0));
-        if (cosine > -0.2924f && !tl_trace_occluded(stage->trace, origin, ahead, 0, INFINITY))
-            seen += tl_ground_visibility(&stage->ground, origin, direction);
+        float weight = cosine > -0.2924f ? fmaxf(fabsf(cosine), 1.0f / 32) : 0;
+        all += weight;
+        if (weight > 0 && !tl_trace_occluded(stage->trace, origin, ahead, 0, INFINITY))
+            seen += weight * tl_ground_visibility(&stage->ground, origin, direction);
     }
-    return seen / (float)ray_count;
+    *arriving = all / (float)ray_count;
+    return all > 0 ? seen / all : 0;
 }
 
 /* ... at a sample's corner, as far above it as the cache's rays start. */
-static float true_value(const struct stage *stage, size_t sample, int corner, int region, int ray_count)
+static float true_value(const struct stage *stage, size_t sample, int corner, int region, int ray_count,
+                        float *arriving)
 {
     const tl_sample *s = &stage->samples.items[sample];
     uint32_t corners[3];
@@ -208,26 +213,28 @@ static float true_value(const struct stage *stage, size_t sample, int corner, in
         normal = glms_vec3_negate(normal);
     vec3s origin = glms_vec3_add(surface->positions[corners[corner]],
                                  glms_vec3_scale(normal, tl_trace_offset(stage->trace)));
-    return seen_from(stage, origin, normal, region, ray_count);
+    return seen_from(stage, origin, normal, region, ray_count, arriving);
 }
 
-/* Root mean square of the difference to brute force, over some samples, all corners and regions. */
+/* Root mean square of the difference to brute force, over some samples, all corners and regions, by the light
+ * that arrives: of a region that has nearly set a few directions tell, and nothing hangs on it. */
 static double measure_error(const struct stage *stage, int ray_count)
 {
-    double sum = 0;
-    size_t count = 0;
+    double sum = 0, all = 0;
     for (size_t s = 0; s < stage->samples.count; s += 23)
         for (int corner = 0; corner < 3; corner++)
-            for (int i = 0; i < stage->regions.count; i++, count++) {
-                double difference = (double)value_at(stage, s, corner, i) -
-                                    (double)true_value(stage, s, corner, i, ray_count);
-                sum += difference * difference;
+            for (int i = 0; i < stage->regions.count; i++) {
+                float arriving, truth = true_value(stage, s, corner, i, ray_count, &arriving);
+                double difference = (double)value_at(stage, s, corner, i) - (double)truth;
+                sum += (double)arriving * difference * difference;
+                all += (double)arriving;
             }
-    return sqrt(sum / (double)count);
+    return sqrt(sum / all);
 }
 
 /* One ray of a region that is half seen is wrong by 1/2; the mean of n even ones by less than 1 / (2 sqrt n).
- * Regions are seen in part at every edge: with 24 of them about a third. */
+ * Regions are seen in part at every edge: with 24 of them about a third. So 64 rounds err by less than 0.036.
+ */
 static void values_converge_to_brute_force(void **state)
 {
     (void)state;
@@ -240,11 +247,11 @@ static void values_converge_to_brute_force(void **state)
         step(&stage, false);
     double many = measure_error(&stage, 256);
     assert_true(many < one / 8);
-    assert_true(many < 0.02);
+    assert_true(many < 0.03);
 
     stage.params.rays = 64; /* the same in one frame */
     step(&stage, true);
-    assert_true(measure_error(&stage, 256) < 0.02);
+    assert_true(measure_error(&stage, 256) < 0.03);
     struct tl_points_report report = tl_points_report(stage.points);
     assert_true(report.rays > 64 * report.visible_points);
     assert_true(report.disagreement > 0.1 && report.disagreement <= 1);
@@ -313,6 +320,72 @@ static void every_region_has_its_turn(void **state)
     stage_close(&stage);
 }
 
+/* Something moves once, and then nothing: a frame at rest traces no more rays than one in motion, none when
+ * all have had their rounds, and comes as near to the truth as whole rounds do, but for directions that follow
+ * one another less evenly. Sixteen err by less than 1 / (2 sqrt 16) in a third of the regions: 0.072. */
+static void rest_is_spread_over_frames(void **state)
+{
+    (void)state;
+    enum { REGIONS = 96, REFRESH = 12, ROUNDS = 16 };
+    struct stage spread, whole;
+    stage_open(&spread, REGIONS);
+    stage_open(&whole, REGIONS);
+    whole.request.whole_rounds = true;
+    struct stage *both[] = {&spread, &whole};
+    for (int i = 0; i < 2; i++) {
+        both[i]->params.refresh = REFRESH;
+        both[i]->params.rounds = ROUNDS;
+        both[i]->params.repair_rest = 0.05f;
+        step(both[i], true);
+        move_sheet(both[i], 0.3f);
+        refresh_scene(both[i]);
+        step(both[i], true);
+    }
+    size_t visible = tl_points_report(spread.points).visible_points, frames[2] = {0};
+    for (int i = 0; i < 2; i++)
+        while (!tl_points_are_done(both[i]->points)) {
+            step(both[i], false);
+            assert_true(i == 1 || tl_points_report(spread.points).rays <= REFRESH * visible + 16 * REGIONS);
+            assert_true(++frames[i] < 1000);
+        }
+    struct tl_points_report report = tl_points_report(spread.points);
+    assert_true(report.repaired_samples > 0);
+    assert_true(frames[1] <= ROUNDS + 1);
+    assert_true(frames[0] > 4 * frames[1]);
+    double error = measure_error(&spread, 256);
+    assert_true(error < 0.072);
+    assert_true(error < 1.2 * measure_error(&whole, 256));
+    for (int i = 0; i < 2; i++) {
+        step(both[i], false);
+        assert_int_equal(tl_points_report(both[i]->points).rays, 0);
+        assert_true(tl_points_are_done(both[i]->points));
+    }
+    stage_close(&spread);
+    stage_close(&whole);
+}
+
+/* The camera turns while all else rests: points that come into sight get their rounds, too. */
+static void late_points_get_their_rounds(void **state)
+{
+    (void)state;
+    struct stage stage;
+    stage_open(&stage, 24);
+    stage.params.refresh = 6;
+    stage.params.rounds = 16;
+    size_t all = stage.samples.count;
+    stage.samples.count = all / 3;
+    step(&stage, true);
+    while (!tl_points_are_done(stage.points))
+        step(&stage, false);
+    stage.samples.count = all;
+    step(&stage, false);
+    assert_false(tl_points_are_done(stage.points));
+    while (!tl_points_are_done(stage.points))
+        step(&stage, false);
+    assert_true(measure_error(&stage, 256) < 0.072); /* as above */
+    stage_close(&stage);
+}
+
 /* After motion the values are those of a cache that never saw the past; before, they are not. */
 static void motion_replaces(void **state)
 {
@@ -370,17 +443,22 @@ static void results_do_not_depend_on_threads(void **state)
     stage_open(&one, 48);
     stage_open(&many, 48);
     one.params.refresh = many.params.refresh = 8;
+    one.params.rounds = many.params.rounds = 2;
     one.params.repair = many.params.repair = 0.1f;
-    for (int i = 0; i < 8; i++) {
-        omp_set_num_threads(1);
-        move_sheet(&one, 0.01f * (float)i);
-        refresh_scene(&one);
-        step(&one, i < 5);
-        omp_set_num_threads(4);
-        move_sheet(&many, 0.01f * (float)i);
-        refresh_scene(&many);
-        step(&many, i < 5);
+    one.params.repair_rest = many.params.repair_rest = 0.2f;
+    for (int i = 0; i < 20; i++) { /* in motion, then at rest: points and samples of their own take turns */
+        for (int k = 0; k < 2; k++) {
+            struct stage *stage = k ? &many : &one;
+            omp_set_num_threads(k ? 4 : 1);
+            if (i < 5) {
+                move_sheet(stage, 0.01f * (float)i);
+                refresh_scene(stage);
+            }
+            step(stage, i < 5);
+        }
     }
+    assert_true(tl_points_report(one.points).repaired_samples >
+                one.samples.count / 8); /* more than in motion */
     omp_set_num_threads(threads);
     size_t stride, other;
     const uint16_t *a = tl_points_values(one.points, &stride), *b = tl_points_values(many.points, &other);
@@ -545,12 +623,12 @@ static void repair_finds_and_mends_the_worst(void **state)
         vec3s start = tl_smooth_point(sample->point, corners, normals, sample->weights);
         start = glms_vec3_add(start, glms_vec3_scale(sample->smooth, tl_trace_offset(plain.trace)));
         for (int i = 0; i < plain.regions.count; i++) {
-            float truth = seen_from(&plain, start, sample->smooth, i, 256);
-            error = fmax(error, fabs((double)value_at(&mended, s, 0, i) - (double)truth));
+            float arriving, truth = seen_from(&plain, start, sample->smooth, i, 256, &arriving);
+            double difference = (double)value_at(&mended, s, 0, i) - (double)truth;
+            error = fmax(error, (double)arriving * fabs(difference));
         }
     }
-    assert_int_equal(repaired, wanted);
-    assert_true(most <= least * (1 + 1.0 / 256));
+    assert_int_equal(repaired, wanted);    assert_true(most <= least * (1 + 1.0 / 256));
     assert_true(error <
                 0.2); /* 64 even rays of a shadow's edge: 1 / sqrt(64) at worst, and as much for 256 */
     stage_close(&plain);
@@ -606,6 +684,8 @@ int main(void)
         cmocka_unit_test(values_converge_to_brute_force),
         cmocka_unit_test(taps_are_the_samples_corners),
         cmocka_unit_test(every_region_has_its_turn),
+        cmocka_unit_test(rest_is_spread_over_frames),
+        cmocka_unit_test(late_points_get_their_rounds),
         cmocka_unit_test(motion_replaces),
         cmocka_unit_test(values_follow_a_turn_and_new_regions),
         cmocka_unit_test(suns_have_their_penumbrae),

@@ -1,0 +1,53 @@
+/* What tests that run every solver share: how each one steps, and how long to run it. */
+#ifndef TOILE_TESTS_CLOTH_SOLVERS_H
+#define TOILE_TESTS_CLOTH_SOLVERS_H
+
+#include "cloth/state.h"
+#include "testing.h"
+
+/* What a solver does with one linear spring. */
+enum step_rule { RULE_IMPLICIT_EULER, RULE_VERLET };
+
+static inline enum step_rule solver_rule(int solver)
+{
+    return solver == TL_CLOTH_REFERENCE ? RULE_VERLET : RULE_IMPLICIT_EULER;
+}
+
+/* Whether it comes to rest where the energy is least whatever the step, or only as the step goes to 0: one
+ * sweep over the constraints leaves each pushed by those that come after it, by h^2 w T. */
+static inline bool solver_rests_exactly(int solver)
+{
+    return solver != TL_CLOTH_PREVIEW;
+}
+
+/* Steps of `h` seconds, of one substep each. */
+static inline void params_set_step(struct tl_cloth_params *params, double h)
+{
+    params->dt = h;
+    params->substeps = 1;
+}
+
+static inline void cloth_run(tl_cloth *cloth, const tl_collider *collider, double seconds)
+{
+    tl_error error = {0};
+    int frames = (int)ceil(seconds * cloth->params.frame_rate - 1e-9);
+    for (int frame = 0; frame < frames; frame++)
+        assert_ok(tl_cloth_step(cloth, collider, &error), error);
+}
+
+static inline tl_cloth *cloth_make(const tl_garment *garment, const struct tl_cloth_fabric *fabric,
+                                   const struct tl_cloth_params *params)
+{
+    tl_error error = {0};
+    tl_cloth *cloth = tl_cloth_create(garment, fabric, params, &error);
+    assert_ok(cloth != NULL, error);
+    return cloth;
+}
+
+/* log2 of the ratio of two errors, the step or mesh having been halved between them. */
+static inline double observed_order(double coarse, double fine)
+{
+    return log2(coarse / fine);
+}
+
+#endif
