@@ -170,6 +170,10 @@ static void constrain(tl_cloth *cloth, const struct tl_substep *substep)
 
 static void advance_preview(tl_cloth *cloth, const struct tl_substep *substep)
 {
+    if (cloth->energy.bends_as_force) {
+        tl_energy_bending_forces(&cloth->energy, cloth->particles.x, cloth->forces);
+        tl_particles_push(&cloth->particles, cloth->forces, substep->h);
+    }
     tl_particles_predict(&cloth->particles, substep->gravity, substep->drag, substep->h);
     place_pins(cloth, substep->collider, substep->phase);
     tl_xpbd_solve(&cloth->energy, &cloth->particles);
@@ -192,13 +196,11 @@ static void advance_settle(tl_cloth *cloth, const struct tl_substep *substep)
     if (cloth->sewing.pair_count > 0)
         tl_sewing_shrink(&cloth->sewing, substep->h);
     const struct tl_springs springs = tl_cloth_springs(cloth);
-    if (!cloth->implicit)
-        cloth->implicit = tl_implicit_create(&cloth->energy, &cloth->fabric, &springs, particles->count);
     const struct tl_implicit_problem problem = {
         .energy = &cloth->energy,
         .fabric = &cloth->fabric,
         .springs = springs,
-        .pull = {.particle = cloth->grabbed ? cloth->topology.weld[cloth->grabbed_vertex] : TL_NONE,
+        .hand = {.particle = cloth->grabbed ? cloth->topology.weld[cloth->grabbed_vertex] : TL_NONE,
                  .target = cloth->grab_target,
                  .stiffness = GRAB_STIFFNESS,
                  .most_force = GRAB_FORCE},
@@ -209,6 +211,8 @@ static void advance_settle(tl_cloth *cloth, const struct tl_substep *substep)
         .h = substep->h,
         .tolerance = cloth->params.cg_tolerance,
         .most_iterations = cloth->params.cg_iterations};
+    if (!cloth->implicit)
+        cloth->implicit = tl_implicit_create(&problem, particles);
     memcpy(particles->previous, particles->x, particles->count * sizeof *particles->x);
     place_pins(cloth, substep->collider, substep->phase);
     tl_implicit_step(cloth->implicit, &problem, particles, &cloth->tally);

@@ -6,21 +6,18 @@
  * Its price: motion is damped by the step, the more the quicker it is, so a swing dies sooner than it should;
  * of first order in h.
  *
- * Contact: planes are heeded while solving. A particle sticks (all its directions are given), slips (its
- * normal is, and Coulomb's force of the last reaction pushes against its way) or is free; what the reactions
- * say of that is solved again, a few rounds a step.
+ * Contact (cloth/implicit_touch.h): planes are heeded while solving.
  *
- * Guard: a step after which kinetic, elastic and gravity's energy together would have risen is shortened.
- * Threads: uses all. */
+ * Guard: where kinetic, elastic and gravity's energy together would rise, the step is linearised again at its
+ * end (Newton's method); if that does not help, it is shortened. Threads: uses all. */
 #ifndef TOILE_CLOTH_IMPLICIT_H
 #define TOILE_CLOTH_IMPLICIT_H
 
-#include "cloth/contact.h"
 #include "cloth/implicit_solve.h"
-#include "cloth/particles.h"
+#include "cloth/implicit_touch.h"
 
 /* The hand: a spring to a target with a bounded force. */
-struct tl_pull {
+struct tl_hand {
     uint32_t particle; /* TL_NONE: none */
     vec3d target;
     double stiffness, most_force; /* N/m, N */
@@ -31,7 +28,7 @@ struct tl_implicit_problem {
     const struct tl_energy *energy;
     const struct tl_cloth_fabric *fabric;
     struct tl_springs springs; /* as many as in the last tl_implicit_create */
-    struct tl_pull pull;
+    struct tl_hand hand;
     struct tl_contacts *contacts;
     struct tl_contact_params contact;
     double gravity, drag, h;
@@ -47,8 +44,10 @@ struct tl_implicit_tally {
 };
 
 typedef struct tl_implicit tl_implicit;
-tl_implicit *tl_implicit_create(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
-                                const struct tl_springs *springs, size_t vertex_count);
+
+/* For steps of this problem's material, springs and h. */
+tl_implicit *tl_implicit_create(const struct tl_implicit_problem *problem,
+                                const struct tl_particles *particles);
 void tl_implicit_destroy(tl_implicit **implicit);
 
 /* From particles->previous and v to x; held particles (w = 0) are at their new x already. Velocities are

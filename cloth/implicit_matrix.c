@@ -7,9 +7,7 @@
 
 /* Shorter than this a vector has no direction. */
 #define NO_LENGTH 1e-12
-/* Fewer vertices are done before other threads have woken up. */
-#define SERIAL  1000
-#define CORNERS 3 /* of a membrane; a link repeats its second end */
+#define CORNERS   3 /* of a membrane; a link repeats its second end */
 
 /* Second derivative by F_u, F_v: block (i, j) = c_i c_j uu + d_i d_j vv + c_i d_j uv + d_i c_j uv^T. */
 struct tl_piece {
@@ -157,9 +155,6 @@ struct tl_stiffness tl_stiffness_build(const struct tl_energy *energy, const str
     stiffness.gather =
         make_gather(corners, CORNERS, stiffness.element_count, vertex_count, &stiffness.blocks);
     free(corners);
-    stiffness.diagonal = TL_NEW_ARRAY(uint32_t, vertex_count);
-    for (size_t v = 0; v < vertex_count; v++)
-        stiffness.diagonal[v] = find_entry(&stiffness.blocks, v, (uint32_t)v);
     stiffness.values = tl_alloc(stiffness.blocks.first[vertex_count], sizeof *stiffness.values);
     stiffness.pieces = TL_NEW_ARRAY(struct tl_piece, stiffness.element_count);
     build_bends(&stiffness, energy, fabric);
@@ -177,7 +172,6 @@ void tl_stiffness_release(struct tl_stiffness *stiffness)
     release_rows(&stiffness->blocks);
     release_rows(&stiffness->bends);
     release_gather(&stiffness->gather);
-    free(stiffness->diagonal);
     free(stiffness->values);
     free(stiffness->bend_values);
     free(stiffness->pieces);
@@ -278,7 +272,7 @@ void tl_stiffness_assemble(struct tl_stiffness *stiffness, const struct tl_energ
                            const vec3d *x)
 {
     size_t lanes = energy->membrane_count * TL_BATCH, own = lanes + energy->link_count;
-#pragma omp parallel if (stiffness->vertex_count > SERIAL)
+#pragma omp parallel if (stiffness->vertex_count > TL_SERIAL)
     {
 #pragma omp for schedule(static)
         for (size_t i = 0; i < stiffness->element_count; i++) {
@@ -309,12 +303,4 @@ vec3d tl_stiffness_row(const struct tl_stiffness *stiffness, size_t vertex, cons
     for (uint32_t e = stiffness->bends.first[vertex]; e < stiffness->bends.first[vertex + 1]; e++)
         sum = vec3d_muladd(sum, p[stiffness->bends.columns[e]], stiffness->bend_values[e]);
     return sum;
-}
-
-void tl_stiffness_diagonal(const struct tl_stiffness *stiffness, size_t vertex, double out[9])
-{
-    memcpy(out, stiffness->values[stiffness->diagonal[vertex]], sizeof *stiffness->values);
-    double bend = stiffness->bend_values[find_entry(&stiffness->bends, vertex, (uint32_t)vertex)];
-    for (int i = 0; i < 3; i++)
-        out[4 * i] += bend;
 }

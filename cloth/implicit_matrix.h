@@ -13,6 +13,9 @@
 
 #include "cloth/energy.h"
 
+/* Fewer vertices are done before other threads have woken up. */
+#define TL_SERIAL 1000
+
 /* Compressed rows: those of vertex v are entries first[v] to first[v + 1] - 1, columns rising. */
 struct tl_rows {
     uint32_t *first;   /* [vertex_count + 1] */
@@ -29,7 +32,6 @@ struct tl_stiffness {
     size_t vertex_count;
     struct tl_rows blocks, bends;
     struct tl_gather gather; /* of membranes, by lanes, then links */
-    uint32_t *diagonal;      /* [vertex_count] entry of each block row */
     double (*values)[9];     /* [blocks] row by row */
     double *bend_values;     /* [bends] */
     size_t element_count;    /* lanes of membranes, and links */
@@ -55,8 +57,5 @@ void tl_stiffness_assemble(struct tl_stiffness *stiffness, const struct tl_energ
 
 /* Row `vertex` of the product with p. */
 vec3d tl_stiffness_row(const struct tl_stiffness *stiffness, size_t vertex, const vec3d *p);
-
-/* The diagonal block of a vertex, bending included. */
-void tl_stiffness_diagonal(const struct tl_stiffness *stiffness, size_t vertex, double out[9]);
 
 #endif

@@ -2,15 +2,14 @@
  *
  * What a particle may not do is filtered out of residuals and search directions (Baraff and Witkin 1998,
  * "Large Steps in Cloth Simulation", section 5.3), so that contact and pins hold exactly at every iteration.
- * Preconditioned by the inverse of each vertex's own block within what it may do. The iterates' quadratic
- * energy only falls: where the iteration is cut short, what it has is bounded.
+ * The iterates' quadratic energy only falls: where the iteration is cut short, what it has is bounded.
  *
  * Sums are taken over fixed runs of vertices and combined in order: the result does not depend on the number
  * of threads. Units: d m, b N. Threads: uses all. */
 #ifndef TOILE_CLOTH_IMPLICIT_SOLVE_H
 #define TOILE_CLOTH_IMPLICIT_SOLVE_H
 
-#include "cloth/implicit_matrix.h"
+#include "cloth/implicit_factor.h"
 
 /* What a vertex may still do. */
 enum tl_freedom {
@@ -25,11 +24,12 @@ struct tl_filter {
 
 struct tl_system {
     const struct tl_stiffness *stiffness;
+    tl_factor *factor;               /* the preconditioner */
     const double *inertia;           /* [vertex_count] N/m, mu */
     const vec3d *load;               /* [vertex_count] b */
     const struct tl_filter *filters; /* [vertex_count] */
     double tolerance;                /* of the residual, in the preconditioner's norm, to that of the load */
-    double floor;                    /* J: residuals below are rounding */
+    double floor;                    /* J: squared residuals below need no more work */
     int most_iterations;
 };
 
@@ -37,8 +37,7 @@ struct tl_system {
 struct tl_solve_space {
     size_t vertex_count;
     vec3d *residual, *conditioned, *direction, *product;
-    double (*inverse)[9]; /* of the vertices' own blocks, within what they may do */
-    double *sums;         /* one a run */
+    double *sums; /* one a run */
 };
 struct tl_solve_space tl_solve_space_create(size_t vertex_count);
 void tl_solve_space_release(struct tl_solve_space *space);
@@ -46,6 +45,7 @@ void tl_solve_space_release(struct tl_solve_space *space);
 struct tl_solve_result {
     int iterations;
     bool converged; /* false: cut short */
+    double goal;    /* J, what the squared residual had to reach */
 };
 
 /* Starts at `step` [vertex_count], whose filtered parts stay as they are, and leaves the answer there. */

@@ -136,7 +136,7 @@ static bool is_open(const struct tl_layers *layers, const struct tl_topology *to
 
 /* What is nearest to a point on a layer, and how far out of it the point is. Nothing beside an edge. */
 static bool find_surface(const struct tl_layers *layers, const struct tl_topology *topology,
-                         const struct tl_layer *layer, const vec3d *x, struct tl_touch *touch,
+                         const struct tl_layer *layer, const vec3d *x, struct tl_layer_touch *touch,
                          double *distance)
 {
     vec3d at = tl_probe_point(&touch->point, x);
@@ -167,7 +167,7 @@ static double measure_outside(const struct tl_layers *layers, const struct tl_to
     double sum = 0, distance;
     for (size_t i = 0; i < piece->particle_count; i++) {
         uint32_t v = piece->particles[i];
-        struct tl_touch touch = {.point = {{v, v, v}, {1, 0, 0}}};
+        struct tl_layer_touch touch = {.point = {{v, v, v}, {1, 0, 0}}};
         if (find_surface(layers, topology, other, x, &touch, &distance))
             sum += distance;
     }
@@ -265,7 +265,8 @@ bool tl_layers_decide(struct tl_layers *layers, const struct tl_topology *topolo
     if (done && layers->layer_count > 1) {
         layers->layers = TL_NEW_ARRAY(struct tl_layer, layers->layer_count);
         make_probes(layers, topology, rest);
-        layers->touches = TL_NEW_ARRAY(struct tl_touch, layers->probe_count * (layers->layer_count - 1));
+        layers->touches =
+            TL_NEW_ARRAY(struct tl_layer_touch, layers->probe_count * (layers->layer_count - 1));
     }
     for (size_t i = 0; done && layers->layers && i < layers->layer_count; i++)
         done = build_layer(&layers->layers[i], topology, layers->layer_of, (uint32_t)i, x, error);
@@ -302,7 +303,7 @@ static void find_touches(struct tl_layers *layers, const struct tl_topology *top
     for (size_t i = 0; i < layers->probe_count; i++) {
         const struct tl_probe *probe = &layers->probes[i];
         uint32_t own = layers->layer_of[probe->vertices[0]];
-        struct tl_touch touch = {.point = *probe};
+        struct tl_layer_touch touch = {.point = *probe};
         double distance;
         if (own == below_or_above || !within(&box, tl_probe_point(probe, x)) ||
             !find_surface(layers, topology, other, x, &touch, &distance))
@@ -343,7 +344,7 @@ void tl_layers_solve(const struct tl_layers *layers, const struct tl_contact_par
     struct tl_contact_params own = *params;
     own.push_out_speed = PUSH_OUT_SPEED;
     for (size_t i = 0; i < layers->touch_count; i++) {
-        const struct tl_touch *touch = &layers->touches[i];
+        const struct tl_layer_touch *touch = &layers->touches[i];
         double inverse = tl_probe_inverse_mass(&touch->point, particles->w) +
                          tl_probe_inverse_mass(&touch->surface, particles->w);
         vec3d x = tl_probe_point(&touch->point, particles->x);

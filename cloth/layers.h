@@ -17,7 +17,7 @@
 #define TL_PIECES_MAX 64
 
 /* A point of one layer and the nearest point of a triangle of another. */
-struct tl_touch {
+struct tl_layer_touch {
     struct tl_probe point, surface;
     vec3d normal; /* from the surface to the point's own side */
 };
@@ -41,7 +41,7 @@ struct tl_layers {
     struct tl_probe *probes;
     struct tl_layer *layers; /* [layer_count] */
     size_t touch_count;
-    struct tl_touch *touches; /* good for one step */
+    struct tl_layer_touch *touches; /* good for one step */
 };
 void tl_layers_release(struct tl_layers *layers);
 
