@@ -22,6 +22,7 @@ enum flag_kind {
     FLAG_MAX_FRAMES,
     FLAG_AXIS,
     FLAG_QUICK,
+    FLAG_FULL,
     FLAG_QUIET,
     FLAG_VERBOSE,
     FLAG_HELP,
@@ -38,9 +39,13 @@ struct flag {
 
 static const struct flag flags_known[] = {
     {"--garment", TL_FLAGS_SCENE, FLAG_ASSIGN, "scene.garment", "NAME|FILE",
-     "dress, skirt, none, or a .glb or .gltf file"},
+     "dress, skirt, none, or a .glb, .gltf or .obj file"},
+    {"--units", TL_FLAGS_SCENE, FLAG_ASSIGN, "scene.units", "UNITS",
+     "of the garment's file: auto, m, dm, cm, mm or in"},
+    {"--motion", TL_FLAGS_SCENE, FLAG_ASSIGN, "scene.motion", "FILE",
+     "plays a point cache on the garment: .pc2, .mdd, or frame.####.obj"},
     {"--avatar", TL_FLAGS_SCENE, FLAG_ASSIGN, "scene.avatar", "NAME|FILE",
-     "form, none, or a .glb or .gltf file"},
+     "form, none, or a .glb, .gltf or .obj file"},
     {"--env", TL_FLAGS_SCENE, FLAG_ASSIGN, "scene.environment", "NAME|FILE",
      "studio, an .exr or .hdr file, or a sequence of them: sky.####.exr"},
     {"--fabric", TL_FLAGS_SCENE, FLAG_ASSIGN, "scene.fabric", "NAME|FILE",
@@ -55,14 +60,15 @@ static const struct flag flags_known[] = {
     {"--frame", TL_FLAGS_FRAME, FLAG_FRAME, NULL, "N",
      "still image of the animation's frame N; 0 is the settled start"},
     {"--frames", TL_FLAGS_FRAMES, FLAG_FRAMES, NULL, "A:B",
-     "all frames from A to B; OUT.png becomes OUT.0001.png ..."},
+     "all frames from A to B; of pictures OUT.png becomes OUT.0001.png ..."},
     {"--json", TL_FLAGS_JSON, FLAG_JSON, NULL, NULL, "print one JSON object and nothing else"},
     {"--ldr", TL_FLAGS_METRIC, FLAG_LDR, NULL, NULL, "compare as display images, clamped to [0, 1]"},
     {"--hdr", TL_FLAGS_METRIC, FLAG_HDR, NULL, NULL, "compare over all exposures that the reference holds"},
     {"--screenshots", TL_FLAGS_WINDOW, FLAG_SCREENSHOTS, NULL, "FOLDER", "where screenshots go"},
     {"--max-frames", TL_FLAGS_WINDOW, FLAG_MAX_FRAMES, NULL, "N", "close after N frames"},
-    {"--axis", TL_FLAGS_AXIS, FLAG_AXIS, NULL, "NAME", "what is varied: light"},
+    {"--axis", TL_FLAGS_AXIS, FLAG_AXIS, NULL, "NAME", "what is varied: light or cloth"},
     {"--quick", TL_FLAGS_QUICK, FLAG_QUICK, NULL, NULL, "a few choices and frames only"},
+    {"--full", TL_FLAGS_FULL, FLAG_FULL, NULL, NULL, "what takes minutes too"},
     {"--quiet", 0, FLAG_QUIET, NULL, NULL, "say nothing but errors"},
     {"--verbose", 0, FLAG_VERBOSE, NULL, NULL, "say more"},
     {"--help", 0, FLAG_HELP, NULL, NULL, "what the command does and takes"},
@@ -177,6 +183,9 @@ static bool take_flag(const struct flag *flag, const char *value, struct tl_argu
         return true;
     case FLAG_QUICK:
         out->quick = true;
+        return true;
+    case FLAG_FULL:
+        out->full = true;
         return true;
     case FLAG_QUIET:
         out->quiet = true;

@@ -4,9 +4,12 @@
 #include "app/settings.h"
 #include "assets/environment.h"
 #include "assets/model.h"
+#include "assets/point_cache.h"
 #include "config/file.h"
+#include "config/memory.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Both outputs come from one object: --json prints it, otherwise its members become lines. */
@@ -78,6 +81,19 @@ static cJSON *describe_material(const tl_material *material)
     return object;
 }
 
+static void describe_units(cJSON *object, const tl_model *model)
+{
+    cJSON_AddStringToObject(object, "units", tl_units_names[model->units.units]);
+    char *lines[] = {tl_units_describe(model->name, &model->units, "--units"),
+                     tl_units_describe_up(model->name, &model->units)};
+    const char *const keys[] = {"units_note", "up_note"};
+    for (size_t i = 0; i < TL_COUNT(lines); i++) {
+        if (lines[i])
+            cJSON_AddStringToObject(object, keys[i], lines[i]);
+        free(lines[i]);
+    }
+}
+
 static cJSON *describe_model(const tl_model *model)
 {
     cJSON *object = cJSON_CreateObject();
@@ -86,7 +102,9 @@ static cJSON *describe_model(const tl_model *model)
     cJSON_AddStringToObject(object, "name", model->name);
     cJSON_AddNumberToObject(object, "vertices", (double)model->mesh.vertex_count);
     cJSON_AddNumberToObject(object, "triangles", (double)model->mesh.index_count / 3);
+    cJSON_AddNumberToObject(object, "points", (double)tl_model_point_count(model));
     cJSON_AddNumberToObject(object, "parts", (double)model->mesh.part_count);
+    describe_units(object, model);
     cJSON_AddItemToObject(object, "lower_m", describe_vector(box.lower));
     cJSON_AddItemToObject(object, "upper_m", describe_vector(box.upper));
     cJSON *materials = cJSON_AddArrayToObject(object, "materials");
@@ -102,6 +120,27 @@ static cJSON *describe_model(const tl_model *model)
     cJSON *ignored = cJSON_AddArrayToObject(object, "ignored");
     for (size_t i = 0; i < model->ignored_count; i++)
         cJSON_AddItemToArray(ignored, cJSON_CreateString(model->ignored[i]));
+    return object;
+}
+
+/* In the file's own units: only the garment that it moves can say what they are. */
+static cJSON *describe_motion(const char *path, const struct tl_point_cache_facts *facts)
+{
+    cJSON *object = cJSON_CreateObject();
+    const char *slash = strrchr(path, '/');
+    cJSON_AddStringToObject(object, "kind", "motion");
+    cJSON_AddStringToObject(object, "name", slash ? slash + 1 : path);
+    cJSON_AddStringToObject(object, "format", facts->format);
+    cJSON_AddNumberToObject(object, "points", (double)facts->point_count);
+    cJSON_AddNumberToObject(object, "samples", (double)facts->sample_count);
+    cJSON_AddNumberToObject(object, facts->in_seconds ? "first_s" : "first_frame", facts->first);
+    cJSON_AddNumberToObject(object, facts->in_seconds ? "last_s" : "last_frame", facts->last);
+    const char *per = facts->in_seconds ? "second" : "frame";
+    bool even = facts->step > 0 || facts->sample_count == 1;
+    cJSON_AddNumberToObject(object, "rate", facts->step > 0 ? 1 / facts->step : 0);
+    cJSON_AddStringToObject(object, "rate_per", even ? per : "samples are not evenly spaced");
+    cJSON_AddItemToObject(object, "lower", describe_vector(facts->box.lower));
+    cJSON_AddItemToObject(object, "upper", describe_vector(facts->box.upper));
     return object;
 }
 
@@ -153,9 +192,15 @@ bool tl_command_info(const struct tl_arguments *arguments, tl_error *error)
     cJSON *object = NULL;
     if (strcmp(path, "fabrics") == 0 || strcmp(path, "presets") == 0 || strcmp(path, "garments") == 0) {
         object = describe_built_in(path);
+    } else if (tl_point_cache_is_file(path)) {
+        tl_point_cache *cache = tl_point_cache_open(path, 1, error);
+        if (!cache)
+            return false;
+        object = describe_motion(path, tl_point_cache_facts(cache));
+        tl_point_cache_destroy(&cache);
     } else if (!tl_file_check(path, error)) {
         return false;
-    } else if (tl_path_has_extension(path, "glb") || tl_path_has_extension(path, "gltf")) {
+    } else if (tl_model_is_file(path)) {
         tl_model model;
         if (!tl_model_load(path, &model, error))
             return false;
@@ -168,7 +213,9 @@ bool tl_command_info(const struct tl_arguments *arguments, tl_error *error)
         object = describe_environment(&environment);
         tl_environment_release(&environment);
     } else {
-        return tl_fail(error, TL_INPUT, "%s: unknown kind of file: expected .glb, .gltf, .exr or .hdr", path);
+        return tl_fail(error, TL_INPUT,
+                       "%s: unknown kind of file: expected .glb, .gltf, .obj, .pc2, .mdd, .exr or .hdr",
+                       path);
     }
     print_object(object, arguments->json);
     return true;

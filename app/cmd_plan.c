@@ -24,7 +24,61 @@ static void print_plan(const tl_plan *plan, const struct tl_render_memory *memor
            (double)memory->other / mebibyte, (double)memory->total / mebibyte);
 }
 
-static void print_plan_json(const tl_plan *plan, const struct tl_render_memory *memory)
+/* ---- The cloth ---- */
+
+static int substeps_per_frame(const struct tl_settings *settings, const struct tl_cloth_report *report)
+{
+    return (int)lround(1 / (settings->cloth.frame_rate * report->substep_s));
+}
+
+/* What the cloth is kept from passing through, and at what cost. */
+static void describe_self_repulsion(const struct tl_settings *settings, const struct tl_cloth_report *cloth,
+                                    char *out, size_t size)
+{
+    const char *price = "about two thirds more time for the cloth";
+    if (settings->cloth.self_repulsion)
+        snprintf(out, size, "on: %zu piece%s in %zu layer%s, and folds, keep their distance: %s",
+                 cloth->piece_count, cloth->piece_count == 1 ? "" : "s", cloth->layer_count,
+                 cloth->layer_count == 1 ? "" : "s", price);
+    else if (cloth->piece_count > 1)
+        snprintf(out, size,
+                 "off: the garment's %zu pieces, and folds, pass through one another; "
+                 "cloth.self_repulsion true keeps them apart for %s",
+                 cloth->piece_count, price);
+    else
+        snprintf(out, size, "off: folds pass through one another");
+}
+
+static void print_cloth(const struct tl_settings *settings, const struct tl_cloth_report *report)
+{
+    char self_repulsion[256];
+    describe_self_repulsion(settings, report, self_repulsion, sizeof self_repulsion);
+    printf("cloth: %zu vertices, critical step %.3g ms, %s %d substeps of %.3g ms a frame\n"
+           "cloth against itself: %s\n",
+           report->vertex_count, 1000 * report->critical_step_s,
+           tl_cloth_solver_names[settings->cloth.solver], substeps_per_frame(settings, report),
+           1000 * report->substep_s, self_repulsion);
+}
+
+static void add_cloth(cJSON *object, const struct tl_settings *settings, const struct tl_cloth_report *report)
+{
+    char self_repulsion[256];
+    describe_self_repulsion(settings, report, self_repulsion, sizeof self_repulsion);
+    cJSON *cloth = cJSON_AddObjectToObject(object, "cloth");
+    cJSON_AddNumberToObject(cloth, "vertices", (double)report->vertex_count);
+    cJSON_AddItemToObject(cloth, "critical_step_s",
+                          isfinite(report->critical_step_s) ? cJSON_CreateNumber(report->critical_step_s)
+                                                            : cJSON_CreateNull());
+    cJSON_AddStringToObject(cloth, "solver", tl_cloth_solver_names[settings->cloth.solver]);
+    cJSON_AddNumberToObject(cloth, "substeps", substeps_per_frame(settings, report));
+    cJSON_AddNumberToObject(cloth, "substep_s", report->substep_s);
+    cJSON_AddStringToObject(cloth, "self_repulsion", self_repulsion);
+}
+
+/* ---- The whole ---- */
+
+static void print_plan_json(const tl_plan *plan, const struct tl_render_memory *memory,
+                            const struct tl_settings *settings, const struct tl_cloth_report *report)
 {
     cJSON *object = cJSON_CreateObject();
     cJSON *jobs = cJSON_AddArrayToObject(object, "jobs");
@@ -47,6 +101,8 @@ static void print_plan_json(const tl_plan *plan, const struct tl_render_memory *
     cJSON_AddNumberToObject(bytes, "surfaces", (double)memory->surfaces);
     cJSON_AddNumberToObject(bytes, "other", (double)memory->other);
     cJSON_AddNumberToObject(bytes, "total", (double)memory->total);
+    if (report->vertex_count > 0)
+        add_cloth(object, settings, report);
     tl_json_print(object);
 }
 
@@ -69,10 +125,13 @@ bool tl_command_plan(const struct tl_arguments *arguments, tl_error *error)
         tl_renderer_plan(stage.renderer, &next, &settings, &plan);
         done = tl_stage_draw(&stage, error); /* memory is what the frame really holds */
         struct tl_render_memory memory = tl_renderer_memory(stage.renderer);
+        struct tl_cloth_report report = tl_session_report(stage.session);
         if (done && arguments->json)
-            print_plan_json(&plan, &memory);
+            print_plan_json(&plan, &memory, &stage.settings, &report);
         else if (done)
             print_plan(&plan, &memory);
+        if (done && !arguments->json && report.vertex_count > 0)
+            print_cloth(&stage.settings, &report);
     }
     tl_stage_release(&stage);
     return done;

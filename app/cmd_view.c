@@ -112,11 +112,9 @@ static void log_changes(const struct tl_scene_params *old, const struct tl_scene
     const struct {
         const char *what, *old, *new;
     } names[] = {
-        {"garment", old->garment, new->garment},
-        {"avatar", old->avatar, new->avatar},
-        {"environment", old->environment, new->environment},
-        {"fabric", old->fabric, new->fabric},
-        {"preset", old->preset, new->preset},
+        {"garment", old->garment, new->garment}, {"avatar", old->avatar, new->avatar},
+        {"motion", old->motion, new->motion},    {"environment", old->environment, new->environment},
+        {"fabric", old->fabric, new->fabric},    {"preset", old->preset, new->preset},
     };
     for (size_t i = 0; i < TL_COUNT(names); i++)
         if (strcmp(names[i].old, names[i].new) != 0)

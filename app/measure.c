@@ -4,7 +4,6 @@
 #include "render/metrics/compare.h"
 
 #include <math.h>
-#include <string.h>
 
 static bool choose(const struct tl_choice *choice, const struct tl_settings *scene,
                    struct tl_render_settings *out, tl_error *error)
@@ -93,21 +92,4 @@ bool tl_contender_compare(struct tl_contender *contender, const struct tl_truth 
     }
     tl_image_release(&image);
     return done;
-}
-
-bool tl_topic_take(const char *command, const struct tl_arguments *arguments, const char *const *topics,
-                   const char *scene, struct tl_arguments *out, int *topic, tl_error *error)
-{
-    const char *named = arguments->positional_count ? arguments->positionals[0] : "";
-    for (*topic = 0; topics[*topic] && strcmp(topics[*topic], named) != 0; ++*topic)
-        ;
-    if (!topics[*topic])
-        return tl_fail(error, TL_USAGE, "%s: expected a topic: toile %s %s [SCENE]", command, command,
-                       topics[0]);
-    *out = *arguments;
-    out->positional_count--;
-    memmove(&out->positionals[0], &out->positionals[1], out->positional_count * sizeof out->positionals[0]);
-    if (out->positional_count == 0)
-        out->positionals[out->positional_count++] = scene;
-    return true;
 }

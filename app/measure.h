@@ -59,9 +59,4 @@ struct tl_measured_error {
 bool tl_contender_compare(struct tl_contender *contender, const struct tl_truth *truth,
                           struct tl_measured_error *out, tl_error *error);
 
-/* `toile COMMAND TOPIC [SCENE]`: takes the topic off; without a scene the built-in one called `scene` is
- * meant. `out` borrows from `arguments`. */
-bool tl_topic_take(const char *command, const struct tl_arguments *arguments, const char *const *topics,
-                   const char *scene, struct tl_arguments *out, int *topic, tl_error *error);
-
 #endif

@@ -45,7 +45,7 @@ void tl_motion_begin(struct tl_motion *motion, tl_session *session)
     tl_frame frame = tl_session_frame(session);
     const tl_surface *garment = find_surface(&frame, "garment");
     *motion = (struct tl_motion){.session = session};
-    motion->pulls = garment && !tl_session_plays_clip(session);
+    motion->pulls = garment && tl_session_cloth(session) && !tl_session_plays_clip(session);
     if (!motion->pulls)
         return;
     motion->vertex = hem_vertex(garment, frame.camera.eye);

@@ -2,6 +2,7 @@
 #include "app/orbit.h"
 #include "app/review.h"
 #include "assets/exr.h"
+#include "assets/point_cache.h"
 #include "config/embedded.h"
 #include "config/file.h"
 #include "config/log.h"
@@ -214,12 +215,15 @@ void tl_review_drop(struct tl_review *review, const char *path)
     forget_dropped(review);
     if (tl_path_has_extension(path, "exr") || tl_path_has_extension(path, "hdr")) {
         set_option(review, "scene.environment", path);
-    } else if (tl_path_has_extension(path, "glb") || tl_path_has_extension(path, "gltf") ||
-               tl_path_has_extension(path, "yaml") || tl_path_has_extension(path, "yml")) {
+    } else if (tl_point_cache_is_file(path)) {
+        set_option(review, "scene.motion", path);
+    } else if (tl_model_is_file(path) || tl_path_has_extension(path, "yaml") ||
+               tl_path_has_extension(path, "yml")) {
         review->dropped = tl_copy_string(path);
     } else {
         tl_error error;
-        tl_fail(&error, TL_INPUT, "%s: cannot be used here: drop a .glb, .gltf, .exr, .hdr or .yaml file",
+        tl_fail(&error, TL_INPUT,
+                "%s: cannot be used here: drop a .glb, .gltf, .obj, .pc2, .mdd, .exr, .hdr or .yaml file",
                 path);
         tl_review_complain(review, &error);
     }

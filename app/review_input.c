@@ -151,6 +151,10 @@ static void begin_pull(struct tl_review *review, float x, float y)
         tl_review_say(review, "nothing to pull here: hold Ctrl and drag on the garment");
         return;
     }
+    if (!tl_session_cloth(review->session)) {
+        tl_review_say(review, "the garment is played back, not simulated: it cannot be pulled on");
+        return;
+    }
     review->drag = TL_DRAG_CLOTH;
     review->grab_depth_m = depth_of(&camera, point);
     review->grab_target = review->grab_at = point;

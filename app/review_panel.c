@@ -13,10 +13,18 @@
 #define HELP_MAX     40
 
 static const char *const favourites[] = {
-    "scene.garment",       "scene.avatar",      "scene.fabric",
-    "material.glossiness", "scene.environment", "scene.environment_yaw_deg",
-    "scene.preset",        "light.method",      "light.regions",
-    "image.exposure_ev",   "image.background",
+    "scene.garment",
+    "scene.motion",
+    "scene.avatar",
+    "scene.fabric",
+    "material.glossiness",
+    "scene.environment",
+    "scene.environment_yaw_deg",
+    "scene.preset",
+    "light.method",
+    "light.regions",
+    "image.exposure_ev",
+    "image.background",
 };
 
 static const struct tl_panel_button model_answers[] = {
@@ -112,6 +120,8 @@ static size_t list_measures(struct tl_review *review, struct tl_panel_line *line
     if (tl_session_cloth(review->session)) {
         const struct tl_cloth_report *report = cloth_report(review);
         add_line(lines, &count, "sheet", "%zu vertices, %zu edges", report->vertex_count, report->edge_count);
+        add_line(lines, &count, "substep", "%.3g ms; critical %.3g ms", 1000 * report->substep_s,
+                 1000 * report->critical_step_s);
         add_line(lines, &count, "strain", "%.1f %% at most", 100 * report->max_strain);
         add_line(lines, &count, "speed", "%.2f m/s at most", report->max_speed);
     }
@@ -148,7 +158,7 @@ static void ask_about_dropped(const struct tl_review *review, char *question, si
         return;
     const char *slash = strrchr(review->dropped, '/');
     snprintf(question, size, "%s: use it as", slash ? slash + 1 : review->dropped);
-    bool is_model = strstr(slash ? slash : review->dropped, ".gl") != NULL;
+    bool is_model = tl_model_is_file(review->dropped);
     input->question = question;
     input->answers = is_model ? model_answers : text_answers;
     input->answer_count = is_model ? TL_COUNT(model_answers) : TL_COUNT(text_answers);

@@ -3,6 +3,7 @@
 #include "app/camera.h"
 #include "app/moving.h"
 #include "app/moving_light.h"
+#include "app/playback.h"
 #include "assets/avatar.h"
 #include "assets/fit.h"
 #include "config/interrupt.h"
@@ -31,8 +32,9 @@ struct tl_session {
     int clip; /* -1: rest pose */
     struct tl_moving body;
 
-    tl_cloth *cloth;
+    tl_cloth *cloth; /* NULL: no garment, or one that is played back */
     tl_collider *collider;
+    tl_playback *playback; /* NULL: the garment is simulated */
     struct tl_moving dress;
 
     tl_material *materials; /* of the garment: the file's, or what settings.material makes of them */
@@ -52,6 +54,18 @@ static bool is_built_in_garment(const char *name)
     return false;
 }
 
+/* What was guessed is said aloud. */
+static void tell_units(const tl_model *model, const char *option)
+{
+    char *lines[] = {tl_units_describe(model->name, &model->units, option),
+                     tl_units_describe_up(model->name, &model->units)};
+    for (size_t i = 0; i < TL_COUNT(lines); i++) {
+        if (lines[i])
+            tl_info("%s", lines[i]);
+        free(lines[i]);
+    }
+}
+
 static bool load_avatar(tl_session *session, tl_error *error)
 {
     const char *name = session->settings.scene.avatar;
@@ -61,8 +75,9 @@ static bool load_avatar(tl_session *session, tl_error *error)
         return true;
     if (strcmp(name, "form") == 0)
         loaded = tl_avatar_form();
-    else if (!tl_avatar_load(name, &loaded, error))
+    else if (!tl_avatar_load_in(name, (enum tl_units)session->settings.scene.avatar_units, &loaded, error))
         return false;
+    tell_units(&loaded.model, "scene.avatar_units");
     session->avatar = TL_NEW(tl_avatar);
     *session->avatar = loaded;
     const char *clip = session->settings.scene.clip;
@@ -84,7 +99,7 @@ static bool make_garment(tl_session *session, tl_garment *out, tl_error *error)
 {
     const char *name = session->settings.scene.garment, *wearer = session->settings.scene.avatar;
     if (!is_built_in_garment(name))
-        return tl_garment_load(name, out, error);
+        return tl_garment_load_in(name, (enum tl_units)session->settings.scene.units, out, error);
     if (!tl_garment_cut(name, session->settings.cloth.edge_m, out, error))
         return false;
     bool own_body = session->avatar && strcmp(wearer, "form") != 0;
@@ -101,6 +116,7 @@ static bool load_garment(tl_session *session, tl_error *error)
         return true;
     if (!make_garment(session, &made, error))
         return false;
+    tell_units(&made.model, "--units");
     session->garment = TL_NEW(tl_garment);
     *session->garment = made;
     return true;
@@ -188,12 +204,53 @@ static bool drape(tl_session *session, tl_error *error)
     session->cloth = tl_cloth_create(session->garment, &settings->fabric, &settings->cloth, error);
     if (!session->cloth || !tl_cloth_settle(session->cloth, session->collider, error))
         return false;
-    if (session->clip >= 0 && !pose_in(session, error))
+    if (session->avatar && session->clip >= 0 && !pose_in(session, error))
         return false;
     tl_cloth_mark_start(session->cloth);
     tl_moving_create(&session->dress, &session->garment->model, tl_cloth_weld(session->cloth));
     pull_cloth(session);
     return true;
+}
+
+static bool play_back(tl_session *session, int number, tl_error *error)
+{
+    if (!tl_playback_pose(session->playback, &session->settings, number, session->dress.positions, error))
+        return false;
+    tl_moving_update(&session->dress);
+    return true;
+}
+
+/* Other programs put the floor elsewhere. */
+static void tell_ground(const tl_session *session)
+{
+    const float noticed_m = 0.01f;
+    float lowest_m = tl_playback_lowest(session->playback);
+    if (session->settings.image.ground && lowest_m < -noticed_m)
+        tl_info("%s: reaches %.2g m below the ground, which hides it there: image.ground=false leaves it out",
+                session->settings.scene.motion, (double)-lowest_m);
+}
+
+/* The motion's first sample says what is sewn together: a garment that was cut as panels has closed its seams
+ * there. */
+static bool begin_playback(tl_session *session, tl_error *error)
+{
+    const tl_model *model = &session->garment->model;
+    session->playback = tl_playback_open(&session->settings, model, error);
+    if (!session->playback)
+        return false;
+    vec3s *first = TL_NEW_ARRAY(vec3s, model->mesh.vertex_count);
+    uint32_t *weld = TL_NEW_ARRAY(uint32_t, model->mesh.vertex_count);
+    bool posed = tl_playback_pose(session->playback, &session->settings, 0, first, error);
+    if (posed) {
+        tl_weld_positions(first, model->mesh.vertex_count, weld);
+        tl_moving_create(&session->dress, model, weld);
+        posed = play_back(session, 0, error);
+    }
+    free(weld);
+    free(first);
+    if (posed)
+        tell_ground(session);
+    return posed;
 }
 
 /* How far a sequence of environments has played at frame `number`, in its own frames. */
@@ -217,6 +274,11 @@ static void frame_everything(tl_session *session)
     session->framed = box;
 }
 
+static bool plays_motion(const tl_session *session)
+{
+    return strcmp(session->settings.scene.motion, "none") != 0;
+}
+
 static bool load_all(tl_session *session, tl_error *error)
 {
     const char *environment = session->settings.scene.environment;
@@ -229,8 +291,11 @@ static bool load_all(tl_session *session, tl_error *error)
         tl_moving_create(&session->body, &session->avatar->model, NULL);
     if (session->garment) {
         make_materials(session);
-        if (!drape(session, error))
+        if (!(plays_motion(session) ? begin_playback : drape)(session, error))
             return false;
+    } else if (plays_motion(session)) {
+        return tl_fail(error, TL_USAGE,
+                       "scene.motion: there is no garment that could move: add --garment FILE");
     }
     if (tl_interrupted())
         return tl_fail(error, TL_INTERRUPTED, "stopped while the scene was made ready");
@@ -258,6 +323,7 @@ void tl_session_destroy(tl_session **handle)
     tl_moving_release(&session->body);
     tl_cloth_destroy(&session->cloth);
     tl_collider_destroy(&session->collider);
+    tl_playback_close(&session->playback);
     if (session->garment)
         tl_garment_release(session->garment);
     if (session->avatar)
@@ -280,11 +346,13 @@ bool tl_session_advance(tl_session *session, tl_error *error)
     if (session->clip >=
         0) /* else it stands as it stood, and nothing that follows from it need be done again */
         pose_avatar(session, time_s);
-    if (session->garment) {
+    if (session->cloth) {
         if (!tl_cloth_step(session->cloth, session->collider, error))
             return false;
         pull_cloth(session);
     }
+    if (session->playback && !play_back(session, session->frame + 1, error))
+        return false;
     session->frame++;
     return true;
 }
@@ -293,12 +361,14 @@ bool tl_session_reset(tl_session *session, tl_error *error)
 {
     if (!tl_moving_light_follow(&session->light, 0, error))
         return false;
+    if (session->playback && !play_back(session, 0, error))
+        return false;
     session->frame = 0;
     if (session->avatar) {
         pose_avatar(session, 0);
         pose_avatar(session, 0); /* twice: the collider is at rest */
     }
-    if (session->garment) {
+    if (session->cloth) {
         tl_cloth_reset(session->cloth);
         pull_cloth(session);
     }
@@ -309,7 +379,7 @@ bool tl_session_go_to(tl_session *session, int number, tl_error *error)
 {
     if (number < session->frame && !tl_session_reset(session, error))
         return false;
-    struct tl_progress progress = tl_progress_begin("simulating");
+    struct tl_progress progress = tl_progress_begin(session->playback ? "playing" : "simulating");
     int first = session->frame;
     bool done = true;
     while (done && session->frame < number) {
@@ -338,7 +408,10 @@ static bool needs_new_scene(const struct tl_settings *old, const struct tl_setti
 {
     return !same_text(old->scene.garment, new->scene.garment) ||
            !same_text(old->scene.avatar, new->scene.avatar) || !same_text(old->scene.clip, new->scene.clip) ||
-           old->cloth.edge_m != new->cloth.edge_m || old->image.ground != new->image.ground;
+           !same_text(old->scene.motion, new->scene.motion) || old->scene.units != new->scene.units ||
+           old->scene.avatar_units != new->scene.avatar_units ||
+           old->scene.motion_rate != new->scene.motion_rate || old->cloth.edge_m != new->cloth.edge_m ||
+           old->image.ground != new->image.ground;
 }
 
 bool tl_session_apply(tl_session *session, const struct tl_settings *settings, tl_error *error)
@@ -449,6 +522,11 @@ bool tl_session_pick(const tl_session *session, vec3s origin, vec3s direction, u
 bool tl_session_plays_clip(const tl_session *session)
 {
     return session->clip >= 0;
+}
+
+const tl_model *tl_session_garment(const tl_session *session)
+{
+    return session->garment ? &session->garment->model : NULL;
 }
 
 tl_cloth *tl_session_cloth(tl_session *session)

@@ -35,7 +35,9 @@ tl_frame tl_session_frame(tl_session *session);
 bool tl_session_pick(const tl_session *session, vec3s origin, vec3s direction, uint32_t *vertex,
                      float *distance_m);
 bool tl_session_plays_clip(const tl_session *session); /* the avatar's */
-tl_cloth *tl_session_cloth(tl_session *session);       /* NULL when the scene has no garment */
+/* NULL when the scene has no garment, or one that is played back instead of simulated. */
+tl_cloth *tl_session_cloth(tl_session *session);
+const tl_model *tl_session_garment(const tl_session *session); /* NULL when the scene has none */
 struct tl_cloth_report tl_session_report(const tl_session *session);
 
 #endif

@@ -1,5 +1,7 @@
 #include "app/settings.h"
 
+#include "assets/model.h"
+#include "assets/units.h"
 #include "config/embedded.h"
 #include "config/file.h"
 #include "config/log.h"
@@ -12,15 +14,27 @@
 static const char *const garment_names[] = {"dress", "skirt", "none", NULL};
 static const char *const avatar_names[] = {"form", "none", NULL};
 static const char *const environment_names[] = {"studio", NULL};
+static const char *const motion_names[] = {"none", NULL};
 
 #define TL_SCENE_DEFAULTS                                                                                    \
-    .garment = "dress", .avatar = "form", .environment = "studio", .environment_rate = 30, .preset = "review"
+    .garment = "dress", .avatar = "form", .motion = "none", .environment = "studio", .environment_rate = 30, \
+    .preset = "review"
 
 static const struct tl_option scene_rows[] = {
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, garment, garment_names,
-                           "what is worn: built in, or a glTF file"),
+                           "what is worn: built in, or a glTF or OBJ file"),
+    TL_OPTION_ENUM(
+        struct tl_scene_params, units, tl_units_names,
+        "of the garment's file and its motion; auto: glTF is in metres, OBJ is guessed by its size"),
+    TL_OPTION_NAME_OR_PATH(
+        struct tl_scene_params, motion, motion_names,
+        "how the garment moves instead of being simulated: a .pc2 or .mdd point cache, or OBJ "
+        "files, frame.####.obj"),
+    TL_OPTION_FLOAT(struct tl_scene_params, motion_rate, 0, 100000, "1/s",
+                    "frames of the motion a second: faster; 0: what its file says, or one a frame"),
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, avatar, avatar_names,
-                           "who wears it: built in, or a glTF file"),
+                           "who wears it: built in, or a glTF or OBJ file"),
+    TL_OPTION_ENUM(struct tl_scene_params, avatar_units, tl_units_names, "of the avatar's file, as units"),
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, environment, environment_names,
                            "the light: built in, an .exr or .hdr file, or a sequence of them, sky.####.exr: "
                            "each # is a digit of the frame's number"),
@@ -141,11 +155,6 @@ static bool apply_fabric(const struct tl_binding *all, const char *name, tl_erro
     return apply(&fabric_layer, name, bindings, TL_COUNT(bindings), error);
 }
 
-static bool is_model(const char *path)
-{
-    return path && (tl_path_has_extension(path, "glb") || tl_path_has_extension(path, "gltf"));
-}
-
 /* A model in place of a scene is shown as it is: no garment to drape, its own materials. */
 static bool apply_model(const struct tl_binding *all, const char *path, tl_error *error)
 {
@@ -159,8 +168,8 @@ static bool apply_source(const struct tl_binding *all, const struct tl_settings_
                          tl_error *error)
 {
     const char *scene = source->scene_file ? source->scene_file : "dress";
-    bool applied = is_model(scene) ? apply_model(all, scene, error)
-                                   : apply(&scene_layer, scene, all, TL_SETTINGS_TABLES, error);
+    bool applied = tl_model_is_file(scene) ? apply_model(all, scene, error)
+                                           : apply(&scene_layer, scene, all, TL_SETTINGS_TABLES, error);
     for (size_t i = 0; applied && i < source->assignment_count; i++)
         applied = tl_options_set_assignment(all, TL_SETTINGS_TABLES, source->assignments[i], error);
     return applied;
@@ -173,8 +182,18 @@ static void choose_fabric(struct tl_scene_params *scene)
         strcpy(scene->fabric, tl_option_is_file_name(scene->garment) ? "none" : "satin");
 }
 
-/* The topmost layers name the preset and the fabric that lie below them, so they are read twice: once to
- * learn these names, and once more in their place. */
+/* A model alone is what a motion moves, and what --units means. */
+static void choose_role(struct tl_scene_params *scene)
+{
+    bool moves = strcmp(scene->motion, "none") != 0 && strcmp(scene->garment, "none") == 0;
+    if (moves) {
+        strcpy(scene->garment, scene->avatar);
+        strcpy(scene->avatar, "none");
+    } else if (scene->avatar_units == TL_UNITS_AUTO) {
+        scene->avatar_units = scene->units;
+    }
+}
+
 /* What was asked for and will not be done is said. */
 static void tell_what_is_unused(const struct tl_light_params *light)
 {
@@ -185,6 +204,8 @@ static void tell_what_is_unused(const struct tl_light_params *light)
             "depth");
 }
 
+/* The topmost layers name the preset and the fabric that lie below them, so they are read twice: once to
+ * learn these names, and once more in their place. */
 bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *source, tl_error *error)
 {
     struct tl_settings settings;
@@ -200,6 +221,8 @@ bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *
     if (!apply_preset(all, named.preset, error) || !apply_fabric(all, named.fabric, error) ||
         !apply_source(all, source, error))
         return false;
+    if (source->scene_file && tl_model_is_file(source->scene_file))
+        choose_role(&named);
     settings.scene = named;
     tell_what_is_unused(&settings.light);
     *out = settings;

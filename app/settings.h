@@ -9,8 +9,11 @@
 #include "render/renderer.h"
 
 struct tl_scene_params {              /* table "scene": what to show; names of built-ins or paths */
-    char garment[TL_STRING_SIZE];     /* "dress", "skirt", "none", or a glTF file */
-    char avatar[TL_STRING_SIZE];      /* "form", "none", or a glTF file */
+    char garment[TL_STRING_SIZE];     /* "dress", "skirt", "none", or a glTF or OBJ file */
+    char avatar[TL_STRING_SIZE];      /* "form", "none", or a glTF or OBJ file */
+    int units, avatar_units;          /* enum tl_units: of their files */
+    char motion[TL_STRING_SIZE];      /* point cache that moves the garment, or "none": it is simulated */
+    float motion_rate;                /* frames of it a second; 0: as its file says */
     char environment[TL_STRING_SIZE]; /* "studio", an .exr or .hdr file, or a pattern: sky.####.exr */
     char fabric[TL_STRING_SIZE];      /* name of an embedded fabric, a YAML file, or "none" */
     char preset[TL_STRING_SIZE];      /* name of an embedded preset, or a YAML file */

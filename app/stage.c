@@ -6,7 +6,8 @@
 bool tl_stage_settings(const struct tl_arguments *arguments, struct tl_settings *out, tl_error *error)
 {
     if (arguments->positional_count > 1)
-        return tl_fail(error, TL_USAGE, "%s: one scene at a time: name a YAML, .glb or .gltf file, or none",
+        return tl_fail(error, TL_USAGE,
+                       "%s: one scene at a time: name a YAML, .glb, .gltf or .obj file, or none",
                        arguments->positionals[1]);
     const struct tl_settings_source source = {
         .scene_file = arguments->positional_count ? arguments->positionals[0] : NULL,

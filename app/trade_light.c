@@ -1,6 +1,6 @@
 /* The trade of light: every contender draws the same recorded motion and then its last frame at rest, once
  * for each look of the garment; the oracle draws each frame that is compared once. */
-#include "app/trade.h"
+#include "app/trade_light.h"
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"

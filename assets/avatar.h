@@ -8,7 +8,9 @@ typedef struct tl_avatar {
     tl_model model;
 } tl_avatar;
 
+/* A glTF or OBJ file; its units as in tl_model_load and tl_model_load_in. */
 bool tl_avatar_load(const char *path, tl_avatar *out, tl_error *error);
+bool tl_avatar_load_in(const char *path, enum tl_units units, tl_avatar *out, tl_error *error);
 void tl_avatar_release(tl_avatar *avatar);
 
 /* The built-in dress form (assets/form.c): a tailor's torso on a stand, 1.6 m high, feet of the stand at y =

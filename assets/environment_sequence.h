@@ -1,6 +1,5 @@
-/* Sequences of environments: one file a frame, named by a pattern such as `sky.####.exr`, in which the run of
- * # stands for the frame's number, with zeros in front to as many digits. The numbers may begin anywhere but
- * have no gaps.
+/* Sequences of environments: one file a frame, named by a pattern (assets/sequence.h). The numbers may begin
+ * anywhere but have no gaps.
  *
  * Ownership: tl_environment_sequence owns its pattern. Threads: pure, but for reading files. Failure: a
  * pattern without files and a gap are refused when it is opened; a damaged frame when it is loaded. */
@@ -15,7 +14,7 @@ typedef struct tl_environment_sequence {
     int count; /* frames; 0 only in a zeroed struct */
 } tl_environment_sequence;
 
-/* True when the file name (not its folder) holds a #, and no file has that very name. */
+/* True for a pattern. */
 bool tl_environment_is_sequence(const char *name);
 
 bool tl_environment_sequence_open(const char *pattern, tl_environment_sequence *out, tl_error *error);

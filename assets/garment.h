@@ -23,8 +23,9 @@ typedef struct tl_garment {
     uint32_t *pins; /* render vertices held where they start (on the avatar, they follow its nearest point) */
 } tl_garment;
 
-/* A glTF file as a garment. */
+/* A glTF or OBJ file as a garment; its units as in tl_model_load and tl_model_load_in. */
 bool tl_garment_load(const char *path, tl_garment *out, tl_error *error);
+bool tl_garment_load_in(const char *path, enum tl_units units, tl_garment *out, tl_error *error);
 void tl_garment_release(tl_garment *garment);
 
 /* Built-in garments, cut as flat panels around the built-in dress form (assets/form.h): "dress", "skirt".

@@ -2,6 +2,8 @@
 
 #include "assets/model_read.h"
 #include "assets/rig.h"
+#include "assets/wavefront.h"
+#include "config/file.h"
 #include "config/memory.h"
 
 #include <math.h>
@@ -381,52 +383,6 @@ static bool add_scene(struct builder *builder, tl_error *error)
 
 /* ---- The rest pose ---- */
 
-struct by_position {
-    vec3s position;
-    uint32_t vertex;
-};
-
-static int compare_positions(const void *a, const void *b)
-{
-    const vec3s *p = &((const struct by_position *)a)->position,
-                *q = &((const struct by_position *)b)->position;
-    for (int c = 0; c < 3; c++)
-        if (p->raw[c] != q->raw[c])
-            return p->raw[c] < q->raw[c] ? -1 : 1;
-    return 0;
-}
-
-/* For vertices without a normal: area-weighted over the triangles of all vertices at the same place, because
- * a garment is smooth across its UV seams. */
-static void smooth_normals(tl_mesh *mesh)
-{
-    size_t count = mesh->vertex_count;
-    vec3s *sums = TL_NEW_ARRAY(vec3s, count);
-    struct by_position *sorted = TL_NEW_ARRAY(struct by_position, count);
-    for (size_t i = 0; i + 2 < mesh->index_count; i += 3) {
-        const uint32_t *v = &mesh->indices[i];
-        vec3s side = glms_vec3_sub(mesh->positions[v[1]], mesh->positions[v[0]]);
-        vec3s area = glms_vec3_cross(side, glms_vec3_sub(mesh->positions[v[2]], mesh->positions[v[0]]));
-        for (int c = 0; c < 3; c++)
-            sums[v[c]] = glms_vec3_add(sums[v[c]], area);
-    }
-    for (size_t i = 0; i < count; i++)
-        sorted[i] = (struct by_position){mesh->positions[i], (uint32_t)i};
-    qsort(sorted, count, sizeof *sorted, compare_positions);
-    for (size_t first = 0, end; first < count; first = end) {
-        vec3s sum = {{0, 0, 0}};
-        for (end = first; end < count && compare_positions(&sorted[first], &sorted[end]) == 0; end++)
-            sum = glms_vec3_add(sum, sums[sorted[end].vertex]);
-        float length = glms_vec3_norm(sum);
-        vec3s normal = length > 0 ? glms_vec3_divs(sum, length) : (vec3s){{0, 1, 0}};
-        for (size_t i = first; i < end; i++)
-            if (glms_vec3_norm2(mesh->normals[sorted[i].vertex]) == 0)
-                mesh->normals[sorted[i].vertex] = normal;
-    }
-    free(sorted);
-    free(sums);
-}
-
 /* Columns of the cofactor matrix: normals under any linear map, scaled or mirrored. */
 static vec3s turn_normal(const mat4s *m, vec3s n)
 {
@@ -478,19 +434,7 @@ static void mend_winding(const struct builder *builder, const mat4s *world)
     }
 }
 
-static bool check_positions(const char *path, const tl_mesh *mesh, tl_error *error)
-{
-    /* Beyond it a float has no millimetres left, and scales that overflow end here. */
-    const float farthest_m = 1e5f;
-    for (size_t i = 0; i < mesh->vertex_count; i++)
-        if (!(glms_vec3_norm(mesh->positions[i]) <= farthest_m))
-            return tl_fail(error, TL_INPUT,
-                           "%s: vertex %zu lies more than 100 km away or is not finite: check its units",
-                           path, i);
-    return true;
-}
-
-static bool finish(struct builder *builder, tl_error *error)
+static bool finish(struct builder *builder, enum tl_units wanted, tl_error *error)
 {
     tl_mesh *mesh = &builder->model->mesh;
     if (mesh->index_count == 0)
@@ -501,11 +445,11 @@ static bool finish(struct builder *builder, tl_error *error)
     mat4s *world = TL_NEW_ARRAY(mat4s, builder->rig->node_count);
     rig_world(builder->rig, -1, 0, world);
     rig_place(builder->rig, world, mesh->positions);
-    bool good = check_positions(builder->document->path, mesh, error);
+    bool good = model_take_units(builder->document->path, wanted, true, builder->model, error);
     if (good) {
         mend_winding(builder, world);
         place_normals(builder, world);
-        smooth_normals(mesh);
+        model_smooth_normals(mesh);
         tl_mesh_measure_uvs(mesh);
     }
     free(world);
@@ -552,14 +496,11 @@ static void name_clips(const gltf_document *document, tl_model *model)
     }
 }
 
-bool tl_model_load(const char *path, tl_model *out, tl_error *error)
+static bool load_gltf(const char *path, enum tl_units wanted, tl_model *out, tl_error *error)
 {
-    *out = (tl_model){0};
     gltf_document document;
     if (!gltf_open(path, &document, error))
         return false;
-    const char *slash = strrchr(path, '/');
-    out->name = tl_copy_string(slash ? slash + 1 : path);
     out->rig = TL_NEW(tl_rig);
     struct builder builder = {.document = &document,
                               .model = out,
@@ -570,7 +511,7 @@ bool tl_model_load(const char *path, tl_model *out, tl_error *error)
     bool loaded = check_extensions(&document, out, error) && rig_read(&document, out->rig, error);
     if (loaded) {
         model_read_materials(&document, out);
-        loaded = add_scene(&builder, error) && finish(&builder, error);
+        loaded = add_scene(&builder, error) && finish(&builder, wanted, error);
     }
     if (loaded)
         name_clips(&document, out);
@@ -579,9 +520,52 @@ bool tl_model_load(const char *path, tl_model *out, tl_error *error)
     free(builder.normals);
     free(builder.skin_slots);
     gltf_close(&document);
+    return loaded;
+}
+
+static bool load_wavefront(const char *path, enum tl_units wanted, tl_model *out, tl_error *error)
+{
+    if (!wave_load_model(path, out, error) || !model_take_units(path, wanted, false, out, error))
+        return false;
+    model_smooth_normals(&out->mesh);
+    tl_mesh_measure_uvs(&out->mesh);
+    return true;
+}
+
+bool tl_model_load(const char *path, tl_model *out, tl_error *error)
+{
+    return tl_model_load_in(path, TL_UNITS_AUTO, out, error);
+}
+
+bool tl_model_load_in(const char *path, enum tl_units wanted, tl_model *out, tl_error *error)
+{
+    const char *slash = strrchr(path, '/');
+    *out = (tl_model){.name = tl_copy_string(slash ? slash + 1 : path)};
+    bool loaded = tl_path_has_extension(path, "obj") ? load_wavefront(path, wanted, out, error)
+                                                     : load_gltf(path, wanted, out, error);
     if (!loaded)
         tl_model_release(out);
     return loaded;
+}
+
+bool tl_model_is_file(const char *path)
+{
+    return tl_path_has_extension(path, "glb") || tl_path_has_extension(path, "gltf") ||
+           tl_path_has_extension(path, "obj");
+}
+
+size_t tl_model_point_count(const tl_model *model)
+{
+    return model->points ? model->point_count : model->mesh.vertex_count;
+}
+
+void tl_model_points(const tl_model *model, const vec3s *positions, vec3s *points)
+{
+    float metres = (float)tl_units_metres(model->units.units);
+    for (size_t i = 0; i < tl_model_point_count(model); i++)
+        points[i] = glms_vec3_divs(positions[0], metres);
+    for (size_t i = 0; i < model->mesh.vertex_count; i++)
+        points[model->points ? model->points[i] : i] = glms_vec3_divs(positions[i], metres);
 }
 
 void tl_model_release(tl_model *model)
@@ -596,6 +580,7 @@ void tl_model_release(tl_model *model)
     free(model->images);
     free(model->materials);
     free(model->clips);
+    free(model->points);
     free(model->name);
     *model = (tl_model){0};
 }

@@ -1,16 +1,19 @@
-/* A glTF 2.0 scene, flattened into one mesh in metres, with its materials, and the skeleton and clips that
- * move it.
+/* A glTF 2.0 scene or a Wavefront OBJ, flattened into one mesh in metres, with its materials, and the
+ * skeleton and clips that move it.
  *
- * Loaded: node hierarchy (also scaled, mirrored: winding is mended), skins, animations (step, linear, cubic
- * spline), KHR_texture_transform, KHR_mesh_quantization, base colour, normal, occlusion, metallic-roughness,
- * alpha mask, double-sided, sparse accessors, triangle strips and fans. Everything else is ignored, and named
- * once in `ignored`. Immutable after load. Threads: tl_model_pose may run on several threads. */
+ * Loaded of glTF: node hierarchy (also scaled, mirrored: winding is mended), skins, animations (step, linear,
+ * cubic spline), KHR_texture_transform, KHR_mesh_quantization, base colour, normal, occlusion,
+ * metallic-roughness, alpha mask, double-sided, sparse accessors, triangle strips and fans. Loaded of OBJ:
+ * polygons, groups, and of its MTL files Kd, Ks, Ns, illum, map_Kd, map_Ks, norm and alpha. Everything else
+ * is ignored, and named once in `ignored`. Immutable after load. Threads: tl_model_pose may run on several
+ * threads. */
 #ifndef TOILE_ASSETS_MODEL_H
 #define TOILE_ASSETS_MODEL_H
 
 #include "assets/material.h"
 #include "assets/mesh.h"
 #include "assets/surface.h"
+#include "assets/units.h"
 
 typedef struct tl_rig tl_rig; /* nodes, skins, per-vertex weights, clips */
 
@@ -29,12 +32,26 @@ typedef struct tl_model {
     size_t clip_count;
     struct tl_clip *clips;
     tl_rig *rig; /* NULL when nothing moves */
+    struct tl_units_reading units;
+    /* What a point cache counts: the vertices of the file, not the render vertices that they were split into.
+     */
+    size_t point_count;
+    uint32_t *points; /* [vertex_count] point of each vertex; NULL: each is its own */
     size_t ignored_count;
     char **ignored; /* "KHR_materials_sheen", "morph targets", ...: each once */
 } tl_model;
 
-/* .gltf or .glb. Refuses indices out of range, NaN positions, files without triangles, sizes that lie. */
+/* .gltf, .glb or .obj, in units as assets/units.h has it. Refuses indices out of range, NaN positions, files
+ * without triangles, sizes that lie. */
 bool tl_model_load(const char *path, tl_model *out, tl_error *error);
+/* The same in units that someone tells; AUTO: as above. */
+bool tl_model_load_in(const char *path, enum tl_units units, tl_model *out, tl_error *error);
+bool tl_model_is_file(const char *path); /* by the extension */
+
+/* Where the points of the file are, in its units, when render vertices are at `positions` (metres); those
+ * that no triangle uses are put on the first vertex. points [tl_model_point_count]. */
+size_t tl_model_point_count(const tl_model *model);
+void tl_model_points(const tl_model *model, const vec3s *positions, vec3s *points);
 void tl_model_release(tl_model *model); /* frees and zeroes */
 
 /* Positions of the mesh at `time_s` of clip `clip` (looped), skinned on the CPU; mesh->vertex_count of them.
@@ -47,5 +64,8 @@ int tl_model_find_clip(const tl_model *model, const char *name);
 /* Writes surfaces as one GLB: positions, normals, tangents, UVs, materials with colours and PNG maps; atomic.
  */
 bool tl_model_export_glb(const char *path, const tl_surface *surfaces, size_t surface_count, tl_error *error);
+
+/* Writes a surface of `model` as OBJ: its file's points in its file's units, UVs, normals, groups; atomic. */
+bool tl_model_export_obj(const char *path, const tl_model *model, const tl_surface *surface, tl_error *error);
 
 #endif

@@ -1,5 +1,8 @@
 /* Time: a frame is made of equal steps, a step of equal substeps. */
+#include "cloth/snag.h"
 #include "cloth/state.h"
+#include "cloth/verlet.h"
+#include "cloth/xpbd.h"
 #include "config/interrupt.h"
 #include "config/memory.h"
 
@@ -23,10 +26,36 @@ static int steps_per_frame(const struct tl_cloth_params *params)
     return (int)fmax(ceil(1 / (params->frame_rate * params->dt) - rounding), 1);
 }
 
+static double step_seconds(const tl_cloth *cloth)
+{
+    return 1 / (cloth->params.frame_rate * steps_per_frame(&cloth->params));
+}
+
+/* In one step; HUGE_VAL when no step is short enough. */
+static double substeps_per_step(const tl_cloth *cloth)
+{
+    if (cloth->params.solver == TL_CLOTH_PREVIEW)
+        return cloth->params.substeps;
+    if (cloth->params.solver == TL_CLOTH_SETTLE)
+        return 1;
+    return fmax(ceil(step_seconds(cloth) / (TL_VERLET_SAFETY * cloth->critical_step)), 1);
+}
+
 double tl_cloth_substep(const tl_cloth *cloth)
 {
-    const struct tl_cloth_params *params = &cloth->params;
-    return 1 / (params->frame_rate * steps_per_frame(params) * params->substeps);
+    return step_seconds(cloth) / substeps_per_step(cloth);
+}
+
+/* Whether the chosen solver can take this fabric's step within its budget. */
+static bool check_budget(const tl_cloth *cloth, tl_error *error)
+{
+    double wanted = substeps_per_step(cloth) * steps_per_frame(&cloth->params);
+    if (cloth->params.solver != TL_CLOTH_REFERENCE || wanted <= cloth->params.reference_substeps)
+        return true;
+    return tl_fail(error, TL_USAGE,
+                   "cloth: the reference solver's step for this fabric is %.3g s, %.4g substeps a frame, and "
+                   "cloth.reference_substeps allows %d: allow more, or choose cloth.solver preview",
+                   TL_VERLET_SAFETY * cloth->critical_step, wanted, cloth->params.reference_substeps);
 }
 
 /* ---- Pins ---- */
@@ -67,7 +96,9 @@ static void bind_pins(tl_cloth *cloth, const tl_collider *collider)
         pin->triangle = contact.triangle;
         memcpy(pin->barycentric, contact.barycentric, sizeof pin->barycentric);
         struct carrier carrier = carrier_at(collider, pin, 0);
-        vec3d offset = vec3d_sub(pin->at, carrier.origin);
+        vec3d normal = {contact.normal[0], contact.normal[1], contact.normal[2]};
+        double sunk = fmax(cloth->fabric.thickness_m - contact.distance_m, 0);
+        vec3d offset = vec3d_sub(vec3d_muladd(pin->at, normal, sunk), carrier.origin);
         pin->offset = (vec3d){vec3d_dot(offset, carrier.axes[0]), vec3d_dot(offset, carrier.axes[1]),
                               vec3d_dot(offset, carrier.axes[2])};
     }
@@ -86,6 +117,7 @@ static void place_pins(tl_cloth *cloth, const tl_collider *collider, double phas
             at = vec3d_muladd(at, carrier.axes[2], pin->offset.z);
         }
         cloth->particles.x[pin->particle] = at;
+        cloth->particles.driven[pin->particle] = pin->triangle != TL_NONE;
     }
 }
 
@@ -105,42 +137,162 @@ static void pull_grabbed(tl_cloth *cloth, double h)
     cloth->particles.x[i] = vec3d_muladd(cloth->particles.x[i], way, w * impulse / length);
 }
 
-static void substep(tl_cloth *cloth, const tl_collider *collider, double drag, double phase_before,
-                    double phase)
+static struct tl_contact_params contact_params(const tl_cloth *cloth, const struct tl_substep *substep)
 {
-    double h = tl_cloth_substep(cloth);
-    bool sewing = tl_sewing_pulls(&cloth->sewing); /* weightless and slippery until the panels have met */
-    const struct tl_contact_params contact = {.friction = sewing ? 0 : cloth->fabric.friction,
-                                              .thickness_m = cloth->fabric.thickness_m,
-                                              .phase_before = phase_before,
-                                              .phase = phase,
-                                              .h = h};
-    tl_xpbd_predict(&cloth->particles, sewing ? 0 : cloth->params.gravity, drag, h);
-    place_pins(cloth, collider, phase);
-    tl_xpbd_solve(&cloth->energy, &cloth->particles);
+    return (struct tl_contact_params){.friction =
+                                          tl_sewing_pulls(&cloth->sewing) ? 0 : cloth->fabric.friction,
+                                      .thickness_m = cloth->fabric.thickness_m,
+                                      .push_out_speed = TL_PUSH_OUT_SPEED,
+                                      .phase_before = substep->phase_before,
+                                      .phase = substep->phase,
+                                      .h = substep->h};
+}
+
+/* The cloth from itself, then from the avatar, which has the last word. */
+static void keep_apart(tl_cloth *cloth, const struct tl_contact_params *contact)
+{
+    if (cloth->params.self_repulsion) {
+        tl_repulsion_solve(&cloth->repulsion, contact->friction, contact->h, &cloth->particles);
+        tl_layers_solve(&cloth->layers, contact, &cloth->particles);
+    }
+    tl_contacts_solve(&cloth->contacts, contact, &cloth->particles);
+}
+
+/* What the energy does not know of: seams, the hand, the avatar. Moves positions. */
+static void constrain(tl_cloth *cloth, const struct tl_substep *substep)
+{
+    const struct tl_contact_params contact = contact_params(cloth, substep);
     if (cloth->sewing.pair_count > 0)
-        tl_sewing_solve(&cloth->sewing, &cloth->particles, h);
-    pull_grabbed(cloth, h);
-    tl_contacts_solve(&cloth->contacts, &contact, &cloth->particles);
-    tl_xpbd_finish(&cloth->particles, h);
+        tl_sewing_solve(&cloth->sewing, &cloth->particles, substep->h);
+    pull_grabbed(cloth, substep->h);
+    keep_apart(cloth, &contact);
+}
+
+static void advance_preview(tl_cloth *cloth, const struct tl_substep *substep)
+{
+    bool bends = cloth->energy.bends_as_force;
+    if (bends)
+        tl_energy_bending_forces(&cloth->energy, cloth->particles.x, cloth->forces);
+    tl_particles_predict(&cloth->particles, bends ? cloth->forces : NULL, substep->gravity, substep->drag,
+                         substep->h);
+    place_pins(cloth, substep->collider, substep->phase);
+    tl_xpbd_solve(&cloth->energy, &cloth->particles);
+    constrain(cloth, substep);
+    tl_particles_finish(&cloth->particles, substep->h);
+}
+
+/* Seams that close pull as stiff springs: they must close against what the fabric resists. */
+struct tl_springs tl_cloth_springs(const tl_cloth *cloth)
+{
+    const double firmer = 10, least = 1000;
+    return (struct tl_springs){.count = cloth->sewing.pair_count,
+                               .links = cloth->sewing.links,
+                               .stiffness = fmax(firmer * cloth->fabric.stretch_warp, least)};
+}
+
+static void advance_settle(tl_cloth *cloth, const struct tl_substep *substep)
+{
+    struct tl_particles *particles = &cloth->particles;
+    if (cloth->sewing.pair_count > 0)
+        tl_sewing_shrink(&cloth->sewing, substep->h);
+    const struct tl_springs springs = tl_cloth_springs(cloth);
+    const struct tl_implicit_problem problem = {
+        .energy = &cloth->energy,
+        .fabric = &cloth->fabric,
+        .springs = springs,
+        .hand = {.particle = cloth->grabbed ? cloth->topology.weld[cloth->grabbed_vertex] : TL_NONE,
+                 .target = cloth->grab_target,
+                 .stiffness = GRAB_STIFFNESS,
+                 .most_force = GRAB_FORCE},
+        .contacts = &cloth->contacts,
+        .contact = contact_params(cloth, substep),
+        .gravity = substep->gravity,
+        .drag = substep->drag,
+        .h = substep->h,
+        .tolerance = cloth->params.cg_tolerance,
+        .most_iterations = cloth->params.cg_iterations};
+    if (!cloth->implicit)
+        cloth->implicit = tl_implicit_create(&problem, particles);
+    memcpy(particles->previous, particles->x, particles->count * sizeof *particles->x);
+    place_pins(cloth, substep->collider, substep->phase);
+    tl_implicit_step(cloth->implicit, &problem, particles, &cloth->tally);
+    keep_apart(cloth, &problem.contact);
+    tl_particles_finish(particles, substep->h);
+}
+
+static void find_forces(tl_cloth *cloth)
+{
+    tl_energy_pull(&cloth->energy, &cloth->fabric, cloth->particles.x, cloth->forces);
+}
+
+static void advance_reference(tl_cloth *cloth, const struct tl_substep *substep)
+{
+    tl_verlet_drift(&cloth->particles, cloth->forces, substep->gravity, substep->drag, substep->h);
+    place_pins(cloth, substep->collider, substep->phase);
+    constrain(cloth, substep);
+    find_forces(cloth);
+    tl_verlet_kick(&cloth->particles, cloth->forces, substep->gravity, substep->drag, substep->h);
+}
+
+static void run_step(tl_cloth *cloth, const tl_collider *collider, double drag, int step)
+{
+    /* Weightless until the panels have met. */
+    double gravity = tl_sewing_pulls(&cloth->sewing) ? 0 : cloth->params.gravity;
+    double substeps = substeps_per_step(cloth), total = steps_per_frame(&cloth->params) * substeps;
+    if (cloth->params.solver == TL_CLOTH_REFERENCE)
+        find_forces(cloth);
+    for (double sub = 0; sub < substeps; sub++) {
+        double done = step * substeps + sub;
+        const struct tl_substep substep = {.h = tl_cloth_substep(cloth),
+                                           .gravity = gravity,
+                                           .drag = drag,
+                                           .phase_before = done / total,
+                                           .phase = (done + 1) / total,
+                                           .collider = collider};
+        if (cloth->params.solver == TL_CLOTH_REFERENCE)
+            advance_reference(cloth, &substep);
+        else if (cloth->params.solver == TL_CLOTH_SETTLE)
+            advance_settle(cloth, &substep);
+        else
+            advance_preview(cloth, &substep);
+    }
+}
+
+/* Only what moves catches: a soft cloth may hang from a body at rest at any length. */
+static void slip_free(tl_cloth *cloth, const tl_collider *collider)
+{
+    if (collider && tl_collider_travel(collider) > 0)
+        tl_snag_release(&cloth->topology, (const vec2s(*)[3])cloth->rest, cloth->shortest_edge,
+                        &cloth->particles, cloth->contacts.slipped);
+}
+
+static void find_own_contacts(tl_cloth *cloth)
+{
+    const struct tl_particles *particles = &cloth->particles;
+    tl_layers_renew(&cloth->layers, &cloth->topology, particles->x);
+    tl_repulsion_renew(&cloth->repulsion, particles->count, particles->x, cloth->made_at,
+                       cloth->fabric.thickness_m);
 }
 
 static void run_steps(tl_cloth *cloth, const tl_collider *collider, double drag)
 {
-    int steps = steps_per_frame(&cloth->params), substeps = cloth->params.substeps;
-    double total = (double)steps * substeps;
-    double step_s = 1 / (cloth->params.frame_rate * steps);
-    double calm = 1 - exp(-INNER_DAMPING * cloth->fabric.damping * step_s);
+    int steps = steps_per_frame(&cloth->params);
+    double calm = 1 - exp(-INNER_DAMPING * cloth->fabric.damping * step_seconds(cloth));
     for (int step = 0; step < steps && !tl_interrupted(); step++) {
-        tl_contacts_let_through(&cloth->contacts, &cloth->energy, cloth->particles.x);
+        const struct tl_contact_params contact = {.thickness_m = cloth->fabric.thickness_m,
+                                                  .push_out_speed = TL_PUSH_OUT_SPEED,
+                                                  .phase_before = (double)step / steps,
+                                                  .phase = (step + 1.0) / steps,
+                                                  .h = step_seconds(cloth)};
         tl_contacts_renew(&cloth->contacts, cloth->particles.x, cloth->fabric.thickness_m,
                           (double)step / steps);
-        for (int sub = 0; sub < substeps; sub++) {
-            double done = (double)step * substeps + sub;
-            substep(cloth, collider, drag, done / total, (done + 1) / total);
-        }
-        tl_xpbd_calm(&cloth->particles, (const uint32_t(*)[2])cloth->topology.edges,
-                     cloth->topology.edge_count, calm);
+        if (cloth->params.self_repulsion)
+            find_own_contacts(cloth);
+        run_step(cloth, collider, drag, step);
+        slip_free(cloth, collider);
+        tl_contacts_enforce(&cloth->contacts, &contact, &cloth->particles);
+        tl_particles_calm(&cloth->particles, (const uint32_t(*)[2])cloth->topology.edges,
+                          cloth->topology.edge_count, calm);
     }
 }
 
@@ -173,9 +325,20 @@ static bool check_state(const tl_cloth *cloth, tl_error *error)
     return true;
 }
 
+/* Not before the panels have met: until then each is a piece of its own. */
+static bool decide_layers(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
+{
+    if (!cloth->params.self_repulsion || cloth->layers.decided || tl_sewing_pulls(&cloth->sewing))
+        return true;
+    return tl_layers_decide(&cloth->layers, &cloth->topology, (const vec2s(*)[3])cloth->rest, collider,
+                            cloth->particles.x, error);
+}
+
 bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct tl_advance *advance,
                       tl_error *error)
 {
+    if (!check_budget(cloth, error) || !decide_layers(cloth, collider, error))
+        return false;
     struct tl_particles *particles = &cloth->particles;
     size_t bytes = particles->count * sizeof(vec3d);
     vec3d *good_x = TL_NEW_ARRAY(vec3d, particles->count), *good_v = TL_NEW_ARRAY(vec3d, particles->count);
@@ -197,6 +360,7 @@ bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct
     } else {
         memcpy(particles->x, good_x, bytes);
         memcpy(particles->v, good_v, bytes);
+        tl_layers_forget(&cloth->layers);
     }
     free(good_x);
     free(good_v);

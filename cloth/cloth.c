@@ -98,9 +98,24 @@ static void set_inverse_masses(tl_cloth *cloth)
 static void set_constants(tl_cloth *cloth)
 {
     set_inverse_masses(cloth);
+    tl_energy_set_fabric(&cloth->energy, &cloth->fabric);
+    cloth->critical_step =
+        tl_energy_critical_step(&cloth->energy, &cloth->fabric, cloth->particles.count, cloth->particles.w);
+    cloth->forces = tl_resize(cloth->forces, cloth->particles.count, sizeof *cloth->forces);
+    tl_implicit_destroy(&cloth->implicit);
     tl_energy_set(&cloth->energy, &cloth->fabric, cloth->particles.w, tl_cloth_substep(cloth));
     tl_contacts_release(&cloth->contacts); /* its planes know the thickness */
     cloth->contacts = tl_contacts_create(&cloth->topology, cloth->rest);
+    tl_layers_forget(&cloth->layers);
+}
+
+void tl_cloth_use(tl_cloth *cloth, int solver)
+{
+    if (cloth->params.solver == solver)
+        return;
+    cloth->params.solver = solver;
+    tl_implicit_destroy(&cloth->implicit);
+    tl_energy_set(&cloth->energy, &cloth->fabric, cloth->particles.w, tl_cloth_substep(cloth));
 }
 
 /* A hundredth of the mean edge. */
@@ -124,6 +139,10 @@ static void build_mesh(tl_cloth *cloth, const uint32_t *weld, size_t vertex_coun
     cloth->rest = tl_rest_shapes(cloth->garment, &cloth->topology);
     cloth->energy = tl_energy_build(&cloth->topology, cloth->rest);
     cloth->shortest_edge = find_shortest_edge(cloth);
+    cloth->made_at = tl_resize(cloth->made_at, vertex_count, sizeof *cloth->made_at);
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        cloth->made_at[weld[i]] = vec3d_from(mesh->positions[i]);
+    tl_layers_release(&cloth->layers);
 }
 
 static void make_pins(tl_cloth *cloth)
@@ -159,11 +178,18 @@ static void release_state(tl_cloth *cloth)
     tl_energy_release(&cloth->energy);
     tl_particles_release(&cloth->particles);
     tl_contacts_release(&cloth->contacts);
+    tl_layers_release(&cloth->layers);
+    tl_repulsion_release(&cloth->repulsion);
     tl_sewing_release(&cloth->sewing);
+    tl_implicit_destroy(&cloth->implicit);
     free(cloth->rest);
+    free(cloth->made_at);
     free(cloth->pins);
+    free(cloth->forces);
     cloth->rest = NULL;
+    cloth->made_at = NULL;
     cloth->pins = NULL;
+    cloth->forces = NULL;
 }
 
 void tl_cloth_join(tl_cloth *cloth, const uint32_t *joined, size_t joined_count)
@@ -243,6 +269,7 @@ static void forget_contacts(tl_cloth *cloth)
 {
     tl_contacts_release(&cloth->contacts);
     cloth->contacts = tl_contacts_create(&cloth->topology, cloth->rest);
+    tl_layers_forget(&cloth->layers);
 }
 
 /* Kept by render vertex: seams that close later change the particles, but not these. */
@@ -345,15 +372,30 @@ struct tl_cloth_report tl_cloth_measure(const tl_cloth *cloth, const tl_collider
     struct tl_cloth_report report = {.vertex_count = cloth->topology.vertex_count,
                                      .edge_count = cloth->topology.edge_count,
                                      .triangle_count = cloth->topology.triangle_count,
+                                     .layer_count = cloth->layers.layer_count,
                                      .open_seams = cloth->sewing.pair_count,
                                      .time_s = cloth->time_s,
                                      .max_speed = tl_cloth_max_speed(cloth),
                                      .max_strain = tl_cloth_max_strain(cloth),
+                                     .critical_step_s = cloth->critical_step,
+                                     .substep_s = tl_cloth_substep(cloth),
+                                     .unconverged_steps = cloth->tally.unconverged,
+                                     .shortened_steps = cloth->tally.shortened,
+                                     .caught_count = cloth->contacts.caught_count,
                                      .settled = cloth->settled};
-    for (size_t i = 0; i < cloth->particles.count; i++)
-        if (cloth->particles.w[i] > 0)
-            report.kinetic_energy +=
-                0.5 / cloth->particles.w[i] * vec3d_dot(cloth->particles.v[i], cloth->particles.v[i]);
+    vec3d *forces = TL_NEW_ARRAY(vec3d, cloth->particles.count);
+    report.elastic_energy =
+        tl_energy_forces(&cloth->energy, &cloth->fabric, cloth->particles.count, cloth->particles.x, forces);
+    free(forces);
+    for (size_t i = 0; i < cloth->particles.count; i++) {
+        vec3d x = cloth->particles.x[i], v = cloth->particles.v[i];
+        double mass = cloth->particles.w[i] > 0 ? 1 / cloth->particles.w[i] : 0;
+        report.kinetic_energy += 0.5 * mass * vec3d_dot(v, v);
+        report.potential_energy += mass * cloth->params.gravity * x.y;
+    }
+    uint32_t *pieces = TL_NEW_ARRAY(uint32_t, cloth->topology.vertex_count);
+    report.piece_count = tl_layers_pieces(&cloth->topology, pieces);
+    free(pieces);
     if (collider)
         report.deepest_m = deepest(cloth, collider);
     return report;

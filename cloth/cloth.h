@@ -1,8 +1,10 @@
-/* The cloth: a mass-spring sheet in physical units, solved by XPBD with substeps, in double precision.
+/* The cloth: a mass-spring sheet in physical units, in double precision, with a choice of solvers over one
+ * energy.
  *
  * Render vertices are welded into physics vertices (bitwise equal start position; seams once they are
  * closed), so UV seams do not tear. Results do not depend on the number of threads. Positions are metres,
- * world axes. Cloth does not collide with itself. Ownership: a tl_cloth borrows its garment and must not
+ * world axes. Cloth collides with itself only where params ask for
+ * it. Ownership: a tl_cloth borrows its garment and must not
  * outlive it. Threads: one at a time per cloth. */
 #ifndef TOILE_CLOTH_CLOTH_H
 #define TOILE_CLOTH_CLOTH_H
@@ -28,29 +30,46 @@ struct tl_cloth_fabric {
 };
 extern const struct tl_option_table tl_cloth_fabric_options;
 
-/* How it is solved. Table "cloth". */
-enum tl_cloth_solver { TL_CLOTH_XPBD };
+/* How it is solved. Table "cloth". preview: cloth/xpbd.h; settle: cloth/implicit.h; reference:
+ * cloth/verlet.h. */
+enum tl_cloth_solver { TL_CLOTH_PREVIEW, TL_CLOTH_SETTLE, TL_CLOTH_REFERENCE, TL_CLOTH_SOLVER_COUNT };
+extern const char *const tl_cloth_solver_names[]; /* NULL-terminated */
 struct tl_cloth_params {
-    int solver;          /* enum tl_cloth_solver */
-    double dt;           /* s, one step; a frame is made of whole steps: see frame_rate */
-    double frame_rate;   /* frames per second of the animation */
-    int substeps;        /* per step */
-    double gravity;      /* m/s^2, along -Y */
-    double settle_s;     /* longest simulated time spent settling before the first frame */
-    double settle_speed; /* m/s: settled when the fastest vertex is slower than this */
-    float edge_m;        /* wanted edge length of built-in garments */
+    int solver;             /* enum tl_cloth_solver */
+    double dt;              /* s, one step; a frame is made of whole steps: see frame_rate */
+    double frame_rate;      /* frames per second of the animation */
+    int substeps;           /* preview: per step */
+    int cg_iterations;      /* settle: most per solve */
+    double cg_tolerance;    /* settle: of the residual, to the load */
+    int reference_substeps; /* reference: most per frame, beyond which it is refused */
+    bool self_repulsion;    /* layers of a garment, and folds, keep their distance: layers.h, repulsion.h */
+    double gravity;         /* m/s^2, along -Y */
+    double settle_s;        /* longest simulated time spent settling before the first frame */
+    double settle_speed;    /* m/s: settled when the fastest vertex is slower than this */
+    float edge_m;           /* wanted edge length of built-in garments */
 };
 extern const struct tl_option_table tl_cloth_options;
 
 /* What can be measured of the state; tests, `toile plan` and the panel read it. */
 struct tl_cloth_report {
     size_t vertex_count, edge_count, triangle_count; /* physics mesh */
-    size_t open_seams;                               /* seam pairs not yet welded */
-    double time_s;         /* simulated since creation or reset, settling excluded */
-    double max_speed;      /* m/s */
-    double max_strain;     /* largest |length / rest length - 1| over edges that are not seams */
-    double kinetic_energy; /* J */
-    double deepest_m;      /* deepest penetration below the avatar's surface, 0 when none */
+    size_t piece_count;       /* connected components; they and folds pass through one another without
+                                 self_repulsion */
+    size_t layer_count;       /* told apart by self_repulsion; 0: not yet, or off */
+    size_t open_seams;        /* seam pairs not yet welded */
+    double time_s;            /* simulated since creation or reset, settling excluded */
+    double max_speed;         /* m/s */
+    double max_strain;        /* largest |length / rest length - 1| over edges that are not seams */
+    double kinetic_energy;    /* J */
+    double elastic_energy;    /* J */
+    double potential_energy;  /* J, in gravity, of what is not held; 0 at y = 0 */
+    double critical_step_s;   /* the longest stable step of an explicit solver */
+    double substep_s;         /* what the chosen solver takes */
+    size_t unconverged_steps; /* settle: iterations cut short, since creation: bounded, not exact */
+    size_t shortened_steps;   /* settle: would have gained energy */
+    double deepest_m;         /* deepest penetration below the avatar's surface, 0 when none */
+    size_t caught_count; /* particles pinched between parts of the avatar during the last frame: kept outside,
+                            or slipped past one, at the price of strain */
     bool settled;
 };
 

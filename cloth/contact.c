@@ -11,50 +11,23 @@
  * leaves the surface by 2^2 / (2 * 30) mm = 0.07 mm, small against any thickness. */
 #define SLIDE_M    0.002
 #define ROUNDING_M 1e-9
-/* Penetration that was there before is taken out this fast: 14 mm in 0.07 s, and no more energy than a fall
- * from 2 mm. */
-#define PUSH_OUT_SPEED 0.2
 
 /* Edges longer than this are probed: shorter ones sink into a radius of 5 cm by no more than 2.3 mm. */
 #define COARSE_M 0.03
-/* Cloth stretched to more than this is caught, between an arm and the body say: its vertices are let through
- * until it has slipped free, rather than torn. */
-#define SNAG_STRETCH 2.5
-
-static double rest_length(const vec2s rest[3], int corner)
-{
-    vec2s side = glms_vec2_sub(rest[(corner + 1) % 3], rest[(corner + 2) % 3]);
-    return hypot((double)side.x, (double)side.y);
-}
-
-/* The middles of a triangle's long edges, each edge from its first triangle only, and of the triangle. */
-static size_t add_probes(const struct tl_topology *topology, const vec2s (*rest)[3], uint32_t triangle,
-                         struct tl_probe *out)
-{
-    size_t count = 0;
-    const uint32_t *v = topology->triangles[triangle];
-    double longest = 0;
-    for (int corner = 0; corner < 3; corner++) {
-        double length = rest_length(rest[triangle], corner);
-        longest = fmax(longest, length);
-        bool first = topology->neighbour[triangle][corner] > triangle; /* also where there is none */
-        if (length > COARSE_M && first)
-            out[count++] =
-                (struct tl_probe){{v[(corner + 1) % 3], v[(corner + 2) % 3], v[corner]}, {0.5, 0.5, 0}};
-    }
-    if (longest > COARSE_M)
-        out[count++] = (struct tl_probe){{v[0], v[1], v[2]}, {1.0 / 3, 1.0 / 3, 1.0 / 3}};
-    return count;
-}
+/* A particle that is put back outside is put this share of its thickness above the surface, and half as far
+ * after each answer that there it is inside of another part. */
+#define PUT_BACK_SHARE 0.5
+#define PUT_BACK_TRIES 8
 
 struct tl_contacts tl_contacts_create(const struct tl_topology *topology, const vec2s (*rest)[3])
 {
-    struct tl_contacts contacts = {.particle_count = topology->vertex_count,
-                                   .probes = TL_NEW_ARRAY(struct tl_probe, 4 * topology->triangle_count)};
-    for (size_t t = 0; t < topology->triangle_count; t++)
-        contacts.probe_count +=
-            add_probes(topology, rest, (uint32_t)t, &contacts.probes[contacts.probe_count]);
+    struct tl_contacts contacts = {.particle_count = topology->vertex_count};
+    contacts.probes = tl_probes_create(topology, rest, COARSE_M, &contacts.probe_count);
+    contacts.allowed = TL_NEW_ARRAY(double, contacts.particle_count);
     contacts.caught = TL_NEW_ARRAY(bool, contacts.particle_count);
+    contacts.slipped = TL_NEW_ARRAY(bool, contacts.particle_count);
+    for (size_t i = 0; i < contacts.particle_count; i++)
+        contacts.allowed[i] = HUGE_VAL;
     size_t count = contacts.particle_count + contacts.probe_count;
     contacts.caches = TL_NEW_ARRAY(struct tl_contact_cache, count);
     for (size_t i = 0; i < count; i++)
@@ -66,7 +39,9 @@ void tl_contacts_release(struct tl_contacts *contacts)
 {
     free(contacts->caches);
     free(contacts->probes);
+    free(contacts->allowed);
     free(contacts->caught);
+    free(contacts->slipped);
     *contacts = (struct tl_contacts){0};
 }
 
@@ -105,7 +80,7 @@ static void ask(const tl_collider *collider, double thickness, double phase, vec
     for (int i = 0; i < 2; i++)
         cache->anchor[i] = (vec3d){ends[i][0], ends[i][1], ends[i][2]};
     cache->normal = (vec3d){contact.normal[0], contact.normal[1], contact.normal[2]};
-    cache->clearance = fmax(contact.distance_m - thickness, SLIDE_M);
+    cache->clearance = fmax(contact.distance_m - thickness, fmin(SLIDE_M, fmax(thickness / 2, ROUNDING_M)));
     cache->near = true;
 }
 
@@ -121,6 +96,8 @@ void tl_contacts_begin(struct tl_contacts *contacts, const tl_collider *collider
     bool next = collider == contacts->collider && revision == contacts->revision + 1;
     contacts->collider = collider;
     contacts->revision = revision;
+    contacts->caught_count = 0;
+    memset(contacts->caught, 0, contacts->particle_count * sizeof(bool));
     for (size_t i = 0; i < cache_count(contacts) && !same; i++) {
         struct tl_contact_cache *cache = &contacts->caches[i];
         cache->asked_phase = HUGE_VAL;
@@ -129,11 +106,10 @@ void tl_contacts_begin(struct tl_contacts *contacts, const tl_collider *collider
     }
 }
 
-static vec3d probe_point(const struct tl_probe *probe, const vec3d *x)
+/* Signed, to the plane that the cache holds. */
+static double distance_to(const struct tl_contact_cache *cache, vec3d x, double phase)
 {
-    vec3d sum = vec3d_scale(x[probe->vertices[0]], probe->weights[0]);
-    sum = vec3d_muladd(sum, x[probe->vertices[1]], probe->weights[1]);
-    return vec3d_muladd(sum, x[probe->vertices[2]], probe->weights[2]);
+    return cache->near ? vec3d_dot(vec3d_sub(x, anchor_at(cache, phase)), cache->normal) : HUGE_VAL;
 }
 
 void tl_contacts_renew(struct tl_contacts *contacts, const vec3d *x, double thickness_m, double phase)
@@ -148,37 +124,66 @@ void tl_contacts_renew(struct tl_contacts *contacts, const vec3d *x, double thic
             continue;
         bool is_particle = i < contacts->particle_count;
         ask(collider, thickness_m, phase,
-            is_particle ? x[i] : probe_point(&contacts->probes[i - contacts->particle_count], x), cache);
+            is_particle ? x[i] : tl_probe_point(&contacts->probes[i - contacts->particle_count], x), cache);
+        if (is_particle && isinf(contacts->allowed[i]))
+            contacts->allowed[i] = fmax(thickness_m - distance_to(cache, x[i], phase), 0);
     }
 }
 
-void tl_contacts_let_through(struct tl_contacts *contacts, const struct tl_energy *energy, const vec3d *x)
+/* One particle; whether it had to be put back. */
+static bool put_back(struct tl_contacts *contacts, size_t i, double thickness, double phase,
+                     struct tl_particles *particles)
 {
-    memset(contacts->caught, 0, contacts->particle_count * sizeof(bool));
-    for (size_t i = 0; i < energy->membrane_count * TL_LANES; i++) {
-        const struct tl_membrane *m = &energy->membranes[i / TL_LANES];
-        size_t lane = i % TL_LANES;
-        vec3d u = {0}, v = {0};
-        for (int k = 0; k < 3; k++) {
-            u = vec3d_muladd(u, x[m->vertices[k][lane]], m->c[k][lane]);
-            v = vec3d_muladd(v, x[m->vertices[k][lane]], m->d[k][lane]);
-        }
-        double most = fmax(vec3d_dot(u, u), vec3d_dot(v, v));
-        for (int k = 0; k < 3 && most > SNAG_STRETCH * SNAG_STRETCH; k++)
-            contacts->caught[m->vertices[k][lane]] = true;
+    struct tl_contact_cache *cache = &contacts->caches[i];
+    double deepest = fmin(thickness - contacts->allowed[i], 0), share = PUT_BACK_SHARE;
+    for (int tries = 0; tries <= PUT_BACK_TRIES; tries++) {
+        vec3d x = particles->x[i], v = particles->v[i];
+        if (cache->asked_phase != phase || vec3d_distance(cache->asked_at, x) > 0)
+            ask(contacts->collider, thickness, phase, x, cache);
+        double distance = distance_to(cache, x, phase);
+        if (distance >= deepest)
+            return tries > 0;
+        particles->x[i] =
+            vec3d_muladd(x, cache->normal, (deepest < 0 ? deepest : share * thickness) - distance);
+        particles->v[i] = vec3d_muladd(v, cache->normal, fmax(-vec3d_dot(v, cache->normal), 0));
+        share /= 2;
     }
+    return true;
 }
 
-/* Keeps x on the outer side of a plane through `surface`, which was at `surface_before` when the particle was
- * at `before`; Coulomb friction bounds the slip by mu times the normal correction. */
-static vec3d push_out(vec3d x, vec3d before, vec3d surface, vec3d surface_before, vec3d normal,
-                      const struct tl_contact_params *params)
+static void enforce_one(struct tl_contacts *contacts, size_t i, const struct tl_contact_params *step,
+                        struct tl_particles *particles)
+{
+    bool moves = tl_collider_travel(contacts->collider) > 0, slipped = contacts->slipped[i];
+    contacts->allowed[i] = fmax(contacts->allowed[i] - step->push_out_speed * step->h, 0);
+    if (slipped) { /* it may be anywhere */
+        contacts->caches[i].near = false;
+        ask(contacts->collider, step->thickness_m, step->phase, particles->x[i], &contacts->caches[i]);
+    }
+    bool held = !(particles->w[i] > 0) && !particles->driven[i];
+    if (held || !contacts->caches[i].near || !(moves || slipped || contacts->allowed[i] > 0))
+        return;
+    bool caught = put_back(contacts, i, step->thickness_m, step->phase, particles) || slipped;
+    contacts->caught_count += caught && !contacts->caught[i];
+    contacts->caught[i] = contacts->caught[i] || caught;
+}
+
+void tl_contacts_enforce(struct tl_contacts *contacts, const struct tl_contact_params *step,
+                         struct tl_particles *particles)
+{
+    for (size_t i = 0; contacts->collider && i < contacts->particle_count; i++)
+        enforce_one(contacts, i, step, particles);
+    memset(contacts->slipped, 0, contacts->particle_count * sizeof(bool));
+}
+
+vec3d tl_contact_push_out(vec3d x, vec3d before, vec3d surface, vec3d surface_before, vec3d normal,
+                          const struct tl_contact_params *params)
 {
     double depth = params->thickness_m - vec3d_dot(vec3d_sub(x, surface), normal);
     if (!(depth > 0))
         return x;
     double depth_before = fmax(params->thickness_m - vec3d_dot(vec3d_sub(before, surface_before), normal), 0);
-    double kept = fmax(depth_before - PUSH_OUT_SPEED * params->h, 0);
+    double kept = fmax(depth_before - params->push_out_speed * params->h, 0);
     double correction = depth - kept;
     if (!(correction > 0))
         return x;
@@ -194,7 +199,7 @@ static vec3d push_out(vec3d x, vec3d before, vec3d surface, vec3d surface_before
 static vec3d push_off_ground(vec3d x, vec3d before, const struct tl_contact_params *params)
 {
     const vec3d up = {0, 1, 0}, origin = {0};
-    return push_out(x, before, origin, origin, up, params);
+    return tl_contact_push_out(x, before, origin, origin, up, params);
 }
 
 struct surroundings {
@@ -216,29 +221,32 @@ static vec3d keep_out(const struct surroundings *around, struct tl_contact_cache
     if (stale(cache, around->travel, params->phase, x))
         ask(around->collider, params->thickness_m, params->phase_before, before, cache);
     if (cache->near)
-        x = push_out(x, before, anchor_at(cache, params->phase), anchor_at(cache, params->phase_before),
-                     cache->normal, params);
+        x = tl_contact_push_out(x, before, anchor_at(cache, params->phase),
+                                anchor_at(cache, params->phase_before), cache->normal, params);
     if (around->ground && x.y < params->thickness_m)
         x = push_off_ground(x, before, params);
     return x;
 }
 
-/* A probe is moved by moving its vertices, each in proportion to its share and inverse mass. */
+/* Where a pin goes that is driven to `x`, whatever its way there. */
+static vec3d set_aside(const struct surroundings *around, struct tl_contact_cache *cache, vec3d x,
+                       const struct tl_contact_params *params)
+{
+    if (stale(cache, around->travel, params->phase, x))
+        ask(around->collider, params->thickness_m, params->phase, x, cache);
+    double depth = PUT_BACK_SHARE * params->thickness_m - distance_to(cache, x, params->phase);
+    return depth > 0 ? vec3d_muladd(x, cache->normal, depth) : x;
+}
+
 static void solve_probe(const struct surroundings *around, const struct tl_probe *probe,
                         struct tl_contact_cache *cache, const struct tl_contact_params *params,
                         struct tl_particles *particles)
 {
-    vec3d x = probe_point(probe, particles->x), before = probe_point(probe, particles->previous);
-    double sum = 0;
-    for (int i = 0; i < 3; i++)
-        sum += particles->w[probe->vertices[i]] * probe->weights[i] * probe->weights[i];
+    vec3d x = tl_probe_point(probe, particles->x), before = tl_probe_point(probe, particles->previous);
+    double inverse = tl_probe_inverse_mass(probe, particles->w);
     vec3d push = vec3d_sub(keep_out(around, cache, x, before, params), x);
-    if (!(sum > 0) || !(vec3d_dot(push, push) > 0))
-        return;
-    for (int i = 0; i < 3; i++) {
-        uint32_t v = probe->vertices[i];
-        particles->x[v] = vec3d_muladd(particles->x[v], push, particles->w[v] * probe->weights[i] / sum);
-    }
+    if (inverse > 0 && vec3d_dot(push, push) > 0)
+        tl_probe_push(probe, vec3d_scale(push, 1 / inverse), particles);
 }
 
 void tl_contacts_solve(struct tl_contacts *contacts, const struct tl_contact_params *params,
@@ -247,15 +255,43 @@ void tl_contacts_solve(struct tl_contacts *contacts, const struct tl_contact_par
     const struct surroundings around = look_around(contacts->collider);
     if (!around.collider)
         return;
-    for (size_t i = 0; i < contacts->probe_count; i++) {
-        const uint32_t *v = contacts->probes[i].vertices;
-        if (contacts->caught[v[0]] || contacts->caught[v[1]] || contacts->caught[v[2]])
-            continue;
+    for (size_t i = 0; i < contacts->probe_count; i++)
         solve_probe(&around, &contacts->probes[i], &contacts->caches[contacts->particle_count + i], params,
                     particles);
+    for (size_t i = 0; i < particles->count; i++) {
+        struct tl_contact_cache *cache = &contacts->caches[i];
+        if (particles->w[i] > 0)
+            particles->x[i] = keep_out(&around, cache, particles->x[i], particles->previous[i], params);
+        else if (particles->driven[i])
+            particles->x[i] = set_aside(&around, cache, particles->x[i], params);
     }
-    for (size_t i = 0; i < particles->count; i++)
-        if (particles->w[i] > 0 && !contacts->caught[i])
-            particles->x[i] =
-                keep_out(&around, &contacts->caches[i], particles->x[i], particles->previous[i], params);
+}
+
+/* ---- For solvers that heed planes themselves ---- */
+
+static struct tl_contact_plane plane_of(vec3d x, vec3d surface, vec3d surface_before, vec3d normal,
+                                        const struct tl_contact_params *params)
+{
+    vec3d motion = vec3d_sub(surface, surface_before);
+    double depth = params->thickness_m - vec3d_dot(vec3d_sub(x, surface_before), normal);
+    double pushed = depth > 0 ? fmin(depth, params->push_out_speed * params->h) : depth;
+    return (struct tl_contact_plane){normal, motion, vec3d_dot(motion, normal) + pushed};
+}
+
+size_t tl_contacts_planes(struct tl_contacts *contacts, const struct tl_contact_params *params,
+                          size_t particle, vec3d x, struct tl_contact_plane out[TL_CONTACT_PLANES])
+{
+    const struct surroundings around = look_around(contacts->collider);
+    size_t count = 0;
+    if (!around.collider)
+        return 0;
+    struct tl_contact_cache *cache = &contacts->caches[particle];
+    if (stale(cache, around.travel, params->phase_before, x))
+        ask(around.collider, params->thickness_m, params->phase_before, x, cache);
+    if (cache->near)
+        out[count++] = plane_of(x, anchor_at(cache, params->phase), anchor_at(cache, params->phase_before),
+                                cache->normal, params);
+    if (around.ground)
+        out[count++] = plane_of(x, (vec3d){0}, (vec3d){0}, (vec3d){0, 1, 0}, params);
+    return count;
 }

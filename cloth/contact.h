@@ -8,7 +8,9 @@
 #define TOILE_CLOTH_CONTACT_H
 
 #include "cloth/collider.h"
-#include "cloth/xpbd.h"
+#include "cloth/energy.h"
+#include "cloth/particles.h"
+#include "cloth/probe.h"
 
 struct tl_contact_cache {
     vec3d asked_at;     /* where the particle was when the collider was asked */
@@ -19,24 +21,32 @@ struct tl_contact_cache {
     bool near;          /* an anchor was found */
 };
 
-/* A point inside a coarse triangle that must stay outside too: between vertices that touch a round body, its
- * edge of length e would sink in by e^2 / 8R. */
-struct tl_probe {
-    uint32_t vertices[3];
-    double weights[3]; /* sum 1 */
-};
-
 struct tl_contacts {
     size_t particle_count, probe_count;
     struct tl_probe *probes;
     struct tl_contact_cache *caches; /* [particle_count + probe_count] */
-    bool *caught;                    /* [particle_count] passes through for now */
-    uint64_t revision;               /* of the collider when the caches were filled */
+    bool *caught;                    /* [particle_count] in this frame, so far */
+    double *allowed; /* [particle_count] m below the offset that a particle may still be: what it began with,
+                        less what has been taken out; HUGE_VAL: never looked */
+    bool *slipped;   /* [particle_count] moved by cloth/snag.h, which knows nothing of planes; cleared once
+                        heeded */
+    size_t caught_count; /* of those */
+    uint64_t revision;   /* of the collider when the caches were filled */
     const tl_collider *collider;
 };
 /* `rest` shapes decide which triangles are coarse. */
 struct tl_contacts tl_contacts_create(const struct tl_topology *topology, const vec2s (*rest)[3]);
 void tl_contacts_release(struct tl_contacts *contacts);
+
+/* 14 mm in 0.07 s, and no more energy than a fall from 2 mm. */
+#define TL_PUSH_OUT_SPEED 0.2
+
+struct tl_contact_params {
+    double friction, thickness_m;
+    double push_out_speed;      /* m/s: how fast penetration that was there before is taken out */
+    double phase_before, phase; /* of the collider's motion at the start and the end of the substep */
+    double h;                   /* s */
+};
 
 /* Once per frame: forgets what no longer holds. */
 void tl_contacts_begin(struct tl_contacts *contacts, const tl_collider *collider);
@@ -45,20 +55,36 @@ void tl_contacts_begin(struct tl_contacts *contacts, const tl_collider *collider
  * moves, because its planes turn. On all threads. */
 void tl_contacts_renew(struct tl_contacts *contacts, const vec3d *x, double thickness_m, double phase);
 
-/* Once per step: vertices of triangles that are stretched to a multiple are caught between parts of the
- * avatar or on its wrong side; they pass through it for this step. */
-void tl_contacts_let_through(struct tl_contacts *contacts, const struct tl_energy *energy, const vec3d *x);
-
-struct tl_contact_params {
-    double friction, thickness_m;
-    double phase_before, phase; /* of the collider's motion at the start and the end of the substep */
-    double h;                   /* s, substep */
+/* A plane that a particle may not pass during a substep, for a solver that heeds it while it solves: its way
+ * d (m) obeys d.normal >= least. */
+struct tl_contact_plane {
+    vec3d normal; /* outward, unit */
+    vec3d motion; /* m, of the surface during the substep */
+    double least; /* m; starting penetration is taken out at a limited speed */
 };
+#define TL_CONTACT_PLANES 2 /* the avatar's and the ground's */
+
+/* Those of a particle that starts at x; returns how many. */
+size_t tl_contacts_planes(struct tl_contacts *contacts, const struct tl_contact_params *params,
+                          size_t particle, vec3d x, struct tl_contact_plane out[TL_CONTACT_PLANES]);
 
 /* Moves particles and probes out of the collider; after the constraints, so that nothing is inside at a
  * substep's end.
  */
 void tl_contacts_solve(struct tl_contacts *contacts, const struct tl_contact_params *params,
                        struct tl_particles *particles);
+
+/* Once per step, at its end, with the step's own duration and phases: whatever the substeps' planes have
+ * missed, no particle is deeper in the avatar than it was before, and none that was outside is inside. Where
+ * two parts of the avatar press on one particle the price is strain; what was put back so, or has slipped
+ * past a part, is caught in this frame. */
+void tl_contacts_enforce(struct tl_contacts *contacts, const struct tl_contact_params *step,
+                         struct tl_particles *particles);
+
+/* Where a point goes that is driven from `before` to `x`: to the outer side of a plane through `surface`,
+ * which was at `surface_before`, with Coulomb friction, which bounds the slip by mu times the normal
+ * correction. */
+vec3d tl_contact_push_out(vec3d x, vec3d before, vec3d surface, vec3d surface_before, vec3d normal,
+                          const struct tl_contact_params *params);
 
 #endif

@@ -1,4 +1,4 @@
-/* The cloth's elastic energy as constraints for XPBD: membrane and bending of triangles, and links.
+/* The cloth's elastic energy, the same for every solver: membrane and bending of triangles, and links.
  *
  * Membrane, per triangle, with the deformation gradient F = [F_u F_v] from the flat rest shape of area A:
  *     E = A/2 [ k_weft (|F_u| - 1)^2 + k_warp (|F_v| - 1)^2 + k_shear c^2 ],  c = F_u.F_v / (|F_u| |F_v|)
@@ -22,6 +22,7 @@
 
 #include "assets/garment.h"
 #include "cloth/cloth.h"
+#include "cloth/pulls.h"
 #include "cloth/topology.h"
 #include "cloth/vec3d.h"
 
@@ -30,22 +31,24 @@
 
 /* Membranes. F_u = sum c_i x_i, F_v = sum d_i x_i. */
 struct tl_membrane {
-    uint32_t vertices[3][TL_LANES];
-    double c[3][TL_LANES], d[3][TL_LANES];           /* 1/m */
-    double area[TL_LANES];                           /* m^2, at rest */
-    double cc[TL_LANES], cd[TL_LANES], dd[TL_LANES]; /* sums of w c_i c_i, ...: fixed while masses are */
-    double weft[TL_LANES], warp[TL_LANES];           /* -1 / (w |grad|^2 + 1 / (k A h^2)) */
-    double shear[TL_LANES];                          /* 1 / (k A h^2) */
+    uint32_t vertices[3][TL_BATCH];
+    double c[3][TL_BATCH], d[3][TL_BATCH];           /* 1/m */
+    double area[TL_BATCH];                           /* m^2, at rest */
+    double w[3][TL_BATCH];                           /* 1/kg, of the vertices */
+    double cc[TL_BATCH], cd[TL_BATCH], dd[TL_BATCH]; /* sums of w c_i c_i, ...: fixed while masses are */
+    double weft[TL_BATCH], warp[TL_BATCH];           /* -1 / (w |grad|^2 + 1 / (k A h^2)) */
+    double shear[TL_BATCH];                          /* 1 / (k A h^2) */
 };
 
 /* Curvatures: L_uu, L_vv, sqrt(2) L_uv = sum of rows over the stencil's vertices. */
 #define TL_BEND_STENCIL 6
 struct tl_bend {
-    uint32_t vertices[TL_BEND_STENCIL][TL_LANES]; /* own three, then across each edge; a missing one repeats
+    uint32_t vertices[TL_BEND_STENCIL][TL_BATCH]; /* own three, then across each edge; a missing one repeats
                                                      the first with rows of 0 */
-    double rows[3][TL_BEND_STENCIL][TL_LANES];    /* 1/m^2 */
-    double factors[3][TL_LANES];                  /* -1 / (sum w row^2 + 1 / (B A h^2)) */
-    double area[TL_LANES];
+    double rows[3][TL_BEND_STENCIL][TL_BATCH];    /* 1/m^2 */
+    double w[TL_BEND_STENCIL][TL_BATCH];          /* 1/kg */
+    double factors[3][TL_BATCH];                  /* -1 / (sum w row^2 + 1 / (B A h^2)) */
+    double area[TL_BATCH];
 };
 
 /* A spring: keeps slivers, which have no usable plane, in shape; closes seams. */
@@ -57,19 +60,47 @@ struct tl_link {
 
 struct tl_energy {
     size_t membrane_count, bend_count, link_count; /* batches, batches, links */
+    size_t membrane_run_count, *membrane_run_ends; /* see struct tl_batches */
+    size_t bend_run_count, *bend_run_ends;
     struct tl_membrane *membranes;
     struct tl_bend *bends;
     struct tl_link *links;
     double *masses; /* [vertex_count] kg per areal density: a third of the area around */
+    struct tl_pulls pulls;
+    bool bends_as_force; /* preview's substep is short enough for bending as an explicit force */
 };
 
 /* `rest` gives every physics triangle's flat rest shape. */
 struct tl_energy tl_energy_build(const struct tl_topology *topology, const vec2s (*rest)[3]);
 void tl_energy_release(struct tl_energy *energy);
 
-/* Sets what depends on material, substep `h` seconds and inverse masses [vertex_count + 1]. */
+/* Takes over the fabric. Before forces are asked for. */
+void tl_energy_set_fabric(struct tl_energy *energy, const struct tl_cloth_fabric *fabric);
+
+/* Sets what `preview` needs: material, substep `h` seconds and inverse masses [vertex_count + 1]. */
 void tl_energy_set(struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
                    const double *inverse_masses, double h);
+
+/* The elastic energy (J) at positions `x` [vertex_count]; writes its forces -dE/dx (N) to `forces`
+ * [vertex_count]. A link's energy is k/2 (length - rest)^2 with the warp's stretch stiffness. The fabric is
+ * the one that was set. Threads: one call at a time for one energy. */
+double tl_energy_forces(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
+                        size_t vertex_count, const vec3d *x, vec3d *forces);
+
+/* The forces alone, in two thirds of the time. */
+void tl_energy_pull(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric, const vec3d *x,
+                    vec3d *forces);
+
+/* The forces of bending alone. */
+void tl_energy_bending_forces(const struct tl_energy *energy, const vec3d *x, vec3d *forces);
+
+/* Stiffness against L_uu, L_vv and sqrt(2) L_uv, N m. */
+void tl_bend_stiffness(const struct tl_cloth_fabric *fabric, double out[3]);
+
+/* The longest step (s) at which explicit integration is stable, from below: 2 / omega_max, omega_max^2 by
+ * Gershgorin's bound on the rows of M^-1 K at rest. Infinite when nothing resists. */
+double tl_energy_critical_step(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
+                               size_t vertex_count, const double *inverse_masses);
 
 /* Flat rest shapes of the physics triangles: from the garment's pattern, else from the start shape turned so
  * that x follows the UVs' u direction (an arbitrary one where UVs are degenerate). New array. */

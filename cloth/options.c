@@ -28,17 +28,31 @@ const struct tl_option_table tl_cloth_fabric_options = TL_OPTION_TABLE(
     "fabric", "what the cloth is made of", fabric_rows, struct tl_cloth_fabric, TL_CLOTH_FABRIC_DEFAULTS);
 
 #define TL_CLOTH_DEFAULTS                                                                                    \
-    .solver = TL_CLOTH_XPBD, .dt = 1.0 / 60, .frame_rate = 30, .substeps = 30, .gravity = 9.81,              \
-    .settle_s = 6, .settle_speed = 0.01, .edge_m = 0.02f
+    .solver = TL_CLOTH_PREVIEW, .dt = 1.0 / 60, .frame_rate = 30, .substeps = 30, .cg_iterations = 200,      \
+    .cg_tolerance = 3e-2, .reference_substeps = 20000, .gravity = 9.81, .settle_s = 6, .settle_speed = 0.01, \
+    .edge_m = 0.02f
 
-static const char *const solver_names[] = {"xpbd", NULL};
+const char *const tl_cloth_solver_names[] = {"preview", "settle", "reference", NULL};
 
 static const struct tl_option cloth_rows[] = {
-    TL_OPTION_ENUM(struct tl_cloth_params, solver, solver_names, "how the cloth is advanced in time"),
+    TL_OPTION_ENUM(
+        struct tl_cloth_params, solver, tl_cloth_solver_names,
+        "preview: bounded cost, rests a little too soft; settle: any step, rests exactly, moves too calmly; "
+        "reference: exact, its step follows the fabric"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, dt, 1e-5, 0.1, "s",
                      "longest step; a frame is made of equal ones: faster, less exact"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, frame_rate, 1, 1000, "1/s", "frames per second of animation"),
-    TL_OPTION_INT(struct tl_cloth_params, substeps, 1, 1000, "", "substeps per step: slower, stretches less"),
+    TL_OPTION_INT(struct tl_cloth_params, substeps, 1, 1000, "",
+                  "preview: substeps per step: slower, stretches less"),
+    TL_OPTION_INT(struct tl_cloth_params, cg_iterations, 1, 1000000, "",
+                  "settle: most iterations of a step's solve: slower, less often cut short"),
+    TL_OPTION_DOUBLE(struct tl_cloth_params, cg_tolerance, 1e-12, 0.5, "",
+                     "settle: residual that is left of a step's first one: faster, less exact motion"),
+    TL_OPTION_INT(struct tl_cloth_params, reference_substeps, 1, 100000000, "",
+                  "reference: most substeps per frame; a fabric that needs more is refused"),
+    TL_OPTION_BOOL(
+        struct tl_cloth_params, self_repulsion,
+        "layers, a shirt over trousers, and folds keep their distance: takes about two thirds longer"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, gravity, -100, 100, "m/s^2", "along -Y: hangs more heavily"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, settle_s, 0, 600, "s",
                      "longest simulated time for coming to rest before the first frame"),

@@ -1,5 +1,6 @@
 #include "cloth/sew.h"
 
+#include "cloth/xpbd.h"
 #include "config/memory.h"
 
 #include <stdlib.h>
@@ -63,14 +64,19 @@ bool tl_sewing_pulls(const struct tl_sewing *sewing)
     return sewing->pair_count > 0 && sewing->elapsed_s < PULL_S + MEET_S;
 }
 
-void tl_sewing_solve(struct tl_sewing *sewing, struct tl_particles *particles, double h)
+void tl_sewing_shrink(struct tl_sewing *sewing, double h)
 {
     sewing->elapsed_s += h;
     double left = fmax(1 - sewing->elapsed_s / PULL_S, 0);
-    for (size_t i = 0; i < sewing->pair_count; i++) {
+    for (size_t i = 0; i < sewing->pair_count; i++)
         sewing->links[i].rest = left * sewing->gaps[i];
+}
+
+void tl_sewing_solve(struct tl_sewing *sewing, struct tl_particles *particles, double h)
+{
+    tl_sewing_shrink(sewing, h);
+    for (size_t i = 0; i < sewing->pair_count; i++)
         tl_xpbd_solve_link(&sewing->links[i], particles);
-    }
 }
 
 size_t tl_sewing_close(struct tl_sewing *sewing, const struct tl_particles *particles, uint32_t *joined)

@@ -6,7 +6,8 @@
 #ifndef TOILE_CLOTH_SEW_H
 #define TOILE_CLOTH_SEW_H
 
-#include "cloth/xpbd.h"
+#include "cloth/energy.h"
+#include "cloth/particles.h"
 
 struct tl_sewing {
     size_t pair_count;     /* open pairs */
@@ -23,6 +24,10 @@ void tl_sewing_release(struct tl_sewing *sewing);
 /* Seams are still being drawn together. */
 bool tl_sewing_pulls(const struct tl_sewing *sewing);
 
+/* Time passes: the links shrink. */
+void tl_sewing_shrink(struct tl_sewing *sewing, double h);
+
+/* The same, and draws the sides together. */
 void tl_sewing_solve(struct tl_sewing *sewing, struct tl_particles *particles, double h);
 
 /* Joins closed pairs: fills `joined` [particles->count] with the new number of each vertex and returns how

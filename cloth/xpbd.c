@@ -1,236 +1,196 @@
 #include "cloth/xpbd.h"
 
-#include "config/memory.h"
-
-#include <stdlib.h>
-#include <string.h>
-#ifdef __SSE2__
-#include <xmmintrin.h>
-#endif
+#include "cloth/threads.h"
+#include "config/simd.h"
 
 /* Shorter than this a vector has no direction to push along. */
 #define NO_LENGTH 1e-12
 
-unsigned tl_denormals_off(void)
-{
-#ifdef __SSE2__
-    unsigned state = _mm_getcsr();
-    _mm_setcsr(state | 0x8040); /* FTZ | DAZ */
-    return state;
-#else
-    return 0;
-#endif
-}
-
-void tl_denormals_restore(unsigned state)
-{
-#ifdef __SSE2__
-    _mm_setcsr(state);
-#else
-    (void)state;
-#endif
-}
-
-struct tl_particles tl_particles_create(size_t count)
-{
-    return (struct tl_particles){.count = count,
-                                 .x = TL_NEW_ARRAY(vec3d, count + 1),
-                                 .previous = TL_NEW_ARRAY(vec3d, count + 1),
-                                 .v = TL_NEW_ARRAY(vec3d, count + 1),
-                                 .w = TL_NEW_ARRAY(double, count + 1)};
-}
-
-void tl_particles_release(struct tl_particles *particles)
-{
-    free(particles->x);
-    free(particles->previous);
-    free(particles->v);
-    free(particles->w);
-    *particles = (struct tl_particles){0};
-}
-
-void tl_xpbd_predict(struct tl_particles *particles, double gravity, double drag, double h)
-{
-    double keep = exp(-drag * h);
-    for (size_t i = 0; i < particles->count; i++) {
-        vec3d v = particles->w[i] > 0 ? particles->v[i] : (vec3d){0};
-        if (particles->w[i] > 0)
-            v.y -= gravity * h;
-        particles->v[i] = vec3d_scale(v, keep);
-        particles->previous[i] = particles->x[i];
-        particles->x[i] = vec3d_muladd(particles->x[i], particles->v[i], h);
-    }
-}
-
-void tl_xpbd_finish(struct tl_particles *particles, double h)
-{
-    for (size_t i = 0; i < particles->count; i++)
-        particles->v[i] = vec3d_scale(vec3d_sub(particles->x[i], particles->previous[i]), 1 / h);
-}
-
-void tl_xpbd_calm(struct tl_particles *particles, const uint32_t (*edges)[2], size_t edge_count, double share)
-{
-    for (size_t i = 0; i < edge_count; i++) {
-        uint32_t a = edges[i][0], b = edges[i][1];
-        double sum = particles->w[a] + particles->w[b];
-        if (!(sum > 0))
-            continue;
-        vec3d impulse = vec3d_scale(vec3d_sub(particles->v[b], particles->v[a]), share / sum);
-        particles->v[a] = vec3d_muladd(particles->v[a], impulse, particles->w[a]);
-        particles->v[b] = vec3d_muladd(particles->v[b], impulse, -particles->w[b]);
-    }
-}
-
 /* ---- Batches ---- */
 
-/* The wider of the two where the processor has it: both give the same bits, as neither contracts. Under the
- * address sanitizer there is one only: resolvers run before it is ready. */
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
-#define WIDE __attribute__((target_clones("avx2", "default")))
-#else
-#define WIDE
-#endif
-#define INLINE static inline __attribute__((always_inline))
-
-typedef double lanes __attribute__((vector_size(8 * TL_LANES)));
-typedef double lanes_in_memory __attribute__((vector_size(8 * TL_LANES), aligned(8)));
-typedef long long mask __attribute__((vector_size(8 * TL_LANES)));
-
-struct lanes3 {
-    lanes x, y, z;
+/* The places of one vertex of each element. */
+struct places {
+    double x[TL_BATCH], y[TL_BATCH], z[TL_BATCH];
 };
 
-INLINE lanes lanes_of(const double *values)
+TL_INLINE void load(const vec3d *x, const uint32_t *vertices, struct places *to)
 {
-    return *(const lanes_in_memory *)values;
-}
-
-INLINE lanes choose(mask which, lanes yes, lanes no)
-{
-    return (lanes)((which & (mask)yes) | (~which & (mask)no));
-}
-
-INLINE lanes root(lanes v)
-{
-    for (int i = 0; i < TL_LANES; i++)
-        v[i] = sqrt(v[i]);
-    return v;
-}
-
-INLINE lanes dot(struct lanes3 a, struct lanes3 b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-INLINE struct lanes3 scale(struct lanes3 a, lanes s)
-{
-    return (struct lanes3){a.x * s, a.y * s, a.z * s};
-}
-
-INLINE struct lanes3 muladd(struct lanes3 a, struct lanes3 b, lanes s)
-{
-    return (struct lanes3){a.x + b.x * s, a.y + b.y * s, a.z + b.z * s};
-}
-
-INLINE struct lanes3 load(const struct tl_particles *particles, const uint32_t *v)
-{
-    const vec3d *x = particles->x;
-    return (struct lanes3){{x[v[0]].x, x[v[1]].x, x[v[2]].x, x[v[3]].x},
-                           {x[v[0]].y, x[v[1]].y, x[v[2]].y, x[v[3]].y},
-                           {x[v[0]].z, x[v[1]].z, x[v[2]].z, x[v[3]].z}};
-}
-
-INLINE lanes load_inverse_masses(const struct tl_particles *particles, const uint32_t *v)
-{
-    return (lanes){particles->w[v[0]], particles->w[v[1]], particles->w[v[2]], particles->w[v[3]]};
-}
-
-INLINE void store(struct lanes3 x, const uint32_t *v, struct tl_particles *particles)
-{
-    for (int lane = 0; lane < TL_LANES; lane++)
-        particles->x[v[lane]] = (vec3d){x.x[lane], x.y[lane], x.z[lane]};
-}
-
-/* What a stretch C = |F| - 1 of gradient row_i F/|F| pushes, in units of F. */
-INLINE lanes stretch_push(struct lanes3 f, lanes factor)
-{
-    const lanes zero = {0}, one = {1, 1, 1, 1};
-    lanes squared = dot(f, f);
-    mask has_direction = squared > NO_LENGTH * NO_LENGTH;
-    return choose(has_direction, factor * (one - one / root(choose(has_direction, squared, one))), zero);
-}
-
-/* Both stretches and the shear, one after the other. A push p on row c moves vertex i by w_i c_i p, and so
- * F_u by cc p and F_v by cd p: the three are solved on F alone, and the vertices move once. */
-INLINE void solve_membrane(const struct tl_membrane *m, struct tl_particles *particles)
-{
-    const lanes zero = {0}, one = {1, 1, 1, 1};
-    struct lanes3 x[3] = {0}, u = {0}, v = {0};
-    for (int i = 0; i < 3; i++) {
-        x[i] = load(particles, m->vertices[i]);
-        u = muladd(u, x[i], lanes_of(m->c[i]));
-        v = muladd(v, x[i], lanes_of(m->d[i]));
-    }
-    lanes cc = lanes_of(m->cc), cd = lanes_of(m->cd), dd = lanes_of(m->dd);
-    struct lanes3 push_c = scale(u, stretch_push(u, lanes_of(m->weft)));
-    u = muladd(u, push_c, cc);
-    v = muladd(v, push_c, cd);
-    struct lanes3 push_d = scale(v, stretch_push(v, lanes_of(m->warp)));
-    u = muladd(u, push_d, cd);
-    v = muladd(v, push_d, dd);
-
-    /* C = cosine between the threads, of gradient c_i (v/|v| - C u/|u|)/|u| + d_i (u/|u| - C v/|v|)/|v|. */
-    lanes uu = dot(u, u), vv = dot(v, v);
-    mask has_angle = (uu > NO_LENGTH * NO_LENGTH) & (vv > NO_LENGTH * NO_LENGTH);
-    uu = choose(has_angle, uu, one);
-    vv = choose(has_angle, vv, one);
-    lanes both = one / root(uu * vv), cosine = dot(u, v) * both;
-    struct lanes3 along_u = muladd(scale(v, both), u, -cosine / uu);
-    struct lanes3 along_v = muladd(scale(u, both), v, -cosine / vv);
-    lanes sum = lanes_of(m->shear) + cc * dot(along_u, along_u) + 2 * cd * dot(along_u, along_v) +
-                dd * dot(along_v, along_v);
-    mask resists = has_angle & (sum > 0);
-    lanes multiplier = choose(resists, -cosine / choose(resists, sum, one), zero);
-    push_c = muladd(push_c, along_u, multiplier);
-    push_d = muladd(push_d, along_v, multiplier);
-    for (int i = 0; i < 3; i++) {
-        lanes w = load_inverse_masses(particles, m->vertices[i]);
-        x[i] = muladd(muladd(x[i], push_c, w * lanes_of(m->c[i])), push_d, w * lanes_of(m->d[i]));
-        store(x[i], m->vertices[i], particles);
+    for (int lane = 0; lane < TL_BATCH; lane++) {
+        to->x[lane] = x[vertices[lane]].x;
+        to->y[lane] = x[vertices[lane]].y;
+        to->z[lane] = x[vertices[lane]].z;
     }
 }
 
-WIDE static void solve_membranes(const struct tl_energy *energy, struct tl_particles *particles)
+TL_INLINE void store(const struct places *from, const uint32_t *vertices, vec3d *x)
 {
-    for (size_t i = 0; i < energy->membrane_count; i++)
-        solve_membrane(&energy->membranes[i], particles);
+    for (int lane = 0; lane < TL_BATCH; lane++)
+        x[vertices[lane]] = (vec3d){from->x[lane], from->y[lane], from->z[lane]};
+}
+
+TL_INLINE vec3d at(const struct places *places, int lane)
+{
+    return (vec3d){places->x[lane], places->y[lane], places->z[lane]};
+}
+
+TL_INLINE void put(struct places *places, int lane, vec3d v)
+{
+    places->x[lane] = v.x;
+    places->y[lane] = v.y;
+    places->z[lane] = v.z;
+}
+
+TL_INLINE void move(struct places *places, int lane, vec3d by, double share)
+{
+    put(places, lane, vec3d_muladd(at(places, lane), by, share));
+}
+
+/* One membrane of each lane on its way: a push p on row c moves vertex i by w_i c_i p, and so F_u by cc p and
+ * F_v by cd p. Both stretches and the shear are solved, one after the other, on F alone, and the vertices
+ * move once. In four stages: what one stage of a batch waits for, roots and divisions, the same stage of the
+ * next batches need not. */
+struct membrane_work {
+    struct places x[3], u, v, push_c, push_d;
+};
+
+/* A stretch C = |F| - 1 pushes by factor C along F/|F|: in units of F. */
+TL_INLINE double stretch_push(vec3d f, double factor)
+{
+    double squared = vec3d_dot(f, f);
+    return factor * (1 - 1 / sqrt(squared > NO_LENGTH * NO_LENGTH ? squared : NO_LENGTH * NO_LENGTH));
+}
+
+TL_INLINE void solve_weft(const struct tl_membrane *m, int lane, struct membrane_work *work)
+{
+    vec3d origin = at(&work->x[0], lane), side = vec3d_sub(at(&work->x[1], lane), origin);
+    vec3d other = vec3d_sub(at(&work->x[2], lane), origin);
+    vec3d u = vec3d_muladd(vec3d_scale(side, m->c[1][lane]), other, m->c[2][lane]);
+    vec3d v = vec3d_muladd(vec3d_scale(side, m->d[1][lane]), other, m->d[2][lane]);
+    vec3d push = vec3d_scale(u, stretch_push(u, m->weft[lane]));
+    put(&work->push_c, lane, push);
+    put(&work->u, lane, vec3d_muladd(u, push, m->cc[lane]));
+    put(&work->v, lane, vec3d_muladd(v, push, m->cd[lane]));
+}
+
+TL_INLINE void solve_warp(const struct tl_membrane *m, int lane, struct membrane_work *work)
+{
+    vec3d u = at(&work->u, lane), v = at(&work->v, lane);
+    vec3d push = vec3d_scale(v, stretch_push(v, m->warp[lane]));
+    put(&work->push_d, lane, push);
+    put(&work->u, lane, vec3d_muladd(u, push, m->cd[lane]));
+    put(&work->v, lane, vec3d_muladd(v, push, m->dd[lane]));
+}
+
+/* C = g/sqrt(p), with g = u.v, a = |u|^2, b = |v|^2, p = a b, has the gradient
+ * c_i (v a - u g) / (a sqrt(p)) + d_i (u b - v g) / (b sqrt(p)), of weighted square
+ * (p - g^2) (cc b - 2 cd g + dd a) / p^2: its push needs no root, and one division. */
+TL_INLINE void solve_shear(const struct tl_membrane *m, int lane, struct membrane_work *work)
+{
+    vec3d u = at(&work->u, lane), v = at(&work->v, lane);
+    double a = vec3d_dot(u, u), b = vec3d_dot(v, v), g = vec3d_dot(u, v), p = a * b;
+    double square = (p - g * g) * (m->cc[lane] * b - 2 * m->cd[lane] * g + m->dd[lane] * a);
+    double sum = m->shear[lane] * p * p + square, multiplier = sum > 0 ? -g / sum : 0;
+    vec3d push_c = vec3d_muladd(at(&work->push_c, lane), v, multiplier * p);
+    vec3d push_d = vec3d_muladd(at(&work->push_d, lane), u, multiplier * p);
+    put(&work->push_c, lane, vec3d_muladd(push_c, u, -multiplier * b * g));
+    put(&work->push_d, lane, vec3d_muladd(push_d, v, -multiplier * a * g));
+}
+
+TL_INLINE void move_corners(const struct tl_membrane *m, int lane, struct membrane_work *work)
+{
+    vec3d push_c = at(&work->push_c, lane), push_d = at(&work->push_d, lane), pushes[3];
+    for (int i = 1; i < 3; i++)
+        pushes[i] = vec3d_muladd(vec3d_scale(push_c, m->c[i][lane]), push_d, m->d[i][lane]);
+    pushes[0] = vec3d_scale(vec3d_add(pushes[1], pushes[2]), -1);
+    for (int i = 0; i < 3; i++)
+        move(&work->x[i], lane, pushes[i], m->w[i][lane]);
+}
+
+/* Batches of a run that are solved side by side. */
+#define GROUP      8
+#define CACHE_LINE 64
+
+TL_INLINE void solve_group(const struct tl_membrane *m, size_t count, vec3d *x)
+{
+    struct membrane_work work[GROUP];
+    for (size_t k = 0; k < count; k++) {
+        for (size_t line = 0; line < sizeof *m; line += CACHE_LINE)
+            __builtin_prefetch((const char *)&m[k + GROUP] + line);
+        for (int i = 0; i < 3; i++)
+            load(x, m[k].vertices[i], &work[k].x[i]);
+    }
+    for (size_t k = 0; k < count; k++)
+        for (int lane = 0; lane < TL_BATCH; lane++)
+            solve_weft(&m[k], lane, &work[k]);
+    for (size_t k = 0; k < count; k++)
+        for (int lane = 0; lane < TL_BATCH; lane++)
+            solve_warp(&m[k], lane, &work[k]);
+    for (size_t k = 0; k < count; k++)
+        for (int lane = 0; lane < TL_BATCH; lane++)
+            solve_shear(&m[k], lane, &work[k]);
+    for (size_t k = 0; k < count; k++)
+        for (int lane = 0; lane < TL_BATCH; lane++)
+            move_corners(&m[k], lane, &work[k]);
+    for (size_t k = 0; k < count; k++)
+        for (int i = 0; i < 3; i++)
+            store(&work[k].x[i], m[k].vertices[i], x);
+}
+
+TL_CLONES static void solve_run(const struct tl_membrane *membranes, size_t count, vec3d *x)
+{
+    for (size_t first = 0; first < count; first += GROUP)
+        solve_group(membranes + first, count - first < GROUP ? count - first : GROUP, x);
+}
+
+/* On the threads of a team: the batches of a run in any order, the runs one after the other. */
+static void solve_membranes(const struct tl_energy *energy, vec3d *x)
+{
+    size_t from = 0;
+    for (size_t run = 0; run < energy->membrane_run_count; run++) {
+        size_t end = energy->membrane_run_ends[run];
+        struct tl_range part = tl_my_part(end - from, 1);
+        solve_run(energy->membranes + from + part.from, part.to - part.from, x);
+        from = end;
+#pragma omp barrier
+    }
 }
 
 /* The three components of the curvature: vectors, linear in the positions. */
-INLINE void solve_bend(const struct tl_bend *bend, struct tl_particles *particles)
+TL_INLINE void solve_curvature(const struct tl_bend *bend, int row, int lane,
+                               struct places x[TL_BEND_STENCIL])
 {
-    struct lanes3 x[TL_BEND_STENCIL] = {0};
-    lanes w[TL_BEND_STENCIL] = {0};
-    for (int i = 0; i < TL_BEND_STENCIL; i++) {
-        x[i] = load(particles, bend->vertices[i]);
-        w[i] = load_inverse_masses(particles, bend->vertices[i]);
-    }
-    for (int row = 0; row < 3; row++) {
-        struct lanes3 curvature = scale(x[0], lanes_of(bend->rows[row][0]));
-        for (int i = 1; i < TL_BEND_STENCIL; i++)
-            curvature = muladd(curvature, x[i], lanes_of(bend->rows[row][i]));
-        struct lanes3 push = scale(curvature, lanes_of(bend->factors[row]));
-        for (int i = 0; i < TL_BEND_STENCIL; i++)
-            x[i] = muladd(x[i], push, w[i] * lanes_of(bend->rows[row][i]));
-    }
-    for (int i = TL_BEND_STENCIL - 1; i >= 0; i--) /* the first last: it stands in for missing ones */
-        store(x[i], bend->vertices[i], particles);
+    vec3d curvature = {0};
+    for (int i = 0; i < TL_BEND_STENCIL; i++)
+        curvature = vec3d_muladd(curvature, at(&x[i], lane), bend->rows[row][i][lane]);
+    vec3d push = vec3d_scale(curvature, bend->factors[row][lane]);
+    for (int i = 0; i < TL_BEND_STENCIL; i++)
+        move(&x[i], lane, push, bend->w[i][lane] * bend->rows[row][i][lane]);
 }
 
-WIDE static void solve_bends(const struct tl_energy *energy, struct tl_particles *particles)
+TL_CLONES static void solve_bend_run(const struct tl_bend *bends, size_t count, vec3d *particles)
 {
-    for (size_t i = 0; i < energy->bend_count; i++)
-        solve_bend(&energy->bends[i], particles);
+    for (const struct tl_bend *bend = bends; bend < bends + count; bend++) {
+        struct places x[TL_BEND_STENCIL];
+        for (int i = 0; i < TL_BEND_STENCIL; i++)
+            load(particles, bend->vertices[i], &x[i]);
+        for (int row = 0; row < 3; row++)
+            for (int lane = 0; lane < TL_BATCH; lane++)
+                solve_curvature(bend, row, lane, x);
+        for (int i = TL_BEND_STENCIL - 1; i >= 0; i--) /* the first last: it stands in for missing ones */
+            store(&x[i], bend->vertices[i], particles);
+    }
+}
+
+static void solve_bends(const struct tl_energy *energy, vec3d *x)
+{
+    size_t from = 0;
+    for (size_t run = 0; run < energy->bend_run_count; run++) {
+        size_t end = energy->bend_run_ends[run];
+        struct tl_range part = tl_my_part(end - from, 1);
+        solve_bend_run(energy->bends + from + part.from, part.to - part.from, x);
+        from = end;
+#pragma omp barrier
+    }
 }
 
 /* ---- Links and the whole ---- */
@@ -249,8 +209,14 @@ void tl_xpbd_solve_link(const struct tl_link *link, struct tl_particles *particl
 
 void tl_xpbd_solve(const struct tl_energy *energy, struct tl_particles *particles)
 {
-    solve_membranes(energy, particles);
-    solve_bends(energy, particles);
+#pragma omp parallel if (particles->count >= TL_PARALLEL_VERTICES)
+    {
+        unsigned denormals = tl_denormals_off();
+        solve_membranes(energy, particles->x);
+        if (!energy->bends_as_force)
+            solve_bends(energy, particles->x);
+        tl_denormals_restore(denormals);
+    }
     for (size_t i = 0; i < energy->link_count; i++)
         tl_xpbd_solve_link(&energy->links[i], particles);
 }

@@ -64,12 +64,42 @@ printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 0 +X 0\n' >zero.hdr
 light='#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n\200\200\200\201\200\200\200\201'
 for name in gap.1 gap.3 torn.1; do printf "$light" >$name.hdr; done
 printf 'no light\n' >torn.2.hdr
+# A triangle as OBJ, and as point caches of one sample: an MDD is big endian.
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >good.obj
+points=$(printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\n')
+printf '%s\nf 1 2 4\n' "$points" >index.obj
+printf '%s\nv 0 0 nan\nf 1 2 3\n' "$points" >nan.obj
+printf '%s\nv 0 abc 0\nf 1 2 3\n' "$points" >words.obj
+printf '%s\n' "$points" >nomesh.obj
+cp text.glb text.obj
+head -c 20 good.obj >truncated.obj
+# pc2 POINTS SAMPLES FILE_OF_NUMBERS: rate 1.
+pc2() { printf 'POINTCACHE2\0'; le32 1; le32 "$1"; printf '\0\0\0\0\0\0\200\77'; le32 "$2"; cat "$3"; }
+head -c 36 good.bin >numbers.bin
+head -c 36 nan.bin >nan_numbers.bin
+pc2 3 1 numbers.bin >good.pc2
+pc2 3 1 nan_numbers.bin >nan.pc2
+pc2 1 3 numbers.bin >count.pc2
+pc2 3 0 numbers.bin >zero.pc2
+pc2 -1 1 numbers.bin >negative.pc2
+pc2 2147483647 2147483647 numbers.bin >lies.pc2
+head -c 60 good.pc2 >truncated.pc2
+{ printf 'pointcache2\0'; tail -c +13 good.pc2; } >magic.pc2
+{ head -c 24 good.pc2; printf '\0\0\300\177'; tail -c +29 good.pc2; } >rate.pc2
+{ printf '\0\0\0\2\0\0\0\3'; printf '\77\200\0\0\0\0\0\0'; cat numbers.bin numbers.bin; } >falling.mdd
+{ printf '\0\0\0\1\0\0\0\3\0\0\0\0'; head -c 35 numbers.bin; } >truncated.mdd
+cp good.obj pose.1.obj
+printf 'v 0 0 0\n' >pose.2.obj
 printf 'light:\n  regionz: 24\n' >key.yaml
 printf 'light:\n  regions: 7000\n' >range.yaml
 printf 'light:\n  regions: many\n' >type.yaml
 printf 'light: [1\n' >broken.yaml
 
-"$TOILE" info good.glb >/dev/null || { echo "FAILED good.glb must load, or the tests below prove nothing"; failed=1; }
+for file in good.glb good.obj good.pc2; do
+    "$TOILE" info $file >/dev/null || { echo "FAILED $file must load, or the tests below prove nothing"; failed=1; }
+done
+"$TOILE" export -o played.glb --garment good.obj --motion good.pc2 --quiet && rm played.glb ||
+    { echo "FAILED good.pc2 must play"; failed=1; }
 
 for kind in garment avatar; do
     refuse "missing $kind" 'nowhere\.glb.*no such file' render -o a.png --$kind nowhere.glb
@@ -83,6 +113,36 @@ for kind in garment avatar; do
     refuse "$kind with NaN positions" 'nan\.glb.*(NaN|finite|number)' render -o a.png --$kind nan.glb
     refuse "$kind without a mesh" 'nomesh\.glb.*(mesh|triangle)' render -o a.png --$kind nomesh.glb
 done
+for kind in garment avatar; do
+    refuse "missing OBJ $kind" 'nowhere\.obj.*no such file' export -o a.glb --$kind nowhere.obj
+    refuse "text as OBJ $kind" 'text\.obj.*triangles' export -o a.glb --$kind text.obj
+    refuse "truncated OBJ $kind" 'truncated\.obj.*line' export -o a.glb --$kind truncated.obj
+    refuse "OBJ $kind with an index out of range" 'index\.obj.*out of range' export -o a.glb --$kind index.obj
+    refuse "OBJ $kind with NaN" 'nan\.obj: line 4.*nan' export -o a.glb --$kind nan.obj
+    refuse "OBJ $kind with words for numbers" 'words\.obj: line 4.*abc' export -o a.glb --$kind words.obj
+    refuse "OBJ $kind without faces" 'nomesh\.obj.*triangles' export -o a.glb --$kind nomesh.obj
+done
+play="export -o a.glb --garment good.obj --motion"
+refuse "missing motion" 'nowhere\.pc2.*no such file' $play nowhere.pc2
+refuse "motion of no known kind" 'good\.glb.*motion' $play good.glb
+refuse "motion without a garment" 'scene\.motion.*garment' export -o a.glb --garment none --motion good.pc2
+refuse "truncated PC2" 'truncated\.pc2.*cut short' $play truncated.pc2
+refuse "PC2 of other points" 'count\.pc2.*1 points.*good\.obj has 3' $play count.pc2
+refuse "PC2 with NaN" 'nan\.pc2.*not finite' $play nan.pc2
+refuse "PC2 whose counts lie" 'lies\.pc2.*points' $play lies.pc2
+refuse "PC2 without samples" 'zero\.pc2.*samples' $play zero.pc2
+refuse "PC2 of negative points" 'negative\.pc2.*-1 points' $play negative.pc2
+refuse "PC2 with a rate of NaN" 'rate\.pc2.*nan' $play rate.pc2
+refuse "no PC2 at all" 'magic\.pc2.*no PC2' $play magic.pc2
+refuse "truncated MDD" 'truncated\.mdd.*cut short' $play truncated.mdd
+refuse "MDD whose times fall" 'falling\.mdd.*rise' $play falling.mdd
+refuse "sequence of poses without files" 'pos\.#\.obj.*no file' $play 'pos.#.obj'
+refuse "sequence of other points" 'pose\.2\.obj.*1 vertices' $play 'pose.#.obj' --frame 1
+refuse "unknown units" 'units.*feet.*auto, m' render -o a.png --units feet
+refuse "export of no known kind" 'a\.fbx.*\.glb' export -o a.fbx
+refuse "frames as OBJ" 'a\.obj.*one frame' export -o a.obj --frames 0:3
+refuse "motion of no garment" 'a\.pc2.*garment' export -o a.pc2 --garment none --frames 0:3
+refuse "info of a broken PC2" 'lies\.pc2' info lies.pc2
 refuse "missing environment" 'nowhere\.exr.*no such file' render -o a.png --env nowhere.exr
 refuse "text as environment" 'text\.glb' render -o a.png --env text.glb
 refuse "zero-sized image" 'zero\.hdr' render -o a.png --env zero.hdr

@@ -6,6 +6,7 @@
 
 #include "assets/image.h"
 
+#include "hostile.h"
 #include "testing.h"
 
 #include <string.h>
@@ -125,15 +126,6 @@ static inline struct small_glb small_glb_make(void)
         "\"buffers\":[{\"byteLength\":%zu}]}",
         picture, glb.binary_size);
     return glb;
-}
-
-static inline void scratch_write(const char *path, const void *bytes, size_t size)
-{
-    FILE *stream = fopen(path, "wb");
-    assert_non_null(stream);
-    // cppcheck-suppress uninitvar ; a false finding: it loses what the caller wrote
-    assert_int_equal(fwrite(bytes, 1, size, stream), size);
-    assert_int_equal(fclose(stream), 0);
 }
 
 static inline void small_word(uint8_t *to, size_t word)

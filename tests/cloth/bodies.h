@@ -54,4 +54,29 @@ static inline tl_mesh body_box(vec3s centre, vec3s half, double turn)
     return mesh;
 }
 
+/* A cylinder about the z axis from `near` to `far`, closed by two fans. */
+static inline tl_mesh body_cylinder(double radius, double near, double far, int sides)
+{
+    tl_mesh mesh = {.vertex_count = 2 * (size_t)sides + 2};
+    mesh.positions = TL_NEW_ARRAY(vec3s, mesh.vertex_count);
+    mesh.indices = TL_NEW_ARRAY(uint32_t, 12 * (size_t)sides);
+    uint32_t near_middle = 2 * (uint32_t)sides, far_middle = near_middle + 1;
+    for (int i = 0; i < sides; i++)
+        for (int end = 0; end < 2; end++) {
+            double turn = 2 * M_PI * i / sides;
+            mesh.positions[2 * i + end] = (vec3s){
+                {(float)(radius * cos(turn)), (float)(radius * sin(turn)), (float)(end ? far : near)}};
+        }
+    mesh.positions[near_middle] = (vec3s){{0, 0, (float)near}};
+    mesh.positions[far_middle] = (vec3s){{0, 0, (float)far}};
+    for (int i = 0; i < sides; i++) {
+        uint32_t a = 2 * (uint32_t)i, b = 2 * (uint32_t)((i + 1) % sides);
+        const uint32_t corners[12] = {a,           b, b + 1, a,          b + 1, a + 1,
+                                      near_middle, b, a,     far_middle, a + 1, b + 1};
+        memcpy(mesh.indices + mesh.index_count, corners, sizeof corners);
+        mesh.index_count += 12;
+    }
+    return mesh;
+}
+
 #endif

@@ -3,6 +3,7 @@
 #ifndef TOILE_TESTS_CLOTH_SHEETS_H
 #define TOILE_TESTS_CLOTH_SHEETS_H
 
+#include "assets/panel.h"
 #include "cloth/cloth.h"
 #include "config/memory.h"
 
@@ -49,6 +50,29 @@ static inline tl_garment sheet_make(const struct sheet_shape *shape, vec3s (*pla
             index += 6;
         }
     return garment;
+}
+
+/* Adds a panel's points and triangles, flat in the plane z = 0; points at one place weld. */
+static inline void sheet_add(tl_garment *garment, const tl_panel *panel)
+{
+    tl_mesh *mesh = &garment->model.mesh;
+    size_t first = mesh->vertex_count, count = first + panel->point_count;
+    mesh->positions = tl_resize(mesh->positions, count, sizeof *mesh->positions);
+    mesh->normals = tl_resize(mesh->normals, count, sizeof *mesh->normals);
+    mesh->uvs = tl_resize(mesh->uvs, count, sizeof *mesh->uvs);
+    mesh->indices =
+        tl_resize(mesh->indices, mesh->index_count + 3 * panel->triangle_count, sizeof *mesh->indices);
+    garment->pattern = tl_resize(garment->pattern, count, sizeof *garment->pattern);
+    for (size_t i = 0; i < panel->point_count; i++) {
+        float u = (float)panel->points[i].x, v = (float)panel->points[i].y;
+        garment->pattern[first + i] = (vec2s){{u, v}};
+        mesh->uvs[first + i] = (vec2s){{u, -v}};
+        mesh->positions[first + i] = (vec3s){{u, v, 0}};
+        mesh->normals[first + i] = (vec3s){{0, 0, 1}};
+    }
+    for (size_t i = 0; i < 3 * panel->triangle_count; i++)
+        mesh->indices[mesh->index_count++] = (uint32_t)first + panel->triangles[i / 3][i % 3];
+    mesh->vertex_count = count;
 }
 
 static inline void sheet_free(tl_garment *garment)

@@ -1,5 +1,4 @@
-/* Contact: friction on an incline against Coulomb's law, spheres that are draped, carried, and begun inside.
- */
+/* Contact: spheres that are draped, carried, and begun inside. Friction: test_friction.c. */
 #include "bodies.h"
 #include "cloth/state.h"
 #include "sheets.h"
@@ -9,67 +8,10 @@
 
 static const double thickness_m = 0.003;
 
-struct slope {
-    double tilt, friction;
-};
-static double tilt_now; /* read by place_on_slope, which takes no more arguments */
-
-/* On the plane through the origin that falls to +x, at the distance that contact keeps. */
-static vec3s place_on_slope(double u, double v)
+/* On a box whose top is at height 0, at the distance that contact keeps. */
+static vec3s place_on_box(double u, double v)
 {
-    double along = u - 0.1, out = thickness_m;
-    return (vec3s){{(float)(cos(tilt_now) * along + sin(tilt_now) * out),
-                    (float)(-sin(tilt_now) * along + cos(tilt_now) * out), (float)(0.1 - v)}};
-}
-
-/* How far the middle of a sheet has slid down a slope after `seconds`. */
-static double slide(const struct slope *slope, double seconds)
-{
-    tl_error error = {0};
-    tilt_now = slope->tilt;
-    const struct sheet_shape shape = {10, 10, 0.2, 0.2};
-    tl_garment garment = sheet_make(&shape, place_on_slope);
-    vec3s below = {{(float)(-sin(tilt_now) * 0.5), (float)(-cos(tilt_now) * 0.5), 0}};
-    tl_mesh box = body_box(below, (vec3s){{4, 0.5f, 4}}, -tilt_now);
-    struct tl_cloth_fabric fabric = fabric_defaults();
-    struct tl_cloth_params params = params_defaults();
-    fabric.friction = slope->friction;
-    fabric.thickness_m = thickness_m;
-    fabric.damping = 0;
-    tl_collider *collider = tl_collider_create(&box, false, &error);
-    tl_cloth *cloth = tl_cloth_create(&garment, &fabric, &params, &error);
-    assert_non_null(cloth);
-    vec3d start = cloth->particles.x[60];
-    for (int frame = 0; frame < (int)(seconds * params.frame_rate); frame++)
-        assert_ok(tl_cloth_step(cloth, collider, &error), error);
-    vec3d moved = vec3d_sub(cloth->particles.x[60], start);
-    assert_near(moved.x * sin(tilt_now) + moved.y * cos(tilt_now), 0, 2e-4); /* stays on the plane */
-    tl_cloth_destroy(&cloth);
-    tl_collider_destroy(&collider);
-    tl_mesh_release(&box);
-    sheet_free(&garment);
-    return moved.x * cos(tilt_now) - moved.y * sin(tilt_now);
-}
-
-/* Sticks for tan(theta) <= mu. */
-static void test_sticks(void **state)
-{
-    (void)state;
-    assert_near(slide(&(struct slope){atan(0.38), 0.4}, 1), 0, 1e-4);
-    assert_near(slide(&(struct slope){atan(0.9), 1.0}, 1), 0, 1e-4);
-}
-
-/* Slides with a = g (sin - mu cos) otherwise, within the first-order error of the substep, a t h / 2. */
-static void test_slides(void **state)
-{
-    (void)state;
-    const struct slope slopes[] = {{atan(0.5), 0.4}, {atan(1.0), 0.4}, {0.6, 0}};
-    const double seconds = 0.5;
-    for (size_t i = 0; i < 3; i++) {
-        double acceleration = 9.81 * (sin(slopes[i].tilt) - slopes[i].friction * cos(slopes[i].tilt));
-        double expected = 0.5 * acceleration * seconds * seconds;
-        assert_near(slide(&slopes[i], seconds), expected, 0.01 * expected);
-    }
+    return (vec3s){{(float)(u - 0.1), (float)thickness_m, (float)(0.1 - v)}};
 }
 
 static vec3s above_sphere(double u, double v)
@@ -161,9 +103,8 @@ static void test_moving_collider_carries_cloth(void **state)
 {
     (void)state;
     tl_error error = {0};
-    tilt_now = 0;
     const struct sheet_shape shape = {10, 10, 0.2, 0.2};
-    tl_garment garment = sheet_make(&shape, place_on_slope);
+    tl_garment garment = sheet_make(&shape, place_on_box);
     tl_mesh box = body_box((vec3s){{0, -0.5f, 0}}, (vec3s){{1, 0.5f, 1}}, 0);
     vec3s moved[8];
     struct tl_cloth_fabric fabric = fabric_defaults();
@@ -192,9 +133,8 @@ static void test_pins_ride(void **state)
 {
     (void)state;
     tl_error error = {0};
-    tilt_now = 0;
     const struct sheet_shape shape = {4, 4, 0.2, 0.2};
-    tl_garment garment = sheet_make(&shape, place_on_slope);
+    tl_garment garment = sheet_make(&shape, place_on_box);
     sheet_pin(&garment, 12);
     tl_mesh box = body_box((vec3s){{0, -0.5f, 0}}, (vec3s){{1, 0.5f, 1}}, 0);
     struct tl_cloth_fabric fabric = fabric_defaults();
@@ -225,8 +165,6 @@ static void test_pins_ride(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_sticks),
-        cmocka_unit_test(test_slides),
         cmocka_unit_test(test_drape_over_sphere),
         cmocka_unit_test(test_starting_penetration),
         cmocka_unit_test(test_moving_collider_carries_cloth),

@@ -1,7 +1,6 @@
 /* Real garments on real bodies: they settle, hang, neither tear nor slide off nor tremble, and nothing shows
  * through. The bounds are what a viewer would notice, not what the solver happens to reach. */
 #include "assets/avatar.h"
-#include "assets/fit.h"
 #include "cloth/state.h"
 #include "sheets.h"
 #include "testing.h"
@@ -142,51 +141,12 @@ static void test_built_in(void **state)
     }
 }
 
-/* CesiumMan walks for four seconds in a skirt cut for him: it stays on, whole and outside. */
-static void test_walking(void **state)
-{
-    (void)state;
-    tl_error error = {0};
-    struct dressed d = {0};
-    assert_ok(tl_avatar_load(test_data("avatars/CesiumMan.glb"), &d.avatar, &error), error);
-    assert_ok(tl_garment_cut("skirt", params_defaults().edge_m, &d.garment, &error), error);
-    const tl_model *model = &d.avatar.model;
-    if (!tl_garment_fit(&d.garment, "CesiumMan", &model->mesh, &error))
-        print_message("%s\n", error.message);
-    dress(&d);
-    assert_ok(tl_cloth_settle(d.cloth, d.collider, &error), error);
-    vec3s *first = TL_NEW_ARRAY(vec3s, model->mesh.vertex_count);
-    vec3s *pose = TL_NEW_ARRAY(vec3s, model->mesh.vertex_count);
-    tl_model_pose(model, 0, 0, first);
-    double deepest = 0, strain = 0, lowest = HUGE_VAL;
-    for (int frame = 0; frame < 150; frame++) {
-        double part = fmin(frame / 30.0, 1); /* a second to take the first pose */
-        tl_model_pose(model, 0, fmax(frame - 30, 0) / 30.0, pose);
-        for (size_t i = 0; part < 1 && i < model->mesh.vertex_count; i++)
-            pose[i] = glms_vec3_lerp(model->mesh.positions[i], first[i], (float)part);
-        tl_collider_move(d.collider, pose);
-        assert_ok(tl_cloth_step(d.cloth, d.collider, &error), error);
-        struct tl_cloth_report report = tl_cloth_measure(d.cloth, d.collider);
-        deepest = fmax(deepest, report.deepest_m);
-        strain = fmax(strain, report.max_strain);
-        lowest = fmin(lowest, centre(d.cloth).y);
-    }
-    printf("walking: deepest %.1f mm, strain %.2f, lowest centre %.3f m\n", 1e3 * deepest, strain, lowest);
-    assert_true(deepest < 0.05); /* between his arm and his hip it is let through for a while */
-    assert_true(strain < 3);
-    assert_true(lowest > 0.3);
-    free(first);
-    free(pose);
-    undress(&d);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_casual_suit),
         cmocka_unit_test(test_sports_suit),
         cmocka_unit_test(test_built_in),
-        cmocka_unit_test(test_walking),
     };
     tl_log_set_level(TL_LOG_WARN);
     return cmocka_run_group_tests(tests, NULL, NULL);

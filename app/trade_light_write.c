@@ -1,7 +1,7 @@
 #include "app/cells.h"
 #include "app/report.h"
-#include "app/trade.h"
-#include "app/trade_figures.h"
+#include "app/trade_light.h"
+#include "app/trade_light_figures.h"
 #include "config/memory.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* Figures of the report that need no measuring of frames: the paper's figures 4 and 5 (lobes) and 8 (memory)
  * beside this program's own. */
-#ifndef TOILE_APP_TRADE_FIGURES_H
-#define TOILE_APP_TRADE_FIGURES_H
+#ifndef TOILE_APP_TRADE_LIGHT_FIGURES_H
+#define TOILE_APP_TRADE_LIGHT_FIGURES_H
 
 #include "assets/environment.h"
 

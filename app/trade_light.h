@@ -1,6 +1,6 @@
 /* What a trade has measured, and how it is written: trade.csv for programs, report.html for people. */
-#ifndef TOILE_APP_TRADE_H
-#define TOILE_APP_TRADE_H
+#ifndef TOILE_APP_TRADE_LIGHT_H
+#define TOILE_APP_TRADE_LIGHT_H
 
 #include "app/measure.h"
 
@@ -52,7 +52,7 @@ struct tl_trade {
 bool tl_trade_light(struct tl_stage *stage, bool quick, struct tl_trade *out, tl_error *error);
 void tl_trade_release(struct tl_trade *trade);
 
-/* Rows to or from a file's content (trade_write.c). */
+/* Rows to or from a file's content (trade_light_write.c). */
 void tl_trade_write_csv(const struct tl_trade *trade, FILE *out);
 void tl_trade_write_html(const struct tl_trade *trade, FILE *out);
 

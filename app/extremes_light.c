@@ -1,4 +1,4 @@
-#include "app/extremes.h"
+#include "app/extremes_light.h"
 
 #include "assets/exr.h"
 #include "config/memory.h"

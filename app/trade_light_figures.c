@@ -1,4 +1,4 @@
-#include "app/trade_figures.h"
+#include "app/trade_light_figures.h"
 
 #include "app/cells.h"
 #include "app/report.h"

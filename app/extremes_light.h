@@ -2,8 +2,8 @@
  * and what is promised of its image. Generated; metres, linear radiance.
  *
  * Ownership: a scene owns all that its frame points to. Threads: one scene at a time. */
-#ifndef TOILE_APP_EXTREMES_H
-#define TOILE_APP_EXTREMES_H
+#ifndef TOILE_APP_EXTREMES_LIGHT_H
+#define TOILE_APP_EXTREMES_LIGHT_H
 
 #include "render/renderer.h"
 

@@ -1,0 +1,46 @@
+/* The moving state of cloth, one entry a physics vertex, and what every solver does with it.
+ *
+ * Double throughout: in float gravity vanishes for h <= 7e-5 s at 1.5 m. Threads: pure. */
+#ifndef TOILE_CLOTH_PARTICLES_H
+#define TOILE_CLOTH_PARTICLES_H
+
+#include "cloth/threads.h"
+#include "cloth/vec3d.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+struct tl_particles {
+    size_t count;    /* the arrays have one more, held, for the empty lanes of batches */
+    vec3d *x;        /* m */
+    vec3d *previous; /* m, at the start of the substep */
+    vec3d *v;        /* m/s */
+    double *w;       /* 1/kg; 0: held */
+    bool *driven;    /* held by a pin that the avatar carries, and that may push it aside */
+};
+struct tl_particles tl_particles_create(size_t count);
+void tl_particles_release(struct tl_particles *particles);
+
+/* Calls `move` on all threads, each for its own part of the particles, denormals off. */
+typedef void tl_particles_mover(struct tl_particles *particles, struct tl_range part, const void *how);
+void tl_particles_share(struct tl_particles *particles, tl_particles_mover *move, const void *how);
+
+/* v <- v exp(-drag h) + h (g + w f), previous <- x, x <- x + h v, with `forces` f in N, or none when NULL.
+ * What is at rest feels its whole weight, whatever the drag. */
+void tl_particles_predict(struct tl_particles *particles, const vec3d *forces, double gravity, double drag,
+                          double h);
+
+/* v <- (x - previous) / h. */
+void tl_particles_finish(struct tl_particles *particles, double h);
+
+/* Takes the share `share` of the relative velocity out of every edge, one after the other: the inner friction
+ * of the weave, which ends the small quarrels between contact and elastic forces. Keeps the momentum. */
+void tl_particles_calm(struct tl_particles *particles, const uint32_t (*edges)[2], size_t edge_count,
+                       double share);
+
+/* Denormals cost up to 150 times a normal operation and mean nothing here: flushed to zero while the solver
+ * runs. Returns the state to restore. */
+unsigned tl_denormals_off(void);
+void tl_denormals_restore(unsigned state);
+
+#endif

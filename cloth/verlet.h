@@ -1,0 +1,24 @@
+/* `reference`: velocity Verlet (Stoermer 1907), explicit and symplectic, at 0.9 of the critical step.
+ *
+ * Second order, keeps energy and momentum, adds no damping of its own: the most exact for its cost. Its
+ * price: the step falls with the root of stiffness and with the size of triangles, so a stiff fabric takes
+ * thousands of substeps a frame, and beyond cloth.reference_substeps it is refused. Threads: pure. */
+#ifndef TOILE_CLOTH_VERLET_H
+#define TOILE_CLOTH_VERLET_H
+
+#include "cloth/energy.h"
+#include "cloth/particles.h"
+
+#define TL_VERLET_SAFETY 0.9 /* of the critical step */
+
+/* x and v at the substep's start, with `forces` (N) at x. v <- v exp(-drag h/2) + h/2 a; previous <- x;
+ * x <- x + h v. Then constraints may move x. */
+void tl_verlet_drift(struct tl_particles *particles, const vec3d *forces, double gravity, double drag,
+                     double h);
+
+/* What constraints moved x by, over h, is added to v; then v <- (v + h/2 a) exp(-drag h/2), with `forces` at
+ * the new x. */
+void tl_verlet_kick(struct tl_particles *particles, const vec3d *forces, double gravity, double drag,
+                    double h);
+
+#endif

@@ -1,0 +1,76 @@
+/* What tests that run every solver share: how each one steps, and how long to run it. */
+#ifndef TOILE_TESTS_CLOTH_SOLVERS_H
+#define TOILE_TESTS_CLOTH_SOLVERS_H
+
+#include "cloth/state.h"
+#include "sheets.h"
+#include "testing.h"
+
+/* What a solver does with one linear spring. */
+enum step_rule { RULE_IMPLICIT_EULER, RULE_VERLET };
+
+static inline enum step_rule solver_rule(int solver)
+{
+    return solver == TL_CLOTH_REFERENCE ? RULE_VERLET : RULE_IMPLICIT_EULER;
+}
+
+/* Whether it comes to rest where the energy is least whatever the step, or only as the step goes to 0: one
+ * sweep over the constraints leaves each pushed by those that come after it, by h^2 w T. */
+static inline bool solver_rests_exactly(int solver)
+{
+    return solver != TL_CLOTH_PREVIEW;
+}
+
+static inline void params_solve_exactly(struct tl_cloth_params *params)
+{
+    params->cg_tolerance = 1e-12;
+    params->cg_iterations = 10000;
+}
+
+/* As exact as the solver can be made within a step. */
+static inline struct tl_cloth_params params_exact(int solver)
+{
+    struct tl_cloth_params params = params_defaults();
+    params.solver = solver;
+    params_solve_exactly(&params);
+    return params;
+}
+
+/* A step at which a solver comes to rest soon: the longer the better for one that is stable at any. */
+static inline double solver_resting_step(int solver)
+{
+    return solver == TL_CLOTH_SETTLE ? 1.0 / 60 : 1.0 / 1920;
+}
+
+/* Steps of `h` seconds, of one substep each, solved to rounding. */
+static inline void params_set_step(struct tl_cloth_params *params, double h)
+{
+    params->dt = h;
+    params->substeps = 1;
+    params_solve_exactly(params);
+}
+
+static inline void cloth_run(tl_cloth *cloth, const tl_collider *collider, double seconds)
+{
+    tl_error error = {0};
+    int frames = (int)ceil(seconds * cloth->params.frame_rate - 1e-9);
+    for (int frame = 0; frame < frames; frame++)
+        assert_ok(tl_cloth_step(cloth, collider, &error), error);
+}
+
+static inline tl_cloth *cloth_make(const tl_garment *garment, const struct tl_cloth_fabric *fabric,
+                                   const struct tl_cloth_params *params)
+{
+    tl_error error = {0};
+    tl_cloth *cloth = tl_cloth_create(garment, fabric, params, &error);
+    assert_ok(cloth != NULL, error);
+    return cloth;
+}
+
+/* log2 of the ratio of two errors, the step or mesh having been halved between them. */
+static inline double observed_order(double coarse, double fine)
+{
+    return log2(coarse / fine);
+}
+
+#endif
