@@ -36,7 +36,7 @@ static struct tl_implicit_problem oscillator_problem(struct oscillator *o, doubl
 {
     return (struct tl_implicit_problem){.energy = &o->energy,
                                         .fabric = &o->fabric,
-                                        .pull = {.particle = TL_NONE},
+                                        .hand = {.particle = TL_NONE},
                                         .contacts = &o->contacts,
                                         .h = h,
                                         .tolerance = 1e-10,
