@@ -84,7 +84,7 @@ static cJSON *describe_material(const tl_material *material)
 static void describe_units(cJSON *object, const tl_model *model)
 {
     cJSON_AddStringToObject(object, "units", tl_units_names[model->units.units]);
-    char *lines[] = {tl_units_describe(model->name, &model->units),
+    char *lines[] = {tl_units_describe(model->name, &model->units, "--units"),
                      tl_units_describe_up(model->name, &model->units)};
     const char *const keys[] = {"units_note", "up_note"};
     for (size_t i = 0; i < TL_COUNT(lines); i++) {
@@ -135,12 +135,10 @@ static cJSON *describe_motion(const char *path, const struct tl_point_cache_fact
     cJSON_AddNumberToObject(object, "samples", (double)facts->sample_count);
     cJSON_AddNumberToObject(object, facts->in_seconds ? "first_s" : "first_frame", facts->first);
     cJSON_AddNumberToObject(object, facts->in_seconds ? "last_s" : "last_frame", facts->last);
-    if (facts->step == 0)
-        cJSON_AddStringToObject(object, "rate",
-                                facts->sample_count > 1 ? "samples at uneven distances" : "none");
-    else
-        cJSON_AddNumberToObject(object, facts->in_seconds ? "samples_per_s" : "samples_per_frame",
-                                1 / facts->step);
+    const char *per = facts->in_seconds ? "second" : "frame";
+    bool even = facts->step > 0 || facts->sample_count == 1;
+    cJSON_AddNumberToObject(object, "rate", facts->step > 0 ? 1 / facts->step : 0);
+    cJSON_AddStringToObject(object, "rate_per", even ? per : "samples are not evenly spaced");
     cJSON_AddItemToObject(object, "lower", describe_vector(facts->box.lower));
     cJSON_AddItemToObject(object, "upper", describe_vector(facts->box.upper));
     return object;

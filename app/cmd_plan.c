@@ -24,21 +24,46 @@ static void print_plan(const tl_plan *plan, const struct tl_render_memory *memor
            (double)memory->other / mebibyte, (double)memory->total / mebibyte);
 }
 
+/* ---- The cloth ---- */
+
 static int substeps_per_frame(const struct tl_settings *settings, const struct tl_cloth_report *report)
 {
     return (int)lround(1 / (settings->cloth.frame_rate * report->substep_s));
 }
 
+/* What the cloth is kept from passing through, and at what cost. */
+static void describe_self_repulsion(const struct tl_settings *settings, const struct tl_cloth_report *cloth,
+                                    char *out, size_t size)
+{
+    const char *price = "about two thirds more time for the cloth";
+    if (settings->cloth.self_repulsion)
+        snprintf(out, size, "on: %zu piece%s in %zu layer%s, and folds, keep their distance: %s",
+                 cloth->piece_count, cloth->piece_count == 1 ? "" : "s", cloth->layer_count,
+                 cloth->layer_count == 1 ? "" : "s", price);
+    else if (cloth->piece_count > 1)
+        snprintf(out, size,
+                 "off: the garment's %zu pieces, and folds, pass through one another; "
+                 "cloth.self_repulsion true keeps them apart for %s",
+                 cloth->piece_count, price);
+    else
+        snprintf(out, size, "off: folds pass through one another");
+}
+
 static void print_cloth(const struct tl_settings *settings, const struct tl_cloth_report *report)
 {
-    printf("cloth: %zu vertices, critical step %.3g ms, %s %d substeps of %.3g ms a frame\n",
+    char self_repulsion[256];
+    describe_self_repulsion(settings, report, self_repulsion, sizeof self_repulsion);
+    printf("cloth: %zu vertices, critical step %.3g ms, %s %d substeps of %.3g ms a frame\n"
+           "cloth against itself: %s\n",
            report->vertex_count, 1000 * report->critical_step_s,
            tl_cloth_solver_names[settings->cloth.solver], substeps_per_frame(settings, report),
-           1000 * report->substep_s);
+           1000 * report->substep_s, self_repulsion);
 }
 
 static void add_cloth(cJSON *object, const struct tl_settings *settings, const struct tl_cloth_report *report)
 {
+    char self_repulsion[256];
+    describe_self_repulsion(settings, report, self_repulsion, sizeof self_repulsion);
     cJSON *cloth = cJSON_AddObjectToObject(object, "cloth");
     cJSON_AddNumberToObject(cloth, "vertices", (double)report->vertex_count);
     cJSON_AddItemToObject(cloth, "critical_step_s",
@@ -47,7 +72,10 @@ static void add_cloth(cJSON *object, const struct tl_settings *settings, const s
     cJSON_AddStringToObject(cloth, "solver", tl_cloth_solver_names[settings->cloth.solver]);
     cJSON_AddNumberToObject(cloth, "substeps", substeps_per_frame(settings, report));
     cJSON_AddNumberToObject(cloth, "substep_s", report->substep_s);
+    cJSON_AddStringToObject(cloth, "self_repulsion", self_repulsion);
 }
+
+/* ---- The whole ---- */
 
 static void print_plan_json(const tl_plan *plan, const struct tl_render_memory *memory,
                             const struct tl_settings *settings, const struct tl_cloth_report *report)

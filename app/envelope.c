@@ -4,11 +4,16 @@
 #include "config/memory.h"
 
 #include <math.h>
+#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define FRAMES      10
-#define FRAMES_WORK 3e6 /* particle-substeps, beyond which fewer frames do */
+/* As many frames as a cell's work allows, for what grows may do so slowly. */
+#define FRAMES_MIN  2
+#define FRAMES_MAX  100
+#define FRAMES_WORK 1e6 /* particle-substeps */
+#define LEAST_WORK  20  /* of a substep, in particles */
+#define SOLVE_WORK  800 /* of a step of settle, in substeps of the others */
 #define EXACT_SHARE 1e-3
 #define FLOAT_SHARE 1e-6
 #define SCRAMBLE    0.2
@@ -136,8 +141,11 @@ static int frame_count(const tl_cloth *cloth, const struct subject *subject)
     struct tl_cloth_report report = tl_cloth_measure(cloth, NULL);
     if (!subject->tested->size->whole)
         return 1;
-    double substeps = 1 / (subject->params.frame_rate * report.substep_s);
-    return (int)fmin(fmax(FRAMES_WORK / (substeps * (double)report.vertex_count), 2), FRAMES);
+    double work =
+        fmax((double)report.vertex_count, LEAST_WORK) / (subject->params.frame_rate * report.substep_s);
+    if (subject->params.solver == TL_CLOTH_SETTLE)
+        work *= SOLVE_WORK;
+    return (int)fmin(fmax(FRAMES_WORK / work, FRAMES_MIN), FRAMES_MAX);
 }
 
 static double farthest_from(const tl_cloth *cloth, const tl_garment *garment)
@@ -226,6 +234,8 @@ struct tl_envelope_cell tl_envelope_run(const struct tl_envelope_case *tested)
     struct subject subject = make_subject(tested);
     struct tl_envelope_cell cell = {.run = true, .strayed = NAN, .growth = NAN};
     struct tl_stopwatch watch = tl_stopwatch_start();
+    omp_set_num_threads(tested->size->whole ? 1
+                                            : omp_get_num_procs()); /* small ones only wait for each other */
     cell.outcome = run_hanging(&subject, &cell);
     if (cell.outcome == TL_OUTCOME_EXACT || cell.outcome == TL_OUTCOME_BOUNDED) {
         enum tl_outcome scrambled = run_scrambled(&subject, &cell);

@@ -2,6 +2,7 @@
 #include "app/envelope_sweep.h"
 #include "config/memory.h"
 
+#include <math.h>
 #include <stdio.h>
 
 #define CELL     13 /* pixels */
@@ -9,13 +10,19 @@
 #define PANEL_W  (TL_ENVELOPE_STIFFNESSES * CELL)
 #define PANEL_H  (TL_ENVELOPE_STEPS * CELL)
 #define SOLVER_W (TL_ENVELOPE_RATIOS * (PANEL_W + GAP) + GAP)
-#define LEFT     150
+#define LEFT     220
 #define TOP      110
 #define BOTTOM   90
 
 static const uint32_t paper = 0xfbfaf8, ink = 0x1d2126, soft = 0x5c6670, nothing = 0xefece6;
 /* Apart for eyes that tell few hues, by lightness too. */
 static const uint32_t colours[TL_OUTCOME_COUNT] = {0x2c8a57, 0x8fc7e8, 0xc9c4ba, 0xd3650b, 0xbd1030};
+
+/* 1e3 rather than 1e+03. */
+static void spell_power(char text[40], double value, const char *unit)
+{
+    snprintf(text, 40, "1e%d%s", (int)lround(log10(value)), unit);
+}
 
 static void draw_panel(tl_image *canvas, const struct tl_envelope_sweep *sweep, struct tl_envelope_place at,
                        int x, int y)
@@ -36,20 +43,22 @@ static void draw_heads(tl_image *canvas)
         int x = LEFT + solver * SOLVER_W;
         tl_canvas_text(canvas, x, TOP - 56, tl_cloth_solver_names[solver], ink);
         for (int ratio = 0; ratio < TL_ENVELOPE_RATIOS; ratio++) {
-            snprintf(text, sizeof text, "masses 1:%.0g", tl_envelope_ratios[ratio]);
-            tl_canvas_text(canvas, x + ratio * (PANEL_W + GAP), TOP - 28, text, soft);
+            int left = x + ratio * (PANEL_W + GAP);
+            spell_power(text, tl_envelope_ratios[ratio], "");
+            tl_canvas_text(canvas, left, TOP - 28, "masses 1 :", soft);
+            tl_canvas_text(canvas, left + tl_canvas_text_width("masses 1 : "), TOP - 28, text, soft);
         }
     }
 }
 
 static void draw_foot(tl_image *canvas)
 {
-    char text[60];
+    char text[40];
     int x = LEFT, y = canvas->height - BOTTOM + GAP;
-    snprintf(text, sizeof text, "%.0e", tl_envelope_stiffnesses[0]);
+    spell_power(text, tl_envelope_stiffnesses[0], "");
     tl_canvas_text(canvas, x, y, text, soft);
-    snprintf(text, sizeof text, "%.0e N/m", tl_envelope_stiffnesses[TL_ENVELOPE_STIFFNESSES - 1]);
-    tl_canvas_text(canvas, x + PANEL_W - tl_canvas_text_width(text) / 2, y, text, soft);
+    spell_power(text, tl_envelope_stiffnesses[TL_ENVELOPE_STIFFNESSES - 1], " N/m");
+    tl_canvas_text(canvas, x + PANEL_W - tl_canvas_text_width("1e9"), y, text, soft);
     y += 2 * TL_CANVAS_LETTER + 4;
     for (int i = 0; i < TL_OUTCOME_COUNT; i++) {
         tl_canvas_box(canvas, x, y, CELL, CELL, colours[i]);
@@ -70,10 +79,9 @@ tl_image tl_envelope_picture(const struct tl_envelope_sweep *sweep)
     for (int size = 0; size < sizes; size++) {
         int y = TOP + size * (PANEL_H + GAP);
         tl_canvas_text(&canvas, GAP, y, tl_envelope_sizes[size].name, ink);
-        snprintf(text, sizeof text, "%.0e s", tl_envelope_steps[0]);
-        tl_canvas_text(&canvas, LEFT - GAP - tl_canvas_text_width(text), y + TL_CANVAS_LETTER + 4, text,
-                       soft);
-        snprintf(text, sizeof text, "%.0e s", tl_envelope_steps[TL_ENVELOPE_STEPS - 1]);
+        spell_power(text, tl_envelope_steps[0], " s");
+        tl_canvas_text(&canvas, LEFT - GAP - tl_canvas_text_width(text), y, text, soft);
+        spell_power(text, tl_envelope_steps[TL_ENVELOPE_STEPS - 1], " s");
         tl_canvas_text(&canvas, LEFT - GAP - tl_canvas_text_width(text), y + PANEL_H - TL_CANVAS_LETTER, text,
                        soft);
         for (int solver = 0; solver < TL_CLOTH_SOLVER_COUNT; solver++)

@@ -10,6 +10,7 @@
 extern const size_t tl_cloth_extreme_count;
 
 const char *tl_cloth_extreme_name(size_t index);
+bool tl_cloth_extreme_is_slow(size_t index); /* seconds, with any solver but preview */
 
 /* `found` tells why it was refused, what is wrong, or what was measured. */
 enum tl_outcome tl_cloth_extreme_run(size_t index, int solver, tl_error *found);

@@ -55,9 +55,9 @@ static bool is_built_in_garment(const char *name)
 }
 
 /* What was guessed is said aloud. */
-static void tell_units(const tl_model *model)
+static void tell_units(const tl_model *model, const char *option)
 {
-    char *lines[] = {tl_units_describe(model->name, &model->units),
+    char *lines[] = {tl_units_describe(model->name, &model->units, option),
                      tl_units_describe_up(model->name, &model->units)};
     for (size_t i = 0; i < TL_COUNT(lines); i++) {
         if (lines[i])
@@ -77,7 +77,7 @@ static bool load_avatar(tl_session *session, tl_error *error)
         loaded = tl_avatar_form();
     else if (!tl_avatar_load_in(name, (enum tl_units)session->settings.scene.avatar_units, &loaded, error))
         return false;
-    tell_units(&loaded.model);
+    tell_units(&loaded.model, "scene.avatar_units");
     session->avatar = TL_NEW(tl_avatar);
     *session->avatar = loaded;
     const char *clip = session->settings.scene.clip;
@@ -116,7 +116,7 @@ static bool load_garment(tl_session *session, tl_error *error)
         return true;
     if (!make_garment(session, &made, error))
         return false;
-    tell_units(&made.model);
+    tell_units(&made.model, "--units");
     session->garment = TL_NEW(tl_garment);
     *session->garment = made;
     return true;

@@ -180,6 +180,18 @@ static void choose_fabric(struct tl_scene_params *scene)
         strcpy(scene->fabric, tl_option_is_file_name(scene->garment) ? "none" : "satin");
 }
 
+/* A model alone is what a motion moves, and what --units means. */
+static void choose_role(struct tl_scene_params *scene)
+{
+    bool moves = strcmp(scene->motion, "none") != 0 && strcmp(scene->garment, "none") == 0;
+    if (moves) {
+        strcpy(scene->garment, scene->avatar);
+        strcpy(scene->avatar, "none");
+    } else if (scene->avatar_units == TL_UNITS_AUTO) {
+        scene->avatar_units = scene->units;
+    }
+}
+
 /* The topmost layers name the preset and the fabric that lie below them, so they are read twice: once to
  * learn these names, and once more in their place. */
 bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *source, tl_error *error)
@@ -197,9 +209,8 @@ bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *
     if (!apply_preset(all, named.preset, error) || !apply_fabric(all, named.fabric, error) ||
         !apply_source(all, source, error))
         return false;
-    /* A model alone is the scene's only file: --units means it. */
-    if (source->scene_file && tl_model_is_file(source->scene_file) && named.avatar_units == TL_UNITS_AUTO)
-        named.avatar_units = named.units;
+    if (source->scene_file && tl_model_is_file(source->scene_file))
+        choose_role(&named);
     settings.scene = named;
     *out = settings;
     return true;

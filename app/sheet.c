@@ -102,8 +102,9 @@ tl_garment tl_tube_make(const struct tl_tube *tube, const double *sink, double s
     double width = tl_tube_width(tube), radius = width / (2 * sin(M_PI / tube->columns)), depth = 0;
     fill_cells(&garment.model.mesh, tube->columns, tube->row_count);
     for (size_t row = 0; row <= rows; row++) {
-        double height = tl_tube_row_height(tube, (int)(row < rows ? row : rows - 1));
-        float reach = (float)(row > 0 ? scramble * fmin(width, height) : 0);
+        double below = tl_tube_row_height(tube, (int)(row < rows ? row : rows - 1));
+        double above = tl_tube_row_height(tube, (int)(row > 0 ? row - 1 : 0));
+        float reach = (float)(row > 0 ? scramble * fmin(width, fmin(above, below)) : 0);
         for (size_t column = 0; column <= columns; column++) {
             size_t i = row * (columns + 1) + column, alike = row * (columns + 1) + column % columns;
             double angle = 2 * M_PI * (double)(column % columns) / tube->columns;
@@ -113,7 +114,7 @@ tl_garment tl_tube_make(const struct tl_tube *tube, const double *sink, double s
             place(&garment, i, glms_vec3_add(at, glms_vec3_scale(shift, reach)), width * (double)column,
                   depth);
         }
-        depth += height;
+        depth += below;
     }
     garment.pins = TL_NEW_ARRAY(uint32_t, columns + 1);
     for (size_t i = 0; i <= columns; i++)

@@ -1,4 +1,5 @@
 /* The extremes of cloth: the envelope over stiffness, step, mass ratio and size, then single extremes. */
+#include "app/cost.h"
 #include "app/envelope_sweep.h"
 #include "app/extremes_cloth.h"
 #include "config/file.h"
@@ -11,7 +12,9 @@
 #include <stdlib.h>
 
 struct single {
+    bool run;
     enum tl_outcome outcome;
+    double cpu_ms;
     tl_error error;
 };
 
@@ -20,15 +23,20 @@ struct suite {
     struct single *singles; /* [tl_cloth_extreme_count][TL_CLOTH_SOLVER_COUNT] */
 };
 
-static bool run_singles(struct suite *suite, tl_error *error)
+static bool run_singles(struct suite *suite, bool quick, tl_error *error)
 {
     struct tl_progress progress = tl_progress_begin("trying the extremes of cloth");
     size_t count = tl_cloth_extreme_count * TL_CLOTH_SOLVER_COUNT;
     suite->singles = TL_NEW_ARRAY(struct single, count);
     for (size_t i = 0; i < count && !tl_interrupted(); i++) {
         struct single *single = &suite->singles[i];
-        single->outcome =
-            tl_cloth_extreme_run(i / TL_CLOTH_SOLVER_COUNT, (int)(i % TL_CLOTH_SOLVER_COUNT), &single->error);
+        struct tl_stopwatch watch = tl_stopwatch_start();
+        size_t extreme = i / TL_CLOTH_SOLVER_COUNT;
+        int solver = (int)(i % TL_CLOTH_SOLVER_COUNT);
+        single->run = !(quick && solver != TL_CLOTH_PREVIEW && tl_cloth_extreme_is_slow(extreme));
+        if (single->run)
+            single->outcome = tl_cloth_extreme_run(extreme, solver, &single->error);
+        single->cpu_ms = tl_stopwatch_read(&watch).cpu_ms;
         tl_progress_update(&progress, (double)i + 1, (double)count);
     }
     tl_progress_end(&progress);
@@ -42,8 +50,9 @@ static void print_singles(const struct suite *suite)
     for (size_t i = 0; i < tl_cloth_extreme_count; i++)
         for (size_t s = 0; s < TL_CLOTH_SOLVER_COUNT; s++) {
             const struct single *single = &suite->singles[i * TL_CLOTH_SOLVER_COUNT + s];
-            printf("%-36s%-12s%-8s %s\n", s == 0 ? tl_cloth_extreme_name(i) : "", tl_cloth_solver_names[s],
-                   tl_outcome_names[single->outcome], single->error.message);
+            if (single->run)
+                printf("%-36s%-12s%-8s %s\n", s == 0 ? tl_cloth_extreme_name(i) : "",
+                       tl_cloth_solver_names[s], tl_outcome_names[single->outcome], single->error.message);
         }
 }
 
@@ -86,9 +95,12 @@ static void add_cells(const struct suite *suite, struct tl_stability *out)
     }
     for (size_t i = 0; i < tl_cloth_extreme_count * TL_CLOTH_SOLVER_COUNT; i++) {
         const struct single *single = &suite->singles[i];
+        if (!single->run)
+            continue;
         cJSON *row = tl_stability_add(out, "cloth", single->outcome);
         cJSON_AddStringToObject(row, "extreme", tl_cloth_extreme_name(i / TL_CLOTH_SOLVER_COUNT));
         cJSON_AddStringToObject(row, "solver", tl_cloth_solver_names[i % TL_CLOTH_SOLVER_COUNT]);
+        cJSON_AddNumberToObject(row, "cpu_ms", single->cpu_ms);
         cJSON_AddStringToObject(row, "why", single->error.message);
     }
 }
@@ -106,7 +118,8 @@ static bool save_picture(const struct tl_envelope_sweep *sweep, const char *fold
 bool tl_stability_cloth(const struct tl_arguments *arguments, struct tl_stability *out, tl_error *error)
 {
     struct suite suite = {0};
-    bool done = tl_envelope_sweep_run(arguments->quick, &suite.sweep, error) && run_singles(&suite, error);
+    bool done = tl_envelope_sweep_run(arguments->quick, &suite.sweep, error) &&
+                run_singles(&suite, arguments->quick, error);
     if (done && !arguments->json) {
         tl_envelope_print(&suite.sweep);
         print_failures(&suite.sweep);

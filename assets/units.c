@@ -37,12 +37,13 @@ static void guess(struct tl_units_reading *reading)
         reading->other = reading->units == TL_UNITS_IN ? TL_UNITS_DM : TL_UNITS_IN;
 }
 
-/* A person stands on the ground about the vertical through the origin: a box that does so along Z, and is far
- * longer along it, was made where Z is up. */
+/* Far longer along Z than along Y, and about Y = 0: a body's depth. Then either longest along Z, or standing
+ * on Z = 0. A wide skirt with Y up is as long along X, and centred along Z. */
 static bool looks_z_up(struct tl_box box)
 {
     vec3s size = glms_vec3_sub(box.upper, box.lower), middle = glms_vec3_lerp(box.lower, box.upper, 0.5f);
-    return size.z > 1.5f * size.y && box.lower.z > -0.05f * size.z && fabsf(middle.y) < 0.25f * size.y;
+    bool shallow = size.z > 1.5f * size.y && fabsf(middle.y) < 0.25f * size.y;
+    return shallow && (size.z > 1.1f * size.x || box.lower.z > -0.05f * size.z);
 }
 
 struct tl_units_reading tl_units_read(struct tl_box box, enum tl_units wanted, bool is_metric)
@@ -56,21 +57,22 @@ struct tl_units_reading tl_units_read(struct tl_box box, enum tl_units wanted, b
         reading.units = TL_UNITS_M;
     else
         guess(&reading);
+    reading.absurd = is_metric && reading.guessed;
     return reading;
 }
 
-char *tl_units_describe(const char *name, const struct tl_units_reading *reading)
+char *tl_units_describe(const char *name, const struct tl_units_reading *reading, const char *option)
 {
     if (!reading->guessed)
         return NULL;
     double length = (double)reading->longest;
-    char *taken = tl_format("%s: %.4g units at its longest: %s%s (%.3g m)", name, length,
-                            reading->fits ? "taken as " : "no unit fits: taken as ", plurals[reading->units],
-                            length * tl_units_metres(reading->units));
-    char *line = reading->other
-                     ? tl_format("%s, though %s would do: --units tells", taken, plurals[reading->other])
-                     : tl_format("%s; --units tells otherwise", taken);
-    free(taken);
+    const char *why = reading->absurd ? "absurd as metres: " : reading->fits ? "" : "no unit fits: ";
+    char *other =
+        reading->other ? tl_format(", though %s would do", plurals[reading->other]) : tl_copy_string("");
+    char *line =
+        tl_format("%s: %.4g units at its longest: %staken as %s (%.3g m)%s; %s tells otherwise", name, length,
+                  why, plurals[reading->units], length * tl_units_metres(reading->units), other, option);
+    free(other);
     return line;
 }
 

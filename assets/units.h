@@ -30,6 +30,7 @@ struct tl_units_reading {
     enum tl_units other; /* would have done too; AUTO: none */
     float longest;       /* longest side of the box, units of the file */
     bool guessed;        /* from the size; else told by the file's kind or a person */
+    bool absurd;         /* guessed, because the metres that the file's kind says cannot be */
     bool fits;           /* the size is one that can be worn */
     bool z_up;           /* stands along Z, though it is read with Y up */
 };
@@ -38,9 +39,9 @@ struct tl_units_reading {
  * absurd; otherwise a guess. */
 struct tl_units_reading tl_units_read(struct tl_box box, enum tl_units wanted, bool is_metric);
 
-/* One line about it, "skirt.obj: 812 units at its longest: taken as millimetres ...": new string, NULL when
- * there is nothing to say. */
-char *tl_units_describe(const char *name, const struct tl_units_reading *reading);
+/* One line about it, "skirt.obj: 812 units at its longest: taken as millimetres ...; --units tells otherwise"
+ * with `option` for --units: new string, NULL when there is nothing to say. */
+char *tl_units_describe(const char *name, const struct tl_units_reading *reading, const char *option);
 /* The same for a box that stands along Z. */
 char *tl_units_describe_up(const char *name, const struct tl_units_reading *reading);
 

@@ -93,12 +93,32 @@ static void turn_over(struct tl_uv_transform *transform)
     transform->offset[1] = 1 - transform->offset[1] - transform->scale[1];
 }
 
-static const tl_image *load_picture(struct reader *reader, const char *name, bool linear)
+/* Beside the MTL file. Exporters also write the path of the machine they ran on: then the name alone counts.
+ */
+static char *picture_path(const char *library, const char *name)
 {
-    char *path = tl_path_beside(reader->text.path, name);
-    for (char *c = path; *c; c++)
+    char *plain = tl_copy_string(name);
+    for (char *c = plain; *c; c++)
         if (*c == '\\')
             *c = '/';
+    char *path = tl_path_beside(library, plain);
+    const char *slash = strrchr(plain, '/');
+    if (slash && !tl_file_exists(path)) {
+        char *beside = tl_path_beside(library, slash + 1);
+        if (tl_file_exists(beside)) {
+            char *swap = path;
+            path = beside;
+            beside = swap;
+        }
+        free(beside);
+    }
+    free(plain);
+    return path;
+}
+
+static const tl_image *load_picture(struct reader *reader, const char *name, bool linear)
+{
+    char *path = picture_path(reader->text.path, name);
     tl_model *model = reader->model;
     for (size_t i = 0; i < model->image_count; i++)
         if (strcmp(reader->image_paths[i], path) == 0 && model->images[i].linear == linear) {

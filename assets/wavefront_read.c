@@ -37,17 +37,6 @@ static void *grow(void *array, size_t count, size_t *capacity, size_t size)
     return tl_resize(array, *capacity, size);
 }
 
-static bool read_position(struct reader *reader)
-{
-    struct wave_object *object = reader->object;
-    if (object->position_count == TL_LIMIT_MESH_VERTICES)
-        return fail_limit(reader, "vertices", TL_LIMIT_MESH_VERTICES);
-    object->positions =
-        grow(object->positions, object->position_count, &reader->position_capacity, sizeof(vec3s));
-    return wave_numbers(&reader->text, "vertex", 3, object->positions[object->position_count++].raw,
-                        reader->error);
-}
-
 static bool read_uv(struct reader *reader)
 {
     struct wave_object *object = reader->object;
@@ -172,12 +161,33 @@ static void add_library(struct reader *reader)
         find_or_add(&object->libraries, &object->library_count, LIMIT_LIBRARIES, name);
 }
 
-static void ignore(struct reader *reader, const char *keyword)
+static void ignore(struct reader *reader, const char *what)
 {
     struct wave_object *object = reader->object;
+    find_or_add(&object->ignored, &object->ignored_count, LIMIT_IGNORED, what);
+}
+
+static void ignore_keyword(struct reader *reader, const char *keyword)
+{
     char note[64];
     snprintf(note, sizeof note, "\"%.24s\" lines", keyword);
-    find_or_add(&object->ignored, &object->ignored_count, LIMIT_IGNORED, note);
+    ignore(reader, note);
+}
+
+static bool read_position(struct reader *reader)
+{
+    struct wave_object *object = reader->object;
+    if (object->position_count == TL_LIMIT_MESH_VERTICES)
+        return fail_limit(reader, "vertices", TL_LIMIT_MESH_VERTICES);
+    object->positions =
+        grow(object->positions, object->position_count, &reader->position_capacity, sizeof(vec3s));
+    if (!wave_numbers(&reader->text, "vertex", 3, object->positions[object->position_count++].raw,
+                      reader->error))
+        return false;
+    const char *more = wave_word(&reader->text);
+    if (more && more[0] != '#')
+        ignore(reader, "vertex colours or weights");
+    return true;
 }
 
 static bool read_line(struct reader *reader, const char *keyword)
@@ -197,7 +207,7 @@ static bool read_line(struct reader *reader, const char *keyword)
     else if (strcmp(keyword, "mtllib") == 0)
         add_library(reader);
     else if (strcmp(keyword, "s") != 0) /* cloth is smooth all over */
-        ignore(reader, keyword);
+        ignore_keyword(reader, keyword);
     return true;
 }
 

@@ -142,6 +142,7 @@ static struct tl_contact_params contact_params(const tl_cloth *cloth, const stru
     return (struct tl_contact_params){.friction =
                                           tl_sewing_pulls(&cloth->sewing) ? 0 : cloth->fabric.friction,
                                       .thickness_m = cloth->fabric.thickness_m,
+                                      .push_out_speed = TL_PUSH_OUT_SPEED,
                                       .phase_before = substep->phase_before,
                                       .phase = substep->phase,
                                       .h = substep->h};
@@ -154,11 +155,19 @@ static void constrain(tl_cloth *cloth, const struct tl_substep *substep)
     if (cloth->sewing.pair_count > 0)
         tl_sewing_solve(&cloth->sewing, &cloth->particles, substep->h);
     pull_grabbed(cloth, substep->h);
+    if (cloth->params.self_repulsion) {
+        tl_repulsion_solve(&cloth->repulsion, cloth->fabric.friction, substep->h, &cloth->particles);
+        tl_layers_solve(&cloth->layers, &contact, &cloth->particles);
+    }
     tl_contacts_solve(&cloth->contacts, &contact, &cloth->particles);
 }
 
 static void advance_preview(tl_cloth *cloth, const struct tl_substep *substep)
 {
+    if (cloth->energy.bends_as_force) {
+        tl_energy_bending_forces(&cloth->energy, cloth->particles.x, cloth->forces);
+        tl_particles_push(&cloth->particles, cloth->forces, substep->h);
+    }
     tl_particles_predict(&cloth->particles, substep->gravity, substep->drag, substep->h);
     place_pins(cloth, substep->collider, substep->phase);
     tl_xpbd_solve(&cloth->energy, &cloth->particles);
@@ -185,7 +194,7 @@ static void advance_settle(tl_cloth *cloth, const struct tl_substep *substep)
         .energy = &cloth->energy,
         .fabric = &cloth->fabric,
         .springs = springs,
-        .pull = {.particle = cloth->grabbed ? cloth->topology.weld[cloth->grabbed_vertex] : TL_NONE,
+        .hand = {.particle = cloth->grabbed ? cloth->topology.weld[cloth->grabbed_vertex] : TL_NONE,
                  .target = cloth->grab_target,
                  .stiffness = GRAB_STIFFNESS,
                  .most_force = GRAB_FORCE},
@@ -251,17 +260,28 @@ static void slip_free(tl_cloth *cloth, const tl_collider *collider)
                         &cloth->particles, cloth->contacts.slipped);
 }
 
+static void find_own_contacts(tl_cloth *cloth)
+{
+    const struct tl_particles *particles = &cloth->particles;
+    tl_layers_renew(&cloth->layers, &cloth->topology, particles->x);
+    tl_repulsion_renew(&cloth->repulsion, particles->count, particles->x, cloth->made_at,
+                       cloth->fabric.thickness_m);
+}
+
 static void run_steps(tl_cloth *cloth, const tl_collider *collider, double drag)
 {
     int steps = steps_per_frame(&cloth->params);
     double calm = 1 - exp(-INNER_DAMPING * cloth->fabric.damping * step_seconds(cloth));
     for (int step = 0; step < steps && !tl_interrupted(); step++) {
         const struct tl_contact_params contact = {.thickness_m = cloth->fabric.thickness_m,
+                                                  .push_out_speed = TL_PUSH_OUT_SPEED,
                                                   .phase_before = (double)step / steps,
                                                   .phase = (step + 1.0) / steps,
                                                   .h = step_seconds(cloth)};
         tl_contacts_renew(&cloth->contacts, cloth->particles.x, cloth->fabric.thickness_m,
                           (double)step / steps);
+        if (cloth->params.self_repulsion)
+            find_own_contacts(cloth);
         run_step(cloth, collider, drag, step);
         slip_free(cloth, collider);
         tl_contacts_enforce(&cloth->contacts, &contact, &cloth->particles);
@@ -299,10 +319,19 @@ static bool check_state(const tl_cloth *cloth, tl_error *error)
     return true;
 }
 
+/* Not before the panels have met: until then each is a piece of its own. */
+static bool decide_layers(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
+{
+    if (!cloth->params.self_repulsion || cloth->layers.decided || tl_sewing_pulls(&cloth->sewing))
+        return true;
+    return tl_layers_decide(&cloth->layers, &cloth->topology, (const vec2s(*)[3])cloth->rest, collider,
+                            cloth->particles.x, error);
+}
+
 bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct tl_advance *advance,
                       tl_error *error)
 {
-    if (!check_budget(cloth, error))
+    if (!check_budget(cloth, error) || !decide_layers(cloth, collider, error))
         return false;
     struct tl_particles *particles = &cloth->particles;
     size_t bytes = particles->count * sizeof(vec3d);
@@ -325,6 +354,7 @@ bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct
     } else {
         memcpy(particles->x, good_x, bytes);
         memcpy(particles->v, good_v, bytes);
+        tl_layers_forget(&cloth->layers);
     }
     free(good_x);
     free(good_v);

@@ -106,6 +106,7 @@ static void set_constants(tl_cloth *cloth)
     tl_energy_set(&cloth->energy, &cloth->fabric, cloth->particles.w, tl_cloth_substep(cloth));
     tl_contacts_release(&cloth->contacts); /* its planes know the thickness */
     cloth->contacts = tl_contacts_create(&cloth->topology, cloth->rest);
+    tl_layers_forget(&cloth->layers);
 }
 
 void tl_cloth_use(tl_cloth *cloth, int solver)
@@ -138,6 +139,10 @@ static void build_mesh(tl_cloth *cloth, const uint32_t *weld, size_t vertex_coun
     cloth->rest = tl_rest_shapes(cloth->garment, &cloth->topology);
     cloth->energy = tl_energy_build(&cloth->topology, cloth->rest);
     cloth->shortest_edge = find_shortest_edge(cloth);
+    cloth->made_at = tl_resize(cloth->made_at, vertex_count, sizeof *cloth->made_at);
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        cloth->made_at[weld[i]] = vec3d_from(mesh->positions[i]);
+    tl_layers_release(&cloth->layers);
 }
 
 static void make_pins(tl_cloth *cloth)
@@ -173,12 +178,16 @@ static void release_state(tl_cloth *cloth)
     tl_energy_release(&cloth->energy);
     tl_particles_release(&cloth->particles);
     tl_contacts_release(&cloth->contacts);
+    tl_layers_release(&cloth->layers);
+    tl_repulsion_release(&cloth->repulsion);
     tl_sewing_release(&cloth->sewing);
     tl_implicit_destroy(&cloth->implicit);
     free(cloth->rest);
+    free(cloth->made_at);
     free(cloth->pins);
     free(cloth->forces);
     cloth->rest = NULL;
+    cloth->made_at = NULL;
     cloth->pins = NULL;
     cloth->forces = NULL;
 }
@@ -260,6 +269,7 @@ static void forget_contacts(tl_cloth *cloth)
 {
     tl_contacts_release(&cloth->contacts);
     cloth->contacts = tl_contacts_create(&cloth->topology, cloth->rest);
+    tl_layers_forget(&cloth->layers);
 }
 
 /* Kept by render vertex: seams that close later change the particles, but not these. */
@@ -362,6 +372,7 @@ struct tl_cloth_report tl_cloth_measure(const tl_cloth *cloth, const tl_collider
     struct tl_cloth_report report = {.vertex_count = cloth->topology.vertex_count,
                                      .edge_count = cloth->topology.edge_count,
                                      .triangle_count = cloth->topology.triangle_count,
+                                     .layer_count = cloth->layers.layer_count,
                                      .open_seams = cloth->sewing.pair_count,
                                      .time_s = cloth->time_s,
                                      .max_speed = tl_cloth_max_speed(cloth),
@@ -382,6 +393,9 @@ struct tl_cloth_report tl_cloth_measure(const tl_cloth *cloth, const tl_collider
         report.kinetic_energy += 0.5 * mass * vec3d_dot(v, v);
         report.potential_energy += mass * cloth->params.gravity * x.y;
     }
+    uint32_t *pieces = TL_NEW_ARRAY(uint32_t, cloth->topology.vertex_count);
+    report.piece_count = tl_layers_pieces(&cloth->topology, pieces);
+    free(pieces);
     if (collider)
         report.deepest_m = deepest(cloth, collider);
     return report;

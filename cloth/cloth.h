@@ -3,7 +3,8 @@
  *
  * Render vertices are welded into physics vertices (bitwise equal start position; seams once they are
  * closed), so UV seams do not tear. Results do not depend on the number of threads. Positions are metres,
- * world axes. Cloth does not collide with itself. Ownership: a tl_cloth borrows its garment and must not
+ * world axes. Cloth collides with itself only where params ask for
+ * it. Ownership: a tl_cloth borrows its garment and must not
  * outlive it. Threads: one at a time per cloth. */
 #ifndef TOILE_CLOTH_CLOTH_H
 #define TOILE_CLOTH_CLOTH_H
@@ -41,6 +42,7 @@ struct tl_cloth_params {
     int cg_iterations;      /* settle: most per solve */
     double cg_tolerance;    /* settle: of the residual, to the load */
     int reference_substeps; /* reference: most per frame, beyond which it is refused */
+    bool self_repulsion;    /* layers of a garment, and folds, keep their distance: layers.h, repulsion.h */
     double gravity;         /* m/s^2, along -Y */
     double settle_s;        /* longest simulated time spent settling before the first frame */
     double settle_speed;    /* m/s: settled when the fastest vertex is slower than this */
@@ -51,7 +53,10 @@ extern const struct tl_option_table tl_cloth_options;
 /* What can be measured of the state; tests, `toile plan` and the panel read it. */
 struct tl_cloth_report {
     size_t vertex_count, edge_count, triangle_count; /* physics mesh */
-    size_t open_seams;                               /* seam pairs not yet welded */
+    size_t piece_count;       /* connected components; they and folds pass through one another without
+                                 self_repulsion */
+    size_t layer_count;       /* told apart by self_repulsion; 0: not yet, or off */
+    size_t open_seams;        /* seam pairs not yet welded */
     double time_s;            /* simulated since creation or reset, settling excluded */
     double max_speed;         /* m/s */
     double max_strain;        /* largest |length / rest length - 1| over edges that are not seams */

@@ -11,9 +11,6 @@
  * leaves the surface by 2^2 / (2 * 30) mm = 0.07 mm, small against any thickness. */
 #define SLIDE_M    0.002
 #define ROUNDING_M 1e-9
-/* Penetration that was there before is taken out this fast: 14 mm in 0.07 s, and no more energy than a fall
- * from 2 mm. */
-#define PUSH_OUT_SPEED 0.2
 
 /* Edges longer than this are probed: shorter ones sink into a radius of 5 cm by no more than 2.3 mm. */
 #define COARSE_M 0.03
@@ -22,39 +19,10 @@
 #define PUT_BACK_SHARE 0.5
 #define PUT_BACK_TRIES 8
 
-static double rest_length(const vec2s rest[3], int corner)
-{
-    vec2s side = glms_vec2_sub(rest[(corner + 1) % 3], rest[(corner + 2) % 3]);
-    return hypot((double)side.x, (double)side.y);
-}
-
-/* The middles of a triangle's long edges, each edge from its first triangle only, and of the triangle. */
-static size_t add_probes(const struct tl_topology *topology, const vec2s (*rest)[3], uint32_t triangle,
-                         struct tl_probe *out)
-{
-    size_t count = 0;
-    const uint32_t *v = topology->triangles[triangle];
-    double longest = 0;
-    for (int corner = 0; corner < 3; corner++) {
-        double length = rest_length(rest[triangle], corner);
-        longest = fmax(longest, length);
-        bool first = topology->neighbour[triangle][corner] > triangle; /* also where there is none */
-        if (length > COARSE_M && first)
-            out[count++] =
-                (struct tl_probe){{v[(corner + 1) % 3], v[(corner + 2) % 3], v[corner]}, {0.5, 0.5, 0}};
-    }
-    if (longest > COARSE_M)
-        out[count++] = (struct tl_probe){{v[0], v[1], v[2]}, {1.0 / 3, 1.0 / 3, 1.0 / 3}};
-    return count;
-}
-
 struct tl_contacts tl_contacts_create(const struct tl_topology *topology, const vec2s (*rest)[3])
 {
-    struct tl_contacts contacts = {.particle_count = topology->vertex_count,
-                                   .probes = TL_NEW_ARRAY(struct tl_probe, 4 * topology->triangle_count)};
-    for (size_t t = 0; t < topology->triangle_count; t++)
-        contacts.probe_count +=
-            add_probes(topology, rest, (uint32_t)t, &contacts.probes[contacts.probe_count]);
+    struct tl_contacts contacts = {.particle_count = topology->vertex_count};
+    contacts.probes = tl_probes_create(topology, rest, COARSE_M, &contacts.probe_count);
     contacts.allowed = TL_NEW_ARRAY(double, contacts.particle_count);
     contacts.caught = TL_NEW_ARRAY(bool, contacts.particle_count);
     contacts.slipped = TL_NEW_ARRAY(bool, contacts.particle_count);
@@ -138,13 +106,6 @@ void tl_contacts_begin(struct tl_contacts *contacts, const tl_collider *collider
     }
 }
 
-static vec3d probe_point(const struct tl_probe *probe, const vec3d *x)
-{
-    vec3d sum = vec3d_scale(x[probe->vertices[0]], probe->weights[0]);
-    sum = vec3d_muladd(sum, x[probe->vertices[1]], probe->weights[1]);
-    return vec3d_muladd(sum, x[probe->vertices[2]], probe->weights[2]);
-}
-
 /* Signed, to the plane that the cache holds. */
 static double distance_to(const struct tl_contact_cache *cache, vec3d x, double phase)
 {
@@ -163,7 +124,7 @@ void tl_contacts_renew(struct tl_contacts *contacts, const vec3d *x, double thic
             continue;
         bool is_particle = i < contacts->particle_count;
         ask(collider, thickness_m, phase,
-            is_particle ? x[i] : probe_point(&contacts->probes[i - contacts->particle_count], x), cache);
+            is_particle ? x[i] : tl_probe_point(&contacts->probes[i - contacts->particle_count], x), cache);
         if (is_particle && isinf(contacts->allowed[i]))
             contacts->allowed[i] = fmax(thickness_m - distance_to(cache, x[i], phase), 0);
     }
@@ -194,7 +155,7 @@ static void enforce_one(struct tl_contacts *contacts, size_t i, const struct tl_
                         struct tl_particles *particles)
 {
     bool moves = tl_collider_travel(contacts->collider) > 0, slipped = contacts->slipped[i];
-    contacts->allowed[i] = fmax(contacts->allowed[i] - PUSH_OUT_SPEED * step->h, 0);
+    contacts->allowed[i] = fmax(contacts->allowed[i] - step->push_out_speed * step->h, 0);
     if (slipped) { /* it may be anywhere */
         contacts->caches[i].near = false;
         ask(contacts->collider, step->thickness_m, step->phase, particles->x[i], &contacts->caches[i]);
@@ -215,16 +176,14 @@ void tl_contacts_enforce(struct tl_contacts *contacts, const struct tl_contact_p
     memset(contacts->slipped, 0, contacts->particle_count * sizeof(bool));
 }
 
-/* Keeps x on the outer side of a plane through `surface`, which was at `surface_before` when the particle was
- * at `before`; Coulomb friction bounds the slip by mu times the normal correction. */
-static vec3d push_out(vec3d x, vec3d before, vec3d surface, vec3d surface_before, vec3d normal,
-                      const struct tl_contact_params *params)
+vec3d tl_contact_push_out(vec3d x, vec3d before, vec3d surface, vec3d surface_before, vec3d normal,
+                          const struct tl_contact_params *params)
 {
     double depth = params->thickness_m - vec3d_dot(vec3d_sub(x, surface), normal);
     if (!(depth > 0))
         return x;
     double depth_before = fmax(params->thickness_m - vec3d_dot(vec3d_sub(before, surface_before), normal), 0);
-    double kept = fmax(depth_before - PUSH_OUT_SPEED * params->h, 0);
+    double kept = fmax(depth_before - params->push_out_speed * params->h, 0);
     double correction = depth - kept;
     if (!(correction > 0))
         return x;
@@ -240,7 +199,7 @@ static vec3d push_out(vec3d x, vec3d before, vec3d surface, vec3d surface_before
 static vec3d push_off_ground(vec3d x, vec3d before, const struct tl_contact_params *params)
 {
     const vec3d up = {0, 1, 0}, origin = {0};
-    return push_out(x, before, origin, origin, up, params);
+    return tl_contact_push_out(x, before, origin, origin, up, params);
 }
 
 struct surroundings {
@@ -262,8 +221,8 @@ static vec3d keep_out(const struct surroundings *around, struct tl_contact_cache
     if (stale(cache, around->travel, params->phase, x))
         ask(around->collider, params->thickness_m, params->phase_before, before, cache);
     if (cache->near)
-        x = push_out(x, before, anchor_at(cache, params->phase), anchor_at(cache, params->phase_before),
-                     cache->normal, params);
+        x = tl_contact_push_out(x, before, anchor_at(cache, params->phase),
+                                anchor_at(cache, params->phase_before), cache->normal, params);
     if (around->ground && x.y < params->thickness_m)
         x = push_off_ground(x, before, params);
     return x;
@@ -279,22 +238,15 @@ static vec3d set_aside(const struct surroundings *around, struct tl_contact_cach
     return depth > 0 ? vec3d_muladd(x, cache->normal, depth) : x;
 }
 
-/* A probe is moved by moving its vertices, each in proportion to its share and inverse mass. */
 static void solve_probe(const struct surroundings *around, const struct tl_probe *probe,
                         struct tl_contact_cache *cache, const struct tl_contact_params *params,
                         struct tl_particles *particles)
 {
-    vec3d x = probe_point(probe, particles->x), before = probe_point(probe, particles->previous);
-    double sum = 0;
-    for (int i = 0; i < 3; i++)
-        sum += particles->w[probe->vertices[i]] * probe->weights[i] * probe->weights[i];
+    vec3d x = tl_probe_point(probe, particles->x), before = tl_probe_point(probe, particles->previous);
+    double inverse = tl_probe_inverse_mass(probe, particles->w);
     vec3d push = vec3d_sub(keep_out(around, cache, x, before, params), x);
-    if (!(sum > 0) || !(vec3d_dot(push, push) > 0))
-        return;
-    for (int i = 0; i < 3; i++) {
-        uint32_t v = probe->vertices[i];
-        particles->x[v] = vec3d_muladd(particles->x[v], push, particles->w[v] * probe->weights[i] / sum);
-    }
+    if (inverse > 0 && vec3d_dot(push, push) > 0)
+        tl_probe_push(probe, vec3d_scale(push, 1 / inverse), particles);
 }
 
 void tl_contacts_solve(struct tl_contacts *contacts, const struct tl_contact_params *params,
@@ -322,7 +274,7 @@ static struct tl_contact_plane plane_of(vec3d x, vec3d surface, vec3d surface_be
 {
     vec3d motion = vec3d_sub(surface, surface_before);
     double depth = params->thickness_m - vec3d_dot(vec3d_sub(x, surface_before), normal);
-    double pushed = depth > 0 ? fmin(depth, PUSH_OUT_SPEED * params->h) : depth;
+    double pushed = depth > 0 ? fmin(depth, params->push_out_speed * params->h) : depth;
     return (struct tl_contact_plane){normal, motion, vec3d_dot(motion, normal) + pushed};
 }
 

@@ -10,6 +10,7 @@
 #include "cloth/collider.h"
 #include "cloth/energy.h"
 #include "cloth/particles.h"
+#include "cloth/probe.h"
 
 struct tl_contact_cache {
     vec3d asked_at;     /* where the particle was when the collider was asked */
@@ -18,13 +19,6 @@ struct tl_contact_cache {
     double asked_phase; /* 0 to 1 within the frame; above 1: never asked */
     double clearance;   /* m the particle may move against the anchor before asking again */
     bool near;          /* an anchor was found */
-};
-
-/* A point inside a coarse triangle that must stay outside too: between vertices that touch a round body, its
- * edge of length e would sink in by e^2 / 8R. */
-struct tl_probe {
-    uint32_t vertices[3];
-    double weights[3]; /* sum 1 */
 };
 
 struct tl_contacts {
@@ -44,8 +38,12 @@ struct tl_contacts {
 struct tl_contacts tl_contacts_create(const struct tl_topology *topology, const vec2s (*rest)[3]);
 void tl_contacts_release(struct tl_contacts *contacts);
 
+/* 14 mm in 0.07 s, and no more energy than a fall from 2 mm. */
+#define TL_PUSH_OUT_SPEED 0.2
+
 struct tl_contact_params {
     double friction, thickness_m;
+    double push_out_speed;      /* m/s: how fast penetration that was there before is taken out */
     double phase_before, phase; /* of the collider's motion at the start and the end of the substep */
     double h;                   /* s */
 };
@@ -82,5 +80,11 @@ void tl_contacts_solve(struct tl_contacts *contacts, const struct tl_contact_par
  * past a part, is caught in this frame. */
 void tl_contacts_enforce(struct tl_contacts *contacts, const struct tl_contact_params *step,
                          struct tl_particles *particles);
+
+/* Where a point goes that is driven from `before` to `x`: to the outer side of a plane through `surface`,
+ * which was at `surface_before`, with Coulomb friction, which bounds the slip by mu times the normal
+ * correction. */
+vec3d tl_contact_push_out(vec3d x, vec3d before, vec3d surface, vec3d surface_before, vec3d normal,
+                          const struct tl_contact_params *params);
 
 #endif

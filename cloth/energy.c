@@ -2,12 +2,17 @@
 
 #include "config/memory.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* Height over the longest edge. Below `sliver` a triangle's plane is rounding noise: its edges become links.
  * Below `needle` its cotangents are too large to say anything of curvature: it does not bend. */
 static const double sliver = 1e-4, needle = 0.02;
+
+/* Bending is a force, not a constraint, where omega h of its fastest wave is no more than this; beside
+ * constraints it would blow up above 2. */
+#define FORCE_LIMIT 1.4
 
 /* ---- Rest shapes ---- */
 
@@ -199,17 +204,21 @@ static void build_membranes(struct tl_energy *energy, const struct tl_topology *
     uint32_t(*corners)[3] = tl_alloc(count, sizeof *corners);
     for (size_t i = 0; i < count; i++)
         memcpy(corners[i], topology->triangles[triangles[i]], sizeof *corners);
-    uint32_t *order =
-        tl_batch_by_colour(&corners[0][0], 3, 3, count, topology->vertex_count, &energy->membrane_count);
+    struct tl_batches batches = tl_batches_build(&corners[0][0], 3, 3, count, topology->vertex_count);
+    energy->membrane_count = batches.count;
+    energy->membrane_run_count = batches.run_count;
+    energy->membrane_run_ends = batches.run_ends;
+    batches.run_ends = NULL;
     energy->membranes = TL_NEW_ARRAY(struct tl_membrane, energy->membrane_count);
     for (size_t i = 0; i < energy->membrane_count * TL_BATCH; i++) {
         struct tl_membrane *m = &energy->membranes[i / TL_BATCH];
         for (int k = 0; k < 3; k++)
             m->vertices[k][i % TL_BATCH] = (uint32_t)topology->vertex_count;
-        if (order[i] != TL_NONE)
-            set_up_membrane(corners[order[i]], &flats[triangles[order[i]]], m, i % TL_BATCH);
+        uint32_t element = batches.elements[i];
+        if (element != TL_NONE)
+            set_up_membrane(corners[element], &flats[triangles[element]], m, i % TL_BATCH);
     }
-    free(order);
+    tl_batches_release(&batches);
     free(corners);
 }
 
@@ -220,21 +229,23 @@ static void build_bends(struct tl_energy *energy, const struct tl_topology *topo
     struct stencil *stencils = TL_NEW_ARRAY(struct stencil, count);
     for (size_t t = 0; t < count; t++)
         stencils[t] = make_stencil(topology, flats, (uint32_t)t);
-    uint32_t *order = tl_batch_by_colour(stencils[0].vertices, sizeof *stencils / sizeof(uint32_t),
-                                         TL_BEND_STENCIL, count, topology->vertex_count, &energy->bend_count);
+    struct tl_batches batches = tl_batches_build(stencils[0].vertices, sizeof *stencils / sizeof(uint32_t),
+                                                 TL_BEND_STENCIL, count, topology->vertex_count);
+    energy->bend_count = batches.count;
     energy->bends = TL_NEW_ARRAY(struct tl_bend, energy->bend_count);
     for (size_t i = 0; i < energy->bend_count * TL_BATCH; i++) {
         struct tl_bend *bend = &energy->bends[i / TL_BATCH];
-        const struct stencil *from = order[i] != TL_NONE ? &stencils[order[i]] : NULL;
+        uint32_t element = batches.elements[i];
+        const struct stencil *from = element != TL_NONE ? &stencils[element] : NULL;
         size_t lane = i % TL_BATCH;
         for (int k = 0; k < TL_BEND_STENCIL; k++) {
             bend->vertices[k][lane] = from ? from->vertices[k] : (uint32_t)topology->vertex_count;
             for (int row = 0; row < 3; row++)
                 bend->rows[row][k][lane] = from ? from->rows[row][k] : 0;
         }
-        bend->area[lane] = from ? 0.5 * fabs(flats[order[i]].signed_double_area) : 0;
+        bend->area[lane] = from ? 0.5 * fabs(flats[element].signed_double_area) : 0;
     }
-    free(order);
+    tl_batches_release(&batches);
     free(stencils);
 }
 
@@ -265,6 +276,7 @@ struct tl_energy tl_energy_build(const struct tl_topology *topology, const vec2s
 void tl_energy_release(struct tl_energy *energy)
 {
     free(energy->membranes);
+    free(energy->membrane_run_ends);
     free(energy->bends);
     free(energy->links);
     free(energy->masses);
@@ -301,7 +313,7 @@ static void set_membrane(struct tl_membrane *m, const struct tl_cloth_fabric *fa
     for (int lane = 0; lane < TL_BATCH; lane++) {
         double cc = 0, cd = 0, dd = 0;
         for (int i = 0; i < 3; i++) {
-            double mobility = w[m->vertices[i][lane]], c = m->c[i][lane], d = m->d[i][lane];
+            double mobility = m->w[i][lane] = w[m->vertices[i][lane]], c = m->c[i][lane], d = m->d[i][lane];
             cc += mobility * c * c;
             cd += mobility * c * d;
             dd += mobility * d * d;
@@ -319,13 +331,31 @@ static void set_bend(struct tl_bend *bend, const struct tl_cloth_fabric *fabric,
 {
     double stiffness[3];
     tl_bend_stiffness(fabric, stiffness);
+    for (int i = 0; i < TL_BEND_STENCIL; i++)
+        for (int lane = 0; lane < TL_BATCH; lane++)
+            bend->w[i][lane] = w[bend->vertices[i][lane]];
     for (int row = 0; row < 3; row++)
         for (int lane = 0; lane < TL_BATCH; lane++) {
             double gradient = 0;
             for (int i = 0; i < TL_BEND_STENCIL; i++)
-                gradient += w[bend->vertices[i][lane]] * bend->rows[row][i][lane] * bend->rows[row][i][lane];
+                gradient += bend->w[i][lane] * bend->rows[row][i][lane] * bend->rows[row][i][lane];
             bend->factors[row][lane] = factor_of(gradient, stiffness[row] * bend->area[lane], h);
         }
+}
+
+/* Gershgorin's bound on omega^2 of bending. */
+static double fastest_bending(const struct tl_pulls *pulls, const double *w)
+{
+    double fastest = 0;
+    for (size_t i = 0; i < pulls->vertex_count; i++) {
+        double sum = 0;
+        for (uint32_t k = pulls->along_first[i]; k < pulls->along_first[i + 1]; k++)
+            sum += fabs(pulls->along[k].bending);
+        for (uint32_t k = pulls->others_first[i]; k < pulls->others_first[i + 1]; k++)
+            sum += fabs(pulls->bending[k]);
+        fastest = fmax(fastest, 2 * sum * w[i]);
+    }
+    return fastest;
 }
 
 void tl_energy_set(struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
@@ -335,6 +365,9 @@ void tl_energy_set(struct tl_energy *energy, const struct tl_cloth_fabric *fabri
         set_membrane(&energy->membranes[i], fabric, inverse_masses, h);
     for (size_t i = 0; i < energy->bend_count; i++)
         set_bend(&energy->bends[i], fabric, inverse_masses, h);
+    energy->bends_as_force = h * sqrt(fastest_bending(&energy->pulls, inverse_masses)) <= FORCE_LIMIT;
+    if (getenv("PRINT"))
+        printf("h %g bend crit %g\n", h, 2 / sqrt(fastest_bending(&energy->pulls, inverse_masses)));
     for (size_t i = 0; i < energy->link_count; i++)
         energy->links[i].compliance = 1 / (fabric->stretch_warp * h * h);
 }

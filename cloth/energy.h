@@ -34,6 +34,7 @@ struct tl_membrane {
     uint32_t vertices[3][TL_BATCH];
     double c[3][TL_BATCH], d[3][TL_BATCH];           /* 1/m */
     double area[TL_BATCH];                           /* m^2, at rest */
+    double w[3][TL_BATCH];                           /* 1/kg, of the vertices */
     double cc[TL_BATCH], cd[TL_BATCH], dd[TL_BATCH]; /* sums of w c_i c_i, ...: fixed while masses are */
     double weft[TL_BATCH], warp[TL_BATCH];           /* -1 / (w |grad|^2 + 1 / (k A h^2)) */
     double shear[TL_BATCH];                          /* 1 / (k A h^2) */
@@ -45,6 +46,7 @@ struct tl_bend {
     uint32_t vertices[TL_BEND_STENCIL][TL_BATCH]; /* own three, then across each edge; a missing one repeats
                                                      the first with rows of 0 */
     double rows[3][TL_BEND_STENCIL][TL_BATCH];    /* 1/m^2 */
+    double w[TL_BEND_STENCIL][TL_BATCH];          /* 1/kg */
     double factors[3][TL_BATCH];                  /* -1 / (sum w row^2 + 1 / (B A h^2)) */
     double area[TL_BATCH];
 };
@@ -58,11 +60,13 @@ struct tl_link {
 
 struct tl_energy {
     size_t membrane_count, bend_count, link_count; /* batches, batches, links */
+    size_t membrane_run_count, *membrane_run_ends; /* see struct tl_batches */
     struct tl_membrane *membranes;
     struct tl_bend *bends;
     struct tl_link *links;
     double *masses; /* [vertex_count] kg per areal density: a third of the area around */
     struct tl_pulls pulls;
+    bool bends_as_force; /* preview's substep is short enough for bending as an explicit force */
 };
 
 /* `rest` gives every physics triangle's flat rest shape. */
@@ -85,6 +89,9 @@ double tl_energy_forces(const struct tl_energy *energy, const struct tl_cloth_fa
 /* The forces alone, in two thirds of the time. */
 void tl_energy_pull(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric, const vec3d *x,
                     vec3d *forces);
+
+/* The forces of bending alone. */
+void tl_energy_bending_forces(const struct tl_energy *energy, const vec3d *x, vec3d *forces);
 
 /* Stiffness against L_uu, L_vv and sqrt(2) L_uv, N m. */
 void tl_bend_stiffness(const struct tl_cloth_fabric *fabric, double out[3]);

@@ -6,8 +6,8 @@
 #include <omp.h>
 #include <string.h>
 
-/* What is squeezed to less than this share of its rest length has no direction to push along. */
-#define NO_LENGTH 1e-6
+/* What is squeezed to less than this share of its rest length pushes no harder than at it. */
+#define LEAST_LENGTH 1e-6
 /* Below this, threads cost more than they bring. */
 #define PARALLEL_VERTICES 2000
 
@@ -52,30 +52,31 @@ struct stretching {
  *     e = k_weft/2 (sqrt(m_uu) - 1)^2 + k_warp/2 (sqrt(m_vv) - 1)^2 + k_shear/2 m_uv^2 / (m_uu m_vv):
  * 2A de/d(l_k^2) for each edge k, and A e. */
 TL_INLINE void differentiate(const struct tl_metric *metric, const struct stretching *k,
-                             const double squared[3][TL_BATCH], double shares[3][TL_BATCH],
+                             const double squared[3][TL_BATCH], double *restrict shares,
                              double energies[TL_BATCH])
 {
     for (int lane = 0; lane < TL_BATCH; lane++) {
         double c0 = metric->c[0][lane], c1 = metric->c[1][lane], c2 = -(c0 + c1);
         double d0 = metric->d[0][lane], d1 = metric->d[1][lane], d2 = -(d0 + d1);
         double l0 = squared[0][lane], l1 = squared[1][lane], l2 = squared[2][lane];
+        double uu0 = c1 * c2, uu1 = c2 * c0, uu2 = c0 * c1;
+        double vv0 = d1 * d2, vv1 = d2 * d0, vv2 = d0 * d1;
         double uv0 = c1 * d2 + c2 * d1, uv1 = c2 * d0 + c0 * d2, uv2 = c0 * d1 + c1 * d0;
-        double uu = -(c1 * c2 * l0 + c2 * c0 * l1 + c0 * c1 * l2);
-        double vv = -(d1 * d2 * l0 + d2 * d0 * l1 + d0 * d1 * l2);
+        double uu = -(uu0 * l0 + uu1 * l1 + uu2 * l2);
+        double vv = -(vv0 * l0 + vv1 * l1 + vv2 * l2);
         double uv = -0.5 * (uv0 * l0 + uv1 * l1 + uv2 * l2);
-        double has_u = uu > NO_LENGTH * NO_LENGTH ? 1.0 : 0.0, has_v = vv > NO_LENGTH * NO_LENGTH ? 1.0 : 0.0;
-        double length_u = sqrt(has_u > 0 ? uu : 1.0), length_v = sqrt(has_v > 0 ? vv : 1.0);
+        double length_u = sqrt(uu > LEAST_LENGTH * LEAST_LENGTH ? uu : LEAST_LENGTH * LEAST_LENGTH);
+        double length_v = sqrt(vv > LEAST_LENGTH * LEAST_LENGTH ? vv : LEAST_LENGTH * LEAST_LENGTH);
         double inverse_u = 1 / length_u, inverse_v = 1 / length_v;
-        double cosine = has_u * has_v * uv * inverse_u * inverse_v;
-        double slant = k->shear * cosine;
+        double cosine = uv * inverse_u * inverse_v, slant = k->shear * cosine;
         double by_uu = k->weft * (1 - inverse_u) - slant * cosine * inverse_u * inverse_u; /* 2 de/dm_uu */
         double by_vv = k->warp * (1 - inverse_v) - slant * cosine * inverse_v * inverse_v;
         double by_uv = slant * inverse_u * inverse_v; /* de/dm_uv */
         double area = metric->area[lane];
-        shares[0][lane] = -area * (by_uu * (c1 * c2) + by_vv * (d1 * d2) + by_uv * uv0);
-        shares[1][lane] = -area * (by_uu * (c2 * c0) + by_vv * (d2 * d0) + by_uv * uv1);
-        shares[2][lane] = -area * (by_uu * (c0 * c1) + by_vv * (d0 * d1) + by_uv * uv2);
-        double weft = has_u * length_u - 1, warp = has_v * length_v - 1;
+        shares[lane] = -area * (by_uu * uu0 + by_vv * vv0 + by_uv * uv0);
+        shares[TL_BATCH + lane] = -area * (by_uu * uu1 + by_vv * vv1 + by_uv * uv1);
+        shares[2 * TL_BATCH + lane] = -area * (by_uu * uu2 + by_vv * vv2 + by_uv * uv2);
+        double weft = length_u - 1, warp = length_v - 1;
         energies[lane] = 0.5 * area * (k->weft * weft * weft + k->warp * warp * warp + slant * cosine);
     }
 }
@@ -84,12 +85,13 @@ TL_CLONES static void differentiate_all(const struct tl_pulls *pulls, struct str
 {
     for (size_t i = range.from; i < range.to; i++) {
         const struct tl_metric *metric = &pulls->metrics[i];
-        double squared[3][TL_BATCH], shares[3][TL_BATCH], energies[TL_BATCH], sum = 0;
+        double squared[3][TL_BATCH], energies[TL_BATCH];
         for (int corner = 0; corner < 3; corner++)
             for (int lane = 0; lane < TL_BATCH; lane++)
                 squared[corner][lane] = pulls->squared[metric->edges[corner][lane]];
-        differentiate(metric, &k, (const double(*)[TL_BATCH])squared, shares, energies);
-        memcpy(&pulls->shares[i * 3 * TL_BATCH], shares, sizeof shares);
+        differentiate(metric, &k, (const double(*)[TL_BATCH])squared, &pulls->shares[i * 3 * TL_BATCH],
+                      energies);
+        double sum = 0;
         for (int lane = 0; lane < TL_BATCH; lane++)
             sum += energies[lane];
         pulls->parts[i] = sum;
@@ -111,18 +113,14 @@ static double add_rare(const struct tl_energy *energy, double stiffness)
         pulls->along_edges[pulls->excess[i][0]] += pulls->shares[pulls->excess[i][1]];
     for (size_t i = 0; i < energy->link_count; i++) {
         double rest = energy->links[i].rest, length = sqrt(pulls->squared[pulls->link_edges[i]]);
-        if (length > NO_LENGTH * rest)
-            pulls->along_edges[pulls->link_edges[i]] += stiffness * (1 - rest / length);
+        double share = length > LEAST_LENGTH * rest ? rest / length : 1 / LEAST_LENGTH;
+        pulls->along_edges[pulls->link_edges[i]] += stiffness * (1 - share);
         sum += 0.5 * stiffness * (length - rest) * (length - rest);
     }
     return sum;
 }
 
-struct pull {
-    double x, y, z, unused; /* of four, so that it is added at once */
-};
-
-TL_INLINE void add_pull(const double *from, const double *to, double strength, struct pull *sum)
+TL_INLINE void add_pull(const double *from, const double *to, double strength, struct tl_pull *sum)
 {
     double x = to[0] - from[0], y = to[1] - from[1], z = to[2] - from[2], unused = to[3] - from[3];
     sum->x += strength * x;
@@ -131,19 +129,51 @@ TL_INLINE void add_pull(const double *from, const double *to, double strength, s
     sum->unused += strength * unused;
 }
 
+TL_INLINE void add_others(const struct tl_pulls *pulls, size_t vertex, struct tl_pull *sum)
+{
+    const double *at = &pulls->places[4 * vertex];
+    for (uint32_t k = pulls->others_first[vertex]; k < pulls->others_first[vertex + 1]; k++)
+        add_pull(at, &pulls->places[4 * (size_t)pulls->others[k]], pulls->bending[k], sum);
+}
+
+TL_INLINE void add_along(const struct tl_pulls *pulls, size_t vertex, bool bending_alone, struct tl_pull *sum)
+{
+    const double *at = &pulls->places[4 * vertex];
+    for (uint32_t k = pulls->along_first[vertex]; k < pulls->along_first[vertex + 1]; k++) {
+        const struct tl_along *along = &pulls->along[k];
+        double strength = along->bending + (bending_alone ? 0 : pulls->along_edges[along->edge]);
+        add_pull(at, &pulls->places[4 * (size_t)along->other], strength, sum);
+    }
+}
+
+TL_INLINE void add_block(const struct tl_pulls *pulls, struct range block, bool bending_alone, vec3d *forces)
+{
+    for (size_t i = block.from; i < block.to; i++) {
+        struct tl_pull sum = {0};
+        add_along(pulls, i, bending_alone, &sum);
+        add_others(pulls, i, &sum);
+        pulls->sums[i] = sum;
+    }
+    for (size_t i = block.from; i < block.to; i++)
+        forces[i] = (vec3d){pulls->sums[i].x, pulls->sums[i].y, pulls->sums[i].z};
+}
+
+static struct range block_from(size_t from, struct range range)
+{
+    size_t to = from + TL_PULLS_BLOCK;
+    return (struct range){from, to < range.to ? to : range.to};
+}
+
 TL_CLONES static void add_forces(const struct tl_pulls *pulls, struct range range, vec3d *forces)
 {
-    for (size_t i = range.from; i < range.to; i++) {
-        const double *at = &pulls->places[4 * i];
-        struct pull sum = {0};
-        uint32_t k = pulls->first[2 * i], near_end = pulls->first[2 * i + 1], end = pulls->first[2 * i + 2];
-        for (; k < near_end; k++)
-            add_pull(at, &pulls->places[4 * (size_t)pulls->others[k]],
-                     pulls->bending[k] + pulls->along_edges[pulls->along[k]], &sum);
-        for (; k < end; k++)
-            add_pull(at, &pulls->places[4 * (size_t)pulls->others[k]], pulls->bending[k], &sum);
-        forces[i] = (vec3d){sum.x, sum.y, sum.z};
-    }
+    for (size_t from = range.from; from < range.to; from += TL_PULLS_BLOCK)
+        add_block(pulls, block_from(from, range), false, forces);
+}
+
+TL_CLONES static void add_bending_forces(const struct tl_pulls *pulls, struct range range, vec3d *forces)
+{
+    for (size_t from = range.from; from < range.to; from += TL_PULLS_BLOCK)
+        add_block(pulls, block_from(from, range), true, forces);
 }
 
 /* x.Kx/2 of a block of vertices. Forces add up to nothing, so that x may be measured from anywhere. */
@@ -153,9 +183,9 @@ TL_CLONES static double bending_energy(const struct tl_pulls *pulls, struct rang
     const double *origin = pulls->places;
     for (size_t i = range.from; i < range.to; i++) {
         const double *at = &pulls->places[4 * i];
-        struct pull sum = {0};
-        for (uint32_t k = pulls->first[2 * i]; k < pulls->first[2 * i + 2]; k++)
-            add_pull(at, &pulls->places[4 * (size_t)pulls->others[k]], pulls->bending[k], &sum);
+        struct tl_pull sum = {0};
+        add_along(pulls, i, true, &sum);
+        add_others(pulls, i, &sum);
         energy -=
             0.5 * (sum.x * (at[0] - origin[0]) + sum.y * (at[1] - origin[1]) + sum.z * (at[2] - origin[2]));
     }
@@ -165,11 +195,9 @@ TL_CLONES static double bending_energy(const struct tl_pulls *pulls, struct rang
 static void add_energies(const struct tl_pulls *pulls)
 {
     struct range mine = my_part(pulls->vertex_count, TL_PULLS_BLOCK);
-    for (size_t from = mine.from; from < mine.to; from += TL_PULLS_BLOCK) {
-        size_t to = from + TL_PULLS_BLOCK < mine.to ? from + TL_PULLS_BLOCK : mine.to;
+    for (size_t from = mine.from; from < mine.to; from += TL_PULLS_BLOCK)
         pulls->parts[pulls->metric_count + from / TL_PULLS_BLOCK] =
-            bending_energy(pulls, (struct range){from, to});
-    }
+            bending_energy(pulls, block_from(from, mine));
 }
 
 /* Returns the links' energy, and leaves the triangles' in pulls->parts, the bending's too if it is wanted. */
@@ -207,6 +235,20 @@ void tl_energy_pull(const struct tl_energy *energy, const struct tl_cloth_fabric
                     vec3d *forces)
 {
     evaluate(energy, fabric, x, false, forces);
+}
+
+void tl_energy_bending_forces(const struct tl_energy *energy, const vec3d *x, vec3d *forces)
+{
+    const struct tl_pulls *pulls = &energy->pulls;
+#pragma omp parallel if (pulls->vertex_count >= PARALLEL_VERTICES)
+    {
+        unsigned denormals = tl_denormals_off();
+        struct range mine = my_part(pulls->vertex_count, TL_PULLS_BLOCK);
+        copy_places(x, mine, pulls->places);
+#pragma omp barrier
+        add_bending_forces(pulls, mine, forces);
+        tl_denormals_restore(denormals);
+    }
 }
 
 double tl_energy_forces(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,

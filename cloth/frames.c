@@ -2,14 +2,13 @@
 
 #include "cloth/frames_lay.h"
 #include "config/memory.h"
-#include "config/simd.h"
 
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define LANES TL_FRAME_LANES
+#define LANES TL_LANES
 
 tl_frames *tl_frames_create(const tl_mesh *mesh, const uint32_t *weld)
 {
@@ -47,7 +46,7 @@ struct fans {
     const vec3s *positions;
 };
 
-static struct fans fans_of(const tl_frames *frames, size_t block, const vec3s *positions)
+TL_INLINE struct fans fans_of(const tl_frames *frames, size_t block, const vec3s *positions)
 {
     const struct tl_frame_block *b = &frames->blocks[block];
     const uint32_t(*rows)[LANES] = (const uint32_t(*)[LANES])frames->rows + b->first_row;
@@ -55,9 +54,9 @@ static struct fans fans_of(const tl_frames *frames, size_t block, const vec3s *p
     return (struct fans){rows, rows + 1, gradients, b->spoke_count, positions};
 }
 
-/* Edges from each lane's vertex, metres. */
+/* Edges from each lane's vertex, metres: LANES of one spoke, then those of the next. */
 struct edges {
-    float x[KEPT][LANES], y[KEPT][LANES], z[KEPT][LANES];
+    float x[KEPT * LANES], y[KEPT * LANES], z[KEPT * LANES];
 };
 
 /* Edges to spokes `first` to first + KEPT - 1; returns how many there are. Copying vertices whole and parting
@@ -69,44 +68,43 @@ TL_INLINE size_t fetch_edges(const struct fans *fans, size_t first, struct edges
     for (size_t k = 0; k < count; k++)
         for (size_t i = 0; i < LANES; i++)
             places[k * LANES + i] = fans->positions[fans->spokes[first + k][i]];
-    float *x = out->x[0], *y = out->y[0], *z = out->z[0];
     for (size_t i = 0; i < count * LANES; i++) {
-        x[i] = places[i].x;
-        y[i] = places[i].y;
-        z[i] = places[i].z;
+        out->x[i] = places[i].x;
+        out->y[i] = places[i].y;
+        out->z[i] = places[i].z;
     }
     float centres[3][LANES];
     for (int i = 0; i < LANES; i++)
         for (int c = 0; c < 3; c++)
             centres[c][i] = fans->positions[fans->centres[0][i]].raw[c];
     for (size_t k = 0; k < count; k++)
-        for (int i = 0; i < LANES; i++) {
-            out->x[k][i] -= centres[0][i];
-            out->y[k][i] -= centres[1][i];
-            out->z[k][i] -= centres[2][i];
+        for (size_t i = 0; i < LANES; i++) {
+            out->x[k * LANES + i] -= centres[0][i];
+            out->y[k * LANES + i] -= centres[1][i];
+            out->z[k * LANES + i] -= centres[2][i];
         }
     return count;
 }
 
 /* ---- Sums over corners ---- */
 
-/* Below this, squared, an edge or an area has no direction; products of two stay normal numbers. */
-#define NO_LENGTH 1e-18f
+/* Square metres, far below what the rounding of a garment's coordinates leaves of an area: keeps divisors
+ * above 0. */
+#define NOTHING 1e-18f
 
-/* atan2(sine, cosine) / length, for sine >= 0 and length >= NO_LENGTH, with one division: the angle at a
- * corner over the length of what it weighs. The angle is within 3e-6 rad: the polynomial meets atan at
- * Chebyshev's nodes of x^2. */
+/* atan2(sine, cosine) / length for sine > 0: the angle at a corner over the length of what it weighs. The
+ * angle is within 2e-7 rad: the polynomial meets atan(x) / x at Chebyshev's nodes of x^2. */
 TL_INLINE float angle_over(float sine, float cosine, float length)
 {
     float beside = fabsf(cosine);
-    float low = tl_lesser(sine, beside), high = tl_greater(sine, beside) + NO_LENGTH;
-    float inverse = 1 / (high * length);
-    float x = low * length * inverse, y = x * x;
-    float series = 0.19534659f + y * (-0.120448585f + y * (0.0565899852f - 0.0131303821f * y));
-    float angle = x * (0.999994835f + y * (-0.33295711f + y * series));
+    float low = tl_lesser(sine, beside), high = tl_greater(sine, beside);
+    float x = low / high, y = x * x;
+    float series = 0.0986886546f + y * (-0.0588297531f + y * (0.0237805186f - 0.00455979199f * y));
+    series = -0.333318127f + y * (0.199669618f + y * (-0.140032902f + y * series));
+    float angle = x * (0.999999882f + y * series);
     angle = sine > beside ? (float)M_PI_2 - angle : angle;
     angle = cosine < 0 ? (float)M_PI - angle : angle;
-    return angle * high * inverse;
+    return angle / length;
 }
 
 /* Unit normals of triangles, times their angles. */
@@ -114,10 +112,11 @@ TL_INLINE void add_normals(const struct edges *edges, size_t count, float sum[3]
 {
     for (size_t k = 0; k + 1 < count; k++)
         for (int i = 0; i < LANES; i++) {
-            float ax = edges->x[k][i], ay = edges->y[k][i], az = edges->z[k][i];
-            float bx = edges->x[k + 1][i], by = edges->y[k + 1][i], bz = edges->z[k + 1][i];
+            const size_t a = k * LANES + (size_t)i, b = a + LANES;
+            float ax = edges->x[a], ay = edges->y[a], az = edges->z[a];
+            float bx = edges->x[b], by = edges->y[b], bz = edges->z[b];
             float x = ay * bz - az * by, y = az * bx - ax * bz, z = ax * by - ay * bx;
-            float area = sqrtf(x * x + y * y + z * z + NO_LENGTH * NO_LENGTH);
+            float area = sqrtf(x * x + y * y + z * z + NOTHING * NOTHING);
             float weight = angle_over(area, ax * bx + ay * by + az * bz, area);
             sum[0][i] += x * weight;
             sum[1][i] += y * weight;
@@ -137,15 +136,16 @@ TL_INLINE void add_tangents(const struct edges *edges, size_t count, const float
     float across[2][LANES];
     for (size_t k = 0; k < count; k++)
         for (int i = 0; i < LANES; i++) {
-            float x = edges->x[k][i], y = edges->y[k][i], z = edges->z[k][i];
+            const size_t b = k * LANES + (size_t)i;
+            float x = edges->x[b], y = edges->y[b], z = edges->z[b];
             float bu = x * planes->u[0][i] + y * planes->u[1][i] + z * planes->u[2][i];
             float bv = x * planes->v[0][i] + y * planes->v[1][i] + z * planes->v[2][i];
             if (k > 0) {
                 float au = across[0][i], av = across[1][i];
                 float first = gradients[k - 1][0][i], second = gradients[k - 1][1][i];
                 float u = au * first + bu * second, v = av * first + bv * second;
-                float length = sqrtf(u * u + v * v + NO_LENGTH * NO_LENGTH);
-                float weight = angle_over(fabsf(au * bv - av * bu), au * bu + av * bv, length);
+                float length = sqrtf(u * u + v * v + NOTHING * NOTHING);
+                float weight = angle_over(fabsf(au * bv - av * bu) + NOTHING, au * bu + av * bv, length);
                 sum[0][i] += u * weight;
                 sum[1][i] += v * weight;
             }
@@ -169,7 +169,7 @@ TL_INLINE float has_direction(float squared)
 /* Normals without a direction stay as they were. */
 TL_INLINE void finish_normals(const float sum[3][LANES], float normal[3][LANES])
 {
-    float last[3][LANES];
+    float last[3][LANES]; /* a copy: lanes stay together only if nothing overlaps */
     memcpy(last, normal, sizeof last);
     for (int i = 0; i < LANES; i++) {
         float squared = sum[0][i] * sum[0][i] + sum[1][i] * sum[1][i] + sum[2][i] * sum[2][i];
@@ -236,8 +236,8 @@ TL_INLINE void borrow_normals(const tl_frames *frames, const uint32_t lenders[LA
             normal[c][i] = frames->states[lenders[i] / LANES].normal[c][lenders[i] % LANES];
 }
 
-/* Asks for what a block reads in sequence while the one before it is being summed: half of the time of large
- * meshes would be spent on waiting. */
+/* Asks for what a block reads in sequence while the one before it is being summed: large meshes would wait
+ * for a third of the time. */
 TL_INLINE void prefetch_block(const tl_frames *frames, size_t index)
 {
     if (index >= frames->block_count)

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LANES TL_FRAME_LANES
+#define LANES TL_LANES
 
 struct item {
     uint32_t normal, group; /* group: TL_NONE where the normal has none */
@@ -139,26 +139,29 @@ static void lay_fan(struct layer *layer, size_t index, struct lane *lane)
 
 #define WINDOW 1024 /* items: those of a block have about as many spokes, and are near each other */
 
-static int compare_spoke_counts(const void *a, const void *b)
+struct ranked {
+    uint32_t spoke_count, item;
+};
+
+static int compare_ranks(const void *a, const void *b)
 {
-    const struct item *left = *(const struct item *const *)a, *right = *(const struct item *const *)b;
+    const struct ranked *left = a, *right = b;
     if (left->spoke_count != right->spoke_count)
         return left->spoke_count < right->spoke_count ? -1 : 1;
-    return (left > right) - (left < right);
+    return (left->item > right->item) - (left->item < right->item);
 }
 
-/* Gives items [begin, end) their slots from block `first_block` on, and counts rows. */
+/* Gives items [begin, end) their slots from block `first_block` on; returns the block after them. */
 static size_t place_items(struct layer *layer, size_t begin, size_t end, size_t first_block)
 {
     size_t count = end - begin;
-    struct item **order = TL_NEW_ARRAY(struct item *, count);
+    struct ranked *order = TL_NEW_ARRAY(struct ranked, count);
     for (size_t i = 0; i < count; i++)
-        order[i] = &layer->items[begin + i];
+        order[i] = (struct ranked){layer->items[begin + i].spoke_count, (uint32_t)(begin + i)};
     for (size_t first = 0; first < count; first += WINDOW)
-        qsort(order + first, count - first < WINDOW ? count - first : WINDOW, sizeof *order,
-              compare_spoke_counts);
+        qsort(order + first, count - first < WINDOW ? count - first : WINDOW, sizeof *order, compare_ranks);
     for (size_t i = 0; i < count; i++)
-        order[i]->slot = (uint32_t)(first_block * LANES + i);
+        layer->items[order[i].item].slot = (uint32_t)(first_block * LANES + i);
     free(order);
     return first_block + (count + LANES - 1) / LANES;
 }

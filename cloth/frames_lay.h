@@ -1,4 +1,4 @@
-/* Fans of triangles around vertices, laid out so that TL_FRAME_LANES of them are streamed side by side.
+/* Fans of triangles around vertices, laid out so that TL_LANES of them are streamed side by side.
  *
  * An item is one tangent frame: a normal, and one tangent group around it. Its fan is a list of spokes, the
  * vertices around it in order, so that neighbours in the list are the other two corners of a triangle, and
@@ -10,8 +10,7 @@
 
 #include "cloth/frames.h"
 #include "cloth/frames_groups.h"
-
-#define TL_FRAME_LANES 16
+#include "config/simd.h"
 
 struct tl_frame_block {
     uint32_t first_row;      /* of `rows`: the vertices themselves, then spoke_count rows of spokes */
@@ -26,18 +25,18 @@ struct tl_frame_output {
 
 /* Kept between updates: what a vertex has whose triangles have no direction. */
 struct tl_frame_state {
-    float normal[3][TL_FRAME_LANES], tangent[3][TL_FRAME_LANES];
-    float sign[TL_FRAME_LANES];
+    float normal[3][TL_LANES], tangent[3][TL_LANES];
+    float sign[TL_LANES];
 };
 
 struct tl_frames {
-    size_t block_count, borrower_count;    /* the borrowers come last */
-    struct tl_frame_block *blocks;         /* [block_count + 1] */
-    uint32_t (*rows)[TL_FRAME_LANES];      /* render vertices */
-    float (*gradients)[2][TL_FRAME_LANES]; /* tangent = spoke * [0] + next spoke * [1] */
-    struct tl_frame_output *outputs;       /* render vertices of each block */
-    uint32_t (*lenders)[TL_FRAME_LANES];   /* [borrower_count] items, TL_FRAME_LANES in a block */
-    struct tl_frame_state *states;         /* [block_count] */
+    size_t block_count, borrower_count; /* the borrowers come last */
+    struct tl_frame_block *blocks;      /* [block_count + 1] */
+    uint32_t (*rows)[TL_LANES];         /* render vertices */
+    float (*gradients)[2][TL_LANES];    /* tangent = spoke * [0] + next spoke * [1] */
+    struct tl_frame_output *outputs;    /* render vertices of each block */
+    uint32_t (*lenders)[TL_LANES];      /* [borrower_count] items, TL_LANES in a block */
+    struct tl_frame_state *states;      /* [block_count] */
 };
 
 void tl_frames_lay(tl_frames *frames, const struct tl_frame_groups *groups);

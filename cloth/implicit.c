@@ -71,14 +71,14 @@ void tl_implicit_destroy(tl_implicit **handle)
 
 /* ---- Energy ---- */
 
-static double add_pull(const struct tl_pull *pull, const vec3d *x, vec3d *forces)
+static double add_hand(const struct tl_hand *hand, const vec3d *x, vec3d *forces)
 {
-    if (pull->particle == TL_NONE)
+    if (hand->particle == TL_NONE)
         return 0;
-    vec3d way = vec3d_sub(pull->target, x[pull->particle]);
-    double length = vec3d_norm(way), k = pull->stiffness, most = pull->most_force;
+    vec3d way = vec3d_sub(hand->target, x[hand->particle]);
+    double length = vec3d_norm(way), k = hand->stiffness, most = hand->most_force;
     double force = fmin(k * length, most);
-    forces[pull->particle] = vec3d_muladd(forces[pull->particle], vec3d_unit_or(way, (vec3d){0}), force);
+    forces[hand->particle] = vec3d_muladd(forces[hand->particle], vec3d_unit_or(way, (vec3d){0}), force);
     return force < most ? 0.5 * k * length * length : most * length - 0.5 * most * most / k;
 }
 
@@ -100,7 +100,7 @@ static double elastic_energy(const struct tl_implicit_problem *problem, size_t c
     double energy = tl_energy_forces(problem->energy, problem->fabric, count, x, forces);
     for (size_t i = 0; i < problem->springs.count; i++)
         energy += add_spring(&problem->springs.links[i], problem->springs.stiffness, x, forces);
-    return energy + add_pull(&problem->pull, x, forces);
+    return energy + add_hand(&problem->hand, x, forces);
 }
 
 static double kinetic_energy(const struct tl_particles *particles)
@@ -162,12 +162,12 @@ static void begin(tl_implicit *implicit, const struct tl_implicit_problem *probl
 static void linearise_pull(tl_implicit *implicit, const struct tl_implicit_problem *problem,
                            const struct tl_particles *particles)
 {
-    const struct tl_pull *pull = &problem->pull;
-    uint32_t i = pull->particle;
+    const struct tl_hand *hand = &problem->hand;
+    uint32_t i = hand->particle;
     if (i == TL_NONE || !(particles->w[i] > 0))
         return;
-    double length = vec3d_distance(pull->target, implicit->at[i]);
-    double stiffness = fmin(pull->stiffness, pull->most_force / length);
+    double length = vec3d_distance(hand->target, implicit->at[i]);
+    double stiffness = fmin(hand->stiffness, hand->most_force / length);
     implicit->inertia[i] = inertia_of(problem, particles->w[i]) + stiffness;
     implicit->load[i] = vec3d_muladd(implicit->load[i], implicit->given[i], stiffness);
 }
@@ -238,15 +238,18 @@ static bool judge_touches(tl_implicit *implicit, const struct tl_implicit_proble
     return agreed;
 }
 
-/* Squared residuals that are rounding, of positions within a few metres. */
-static double residual_floor(const tl_implicit *implicit, const struct tl_cloth_fabric *fabric)
+/* Squared residuals that need no more work: of speeds of 1e-5 m/s, as closely as others are solved; and
+ * rounding, of positions within a few metres. */
+static double residual_floor(const tl_implicit *implicit, const struct tl_implicit_problem *problem)
 {
     const double rounding_m = 4e-15;
+    double still_m = 1e-5 * problem->tolerance * problem->h, inertia = 0;
+    const struct tl_cloth_fabric *fabric = problem->fabric;
     double stiffness = fmax(fmax(fabric->stretch_weft, fabric->stretch_warp), fabric->shear);
-    double sum = (double)implicit->count * stiffness;
     for (size_t i = 0; i < implicit->count; i++)
-        sum += implicit->inertia[i];
-    return sum * rounding_m * rounding_m;
+        inertia += implicit->inertia[i];
+    return inertia * (still_m * still_m + rounding_m * rounding_m) +
+           (double)implicit->count * stiffness * rounding_m * rounding_m;
 }
 
 /* What only falls and flies keeps its momentum to rounding, however little is solved: elastic forces add up
@@ -255,7 +258,7 @@ static void keep_momentum(tl_implicit *implicit, const struct tl_implicit_proble
 {
     vec3d missing = {0};
     double inertia = 0;
-    bool free = problem->pull.particle == TL_NONE;
+    bool free = problem->hand.particle == TL_NONE;
     for (size_t i = 0; i < implicit->count && free; i++) {
         free = implicit->filters[i].freedom == TL_MOVES_FREELY;
         missing =
@@ -276,7 +279,7 @@ static void solve(tl_implicit *implicit, const struct tl_implicit_problem *probl
                                .load = implicit->resisted_load,
                                .filters = implicit->filters,
                                .tolerance = problem->tolerance,
-                               .floor = residual_floor(implicit, problem->fabric),
+                               .floor = residual_floor(implicit, problem),
                                .most_iterations = problem->most_iterations};
     bool agreed = false;
     for (int round = 0; round < ROUNDS && !agreed; round++) {

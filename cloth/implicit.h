@@ -17,7 +17,7 @@
 #include "cloth/implicit_touch.h"
 
 /* The hand: a spring to a target with a bounded force. */
-struct tl_pull {
+struct tl_hand {
     uint32_t particle; /* TL_NONE: none */
     vec3d target;
     double stiffness, most_force; /* N/m, N */
@@ -28,7 +28,7 @@ struct tl_implicit_problem {
     const struct tl_energy *energy;
     const struct tl_cloth_fabric *fabric;
     struct tl_springs springs; /* as many as in the last tl_implicit_create */
-    struct tl_pull pull;
+    struct tl_hand hand;
     struct tl_contacts *contacts;
     struct tl_contact_params contact;
     double gravity, drag, h;

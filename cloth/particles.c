@@ -60,6 +60,12 @@ void tl_particles_predict(struct tl_particles *particles, double gravity, double
     }
 }
 
+void tl_particles_push(struct tl_particles *particles, const vec3d *forces, double h)
+{
+    for (size_t i = 0; i < particles->count; i++)
+        particles->v[i] = vec3d_muladd(particles->v[i], forces[i], particles->w[i] * h);
+}
+
 void tl_particles_finish(struct tl_particles *particles, double h)
 {
     for (size_t i = 0; i < particles->count; i++)

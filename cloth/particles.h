@@ -24,6 +24,9 @@ void tl_particles_release(struct tl_particles *particles);
  * the drag. */
 void tl_particles_predict(struct tl_particles *particles, double gravity, double drag, double h);
 
+/* v <- v + h w f, with forces f in N. */
+void tl_particles_push(struct tl_particles *particles, const vec3d *forces, double h);
+
 /* v <- (x - previous) / h. */
 void tl_particles_finish(struct tl_particles *particles, double h);
 

@@ -139,80 +139,84 @@ static void release_stencils(struct stencils *stencils)
     tl_fans_release(&stencils->fans);
 }
 
-/* Rows are found twice: first counted, then written. */
-struct rows {
+/* Pairs of bending alone are found twice: first counted, then written. */
+struct finder {
     struct tl_pulls *pulls;
     const struct stencils *stencils;
-    const struct tl_fans *edge_ends;
     uint32_t *seen; /* [vertex_count] last vertex in whose row it was, plus 1 */
-    size_t entry;
+    uint32_t count;
     bool write;
 };
 
-static void add_entry(struct rows *rows, uint32_t vertex, uint32_t other, uint32_t edge)
-{
-    if (rows->seen[other] == vertex + 1 || other == vertex || other == rows->pulls->vertex_count)
-        return;
-    rows->seen[other] = vertex + 1;
-    if (rows->write) {
-        rows->pulls->others[rows->entry] = other;
-        rows->pulls->along[rows->entry] = edge;
-    }
-    rows->entry++;
-}
-
-static void add_row(struct rows *rows, uint32_t vertex)
-{
-    const struct tl_pulls *pulls = rows->pulls;
-    const struct tl_fans *ends = rows->edge_ends, *fans = &rows->stencils->fans;
-    pulls->first[2 * vertex] = (uint32_t)rows->entry;
-    for (uint32_t k = ends->first[vertex]; k < ends->first[vertex + 1]; k++) {
-        uint32_t end = ends->items[k];
-        add_entry(rows, vertex, pulls->edges[end / 2][1 - end % 2], end / 2);
-    }
-    pulls->first[2 * vertex + 1] = (uint32_t)rows->entry;
-    for (uint32_t k = fans->first[vertex]; k < fans->first[vertex + 1]; k++) {
-        const uint32_t *corners =
-            &rows->stencils->corners[fans->items[k] / TL_BEND_STENCIL * TL_BEND_STENCIL];
-        for (int i = 0; i < TL_BEND_STENCIL; i++)
-            add_entry(rows, vertex, corners[i], TL_NONE);
-    }
-    pulls->first[2 * vertex + 2] = (uint32_t)rows->entry;
-}
-
-static void build_rows(struct tl_pulls *pulls, const struct stencils *stencils)
+static void build_along(struct tl_pulls *pulls)
 {
     struct tl_fans ends = tl_fans_build(pulls->edges[0], 2 * pulls->edge_count, pulls->vertex_count);
-    struct rows rows = {.pulls = pulls,
-                        .stencils = stencils,
-                        .edge_ends = &ends,
-                        .seen = TL_NEW_ARRAY(uint32_t, pulls->vertex_count + 1)};
-    pulls->first = TL_NEW_ARRAY(uint32_t, 2 * pulls->vertex_count + 1);
-    for (int pass = 0; pass < 2; pass++) {
-        rows.write = pass == 1;
-        rows.entry = 0;
-        for (uint32_t i = 0; i < pulls->vertex_count; i++)
-            add_row(&rows, i);
-        memset(rows.seen, 0, (pulls->vertex_count + 1) * sizeof *rows.seen);
-        if (rows.write)
-            break;
-        pulls->others = TL_NEW_ARRAY(uint32_t, rows.entry);
-        pulls->along = TL_NEW_ARRAY(uint32_t, rows.entry);
-        pulls->bending = TL_NEW_ARRAY(double, rows.entry);
+    pulls->along = TL_NEW_ARRAY(struct tl_along, 2 * pulls->edge_count);
+    for (size_t k = 0; k < 2 * pulls->edge_count; k++) {
+        uint32_t end = ends.items[k];
+        pulls->along[k].other = pulls->edges[end / 2][1 - end % 2];
+        pulls->along[k].edge = end / 2;
     }
-    free(rows.seen);
-    tl_fans_release(&ends);
+    pulls->along_first = ends.first;
+    free(ends.items);
+}
+
+static void find_other(struct finder *finder, uint32_t vertex, uint32_t other)
+{
+    if (other == finder->pulls->vertex_count || finder->seen[other] == vertex + 1)
+        return;
+    finder->seen[other] = vertex + 1;
+    if (finder->write)
+        finder->pulls->others[finder->count] = other;
+    finder->count++;
+}
+
+static void find_others(struct finder *finder, uint32_t vertex)
+{
+    const struct tl_pulls *pulls = finder->pulls;
+    const struct tl_fans *fans = &finder->stencils->fans;
+    finder->seen[vertex] = vertex + 1;
+    for (uint32_t k = pulls->along_first[vertex]; k < pulls->along_first[vertex + 1]; k++)
+        finder->seen[pulls->along[k].other] = vertex + 1;
+    for (uint32_t k = fans->first[vertex]; k < fans->first[vertex + 1]; k++) {
+        const uint32_t *corners =
+            &finder->stencils->corners[fans->items[k] / TL_BEND_STENCIL * TL_BEND_STENCIL];
+        for (int i = 0; i < TL_BEND_STENCIL; i++)
+            find_other(finder, vertex, corners[i]);
+    }
+}
+
+static void build_others(struct tl_pulls *pulls, const struct stencils *stencils)
+{
+    pulls->others_first = TL_NEW_ARRAY(uint32_t, pulls->vertex_count + 1);
+    for (int pass = 0; pass < 2; pass++) {
+        struct finder finder = {pulls, stencils, TL_NEW_ARRAY(uint32_t, pulls->vertex_count), 0, pass == 1};
+        for (uint32_t i = 0; i < pulls->vertex_count; i++) {
+            find_others(&finder, i);
+            pulls->others_first[i + 1] = finder.count;
+        }
+        free(finder.seen);
+        if (pass == 0)
+            pulls->others = TL_NEW_ARRAY(uint32_t, finder.count);
+    }
+    pulls->bending = TL_NEW_ARRAY(double, pulls->others_first[pulls->vertex_count]);
+}
+
+/* Where a row keeps each vertex's number. */
+static void list_entries(struct tl_pulls *pulls, uint32_t vertex, double **entries)
+{
+    for (uint32_t k = pulls->along_first[vertex]; k < pulls->along_first[vertex + 1]; k++)
+        entries[pulls->along[k].other] = &pulls->along[k].bending;
+    for (uint32_t k = pulls->others_first[vertex]; k < pulls->others_first[vertex + 1]; k++)
+        entries[pulls->others[k]] = &pulls->bending[k];
 }
 
 /* Adds -A k_r R_ri R_rj over the stencils around vertex i. From either end of a pair the same products come
  * in the same order, so the matrix is symmetric to the last bit. */
-static void set_row(struct tl_pulls *pulls, const struct tl_energy *energy, const struct stencils *stencils,
-                    const double stiffness[3], uint32_t vertex, uint32_t *entry_of)
+static void add_row(const struct tl_pulls *pulls, const struct tl_energy *energy,
+                    const struct stencils *stencils, const double stiffness[3], uint32_t vertex,
+                    double *const *entries)
 {
-    for (uint32_t k = pulls->first[2 * vertex]; k < pulls->first[2 * vertex + 2]; k++) {
-        pulls->bending[k] = 0;
-        entry_of[pulls->others[k]] = k;
-    }
     const struct tl_fans *fans = &stencils->fans;
     for (uint32_t f = fans->first[vertex]; f < fans->first[vertex + 1]; f++) {
         size_t corner = fans->items[f] % TL_BEND_STENCIL, element = fans->items[f] / TL_BEND_STENCIL;
@@ -223,8 +227,8 @@ static void set_row(struct tl_pulls *pulls, const struct tl_energy *energy, cons
             if (other == pulls->vertex_count || other == vertex)
                 continue;
             for (int row = 0; row < 3; row++)
-                pulls->bending[entry_of[other]] -= stiffness[row] * bend->area[lane] *
-                                                   (bend->rows[row][corner][lane] * bend->rows[row][i][lane]);
+                *entries[other] -= stiffness[row] * bend->area[lane] *
+                                   (bend->rows[row][corner][lane] * bend->rows[row][i][lane]);
         }
     }
 }
@@ -232,10 +236,15 @@ static void set_row(struct tl_pulls *pulls, const struct tl_energy *energy, cons
 void tl_pulls_set(struct tl_pulls *pulls, const struct tl_energy *energy, const double stiffness[3])
 {
     struct stencils stencils = list_stencils(energy, pulls->vertex_count);
-    uint32_t *entry_of = TL_NEW_ARRAY(uint32_t, pulls->vertex_count);
-    for (uint32_t i = 0; i < pulls->vertex_count; i++)
-        set_row(pulls, energy, &stencils, stiffness, i, entry_of);
-    free(entry_of);
+    double **entries = TL_NEW_ARRAY(double *, pulls->vertex_count);
+    for (size_t k = 0; k < 2 * pulls->edge_count; k++)
+        pulls->along[k].bending = 0;
+    memset(pulls->bending, 0, pulls->others_first[pulls->vertex_count] * sizeof *pulls->bending);
+    for (uint32_t i = 0; i < pulls->vertex_count; i++) {
+        list_entries(pulls, i, entries);
+        add_row(pulls, energy, &stencils, stiffness, i, entries);
+    }
+    free(entries);
     release_stencils(&stencils);
 }
 
@@ -252,7 +261,8 @@ struct tl_pulls tl_pulls_build(const struct tl_topology *topology, const struct 
     for (size_t i = 0; i < energy->link_count; i++)
         pulls.link_edges[i] = find_edge(topology, energy->links[i].a, energy->links[i].b);
     struct stencils stencils = list_stencils(energy, pulls.vertex_count);
-    build_rows(&pulls, &stencils);
+    build_along(&pulls);
+    build_others(&pulls, &stencils);
     release_stencils(&stencils);
 
     size_t blocks = (pulls.vertex_count + TL_PULLS_BLOCK - 1) / TL_PULLS_BLOCK;
@@ -260,6 +270,7 @@ struct tl_pulls tl_pulls_build(const struct tl_topology *topology, const struct 
     pulls.squared = TL_NEW_ARRAY(double, pulls.edge_count);
     pulls.shares = TL_NEW_ARRAY(double, pulls.metric_count * 3 * TL_BATCH + 1);
     pulls.along_edges = TL_NEW_ARRAY(double, pulls.edge_count);
+    pulls.sums = TL_NEW_ARRAY(struct tl_pull, pulls.vertex_count);
     pulls.parts = TL_NEW_ARRAY(double, pulls.metric_count + blocks);
     return pulls;
 }
@@ -271,14 +282,16 @@ void tl_pulls_release(struct tl_pulls *pulls)
     free(pulls->slots);
     free(pulls->excess);
     free(pulls->link_edges);
-    free(pulls->first);
-    free(pulls->others);
+    free(pulls->along_first);
+    free(pulls->others_first);
     free(pulls->along);
+    free(pulls->others);
     free(pulls->bending);
     free(pulls->places);
     free(pulls->squared);
     free(pulls->shares);
     free(pulls->along_edges);
+    free(pulls->sums);
     free(pulls->parts);
     *pulls = (struct tl_pulls){0};
 }

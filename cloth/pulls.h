@@ -27,6 +27,17 @@ struct tl_metric {
     double area[TL_BATCH];
 };
 
+/* Four numbers, so that a wide register adds them at once; the last is 0. */
+struct tl_pull {
+    double x, y, z, unused;
+};
+
+/* One end's view of an edge. */
+struct tl_along {
+    uint32_t other, edge;
+    double bending; /* -K_ij, N/m */
+};
+
 struct tl_pulls {
     size_t vertex_count, edge_count, metric_count, excess_count;
     uint32_t (*edges)[2]; /* as in the topology */
@@ -35,19 +46,20 @@ struct tl_pulls {
     uint32_t (*excess)[2]; /* [excess_count] edge, entry: third and further triangles at an edge */
     uint32_t *link_edges;  /* [link_count] */
 
-    /* Rows by vertex: those along edges are entries first[2 i] to first[2 i + 1] - 1, those of bending alone
-     * go on to first[2 i + 2] - 1. */
-    uint32_t *first;  /* [2 vertex_count + 1] */
+    /* Rows by vertex: along[along_first[i]] and on are along edges, others[others_first[i]] and on are of
+     * bending alone. */
+    uint32_t *along_first, *others_first; /* [vertex_count + 1] */
+    struct tl_along *along;
     uint32_t *others; /* the vertex at the other end */
-    uint32_t *along;  /* the edge, of entries that have one */
-    double *bending;  /* -K_ij, N/m */
+    double *bending;  /* [entries of others] -K_ij, N/m */
 
     /* Scratch. */
     double *places;  /* [vertex_count][4] m */
     double *squared; /* [edge_count] m^2 */
     double *shares;  /* [metric_count][3][TL_BATCH] N/m, then a 0 for edges with fewer than two triangles */
-    double *along_edges; /* [edge_count] N/m */
-    double *parts;       /* [metric_count + blocks of vertices] J */
+    double *along_edges;  /* [edge_count] N/m */
+    struct tl_pull *sums; /* [vertex_count] N */
+    double *parts;        /* [metric_count + blocks of vertices] J */
 };
 
 /* Of the membranes, bends and links in `energy`. */

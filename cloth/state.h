@@ -5,6 +5,8 @@
 #include "cloth/cloth.h"
 #include "cloth/contact.h"
 #include "cloth/implicit.h"
+#include "cloth/layers.h"
+#include "cloth/repulsion.h"
 #include "cloth/sew.h"
 
 /* A held vertex: fixed, or riding on a triangle of the avatar. */
@@ -22,6 +24,7 @@ struct tl_cloth {
     struct tl_cloth_params params;
     struct tl_topology topology;
     vec2s (*rest)[3];     /* [triangle_count] flat rest shape of each physics triangle, metres */
+    vec3d *made_at;       /* [particles.count] m, where the garment's file has them */
     double shortest_edge; /* m; strain says nothing of shorter ones */
     struct tl_energy energy;
     double critical_step; /* s */
@@ -30,6 +33,8 @@ struct tl_cloth {
     tl_implicit *implicit; /* settle only */
     struct tl_implicit_tally tally;
     struct tl_contacts contacts;
+    struct tl_layers layers;       /* with params.self_repulsion */
+    struct tl_repulsion repulsion; /* the same */
     struct tl_sewing sewing;
     size_t pin_count;
     struct tl_pin *pins;

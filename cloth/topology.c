@@ -232,28 +232,50 @@ static uint8_t choose_colour(uint64_t *used, const uint32_t *vertices, size_t co
     return (uint8_t)colour;
 }
 
-uint32_t *tl_batch_by_colour(const uint32_t *corners, size_t stride, size_t per_element, size_t count,
-                             size_t vertex_count, size_t *batch_count)
+/* First batch of each colour; those of the shared one hold one element each, and are runs of their own. */
+static void lay_out(struct tl_batches *batches, const size_t sizes[COLOURS], size_t first[COLOURS])
+{
+    batches->run_ends = TL_NEW_ARRAY(size_t, COLOURS + sizes[COLOURS - 1]);
+    for (size_t c = 0; c < COLOURS; c++) {
+        bool shared = c == COLOURS - 1;
+        size_t runs = shared ? sizes[c] : sizes[c] > 0,
+               length = shared ? 1 : (sizes[c] + TL_BATCH - 1) / TL_BATCH;
+        first[c] = batches->count;
+        for (size_t run = 0; run < runs; run++) {
+            batches->count += length;
+            batches->run_ends[batches->run_count++] = batches->count;
+        }
+    }
+}
+
+struct tl_batches tl_batches_build(const uint32_t *corners, size_t stride, size_t per_element, size_t count,
+                                   size_t vertex_count)
 {
     uint64_t *used = TL_NEW_ARRAY(uint64_t, vertex_count);
     uint8_t *colours = TL_NEW_ARRAY(uint8_t, count);
-    size_t sizes[COLOURS] = {0}, next[COLOURS], slots = 0;
+    size_t sizes[COLOURS] = {0}, next[COLOURS];
     for (size_t e = 0; e < count; e++) {
         colours[e] = choose_colour(used, corners + e * stride, per_element);
         sizes[colours[e]]++;
     }
-    for (size_t c = 0; c < COLOURS; c++) { /* elements of the shared colour get a batch each */
-        next[c] = slots;
-        slots += c == COLOURS - 1 ? sizes[c] * TL_BATCH : (sizes[c] + TL_BATCH - 1) / TL_BATCH * TL_BATCH;
-    }
-    uint32_t *order = TL_NEW_ARRAY(uint32_t, slots);
-    memset(order, 0xff, slots * sizeof *order);
+    struct tl_batches batches = {0};
+    lay_out(&batches, sizes, next);
+    batches.elements = TL_NEW_ARRAY(uint32_t, batches.count * TL_BATCH);
+    memset(batches.elements, 0xff, batches.count * TL_BATCH * sizeof *batches.elements);
+    for (size_t c = 0; c < COLOURS; c++)
+        next[c] *= TL_BATCH;
     for (size_t e = 0; e < count; e++) {
-        order[next[colours[e]]] = (uint32_t)e;
+        batches.elements[next[colours[e]]] = (uint32_t)e;
         next[colours[e]] += colours[e] == COLOURS - 1 ? TL_BATCH : 1;
     }
     free(used);
     free(colours);
-    *batch_count = slots / TL_BATCH;
-    return order;
+    return batches;
+}
+
+void tl_batches_release(struct tl_batches *batches)
+{
+    free(batches->elements);
+    free(batches->run_ends);
+    *batches = (struct tl_batches){0};
 }

@@ -42,11 +42,18 @@ struct tl_fans tl_fans_build(const uint32_t *corners, size_t corner_count, size_
 void tl_fans_release(struct tl_fans *fans);
 
 /* Batches of TL_BATCH elements that share no vertex, so that a batch can be solved as one: greedy colours,
- * one after the other, each in the order given. Element i has `per_element` vertices at corners + i * stride.
- * Returns a new array of element numbers, TL_NONE in lanes that stay empty. */
-#define TL_BATCH 4
-uint32_t *tl_batch_by_colour(const uint32_t *corners, size_t stride, size_t per_element, size_t count,
-                             size_t vertex_count, size_t *batch_count);
+ * one after the other, each in the order given. A run is batches that share no vertex either: those of a
+ * colour. */
+#define TL_BATCH 8
+struct tl_batches {
+    size_t count, run_count;
+    uint32_t *elements; /* [count][TL_BATCH] numbers; TL_NONE in lanes that stay empty */
+    size_t *run_ends;   /* [run_count] the batch after each run's last */
+};
+/* Element i has `per_element` vertices at corners + i * stride. */
+struct tl_batches tl_batches_build(const uint32_t *corners, size_t stride, size_t per_element, size_t count,
+                                   size_t vertex_count);
+void tl_batches_release(struct tl_batches *batches);
 
 /* Disjoint sets with the lowest member as the representative of each. */
 uint32_t tl_sets_find(uint32_t *parents, uint32_t member);

@@ -1,158 +1,174 @@
 #include "cloth/xpbd.h"
 
+#include "config/simd.h"
+
 /* Shorter than this a vector has no direction to push along. */
 #define NO_LENGTH 1e-12
 
 /* ---- Batches ---- */
 
-/* The wider of the two where the processor has it: both give the same bits, as neither contracts. Under the
- * address sanitizer there is one only: resolvers run before it is ready. */
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
-#define WIDE __attribute__((target_clones("avx2", "default")))
-#else
-#define WIDE
-#endif
-#define INLINE static inline __attribute__((always_inline))
-
-typedef double lanes __attribute__((vector_size(8 * TL_BATCH)));
-typedef double lanes_in_memory __attribute__((vector_size(8 * TL_BATCH), aligned(8)));
-typedef long long mask __attribute__((vector_size(8 * TL_BATCH)));
-
-struct lanes3 {
-    lanes x, y, z;
+/* The places of one vertex of each element. */
+struct places {
+    double x[TL_BATCH], y[TL_BATCH], z[TL_BATCH];
 };
 
-INLINE lanes lanes_of(const double *values)
+TL_INLINE void load(const vec3d *x, const uint32_t *vertices, struct places *to)
 {
-    return *(const lanes_in_memory *)values;
+    for (int lane = 0; lane < TL_BATCH; lane++) {
+        to->x[lane] = x[vertices[lane]].x;
+        to->y[lane] = x[vertices[lane]].y;
+        to->z[lane] = x[vertices[lane]].z;
+    }
 }
 
-INLINE lanes choose(mask which, lanes yes, lanes no)
-{
-    return (lanes)((which & (mask)yes) | (~which & (mask)no));
-}
-
-INLINE lanes root(lanes v)
-{
-    for (int i = 0; i < TL_BATCH; i++)
-        v[i] = sqrt(v[i]);
-    return v;
-}
-
-INLINE lanes dot(struct lanes3 a, struct lanes3 b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-INLINE struct lanes3 scale(struct lanes3 a, lanes s)
-{
-    return (struct lanes3){a.x * s, a.y * s, a.z * s};
-}
-
-INLINE struct lanes3 muladd(struct lanes3 a, struct lanes3 b, lanes s)
-{
-    return (struct lanes3){a.x + b.x * s, a.y + b.y * s, a.z + b.z * s};
-}
-
-INLINE struct lanes3 load(const struct tl_particles *particles, const uint32_t *v)
-{
-    const vec3d *x = particles->x;
-    return (struct lanes3){{x[v[0]].x, x[v[1]].x, x[v[2]].x, x[v[3]].x},
-                           {x[v[0]].y, x[v[1]].y, x[v[2]].y, x[v[3]].y},
-                           {x[v[0]].z, x[v[1]].z, x[v[2]].z, x[v[3]].z}};
-}
-
-INLINE lanes load_inverse_masses(const struct tl_particles *particles, const uint32_t *v)
-{
-    return (lanes){particles->w[v[0]], particles->w[v[1]], particles->w[v[2]], particles->w[v[3]]};
-}
-
-INLINE void store(struct lanes3 x, const uint32_t *v, struct tl_particles *particles)
+TL_INLINE void store(const struct places *from, const uint32_t *vertices, vec3d *x)
 {
     for (int lane = 0; lane < TL_BATCH; lane++)
-        particles->x[v[lane]] = (vec3d){x.x[lane], x.y[lane], x.z[lane]};
+        x[vertices[lane]] = (vec3d){from->x[lane], from->y[lane], from->z[lane]};
 }
 
-/* What a stretch C = |F| - 1 of gradient row_i F/|F| pushes, in units of F. */
-INLINE lanes stretch_push(struct lanes3 f, lanes factor)
+TL_INLINE vec3d at(const struct places *places, int lane)
 {
-    const lanes zero = {0}, one = {1, 1, 1, 1};
-    lanes squared = dot(f, f);
-    mask has_direction = squared > NO_LENGTH * NO_LENGTH;
-    return choose(has_direction, factor * (one - one / root(choose(has_direction, squared, one))), zero);
+    return (vec3d){places->x[lane], places->y[lane], places->z[lane]};
 }
 
-/* Both stretches and the shear, one after the other. A push p on row c moves vertex i by w_i c_i p, and so
- * F_u by cc p and F_v by cd p: the three are solved on F alone, and the vertices move once. */
-INLINE void solve_membrane(const struct tl_membrane *m, struct tl_particles *particles)
+TL_INLINE void put(struct places *places, int lane, vec3d v)
 {
-    const lanes zero = {0}, one = {1, 1, 1, 1};
-    struct lanes3 x[3] = {0}, u = {0}, v = {0};
-    for (int i = 0; i < 3; i++) {
-        x[i] = load(particles, m->vertices[i]);
-        u = muladd(u, x[i], lanes_of(m->c[i]));
-        v = muladd(v, x[i], lanes_of(m->d[i]));
+    places->x[lane] = v.x;
+    places->y[lane] = v.y;
+    places->z[lane] = v.z;
+}
+
+TL_INLINE void move(struct places *places, int lane, vec3d by, double share)
+{
+    put(places, lane, vec3d_muladd(at(places, lane), by, share));
+}
+
+/* One membrane of each lane on its way: a push p on row c moves vertex i by w_i c_i p, and so F_u by cc p and
+ * F_v by cd p. Both stretches and the shear are solved, one after the other, on F alone, and the vertices
+ * move once. In four stages: what one stage of a batch waits for, roots and divisions, the same stage of the
+ * next batches need not. */
+struct membrane_work {
+    struct places x[3], u, v, push_c, push_d;
+};
+
+/* A stretch C = |F| - 1 pushes by factor C along F/|F|: in units of F. */
+TL_INLINE double stretch_push(vec3d f, double factor)
+{
+    double squared = vec3d_dot(f, f);
+    return factor * (1 - 1 / sqrt(squared > NO_LENGTH * NO_LENGTH ? squared : NO_LENGTH * NO_LENGTH));
+}
+
+TL_INLINE void solve_weft(const struct tl_membrane *m, int lane, struct membrane_work *work)
+{
+    vec3d origin = at(&work->x[0], lane), side = vec3d_sub(at(&work->x[1], lane), origin);
+    vec3d other = vec3d_sub(at(&work->x[2], lane), origin);
+    vec3d u = vec3d_muladd(vec3d_scale(side, m->c[1][lane]), other, m->c[2][lane]);
+    vec3d v = vec3d_muladd(vec3d_scale(side, m->d[1][lane]), other, m->d[2][lane]);
+    vec3d push = vec3d_scale(u, stretch_push(u, m->weft[lane]));
+    put(&work->push_c, lane, push);
+    put(&work->u, lane, vec3d_muladd(u, push, m->cc[lane]));
+    put(&work->v, lane, vec3d_muladd(v, push, m->cd[lane]));
+}
+
+TL_INLINE void solve_warp(const struct tl_membrane *m, int lane, struct membrane_work *work)
+{
+    vec3d u = at(&work->u, lane), v = at(&work->v, lane);
+    vec3d push = vec3d_scale(v, stretch_push(v, m->warp[lane]));
+    put(&work->push_d, lane, push);
+    put(&work->u, lane, vec3d_muladd(u, push, m->cd[lane]));
+    put(&work->v, lane, vec3d_muladd(v, push, m->dd[lane]));
+}
+
+/* C = g/sqrt(p), with g = u.v, a = |u|^2, b = |v|^2, p = a b, has the gradient
+ * c_i (v a - u g) / (a sqrt(p)) + d_i (u b - v g) / (b sqrt(p)), of weighted square
+ * (p - g^2) (cc b - 2 cd g + dd a) / p^2: its push needs no root, and one division. */
+TL_INLINE void solve_shear(const struct tl_membrane *m, int lane, struct membrane_work *work)
+{
+    vec3d u = at(&work->u, lane), v = at(&work->v, lane);
+    double a = vec3d_dot(u, u), b = vec3d_dot(v, v), g = vec3d_dot(u, v), p = a * b;
+    double square = (p - g * g) * (m->cc[lane] * b - 2 * m->cd[lane] * g + m->dd[lane] * a);
+    double sum = m->shear[lane] * p * p + square, multiplier = sum > 0 ? -g / sum : 0;
+    vec3d push_c = vec3d_muladd(at(&work->push_c, lane), v, multiplier * p);
+    vec3d push_d = vec3d_muladd(at(&work->push_d, lane), u, multiplier * p);
+    put(&work->push_c, lane, vec3d_muladd(push_c, u, -multiplier * b * g));
+    put(&work->push_d, lane, vec3d_muladd(push_d, v, -multiplier * a * g));
+}
+
+TL_INLINE void move_corners(const struct tl_membrane *m, int lane, struct membrane_work *work)
+{
+    vec3d push_c = at(&work->push_c, lane), push_d = at(&work->push_d, lane), pushes[3];
+    for (int i = 1; i < 3; i++)
+        pushes[i] = vec3d_muladd(vec3d_scale(push_c, m->c[i][lane]), push_d, m->d[i][lane]);
+    pushes[0] = vec3d_scale(vec3d_add(pushes[1], pushes[2]), -1);
+    for (int i = 0; i < 3; i++)
+        move(&work->x[i], lane, pushes[i], m->w[i][lane]);
+}
+
+/* Batches of a run that are solved side by side. */
+#define GROUP 8
+
+TL_INLINE void solve_group(const struct tl_membrane *m, size_t count, vec3d *x)
+{
+    struct membrane_work work[GROUP];
+    for (size_t k = 0; k < count; k++)
+        for (int i = 0; i < 3; i++)
+            load(x, m[k].vertices[i], &work[k].x[i]);
+    for (size_t k = 0; k < count; k++)
+        for (int lane = 0; lane < TL_BATCH; lane++)
+            solve_weft(&m[k], lane, &work[k]);
+    for (size_t k = 0; k < count; k++)
+        for (int lane = 0; lane < TL_BATCH; lane++)
+            solve_warp(&m[k], lane, &work[k]);
+    for (size_t k = 0; k < count; k++)
+        for (int lane = 0; lane < TL_BATCH; lane++)
+            solve_shear(&m[k], lane, &work[k]);
+    for (size_t k = 0; k < count; k++)
+        for (int lane = 0; lane < TL_BATCH; lane++)
+            move_corners(&m[k], lane, &work[k]);
+    for (size_t k = 0; k < count; k++)
+        for (int i = 0; i < 3; i++)
+            store(&work[k].x[i], m[k].vertices[i], x);
+}
+
+TL_CLONES static void solve_run(const struct tl_membrane *membranes, size_t count, vec3d *x)
+{
+    for (size_t first = 0; first < count; first += GROUP)
+        solve_group(membranes + first, count - first < GROUP ? count - first : GROUP, x);
+}
+
+static void solve_membranes(const struct tl_energy *energy, vec3d *particles)
+{
+    for (size_t run = 0, from = 0; run < energy->membrane_run_count; run++) {
+        solve_run(energy->membranes + from, energy->membrane_run_ends[run] - from, particles);
+        from = energy->membrane_run_ends[run];
     }
-    lanes cc = lanes_of(m->cc), cd = lanes_of(m->cd), dd = lanes_of(m->dd);
-    struct lanes3 push_c = scale(u, stretch_push(u, lanes_of(m->weft)));
-    u = muladd(u, push_c, cc);
-    v = muladd(v, push_c, cd);
-    struct lanes3 push_d = scale(v, stretch_push(v, lanes_of(m->warp)));
-    u = muladd(u, push_d, cd);
-    v = muladd(v, push_d, dd);
-
-    /* C = cosine between the threads, of gradient c_i (v/|v| - C u/|u|)/|u| + d_i (u/|u| - C v/|v|)/|v|. */
-    lanes uu = dot(u, u), vv = dot(v, v);
-    mask has_angle = (uu > NO_LENGTH * NO_LENGTH) & (vv > NO_LENGTH * NO_LENGTH);
-    uu = choose(has_angle, uu, one);
-    vv = choose(has_angle, vv, one);
-    lanes both = one / root(uu * vv), cosine = dot(u, v) * both;
-    struct lanes3 along_u = muladd(scale(v, both), u, -cosine / uu);
-    struct lanes3 along_v = muladd(scale(u, both), v, -cosine / vv);
-    lanes sum = lanes_of(m->shear) + cc * dot(along_u, along_u) + 2 * cd * dot(along_u, along_v) +
-                dd * dot(along_v, along_v);
-    mask resists = has_angle & (sum > 0);
-    lanes multiplier = choose(resists, -cosine / choose(resists, sum, one), zero);
-    push_c = muladd(push_c, along_u, multiplier);
-    push_d = muladd(push_d, along_v, multiplier);
-    for (int i = 0; i < 3; i++) {
-        lanes w = load_inverse_masses(particles, m->vertices[i]);
-        x[i] = muladd(muladd(x[i], push_c, w * lanes_of(m->c[i])), push_d, w * lanes_of(m->d[i]));
-        store(x[i], m->vertices[i], particles);
-    }
-}
-
-WIDE static void solve_membranes(const struct tl_energy *energy, struct tl_particles *particles)
-{
-    for (size_t i = 0; i < energy->membrane_count; i++)
-        solve_membrane(&energy->membranes[i], particles);
 }
 
 /* The three components of the curvature: vectors, linear in the positions. */
-INLINE void solve_bend(const struct tl_bend *bend, struct tl_particles *particles)
+TL_INLINE void solve_curvature(const struct tl_bend *bend, int row, int lane,
+                               struct places x[TL_BEND_STENCIL])
 {
-    struct lanes3 x[TL_BEND_STENCIL] = {0};
-    lanes w[TL_BEND_STENCIL] = {0};
-    for (int i = 0; i < TL_BEND_STENCIL; i++) {
-        x[i] = load(particles, bend->vertices[i]);
-        w[i] = load_inverse_masses(particles, bend->vertices[i]);
-    }
-    for (int row = 0; row < 3; row++) {
-        struct lanes3 curvature = scale(x[0], lanes_of(bend->rows[row][0]));
-        for (int i = 1; i < TL_BEND_STENCIL; i++)
-            curvature = muladd(curvature, x[i], lanes_of(bend->rows[row][i]));
-        struct lanes3 push = scale(curvature, lanes_of(bend->factors[row]));
-        for (int i = 0; i < TL_BEND_STENCIL; i++)
-            x[i] = muladd(x[i], push, w[i] * lanes_of(bend->rows[row][i]));
-    }
-    for (int i = TL_BEND_STENCIL - 1; i >= 0; i--) /* the first last: it stands in for missing ones */
-        store(x[i], bend->vertices[i], particles);
+    vec3d curvature = {0};
+    for (int i = 0; i < TL_BEND_STENCIL; i++)
+        curvature = vec3d_muladd(curvature, at(&x[i], lane), bend->rows[row][i][lane]);
+    vec3d push = vec3d_scale(curvature, bend->factors[row][lane]);
+    for (int i = 0; i < TL_BEND_STENCIL; i++)
+        move(&x[i], lane, push, bend->w[i][lane] * bend->rows[row][i][lane]);
 }
 
-WIDE static void solve_bends(const struct tl_energy *energy, struct tl_particles *particles)
+TL_CLONES static void solve_bends(const struct tl_bend *bends, size_t count, vec3d *particles)
 {
-    for (size_t i = 0; i < energy->bend_count; i++)
-        solve_bend(&energy->bends[i], particles);
+    for (const struct tl_bend *bend = bends; bend < bends + count; bend++) {
+        struct places x[TL_BEND_STENCIL];
+        for (int i = 0; i < TL_BEND_STENCIL; i++)
+            load(particles, bend->vertices[i], &x[i]);
+        for (int row = 0; row < 3; row++)
+            for (int lane = 0; lane < TL_BATCH; lane++)
+                solve_curvature(bend, row, lane, x);
+        for (int i = TL_BEND_STENCIL - 1; i >= 0; i--) /* the first last: it stands in for missing ones */
+            store(&x[i], bend->vertices[i], particles);
+    }
 }
 
 /* ---- Links and the whole ---- */
@@ -171,8 +187,9 @@ void tl_xpbd_solve_link(const struct tl_link *link, struct tl_particles *particl
 
 void tl_xpbd_solve(const struct tl_energy *energy, struct tl_particles *particles)
 {
-    solve_membranes(energy, particles);
-    solve_bends(energy, particles);
+    solve_membranes(energy, particles->x);
+    if (!energy->bends_as_force)
+        solve_bends(energy->bends, energy->bend_count, particles->x);
     for (size_t i = 0; i < energy->link_count; i++)
         tl_xpbd_solve_link(&energy->links[i], particles);
 }

@@ -26,11 +26,15 @@ check "... and by way of MDD" sh -c '[ "$(cmp -l skirt.pc2 again.pc2 | awk "\$1 
 for n in 0 1 2 3 4; do $TOILE export $played skirt.pc2 -o frame.$n.obj --frame $n --quiet; done
 $TOILE export $played 'frame.#.obj' -o again.pc2 --frames 0:4 --quiet
 check "... and by way of OBJ files" sh -c '[ "$(cmp -l skirt.pc2 again.pc2 | awk "\$1 < 21 || \$1 > 24" | wc -l)" = 0 ]'
+mkdir sub && cp skirt.obj frame.?.obj sub
+printf 'scene:\n  garment: skirt.obj\n  motion: frame.#.obj\n  avatar: none\n' >sub/scene.yaml
+$TOILE export sub/scene.yaml -o scene.pc2 --frames 0:4 --quiet
+check "a scene file names its motion beside itself" cmp scene.pc2 again.pc2
 $TOILE export $played skirt.pc2 -o played.glb --frame 3 --quiet
 check "a played frame as GLB" $TOILE info played.glb
 
 check "info of a PC2" sh -c "$TOILE info skirt.pc2 | grep -Eq '^samples +5$' && $TOILE info skirt.pc2 | grep -Eq '^first_frame +2$'"
-check "info of an MDD" sh -c "$TOILE info skirt.mdd | grep -Eq '^samples_per_s +30$'"
+check "info of an MDD" sh -c "$TOILE info skirt.mdd | grep -Eq '^rate +30$' && $TOILE info skirt.mdd | grep -Eq '^rate_per +second$'"
 check "info of a sequence" sh -c "$TOILE info 'frame.#.obj' | grep -Eq '^format +OBJ sequence$'"
 check "info of an OBJ" sh -c "$TOILE info skirt.obj | grep -Eq '^units +m$'"
 

@@ -92,7 +92,7 @@ static void refuse_changes(const char *name, const uint8_t *valid, size_t size, 
 {
     const char *path = scratch(name);
     struct outcome outcome = {0};
-    uint8_t bytes[CACHE_MAX];
+    uint8_t bytes[CACHE_MAX] = {0};
     scratch_write(path, valid, size);
     assert_true(try_cache(&outcome, path));
     for (size_t i = 0; i < count; i++) {
@@ -114,7 +114,7 @@ static void refuse_changes(const char *name, const uint8_t *valid, size_t size, 
 static void pc2_that_lies_is_refused(void **state)
 {
     (void)state;
-    uint8_t valid[CACHE_MAX];
+    uint8_t valid[CACHE_MAX] = {0};
     size_t size = cache_bytes(false, valid);
     static const struct change changes[] = {
         {0, 1, "p"},                                         /* magic */
@@ -144,7 +144,7 @@ static void pc2_that_lies_is_refused(void **state)
 static void mdd_that_lies_is_refused(void **state)
 {
     (void)state;
-    uint8_t valid[CACHE_MAX];
+    uint8_t valid[CACHE_MAX] = {0};
     size_t size = cache_bytes(true, valid);
     static const struct change changes[] = {
         {0, 4, "\0\0\0\0"},                                  /* samples: none */
@@ -192,6 +192,7 @@ static void objects_that_lie_are_refused(void **state)
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1//1 2//1 3//1\n",
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1/ 2/1/ 3/1/\n",
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1/1/1 2/1 3/1\n",
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/-2 2/1 3/1\n",
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0\nf 1 2 3\n",
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 1\nf 1 2 3\n",
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\n",
@@ -325,9 +326,11 @@ static void cut_anywhere(const char *name, const uint8_t *bytes, size_t size, tr
 static void truncated_files(void **state)
 {
     (void)state;
-    uint8_t bytes[CACHE_MAX];
-    cut_anywhere("cut.pc2", bytes, cache_bytes(false, bytes), try_cache, false);
-    cut_anywhere("cut.mdd", bytes, cache_bytes(true, bytes), try_cache, false);
+    uint8_t bytes[CACHE_MAX] = {0};
+    size_t size = cache_bytes(false, bytes);
+    cut_anywhere("cut.pc2", bytes, size, try_cache, false);
+    size = cache_bytes(true, bytes);
+    cut_anywhere("cut.mdd", bytes, size, try_cache, false);
     write_material();
     cut_anywhere("cut.obj", (const uint8_t *)valid_object, strlen(valid_object), try_object, true);
 }
@@ -335,9 +338,11 @@ static void truncated_files(void **state)
 static void mutated_files(void **state)
 {
     (void)state;
-    uint8_t bytes[CACHE_MAX];
-    mutate("mutated.pc2", bytes, cache_bytes(false, bytes), 1500, false, try_cache);
-    mutate("mutated.mdd", bytes, cache_bytes(true, bytes), 1500, false, try_cache);
+    uint8_t bytes[CACHE_MAX] = {0};
+    size_t size = cache_bytes(false, bytes);
+    mutate("mutated.pc2", bytes, size, 1500, false, try_cache);
+    size = cache_bytes(true, bytes);
+    mutate("mutated.mdd", bytes, size, 1500, false, try_cache);
     write_material();
     const uint8_t *object = (const uint8_t *)valid_object;
     mutate("mutated.obj", object, strlen(valid_object), 1500, false, try_object);

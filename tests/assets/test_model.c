@@ -65,6 +65,28 @@ static void small_geometry(void **state)
     tl_model_release(&model);
 }
 
+/* In inches the rest pose and every pose of a clip are 0.0254 times as large; a vertex is its own point. */
+static void told_units_scale_poses_too(void **state)
+{
+    (void)state;
+    tl_model metres = load(small_path()), inches;
+    tl_error error = {0};
+    assert_ok(tl_model_load_in(small_path(), TL_UNITS_IN, &inches, &error), error);
+    for (int clip = -1; clip < 1; clip++) {
+        vec3s large[4], small[4], points[4];
+        tl_model_pose(&metres, clip, 1.5, large);
+        tl_model_pose(&inches, clip, 1.5, small);
+        tl_model_points(&inches, small, points);
+        for (int i = 0; i < 4; i++) {
+            assert_near(glms_vec3_distance(glms_vec3_scale(large[i], 0.0254f), small[i]), 0, 1e-8);
+            assert_near(glms_vec3_distance(large[i], points[i]), 0, 1e-6);
+        }
+    }
+    assert_int_equal(tl_model_point_count(&inches), 4);
+    tl_model_release(&metres);
+    tl_model_release(&inches);
+}
+
 static void small_materials(void **state)
 {
     (void)state;
@@ -560,6 +582,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(small_geometry),
+        cmocka_unit_test(told_units_scale_poses_too),
         cmocka_unit_test(small_materials),
         cmocka_unit_test(gloss_maps_are_exact_where_glossiest),
         cmocka_unit_test(alpha_factors_go_into_the_cutoff),

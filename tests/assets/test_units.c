@@ -70,37 +70,47 @@ static void who_says_units_is_believed(void **state)
     assert_int_equal(tl_units_read(small, TL_UNITS_AUTO, true).units, TL_UNITS_M); /* glTF, a swatch */
     assert_int_equal(tl_units_read(box_of_size(10, 20, 10), TL_UNITS_AUTO, true).units, TL_UNITS_M);
     assert_int_equal(tl_units_read(tall, TL_UNITS_AUTO, true).units, TL_UNITS_MM); /* glTF, but absurd */
-    assert_null(tl_units_describe("a.glb", &(struct tl_units_reading){.units = TL_UNITS_M}));
+    assert_null(tl_units_describe("a.glb", &(struct tl_units_reading){.units = TL_UNITS_M}, ""));
 }
 
 static void the_guess_is_said(void **state)
 {
     (void)state;
     struct tl_units_reading reading = read_tall(812);
-    char *line = tl_units_describe("skirt.obj", &reading);
+    char *line = tl_units_describe("skirt.obj", &reading, "--units");
     assert_string_equal(line, "skirt.obj: 812 units at its longest: taken as millimetres (0.812 m); --units "
                               "tells otherwise");
     free(line);
     reading = read_tall(60);
-    line = tl_units_describe("skirt.obj", &reading);
+    line = tl_units_describe("skirt.obj", &reading, "--units");
     assert_non_null(strstr(line, "centimetres (0.6 m), though inches would do"));
     free(line);
     reading = read_tall(0.1f);
-    line = tl_units_describe("skirt.obj", &reading);
+    line = tl_units_describe("skirt.obj", &reading, "--units");
     assert_non_null(strstr(line, "no unit fits: taken as metres"));
+    free(line);
+    reading = tl_units_read(box_of_size(400, 812, 100), TL_UNITS_AUTO, true);
+    line = tl_units_describe("a.glb", &reading, "scene.avatar_units");
+    assert_string_equal(line,
+                        "a.glb: 812 units at its longest: absurd as metres: taken as millimetres (0.812 m); "
+                        "scene.avatar_units tells otherwise");
     free(line);
 }
 
-/* A person who lies along Z with feet at z = 0; the same upright; a wide skirt; a garment in front of the
- * origin. */
+/* A person who lies along Z with feet at z = 0, and with arms spread; panels about one whose waist is there;
+ * upright; a wide skirt; a garment in front of the origin. */
 static void lying_boxes_are_noticed(void **state)
 {
     (void)state;
     const struct tl_box lying = {{{-0.3f, -0.15f, 0}}, {{0.3f, 0.15f, 1.7f}}};
+    const struct tl_box spread = {{{-0.85f, -0.15f, 0}}, {{0.85f, 0.15f, 1.7f}}};
+    const struct tl_box panels = {{{-0.33f, -0.1f, -0.2f}}, {{0.32f, 0.2f, 0.58f}}};
     const struct tl_box upright = {{{-0.3f, 0, -0.15f}}, {{0.3f, 1.7f, 0.15f}}};
     const struct tl_box skirt = {{{-0.5f, 0.7f, -0.5f}}, {{0.5f, 1, 0.5f}}};
     const struct tl_box before = {{{-0.3f, 1, 1}}, {{0.3f, 1.4f, 2}}};
     assert_true(tl_units_read(lying, TL_UNITS_M, false).z_up);
+    assert_true(tl_units_read(spread, TL_UNITS_AUTO, false).z_up);
+    assert_true(tl_units_read(panels, TL_UNITS_AUTO, false).z_up);
     assert_false(tl_units_read(lying, TL_UNITS_AUTO, true).z_up); /* glTF says which way is up */
     assert_false(tl_units_read(upright, TL_UNITS_AUTO, false).z_up);
     assert_false(tl_units_read(skirt, TL_UNITS_AUTO, false).z_up);

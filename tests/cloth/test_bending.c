@@ -4,7 +4,6 @@
  * with Runge-Kutta steps of L/2000. The discrete strip has one column of vertices half a cell before the
  * clamp and one half a cell after it, both held: the curvature of a hinge stands for half a cell on either
  * side. */
-#include "sheets.h"
 #include "solvers.h"
 
 #include "assets/panel.h"
@@ -167,7 +166,7 @@ static struct tip droop(const struct strip *strip)
 {
     tl_garment garment = make_strip(strip);
     struct tl_cloth_fabric fabric = fabric_defaults();
-    struct tl_cloth_params params = params_defaults();
+    struct tl_cloth_params params = params_exact(strip->solver);
     fabric.bend_weft = fabric.areal_density * params.gravity * length_m * length_m * length_m / strip->load;
     fabric.bend_warp = strip->across * fabric.bend_weft;
     fabric.stretch_weft = fabric.stretch_warp = fabric.shear = 3000;
@@ -176,7 +175,6 @@ static struct tip droop(const struct strip *strip)
      * right only in that limit. */
     double omega = 3.516 * sqrt(params.gravity / (strip->load * length_m));
     fabric.damping = 2 * omega;
-    params.solver = strip->solver;
     if (!solver_rests_exactly(strip->solver)) {
         params.dt = 1.0 / 180;
         params.substeps = (int)(900 / sqrt(strip->load));

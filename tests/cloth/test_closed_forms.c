@@ -4,7 +4,6 @@
  * A strip one quad wide that resists along its warp only is two chains of springs side by side: each triangle
  * has its one warp edge in one of the two columns. With triangles of area A and rows d apart a spring's
  * stiffness is k A / d^2. */
-#include "sheets.h"
 #include "solvers.h"
 
 #include "config/log.h"
@@ -53,9 +52,8 @@ static void check_free_fall(int solver)
     const struct sheet_shape shape = {8, 8, 0.25, 0.25};
     tl_garment garment = sheet_make(&shape, lay_flat);
     struct tl_cloth_fabric fabric = fabric_defaults();
-    struct tl_cloth_params params = params_defaults();
+    struct tl_cloth_params params = params_exact(solver);
     fabric.damping = 0;
-    params.solver = solver;
     tl_cloth *cloth = cloth_make(&garment, &fabric, &params);
     double h = solver_rule(solver) == RULE_VERLET ? 0 : tl_cloth_substep(cloth), worst = 0;
     for (int frame = 1; frame <= 15; frame++) {
@@ -96,9 +94,8 @@ static void check_spring(int solver)
     for (int column = 0; column < 2; column++)
         sheet_pin(&garment, sheet_vertex(&shape, column, 1));
     struct tl_cloth_fabric fabric = chain_fabric(2);
-    struct tl_cloth_params params = params_defaults();
+    struct tl_cloth_params params = params_exact(solver);
     fabric.damping = params.gravity = 0;
-    params.solver = solver;
     tl_cloth *cloth = cloth_make(&garment, &fabric, &params);
     for (int column = 0; column < 2; column++)
         cloth->particles.x[column].y = -stretch;
@@ -156,9 +153,8 @@ static double rest_error(const struct rest_case *rest, int solver, double h)
             sheet_pin(&garment, sheet_vertex(&chain_shape, column, 0));
     }
     struct tl_cloth_fabric fabric = chain_fabric(rest->stretch);
-    struct tl_cloth_params params = params_defaults();
+    struct tl_cloth_params params = params_exact(solver);
     fabric.damping = rest->damping;
-    params.solver = solver;
     params_set_step(&params, h);
     tl_cloth *cloth = cloth_make(&garment, &fabric, &params);
     cloth_run(cloth, NULL, rest->seconds);
@@ -179,7 +175,7 @@ static double rest_error(const struct rest_case *rest, int solver, double h)
 /* To rounding where the solver rests exactly; else at the second order in the step that its sweep has. */
 static void check_rest(const struct rest_case *rest, int solver)
 {
-    double coarse = rest_error(rest, solver, 1.0 / 1920);
+    double coarse = rest_error(rest, solver, solver_resting_step(solver));
     if (solver_rests_exactly(solver)) {
         printf("%s, %s: relative error %.1e\n", rest->name, tl_cloth_solver_names[solver], coarse);
         assert_true(coarse <= 1e-9);
@@ -355,12 +351,11 @@ static struct frame_error frame_error(int solver, double h)
             if (i % 8 == 0 || k % 8 == 0)
                 sheet_pin(&garment, sheet_vertex(&frame_shape, i, k));
     struct tl_cloth_fabric fabric = fabric_defaults();
-    struct tl_cloth_params params = params_defaults();
+    struct tl_cloth_params params = params_exact(solver);
     fabric.stretch_weft = fabric.stretch_warp = 100;
     fabric.shear = 30;
     fabric.damping = 100;
     params.gravity = 0;
-    params.solver = solver;
     params_set_step(&params, h);
     tl_cloth *cloth = make_frame(&garment, &fabric, &params, gamma);
     cloth_run(cloth, NULL, 1.5);
@@ -374,7 +369,8 @@ static void test_picture_frame(void **state)
 {
     (void)state;
     for (int solver = 0; solver < TL_CLOTH_SOLVER_COUNT; solver++) {
-        struct frame_error coarse = frame_error(solver, 1.0 / 1920), fine = frame_error(solver, 1.0 / 3840);
+        double h = solver_resting_step(solver);
+        struct frame_error coarse = frame_error(solver, h), fine = frame_error(solver, h / 2);
         printf("picture frame, %s: relative error of energy %.1e then %.1e, of force %.1e then %.1e\n",
                tl_cloth_solver_names[solver], coarse.energy, fine.energy, coarse.force, fine.force);
         /* The numerical derivative along the frame is good to its step squared, 1e-12, and rounding. */

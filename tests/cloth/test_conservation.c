@@ -1,6 +1,5 @@
 /* What a free, weightless sheet keeps under every solver: momentum to rounding; angular momentum and energy
  * to rounding or to the order of the step, and never more energy than it had under the implicit methods. */
-#include "sheets.h"
 #include "solvers.h"
 
 #include "config/log.h"
@@ -27,12 +26,11 @@ static const struct sheet_shape shape = {8, 8, 0.25, 0.25};
 static tl_cloth *make_free(const tl_garment *garment, int solver, double h)
 {
     struct tl_cloth_fabric fabric = fabric_defaults();
-    struct tl_cloth_params params = params_defaults();
+    struct tl_cloth_params params = params_exact(solver);
     fabric.stretch_weft = 200;
     fabric.stretch_warp = 300;
     fabric.shear = 50;
     fabric.damping = params.gravity = 0;
-    params.solver = solver;
     params_set_step(&params, h);
     return cloth_make(garment, &fabric, &params);
 }

@@ -3,7 +3,6 @@
  * Motion is compared before anything buckles or touches: a sheet clamped along an edge, whose weight sets it
  * swinging. Corners that are pinned alone would be singular, and strain there grow without end as meshes are
  * refined. */
-#include "sheets.h"
 #include "solvers.h"
 
 #include "config/log.h"
@@ -27,12 +26,11 @@ static void swing(int solver, double h, vec3d out[SWING_VERTICES])
         for (int row = 0; row < 2; row++)
             sheet_pin(&garment, sheet_vertex(&swing_shape, column, row));
     struct tl_cloth_fabric fabric = fabric_defaults();
-    struct tl_cloth_params params = params_defaults();
+    struct tl_cloth_params params = params_exact(solver);
     fabric.stretch_weft = fabric.stretch_warp = 40;
     fabric.shear = 10;
     fabric.bend_weft = fabric.bend_warp = 1e-4;
     fabric.damping = 0;
-    params.solver = solver;
     params.frame_rate = 1 / SWING_S;
     params_set_step(&params, h);
     tl_cloth *cloth = cloth_make(&garment, &fabric, &params);
@@ -106,12 +104,11 @@ static double sheet_sag(int rows)
         sheet_pin(&garment, sheet_vertex(&shape, column, rows));
     }
     struct tl_cloth_fabric fabric = fabric_defaults();
-    struct tl_cloth_params params = params_defaults();
+    struct tl_cloth_params params = params_exact(TL_CLOTH_REFERENCE);
     fabric.stretch_weft = fabric.stretch_warp = stretch;
     fabric.shear = 10;
     fabric.bend_weft = fabric.bend_warp = 0;
     fabric.damping = 3;
-    params.solver = TL_CLOTH_REFERENCE;
     tl_cloth *cloth = cloth_make(&garment, &fabric, &params);
     cloth_run(cloth, NULL, 12);
     double lowest = -cloth->particles.x[sheet_vertex(&shape, 1, rows / 2)].y;

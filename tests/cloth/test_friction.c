@@ -1,6 +1,5 @@
 /* Coulomb friction under every solver: a sheet on an incline, a strip pulled over a cylinder. */
 #include "bodies.h"
-#include "sheets.h"
 #include "solvers.h"
 
 #include "config/log.h"
@@ -32,11 +31,10 @@ static double slide(const struct slope *slope, int solver, double seconds)
     vec3s below = {{(float)(-sin(tilt_now) * 0.5), (float)(-cos(tilt_now) * 0.5), 0}};
     tl_mesh box = body_box(below, (vec3s){{4, 0.5f, 4}}, -tilt_now);
     struct tl_cloth_fabric fabric = fabric_defaults();
-    struct tl_cloth_params params = params_defaults();
+    struct tl_cloth_params params = params_exact(solver);
     fabric.friction = slope->friction;
     fabric.thickness_m = thickness_m;
     fabric.damping = 0;
-    params.solver = solver;
     tl_collider *collider = tl_collider_create(&box, false, &error);
     tl_cloth *cloth = cloth_make(&garment, &fabric, &params);
     vec3d start = cloth->particles.x[60];
@@ -141,14 +139,13 @@ static double tension_ratio(int solver, double friction)
     }
     tl_mesh cylinder = body_cylinder(RADIUS, -0.1, 0.1 + row_m, 512);
     struct tl_cloth_fabric fabric = fabric_defaults();
-    struct tl_cloth_params params = params_defaults();
+    struct tl_cloth_params params = params_exact(solver);
     fabric.stretch_warp = 100;
     fabric.stretch_weft = fabric.shear = fabric.bend_weft = fabric.bend_warp = 0;
     fabric.friction = friction;
     fabric.thickness_m = thickness_m;
     fabric.damping = 50;
     params.gravity = 0;
-    params.solver = solver;
     params_set_step(&params, 1.0 / 8000);
     tl_collider *collider = tl_collider_create(&cylinder, false, &error);
     tl_cloth *cloth = cloth_make(&garment, &fabric, &params);

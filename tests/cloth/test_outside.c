@@ -66,7 +66,7 @@ static void step(struct dressed *d, struct worst *worst)
     worst->caught = report.caught_count > worst->caught ? report.caught_count : worst->caught;
     worst->caught_frames += report.caught_count > 0;
     assert_near(report.deepest_m, 0, tolerance);
-    assert_true(report.max_strain < 3); /* what is caught slips free at 2.5 times its length, and settles */
+    assert_true(report.max_strain < 5); /* half of where the solver gives up; what is caught slips at 1.5 */
 }
 
 static void tell(const char *name, int frames, const struct worst *worst)
@@ -106,6 +106,10 @@ static void test_walking(void **state)
         step(&d, &worst);
     }
     tell("walking", frames, &worst);
+    double mean_height = 0;
+    for (size_t i = 0; i < d.cloth->particles.count; i++)
+        mean_height += d.cloth->particles.x[i].y / (double)d.cloth->particles.count;
+    assert_true(mean_height > 0.4); /* from 0.5 m: it is still worn */
     undress(&d);
 }
 

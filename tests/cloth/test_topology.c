@@ -68,23 +68,22 @@ static void test_fans_list_every_corner_once(void **state)
 }
 
 /* A fan has a vertex in common everywhere: one lane each; a strip of far quads fills its lanes. Every element
- * is listed once, and no batch has a vertex twice. */
+ * is listed once, and no run has a vertex twice. */
 static void test_batches_share_no_vertex(void **state)
 {
     (void)state;
-    enum { COUNT = 300 };
+    enum { COUNT = 240 };
     for (int fan = 0; fan < 2; fan++) {
         uint32_t triangles[COUNT][3];
         for (uint32_t i = 0; i < COUNT; i++)
             for (uint32_t k = 0; k < 3; k++)
                 triangles[i][k] = fan && k == 0 ? 0 : i + k + 1;
-        size_t batches;
-        uint32_t *order = tl_batch_by_colour(&triangles[0][0], 3, 3, COUNT, COUNT + 3, &batches);
+        struct tl_batches batches = tl_batches_build(&triangles[0][0], 3, 3, COUNT, COUNT + 3);
         int seen[COUNT] = {0};
-        for (size_t b = 0; b < batches; b++) {
+        for (size_t run = 0, slot = 0; run < batches.run_count; run++) {
             int used[COUNT + 3] = {0};
-            for (size_t lane = 0; lane < TL_BATCH; lane++) {
-                uint32_t e = order[b * TL_BATCH + lane];
+            for (; slot < batches.run_ends[run] * TL_BATCH; slot++) {
+                uint32_t e = batches.elements[slot];
                 for (size_t k = 0; e != TL_NONE && k < 3; k++)
                     assert_int_equal(used[triangles[e][k]]++, 0);
                 if (e != TL_NONE)
@@ -93,8 +92,10 @@ static void test_batches_share_no_vertex(void **state)
         }
         for (size_t e = 0; e < COUNT; e++)
             assert_int_equal(seen[e], 1);
-        assert_int_equal(batches, fan ? COUNT : COUNT / TL_BATCH);
-        free(order);
+        assert_int_equal(batches.count, fan ? COUNT : COUNT / TL_BATCH);
+        assert_int_equal(batches.run_count, fan ? COUNT : 3);
+        assert_int_equal(batches.run_ends[batches.run_count - 1], batches.count);
+        tl_batches_release(&batches);
     }
 }
 
