@@ -148,6 +148,16 @@ static struct tl_contact_params contact_params(const tl_cloth *cloth, const stru
                                       .h = substep->h};
 }
 
+/* The cloth from itself, then from the avatar, which has the last word. */
+static void keep_apart(tl_cloth *cloth, const struct tl_contact_params *contact)
+{
+    if (cloth->params.self_repulsion) {
+        tl_repulsion_solve(&cloth->repulsion, contact->friction, contact->h, &cloth->particles);
+        tl_layers_solve(&cloth->layers, contact, &cloth->particles);
+    }
+    tl_contacts_solve(&cloth->contacts, contact, &cloth->particles);
+}
+
 /* What the energy does not know of: seams, the hand, the avatar. Moves positions. */
 static void constrain(tl_cloth *cloth, const struct tl_substep *substep)
 {
@@ -155,20 +165,16 @@ static void constrain(tl_cloth *cloth, const struct tl_substep *substep)
     if (cloth->sewing.pair_count > 0)
         tl_sewing_solve(&cloth->sewing, &cloth->particles, substep->h);
     pull_grabbed(cloth, substep->h);
-    if (cloth->params.self_repulsion) {
-        tl_repulsion_solve(&cloth->repulsion, cloth->fabric.friction, substep->h, &cloth->particles);
-        tl_layers_solve(&cloth->layers, &contact, &cloth->particles);
-    }
-    tl_contacts_solve(&cloth->contacts, &contact, &cloth->particles);
+    keep_apart(cloth, &contact);
 }
 
 static void advance_preview(tl_cloth *cloth, const struct tl_substep *substep)
 {
-    if (cloth->energy.bends_as_force) {
+    bool bends = cloth->energy.bends_as_force;
+    if (bends)
         tl_energy_bending_forces(&cloth->energy, cloth->particles.x, cloth->forces);
-        tl_particles_push(&cloth->particles, cloth->forces, substep->h);
-    }
-    tl_particles_predict(&cloth->particles, substep->gravity, substep->drag, substep->h);
+    tl_particles_predict(&cloth->particles, bends ? cloth->forces : NULL, substep->gravity, substep->drag,
+                         substep->h);
     place_pins(cloth, substep->collider, substep->phase);
     tl_xpbd_solve(&cloth->energy, &cloth->particles);
     constrain(cloth, substep);
@@ -210,7 +216,7 @@ static void advance_settle(tl_cloth *cloth, const struct tl_substep *substep)
     memcpy(particles->previous, particles->x, particles->count * sizeof *particles->x);
     place_pins(cloth, substep->collider, substep->phase);
     tl_implicit_step(cloth->implicit, &problem, particles, &cloth->tally);
-    tl_contacts_solve(&cloth->contacts, &problem.contact, particles);
+    keep_apart(cloth, &problem.contact);
     tl_particles_finish(particles, substep->h);
 }
 

@@ -61,6 +61,7 @@ struct tl_link {
 struct tl_energy {
     size_t membrane_count, bend_count, link_count; /* batches, batches, links */
     size_t membrane_run_count, *membrane_run_ends; /* see struct tl_batches */
+    size_t bend_run_count, *bend_run_ends;
     struct tl_membrane *membranes;
     struct tl_bend *bends;
     struct tl_link *links;

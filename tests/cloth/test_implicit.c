@@ -24,6 +24,9 @@ static void make_oscillator(struct oscillator *o, double stiffness, double mass,
 {
     *o = (struct oscillator){.link = {.a = 0, .b = 1, .rest = 1}, .particles = tl_particles_create(2)};
     o->energy = (struct tl_energy){.link_count = 1, .links = &o->link};
+    uint32_t edge[1][2] = {{0, 1}};
+    const struct tl_topology topology = {.vertex_count = 2, .edge_count = 1, .edges = edge};
+    o->energy.pulls = tl_pulls_build(&topology, &o->energy);
     o->fabric = (struct tl_cloth_fabric){.stretch_warp = stiffness};
     o->particles.w[1] = 1 / mass;
     o->particles.x[1].x = 1 + stretch;
@@ -72,6 +75,7 @@ static void test_oscillator(void **state)
             assert_true(fabs(o.particles.v[1].x + at_rest * w * w) < 1e-9 * stretch * w);
         }
         tl_implicit_destroy(&implicit);
+        tl_pulls_release(&o.energy.pulls);
         tl_particles_release(&o.particles);
     }
 }
