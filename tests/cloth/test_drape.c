@@ -80,7 +80,7 @@ static void shade_triangle(const double corners[3][2], bool *shaded)
 
 static double shadow_area(const tl_cloth *cloth)
 {
-    bool *shaded = TL_NEW_ARRAY(bool, PIXELS *PIXELS);
+    bool *shaded = TL_NEW_ARRAY(bool, (size_t)PIXELS *PIXELS);
     for (size_t t = 0; t < cloth->topology.triangle_count; t++) {
         double corners[3][2];
         for (int k = 0; k < 3; k++) {
