@@ -107,11 +107,11 @@ static void constrain(tl_cloth *cloth, const struct tl_substep *substep)
 
 static void advance_preview(tl_cloth *cloth, const struct tl_substep *substep)
 {
-    if (cloth->energy.bends_as_force) {
+    bool bends = cloth->energy.bends_as_force;
+    if (bends)
         tl_energy_bending_forces(&cloth->energy, cloth->particles.x, cloth->forces);
-        tl_particles_push(&cloth->particles, cloth->forces, substep->h);
-    }
-    tl_particles_predict(&cloth->particles, substep->gravity, substep->drag, substep->h);
+    tl_particles_predict(&cloth->particles, bends ? cloth->forces : NULL, substep->gravity, substep->drag,
+                         substep->h);
     tl_pins_place(cloth->pins, cloth->pin_count, substep->collider, substep->phase, &cloth->particles);
     tl_xpbd_solve(&cloth->energy, &cloth->particles);
     if (cloth->params.strain_limit > 0)

@@ -109,6 +109,15 @@ static void set_constants(tl_cloth *cloth)
     tl_layers_forget(&cloth->layers);
 }
 
+void tl_cloth_use(tl_cloth *cloth, int solver)
+{
+    if (cloth->params.solver == solver)
+        return;
+    cloth->params.solver = solver;
+    tl_implicit_destroy(&cloth->implicit);
+    tl_energy_set(&cloth->energy, &cloth->fabric, cloth->particles.w, tl_cloth_substep(cloth));
+}
+
 /* A hundredth of the mean edge. */
 static double find_shortest_edge(const tl_cloth *cloth)
 {

@@ -6,7 +6,7 @@
 #include <string.h>
 
 /* Times that a step is solved again for particles that stick, slip or let go otherwise than was assumed. */
-#define ROUNDS 4
+#define ROUNDS 2
 /* Times that a step is linearised, and then halved, while it would gain energy. */
 #define LINEARISED 4
 #define HALVINGS   6
@@ -146,11 +146,10 @@ static void begin(tl_implicit *implicit, const struct tl_implicit_problem *probl
 {
     for (size_t i = 0; i < implicit->count; i++) {
         double w = particles->w[i];
-        vec3d v = w > 0 ? particles->v[i] : (vec3d){0};
-        vec3d way = inertial_way(problem, v);
+        vec3d way = w > 0 ? inertial_way(problem, particles->v[i]) : (vec3d){0};
         implicit->inertia[i] = inertia_of(problem, w);
         implicit->push[i] = vec3d_scale(way, implicit->inertia[i]);
-        implicit->step[i] = vec3d_scale(v, problem->h);
+        implicit->step[i] = way;
         implicit->at[i] = particles->previous[i];
         implicit->touches[i].near = false;
         if (w > 0)
@@ -232,20 +231,42 @@ static bool judge_touches(tl_implicit *implicit, const struct tl_implicit_proble
     for (size_t i = 0; i < implicit->count; i++)
         if (implicit->touches[i].near) {
             vec3d reaction = tl_solve_reaction(&without_friction, i, implicit->step);
-            bool same = tl_touch_judge(&implicit->touches[i], implicit->step[i], reaction, &problem->contact);
+            bool same = tl_touch_judge(&implicit->touches[i], &problem->contact, implicit->step[i], reaction,
+                                       implicit->inertia[i]);
             agreed = agreed && same;
         }
     return agreed;
 }
 
-/* Squared residuals that are rounding: of steps of 1e-15 m. */
-static double residual_floor(const tl_implicit *implicit)
+/* Squared residuals that need no more work: of speeds of 1e-5 m/s, as closely as others are solved; and
+ * rounding, of positions within a few metres. */
+static double residual_floor(const tl_implicit *implicit, const struct tl_implicit_problem *problem)
 {
-    const double least_m = 1e-15;
-    double inertia = 0;
+    const double rounding_m = 4e-15;
+    double still_m = 1e-5 * problem->tolerance * problem->h, inertia = 0;
+    const struct tl_cloth_fabric *fabric = problem->fabric;
+    double stiffness = fmax(fmax(fabric->stretch_weft, fabric->stretch_warp), fabric->shear);
     for (size_t i = 0; i < implicit->count; i++)
         inertia += implicit->inertia[i];
-    return inertia * least_m * least_m;
+    return inertia * (still_m * still_m + rounding_m * rounding_m) +
+           (double)implicit->count * stiffness * rounding_m * rounding_m;
+}
+
+/* What only falls and flies keeps its momentum to rounding, however little is solved: elastic forces add up
+ * to nothing, so its mean way is that of inertia. */
+static void keep_momentum(tl_implicit *implicit, const struct tl_implicit_problem *problem)
+{
+    vec3d missing = {0};
+    double inertia = 0;
+    bool free = problem->hand.particle == TL_NONE;
+    for (size_t i = 0; i < implicit->count && free; i++) {
+        free = implicit->filters[i].freedom == TL_MOVES_FREELY;
+        missing =
+            vec3d_add(missing, vec3d_muladd(implicit->push[i], implicit->step[i], -implicit->inertia[i]));
+        inertia += implicit->inertia[i];
+    }
+    for (size_t i = 0; i < implicit->count && free; i++)
+        implicit->step[i] = vec3d_muladd(implicit->step[i], missing, 1 / inertia);
 }
 
 /* Solves until contact agrees; adds to `total`. */
@@ -258,13 +279,13 @@ static void solve(tl_implicit *implicit, const struct tl_implicit_problem *probl
                                .load = implicit->resisted_load,
                                .filters = implicit->filters,
                                .tolerance = problem->tolerance,
-                               .floor = residual_floor(implicit),
+                               .floor = residual_floor(implicit, problem),
                                .most_iterations = problem->most_iterations};
     bool agreed = false;
     for (int round = 0; round < ROUNDS && !agreed; round++) {
         apply_touches(implicit, particles);
         impose_given(implicit);
-        struct tl_solve_result result = tl_solve(&system, &implicit->space, implicit->step);
+        struct tl_solve_result result = tl_solve(&system, &implicit->space, implicit->given, implicit->step);
         system.floor = result.goal; /* later rounds need no more than the first */
         total->iterations += result.iterations;
         total->converged = total->converged && result.converged;
@@ -312,6 +333,7 @@ static bool find_step(tl_implicit *implicit, const struct tl_implicit_problem *p
     for (int times = 1;; times++) {
         linearise(implicit, problem, particles);
         solve(implicit, problem, particles, total);
+        keep_momentum(implicit, problem);
         place(implicit, particles, 1);
         double after = energy_at(implicit, problem, particles, implicit->at);
         if (after > most && times == 1) {

@@ -98,13 +98,13 @@ static double multiply(const struct tl_system *system, struct tl_solve_space *sp
     return add_up(space);
 }
 
-/* r = S (b - A step), or S b without a step. */
+/* r = S (b - A step). */
 static void find_residual(const struct tl_system *system, struct tl_solve_space *space, const vec3d *step)
 {
 #pragma omp parallel for schedule(static) if (space->vertex_count > TL_SERIAL)
     for (size_t i = 0; i < space->vertex_count; i++) {
-        vec3d left = step ? vec3d_scale(tl_solve_reaction(system, i, step), -1) : system->load[i];
-        space->residual[i] = filtered(&system->filters[i], left);
+        vec3d missing = vec3d_scale(tl_solve_reaction(system, i, step), -1);
+        space->residual[i] = filtered(&system->filters[i], missing);
     }
 }
 
@@ -127,14 +127,21 @@ static void turn(struct tl_solve_space *space, double share)
         space->direction[i] = vec3d_muladd(space->conditioned[i], space->direction[i], share);
 }
 
-struct tl_solve_result tl_solve(const struct tl_system *system, struct tl_solve_space *space, vec3d *step)
+struct tl_solve_result tl_solve(const struct tl_system *system, struct tl_solve_space *space,
+                                const vec3d *given, vec3d *step)
 {
     struct tl_solve_result result = {0};
-    find_residual(system, space, NULL);
-    double load = condition(system, space);
     find_residual(system, space, step);
+    double from_step = condition(system, space);
+    find_residual(system, space, given);
     double left = condition(system, space);
-    result.goal = fmax(system->tolerance * system->tolerance * fmax(load, left), system->floor);
+    if (from_step < left) {
+        find_residual(system, space, step);
+        left = condition(system, space);
+    } else {
+        memcpy(step, given, space->vertex_count * sizeof *step);
+    }
+    result.goal = fmax(system->tolerance * system->tolerance * left, system->floor);
     memcpy(space->direction, space->conditioned, space->vertex_count * sizeof *space->direction);
     while (!(left <= result.goal) && result.iterations < system->most_iterations) {
         double curvature = multiply(system, space, space->direction);

@@ -28,7 +28,7 @@ struct tl_system {
     const double *inertia;           /* [vertex_count] N/m, mu */
     const vec3d *load;               /* [vertex_count] b */
     const struct tl_filter *filters; /* [vertex_count] */
-    double tolerance;                /* of the residual, in the preconditioner's norm, to that of the load */
+    double tolerance;                /* of the residual, in the preconditioner's norm, to that at the start */
     double floor;                    /* J: squared residuals below need no more work */
     int most_iterations;
 };
@@ -48,8 +48,11 @@ struct tl_solve_result {
     double goal;    /* J, what the squared residual had to reach */
 };
 
-/* Starts at `step` [vertex_count], whose filtered parts stay as they are, and leaves the answer there. */
-struct tl_solve_result tl_solve(const struct tl_system *system, struct tl_solve_space *space, vec3d *step);
+/* Starts at `step` or at `given`, a step of the filtered parts only, which `step` has too: at the better of
+ * the two, by which the goal is measured, so that the error is small against what the forces change, in
+ * motion and at rest. Leaves the answer in `step` [vertex_count]. */
+struct tl_solve_result tl_solve(const struct tl_system *system, struct tl_solve_space *space,
+                                const vec3d *given, vec3d *step);
 
 /* Row `vertex` of (mu + K) d - b: what something must push with (N) for the vertex to move as it does. */
 vec3d tl_solve_reaction(const struct tl_system *system, size_t vertex, const vec3d *step);

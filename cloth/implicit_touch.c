@@ -3,12 +3,25 @@
 /* A particle nearer to its plane than this at the start is taken to touch it still. */
 #define TOUCHING_M 1e-4
 /* m/s: slower than this is not slipping. */
-#define LEAST_SLIP 1e-3
+#define LEAST_SLIP 1e-4
 
 /* How far a way passes the plane; negative: not at all. */
 static double trespass(const struct tl_contact_plane *plane, vec3d way)
 {
     return plane->least - vec3d_dot(way, plane->normal);
+}
+
+static void resist(struct tl_touch *touch, double slip, const struct tl_contact_params *params)
+{
+    touch->resistance = touch->grip / fmax(slip, LEAST_SLIP * params->h);
+}
+
+/* Slips are expected to grow or shrink as they did. */
+static void expect_slip(struct tl_touch *touch, const struct tl_contact_params *params)
+{
+    resist(touch, fmax(2 * touch->slips[1] - touch->slips[0], touch->slips[1] / 2), params);
+    touch->slips[0] = touch->slips[1];
+    touch->slips[1] = 0;
 }
 
 /* One plane only is heeded: the one that would be passed the farthest. */
@@ -27,6 +40,7 @@ void tl_touch_begin(struct tl_touch *touch, struct tl_contacts *contacts,
         touch->kind = TL_FREE;
     else if (touch->kind == TL_FREE && trespass(plane, way) > 0)
         touch->kind = TL_STICKS;
+    expect_slip(touch, params);
 }
 
 struct tl_filter tl_touch_filter(const struct tl_touch *touch, vec3d *given)
@@ -47,33 +61,34 @@ struct tl_filter tl_touch_filter(const struct tl_touch *touch, vec3d *given)
 }
 
 /* What a particle that touches its plane does. */
-static enum tl_touch_kind judge_touching(struct tl_touch *touch, vec3d step, vec3d reaction,
-                                         const struct tl_contact_params *params)
+static enum tl_touch_kind judge_touching(struct tl_touch *touch, const struct tl_contact_params *params,
+                                         vec3d step, vec3d reaction, double inertia)
 {
     vec3d normal = touch->plane.normal;
-    double pressed = vec3d_dot(reaction, normal), least = LEAST_SLIP * params->h;
+    double pressed = vec3d_dot(reaction, normal);
+    touch->slips[1] = 0;
     if (!(pressed > 0))
         return TL_FREE;
-    double most = params->friction * pressed;
+    touch->grip = params->friction * pressed;
     if (touch->kind == TL_STICKS) {
-        double rub = vec3d_norm(vec3d_muladd(reaction, normal, -pressed));
-        touch->resistance = most / least;
-        return rub > most ? TL_SLIPS : TL_STICKS;
+        double excess = vec3d_norm(vec3d_muladd(reaction, normal, -pressed)) - touch->grip;
+        resist(touch, excess / inertia, params); /* as it would slip if it were alone */
+        return excess > 0 ? TL_SLIPS : TL_STICKS;
     }
     vec3d slip = vec3d_sub(step, touch->plane.motion);
-    double length = vec3d_norm(vec3d_muladd(slip, normal, -vec3d_dot(slip, normal)));
-    touch->resistance = most / fmax(length, least);
-    return length > least || !(params->friction > 0) ? TL_SLIPS : TL_STICKS;
+    touch->slips[1] = vec3d_norm(vec3d_muladd(slip, normal, -vec3d_dot(slip, normal)));
+    resist(touch, touch->slips[1], params);
+    return touch->slips[1] > LEAST_SLIP * params->h || !(params->friction > 0) ? TL_SLIPS : TL_STICKS;
 }
 
-bool tl_touch_judge(struct tl_touch *touch, vec3d step, vec3d reaction,
-                    const struct tl_contact_params *params)
+bool tl_touch_judge(struct tl_touch *touch, const struct tl_contact_params *params, vec3d step,
+                    vec3d reaction, double inertia)
 {
     enum tl_touch_kind before = touch->kind;
     if (!touch->near)
         return true;
     if (before != TL_FREE)
-        touch->kind = judge_touching(touch, step, reaction, params);
+        touch->kind = judge_touching(touch, params, step, reaction, inertia);
     else if (trespass(&touch->plane, step) > 0)
         touch->kind = TL_STICKS;
     return touch->kind == before;

@@ -29,7 +29,7 @@ const struct tl_option_table tl_cloth_fabric_options = TL_OPTION_TABLE(
 
 #define TL_CLOTH_DEFAULTS                                                                                    \
     .solver = TL_CLOTH_PREVIEW, .strain_limit = 0.1, .dt = 1.0 / 60, .frame_rate = 30, .substeps = 30,       \
-    .cg_iterations = 200, .cg_tolerance = 1e-2, .reference_substeps = 20000, .gravity = 9.81, .settle_s = 6, \
+    .cg_iterations = 200, .cg_tolerance = 3e-2, .reference_substeps = 20000, .gravity = 9.81, .settle_s = 6, \
     .settle_speed = 0.01, .edge_m = 0.02f
 
 const char *const tl_cloth_solver_names[] = {"preview", "settle", "reference", NULL};
@@ -47,7 +47,7 @@ static const struct tl_option cloth_rows[] = {
     TL_OPTION_INT(struct tl_cloth_params, cg_iterations, 1, 1000000, "",
                   "settle: most iterations of a step's solve: slower, less often cut short"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, cg_tolerance, 1e-12, 0.5, "",
-                     "settle: residual that is left of a step's load: faster, less exact motion"),
+                     "settle: residual that is left of a step's first one: faster, less exact motion"),
     TL_OPTION_INT(struct tl_cloth_params, reference_substeps, 1, 100000000, "",
                   "reference: most substeps per frame; a fabric that needs more is refused"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, strain_limit, 0, 10, "",

@@ -12,9 +12,15 @@ static const struct phase {
     double drag, least_s;
 } phases[] = {{5, 0.25}, {1, 0.5}};
 
+/* `preview` brings the cloth near to its rest for a fraction of what others take; the chosen one ends it. */
+static int phase_solver(const struct tl_cloth_params *params, size_t phase)
+{
+    return phase + 1 < TL_COUNT(phases) ? TL_CLOTH_PREVIEW : params->solver;
+}
+
 bool tl_cloth_settle(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
 {
-    const struct tl_cloth_params *params = &cloth->params;
+    const struct tl_cloth_params chosen = cloth->params, *params = &chosen;
     struct tl_progress progress = tl_progress_begin("settling the cloth");
     double frame_s = 1 / params->frame_rate, hung_s = 0, phase_s = 0;
     size_t phase = 0;
@@ -22,6 +28,7 @@ bool tl_cloth_settle(tl_cloth *cloth, const tl_collider *collider, tl_error *err
     cloth->settled = false;
     while (good && !cloth->settled && hung_s < params->settle_s) {
         const struct tl_advance advance = {.drag = phases[phase].drag};
+        tl_cloth_use(cloth, phase_solver(params, phase));
         good = tl_cloth_advance(cloth, collider, &advance, error);
         double passed_s = tl_sewing_pulls(&cloth->sewing) ? 0 : frame_s;
         hung_s += passed_s;
@@ -34,6 +41,7 @@ bool tl_cloth_settle(tl_cloth *cloth, const tl_collider *collider, tl_error *err
         tl_progress_update(&progress, hung_s, params->settle_s);
     }
     tl_progress_end(&progress);
+    tl_cloth_use(cloth, params->solver);
     if (good && !cloth->settled && params->settle_s > 0)
         tl_info("the cloth still moves at %.3f m/s after settling for %g s: give it more with cloth.settle_s",
                 tl_cloth_max_speed(cloth), params->settle_s);

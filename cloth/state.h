@@ -66,6 +66,9 @@ struct tl_springs tl_cloth_springs(const tl_cloth *cloth);
 double tl_cloth_max_speed(const tl_cloth *cloth);
 double tl_cloth_max_strain(const tl_cloth *cloth);
 
+/* Goes on with another solver, and with the step that it takes. */
+void tl_cloth_use(tl_cloth *cloth, int solver);
+
 /* Replaces topology, energy and particles by those of a mesh in which physics vertex i has become
  * joined[i]: masses add up,
  * joined particles meet at their centre of mass, momentum is kept. */

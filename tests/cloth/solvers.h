@@ -26,8 +26,8 @@ static inline struct tl_cloth_params params_exact(int solver)
 {
     struct tl_cloth_params params = params_defaults();
     params.solver = solver;
-    params.cg_tolerance = 1e-12;
-    params.cg_iterations = 10000;
+    params.strain_limit = 0; /* the energy alone */
+    params_solve_exactly(&params);
     return params;
 }
 

@@ -37,6 +37,7 @@ static bool run_refuses(const struct extreme *extreme)
     fabric.stretch_weft = fabric.stretch_warp = fabric.shear = extreme->stiffness;
     fabric.bend_weft = fabric.bend_warp = extreme->bending;
     fabric.areal_density = extreme->density;
+    params.strain_limit = 0; /* whether it truly stretches is what is asked */
     params.dt = extreme->dt;
     params.substeps = extreme->substeps;
     params.frame_rate = fmin(fmax(1 / (extreme->dt * 40), 10), 1000); /* 40 steps a frame when dt is small */
