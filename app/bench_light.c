@@ -213,9 +213,10 @@ static void print_table(const struct bench *bench)
     }
     printf("%-24s %10.1f\n\n", "(the cloth's solver)", film.cloth_cpu_ms);
     const struct rest *rest = &bench->rest;
-    printf("review at rest: %.1f ms of CPU a frame for %d frames, then %.1f; rel. RMSE %.2f %%, mean FLIP "
-           "%.4f\n",
-           rest->cpu_ms, rest->frames, rest->done_cpu_ms, 100 * rest->error.rel_rmse, rest->error.flip_mean);
+    printf("review at rest: %.1f ms of CPU a frame for %d frames, then %.1f; rel. RMSE %.2f %% (one pixel "
+           "holds %.0f %% of its square), mean FLIP %.4f\n",
+           rest->cpu_ms, rest->frames, rest->done_cpu_ms, 100 * rest->error.rel_rmse,
+           100 * rest->error.worst_share, rest->error.flip_mean);
     struct row_summary paper = summarise(bench, PAPER), review = summarise(bench, REVIEW);
     printf("paper takes %.1f times review's time; review has %.2f of paper's error (FLIP %.2f)\n",
            paper.cpu_ms / review.cpu_ms, review.rel_rmse / paper.rel_rmse,

@@ -131,11 +131,17 @@ struct tl_solve_result tl_solve(const struct tl_system *system, struct tl_solve_
                                 const vec3d *given, vec3d *step)
 {
     struct tl_solve_result result = {0};
-    find_residual(system, space, given);
-    double load = condition(system, space);
     find_residual(system, space, step);
+    double from_step = condition(system, space);
+    find_residual(system, space, given);
     double left = condition(system, space);
-    result.goal = fmax(system->tolerance * system->tolerance * fmin(load, left), system->floor);
+    if (from_step < left) {
+        find_residual(system, space, step);
+        left = condition(system, space);
+    } else {
+        memcpy(step, given, space->vertex_count * sizeof *step);
+    }
+    result.goal = fmax(system->tolerance * system->tolerance * left, system->floor);
     memcpy(space->direction, space->conditioned, space->vertex_count * sizeof *space->direction);
     while (!(left <= result.goal) && result.iterations < system->most_iterations) {
         double curvature = multiply(system, space, space->direction);

@@ -48,9 +48,9 @@ struct tl_solve_result {
     double goal;    /* J, what the squared residual had to reach */
 };
 
-/* Starts at `step` [vertex_count], whose filtered parts stay as they are, and leaves the answer there. The
- * goal is measured by the better start of `step` and `given`, a step of the filtered parts only: so that the
- * error is small against what the forces change, in motion and at rest. */
+/* Starts at `step` or at `given`, a step of the filtered parts only, which `step` has too: at the better of
+ * the two, by which the goal is measured, so that the error is small against what the forces change, in
+ * motion and at rest. Leaves the answer in `step` [vertex_count]. */
 struct tl_solve_result tl_solve(const struct tl_system *system, struct tl_solve_space *space,
                                 const vec3d *given, vec3d *step);
 

@@ -9,77 +9,6 @@
 
 #include <omp.h>
 
-/* ---- Springs, without a sheet ---- */
-
-/* A link between a held particle and one that is free, along x. */
-struct oscillator {
-    struct tl_link link;
-    struct tl_energy energy;
-    struct tl_cloth_fabric fabric;
-    struct tl_contacts contacts; /* of no particle near anything */
-    struct tl_particles particles;
-};
-
-static void make_oscillator(struct oscillator *o, double stiffness, double mass, double stretch)
-{
-    *o = (struct oscillator){.link = {.a = 0, .b = 1, .rest = 1}, .particles = tl_particles_create(2)};
-    o->energy = (struct tl_energy){.link_count = 1, .links = &o->link};
-    uint32_t edge[1][2] = {{0, 1}};
-    const struct tl_topology topology = {.vertex_count = 2, .edge_count = 1, .edges = edge};
-    o->energy.pulls = tl_pulls_build(&topology, &o->energy);
-    o->fabric = (struct tl_cloth_fabric){.stretch_warp = stiffness};
-    o->particles.w[1] = 1 / mass;
-    o->particles.x[1].x = 1 + stretch;
-}
-
-static struct tl_implicit_problem oscillator_problem(struct oscillator *o, double h)
-{
-    return (struct tl_implicit_problem){.energy = &o->energy,
-                                        .fabric = &o->fabric,
-                                        .hand = {.particle = TL_NONE},
-                                        .contacts = &o->contacts,
-                                        .h = h,
-                                        .tolerance = 1e-10,
-                                        .most_iterations = 10};
-}
-
-static void step_particles(tl_implicit *implicit, const struct tl_implicit_problem *problem,
-                           struct tl_particles *particles)
-{
-    struct tl_implicit_tally tally = {0};
-    memcpy(particles->previous, particles->x, particles->count * sizeof *particles->x);
-    tl_implicit_step(implicit, problem, particles, &tally);
-    tl_particles_finish(particles, problem->h);
-    assert_int_equal(tally.unconverged, 0);
-    assert_int_equal(tally.shortened, 0);
-}
-
-/* x_n + i y_n turns by atan(w h) and shrinks by (1 + w^2 h^2)^-1/2 each step. */
-static void test_oscillator(void **state)
-{
-    (void)state;
-    const double mass = 0.02, steps[] = {1e-4, 1e-2, 0.1};
-    for (size_t s = 0; s < TL_COUNT(steps); s++) {
-        struct oscillator o;
-        const double stiffness = 50, stretch = 0.1, h = steps[s], w = sqrt(stiffness / mass);
-        make_oscillator(&o, stiffness, mass, stretch);
-        const struct tl_implicit_problem problem = oscillator_problem(&o, h);
-        tl_implicit *implicit = tl_implicit_create(&problem, &o.particles);
-        double shrink = 1 / sqrt(1 + w * w * h * h), turn = atan(w * h);
-        for (int n = 1; n <= 50; n++) {
-            step_particles(implicit, &problem, &o.particles);
-            /* at rest at first: x = a cos(turn n) shrink^n (1 + ...): from x_1 = a shrink^2 */
-            double expected = stretch * pow(shrink, n) * cos(turn * n);
-            double at_rest = stretch * pow(shrink, n) * sin(turn * n) / w; /* v_0 = 0 exactly, so no phase */
-            assert_true(fabs(o.particles.x[1].x - 1 - expected) < 1e-9 * stretch);
-            assert_true(fabs(o.particles.v[1].x + at_rest * w * w) < 1e-9 * stretch * w);
-        }
-        tl_implicit_destroy(&implicit);
-        tl_pulls_release(&o.energy.pulls);
-        tl_particles_release(&o.particles);
-    }
-}
-
 /* ---- The matrix ---- */
 
 static vec3s stretched(double u, double v)
@@ -194,36 +123,6 @@ static struct tl_cloth_params settle_params(void)
     return params;
 }
 
-/* y = -g/2 t (t + h), at any stiffness. */
-static void test_free_fall(void **state)
-{
-    (void)state;
-    tl_error error = {0};
-    const struct sheet_shape shape = {9, 7, 0.4, 0.3};
-    tl_garment garment = sheet_make(&shape, lying);
-    struct tl_cloth_fabric fabric = fabric_defaults();
-    struct tl_cloth_params params = settle_params();
-    fabric.damping = 0;
-    const double stiffnesses[] = {1e-2, 1e3, 1e6};
-    for (size_t s = 0; s < TL_COUNT(stiffnesses); s++) {
-        fabric.stretch_weft = fabric.stretch_warp = fabric.shear = stiffnesses[s];
-        tl_cloth *cloth = make_cloth(&garment, &fabric, &params);
-        vec3d *start = TL_NEW_ARRAY(vec3d, cloth->particles.count);
-        memcpy(start, cloth->particles.x, cloth->particles.count * sizeof *start);
-        for (int frame = 0; frame < 15; frame++)
-            assert_ok(tl_cloth_step(cloth, NULL, &error), error);
-        double t = 0.5, h = tl_cloth_substep(cloth);
-        vec3d fall = {0, -params.gravity / 2 * t * (t + h), 0};
-        for (size_t i = 0; i < cloth->particles.count; i++) {
-            vec3d fallen = vec3d_sub(cloth->particles.x[i], start[i]);
-            assert_true(vec3d_distance(fallen, fall) < 1e-9 * -fall.y);
-        }
-        free(start);
-        tl_cloth_destroy(&cloth);
-    }
-    sheet_free(&garment);
-}
-
 /* A stretched sheet let go: total energy never rises. */
 static void test_energy_falls(void **state)
 {
@@ -252,44 +151,6 @@ static void test_energy_falls(void **state)
         tl_cloth_destroy(&cloth);
     }
     sheet_free(&garment);
-}
-
-/* Where the middle of a hanging sheet's lower edge is after a quarter of a second's swing. */
-static double swing(int solver, double dt)
-{
-    tl_error error = {0};
-    const struct sheet_shape shape = {8, 8, 0.4, 0.4};
-    tl_garment garment = sheet_make(&shape, lying);
-    for (int column = 0; column <= shape.columns; column++)
-        sheet_pin(&garment, sheet_vertex(&shape, column, shape.rows));
-    struct tl_cloth_fabric fabric = fabric_defaults();
-    struct tl_cloth_params params = settle_params();
-    fabric.damping = 0;
-    params.solver = solver;
-    params.dt = dt;
-    params.frame_rate = 20;
-    params.cg_tolerance = 1e-8;
-    params.cg_iterations = 10000;
-    tl_cloth *cloth = make_cloth(&garment, &fabric, &params);
-    for (int frame = 0; frame < 5; frame++)
-        assert_ok(tl_cloth_step(cloth, NULL, &error), error);
-    double y = cloth->particles.x[sheet_vertex(&shape, 4, 0)].y;
-    tl_cloth_destroy(&cloth);
-    sheet_free(&garment);
-    return y;
-}
-
-static void test_first_order(void **state)
-{
-    (void)state;
-    double exact = swing(TL_CLOTH_REFERENCE, 1e-3), errors[3];
-    for (int i = 0; i < 3; i++)
-        errors[i] = fabs(swing(TL_CLOTH_SETTLE, 0.0025 / (1 << i)) - exact);
-    print_message("swing: errors %.3g %.3g %.3g m at h, h/2, h/4\n", errors[0], errors[1], errors[2]);
-    for (int i = 0; i < 2; i++) {
-        double order = log2(errors[i] / errors[i + 1]);
-        assert_true(order > 0.8 && order < 1.2);
-    }
 }
 
 /* ---- Threads and bounds ---- */
@@ -354,12 +215,9 @@ static void test_cut_short(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_oscillator),
         cmocka_unit_test(test_matrix_is_derivative),
         cmocka_unit_test(test_matrix_is_semidefinite),
-        cmocka_unit_test(test_free_fall),
         cmocka_unit_test(test_energy_falls),
-        cmocka_unit_test(test_first_order),
         cmocka_unit_test(test_threads),
         cmocka_unit_test(test_cut_short),
     };

@@ -1,0 +1,184 @@
+/* Coming to rest: settled drapes of solvers against one another, and cloth that rests is at rest. */
+#include "bodies.h"
+#include "sheets.h"
+#include "solvers.h"
+
+#include "config/log.h"
+
+static vec3s lying(double u, double v)
+{
+    return (vec3s){{(float)u, 1.0f, (float)-v}};
+}
+
+/* ---- Drapes ---- */
+
+static double elastic_and_potential(const tl_cloth *cloth)
+{
+    struct tl_cloth_report report = tl_cloth_measure(cloth, NULL);
+    return report.elastic_energy + report.potential_energy;
+}
+
+/* Root mean square distance of two states of a sheet, the second one mirrored at a plane z, which holds the
+ * pins and the vertical: a mirrored equilibrium is one as well. */
+static double rms_mirrored(const tl_cloth *a, const tl_cloth *b, double z)
+{
+    double sum = 0;
+    for (size_t i = 0; i < a->particles.count; i++) {
+        vec3d to = b->particles.x[i];
+        to.z = 2 * z - to.z;
+        vec3d apart = vec3d_sub(a->particles.x[i], to);
+        sum += vec3d_dot(apart, apart);
+    }
+    return sqrt(sum / (double)a->particles.count);
+}
+
+static double rms(const tl_cloth *a, const tl_cloth *b)
+{
+    double sum = 0;
+    for (size_t i = 0; i < a->particles.count; i++) {
+        vec3d apart = vec3d_sub(a->particles.x[i], b->particles.x[i]);
+        sum += vec3d_dot(apart, apart);
+    }
+    return sqrt(sum / (double)a->particles.count);
+}
+
+/* Which of the twins it comes to is left to rounding. */
+static double rms_of_twins(const tl_cloth *a, const tl_cloth *b, double z)
+{
+    return fmin(rms(a, b), rms_mirrored(a, b, z));
+}
+
+/* A metre of cloth hung by two corners, run until it no longer moves: by a drag that dies away. */
+static tl_cloth *hang(const tl_garment *garment, int solver, double stop_speed)
+{
+    tl_error error = {0};
+    struct tl_cloth_fabric fabric = fabric_defaults();
+    struct tl_cloth_params params = params_defaults();
+    fabric.areal_density = 0.2;
+    fabric.stretch_weft = fabric.stretch_warp = 1000;
+    fabric.damping = 0; /* what rubs in itself creeps for minutes */
+    fabric.bend_weft = fabric.bend_warp = 1e-4;
+    params.solver = solver;
+    params.cg_tolerance = 1e-3;
+    params.cg_iterations = 1000;
+    tl_cloth *cloth = cloth_make(garment, &fabric, &params);
+    const struct tl_advance advance = {.drag = 4};
+    for (int frame = 0; frame < 900; frame++) {
+        assert_ok(tl_cloth_advance(cloth, NULL, &advance, &error), error);
+        if (frame > 30 && tl_cloth_max_speed(cloth) < stop_speed)
+            break;
+    }
+    return cloth;
+}
+
+/* Different ways down, one rest. Preview hangs as if it were softer. */
+static void test_drapes_agree(void **state)
+{
+    (void)state;
+    const struct sheet_shape shape = {16, 16, 1, 1};
+    tl_garment garment = sheet_make(&shape, lying);
+    sheet_pin(&garment, sheet_vertex(&shape, 0, shape.rows));
+    sheet_pin(&garment, sheet_vertex(&shape, shape.columns, shape.rows));
+    const double stop_speed = 1e-6;
+    tl_cloth *settled = hang(&garment, TL_CLOTH_SETTLE, stop_speed);
+    tl_cloth *reference = hang(&garment, TL_CLOTH_REFERENCE, stop_speed);
+    tl_cloth *preview = hang(&garment, TL_CLOTH_PREVIEW, stop_speed);
+    double distance = rms_of_twins(settled, reference, -shape.height);
+    double energy = elastic_and_potential(settled) - elastic_and_potential(reference);
+    print_message("settle to reference: %.2e mm RMS, %.2e J; speeds %.1e, %.1e m/s\n", 1e3 * distance, energy,
+                  tl_cloth_max_speed(settled), tl_cloth_max_speed(reference));
+    print_message("preview to reference: %.2f mm RMS, %.2e J; speed %.1e m/s\n",
+                  1e3 * rms_of_twins(preview, reference, -shape.height),
+                  elastic_and_potential(preview) - elastic_and_potential(reference),
+                  tl_cloth_max_speed(preview));
+    assert_true(distance < 1e-4);
+    assert_true(fabs(energy) < 1e-6);
+    tl_cloth_destroy(&settled);
+    tl_cloth_destroy(&reference);
+    tl_cloth_destroy(&preview);
+    sheet_free(&garment);
+}
+
+/* ---- At rest ---- */
+
+/* The fastest that anything moves, in the sixth second after it was settled or let go. */
+static double speed_after_5_s(tl_cloth *cloth, const tl_collider *collider)
+{
+    double fastest = 0;
+    cloth_run(cloth, collider, 5);
+    for (int frame = 0; frame < 30; frame++) {
+        cloth_run(cloth, collider, 1 / cloth->params.frame_rate);
+        fastest = fmax(fastest, tl_cloth_max_speed(cloth));
+    }
+    return fastest;
+}
+
+struct resting {
+    const char *name;
+    vec3s (*place)(double u, double v);
+    bool pinned, ground;
+    double sphere; /* radius; 0: none */
+};
+
+static vec3s over_sphere(double u, double v)
+{
+    return (vec3s){{(float)(u - 0.25), 0.75f, (float)(0.25 - v)}};
+}
+
+static vec3s near_ground(double u, double v)
+{
+    return (vec3s){{(float)u, 0.02f, (float)-v}};
+}
+
+static double check_rest(const struct resting *resting, int solver)
+{
+    tl_error error = {0};
+    const struct sheet_shape shape = {12, 12, 0.5, 0.5};
+    tl_garment garment = sheet_make(&shape, resting->place);
+    tl_mesh sphere = body_sphere((vec3s){{0, 0.5f, 0}}, resting->sphere, 24);
+    if (resting->pinned) {
+        sheet_pin(&garment, sheet_vertex(&shape, 0, shape.rows));
+        sheet_pin(&garment, sheet_vertex(&shape, shape.columns, shape.rows));
+    }
+    struct tl_cloth_fabric fabric = fabric_defaults();
+    struct tl_cloth_params params = params_defaults();
+    params.solver = solver;
+    tl_collider *collider = tl_collider_create(resting->sphere > 0 ? &sphere : NULL, resting->ground, &error);
+    tl_cloth *cloth = cloth_make(&garment, &fabric, &params);
+    assert_ok(tl_cloth_settle(cloth, collider, &error), error);
+    double speed = speed_after_5_s(cloth, collider);
+    tl_cloth_destroy(&cloth);
+    tl_collider_destroy(&collider);
+    tl_mesh_release(&sphere);
+    sheet_free(&garment);
+    return speed;
+}
+
+/* A tenth of a millimetre a frame: less than a pixel of a garment that fills the screen. */
+static void test_rest_is_at_rest(void **state)
+{
+    (void)state;
+    const double bound = 5e-3;
+    const struct resting cases[] = {
+        {"hanging", lying, true, false, 0},
+        {"on the ground", near_ground, false, true, 0},
+        {"on a sphere", over_sphere, false, true, 0.2},
+    };
+    for (size_t i = 0; i < TL_COUNT(cases); i++)
+        for (int solver = 0; solver < TL_CLOTH_SOLVER_COUNT; solver++) {
+            double speed = check_rest(&cases[i], solver);
+            print_message("%s, %s: at most %.2e m/s after 5 s\n", cases[i].name,
+                          tl_cloth_solver_names[solver], speed);
+            assert_true(speed < bound);
+        }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_drapes_agree),
+        cmocka_unit_test(test_rest_is_at_rest),
+    };
+    tl_log_set_level(TL_LOG_WARN);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
