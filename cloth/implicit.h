@@ -6,13 +6,14 @@
  * Its price: motion is damped by the step, the more the quicker it is, so a swing dies sooner than it should;
  * of first order in h.
  *
- * Contact (cloth/implicit_touch.h): planes are heeded while solving.
+ * Contact (cloth/implicit_touch.h, cloth/implicit_press.h): planes are heeded while solving.
  *
  * Guard: where kinetic, elastic and gravity's energy together would rise, the step is linearised again at its
  * end (Newton's method); if that does not help, it is shortened. Threads: uses all. */
 #ifndef TOILE_CLOTH_IMPLICIT_H
 #define TOILE_CLOTH_IMPLICIT_H
 
+#include "cloth/implicit_press.h"
 #include "cloth/implicit_solve.h"
 #include "cloth/implicit_touch.h"
 

@@ -290,6 +290,11 @@ void tl_stiffness_assemble(struct tl_stiffness *stiffness, const struct tl_energ
     }
 }
 
+void tl_stiffness_add(struct tl_stiffness *stiffness, uint32_t row, uint32_t column, vec3d n, double scale)
+{
+    add_outer(stiffness->values[find_entry(&stiffness->blocks, row, column)], n, n, scale);
+}
+
 vec3d tl_stiffness_row(const struct tl_stiffness *stiffness, size_t vertex, const vec3d *p)
 {
     vec3d sum = {0};
