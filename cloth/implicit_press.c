@@ -2,6 +2,8 @@
 
 /* The spring is this many times stiffer than what it holds. */
 #define FIRMER 10.0
+/* What it gives beyond this was an impact, not a load. */
+#define MOST_GIVEN_M 1e-4
 
 /* What a push on a probe meets, from what its vertices resist; 0 when none moves. */
 static double probe_inertia(const struct tl_probe *probe, const double *inertia)
@@ -25,6 +27,8 @@ static void begin_one(struct tl_press *press, struct tl_contacts *contacts,
         if (k == 0 || planes[k].least > press->plane.least)
             press->plane = planes[k];
     press->presses = press->presses && press->near;
+    press->gave = press->presses ? fmin(press->gave, MOST_GIVEN_M) : 0;
+    press->plane.least += press->gave;
 }
 
 void tl_presses_begin(struct tl_press *presses, struct tl_contacts *contacts,
@@ -73,7 +77,9 @@ bool tl_presses_judge(struct tl_press *presses, const struct tl_contacts *contac
         if (!press->near)
             continue;
         vec3d way = tl_probe_point(&contacts->probes[i], step);
-        bool should = press->plane.least > vec3d_dot(way, press->plane.normal);
+        double gives = press->plane.least - vec3d_dot(way, press->plane.normal);
+        bool should = gives > 0;
+        press->gave = fmax(gives, 0);
         if (should == press->presses)
             continue;
         add_one(press, &contacts->probes[i], should ? 1 : -1, stiffness, load);

@@ -1,9 +1,10 @@
 /* Probes while `settle` solves: points inside coarse triangles that must stay outside as vertices must.
  *
  * A point has no directions of its own to give away, so it presses as a stiff spring against its plane,
- *     k/2 max(least - n.d, 0)^2,
- * and no more than that: friction on it, and the little that the spring gives, are left to tl_contacts_solve.
- * Ones that would pass their plane press from then on, ones that would be pulled let go. Threads: pure. */
+ *     k/2 max(least + gave - n.d, 0)^2,
+ * with what the spring gave in the last step (the method of multipliers): under a steady load it stands on
+ * its plane. Friction on it is left to tl_contacts_solve. Ones that would pass their plane press from then
+ * on, ones that would be pulled let go. Threads: pure. */
 #ifndef TOILE_CLOTH_IMPLICIT_PRESS_H
 #define TOILE_CLOTH_IMPLICIT_PRESS_H
 
@@ -15,6 +16,7 @@ struct tl_press {
     bool near; /* has a plane in this step */
     struct tl_contact_plane plane;
     double stiffness; /* N/m */
+    double gave;      /* m, in the last step: how much farther it pushes in this one */
 };
 
 /* At a substep's start at x: finds the planes of the contacts' probes; `presses` [contacts->probe_count].
