@@ -31,18 +31,20 @@ static bool load_linear(const char *path, tl_image *out, tl_error *error)
     return true;
 }
 
-static void print_comparison(const struct tl_comparison *result)
+static void print_comparison(const struct tl_comparison *result, int width)
 {
     printf("covered pixels   %zu\n", result->covered);
     printf("relative RMSE    %.6g\n", result->rel_rmse);
     printf("mean FLIP        %.6g  (%s, covered pixels)\n", result->flip_mean, result->hdr ? "HDR" : "LDR");
     printf("frame FLIP       %.6g\n", result->flip_frame);
     printf("largest          %.6g\n", result->max_abs);
+    printf("worst pixel      %d, %d: %.3g %% of the square error\n", (int)result->worst % width,
+           (int)result->worst / width, 100 * result->worst_share);
     if (result->hdr)
         printf("exposures        %.3g to %.3g stops\n", result->exposure_start, result->exposure_stop);
 }
 
-static void print_comparison_json(const struct tl_comparison *result)
+static void print_comparison_json(const struct tl_comparison *result, int width)
 {
     cJSON *object = cJSON_CreateObject();
     cJSON_AddNumberToObject(object, "covered", (double)result->covered);
@@ -50,6 +52,9 @@ static void print_comparison_json(const struct tl_comparison *result)
     cJSON_AddNumberToObject(object, "flip_mean", result->flip_mean);
     cJSON_AddNumberToObject(object, "flip_frame", result->flip_frame);
     cJSON_AddNumberToObject(object, "max_abs", result->max_abs);
+    cJSON_AddNumberToObject(object, "worst_x", (int)result->worst % width);
+    cJSON_AddNumberToObject(object, "worst_y", (int)result->worst / width);
+    cJSON_AddNumberToObject(object, "worst_share", result->worst_share);
     cJSON_AddBoolToObject(object, "hdr", result->hdr);
     tl_json_print(object);
 }
@@ -64,9 +69,9 @@ bool tl_command_compare(const struct tl_arguments *arguments, tl_error *error)
                 load_linear(arguments->positionals[1], &reference, error) &&
                 tl_image_compare(&tested, &reference, arguments->hdr, 0, &result, error);
     if (done && arguments->json)
-        print_comparison_json(&result);
+        print_comparison_json(&result, tested.width);
     else if (done)
-        print_comparison(&result);
+        print_comparison(&result, tested.width);
     tl_image_release(&tested);
     tl_image_release(&reference);
     return done;

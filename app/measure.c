@@ -87,6 +87,7 @@ bool tl_contender_compare(struct tl_contender *contender, const struct tl_truth 
                                           .standard_error = truth->standard_error,
                                           .flip_mean = result.flip_mean,
                                           .max_abs = result.max_abs,
+                                          .worst_share = result.worst_share,
                                           .covered = result.covered};
     }
     tl_image_release(&image);

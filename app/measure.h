@@ -52,7 +52,8 @@ struct tl_measured_error {
     double standard_error; /* the oracle's */
     double flip_mean;      /* with what the oracle's noise adds to it */
     double max_abs;
-    size_t covered; /* pixels */
+    double worst_share; /* of the square error: what its worst pixel holds */
+    size_t covered;     /* pixels */
 };
 /* Of the image that the contender drew last. */
 bool tl_contender_compare(struct tl_contender *contender, const struct tl_truth *truth,

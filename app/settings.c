@@ -3,6 +3,8 @@
 #include "assets/model.h"
 #include "assets/units.h"
 #include "config/embedded.h"
+#include "config/file.h"
+#include "config/log.h"
 #include "config/memory.h"
 
 #include <stdlib.h>
@@ -192,6 +194,16 @@ static void choose_role(struct tl_scene_params *scene)
     }
 }
 
+/* What was asked for and will not be done is said. */
+static void tell_what_is_unused(const struct tl_light_params *light)
+{
+    if (light->method == TL_METHOD_PEM && light->visibility == TL_VISIBILITY_RAYS &&
+        light->composition != TL_COMPOSE_RATIO)
+        tl_warn(
+            "light.composition: rays always compose by ratio; this option is for light.visibility vsm and "
+            "depth");
+}
+
 /* The topmost layers name the preset and the fabric that lie below them, so they are read twice: once to
  * learn these names, and once more in their place. */
 bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *source, tl_error *error)
@@ -212,6 +224,7 @@ bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *
     if (source->scene_file && tl_model_is_file(source->scene_file))
         choose_role(&named);
     settings.scene = named;
+    tell_what_is_unused(&settings.light);
     *out = settings;
     return true;
 }

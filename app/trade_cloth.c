@@ -52,13 +52,11 @@ static const struct scene falling = {TL_SHEET_EDGE, 10, false,
     resting = {TL_SHEET_CORNERS, 30, true, 1e-3},
                           calmest = {TL_SHEET_CORNERS, 30, true, 1e-4}; /* what others are compared with */
 
-struct size {
-    int side;
-    bool quick;
+/* Vertices a side; the finest is only compared with. */
+struct sizes {
+    int sides[4], count, finest;
 };
-static const struct size sizes[] = {{17, true}, {33, true}, {65, false}, {101, false}};
-#define FINEST_SIDE       129
-#define QUICK_FINEST_SIDE 49
+static const struct sizes all_sizes = {{17, 33, 65, 101}, 4, 129}, quick_sizes = {{9, 17}, 2, 25};
 
 /* The state at the end of a fall or of a rest. */
 struct shape {
@@ -70,6 +68,7 @@ struct shape {
 struct run {
     struct tl_trade_cloth *trade;
     bool quick;
+    const struct sizes *sizes;
     struct shape finest, fallen, rested; /* what is compared with; of the current size */
 };
 
@@ -287,7 +286,7 @@ static bool find_finest(struct run *run, tl_error *error)
 {
     const struct setting own = {"reference", "finest", 0, 1, 1, true},
                          half = {"reference", "finest", 0, 0.5, 1, true};
-    int side = run->quick ? QUICK_FINEST_SIDE : FINEST_SIDE;
+    int side = run->sizes->finest;
     struct tl_trade_cloth_row unused;
     struct shape coarse = {0};
     bool done = fall(side, &own, &coarse, &unused, error) && fall(side, &half, &run->finest, &unused, error);
@@ -301,15 +300,14 @@ static bool find_finest(struct run *run, tl_error *error)
 static bool measure_all(struct run *run, tl_error *error)
 {
     struct tl_progress progress = tl_progress_begin("measuring the trade of cloth");
-    const int size_count = (int)TL_COUNT(sizes), setting_count = (int)TL_COUNT(settings);
+    const int size_count = run->sizes->count, setting_count = (int)TL_COUNT(settings);
     bool done = find_finest(run, error);
     for (int i = 0; done && i < size_count; i++) {
-        if (run->quick && !sizes[i].quick)
-            continue;
-        done = find_truths(run, sizes[i].side, error);
+        int side = run->sizes->sides[i];
+        done = find_truths(run, side, error);
         for (int s = 0; done && s < setting_count; s++) {
             if ((!run->quick || settings[s].quick) && find_solver(settings[s].solver) >= 0)
-                done = measure(run, sizes[i].side, &settings[s], error);
+                done = measure(run, side, &settings[s], error);
             tl_progress_update(&progress, i * setting_count + s + 1, size_count * setting_count);
         }
     }
@@ -320,7 +318,7 @@ static bool measure_all(struct run *run, tl_error *error)
 bool tl_trade_cloth(bool quick, struct tl_trade_cloth *out, tl_error *error)
 {
     *out = (struct tl_trade_cloth){0};
-    struct run run = {.trade = out, .quick = quick};
+    struct run run = {.trade = out, .quick = quick, .sizes = quick ? &quick_sizes : &all_sizes};
     omp_set_num_threads(1); /* CPU time of one core, undisturbed */
     bool done = out->complete = measure_all(&run, error);
     release_shape(&run.finest);

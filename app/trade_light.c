@@ -194,7 +194,8 @@ static bool draw(struct run *run, struct tl_contender *contender, int number, st
     return tl_contender_draw(contender, &frame, taken, error);
 }
 
-#define FRAMES_MAX 16
+#define FRAMES_MAX     16
+#define REST_DRAWS_MAX 1024
 
 static bool measure_motion(struct run *run, const struct contender_row *row, struct tl_contender *contender,
                            tl_error *error)
@@ -230,11 +231,8 @@ static bool measure_motion(struct run *run, const struct contender_row *row, str
 static bool measure_rest(struct run *run, const struct contender_row *row, struct tl_contender *contender,
                          tl_error *error)
 {
-    const struct tl_light_params *light = &contender->settings.light;
-    int draws = light->rounds > 2 ? light->rounds : 2, since = 0;
-    double *cpu_ms = TL_NEW_ARRAY(double, (size_t)draws), *wall_ms = TL_NEW_ARRAY(double, (size_t)draws);
-    if (run->quick && draws > QUICK_ROUNDS)
-        draws = QUICK_ROUNDS;
+    int draws = run->quick ? QUICK_ROUNDS : REST_DRAWS_MAX, since = 0;
+    double cpu_ms[REST_DRAWS_MAX], wall_ms[REST_DRAWS_MAX];
     bool done = true, at_rest = false;
     for (int drawn = 2; done && !at_rest && drawn <= draws; drawn++) {
         struct tl_taken taken = {0};
@@ -250,8 +248,6 @@ static bool measure_rest(struct run *run, const struct contender_row *row, struc
             add_row(run, row, contender, drawn, cpu_ms, wall_ms, since, measured);
         since = 0;
     }
-    free(cpu_ms);
-    free(wall_ms);
     return done;
 }
 

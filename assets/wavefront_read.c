@@ -1,6 +1,5 @@
 #include "assets/wavefront.h"
 
-#include "config/file.h"
 #include "config/memory.h"
 
 #include <errno.h>
@@ -69,8 +68,7 @@ static bool read_index(char **at, size_t count, uint32_t *out)
     char *end;
     errno = 0;
     long value = strtol(*at, &end, 10);
-    if (end == *at || **at == ' ' || errno || value == 0 || value > (long)TL_LIMIT_MESH_VERTICES ||
-        value < -(long)count)
+    if (end == *at || errno || value == 0 || value > (long)TL_LIMIT_MESH_VERTICES || value < -(long)count)
         return false;
     *out = value > 0 ? (uint32_t)value - 1 : (uint32_t)((long)count + value);
     *at = end;
@@ -110,11 +108,10 @@ static bool read_face(struct reader *reader)
                            "%s: line %zu: face: \"%.40s\" is no index that exists: export the file again",
                            reader->text.path, reader->text.line, word);
     }
-    if (object->corner_count - first < 3) {
+    if (object->corner_count - first < 3)
         return tl_fail(reader->error, TL_INPUT,
                        "%s: line %zu: face of %zu corners: it takes 3: export the file again",
                        reader->text.path, reader->text.line, object->corner_count - first);
-    }
     object->triangle_count += object->corner_count - first - 2;
     if (object->triangle_count > TL_LIMIT_MESH_INDICES / 3)
         return fail_limit(reader, "triangles", TL_LIMIT_MESH_INDICES / 3);

@@ -2,8 +2,10 @@
 #include "cloth/snag.h"
 #include "cloth/state.h"
 #include "cloth/verlet.h"
+#include "cloth/wind.h"
 #include "cloth/xpbd.h"
 #include "config/interrupt.h"
+#include "config/log.h"
 #include "config/memory.h"
 
 #include <stdlib.h>
@@ -148,6 +150,16 @@ static struct tl_contact_params contact_params(const tl_cloth *cloth, const stru
                                       .h = substep->h};
 }
 
+/* The cloth from itself, then from the avatar, which has the last word. */
+static void keep_apart(tl_cloth *cloth, const struct tl_contact_params *contact)
+{
+    if (cloth->params.self_repulsion) {
+        tl_repulsion_solve(&cloth->repulsion, contact->friction, contact->h, &cloth->particles);
+        tl_layers_solve(&cloth->layers, contact, &cloth->particles);
+    }
+    tl_contacts_solve(&cloth->contacts, contact, &cloth->particles);
+}
+
 /* What the energy does not know of: seams, the hand, the avatar. Moves positions. */
 static void constrain(tl_cloth *cloth, const struct tl_substep *substep)
 {
@@ -155,20 +167,16 @@ static void constrain(tl_cloth *cloth, const struct tl_substep *substep)
     if (cloth->sewing.pair_count > 0)
         tl_sewing_solve(&cloth->sewing, &cloth->particles, substep->h);
     pull_grabbed(cloth, substep->h);
-    if (cloth->params.self_repulsion) {
-        tl_repulsion_solve(&cloth->repulsion, cloth->fabric.friction, substep->h, &cloth->particles);
-        tl_layers_solve(&cloth->layers, &contact, &cloth->particles);
-    }
-    tl_contacts_solve(&cloth->contacts, &contact, &cloth->particles);
+    keep_apart(cloth, &contact);
 }
 
 static void advance_preview(tl_cloth *cloth, const struct tl_substep *substep)
 {
-    if (cloth->energy.bends_as_force) {
+    bool bends = cloth->energy.bends_as_force;
+    if (bends)
         tl_energy_bending_forces(&cloth->energy, cloth->particles.x, cloth->forces);
-        tl_particles_push(&cloth->particles, cloth->forces, substep->h);
-    }
-    tl_particles_predict(&cloth->particles, substep->gravity, substep->drag, substep->h);
+    tl_particles_predict(&cloth->particles, bends ? cloth->forces : NULL, substep->gravity, substep->drag,
+                         substep->h);
     place_pins(cloth, substep->collider, substep->phase);
     tl_xpbd_solve(&cloth->energy, &cloth->particles);
     constrain(cloth, substep);
@@ -210,7 +218,7 @@ static void advance_settle(tl_cloth *cloth, const struct tl_substep *substep)
     memcpy(particles->previous, particles->x, particles->count * sizeof *particles->x);
     place_pins(cloth, substep->collider, substep->phase);
     tl_implicit_step(cloth->implicit, &problem, particles, &cloth->tally);
-    tl_contacts_solve(&cloth->contacts, &problem.contact, particles);
+    keep_apart(cloth, &problem.contact);
     tl_particles_finish(particles, substep->h);
 }
 
@@ -228,6 +236,23 @@ static void advance_reference(tl_cloth *cloth, const struct tl_substep *substep)
     tl_verlet_kick(&cloth->particles, cloth->forces, substep->gravity, substep->drag, substep->h);
 }
 
+/* Before a substep of any solver. */
+static void blow(tl_cloth *cloth, const struct tl_substep *substep)
+{
+    const float *velocity = cloth->params.wind;
+    const struct tl_wind wind = {.velocity = {(double)velocity[0], (double)velocity[1], (double)velocity[2]},
+                                 .gust = cloth->params.gust,
+                                 .time_s = cloth->time_s + substep->phase / cloth->params.frame_rate,
+                                 .areal_density = cloth->fabric.areal_density};
+    if (!(vec3d_norm(wind.velocity) > 0) || tl_sewing_pulls(&cloth->sewing))
+        return;
+    struct tl_particles *particles = &cloth->particles;
+    cloth->external = tl_resize(cloth->external, particles->count, sizeof *cloth->external);
+    tl_wind_forces(&wind, &cloth->topology, substep->h, particles, cloth->external);
+    for (size_t i = 0; i < particles->count; i++)
+        particles->v[i] = vec3d_muladd(particles->v[i], cloth->external[i], particles->w[i] * substep->h);
+}
+
 static void run_step(tl_cloth *cloth, const tl_collider *collider, double drag, int step)
 {
     /* Weightless until the panels have met. */
@@ -243,6 +268,7 @@ static void run_step(tl_cloth *cloth, const tl_collider *collider, double drag, 
                                            .phase_before = done / total,
                                            .phase = (done + 1) / total,
                                            .collider = collider};
+        blow(cloth, &substep);
         if (cloth->params.solver == TL_CLOTH_REFERENCE)
             advance_reference(cloth, &substep);
         else if (cloth->params.solver == TL_CLOTH_SETTLE)
@@ -319,6 +345,27 @@ static bool check_state(const tl_cloth *cloth, tl_error *error)
     return true;
 }
 
+/* An avatar that jumps takes what it wears along, once. What is pinned in the world stays there. */
+static void follow_jump(tl_cloth *cloth, const tl_collider *collider)
+{
+    struct tl_rigid jump;
+    struct tl_particles *particles = &cloth->particles;
+    bool worn = true;
+    for (size_t i = 0; i < cloth->pin_count; i++)
+        worn = worn && cloth->pins[i].triangle != TL_NONE;
+    if (!worn || !collider || !tl_collider_jump(collider, &jump) ||
+        tl_collider_revision(collider) == cloth->jump_followed)
+        return;
+    cloth->jump_followed = tl_collider_revision(collider);
+    tl_info("the avatar jumped by %.2f m within a frame: the cloth goes along",
+            vec3d_distance(jump.from, jump.to));
+    for (size_t i = 0; i < particles->count; i++) {
+        particles->x[i] = tl_rigid_point(&jump, particles->x[i]);
+        particles->v[i] = tl_rigid_turn(&jump, particles->v[i]);
+    }
+    tl_contacts_forget(&cloth->contacts);
+}
+
 /* Not before the panels have met: until then each is a piece of its own. */
 static bool decide_layers(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
 {
@@ -333,6 +380,7 @@ bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct
 {
     if (!check_budget(cloth, error) || !decide_layers(cloth, collider, error))
         return false;
+    follow_jump(cloth, collider);
     struct tl_particles *particles = &cloth->particles;
     size_t bytes = particles->count * sizeof(vec3d);
     vec3d *good_x = TL_NEW_ARRAY(vec3d, particles->count), *good_v = TL_NEW_ARRAY(vec3d, particles->count);

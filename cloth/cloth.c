@@ -186,10 +186,12 @@ static void release_state(tl_cloth *cloth)
     free(cloth->made_at);
     free(cloth->pins);
     free(cloth->forces);
+    free(cloth->external);
     cloth->rest = NULL;
     cloth->made_at = NULL;
     cloth->pins = NULL;
     cloth->forces = NULL;
+    cloth->external = NULL;
 }
 
 void tl_cloth_join(tl_cloth *cloth, const uint32_t *joined, size_t joined_count)

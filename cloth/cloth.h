@@ -44,9 +44,11 @@ struct tl_cloth_params {
     int reference_substeps; /* reference: most per frame, beyond which it is refused */
     bool self_repulsion;    /* layers of a garment, and folds, keep their distance: layers.h, repulsion.h */
     double gravity;         /* m/s^2, along -Y */
-    double settle_s;        /* longest simulated time spent settling before the first frame */
-    double settle_speed;    /* m/s: settled when the fastest vertex is slower than this */
-    float edge_m;           /* wanted edge length of built-in garments */
+    float wind[3];       /* m/s; air at rest presses on nothing: then only fabric.damping slows the cloth */
+    double gust;         /* 0 to 1, of the wind's speed */
+    double settle_s;     /* longest simulated time spent settling before the first frame */
+    double settle_speed; /* m/s: settled when the fastest vertex is slower than this */
+    float edge_m;        /* wanted edge length of built-in garments */
 };
 extern const struct tl_option_table tl_cloth_options;
 

@@ -21,6 +21,8 @@ struct tl_collider {
     uint32_t *corners;   /* the same, welded */
     struct tl_fans fans; /* triangles around each welded vertex */
     double travel;
+    bool jumped;
+    struct tl_rigid jump;
     uint64_t revision;
     RTCDevice device;
     RTCGeometry geometry;
@@ -309,16 +311,9 @@ void tl_collider_destroy(tl_collider **collider)
     *collider = NULL;
 }
 
-void tl_collider_move(tl_collider *collider, const vec3s *positions)
+/* After the poses have changed. */
+static void refit(tl_collider *collider)
 {
-    size_t bytes = collider->vertex_count * sizeof(vec3s);
-    if (!collider->scene)
-        return;
-    bool at_rest = memcmp(collider->poses[0], collider->poses[1], bytes) == 0;
-    if (at_rest && memcmp(collider->poses[1], positions, bytes) == 0)
-        return;
-    memcpy(collider->poses[0], collider->poses[1], bytes);
-    memcpy(collider->poses[1], positions, bytes);
     collider->travel = 0;
     for (size_t i = 0; i < collider->vertex_count; i++)
         collider->travel = fmax(collider->travel, vec3d_distance(vec3d_from(collider->poses[0][i]),
@@ -329,4 +324,35 @@ void tl_collider_move(tl_collider *collider, const vec3s *positions)
         rtcUpdateGeometryBuffer(collider->geometry, RTC_BUFFER_TYPE_VERTEX, pose);
     rtcCommitGeometry(collider->geometry);
     rtcCommitScene(collider->scene);
+}
+
+static void take_out_jump(tl_collider *collider)
+{
+    struct tl_rigid *jump = &collider->jump;
+    *jump = tl_rigid_fit(collider->poses[0], collider->poses[1], collider->vertex_count);
+    for (size_t i = 0; i < collider->vertex_count; i++)
+        collider->poses[0][i] = vec3d_to_float(tl_rigid_point(jump, vec3d_from(collider->poses[0][i])));
+    refit(collider);
+}
+
+void tl_collider_move(tl_collider *collider, const vec3s *positions)
+{
+    size_t bytes = collider->vertex_count * sizeof(vec3s);
+    if (!collider->scene)
+        return;
+    bool at_rest = memcmp(collider->poses[0], collider->poses[1], bytes) == 0;
+    if (at_rest && memcmp(collider->poses[1], positions, bytes) == 0)
+        return;
+    memcpy(collider->poses[0], collider->poses[1], bytes);
+    memcpy(collider->poses[1], positions, bytes);
+    refit(collider);
+    collider->jumped = collider->travel > TL_COLLIDER_JUMP_M;
+    if (collider->jumped)
+        take_out_jump(collider);
+}
+
+bool tl_collider_jump(const tl_collider *collider, struct tl_rigid *out)
+{
+    *out = collider->jump;
+    return collider->jumped;
 }

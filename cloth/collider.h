@@ -7,6 +7,7 @@
 #define TOILE_CLOTH_COLLIDER_H
 
 #include "assets/mesh.h"
+#include "cloth/rigid.h"
 #include "config/error.h"
 
 typedef struct tl_collider tl_collider;
@@ -42,6 +43,12 @@ bool tl_collider_has_ground(const tl_collider *collider);
 
 /* Longest way of any vertex from the previous to the current pose. */
 double tl_collider_travel(const tl_collider *collider);
+
+/* A move in which a vertex goes farther than this, 15 m/s at 30 frames a second, is a jump: the rigid motion
+ * that comes nearest to it is taken out, by putting the previous pose at its end, and is told by
+ * tl_collider_jump for as long as the revision stays, so that what is worn can go along. */
+#define TL_COLLIDER_JUMP_M 0.5
+bool tl_collider_jump(const tl_collider *collider, struct tl_rigid *out);
 
 /* Rises with every move that changes something: answers to queries stay good while it is the same. */
 uint64_t tl_collider_revision(const tl_collider *collider);

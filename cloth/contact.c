@@ -112,6 +112,15 @@ static double distance_to(const struct tl_contact_cache *cache, vec3d x, double 
     return cache->near ? vec3d_dot(vec3d_sub(x, anchor_at(cache, phase)), cache->normal) : HUGE_VAL;
 }
 
+void tl_contacts_forget(struct tl_contacts *contacts)
+{
+    for (size_t i = 0; i < cache_count(contacts); i++) {
+        contacts->caches[i].asked_phase = HUGE_VAL;
+        contacts->caches[i].near = false;
+    }
+    contacts->collider = NULL;
+}
+
 void tl_contacts_renew(struct tl_contacts *contacts, const vec3d *x, double thickness_m, double phase)
 {
     const tl_collider *collider = contacts->collider;

@@ -51,6 +51,9 @@ struct tl_contact_params {
 /* Once per frame: forgets what no longer holds. */
 void tl_contacts_begin(struct tl_contacts *contacts, const tl_collider *collider);
 
+/* The particles have been put elsewhere: all planes are asked for anew. */
+void tl_contacts_forget(struct tl_contacts *contacts);
+
 /* Once per step, at its start: asks for all who were never asked, and for the near ones when the collider
  * moves, because its planes turn. On all threads. */
 void tl_contacts_renew(struct tl_contacts *contacts, const vec3d *x, double thickness_m, double phase);

@@ -2,7 +2,6 @@
 
 #include "config/memory.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -232,6 +231,9 @@ static void build_bends(struct tl_energy *energy, const struct tl_topology *topo
     struct tl_batches batches = tl_batches_build(stencils[0].vertices, sizeof *stencils / sizeof(uint32_t),
                                                  TL_BEND_STENCIL, count, topology->vertex_count);
     energy->bend_count = batches.count;
+    energy->bend_run_count = batches.run_count;
+    energy->bend_run_ends = batches.run_ends;
+    batches.run_ends = NULL;
     energy->bends = TL_NEW_ARRAY(struct tl_bend, energy->bend_count);
     for (size_t i = 0; i < energy->bend_count * TL_BATCH; i++) {
         struct tl_bend *bend = &energy->bends[i / TL_BATCH];
@@ -277,6 +279,7 @@ void tl_energy_release(struct tl_energy *energy)
 {
     free(energy->membranes);
     free(energy->membrane_run_ends);
+    free(energy->bend_run_ends);
     free(energy->bends);
     free(energy->links);
     free(energy->masses);

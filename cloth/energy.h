@@ -61,12 +61,13 @@ struct tl_link {
 struct tl_energy {
     size_t membrane_count, bend_count, link_count; /* batches, batches, links */
     size_t membrane_run_count, *membrane_run_ends; /* see struct tl_batches */
+    size_t bend_run_count, *bend_run_ends;
     struct tl_membrane *membranes;
     struct tl_bend *bends;
     struct tl_link *links;
     double *masses; /* [vertex_count] kg per areal density: a third of the area around */
     struct tl_pulls pulls;
-    bool bends_as_force; /* preview's substep is short enough for bending as an explicit force */
+    bool bends_as_force; /* preview's substep is short enough for bending as an explicit force: xpbd.h */
 };
 
 /* `rest` gives every physics triangle's flat rest shape. */
@@ -86,7 +87,7 @@ void tl_energy_set(struct tl_energy *energy, const struct tl_cloth_fabric *fabri
 double tl_energy_forces(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
                         size_t vertex_count, const vec3d *x, vec3d *forces);
 
-/* The forces alone, in two thirds of the time. */
+/* The forces alone, the same to the last bit, sooner. */
 void tl_energy_pull(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric, const vec3d *x,
                     vec3d *forces);
 
@@ -97,7 +98,12 @@ void tl_energy_bending_forces(const struct tl_energy *energy, const vec3d *x, ve
 void tl_bend_stiffness(const struct tl_cloth_fabric *fabric, double out[3]);
 
 /* The longest step (s) at which explicit integration is stable, from below: 2 / omega_max, omega_max^2 by
- * Gershgorin's bound on the rows of M^-1 K at rest. Infinite when nothing resists. */
+ * Gershgorin's bound on the rows of M^-1 K. Infinite when nothing resists.
+ *
+ * K here is more than the Hessian at rest: a stretch counts in all three directions, as k (1 - 1/|F|) across
+ * the thread is below k however far it is stretched, so that stretch, bending and links are bounded in any
+ * state. Shear is bounded while neither thread is shorter than at rest; it grows as 1/|F|^2 when they are
+ * crushed. At rest the true limit lies 1.25 (a plate) to 1.74 (isotropic cloth) times higher, as measured. */
 double tl_energy_critical_step(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
                                size_t vertex_count, const double *inverse_masses);
 

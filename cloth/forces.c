@@ -1,31 +1,16 @@
 /* The energy as a number, and its forces. */
 #include "cloth/energy.h"
 #include "cloth/particles.h"
+#include "cloth/threads.h"
 #include "config/simd.h"
 
-#include <omp.h>
 #include <string.h>
 
 /* What is squeezed to less than this share of its rest length pushes no harder than at it. */
 #define LEAST_LENGTH 1e-6
-/* Below this, threads cost more than they bring. */
-#define PARALLEL_VERTICES 2000
-
-struct range {
-    size_t from, to;
-};
-
-/* This thread's part of `count`, in whole multiples of `unit`. */
-static struct range my_part(size_t count, size_t unit)
-{
-    size_t units = (count + unit - 1) / unit;
-    size_t thread = (size_t)omp_get_thread_num(), threads = (size_t)omp_get_num_threads();
-    size_t from = thread * units / threads * unit, to = (thread + 1) * units / threads * unit;
-    return (struct range){from, to < count ? to : count};
-}
 
 /* Places are read four numbers at a time. */
-TL_CLONES static void copy_places(const vec3d *x, struct range range, double *places)
+TL_CLONES static void copy_places(const vec3d *x, struct tl_range range, double *places)
 {
     for (size_t i = range.from; i < range.to; i++) {
         places[4 * i] = x[i].x;
@@ -34,7 +19,7 @@ TL_CLONES static void copy_places(const vec3d *x, struct range range, double *pl
     }
 }
 
-TL_CLONES static void square_lengths(const vec3d *x, const uint32_t (*edges)[2], struct range range,
+TL_CLONES static void square_lengths(const vec3d *x, const uint32_t (*edges)[2], struct tl_range range,
                                      double *squared)
 {
     for (size_t e = range.from; e < range.to; e++) {
@@ -81,7 +66,8 @@ TL_INLINE void differentiate(const struct tl_metric *metric, const struct stretc
     }
 }
 
-TL_CLONES static void differentiate_all(const struct tl_pulls *pulls, struct stretching k, struct range range)
+TL_CLONES static void differentiate_all(const struct tl_pulls *pulls, struct stretching k,
+                                        struct tl_range range)
 {
     for (size_t i = range.from; i < range.to; i++) {
         const struct tl_metric *metric = &pulls->metrics[i];
@@ -98,7 +84,7 @@ TL_CLONES static void differentiate_all(const struct tl_pulls *pulls, struct str
     }
 }
 
-TL_CLONES static void add_shares(const struct tl_pulls *pulls, struct range range)
+TL_CLONES static void add_shares(const struct tl_pulls *pulls, struct tl_range range)
 {
     for (size_t e = range.from; e < range.to; e++)
         pulls->along_edges[e] = pulls->shares[pulls->slots[e][0]] + pulls->shares[pulls->slots[e][1]];
@@ -120,7 +106,7 @@ static double add_rare(const struct tl_energy *energy, double stiffness)
     return sum;
 }
 
-TL_INLINE void add_pull(const double *from, const double *to, double strength, struct tl_pull *sum)
+TL_INLINE void add_pull(const double *from, const double *to, double strength, struct tl_wide_force *sum)
 {
     double x = to[0] - from[0], y = to[1] - from[1], z = to[2] - from[2], unused = to[3] - from[3];
     sum->x += strength * x;
@@ -129,14 +115,15 @@ TL_INLINE void add_pull(const double *from, const double *to, double strength, s
     sum->unused += strength * unused;
 }
 
-TL_INLINE void add_others(const struct tl_pulls *pulls, size_t vertex, struct tl_pull *sum)
+TL_INLINE void add_others(const struct tl_pulls *pulls, size_t vertex, struct tl_wide_force *sum)
 {
     const double *at = &pulls->places[4 * vertex];
     for (uint32_t k = pulls->others_first[vertex]; k < pulls->others_first[vertex + 1]; k++)
         add_pull(at, &pulls->places[4 * (size_t)pulls->others[k]], pulls->bending[k], sum);
 }
 
-TL_INLINE void add_along(const struct tl_pulls *pulls, size_t vertex, bool bending_alone, struct tl_pull *sum)
+TL_INLINE void add_along(const struct tl_pulls *pulls, size_t vertex, bool bending_alone,
+                         struct tl_wide_force *sum)
 {
     const double *at = &pulls->places[4 * vertex];
     for (uint32_t k = pulls->along_first[vertex]; k < pulls->along_first[vertex + 1]; k++) {
@@ -146,10 +133,11 @@ TL_INLINE void add_along(const struct tl_pulls *pulls, size_t vertex, bool bendi
     }
 }
 
-TL_INLINE void add_block(const struct tl_pulls *pulls, struct range block, bool bending_alone, vec3d *forces)
+TL_INLINE void add_block(const struct tl_pulls *pulls, struct tl_range block, bool bending_alone,
+                         vec3d *forces)
 {
     for (size_t i = block.from; i < block.to; i++) {
-        struct tl_pull sum = {0};
+        struct tl_wide_force sum = {0};
         add_along(pulls, i, bending_alone, &sum);
         add_others(pulls, i, &sum);
         pulls->sums[i] = sum;
@@ -158,32 +146,32 @@ TL_INLINE void add_block(const struct tl_pulls *pulls, struct range block, bool 
         forces[i] = (vec3d){pulls->sums[i].x, pulls->sums[i].y, pulls->sums[i].z};
 }
 
-static struct range block_from(size_t from, struct range range)
+static struct tl_range block_from(size_t from, struct tl_range range)
 {
     size_t to = from + TL_PULLS_BLOCK;
-    return (struct range){from, to < range.to ? to : range.to};
+    return (struct tl_range){from, to < range.to ? to : range.to};
 }
 
-TL_CLONES static void add_forces(const struct tl_pulls *pulls, struct range range, vec3d *forces)
+TL_CLONES static void add_forces(const struct tl_pulls *pulls, struct tl_range range, vec3d *forces)
 {
     for (size_t from = range.from; from < range.to; from += TL_PULLS_BLOCK)
         add_block(pulls, block_from(from, range), false, forces);
 }
 
-TL_CLONES static void add_bending_forces(const struct tl_pulls *pulls, struct range range, vec3d *forces)
+TL_CLONES static void add_bending_forces(const struct tl_pulls *pulls, struct tl_range range, vec3d *forces)
 {
     for (size_t from = range.from; from < range.to; from += TL_PULLS_BLOCK)
         add_block(pulls, block_from(from, range), true, forces);
 }
 
 /* x.Kx/2 of a block of vertices. Forces add up to nothing, so that x may be measured from anywhere. */
-TL_CLONES static double bending_energy(const struct tl_pulls *pulls, struct range range)
+TL_CLONES static double bending_energy(const struct tl_pulls *pulls, struct tl_range range)
 {
     double energy = 0;
     const double *origin = pulls->places;
     for (size_t i = range.from; i < range.to; i++) {
         const double *at = &pulls->places[4 * i];
-        struct tl_pull sum = {0};
+        struct tl_wide_force sum = {0};
         add_along(pulls, i, true, &sum);
         add_others(pulls, i, &sum);
         energy -=
@@ -194,7 +182,7 @@ TL_CLONES static double bending_energy(const struct tl_pulls *pulls, struct rang
 
 static void add_energies(const struct tl_pulls *pulls)
 {
-    struct range mine = my_part(pulls->vertex_count, TL_PULLS_BLOCK);
+    struct tl_range mine = tl_my_part(pulls->vertex_count, TL_PULLS_BLOCK);
     for (size_t from = mine.from; from < mine.to; from += TL_PULLS_BLOCK)
         pulls->parts[pulls->metric_count + from / TL_PULLS_BLOCK] =
             bending_energy(pulls, block_from(from, mine));
@@ -207,23 +195,23 @@ static double evaluate(const struct tl_energy *energy, const struct tl_cloth_fab
     const struct tl_pulls *pulls = &energy->pulls;
     const struct stretching k = {fabric->stretch_weft, fabric->stretch_warp, fabric->shear};
     double links = 0;
-#pragma omp parallel if (pulls->vertex_count >= PARALLEL_VERTICES)
+#pragma omp parallel if (pulls->vertex_count >= TL_PARALLEL_VERTICES)
     {
         unsigned denormals = tl_denormals_off();
-        copy_places(x, my_part(pulls->vertex_count, TL_PULLS_BLOCK), pulls->places);
-        square_lengths(x, (const uint32_t(*)[2])pulls->edges, my_part(pulls->edge_count, TL_BATCH),
+        copy_places(x, tl_my_part(pulls->vertex_count, TL_PULLS_BLOCK), pulls->places);
+        square_lengths(x, (const uint32_t(*)[2])pulls->edges, tl_my_part(pulls->edge_count, TL_BATCH),
                        pulls->squared);
 #pragma omp barrier
-        differentiate_all(pulls, k, my_part(pulls->metric_count, 1));
+        differentiate_all(pulls, k, tl_my_part(pulls->metric_count, 1));
 #pragma omp barrier
-        add_shares(pulls, my_part(pulls->edge_count, TL_BATCH));
+        add_shares(pulls, tl_my_part(pulls->edge_count, TL_BATCH));
         if (pulls->excess_count + energy->link_count > 0) {
 #pragma omp barrier
 #pragma omp single
             links = add_rare(energy, fabric->stretch_warp);
         }
 #pragma omp barrier
-        add_forces(pulls, my_part(pulls->vertex_count, TL_PULLS_BLOCK), forces);
+        add_forces(pulls, tl_my_part(pulls->vertex_count, TL_PULLS_BLOCK), forces);
         if (wants_energy)
             add_energies(pulls);
         tl_denormals_restore(denormals);
@@ -240,10 +228,10 @@ void tl_energy_pull(const struct tl_energy *energy, const struct tl_cloth_fabric
 void tl_energy_bending_forces(const struct tl_energy *energy, const vec3d *x, vec3d *forces)
 {
     const struct tl_pulls *pulls = &energy->pulls;
-#pragma omp parallel if (pulls->vertex_count >= PARALLEL_VERTICES)
+#pragma omp parallel if (pulls->vertex_count >= TL_PARALLEL_VERTICES)
     {
         unsigned denormals = tl_denormals_off();
-        struct range mine = my_part(pulls->vertex_count, TL_PULLS_BLOCK);
+        struct tl_range mine = tl_my_part(pulls->vertex_count, TL_PULLS_BLOCK);
         copy_places(x, mine, pulls->places);
 #pragma omp barrier
         add_bending_forces(pulls, mine, forces);

@@ -54,6 +54,11 @@ static const struct tl_option cloth_rows[] = {
         struct tl_cloth_params, self_repulsion,
         "layers, a shirt over trousers, and folds keep their distance: takes about two thirds longer"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, gravity, -100, 100, "m/s^2", "along -Y: hangs more heavily"),
+    TL_OPTION_VECTOR(
+        struct tl_cloth_params, wind, -100, 100, "m/s",
+        "which way the air moves: presses on the cloth; 0 0 0: nothing, and nothing is computed"),
+    TL_OPTION_DOUBLE(struct tl_cloth_params, gust, 0, 1, "",
+                     "how much of its speed the wind rises and falls by"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, settle_s, 0, 600, "s",
                      "longest simulated time for coming to rest before the first frame"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, settle_speed, 0, 10, "m/s",

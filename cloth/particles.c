@@ -1,5 +1,6 @@
 #include "cloth/particles.h"
 
+#include "cloth/threads.h"
 #include "config/memory.h"
 
 #include <stdlib.h>
@@ -47,29 +48,54 @@ void tl_particles_release(struct tl_particles *particles)
     *particles = (struct tl_particles){0};
 }
 
-void tl_particles_predict(struct tl_particles *particles, double gravity, double drag, double h)
+void tl_particles_share(struct tl_particles *particles, tl_particles_mover *move, const void *how)
 {
-    double keep = exp(-drag * h);
-    for (size_t i = 0; i < particles->count; i++) {
-        vec3d v = particles->w[i] > 0 ? vec3d_scale(particles->v[i], keep) : (vec3d){0};
-        if (particles->w[i] > 0)
-            v.y -= gravity * h;
-        particles->v[i] = v;
-        particles->previous[i] = particles->x[i];
-        particles->x[i] = vec3d_muladd(particles->x[i], particles->v[i], h);
+#pragma omp parallel if (particles->count >= TL_PARALLEL_VERTICES)
+    {
+        unsigned denormals = tl_denormals_off();
+        move(particles, tl_my_part(particles->count, 1), how);
+        tl_denormals_restore(denormals);
     }
 }
 
-void tl_particles_push(struct tl_particles *particles, const vec3d *forces, double h)
+struct prediction {
+    const vec3d *forces;  /* or NULL */
+    double fall, keep, h; /* m/s, share of v that the drag leaves, s */
+};
+
+static void predict(struct tl_particles *particles, struct tl_range part, const void *how)
 {
-    for (size_t i = 0; i < particles->count; i++)
-        particles->v[i] = vec3d_muladd(particles->v[i], forces[i], particles->w[i] * h);
+    const struct prediction to = *(const struct prediction *)how;
+    for (size_t i = part.from; i < part.to; i++) {
+        double w = particles->w[i];
+        vec3d x = particles->x[i], v = w > 0 ? vec3d_scale(particles->v[i], to.keep) : (vec3d){0};
+        if (w > 0)
+            v.y -= to.fall;
+        if (to.forces)
+            v = vec3d_muladd(v, to.forces[i], w * to.h);
+        particles->v[i] = v;
+        particles->previous[i] = x;
+        particles->x[i] = vec3d_muladd(x, v, to.h);
+    }
+}
+
+void tl_particles_predict(struct tl_particles *particles, const vec3d *forces, double gravity, double drag,
+                          double h)
+{
+    const struct prediction to = {forces, gravity * h, exp(-drag * h), h};
+    tl_particles_share(particles, predict, &to);
+}
+
+static void finish(struct tl_particles *particles, struct tl_range part, const void *how)
+{
+    double per_h = 1 / *(const double *)how;
+    for (size_t i = part.from; i < part.to; i++)
+        particles->v[i] = vec3d_scale(vec3d_sub(particles->x[i], particles->previous[i]), per_h);
 }
 
 void tl_particles_finish(struct tl_particles *particles, double h)
 {
-    for (size_t i = 0; i < particles->count; i++)
-        particles->v[i] = vec3d_scale(vec3d_sub(particles->x[i], particles->previous[i]), 1 / h);
+    tl_particles_share(particles, finish, &h);
 }
 
 void tl_particles_calm(struct tl_particles *particles, const uint32_t (*edges)[2], size_t edge_count,

@@ -4,6 +4,7 @@
 #ifndef TOILE_CLOTH_PARTICLES_H
 #define TOILE_CLOTH_PARTICLES_H
 
+#include "cloth/threads.h"
 #include "cloth/vec3d.h"
 
 #include <stddef.h>
@@ -20,12 +21,14 @@ struct tl_particles {
 struct tl_particles tl_particles_create(size_t count);
 void tl_particles_release(struct tl_particles *particles);
 
-/* v <- v exp(-drag h) + h g, previous <- x, x <- x + h v. What is at rest feels its whole weight, whatever
- * the drag. */
-void tl_particles_predict(struct tl_particles *particles, double gravity, double drag, double h);
+/* Calls `move` on all threads, each for its own part of the particles, denormals off. */
+typedef void tl_particles_mover(struct tl_particles *particles, struct tl_range part, const void *how);
+void tl_particles_share(struct tl_particles *particles, tl_particles_mover *move, const void *how);
 
-/* v <- v + h w f, with forces f in N. */
-void tl_particles_push(struct tl_particles *particles, const vec3d *forces, double h);
+/* v <- v exp(-drag h) + h (g + w f), previous <- x, x <- x + h v, with `forces` f in N, or none when NULL.
+ * What is at rest feels its whole weight, whatever the drag. */
+void tl_particles_predict(struct tl_particles *particles, const vec3d *forces, double gravity, double drag,
+                          double h);
 
 /* v <- (x - previous) / h. */
 void tl_particles_finish(struct tl_particles *particles, double h);

@@ -270,7 +270,7 @@ struct tl_pulls tl_pulls_build(const struct tl_topology *topology, const struct 
     pulls.squared = TL_NEW_ARRAY(double, pulls.edge_count);
     pulls.shares = TL_NEW_ARRAY(double, pulls.metric_count * 3 * TL_BATCH + 1);
     pulls.along_edges = TL_NEW_ARRAY(double, pulls.edge_count);
-    pulls.sums = TL_NEW_ARRAY(struct tl_pull, pulls.vertex_count);
+    pulls.sums = TL_NEW_ARRAY(struct tl_wide_force, pulls.vertex_count);
     pulls.parts = TL_NEW_ARRAY(double, pulls.metric_count + blocks);
     return pulls;
 }

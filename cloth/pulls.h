@@ -28,7 +28,7 @@ struct tl_metric {
 };
 
 /* Four numbers, so that a wide register adds them at once; the last is 0. */
-struct tl_pull {
+struct tl_wide_force {
     double x, y, z, unused;
 };
 
@@ -57,9 +57,9 @@ struct tl_pulls {
     double *places;  /* [vertex_count][4] m */
     double *squared; /* [edge_count] m^2 */
     double *shares;  /* [metric_count][3][TL_BATCH] N/m, then a 0 for edges with fewer than two triangles */
-    double *along_edges;  /* [edge_count] N/m */
-    struct tl_pull *sums; /* [vertex_count] N */
-    double *parts;        /* [metric_count + blocks of vertices] J */
+    double *along_edges;        /* [edge_count] N/m */
+    struct tl_wide_force *sums; /* [vertex_count] N */
+    double *parts;              /* [metric_count + blocks of vertices] J */
 };
 
 /* Of the membranes, bends and links in `energy`. */

@@ -30,6 +30,7 @@ struct tl_cloth {
     double critical_step; /* s */
     struct tl_particles particles;
     vec3d *forces;         /* [particles.count] N, elastic; reference only, good within a step */
+    vec3d *external;       /* [particles.count] N, of the wind; NULL: it never blew */
     tl_implicit *implicit; /* settle only */
     struct tl_implicit_tally tally;
     struct tl_contacts contacts;
@@ -42,6 +43,7 @@ struct tl_cloth {
     bool grabbed;
     uint32_t grabbed_vertex; /* render vertex */
     vec3d grab_target;
+    uint64_t jump_followed; /* the collider's revision whose jump the cloth has gone along with */
     double time_s;
     bool settled;
     vec3d *start_x, *start_v; /* [render vertex] what reset goes back to; NULL until a start is marked */

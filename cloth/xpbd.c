@@ -1,5 +1,6 @@
 #include "cloth/xpbd.h"
 
+#include "cloth/threads.h"
 #include "config/simd.h"
 
 /* Shorter than this a vector has no direction to push along. */
@@ -106,14 +107,18 @@ TL_INLINE void move_corners(const struct tl_membrane *m, int lane, struct membra
 }
 
 /* Batches of a run that are solved side by side. */
-#define GROUP 8
+#define GROUP      8
+#define CACHE_LINE 64
 
 TL_INLINE void solve_group(const struct tl_membrane *m, size_t count, vec3d *x)
 {
     struct membrane_work work[GROUP];
-    for (size_t k = 0; k < count; k++)
+    for (size_t k = 0; k < count; k++) {
+        for (size_t line = 0; line < sizeof *m; line += CACHE_LINE)
+            __builtin_prefetch((const char *)&m[k + GROUP] + line);
         for (int i = 0; i < 3; i++)
             load(x, m[k].vertices[i], &work[k].x[i]);
+    }
     for (size_t k = 0; k < count; k++)
         for (int lane = 0; lane < TL_BATCH; lane++)
             solve_weft(&m[k], lane, &work[k]);
@@ -137,11 +142,16 @@ TL_CLONES static void solve_run(const struct tl_membrane *membranes, size_t coun
         solve_group(membranes + first, count - first < GROUP ? count - first : GROUP, x);
 }
 
-static void solve_membranes(const struct tl_energy *energy, vec3d *particles)
+/* On the threads of a team: the batches of a run in any order, the runs one after the other. */
+static void solve_membranes(const struct tl_energy *energy, vec3d *x)
 {
-    for (size_t run = 0, from = 0; run < energy->membrane_run_count; run++) {
-        solve_run(energy->membranes + from, energy->membrane_run_ends[run] - from, particles);
-        from = energy->membrane_run_ends[run];
+    size_t from = 0;
+    for (size_t run = 0; run < energy->membrane_run_count; run++) {
+        size_t end = energy->membrane_run_ends[run];
+        struct tl_range part = tl_my_part(end - from, 1);
+        solve_run(energy->membranes + from + part.from, part.to - part.from, x);
+        from = end;
+#pragma omp barrier
     }
 }
 
@@ -157,7 +167,7 @@ TL_INLINE void solve_curvature(const struct tl_bend *bend, int row, int lane,
         move(&x[i], lane, push, bend->w[i][lane] * bend->rows[row][i][lane]);
 }
 
-TL_CLONES static void solve_bends(const struct tl_bend *bends, size_t count, vec3d *particles)
+TL_CLONES static void solve_bend_run(const struct tl_bend *bends, size_t count, vec3d *particles)
 {
     for (const struct tl_bend *bend = bends; bend < bends + count; bend++) {
         struct places x[TL_BEND_STENCIL];
@@ -168,6 +178,18 @@ TL_CLONES static void solve_bends(const struct tl_bend *bends, size_t count, vec
                 solve_curvature(bend, row, lane, x);
         for (int i = TL_BEND_STENCIL - 1; i >= 0; i--) /* the first last: it stands in for missing ones */
             store(&x[i], bend->vertices[i], particles);
+    }
+}
+
+static void solve_bends(const struct tl_energy *energy, vec3d *x)
+{
+    size_t from = 0;
+    for (size_t run = 0; run < energy->bend_run_count; run++) {
+        size_t end = energy->bend_run_ends[run];
+        struct tl_range part = tl_my_part(end - from, 1);
+        solve_bend_run(energy->bends + from + part.from, part.to - part.from, x);
+        from = end;
+#pragma omp barrier
     }
 }
 
@@ -187,9 +209,14 @@ void tl_xpbd_solve_link(const struct tl_link *link, struct tl_particles *particl
 
 void tl_xpbd_solve(const struct tl_energy *energy, struct tl_particles *particles)
 {
-    solve_membranes(energy, particles->x);
-    if (!energy->bends_as_force)
-        solve_bends(energy->bends, energy->bend_count, particles->x);
+#pragma omp parallel if (particles->count >= TL_PARALLEL_VERTICES)
+    {
+        unsigned denormals = tl_denormals_off();
+        solve_membranes(energy, particles->x);
+        if (!energy->bends_as_force)
+            solve_bends(energy, particles->x);
+        tl_denormals_restore(denormals);
+    }
     for (size_t i = 0; i < energy->link_count; i++)
         tl_xpbd_solve_link(&energy->links[i], particles);
 }

@@ -2,11 +2,18 @@
  * 2019, "Small Steps in Physics Simulation"): predict, solve each constraint once in a fixed order, take the
  * velocity from the motion. With a fresh multiplier each substep a single spring is exactly implicit Euler.
  *
- * Bounded cost, finite for any stiffness and step. Its price: at rest it hangs as if it were softer, by a
- * share that shrinks with the substep, and stiff motion is damped. Serial Gauss-Seidel over batches whose
- * elements share no vertex: the result depends neither on the number of threads nor on how wide the processor
- * is. Threads: pure.
- */
+ * Bending is an explicit force in the prediction where the substep is no more than 0.7 of bending's own
+ * critical step, which it is for clothes in their usual mesh and substeps: it then bends exactly as much as
+ * the energy says, and at a third of the cost. Else it is a constraint of three rows like the others.
+ *
+ * Bounded cost, finite for any stiffness and step. Its price: at rest it stretches as if it were softer, by a
+ * share that shrinks with the substep, and stiff motion is damped. Gauss-Seidel over batches whose elements
+ * share no vertex, by colours: the result depends neither on the number of threads nor on how wide the
+ * processor is.
+ *
+ * Cost: 31 to 35 ns a particle and substep on one core of 3.7 GHz with registers of 512 bits (10,000
+ * vertices, two triangles each; 98 ns as plain loops of four lanes), of which membranes 16, bending as a
+ * force 9; 25 more when bending is a constraint. */
 #ifndef TOILE_CLOTH_XPBD_H
 #define TOILE_CLOTH_XPBD_H
 

@@ -292,17 +292,17 @@ static bool run_points(void *context, int level, tl_error *error)
     if (!follow_motion(renderer, error))
         return false;
     struct tl_points_request request = {.trace = renderer->trace,
-                                              .ranges = &renderer->ranges,
-                                              .samples = &renderer->samples,
-                                              .regions = &renderer->regions,
-                                              .suns = &renderer->suns,
-                                              .regions_revision = renderer->regions_revision,
-                                              .shapes_revision = renderer->signatures[TL_INPUT_SHAPES],
-                                              .ground = ground_of(renderer),
-                                              .environment_yaw = renderer->frame.environment_yaw,
-                                              .params = &renderer->settings.light,
-                                              .moved = renderer->rest.scene == 0,
-                                              .whole_rounds = renderer->frame.still};
+                                        .ranges = &renderer->ranges,
+                                        .samples = &renderer->samples,
+                                        .regions = &renderer->regions,
+                                        .suns = &renderer->suns,
+                                        .regions_revision = renderer->regions_revision,
+                                        .shapes_revision = renderer->signatures[TL_INPUT_SHAPES],
+                                        .ground = ground_of(renderer),
+                                        .environment_yaw = renderer->frame.environment_yaw,
+                                        .params = &renderer->settings.light,
+                                        .moved = renderer->rest.scene == 0,
+                                        .whole_rounds = renderer->frame.still};
     update_points(renderer, &request);
     return true;
 }

@@ -42,7 +42,7 @@ static const struct tl_option light_rows[] = {
     TL_OPTION_INT(light_params, rounds, 1, 4096, "frames",
                   "jittered frames averaged while nothing moves; more make still images truer"),
     TL_OPTION_INT(light_params, refresh, 0, TL_REGIONS_MAX, "regions",
-                  "rays: regions traced anew for each point and moving frame; 0: all"),
+                  "rays: regions traced anew for each point and moving frame, twice as many at rest; 0: all"),
     TL_OPTION_INT(light_params, rays, 1, 64, "",
                   "rays: directions traced a region; more are truer and slower"),
     TL_OPTION_FLOAT(light_params, repair, 0, 1, "",

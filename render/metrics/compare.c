@@ -68,15 +68,20 @@ static size_t join_coverage(const struct plain *test, struct plain *reference)
 static void measure_difference(const struct plain *test, const struct plain *reference,
                                struct tl_comparison *out)
 {
-    double squares = 0, sum = 0;
-    for (size_t i = 0; i < 3 * test->count; i++) {
-        if (!reference->covered[i / 3])
-            continue;
-        double difference = (double)test->rgb[i] - (double)reference->rgb[i];
-        squares += difference * difference;
-        sum += (double)reference->rgb[i];
-        out->max_abs = fmax(out->max_abs, fabs(difference));
+    double squares = 0, sum = 0, worst = 0;
+    for (size_t i = 0; i < test->count; i++) {
+        double square = 0;
+        for (size_t c = 3 * i; reference->covered[i] && c < 3 * i + 3; c++) {
+            double difference = (double)test->rgb[c] - (double)reference->rgb[c];
+            square += difference * difference;
+            sum += (double)reference->rgb[c];
+            out->max_abs = fmax(out->max_abs, fabs(difference));
+        }
+        squares += square;
+        out->worst = square > worst ? i : out->worst;
+        worst = fmax(worst, square);
     }
+    out->worst_share = squares > 0 ? worst / squares : 0;
     double values = 3 * (double)out->covered;
     /* Against a black reference only an equal image has a finite error. */
     out->rel_rmse = squares > 0 ? sqrt(squares / values) / (sum / values) : 0;

@@ -15,7 +15,11 @@ struct tl_comparison {
     double flip_mean;  /* covered pixels */
     double flip_frame; /* whole frame */
     double max_abs;    /* largest channel difference */
-    bool hdr;          /* HDR-FLIP was used: a value above 1 in the reference, or asked for */
+    size_t worst;      /* the pixel of the largest square error, y * width + x */
+    double
+        worst_share; /* its part of the sum of square errors; 0 when images are equal. At an outline that one
+                        image puts on the other side of a pixel's middle, a highlight may be all of it */
+    bool hdr;        /* HDR-FLIP was used: a value above 1 in the reference, or asked for */
     double exposure_start, exposure_stop; /* HDR only, log2 */
 };
 

@@ -29,9 +29,9 @@ struct tl_points {
     uint32_t motion;           /* counts moving frames, from 1 */
 
     struct tl_sites sites;
-    uint32_t *seen;       /* [sites]: frame when last visible */
-    uint32_t *slots;      /* [clusters]: where its values are; NO_SLOT: nowhere yet */
-    uint32_t *active;     /* [active_count]: clusters with visible sites */
+    uint32_t *seen;   /* [sites]: frame when last visible */
+    uint32_t *slots;  /* [clusters]: where its values are; NO_SLOT: nowhere yet */
+    uint32_t *active; /* [active_count]: clusters with visible sites */
     size_t active_count, visible_count;
 
     size_t slot_count, slot_capacity, stride;
@@ -46,7 +46,8 @@ struct tl_points {
     struct tl_taps *taps;
     size_t sample_count, sample_capacity;
     size_t ray_count;
-    /* At rest: of the points of the slots, each region has been looked at; has had its rounds; and all else. */
+    /* At rest: of the points of the slots, each region has been looked at; has had its rounds; and all else.
+     */
     bool have_begun, are_done, is_done;
 
     struct tl_starts starts; /* made when suns or repair need them */
@@ -400,7 +401,7 @@ static size_t bundles_of_a_frame(const tl_points *points, const struct tl_refres
     const struct tl_points_request *request = refresh->request;
     if (refresh->whole_rounds || request->moved)
         return SIZE_MAX;
-    size_t rays = points->visible_count * (size_t)request->params->refresh;
+    size_t rays = TL_REST_HASTE * points->visible_count * (size_t)request->params->refresh;
     return rays / ((size_t)request->regions->count * TL_CLUSTER) + 1;
 }
 
@@ -445,8 +446,8 @@ static void read_repaired(tl_points *points)
 static bool follow_samples(tl_points *points, const struct tl_points_request *request)
 {
     bool has_suns = request->suns && request->suns->count > 0;
-    size_t repaired = request->moved && !request->whole_rounds ? repaired_in_motion(request)
-                                                               : repaired_at_rest(request);
+    size_t repaired =
+        request->moved && !request->whole_rounds ? repaired_in_motion(request) : repaired_at_rest(request);
     uint64_t before = points->starts.samples;
     points->starts.samples = 0;
     if (!has_suns && repaired == 0)
@@ -523,8 +524,7 @@ void tl_points_update(tl_points *points, const struct tl_points_request *request
     assert(request->regions->count > 0 && request->params->rays > 0);
     follow_changes(points, request);
     mark_samples(points, request);
-    activate_clusters(points,
-                      request->moved ? repaired_in_motion(request) : repaired_at_rest(request));
+    activate_clusters(points, request->moved ? repaired_in_motion(request) : repaired_at_rest(request));
     resolve_taps(points);
     trace_all(points, request);
 }
@@ -582,9 +582,10 @@ size_t tl_points_bytes(const tl_points *points)
     size_t sites = points->sites.cluster_count * TL_CLUSTER, slots = points->slot_capacity;
     size_t vertices = points->sites.cluster_count > 0 ? sites : 0;
     return sites * (sizeof(struct tl_site) + sizeof(uint32_t)) + vertices * sizeof(uint32_t) +
-           points->sites.cluster_count * 2 * sizeof(uint32_t) + slots * (sizeof(uint16_t) + sizeof(uint32_t)) +
+           points->sites.cluster_count * 2 * sizeof(uint32_t) +
+           slots * (sizeof(uint16_t) + sizeof(uint32_t)) +
            slots * TL_CLUSTER * (points->stride * 2 * sizeof(uint16_t) + sizeof(uint32_t)) +
-           slots * points->stride * (sizeof(uint16_t) + sizeof(uint32_t)) + points->sample_capacity * sizeof(struct tl_taps) +
-           points->starts.capacity * sizeof(vec3s) + tl_sun_rays_bytes(&points->suns) +
-           tl_repair_bytes(&points->repair);
+           slots * points->stride * (sizeof(uint16_t) + sizeof(uint32_t)) +
+           points->sample_capacity * sizeof(struct tl_taps) + points->starts.capacity * sizeof(vec3s) +
+           tl_sun_rays_bytes(&points->suns) + tl_repair_bytes(&points->repair);
 }

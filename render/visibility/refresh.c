@@ -173,13 +173,14 @@ static void select_in_motion(const struct tl_refresh *refresh, const struct tl_c
     select_regions(needs, count, wanted, selected);
 }
 
-/* As many as in motion, and by the same need, until each has had its rounds. As many again of those that have
- * set: they take hardly a ray, but a part of one may stand above the horizon. */
+/* By the same need as in motion, until each has had its rounds. As many again of those that have set: they
+ * take hardly a ray, but a part of one may stand above the horizon. */
 static void select_at_rest(const struct tl_refresh *refresh, const struct tl_cluster *cluster,
                            const struct lanes *lanes, bool selected[TL_REGIONS_MAX])
 {
     float needs[TL_REGIONS_MAX], set[TL_REGIONS_MAX];
-    int count = refresh->request->regions->count, wanted = refresh->request->params->refresh;
+    int count = refresh->request->regions->count;
+    int wanted = TL_REST_HASTE * refresh->request->params->refresh;
     measure_needs(refresh, cluster, lanes, needs, set);
     for (int i = 0; i < count; i++) {
         bool left = cluster->rounds[i] < refresh->request->params->rounds;

@@ -21,7 +21,7 @@ refused() { # MESSAGE COMMAND...
 }
 
 check "trade without a folder" refused "add -o FOLDER" $TOILE trade --quick
-check "trade along nothing known" refused "expected light" $TOILE trade --axis wind -o measured
+check "trade along nothing known" refused "expected light or cloth" $TOILE trade --axis wind -o measured
 check "bench of nothing" refused "expected a topic" $TOILE bench
 check "stability of nothing known" refused "expected a topic" $TOILE stability wind
 

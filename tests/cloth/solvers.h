@@ -21,13 +21,18 @@ static inline bool solver_rests_exactly(int solver)
     return solver != TL_CLOTH_PREVIEW;
 }
 
+static inline void params_solve_exactly(struct tl_cloth_params *params)
+{
+    params->cg_tolerance = 1e-12;
+    params->cg_iterations = 10000;
+}
+
 /* As exact as the solver can be made within a step. */
 static inline struct tl_cloth_params params_exact(int solver)
 {
     struct tl_cloth_params params = params_defaults();
     params.solver = solver;
-    params.cg_tolerance = 1e-12;
-    params.cg_iterations = 10000;
+    params_solve_exactly(&params);
     return params;
 }
 
@@ -37,11 +42,12 @@ static inline double solver_resting_step(int solver)
     return solver == TL_CLOTH_SETTLE ? 1.0 / 60 : 1.0 / 1920;
 }
 
-/* Steps of `h` seconds, of one substep each. */
+/* Steps of `h` seconds, of one substep each, solved to rounding. */
 static inline void params_set_step(struct tl_cloth_params *params, double h)
 {
     params->dt = h;
     params->substeps = 1;
+    params_solve_exactly(params);
 }
 
 static inline void cloth_run(tl_cloth *cloth, const tl_collider *collider, double seconds)

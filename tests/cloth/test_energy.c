@@ -232,11 +232,173 @@ static void test_rigid_motion_is_free(void **state)
     for_every_mesh_and_term(check_rigid);
 }
 
+/* ---- The same by plain loops ---- */
+
+struct tension {
+    vec3d u, v; /* dE/dF_u, dE/dF_v per area */
+};
+
+static vec3d stretch_tension(vec3d f, double stiffness)
+{
+    return vec3d_scale(f, stiffness * (1 - 1 / vec3d_norm(f)));
+}
+
+static struct tension tension_of(vec3d u, vec3d v, const struct tl_cloth_fabric *fabric)
+{
+    double length_u = vec3d_norm(u), length_v = vec3d_norm(v),
+           cosine = vec3d_dot(u, v) / (length_u * length_v);
+    vec3d along_u = vec3d_scale(u, 1 / length_u), along_v = vec3d_scale(v, 1 / length_v);
+    struct tension tension = {stretch_tension(u, fabric->stretch_weft),
+                              stretch_tension(v, fabric->stretch_warp)};
+    tension.u =
+        vec3d_muladd(tension.u, vec3d_muladd(along_v, along_u, -cosine), fabric->shear * cosine / length_u);
+    tension.v =
+        vec3d_muladd(tension.v, vec3d_muladd(along_u, along_v, -cosine), fabric->shear * cosine / length_v);
+    return tension;
+}
+
+static void add_membrane(const struct tl_membrane *m, size_t lane, const struct tl_cloth_fabric *fabric,
+                         const vec3d *x, vec3d *forces)
+{
+    vec3d u = {0}, v = {0};
+    for (int i = 0; i < 3; i++) {
+        u = vec3d_muladd(u, x[m->vertices[i][lane]], m->c[i][lane]);
+        v = vec3d_muladd(v, x[m->vertices[i][lane]], m->d[i][lane]);
+    }
+    struct tension tension = tension_of(u, v, fabric);
+    for (int i = 0; i < 3; i++) {
+        vec3d *force = &forces[m->vertices[i][lane]];
+        *force = vec3d_muladd(*force, tension.u, -m->area[lane] * m->c[i][lane]);
+        *force = vec3d_muladd(*force, tension.v, -m->area[lane] * m->d[i][lane]);
+    }
+}
+
+static void add_bend(const struct tl_bend *bend, size_t lane, const double stiffness[3], const vec3d *x,
+                     vec3d *forces)
+{
+    for (int row = 0; row < 3; row++) {
+        vec3d curvature = {0};
+        for (int i = 0; i < TL_BEND_STENCIL; i++)
+            curvature = vec3d_muladd(curvature, x[bend->vertices[i][lane]], bend->rows[row][i][lane]);
+        for (int i = 0; i < TL_BEND_STENCIL; i++) {
+            vec3d *force = &forces[bend->vertices[i][lane]];
+            *force = vec3d_muladd(*force, curvature,
+                                  -stiffness[row] * bend->area[lane] * bend->rows[row][i][lane]);
+        }
+    }
+}
+
+/* One triangle after the other, from the deformation gradient and the curvature's rows. */
+static void plain_forces(const tl_cloth *cloth, vec3d *forces)
+{
+    const struct tl_energy *energy = &cloth->energy;
+    const vec3d *x = cloth->particles.x;
+    double stiffness[3];
+    tl_bend_stiffness(&cloth->fabric, stiffness);
+    for (size_t i = 0; i < energy->membrane_count * TL_BATCH; i++)
+        if (energy->membranes[i / TL_BATCH].area[i % TL_BATCH] > 0)
+            add_membrane(&energy->membranes[i / TL_BATCH], i % TL_BATCH, &cloth->fabric, x, forces);
+    for (size_t i = 0; i < energy->bend_count * TL_BATCH; i++)
+        if (energy->bends[i / TL_BATCH].area[i % TL_BATCH] > 0)
+            add_bend(&energy->bends[i / TL_BATCH], i % TL_BATCH, stiffness, x, forces);
+}
+
+static tl_cloth *make_large(tl_garment *garment, const struct tl_cloth_params *params)
+{
+    tl_error error = {0};
+    const struct sheet_shape shape = {80, 70, 1.6, 1.4}; /* more than TL_PARALLEL_VERTICES */
+    *garment = sheet_make(&shape, NULL);
+    shake_pattern(garment, 0.003);
+    struct tl_cloth_fabric fabric = fabric_of(ALL);
+    tl_cloth *cloth = tl_cloth_create(garment, &fabric, params, &error);
+    assert_non_null(cloth);
+    assert_true(cloth->particles.count > TL_PARALLEL_VERTICES);
+    deform(cloth);
+    return cloth;
+}
+
+/* Lanes, squared lengths and the constant matrix are the same forces: to the rounding of strains, 1e-16 of
+ * places over edges of 1 cm, times a few of the largest force. */
+static void test_plain_loops_agree(void **state)
+{
+    (void)state;
+    tl_garment garment;
+    struct tl_cloth_params params = params_defaults();
+    tl_cloth *cloth = make_large(&garment, &params);
+    size_t count = cloth->particles.count;
+    vec3d *fast = TL_NEW_ARRAY(vec3d, count), *alone = TL_NEW_ARRAY(vec3d, count);
+    vec3d *plain = TL_NEW_ARRAY(vec3d, count + 1);
+    forces_of(cloth, cloth->particles.x, fast);
+    tl_energy_pull(&cloth->energy, &cloth->fabric, cloth->particles.x, alone);
+    plain_forces(cloth, plain);
+    assert_memory_equal(fast, alone, count * sizeof *fast);
+    double worst = 0;
+    for (size_t i = 0; i < count; i++)
+        worst = fmax(worst, vec3d_distance(fast[i], plain[i]));
+    assert_near(worst, 0, 1e-12 * largest(plain, count));
+    free(fast);
+    free(alone);
+    free(plain);
+    tl_cloth_destroy(&cloth);
+    sheet_free(&garment);
+}
+
+/* ---- Threads ---- */
+
+/* Places after a frame from the deformed start; `bend`: a stiffness that preview solves by rows, not as a
+ * force. */
+static vec3d *places_after_frame(int threads, int solver, double bend, size_t *count)
+{
+    tl_error error = {0};
+    tl_garment garment;
+    struct tl_cloth_params params = params_defaults();
+    params.frame_rate = 500;
+    params.substeps = 5;
+    tl_cloth *cloth = make_large(&garment, &params);
+    struct tl_cloth_fabric fabric = cloth->fabric;
+    fabric.bend_weft = fabric.bend_warp = bend;
+    params.solver = solver;
+    assert_ok(tl_cloth_set(cloth, &fabric, &params, &error), error);
+    assert_true(cloth->energy.bends_as_force == (bend < 1));
+    int before = omp_get_max_threads();
+    omp_set_num_threads(threads);
+    assert_ok(tl_cloth_step(cloth, NULL, &error), error);
+    omp_set_num_threads(before);
+    *count = cloth->particles.count;
+    vec3d *places = TL_NEW_ARRAY(vec3d, *count);
+    memcpy(places, cloth->particles.x, *count * sizeof *places);
+    tl_cloth_destroy(&cloth);
+    sheet_free(&garment);
+    return places;
+}
+
+static void test_threads_agree(void **state)
+{
+    (void)state;
+    const int threads[] = {2, 3, 8};
+    const struct {
+        int solver;
+        double bend;
+    } runs[] = {{TL_CLOTH_PREVIEW, 1e-5}, {TL_CLOTH_PREVIEW, 10}, {TL_CLOTH_REFERENCE, 1e-5}};
+    for (size_t r = 0; r < TL_COUNT(runs); r++) {
+        size_t count;
+        vec3d *alone = places_after_frame(1, runs[r].solver, runs[r].bend, &count);
+        for (size_t t = 0; t < TL_COUNT(threads); t++) {
+            vec3d *shared = places_after_frame(threads[t], runs[r].solver, runs[r].bend, &count);
+            assert_memory_equal(alone, shared, count * sizeof *alone);
+            free(shared);
+        }
+        free(alone);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_forces_are_differences_and_balance),
         cmocka_unit_test(test_rigid_motion_is_free),
+        cmocka_unit_test(test_plain_loops_agree),
+        cmocka_unit_test(test_threads_agree),
     };
     tl_log_set_level(TL_LOG_WARN);
     return cmocka_run_group_tests(tests, NULL, NULL);

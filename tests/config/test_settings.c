@@ -152,7 +152,8 @@ static void test_refusals(void **state)
            "drss: no such scene: expected dress, skirt, review, or a YAML file: did you mean dress?");
     refuse(NULL, "scene.fabric=satn",
            "--set: scene.fabric: satn is no name known here: expected none, cotton_plain, satin, denim, "
-           "silk, wool or "
+           "silk, wool, interlock_tee, rib_knit, ponte, swim_knit, fleece, stretch_denim, trouser_twill, "
+           "jacket_polyester, tablecloth_polyester or "
            "a file name with its extension: did you mean satin?");
     refuse(NULL, "scene.preset=fast",
            "--set: scene.preset: fast is no name known here: expected paper, draft, review, final or a file "

@@ -79,6 +79,8 @@ static void missing_pixels_count(void **state)
     assert_ok(tl_image_compare(&a, &b, -1, 0, &result, &error), error);
     assert_int_equal(result.covered, 2);
     assert_near(result.max_abs, 0.75, 0);
+    assert_int_equal(result.worst, 0); /* two alike: the first */
+    assert_near(result.worst_share, 0.5, 1e-12);
     /* two pixels, each with squares of 1/4, 1/16 and 9/16; one of them bright in the reference */
     assert_near(result.rel_rmse, sqrt((0.25 + 0.0625 + 0.5625) / 3) / 0.25, 1e-6);
     tl_image_release(&a);

@@ -320,9 +320,10 @@ static void every_region_has_its_turn(void **state)
     stage_close(&stage);
 }
 
-/* Something moves once, and then nothing: a frame at rest traces no more rays than one in motion, none when
- * all have had their rounds, and comes as near to the truth as whole rounds do, but for directions that follow
- * one another less evenly. Sixteen err by less than 1 / (2 sqrt 16) in a third of the regions: 0.072. */
+/* Something moves once, and then nothing: a frame at rest traces no more than twice the rays of one in
+ * motion, none when all have had their rounds, and comes as near to the truth as whole rounds do, but for
+ * directions that follow one another less evenly. Sixteen err by less than 1 / (2 sqrt 16) in a third of the
+ * regions: 0.072. */
 static void rest_is_spread_over_frames(void **state)
 {
     (void)state;
@@ -345,13 +346,14 @@ static void rest_is_spread_over_frames(void **state)
     for (int i = 0; i < 2; i++)
         while (!tl_points_are_done(both[i]->points)) {
             step(both[i], false);
-            assert_true(i == 1 || tl_points_report(spread.points).rays <= REFRESH * visible + 16 * REGIONS);
+            assert_true(i == 1 ||
+                        tl_points_report(spread.points).rays <= 2 * REFRESH * visible + 16 * REGIONS);
             assert_true(++frames[i] < 1000);
         }
     struct tl_points_report report = tl_points_report(spread.points);
     assert_true(report.repaired_samples > 0);
     assert_true(frames[1] <= ROUNDS + 1);
-    assert_true(frames[0] > 4 * frames[1]);
+    assert_true(frames[0] > 2 * frames[1]);
     double error = measure_error(&spread, 256);
     assert_true(error < 0.072);
     assert_true(error < 1.2 * measure_error(&whole, 256));
@@ -628,7 +630,8 @@ static void repair_finds_and_mends_the_worst(void **state)
             error = fmax(error, (double)arriving * fabs(difference));
         }
     }
-    assert_int_equal(repaired, wanted);    assert_true(most <= least * (1 + 1.0 / 256));
+    assert_int_equal(repaired, wanted);
+    assert_true(most <= least * (1 + 1.0 / 256));
     assert_true(error <
                 0.2); /* 64 even rays of a shadow's edge: 1 / sqrt(64) at worst, and as much for 256 */
     stage_close(&plain);
