@@ -49,7 +49,7 @@ typedef struct tl_implicit tl_implicit;
 /* For steps of this problem's material, springs and h. */
 tl_implicit *tl_implicit_create(const struct tl_implicit_problem *problem,
                                 const struct tl_particles *particles);
-void tl_implicit_destroy(tl_implicit **implicit);
+void tl_implicit_destroy(tl_implicit **handle);
 
 /* From particles->previous and v to x; held particles (w = 0) are at their new x already. Velocities are
  * left. Adds to `tally`. */
