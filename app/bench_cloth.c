@@ -359,9 +359,10 @@ bool tl_bench_cloth(const struct tl_arguments *arguments, tl_error *error)
     struct bench *bench = TL_NEW(struct bench);
     bench->plan = arguments->quick ? quick_plan : arguments->full ? full_plan : plain_plan;
     bool done = run(bench, error);
+    bool dressing = !done && bench->dress_count > 0; /* stopped while dresses settled: the rest is whole */
     if (done && arguments->json) {
         print_json(bench);
-    } else if (done) {
+    } else if (done || dressing) {
         print_rates(bench);
         print_dresses(bench);
     }

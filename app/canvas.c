@@ -39,7 +39,7 @@ void tl_canvas_text(tl_image *canvas, int x, int y, const char *text, uint32_t c
     char *copy = tl_copy_string(text); /* the font's interface is not const */
     int quads = stb_easy_font_print(0, 0, copy, NULL, corners, (int)bytes);
     for (int i = 0; i < quads; i++) {
-        const struct corner *first = &corners[4 * i], *third = first + 2;
+        const struct corner *first = corners + 4 * (ptrdiff_t)i, *third = first + 2;
         tl_canvas_box(canvas, x + SCALE * (int)first->x, y + SCALE * (int)first->y,
                       SCALE * (int)(third->x - first->x), SCALE * (int)(third->y - first->y), colour);
     }

@@ -21,7 +21,11 @@ static const uint32_t colours[TL_OUTCOME_COUNT] = {0x2c8a57, 0x8fc7e8, 0xc9c4ba,
 /* 1e3 rather than 1e+03. */
 static void spell_power(char text[40], double value, const char *unit)
 {
-    snprintf(text, 40, "1e%d%s", (int)lround(log10(value)), unit);
+    int power = (int)lround(log10(value));
+    if (power == 0)
+        snprintf(text, 40, "1%s", unit);
+    else
+        snprintf(text, 40, "1e%d%s", power, unit);
 }
 
 static void draw_panel(tl_image *canvas, const struct tl_envelope_sweep *sweep, struct tl_envelope_place at,

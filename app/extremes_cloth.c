@@ -13,8 +13,8 @@
 
 #define SIDE     13
 #define FRAMES   30
-#define BALL_M   0.3   /* radius */
-#define BALL_TOP -0.01 /* the level sheet lies at 0 */
+#define BALL_M   0.3     /* radius */
+#define BALL_TOP (-0.01) /* the level sheet lies at 0 */
 #define DEEP_M   1e-3
 #define REST_MS  0.01 /* m/s */
 #define SLOWER   10.0
@@ -70,13 +70,13 @@ static void move_vertex(struct trial *trial, size_t vertex, size_t to, float apa
 
 static void make_needles(struct trial *trial)
 {
-    for (size_t i = 2 * SIDE + 3; i < SIDE * (SIDE - 1); i += 17)
+    for (size_t i = 2 * SIDE + 3; i < (size_t)SIDE * (SIDE - 1); i += 17)
         move_vertex(trial, i, i - 1, 1e-6f);
 }
 
 static void make_zero_area(struct trial *trial)
 {
-    for (size_t i = 2 * SIDE + 3; i < SIDE * (SIDE - 1); i += 17)
+    for (size_t i = 2 * SIDE + 3; i < (size_t)SIDE * (SIDE - 1); i += 17)
         move_vertex(trial, i, i - 1, 0);
 }
 

@@ -55,9 +55,10 @@ tl_ruler *tl_ruler_create(int side)
     add_springs(ruler, 0, 2, STIFFNESS / 10);
     double all = 4 * STIFFNESS + 4 * STIFFNESS / 2 + 4 * STIFFNESS / 10; /* on one particle */
     ruler->h = SAFETY * sqrt(2 * ruler->mass / all);
-    for (size_t i = 0; i < count; i++)
-        ruler->x[i] = (vec3d){(double)(i % ruler->side) / (double)(side - 1),
-                              -(double)(i / ruler->side) / (double)(side - 1), 0};
+    for (size_t i = 0; i < count; i++) {
+        size_t column = i % ruler->side, row = i / ruler->side;
+        ruler->x[i] = (vec3d){(double)column / (double)(side - 1), -(double)row / (double)(side - 1), 0};
+    }
     return ruler;
 }
 

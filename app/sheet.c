@@ -46,8 +46,8 @@ tl_garment tl_sheet_make(int side, enum tl_sheet_hold hold, bool lies)
     tl_garment garment = make_empty(across * across, 2 * (across - 1) * (across - 1));
     fill_cells(&garment.model.mesh, side - 1, side - 1);
     for (size_t i = 0; i < across * across; i++) {
-        double u = (double)(i % across) / (double)(across - 1),
-               v = (double)(i / across) / (double)(across - 1);
+        size_t column = i % across, row = i / across;
+        double u = (double)column / (double)(across - 1), v = (double)row / (double)(across - 1);
         vec3s at = lies ? (vec3s){{(float)u, 0, (float)v}} : (vec3s){{(float)u, (float)-v, 0}};
         place(&garment, i, at, u, v);
     }

@@ -12,7 +12,7 @@
 
 #define FALL_S      0.5
 #define ENOUGH_MS   100  /* a fall that took less is measured again */
-#define REST_SIDE   65   /* the largest that comes to rest */
+#define REST_SIDE   33   /* the largest that comes to rest */
 #define REST_S      60   /* longest */
 #define TRUTH_SHARE 0.25 /* of the reference's own step */
 
