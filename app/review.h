@@ -17,6 +17,7 @@ enum tl_review_command { /* what keys, buttons and answers stand for */
                          TL_REVIEW_TURN_RIGHT,
                          TL_REVIEW_SCREENSHOT,
                          TL_REVIEW_SCREENSHOT_LINEAR,
+                         TL_REVIEW_PIN, /* holds what is pulled; lets go of all that when nothing is */
                          TL_REVIEW_PANEL,
                          TL_REVIEW_HELP,
                          TL_REVIEW_BACK, /* closes what is open, or the window */

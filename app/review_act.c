@@ -40,6 +40,21 @@ static void reset(struct tl_review *review)
     tl_info("view: reset");
 }
 
+static void pin(struct tl_review *review)
+{
+    tl_cloth *cloth = tl_session_cloth(review->session);
+    if (!cloth)
+        return;
+    if (review->drag == TL_DRAG_CLOTH) {
+        tl_cloth_release(cloth);
+        tl_cloth_pin(cloth, review->grab_vertex);
+        review->drag = TL_DRAG_NONE;
+        tl_review_say(review, "pinned: P takes the pins out again");
+    } else {
+        tl_review_say(review, "%zu pins taken out", tl_cloth_unpin(cloth));
+    }
+}
+
 void tl_review_know_environment(struct tl_review *review, const char *name)
 {
     for (size_t i = 0; i < review->environment_count; i++)
@@ -259,6 +274,9 @@ void tl_review_act(struct tl_review *review, int command)
         break;
     case TL_REVIEW_SCREENSHOT_LINEAR:
         screenshot(review, true);
+        break;
+    case TL_REVIEW_PIN:
+        pin(review);
         break;
     case TL_REVIEW_PANEL:
         review->panel_hidden = !review->panel_hidden;

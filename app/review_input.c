@@ -22,6 +22,7 @@ static const struct key_row key_rows[] = {
     {GLFW_KEY_PERIOD, 0, TL_REVIEW_STEP, ".  or  Right", "one frame on"},
     {GLFW_KEY_RIGHT, 0, TL_REVIEW_STEP, NULL, NULL},
     {GLFW_KEY_R, 0, TL_REVIEW_RESET, "R", "back to the settled start"},
+    {GLFW_KEY_P, 0, TL_REVIEW_PIN, "P", "while pulling: pin the cloth here; else: take those pins out"},
     {GLFW_KEY_F, 0, TL_REVIEW_FRAME_ALL, "F", "frame the whole figure"},
     {GLFW_KEY_E, 0, TL_REVIEW_NEXT_ENVIRONMENT, "E", "next environment"},
     {GLFW_KEY_LEFT_BRACKET, 0, TL_REVIEW_TURN_LEFT, "[  ]", "turn the environment by 15\u00b0"},
@@ -74,8 +75,9 @@ size_t tl_review_help(struct tl_panel_line *lines, size_t capacity)
 
 static void on_key(struct tl_review *review, const struct tl_window_event *event)
 {
-    if (tl_panel_wants_keys(review->panel) ||
-        (event->modifiers & (GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER)))
+    const int others = GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER;
+    bool pulls = review->drag == TL_DRAG_CLOTH; /* with Ctrl held */
+    if (tl_panel_wants_keys(review->panel) || (!pulls && (event->modifiers & others)))
         return;
     int modifiers = event->modifiers & GLFW_MOD_SHIFT;
     for (size_t i = 0; i < TL_COUNT(key_rows); i++)

@@ -13,8 +13,6 @@
 
 /* Strain beyond which the state is no longer cloth. */
 #define STRAIN_LIMIT 10
-/* How far pins look for the avatar. */
-#define PIN_REACH_M 0.1
 /* A hand's pull: a soft spring, and no more than lifts a heavy coat. */
 #define GRAB_STIFFNESS 200.0
 #define GRAB_FORCE     5.0
@@ -58,69 +56,6 @@ static bool check_budget(const tl_cloth *cloth, tl_error *error)
                    "cloth: the reference solver's step for this fabric is %.3g s, %.4g substeps a frame, and "
                    "cloth.reference_substeps allows %d: allow more, or choose cloth.solver preview",
                    TL_VERLET_SAFETY * cloth->critical_step, wanted, cloth->params.reference_substeps);
-}
-
-/* ---- Pins ---- */
-
-/* Point and axes of the avatar's triangle that carries a pin, at a phase of the motion. */
-struct carrier {
-    vec3d origin, axes[3];
-};
-
-static vec3d carrier_point(const tl_collider *collider, const struct tl_pin *pin, const double b[3],
-                           double phase)
-{
-    double before[3], after[3];
-    tl_collider_path(collider, pin->triangle, b, before, after);
-    return vec3d_mix((vec3d){before[0], before[1], before[2]}, (vec3d){after[0], after[1], after[2]}, phase);
-}
-
-static struct carrier carrier_at(const tl_collider *collider, const struct tl_pin *pin, double phase)
-{
-    const double corners[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    vec3d a = carrier_point(collider, pin, corners[0], phase);
-    vec3d side = vec3d_sub(carrier_point(collider, pin, corners[1], phase), a);
-    vec3d other = vec3d_sub(carrier_point(collider, pin, corners[2], phase), a);
-    vec3d normal = vec3d_unit_or(vec3d_cross(side, other), (vec3d){0, 1, 0});
-    vec3d along = vec3d_unit_or(side, (vec3d){1, 0, 0});
-    return (struct carrier){carrier_point(collider, pin, pin->barycentric, phase),
-                            {along, vec3d_cross(normal, along), normal}};
-}
-
-static void bind_pins(tl_cloth *cloth, const tl_collider *collider)
-{
-    for (size_t i = 0; collider && i < cloth->pin_count; i++) {
-        struct tl_pin *pin = &cloth->pins[i];
-        const double point[3] = {pin->at.x, pin->at.y, pin->at.z};
-        struct tl_contact contact;
-        if (!tl_collider_query_at(collider, point, 0, PIN_REACH_M, &contact))
-            continue;
-        pin->triangle = contact.triangle;
-        memcpy(pin->barycentric, contact.barycentric, sizeof pin->barycentric);
-        struct carrier carrier = carrier_at(collider, pin, 0);
-        vec3d normal = {contact.normal[0], contact.normal[1], contact.normal[2]};
-        double sunk = fmax(cloth->fabric.thickness_m - contact.distance_m, 0);
-        vec3d offset = vec3d_sub(vec3d_muladd(pin->at, normal, sunk), carrier.origin);
-        pin->offset = (vec3d){vec3d_dot(offset, carrier.axes[0]), vec3d_dot(offset, carrier.axes[1]),
-                              vec3d_dot(offset, carrier.axes[2])};
-    }
-    cloth->pins_bound = collider != NULL;
-}
-
-static void place_pins(tl_cloth *cloth, const tl_collider *collider, double phase)
-{
-    for (size_t i = 0; i < cloth->pin_count; i++) {
-        const struct tl_pin *pin = &cloth->pins[i];
-        vec3d at = pin->at;
-        if (pin->triangle != TL_NONE && collider) {
-            struct carrier carrier = carrier_at(collider, pin, phase);
-            at = vec3d_muladd(carrier.origin, carrier.axes[0], pin->offset.x);
-            at = vec3d_muladd(at, carrier.axes[1], pin->offset.y);
-            at = vec3d_muladd(at, carrier.axes[2], pin->offset.z);
-        }
-        cloth->particles.x[pin->particle] = at;
-        cloth->particles.driven[pin->particle] = pin->triangle != TL_NONE;
-    }
 }
 
 /* ---- A frame ---- */
@@ -177,8 +112,10 @@ static void advance_preview(tl_cloth *cloth, const struct tl_substep *substep)
         tl_energy_bending_forces(&cloth->energy, cloth->particles.x, cloth->forces);
     tl_particles_predict(&cloth->particles, bends ? cloth->forces : NULL, substep->gravity, substep->drag,
                          substep->h);
-    place_pins(cloth, substep->collider, substep->phase);
+    tl_pins_place(cloth->pins, cloth->pin_count, substep->collider, substep->phase, &cloth->particles);
     tl_xpbd_solve(&cloth->energy, &cloth->particles);
+    if (cloth->params.strain_limit > 0)
+        tl_limits_solve(&cloth->limits, cloth->params.strain_limit, &cloth->particles);
     constrain(cloth, substep);
     tl_particles_finish(&cloth->particles, substep->h);
 }
@@ -216,7 +153,7 @@ static void advance_settle(tl_cloth *cloth, const struct tl_substep *substep)
     if (!cloth->implicit)
         cloth->implicit = tl_implicit_create(&problem, particles);
     memcpy(particles->previous, particles->x, particles->count * sizeof *particles->x);
-    place_pins(cloth, substep->collider, substep->phase);
+    tl_pins_place(cloth->pins, cloth->pin_count, substep->collider, substep->phase, &cloth->particles);
     tl_implicit_step(cloth->implicit, &problem, particles, &cloth->tally);
     keep_apart(cloth, &problem.contact);
     tl_particles_finish(particles, substep->h);
@@ -230,7 +167,7 @@ static void find_forces(tl_cloth *cloth)
 static void advance_reference(tl_cloth *cloth, const struct tl_substep *substep)
 {
     tl_verlet_drift(&cloth->particles, cloth->forces, substep->gravity, substep->drag, substep->h);
-    place_pins(cloth, substep->collider, substep->phase);
+    tl_pins_place(cloth->pins, cloth->pin_count, substep->collider, substep->phase, &cloth->particles);
     constrain(cloth, substep);
     find_forces(cloth);
     tl_verlet_kick(&cloth->particles, cloth->forces, substep->gravity, substep->drag, substep->h);
@@ -387,8 +324,8 @@ bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct
     memcpy(good_x, particles->x, bytes);
     memcpy(good_v, particles->v, bytes);
     unsigned denormals = tl_denormals_off();
-    if (!cloth->pins_bound)
-        bind_pins(cloth, collider);
+    if (collider)
+        tl_pins_bind(cloth->pins, cloth->pin_count, collider, cloth->fabric.thickness_m);
     tl_contacts_begin(&cloth->contacts, collider);
     run_steps(cloth, collider, fmax(advance->drag, cloth->fabric.damping));
     tl_denormals_restore(denormals);

@@ -143,17 +143,29 @@ static void build_mesh(tl_cloth *cloth, const uint32_t *weld, size_t vertex_coun
     for (size_t i = 0; i < mesh->vertex_count; i++)
         cloth->made_at[weld[i]] = vec3d_from(mesh->positions[i]);
     tl_layers_release(&cloth->layers);
+    tl_limits_release(&cloth->limits);
+    cloth->limits = tl_limits_create(&cloth->topology, (const vec2s(*)[3])cloth->rest, cloth->shortest_edge);
 }
 
+static void add_pin(tl_cloth *cloth, uint32_t particle, bool by_hand)
+{
+    cloth->pins = tl_resize(cloth->pins, cloth->pin_count + 1, sizeof *cloth->pins);
+    cloth->pins[cloth->pin_count++] = (struct tl_pin){
+        .particle = particle, .by_hand = by_hand, .at = cloth->particles.x[particle], .triangle = TL_NONE};
+}
+
+/* The garment's own, and what starts above cloth.pin_above_m, where they are now. */
 static void make_pins(tl_cloth *cloth)
 {
     const tl_garment *garment = cloth->garment;
-    cloth->pin_count = garment->pin_count;
-    cloth->pins = TL_NEW_ARRAY(struct tl_pin, garment->pin_count);
+    double above_m = cloth->params.pin_above_m;
+    cloth->pin_count = 0;
+    memset(cloth->particles.driven, 0, cloth->particles.count * sizeof(bool));
     for (size_t i = 0; i < garment->pin_count; i++)
-        cloth->pins[i] = (struct tl_pin){.particle = cloth->topology.weld[garment->pins[i]],
-                                         .at = vec3d_from(garment->model.mesh.positions[garment->pins[i]]),
-                                         .triangle = TL_NONE};
+        add_pin(cloth, cloth->topology.weld[garment->pins[i]], false);
+    for (uint32_t i = 0; above_m > 0 && i < cloth->particles.count; i++)
+        if (cloth->made_at[i].y > above_m)
+            add_pin(cloth, i, false);
 }
 
 static void build_state(tl_cloth *cloth)
@@ -180,6 +192,7 @@ static void release_state(tl_cloth *cloth)
     tl_contacts_release(&cloth->contacts);
     tl_layers_release(&cloth->layers);
     tl_repulsion_release(&cloth->repulsion);
+    tl_limits_release(&cloth->limits);
     tl_sewing_release(&cloth->sewing);
     tl_implicit_destroy(&cloth->implicit);
     free(cloth->rest);
@@ -260,8 +273,11 @@ bool tl_cloth_set(tl_cloth *cloth, const struct tl_cloth_fabric *fabric, const s
     if (!check_params(&tl_cloth_fabric_options, fabric, error) ||
         !check_params(&tl_cloth_options, params, error))
         return false;
+    bool pins_change = params->pin_above_m != cloth->params.pin_above_m;
     cloth->fabric = *fabric;
     cloth->params = *params;
+    if (pins_change)
+        make_pins(cloth);
     set_constants(cloth);
     return true;
 }
@@ -294,10 +310,11 @@ void tl_cloth_reset(tl_cloth *cloth)
     cloth->time_s = 0;
     if (!cloth->start_x) {
         release_state(cloth);
-        cloth->pins_bound = cloth->settled = false;
+        cloth->settled = false;
         build_state(cloth);
         return;
     }
+    tl_cloth_unpin(cloth);
     for (size_t i = 0; i < cloth->topology.render_count; i++) {
         cloth->particles.x[cloth->topology.weld[i]] = cloth->start_x[i];
         cloth->particles.v[cloth->topology.weld[i]] = cloth->start_v[i];
@@ -315,6 +332,28 @@ void tl_cloth_grab(tl_cloth *cloth, uint32_t render_vertex, vec3s target)
 void tl_cloth_release(tl_cloth *cloth)
 {
     cloth->grabbed = false;
+}
+
+void tl_cloth_pin(tl_cloth *cloth, uint32_t render_vertex)
+{
+    if (render_vertex >= cloth->topology.render_count)
+        return;
+    add_pin(cloth, cloth->topology.weld[render_vertex], true);
+    set_constants(cloth);
+}
+
+size_t tl_cloth_unpin(tl_cloth *cloth)
+{
+    size_t kept = 0, count = cloth->pin_count;
+    for (size_t i = 0; i < count; i++)
+        if (!cloth->pins[i].by_hand)
+            cloth->pins[kept++] = cloth->pins[i];
+        else
+            cloth->particles.driven[cloth->pins[i].particle] = false;
+    cloth->pin_count = kept;
+    if (kept < count)
+        set_constants(cloth);
+    return count - kept;
 }
 
 void tl_cloth_positions(const tl_cloth *cloth, vec3s *out)

@@ -42,8 +42,10 @@ struct tl_cloth_params {
     int cg_iterations;      /* settle: most per solve */
     double cg_tolerance;    /* settle: of the residual, to the load */
     int reference_substeps; /* reference: most per frame, beyond which it is refused */
-    bool self_repulsion;    /* layers of a garment, and folds, keep their distance: layers.h, repulsion.h */
-    double gravity;         /* m/s^2, along -Y */
+    double strain_limit;    /* preview: no edge gets longer than by this share; 0: as the energy has it */
+    double pin_above_m;  /* vertices that start higher are pinned, on the avatar's nearest point; 0: none */
+    bool self_repulsion; /* layers of a garment, and folds, keep their distance: layers.h, repulsion.h */
+    double gravity;      /* m/s^2, along -Y */
     float wind[3];       /* m/s; air at rest presses on nothing: then only fabric.damping slows the cloth */
     double gust;         /* 0 to 1, of the wind's speed */
     double settle_s;     /* longest simulated time spent settling before the first frame */
@@ -102,6 +104,12 @@ bool tl_cloth_step(tl_cloth *cloth, const tl_collider *collider, tl_error *error
  */
 void tl_cloth_grab(tl_cloth *cloth, uint32_t render_vertex, vec3s target);
 void tl_cloth_release(tl_cloth *cloth);
+
+/* Holds the physics vertex of a render vertex where it is, as a pin that rides on the avatar where one is
+ * near; reset and tl_cloth_unpin forget it. */
+void tl_cloth_pin(tl_cloth *cloth, uint32_t render_vertex);
+/* Lets go of all that tl_cloth_pin holds. Returns how many. */
+size_t tl_cloth_unpin(tl_cloth *cloth);
 
 /* Current positions of all render vertices, and the physics vertex of each (for tl_frames). The latter
  * changes when seams close: during settling, or in a step when there was none or something held them apart.

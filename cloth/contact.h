@@ -67,7 +67,7 @@ struct tl_contact_plane {
 };
 #define TL_CONTACT_PLANES 2 /* the avatar's and the ground's */
 
-/* Those of a particle that starts at x; returns how many. */
+/* Those of a particle, or of probe i as particle_count + i, that starts at x; returns how many. */
 size_t tl_contacts_planes(struct tl_contacts *contacts, const struct tl_contact_params *params,
                           size_t particle, vec3d x, struct tl_contact_plane out[TL_CONTACT_PLANES]);
 

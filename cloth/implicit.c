@@ -18,6 +18,7 @@ struct tl_implicit {
     struct tl_solve_space space;
     struct tl_filter *filters;
     struct tl_touch *touches;
+    struct tl_press *presses;   /* [the contacts' probe_count] */
     double *inertia, *resisted; /* N/m: mu, and with the friction of what slips */
     vec3d *push;                /* N: inertia and gravity */
     vec3d *load, *resisted_load;
@@ -39,6 +40,7 @@ tl_implicit *tl_implicit_create(const struct tl_implicit_problem *problem,
     implicit->space = tl_solve_space_create(count);
     implicit->filters = TL_NEW_ARRAY(struct tl_filter, count);
     implicit->touches = TL_NEW_ARRAY(struct tl_touch, count);
+    implicit->presses = TL_NEW_ARRAY(struct tl_press, problem->contacts->probe_count);
     implicit->inertia = TL_NEW_ARRAY(double, count);
     implicit->resisted = TL_NEW_ARRAY(double, count);
     implicit->push = TL_NEW_ARRAY(vec3d, count);
@@ -59,10 +61,9 @@ void tl_implicit_destroy(tl_implicit **handle)
     tl_stiffness_release(&implicit->stiffness);
     tl_factor_destroy(&implicit->factor);
     tl_solve_space_release(&implicit->space);
-    void *const arrays[] = {implicit->filters,       implicit->touches, implicit->inertia,
-                            implicit->resisted,      implicit->push,    implicit->load,
-                            implicit->resisted_load, implicit->elastic, implicit->given,
-                            implicit->step,          implicit->at};
+    void *const arrays[] = {implicit->presses,  implicit->filters, implicit->touches, implicit->inertia,
+                            implicit->resisted, implicit->push,    implicit->load,    implicit->resisted_load,
+                            implicit->elastic,  implicit->given,   implicit->step,    implicit->at};
     for (size_t i = 0; i < TL_COUNT(arrays); i++)
         free(arrays[i]);
     free(implicit);
@@ -172,6 +173,11 @@ static void linearise_pull(tl_implicit *implicit, const struct tl_implicit_probl
     implicit->load[i] = vec3d_muladd(implicit->load[i], implicit->given[i], stiffness);
 }
 
+static double stiffest(const struct tl_cloth_fabric *fabric)
+{
+    return fmax(fmax(fabric->stretch_weft, fabric->stretch_warp), fabric->shear);
+}
+
 /* K and the load mu (y - x) + f + K (at - x) at the present `at`, whose elastic forces are known. */
 static void linearise(tl_implicit *implicit, const struct tl_implicit_problem *problem,
                       const struct tl_particles *particles)
@@ -186,6 +192,7 @@ static void linearise(tl_implicit *implicit, const struct tl_implicit_problem *p
         implicit->load[i] = vec3d_add(vec3d_add(implicit->push[i], implicit->elastic[i]), carried);
     }
     linearise_pull(implicit, problem, particles);
+    tl_presses_add(implicit->presses, problem->contacts, &implicit->stiffness, implicit->load);
 }
 
 /* What each particle may do, what of its step is given, and what friction resists. */
@@ -244,12 +251,10 @@ static double residual_floor(const tl_implicit *implicit, const struct tl_implic
 {
     const double rounding_m = 4e-15;
     double still_m = 1e-5 * problem->tolerance * problem->h, inertia = 0;
-    const struct tl_cloth_fabric *fabric = problem->fabric;
-    double stiffness = fmax(fmax(fabric->stretch_weft, fabric->stretch_warp), fabric->shear);
     for (size_t i = 0; i < implicit->count; i++)
         inertia += implicit->inertia[i];
     return inertia * (still_m * still_m + rounding_m * rounding_m) +
-           (double)implicit->count * stiffness * rounding_m * rounding_m;
+           (double)implicit->count * stiffest(problem->fabric) * rounding_m * rounding_m;
 }
 
 /* What only falls and flies keeps its momentum to rounding, however little is solved: elastic forces add up
@@ -259,6 +264,8 @@ static void keep_momentum(tl_implicit *implicit, const struct tl_implicit_proble
     vec3d missing = {0};
     double inertia = 0;
     bool free = problem->hand.particle == TL_NONE;
+    for (size_t i = 0; i < problem->contacts->probe_count && free; i++)
+        free = !implicit->presses[i].presses;
     for (size_t i = 0; i < implicit->count && free; i++) {
         free = implicit->filters[i].freedom == TL_MOVES_FREELY;
         missing =
@@ -289,7 +296,10 @@ static void solve(tl_implicit *implicit, const struct tl_implicit_problem *probl
         system.floor = result.goal; /* later rounds need no more than the first */
         total->iterations += result.iterations;
         total->converged = total->converged && result.converged;
-        agreed = judge_touches(implicit, problem, &system);
+        bool touches_agree = judge_touches(implicit, problem, &system);
+        agreed = tl_presses_judge(implicit->presses, problem->contacts, implicit->step, &implicit->stiffness,
+                                  implicit->load) &&
+                 touches_agree;
     }
 }
 
@@ -356,6 +366,8 @@ void tl_implicit_step(tl_implicit *implicit, const struct tl_implicit_problem *p
     const double rounding = 1e-9;
     struct tl_solve_result total = {.converged = true};
     begin(implicit, problem, particles);
+    tl_presses_begin(implicit->presses, problem->contacts, &problem->contact, particles->previous,
+                     implicit->inertia, stiffest(problem->fabric));
     double before =
         elastic_energy(problem, implicit->count, implicit->at, implicit->elastic) + kinetic_energy(particles);
     bool shortened = find_step(implicit, problem, particles, before * (1 + rounding), &total);

@@ -6,13 +6,14 @@
  * Its price: motion is damped by the step, the more the quicker it is, so a swing dies sooner than it should;
  * of first order in h.
  *
- * Contact (cloth/implicit_touch.h): planes are heeded while solving.
+ * Contact (cloth/implicit_touch.h, cloth/implicit_press.h): planes are heeded while solving.
  *
  * Guard: where kinetic, elastic and gravity's energy together would rise, the step is linearised again at its
  * end (Newton's method); if that does not help, it is shortened. Threads: uses all. */
 #ifndef TOILE_CLOTH_IMPLICIT_H
 #define TOILE_CLOTH_IMPLICIT_H
 
+#include "cloth/implicit_press.h"
 #include "cloth/implicit_solve.h"
 #include "cloth/implicit_touch.h"
 
@@ -48,7 +49,7 @@ typedef struct tl_implicit tl_implicit;
 /* For steps of this problem's material, springs and h. */
 tl_implicit *tl_implicit_create(const struct tl_implicit_problem *problem,
                                 const struct tl_particles *particles);
-void tl_implicit_destroy(tl_implicit **implicit);
+void tl_implicit_destroy(tl_implicit **handle);
 
 /* From particles->previous and v to x; held particles (w = 0) are at their new x already. Velocities are
  * left. Adds to `tally`. */

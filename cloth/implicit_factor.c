@@ -8,7 +8,7 @@
 
 /* Pivots below this share of the largest entry are rounding. */
 #define LEAST_PIVOT 1e-14
-/* Of more vertices the factor costs more than it saves: the diagonal alone. */
+/* Of more vertices the factor costs more than it saves, or does not fit into memory: the diagonal alone. */
 #define MOST_VERTICES 300000
 
 struct tl_factor {
@@ -79,33 +79,58 @@ static void add_masses(struct sum *sum, size_t vertex_count, double h)
     }
 }
 
+static cholmod_sparse *sum_up(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
+                              const struct tl_springs *springs, const struct tl_stiffness *stiffness,
+                              double h, struct sum *sum, cholmod_common *common)
+{
+    const int lower = -1; /* CHOLMOD's word for it */
+    size_t count = stiffness->vertex_count;
+    size_t most = (size_t)9 * TL_BATCH * energy->membrane_count + stiffness->bends.first[count] +
+                  3 * (energy->link_count + springs->count) + count;
+    sum->entries = cholmod_allocate_triplet(count, count, most, lower, CHOLMOD_REAL, common);
+    if (!sum->entries)
+        return NULL;
+    add_membranes(sum, energy, fabric);
+    add_rows(sum, stiffness);
+    add_links(sum, energy->links, energy->link_count, fabric->stretch_warp);
+    add_links(sum, springs->links, springs->count, springs->stiffness);
+    add_masses(sum, count, h);
+    cholmod_sparse *matrix = cholmod_triplet_to_sparse(sum->entries, 0, common);
+    cholmod_free_triplet(&sum->entries, common);
+    return matrix;
+}
+
+/* Whether it fits into memory. */
+static bool factorise(tl_factor *factor, cholmod_sparse *matrix, double largest)
+{
+    cholmod_common *common = &factor->common;
+    common->dbound = LEAST_PIVOT * largest;
+    factor->factor = matrix ? cholmod_analyze(matrix, common) : NULL;
+    bool good = factor->factor && cholmod_factorize(matrix, factor->factor, common);
+    cholmod_free_sparse(&matrix, common);
+    if (!good)
+        cholmod_free_factor(&factor->factor, common);
+    return good;
+}
+
 tl_factor *tl_factor_create(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
                             const struct tl_springs *springs, const struct tl_stiffness *stiffness,
                             const double *inverse_masses, double h)
 {
     tl_factor *factor = TL_NEW(tl_factor);
     cholmod_common *common = &factor->common;
-    size_t count = stiffness->vertex_count;
+    bool good = false;
     cholmod_start(common);
+    common->print = 0;                       /* stdout is for results */
     common->supernodal = CHOLMOD_SIMPLICIAL; /* no BLAS: its sums may depend on the threads */
-    size_t most = 9 * TL_BATCH * energy->membrane_count + stiffness->bends.first[count] +
-                  3 * (energy->link_count + springs->count) + count;
-    const int lower = -1; /* CHOLMOD's word for it */
-    struct sum sum = {.entries = cholmod_allocate_triplet(count, count, most, lower, CHOLMOD_REAL, common),
-                      .inverse_masses = inverse_masses,
-                      .diagonal = count > MOST_VERTICES};
-    add_membranes(&sum, energy, fabric);
-    add_rows(&sum, stiffness);
-    add_links(&sum, energy->links, energy->link_count, fabric->stretch_warp);
-    add_links(&sum, springs->links, springs->count, springs->stiffness);
-    add_masses(&sum, count, h);
-    cholmod_sparse *matrix = cholmod_triplet_to_sparse(sum.entries, 0, common);
-    cholmod_free_triplet(&sum.entries, common);
-    common->dbound = LEAST_PIVOT * sum.largest;
-    factor->factor = cholmod_analyze(matrix, common);
-    cholmod_factorize(matrix, factor->factor, common);
-    cholmod_free_sparse(&matrix, common);
-    factor->work = TL_NEW_ARRAY(vec3d, count);
+    for (int diagonal = stiffness->vertex_count > MOST_VERTICES; !good && diagonal < 2; diagonal++) {
+        struct sum sum = {.inverse_masses = inverse_masses, .diagonal = diagonal};
+        cholmod_sparse *matrix = sum_up(energy, fabric, springs, stiffness, h, &sum, common);
+        good = factorise(factor, matrix, sum.largest);
+    }
+    if (!good)
+        abort(); /* out of memory for the diagonal, as in tl_alloc */
+    factor->work = TL_NEW_ARRAY(vec3d, stiffness->vertex_count);
     return factor;
 }
 

@@ -79,7 +79,7 @@ static struct tl_gather make_gather(const uint32_t *corners, size_t per_element,
         for (uint32_t item = gather.fans.first[v]; item < gather.fans.first[v + 1]; item++) {
             const uint32_t *element = corners + gather.fans.items[item] / per_element * per_element;
             for (size_t k = 0; k < per_element; k++)
-                gather.slots[item * per_element + k] = find_entry(rows, v, element[k]);
+                gather.slots[(size_t)item * per_element + k] = find_entry(rows, v, element[k]);
         }
     return gather;
 }
@@ -123,9 +123,9 @@ static void gather_bends(const struct tl_gather *gather, const struct tl_energy 
             const struct tl_bend *bend = &energy->bends[element / TL_BATCH];
             for (size_t k = 0; k < TL_BEND_STENCIL; k++)
                 for (int row = 0; row < 3; row++)
-                    values[gather->slots[item * TL_BEND_STENCIL + k]] += stiffness[row] * bend->area[lane] *
-                                                                         bend->rows[row][corner][lane] *
-                                                                         bend->rows[row][k][lane];
+                    values[gather->slots[(size_t)item * TL_BEND_STENCIL + k]] +=
+                        stiffness[row] * bend->area[lane] * bend->rows[row][corner][lane] *
+                        bend->rows[row][k][lane];
         }
 }
 
@@ -183,15 +183,15 @@ void tl_stiffness_release(struct tl_stiffness *stiffness)
 static void add_outer(double out[9], vec3d a, vec3d b, double scale)
 {
     const double left[3] = {a.x, a.y, a.z}, right[3] = {b.x, b.y, b.z};
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
+    for (size_t i = 0; i < 3; i++)
+        for (size_t j = 0; j < 3; j++)
             out[3 * i + j] += scale * left[i] * right[j];
 }
 
 /* k [ n n^T + across (I - n n^T) ] */
 static void add_spring(double out[9], vec3d direction, double stiffness, double across)
 {
-    for (int i = 0; i < 3; i++)
+    for (size_t i = 0; i < 3; i++)
         out[4 * i] += stiffness * across;
     add_outer(out, direction, direction, stiffness * (1 - across));
 }
@@ -262,8 +262,8 @@ static void gather_row(struct tl_stiffness *stiffness, size_t vertex)
     for (uint32_t item = gather->fans.first[vertex]; item < gather->fans.first[vertex + 1]; item++) {
         uint32_t element = gather->fans.items[item] / CORNERS, corner = gather->fans.items[item] % CORNERS;
         for (size_t k = 0; k < CORNERS; k++)
-            add_block(stiffness->values[gather->slots[item * CORNERS + k]], &stiffness->pieces[element],
-                      corner, k);
+            add_block(stiffness->values[gather->slots[(size_t)item * CORNERS + k]],
+                      &stiffness->pieces[element], corner, k);
     }
 }
 
@@ -288,6 +288,11 @@ void tl_stiffness_assemble(struct tl_stiffness *stiffness, const struct tl_energ
         for (size_t v = 0; v < stiffness->vertex_count; v++)
             gather_row(stiffness, v);
     }
+}
+
+void tl_stiffness_add(struct tl_stiffness *stiffness, uint32_t row, uint32_t column, vec3d n, double scale)
+{
+    add_outer(stiffness->values[find_entry(&stiffness->blocks, row, column)], n, n, scale);
 }
 
 vec3d tl_stiffness_row(const struct tl_stiffness *stiffness, size_t vertex, const vec3d *p)

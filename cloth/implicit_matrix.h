@@ -55,6 +55,9 @@ void tl_stiffness_assemble(struct tl_stiffness *stiffness, const struct tl_energ
                            const struct tl_cloth_fabric *fabric, const struct tl_springs *springs,
                            const vec3d *x);
 
+/* Adds scale n n^T to the block of two vertices of a triangle. */
+void tl_stiffness_add(struct tl_stiffness *stiffness, uint32_t row, uint32_t column, vec3d n, double scale);
+
 /* Row `vertex` of the product with p. */
 vec3d tl_stiffness_row(const struct tl_stiffness *stiffness, size_t vertex, const vec3d *p);
 

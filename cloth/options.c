@@ -28,9 +28,9 @@ const struct tl_option_table tl_cloth_fabric_options = TL_OPTION_TABLE(
     "fabric", "what the cloth is made of", fabric_rows, struct tl_cloth_fabric, TL_CLOTH_FABRIC_DEFAULTS);
 
 #define TL_CLOTH_DEFAULTS                                                                                    \
-    .solver = TL_CLOTH_PREVIEW, .dt = 1.0 / 60, .frame_rate = 30, .substeps = 30, .cg_iterations = 200,      \
-    .cg_tolerance = 3e-2, .reference_substeps = 20000, .gravity = 9.81, .settle_s = 6, .settle_speed = 0.01, \
-    .edge_m = 0.02f
+    .solver = TL_CLOTH_PREVIEW, .strain_limit = 0.1, .dt = 1.0 / 60, .frame_rate = 30, .substeps = 30,       \
+    .cg_iterations = 200, .cg_tolerance = 3e-2, .reference_substeps = 20000, .gravity = 9.81, .settle_s = 6, \
+    .settle_speed = 0.01, .edge_m = 0.02f
 
 const char *const tl_cloth_solver_names[] = {"preview", "settle", "reference", NULL};
 
@@ -50,6 +50,10 @@ static const struct tl_option cloth_rows[] = {
                      "settle: residual that is left of a step's first one: faster, less exact motion"),
     TL_OPTION_INT(struct tl_cloth_params, reference_substeps, 1, 100000000, "",
                   "reference: most substeps per frame; a fabric that needs more is refused"),
+    TL_OPTION_DOUBLE(struct tl_cloth_params, strain_limit, 0, 10, "",
+                     "preview: most that an edge may stretch, as a share of its length; 0: no limit"),
+    TL_OPTION_DOUBLE(struct tl_cloth_params, pin_above_m, 0, 1000, "m",
+                     "holds the vertices that start higher than this, a waistband say; 0: none of them"),
     TL_OPTION_BOOL(
         struct tl_cloth_params, self_repulsion,
         "layers, a shirt over trousers, and folds keep their distance: takes about two thirds longer"),

@@ -6,17 +6,10 @@
 #include "cloth/contact.h"
 #include "cloth/implicit.h"
 #include "cloth/layers.h"
+#include "cloth/limit.h"
+#include "cloth/pins.h"
 #include "cloth/repulsion.h"
 #include "cloth/sew.h"
-
-/* A held vertex: fixed, or riding on a triangle of the avatar. */
-struct tl_pin {
-    uint32_t particle;
-    vec3d at;          /* where it is held, when nothing carries it */
-    uint32_t triangle; /* of the avatar; TL_NONE: none */
-    double barycentric[3];
-    vec3d offset; /* from the triangle's point, in the triangle's own axes */
-};
 
 struct tl_cloth {
     const tl_garment *garment;
@@ -33,13 +26,13 @@ struct tl_cloth {
     vec3d *external;       /* [particles.count] N, of the wind; NULL: it never blew */
     tl_implicit *implicit; /* settle only */
     struct tl_implicit_tally tally;
+    struct tl_limits limits; /* preview */
     struct tl_contacts contacts;
     struct tl_layers layers;       /* with params.self_repulsion */
     struct tl_repulsion repulsion; /* the same */
     struct tl_sewing sewing;
     size_t pin_count;
     struct tl_pin *pins;
-    bool pins_bound; /* the avatar has been looked for */
     bool grabbed;
     uint32_t grabbed_vertex; /* render vertex */
     vec3d grab_target;

@@ -32,6 +32,7 @@ static inline struct tl_cloth_params params_exact(int solver)
 {
     struct tl_cloth_params params = params_defaults();
     params.solver = solver;
+    params.strain_limit = 0; /* the energy alone */
     params_solve_exactly(&params);
     return params;
 }

@@ -126,7 +126,7 @@ static void test_heap(void **state)
     printf("heap: in 60 frames %zu pairs nearer than half the thickness, without repulsion %zu\n", with,
            without);
     assert_true(without > 1000);
-    assert_true(with < without / 20); /* what is pressed from both sides comes nearer for a moment */
+    assert_true(with < without / 10); /* what is pressed from both sides comes nearer for a moment */
 }
 
 /* ---- Pieces ---- */

@@ -113,13 +113,13 @@ static void test_walking(void **state)
     undress(&d);
 }
 
-/* The reference takes over where the arms are about to brush the skirt. A coarse one: its step is short. */
-static void test_walking_reference(void **state)
+/* Another solver takes over where the arms are about to brush the skirt. A coarse one: the reference's step
+ * is short. */
+static void check_walking(int solver, int frames)
 {
-    (void)state;
     struct dressed d = {0};
     struct worst worst = {0};
-    const int first = POSE_IN + 14, frames = frame_count() / 9;
+    const int first = POSE_IN + 14;
     dress_walker(&d, 0.04f);
     for (int frame = 0; frame < first; frame++) {
         walk(&d, frame);
@@ -127,14 +127,26 @@ static void test_walking_reference(void **state)
     }
     tl_error error = {0};
     struct tl_cloth_params params = d.cloth->params;
-    params.solver = TL_CLOTH_REFERENCE;
+    params.solver = solver;
     assert_ok(tl_cloth_set(d.cloth, &d.cloth->fabric, &params, &error), error);
     for (int frame = first; frame < first + frames; frame++) {
         walk(&d, frame);
         step(&d, &worst);
     }
-    tell("walking, reference", frames, &worst);
+    tell(tl_cloth_solver_names[solver], frames, &worst);
     undress(&d);
+}
+
+static void test_walking_reference(void **state)
+{
+    (void)state;
+    check_walking(TL_CLOTH_REFERENCE, frame_count() / 9);
+}
+
+static void test_walking_settle(void **state)
+{
+    (void)state;
+    check_walking(TL_CLOTH_SETTLE, frame_count() / 2);
 }
 
 /* The shoulders turn against the feet, and the body sways to the side: every triangle moves and most bend. */
@@ -181,9 +193,8 @@ static void test_twisting_woman(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_walking),
-        cmocka_unit_test(test_walking_reference),
-        cmocka_unit_test(test_twisting_man),
+        cmocka_unit_test(test_walking),        cmocka_unit_test(test_walking_reference),
+        cmocka_unit_test(test_walking_settle), cmocka_unit_test(test_twisting_man),
         cmocka_unit_test(test_twisting_woman),
     };
     tl_log_set_level(TL_LOG_WARN);
