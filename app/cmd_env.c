@@ -1,6 +1,6 @@
 /* toile env: an environment map from one layout into another. */
 #include "app/commands.h"
-#include "assets/environment.h"
+#include "app/moving_light.h"
 #include "assets/exr.h"
 #include "config/file.h"
 #include "config/log.h"
@@ -121,6 +121,7 @@ bool tl_command_env(const struct tl_arguments *arguments, tl_error *error)
     if (!check_arguments(arguments, error) || !find_layout("--layout", arguments->layout, &layout, error) ||
         !tl_environment_load(arguments->positionals[0], &environment, error))
         return false;
+    tl_environment_warn_of_cleaning(&environment);
     bool done = convert(arguments, layout, &environment, error);
     tl_environment_release(&environment);
     return done;

@@ -78,14 +78,13 @@ vec3s tl_layout_direction(const struct tl_sphere_map *map, double x, double y)
     return map->layout == TL_LAYOUT_SPHERE ? sphere_direction(point) : paraboloid_direction(point, disc.side);
 }
 
-/* h.xy = d.xy / |d + z|; behind the ball, where that is 0 / 0, from the half angle's sine instead. */
+/* The half angle from both parts of the direction: z alone says too little near the axis. */
 static void sphere_locate(vec3s direction, double point[2])
 {
     double x = (double)direction.x, y = (double)direction.y, z = (double)direction.z;
-    double across = hypot(x, y);
-    double scale = z >= 0 ? 1 / sqrt(2 * (1 + z)) : sqrt((1 - z) / 2) / across;
-    point[0] = across > 0 ? scale * x : z < 0;
-    point[1] = across > 0 ? scale * y : 0;
+    double across = hypot(x, y), radius = sin(0.5 * atan2(across, z));
+    point[0] = across > 0 ? radius * x / across : radius;
+    point[1] = across > 0 ? radius * y / across : 0;
 }
 
 int tl_layout_locate(const struct tl_sphere_map *map, vec3s direction, double *x, double *y)
@@ -101,7 +100,8 @@ int tl_layout_locate(const struct tl_sphere_map *map, vec3s direction, double *x
         float s, t;
         tl_cube_locate(direction, &face, &s, &t);
         *x = map->width * (double)s;
-        *y = map->width * (face + (double)t);
+        *y =
+            fmin(map->width * (face + (double)t), nextafter(map->width * (face + 1.0), 0)); /* not the next */
         return face;
     }
     double point[2];
