@@ -12,7 +12,7 @@
  * cell gives away its exact solid angle. Cells over seams, poles and rims of the source never become
  * straight: the smallest go to the texel in their middle. */
 #define STRAIGHT  0.01 /* source texels between a cell's centre and the mean of its corners */
-#define DEPTH_MAX 6
+#define DEPTH_MAX 6    /* quarterings of a target texel */
 #define INSET     1e-4 /* corners are taken this part of the cell inside of it, off the seam it may touch */
 #define CORNERS   4
 #define POLYGON   8 /* corners, after four cuts */
@@ -30,7 +30,6 @@ struct share {
 struct block {
     struct share *shares;
     size_t count, capacity;
-    size_t first; /* of the target being shared out */
 };
 
 /* One of the pictures. */
@@ -58,6 +57,13 @@ struct polygon {
 static size_t texel_count(const struct tl_sphere_map *map)
 {
     return (size_t)map->width * (size_t)map->height;
+}
+
+static struct tl_layout_cell texel_cell(const struct tl_sphere_map *map, size_t texel)
+{
+    size_t column = texel % (size_t)map->width, row = texel / (size_t)map->width;
+    double x = (double)column, y = (double)row;
+    return (struct tl_layout_cell){x, y, x + 1, y + 1};
 }
 
 static struct side side_create(const struct tl_sphere_map *map)
@@ -247,14 +253,14 @@ static void merge_shares(struct block *block, size_t begin)
 
 static void find_shares(struct conversion *conversion)
 {
-    size_t count = texel_count(conversion->target.map), width = (size_t)conversion->target.map->width;
+    size_t count = texel_count(conversion->target.map);
 #pragma omp parallel for schedule(dynamic)
     for (int i = 0; i < BLOCKS; i++) {
         struct block *block = &conversion->blocks[i];
         for (size_t texel = count * (size_t)i / BLOCKS; texel < count * (size_t)(i + 1) / BLOCKS; texel++) {
-            double x = (double)(texel % width), y = (double)(texel / width);
+            struct tl_layout_cell cell = texel_cell(conversion->target.map, texel);
             size_t begin = block->count;
-            share_cell(conversion, &(struct tl_layout_cell){x, y, x + 1, y + 1}, texel, 0, block);
+            share_cell(conversion, &cell, texel, 0, block);
             merge_shares(block, begin);
         }
     }
@@ -292,13 +298,13 @@ static void sum_sources(struct conversion *conversion)
 static void share_missed(struct conversion *conversion)
 {
     const struct side *source = &conversion->source;
-    size_t width = (size_t)source->map->width;
     sum_sources(conversion);
     for (size_t i = 0; i < texel_count(source->map); i++) {
         if (source->solid_angles[i] <= 0 || source->sums[i] > 0)
             continue;
-        double x = (double)(i % width), y = (double)(i / width);
-        tl_layout_nearest(source->map, &(struct tl_layout_cell){x, y, x + 1, y + 1}, &x, &y);
+        double x, y;
+        struct tl_layout_cell cell = texel_cell(source->map, i);
+        tl_layout_nearest(source->map, &cell, &x, &y);
         vec3s direction = tl_layout_direction(source->map, x, y);
         add_share(&conversion->blocks[BLOCKS - 1], i, tl_layout_texel(conversion->target.map, direction),
                   source->solid_angles[i]);
@@ -359,12 +365,11 @@ static void gather_light(const struct conversion *conversion, const float *from,
 /* Texels outside of the discs show what lies in their direction. */
 static void fill_outside(const struct side *target, float *texels)
 {
-    size_t width = (size_t)target->map->width;
     for (size_t i = 0; i < texel_count(target->map); i++) {
         if (target->solid_angles[i] > 0)
             continue;
-        vec3s direction =
-            tl_layout_direction(target->map, (double)(i % width) + 0.5, (double)(i / width) + 0.5);
+        struct tl_layout_cell cell = texel_cell(target->map, i);
+        vec3s direction = tl_layout_direction(target->map, cell.x0 + 0.5, cell.y0 + 0.5);
         size_t shown = tl_layout_texel(target->map, direction);
         for (size_t c = 0; c < 3; c++)
             texels[3 * i + c] = texels[3 * shown + c];
