@@ -15,7 +15,7 @@
 #define DEPTH_MAX 6    /* quarterings of a target texel */
 #define INSET     1e-4 /* corners are taken this part of the cell inside of it, off the seam it may touch */
 #define CORNERS   4
-#define POLYGON   8 /* corners, after four cuts */
+#define POLYGON   19 /* corners: of any outline each of four cuts makes half as many more, 4 6 9 13 19 */
 /* The shares are then scaled by turns, until each source texel gives its exact solid angle away and each
  * target receives its own (iterative proportional fitting: Deming and Stephan 1940). */
 #define ROUNDS_MAX 400
