@@ -21,7 +21,7 @@ struct setting {
     const char *solver, *name;
     double dt;    /* s; 0: as long as the solver will take */
     double share; /* of the solver's own substep, instead of dt; 0: none */
-    int substeps; /* preview */
+    int substeps; /* of preview, which also brings others near their rest; 0: as many as usual */
     bool quick;
 };
 static const struct setting settings[] = {
@@ -31,13 +31,13 @@ static const struct setting settings[] = {
     {"preview", "preview 32", 1.0 / 60, 0, 32, false},
     {"preview", "preview 64", 1.0 / 60, 0, 64, false},
     {"preview", "preview 128", 1.0 / 60, 0, 128, false},
-    {"settle", "settle 30 Hz", 1.0 / 30, 0, 1, false},
-    {"settle", "settle 60 Hz", 1.0 / 60, 0, 1, true},
-    {"settle", "settle 120 Hz", 1.0 / 120, 0, 1, false},
-    {"settle", "settle 240 Hz", 1.0 / 240, 0, 1, true},
-    {"settle", "settle 960 Hz", 1.0 / 960, 0, 1, false},
-    {"reference", "reference", 0, 1, 1, true},
-    {"reference", "reference, half step", 0, 0.5, 1, false},
+    {"settle", "settle 30 Hz", 1.0 / 30, 0, 0, false},
+    {"settle", "settle 60 Hz", 1.0 / 60, 0, 0, true},
+    {"settle", "settle 120 Hz", 1.0 / 120, 0, 0, false},
+    {"settle", "settle 240 Hz", 1.0 / 240, 0, 0, true},
+    {"settle", "settle 960 Hz", 1.0 / 960, 0, 0, false},
+    {"reference", "reference", 0, 1, 0, true},
+    {"reference", "reference, half step", 0, 0.5, 0, false},
 };
 
 /* What the sheet does. */
@@ -156,7 +156,8 @@ static tl_cloth *make_cloth(const tl_garment *sheet, const struct setting *setti
     params.solver = find_solver(setting->solver);
     params.frame_rate = scene->frame_rate;
     params.dt = setting->dt > 0 ? setting->dt : 0.1;
-    params.substeps = setting->substeps;
+    if (setting->substeps > 0)
+        params.substeps = setting->substeps;
     params.reference_substeps = 100000000;
     params.settle_s = REST_S;
     params.settle_speed = scene->settle_speed;
@@ -272,8 +273,8 @@ static bool measure(struct run *run, int side, const struct setting *setting, tl
 /* What a size is compared with. */
 static bool find_truths(struct run *run, int side, tl_error *error)
 {
-    const struct setting short_step = {"reference", "converged", 0, TRUTH_SHARE, 1, true},
-                         own_step = {"reference", "at rest", 0, 0, 1, true};
+    const struct setting short_step = {"reference", "converged", 0, TRUTH_SHARE, 0, true},
+                         own_step = {"reference", "at rest", 0, 0, 0, true};
     struct tl_trade_cloth_row unused;
     struct tl_taken taken;
     release_shape(&run->fallen);
@@ -284,8 +285,8 @@ static bool find_truths(struct run *run, int side, tl_error *error)
 
 static bool find_finest(struct run *run, tl_error *error)
 {
-    const struct setting own = {"reference", "finest", 0, 1, 1, true},
-                         half = {"reference", "finest", 0, 0.5, 1, true};
+    const struct setting own = {"reference", "finest", 0, 1, 0, true},
+                         half = {"reference", "finest", 0, 0.5, 0, true};
     int side = run->sizes->finest;
     struct tl_trade_cloth_row unused;
     struct shape coarse = {0};

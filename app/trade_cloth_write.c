@@ -237,7 +237,9 @@ void tl_trade_cloth_write_html(const struct tl_trade_cloth *trade, FILE *out)
     release_chart(&chart);
     tl_report_heading(out, "Size by size");
     tl_report_paragraph(out,
-                        "Of equal drapes that are each other's mirror image the nearer one counts. What lies "
+                        "A drape comes to rest as a garment does before its first frame: preview brings it "
+                        "near, the solver ends it. Of equal drapes that are each other's mirror image the "
+                        "nearer one counts. What lies "
                         "on the reference itself has no place on a logarithmic axis.");
     print_sizes(trade, out);
     tl_report_heading(out, "All figures");

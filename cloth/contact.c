@@ -63,17 +63,27 @@ static bool stale(const struct tl_contact_cache *cache, double travel, double ph
     return slack <= 0 || vec3d_dot(moved, moved) > slack * slack;
 }
 
+/* How far the surface can be at most, as far as is known: as far as the old anchor, within which few
+ * triangles lie; or for what was out of reach, as far as it has gone since. */
+static double bound_distance(const struct tl_contact_cache *cache, double thickness, double travel,
+                             double phase, vec3d x)
+{
+    if (cache->near)
+        return vec3d_distance(x, anchor_at(cache, phase)) + ROUNDING_M;
+    double gone = cache->asked_phase <= 1 ? vec3d_distance(x, cache->asked_at) + travel : 0;
+    return fmax(thickness + REACH_M, gone);
+}
+
 /* Asked for where the particle was, not for where it was driven to: that may be nearer to the other side. */
 static void ask(const tl_collider *collider, double thickness, double phase, vec3d x,
                 struct tl_contact_cache *cache)
 {
     struct tl_contact contact;
     const double point[3] = {x.x, x.y, x.z};
-    double reach = thickness + REACH_M;
-    if (cache->near) /* the old anchor bounds the distance to the new one, and few triangles lie within it */
-        reach = fmin(reach, vec3d_distance(x, anchor_at(cache, phase)) + ROUNDING_M);
+    double reach = bound_distance(cache, thickness, tl_collider_travel(collider), phase, x);
     *cache = (struct tl_contact_cache){.asked_at = x, .asked_phase = phase, .clearance = REACH_M};
-    if (!tl_collider_query_at(collider, point, phase, reach, &contact))
+    if (!tl_collider_query_at(collider, point, phase, reach, &contact) ||
+        contact.distance_m > thickness + REACH_M)
         return;
     double ends[2][3];
     tl_collider_path(collider, contact.triangle, contact.barycentric, ends[0], ends[1]);
@@ -163,14 +173,16 @@ static bool put_back(struct tl_contacts *contacts, size_t i, double thickness, d
 static void enforce_one(struct tl_contacts *contacts, size_t i, const struct tl_contact_params *step,
                         struct tl_particles *particles)
 {
-    bool moves = tl_collider_travel(contacts->collider) > 0, slipped = contacts->slipped[i];
+    struct tl_contact_cache *cache = &contacts->caches[i];
+    double travel = tl_collider_travel(contacts->collider);
     contacts->allowed[i] = fmax(contacts->allowed[i] - step->push_out_speed * step->h, 0);
-    if (slipped) { /* it may be anywhere */
-        contacts->caches[i].near = false;
-        ask(contacts->collider, step->thickness_m, step->phase, particles->x[i], &contacts->caches[i]);
-    }
-    bool held = !(particles->w[i] > 0) && !particles->driven[i];
-    if (held || !contacts->caches[i].near || !(moves || slipped || contacts->allowed[i] > 0))
+    if (!(particles->w[i] > 0) && !particles->driven[i])
+        return;
+    bool slipped = contacts->slipped[i], lost = slipped || stale(cache, travel, step->phase, particles->x[i]);
+    cache->near = cache->near && !slipped; /* it may be anywhere */
+    if (lost && !cache->near)
+        ask(contacts->collider, step->thickness_m, step->phase, particles->x[i], cache);
+    if (!cache->near || !(travel > 0 || lost || contacts->allowed[i] > 0))
         return;
     bool caught = put_back(contacts, i, step->thickness_m, step->phase, particles) || slipped;
     contacts->caught_count += caught && !contacts->caught[i];

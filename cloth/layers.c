@@ -250,7 +250,6 @@ bool tl_layers_decide(struct tl_layers *layers, const struct tl_topology *topolo
 {
     size_t count = topology->vertex_count;
     uint32_t *pieces = TL_NEW_ARRAY(uint32_t, count);
-    tl_layers_release(layers);
     *layers = (struct tl_layers){.decided = true,
                                  .layer_of = TL_NEW_ARRAY(uint32_t, count),
                                  .on_open_edge = TL_NEW_ARRAY(bool, count),

@@ -51,7 +51,7 @@ void tl_layers_forget(struct tl_layers *layers);
 /* How many pieces a mesh has; numbers them from 0 in `pieces` [vertex_count]. */
 size_t tl_layers_pieces(const struct tl_topology *topology, uint32_t *pieces);
 
-/* Tells the layers apart, at positions `x`. Fails only where a collider cannot be built. */
+/* Fills empty layers: tells them apart, at positions `x`. Fails only where a collider cannot be built. */
 bool tl_layers_decide(struct tl_layers *layers, const struct tl_topology *topology, const vec2s (*rest)[3],
                       const tl_collider *avatar, const vec3d *x, tl_error *error);
 
