@@ -23,6 +23,9 @@ enum flag_kind {
     FLAG_AXIS,
     FLAG_QUICK,
     FLAG_FULL,
+    FLAG_LAYOUT,
+    FLAG_FROM,
+    FLAG_MAP_SIZE,
     FLAG_QUIET,
     FLAG_VERBOSE,
     FLAG_HELP,
@@ -69,6 +72,11 @@ static const struct flag flags_known[] = {
     {"--axis", TL_FLAGS_AXIS, FLAG_AXIS, NULL, "NAME", "what is varied: light or cloth"},
     {"--quick", TL_FLAGS_QUICK, FLAG_QUICK, NULL, NULL, "a few choices and frames only"},
     {"--full", TL_FLAGS_FULL, FLAG_FULL, NULL, NULL, "what takes minutes too"},
+    {"--layout", TL_FLAGS_LAYOUT, FLAG_LAYOUT, NULL, "NAME",
+     "layout of the result: cube, sphere, paraboloid or latlong"},
+    {"--from", TL_FLAGS_LAYOUT, FLAG_FROM, NULL, "NAME", "layout of the input; else guessed from its shape"},
+    {"--size", TL_FLAGS_LAYOUT, FLAG_MAP_SIZE, NULL, "N",
+     "height of the result in texels, or the side of a cube's face"},
     {"--quiet", 0, FLAG_QUIET, NULL, NULL, "say nothing but errors"},
     {"--verbose", 0, FLAG_VERBOSE, NULL, NULL, "say more"},
     {"--help", 0, FLAG_HELP, NULL, NULL, "what the command does and takes"},
@@ -187,6 +195,14 @@ static bool take_flag(const struct flag *flag, const char *value, struct tl_argu
     case FLAG_FULL:
         out->full = true;
         return true;
+    case FLAG_LAYOUT:
+        out->layout = value;
+        return true;
+    case FLAG_FROM:
+        out->from = value;
+        return true;
+    case FLAG_MAP_SIZE:
+        return read_whole("--size", value, NULL, 1, &out->map_size, error);
     case FLAG_QUIET:
         out->quiet = true;
         return true;

@@ -35,6 +35,9 @@ const struct tl_command tl_commands[] = {
      "garment's "
      "motion as .pc2 or .mdd.",
      TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_FRAME | TL_FLAGS_FRAMES, tl_command_export},
+    {"env", "env IN -o OUT.exr --layout cube|sphere|paraboloid|latlong [--from LAYOUT] [--size N]",
+     "Converts an environment map between layouts, keeping its light.", TL_FLAGS_OUTPUT | TL_FLAGS_LAYOUT,
+     tl_command_env},
     {"info", "info FILE|fabrics|presets|garments [--json]",
      "Tells what a file holds and how it will be read, or lists what is built in.", TL_FLAGS_JSON,
      tl_command_info},

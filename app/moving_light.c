@@ -13,7 +13,7 @@ static int frame_at(const tl_environment_sequence *sequence, double position)
     return sequence->count > 0 ? (int)fmod(floor(position + ROUNDING), sequence->count) : 0;
 }
 
-static void warn_of_cleaning(const tl_environment *environment)
+void tl_environment_warn_of_cleaning(const tl_environment *environment)
 {
     size_t cleaned = environment->negative_count + environment->nan_count + environment->inf_count;
     if (cleaned)
@@ -42,7 +42,7 @@ bool tl_moving_light_open(struct tl_moving_light *light, const char *name, doubl
         tl_moving_light_release(&fresh);
         return false;
     }
-    warn_of_cleaning(&fresh.environment);
+    tl_environment_warn_of_cleaning(&fresh.environment);
     tl_moving_light_release(light);
     *light = fresh;
     return true;

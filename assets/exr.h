@@ -23,5 +23,8 @@ struct tl_exr_layer {
     const tl_image *image; /* F32; all layers have the same size */
 };
 bool tl_exr_save(const char *path, const struct tl_exr_layer *layers, size_t layer_count, tl_error *error);
+/* The same with the attribute "comments", which viewers show. */
+bool tl_exr_save_commented(const char *path, const struct tl_exr_layer *layers, size_t layer_count,
+                           const char *comments, tl_error *error);
 
 #endif

@@ -10,6 +10,7 @@ struct output {
     exr_context_t file;
     const struct tl_exr_layer *layers;
     size_t layer_count;
+    const char *comments; /* NULL: none */
     char complaint[256];
 };
 
@@ -29,6 +30,12 @@ static bool add_channels(struct output *output, int part)
                                 EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1) != EXR_ERR_SUCCESS)
                 return false;
     return true;
+}
+
+static bool add_comments(struct output *output, int part)
+{
+    return !output->comments ||
+           exr_attr_set_string(output->file, part, "comments", output->comments) == EXR_ERR_SUCCESS;
 }
 
 /* Points one of the encoder's channels at row `y` of the layer that has it. */
@@ -79,7 +86,8 @@ static bool write_file(struct output *output, const char *path)
     bool written = exr_add_part(output->file, NULL, EXR_STORAGE_SCANLINE, &part) == EXR_ERR_SUCCESS &&
                    exr_initialize_required_attr_simple(output->file, part, image->width, image->height,
                                                        EXR_COMPRESSION_ZIP) == EXR_ERR_SUCCESS &&
-                   add_channels(output, part) && exr_write_header(output->file) == EXR_ERR_SUCCESS &&
+                   add_channels(output, part) && add_comments(output, part) &&
+                   exr_write_header(output->file) == EXR_ERR_SUCCESS &&
                    exr_get_scanlines_per_chunk(output->file, part, &lines) == EXR_ERR_SUCCESS && lines > 0;
     for (int y = 0; written && y < image->height; y += lines)
         written = write_chunk(output, part, y);
@@ -88,11 +96,17 @@ static bool write_file(struct output *output, const char *path)
 
 bool tl_exr_save(const char *path, const struct tl_exr_layer *layers, size_t layer_count, tl_error *error)
 {
+    return tl_exr_save_commented(path, layers, layer_count, NULL, error);
+}
+
+bool tl_exr_save_commented(const char *path, const struct tl_exr_layer *layers, size_t layer_count,
+                           const char *comments, tl_error *error)
+{
     struct tl_writer writer;
     if (!tl_writer_begin(&writer, path, error))
         return false;
     tl_writer_close_stream(&writer);
-    struct output output = {.layers = layers, .layer_count = layer_count};
+    struct output output = {.layers = layers, .layer_count = layer_count, .comments = comments};
     if (write_file(&output, writer.temporary))
         return tl_writer_commit(&writer, error);
     tl_writer_abandon(&writer);

@@ -6,7 +6,7 @@
 #include <string.h>
 
 /* Times that a step is solved again for particles that stick, slip or let go otherwise than was assumed. */
-#define ROUNDS 2
+#define ROUNDS 8
 /* Times that a step is linearised, and then halved, while it would gain energy. */
 #define LINEARISED 4
 #define HALVINGS   6

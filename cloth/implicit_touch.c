@@ -60,6 +60,13 @@ struct tl_filter tl_touch_filter(const struct tl_touch *touch, vec3d *given)
     return (struct tl_filter){.freedom = TL_MOVES_FREELY};
 }
 
+/* Whether what resisted the last slip was no more than Coulomb allows, as nearly as it matters. */
+static bool rubs_truly(const struct tl_touch *touch, double resisted)
+{
+    const double most = 1.02;
+    return touch->kind != TL_SLIPS || resisted * touch->slips[1] <= most * touch->grip;
+}
+
 /* What a particle that touches its plane does. */
 static enum tl_touch_kind judge_touching(struct tl_touch *touch, const struct tl_contact_params *params,
                                          vec3d step, vec3d reaction, double inertia)
@@ -85,11 +92,12 @@ bool tl_touch_judge(struct tl_touch *touch, const struct tl_contact_params *para
                     vec3d reaction, double inertia)
 {
     enum tl_touch_kind before = touch->kind;
+    double resisted = touch->resistance;
     if (!touch->near)
         return true;
     if (before != TL_FREE)
         touch->kind = judge_touching(touch, params, step, reaction, inertia);
     else if (trespass(&touch->plane, step) > 0)
         touch->kind = TL_STICKS;
-    return touch->kind == before;
+    return touch->kind == before && rubs_truly(touch, resisted);
 }

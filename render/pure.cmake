@@ -1,7 +1,9 @@
 # The parts of render that know neither GL nor the clock.
 add_library(toile_light STATIC
+  env/convert.c
   env/cube.c
   env/emitters.c
+  env/layout.c
   env/lobes.c
   light/compose.c
   light/mirrors.c

@@ -178,7 +178,7 @@ static void test_capstan(void **state)
             printf("capstan, %s, mu %.1f: T2/T1 %.4f, exp(mu pi) %.4f: off by %+.2f %%\n",
                    tl_cloth_solver_names[solver], frictions[i], ratio, expected,
                    100 * (ratio / expected - 1));
-            assert_near(ratio, expected, (solver == TL_CLOTH_SETTLE ? 0.2 : 0.05) * expected);
+            assert_near(ratio, expected, 0.05 * expected);
         }
 }
 

@@ -72,9 +72,10 @@ static void test_stiffness_and_step(void **state)
                 bool refused =
                     run_refuses(&(struct extreme){stiffnesses[k], 1e-5, 0.15, steps[d], 10, solver});
                 bool long_enough = steps[d] > 1e-4; /* 12 ms of fall stretch nothing yet */
-                bool landed =
-                    solver == TL_CLOTH_SETTLE && steps[d] > 0.05; /* so damped a fall stretches less */
-                assert_int_equal(refused, stiffnesses[k] < 0.1 && long_enough && !landed);
+                bool expected = stiffnesses[k] < 0.1 && long_enough;
+                if (expected && solver == TL_CLOTH_SETTLE && steps[d] > 0.05)
+                    continue; /* a fall so damped may land before it stretches that far: either is right */
+                assert_int_equal(refused, expected);
             }
         }
 }

@@ -1,0 +1,269 @@
+#include "render/env/layout.h"
+
+#include "render/env/cube.h"
+
+#include <assert.h>
+#include <math.h>
+
+const char *const tl_layout_names[TL_LAYOUT_COUNT] = {"cube", "sphere", "paraboloid", "latlong"};
+
+void tl_layout_extent(enum tl_layout layout, int size, int64_t *width, int64_t *height)
+{
+    bool wide = layout == TL_LAYOUT_LATLONG || layout == TL_LAYOUT_PARABOLOID;
+    *width = (wide ? 2 : 1) * (int64_t)size;
+    *height = (layout == TL_LAYOUT_CUBE ? 6 : 1) * (int64_t)size;
+}
+
+int tl_layout_size(const struct tl_sphere_map *map)
+{
+    return map->layout == TL_LAYOUT_CUBE ? map->width : map->height;
+}
+
+/* A disc of a picture: left border, texels, and the side from which its mirror is seen. */
+struct disc {
+    double left, radius;
+    double side; /* 1 from +Z, -1 from -Z */
+};
+
+static struct disc disc_at(const struct tl_sphere_map *map, double x)
+{
+    bool behind = map->layout == TL_LAYOUT_PARABOLOID && x >= map->height;
+    return (struct disc){behind ? map->height : 0, 0.5 * map->height, behind ? -1 : 1};
+}
+
+/* Point of the unit disc, y up. */
+static void to_disc(const struct disc *disc, double x, double y, double point[2])
+{
+    point[0] = (x - disc->left) / disc->radius - 1;
+    point[1] = 1 - y / disc->radius;
+}
+
+static vec3s latlong_direction(const struct tl_sphere_map *map, double x, double y)
+{
+    double phi = 2 * M_PI * (x / map->width - 0.5), theta = M_PI * y / map->height;
+    return (vec3s){{(float)(sin(theta) * sin(phi)), (float)cos(theta), (float)(-sin(theta) * cos(phi))}};
+}
+
+static vec3s cube_direction(const struct tl_sphere_map *map, double x, double y)
+{
+    int face = (int)fmin(y / map->width, 5);
+    return glms_vec3_normalize(
+        tl_cube_direction(face, (float)(x / map->width), (float)(y / map->width - face)));
+}
+
+static vec3s sphere_direction(const double point[2])
+{
+    double square = point[0] * point[0] + point[1] * point[1];
+    double half_z = sqrt(fmax(1 - square, 0)); /* of h; the direction is 2 (h.z) h - z */
+    return (vec3s){
+        {(float)(2 * half_z * point[0]), (float)(2 * half_z * point[1]), (float)(2 * half_z * half_z - 1)}};
+}
+
+static vec3s paraboloid_direction(const double point[2], double side)
+{
+    double square = point[0] * point[0] + point[1] * point[1], scale = 2 / (1 + square);
+    return (vec3s){{(float)(side * scale * point[0]), (float)(scale * point[1]),
+                    (float)(side * (1 - square) / (1 + square))}};
+}
+
+vec3s tl_layout_direction(const struct tl_sphere_map *map, double x, double y)
+{
+    if (map->layout == TL_LAYOUT_LATLONG)
+        return latlong_direction(map, x, y);
+    if (map->layout == TL_LAYOUT_CUBE)
+        return cube_direction(map, x, y);
+    struct disc disc = disc_at(map, x);
+    double point[2];
+    to_disc(&disc, x, y, point);
+    return map->layout == TL_LAYOUT_SPHERE ? sphere_direction(point) : paraboloid_direction(point, disc.side);
+}
+
+/* The half angle from both parts of the direction: z alone says too little near the axis. */
+static void sphere_locate(vec3s direction, double point[2])
+{
+    double x = (double)direction.x, y = (double)direction.y, z = (double)direction.z;
+    double across = hypot(x, y), radius = sin(0.5 * atan2(across, z));
+    point[0] = across > 0 ? radius * x / across : radius;
+    point[1] = across > 0 ? radius * y / across : 0;
+}
+
+int tl_layout_locate(const struct tl_sphere_map *map, vec3s direction, double *x, double *y)
+{
+    if (map->layout == TL_LAYOUT_LATLONG) {
+        double x0 = (double)direction.x, y0 = (double)direction.y, z0 = (double)direction.z;
+        *x = map->width * (0.5 + atan2(x0, -z0) / (2 * M_PI));
+        *y = map->height * atan2(hypot(x0, z0), y0) / M_PI; /* acos loses half its digits at the poles */
+        return 0;
+    }
+    if (map->layout == TL_LAYOUT_CUBE) {
+        int face;
+        float s, t;
+        tl_cube_locate(direction, &face, &s, &t);
+        *x = map->width * (double)s;
+        *y =
+            fmin(map->width * (face + (double)t), nextafter(map->width * (face + 1.0), 0)); /* not the next */
+        return face;
+    }
+    double point[2];
+    bool behind = map->layout == TL_LAYOUT_PARABOLOID && direction.z < 0;
+    if (map->layout == TL_LAYOUT_SPHERE) {
+        sphere_locate(direction, point);
+    } else {
+        double scale = 1 / (1 + fabs((double)direction.z));
+        point[0] = (behind ? -scale : scale) * (double)direction.x;
+        point[1] = scale * (double)direction.y;
+    }
+    double radius = 0.5 * map->height;
+    *x = (behind ? map->height : 0) + radius * (1 + point[0]);
+    *y = radius * (1 - point[1]);
+    return behind;
+}
+
+static int clamp_index(double value, int begin, int end)
+{
+    return value < begin ? begin : value >= end ? end - 1 : (int)value;
+}
+
+size_t tl_layout_texel(const struct tl_sphere_map *map, vec3s direction)
+{
+    double x, y;
+    int piece = tl_layout_locate(map, direction, &x, &y);
+    struct tl_layout_piece bounds = tl_layout_piece(map, piece);
+    return (size_t)clamp_index(y, bounds.y0, bounds.y1) * (size_t)map->width +
+           (size_t)clamp_index(x, bounds.x0, bounds.x1);
+}
+
+struct tl_layout_piece tl_layout_piece(const struct tl_sphere_map *map, int piece)
+{
+    int side = tl_layout_size(map);
+    if (map->layout == TL_LAYOUT_CUBE)
+        return (struct tl_layout_piece){0, piece * side, side, (piece + 1) * side};
+    if (map->layout == TL_LAYOUT_PARABOLOID)
+        return (struct tl_layout_piece){piece * side, 0, (piece + 1) * side, side};
+    return (struct tl_layout_piece){0, 0, map->width, map->height};
+}
+
+double tl_layout_density(const struct tl_sphere_map *map, double x, double y)
+{
+    if (map->layout == TL_LAYOUT_LATLONG)
+        return sin(M_PI * y / map->height);
+    if (map->layout == TL_LAYOUT_CUBE) {
+        double u = 2 * x / map->width - 1, v = 2 * (y / map->width - floor(y / map->width)) - 1;
+        return pow(1 + u * u + v * v, -1.5);
+    }
+    if (map->layout == TL_LAYOUT_SPHERE)
+        return 1;
+    struct disc disc = disc_at(map, x);
+    double point[2];
+    to_disc(&disc, x, y, point);
+    double square = point[0] * point[0] + point[1] * point[1];
+    return 1 / ((1 + square) * (1 + square));
+}
+
+bool tl_layout_holds(const struct tl_sphere_map *map, double x, double y)
+{
+    if (map->layout == TL_LAYOUT_LATLONG || map->layout == TL_LAYOUT_CUBE)
+        return true;
+    struct disc disc = disc_at(map, x);
+    double point[2];
+    to_disc(&disc, x, y, point);
+    return point[0] * point[0] + point[1] * point[1] <= 1;
+}
+
+void tl_layout_nearest(const struct tl_sphere_map *map, const struct tl_layout_cell *cell, double *x,
+                       double *y)
+{
+    bool round = map->layout == TL_LAYOUT_SPHERE || map->layout == TL_LAYOUT_PARABOLOID;
+    double middle_x = 0.5 * (cell->x0 + cell->x1), middle_y = 0.5 * (cell->y0 + cell->y1);
+    double radius = 0.5 * map->height;
+    *x = round ? fmin(fmax(disc_at(map, middle_x).left + radius, cell->x0), cell->x1) : middle_x;
+    *y = round ? fmin(fmax(radius, cell->y0), cell->y1) : middle_y;
+}
+
+/* Solid angle between the disc's centre and a piece of a straight line that lies inside of the disc, signed.
+ *
+ * Both layouts are the same all around, so that a sector up to radius r has the solid angle g(r) dphi. For
+ * the ball, dw = 4 dA: halving the angle to +Z gives 4 cos dw_h, and the orthographic view takes the cosine
+ * away. So g = 2 r^2. For the paraboloid dw = 4 dA / (1 + r^2)^2, which is equation 6, so g = 2 r^2 / (1 +
+ * r^2). Along a line at distance p from the centre r^2 dphi = p ds. */
+static double inner_piece(enum tl_layout layout, const double a[2], const double b[2])
+{
+    double twice_area = a[0] * b[1] - a[1] * b[0];
+    if (layout == TL_LAYOUT_SPHERE)
+        return 2 * twice_area;
+    double along[2] = {b[0] - a[0], b[1] - a[1]}, length = hypot(along[0], along[1]);
+    if (length <= 0)
+        return 0;
+    double distance = twice_area / length, reach = sqrt(1 + distance * distance);
+    double from = (a[0] * along[0] + a[1] * along[1]) / length;
+    return 2 * distance / reach * (atan((from + length) / reach) - atan(from / reach));
+}
+
+/* Outside of the disc its rim takes the place of the line. */
+static double outer_piece(enum tl_layout layout, const double a[2], const double b[2])
+{
+    double angle = atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
+    return layout == TL_LAYOUT_SPHERE ? 2 * angle : angle;
+}
+
+/* A straight line from `a` to `b`, parted where it crosses the rim. */
+static double line_solid_angle(enum tl_layout layout, const double a[2], const double b[2])
+{
+    double along[2] = {b[0] - a[0], b[1] - a[1]};
+    double square = along[0] * along[0] + along[1] * along[1];
+    double middle = -(a[0] * along[0] + a[1] * along[1]) / square;
+    double discriminant = middle * middle - (a[0] * a[0] + a[1] * a[1] - 1) / square;
+    double reach = sqrt(fmax(discriminant, 0));
+    const double parts[4] = {0, fmin(fmax(middle - reach, 0), 1), fmin(fmax(middle + reach, 0), 1), 1};
+    double sum = 0;
+    for (int i = 0; i < 3; i++) {
+        double begin[2] = {a[0] + parts[i] * along[0], a[1] + parts[i] * along[1]};
+        double end[2] = {a[0] + parts[i + 1] * along[0], a[1] + parts[i + 1] * along[1]};
+        sum += i == 1 ? inner_piece(layout, begin, end) : outer_piece(layout, begin, end);
+    }
+    return sum;
+}
+
+static double disc_solid_angle(const struct tl_sphere_map *map, const struct tl_layout_cell *cell)
+{
+    double near_x, near_y, sum = 0;
+    tl_layout_nearest(map, cell, &near_x, &near_y);
+    if (!tl_layout_holds(map, near_x, near_y))
+        return 0; /* rather than what rounding leaves of it */
+    struct disc disc = disc_at(map, 0.5 * (cell->x0 + cell->x1));
+    double corners[4][2];
+    for (int i = 0; i < 4; i++) /* anticlockwise */
+        to_disc(&disc, i == 1 || i == 2 ? cell->x1 : cell->x0, i < 2 ? cell->y1 : cell->y0, corners[i]);
+    for (int i = 0; i < 4; i++)
+        sum += line_solid_angle(map->layout, corners[i], corners[(i + 1) % 4]);
+    return fmax(sum, 0);
+}
+
+/* Between the centre of a cube's face at distance 1 and (u, v) on it, signed. */
+static double corner_solid_angle(double u, double v)
+{
+    return atan2(u * v, sqrt(u * u + v * v + 1));
+}
+
+double tl_layout_cell_solid_angle(const struct tl_sphere_map *map, const struct tl_layout_cell *cell)
+{
+    if (map->layout == TL_LAYOUT_LATLONG) { /* cos a - cos b, without the cancellation at the poles */
+        double middle = 0.5 * M_PI * (cell->y0 + cell->y1) / map->height;
+        double half = 0.5 * M_PI * (cell->y1 - cell->y0) / map->height;
+        return 2 * M_PI * (cell->x1 - cell->x0) / map->width * 2 * sin(middle) * sin(half);
+    }
+    if (map->layout == TL_LAYOUT_CUBE) {
+        double top = map->width * floor(cell->y0 / map->width), scale = 2.0 / map->width;
+        double u0 = scale * cell->x0 - 1, v0 = scale * (cell->y0 - top) - 1;
+        double u1 = scale * cell->x1 - 1, v1 = scale * (cell->y1 - top) - 1;
+        return corner_solid_angle(u1, v1) - corner_solid_angle(u0, v1) - corner_solid_angle(u1, v0) +
+               corner_solid_angle(u0, v0);
+    }
+    return disc_solid_angle(map, cell);
+}
+
+double tl_layout_solid_angle(const struct tl_sphere_map *map, int x, int y)
+{
+    assert(x >= 0 && x < map->width && y >= 0 && y < map->height);
+    return tl_layout_cell_solid_angle(map, &(struct tl_layout_cell){x, y, x + 1, y + 1});
+}

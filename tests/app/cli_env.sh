@@ -1,0 +1,71 @@
+#!/usr/bin/env bash
+# toile env: what it writes is read back as what it is, and what it cannot do it refuses in one line with status 2.
+set -u
+data=${TOILE_DATA:-$TOILE_DATA_DIR}
+room=$(mktemp -d)
+trap 'rm -rf "$room"' EXIT
+cd "$room" || exit 1
+failed=0
+
+fail() { echo "FAILED $*"; failed=1; }
+
+# refuse NAME PATTERN ARGUMENTS...
+refuse() {
+    local name=$1 pattern=$2 message status
+    shift 2
+    message=$("$TOILE" env "$@" --quiet 2>&1)
+    status=$?
+    [ $status -eq 2 ] || fail "$name: exit status $status: $message"
+    [ "$(printf '%s\n' "$message" | wc -l)" -eq 1 ] || fail "$name: expected one line: $message"
+    printf '%s' "$message" | grep -qE "$pattern" || fail "$name: expected /$pattern/: $message"
+    [ "$(find . -type f | sort | tr '\n' ' ')" = "./light.hdr " ] || fail "$name: files left: $(ls)"
+}
+
+# shape FILE: "WIDTH HEIGHT" as toile reads it.
+shape() { "$TOILE" info "$1" --json | tr -d '\n\t' | sed 's/.*"width":[[:space:]]*\([0-9]*\).*"height":[[:space:]]*\([0-9]*\).*/\1 \2/'; }
+
+# Two texels of light, one of them bright.
+printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n\200\200\200\201\200\100\040\205' >light.hdr
+
+refuse "no input" 'expected one' -o a.exr --layout cube
+refuse "missing input" 'nowhere\.exr.*no such file' nowhere.exr -o a.exr --layout cube
+refuse "no output" 'output' light.hdr --layout cube
+refuse "output of another kind" 'a\.png.*\.exr' light.hdr -o a.png --layout cube
+refuse "no layout" 'layout' light.hdr -o a.exr
+refuse "unknown layout" 'cub.*cube, sphere' light.hdr -o a.exr --layout cub
+refuse "unknown --from" '\-\-from.*ball.*sphere' light.hdr -o a.exr --layout cube --from ball
+refuse "--from against the shape" 'light\.hdr.*sphere' light.hdr -o a.exr --layout cube --from sphere
+refuse "size 0" '\-\-size' light.hdr -o a.exr --layout cube --size 0
+refuse "size in words" '\-\-size' light.hdr -o a.exr --layout cube --size big
+refuse "size too large" 'a\.exr.*32768' light.hdr -o a.exr --layout cube --size 6000
+refuse "size beyond an int" '\-\-size' light.hdr -o a.exr --layout latlong --size 99999999999
+refuse "size near the largest int" 'a\.exr.*32768' light.hdr -o a.exr --layout latlong --size 2147483647
+refuse "output in no folder" 'nowhere/a\.exr' light.hdr -o nowhere/a.exr --layout cube
+
+expect() { [ "$(shape "$1")" = "$2" ] || fail "$1: $(shape "$1"), expected $2"; }
+for layout in cube sphere paraboloid latlong; do
+    "$TOILE" env light.hdr -o $layout.exr --layout $layout --size 16 --quiet || fail "$layout"
+    "$TOILE" env $layout.exr -o back.exr --layout latlong --size 1 --from $layout --quiet || fail "$layout and back"
+    "$TOILE" env light.hdr -o same.exr --layout latlong --quiet
+    # Halves of the sphere, which meet at borders of texels in every layout of an even size: what is left is the
+    # stated error, twice.
+    rmse=$("$TOILE" compare back.exr same.exr --json | sed -n 's/.*"rel_rmse":[[:space:]]*\([0-9.e-]*\).*/\1/p')
+    awk -v e="$rmse" 'BEGIN { exit !(e != "" && e < 0.002) }' || fail "$layout and back: relative RMSE $rmse"
+done
+expect cube.exr "16 96"
+expect sphere.exr "16 16"
+expect paraboloid.exr "32 16"
+expect latlong.exr "32 16"
+grep -q 'faces +X -X' cube.exr || fail "cube.exr does not say how it is laid out"
+"$TOILE" env sphere.exr -o guess.exr --layout cube 2>&1 | grep -q 'taken for sphere' || fail "a guess is not said aloud"
+"$TOILE" env cube.exr -o guess.exr --layout latlong 2>&1 | grep -q 'taken for cube' || fail "a cube is not guessed"
+
+if [ -r "$data/exr-features/BrightRingsNanInf.exr" ]; then
+    "$TOILE" env "$data/exr-features/BrightRingsNanInf.exr" -o clean.exr --from latlong --layout cube --size 32 2>&1 |
+        grep -q 'cleaned' || fail "NaN and Inf are not told"
+    "$TOILE" info clean.exr --json | grep -q '"nan_cleaned":[[:space:]]*0' || fail "NaN went through"
+else
+    echo "skipped: NaN and Inf: $data is absent"
+fi
+[ $failed -eq 0 ] && echo "ok"
+exit $failed
