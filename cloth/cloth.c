@@ -110,6 +110,7 @@ static void set_constants(tl_cloth *cloth)
     cloth->limits = tl_limits_create(&cloth->topology, (const vec2s(*)[3])cloth->rest, cloth->shortest_edge,
                                      cloth->particles.x);
     tl_layers_forget(&cloth->layers);
+    cloth->left_alone = false;
 }
 
 void tl_cloth_use(tl_cloth *cloth, int solver)
@@ -130,6 +131,21 @@ static double find_shortest_edge(const tl_cloth *cloth)
     return 0.01 * sqrt(area / (double)cloth->topology.vertex_count);
 }
 
+/* Whether a triangle's height is less than a sixteenth of its longest side. */
+static bool has_needles(const tl_cloth *cloth)
+{
+    const double needle = 1.0 / 16;
+    for (size_t t = 0; t < cloth->topology.triangle_count; t++) {
+        const vec2s *corners = cloth->rest[t];
+        vec2s side = glms_vec2_sub(corners[1], corners[0]), other = glms_vec2_sub(corners[2], corners[0]);
+        double longest = (double)fmaxf(glms_vec2_distance(corners[1], corners[2]),
+                                       fmaxf(glms_vec2_norm(side), glms_vec2_norm(other)));
+        if (fabs((double)glms_vec2_cross(side, other)) < needle * longest * longest)
+            return true;
+    }
+    return false;
+}
+
 /* Everything that follows from a numbering of the physics vertices, but for positions and velocities. */
 static void build_mesh(tl_cloth *cloth, const uint32_t *weld, size_t vertex_count)
 {
@@ -142,6 +158,7 @@ static void build_mesh(tl_cloth *cloth, const uint32_t *weld, size_t vertex_coun
     cloth->rest = tl_rest_shapes(cloth->garment, &cloth->topology);
     cloth->energy = tl_energy_build(&cloth->topology, cloth->rest);
     cloth->shortest_edge = find_shortest_edge(cloth);
+    cloth->has_needles = has_needles(cloth);
     cloth->made_at = tl_resize(cloth->made_at, vertex_count, sizeof *cloth->made_at);
     for (size_t i = 0; i < mesh->vertex_count; i++)
         cloth->made_at[weld[i]] = vec3d_from(mesh->positions[i]);
@@ -302,12 +319,13 @@ void tl_cloth_mark_start(tl_cloth *cloth)
         cloth->start_v[i] = cloth->particles.v[cloth->topology.weld[i]];
     }
     cloth->time_s = 0;
+    cloth->left_alone = false;
     forget_contacts(cloth);
 }
 
 void tl_cloth_reset(tl_cloth *cloth)
 {
-    cloth->grabbed = false;
+    cloth->grabbed = cloth->left_alone = false;
     cloth->time_s = 0;
     if (!cloth->start_x) {
         release_state(cloth);
@@ -409,6 +427,23 @@ static double deepest(const tl_cloth *cloth, const tl_collider *collider)
     return worst;
 }
 
+struct tl_energies tl_cloth_energies(const tl_cloth *cloth)
+{
+    struct tl_energies energies = {0};
+    vec3d *forces = TL_NEW_ARRAY(vec3d, cloth->particles.count);
+    energies.elastic =
+        tl_energy_forces(&cloth->energy, &cloth->fabric, cloth->particles.count, cloth->particles.x, forces);
+    free(forces);
+    for (size_t i = 0; i < cloth->particles.count; i++) {
+        vec3d x = cloth->particles.x[i], v = cloth->particles.v[i];
+        double mass = cloth->particles.w[i] > 0 ? 1 / cloth->particles.w[i] : 0;
+        energies.mass += mass;
+        energies.kinetic += 0.5 * mass * vec3d_dot(v, v);
+        energies.potential += mass * cloth->params.gravity * x.y;
+    }
+    return energies;
+}
+
 struct tl_cloth_report tl_cloth_measure(const tl_cloth *cloth, const tl_collider *collider)
 {
     struct tl_cloth_report report = {.vertex_count = cloth->topology.vertex_count,
@@ -425,16 +460,10 @@ struct tl_cloth_report tl_cloth_measure(const tl_cloth *cloth, const tl_collider
                                      .shortened_steps = cloth->tally.shortened,
                                      .caught_count = cloth->contacts.caught_count,
                                      .settled = cloth->settled};
-    vec3d *forces = TL_NEW_ARRAY(vec3d, cloth->particles.count);
-    report.elastic_energy =
-        tl_energy_forces(&cloth->energy, &cloth->fabric, cloth->particles.count, cloth->particles.x, forces);
-    free(forces);
-    for (size_t i = 0; i < cloth->particles.count; i++) {
-        vec3d x = cloth->particles.x[i], v = cloth->particles.v[i];
-        double mass = cloth->particles.w[i] > 0 ? 1 / cloth->particles.w[i] : 0;
-        report.kinetic_energy += 0.5 * mass * vec3d_dot(v, v);
-        report.potential_energy += mass * cloth->params.gravity * x.y;
-    }
+    struct tl_energies energies = tl_cloth_energies(cloth);
+    report.kinetic_energy = energies.kinetic;
+    report.elastic_energy = energies.elastic;
+    report.potential_energy = energies.potential;
     uint32_t *pieces = TL_NEW_ARRAY(uint32_t, cloth->topology.vertex_count);
     report.piece_count = tl_layers_pieces(&cloth->topology, pieces);
     free(pieces);

@@ -40,7 +40,12 @@ struct tl_cloth {
     uint64_t jump_followed; /* the collider's revision whose jump the cloth has gone along with */
     double time_s;
     bool settled;
-    vec3d *start_x, *start_v; /* [render vertex] what reset goes back to; NULL until a start is marked */
+    bool has_needles;           /* triangles on which a solver may gain energy */
+    uint64_t collider_revision; /* of the last frame that was driven */
+    bool left_alone;            /* nothing has driven it since least_energy began */
+    double least_energy;        /* J, all kinds: what has been lost cannot come back */
+    double usual_energy;        /* J, kinetic and elastic, when it was left alone */
+    vec3d *start_x, *start_v;   /* [render vertex] what reset goes back to; NULL until a start is marked */
 };
 
 /* How one frame is advanced. */
@@ -64,6 +69,11 @@ struct tl_substep {
 /* Seconds of one substep of the chosen solver, so that a frame is a whole number of equal ones. */
 double tl_cloth_substep(const tl_cloth *cloth);
 struct tl_springs tl_cloth_springs(const tl_cloth *cloth);
+struct tl_energies {
+    double kinetic, elastic, potential; /* J */
+    double mass;                        /* kg; of what is not held, as the others */
+};
+struct tl_energies tl_cloth_energies(const tl_cloth *cloth);
 double tl_cloth_max_speed(const tl_cloth *cloth);
 double tl_cloth_max_strain(const tl_cloth *cloth);
 
