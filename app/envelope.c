@@ -112,6 +112,7 @@ static struct subject make_subject(const struct tl_envelope_case *tested)
     fabric->stretch_weft = fabric->stretch_warp = fabric->shear = tested->stiffness;
     fabric->bend_weft = fabric->bend_warp = fabric->damping = 0;
     subject.params.solver = tested->solver;
+    subject.params.strain_limit = 0; /* which no energy knows of */
     subject.params.dt = tested->dt;
     subject.params.frame_rate = fmin(1 / tested->dt, 1000);
     return subject;

@@ -3,8 +3,8 @@
  * A sheet of 1 m that lies level and is clamped by an edge falls for half a second (nothing buckles until
  * then); its positions are compared with those of the same sheet solved with a step as short as changes no
  * more, and with those of the finest such sheet, which shows what the mesh is worth. A sheet held by two
- * corners comes to rest; its energy, strain and shape are compared with the best rest of its size: a drape
- * has a mirror image of equal energy, so the nearer of the two counts (CLOTH.md section 2). */
+ * corners comes to rest; its energy, strain and shape are compared with the reference's calmest rest at its
+ * size: a drape has a mirror image of equal energy, so the nearer of the two counts (CLOTH.md section 2). */
 #ifndef TOILE_APP_TRADE_CLOTH_H
 #define TOILE_APP_TRADE_CLOTH_H
 
@@ -23,7 +23,7 @@ struct tl_trade_cloth_row {
     double error_m;             /* RMS, against the same sheet converged */
     double total_error_m;       /* RMS, against the finest sheet */
     double rest_error_m;        /* RMS of the drape, mirror-aware; NaN where it was not measured */
-    double rest_energy_j;       /* above the lowest */
+    double rest_energy_j;       /* above the one compared with */
     double rest_strain;         /* largest */
 };
 

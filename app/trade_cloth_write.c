@@ -173,7 +173,7 @@ static void print_all(const struct tl_trade_cloth *trade, FILE *out)
                                         "with mesh mm",
                                         "CPU ms to rest",
                                         "rest RMS mm",
-                                        "energy over the lowest",
+                                        "energy over the reference's",
                                         "largest strain"};
     struct tl_cells cells = {0};
     add_heads(&cells, heads, TL_COUNT(heads));

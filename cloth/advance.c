@@ -115,7 +115,7 @@ static void advance_preview(tl_cloth *cloth, const struct tl_substep *substep)
     tl_pins_place(cloth->pins, cloth->pin_count, substep->collider, substep->phase, &cloth->particles);
     tl_xpbd_solve(&cloth->energy, &cloth->particles);
     if (cloth->params.strain_limit > 0)
-        tl_limits_solve(&cloth->limits, cloth->params.strain_limit, &cloth->particles);
+        tl_limits_solve(&cloth->limits, cloth->params.strain_limit, substep->h, &cloth->particles);
     constrain(cloth, substep);
     tl_particles_finish(&cloth->particles, substep->h);
 }
@@ -190,16 +190,32 @@ static void blow(tl_cloth *cloth, const struct tl_substep *substep)
         particles->v[i] = vec3d_muladd(particles->v[i], cloth->external[i], particles->w[i] * substep->h);
 }
 
+/* Crushed cloth is stiffer than at rest: more substeps, or none when that is beyond the budget. */
+static double substeps_now(tl_cloth *cloth)
+{
+    double substeps = substeps_per_step(cloth);
+    if (cloth->params.solver != TL_CLOTH_REFERENCE)
+        return substeps;
+    double now =
+        TL_VERLET_SAFETY * tl_energy_critical_step(&cloth->energy, &cloth->fabric, cloth->particles.count,
+                                                   cloth->particles.w, cloth->particles.x);
+    substeps = fmax(substeps, ceil(step_seconds(cloth) / now));
+    if (substeps * steps_per_frame(&cloth->params) <= cloth->params.reference_substeps)
+        return substeps;
+    cloth->refused_step = now;
+    return 0;
+}
+
 static void run_step(tl_cloth *cloth, const tl_collider *collider, double drag, int step)
 {
     /* Weightless until the panels have met. */
     double gravity = tl_sewing_pulls(&cloth->sewing) ? 0 : cloth->params.gravity;
-    double substeps = substeps_per_step(cloth), total = steps_per_frame(&cloth->params) * substeps;
+    double substeps = substeps_now(cloth), total = steps_per_frame(&cloth->params) * substeps;
     if (cloth->params.solver == TL_CLOTH_REFERENCE)
         find_forces(cloth);
     for (double sub = 0; sub < substeps; sub++) {
         double done = step * substeps + sub;
-        const struct tl_substep substep = {.h = tl_cloth_substep(cloth),
+        const struct tl_substep substep = {.h = step_seconds(cloth) / substeps,
                                            .gravity = gravity,
                                            .drag = drag,
                                            .phase_before = done / total,
@@ -234,8 +250,9 @@ static void find_own_contacts(tl_cloth *cloth)
 static void run_steps(tl_cloth *cloth, const tl_collider *collider, double drag)
 {
     int steps = steps_per_frame(&cloth->params);
+    cloth->refused_step = 0;
     double calm = 1 - exp(-INNER_DAMPING * cloth->fabric.damping * step_seconds(cloth));
-    for (int step = 0; step < steps && !tl_interrupted(); step++) {
+    for (int step = 0; step < steps && !tl_interrupted() && !(cloth->refused_step > 0); step++) {
         const struct tl_contact_params contact = {.thickness_m = cloth->fabric.thickness_m,
                                                   .push_out_speed = TL_PUSH_OUT_SPEED,
                                                   .phase_before = (double)step / steps,
@@ -266,6 +283,12 @@ static void close_seams(tl_cloth *cloth)
 
 static bool check_state(const tl_cloth *cloth, tl_error *error)
 {
+    if (cloth->refused_step > 0)
+        return tl_fail(
+            error, TL_UNSTABLE,
+            "cloth: crushed at %.3f s so that the reference solver's step would be %.3g s; the last good "
+            "frame is kept: allow more cloth.reference_substeps, or choose cloth.solver settle",
+            cloth->time_s, cloth->refused_step);
     for (size_t i = 0; i < cloth->particles.count; i++)
         if (!vec3d_finite(cloth->particles.x[i]) || !vec3d_finite(cloth->particles.v[i]))
             return tl_fail(

@@ -99,13 +99,16 @@ static void set_constants(tl_cloth *cloth)
 {
     set_inverse_masses(cloth);
     tl_energy_set_fabric(&cloth->energy, &cloth->fabric);
-    cloth->critical_step =
-        tl_energy_critical_step(&cloth->energy, &cloth->fabric, cloth->particles.count, cloth->particles.w);
+    cloth->critical_step = tl_energy_critical_step(&cloth->energy, &cloth->fabric, cloth->particles.count,
+                                                   cloth->particles.w, NULL);
     cloth->forces = tl_resize(cloth->forces, cloth->particles.count, sizeof *cloth->forces);
     tl_implicit_destroy(&cloth->implicit);
     tl_energy_set(&cloth->energy, &cloth->fabric, cloth->particles.w, tl_cloth_substep(cloth));
     tl_contacts_release(&cloth->contacts); /* its planes know the thickness */
     cloth->contacts = tl_contacts_create(&cloth->topology, cloth->rest);
+    tl_limits_release(&cloth->limits);
+    cloth->limits = tl_limits_create(&cloth->topology, (const vec2s(*)[3])cloth->rest, cloth->shortest_edge,
+                                     cloth->particles.x);
     tl_layers_forget(&cloth->layers);
 }
 
@@ -143,8 +146,6 @@ static void build_mesh(tl_cloth *cloth, const uint32_t *weld, size_t vertex_coun
     for (size_t i = 0; i < mesh->vertex_count; i++)
         cloth->made_at[weld[i]] = vec3d_from(mesh->positions[i]);
     tl_layers_release(&cloth->layers);
-    tl_limits_release(&cloth->limits);
-    cloth->limits = tl_limits_create(&cloth->topology, (const vec2s(*)[3])cloth->rest, cloth->shortest_edge);
 }
 
 static void add_pin(tl_cloth *cloth, uint32_t particle, bool by_hand)

@@ -103,9 +103,10 @@ void tl_bend_stiffness(const struct tl_cloth_fabric *fabric, double out[3]);
  * K here is more than the Hessian at rest: a stretch counts in all three directions, as k (1 - 1/|F|) across
  * the thread is below k however far it is stretched, so that stretch, bending and links are bounded in any
  * state. Shear is bounded while neither thread is shorter than at rest; it grows as 1/|F|^2 when they are
- * crushed. At rest the true limit lies 1.25 (a plate) to 1.74 (isotropic cloth) times higher, as measured. */
+ * crushed, which `x` [vertex_count + 1] tells; NULL: at rest. At rest the true limit lies 1.25 (a plate)
+ * to 1.74 (isotropic cloth) times higher, as measured. */
 double tl_energy_critical_step(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
-                               size_t vertex_count, const double *inverse_masses);
+                               size_t vertex_count, const double *inverse_masses, const vec3d *x);
 
 /* Flat rest shapes of the physics triangles: from the garment's pattern, else from the start shape turned so
  * that x follows the UVs' u direction (an arbitrary one where UVs are degenerate). New array. */

@@ -12,7 +12,8 @@
 
 struct tl_limited_edge {
     uint32_t ends[2];
-    double rest; /* m */
+    double rest;    /* m */
+    double allowed; /* m, on its way from where it began to 0 */
 };
 
 struct tl_limits {
@@ -20,13 +21,13 @@ struct tl_limits {
     struct tl_limited_edge *edges;
 };
 
-/* Every edge longer than `shortest` metres at rest. */
-struct tl_limits tl_limits_create(const struct tl_topology *topology, const vec2s (*rest)[3],
-                                  double shortest);
+/* Every edge longer than `shortest` metres at rest; `x` is where the cloth is. */
+struct tl_limits tl_limits_create(const struct tl_topology *topology, const vec2s (*rest)[3], double shortest,
+                                  const vec3d *x);
 void tl_limits_release(struct tl_limits *limits);
 
-/* Draws edges longer than 1 + strain times their rest length back to that, there and back through the list.
- */
-void tl_limits_solve(const struct tl_limits *limits, double strain, struct tl_particles *particles);
+/* After a substep of h seconds: draws edges longer than 1 + strain times their rest length back to that,
+ * there and back through the list; those that were longer at first, at a limited speed. */
+void tl_limits_solve(struct tl_limits *limits, double strain, double h, struct tl_particles *particles);
 
 #endif

@@ -20,7 +20,8 @@ struct tl_cloth {
     vec3d *made_at;       /* [particles.count] m, where the garment's file has them */
     double shortest_edge; /* m; strain says nothing of shorter ones */
     struct tl_energy energy;
-    double critical_step; /* s */
+    double critical_step; /* s, at rest */
+    double refused_step;  /* s, reference: what a crushed state would have taken; 0: none did */
     struct tl_particles particles;
     vec3d *forces;         /* [particles.count] N, elastic; reference only, good within a step */
     vec3d *external;       /* [particles.count] N, of the wind; NULL: it never blew */

@@ -76,9 +76,11 @@ assert sum(found[key] for key in outcomes) == found["cells"] == len(found["rows"
 assert found["nan"] == 0 and found["refused"] >= 30 and found["exact"] >= 100
 # One pass of preview over a mesh of needles (a tube whose cells are 32 times as long as wide, or wider than
 # long) is not symmetric, and can gain energy; the reference's step is that of the cloth at rest, and too long
-# for such needles when they are pressed together. What is not in this list must not be silent.
+# for such needles when they are pressed together. The strain limit of preview draws what starts beyond it back
+# within one substep, and with the speed of that. What is not in this list must not be silent.
 def known(row):
-    return row["solver"] in ("preview", "reference") and row.get("mass_ratio", 1) > 1
+    needles = row["solver"] in ("preview", "reference") and row.get("mass_ratio", 1) > 1
+    return needles or row["solver"] == "preview" and row.get("extreme") == "stretched by half, steps of 1e-4 s"
 for row in found["rows"]:
     assert row["outcome"] != "SILENT" or known(row), row
     assert row["outcome"] != "refused" or row["why"], row
