@@ -35,7 +35,7 @@ static int substeps_per_frame(const struct tl_settings *settings, const struct t
 static void describe_self_repulsion(const struct tl_settings *settings, const struct tl_cloth_report *cloth,
                                     char *out, size_t size)
 {
-    const char *price = "about two thirds more time for the cloth";
+    const char *price = "up to twice the time for the cloth";
     if (settings->cloth.self_repulsion)
         snprintf(out, size, "on: %zu piece%s in %zu layer%s, and folds, keep their distance: %s",
                  cloth->piece_count, cloth->piece_count == 1 ? "" : "s", cloth->layer_count,
