@@ -54,9 +54,8 @@ static const struct tl_option cloth_rows[] = {
                      "preview: most that an edge may stretch, as a share of its length; 0: no limit"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, pin_above_m, 0, 1000, "m",
                      "holds the vertices that start higher than this, a waistband say; 0: none of them"),
-    TL_OPTION_BOOL(
-        struct tl_cloth_params, self_repulsion,
-        "layers, a shirt over trousers, and folds keep their distance: takes up to twice as long"),
+    TL_OPTION_BOOL(struct tl_cloth_params, self_repulsion,
+                   "layers, a shirt over trousers, and folds keep their distance: takes up to twice as long"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, gravity, -100, 100, "m/s^2", "along -Y: hangs more heavily"),
     TL_OPTION_VECTOR(
         struct tl_cloth_params, wind, -100, 100, "m/s",
