@@ -68,6 +68,24 @@ static inline tl_cloth *cloth_make(const tl_garment *garment, const struct tl_cl
     return cloth;
 }
 
+/* Of particles that are all free. */
+struct momenta {
+    vec3d linear, angular;
+    double size; /* sum of m |v| */
+};
+
+static inline struct momenta measure_momenta(const struct tl_particles *p)
+{
+    struct momenta sum = {0};
+    for (size_t i = 0; i < p->count; i++) {
+        double mass = 1 / p->w[i];
+        sum.linear = vec3d_muladd(sum.linear, p->v[i], mass);
+        sum.angular = vec3d_muladd(sum.angular, vec3d_cross(p->x[i], p->v[i]), mass);
+        sum.size += mass * vec3d_norm(p->v[i]);
+    }
+    return sum;
+}
+
 /* log2 of the ratio of two errors, the step or mesh having been halved between them. */
 static inline double observed_order(double coarse, double fine)
 {

@@ -4,23 +4,6 @@
 
 #include "config/log.h"
 
-struct momenta {
-    vec3d linear, angular;
-    double size; /* sum of m |v| */
-};
-
-static struct momenta measure_momenta(const struct tl_particles *p)
-{
-    struct momenta sum = {0};
-    for (size_t i = 0; i < p->count; i++) {
-        double mass = 1 / p->w[i];
-        sum.linear = vec3d_muladd(sum.linear, p->v[i], mass);
-        sum.angular = vec3d_muladd(sum.angular, vec3d_cross(p->x[i], p->v[i]), mass);
-        sum.size += mass * vec3d_norm(p->v[i]);
-    }
-    return sum;
-}
-
 static const struct sheet_shape shape = {8, 8, 0.25, 0.25};
 
 static tl_cloth *make_free(const tl_garment *garment, int solver, double h)

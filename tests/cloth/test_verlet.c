@@ -2,6 +2,7 @@
 #include "cloth/state.h"
 #include "cloth/verlet.h"
 #include "sheets.h"
+#include "solvers.h"
 #include "testing.h"
 
 #include "config/log.h"
@@ -60,23 +61,6 @@ static struct tl_cloth_fabric undamped(double stiffness)
 }
 
 /* ---- Momentum ---- */
-
-struct momenta {
-    vec3d linear, angular;
-    double size; /* sum of m |v| */
-};
-
-static struct momenta measure_momenta(const struct tl_particles *p)
-{
-    struct momenta sum = {0};
-    for (size_t i = 0; i < p->count; i++) {
-        double mass = 1 / p->w[i];
-        sum.linear = vec3d_muladd(sum.linear, p->v[i], mass);
-        sum.angular = vec3d_muladd(sum.angular, vec3d_cross(p->x[i], p->v[i]), mass);
-        sum.size += mass * vec3d_norm(p->v[i]);
-    }
-    return sum;
-}
 
 /* A free, weightless sheet thrown about for 10 s. Forces come in pairs that are opposite to the last bit, and
  * along the line that joins the two; what is left is the rounding of sums, a random walk of tens of thousands
