@@ -131,6 +131,19 @@ static void forget_weave(tl_session *session)
     session->weave = NULL;
 }
 
+static struct tl_gloss gloss_of(const struct tl_material_params *look)
+{
+    return (struct tl_gloss){.model = look->model,
+                             .facets = look->facets,
+                             .masking = look->masking,
+                             .fresnel = look->fresnel,
+                             .index = look->index,
+                             .extinction = look->extinction,
+                             .width_weft = look->width_weft,
+                             .width_warp = look->width_warp,
+                             .rotation = glm_rad(look->rotation_deg)};
+}
+
 /* The garment's materials from its file and settings.material; the weave they point to. */
 static void make_materials(tl_session *session)
 {
@@ -150,7 +163,12 @@ static void make_materials(tl_session *session)
             if (!material.diffuse_map.image)
                 memcpy(material.diffuse.raw, look->diffuse, sizeof material.diffuse.raw);
             memcpy(material.specular.raw, look->specular, sizeof material.specular.raw);
+            memcpy(material.transmission.raw, look->transmission, sizeof material.transmission.raw);
             material.glossiness = look->glossiness;
+            material.gloss = gloss_of(look);
+            material.coat = look->coat;
+            material.coat_glossiness = look->coat_glossiness;
+            material.openness = look->openness;
             material.gloss_map.image = NULL;
             material.specular_map.image = NULL;
             material.weave = session->weave;

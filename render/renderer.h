@@ -62,6 +62,12 @@ struct tl_material_params { /* table "material": the garment's look, from the fa
     float diffuse[3];
     float specular[3];
     float glossiness;
+    int model, facets, masking, fresnel; /* as struct tl_gloss */
+    float index, extinction;
+    float width_weft, width_warp, rotation_deg;
+    float coat, coat_glossiness;
+    float transmission[3];
+    float openness;
 };
 extern const struct tl_option_table tl_material_options;
 
@@ -88,6 +94,19 @@ struct tl_camera {
     float near_m, far_m;
 };
 
+/* A light that is no part of the environment. Its irradiance on a surface that faces it is `irradiance`, at
+ * every distance if it is directional, and at 1 m, falling with the square of the distance, if it is a point.
+ */
+enum tl_lamp_kind { TL_LAMP_NONE, TL_LAMP_DIRECTIONAL, TL_LAMP_POINT };
+struct tl_lamp {
+    enum tl_lamp_kind kind;
+    vec3s direction;  /* DIRECTIONAL: towards the light, unit */
+    vec3s position;   /* POINT: metres */
+    vec3s irradiance; /* linear Rec. 709, pi times the radiance that a white matt surface facing it sends back
+                       */
+};
+#define TL_LAMPS_MAX 4
+
 /* Read-only inputs of one frame. */
 typedef struct tl_frame {
     struct tl_camera camera;
@@ -96,6 +115,8 @@ typedef struct tl_frame {
     const tl_environment *environment;
     uint64_t environment_revision; /* changes when the environment does */
     float environment_yaw;         /* rad: the environment turned about +Y, counter-clockwise from above */
+    const struct tl_lamp *lamps;
+    size_t lamp_count; /* at most TL_LAMPS_MAX */
     double time_s;
     bool still; /* drawn until it rests: every round is taken whole, however long that takes */
 } tl_frame;

@@ -242,6 +242,15 @@ static vec3s specular_of(const struct place *place, float n_dot_v)
     return f0;
 }
 
+/* A back is a surface of its own: with its normal the bitangent turns over, the tangent stays. */
+static void set_tangent(const struct place *place, vec3s n, struct tl_spot *spot)
+{
+    vec3s t = {{place->tangent.x, place->tangent.y, place->tangent.z}};
+    t = glms_vec3_sub(t, glms_vec3_scale(n, glms_vec3_dot(n, t)));
+    spot->tangent = direction_or(t, (vec3s){{0, 0, 0}});
+    spot->handedness = place->tangent.w * place->side;
+}
+
 static void set_lobes(const struct place *place, const struct tl_reference_scene *scene, vec3s viewer,
                       vec3s smooth, struct tl_spot *spot)
 {
@@ -249,6 +258,10 @@ static void set_lobes(const struct place *place, const struct tl_reference_scene
     float n_dot_v = glms_vec3_dot(n, viewer);
     vec3s mirror = glms_vec3_sub(glms_vec3_scale(n, 2 * fmaxf(n_dot_v, 0)), viewer);
     float g = glossiness_of(place);
+    spot->viewer = viewer;
+    spot->glossiness = g;
+    spot->material = place->material;
+    set_tangent(place, n, spot);
     spot->normal = n;
     spot->axis = direction_or(mirror, n);
     spot->exponent = tl_lobe_exponent(g);

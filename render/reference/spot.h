@@ -46,6 +46,11 @@ struct tl_spot {
     vec3s normal, axis;
     float exponent; /* s */
     vec3s diffuse, glossy;
+    vec3s viewer;                /* towards the eye */
+    vec3s tangent;               /* along u, at right angles to `normal`; zero where the surface has none */
+    float handedness;            /* bitangent = handedness * cross(normal, tangent) */
+    float glossiness;            /* of the maps, as `exponent` */
+    const tl_material *material; /* borrowed from the surface */
 };
 
 /* What the ray meets first. */
