@@ -17,6 +17,12 @@ static const struct tl_option rows[] = {
     TL_OPTION_ENUM(maps_params, mode, mode_names,
                    "surface: diffuse and gloss; mirror; refraction by the material's index; one term alone; "
                    "transmission: straight through a thin sheet"),
+    TL_OPTION_INT(maps_params, capture_every, 0, 1000000, "frames",
+                  "the scene is drawn into the map anew when it has changed and so many frames are over; 0: "
+                  "maps hold the environment alone"),
+    TL_OPTION_VECTOR(
+        maps_params, capture_at, -10000, 10000, "m",
+        "where from, measured from the middle of the scene; what is around that point is left out"),
 };
 const struct tl_option_table tl_maps_options =
     TL_OPTION_TABLE("maps", "classic environment mapping, light.method maps: unshadowed", rows, maps_params,

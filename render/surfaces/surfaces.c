@@ -16,6 +16,7 @@ struct uploaded {
 };
 
 struct item {
+    bool hidden;
     GLuint vertex_array, buffers[ATTRIBUTES], indices;
     size_t vertex_count, index_count;
     size_t attribute_counts[ATTRIBUTES]; /* vertices sent; 0 for what the surface does not have */
@@ -300,6 +301,8 @@ void tl_surfaces_draw(const tl_surfaces *surfaces, size_t index, enum tl_surface
 {
     const struct item *item = &surfaces->items[index];
     size_t first_triangle = 0;
+    if (item->hidden)
+        return;
     for (size_t i = 0; i < index; i++)
         first_triangle += surfaces->items[i].index_count / 3;
     glBindVertexArray(item->vertex_array);
@@ -312,6 +315,11 @@ void tl_surfaces_draw(const tl_surfaces *surfaces, size_t index, enum tl_surface
         glDrawElements(GL_TRIANGLES, (GLsizei)part->index_count, GL_UNSIGNED_INT,
                        offset_of_index(part->first_index));
     }
+}
+
+void tl_surfaces_hide(tl_surfaces *surfaces, size_t index, bool hidden)
+{
+    surfaces->items[index].hidden = hidden;
 }
 
 bool tl_surfaces_have(const tl_surfaces *surfaces, enum tl_surface_parts parts)

@@ -47,6 +47,8 @@ enum tl_surface_parts { TL_PARTS_OPAQUE = 1, TL_PARTS_MASKED = 2, TL_PARTS_ALL =
 
 /* Draws these parts of surface `index` with the program in use, which includes surface.glsl. */
 void tl_surfaces_draw(const tl_surfaces *surfaces, size_t index, enum tl_surface_parts parts);
+/* ... and then not, until it is shown again. */
+void tl_surfaces_hide(tl_surfaces *surfaces, size_t index, bool hidden);
 /* Whether any surface has such parts. */
 bool tl_surfaces_have(const tl_surfaces *surfaces, enum tl_surface_parts parts);
 
