@@ -18,6 +18,7 @@ enum { LEVELS_UNIT = 5, MAPS_UNIT };
 struct part {
     uint32_t first_triangle;
     float index;
+    uint32_t is_ground;
 };
 
 /* Layers of an array texture that one picture takes. */
@@ -145,16 +146,18 @@ static int by_first_triangle(const void *a, const void *b)
     return (first > second) - (first < second);
 }
 
-void tl_envmap_set_parts(struct tl_envmap *envmap, const struct tl_triangle_ranges *ranges)
+void tl_envmap_set_parts(struct tl_envmap *envmap, const struct tl_triangle_ranges *ranges, bool has_ground)
 {
     size_t capacity = count_parts(ranges), count = 0;
     struct part *parts = TL_NEW_ARRAY(struct part, capacity + 1); /* GL has no empty buffers */
     for (size_t s = 0; s < ranges->surface_count; s++) {
         const tl_surface *surface = ranges->surfaces[s];
+        bool is_ground = has_ground && s + 1 == ranges->surface_count;
         for (size_t p = 0; p < surface->part_count; p++)
             if (surface->parts[p].index_count > 0)
-                parts[count++] = (struct part){ranges->first[s] + surface->parts[p].first_index / 3,
-                                               surface->materials[surface->parts[p].material].gloss.index};
+                parts[count++] =
+                    (struct part){ranges->first[s] + surface->parts[p].first_index / 3,
+                                  surface->materials[surface->parts[p].material].gloss.index, is_ground};
     }
     qsort(parts, count, sizeof *parts, by_first_triangle);
     if (!envmap->parts_buffer)

@@ -8,7 +8,7 @@ const int SURFACE = 0, MIRROR = 1, REFRACTION = 2, DIFFUSE = 3, GLOSSY = 4, TRAN
 const int ENVIRONMENT = 31; // as if it were the exponent after the last
 const uint TRIANGLE_BACK = 0x80000000u;
 
-layout(location = 3) uniform int mode;
+layout(location = 3) uniform int wanted_mode; // of all but the ground
 layout(location = 4) uniform int part_count;
 layout(location = 6) uniform int slots[32];
 
@@ -17,6 +17,7 @@ layout(binding = 4) uniform usampler2D triangles;
 struct Part {
     uint first_triangle; // counted through all surfaces, from 0
     float index;         // of refraction
+    uint is_ground;
 };
 layout(std430, binding = 1) readonly buffer Parts
 {
@@ -72,6 +73,7 @@ void main()
     Sample place = read_sample(texel);
     uint triangle = texelFetch(triangles, texel, 0).r;
     Part part = parts[part_of((triangle & ~TRIANGLE_BACK) - 1u)];
+    int mode = part.is_ground != 0u ? SURFACE : wanted_mode;
     vec3 to_eye = eye - place.point;
     vec3 v = to_eye * inversesqrt(max(dot(to_eye, to_eye), 1e-30)), colour;
     if (mode == MIRROR) {

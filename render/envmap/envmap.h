@@ -43,8 +43,8 @@ uint64_t tl_envmap_bytes_needed(const struct tl_maps_params *params, uint32_t ex
 void tl_envmap_fill(struct tl_envmap *envmap, tl_gpu *gpu, const struct tl_maps_params *params,
                     const struct tl_lobes *lobes, const mat3s *into_world, const struct tl_view *view);
 
-/* Tells the parts' materials. */
-void tl_envmap_set_parts(struct tl_envmap *envmap, const struct tl_triangle_ranges *ranges);
+/* Tells the parts' materials. The ground, which comes last, is always lit as SURFACE. */
+void tl_envmap_set_parts(struct tl_envmap *envmap, const struct tl_triangle_ranges *ranges, bool has_ground);
 
 struct tl_envmap_request {
     const tl_texture *triangles;       /* of the G-buffer */

@@ -39,7 +39,8 @@ enum tl_resource {
     TL_INPUT_LIGHT,       /* how light is put together */
     TL_INPUT_REFERENCE,
     TL_INPUT_SHOW,    /* exposure and background */
-    TL_INPUT_ENVMAP,  /* layout and size of environment maps; for a sphere map the view's turn */
+    TL_INPUT_ENVMAP,  /* size of environment maps, and whether they show the scene */
+    TL_INPUT_LAYOUT,  /* their layout; for a sphere map the view's turn */
     TL_INPUT_LOOK_UP, /* how they are looked up */
     TL_INPUT_CAPTURE, /* the scene as it was when it was to be captured last */
     TL_INPUT_COUNT,

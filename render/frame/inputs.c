@@ -67,10 +67,9 @@ static uint64_t reference_signature(const struct tl_reference_params *reference)
     return MIX(MIX(hash, reference->replicates), reference->terminator);
 }
 
-static uint64_t envmap_signature(const tl_frame *frame, const struct tl_maps_params *maps)
+static uint64_t layout_signature(const tl_frame *frame, const struct tl_maps_params *maps)
 {
-    bool captures = maps->capture_every > 0;
-    uint64_t hash = MIX(MIX(MIX(FNV_OFFSET, maps->layout), maps->size), captures);
+    uint64_t hash = MIX(FNV_OFFSET, maps->layout);
     if (maps->layout != TL_LAYOUT_SPHERE)
         return hash;
     struct tl_view view = tl_view_make(&frame->camera, 1, 1);
@@ -155,7 +154,9 @@ void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *setti
     signatures[TL_INPUT_LIGHT] = light_signature(light);
     signatures[TL_INPUT_REFERENCE] = reference_signature(&settings->reference);
     signatures[TL_INPUT_SHOW] = MIX(MIX(start, image->exposure_ev), image->background);
-    signatures[TL_INPUT_ENVMAP] = envmap_signature(frame, &settings->maps);
+    bool captures = settings->maps.capture_every > 0;
+    signatures[TL_INPUT_ENVMAP] = MIX(MIX(start, settings->maps.size), captures);
+    signatures[TL_INPUT_LAYOUT] = layout_signature(frame, &settings->maps);
     count_capture(frame, settings, signatures, rest);
     signatures[TL_INPUT_CAPTURE] = MIX(start, rest->captured);
     signatures[TL_INPUT_LOOK_UP] = MIX(MIX(start, settings->maps.look_up), settings->maps.mode);

@@ -31,6 +31,7 @@ const char *const tl_resource_names[] = {
     [TL_INPUT_REFERENCE] = "reference options",
     [TL_INPUT_SHOW] = "exposure and background",
     [TL_INPUT_ENVMAP] = "environment map options",
+    [TL_INPUT_LAYOUT] = "layout",
     [TL_INPUT_LOOK_UP] = "look-up options",
     [TL_INPUT_CAPTURE] = "captured scene",
     [TL_MADE_CUBE] = "cube",
@@ -404,7 +405,7 @@ static bool run_envmap(void *context, int level, tl_error *error)
     tl_envmap_fill(&renderer->envmap, renderer->gpu, &renderer->settings.maps,
                    captured ? &renderer->capture.lobes : &renderer->surroundings.lobes, &into_world,
                    &renderer->view);
-    tl_envmap_set_parts(&renderer->envmap, &renderer->ranges);
+    tl_envmap_set_parts(&renderer->envmap, &renderer->ranges, renderer->settings.image.ground);
     return true;
 }
 
@@ -624,7 +625,7 @@ const tl_job tl_frame_jobs[] = {
      .run = run_capture},
     {.name = "envmap",
      .what = "lobes poured into environment maps of a layout",
-     .reads = SET5(TL_MADE_ENVMAP_LOBES, TL_INPUT_ENVMAP, TL_INPUT_YAW, TL_INPUT_SHAPES, TL_INPUT_GROUND) |
+     .reads = SET5(TL_MADE_ENVMAP_LOBES, TL_INPUT_LAYOUT, TL_INPUT_YAW, TL_INPUT_SHAPES, TL_INPUT_GROUND) |
               SET1(TL_MADE_CAPTURE),
      .writes = SET1(TL_MADE_ENVMAP),
      .requires_scene = SET1(TL_SCENE_ENVMAP),
