@@ -10,9 +10,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What assets/garment.h, assets/avatar.h and assets/studio.h make without a file, and "none". */
-static const char *const garment_names[] = {"dress", "skirt", "none", NULL};
-static const char *const avatar_names[] = {"form", "none", NULL};
+/* What assets/garment.h, assets/specimen.h, assets/avatar.h and assets/studio.h make without a file, and
+ * "none".
+ */
+static const char *const garment_names[] = {"dress", "skirt", "sheet", "sphere", "torus", "none", NULL};
+static const char *const avatar_names[] = {"form", "ball", "none", NULL};
 static const char *const environment_names[] = {"studio", NULL};
 static const char *const motion_names[] = {"none", NULL};
 
