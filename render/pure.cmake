@@ -4,6 +4,9 @@ add_library(toile_light STATIC
   brdf/draw.c
   brdf/fresnel.c
   brdf/options.c
+  detail/bake.c
+  detail/bumps.c
+  detail/field.c
   env/convert.c
   env/cube.c
   env/emitters.c
