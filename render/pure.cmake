@@ -11,11 +11,13 @@ add_library(toile_light STATIC
   env/cube.c
   env/emitters.c
   env/layout.c
+  env/levels.c
   env/lobes.c
   light/compose.c
   light/mirrors.c
   env/pour.c
   env/sun.c
+  envmap/pictures.c
   frame/view.c
   light/region_lights.c
   light/samples.c
