@@ -1,5 +1,12 @@
 # The parts of render that know neither GL nor the clock.
 add_library(toile_light STATIC
+  brdf/brdf.c
+  brdf/draw.c
+  brdf/fresnel.c
+  brdf/options.c
+  detail/bake.c
+  detail/bumps.c
+  detail/field.c
   env/convert.c
   env/cube.c
   env/emitters.c

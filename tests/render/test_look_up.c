@@ -265,8 +265,8 @@ static double seam_bound(int layout, enum border border, double texel)
 {
     if (layout == TL_LAYOUT_SPHERE && border == BEHIND)
         return 4 * sqrt(2.0 / 64) / texel;
-    bool clamps =
-        (layout == TL_LAYOUT_PARABOLOID && border == RIM) || (layout == TL_LAYOUT_LATLONG && border == POLE);
+    /* other borders cross the paraboloids' rim, and some of these where it touches the picture's */
+    bool clamps = layout == TL_LAYOUT_PARABOLOID || (layout == TL_LAYOUT_LATLONG && border == POLE);
     return clamps ? 1 : 0.02;
 }
 
