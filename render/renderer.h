@@ -68,11 +68,15 @@ enum tl_maps_mode {
     TL_MAPS_GLOSSY,
     TL_MAPS_TRANSMISSION
 };
+/* off: the reflectance of the G-buffer. Else F of a table over the cosine: Lo = F Lm + Ld, or F Lm + (1 - F)
+ * Ld [Heidrich and Seidel 1999, 4.4]. */
+enum tl_maps_fresnel { TL_MAPS_FRESNEL_OFF, TL_MAPS_FRESNEL_ADDITIVE, TL_MAPS_FRESNEL_COAT };
 struct tl_maps_params {  /* table "maps", of TL_METHOD_MAPS */
     int layout;          /* enum tl_layout (render/env/layout.h) */
     int size;            /* texels, a power of two: side of a cube's face, height of the others */
     int look_up;         /* enum tl_maps_look_up, of paraboloids */
     int mode;            /* enum tl_maps_mode */
+    int fresnel;         /* enum tl_maps_fresnel */
     int capture_every;   /* frames from one capture of the scene to the next; 0: the environment alone */
     float capture_at[3]; /* metres, from the middle of what casts shadows */
 };

@@ -124,7 +124,7 @@ bool tl_capture_draw(struct tl_capture *capture, tl_gpu *gpu, const struct tl_ca
     if (!capture->gbuffer.program.id && !tl_gbuffer_create(&capture->gbuffer, gpu, error))
         return false;
     tl_envmap_fill(&capture->around, gpu, &params, request->lobes, request->into_world, NULL);
-    tl_envmap_set_parts(&capture->around, request->ranges, request->ground != NULL);
+    tl_envmap_set_parts(&capture->around, gpu, request->ranges, request->ground != NULL);
     tl_cube_release(&capture->cube);
     tl_lobes_release(&capture->lobes);
     capture->cube = tl_cube_create(request->size);

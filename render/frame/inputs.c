@@ -159,7 +159,8 @@ void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *setti
     signatures[TL_INPUT_LAYOUT] = layout_signature(frame, &settings->maps);
     count_capture(frame, settings, signatures, rest);
     signatures[TL_INPUT_CAPTURE] = MIX(start, rest->captured);
-    signatures[TL_INPUT_LOOK_UP] = MIX(MIX(start, settings->maps.look_up), settings->maps.mode);
+    signatures[TL_INPUT_LOOK_UP] =
+        MIX(MIX(MIX(start, settings->maps.look_up), settings->maps.mode), settings->maps.fresnel);
     count_rest(light, before, signatures, rest);
     signatures[TL_INPUT_ROUND] = MIX(start, rest->image);
     signatures[TL_INPUT_SCENE_ROUND] = MIX(start, rest->scene);

@@ -405,7 +405,7 @@ static bool run_envmap(void *context, int level, tl_error *error)
     tl_envmap_fill(&renderer->envmap, renderer->gpu, &renderer->settings.maps,
                    captured ? &renderer->capture.lobes : &renderer->surroundings.lobes, &into_world,
                    &renderer->view);
-    tl_envmap_set_parts(&renderer->envmap, &renderer->ranges, renderer->settings.image.ground);
+    tl_envmap_set_parts(&renderer->envmap, renderer->gpu, &renderer->ranges, renderer->settings.image.ground);
     return true;
 }
 

@@ -27,7 +27,7 @@ static int open_device(void **state)
         print_error("%s\n", error.message);
         return -1;
     }
-    tl_envmap_set_parts(&device->envmap, &nothing, false);
+    tl_envmap_set_parts(&device->envmap, device->gpu, &nothing, false);
     return 0;
 }
 
