@@ -197,9 +197,9 @@ static double compare(struct scene *scene, tl_renderer *renderer, const struct t
     return sqrt(squares / counted);
 }
 
-/* An 8-bit map's filtered values are 8-bit as well on some devices: 0.004 in each slope, and in halves 0.001
- * more; twice that in a reflection, times a slope of 1.4 of the brightest a radian: 2 % at a pixel, a quarter
- * of it in the mean. Frames that stayed behind the cloth are off by much more. */
+/* An 8-bit map's filtered values are 8-bit as well on some devices: 0.004 in each of two slopes, and in
+ * halves 0.001 more; twice that in a reflection, times a slope of 1.4 of the brightest a radian: 3 % at a
+ * pixel, a fifth of it in the mean. Frames that stayed behind the cloth are off by much more. */
 static void mirrors_and_gloss_follow_the_sheet(void **state)
 {
     struct test_device *device = *state;
@@ -217,7 +217,7 @@ static void mirrors_and_gloss_follow_the_sheet(void **state)
             print_message("%s, moment %d: RMS error %.2f %% of the brightest, largest %.2f %%\n",
                           mode == TL_MAPS_MIRROR ? "mirror" : "surface", moment, 100 * error, 100 * worst);
             assert_true(error < 0.005);
-            assert_true(worst < 0.025);
+            assert_true(worst < 0.03);
         }
     deform(&scene, 0, true);
     deform(&scene, 1.2f, false); /* positions alone */
