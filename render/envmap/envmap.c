@@ -196,16 +196,16 @@ static void send_fresnel(struct tl_envmap *envmap, tl_gpu *gpu, const struct tol
         const tl_material *material = told[row].material;
         struct tl_brdf brdf = tl_brdf_of(material, material->specular, material->glossiness);
         for (size_t i = 0; i < COSINES; i++) {
-            vec3s reflectance = tl_brdf_fresnel(&brdf, (float)i / (COSINES - 1));
+            vec3s reflectance = tl_brdf_fresnel(&brdf, (float)i / (float)(COSINES - 1));
             memcpy(texels + 4 * (row * COSINES + i), reflectance.raw, sizeof reflectance);
         }
     }
     int height = rows > 0 ? (int)rows : 1;
     if (envmap->fresnel.height != height) {
         tl_texture_destroy(&envmap->fresnel);
-        envmap->fresnel = tl_texture_create(gpu, GL_TEXTURE_2D, GL_RGBA32F, COSINES, height, 1, 1);
+        envmap->fresnel = tl_texture_create(gpu, GL_TEXTURE_2D, GL_RGBA32F, (int)COSINES, height, 1, 1);
     }
-    glTextureSubImage2D(envmap->fresnel.id, 0, 0, 0, COSINES, height, GL_RGBA, GL_FLOAT, texels);
+    glTextureSubImage2D(envmap->fresnel.id, 0, 0, 0, (GLsizei)COSINES, height, GL_RGBA, GL_FLOAT, texels);
     free(texels);
 }
 

@@ -2,6 +2,7 @@
 
 #include "config/memory.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,7 +15,8 @@ static vec3s mean_over_texel(const struct tl_sphere_map *map, const struct tl_lo
     int side = exponent == TL_EXPONENT_COUNT ? EDGE_LOOK_UPS : 1;
     vec3s sum = {{0, 0, 0}};
     for (int i = 0; i < side * side; i++) {
-        double at_x = x + (i % side + 0.5) / side, at_y = y + (i / side + 0.5) / side;
+        int column = i % side, row = i / side;
+        double at_x = x + (column + 0.5) / side, at_y = y + (row + 0.5) / side;
         vec3s direction = glms_mat3_mulv(*turn, tl_layout_direction(map, at_x, at_y));
         sum = glms_vec3_add(sum,
                             tl_lobes_fetch(lobes, direction, (struct tl_exponent_blend){.index = exponent}));
@@ -27,6 +29,7 @@ struct tl_picture tl_picture_pour(const struct tl_levels *levels, const struct t
 {
     const struct tl_sphere_map *map = &levels->maps[0];
     struct tl_picture picture = {.level_count = levels->count};
+    assert(levels->count > 0);
     for (int level = 0; level < levels->count; level++)
         picture.texels[level] =
             TL_NEW_ARRAY(float, 4 * (size_t)levels->maps[level].width * (size_t)levels->maps[level].height);

@@ -323,7 +323,7 @@ static void surfaces_are_lit_as_elsewhere(void **state)
     scene.settings.light.composition = TL_COMPOSE_RATIO;
     scene.settings.light.pem_size = 128;
     tl_image exact = test_draw(device->renderer, &scene.frames[0], &scene.settings);
-    for (size_t i = 0; i < 4 * SIDE * SIDE; i++)
+    for (size_t i = 0; i < (size_t)4 * SIDE * SIDE; i++)
         assert_near(tl_image_floats(&image)[i], tl_image_floats(&exact)[i], 0.003 * BRIGHTEST);
     tl_image_release(&image);
     tl_image_release(&exact);
@@ -445,7 +445,7 @@ static void nobody_pays_who_does_not_ask(void **state)
     assert_int_equal(action_of(plan, "capture"), TL_JOB_DROP);
     assert_int_equal(action_of(plan, "regions"), TL_JOB_DROP);
     /* at least 6 faces of 64 x 64 for the diffuse lobe, two glossy ones and the environment */
-    assert_true(with.pems - without.pems >= 4 * 6 * 64 * 64 * 16);
+    assert_true(with.pems - without.pems >= (size_t)4 * 6 * 64 * 64 * 16);
     scene_close(&scene);
     assert_int_equal(test_device_close((void **)&fresh), 0);
 }

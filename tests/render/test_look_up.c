@@ -54,8 +54,8 @@ static tl_target mirrors_of(tl_gpu *gpu, const vec3s *directions, int count)
     tl_target target = tl_target_create(gpu, WIDTH, height, formats, TL_GBUFFER_LAYERS, true);
     const float nearest = 0, nothing[4] = {0};
     const GLuint triangle[4] = {1};
-    float *points = TL_NEW_ARRAY(float, 4 * WIDTH * (size_t)height);
-    float *normals = TL_NEW_ARRAY(float, 4 * WIDTH * (size_t)height);
+    float *points = TL_NEW_ARRAY(float, (size_t)4 * WIDTH * (size_t)height);
+    float *normals = TL_NEW_ARRAY(float, (size_t)4 * WIDTH * (size_t)height);
     for (size_t i = 0; i < (size_t)count; i++)
         for (size_t c = 0; c < 4; c++) {
             points[4 * i + c] = c < 3 ? -directions[i].raw[c] : 1;
@@ -162,15 +162,18 @@ static void centres_show_their_texels(void **state)
                                                     glms_mat3_mul(glms_mat3_transpose(axes), to_world));
         int count = map->width * map->height;
         vec3s *directions = TL_NEW_ARRAY(vec3s, (size_t)count), *seen = TL_NEW_ARRAY(vec3s, (size_t)count);
-        for (int i = 0; i < count; i++)
-            directions[i] = glms_mat3_mulv(
-                to_world, tl_layout_direction(map, i % map->width + 0.5, i / map->width + 0.5));
+        for (int i = 0; i < count; i++) {
+            int row = i / map->width;
+            directions[i] =
+                glms_mat3_mulv(to_world, tl_layout_direction(map, i % map->width + 0.5, row + 0.5));
+        }
         for (int way = 0; way < (layout == TL_LAYOUT_PARABOLOID ? 2 : 1); way++) {
             double worst = 0;
             params.look_up = way;
             look_up(device, &params, directions, count, seen);
             for (int i = 0; i < count; i++) {
-                double x = i % map->width % map->height + 0.5 - 16, y = i / map->width + 0.5 - 16;
+                int row = i / map->width;
+                double x = i % map->width % map->height + 0.5 - 16, y = row + 0.5 - 16;
                 double rim = layout == TL_LAYOUT_SPHERE ? 11 : layout == TL_LAYOUT_PARABOLOID ? 14 : 100;
                 if (layout == TL_LAYOUT_CUBE || layout == TL_LAYOUT_LATLONG || hypot(x, y) < rim)
                     for (int c = 0; c < 3; c++)
@@ -278,7 +281,7 @@ static void borders_show_no_seam(void **state)
     struct tl_view ahead = {.forward = {{0, 0, -1}}, .right = {{1, 0, 0}}, .up = {{0, 1, 0}}};
     vec3s pairs[2 * BORDERS * PER_BORDER], seen[2 * BORDERS * PER_BORDER];
     for (int i = 0; i < BORDERS * PER_BORDER; i++)
-        border_pair((enum border)(i / PER_BORDER), i % PER_BORDER, &pairs[2 * i]);
+        border_pair((enum border)(i / PER_BORDER), i % PER_BORDER, pairs + (size_t)2 * (size_t)i);
     for (int layout = 0; layout <= TL_LAYOUT_COUNT; layout++) {
         bool by_matrix = layout == TL_LAYOUT_COUNT; /* paraboloids once more */
         struct tl_maps_params params = {
@@ -312,7 +315,7 @@ static void seamless_layouts_are_continuous(void **state)
     mat3s axes = glms_mat3_identity();
     vec3s pairs[2 * BORDERS * PER_BORDER], seen[2 * BORDERS * PER_BORDER];
     for (int i = 0; i < BORDERS * PER_BORDER; i++)
-        border_pair((enum border)(i / PER_BORDER), i % PER_BORDER, &pairs[2 * i]);
+        border_pair((enum border)(i / PER_BORDER), i % PER_BORDER, pairs + (size_t)2 * (size_t)i);
     const enum tl_layout layouts[] = {TL_LAYOUT_CUBE, TL_LAYOUT_OCTAHEDRAL};
     for (int k = 0; k < 2; k++) {
         struct tl_maps_params params = {.layout = (int)layouts[k], .size = 32};
