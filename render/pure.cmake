@@ -4,6 +4,8 @@ add_library(toile_light STATIC
   brdf/draw.c
   brdf/fresnel.c
   brdf/options.c
+  brdf/table_error.c
+  brdf/tables.c
   env/convert.c
   env/cube.c
   env/emitters.c
