@@ -3,7 +3,9 @@ add_library(toile_light STATIC
   brdf/brdf.c
   brdf/draw.c
   brdf/fresnel.c
+  brdf/normalise.c
   brdf/options.c
+  brdf/power.c
   brdf/table_error.c
   brdf/tables.c
   env/convert.c
