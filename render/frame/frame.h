@@ -10,6 +10,7 @@
 #include "render/light/mirrors.h"
 #include "render/light/region_lights.h"
 #include "render/light/samples.h"
+#include "render/local/local.h"
 #include "render/present/present.h"
 #include "render/renderer.h"
 #include "render/trace/trace.h"
@@ -35,6 +36,7 @@ enum tl_resource {
     TL_INPUT_ROUND,       /* which of the jittered frames that are averaged while nothing changes */
     TL_INPUT_SCENE_ROUND, /* ... while nothing but the camera does */
     TL_INPUT_LIGHT,       /* how light is put together */
+    TL_INPUT_LAMPS, /* and how surfaces are shaded under them */
     TL_INPUT_REFERENCE,
     TL_INPUT_SHOW, /* exposure and background */
     TL_INPUT_COUNT,
@@ -53,6 +55,9 @@ enum tl_resource {
     TL_MADE_MIRRORS, /* what near mirrors show */
     TL_MADE_POINTS,
     TL_MADE_LIGHT,
+    TL_MADE_LAMP_MAPS,
+    TL_MADE_LAMP_RAYS,
+    TL_MADE_LAMPLIGHT, /* added to the light */
     TL_MADE_IMAGE,
     TL_MADE_BACKDROP,
     TL_MADE_SHOWN,
@@ -73,6 +78,10 @@ enum tl_scene_fact {
     TL_SCENE_EXACT,   /* exact light of the whole environment is read */
     TL_SCENE_BLUR,    /* shadow maps are variance maps */
     TL_SCENE_REFERENCE,
+    TL_SCENE_LAMPS,
+    TL_SCENE_LAMP_MAPS, /* ... and depth maps shadow one of them */
+    TL_SCENE_LAMP_RAYS, /* ... and rays do */
+    TL_SCENE_SAMPLES,   /* rays start from what is seen */
     TL_SCENE_FACT_COUNT
 };
 
@@ -143,6 +152,7 @@ struct tl_renderer {
     float *light; /* [height][width][4] of samples, composed on the CPU */
     size_t light_bytes;
     struct tl_lighting lighting;
+    struct tl_local local;
     struct tl_present present;
     double standard_error; /* of the last reference */
 
