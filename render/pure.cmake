@@ -1,14 +1,23 @@
 # The parts of render that know neither GL nor the clock.
 add_library(toile_light STATIC
+  brdf/brdf.c
+  brdf/draw.c
+  brdf/fresnel.c
+  brdf/options.c
+  detail/bake.c
+  detail/bumps.c
+  detail/field.c
   env/convert.c
   env/cube.c
   env/emitters.c
   env/layout.c
+  env/levels.c
   env/lobes.c
   light/compose.c
   light/mirrors.c
   env/pour.c
   env/sun.c
+  envmap/pictures.c
   frame/view.c
   light/region_lights.c
   light/samples.c

@@ -32,6 +32,8 @@ const char *const tl_resource_names[] = {
     [TL_INPUT_LAMPS] = "lamps and shading options",
     [TL_INPUT_REFERENCE] = "reference options",
     [TL_INPUT_SHOW] = "exposure and background",
+    [TL_INPUT_ENVMAP] = "environment map options",
+    [TL_INPUT_LOOK_UP] = "look-up options",
     [TL_MADE_CUBE] = "cube",
     [TL_MADE_REGIONS] = "regions",
     [TL_MADE_LOBE] = "lobe table",
@@ -46,6 +48,8 @@ const char *const tl_resource_names[] = {
     [TL_MADE_SAMPLES] = "samples",
     [TL_MADE_MIRRORS] = "what mirrors show",
     [TL_MADE_POINTS] = "visibility at points",
+    [TL_MADE_ENVMAP_LOBES] = "lobes of the maps",
+    [TL_MADE_ENVMAP] = "environment maps",
     [TL_MADE_LIGHT] = "light",
     [TL_MADE_LAMP_MAPS] = "lamps' shadow maps",
     [TL_MADE_LAMP_RAYS] = "lamps' shadows by rays",
@@ -68,6 +72,7 @@ const char *const tl_scene_fact_names[] = {
     [TL_SCENE_EXACT] = "exact light",
     [TL_SCENE_BLUR] = "variance maps",
     [TL_SCENE_REFERENCE] = "reference",
+    [TL_SCENE_ENVMAP] = "environment maps",
     [TL_SCENE_LAMPS] = "lamps",
     [TL_SCENE_LAMP_MAPS] = "lamps with shadow maps",
     [TL_SCENE_LAMP_RAYS] = "lamps with shadow rays",
@@ -348,6 +353,53 @@ static bool run_compose(void *context, int level, tl_error *error)
     return true;
 }
 
+static bool run_envmap_lobes(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level, (void)error;
+    tl_cube_release(&renderer->surroundings.cube);
+    tl_lobes_release(&renderer->surroundings.lobes);
+    renderer->surroundings.cube = tl_cube_from_environment_with(
+        renderer->frame.environment, renderer->settings.maps.size, &renderer->surroundings.pour);
+    tl_lobes_make(&renderer->surroundings.lobes, &renderer->surroundings.cube,
+                  tl_frame_map_exponents(&renderer->frame));
+    return true;
+}
+
+static mat3s environment_into_world(float yaw)
+{
+    mat3s axes = glms_mat3_identity();
+    for (int i = 0; i < 3; i++)
+        axes.col[i] = tl_turn_direction(axes.col[i], yaw);
+    return axes;
+}
+
+static bool run_envmap(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level, (void)error;
+    mat3s into_world = environment_into_world(renderer->frame.environment_yaw);
+    tl_envmap_fill(&renderer->envmap, renderer->gpu, &renderer->settings.maps, &renderer->surroundings.lobes,
+                   &into_world, &renderer->view);
+    tl_envmap_set_parts(&renderer->envmap, &renderer->ranges);
+    return true;
+}
+
+static bool run_look_up(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level;
+    const tl_target *gbuffer = &renderer->gbuffer.target;
+    const struct tl_envmap_request request = {.triangles = &gbuffer->colours[TL_GBUFFER_TRIANGLE],
+                                              .exponent_levels = &renderer->lighting.exponent_levels,
+                                              .eye = renderer->view.eye,
+                                              .params = &renderer->settings.maps};
+    tl_lighting_begin(&renderer->lighting, renderer->gpu, gbuffer);
+    bool fine = tl_envmap_draw(&renderer->envmap, renderer->gpu, &request, error);
+    tl_gpu_reset_state(renderer->gpu);
+    return fine;
+}
+
 /* Which back-end shadows each lamp, kept for the jobs that follow. */
 static size_t list_lamps(tl_renderer *renderer, struct tl_lamp lamps[TL_LAMPS_MAX])
 {
@@ -399,7 +451,8 @@ static bool run_lamps(void *context, int level, tl_error *error)
     tl_renderer *renderer = context;
     (void)level;
     struct tl_lamp lamps[TL_LAMPS_MAX];
-    bool passes = renderer->settings.light.visibility != TL_VISIBILITY_RAYS; /* they average in the target */
+    /* Passes average their rounds in the target. */
+    bool passes = tl_frame_facts(&renderer->frame, &renderer->settings) & TL_BIT(TL_SCENE_PASSES);
     const struct tl_local_request request = {.gbuffer = &renderer->gbuffer,
                                              .light = &renderer->lighting.target,
                                              .view = &renderer->view,
@@ -599,15 +652,36 @@ const tl_job tl_frame_jobs[] = {
      .requires_scene = SET1(TL_SCENE_RAYS),
      .levels = LEVELS_ONE,
      .run = run_compose},
+    {.name = "envmap_lobes",
+     .what = "all light through exact lobes, for environment maps",
+     .reads = SET3(TL_INPUT_ENVIRONMENT, TL_INPUT_ENVMAP, TL_INPUT_SHAPES),
+     .writes = SET1(TL_MADE_ENVMAP_LOBES),
+     .requires_scene = SET1(TL_SCENE_ENVMAP),
+     .levels = LEVELS_ONE,
+     .run = run_envmap_lobes},
+    {.name = "envmap",
+     .what = "lobes poured into environment maps of a layout",
+     .reads = SET5(TL_MADE_ENVMAP_LOBES, TL_INPUT_ENVMAP, TL_INPUT_YAW, TL_INPUT_SHAPES, TL_INPUT_GROUND),
+     .writes = SET1(TL_MADE_ENVMAP),
+     .requires_scene = SET1(TL_SCENE_ENVMAP),
+     .levels = LEVELS_ONE,
+     .run = run_envmap},
+    {.name = "look_up",
+     .what = "environment maps looked up for every sample",
+     .reads = SET5(TL_MADE_GBUFFER, TL_MADE_ENVMAP, TL_INPUT_CAMERA, TL_INPUT_LOOK_UP, TL_INPUT_LAMPS),
+     .writes = SET1(TL_MADE_LIGHT),
+     .requires_scene = SET1(TL_SCENE_ENVMAP),
+     .levels = LEVELS_ONE,
+     .run = run_look_up},
     /* Lamps add to the light in place, which is therefore made anew whenever they change. */
-    {.name = "lamp maps",
+    {.name = "lamp_maps",
      .what = "a shadow map for each lamp",
      .reads = SET4(TL_MADE_SURFACES, TL_INPUT_LAMPS, TL_INPUT_MAPS, TL_INPUT_LIGHT),
      .writes = SET1(TL_MADE_LAMP_MAPS),
      .requires_scene = SET1(TL_SCENE_LAMP_MAPS),
      .levels = LEVELS_ONE,
      .run = run_lamp_maps},
-    {.name = "lamp rays",
+    {.name = "lamp_rays",
      .what = "rays: what is seen of each lamp",
      .reads = SET5(TL_MADE_SAMPLES, TL_MADE_SURFACES, TL_INPUT_MOTION, TL_INPUT_GROUND, TL_INPUT_LAMPS) |
               SET1(TL_INPUT_LIGHT),
