@@ -25,6 +25,8 @@ add_library(toile_light STATIC
   frame/view.c
   light/region_lights.c
   light/samples.c
+  local/lamp.c
+  local/lamp_rays.c
   metrics/compare.c
   metrics/flip.c
   pem/chain.c
@@ -37,6 +39,7 @@ add_library(toile_light STATIC
   pem/slices.c
   plan/plan.c
   reference/gather.c
+  reference/lamps.c
   reference/options.c
   reference/reference.c
   reference/sky.c
