@@ -329,7 +329,7 @@ static void test_plain_loops_agree(void **state)
     vec3d *fast = TL_NEW_ARRAY(vec3d, count), *alone = TL_NEW_ARRAY(vec3d, count);
     vec3d *plain = TL_NEW_ARRAY(vec3d, count + 1);
     forces_of(cloth, cloth->particles.x, fast);
-    tl_energy_pull(&cloth->energy, &cloth->fabric, cloth->particles.x, alone);
+    tl_energy_pull(&cloth->energy, &cloth->fabric, cloth->particles.x, alone, NULL);
     plain_forces(cloth, plain);
     assert_memory_equal(fast, alone, count * sizeof *fast);
     double worst = 0;
