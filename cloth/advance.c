@@ -117,9 +117,10 @@ static void advance_preview(tl_cloth *cloth, const struct tl_substep *substep)
     else
         tl_particles_move(&predict);
     tl_pins_place(cloth->pins, cloth->pin_count, substep->collider, substep->phase, &cloth->particles);
-    tl_xpbd_solve(&cloth->energy, &cloth->particles);
-    if (cloth->params.strain_limit > 0)
-        tl_limits_solve(&cloth->limits, cloth->params.strain_limit, substep->h, &cloth->particles);
+    bool limited = cloth->params.strain_limit > 0;
+    tl_xpbd_solve(&cloth->energy, &cloth->particles, limited ? &cloth->limits.watch : NULL);
+    if (limited)
+        tl_limits_solve(&cloth->limits, &cloth->energy, substep->h, &cloth->particles);
     constrain(cloth, substep);
     if (!substep->leads)
         tl_particles_finish(&cloth->particles, substep->h);

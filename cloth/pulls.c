@@ -6,23 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- Edges ---- */
-
-static uint32_t find_edge(const struct tl_topology *topology, uint32_t a, uint32_t b)
-{
-    uint32_t low = a < b ? a : b, high = a < b ? b : a;
-    size_t from = 0, to = topology->edge_count;
-    while (to - from > 1) {
-        size_t middle = (from + to) / 2;
-        const uint32_t *edge = topology->edges[middle];
-        if (edge[0] < low || (edge[0] == low && edge[1] <= high))
-            from = middle;
-        else
-            to = middle;
-    }
-    return (uint32_t)from;
-}
-
 /* ---- Triangles ---- */
 
 struct placed {
@@ -71,7 +54,7 @@ static void build_metrics(struct tl_pulls *pulls, const struct tl_topology *topo
             continue;
         placed[count].lane = (uint32_t)i;
         for (int k = 0; k < 3; k++)
-            placed[count].edges[k] = find_edge(topology, m->vertices[(k + 1) % 3][i % TL_BATCH],
+            placed[count].edges[k] = tl_topology_edge(topology, m->vertices[(k + 1) % 3][i % TL_BATCH],
                                                m->vertices[(k + 2) % 3][i % TL_BATCH]);
         count++;
     }
@@ -260,7 +243,7 @@ struct tl_pulls tl_pulls_build(const struct tl_topology *topology, const struct 
     build_slots(&pulls);
     pulls.link_edges = TL_NEW_ARRAY(uint32_t, energy->link_count);
     for (size_t i = 0; i < energy->link_count; i++)
-        pulls.link_edges[i] = find_edge(topology, energy->links[i].a, energy->links[i].b);
+        pulls.link_edges[i] = tl_topology_edge(topology, energy->links[i].a, energy->links[i].b);
     struct stencils stencils = list_stencils(energy, pulls.vertex_count);
     build_along(&pulls);
     build_others(&pulls, &stencils);
