@@ -89,6 +89,15 @@ static bool mark(struct tl_limits *limits, const struct tl_energy *energy)
     return any;
 }
 
+/* All edges at a vertex. */
+static void mark_vertex(struct tl_limits *limits, const struct tl_pulls *pulls, uint32_t vertex)
+{
+    limits->due[vertex] = true;
+    for (uint32_t k = pulls->along_first[vertex]; k < pulls->along_first[vertex + 1]; k++)
+        if (pulls->along[k].other < vertex)
+            limits->due[pulls->along[k].other] = true;
+}
+
 static bool limit(const struct tl_limits *limits, const struct tl_limited_edge *edge,
                   struct tl_particles *particles)
 {
@@ -107,6 +116,20 @@ static bool limit(const struct tl_limits *limits, const struct tl_limited_edge *
     return true;
 }
 
+/* What draws one edge back may stretch its neighbours. */
+static bool limit_row(struct tl_limits *limits, const struct tl_pulls *pulls, size_t vertex,
+                      struct tl_particles *particles)
+{
+    bool any = false;
+    for (uint32_t e = limits->first[vertex]; e < limits->first[vertex + 1]; e++)
+        if (limit(limits, &limits->edges[e], particles)) {
+            mark_vertex(limits, pulls, limits->edges[e].ends[0]);
+            mark_vertex(limits, pulls, limits->edges[e].ends[1]);
+            any = true;
+        }
+    return any;
+}
+
 void tl_limits_solve(struct tl_limits *limits, const struct tl_energy *energy, double h,
                      struct tl_particles *particles)
 {
@@ -115,9 +138,9 @@ void tl_limits_solve(struct tl_limits *limits, const struct tl_energy *energy, d
         return;
     bool any = false;
     for (size_t v = 0; v < limits->vertex_count; v++)
-        for (uint32_t e = limits->first[v]; limits->due[v] && e < limits->first[v + 1]; e++)
-            any = limit(limits, &limits->edges[e], particles) || any;
+        if (limits->due[v])
+            any = limit_row(limits, &energy->pulls, v, particles) || any;
     for (size_t v = limits->vertex_count; any && v-- > 0;)
-        for (uint32_t e = limits->first[v + 1]; limits->due[v] && e-- > limits->first[v];)
-            (void)limit(limits, &limits->edges[e], particles);
+        if (limits->due[v])
+            (void)limit_row(limits, &energy->pulls, v, particles);
 }

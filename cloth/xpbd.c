@@ -51,7 +51,7 @@ TL_INLINE void move(struct places *places, int lane, vec3d by, double share)
  * next batches need not. */
 struct membrane_work {
     struct places x[3], u, v, push_c, push_d;
-    double uu[TL_BATCH], vv[TL_BATCH], uv[TL_BATCH]; /* the metric, before shear's push */
+    double uu[TL_BATCH], vv[TL_BATCH], uv[TL_BATCH]; /* the metric, before any push */
 };
 
 /* A stretch C = |F| - 1 pushes by factor C along F/|F|: in units of F. */
@@ -67,6 +67,9 @@ TL_INLINE void solve_weft(const struct tl_membrane *m, int lane, struct membrane
     vec3d other = vec3d_sub(at(&work->x[2], lane), origin);
     vec3d u = vec3d_muladd(vec3d_scale(side, m->c[1][lane]), other, m->c[2][lane]);
     vec3d v = vec3d_muladd(vec3d_scale(side, m->d[1][lane]), other, m->d[2][lane]);
+    work->uu[lane] = vec3d_dot(u, u);
+    work->vv[lane] = vec3d_dot(v, v);
+    work->uv[lane] = vec3d_dot(u, v);
     vec3d push = vec3d_scale(u, stretch_push(u, m->weft[lane]));
     put(&work->push_c, lane, push);
     put(&work->u, lane, vec3d_muladd(u, push, m->cc[lane]));
@@ -89,9 +92,6 @@ TL_INLINE void solve_shear(const struct tl_membrane *m, int lane, struct membran
 {
     vec3d u = at(&work->u, lane), v = at(&work->v, lane);
     double a = vec3d_dot(u, u), b = vec3d_dot(v, v), g = vec3d_dot(u, v), p = a * b;
-    work->uu[lane] = a;
-    work->vv[lane] = b;
-    work->uv[lane] = g;
     double square = (p - g * g) * (m->cc[lane] * b - 2 * m->cd[lane] * g + m->dd[lane] * a);
     double sum = m->shear[lane] * p * p + square, multiplier = sum > 0 ? -g / sum : 0;
     vec3d push_c = vec3d_muladd(at(&work->push_c, lane), v, multiplier * p);
