@@ -1,5 +1,7 @@
 # The parts of render that know neither GL nor the clock.
 add_library(toile_light STATIC
+  brdf/coat.c
+  brdf/fan.c
   env/convert.c
   env/cube.c
   env/emitters.c

@@ -6,6 +6,7 @@
 #include "render/env/pour.h"
 #include "render/env/sun.h"
 #include "render/light/gbuffer.h"
+#include "render/light/layers.h"
 #include "render/light/light.h"
 #include "render/light/mirrors.h"
 #include "render/light/region_lights.h"
@@ -50,6 +51,7 @@ enum tl_resource {
     TL_MADE_MAPS,
     TL_MADE_GBUFFER,
     TL_MADE_SAMPLES,
+    TL_MADE_LAYERS,  /* what is seen through cloth */
     TL_MADE_MIRRORS, /* what near mirrors show */
     TL_MADE_POINTS,
     TL_MADE_LIGHT,
@@ -66,6 +68,7 @@ enum tl_scene_fact {
     TL_SCENE_SHADOWS, /* somebody asks for visibility */
     TL_SCENE_MAPS,    /* ... of shadow maps */
     TL_SCENE_RAYS,    /* the back-end of rays lights the image */
+    TL_SCENE_LAYERS,  /* ... and something is seen through, or is lit from behind */
     TL_SCENE_MIRRORS, /* ... and something is so glossy that rays follow what it shows */
     TL_SCENE_PASSES,  /* passes on the GPU do */
     TL_SCENE_CHAINS,  /* ... and read filter chains */
@@ -106,6 +109,9 @@ void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *setti
  */
 tl_bits tl_frame_facts(const tl_frame *frame, const struct tl_render_settings *settings);
 uint32_t tl_frame_exponents(const tl_frame *frame);
+/* Whether any material, or any drawn, has this property. */
+bool tl_frame_has(const tl_frame *frame, bool (*property)(const tl_material *material));
+bool tl_material_is_faceted(const tl_material *material);
 
 /* Lists what is drawn, with the ground last when it is drawn. */
 void tl_frame_list_surfaces(tl_renderer *renderer);
@@ -137,6 +143,7 @@ struct tl_renderer {
     const tl_surface **drawn; /* what is drawn, with the ground last */
     struct tl_triangle_ranges ranges;
     struct tl_samples samples;
+    struct tl_layers layers;
     struct tl_mirrors mirrors;
     tl_trace *trace;
     tl_points *points;
