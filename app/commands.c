@@ -27,6 +27,10 @@ const struct tl_command tl_commands[] = {
      "Runs the extremes, cell by cell: exact, within a stated bound, or refused with a clear message; "
      "FOLDER gets a table of all cells and a picture of the cloth's.",
      TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_JSON | TL_FLAGS_QUICK, tl_command_stability},
+    {"gallery", "gallery [WALL] -o FOLDER [--quick]",
+     "Hangs every technique and setting beside its exact evaluation, with its error and its time: pictures, "
+     "FOLDER/gallery.html and gallery.csv.",
+     TL_FLAGS_OUTPUT | TL_FLAGS_QUICK, tl_command_gallery},
     {"compare", "compare TESTED REFERENCE [--json] [--ldr|--hdr]",
      "Tells how different two images are: relative RMSE, mean FLIP, largest difference.",
      TL_FLAGS_JSON | TL_FLAGS_METRIC, tl_command_compare},

@@ -6,6 +6,7 @@
 #include "app/playback.h"
 #include "assets/avatar.h"
 #include "assets/fit.h"
+#include "assets/specimen.h"
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
@@ -75,6 +76,8 @@ static bool load_avatar(tl_session *session, tl_error *error)
         return true;
     if (strcmp(name, "form") == 0)
         loaded = tl_avatar_form();
+    else if (strcmp(name, "ball") == 0)
+        loaded = tl_specimen_ball();
     else if (!tl_avatar_load_in(name, (enum tl_units)session->settings.scene.avatar_units, &loaded, error))
         return false;
     tell_units(&loaded.model, "scene.avatar_units");
@@ -98,6 +101,8 @@ static bool load_avatar(tl_session *session, tl_error *error)
 static bool make_garment(tl_session *session, tl_garment *out, tl_error *error)
 {
     const char *name = session->settings.scene.garment, *wearer = session->settings.scene.avatar;
+    if (tl_specimen_make(name, session->settings.cloth.edge_m, out))
+        return true;
     if (!is_built_in_garment(name))
         return tl_garment_load_in(name, (enum tl_units)session->settings.scene.units, out, error);
     if (!tl_garment_cut(name, session->settings.cloth.edge_m, out, error))
@@ -230,6 +235,15 @@ static bool drape(tl_session *session, tl_error *error)
     return true;
 }
 
+static bool begin_cloth(tl_session *session, tl_error *error)
+{
+    if (!session->garment->solid)
+        return drape(session, error);
+    tl_moving_create(&session->dress, &session->garment->model, NULL);
+    tl_moving_update(&session->dress);
+    return true;
+}
+
 static bool play_back(tl_session *session, int number, tl_error *error)
 {
     if (!tl_playback_pose(session->playback, &session->settings, number, session->dress.positions, error))
@@ -309,7 +323,7 @@ static bool load_all(tl_session *session, tl_error *error)
         tl_moving_create(&session->body, &session->avatar->model, NULL);
     if (session->garment) {
         make_materials(session);
-        if (!(plays_motion(session) ? begin_playback : drape)(session, error))
+        if (plays_motion(session) ? !begin_playback(session, error) : !begin_cloth(session, error))
             return false;
     } else if (plays_motion(session)) {
         return tl_fail(error, TL_USAGE,

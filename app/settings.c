@@ -10,10 +10,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What assets/garment.h, assets/avatar.h and assets/studio.h make without a file, and "none". */
-static const char *const garment_names[] = {"dress", "skirt", "none", NULL};
-static const char *const avatar_names[] = {"form", "none", NULL};
-static const char *const environment_names[] = {"studio", NULL};
+/* What assets/garment.h, assets/specimen.h, assets/avatar.h and assets/studio.h make without a file, and
+ * "none".
+ */
+static const char *const garment_names[] = {"dress", "skirt", "sheet", "sphere", "torus", "none", NULL};
+static const char *const avatar_names[] = {"form", "ball", "none", NULL};
+static const char *const environment_names[] = {"studio", "white", "none", NULL};
 static const char *const motion_names[] = {"none", NULL};
 
 #define TL_SCENE_DEFAULTS                                                                                    \
@@ -36,7 +38,8 @@ static const struct tl_option scene_rows[] = {
                            "who wears it: built in, or a glTF or OBJ file"),
     TL_OPTION_ENUM(struct tl_scene_params, avatar_units, tl_units_names, "of the avatar's file, as units"),
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, environment, environment_names,
-                           "the light: built in, an .exr or .hdr file, or a sequence of them, sky.####.exr: "
+                           "the light: built in (white: 1 from everywhere), an .exr or .hdr file, or a "
+                           "sequence of them, sky.####.exr: "
                            "each # is a digit of the frame's number"),
     TL_OPTION_NAME_OR_PATH(
         struct tl_scene_params, fabric, tl_embedded_fabrics_names,

@@ -11,8 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Strain beyond which the state is no longer cloth. */
-#define STRAIN_LIMIT 10
 /* A hand's pull: a soft spring, and no more than lifts a heavy coat. */
 #define GRAB_STIFFNESS 200.0
 #define GRAB_FORCE     5.0
@@ -114,6 +112,8 @@ static void advance_preview(tl_cloth *cloth, const struct tl_substep *substep)
                          substep->h);
     tl_pins_place(cloth->pins, cloth->pin_count, substep->collider, substep->phase, &cloth->particles);
     tl_xpbd_solve(&cloth->energy, &cloth->particles);
+    if (tl_cloth_sweeps_back(cloth))
+        tl_xpbd_solve_back(&cloth->energy, &cloth->particles);
     if (cloth->params.strain_limit > 0)
         tl_limits_solve(&cloth->limits, cloth->params.strain_limit, substep->h, &cloth->particles);
     constrain(cloth, substep);
@@ -297,7 +297,7 @@ static bool check_state(const tl_cloth *cloth, tl_error *error)
                 "make cloth.dt smaller or cloth.substeps larger",
                 i, cloth->time_s);
     double strain = tl_cloth_max_strain(cloth);
-    if (strain > STRAIN_LIMIT)
+    if (strain > TL_CLOTH_MOST_STRAIN)
         return tl_fail(error, TL_UNSTABLE,
                        "cloth: stretched by %.0f times at %.3f s; the last good frame is kept: make cloth.dt "
                        "smaller, cloth.substeps larger or the fabric stiffer",
@@ -317,13 +317,15 @@ static bool is_driven(const tl_cloth *cloth, const tl_collider *collider)
            wind[0] != 0 || wind[1] != 0 || wind[2] != 0;
 }
 
-/* What nothing drives cannot gain energy; a solver that makes it do so has left its envelope. That was seen
- * on needles only: crushed to nothing no step is short enough for them, and one sweep of `preview` over stiff
- * ones is not symmetric. Contact may lift the cloth out of the avatar. */
+/* What nothing drives never moves with more energy than it once had of all kinds, elastic energy being above
+ * 0; a solver that makes it do so has left its envelope. That was seen on needles only: crushed to nothing no
+ * step is short enough for them. Elastic energy itself may rise: `preview` rests a little stretched, by
+ * h^2 w T for each vertex of inverse mass w under a tension T, and of stiff needles that is much energy.
+ * Contact may lift the cloth out of the avatar. */
 static bool check_energy(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
 {
     const double lift = 0.25; /* J/kg: 2.5 cm */
-    if (!cloth->has_needles || is_driven(cloth, collider)) {
+    if (!(cloth->needle_share > 0) || is_driven(cloth, collider)) {
         cloth->left_alone = false;
         cloth->collider_revision = cloth->contacts.revision;
         return true;
@@ -335,7 +337,7 @@ static bool check_energy(tl_cloth *cloth, const tl_collider *collider, tl_error 
         cloth->least_energy = total;
         cloth->usual_energy = energies.kinetic + energies.elastic;
     }
-    double gain = total - cloth->least_energy;
+    double gain = energies.kinetic + energies.potential - cloth->least_energy;
     cloth->least_energy = fmin(cloth->least_energy, total);
     if (gain <= cloth->usual_energy + lift * energies.mass)
         return true;

@@ -369,8 +369,6 @@ void tl_energy_set(struct tl_energy *energy, const struct tl_cloth_fabric *fabri
     for (size_t i = 0; i < energy->bend_count; i++)
         set_bend(&energy->bends[i], fabric, inverse_masses, h);
     energy->bends_as_force = h * sqrt(fastest_bending(&energy->pulls, inverse_masses)) <= FORCE_LIMIT;
-    if (getenv("PRINT"))
-        printf("h %g bend crit %g\n", h, 2 / sqrt(fastest_bending(&energy->pulls, inverse_masses)));
     for (size_t i = 0; i < energy->link_count; i++)
         energy->links[i].compliance = 1 / (fabric->stretch_warp * h * h);
 }

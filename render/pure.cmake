@@ -1,7 +1,11 @@
 # The parts of render that know neither GL nor the clock.
 add_library(toile_light STATIC
+  brdf/brdf.c
   brdf/coat.c
+  brdf/draw.c
   brdf/fan.c
+  brdf/fresnel.c
+  brdf/options.c
   env/convert.c
   env/cube.c
   env/emitters.c
