@@ -108,7 +108,7 @@ void tl_renderer_destroy(tl_renderer **renderer)
     tl_surfaces_destroy(&(*renderer)->surfaces);
     tl_triangle_ranges_release(&(*renderer)->ranges);
     tl_samples_release(&(*renderer)->samples);
-    tl_layers_release(&(*renderer)->layers);
+    tl_sheets_release(&(*renderer)->sheets);
     tl_mirrors_release(&(*renderer)->mirrors);
     tl_trace_destroy(&(*renderer)->trace);
     tl_points_destroy(&(*renderer)->points);
@@ -182,7 +182,7 @@ static void reload_shaders(tl_renderer *renderer)
     renderer->shaders_stamp = stamp;
     tl_error error = {0};
     if (!tl_shadow_maps_reload(renderer->maps, &error) || !tl_gbuffer_reload(&renderer->gbuffer, &error) ||
-        !tl_gbuffer_reload(&renderer->layers.behind, &error) ||
+        !tl_gbuffer_reload(&renderer->sheets.behind, &error) ||
         !tl_lighting_reload(&renderer->lighting, &error) ||
         !tl_program_reload(&renderer->present.resolve, &error) ||
         !tl_program_reload(&renderer->present.show, &error))
@@ -221,8 +221,8 @@ bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct
     memcpy(renderer->signatures, signatures, sizeof signatures);
     tl_frame_list_surfaces(renderer);
     const struct tl_plan_input input = plan_input(renderer, frame, &used, changed, TL_MADE_IMAGE);
-    if (!(input.scene & TL_BIT(TL_SCENE_LAYERS)))
-        tl_layers_release(&renderer->layers);
+    if (!(input.scene & TL_BIT(TL_SCENE_SHEETS)))
+        tl_sheets_release(&renderer->sheets);
     return run_plan(renderer, &input, &renderer->plan, error);
 }
 
@@ -325,14 +325,14 @@ struct tl_render_memory tl_renderer_memory(const tl_renderer *renderer)
                 tl_slice_maps_bytes(&renderer->slice_maps),
         .maps = tl_shadow_maps_bytes(renderer->maps),
         .rays = tl_trace_bytes(renderer->trace) + tl_points_bytes(renderer->points),
-        .layers = tl_layers_bytes(&renderer->layers),
+        .sheets = tl_sheets_bytes(&renderer->sheets),
         .targets = tl_target_bytes(&renderer->gbuffer.target) + tl_target_bytes(&renderer->lighting.target) +
                    tl_present_bytes(present),
         .surfaces = tl_surfaces_bytes(renderer->surfaces),
         .other = tl_lighting_bytes(&renderer->lighting) + tl_texture_bytes(&present->backdrop) +
                  tl_texture_bytes(&present->blurred),
     };
-    memory.total = memory.pems + memory.maps + memory.rays + memory.layers + memory.targets +
+    memory.total = memory.pems + memory.maps + memory.rays + memory.sheets + memory.targets +
                    memory.surfaces + memory.other;
     return memory;
 }

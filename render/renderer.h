@@ -164,7 +164,7 @@ const tl_plan *tl_renderer_last_plan(const tl_renderer *renderer);
 /* Bytes by use, summed from what is allocated. */
 struct tl_render_memory {
     size_t pems, maps, rays;
-    size_t layers; /* of what is seen through cloth */
+    size_t sheets; /* of what is seen through cloth */
     size_t targets, surfaces, other, total;
 };
 struct tl_render_memory tl_renderer_memory(const tl_renderer *renderer);

@@ -1,5 +1,7 @@
 #include "render/brdf/fan.h"
 
+#include "render/brdf/lobes.h"
+
 #include <math.h>
 
 /* Standard deviations of two neighbours that still look like one: at 0.6 of their distance the mixture's L1
@@ -183,8 +185,9 @@ static int fan_of_threads(const struct tl_brdf *brdf, const struct tl_brdf_frame
 {
     float s = brdf->exponent, along = -glms_vec3_dot(frame->tangent, v);
     float sine = sqrtf(fmaxf(1 - along * along, 0)), facing = fmaxf(glms_vec3_dot(frame->normal, v), 0);
-    /* (s + 1) / 2 pi times the integral of cos^s, nearly sqrt(2 pi / (s + 1/2)), times that of sin^2 cos. */
-    float all = (s + 1) / (2 * GLM_PIf) * sqrtf(2 * GLM_PIf / (s + 0.5f)) * sine * sine * 2;
+    /* The integral of cos^s, nearly sqrt(2 pi / (s + 1/2)), where it is weighed by sin^2 itself; times that
+     * of cos. */
+    float all = tl_brdf_lobe_scale(brdf) * sqrtf(2 * GLM_PIf / (s + 2.5f)) * sine * sine * 2;
     vec3s albedo = glms_vec3_scale(tl_brdf_fresnel(brdf, facing), facing > 0 ? all : 0);
     for (int k = 0; k < most; k++) {
         float aside = (2 * (float)k + 1) / (float)most - 1, ahead = sqrtf(1 - aside * aside);

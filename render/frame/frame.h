@@ -6,11 +6,11 @@
 #include "render/env/pour.h"
 #include "render/env/sun.h"
 #include "render/light/gbuffer.h"
-#include "render/light/layers.h"
 #include "render/light/light.h"
 #include "render/light/mirrors.h"
 #include "render/light/region_lights.h"
 #include "render/light/samples.h"
+#include "render/light/sheets.h"
 #include "render/present/present.h"
 #include "render/renderer.h"
 #include "render/trace/trace.h"
@@ -51,7 +51,7 @@ enum tl_resource {
     TL_MADE_MAPS,
     TL_MADE_GBUFFER,
     TL_MADE_SAMPLES,
-    TL_MADE_LAYERS,  /* what is seen through cloth */
+    TL_MADE_SHEETS,  /* what is seen through cloth */
     TL_MADE_MIRRORS, /* what near mirrors show */
     TL_MADE_POINTS,
     TL_MADE_LIGHT,
@@ -68,7 +68,7 @@ enum tl_scene_fact {
     TL_SCENE_SHADOWS, /* somebody asks for visibility */
     TL_SCENE_MAPS,    /* ... of shadow maps */
     TL_SCENE_RAYS,    /* the back-end of rays lights the image */
-    TL_SCENE_LAYERS,  /* ... and something is seen through, or is lit from behind */
+    TL_SCENE_SHEETS,  /* ... and something is seen through, or is lit from behind */
     TL_SCENE_MIRRORS, /* ... and something is so glossy that rays follow what it shows */
     TL_SCENE_PASSES,  /* passes on the GPU do */
     TL_SCENE_CHAINS,  /* ... and read filter chains */
@@ -143,7 +143,7 @@ struct tl_renderer {
     const tl_surface **drawn; /* what is drawn, with the ground last */
     struct tl_triangle_ranges ranges;
     struct tl_samples samples;
-    struct tl_layers layers;
+    struct tl_sheets sheets;
     struct tl_mirrors mirrors;
     tl_trace *trace;
     tl_points *points;

@@ -231,7 +231,7 @@ tl_bits tl_frame_facts(const tl_frame *frame, const struct tl_render_settings *s
     if (rays || tl_light_needs_exact(light))
         facts |= TL_BIT(TL_SCENE_EXACT);
     if (rays && tl_frame_has(frame, tl_material_shows_more))
-        facts |= TL_BIT(TL_SCENE_LAYERS);
+        facts |= TL_BIT(TL_SCENE_SHEETS);
     if (rays && light->method == TL_METHOD_PEM && light->reflect_scene &&
         tl_mirror_ray_count(tl_lobe_exponent(greatest_glossiness(frame))) > 0)
         facts |= TL_BIT(TL_SCENE_MIRRORS);

@@ -39,7 +39,7 @@ struct tl_compose_request {
     /* Where a material is more than two lobes; `ranges` NULL: none is. */
     const struct tl_triangle_ranges *ranges;
     vec3s eye;
-    const float *shares; /* by sample that the camera sees, in place of its cover (layers.h); NULL: nothing is
+    const float *shares; /* by sample that the camera sees, in place of its cover (sheets.h); NULL: nothing is
                             seen through */
 };
 

@@ -26,7 +26,7 @@ struct tl_samples {
     int width, height;    /* of the target */
     size_t primary_count; /* nearest to the camera, one a texel */
     /* After them, with the texels that they are seen in, come those behind open cloth, and the other sides of
-     * what scatters light through (layers.h). What mirrors show is last. */
+     * what scatters light through (sheets.h). What mirrors show is last. */
     size_t behind_count, other_count;
     size_t count, capacity;
     tl_sample *items;

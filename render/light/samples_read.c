@@ -181,7 +181,8 @@ void tl_samples_read(const struct tl_gbuffer *gbuffer, const struct tl_triangle_
     out->width = target->width;
     out->height = target->height;
     bool tangents = target->colour_count > TL_GBUFFER_TANGENT;
-    size_t bytes = (size_t)target->width * (size_t)target->height * (16 + 3 * 8 + 4 + (tangents ? 8 : 0));
+    size_t texel_bytes = tangents ? 16 + 4 * 8 + 4 : 16 + 3 * 8 + 4;
+    size_t bytes = (size_t)target->width * (size_t)target->height * texel_bytes;
     if (bytes != out->staging_bytes) {
         free(out->staging);
         out->staging = tl_alloc(bytes, 1);

@@ -1,4 +1,4 @@
-#include "render/light/layers.h"
+#include "render/light/sheets.h"
 
 #include "config/memory.h"
 #include "render/brdf/coat.h"
@@ -15,45 +15,45 @@ bool tl_material_shows_more(const tl_material *material)
     return material->openness > 0 || tl_material_transmits(material);
 }
 
-static const tl_material *material_of(const struct tl_layers_request *request, const tl_sample *sample)
+static const tl_material *material_of(const struct tl_sheets_request *request, const tl_sample *sample)
 {
     return tl_triangle_material(request->ranges, sample->triangle & ~TL_SAMPLE_BACK);
 }
 
-static void reserve_shares(struct tl_layers *layers, size_t count)
+static void reserve_shares(struct tl_sheets *sheets, size_t count)
 {
-    if (count <= layers->share_capacity)
+    if (count <= sheets->share_capacity)
         return;
-    layers->share_capacity = count + count / 4;
-    layers->shares = tl_resize(layers->shares, layers->share_capacity, sizeof(float));
+    sheets->share_capacity = count + count / 4;
+    sheets->shares = tl_resize(sheets->shares, sheets->share_capacity, sizeof(float));
 }
 
 /* What reaches sample `index` is `through`; it keeps its part of that, and notes when there is more behind.
  * Returns whether there is. */
-static bool share_out(struct tl_layers *layers, const struct tl_layers_request *request,
+static bool share_out(struct tl_sheets *sheets, const struct tl_sheets_request *request,
                       const struct tl_samples *samples, size_t index, float through, bool last)
 {
     const tl_sample *sample = &samples->items[index];
     float openness = last ? 0 : material_of(request, sample)->openness;
-    layers->shares[index] = through * sample->cover * (1 - openness);
-    layers->opens[sample->texel] = openness > 0 ? (uint32_t)index + 1 : 0;
+    sheets->shares[index] = through * sample->cover * (1 - openness);
+    sheets->opens[sample->texel] = openness > 0 ? (uint32_t)index + 1 : 0;
     return openness > 0;
 }
 
-static bool share_out_primary(struct tl_layers *layers, const struct tl_layers_request *request,
+static bool share_out_primary(struct tl_sheets *sheets, const struct tl_sheets_request *request,
                               const struct tl_samples *samples)
 {
     size_t texel_count = (size_t)samples->width * (size_t)samples->height;
     bool more = false;
-    if (texel_count > layers->open_capacity) {
-        free(layers->opens);
-        layers->opens = TL_NEW_ARRAY(uint32_t, texel_count);
-        layers->open_capacity = texel_count;
+    if (texel_count > sheets->open_capacity) {
+        free(sheets->opens);
+        sheets->opens = TL_NEW_ARRAY(uint32_t, texel_count);
+        sheets->open_capacity = texel_count;
     }
-    memset(layers->opens, 0, texel_count * sizeof *layers->opens);
-    reserve_shares(layers, samples->primary_count);
+    memset(sheets->opens, 0, texel_count * sizeof *sheets->opens);
+    reserve_shares(sheets, samples->primary_count);
     for (size_t i = 0; i < samples->primary_count; i++)
-        more |= share_out(layers, request, samples, i, 1, false);
+        more |= share_out(sheets, request, samples, i, 1, false);
     return more;
 }
 
@@ -68,53 +68,53 @@ static size_t append(struct tl_samples *samples, const tl_sample *sample, const 
 }
 
 /* What the next sheet shows where the last one is open. Returns whether some of that is open again. */
-static bool append_behind(struct tl_layers *layers, const struct tl_layers_request *request, bool last,
+static bool append_behind(struct tl_sheets *sheets, const struct tl_sheets_request *request, bool last,
                           struct tl_samples *samples)
 {
-    const struct tl_samples *found = &layers->nearer;
+    const struct tl_samples *found = &sheets->nearer;
     bool more = false;
     for (size_t i = 0; i < found->count; i++) {
-        uint32_t parent = layers->opens[found->items[i].texel];
+        uint32_t parent = sheets->opens[found->items[i].texel];
         if (parent == 0)
             continue;
         const tl_sample *before = &samples->items[parent - 1];
         float openness = material_of(request, before)->openness;
-        float through = layers->shares[parent - 1] * openness / (before->cover * (1 - openness));
+        float through = sheets->shares[parent - 1] * openness / (before->cover * (1 - openness));
         size_t index = append(samples, &found->items[i], found->tangents ? &found->tangents[i] : NULL);
-        reserve_shares(layers, samples->count);
-        more |= share_out(layers, request, samples, index, through, last);
+        reserve_shares(sheets, samples->count);
+        more |= share_out(sheets, request, samples, index, through, last);
         samples->behind_count++;
     }
     return more;
 }
 
 /* Keeps the depth that the next sheet must lie behind. */
-static const tl_texture *pass(struct tl_layers *layers, tl_gpu *gpu)
+static const tl_texture *pass(struct tl_sheets *sheets, tl_gpu *gpu)
 {
-    const tl_texture *depth = &layers->behind.target.depth;
-    if (layers->passed.width != depth->width || layers->passed.height != depth->height) {
-        tl_texture_destroy(&layers->passed);
-        layers->passed =
+    const tl_texture *depth = &sheets->behind.target.depth;
+    if (sheets->passed.width != depth->width || sheets->passed.height != depth->height) {
+        tl_texture_destroy(&sheets->passed);
+        sheets->passed =
             tl_texture_create(gpu, GL_TEXTURE_2D, depth->format, depth->width, depth->height, 1, 1);
     }
-    glCopyImageSubData(depth->id, GL_TEXTURE_2D, 0, 0, 0, 0, layers->passed.id, GL_TEXTURE_2D, 0, 0, 0, 0,
+    glCopyImageSubData(depth->id, GL_TEXTURE_2D, 0, 0, 0, 0, sheets->passed.id, GL_TEXTURE_2D, 0, 0, 0, 0,
                        depth->width, depth->height, 1);
-    return &layers->passed;
+    return &sheets->passed;
 }
 
-static bool look_behind(struct tl_layers *layers, tl_gpu *gpu, const struct tl_layers_request *request,
+static bool look_behind(struct tl_sheets *sheets, tl_gpu *gpu, const struct tl_sheets_request *request,
                         struct tl_samples *samples, tl_error *error)
 {
     struct tl_gbuffer_request draw = request->draw;
     bool more = true;
     draw.passed = &request->gbuffer->target.depth;
     for (int sheet = 1; more && sheet <= TL_SHEETS_BEHIND; sheet++) {
-        if (!tl_gbuffer_draw(&layers->behind, gpu, &draw, error))
+        if (!tl_gbuffer_draw(&sheets->behind, gpu, &draw, error))
             return false;
-        tl_samples_read(&layers->behind, request->ranges, draw.view->eye, &layers->nearer);
-        more = append_behind(layers, request, sheet == TL_SHEETS_BEHIND, samples);
+        tl_samples_read(&sheets->behind, request->ranges, draw.view->eye, &sheets->nearer);
+        more = append_behind(sheets, request, sheet == TL_SHEETS_BEHIND, samples);
         if (more)
-            draw.passed = pass(layers, gpu);
+            draw.passed = pass(sheets, gpu);
     }
     return true;
 }
@@ -135,7 +135,7 @@ static tl_sample other_side(const tl_sample *sample, const tl_material *material
     return other;
 }
 
-static void append_other_sides(struct tl_layers *layers, const struct tl_layers_request *request,
+static void append_other_sides(struct tl_sheets *sheets, const struct tl_sheets_request *request,
                                struct tl_samples *samples)
 {
     size_t count = samples->count;
@@ -145,36 +145,36 @@ static void append_other_sides(struct tl_layers *layers, const struct tl_layers_
             continue;
         tl_sample other = other_side(&samples->items[i], material, request->draw.view->eye);
         size_t index = append(samples, &other, NULL);
-        reserve_shares(layers, samples->count);
-        layers->shares[index] = layers->shares[i];
+        reserve_shares(sheets, samples->count);
+        sheets->shares[index] = sheets->shares[i];
         samples->other_count++;
     }
 }
 
-bool tl_layers_find(struct tl_layers *layers, tl_gpu *gpu, const struct tl_layers_request *request,
+bool tl_sheets_find(struct tl_sheets *sheets, tl_gpu *gpu, const struct tl_sheets_request *request,
                     struct tl_samples *samples, tl_error *error)
 {
     samples->count = samples->primary_count;
     samples->behind_count = samples->other_count = 0;
-    if (share_out_primary(layers, request, samples) && !look_behind(layers, gpu, request, samples, error))
+    if (share_out_primary(sheets, request, samples) && !look_behind(sheets, gpu, request, samples, error))
         return false;
-    append_other_sides(layers, request, samples);
+    append_other_sides(sheets, request, samples);
     return true;
 }
 
-void tl_layers_release(struct tl_layers *layers)
+void tl_sheets_release(struct tl_sheets *sheets)
 {
-    tl_gbuffer_release(&layers->behind);
-    tl_texture_destroy(&layers->passed);
-    tl_samples_release(&layers->nearer);
-    free(layers->opens);
-    free(layers->shares);
-    *layers = (struct tl_layers){0};
+    tl_gbuffer_release(&sheets->behind);
+    tl_texture_destroy(&sheets->passed);
+    tl_samples_release(&sheets->nearer);
+    free(sheets->opens);
+    free(sheets->shares);
+    *sheets = (struct tl_sheets){0};
 }
 
-size_t tl_layers_bytes(const struct tl_layers *layers)
+size_t tl_sheets_bytes(const struct tl_sheets *sheets)
 {
-    return tl_target_bytes(&layers->behind.target) + tl_texture_bytes(&layers->passed) +
-           layers->nearer.capacity * sizeof(tl_sample) + layers->nearer.staging_bytes +
-           layers->open_capacity * sizeof *layers->opens + layers->share_capacity * sizeof *layers->shares;
+    return tl_target_bytes(&sheets->behind.target) + tl_texture_bytes(&sheets->passed) +
+           sheets->nearer.capacity * sizeof(tl_sample) + sheets->nearer.staging_bytes +
+           sheets->open_capacity * sizeof *sheets->opens + sheets->share_capacity * sizeof *sheets->shares;
 }

@@ -10,12 +10,12 @@
  * straight on: it does not fall with the angle, as that of real threads does. Light through the cloth itself
  * is the diffuse light of the sheet's other side, which becomes a sample too: kt K_1(-n), lit as any back is.
  * What light does between sheets is not followed. World space, metres. */
-#ifndef TOILE_RENDER_LIGHT_LAYERS_H
-#define TOILE_RENDER_LIGHT_LAYERS_H
+#ifndef TOILE_RENDER_LIGHT_SHEETS_H
+#define TOILE_RENDER_LIGHT_SHEETS_H
 
 #include "render/light/samples.h"
 
-struct tl_layers {
+struct tl_sheets {
     struct tl_gbuffer behind;
     tl_texture passed;        /* depth of the sheets that have been passed, from the second on */
     struct tl_samples nearer; /* one sheet's, as they are read */
@@ -26,7 +26,7 @@ struct tl_layers {
     size_t share_capacity;
 };
 
-struct tl_layers_request {
+struct tl_sheets_request {
     const struct tl_gbuffer *gbuffer; /* as drawn: `draw` again, but for what is passed */
     struct tl_gbuffer_request draw;
     const struct tl_triangle_ranges *ranges;
@@ -36,9 +36,9 @@ struct tl_layers_request {
 bool tl_material_shows_more(const tl_material *material);
 
 /* Appends to `samples`, whose primary ones are left as they are. */
-bool tl_layers_find(struct tl_layers *layers, tl_gpu *gpu, const struct tl_layers_request *request,
+bool tl_sheets_find(struct tl_sheets *sheets, tl_gpu *gpu, const struct tl_sheets_request *request,
                     struct tl_samples *samples, tl_error *error);
-void tl_layers_release(struct tl_layers *layers);
-size_t tl_layers_bytes(const struct tl_layers *layers);
+void tl_sheets_release(struct tl_sheets *sheets);
+size_t tl_sheets_bytes(const struct tl_sheets *sheets);
 
 #endif
