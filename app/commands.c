@@ -39,7 +39,7 @@ const struct tl_command tl_commands[] = {
      "garment's "
      "motion as .pc2 or .mdd.",
      TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_FRAME | TL_FLAGS_FRAMES, tl_command_export},
-    {"env", "env IN -o OUT.exr --layout cube|sphere|paraboloid|latlong [--from LAYOUT] [--size N]",
+    {"env", "env IN -o OUT.exr --layout cube|sphere|paraboloid|latlong|octahedral [--from LAYOUT] [--size N]",
      "Converts an environment map between layouts, keeping its light.", TL_FLAGS_OUTPUT | TL_FLAGS_LAYOUT,
      tl_command_env},
     {"info", "info FILE|fabrics|presets|garments [--json]",

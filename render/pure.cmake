@@ -6,15 +6,20 @@ add_library(toile_light STATIC
   brdf/fan.c
   brdf/fresnel.c
   brdf/options.c
+  detail/bake.c
+  detail/bumps.c
+  detail/field.c
   env/convert.c
   env/cube.c
   env/emitters.c
   env/layout.c
+  env/levels.c
   env/lobes.c
   light/compose.c
   light/mirrors.c
   env/pour.c
   env/sun.c
+  envmap/pictures.c
   frame/view.c
   light/region_lights.c
   light/samples.c

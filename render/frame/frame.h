@@ -5,6 +5,7 @@
 #include "render/env/lobes.h"
 #include "render/env/pour.h"
 #include "render/env/sun.h"
+#include "render/envmap/envmap.h"
 #include "render/light/gbuffer.h"
 #include "render/light/light.h"
 #include "render/light/mirrors.h"
@@ -37,7 +38,9 @@ enum tl_resource {
     TL_INPUT_SCENE_ROUND, /* ... while nothing but the camera does */
     TL_INPUT_LIGHT,       /* how light is put together */
     TL_INPUT_REFERENCE,
-    TL_INPUT_SHOW, /* exposure and background */
+    TL_INPUT_SHOW,    /* exposure and background */
+    TL_INPUT_ENVMAP,  /* layout and size of environment maps; for a sphere map the view's turn */
+    TL_INPUT_LOOK_UP, /* how they are looked up */
     TL_INPUT_COUNT,
     TL_MADE_CUBE = TL_INPUT_COUNT, /* and the suns taken from it */
     TL_MADE_REGIONS,
@@ -54,6 +57,8 @@ enum tl_resource {
     TL_MADE_SHEETS,  /* what is seen through cloth */
     TL_MADE_MIRRORS, /* what near mirrors show */
     TL_MADE_POINTS,
+    TL_MADE_ENVMAP_LOBES,
+    TL_MADE_ENVMAP,
     TL_MADE_LIGHT,
     TL_MADE_IMAGE,
     TL_MADE_BACKDROP,
@@ -76,6 +81,7 @@ enum tl_scene_fact {
     TL_SCENE_EXACT,   /* exact light of the whole environment is read */
     TL_SCENE_BLUR,    /* shadow maps are variance maps */
     TL_SCENE_REFERENCE,
+    TL_SCENE_ENVMAP, /* environment maps light the image */
     TL_SCENE_FACT_COUNT
 };
 
@@ -112,6 +118,8 @@ uint32_t tl_frame_exponents(const tl_frame *frame);
 /* Whether any material, or any drawn, has this property. */
 bool tl_frame_has(const tl_frame *frame, bool (*property)(const tl_material *material));
 bool tl_material_is_faceted(const tl_material *material);
+/* ... and those of environment maps, with the environment itself for mirrors. */
+uint32_t tl_frame_map_exponents(const tl_frame *frame);
 
 /* Lists what is drawn, with the ground last when it is drawn. */
 void tl_frame_list_surfaces(tl_renderer *renderer);
@@ -150,6 +158,12 @@ struct tl_renderer {
     float *light; /* [height][width][4] of samples, composed on the CPU */
     size_t light_bytes;
     struct tl_lighting lighting;
+    struct {                 /* what environment maps are made of: the whole light, suns and all */
+        struct tl_pour pour; /* ... to their size */
+        tl_cube cube;
+        struct tl_lobes lobes;
+    } surroundings;
+    struct tl_envmap envmap;
     struct tl_present present;
     double standard_error; /* of the last reference */
 

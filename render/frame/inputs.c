@@ -69,9 +69,19 @@ static uint64_t reference_signature(const struct tl_reference_params *reference)
     return MIX(MIX(hash, reference->replicates), reference->terminator);
 }
 
+static uint64_t envmap_signature(const tl_frame *frame, const struct tl_maps_params *maps)
+{
+    uint64_t hash = MIX(MIX(FNV_OFFSET, maps->layout), maps->size);
+    if (maps->layout != TL_LAYOUT_SPHERE)
+        return hash;
+    struct tl_view view = tl_view_make(&frame->camera, 1, 1);
+    return MIX(MIX(hash, view.forward), view.up);
+}
+
 bool tl_light_averages(const struct tl_light_params *light)
 {
-    return light->jitter && light->method != TL_METHOD_REFERENCE && light->method != TL_METHOD_UNSHADOWED;
+    return light->jitter && light->method != TL_METHOD_REFERENCE && light->method != TL_METHOD_UNSHADOWED &&
+           light->method != TL_METHOD_MAPS;
 }
 
 static void count_rest(const struct tl_light_params *light, const uint64_t before[TL_INPUT_COUNT],
@@ -119,6 +129,8 @@ void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *setti
     signatures[TL_INPUT_LIGHT] = light_signature(light);
     signatures[TL_INPUT_REFERENCE] = reference_signature(&settings->reference);
     signatures[TL_INPUT_SHOW] = MIX(MIX(start, image->exposure_ev), image->background);
+    signatures[TL_INPUT_ENVMAP] = envmap_signature(frame, &settings->maps);
+    signatures[TL_INPUT_LOOK_UP] = MIX(MIX(start, settings->maps.look_up), settings->maps.mode);
     count_rest(light, before, signatures, rest);
     signatures[TL_INPUT_ROUND] = MIX(start, rest->image);
     signatures[TL_INPUT_SCENE_ROUND] = MIX(start, rest->scene);
@@ -200,6 +212,11 @@ bool tl_frame_has(const tl_frame *frame, bool (*property)(const tl_material *mat
     return false;
 }
 
+uint32_t tl_frame_map_exponents(const tl_frame *frame)
+{
+    return tl_frame_exponents(frame) | 1u << TL_EXPONENT_COUNT;
+}
+
 static float greatest_glossiness(const tl_frame *frame)
 {
     float greatest = 0;
@@ -218,6 +235,8 @@ tl_bits tl_frame_facts(const tl_frame *frame, const struct tl_render_settings *s
     const struct tl_light_params *light = &settings->light;
     if (light->method == TL_METHOD_REFERENCE)
         return TL_BIT(TL_SCENE_REFERENCE);
+    if (light->method == TL_METHOD_MAPS)
+        return TL_BIT(TL_SCENE_RASTER) | TL_BIT(TL_SCENE_ENVMAP);
     bool shadowed = light->method != TL_METHOD_UNSHADOWED, rays = light->visibility == TL_VISIBILITY_RAYS;
     tl_bits facts = TL_BIT(TL_SCENE_RASTER) | TL_BIT(rays ? TL_SCENE_RAYS : TL_SCENE_PASSES);
     if (shadowed)

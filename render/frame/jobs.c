@@ -30,6 +30,8 @@ const char *const tl_resource_names[] = {
     [TL_INPUT_LIGHT] = "light options",
     [TL_INPUT_REFERENCE] = "reference options",
     [TL_INPUT_SHOW] = "exposure and background",
+    [TL_INPUT_ENVMAP] = "environment map options",
+    [TL_INPUT_LOOK_UP] = "look-up options",
     [TL_MADE_CUBE] = "cube",
     [TL_MADE_REGIONS] = "regions",
     [TL_MADE_LOBE] = "lobe table",
@@ -45,6 +47,8 @@ const char *const tl_resource_names[] = {
     [TL_MADE_SHEETS] = "what is seen through cloth",
     [TL_MADE_MIRRORS] = "what mirrors show",
     [TL_MADE_POINTS] = "visibility at points",
+    [TL_MADE_ENVMAP_LOBES] = "lobes of the maps",
+    [TL_MADE_ENVMAP] = "environment maps",
     [TL_MADE_LIGHT] = "light",
     [TL_MADE_IMAGE] = "image",
     [TL_MADE_BACKDROP] = "backdrop",
@@ -65,6 +69,7 @@ const char *const tl_scene_fact_names[] = {
     [TL_SCENE_EXACT] = "exact light",
     [TL_SCENE_BLUR] = "variance maps",
     [TL_SCENE_REFERENCE] = "reference",
+    [TL_SCENE_ENVMAP] = "environment maps",
     NULL,
 };
 
@@ -364,6 +369,53 @@ static bool run_compose(void *context, int level, tl_error *error)
     return true;
 }
 
+static bool run_envmap_lobes(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level, (void)error;
+    tl_cube_release(&renderer->surroundings.cube);
+    tl_lobes_release(&renderer->surroundings.lobes);
+    renderer->surroundings.cube = tl_cube_from_environment_with(
+        renderer->frame.environment, renderer->settings.maps.size, &renderer->surroundings.pour);
+    tl_lobes_make(&renderer->surroundings.lobes, &renderer->surroundings.cube,
+                  tl_frame_map_exponents(&renderer->frame));
+    return true;
+}
+
+static mat3s environment_into_world(float yaw)
+{
+    mat3s axes = glms_mat3_identity();
+    for (int i = 0; i < 3; i++)
+        axes.col[i] = tl_turn_direction(axes.col[i], yaw);
+    return axes;
+}
+
+static bool run_envmap(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level, (void)error;
+    mat3s into_world = environment_into_world(renderer->frame.environment_yaw);
+    tl_envmap_fill(&renderer->envmap, renderer->gpu, &renderer->settings.maps, &renderer->surroundings.lobes,
+                   &into_world, &renderer->view);
+    tl_envmap_set_parts(&renderer->envmap, &renderer->ranges);
+    return true;
+}
+
+static bool run_look_up(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level;
+    const tl_target *gbuffer = &renderer->gbuffer.target;
+    const struct tl_envmap_request request = {.triangles = &gbuffer->colours[TL_GBUFFER_TRIANGLE],
+                                              .exponent_levels = &renderer->lighting.exponent_levels,
+                                              .eye = renderer->view.eye,
+                                              .params = &renderer->settings.maps};
+    tl_lighting_begin(&renderer->lighting, renderer->gpu, gbuffer);
+    bool fine = tl_envmap_draw(&renderer->envmap, renderer->gpu, &request, error);
+    tl_gpu_reset_state(renderer->gpu);
+    return fine;
+}
+
 static bool run_reference(void *context, int level, tl_error *error)
 {
     tl_renderer *renderer = context;
@@ -555,6 +607,27 @@ const tl_job tl_frame_jobs[] = {
      .requires_scene = SET1(TL_SCENE_RAYS),
      .levels = LEVELS_ONE,
      .run = run_compose},
+    {.name = "envmap_lobes",
+     .what = "all light through exact lobes, for environment maps",
+     .reads = SET3(TL_INPUT_ENVIRONMENT, TL_INPUT_ENVMAP, TL_INPUT_SHAPES),
+     .writes = SET1(TL_MADE_ENVMAP_LOBES),
+     .requires_scene = SET1(TL_SCENE_ENVMAP),
+     .levels = LEVELS_ONE,
+     .run = run_envmap_lobes},
+    {.name = "envmap",
+     .what = "lobes poured into environment maps of a layout",
+     .reads = SET5(TL_MADE_ENVMAP_LOBES, TL_INPUT_ENVMAP, TL_INPUT_YAW, TL_INPUT_SHAPES, TL_INPUT_GROUND),
+     .writes = SET1(TL_MADE_ENVMAP),
+     .requires_scene = SET1(TL_SCENE_ENVMAP),
+     .levels = LEVELS_ONE,
+     .run = run_envmap},
+    {.name = "look_up",
+     .what = "environment maps looked up for every sample",
+     .reads = SET4(TL_MADE_GBUFFER, TL_MADE_ENVMAP, TL_INPUT_CAMERA, TL_INPUT_LOOK_UP),
+     .writes = SET1(TL_MADE_LIGHT),
+     .requires_scene = SET1(TL_SCENE_ENVMAP),
+     .levels = LEVELS_ONE,
+     .run = run_look_up},
     {.name = "resolve",
      .what = "samples to pixels",
      .reads = SET3(TL_MADE_LIGHT, TL_MADE_GBUFFER, TL_INPUT_SIZE),
