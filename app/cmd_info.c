@@ -5,6 +5,7 @@
 #include "assets/environment.h"
 #include "assets/model.h"
 #include "assets/point_cache.h"
+#include "assets/specimen.h"
 #include "config/file.h"
 #include "config/memory.h"
 
@@ -207,6 +208,8 @@ static cJSON *describe_built_in(const char *what)
     else {
         cJSON *names = cJSON_AddArrayToObject(object, what);
         for (const char *const *name = tl_garment_names; *name; name++)
+            cJSON_AddItemToArray(names, cJSON_CreateString(*name));
+        for (const char *const *name = tl_specimen_names; *name; name++)
             cJSON_AddItemToArray(names, cJSON_CreateString(*name));
     }
     return object;

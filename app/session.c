@@ -6,6 +6,7 @@
 #include "app/playback.h"
 #include "assets/avatar.h"
 #include "assets/fit.h"
+#include "assets/specimen.h"
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
@@ -44,6 +45,7 @@ struct tl_session {
     struct tl_box framed; /* what the camera frames: all there is at frame 0 */
     tl_surface surfaces[2];
     size_t surface_count;
+    struct tl_lamp lamps[2];
 };
 
 static bool is_built_in_garment(const char *name)
@@ -75,6 +77,8 @@ static bool load_avatar(tl_session *session, tl_error *error)
         return true;
     if (strcmp(name, "form") == 0)
         loaded = tl_avatar_form();
+    else if (strcmp(name, "ball") == 0)
+        loaded = tl_specimen_ball();
     else if (!tl_avatar_load_in(name, (enum tl_units)session->settings.scene.avatar_units, &loaded, error))
         return false;
     tell_units(&loaded.model, "scene.avatar_units");
@@ -98,6 +102,8 @@ static bool load_avatar(tl_session *session, tl_error *error)
 static bool make_garment(tl_session *session, tl_garment *out, tl_error *error)
 {
     const char *name = session->settings.scene.garment, *wearer = session->settings.scene.avatar;
+    if (tl_specimen_make(name, session->settings.cloth.edge_m, out))
+        return true;
     if (!is_built_in_garment(name))
         return tl_garment_load_in(name, (enum tl_units)session->settings.scene.units, out, error);
     if (!tl_garment_cut(name, session->settings.cloth.edge_m, out, error))
@@ -230,6 +236,15 @@ static bool drape(tl_session *session, tl_error *error)
     return true;
 }
 
+static bool begin_cloth(tl_session *session, tl_error *error)
+{
+    if (!session->garment->solid)
+        return drape(session, error);
+    tl_moving_create(&session->dress, &session->garment->model, NULL);
+    tl_moving_update(&session->dress);
+    return true;
+}
+
 static bool play_back(tl_session *session, int number, tl_error *error)
 {
     if (!tl_playback_pose(session->playback, &session->settings, number, session->dress.positions, error))
@@ -309,7 +324,7 @@ static bool load_all(tl_session *session, tl_error *error)
         tl_moving_create(&session->body, &session->avatar->model, NULL);
     if (session->garment) {
         make_materials(session);
-        if (!(plays_motion(session) ? begin_playback : drape)(session, error))
+        if (plays_motion(session) ? !begin_playback(session, error) : !begin_cloth(session, error))
             return false;
     } else if (plays_motion(session)) {
         return tl_fail(error, TL_USAGE,
@@ -483,14 +498,19 @@ tl_frame tl_session_frame(tl_session *session)
     for (size_t i = 0; i < session->surface_count; i++)
         session->surfaces[i].topology_revision = session->look_revision;
     const struct tl_image_params *image = &session->settings.image;
+    struct tl_camera camera = tl_camera_frame(&session->settings.camera, session->framed,
+                                              (float)image->width / (float)image->height);
+    session->lamps[0] = tl_lamp_make(&session->settings.lamp, camera.target);
+    session->lamps[1] = tl_lamp_make(&session->settings.fill, camera.target);
     return (tl_frame){
-        .camera = tl_camera_frame(&session->settings.camera, session->framed,
-                                  (float)image->width / (float)image->height),
+        .camera = camera,
         .surfaces = session->surfaces,
         .surface_count = session->surface_count,
         .environment = &session->light.environment,
         .environment_revision = session->light.revision,
         .environment_yaw = glm_rad(session->settings.scene.environment_yaw_deg),
+        .lamps = session->lamps,
+        .lamp_count = TL_COUNT(session->lamps),
         .time_s = session->frame / session->settings.cloth.frame_rate,
     };
 }

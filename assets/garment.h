@@ -21,6 +21,7 @@ typedef struct tl_garment {
     struct tl_seam_pair *seams;
     size_t pin_count;
     uint32_t *pins; /* render vertices held where they start (on the avatar, they follow its nearest point) */
+    bool solid;     /* no cloth: it keeps its shape (assets/specimen.h) */
 } tl_garment;
 
 /* A glTF or OBJ file as a garment; its units as in tl_model_load and tl_model_load_in. */

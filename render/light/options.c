@@ -2,8 +2,8 @@
 #include "render/pem/regions.h"
 #include "render/renderer.h"
 
-static const char *const method_names[] = {"pem",        "lights",    "ao", "ao_colour",
-                                           "unshadowed", "reference", NULL};
+static const char *const method_names[] = {"pem",        "lights",    "ao",   "ao_colour",
+                                           "unshadowed", "reference", "maps", NULL};
 static const char *const lobe_names[] = {"single", "dual", NULL};
 static const char *const cut_names[] = {"faces", "sphere", NULL};
 static const char *const prefilter_names[] = {"chain", "slices", NULL};
@@ -15,7 +15,8 @@ static const struct tl_option light_rows[] = {
     TL_OPTION_ENUM(
         light_params, method, method_names,
         "pem: light of each region times its visibility; lights: regions as directional lights; ao, "
-        "ao_colour: ambient occlusion; unshadowed: visibility is 1; reference: ray traced"),
+        "ao_colour: ambient occlusion; unshadowed: visibility is 1; reference: ray traced; maps: "
+        "environment maps (table maps), unshadowed"),
     TL_OPTION_ENUM(light_params, lobe, lobe_names,
                    "single: one look-up from diffuse to mirror by glossiness; dual: diffuse plus gloss"),
     TL_OPTION_ENUM(light_params, cut, cut_names,

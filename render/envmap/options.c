@@ -1,0 +1,23 @@
+#include "render/env/layout.h"
+#include "render/renderer.h"
+
+static const char *const look_up_names[] = {"direct", "matrix", NULL};
+static const char *const mode_names[] = {"surface", "mirror",       "refraction", "diffuse",
+                                         "glossy",  "transmission", NULL};
+
+typedef struct tl_maps_params maps_params;
+static const struct tl_option rows[] = {
+    TL_OPTION_ENUM(maps_params, layout, tl_layout_names,
+                   "how the environment map is laid out; sphere is made anew whenever the view turns"),
+    TL_OPTION_INT(maps_params, size, 4, 512, "texels",
+                  "side of a cube's face, height of the others, a power of two; larger sharpens mirrors"),
+    TL_OPTION_ENUM(
+        maps_params, look_up, look_up_names,
+        "matrix: paraboloids by projective texture matrices and the first map's alpha, as in 1999"),
+    TL_OPTION_ENUM(maps_params, mode, mode_names,
+                   "surface: diffuse and gloss; mirror; refraction by the material's index; one term alone; "
+                   "transmission: straight through a thin sheet"),
+};
+const struct tl_option_table tl_maps_options =
+    TL_OPTION_TABLE("maps", "classic environment mapping, light.method maps: unshadowed", rows, maps_params,
+                    .layout = TL_LAYOUT_CUBE, .size = 128);
