@@ -66,7 +66,8 @@ static float sheen_albedo(float roughness)
     enum { VIEWS = 8, STEPS = 32 };
     double inverse = 1 / fmax((double)roughness * (double)roughness, 1e-3), sum = 0;
     for (int i = 0; i < VIEWS * STEPS * STEPS; i++) {
-        double v = (i / (STEPS * STEPS) + 0.5) / VIEWS, l = (i / STEPS % STEPS + 0.5) / STEPS;
+        int view = i / (STEPS * STEPS), light = i / STEPS % STEPS;
+        double v = (view + 0.5) / VIEWS, l = (light + 0.5) / STEPS;
         double azimuth = M_PI * (i % STEPS + 0.5) / STEPS;
         double along = sqrt((1 - v * v) * (1 - l * l)) * cos(azimuth) + v * l; /* v . l */
         double cosine = (v + l) / sqrt(2 + 2 * along), sine = sqrt(fmax(1 - cosine * cosine, 0));
