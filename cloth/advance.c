@@ -164,13 +164,18 @@ static void find_forces(tl_cloth *cloth)
     tl_energy_pull(&cloth->energy, &cloth->fabric, cloth->particles.x, cloth->forces);
 }
 
-static void advance_reference(tl_cloth *cloth, const struct tl_substep *substep)
+/* Between substeps velocities may point into the avatar by h/2 of what presses there: the next one's first
+ * half takes that on. Who looks at them after the last one wants to see rest. */
+static void advance_reference(tl_cloth *cloth, const struct tl_substep *substep, bool last)
 {
     tl_verlet_drift(&cloth->particles, cloth->forces, substep->gravity, substep->drag, substep->h);
     tl_pins_place(cloth->pins, cloth->pin_count, substep->collider, substep->phase, &cloth->particles);
     constrain(cloth, substep);
     find_forces(cloth);
     tl_verlet_kick(&cloth->particles, cloth->forces, substep->gravity, substep->drag, substep->h);
+    const struct tl_contact_params contact = contact_params(cloth, substep);
+    if (last)
+        tl_contacts_rub(&cloth->contacts, &contact, &cloth->particles);
 }
 
 /* Before a substep of any solver. */
@@ -223,7 +228,7 @@ static void run_step(tl_cloth *cloth, const tl_collider *collider, double drag, 
                                            .collider = collider};
         blow(cloth, &substep);
         if (cloth->params.solver == TL_CLOTH_REFERENCE)
-            advance_reference(cloth, &substep);
+            advance_reference(cloth, &substep, sub + 1 == substeps);
         else if (cloth->params.solver == TL_CLOTH_SETTLE)
             advance_settle(cloth, &substep);
         else

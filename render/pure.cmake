@@ -3,10 +3,14 @@ add_library(toile_light STATIC
   brdf/brdf.c
   brdf/draw.c
   brdf/fresnel.c
+  brdf/normalise.c
   brdf/options.c
   detail/bake.c
   detail/bumps.c
   detail/field.c
+  brdf/power.c
+  brdf/table_error.c
+  brdf/tables.c
   env/convert.c
   env/cube.c
   env/emitters.c
