@@ -240,6 +240,7 @@ static void prepare_product(struct tl_local *local, tl_gpu *gpu, const struct tl
         tl_target_destroy(product);
         *product = tl_target_create(gpu, width, height, &format, 1, false);
     }
+    local->product_used = true;
     glNamedFramebufferTexture(product->id, GL_DEPTH_ATTACHMENT, request->gbuffer->target.depth.id, 0);
     glBindTextureUnit(PRODUCT_UNIT, product->colours[0].id);
 }
@@ -278,7 +279,7 @@ static bool draw_part(struct tl_local *local, tl_gpu *gpu, const struct tl_local
     if (part->tables && part->tables->count > params->max_textures_per_pass &&
         params->frequency != TL_FREQUENCY_GOURAUD)
         return draw_passes(local, gpu, request, part, error);
-    const struct pass all = {0, TL_GLOSS_TABLES_MAX - 1, NULL};
+    const struct pass all = {0, part->tables ? part->tables->count - 1 : -1, NULL};
     return draw_pass(local, gpu, request, part, &all, error);
 }
 
@@ -311,6 +312,7 @@ bool tl_local_draw(struct tl_local *local, tl_gpu *gpu, const struct tl_local_re
 {
     const tl_target *target = request->light;
     tl_table_textures_begin(&local->tables);
+    local->product_used = false;
     draw_into_light(request);
     glViewport(0, 0, target->width, target->height);
     glEnable(GL_DEPTH_TEST);
@@ -325,6 +327,8 @@ bool tl_local_draw(struct tl_local *local, tl_gpu *gpu, const struct tl_local_re
     for (size_t i = 0; fine && i < request->lamp_count; i++)
         fine = draw_lamp(local, gpu, request, i, error);
     tl_table_textures_end(&local->tables);
+    if (!local->product_used)
+        tl_target_destroy(&local->product);
     tl_gpu_reset_state(gpu);
     return fine;
 }

@@ -28,6 +28,7 @@ struct tl_local {
     struct tl_lamp_shadows shadows;
     struct tl_table_textures tables;
     tl_target product; /* what passes multiply in; shares the G-buffer's depth */
+    bool product_used; /* in this frame */
 };
 
 struct tl_local_request {

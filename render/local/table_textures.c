@@ -47,6 +47,7 @@ void tl_table_textures_begin(struct tl_table_textures *textures)
         textures->gloss[i].used = false;
     for (size_t i = 0; i < textures->power_count; i++)
         textures->powers[i].used = false;
+    textures->cubes_used[0] = textures->cubes_used[1] = false;
 }
 
 void tl_table_textures_end(struct tl_table_textures *textures)
@@ -65,6 +66,9 @@ void tl_table_textures_end(struct tl_table_textures *textures)
         else
             tl_texture_destroy(&textures->powers[i].texture);
     textures->power_count = kept;
+    for (int i = 0; i < 2; i++)
+        if (!textures->cubes_used[i])
+            tl_texture_destroy(&textures->cubes[i]);
 }
 
 /* A float table's texels brought into [0, 1] too, where passes of 8 bits can hold them. */
@@ -167,6 +171,7 @@ const tl_texture *tl_table_textures_cube(struct tl_table_textures *textures, tl_
 {
     bool wide = normalisation == TL_NORMALISE_CUBE16;
     tl_texture *texture = &textures->cubes[wide];
+    textures->cubes_used[wide] = true;
     if (texture->id)
         return texture;
     struct tl_normal_cube cube = tl_normal_cube_make(TL_NORMALISE_CUBE_SIZE, wide ? 16 : 8);

@@ -38,6 +38,7 @@ struct tl_table_textures {
     struct tl_gloss_tables *gloss;
     struct tl_power_texture *powers;
     tl_texture cubes[2]; /* unit vectors in 8 and 16 bits */
+    bool cubes_used[2];
 };
 
 void tl_table_textures_release(struct tl_table_textures *textures);
