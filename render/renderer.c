@@ -126,6 +126,7 @@ void tl_renderer_destroy(tl_renderer **renderer)
     tl_lobes_release(&(*renderer)->surroundings.lobes);
     tl_envmap_release(&(*renderer)->envmap);
     tl_local_release(&(*renderer)->local);
+    tl_capture_release(&(*renderer)->capture);
     tl_present_release(&(*renderer)->present);
     free(*renderer);
     *renderer = NULL;
@@ -194,6 +195,7 @@ static void reload_shaders(tl_renderer *renderer)
     if (!tl_shadow_maps_reload(renderer->maps, &error) ||
         !tl_program_reload(&renderer->gbuffer.program, &error) ||
         !tl_lighting_reload(&renderer->lighting, &error) || !tl_envmap_reload(&renderer->envmap, &error) ||
+        !tl_capture_reload(&renderer->capture, &error) ||
         !tl_program_reload(&renderer->present.resolve, &error) ||
         !tl_program_reload(&renderer->present.show, &error))
         tl_warn("%s", error.message);
@@ -277,6 +279,18 @@ bool tl_renderer_read(tl_renderer *renderer, tl_image *out, tl_error *error)
     return true;
 }
 
+bool tl_renderer_read_capture(const tl_renderer *renderer, tl_image *out, tl_error *error)
+{
+    const tl_cube *cube = &renderer->capture.cube;
+    if (!(renderer->valid & TL_BIT(TL_MADE_CAPTURE)))
+        return tl_fail(error, TL_USAGE,
+                       "renderer: no scene was captured: draw a frame with light.method maps and "
+                       "maps.capture_every above 0");
+    *out = tl_image_create(cube->size, 6 * cube->size, 3, TL_IMAGE_F32);
+    memcpy(out->texels, cube->texels, 18 * sizeof(float) * (size_t)cube->size * (size_t)cube->size);
+    return true;
+}
+
 static bool show(tl_renderer *renderer, unsigned framebuffer, int width, int height, tl_error *error)
 {
     if (!(renderer->valid & TL_BIT(TL_MADE_IMAGE)))
@@ -332,7 +346,8 @@ bool tl_renderer_is_at_rest(const tl_renderer *renderer)
     const struct tl_light_params *light = &renderer->settings.light;
     bool is_done = light->visibility == TL_VISIBILITY_RAYS ? renderer->rest.is_done
                                                            : renderer->rest.image >= light->rounds - 1;
-    return renderer->valid & TL_BIT(TL_MADE_IMAGE) && (is_done || !tl_light_averages(light));
+    return renderer->valid & TL_BIT(TL_MADE_IMAGE) && renderer->rest.is_captured &&
+           (is_done || !tl_light_averages(light));
 }
 
 const tl_plan *tl_renderer_last_plan(const tl_renderer *renderer)
@@ -346,7 +361,7 @@ struct tl_render_memory tl_renderer_memory(const tl_renderer *renderer)
     struct tl_render_memory memory = {
         .pems = tl_pems_bytes(&renderer->pems) + tl_lobes_bytes(&renderer->lobes) +
                 tl_slice_maps_bytes(&renderer->slice_maps) + tl_lobes_bytes(&renderer->surroundings.lobes) +
-                tl_envmap_bytes(&renderer->envmap),
+                tl_envmap_bytes(&renderer->envmap) + tl_capture_bytes(&renderer->capture),
         .maps = tl_shadow_maps_bytes(renderer->maps) + tl_lamp_shadows_bytes(&renderer->local.shadows),
         .rays = tl_trace_bytes(renderer->trace) + tl_points_bytes(renderer->points),
         .targets = tl_target_bytes(&renderer->gbuffer.target) + tl_target_bytes(&renderer->lighting.target) +

@@ -5,6 +5,7 @@
 #include "render/env/lobes.h"
 #include "render/env/pour.h"
 #include "render/env/sun.h"
+#include "render/envmap/capture.h"
 #include "render/envmap/envmap.h"
 #include "render/light/gbuffer.h"
 #include "render/light/light.h"
@@ -37,11 +38,13 @@ enum tl_resource {
     TL_INPUT_ROUND,       /* which of the jittered frames that are averaged while nothing changes */
     TL_INPUT_SCENE_ROUND, /* ... while nothing but the camera does */
     TL_INPUT_LIGHT,       /* how light is put together */
-    TL_INPUT_LAMPS, /* and how surfaces are shaded under them */
+    TL_INPUT_LAMPS,       /* and how surfaces are shaded under them */
     TL_INPUT_REFERENCE,
     TL_INPUT_SHOW,    /* exposure and background */
-    TL_INPUT_ENVMAP,  /* layout and size of environment maps; for a sphere map the view's turn */
+    TL_INPUT_ENVMAP,  /* size of environment maps, and whether they show the scene */
+    TL_INPUT_LAYOUT,  /* their layout; for a sphere map the view's turn */
     TL_INPUT_LOOK_UP, /* how they are looked up */
+    TL_INPUT_CAPTURE, /* the scene as it was when it was to be captured last */
     TL_INPUT_COUNT,
     TL_MADE_CUBE = TL_INPUT_COUNT, /* and the suns taken from it */
     TL_MADE_REGIONS,
@@ -58,6 +61,7 @@ enum tl_resource {
     TL_MADE_MIRRORS, /* what near mirrors show */
     TL_MADE_POINTS,
     TL_MADE_ENVMAP_LOBES,
+    TL_MADE_CAPTURE,
     TL_MADE_ENVMAP,
     TL_MADE_LIGHT,
     TL_MADE_LAMP_MAPS,
@@ -88,6 +92,8 @@ enum tl_scene_fact {
     TL_SCENE_LAMP_MAPS, /* ... and depth maps shadow one of them */
     TL_SCENE_LAMP_RAYS, /* ... and rays do */
     TL_SCENE_SAMPLES,   /* rays start from what is seen */
+    TL_SCENE_ENVMAP,    /* environment maps light the image */
+    TL_SCENE_CAPTURE,   /* ... and show the scene */
     TL_SCENE_FACT_COUNT
 };
 
@@ -105,7 +111,10 @@ extern const int tl_frame_job_count;
 /* How many frames have been drawn since something changed: anything, and anything but the camera. */
 struct tl_rest {
     int image, scene;
-    bool is_done; /* rays: all rounds of this image are in */
+    bool is_done;      /* rays: all rounds of this image are in */
+    uint64_t captured; /* environment maps: the signature of the scene that they show; 0: none */
+    int capture_age;   /* ... frames ago */
+    bool is_captured;  /* ... and it is the one that is there */
 };
 
 /* Whether rounds at rest change the image. */
@@ -165,6 +174,7 @@ struct tl_renderer {
         tl_cube cube;
         struct tl_lobes lobes;
     } surroundings;
+    struct tl_capture capture;
     struct tl_envmap envmap;
     struct tl_local local;
     struct tl_present present;

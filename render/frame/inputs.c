@@ -1,3 +1,4 @@
+#include "config/memory.h"
 #include "render/frame/frame.h"
 #include "render/pem/lobe.h"
 
@@ -79,13 +80,40 @@ static uint64_t reference_signature(const struct tl_reference_params *reference)
     return MIX(MIX(hash, reference->replicates), reference->terminator);
 }
 
-static uint64_t envmap_signature(const tl_frame *frame, const struct tl_maps_params *maps)
+static uint64_t layout_signature(const tl_frame *frame, const struct tl_maps_params *maps)
 {
-    uint64_t hash = MIX(MIX(FNV_OFFSET, maps->layout), maps->size);
+    uint64_t hash = MIX(FNV_OFFSET, maps->layout);
     if (maps->layout != TL_LAYOUT_SPHERE)
         return hash;
     struct tl_view view = tl_view_make(&frame->camera, 1, 1);
     return MIX(MIX(hash, view.forward), view.up);
+}
+
+/* What a capture shows. */
+static uint64_t scene_signature(const uint64_t signatures[TL_INPUT_COUNT], const struct tl_maps_params *maps)
+{
+    static const enum tl_resource shown[] = {TL_INPUT_ENVIRONMENT, TL_INPUT_YAW, TL_INPUT_SHAPES,
+                                             TL_INPUT_MOTION, TL_INPUT_GROUND};
+    uint64_t hash = MIX(MIX(FNV_OFFSET, maps->size), maps->capture_at);
+    for (size_t i = 0; i < TL_COUNT(shown); i++)
+        hash = MIX(hash, signatures[shown[i]]);
+    return hash;
+}
+
+/* A still image never shows an old scene. */
+static void count_capture(const tl_frame *frame, const struct tl_render_settings *settings,
+                          const uint64_t signatures[TL_INPUT_COUNT], struct tl_rest *rest)
+{
+    const struct tl_maps_params *maps = &settings->maps;
+    bool is_wanted = settings->light.method == TL_METHOD_MAPS && maps->capture_every > 0;
+    uint64_t scene = is_wanted ? scene_signature(signatures, maps) : 0;
+    rest->capture_age = rest->capture_age < maps->capture_every ? rest->capture_age + 1 : maps->capture_every;
+    bool is_time = frame->still || rest->captured == 0 || rest->capture_age >= maps->capture_every;
+    if (scene != rest->captured && (is_time || !is_wanted)) {
+        rest->captured = scene;
+        rest->capture_age = 0;
+    }
+    rest->is_captured = scene == rest->captured;
 }
 
 bool tl_light_averages(const struct tl_light_params *light)
@@ -140,8 +168,13 @@ void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *setti
     signatures[TL_INPUT_LAMPS] = lamps_signature(frame, &settings->shading);
     signatures[TL_INPUT_REFERENCE] = reference_signature(&settings->reference);
     signatures[TL_INPUT_SHOW] = MIX(MIX(start, image->exposure_ev), image->background);
-    signatures[TL_INPUT_ENVMAP] = envmap_signature(frame, &settings->maps);
-    signatures[TL_INPUT_LOOK_UP] = MIX(MIX(start, settings->maps.look_up), settings->maps.mode);
+    bool captures = settings->maps.capture_every > 0;
+    signatures[TL_INPUT_ENVMAP] = MIX(MIX(start, settings->maps.size), captures);
+    signatures[TL_INPUT_LAYOUT] = layout_signature(frame, &settings->maps);
+    count_capture(frame, settings, signatures, rest);
+    signatures[TL_INPUT_CAPTURE] = MIX(start, rest->captured);
+    signatures[TL_INPUT_LOOK_UP] =
+        MIX(MIX(MIX(start, settings->maps.look_up), settings->maps.mode), settings->maps.fresnel);
     count_rest(light, before, signatures, rest);
     signatures[TL_INPUT_ROUND] = MIX(start, rest->image);
     signatures[TL_INPUT_SCENE_ROUND] = MIX(start, rest->scene);
@@ -227,7 +260,8 @@ tl_bits tl_frame_facts(const tl_frame *frame, const struct tl_render_settings *s
     if (light->method == TL_METHOD_REFERENCE)
         return TL_BIT(TL_SCENE_REFERENCE);
     if (light->method == TL_METHOD_MAPS)
-        return TL_BIT(TL_SCENE_RASTER) | TL_BIT(TL_SCENE_ENVMAP) | lamp_facts(frame, light);
+        return TL_BIT(TL_SCENE_RASTER) | TL_BIT(TL_SCENE_ENVMAP) | lamp_facts(frame, light) |
+               (settings->maps.capture_every > 0 ? TL_BIT(TL_SCENE_CAPTURE) : 0);
     bool shadowed = light->method != TL_METHOD_UNSHADOWED, rays = light->visibility == TL_VISIBILITY_RAYS;
     tl_bits facts = TL_BIT(TL_SCENE_RASTER) | TL_BIT(rays ? TL_SCENE_RAYS : TL_SCENE_PASSES);
     if (shadowed)

@@ -33,7 +33,9 @@ const char *const tl_resource_names[] = {
     [TL_INPUT_REFERENCE] = "reference options",
     [TL_INPUT_SHOW] = "exposure and background",
     [TL_INPUT_ENVMAP] = "environment map options",
+    [TL_INPUT_LAYOUT] = "layout",
     [TL_INPUT_LOOK_UP] = "look-up options",
+    [TL_INPUT_CAPTURE] = "captured scene",
     [TL_MADE_CUBE] = "cube",
     [TL_MADE_REGIONS] = "regions",
     [TL_MADE_LOBE] = "lobe table",
@@ -49,6 +51,7 @@ const char *const tl_resource_names[] = {
     [TL_MADE_MIRRORS] = "what mirrors show",
     [TL_MADE_POINTS] = "visibility at points",
     [TL_MADE_ENVMAP_LOBES] = "lobes of the maps",
+    [TL_MADE_CAPTURE] = "capture",
     [TL_MADE_ENVMAP] = "environment maps",
     [TL_MADE_LIGHT] = "light",
     [TL_MADE_LAMP_MAPS] = "lamps' shadow maps",
@@ -77,6 +80,7 @@ const char *const tl_scene_fact_names[] = {
     [TL_SCENE_LAMP_MAPS] = "lamps with shadow maps",
     [TL_SCENE_LAMP_RAYS] = "lamps with shadow rays",
     [TL_SCENE_SAMPLES] = "rays from samples",
+    [TL_SCENE_CAPTURE] = "captured scene",
     NULL,
 };
 
@@ -374,14 +378,43 @@ static mat3s environment_into_world(float yaw)
     return axes;
 }
 
+static bool run_capture(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level;
+    const struct tl_maps_params *maps = &renderer->settings.maps;
+    const struct tl_casters *casters = &renderer->casters;
+    vec3s offset = {{maps->capture_at[0], maps->capture_at[1], maps->capture_at[2]}};
+    mat3s into_world = environment_into_world(renderer->frame.environment_yaw);
+    const struct tl_capture_request request = {.point = glms_vec3_add(casters->centre, offset),
+                                               .size = maps->size,
+                                               .environment = &renderer->surroundings.cube,
+                                               .lobes = &renderer->surroundings.lobes,
+                                               .environment_yaw = renderer->frame.environment_yaw,
+                                               .into_world = &into_world,
+                                               .exponents = tl_frame_map_exponents(&renderer->frame),
+                                               .exponent_levels = &renderer->lighting.exponent_levels,
+                                               .surfaces = renderer->surfaces,
+                                               .ranges = &renderer->ranges,
+                                               .ground = ground_of(renderer),
+                                               .near_m = 1e-3f * casters->radius,
+                                               .far_m = glms_vec3_norm(offset) + 100 * casters->radius};
+    return tl_capture_draw(&renderer->capture, renderer->gpu, &request, error);
+}
+
 static bool run_envmap(void *context, int level, tl_error *error)
 {
     tl_renderer *renderer = context;
     (void)level, (void)error;
-    mat3s into_world = environment_into_world(renderer->frame.environment_yaw);
-    tl_envmap_fill(&renderer->envmap, renderer->gpu, &renderer->settings.maps, &renderer->surroundings.lobes,
-                   &into_world, &renderer->view);
-    tl_envmap_set_parts(&renderer->envmap, &renderer->ranges);
+    bool captured = renderer->settings.maps.capture_every > 0; /* in world axes */
+    if (captured)                                              /* materials may have changed since */
+        tl_lobes_make(&renderer->capture.lobes, &renderer->capture.cube,
+                      tl_frame_map_exponents(&renderer->frame));
+    mat3s into_world = environment_into_world(captured ? 0 : renderer->frame.environment_yaw);
+    tl_envmap_fill(&renderer->envmap, renderer->gpu, &renderer->settings.maps,
+                   captured ? &renderer->capture.lobes : &renderer->surroundings.lobes, &into_world,
+                   &renderer->view);
+    tl_envmap_set_parts(&renderer->envmap, renderer->gpu, &renderer->ranges, renderer->settings.image.ground);
     return true;
 }
 
@@ -659,9 +692,18 @@ const tl_job tl_frame_jobs[] = {
      .requires_scene = SET1(TL_SCENE_ENVMAP),
      .levels = LEVELS_ONE,
      .run = run_envmap_lobes},
+    /* What it draws is not among what it reads: what has changed since waits for the next capture. */
+    {.name = "capture",
+     .what = "the scene seen from a point, through exact lobes",
+     .reads = SET1(TL_INPUT_CAPTURE),
+     .writes = SET1(TL_MADE_CAPTURE),
+     .requires_scene = SET2(TL_SCENE_ENVMAP, TL_SCENE_CAPTURE),
+     .levels = LEVELS_ONE,
+     .run = run_capture},
     {.name = "envmap",
      .what = "lobes poured into environment maps of a layout",
-     .reads = SET5(TL_MADE_ENVMAP_LOBES, TL_INPUT_ENVMAP, TL_INPUT_YAW, TL_INPUT_SHAPES, TL_INPUT_GROUND),
+     .reads = SET5(TL_MADE_ENVMAP_LOBES, TL_INPUT_LAYOUT, TL_INPUT_YAW, TL_INPUT_SHAPES, TL_INPUT_GROUND) |
+              SET1(TL_MADE_CAPTURE),
      .writes = SET1(TL_MADE_ENVMAP),
      .requires_scene = SET1(TL_SCENE_ENVMAP),
      .levels = LEVELS_ONE,

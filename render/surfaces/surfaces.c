@@ -16,6 +16,7 @@ struct uploaded {
 };
 
 struct item {
+    bool hidden;
     GLuint vertex_array, buffers[ATTRIBUTES], indices;
     size_t vertex_count, index_count;
     size_t attribute_counts[ATTRIBUTES]; /* vertices sent; 0 for what the surface does not have */
@@ -312,6 +313,8 @@ void tl_surfaces_draw_part(const tl_surfaces *surfaces, size_t index, size_t par
     const struct item *item = &surfaces->items[index];
     const struct tl_mesh_part *part = &item->parts[part_index];
     size_t first_triangle = 0;
+    if (item->hidden)
+        return;
     for (size_t i = 0; i < index; i++)
         first_triangle += surfaces->items[i].index_count / 3;
     glBindVertexArray(item->vertex_array);
@@ -327,6 +330,11 @@ void tl_surfaces_draw(const tl_surfaces *surfaces, size_t index, enum tl_surface
     for (size_t p = 0; p < item->part_count; p++)
         if (kind_of(item, &item->parts[p]) & parts)
             tl_surfaces_draw_part(surfaces, index, p);
+}
+
+void tl_surfaces_hide(tl_surfaces *surfaces, size_t index, bool hidden)
+{
+    surfaces->items[index].hidden = hidden;
 }
 
 bool tl_surfaces_have(const tl_surfaces *surfaces, enum tl_surface_parts parts)

@@ -52,6 +52,8 @@ void tl_surfaces_draw(const tl_surfaces *surfaces, size_t index, enum tl_surface
 size_t tl_surfaces_part_count(const tl_surfaces *surfaces, size_t index);
 const tl_material *tl_surfaces_part_material(const tl_surfaces *surfaces, size_t index, size_t part);
 void tl_surfaces_draw_part(const tl_surfaces *surfaces, size_t index, size_t part);
+/* ... and then not, until it is shown again. */
+void tl_surfaces_hide(tl_surfaces *surfaces, size_t index, bool hidden);
 /* Whether any surface has such parts. */
 bool tl_surfaces_have(const tl_surfaces *surfaces, enum tl_surface_parts parts);
 

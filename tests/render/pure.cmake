@@ -11,6 +11,7 @@ foreach(name
     flip
     ground
     layout
+    levels
     lobe
     lobe_error
     lobes
