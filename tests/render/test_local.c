@@ -245,7 +245,7 @@ static void bears_extremes(void **state)
         for (int model = 0; model < 6; model++)
             for (int g = 0; g < 3; g++) {
                 scene.lamps[0] = lamps[i];
-                scene.settings.light.method = g == 1 ? TL_METHOD_PEM : TL_METHOD_UNSHADOWED;
+                scene.settings.light.method = g == 1 && model == 0 ? TL_METHOD_PEM : TL_METHOD_UNSHADOWED;
                 material->gloss.model = model;
                 material->glossiness = glossinesses[g];
                 lamplit_refresh(&scene);

@@ -110,9 +110,10 @@ static void passes_give_one_image(void **state)
                 shading->pass_target = target;
                 struct lamplit_difference off = lamplit_error(&scene, device->renderer, &one);
                 print_message("%-17s %d a pass, %s: rel. RMSE %.1e, largest %.1e of the peak (bound %.1e), "
-                              "%zu bytes more\n",
+                              "%td bytes more\n",
                               models[model], most, target ? "float" : "8 bits", off.rel_rmse, off.largest,
-                              level, tl_renderer_memory(device->renderer).other - bytes);
+                              level,
+                              (ptrdiff_t)tl_renderer_memory(device->renderer).other - (ptrdiff_t)bytes);
                 assert_true(off.largest < (target == TL_PASS_TARGET_FLOAT ? 1e-5 : level + 1e-5));
                 if (target == TL_PASS_TARGET_FIXED8 && most == 1 && model >= TL_REFLECT_TORRANCE_SPARROW)
                     assert_true(off.rel_rmse > 1e-4); /* it was indeed drawn in passes */
