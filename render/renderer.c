@@ -370,7 +370,7 @@ struct tl_render_memory tl_renderer_memory(const tl_renderer *renderer)
         .targets = tl_target_bytes(&renderer->gbuffer.target) + tl_target_bytes(&renderer->lighting.target) +
                    tl_present_bytes(present),
         .surfaces = tl_surfaces_bytes(renderer->surfaces),
-        .other = tl_lighting_bytes(&renderer->lighting) + tl_texture_bytes(&present->backdrop) +
+        .other = tl_lighting_bytes(&renderer->lighting) + tl_local_bytes(&renderer->local) + tl_texture_bytes(&present->backdrop) +
                  tl_texture_bytes(&present->blurred),
     };
     memory.total = memory.pems + memory.maps + memory.rays + memory.sheets + memory.targets +
