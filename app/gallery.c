@@ -29,6 +29,7 @@ struct sight {
 /* One of the two objects, with the settings that it was last drawn with. */
 struct easel {
     const char *garment, *avatar;
+    double height_m, distance_m; /* of the camera's target, and of the camera from it */
     struct tl_settings settings;
     tl_session *session;
     tl_renderer *renderer; /* its own: revisions of one session say nothing about the other's */
@@ -64,15 +65,16 @@ static bool choose(const struct drawing *drawing, const struct easel *easel,
                    const struct tl_gallery_wall *wall, const struct tl_exhibit *exhibit, bool exact,
                    struct tl_settings *out, tl_error *error)
 {
-    char *size[2] = {tl_format("image.width=%d", drawing->side), tl_format("image.height=%d", drawing->side)};
-    char *object[2] = {tl_format("scene.garment=%s", easel->garment),
-                       tl_format("scene.avatar=%s", easel->avatar)};
-    const char *all[8 + 4 * TL_GALLERY_ASSIGNMENTS];
+    char *own[] = {tl_format("image.width=%d", drawing->side),
+                   tl_format("image.height=%d", drawing->side),
+                   tl_format("scene.garment=%s", easel->garment),
+                   tl_format("scene.avatar=%s", easel->avatar),
+                   tl_format("camera.target=[0, %g, 0]", easel->height_m),
+                   tl_format("camera.distance_m=%g", easel->distance_m)};
+    const char *all[TL_COUNT(own) + 2 * TL_GALLERY_ASSIGNMENTS];
     size_t count = 0;
-    const char *const lists[][3] = {{size[0], size[1], NULL}, {object[0], object[1], NULL}};
-    for (size_t l = 0; l < TL_COUNT(lists); l++)
-        for (size_t i = 0; lists[l][i]; i++)
-            all[count++] = lists[l][i];
+    for (; count < TL_COUNT(own); count++)
+        all[count] = own[count];
     for (size_t i = 0; i < TL_GALLERY_ASSIGNMENTS && wall->base[i]; i++)
         all[count++] = wall->base[i];
     for (size_t i = 0; i < TL_GALLERY_ASSIGNMENTS && exhibit->chosen[i] && !(exact && wall->one_truth); i++)
@@ -83,10 +85,8 @@ static bool choose(const struct drawing *drawing, const struct easel *easel,
     if (chosen && exact)
         chosen = assign(out, wall->exact, TL_COUNT(wall->exact), error) &&
                  assign(out, exhibit->exact, TL_COUNT(exhibit->exact), error);
-    for (int i = 0; i < 2; i++) {
-        free(size[i]);
-        free(object[i]);
-    }
+    for (size_t i = 0; i < TL_COUNT(own); i++)
+        free(own[i]);
     return chosen;
 }
 
@@ -212,7 +212,7 @@ static bool hang(struct drawing *drawing, struct tl_hung *hung, tl_error *error)
         done = see_exact(drawing, easel, hung, error) &&
                see_tested(drawing, easel, hung, &tested[i], error) &&
                tl_image_compare(&tested[i].light, &easel->exact.light, -1, 0, &result, error);
-        hung->error[i] = result.rel_rmse;
+        hung->error[i] = hung->wall->by_flip ? result.flip_mean : result.rel_rmse;
         hung->time_ms[i] = tested[i].time_ms;
     }
     if (done)
@@ -280,7 +280,10 @@ bool tl_gallery_draw(bool quick, const char *only, struct tl_gallery *out, tl_er
 {
     struct drawing drawing = {
         .side = 240,
-        .easels = {{.garment = "torus", .avatar = "none"}, {.garment = "sheet", .avatar = "ball"}}};
+        .easels = {
+            [TL_GALLERY_SOLID] = {.garment = "torus", .avatar = "none", .height_m = 0.2, .distance_m = 0.9},
+            [TL_GALLERY_SHEET] = {
+                .garment = "sheet", .avatar = "ball", .height_m = 0.27, .distance_m = 1.15}}};
     *out = (struct tl_gallery){.side = drawing.side};
     if (!count_exhibits(quick, only))
         return fail_unknown_wall(only, error);

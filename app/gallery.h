@@ -28,6 +28,7 @@ struct tl_gallery_wall {
     const char *solid;   /* garment beside the sheet: "sphere" or "torus" */
     const char *base[TL_GALLERY_ASSIGNMENTS];
     const char *exact[TL_GALLERY_ASSIGNMENTS];
+    bool by_flip;   /* errors are mean FLIP: a mirror image's are edges, whose squares are the lamp's alone */
     bool one_truth; /* what is exact is the same for all exhibits: their own assignments are no part of it */
     const struct tl_exhibit *exhibits;
     size_t exhibit_count;
@@ -43,7 +44,7 @@ enum { TL_GALLERY_SOLID, TL_GALLERY_SHEET, TL_GALLERY_OBJECTS };
 struct tl_hung {
     const struct tl_gallery_wall *wall;
     const struct tl_exhibit *exhibit;
-    double error[TL_GALLERY_OBJECTS];   /* relative RMSE */
+    double error[TL_GALLERY_OBJECTS];   /* relative RMSE, or mean FLIP */
     double time_ms[TL_GALLERY_OBJECTS]; /* CPU */
     char *image;                        /* name of its file */
     void *png;                          /* the picture: both objects, what differs below */

@@ -36,14 +36,26 @@ void tl_gallery_write_csv(const struct tl_gallery *gallery, FILE *out)
         fprintf(out, "%s,", hung->exhibit->id);
         print_field(out, technique_of(hung->wall));
         print_field(out, hung->exhibit->setting);
-        fprintf(out, "%.6g,rel_rmse,%.3f,%s\n", worse(hung->error), worse(hung->time_ms), hung->image);
+        fprintf(out, "%.6g,%s,%.3f,%s\n", worse(hung->error), hung->wall->by_flip ? "flip_mean" : "rel_rmse",
+                worse(hung->time_ms), hung->image);
     }
+}
+
+static void print_error(const struct tl_hung *hung, int object, char *text, size_t size)
+{
+    if (hung->wall->by_flip)
+        snprintf(text, size, "FLIP %.3f", hung->error[object]);
+    else
+        snprintf(text, size, "%.3g %%", 100 * hung->error[object]);
 }
 
 static void print_caption(const struct tl_hung *hung, char *text, size_t size)
 {
-    snprintf(text, size, "error %.2f %% on the %s, %.2f %% on the sheet; %.1f and %.1f ms CPU",
-             100 * hung->error[TL_GALLERY_SOLID], hung->wall->solid, 100 * hung->error[TL_GALLERY_SHEET],
+    char errors[TL_GALLERY_OBJECTS][32];
+    for (int i = 0; i < TL_GALLERY_OBJECTS; i++)
+        print_error(hung, i, errors[i], sizeof errors[i]);
+    snprintf(text, size, "error %s on the %s, %s on the sheet; %.1f and %.1f ms CPU",
+             errors[TL_GALLERY_SOLID], hung->wall->solid, errors[TL_GALLERY_SHEET],
              hung->time_ms[TL_GALLERY_SOLID], hung->time_ms[TL_GALLERY_SHEET]);
 }
 

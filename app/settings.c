@@ -74,7 +74,7 @@ static const struct tl_option_table camera_table = TL_OPTION_TABLE(
     "camera", "an orbit about a target", camera_rows, struct tl_camera_params, TL_CAMERA_DEFAULTS);
 
 /* The reference page's order. A preset sets CLOTH, LIGHT and IMAGE; a fabric FABRIC, WEAVE and MATERIAL. */
-enum { SCENE, CAMERA, CLOTH, FABRIC, WEAVE, MATERIAL, LIGHT, MAPS, IMAGE, REFERENCE };
+enum { SCENE, CAMERA, CLOTH, FABRIC, WEAVE, MATERIAL, LIGHT, MAPS, LAMP, FILL, SHADING, IMAGE, REFERENCE };
 
 void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[TL_SETTINGS_TABLES])
 {
@@ -86,6 +86,9 @@ void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[T
     bindings[MATERIAL] = (struct tl_binding){&tl_material_options, &settings->material};
     bindings[LIGHT] = (struct tl_binding){&tl_light_options, &settings->light};
     bindings[MAPS] = (struct tl_binding){&tl_maps_options, &settings->maps};
+    bindings[LAMP] = (struct tl_binding){&tl_lamp_options, &settings->lamp};
+    bindings[FILL] = (struct tl_binding){&tl_fill_options, &settings->fill};
+    bindings[SHADING] = (struct tl_binding){&tl_shading_options, &settings->shading};
     bindings[IMAGE] = (struct tl_binding){&tl_image_options, &settings->image};
     bindings[REFERENCE] = (struct tl_binding){&tl_reference_options, &settings->reference};
 }
@@ -94,6 +97,7 @@ struct tl_render_settings tl_settings_render(const struct tl_settings *settings)
 {
     return (struct tl_render_settings){.light = settings->light,
                                        .maps = settings->maps,
+                                       .shading = settings->shading,
                                        .image = settings->image,
                                        .reference = settings->reference};
 }

@@ -114,8 +114,8 @@ static void set_constants(tl_cloth *cloth)
     tl_contacts_release(&cloth->contacts); /* its planes know the thickness */
     cloth->contacts = tl_contacts_create(&cloth->topology, cloth->rest);
     tl_limits_release(&cloth->limits);
-    cloth->limits = tl_limits_create(&cloth->topology, (const vec2s(*)[3])cloth->rest, cloth->shortest_edge,
-                                     cloth->particles.x);
+    cloth->limits = tl_limits_create(&cloth->topology, &cloth->energy, (const vec2s(*)[3])cloth->rest,
+                                     cloth->shortest_edge, cloth->params.strain_limit, cloth->particles.x);
     tl_layers_forget(&cloth->layers);
     cloth->left_alone = false;
 }

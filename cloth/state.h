@@ -64,6 +64,8 @@ struct tl_substep {
     double gravity, drag;
     double phase_before, phase; /* of the collider's motion at its start and end */
     const tl_collider *collider;
+    bool follows; /* another one, to whose end nothing was done; solvers may have begun with this one there */
+    bool leads;   /* to another one that will follow so */
 };
 
 /* Whether `preview` sweeps back as well: xpbd.h. A few slivers among sound triangles need not. */

@@ -5,10 +5,14 @@ add_library(toile_light STATIC
   brdf/draw.c
   brdf/fan.c
   brdf/fresnel.c
+  brdf/normalise.c
   brdf/options.c
   detail/bake.c
   detail/bumps.c
   detail/field.c
+  brdf/power.c
+  brdf/table_error.c
+  brdf/tables.c
   env/convert.c
   env/cube.c
   env/emitters.c
@@ -23,6 +27,8 @@ add_library(toile_light STATIC
   frame/view.c
   light/region_lights.c
   light/samples.c
+  local/lamp.c
+  local/lamp_rays.c
   metrics/compare.c
   metrics/flip.c
   pem/chain.c
@@ -35,6 +41,7 @@ add_library(toile_light STATIC
   pem/slices.c
   plan/plan.c
   reference/gather.c
+  reference/lamps.c
   reference/options.c
   reference/reference.c
   reference/sky.c

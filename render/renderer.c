@@ -125,6 +125,7 @@ void tl_renderer_destroy(tl_renderer **renderer)
     tl_cube_release(&(*renderer)->surroundings.cube);
     tl_lobes_release(&(*renderer)->surroundings.lobes);
     tl_envmap_release(&(*renderer)->envmap);
+    tl_local_release(&(*renderer)->local);
     tl_present_release(&(*renderer)->present);
     free(*renderer);
     *renderer = NULL;
@@ -188,6 +189,7 @@ static void reload_shaders(tl_renderer *renderer)
     if (stamp == renderer->shaders_stamp)
         return;
     renderer->shaders_stamp = stamp;
+    tl_local_reload(&renderer->local);
     tl_error error = {0};
     if (!tl_shadow_maps_reload(renderer->maps, &error) || !tl_gbuffer_reload(&renderer->gbuffer, &error) ||
         !tl_gbuffer_reload(&renderer->sheets.behind, &error) ||
@@ -244,6 +246,8 @@ bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct
     const struct tl_plan_input input = plan_input(renderer, frame, &used, changed, TL_MADE_IMAGE);
     if (!(input.scene & TL_BIT(TL_SCENE_SHEETS)))
         tl_sheets_release(&renderer->sheets);
+    if (!(input.scene & TL_BIT(TL_SCENE_LAMPS)))
+        tl_local_release(&renderer->local);
     return run_plan(renderer, &input, &renderer->plan, error);
 }
 
@@ -345,7 +349,7 @@ struct tl_render_memory tl_renderer_memory(const tl_renderer *renderer)
         .pems = tl_pems_bytes(&renderer->pems) + tl_lobes_bytes(&renderer->lobes) +
                 tl_slice_maps_bytes(&renderer->slice_maps) + tl_lobes_bytes(&renderer->surroundings.lobes) +
                 tl_envmap_bytes(&renderer->envmap),
-        .maps = tl_shadow_maps_bytes(renderer->maps),
+        .maps = tl_shadow_maps_bytes(renderer->maps) + tl_lamp_shadows_bytes(&renderer->local.shadows),
         .rays = tl_trace_bytes(renderer->trace) + tl_points_bytes(renderer->points),
         .sheets = tl_sheets_bytes(&renderer->sheets),
         .targets = tl_target_bytes(&renderer->gbuffer.target) + tl_target_bytes(&renderer->lighting.target) +

@@ -9,6 +9,7 @@
 #include "assets/surface.h"
 #include "config/options.h"
 #include "render/gpu/gpu.h"
+#include "render/local/shading.h"
 #include "render/plan/plan.h"
 
 enum tl_method {
@@ -146,6 +147,7 @@ typedef struct tl_frame {
 struct tl_render_settings {
     struct tl_light_params light;
     struct tl_maps_params maps;
+    struct tl_shading_params shading; /* under lamps */
     struct tl_image_params image;
     struct tl_reference_params reference;
 };

@@ -18,7 +18,7 @@
  *     BANKS             K(t.l, t.v)      F(n.v)                     times_cos_a
  *
  * Folded (PHONG, BLINN_PHONG, COSINE_LOBE): ambient + diffuse n.l / pi + f0 K [n.l], over (r.l or n.h, n.l),
- * in one table: F stays f0.
+ * in one table: F stays f0. Where n.l <= 0 it is the ambient part, so that the caller cuts by n.v alone.
  *
  * `texels` are rows from v = 0 up, without padding (GL_UNPACK_ALIGNMENT 1), `channels` 1 (GL_RED: swizzle to
  * RGB) or 3: uint8_t or uint16_t, normalised (GL_R8, GL_RGB16, ...), or float. Pure; threads: any. */
@@ -27,7 +27,7 @@
 
 #include "render/brdf/brdf.h"
 
-enum tl_precision { TL_PRECISION_8, TL_PRECISION_16, TL_PRECISION_FLOAT };
+enum tl_precision { TL_PRECISION_FIXED8, TL_PRECISION_FIXED16, TL_PRECISION_FLOAT };
 
 /* What stands on a table's axis; t: the frame's tangent, b: its bitangent. */
 enum tl_table_input {
@@ -65,7 +65,7 @@ struct tl_brdf_table {
 enum tl_table_range { TL_RANGE_CLAMPED, TL_RANGE_SCALED };
 
 struct tl_brdf_table_params {
-    int size;       /* texels, N x N; 2 to 512 */
+    int size;       /* texels, N x N; at least 2 */
     int precision;  /* enum tl_precision */
     int range;      /* enum tl_table_range */
     float constant; /* of TL_RANGE_SCALED; 0: the greatest value */

@@ -12,6 +12,7 @@
 #include "render/light/region_lights.h"
 #include "render/light/samples.h"
 #include "render/light/sheets.h"
+#include "render/local/local.h"
 #include "render/present/present.h"
 #include "render/renderer.h"
 #include "render/trace/trace.h"
@@ -37,6 +38,7 @@ enum tl_resource {
     TL_INPUT_ROUND,       /* which of the jittered frames that are averaged while nothing changes */
     TL_INPUT_SCENE_ROUND, /* ... while nothing but the camera does */
     TL_INPUT_LIGHT,       /* how light is put together */
+    TL_INPUT_LAMPS,       /* and how surfaces are shaded under them */
     TL_INPUT_REFERENCE,
     TL_INPUT_SHOW,    /* exposure and background */
     TL_INPUT_ENVMAP,  /* layout and size of environment maps; for a sphere map the view's turn */
@@ -60,6 +62,9 @@ enum tl_resource {
     TL_MADE_ENVMAP_LOBES,
     TL_MADE_ENVMAP,
     TL_MADE_LIGHT,
+    TL_MADE_LAMP_MAPS,
+    TL_MADE_LAMP_RAYS,
+    TL_MADE_LAMPLIGHT, /* added to the light */
     TL_MADE_IMAGE,
     TL_MADE_BACKDROP,
     TL_MADE_SHOWN,
@@ -82,6 +87,10 @@ enum tl_scene_fact {
     TL_SCENE_BLUR,    /* shadow maps are variance maps */
     TL_SCENE_REFERENCE,
     TL_SCENE_ENVMAP, /* environment maps light the image */
+    TL_SCENE_LAMPS,
+    TL_SCENE_LAMP_MAPS, /* ... and depth maps shadow one of them */
+    TL_SCENE_LAMP_RAYS, /* ... and rays do */
+    TL_SCENE_SAMPLES,   /* rays start from what is seen */
     TL_SCENE_FACT_COUNT
 };
 
@@ -164,6 +173,7 @@ struct tl_renderer {
         struct tl_lobes lobes;
     } surroundings;
     struct tl_envmap envmap;
+    struct tl_local local;
     struct tl_present present;
     double standard_error; /* of the last reference */
 

@@ -63,6 +63,19 @@ static uint64_t rays_signature(const struct tl_light_params *light)
     return MIX(MIX(MIX(hash, light->repair), light->repair_rest), light->jitter);
 }
 
+/* Always the same without lamps, however surfaces would be shaded under them. */
+static uint64_t lamps_signature(const tl_frame *frame, const struct tl_shading_params *shading)
+{
+    struct tl_lamp lamps[TL_LAMPS_MAX];
+    size_t count = tl_lamps_lit(frame, lamps);
+    uint64_t hash = FNV_OFFSET;
+    for (size_t i = 0; i < count; i++) {
+        hash = MIX(MIX(hash, lamps[i].kind), lamps[i].irradiance);
+        hash = MIX(MIX(hash, lamps[i].direction), lamps[i].position);
+    }
+    return count > 0 ? MIX(hash, *shading) : hash;
+}
+
 static uint64_t reference_signature(const struct tl_reference_params *reference)
 {
     uint64_t hash = MIX(MIX(FNV_OFFSET, reference->strata), reference->lobe_samples);
@@ -93,7 +106,7 @@ static void count_rest(const struct tl_light_params *light, const uint64_t befor
         if (is_outcome || i == TL_INPUT_SHOW || signatures[i] == before[i])
             continue;
         image_rests = false;
-        scene_rests = scene_rests && (i == TL_INPUT_CAMERA || i == TL_INPUT_SIZE);
+        scene_rests = scene_rests && (i == TL_INPUT_CAMERA || i == TL_INPUT_SIZE || i == TL_INPUT_LAMPS);
     }
     int last = tl_light_averages(light) ? light->rounds - 1 : 0;
     rest->image = !image_rests ? 0 : rest->image < last ? rest->image + 1 : last;
@@ -127,6 +140,7 @@ void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *setti
     signatures[TL_INPUT_MAPS] = maps_signature(light);
     signatures[TL_INPUT_RAYS] = rays_signature(light);
     signatures[TL_INPUT_LIGHT] = light_signature(light);
+    signatures[TL_INPUT_LAMPS] = lamps_signature(frame, &settings->shading);
     signatures[TL_INPUT_REFERENCE] = reference_signature(&settings->reference);
     signatures[TL_INPUT_SHOW] = MIX(MIX(start, image->exposure_ev), image->background);
     signatures[TL_INPUT_ENVMAP] = envmap_signature(frame, &settings->maps);
@@ -230,13 +244,32 @@ static float greatest_glossiness(const tl_frame *frame)
     return greatest;
 }
 
+static tl_bits lamp_facts(const tl_frame *frame, const struct tl_light_params *light)
+{
+    struct tl_lamp lamps[TL_LAMPS_MAX];
+    size_t count = tl_lamps_lit(frame, lamps);
+    tl_bits facts = count > 0 ? TL_BIT(TL_SCENE_LAMPS) : 0;
+    struct tl_casters casters = {0};
+    tl_error error = {0};
+    if (count > 0 && light->visibility != TL_VISIBILITY_RAYS)
+        tl_casters_measure(frame->surfaces, frame->surface_count, &casters, &error);
+    for (size_t i = 0; i < count; i++) {
+        enum tl_lamp_shadow shadow = tl_lamp_shadow_of(&lamps[i], light, &casters);
+        if (shadow == TL_LAMP_SHADOW_RAYS)
+            facts |= TL_BIT(TL_SCENE_LAMP_RAYS) | TL_BIT(TL_SCENE_SAMPLES);
+        else if (shadow == TL_LAMP_SHADOW_MAP)
+            facts |= TL_BIT(TL_SCENE_LAMP_MAPS);
+    }
+    return facts;
+}
+
 tl_bits tl_frame_facts(const tl_frame *frame, const struct tl_render_settings *settings)
 {
     const struct tl_light_params *light = &settings->light;
     if (light->method == TL_METHOD_REFERENCE)
         return TL_BIT(TL_SCENE_REFERENCE);
     if (light->method == TL_METHOD_MAPS)
-        return TL_BIT(TL_SCENE_RASTER) | TL_BIT(TL_SCENE_ENVMAP);
+        return TL_BIT(TL_SCENE_RASTER) | TL_BIT(TL_SCENE_ENVMAP) | lamp_facts(frame, light);
     bool shadowed = light->method != TL_METHOD_UNSHADOWED, rays = light->visibility == TL_VISIBILITY_RAYS;
     tl_bits facts = TL_BIT(TL_SCENE_RASTER) | TL_BIT(rays ? TL_SCENE_RAYS : TL_SCENE_PASSES);
     if (shadowed)
@@ -254,5 +287,7 @@ tl_bits tl_frame_facts(const tl_frame *frame, const struct tl_render_settings *s
     if (rays && light->method == TL_METHOD_PEM && light->reflect_scene &&
         tl_mirror_ray_count(tl_lobe_exponent(greatest_glossiness(frame))) > 0)
         facts |= TL_BIT(TL_SCENE_MIRRORS);
-    return facts;
+    if (rays)
+        facts |= TL_BIT(TL_SCENE_SAMPLES);
+    return facts | lamp_facts(frame, light);
 }

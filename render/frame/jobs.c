@@ -4,6 +4,7 @@
 #include "config/log.h"
 #include "config/memory.h"
 #include "render/light/compose.h"
+#include "render/local/lamp_rays.h"
 #include "render/reference/reference.h"
 
 #include <math.h>
@@ -28,6 +29,7 @@ const char *const tl_resource_names[] = {
     [TL_INPUT_ROUND] = "round",
     [TL_INPUT_SCENE_ROUND] = "round of the scene",
     [TL_INPUT_LIGHT] = "light options",
+    [TL_INPUT_LAMPS] = "lamps and shading options",
     [TL_INPUT_REFERENCE] = "reference options",
     [TL_INPUT_SHOW] = "exposure and background",
     [TL_INPUT_ENVMAP] = "environment map options",
@@ -50,6 +52,9 @@ const char *const tl_resource_names[] = {
     [TL_MADE_ENVMAP_LOBES] = "lobes of the maps",
     [TL_MADE_ENVMAP] = "environment maps",
     [TL_MADE_LIGHT] = "light",
+    [TL_MADE_LAMP_MAPS] = "lamps' shadow maps",
+    [TL_MADE_LAMP_RAYS] = "lamps' shadows by rays",
+    [TL_MADE_LAMPLIGHT] = "light of lamps",
     [TL_MADE_IMAGE] = "image",
     [TL_MADE_BACKDROP] = "backdrop",
     [TL_MADE_SHOWN] = "shown image",
@@ -70,6 +75,10 @@ const char *const tl_scene_fact_names[] = {
     [TL_SCENE_BLUR] = "variance maps",
     [TL_SCENE_REFERENCE] = "reference",
     [TL_SCENE_ENVMAP] = "environment maps",
+    [TL_SCENE_LAMPS] = "lamps",
+    [TL_SCENE_LAMP_MAPS] = "lamps with shadow maps",
+    [TL_SCENE_LAMP_RAYS] = "lamps with shadow rays",
+    [TL_SCENE_SAMPLES] = "rays from samples",
     NULL,
 };
 
@@ -416,6 +425,74 @@ static bool run_look_up(void *context, int level, tl_error *error)
     return fine;
 }
 
+/* Which back-end shadows each lamp, kept for the jobs that follow. */
+static size_t list_lamps(tl_renderer *renderer, struct tl_lamp lamps[TL_LAMPS_MAX])
+{
+    size_t count = tl_lamps_lit(&renderer->frame, lamps);
+    for (size_t i = 0; i < count; i++)
+        renderer->local.shadows.kinds[i] =
+            tl_lamp_shadow_of(&lamps[i], &renderer->settings.light, &renderer->casters);
+    return count;
+}
+
+static bool run_lamp_maps(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level;
+    struct tl_lamp lamps[TL_LAMPS_MAX];
+    const struct tl_lamp_maps_request request = {.lamp_count = list_lamps(renderer, lamps),
+                                                 .lamps = lamps,
+                                                 .caster_surfaces = renderer->frame.surfaces,
+                                                 .caster_count = renderer->frame.surface_count,
+                                                 .casters = renderer->casters,
+                                                 .surfaces = renderer->surfaces,
+                                                 .map_size = renderer->settings.light.map_size};
+    return tl_lamp_maps_draw(&renderer->local.shadows, renderer->gpu, &request, error);
+}
+
+static bool run_lamp_rays(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level;
+    if (!follow_motion(renderer, error))
+        return false;
+    struct tl_lamp lamps[TL_LAMPS_MAX];
+    struct tl_lamp_shadows *shadows = &renderer->local.shadows;
+    const struct tl_samples *samples = &renderer->samples;
+    size_t count = list_lamps(renderer, lamps);
+    uint8_t *visible = TL_NEW_ARRAY(uint8_t, (size_t)samples->width * (size_t)samples->height);
+    for (size_t i = 0; i < count; i++) {
+        if (shadows->kinds[i] != TL_LAMP_SHADOW_RAYS)
+            continue;
+        tl_lamp_rays(&lamps[i], renderer->trace, samples, &renderer->ranges, ground_of(renderer), visible);
+        tl_lamp_shadows_set(shadows, renderer->gpu, samples->width, samples->height, i, count, visible);
+    }
+    free(visible);
+    return true;
+}
+
+static bool run_lamps(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level;
+    struct tl_lamp lamps[TL_LAMPS_MAX];
+    /* Passes average their rounds in the target. */
+    bool passes = tl_frame_facts(&renderer->frame, &renderer->settings) & TL_BIT(TL_SCENE_PASSES);
+    const struct tl_local_request request = {.gbuffer = &renderer->gbuffer,
+                                             .light = &renderer->lighting.target,
+                                             .view = &renderer->view,
+                                             .surfaces = renderer->surfaces,
+                                             .surface_count = renderer->surface_count,
+                                             .ground = ground_of(renderer),
+                                             .casters = renderer->casters,
+                                             .lamp_count = list_lamps(renderer, lamps),
+                                             .lamps = lamps,
+                                             .params = &renderer->settings.shading,
+                                             .depth_bias_m = renderer->settings.light.depth_bias_m,
+                                             .weight = passes ? 1 / (float)(renderer->rest.image + 1) : 1};
+    return tl_local_draw(&renderer->local, renderer->gpu, &request, error);
+}
+
 static bool run_reference(void *context, int level, tl_error *error)
 {
     tl_renderer *renderer = context;
@@ -565,7 +642,7 @@ const tl_job tl_frame_jobs[] = {
      .what = "the covered samples to the CPU",
      .reads = SET3(TL_MADE_GBUFFER, TL_INPUT_CAMERA, TL_INPUT_SHAPES),
      .writes = SET1(TL_MADE_SAMPLES),
-     .requires_scene = SET1(TL_SCENE_RAYS),
+     .requires_scene = SET1(TL_SCENE_SAMPLES),
      .levels = LEVELS_ONE,
      .run = run_samples},
     {.name = "sheets",
@@ -594,7 +671,7 @@ const tl_job tl_frame_jobs[] = {
      .what = "visibility times PEM, summed over the regions",
      .reads = SET5(TL_MADE_GBUFFER, TL_MADE_PEMS, TL_MADE_REGIONS, TL_MADE_LOBE, TL_MADE_MAPS) |
               SET5(TL_MADE_SURFACES, TL_INPUT_YAW, TL_INPUT_CAMERA, TL_INPUT_LIGHT, TL_INPUT_GROUND) |
-              SET4(TL_MADE_LOBES, TL_MADE_SLICES, TL_MADE_DEPTHS, TL_INPUT_ROUND),
+              SET5(TL_MADE_LOBES, TL_MADE_SLICES, TL_MADE_DEPTHS, TL_INPUT_ROUND, TL_INPUT_LAMPS),
      .writes = SET1(TL_MADE_LIGHT),
      .requires_scene = SET1(TL_SCENE_PASSES),
      .levels = LEVELS_ONE,
@@ -602,7 +679,8 @@ const tl_job tl_frame_jobs[] = {
     {.name = "compose",
      .what = "exact light times the share of it that is seen",
      .reads = SET5(TL_MADE_SAMPLES, TL_MADE_POINTS, TL_MADE_LIGHTS, TL_MADE_LOBES, TL_MADE_CUBE) |
-              SET5(TL_MADE_SHEETS, TL_MADE_MIRRORS, TL_INPUT_YAW, TL_INPUT_LIGHT, TL_INPUT_CAMERA),
+              SET5(TL_MADE_SHEETS, TL_MADE_MIRRORS, TL_INPUT_YAW, TL_INPUT_LIGHT, TL_INPUT_CAMERA) |
+              SET1(TL_INPUT_LAMPS),
      .writes = SET1(TL_MADE_LIGHT),
      .requires_scene = SET1(TL_SCENE_RAYS),
      .levels = LEVELS_ONE,
@@ -623,14 +701,38 @@ const tl_job tl_frame_jobs[] = {
      .run = run_envmap},
     {.name = "look_up",
      .what = "environment maps looked up for every sample",
-     .reads = SET4(TL_MADE_GBUFFER, TL_MADE_ENVMAP, TL_INPUT_CAMERA, TL_INPUT_LOOK_UP),
+     .reads = SET5(TL_MADE_GBUFFER, TL_MADE_ENVMAP, TL_INPUT_CAMERA, TL_INPUT_LOOK_UP, TL_INPUT_LAMPS),
      .writes = SET1(TL_MADE_LIGHT),
      .requires_scene = SET1(TL_SCENE_ENVMAP),
      .levels = LEVELS_ONE,
      .run = run_look_up},
+    /* Lamps add to the light in place, which is therefore made anew whenever they change. */
+    {.name = "lamp_maps",
+     .what = "a shadow map for each lamp",
+     .reads = SET4(TL_MADE_SURFACES, TL_INPUT_LAMPS, TL_INPUT_MAPS, TL_INPUT_LIGHT),
+     .writes = SET1(TL_MADE_LAMP_MAPS),
+     .requires_scene = SET1(TL_SCENE_LAMP_MAPS),
+     .levels = LEVELS_ONE,
+     .run = run_lamp_maps},
+    {.name = "lamp_rays",
+     .what = "rays: what is seen of each lamp",
+     .reads = SET5(TL_MADE_SAMPLES, TL_MADE_SURFACES, TL_INPUT_MOTION, TL_INPUT_GROUND, TL_INPUT_LAMPS) |
+              SET1(TL_INPUT_LIGHT),
+     .writes = SET1(TL_MADE_LAMP_RAYS),
+     .requires_scene = SET1(TL_SCENE_LAMP_RAYS),
+     .levels = LEVELS_ONE,
+     .run = run_lamp_rays},
+    {.name = "lamps",
+     .what = "light of the lamps, added",
+     .reads = SET5(TL_MADE_LIGHT, TL_MADE_GBUFFER, TL_MADE_SURFACES, TL_MADE_LAMP_MAPS, TL_MADE_LAMP_RAYS) |
+              SET4(TL_INPUT_CAMERA, TL_INPUT_LAMPS, TL_INPUT_GROUND, TL_INPUT_LIGHT),
+     .writes = SET1(TL_MADE_LAMPLIGHT),
+     .requires_scene = SET1(TL_SCENE_LAMPS),
+     .levels = LEVELS_ONE,
+     .run = run_lamps},
     {.name = "resolve",
      .what = "samples to pixels",
-     .reads = SET3(TL_MADE_LIGHT, TL_MADE_GBUFFER, TL_INPUT_SIZE),
+     .reads = SET4(TL_MADE_LIGHT, TL_MADE_LAMPLIGHT, TL_MADE_GBUFFER, TL_INPUT_SIZE),
      .writes = SET1(TL_MADE_IMAGE),
      .requires_scene = SET1(TL_SCENE_RASTER),
      .levels = LEVELS_ONE,
@@ -638,7 +740,7 @@ const tl_job tl_frame_jobs[] = {
     {.name = "reference",
      .what = "the image, ray traced",
      .reads = SET5(TL_INPUT_ENVIRONMENT, TL_INPUT_YAW, TL_INPUT_CAMERA, TL_INPUT_SIZE, TL_INPUT_LIGHT) |
-              SET3(TL_MADE_SURFACES, TL_INPUT_GROUND, TL_INPUT_REFERENCE),
+              SET4(TL_MADE_SURFACES, TL_INPUT_GROUND, TL_INPUT_LAMPS, TL_INPUT_REFERENCE),
      .writes = SET1(TL_MADE_IMAGE),
      .requires_scene = SET1(TL_SCENE_REFERENCE),
      .levels = LEVELS_ONE,

@@ -5,6 +5,7 @@
 #include "config/memory.h"
 #include "render/frame/view.h"
 #include "render/reference/gather.h"
+#include "render/reference/lamps.h"
 
 #include <float.h>
 #include <math.h>
@@ -68,6 +69,8 @@ struct bundle {
     struct tl_spots spots;
     size_t pixel[TL_SPOTS];
     float cover[TL_SPOTS];
+    vec3s lamplight[TL_SPOTS];
+    size_t rays; /* spent on it */
 };
 
 static struct sights aim(const struct drawing *drawing, int tile, int sample)
@@ -101,6 +104,7 @@ static void find_spots(const struct drawing *drawing, bool last, struct sights *
         float openness = spot.layered && !last ? spot.layers.openness : 0;
         bundle->pixel[bundle->spots.count] = sight.pixel;
         bundle->cover[bundle->spots.count] = sight.share * spot.cover * (1 - openness);
+        bundle->lamplight[bundle->spots.count] = tl_reference_lamps(drawing->scene, &spot, &bundle->rays);
         tl_spots_add(&bundle->spots, &spot);
         sight.share *= openness;
         sight.ray.from_m = spot.distance_m + drawing->scene->offset_m;
@@ -157,7 +161,7 @@ static size_t draw_spots(const struct drawing *drawing, int replicate, int tile,
     for (int i = 0; i < bundle->spots.count; i++) {
         float *pixel = drawing->replicate + 4 * bundle->pixel[i], share = bundle->cover[i] / (float)samples;
         for (int c = 0; c < 3; c++)
-            pixel[c] = fminf(pixel[c] + share * light[c][i], FLT_MAX);
+            pixel[c] = fminf(pixel[c] + share * (light[c][i] + bundle->lamplight[i].raw[c]), FLT_MAX);
         pixel[3] += share;
     }
     return rays;
@@ -173,7 +177,7 @@ static size_t draw_sample(const struct drawing *drawing, int replicate, int tile
         if (bundle.spots.count > 0)
             rays += draw_spots(drawing, replicate, tile, sample, behind, &bundle);
     }
-    return rays;
+    return rays + bundle.rays;
 }
 
 /* Tiles own their pixels, so the number of threads does not show. False when interrupted. */

@@ -17,13 +17,16 @@ foreach(name
     lobes
     map_fit
     memory
+    normalise
     plan
+    power
     regions
     regions_sphere
     relief
     sky
     slices
     sun
+    tables
     terms
     trace
     )
