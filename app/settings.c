@@ -73,7 +73,7 @@ static const struct tl_option_table camera_table = TL_OPTION_TABLE(
     "camera", "an orbit about a target", camera_rows, struct tl_camera_params, TL_CAMERA_DEFAULTS);
 
 /* The reference page's order. A preset sets CLOTH, LIGHT and IMAGE; a fabric FABRIC, WEAVE and MATERIAL. */
-enum { SCENE, CAMERA, CLOTH, FABRIC, WEAVE, MATERIAL, LIGHT, IMAGE, REFERENCE };
+enum { SCENE, CAMERA, CLOTH, FABRIC, WEAVE, MATERIAL, LIGHT, DETAIL, IMAGE, REFERENCE };
 
 void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[TL_SETTINGS_TABLES])
 {
@@ -84,14 +84,17 @@ void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[T
     bindings[WEAVE] = (struct tl_binding){&tl_weave_options, &settings->weave};
     bindings[MATERIAL] = (struct tl_binding){&tl_material_options, &settings->material};
     bindings[LIGHT] = (struct tl_binding){&tl_light_options, &settings->light};
+    bindings[DETAIL] = (struct tl_binding){&tl_detail_options, &settings->detail};
     bindings[IMAGE] = (struct tl_binding){&tl_image_options, &settings->image};
     bindings[REFERENCE] = (struct tl_binding){&tl_reference_options, &settings->reference};
 }
 
 struct tl_render_settings tl_settings_render(const struct tl_settings *settings)
 {
-    return (struct tl_render_settings){
-        .light = settings->light, .image = settings->image, .reference = settings->reference};
+    return (struct tl_render_settings){.light = settings->light,
+                                       .detail = settings->detail,
+                                       .image = settings->image,
+                                       .reference = settings->reference};
 }
 
 bool tl_settings_equal(const struct tl_settings *a, const struct tl_settings *b)

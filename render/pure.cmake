@@ -2,6 +2,7 @@
 add_library(toile_light STATIC
   detail/bake.c
   detail/bumps.c
+  detail/detail.c
   detail/field.c
   env/convert.c
   env/cube.c

@@ -82,6 +82,8 @@ tl_renderer *tl_renderer_create(tl_gpu *gpu, tl_error *error)
     tl_renderer *renderer = TL_NEW(tl_renderer);
     renderer->gpu = gpu;
     renderer->surfaces = tl_surfaces_create(gpu);
+    tl_surfaces_use_detail(renderer->surfaces, &renderer->detail);
+    renderer->detail.params = *(const struct tl_detail_params *)tl_detail_options.defaults;
     renderer->points = tl_points_create();
     renderer->trace = tl_trace_create(error);
     renderer->maps = tl_shadow_maps_create(gpu, error);
@@ -107,6 +109,7 @@ void tl_renderer_destroy(tl_renderer **renderer)
     tl_slice_maps_release(&(*renderer)->slice_maps);
     tl_region_lights_release(&(*renderer)->lights);
     tl_surfaces_destroy(&(*renderer)->surfaces);
+    tl_detail_maps_release(&(*renderer)->detail);
     tl_triangle_ranges_release(&(*renderer)->ranges);
     tl_samples_release(&(*renderer)->samples);
     tl_mirrors_release(&(*renderer)->mirrors);
@@ -325,7 +328,7 @@ struct tl_render_memory tl_renderer_memory(const tl_renderer *renderer)
         .rays = tl_trace_bytes(renderer->trace) + tl_points_bytes(renderer->points),
         .targets = tl_target_bytes(&renderer->gbuffer.target) + tl_target_bytes(&renderer->lighting.target) +
                    tl_present_bytes(present),
-        .surfaces = tl_surfaces_bytes(renderer->surfaces),
+        .surfaces = tl_surfaces_bytes(renderer->surfaces) + tl_detail_maps_bytes(&renderer->detail),
         .other = tl_lighting_bytes(&renderer->lighting) + tl_texture_bytes(&present->backdrop) +
                  tl_texture_bytes(&present->blurred),
     };

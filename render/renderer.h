@@ -8,6 +8,7 @@
 #include "assets/environment.h"
 #include "assets/surface.h"
 #include "config/options.h"
+#include "render/detail/options.h"
 #include "render/gpu/gpu.h"
 #include "render/plan/plan.h"
 
@@ -123,6 +124,7 @@ typedef struct tl_frame {
 
 struct tl_render_settings {
     struct tl_light_params light;
+    struct tl_detail_params detail;
     struct tl_image_params image;
     struct tl_reference_params reference;
 };

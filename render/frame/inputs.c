@@ -1,3 +1,4 @@
+#include "render/detail/detail.h"
 #include "render/frame/frame.h"
 #include "render/pem/lobe.h"
 
@@ -66,6 +67,12 @@ static uint64_t reference_signature(const struct tl_reference_params *reference)
     return MIX(MIX(hash, reference->replicates), reference->terminator);
 }
 
+static uint64_t detail_signature(const struct tl_detail_params *detail)
+{
+    uint64_t hash = MIX(MIX(MIX(FNV_OFFSET, detail->mode), detail->steps), detail->refine);
+    return MIX(MIX(MIX(MIX(hash, detail->shadow), detail->height_scale), detail->silhouette), detail->minify);
+}
+
 bool tl_light_averages(const struct tl_light_params *light)
 {
     return light->jitter && light->method != TL_METHOD_REFERENCE && light->method != TL_METHOD_UNSHADOWED;
@@ -115,6 +122,7 @@ void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *setti
     signatures[TL_INPUT_RAYS] = rays_signature(light);
     signatures[TL_INPUT_LIGHT] = light_signature(light);
     signatures[TL_INPUT_REFERENCE] = reference_signature(&settings->reference);
+    signatures[TL_INPUT_DETAIL] = detail_signature(&settings->detail);
     signatures[TL_INPUT_SHOW] = MIX(MIX(start, image->exposure_ev), image->background);
     count_rest(light, before, signatures, rest);
     signatures[TL_INPUT_ROUND] = MIX(start, rest->image);
@@ -142,14 +150,16 @@ static void glossiness_range(const tl_material *material, float *low, float *hig
 /* The G-buffer rounds 1 - glossiness to a half. */
 #define ROUNDING 1e-3f
 
-uint32_t tl_frame_exponents(const tl_frame *frame)
+uint32_t tl_frame_exponents(const tl_frame *frame, const struct tl_detail_params *detail)
 {
     uint32_t needed = 1;
     for (size_t s = 0; s < frame->surface_count; s++)
         for (size_t p = 0; p < frame->surfaces[s].part_count; p++) {
+            const tl_material *material = &frame->surfaces[s].materials[frame->surfaces[s].parts[p].material];
             float low, high;
-            glossiness_range(&frame->surfaces[s].materials[frame->surfaces[s].parts[p].material], &low,
-                             &high);
+            glossiness_range(material, &low, &high);
+            if (tl_detail_wants_moments(detail) && tl_detail_wants_maps(detail, material))
+                low = 0; /* averaged bumps dull any gloss */
             needed |= tl_exponents_needed(1 - (1 - low) * (1 + ROUNDING), 1 - (1 - high) * (1 - ROUNDING));
             if (tl_mirror_ray_count(tl_lobe_exponent(high)) >
                 0) /* lobes along a mirror's rays are narrower still */
@@ -171,6 +181,16 @@ static float greatest_glossiness(const tl_frame *frame)
     return greatest;
 }
 
+static bool wants_detail(const tl_frame *frame, const struct tl_detail_params *detail)
+{
+    for (size_t s = 0; s < frame->surface_count; s++)
+        for (size_t p = 0; p < frame->surfaces[s].part_count; p++)
+            if (tl_detail_wants_maps(detail,
+                                     &frame->surfaces[s].materials[frame->surfaces[s].parts[p].material]))
+                return true;
+    return false;
+}
+
 tl_bits tl_frame_facts(const tl_frame *frame, const struct tl_render_settings *settings)
 {
     const struct tl_light_params *light = &settings->light;
@@ -180,6 +200,8 @@ tl_bits tl_frame_facts(const tl_frame *frame, const struct tl_render_settings *s
     tl_bits facts = TL_BIT(TL_SCENE_RASTER) | TL_BIT(rays ? TL_SCENE_RAYS : TL_SCENE_PASSES);
     if (shadowed)
         facts |= TL_BIT(TL_SCENE_SHADOWS) | (rays ? 0 : TL_BIT(TL_SCENE_MAPS));
+    if (wants_detail(frame, &settings->detail))
+        facts |= TL_BIT(TL_SCENE_DETAIL);
     if (light->visibility == TL_VISIBILITY_VSM)
         facts |= TL_BIT(TL_SCENE_BLUR);
     if (!rays && tl_light_source(light) == TL_LIGHT_CHAIN)

@@ -29,6 +29,7 @@ const char *const tl_resource_names[] = {
     [TL_INPUT_SCENE_ROUND] = "round of the scene",
     [TL_INPUT_LIGHT] = "light options",
     [TL_INPUT_REFERENCE] = "reference options",
+    [TL_INPUT_DETAIL] = "detail options",
     [TL_INPUT_SHOW] = "exposure and background",
     [TL_MADE_CUBE] = "cube",
     [TL_MADE_REGIONS] = "regions",
@@ -38,6 +39,7 @@ const char *const tl_resource_names[] = {
     [TL_MADE_SLICES] = "slices",
     [TL_MADE_LIGHTS] = "regions as lights",
     [TL_MADE_SURFACES] = "surfaces",
+    [TL_MADE_DETAIL] = "detail maps",
     [TL_MADE_DEPTHS] = "depths",
     [TL_MADE_MAPS] = "shadow maps",
     [TL_MADE_GBUFFER] = "G-buffer",
@@ -62,6 +64,7 @@ const char *const tl_scene_fact_names[] = {
     [TL_SCENE_SLICES] = "exact slices",
     [TL_SCENE_EXACT] = "exact light",
     [TL_SCENE_BLUR] = "variance maps",
+    [TL_SCENE_DETAIL] = "fabric detail",
     [TL_SCENE_REFERENCE] = "reference",
     NULL,
 };
@@ -102,7 +105,8 @@ static bool run_lobes(void *context, int level, tl_error *error)
 {
     tl_renderer *renderer = context;
     (void)level, (void)error;
-    tl_lobes_make(&renderer->lobes, &renderer->cube, tl_frame_exponents(&renderer->frame));
+    tl_lobes_make(&renderer->lobes, &renderer->cube,
+                  tl_frame_exponents(&renderer->frame, &renderer->settings.detail));
     tl_lighting_set_exact(&renderer->lighting, renderer->gpu, &renderer->lobes);
     return true;
 }
@@ -114,7 +118,7 @@ static bool run_slices(void *context, int level, tl_error *error)
     (void)level, (void)error;
     tl_slices_release(&renderer->slices);
     tl_slices_make(&renderer->slices, &renderer->cube, &renderer->regions,
-                   tl_frame_exponents(&renderer->frame));
+                   tl_frame_exponents(&renderer->frame, &renderer->settings.detail));
     tl_slice_maps_upload(&renderer->slice_maps, renderer->gpu, &renderer->slices);
     return true;
 }
@@ -175,6 +179,14 @@ static bool run_surfaces(void *context, int level, tl_error *error)
     return tl_surfaces_update(renderer->surfaces, renderer->drawn, renderer->surface_count, error);
 }
 
+static bool run_detail(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level;
+    return tl_detail_maps_make(&renderer->detail, renderer->gpu, renderer->drawn, renderer->surface_count,
+                               &renderer->settings.detail, error);
+}
+
 static struct tl_shadow_request shadow_request(const tl_renderer *renderer)
 {
     const struct tl_light_params *light = &renderer->settings.light;
@@ -214,11 +226,23 @@ static bool run_blur(void *context, int level, tl_error *error)
     return true;
 }
 
+/* What no option asks for any more is not kept; bumps are as high as the options say, with maps or without.
+ */
+static void forget_unused_detail(tl_renderer *renderer)
+{
+    if (!(tl_frame_facts(&renderer->frame, &renderer->settings) & TL_BIT(TL_SCENE_DETAIL)))
+        tl_detail_maps_release(&renderer->detail);
+    renderer->detail.params = renderer->settings.detail;
+}
+
 static bool run_gbuffer(void *context, int level, tl_error *error)
 {
     tl_renderer *renderer = context;
-    (void)level, (void)error;
+    (void)level;
     const struct tl_image_params *image = &renderer->settings.image;
+    if (!tl_gbuffer_choose_detail(&renderer->gbuffer, renderer->gpu, &renderer->settings.detail, error))
+        return false;
+    forget_unused_detail(renderer);
     tl_gbuffer_draw(&renderer->gbuffer, renderer->gpu, &renderer->view, image->width * image->supersample,
                     image->height * image->supersample, renderer->surfaces, renderer->surface_count,
                     ground_of(renderer));
@@ -438,14 +462,14 @@ const tl_job tl_frame_jobs[] = {
      .run = run_pems},
     {.name = "lobes",
      .what = "the whole environment through exact lobes",
-     .reads = SET2(TL_MADE_CUBE, TL_INPUT_SHAPES),
+     .reads = SET3(TL_MADE_CUBE, TL_INPUT_SHAPES, TL_INPUT_DETAIL),
      .writes = SET1(TL_MADE_LOBES),
      .requires_scene = SET1(TL_SCENE_EXACT),
      .levels = LEVELS_ONE,
      .run = run_lobes},
     {.name = "slices",
      .what = "the regions through exact lobes",
-     .reads = SET3(TL_MADE_CUBE, TL_MADE_REGIONS, TL_INPUT_SHAPES),
+     .reads = SET4(TL_MADE_CUBE, TL_MADE_REGIONS, TL_INPUT_SHAPES, TL_INPUT_DETAIL),
      .writes = SET1(TL_MADE_SLICES),
      .requires_scene = SET1(TL_SCENE_SLICES),
      .levels = LEVELS_ONE,
@@ -463,6 +487,13 @@ const tl_job tl_frame_jobs[] = {
      .writes = SET1(TL_MADE_SURFACES),
      .levels = LEVELS_ONE,
      .run = run_surfaces},
+    {.name = "detail",
+     .what = "heights, horizons and spread of normals of the fabrics",
+     .reads = SET3(TL_INPUT_SHAPES, TL_INPUT_DETAIL, TL_INPUT_GROUND),
+     .writes = SET1(TL_MADE_DETAIL),
+     .requires_scene = SET1(TL_SCENE_DETAIL),
+     .levels = LEVELS_ONE,
+     .run = run_detail},
     {.name = "maps",
      .what = "a shadow map for each region and sun",
      .reads = SET5(TL_MADE_SURFACES, TL_MADE_REGIONS, TL_INPUT_YAW, TL_INPUT_MAPS, TL_INPUT_PASSES) |
@@ -480,7 +511,8 @@ const tl_job tl_frame_jobs[] = {
      .run = run_blur},
     {.name = "gbuffer",
      .what = "nearest point, normal and material of every sample",
-     .reads = SET4(TL_MADE_SURFACES, TL_INPUT_CAMERA, TL_INPUT_SIZE, TL_INPUT_GROUND),
+     .reads = SET5(TL_MADE_SURFACES, TL_MADE_DETAIL, TL_INPUT_CAMERA, TL_INPUT_SIZE, TL_INPUT_GROUND) |
+              SET1(TL_INPUT_DETAIL),
      .writes = SET1(TL_MADE_GBUFFER),
      .levels = LEVELS_ONE,
      .run = run_gbuffer},

@@ -4,13 +4,39 @@
 
 #include <epoxy/gl.h>
 
+#include <string.h>
+
 /* Uniform locations of gbuffer.vert and gbuffer.frag beside those of surface.glsl. */
 enum { VIEW_PROJECTION = 16, EYE = 17, FADING_DISC = 18 };
 
+static bool make_program(struct tl_gbuffer *gbuffer, tl_gpu *gpu, tl_program *out, tl_error *error)
+{
+    return tl_program_create_variant(gpu, tl_embedded_shaders, "gbuffer.vert", "gbuffer.frag",
+                                     gbuffer->defines, out, error);
+}
+
 bool tl_gbuffer_create(struct tl_gbuffer *gbuffer, tl_gpu *gpu, tl_error *error)
 {
-    return tl_program_create(gpu, tl_embedded_shaders, "gbuffer.vert", "gbuffer.frag", &gbuffer->program,
-                             error);
+    tl_detail_defines(tl_detail_options.defaults, gbuffer->defines, sizeof gbuffer->defines);
+    return make_program(gbuffer, gpu, &gbuffer->program, error);
+}
+
+bool tl_gbuffer_choose_detail(struct tl_gbuffer *gbuffer, tl_gpu *gpu, const struct tl_detail_params *detail,
+                              tl_error *error)
+{
+    char before[sizeof gbuffer->defines];
+    tl_program program;
+    strcpy(before, gbuffer->defines);
+    tl_detail_defines(detail, gbuffer->defines, sizeof gbuffer->defines);
+    if (strcmp(before, gbuffer->defines) == 0)
+        return true;
+    if (!make_program(gbuffer, gpu, &program, error)) {
+        strcpy(gbuffer->defines, before);
+        return false;
+    }
+    tl_program_destroy(&gbuffer->program);
+    gbuffer->program = program;
+    return true;
 }
 
 void tl_gbuffer_release(struct tl_gbuffer *gbuffer)

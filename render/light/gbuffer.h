@@ -2,6 +2,7 @@
 #ifndef TOILE_RENDER_LIGHT_GBUFFER_H
 #define TOILE_RENDER_LIGHT_GBUFFER_H
 
+#include "render/detail/detail.h"
 #include "render/frame/view.h"
 #include "render/surfaces/ground.h"
 #include "render/surfaces/surfaces.h"
@@ -19,12 +20,17 @@ enum tl_gbuffer_layer {
 };
 
 struct tl_gbuffer {
-    tl_program program;
+    tl_program program; /* for `defines` */
+    char defines[TL_DETAIL_DEFINES_SIZE];
     tl_target target;
 };
 
 bool tl_gbuffer_create(struct tl_gbuffer *gbuffer, tl_gpu *gpu, tl_error *error);
 void tl_gbuffer_release(struct tl_gbuffer *gbuffer);
+
+/* Makes the program anew if these options want another one. */
+bool tl_gbuffer_choose_detail(struct tl_gbuffer *gbuffer, tl_gpu *gpu, const struct tl_detail_params *detail,
+                              tl_error *error);
 
 /* `ground` is the last of the surfaces, or NULL when none is drawn. Sizes are in samples. */
 void tl_gbuffer_draw(struct tl_gbuffer *gbuffer, tl_gpu *gpu, const struct tl_view *view, int width,
