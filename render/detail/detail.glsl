@@ -233,7 +233,7 @@ Bumps detail_bumps(vec4 moments, float scale)
     float z = sqrt(max(1.0 - moments.z - moments.w, 0.0));
     vec3 mean = vec3(scale * moments.xy, z);
     vec2 spread = max(moments.zw - moments.xy * moments.xy, 0.0) * scale * scale;
-    return Bumps(mean, spread, clamp(length(vec3(moments.xy, z)), 0.05, 1.0));
+    return Bumps(mean, spread, sqrt(clamp(1.0 - spread.x - spread.y, 0.0025, 1.0))); // but for what z varies itself
 }
 
 // 1 - g of the gloss over averaged normals; `view` in tangent space.

@@ -62,6 +62,7 @@ void main()
     }
     vec2 horizon = octahedral(side * smooth_normal);
     vec3 v = direction_or(eye - point, n);
+    // Of the mean normal: facets that turn away reflect more, but what lies below the surface's horizon.
     vec3 ks = schlick(specular_f0(place.uv), dot(n, v));
 #if DETAIL_SHADOW != 0
     if (has_detail(DETAIL_HORIZONS)) {
