@@ -34,6 +34,14 @@ vec2 map_uv(int map, vec2 uv)
     return vec2(dot(uv_rows[2 * map], point), dot(uv_rows[2 * map + 1], point));
 }
 
+// Yarns are regular, and trilinear filtering lets their moire through: with the spread of normals at hand (DETAIL_MINIFY)
+// they are read a level coarser, for what is lost is not lost.
+#if defined(DETAIL_MINIFY) && DETAIL_MINIFY > 0
+const float WEAVE_BIAS = 1.0;
+#else
+const float WEAVE_BIAS = 0.0;
+#endif
+
 // Maps at their level of detail: by the UV's own derivatives where detail has moved it, for its jumps are no scale.
 #ifdef DETAIL_SHIFTED
 vec2 unmoved_across, unmoved_down; // how UV changes from sample to sample; set by who moves it
@@ -46,7 +54,8 @@ vec4 map_texel(sampler2D map, int use, vec2 uv)
 
 vec4 weave_texel(sampler2D map, vec2 uv)
 {
-    return textureGrad(map, uv * weave_scale, unmoved_across * weave_scale, unmoved_down * weave_scale);
+    vec2 scale = exp2(WEAVE_BIAS) * weave_scale;
+    return textureGrad(map, uv * weave_scale, unmoved_across * scale, unmoved_down * scale);
 }
 #else
 vec4 map_texel(sampler2D map, int use, vec2 uv)
@@ -56,7 +65,7 @@ vec4 map_texel(sampler2D map, int use, vec2 uv)
 
 vec4 weave_texel(sampler2D map, vec2 uv)
 {
-    return texture(map, uv * weave_scale);
+    return texture(map, uv * weave_scale, WEAVE_BIAS);
 }
 #endif
 
