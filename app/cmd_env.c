@@ -19,6 +19,9 @@ static const char *const descriptions[TL_LAYOUT_COUNT] = {
                              "right disc (-d.x, d.y) / (1 - d.z); +Y is up",
     [TL_LAYOUT_LATLONG] =
         "environment map, latlong: u = 0.5 + atan2(x, -z) / 2pi, v = acos(y) / pi; +Y is up",
+    [TL_LAYOUT_OCTAHEDRAL] =
+        "environment map, octahedral: |x| + |y| + |z| = 1 unfolded about +Y, +X right, +Z "
+        "down; -Y in the corners",
 };
 
 static bool find_layout(const char *flag, const char *name, enum tl_layout *layout, tl_error *error)
@@ -28,7 +31,8 @@ static bool find_layout(const char *flag, const char *name, enum tl_layout *layo
             *layout = (enum tl_layout)i;
             return true;
         }
-    return tl_fail(error, TL_USAGE, "%s: \"%s\": expected cube, sphere, paraboloid or latlong", flag, name);
+    return tl_fail(error, TL_USAGE, "%s: \"%s\": expected cube, sphere, paraboloid, latlong or octahedral",
+                   flag, name);
 }
 
 static bool check_arguments(const struct tl_arguments *arguments, tl_error *error)
@@ -41,11 +45,12 @@ static bool check_arguments(const struct tl_arguments *arguments, tl_error *erro
                        arguments->output ? arguments->output : "env: no output");
     if (!arguments->layout)
         return tl_fail(error, TL_USAGE,
-                       "env: into which layout? add --layout cube, sphere, paraboloid or latlong");
+                       "env: into which layout? add --layout cube, sphere, paraboloid, latlong or "
+                       "octahedral");
     return true;
 }
 
-/* By its shape; paraboloids look like lat-long maps and must be named. */
+/* By its shape; paraboloids look like lat-long maps and octahedral ones like spheres: they must be named. */
 static enum tl_layout guess_layout(const tl_environment *environment)
 {
     if (environment->layout == TL_ENV_CUBE)

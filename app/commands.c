@@ -27,6 +27,10 @@ const struct tl_command tl_commands[] = {
      "Runs the extremes, cell by cell: exact, within a stated bound, or refused with a clear message; "
      "FOLDER gets a table of all cells and a picture of the cloth's.",
      TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_JSON | TL_FLAGS_QUICK, tl_command_stability},
+    {"gallery", "gallery [WALL] -o FOLDER [--quick]",
+     "Hangs every technique and setting beside its exact evaluation, with its error and its time: pictures, "
+     "FOLDER/gallery.html and gallery.csv.",
+     TL_FLAGS_OUTPUT | TL_FLAGS_QUICK, tl_command_gallery},
     {"compare", "compare TESTED REFERENCE [--json] [--ldr|--hdr]",
      "Tells how different two images are: relative RMSE, mean FLIP, largest difference.",
      TL_FLAGS_JSON | TL_FLAGS_METRIC, tl_command_compare},
@@ -35,7 +39,7 @@ const struct tl_command tl_commands[] = {
      "garment's "
      "motion as .pc2 or .mdd.",
      TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_FRAME | TL_FLAGS_FRAMES, tl_command_export},
-    {"env", "env IN -o OUT.exr --layout cube|sphere|paraboloid|latlong [--from LAYOUT] [--size N]",
+    {"env", "env IN -o OUT.exr --layout cube|sphere|paraboloid|latlong|octahedral [--from LAYOUT] [--size N]",
      "Converts an environment map between layouts, keeping its light.", TL_FLAGS_OUTPUT | TL_FLAGS_LAYOUT,
      tl_command_env},
     {"info", "info FILE|fabrics|presets|garments [--json]",

@@ -45,6 +45,7 @@ struct tl_session {
     struct tl_box framed; /* what the camera frames: all there is at frame 0 */
     tl_surface surfaces[2];
     size_t surface_count;
+    struct tl_lamp lamps[2];
 };
 
 static bool is_built_in_garment(const char *name)
@@ -497,14 +498,19 @@ tl_frame tl_session_frame(tl_session *session)
     for (size_t i = 0; i < session->surface_count; i++)
         session->surfaces[i].topology_revision = session->look_revision;
     const struct tl_image_params *image = &session->settings.image;
+    struct tl_camera camera = tl_camera_frame(&session->settings.camera, session->framed,
+                                              (float)image->width / (float)image->height);
+    session->lamps[0] = tl_lamp_make(&session->settings.lamp, camera.target);
+    session->lamps[1] = tl_lamp_make(&session->settings.fill, camera.target);
     return (tl_frame){
-        .camera = tl_camera_frame(&session->settings.camera, session->framed,
-                                  (float)image->width / (float)image->height),
+        .camera = camera,
         .surfaces = session->surfaces,
         .surface_count = session->surface_count,
         .environment = &session->light.environment,
         .environment_revision = session->light.revision,
         .environment_yaw = glm_rad(session->settings.scene.environment_yaw_deg),
+        .lamps = session->lamps,
+        .lamp_count = TL_COUNT(session->lamps),
         .time_s = session->frame / session->settings.cloth.frame_rate,
     };
 }

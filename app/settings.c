@@ -15,7 +15,7 @@
  */
 static const char *const garment_names[] = {"dress", "skirt", "sheet", "sphere", "torus", "none", NULL};
 static const char *const avatar_names[] = {"form", "ball", "none", NULL};
-static const char *const environment_names[] = {"studio", NULL};
+static const char *const environment_names[] = {"studio", "white", "none", NULL};
 static const char *const motion_names[] = {"none", NULL};
 
 #define TL_SCENE_DEFAULTS                                                                                    \
@@ -38,7 +38,8 @@ static const struct tl_option scene_rows[] = {
                            "who wears it: built in, or a glTF or OBJ file"),
     TL_OPTION_ENUM(struct tl_scene_params, avatar_units, tl_units_names, "of the avatar's file, as units"),
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, environment, environment_names,
-                           "the light: built in, an .exr or .hdr file, or a sequence of them, sky.####.exr: "
+                           "the light: built in (white: 1 from everywhere), an .exr or .hdr file, or a "
+                           "sequence of them, sky.####.exr: "
                            "each # is a digit of the frame's number"),
     TL_OPTION_NAME_OR_PATH(
         struct tl_scene_params, fabric, tl_embedded_fabrics_names,
@@ -73,7 +74,22 @@ static const struct tl_option_table camera_table = TL_OPTION_TABLE(
     "camera", "an orbit about a target", camera_rows, struct tl_camera_params, TL_CAMERA_DEFAULTS);
 
 /* The reference page's order. A preset sets CLOTH, LIGHT and IMAGE; a fabric FABRIC, WEAVE and MATERIAL. */
-enum { SCENE, CAMERA, CLOTH, FABRIC, WEAVE, MATERIAL, LIGHT, DETAIL, IMAGE, REFERENCE };
+enum {
+    SCENE,
+    CAMERA,
+    CLOTH,
+    FABRIC,
+    WEAVE,
+    MATERIAL,
+    LIGHT,
+    MAPS,
+    LAMP,
+    FILL,
+    SHADING,
+    DETAIL,
+    IMAGE,
+    REFERENCE
+};
 
 void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[TL_SETTINGS_TABLES])
 {
@@ -85,6 +101,10 @@ void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[T
     bindings[MATERIAL] = (struct tl_binding){&tl_material_options, &settings->material};
     bindings[LIGHT] = (struct tl_binding){&tl_light_options, &settings->light};
     bindings[DETAIL] = (struct tl_binding){&tl_detail_options, &settings->detail};
+    bindings[MAPS] = (struct tl_binding){&tl_maps_options, &settings->maps};
+    bindings[LAMP] = (struct tl_binding){&tl_lamp_options, &settings->lamp};
+    bindings[FILL] = (struct tl_binding){&tl_fill_options, &settings->fill};
+    bindings[SHADING] = (struct tl_binding){&tl_shading_options, &settings->shading};
     bindings[IMAGE] = (struct tl_binding){&tl_image_options, &settings->image};
     bindings[REFERENCE] = (struct tl_binding){&tl_reference_options, &settings->reference};
 }
@@ -93,6 +113,8 @@ struct tl_render_settings tl_settings_render(const struct tl_settings *settings)
 {
     return (struct tl_render_settings){.light = settings->light,
                                        .detail = settings->detail,
+                                       .maps = settings->maps,
+                                       .shading = settings->shading,
                                        .image = settings->image,
                                        .reference = settings->reference};
 }

@@ -6,6 +6,7 @@
 #include "assets/weave.h"
 #include "cloth/cloth.h"
 #include "config/options.h"
+#include "render/local/lamp.h"
 #include "render/renderer.h"
 
 struct tl_scene_params {              /* table "scene": what to show; names of built-ins or paths */
@@ -39,11 +40,14 @@ struct tl_settings {
     struct tl_material_params material;
     struct tl_light_params light;
     struct tl_detail_params detail;
+    struct tl_maps_params maps;
+    struct tl_lamp_params lamp, fill;
+    struct tl_shading_params shading;
     struct tl_image_params image;
     struct tl_reference_params reference;
 };
 
-#define TL_SETTINGS_TABLES 10
+#define TL_SETTINGS_TABLES 14
 /* The bindings of a settings value, in the order of the reference page. */
 void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[TL_SETTINGS_TABLES]);
 

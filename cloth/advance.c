@@ -11,8 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Strain beyond which the state is no longer cloth. */
-#define STRAIN_LIMIT 10
 /* A hand's pull: a soft spring, and no more than lifts a heavy coat. */
 #define GRAB_STIFFNESS 200.0
 #define GRAB_FORCE     5.0
@@ -108,16 +106,24 @@ static void constrain(tl_cloth *cloth, const struct tl_substep *substep)
 static void advance_preview(tl_cloth *cloth, const struct tl_substep *substep)
 {
     bool bends = cloth->energy.bends_as_force;
+    struct tl_prediction prediction =
+        tl_prediction_make(bends ? cloth->forces : NULL, substep->gravity, substep->drag, substep->h);
+    prediction.moving = substep->follows;
+    const struct tl_move predict = tl_particles_prediction(&cloth->particles, &prediction);
     if (bends)
-        tl_energy_bending_forces(&cloth->energy, cloth->particles.x, cloth->forces);
-    tl_particles_predict(&cloth->particles, bends ? cloth->forces : NULL, substep->gravity, substep->drag,
-                         substep->h);
+        tl_energy_bend(&cloth->energy, cloth->particles.x, cloth->forces, &predict);
+    else
+        tl_particles_move(&predict);
     tl_pins_place(cloth->pins, cloth->pin_count, substep->collider, substep->phase, &cloth->particles);
-    tl_xpbd_solve(&cloth->energy, &cloth->particles);
-    if (cloth->params.strain_limit > 0)
-        tl_limits_solve(&cloth->limits, cloth->params.strain_limit, substep->h, &cloth->particles);
+    bool limited = cloth->params.strain_limit > 0;
+    tl_xpbd_solve(&cloth->energy, &cloth->particles, limited ? &cloth->limits.watch : NULL);
+    if (tl_cloth_sweeps_back(cloth))
+        tl_xpbd_solve_back(&cloth->energy, &cloth->particles);
+    if (limited)
+        tl_limits_solve(&cloth->limits, &cloth->energy, substep->h, &cloth->particles);
     constrain(cloth, substep);
-    tl_particles_finish(&cloth->particles, substep->h);
+    if (!substep->leads)
+        tl_particles_finish(&cloth->particles, substep->h);
 }
 
 /* Seams that close pull as stiff springs: they must close against what the fabric resists. */
@@ -159,18 +165,34 @@ static void advance_settle(tl_cloth *cloth, const struct tl_substep *substep)
     tl_particles_finish(particles, substep->h);
 }
 
-static void find_forces(tl_cloth *cloth)
+static void find_forces(tl_cloth *cloth, const struct tl_move *then)
 {
-    tl_energy_pull(&cloth->energy, &cloth->fabric, cloth->particles.x, cloth->forces);
+    tl_energy_pull(&cloth->energy, &cloth->fabric, cloth->particles.x, cloth->forces, then);
 }
 
-static void advance_reference(tl_cloth *cloth, const struct tl_substep *substep)
+/* Between substeps velocities may point into the avatar by h/2 of what presses there: the next one's first
+ * half takes that on. Who looks at them after the last one wants to see rest. */
+static void advance_reference(tl_cloth *cloth, const struct tl_substep *substep, bool last)
 {
-    tl_verlet_drift(&cloth->particles, cloth->forces, substep->gravity, substep->drag, substep->h);
-    tl_pins_place(cloth->pins, cloth->pin_count, substep->collider, substep->phase, &cloth->particles);
+    struct tl_particles *particles = &cloth->particles;
+    const struct tl_verlet verlet =
+        tl_verlet_make(cloth->forces, substep->gravity, substep->drag, substep->h);
+    if (!substep->follows)
+        tl_verlet_drift(particles, &verlet);
+    tl_pins_place(cloth->pins, cloth->pin_count, substep->collider, substep->phase, particles);
     constrain(cloth, substep);
-    find_forces(cloth);
-    tl_verlet_kick(&cloth->particles, cloth->forces, substep->gravity, substep->drag, substep->h);
+    const struct tl_move then =
+        substep->leads ? tl_verlet_leap(particles, &verlet) : tl_verlet_kick(particles, &verlet);
+    find_forces(cloth, &then);
+    const struct tl_contact_params contact = contact_params(cloth, substep);
+    if (last)
+        tl_contacts_rub(&cloth->contacts, &contact, particles);
+}
+
+static bool is_blown(const tl_cloth *cloth)
+{
+    const float *velocity = cloth->params.wind;
+    return (velocity[0] != 0 || velocity[1] != 0 || velocity[2] != 0) && !tl_sewing_pulls(&cloth->sewing);
 }
 
 /* Before a substep of any solver. */
@@ -181,8 +203,6 @@ static void blow(tl_cloth *cloth, const struct tl_substep *substep)
                                  .gust = cloth->params.gust,
                                  .time_s = cloth->time_s + substep->phase / cloth->params.frame_rate,
                                  .areal_density = cloth->fabric.areal_density};
-    if (!(vec3d_norm(wind.velocity) > 0) || tl_sewing_pulls(&cloth->sewing))
-        return;
     struct tl_particles *particles = &cloth->particles;
     cloth->external = tl_resize(cloth->external, particles->count, sizeof *cloth->external);
     tl_wind_forces(&wind, &cloth->topology, substep->h, particles, cloth->external);
@@ -212,7 +232,8 @@ static void run_step(tl_cloth *cloth, const tl_collider *collider, double drag, 
     double gravity = tl_sewing_pulls(&cloth->sewing) ? 0 : cloth->params.gravity;
     double substeps = substeps_now(cloth), total = steps_per_frame(&cloth->params) * substeps;
     if (cloth->params.solver == TL_CLOTH_REFERENCE)
-        find_forces(cloth);
+        find_forces(cloth, NULL);
+    bool blown = is_blown(cloth);
     for (double sub = 0; sub < substeps; sub++) {
         double done = step * substeps + sub;
         const struct tl_substep substep = {.h = step_seconds(cloth) / substeps,
@@ -220,10 +241,13 @@ static void run_step(tl_cloth *cloth, const tl_collider *collider, double drag, 
                                            .drag = drag,
                                            .phase_before = done / total,
                                            .phase = (done + 1) / total,
-                                           .collider = collider};
-        blow(cloth, &substep);
+                                           .collider = collider,
+                                           .follows = sub > 0 && !blown,
+                                           .leads = sub + 1 < substeps && !blown};
+        if (blown)
+            blow(cloth, &substep);
         if (cloth->params.solver == TL_CLOTH_REFERENCE)
-            advance_reference(cloth, &substep);
+            advance_reference(cloth, &substep, sub + 1 == substeps);
         else if (cloth->params.solver == TL_CLOTH_SETTLE)
             advance_settle(cloth, &substep);
         else
@@ -297,7 +321,7 @@ static bool check_state(const tl_cloth *cloth, tl_error *error)
                 "make cloth.dt smaller or cloth.substeps larger",
                 i, cloth->time_s);
     double strain = tl_cloth_max_strain(cloth);
-    if (strain > STRAIN_LIMIT)
+    if (strain > TL_CLOTH_MOST_STRAIN)
         return tl_fail(error, TL_UNSTABLE,
                        "cloth: stretched by %.0f times at %.3f s; the last good frame is kept: make cloth.dt "
                        "smaller, cloth.substeps larger or the fabric stiffer",
@@ -317,13 +341,15 @@ static bool is_driven(const tl_cloth *cloth, const tl_collider *collider)
            wind[0] != 0 || wind[1] != 0 || wind[2] != 0;
 }
 
-/* What nothing drives cannot gain energy; a solver that makes it do so has left its envelope. That was seen
- * on needles only: crushed to nothing no step is short enough for them, and one sweep of `preview` over stiff
- * ones is not symmetric. Contact may lift the cloth out of the avatar. */
+/* What nothing drives never moves with more energy than it once had of all kinds, elastic energy being above
+ * 0; a solver that makes it do so has left its envelope. That was seen on needles only: crushed to nothing no
+ * step is short enough for them. Elastic energy itself may rise: `preview` rests a little stretched, by
+ * h^2 w T for each vertex of inverse mass w under a tension T, and of stiff needles that is much energy.
+ * Contact may lift the cloth out of the avatar. */
 static bool check_energy(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
 {
     const double lift = 0.25; /* J/kg: 2.5 cm */
-    if (!cloth->has_needles || is_driven(cloth, collider)) {
+    if (!(cloth->needle_share > 0) || is_driven(cloth, collider)) {
         cloth->left_alone = false;
         cloth->collider_revision = cloth->contacts.revision;
         return true;
@@ -335,7 +361,7 @@ static bool check_energy(tl_cloth *cloth, const tl_collider *collider, tl_error 
         cloth->least_energy = total;
         cloth->usual_energy = energies.kinetic + energies.elastic;
     }
-    double gain = total - cloth->least_energy;
+    double gain = energies.kinetic + energies.potential - cloth->least_energy;
     cloth->least_energy = fmin(cloth->least_energy, total);
     if (gain <= cloth->usual_energy + lift * energies.mass)
         return true;

@@ -267,7 +267,7 @@ static void solve_probe(const struct surroundings *around, const struct tl_probe
     double inverse = tl_probe_inverse_mass(probe, particles->w);
     vec3d push = vec3d_sub(keep_out(around, cache, x, before, params), x);
     if (inverse > 0 && vec3d_dot(push, push) > 0)
-        tl_probe_push(probe, vec3d_scale(push, 1 / inverse), particles);
+        tl_probe_push(probe, vec3d_scale(push, 1 / inverse), particles->w, particles->x);
 }
 
 void tl_contacts_solve(struct tl_contacts *contacts, const struct tl_contact_params *params,
@@ -286,6 +286,61 @@ void tl_contacts_solve(struct tl_contacts *contacts, const struct tl_contact_par
         else if (particles->driven[i])
             particles->x[i] = set_aside(&around, cache, particles->x[i], params);
     }
+}
+
+/* ---- Velocities ---- */
+
+/* What the velocity of a point at `gap` above a surface that moves at `surface` is left with, if it would
+ * arrive there within the next substep: Coulomb's bound on impulses. */
+static vec3d rub(vec3d v, double gap, vec3d surface, vec3d normal, const struct tl_contact_params *params)
+{
+    vec3d slip = vec3d_sub(v, surface);
+    double approach = vec3d_dot(slip, normal);
+    if (!(approach < 0) || gap + approach * params->h > ROUNDING_M)
+        return v;
+    slip = vec3d_muladd(slip, normal, -approach);
+    double length = vec3d_norm(slip), grip = params->friction * -approach;
+    return vec3d_muladd(surface, slip, length > grip ? 1 - grip / length : 0);
+}
+
+/* Of a point at x, by all that it touches. */
+static vec3d rub_all(const struct surroundings *around, const struct tl_contact_cache *cache, vec3d x,
+                     vec3d v, const struct tl_contact_params *params)
+{
+    if (cache->near) {
+        vec3d motion = vec3d_sub(anchor_at(cache, params->phase), anchor_at(cache, params->phase_before));
+        v = rub(v, distance_to(cache, x, params->phase) - params->thickness_m,
+                vec3d_scale(motion, 1 / params->h), cache->normal, params);
+    }
+    if (around->ground)
+        v = rub(v, x.y - params->thickness_m, (vec3d){0}, (vec3d){0, 1, 0}, params);
+    return v;
+}
+
+static void rub_probe(const struct surroundings *around, const struct tl_probe *probe,
+                      const struct tl_contact_cache *cache, const struct tl_contact_params *params,
+                      struct tl_particles *particles)
+{
+    double inverse = tl_probe_inverse_mass(probe, particles->w);
+    vec3d v = tl_probe_point(probe, particles->v);
+    vec3d change = vec3d_sub(rub_all(around, cache, tl_probe_point(probe, particles->x), v, params), v);
+    if (inverse > 0 && vec3d_dot(change, change) > 0)
+        tl_probe_push(probe, vec3d_scale(change, 1 / inverse), particles->w, particles->v);
+}
+
+void tl_contacts_rub(const struct tl_contacts *contacts, const struct tl_contact_params *params,
+                     struct tl_particles *particles)
+{
+    const struct surroundings around = look_around(contacts->collider);
+    if (!around.collider)
+        return;
+    for (size_t i = 0; i < contacts->probe_count; i++)
+        rub_probe(&around, &contacts->probes[i], &contacts->caches[contacts->particle_count + i], params,
+                  particles);
+    for (size_t i = 0; i < particles->count; i++)
+        if (particles->w[i] > 0)
+            particles->v[i] =
+                rub_all(&around, &contacts->caches[i], particles->x[i], particles->v[i], params);
 }
 
 /* ---- For solvers that heed planes themselves ---- */

@@ -353,7 +353,7 @@ static double fastest_bending(const struct tl_pulls *pulls, const double *w)
     for (size_t i = 0; i < pulls->vertex_count; i++) {
         double sum = 0;
         for (uint32_t k = pulls->along_first[i]; k < pulls->along_first[i + 1]; k++)
-            sum += fabs(pulls->along[k].bending);
+            sum += fabs(pulls->edge_bending[pulls->along[k].edge]);
         for (uint32_t k = pulls->others_first[i]; k < pulls->others_first[i + 1]; k++)
             sum += fabs(pulls->bending[k]);
         fastest = fmax(fastest, 2 * sum * w[i]);
@@ -369,8 +369,6 @@ void tl_energy_set(struct tl_energy *energy, const struct tl_cloth_fabric *fabri
     for (size_t i = 0; i < energy->bend_count; i++)
         set_bend(&energy->bends[i], fabric, inverse_masses, h);
     energy->bends_as_force = h * sqrt(fastest_bending(&energy->pulls, inverse_masses)) <= FORCE_LIMIT;
-    if (getenv("PRINT"))
-        printf("h %g bend crit %g\n", h, 2 / sqrt(fastest_bending(&energy->pulls, inverse_masses)));
     for (size_t i = 0; i < energy->link_count; i++)
         energy->links[i].compliance = 1 / (fabric->stretch_warp * h * h);
 }

@@ -378,8 +378,11 @@ static void fill_outside(const struct side *target, float *texels)
 
 int tl_convert_size(const struct tl_sphere_map *from, enum tl_layout to)
 {
-    static const int parts[TL_LAYOUT_COUNT] = {
-        [TL_LAYOUT_CUBE] = 1, [TL_LAYOUT_LATLONG] = 2, [TL_LAYOUT_PARABOLOID] = 2, [TL_LAYOUT_SPHERE] = 3};
+    static const int parts[TL_LAYOUT_COUNT] = {[TL_LAYOUT_CUBE] = 1,
+                                               [TL_LAYOUT_LATLONG] = 2,
+                                               [TL_LAYOUT_PARABOLOID] = 2,
+                                               [TL_LAYOUT_SPHERE] = 3,
+                                               [TL_LAYOUT_OCTAHEDRAL] = 3};
     int size = (int)((int64_t)tl_layout_size(from) * parts[to] / parts[from->layout]);
     return size > 1 ? size : 1;
 }

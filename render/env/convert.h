@@ -7,7 +7,7 @@
 #include "render/env/layout.h"
 
 /* The size at which `to` holds about as many texels as `from` does; cube 1 : lat-long 2 : paraboloid 2 :
- * sphere 3, so that going there and back restores the size. At least 1. */
+ * sphere 3 : octahedral 3, so that going there and back restores the size. At least 1. */
 int tl_convert_size(const struct tl_sphere_map *from, enum tl_layout to);
 
 /* `image` (F32, RGB, finite, laid out as `from` says) as `to`. Every texel of the result is a mean of the

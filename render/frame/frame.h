@@ -6,11 +6,14 @@
 #include "render/env/lobes.h"
 #include "render/env/pour.h"
 #include "render/env/sun.h"
+#include "render/envmap/capture.h"
+#include "render/envmap/envmap.h"
 #include "render/light/gbuffer.h"
 #include "render/light/light.h"
 #include "render/light/mirrors.h"
 #include "render/light/region_lights.h"
 #include "render/light/samples.h"
+#include "render/local/local.h"
 #include "render/present/present.h"
 #include "render/renderer.h"
 #include "render/trace/trace.h"
@@ -36,9 +39,14 @@ enum tl_resource {
     TL_INPUT_ROUND,       /* which of the jittered frames that are averaged while nothing changes */
     TL_INPUT_SCENE_ROUND, /* ... while nothing but the camera does */
     TL_INPUT_LIGHT,       /* how light is put together */
+    TL_INPUT_LAMPS,       /* and how surfaces are shaded under them */
     TL_INPUT_REFERENCE,
     TL_INPUT_DETAIL,
-    TL_INPUT_SHOW, /* exposure and background */
+    TL_INPUT_SHOW,    /* exposure and background */
+    TL_INPUT_ENVMAP,  /* size of environment maps, and whether they show the scene */
+    TL_INPUT_LAYOUT,  /* their layout; for a sphere map the view's turn */
+    TL_INPUT_LOOK_UP, /* how they are looked up */
+    TL_INPUT_CAPTURE, /* the scene as it was when it was to be captured last */
     TL_INPUT_COUNT,
     TL_MADE_CUBE = TL_INPUT_COUNT, /* and the suns taken from it */
     TL_MADE_REGIONS,
@@ -55,7 +63,13 @@ enum tl_resource {
     TL_MADE_SAMPLES,
     TL_MADE_MIRRORS, /* what near mirrors show */
     TL_MADE_POINTS,
+    TL_MADE_ENVMAP_LOBES,
+    TL_MADE_CAPTURE,
+    TL_MADE_ENVMAP,
     TL_MADE_LIGHT,
+    TL_MADE_LAMP_MAPS,
+    TL_MADE_LAMP_RAYS,
+    TL_MADE_LAMPLIGHT, /* added to the light */
     TL_MADE_IMAGE,
     TL_MADE_BACKDROP,
     TL_MADE_SHOWN,
@@ -77,6 +91,12 @@ enum tl_scene_fact {
     TL_SCENE_BLUR,    /* shadow maps are variance maps */
     TL_SCENE_DETAIL,  /* a material's bumps need maps of their own */
     TL_SCENE_REFERENCE,
+    TL_SCENE_ENVMAP, /* environment maps light the image */
+    TL_SCENE_LAMPS,
+    TL_SCENE_LAMP_MAPS, /* ... and depth maps shadow one of them */
+    TL_SCENE_LAMP_RAYS, /* ... and rays do */
+    TL_SCENE_SAMPLES,   /* rays start from what is seen */
+    TL_SCENE_CAPTURE,   /* ... and show the scene */
     TL_SCENE_FACT_COUNT
 };
 
@@ -94,7 +114,10 @@ extern const int tl_frame_job_count;
 /* How many frames have been drawn since something changed: anything, and anything but the camera. */
 struct tl_rest {
     int image, scene;
-    bool is_done; /* rays: all rounds of this image are in */
+    bool is_done;      /* rays: all rounds of this image are in */
+    uint64_t captured; /* environment maps: the signature of the scene that they show; 0: none */
+    int capture_age;   /* ... frames ago */
+    bool is_captured;  /* ... and it is the one that is there */
 };
 
 /* Whether rounds at rest change the image. */
@@ -110,6 +133,8 @@ void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *setti
  */
 tl_bits tl_frame_facts(const tl_frame *frame, const struct tl_render_settings *settings);
 uint32_t tl_frame_exponents(const tl_frame *frame, const struct tl_detail_params *detail);
+/* ... and those of environment maps, with the environment itself for mirrors. */
+uint32_t tl_frame_map_exponents(const tl_frame *frame, const struct tl_detail_params *detail);
 
 /* Lists what is drawn, with the ground last when it is drawn. */
 void tl_frame_list_surfaces(tl_renderer *renderer);
@@ -148,6 +173,14 @@ struct tl_renderer {
     float *light; /* [height][width][4] of samples, composed on the CPU */
     size_t light_bytes;
     struct tl_lighting lighting;
+    struct {                 /* what environment maps are made of: the whole light, suns and all */
+        struct tl_pour pour; /* ... to their size */
+        tl_cube cube;
+        struct tl_lobes lobes;
+    } surroundings;
+    struct tl_capture capture;
+    struct tl_envmap envmap;
+    struct tl_local local;
     struct tl_present present;
     double standard_error; /* of the last reference */
 

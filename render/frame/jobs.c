@@ -4,6 +4,7 @@
 #include "config/log.h"
 #include "config/memory.h"
 #include "render/light/compose.h"
+#include "render/local/lamp_rays.h"
 #include "render/reference/reference.h"
 
 #include <math.h>
@@ -28,9 +29,14 @@ const char *const tl_resource_names[] = {
     [TL_INPUT_ROUND] = "round",
     [TL_INPUT_SCENE_ROUND] = "round of the scene",
     [TL_INPUT_LIGHT] = "light options",
+    [TL_INPUT_LAMPS] = "lamps and shading options",
     [TL_INPUT_REFERENCE] = "reference options",
     [TL_INPUT_DETAIL] = "detail options",
     [TL_INPUT_SHOW] = "exposure and background",
+    [TL_INPUT_ENVMAP] = "environment map options",
+    [TL_INPUT_LAYOUT] = "layout",
+    [TL_INPUT_LOOK_UP] = "look-up options",
+    [TL_INPUT_CAPTURE] = "captured scene",
     [TL_MADE_CUBE] = "cube",
     [TL_MADE_REGIONS] = "regions",
     [TL_MADE_LOBE] = "lobe table",
@@ -46,7 +52,13 @@ const char *const tl_resource_names[] = {
     [TL_MADE_SAMPLES] = "samples",
     [TL_MADE_MIRRORS] = "what mirrors show",
     [TL_MADE_POINTS] = "visibility at points",
+    [TL_MADE_ENVMAP_LOBES] = "lobes of the maps",
+    [TL_MADE_CAPTURE] = "capture",
+    [TL_MADE_ENVMAP] = "environment maps",
     [TL_MADE_LIGHT] = "light",
+    [TL_MADE_LAMP_MAPS] = "lamps' shadow maps",
+    [TL_MADE_LAMP_RAYS] = "lamps' shadows by rays",
+    [TL_MADE_LAMPLIGHT] = "light of lamps",
     [TL_MADE_IMAGE] = "image",
     [TL_MADE_BACKDROP] = "backdrop",
     [TL_MADE_SHOWN] = "shown image",
@@ -66,6 +78,12 @@ const char *const tl_scene_fact_names[] = {
     [TL_SCENE_BLUR] = "variance maps",
     [TL_SCENE_DETAIL] = "fabric detail",
     [TL_SCENE_REFERENCE] = "reference",
+    [TL_SCENE_ENVMAP] = "environment maps",
+    [TL_SCENE_LAMPS] = "lamps",
+    [TL_SCENE_LAMP_MAPS] = "lamps with shadow maps",
+    [TL_SCENE_LAMP_RAYS] = "lamps with shadow rays",
+    [TL_SCENE_SAMPLES] = "rays from samples",
+    [TL_SCENE_CAPTURE] = "captured scene",
     NULL,
 };
 
@@ -363,6 +381,151 @@ static bool run_compose(void *context, int level, tl_error *error)
     return true;
 }
 
+static bool run_envmap_lobes(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level, (void)error;
+    tl_cube_release(&renderer->surroundings.cube);
+    tl_lobes_release(&renderer->surroundings.lobes);
+    renderer->surroundings.cube = tl_cube_from_environment_with(
+        renderer->frame.environment, renderer->settings.maps.size, &renderer->surroundings.pour);
+    tl_lobes_make(&renderer->surroundings.lobes, &renderer->surroundings.cube,
+                  tl_frame_map_exponents(&renderer->frame, &renderer->settings.detail));
+    return true;
+}
+
+static mat3s environment_into_world(float yaw)
+{
+    mat3s axes = glms_mat3_identity();
+    for (int i = 0; i < 3; i++)
+        axes.col[i] = tl_turn_direction(axes.col[i], yaw);
+    return axes;
+}
+
+static bool run_capture(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level;
+    const struct tl_maps_params *maps = &renderer->settings.maps;
+    const struct tl_casters *casters = &renderer->casters;
+    vec3s offset = {{maps->capture_at[0], maps->capture_at[1], maps->capture_at[2]}};
+    mat3s into_world = environment_into_world(renderer->frame.environment_yaw);
+    const struct tl_capture_request request = {
+        .point = glms_vec3_add(casters->centre, offset),
+        .size = maps->size,
+        .environment = &renderer->surroundings.cube,
+        .lobes = &renderer->surroundings.lobes,
+        .environment_yaw = renderer->frame.environment_yaw,
+        .into_world = &into_world,
+        .exponents = tl_frame_map_exponents(&renderer->frame, &renderer->settings.detail),
+        .exponent_levels = &renderer->lighting.exponent_levels,
+        .surfaces = renderer->surfaces,
+        .ranges = &renderer->ranges,
+        .ground = ground_of(renderer),
+        .near_m = 1e-3f * casters->radius,
+        .far_m = glms_vec3_norm(offset) + 100 * casters->radius};
+    return tl_capture_draw(&renderer->capture, renderer->gpu, &request, error);
+}
+
+static bool run_envmap(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level, (void)error;
+    bool captured = renderer->settings.maps.capture_every > 0; /* in world axes */
+    if (captured)                                              /* materials may have changed since */
+        tl_lobes_make(&renderer->capture.lobes, &renderer->capture.cube,
+                      tl_frame_map_exponents(&renderer->frame, &renderer->settings.detail));
+    mat3s into_world = environment_into_world(captured ? 0 : renderer->frame.environment_yaw);
+    tl_envmap_fill(&renderer->envmap, renderer->gpu, &renderer->settings.maps,
+                   captured ? &renderer->capture.lobes : &renderer->surroundings.lobes, &into_world,
+                   &renderer->view);
+    tl_envmap_set_parts(&renderer->envmap, renderer->gpu, &renderer->ranges, renderer->settings.image.ground);
+    return true;
+}
+
+static bool run_look_up(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level;
+    const tl_target *gbuffer = &renderer->gbuffer.target;
+    const struct tl_envmap_request request = {.triangles = &gbuffer->colours[TL_GBUFFER_TRIANGLE],
+                                              .exponent_levels = &renderer->lighting.exponent_levels,
+                                              .eye = renderer->view.eye,
+                                              .params = &renderer->settings.maps};
+    tl_lighting_begin(&renderer->lighting, renderer->gpu, gbuffer);
+    bool fine = tl_envmap_draw(&renderer->envmap, renderer->gpu, &request, error);
+    tl_gpu_reset_state(renderer->gpu);
+    return fine;
+}
+
+/* Which back-end shadows each lamp, kept for the jobs that follow. */
+static size_t list_lamps(tl_renderer *renderer, struct tl_lamp lamps[TL_LAMPS_MAX])
+{
+    size_t count = tl_lamps_lit(&renderer->frame, lamps);
+    for (size_t i = 0; i < count; i++)
+        renderer->local.shadows.kinds[i] =
+            tl_lamp_shadow_of(&lamps[i], &renderer->settings.light, &renderer->casters);
+    return count;
+}
+
+static bool run_lamp_maps(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level;
+    struct tl_lamp lamps[TL_LAMPS_MAX];
+    const struct tl_lamp_maps_request request = {.lamp_count = list_lamps(renderer, lamps),
+                                                 .lamps = lamps,
+                                                 .caster_surfaces = renderer->frame.surfaces,
+                                                 .caster_count = renderer->frame.surface_count,
+                                                 .casters = renderer->casters,
+                                                 .surfaces = renderer->surfaces,
+                                                 .map_size = renderer->settings.light.map_size};
+    return tl_lamp_maps_draw(&renderer->local.shadows, renderer->gpu, &request, error);
+}
+
+static bool run_lamp_rays(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level;
+    if (!follow_motion(renderer, error))
+        return false;
+    struct tl_lamp lamps[TL_LAMPS_MAX];
+    struct tl_lamp_shadows *shadows = &renderer->local.shadows;
+    const struct tl_samples *samples = &renderer->samples;
+    size_t count = list_lamps(renderer, lamps);
+    uint8_t *visible = TL_NEW_ARRAY(uint8_t, (size_t)samples->width * (size_t)samples->height);
+    for (size_t i = 0; i < count; i++) {
+        if (shadows->kinds[i] != TL_LAMP_SHADOW_RAYS)
+            continue;
+        tl_lamp_rays(&lamps[i], renderer->trace, samples, &renderer->ranges, ground_of(renderer), visible);
+        tl_lamp_shadows_set(shadows, renderer->gpu, samples->width, samples->height, i, count, visible);
+    }
+    free(visible);
+    return true;
+}
+
+static bool run_lamps(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level;
+    struct tl_lamp lamps[TL_LAMPS_MAX];
+    /* Passes average their rounds in the target. */
+    bool passes = tl_frame_facts(&renderer->frame, &renderer->settings) & TL_BIT(TL_SCENE_PASSES);
+    const struct tl_local_request request = {.gbuffer = &renderer->gbuffer,
+                                             .light = &renderer->lighting.target,
+                                             .view = &renderer->view,
+                                             .surfaces = renderer->surfaces,
+                                             .surface_count = renderer->surface_count,
+                                             .ground = ground_of(renderer),
+                                             .casters = renderer->casters,
+                                             .lamp_count = list_lamps(renderer, lamps),
+                                             .lamps = lamps,
+                                             .params = &renderer->settings.shading,
+                                             .depth_bias_m = renderer->settings.light.depth_bias_m,
+                                             .weight = passes ? 1 / (float)(renderer->rest.image + 1) : 1};
+    return tl_local_draw(&renderer->local, renderer->gpu, &request, error);
+}
+
 static bool run_reference(void *context, int level, tl_error *error)
 {
     tl_renderer *renderer = context;
@@ -520,7 +683,7 @@ const tl_job tl_frame_jobs[] = {
      .what = "the covered samples to the CPU",
      .reads = SET3(TL_MADE_GBUFFER, TL_INPUT_CAMERA, TL_INPUT_SHAPES),
      .writes = SET1(TL_MADE_SAMPLES),
-     .requires_scene = SET1(TL_SCENE_RAYS),
+     .requires_scene = SET1(TL_SCENE_SAMPLES),
      .levels = LEVELS_ONE,
      .run = run_samples},
     {.name = "mirrors",
@@ -542,7 +705,7 @@ const tl_job tl_frame_jobs[] = {
      .what = "visibility times PEM, summed over the regions",
      .reads = SET5(TL_MADE_GBUFFER, TL_MADE_PEMS, TL_MADE_REGIONS, TL_MADE_LOBE, TL_MADE_MAPS) |
               SET5(TL_MADE_SURFACES, TL_INPUT_YAW, TL_INPUT_CAMERA, TL_INPUT_LIGHT, TL_INPUT_GROUND) |
-              SET4(TL_MADE_LOBES, TL_MADE_SLICES, TL_MADE_DEPTHS, TL_INPUT_ROUND),
+              SET5(TL_MADE_LOBES, TL_MADE_SLICES, TL_MADE_DEPTHS, TL_INPUT_ROUND, TL_INPUT_LAMPS),
      .writes = SET1(TL_MADE_LIGHT),
      .requires_scene = SET1(TL_SCENE_PASSES),
      .levels = LEVELS_ONE,
@@ -550,14 +713,68 @@ const tl_job tl_frame_jobs[] = {
     {.name = "compose",
      .what = "exact light times the share of it that is seen",
      .reads = SET5(TL_MADE_SAMPLES, TL_MADE_POINTS, TL_MADE_LIGHTS, TL_MADE_LOBES, TL_MADE_CUBE) |
-              SET3(TL_MADE_MIRRORS, TL_INPUT_YAW, TL_INPUT_LIGHT),
+              SET4(TL_MADE_MIRRORS, TL_INPUT_YAW, TL_INPUT_LIGHT, TL_INPUT_LAMPS),
      .writes = SET1(TL_MADE_LIGHT),
      .requires_scene = SET1(TL_SCENE_RAYS),
      .levels = LEVELS_ONE,
      .run = run_compose},
+    {.name = "envmap_lobes",
+     .what = "all light through exact lobes, for environment maps",
+     .reads = SET4(TL_INPUT_ENVIRONMENT, TL_INPUT_ENVMAP, TL_INPUT_SHAPES, TL_INPUT_DETAIL),
+     .writes = SET1(TL_MADE_ENVMAP_LOBES),
+     .requires_scene = SET1(TL_SCENE_ENVMAP),
+     .levels = LEVELS_ONE,
+     .run = run_envmap_lobes},
+    /* What it draws is not among what it reads: what has changed since waits for the next capture. */
+    {.name = "capture",
+     .what = "the scene seen from a point, through exact lobes",
+     .reads = SET1(TL_INPUT_CAPTURE),
+     .writes = SET1(TL_MADE_CAPTURE),
+     .requires_scene = SET2(TL_SCENE_ENVMAP, TL_SCENE_CAPTURE),
+     .levels = LEVELS_ONE,
+     .run = run_capture},
+    {.name = "envmap",
+     .what = "lobes poured into environment maps of a layout",
+     .reads = SET5(TL_MADE_ENVMAP_LOBES, TL_INPUT_LAYOUT, TL_INPUT_YAW, TL_INPUT_SHAPES, TL_INPUT_GROUND) |
+              SET1(TL_MADE_CAPTURE),
+     .writes = SET1(TL_MADE_ENVMAP),
+     .requires_scene = SET1(TL_SCENE_ENVMAP),
+     .levels = LEVELS_ONE,
+     .run = run_envmap},
+    {.name = "look_up",
+     .what = "environment maps looked up for every sample",
+     .reads = SET5(TL_MADE_GBUFFER, TL_MADE_ENVMAP, TL_INPUT_CAMERA, TL_INPUT_LOOK_UP, TL_INPUT_LAMPS),
+     .writes = SET1(TL_MADE_LIGHT),
+     .requires_scene = SET1(TL_SCENE_ENVMAP),
+     .levels = LEVELS_ONE,
+     .run = run_look_up},
+    /* Lamps add to the light in place, which is therefore made anew whenever they change. */
+    {.name = "lamp_maps",
+     .what = "a shadow map for each lamp",
+     .reads = SET4(TL_MADE_SURFACES, TL_INPUT_LAMPS, TL_INPUT_MAPS, TL_INPUT_LIGHT),
+     .writes = SET1(TL_MADE_LAMP_MAPS),
+     .requires_scene = SET1(TL_SCENE_LAMP_MAPS),
+     .levels = LEVELS_ONE,
+     .run = run_lamp_maps},
+    {.name = "lamp_rays",
+     .what = "rays: what is seen of each lamp",
+     .reads = SET5(TL_MADE_SAMPLES, TL_MADE_SURFACES, TL_INPUT_MOTION, TL_INPUT_GROUND, TL_INPUT_LAMPS) |
+              SET1(TL_INPUT_LIGHT),
+     .writes = SET1(TL_MADE_LAMP_RAYS),
+     .requires_scene = SET1(TL_SCENE_LAMP_RAYS),
+     .levels = LEVELS_ONE,
+     .run = run_lamp_rays},
+    {.name = "lamps",
+     .what = "light of the lamps, added",
+     .reads = SET5(TL_MADE_LIGHT, TL_MADE_GBUFFER, TL_MADE_SURFACES, TL_MADE_LAMP_MAPS, TL_MADE_LAMP_RAYS) |
+              SET4(TL_INPUT_CAMERA, TL_INPUT_LAMPS, TL_INPUT_GROUND, TL_INPUT_LIGHT),
+     .writes = SET1(TL_MADE_LAMPLIGHT),
+     .requires_scene = SET1(TL_SCENE_LAMPS),
+     .levels = LEVELS_ONE,
+     .run = run_lamps},
     {.name = "resolve",
      .what = "samples to pixels",
-     .reads = SET3(TL_MADE_LIGHT, TL_MADE_GBUFFER, TL_INPUT_SIZE),
+     .reads = SET4(TL_MADE_LIGHT, TL_MADE_LAMPLIGHT, TL_MADE_GBUFFER, TL_INPUT_SIZE),
      .writes = SET1(TL_MADE_IMAGE),
      .requires_scene = SET1(TL_SCENE_RASTER),
      .levels = LEVELS_ONE,
@@ -565,7 +782,7 @@ const tl_job tl_frame_jobs[] = {
     {.name = "reference",
      .what = "the image, ray traced",
      .reads = SET5(TL_INPUT_ENVIRONMENT, TL_INPUT_YAW, TL_INPUT_CAMERA, TL_INPUT_SIZE, TL_INPUT_LIGHT) |
-              SET3(TL_MADE_SURFACES, TL_INPUT_GROUND, TL_INPUT_REFERENCE),
+              SET4(TL_MADE_SURFACES, TL_INPUT_GROUND, TL_INPUT_LAMPS, TL_INPUT_REFERENCE),
      .writes = SET1(TL_MADE_IMAGE),
      .requires_scene = SET1(TL_SCENE_REFERENCE),
      .levels = LEVELS_ONE,

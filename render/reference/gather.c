@@ -1,6 +1,7 @@
 #include "render/reference/gather.h"
 
 #include "config/simd.h"
+#include "render/reference/lamps.h"
 
 #include <float.h>
 #include <math.h>
@@ -197,6 +198,7 @@ struct reflections {
     struct tl_spots spots;
     int owner[TL_SPOTS];
     float share[TL_SPOTS];
+    vec3s lamplight[TL_SPOTS];
 };
 
 /* Where a mirror's ray ends: in the sky, in the scene, or, where the ground fades, in both. */
@@ -213,6 +215,7 @@ static void reflect(struct gathering *gathering, int i, vec3s direction, vec3s s
         tl_spots_add(&reflections->spots, &met);
         reflections->owner[r] = i;
         reflections->share[r] = met.cover / (float)gathering->asked->lobe_samples;
+        reflections->lamplight[r] = tl_reference_lamps(gathering->scene, &met, &gathering->rays);
     }
 }
 
@@ -232,8 +235,9 @@ static void light_reflections(struct gathering *gathering, const struct reflecti
     gathering->rays += tl_gather(&inner, &reflections->spots, light);
     for (int r = 0; r < reflections->spots.count; r++)
         for (int c = 0; c < 3; c++)
-            gathering->light[c][reflections->owner[r]] +=
-                gathering->spots->glossy[c][reflections->owner[r]] * reflections->share[r] * light[c][r];
+            gathering->light[c][reflections->owner[r]] += gathering->spots->glossy[c][reflections->owner[r]] *
+                                                          reflections->share[r] *
+                                                          (light[c][r] + reflections->lamplight[r].raw[c]);
 }
 
 /* One direction from each spot's lobe. */

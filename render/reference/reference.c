@@ -5,6 +5,7 @@
 #include "config/memory.h"
 #include "render/frame/view.h"
 #include "render/reference/gather.h"
+#include "render/reference/lamps.h"
 
 #include <float.h>
 #include <math.h>
@@ -55,6 +56,8 @@ struct bundle {
     struct tl_spots spots;
     size_t pixel[TL_SPOTS];
     float cover[TL_SPOTS];
+    vec3s lamplight[TL_SPOTS];
+    size_t rays; /* spent on it */
 };
 
 static struct bundle find_spots(const struct drawing *drawing, int tile, int sample)
@@ -72,6 +75,7 @@ static struct bundle find_spots(const struct drawing *drawing, int tile, int sam
             continue;
         bundle.pixel[bundle.spots.count] = (size_t)y * (size_t)drawing->width + (size_t)x;
         bundle.cover[bundle.spots.count] = spot.cover;
+        bundle.lamplight[bundle.spots.count] = tl_reference_lamps(drawing->scene, &spot, &bundle.rays);
         tl_spots_add(&bundle.spots, &spot);
     }
     return bundle;
@@ -124,10 +128,10 @@ static size_t draw_sample(const struct drawing *drawing, int replicate, int tile
     for (int i = 0; i < bundle.spots.count; i++) {
         float *pixel = drawing->replicate + 4 * bundle.pixel[i], share = bundle.cover[i] / (float)samples;
         for (int c = 0; c < 3; c++)
-            pixel[c] = fminf(pixel[c] + share * light[c][i], FLT_MAX);
+            pixel[c] = fminf(pixel[c] + share * (light[c][i] + bundle.lamplight[i].raw[c]), FLT_MAX);
         pixel[3] += share;
     }
-    return rays + TILE_PIXELS;
+    return rays + bundle.rays + TILE_PIXELS;
 }
 
 /* Tiles own their pixels, so the number of threads does not show. False when interrupted. */

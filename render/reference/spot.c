@@ -92,6 +92,7 @@ bool tl_reference_scene_make(const tl_frame *frame, const struct tl_render_setti
         out->looks[i] = make_look(out, &frame->surfaces[i]);
     if (ground)
         out->looks[out->surface_count] = make_look(out, &ground->surface);
+    out->lamp_count = tl_lamps_lit(frame, out->lamps);
     tl_sky_make(frame->environment, frame->environment_yaw, &out->sky);
     out->trace = tl_trace_create(error);
     if (!out->trace || !tl_trace_update(out->trace, out->surfaces, out->surface_count, error)) {
@@ -230,12 +231,15 @@ static vec3s diffuse_of(const struct place *place)
     return colour;
 }
 
-/* Schlick's Fresnel term with f90 = min(50 F0, 1). */
-static vec3s specular_of(const struct place *place, float n_dot_v)
+static vec3s f0_of(const struct place *place)
 {
     vec3s f0 = place->material->specular;
-    if (has_map(place, TL_MAP_SPECULAR))
-        f0 = times_map(f0, map_at(place, TL_MAP_SPECULAR));
+    return has_map(place, TL_MAP_SPECULAR) ? times_map(f0, map_at(place, TL_MAP_SPECULAR)) : f0;
+}
+
+/* Schlick's Fresnel term with f90 = min(50 F0, 1). */
+static vec3s specular_of(vec3s f0, float n_dot_v)
+{
     float away = 1 - fminf(fmaxf(n_dot_v, 0), 1), fifth = away * away * away * away * away;
     for (int c = 0; c < 3; c++)
         f0.raw[c] += (fminf(50 * f0.raw[c], 1) - f0.raw[c]) * fifth;
@@ -265,8 +269,10 @@ static void set_lobes(const struct place *place, const struct tl_reference_scene
     spot->normal = n;
     spot->axis = direction_or(mirror, n);
     spot->exponent = tl_lobe_exponent(g);
-    spot->diffuse = diffuse_of(place);
-    spot->glossy = specular_of(place, n_dot_v);
+    spot->side = place->side;
+    spot->f0 = f0_of(place);
+    spot->diffuse = spot->albedo = diffuse_of(place);
+    spot->glossy = specular_of(spot->f0, n_dot_v);
     if (scene->lobe == TL_LOBE_SINGLE) {
         spot->axis = direction_or(glms_vec3_lerp(n, mirror, g), n);
         spot->glossy = glms_vec3_lerp(spot->diffuse, spot->glossy, g);

@@ -5,6 +5,7 @@
 #ifndef TOILE_RENDER_REFERENCE_SPOT_H
 #define TOILE_RENDER_REFERENCE_SPOT_H
 
+#include "render/local/lamp.h"
 #include "render/reference/reference.h"
 #include "render/reference/sky.h"
 #include "render/reference/texture.h"
@@ -22,6 +23,8 @@ struct tl_reference_scene {
     size_t texture_count;
     struct tl_map_texture **textures;
     struct tl_sky sky;
+    struct tl_lamp lamps[TL_LAMPS_MAX]; /* those that shine */
+    size_t lamp_count;
     float offset_m; /* how far off a surface its rays start */
     int lobe;       /* enum tl_lobe */
     int terminator; /* enum tl_terminator */
@@ -48,6 +51,8 @@ struct tl_spot {
     vec3s diffuse, glossy;
     vec3s viewer;                /* towards the eye */
     vec3s tangent;               /* along u, at right angles to `normal`; zero where the surface has none */
+    float side;                  /* 1; -1 where the back is seen */
+    vec3s albedo, f0;            /* diffuse colour; reflectance at normal incidence: whatever `lobe` says */
     float handedness;            /* bitangent = handedness * cross(normal, tangent) */
     float glossiness;            /* of the maps, as `exponent` */
     const tl_material *material; /* borrowed from the surface */

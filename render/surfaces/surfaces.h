@@ -53,6 +53,13 @@ enum tl_surface_parts { TL_PARTS_OPAQUE = 1, TL_PARTS_MASKED = 2, TL_PARTS_ALL =
 
 /* Draws these parts of surface `index` with the program in use, which includes surface.glsl. */
 void tl_surfaces_draw(const tl_surfaces *surfaces, size_t index, enum tl_surface_parts parts);
+/* Part by part, for programs that differ by material. The material is of the last update; its maps' images
+ * may be gone. */
+size_t tl_surfaces_part_count(const tl_surfaces *surfaces, size_t index);
+const tl_material *tl_surfaces_part_material(const tl_surfaces *surfaces, size_t index, size_t part);
+void tl_surfaces_draw_part(const tl_surfaces *surfaces, size_t index, size_t part);
+/* ... and then not, until it is shown again. */
+void tl_surfaces_hide(tl_surfaces *surfaces, size_t index, bool hidden);
 /* Whether any surface has such parts. */
 bool tl_surfaces_have(const tl_surfaces *surfaces, enum tl_surface_parts parts);
 

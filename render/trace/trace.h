@@ -36,7 +36,8 @@ bool tl_trace_occluded(const tl_trace *trace, vec3s origin, vec3s direction, flo
 struct tl_trace_bundle {
     int count; /* 1 to 16 */
     float origin_x[16], origin_y[16], origin_z[16];
-    float direction_x[16], direction_y[16], direction_z[16]; /* unit */
+    /* Unit; or all of any length, which from_m and to_m are then counted in. */
+    float direction_x[16], direction_y[16], direction_z[16];
     float from_m, to_m;
     bool coherent;
 };

@@ -43,7 +43,7 @@ refuse "size near the largest int" 'a\.exr.*32768' light.hdr -o a.exr --layout l
 refuse "output in no folder" 'nowhere/a\.exr' light.hdr -o nowhere/a.exr --layout cube
 
 expect() { [ "$(shape "$1")" = "$2" ] || fail "$1: $(shape "$1"), expected $2"; }
-for layout in cube sphere paraboloid latlong; do
+for layout in cube sphere paraboloid latlong octahedral; do
     "$TOILE" env light.hdr -o $layout.exr --layout $layout --size 16 --quiet || fail "$layout"
     "$TOILE" env $layout.exr -o back.exr --layout latlong --size 1 --from $layout --quiet || fail "$layout and back"
     "$TOILE" env light.hdr -o same.exr --layout latlong --quiet

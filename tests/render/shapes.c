@@ -139,6 +139,8 @@ struct tl_render_settings test_settings(int width, int height)
 {
     struct tl_render_settings settings = {
         .light = *(const struct tl_light_params *)tl_light_options.defaults,
+        .maps = *(const struct tl_maps_params *)tl_maps_options.defaults,
+        .shading = *(const struct tl_shading_params *)tl_shading_options.defaults,
         .image = *(const struct tl_image_params *)tl_image_options.defaults,
         .reference = *(const struct tl_reference_params *)tl_reference_options.defaults,
     };
