@@ -11,82 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const tl_resource_names[] = {
-    [TL_INPUT_ENVIRONMENT] = "environment",
-    [TL_INPUT_YAW] = "environment yaw",
-    [TL_INPUT_SHAPES] = "shapes and materials",
-    [TL_INPUT_MOTION] = "motion",
-    [TL_INPUT_CAMERA] = "camera",
-    [TL_INPUT_SIZE] = "image size",
-    [TL_INPUT_GROUND] = "ground option",
-    [TL_INPUT_PEM_SIZE] = "PEM size",
-    [TL_INPUT_FILTER] = "filter option",
-    [TL_INPUT_SUN] = "sun option",
-    [TL_INPUT_REGIONS] = "regions options",
-    [TL_INPUT_PASSES] = "PEMs per pass",
-    [TL_INPUT_MAPS] = "shadow map options",
-    [TL_INPUT_RAYS] = "ray options",
-    [TL_INPUT_ROUND] = "round",
-    [TL_INPUT_SCENE_ROUND] = "round of the scene",
-    [TL_INPUT_LIGHT] = "light options",
-    [TL_INPUT_LAMPS] = "lamps and shading options",
-    [TL_INPUT_REFERENCE] = "reference options",
-    [TL_INPUT_DETAIL] = "detail options",
-    [TL_INPUT_SHOW] = "exposure and background",
-    [TL_INPUT_ENVMAP] = "environment map options",
-    [TL_INPUT_LAYOUT] = "layout",
-    [TL_INPUT_LOOK_UP] = "look-up options",
-    [TL_INPUT_CAPTURE] = "captured scene",
-    [TL_MADE_CUBE] = "cube",
-    [TL_MADE_REGIONS] = "regions",
-    [TL_MADE_LOBE] = "lobe table",
-    [TL_MADE_PEMS] = "PEMs",
-    [TL_MADE_LOBES] = "lobes",
-    [TL_MADE_SLICES] = "slices",
-    [TL_MADE_LIGHTS] = "regions as lights",
-    [TL_MADE_SURFACES] = "surfaces",
-    [TL_MADE_DETAIL] = "detail maps",
-    [TL_MADE_DEPTHS] = "depths",
-    [TL_MADE_MAPS] = "shadow maps",
-    [TL_MADE_GBUFFER] = "G-buffer",
-    [TL_MADE_SAMPLES] = "samples",
-    [TL_MADE_MIRRORS] = "what mirrors show",
-    [TL_MADE_POINTS] = "visibility at points",
-    [TL_MADE_ENVMAP_LOBES] = "lobes of the maps",
-    [TL_MADE_CAPTURE] = "capture",
-    [TL_MADE_ENVMAP] = "environment maps",
-    [TL_MADE_LIGHT] = "light",
-    [TL_MADE_LAMP_MAPS] = "lamps' shadow maps",
-    [TL_MADE_LAMP_RAYS] = "lamps' shadows by rays",
-    [TL_MADE_LAMPLIGHT] = "light of lamps",
-    [TL_MADE_IMAGE] = "image",
-    [TL_MADE_BACKDROP] = "backdrop",
-    [TL_MADE_SHOWN] = "shown image",
-    NULL,
-};
-
-const char *const tl_scene_fact_names[] = {
-    [TL_SCENE_RASTER] = "drawn image",
-    [TL_SCENE_SHADOWS] = "shadows",
-    [TL_SCENE_MAPS] = "shadow maps",
-    [TL_SCENE_RAYS] = "rays",
-    [TL_SCENE_MIRRORS] = "near mirrors by rays",
-    [TL_SCENE_PASSES] = "light passes",
-    [TL_SCENE_CHAINS] = "filter chains",
-    [TL_SCENE_SLICES] = "exact slices",
-    [TL_SCENE_EXACT] = "exact light",
-    [TL_SCENE_BLUR] = "variance maps",
-    [TL_SCENE_DETAIL] = "fabric detail",
-    [TL_SCENE_REFERENCE] = "reference",
-    [TL_SCENE_ENVMAP] = "environment maps",
-    [TL_SCENE_LAMPS] = "lamps",
-    [TL_SCENE_LAMP_MAPS] = "lamps with shadow maps",
-    [TL_SCENE_LAMP_RAYS] = "lamps with shadow rays",
-    [TL_SCENE_SAMPLES] = "rays from samples",
-    [TL_SCENE_CAPTURE] = "captured scene",
-    NULL,
-};
-
 static const struct tl_ground *ground_of(const tl_renderer *renderer)
 {
     return renderer->settings.image.ground ? &renderer->ground : NULL;
@@ -253,18 +177,26 @@ static void forget_unused_detail(tl_renderer *renderer)
     renderer->detail.params = renderer->settings.detail;
 }
 
+static struct tl_gbuffer_request gbuffer_request(const tl_renderer *renderer)
+{
+    const struct tl_image_params *image = &renderer->settings.image;
+    return (struct tl_gbuffer_request){.view = &renderer->view,
+                                       .width = image->width * image->supersample,
+                                       .height = image->height * image->supersample,
+                                       .surfaces = renderer->surfaces,
+                                       .surface_count = renderer->surface_count,
+                                       .ground = ground_of(renderer),
+                                       .detail = &renderer->settings.detail,
+                                       .frames = tl_frame_has(&renderer->frame, tl_material_is_faceted)};
+}
+
 static bool run_gbuffer(void *context, int level, tl_error *error)
 {
     tl_renderer *renderer = context;
     (void)level;
-    const struct tl_image_params *image = &renderer->settings.image;
-    if (!tl_gbuffer_choose_detail(&renderer->gbuffer, renderer->gpu, &renderer->settings.detail, error))
-        return false;
     forget_unused_detail(renderer);
-    tl_gbuffer_draw(&renderer->gbuffer, renderer->gpu, &renderer->view, image->width * image->supersample,
-                    image->height * image->supersample, renderer->surfaces, renderer->surface_count,
-                    ground_of(renderer));
-    return true;
+    struct tl_gbuffer_request request = gbuffer_request(renderer);
+    return tl_gbuffer_draw(&renderer->gbuffer, renderer->gpu, &request, error);
 }
 
 static bool run_light(void *context, int level, tl_error *error)
@@ -292,6 +224,15 @@ static bool run_samples(void *context, int level, tl_error *error)
     (void)level, (void)error;
     tl_samples_read(&renderer->gbuffer, &renderer->ranges, renderer->view.eye, &renderer->samples);
     return true;
+}
+
+static bool run_sheets(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level;
+    const struct tl_sheets_request request = {
+        .gbuffer = &renderer->gbuffer, .draw = gbuffer_request(renderer), .ranges = &renderer->ranges};
+    return tl_sheets_find(&renderer->sheets, renderer->gpu, &request, &renderer->samples, error);
 }
 
 /* Whoever asks the rays first in a frame brings them up to date; that costs nothing when they are. */
@@ -367,7 +308,12 @@ static bool run_compose(void *context, int level, tl_error *error)
                                          .lobes = &renderer->lobes,
                                          .environment = renderer->frame.environment,
                                          .environment_yaw = renderer->frame.environment_yaw,
-                                         .params = &renderer->settings.light};
+                                         .params = &renderer->settings.light,
+                                         .eye = renderer->view.eye};
+    if (tl_frame_has(&renderer->frame, tl_material_is_layered))
+        request.ranges = &renderer->ranges;
+    if (tl_frame_facts(&renderer->frame, &renderer->settings) & TL_BIT(TL_SCENE_SHEETS))
+        request.shares = renderer->sheets.shares;
     if (renderer->settings.light.method != TL_METHOD_UNSHADOWED) {
         request.values = tl_points_values(renderer->points, &request.stride);
         request.taps = tl_points_taps(renderer->points);
@@ -452,7 +398,7 @@ static bool run_look_up(void *context, int level, tl_error *error)
                                               .exponent_levels = &renderer->lighting.exponent_levels,
                                               .eye = renderer->view.eye,
                                               .params = &renderer->settings.maps};
-    tl_lighting_begin(&renderer->lighting, renderer->gpu, gbuffer);
+    tl_lighting_begin(&renderer->lighting, renderer->gpu, gbuffer, true);
     bool fine = tl_envmap_draw(&renderer->envmap, renderer->gpu, &request, error);
     tl_gpu_reset_state(renderer->gpu);
     return fine;
@@ -686,9 +632,16 @@ const tl_job tl_frame_jobs[] = {
      .requires_scene = SET1(TL_SCENE_SAMPLES),
      .levels = LEVELS_ONE,
      .run = run_samples},
+    {.name = "sheets",
+     .what = "rays: what lies behind open cloth and shines through it",
+     .reads = SET2(TL_MADE_SAMPLES, TL_MADE_SURFACES),
+     .writes = SET1(TL_MADE_SHEETS),
+     .requires_scene = SET1(TL_SCENE_SHEETS),
+     .levels = LEVELS_ONE,
+     .run = run_sheets},
     {.name = "mirrors",
      .what = "rays: what near mirrors show",
-     .reads = SET4(TL_MADE_SAMPLES, TL_INPUT_SHAPES, TL_INPUT_MOTION, TL_INPUT_GROUND),
+     .reads = SET5(TL_MADE_SAMPLES, TL_MADE_SHEETS, TL_INPUT_SHAPES, TL_INPUT_MOTION, TL_INPUT_GROUND),
      .writes = SET1(TL_MADE_MIRRORS),
      .requires_scene = SET1(TL_SCENE_MIRRORS),
      .levels = LEVELS_ONE,
@@ -696,7 +649,7 @@ const tl_job tl_frame_jobs[] = {
     {.name = "points",
      .what = "rays: visibility of the regions, kept at vertices",
      .reads = SET5(TL_MADE_SAMPLES, TL_MADE_REGIONS, TL_INPUT_SHAPES, TL_INPUT_MOTION, TL_INPUT_GROUND) |
-              SET4(TL_MADE_MIRRORS, TL_INPUT_YAW, TL_INPUT_RAYS, TL_INPUT_SCENE_ROUND),
+              SET5(TL_MADE_SHEETS, TL_MADE_MIRRORS, TL_INPUT_YAW, TL_INPUT_RAYS, TL_INPUT_SCENE_ROUND),
      .writes = SET1(TL_MADE_POINTS),
      .requires_scene = SET2(TL_SCENE_RAYS, TL_SCENE_SHADOWS),
      .levels = LEVELS_ONE,
@@ -713,7 +666,8 @@ const tl_job tl_frame_jobs[] = {
     {.name = "compose",
      .what = "exact light times the share of it that is seen",
      .reads = SET5(TL_MADE_SAMPLES, TL_MADE_POINTS, TL_MADE_LIGHTS, TL_MADE_LOBES, TL_MADE_CUBE) |
-              SET4(TL_MADE_MIRRORS, TL_INPUT_YAW, TL_INPUT_LIGHT, TL_INPUT_LAMPS),
+              SET5(TL_MADE_SHEETS, TL_MADE_MIRRORS, TL_INPUT_YAW, TL_INPUT_LIGHT, TL_INPUT_CAMERA) |
+              SET1(TL_INPUT_LAMPS),
      .writes = SET1(TL_MADE_LIGHT),
      .requires_scene = SET1(TL_SCENE_RAYS),
      .levels = LEVELS_ONE,

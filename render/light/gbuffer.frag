@@ -14,8 +14,16 @@ in vec2 uv;
 layout(location = 0) out vec4 out_point;    // world, metres; coverage
 layout(location = 1) out vec4 out_normal;   // world, unit, towards the viewer's side; 1 - glossiness
 layout(location = 2) out vec4 out_diffuse;  // kd with occlusion; octahedral x of the smooth normal
-layout(location = 3) out vec4 out_specular; // F ks; octahedral y of the smooth normal
+layout(location = 3) out vec4 out_specular; // F ks, or F0 of facets where FRAMES; octahedral y of the smooth normal
 layout(location = 4) out uint out_triangle; // 1 + its number, and TRIANGLE_BACK
+#ifdef FRAMES
+layout(location = 5) out vec4 out_tangent; // world, along u, not yet at right angles to the normal; handedness
+#endif
+#ifdef BEHIND
+layout(binding = 15) uniform sampler2D passed; // depth of what is nearer than what is wanted
+
+const float DEPTH_ROUNDING = 1.2e-7;
+#endif
 
 const uint TRIANGLE_BACK = 0x80000000u;
 
@@ -29,6 +37,10 @@ vec2 octahedral(vec3 n)
 
 void main()
 {
+#ifdef BEHIND
+    if (gl_FragCoord.z <= texelFetch(passed, ivec2(gl_FragCoord.xy), 0).r + DEPTH_ROUNDING)
+        discard;
+#endif
     vec3 facet = direction_or(cross(dFdx(point), dFdy(point)), vec3(0.0, 1.0, 0.0));
     float side = gl_FrontFacing ? 1.0 : -1.0; // a back is a surface of its own: the whole frame turns over
     vec3 smooth_normal = direction_or(normal, facet);
@@ -64,6 +76,10 @@ void main()
     vec3 v = direction_or(eye - point, n);
     // Of the mean normal: facets that turn away reflect more, but what lies below the surface's horizon.
     vec3 ks = schlick(specular_f0(place.uv), dot(n, v));
+#ifdef FRAMES
+    if ((map_flags & FLAG_FACETED) != 0)
+        ks = specular_f0(place.uv); // a facet's Fresnel term is not the normal's
+#endif
 #if DETAIL_SHADOW != 0
     if (has_detail(DETAIL_HORIZONS)) {
         DetailHorizon sky = detail_horizon(place.uv, across, down);
@@ -75,6 +91,9 @@ void main()
     out_point = vec4(point, cover);
     out_normal = vec4(n, rough);
     out_diffuse = vec4(kd, horizon.x);
+#ifdef FRAMES
+    out_tangent = vec4(direction_or(tangent.xyz, vec3(0.0)), tangent.w * side);
+#endif
     out_specular = vec4(ks, horizon.y);
     out_triangle = (first_triangle + uint(gl_PrimitiveID) + 1u) | (gl_FrontFacing ? 0u : TRIANGLE_BACK);
 }
