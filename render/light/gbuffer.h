@@ -38,10 +38,10 @@ struct tl_gbuffer_request {
     int width, height; /* samples */
     const tl_surfaces *surfaces;
     size_t surface_count;
-    const struct tl_ground *ground; /* the last of the surfaces, or NULL when none is drawn */
-    const struct tl_detail_params *detail;
-    bool frames;              /* with the layer of tangents */
-    const tl_texture *passed; /* only what lies behind this depth; NULL: what is nearest */
+    const struct tl_ground *ground;        /* the last of the surfaces, or NULL when none is drawn */
+    const struct tl_detail_params *detail; /* NULL: normals alone */
+    bool frames;                           /* with the layer of tangents */
+    const tl_texture *passed;              /* only what lies behind this depth; NULL: what is nearest */
 };
 
 void tl_gbuffer_release(struct tl_gbuffer *gbuffer);
