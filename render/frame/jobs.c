@@ -467,6 +467,7 @@ static bool run_lamps(void *context, int level, tl_error *error)
                                              .lamp_count = list_lamps(renderer, lamps),
                                              .lamps = lamps,
                                              .params = &renderer->settings.shading,
+                                             .detail = &renderer->settings.detail,
                                              .depth_bias_m = renderer->settings.light.depth_bias_m,
                                              .weight = passes ? 1 / (float)(renderer->rest.image + 1) : 1};
     return tl_local_draw(&renderer->local, renderer->gpu, &request, error);

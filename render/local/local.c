@@ -214,6 +214,8 @@ static bool draw_pass(struct tl_local *local, tl_gpu *gpu, const struct tl_local
 {
     char defines[TL_LOCAL_DEFINES_SIZE];
     define_all(request->params, part, pass, defines);
+    size_t length = strlen(defines);
+    tl_detail_defines(request->detail, defines + length, sizeof defines - length);
     const tl_program *program = find_program(local, gpu, defines, error);
     if (!program)
         return false;

@@ -42,8 +42,9 @@ struct tl_local_request {
     const struct tl_lamp *lamps;
     size_t lamp_count;
     const struct tl_shading_params *params;
-    float depth_bias_m; /* of shadow maps */
-    float weight;       /* of this image among those that are averaged in the target */
+    const struct tl_detail_params *detail; /* NULL: normals alone */
+    float depth_bias_m;                    /* of shadow maps */
+    float weight;                          /* of this image among those that are averaged in the target */
 };
 
 void tl_local_release(struct tl_local *local);
