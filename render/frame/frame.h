@@ -96,7 +96,6 @@ enum tl_scene_fact {
     TL_SCENE_LAMP_MAPS, /* ... and depth maps shadow one of them */
     TL_SCENE_LAMP_RAYS, /* ... and rays do */
     TL_SCENE_SAMPLES,   /* rays start from what is seen */
-    TL_SCENE_CAPTURE,   /* ... and show the scene */
     TL_SCENE_FACT_COUNT
 };
 

@@ -78,11 +78,11 @@ const char *const tl_scene_fact_names[] = {
     [TL_SCENE_BLUR] = "variance maps",
     [TL_SCENE_REFERENCE] = "reference",
     [TL_SCENE_ENVMAP] = "environment maps",
+    [TL_SCENE_CAPTURE] = "captured scene",
     [TL_SCENE_LAMPS] = "lamps",
     [TL_SCENE_LAMP_MAPS] = "lamps with shadow maps",
     [TL_SCENE_LAMP_RAYS] = "lamps with shadow rays",
     [TL_SCENE_SAMPLES] = "rays from samples",
-    [TL_SCENE_CAPTURE] = "captured scene",
     NULL,
 };
 
