@@ -2,6 +2,7 @@
 // The light of one lamp on what the G-buffer sees, to be added to the rest.
 #include "gloss.glsl"
 #include "ground.glsl"
+#include "material.glsl"
 #include "terms.glsl"
 
 layout(location = 73) uniform mat4 lamp_view; // SHADOW_MAP: world -> clip space of the lamp's map
