@@ -10,12 +10,15 @@
  * they are affine in dot products, they can be made by one texture matrix, or interpolated. Where n.l <= 0 or
  * n.v <= 0 the caller makes it 0.
  *
- *     PHONG             K(r.l) F(n.v)                               one table; ranges end where K is 1e-6 of
- * its BLINN_PHONG       K(n.h) F(h.l)                               ... peak, as beyond that nothing is seen
- *     COSINE_LOBE       K(r.l) F(h.l)                               one table, times_cos_a
+ *     PHONG             K(r.l) F(n.v)
+ *     BLINN_PHONG       K(n.h) F(h.l)
+ *     COSINE_LOBE       K(r.l) F(h.l)                               times_cos_a
  *     TORRANCE_SPARROW  F(h.l) D(n.h)    G(n.l, n.v) / (pi n.v)     V_GROOVES: G / (pi n.v) over (G, n.v)
  *     WARD              D(h.t, h.b)      sqrt(n.l / n.v)   F(h.l)
  *     BANKS             K(t.l, t.v)      F(n.v)                     times_cos_a
+ *
+ * The axes of K and D end where they have fallen to 1e-6 of their peak: beyond it nothing is seen, and all
+ * texels are spent on what is.
  *
  * Folded (PHONG, BLINN_PHONG, COSINE_LOBE): ambient + diffuse n.l / pi + f0 K [n.l], over (r.l or n.h, n.l),
  * in one table: F stays f0. Where n.l <= 0 it is the ambient part, so that the caller cuts by n.v alone.
