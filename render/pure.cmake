@@ -1,7 +1,9 @@
 # The parts of render that know neither GL nor the clock.
 add_library(toile_light STATIC
   brdf/brdf.c
+  brdf/coat.c
   brdf/draw.c
+  brdf/fan.c
   brdf/fresnel.c
   brdf/normalise.c
   brdf/options.c

@@ -90,8 +90,7 @@ tl_renderer *tl_renderer_create(tl_gpu *gpu, tl_error *error)
     renderer->trace = tl_trace_create(error);
     renderer->maps = tl_shadow_maps_create(gpu, error);
     renderer->shaders_stamp = tl_shaders_stamp(tl_embedded_shaders);
-    if (!renderer->trace || !renderer->maps || !tl_gbuffer_create(&renderer->gbuffer, gpu, error) ||
-        !tl_lighting_create(&renderer->lighting, gpu, error) ||
+    if (!renderer->trace || !renderer->maps || !tl_lighting_create(&renderer->lighting, gpu, error) ||
         !tl_present_create(&renderer->present, gpu, error) ||
         !tl_jobs_check(tl_frame_jobs, tl_frame_job_count, error))
         tl_renderer_destroy(&renderer);
@@ -113,6 +112,7 @@ void tl_renderer_destroy(tl_renderer **renderer)
     tl_surfaces_destroy(&(*renderer)->surfaces);
     tl_triangle_ranges_release(&(*renderer)->ranges);
     tl_samples_release(&(*renderer)->samples);
+    tl_sheets_release(&(*renderer)->sheets);
     tl_mirrors_release(&(*renderer)->mirrors);
     tl_trace_destroy(&(*renderer)->trace);
     tl_points_destroy(&(*renderer)->points);
@@ -192,8 +192,8 @@ static void reload_shaders(tl_renderer *renderer)
     renderer->shaders_stamp = stamp;
     tl_local_reload(&renderer->local);
     tl_error error = {0};
-    if (!tl_shadow_maps_reload(renderer->maps, &error) ||
-        !tl_program_reload(&renderer->gbuffer.program, &error) ||
+    if (!tl_shadow_maps_reload(renderer->maps, &error) || !tl_gbuffer_reload(&renderer->gbuffer, &error) ||
+        !tl_gbuffer_reload(&renderer->sheets.behind, &error) ||
         !tl_lighting_reload(&renderer->lighting, &error) || !tl_envmap_reload(&renderer->envmap, &error) ||
         !tl_capture_reload(&renderer->capture, &error) ||
         !tl_program_reload(&renderer->present.resolve, &error) ||
@@ -248,6 +248,8 @@ bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct
     const struct tl_plan_input input = plan_input(renderer, frame, &used, changed, TL_MADE_IMAGE);
     if (!(input.scene & TL_BIT(TL_SCENE_LAMPS)))
         tl_local_release(&renderer->local);
+    if (!(input.scene & TL_BIT(TL_SCENE_SHEETS)))
+        tl_sheets_release(&renderer->sheets);
     return run_plan(renderer, &input, &renderer->plan, error);
 }
 
@@ -364,12 +366,14 @@ struct tl_render_memory tl_renderer_memory(const tl_renderer *renderer)
                 tl_envmap_bytes(&renderer->envmap) + tl_capture_bytes(&renderer->capture),
         .maps = tl_shadow_maps_bytes(renderer->maps) + tl_lamp_shadows_bytes(&renderer->local.shadows),
         .rays = tl_trace_bytes(renderer->trace) + tl_points_bytes(renderer->points),
+        .sheets = tl_sheets_bytes(&renderer->sheets),
         .targets = tl_target_bytes(&renderer->gbuffer.target) + tl_target_bytes(&renderer->lighting.target) +
                    tl_present_bytes(present),
         .surfaces = tl_surfaces_bytes(renderer->surfaces),
-        .other = tl_lighting_bytes(&renderer->lighting) + tl_texture_bytes(&present->backdrop) +
+        .other = tl_lighting_bytes(&renderer->lighting) + tl_local_bytes(&renderer->local) + tl_texture_bytes(&present->backdrop) +
                  tl_texture_bytes(&present->blurred),
     };
-    memory.total = memory.pems + memory.maps + memory.rays + memory.targets + memory.surfaces + memory.other;
+    memory.total = memory.pems + memory.maps + memory.rays + memory.sheets + memory.targets +
+                   memory.surfaces + memory.other;
     return memory;
 }

@@ -49,6 +49,7 @@ struct tl_light_params { /* table "light" */
     int rays;            /* rays: directions a region and refresh */
     float repair;        /* rays: share of the samples, the least certain, that get rays of their own */
     float repair_rest;   /* ... once nothing moves, when it is more */
+    int fan;             /* rays: cosine lobes at most that stand for a gloss of facets */
     bool reflect_scene; /* near mirrors (s >= TL_MIRROR_EXPONENT) see the lit scene; false: black, as [002] */
     int map_size;       /* texels, side of a shadow map */
     float blur_m;       /* metres: the Gaussian's sigma is blur_m x tan(cone) */
@@ -57,6 +58,8 @@ struct tl_light_params { /* table "light" */
     float bleed_reduction; /* [0, 1): Chebyshev values below it become 0 */
 };
 extern const struct tl_option_table tl_light_options;
+/* So many sheets are looked through, where cloth is open; the next one is taken as closed. */
+#define TL_SHEETS_BEHIND   4
 #define TL_MIRROR_EXPONENT 199.0f /* a glossiness of 0.995, however it is rounded */
 
 /* How environment maps are looked up (render/envmap/envmap.h), and what is made of it. */
@@ -192,7 +195,9 @@ const tl_plan *tl_renderer_last_plan(const tl_renderer *renderer);
 
 /* Bytes by use, summed from what is allocated. */
 struct tl_render_memory {
-    size_t pems, maps, rays, targets, surfaces, other, total;
+    size_t pems, maps, rays;
+    size_t sheets; /* of what is seen through cloth */
+    size_t targets, surfaces, other, total;
 };
 struct tl_render_memory tl_renderer_memory(const tl_renderer *renderer);
 

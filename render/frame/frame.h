@@ -12,6 +12,7 @@
 #include "render/light/mirrors.h"
 #include "render/light/region_lights.h"
 #include "render/light/samples.h"
+#include "render/light/sheets.h"
 #include "render/local/local.h"
 #include "render/present/present.h"
 #include "render/renderer.h"
@@ -58,6 +59,7 @@ enum tl_resource {
     TL_MADE_MAPS,
     TL_MADE_GBUFFER,
     TL_MADE_SAMPLES,
+    TL_MADE_SHEETS,  /* what is seen through cloth */
     TL_MADE_MIRRORS, /* what near mirrors show */
     TL_MADE_POINTS,
     TL_MADE_ENVMAP_LOBES,
@@ -80,6 +82,7 @@ enum tl_scene_fact {
     TL_SCENE_SHADOWS, /* somebody asks for visibility */
     TL_SCENE_MAPS,    /* ... of shadow maps */
     TL_SCENE_RAYS,    /* the back-end of rays lights the image */
+    TL_SCENE_SHEETS,  /* ... and something is seen through, or is lit from behind */
     TL_SCENE_MIRRORS, /* ... and something is so glossy that rays follow what it shows */
     TL_SCENE_PASSES,  /* passes on the GPU do */
     TL_SCENE_CHAINS,  /* ... and read filter chains */
@@ -87,12 +90,12 @@ enum tl_scene_fact {
     TL_SCENE_EXACT,   /* exact light of the whole environment is read */
     TL_SCENE_BLUR,    /* shadow maps are variance maps */
     TL_SCENE_REFERENCE,
-    TL_SCENE_ENVMAP, /* environment maps light the image */
+    TL_SCENE_ENVMAP,  /* environment maps light the image */
+    TL_SCENE_CAPTURE, /* ... and show the scene */
     TL_SCENE_LAMPS,
     TL_SCENE_LAMP_MAPS, /* ... and depth maps shadow one of them */
     TL_SCENE_LAMP_RAYS, /* ... and rays do */
     TL_SCENE_SAMPLES,   /* rays start from what is seen */
-    TL_SCENE_ENVMAP,    /* environment maps light the image */
     TL_SCENE_CAPTURE,   /* ... and show the scene */
     TL_SCENE_FACT_COUNT
 };
@@ -130,6 +133,9 @@ void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *setti
  */
 tl_bits tl_frame_facts(const tl_frame *frame, const struct tl_render_settings *settings);
 uint32_t tl_frame_exponents(const tl_frame *frame);
+/* Whether any material, or any drawn, has this property. */
+bool tl_frame_has(const tl_frame *frame, bool (*property)(const tl_material *material));
+bool tl_material_is_faceted(const tl_material *material);
 /* ... and those of environment maps, with the environment itself for mirrors. */
 uint32_t tl_frame_map_exponents(const tl_frame *frame);
 
@@ -163,6 +169,7 @@ struct tl_renderer {
     const tl_surface **drawn; /* what is drawn, with the ground last */
     struct tl_triangle_ranges ranges;
     struct tl_samples samples;
+    struct tl_sheets sheets;
     struct tl_mirrors mirrors;
     tl_trace *trace;
     tl_points *points;

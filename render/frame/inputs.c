@@ -1,5 +1,7 @@
 #include "config/memory.h"
 #include "render/frame/frame.h"
+
+#include "render/brdf/fan.h"
 #include "render/pem/lobe.h"
 
 #include <math.h>
@@ -44,6 +46,7 @@ static uint64_t light_signature(const struct tl_light_params *light)
 {
     uint64_t hash = MIX(MIX(MIX(FNV_OFFSET, light->method), light->lobe), light->prefilter);
     hash = MIX(MIX(MIX(hash, light->visibility), light->composition), light->reflect_scene);
+    hash = MIX(hash, light->fan);
     return MIX(MIX(MIX(hash, light->depth_bias_m), light->min_variance), light->bleed_reduction);
 }
 
@@ -201,20 +204,59 @@ static void glossiness_range(const tl_material *material, float *low, float *hig
 /* The G-buffer rounds 1 - glossiness to a half. */
 #define ROUNDING 1e-3f
 
+/* Exponents from `least` to `greatest`. */
+static uint32_t exponents_between(float least, float greatest)
+{
+    return tl_exponents_needed(1 - 1 / fmaxf(least * (1 - ROUNDING), 1),
+                               1 - 1 / fmaxf(greatest * (1 + ROUNDING), 1));
+}
+
+/* Of what a material is beyond two lobes. */
+static uint32_t layered_exponents(const tl_material *material, float low, float high)
+{
+    uint32_t needed = 0;
+    if (material->coat > 0)
+        needed |= tl_exponents_needed(material->coat_glossiness, material->coat_glossiness);
+    if (!tl_material_is_faceted(material))
+        return needed;
+    float least, greatest, unused;
+    struct tl_brdf dull = tl_brdf_of(material, material->specular, low);
+    struct tl_brdf shiny = tl_brdf_of(material, material->specular, high);
+    tl_fan_exponents(&dull, &least, &unused);
+    tl_fan_exponents(&shiny, &unused, &greatest);
+    return needed | exponents_between(least, greatest);
+}
+
 uint32_t tl_frame_exponents(const tl_frame *frame)
 {
     uint32_t needed = 1;
     for (size_t s = 0; s < frame->surface_count; s++)
         for (size_t p = 0; p < frame->surfaces[s].part_count; p++) {
             float low, high;
-            glossiness_range(&frame->surfaces[s].materials[frame->surfaces[s].parts[p].material], &low,
-                             &high);
-            needed |= tl_exponents_needed(1 - (1 - low) * (1 + ROUNDING), 1 - (1 - high) * (1 - ROUNDING));
+            const tl_material *material = &frame->surfaces[s].materials[frame->surfaces[s].parts[p].material];
+            glossiness_range(material, &low, &high);
+            low = 1 - (1 - low) * (1 + ROUNDING);
+            needed |= tl_exponents_needed(low, 1 - (1 - high) * (1 - ROUNDING));
             if (tl_mirror_ray_count(tl_lobe_exponent(high)) >
                 0) /* lobes along a mirror's rays are narrower still */
                 needed |= tl_exponents_needed(high, 1);
+            needed |= layered_exponents(material, low, 1 - (1 - high) * (1 - ROUNDING));
         }
     return needed;
+}
+
+bool tl_material_is_faceted(const tl_material *material)
+{
+    return material->gloss.model != TL_REFLECT_PHONG;
+}
+
+bool tl_frame_has(const tl_frame *frame, bool (*property)(const tl_material *material))
+{
+    for (size_t s = 0; s < frame->surface_count; s++)
+        for (size_t p = 0; p < frame->surfaces[s].part_count; p++)
+            if (property(&frame->surfaces[s].materials[frame->surfaces[s].parts[p].material]))
+                return true;
+    return false;
 }
 
 uint32_t tl_frame_map_exponents(const tl_frame *frame)
@@ -274,6 +316,8 @@ tl_bits tl_frame_facts(const tl_frame *frame, const struct tl_render_settings *s
         facts |= TL_BIT(TL_SCENE_SLICES);
     if (rays || tl_light_needs_exact(light))
         facts |= TL_BIT(TL_SCENE_EXACT);
+    if (rays && tl_frame_has(frame, tl_material_shows_more))
+        facts |= TL_BIT(TL_SCENE_SHEETS);
     if (rays && light->method == TL_METHOD_PEM && light->reflect_scene &&
         tl_mirror_ray_count(tl_lobe_exponent(greatest_glossiness(frame))) > 0)
         facts |= TL_BIT(TL_SCENE_MIRRORS);

@@ -48,6 +48,7 @@ const char *const tl_resource_names[] = {
     [TL_MADE_MAPS] = "shadow maps",
     [TL_MADE_GBUFFER] = "G-buffer",
     [TL_MADE_SAMPLES] = "samples",
+    [TL_MADE_SHEETS] = "what is seen through cloth",
     [TL_MADE_MIRRORS] = "what mirrors show",
     [TL_MADE_POINTS] = "visibility at points",
     [TL_MADE_ENVMAP_LOBES] = "lobes of the maps",
@@ -68,6 +69,7 @@ const char *const tl_scene_fact_names[] = {
     [TL_SCENE_SHADOWS] = "shadows",
     [TL_SCENE_MAPS] = "shadow maps",
     [TL_SCENE_RAYS] = "rays",
+    [TL_SCENE_SHEETS] = "cloth that lets light through, by rays",
     [TL_SCENE_MIRRORS] = "near mirrors by rays",
     [TL_SCENE_PASSES] = "light passes",
     [TL_SCENE_CHAINS] = "filter chains",
@@ -232,15 +234,24 @@ static bool run_blur(void *context, int level, tl_error *error)
     return true;
 }
 
+static struct tl_gbuffer_request gbuffer_request(const tl_renderer *renderer)
+{
+    const struct tl_image_params *image = &renderer->settings.image;
+    return (struct tl_gbuffer_request){.view = &renderer->view,
+                                       .width = image->width * image->supersample,
+                                       .height = image->height * image->supersample,
+                                       .surfaces = renderer->surfaces,
+                                       .surface_count = renderer->surface_count,
+                                       .ground = ground_of(renderer),
+                                       .frames = tl_frame_has(&renderer->frame, tl_material_is_faceted)};
+}
+
 static bool run_gbuffer(void *context, int level, tl_error *error)
 {
     tl_renderer *renderer = context;
-    (void)level, (void)error;
-    const struct tl_image_params *image = &renderer->settings.image;
-    tl_gbuffer_draw(&renderer->gbuffer, renderer->gpu, &renderer->view, image->width * image->supersample,
-                    image->height * image->supersample, renderer->surfaces, renderer->surface_count,
-                    ground_of(renderer));
-    return true;
+    (void)level;
+    struct tl_gbuffer_request request = gbuffer_request(renderer);
+    return tl_gbuffer_draw(&renderer->gbuffer, renderer->gpu, &request, error);
 }
 
 static bool run_light(void *context, int level, tl_error *error)
@@ -268,6 +279,15 @@ static bool run_samples(void *context, int level, tl_error *error)
     (void)level, (void)error;
     tl_samples_read(&renderer->gbuffer, &renderer->ranges, renderer->view.eye, &renderer->samples);
     return true;
+}
+
+static bool run_sheets(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level;
+    const struct tl_sheets_request request = {
+        .gbuffer = &renderer->gbuffer, .draw = gbuffer_request(renderer), .ranges = &renderer->ranges};
+    return tl_sheets_find(&renderer->sheets, renderer->gpu, &request, &renderer->samples, error);
 }
 
 /* Whoever asks the rays first in a frame brings them up to date; that costs nothing when they are. */
@@ -343,7 +363,12 @@ static bool run_compose(void *context, int level, tl_error *error)
                                          .lobes = &renderer->lobes,
                                          .environment = renderer->frame.environment,
                                          .environment_yaw = renderer->frame.environment_yaw,
-                                         .params = &renderer->settings.light};
+                                         .params = &renderer->settings.light,
+                                         .eye = renderer->view.eye};
+    if (tl_frame_has(&renderer->frame, tl_material_is_layered))
+        request.ranges = &renderer->ranges;
+    if (tl_frame_facts(&renderer->frame, &renderer->settings) & TL_BIT(TL_SCENE_SHEETS))
+        request.shares = renderer->sheets.shares;
     if (renderer->settings.light.method != TL_METHOD_UNSHADOWED) {
         request.values = tl_points_values(renderer->points, &request.stride);
         request.taps = tl_points_taps(renderer->points);
@@ -653,9 +678,16 @@ const tl_job tl_frame_jobs[] = {
      .requires_scene = SET1(TL_SCENE_SAMPLES),
      .levels = LEVELS_ONE,
      .run = run_samples},
+    {.name = "sheets",
+     .what = "rays: what lies behind open cloth and shines through it",
+     .reads = SET2(TL_MADE_SAMPLES, TL_MADE_SURFACES),
+     .writes = SET1(TL_MADE_SHEETS),
+     .requires_scene = SET1(TL_SCENE_SHEETS),
+     .levels = LEVELS_ONE,
+     .run = run_sheets},
     {.name = "mirrors",
      .what = "rays: what near mirrors show",
-     .reads = SET4(TL_MADE_SAMPLES, TL_INPUT_SHAPES, TL_INPUT_MOTION, TL_INPUT_GROUND),
+     .reads = SET5(TL_MADE_SAMPLES, TL_MADE_SHEETS, TL_INPUT_SHAPES, TL_INPUT_MOTION, TL_INPUT_GROUND),
      .writes = SET1(TL_MADE_MIRRORS),
      .requires_scene = SET1(TL_SCENE_MIRRORS),
      .levels = LEVELS_ONE,
@@ -663,7 +695,7 @@ const tl_job tl_frame_jobs[] = {
     {.name = "points",
      .what = "rays: visibility of the regions, kept at vertices",
      .reads = SET5(TL_MADE_SAMPLES, TL_MADE_REGIONS, TL_INPUT_SHAPES, TL_INPUT_MOTION, TL_INPUT_GROUND) |
-              SET4(TL_MADE_MIRRORS, TL_INPUT_YAW, TL_INPUT_RAYS, TL_INPUT_SCENE_ROUND),
+              SET5(TL_MADE_SHEETS, TL_MADE_MIRRORS, TL_INPUT_YAW, TL_INPUT_RAYS, TL_INPUT_SCENE_ROUND),
      .writes = SET1(TL_MADE_POINTS),
      .requires_scene = SET2(TL_SCENE_RAYS, TL_SCENE_SHADOWS),
      .levels = LEVELS_ONE,
@@ -680,7 +712,8 @@ const tl_job tl_frame_jobs[] = {
     {.name = "compose",
      .what = "exact light times the share of it that is seen",
      .reads = SET5(TL_MADE_SAMPLES, TL_MADE_POINTS, TL_MADE_LIGHTS, TL_MADE_LOBES, TL_MADE_CUBE) |
-              SET4(TL_MADE_MIRRORS, TL_INPUT_YAW, TL_INPUT_LIGHT, TL_INPUT_LAMPS),
+              SET5(TL_MADE_SHEETS, TL_MADE_MIRRORS, TL_INPUT_YAW, TL_INPUT_LIGHT, TL_INPUT_CAMERA) |
+              SET1(TL_INPUT_LAMPS),
      .writes = SET1(TL_MADE_LIGHT),
      .requires_scene = SET1(TL_SCENE_RAYS),
      .levels = LEVELS_ONE,

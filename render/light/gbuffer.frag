@@ -14,8 +14,16 @@ in vec2 uv;
 layout(location = 0) out vec4 out_point;    // world, metres; coverage
 layout(location = 1) out vec4 out_normal;   // world, unit, towards the viewer's side; 1 - glossiness
 layout(location = 2) out vec4 out_diffuse;  // kd with occlusion; octahedral x of the smooth normal
-layout(location = 3) out vec4 out_specular; // F ks; octahedral y of the smooth normal
+layout(location = 3) out vec4 out_specular; // F ks, or F0 of facets where FRAMES; octahedral y of the smooth normal
 layout(location = 4) out uint out_triangle; // 1 + its number, and TRIANGLE_BACK
+#ifdef FRAMES
+layout(location = 5) out vec4 out_tangent; // world, along u, not yet at right angles to the normal; handedness
+#endif
+#ifdef BEHIND
+layout(binding = 15) uniform sampler2D passed; // depth of what is nearer than what is wanted
+
+const float DEPTH_ROUNDING = 1.2e-7;
+#endif
 
 const uint TRIANGLE_BACK = 0x80000000u;
 
@@ -29,6 +37,10 @@ vec2 octahedral(vec3 n)
 
 void main()
 {
+#ifdef BEHIND
+    if (gl_FragCoord.z <= texelFetch(passed, ivec2(gl_FragCoord.xy), 0).r + DEPTH_ROUNDING)
+        discard;
+#endif
     vec3 facet = direction_or(cross(dFdx(point), dFdy(point)), vec3(0.0, 1.0, 0.0));
     vec4 colour = surface_colour(uv);
     if (material_scalars.w > 0.0 && surface_cut_away(colour.a))
@@ -44,6 +56,12 @@ void main()
     out_point = vec4(point, cover);
     out_normal = vec4(n, 1.0 - glossiness(uv));
     out_diffuse = vec4(diffuse(colour.rgb, uv), horizon.x);
-    out_specular = vec4(schlick(specular_f0(uv), dot(n, v)), horizon.y);
+    vec3 reflected = schlick(specular_f0(uv), dot(n, v));
+#ifdef FRAMES
+    if ((map_flags & FLAG_FACETED) != 0)
+        reflected = specular_f0(uv); // a facet's Fresnel term is not the normal's
+    out_tangent = vec4(direction_or(tangent.xyz, vec3(0.0)), tangent.w * side);
+#endif
+    out_specular = vec4(reflected, horizon.y);
     out_triangle = (first_triangle + uint(gl_PrimitiveID) + 1u) | (gl_FrontFacing ? 0u : TRIANGLE_BACK);
 }

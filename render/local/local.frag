@@ -20,6 +20,10 @@ layout(binding = 18) uniform sampler2DArrayShadow lamp_depths;
 layout(binding = 19) uniform samplerCube normalising; // unit vectors, 0 to 1 standing for -1 to 1
 #endif
 
+#ifdef PASS_LAST
+layout(binding = 24) uniform sampler2D product; // of all tables, multiplied in earlier passes
+#endif
+
 in vec3 point;
 in vec3 normal;
 in vec4 tangent;
@@ -128,7 +132,12 @@ vec3 reflected(float side, vec3 smooth_normal)
     float facing;
     Cosines c = cosines_here(side, smooth_normal, facing);
     float shown = self_shadow(facing);
-    vec3 light = kd * (max(c.a, 0.0) / PI) + gloss(c, specular_f0(uv), lobe_exponent(glossiness(uv)));
+#ifdef PASS_LAST
+    vec3 shine = tables_gloss(c, texelFetch(product, ivec2(gl_FragCoord.xy), 0).rgb);
+#else
+    vec3 shine = gloss(c, specular_f0(uv), lobe_exponent(glossiness(uv)));
+#endif
+    vec3 light = kd * (max(c.a, 0.0) / PI) + shine;
     return shown > 0.0 ? shown * light : vec3(0.0);
 #endif
 }
@@ -142,6 +151,11 @@ void main()
         discard;
     float side = gl_FrontFacing ? 1.0 : -1.0;
     vec3 smooth_normal = direction_or(normal, facet);
+#ifdef PASS_PRODUCT
+    float facing;
+    out_light = vec4(tables_product(cosines_here(side, smooth_normal, facing)), 1.0);
+#else
     float shown = texelFetch(seen_point, texel, 0).w * visibility(towards_lamp(point, side * smooth_normal));
     out_light = vec4(shown * irradiance_at(point) * reflected(side, smooth_normal), 0.0);
+#endif
 }

@@ -18,6 +18,8 @@ layout(binding = 5) uniform sampler2D weave_normal;
 layout(binding = 6) uniform sampler2D weave_gloss;
 layout(binding = 7) uniform sampler2D weave_tint;
 
+const int FLAG_FACETED = 1 << 30;
+
 bool has_map(int map)
 {
     return (map_flags & (1 << map)) != 0;

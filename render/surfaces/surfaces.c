@@ -278,6 +278,8 @@ static void set_material(const struct item *item, const struct tl_mesh_part *par
         bind((GLuint)use, find_texture(item, map->image, is_colour(use)), map->clamp_u, map->clamp_v);
         flags |= 1 << use;
     }
+    if (material->gloss.model != TL_REFLECT_PHONG)
+        flags |= TL_FLAG_FACETED;
     glUniform3fv(TL_UNIFORM_DIFFUSE, 1, material->diffuse.raw);
     glUniform3fv(TL_UNIFORM_SPECULAR, 1, material->specular.raw);
     glUniform4f(TL_UNIFORM_SCALARS, material->glossiness, material->normal_scale,

@@ -26,13 +26,16 @@ enum tl_surface_uniform {
     TL_UNIFORM_DIFFUSE,
     TL_UNIFORM_SPECULAR,
     TL_UNIFORM_SCALARS,     /* glossiness, normal scale, occlusion strength, alpha cutoff */
-    TL_UNIFORM_MAP_FLAGS,   /* bits by tl_map_use; the weave's bit is 1 << TL_MAP_USES */
+    TL_UNIFORM_MAP_FLAGS,   /* bits by tl_map_use; the weave's bit is 1 << TL_MAP_USES; and TL_FLAG_FACETED */
     TL_UNIFORM_WEAVE_SCALE, /* repeats per UV unit */
     TL_UNIFORM_UV_ROWS,     /* 2 vec3 a map: rows of the 2x3 UV transform */
     TL_UNIFORM_FIRST_TRIANGLE =
         TL_UNIFORM_UV_ROWS + 2 * TL_MAP_USES, /* number of the draw's first triangle */
     TL_UNIFORM_SURFACE_END,
 };
+
+/* The material's gloss is not a lobe about the mirror direction. */
+#define TL_FLAG_FACETED (1 << 30)
 
 typedef struct tl_surfaces tl_surfaces;
 

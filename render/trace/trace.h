@@ -1,4 +1,5 @@
-/* Rays against the surfaces of a frame: Embree's BVH, with the holes that alpha maps cut.
+/* Rays against the surfaces of a frame: Embree's BVH, with the holes that alpha maps cut, and with cloth that
+ * is open between its threads.
  *
  * Follows the motion by refitting or rebuilding, by the surfaces' revisions. Both sides of every triangle
  * stop rays. The ground is no part of it: it is an ideal disc whose share is tl_ground_visibility. World
@@ -42,6 +43,11 @@ struct tl_trace_bundle {
     bool coherent;
 };
 uint32_t tl_trace_occluded_bundle(const tl_trace *trace, const struct tl_trace_bundle *bundle);
+
+/* What each ray of the bundle is let through, in [0, 1]: every sheet of an open material leaves its openness
+ * of it, at whatever angle it is crossed; what is not open stops it. (To the questions above an open sheet is
+ * a sheet.) */
+void tl_trace_seen_bundle(const tl_trace *trace, const struct tl_trace_bundle *bundle, float seen[16]);
 
 /* A point of a triangle, moved out to where the smooth surface is that the triangle stands for: the weighted
  * mean of its projections on the tangent planes of the corners, where these lie outside [Hanika 2021,

@@ -1,5 +1,5 @@
 # Tests of the renderer on a headless GL context.
-add_library(toile_test_shapes STATIC shapes.c)
+add_library(toile_test_shapes STATIC lamplight.c shapes.c)
 target_link_libraries(toile_test_shapes PUBLIC toile_render PkgConfig::CMOCKA)
 target_include_directories(toile_test_shapes PRIVATE ${CMAKE_SOURCE_DIR}/tests PUBLIC ${CMAKE_CURRENT_SOURCE_DIR})
 target_compile_definitions(toile_test_shapes PRIVATE TOILE_DATA_DIR="") # testing.h wants it; no shape reads data
@@ -17,3 +17,6 @@ toile_test(mirrors truth toile_test_shapes)
 toile_test(golden golden toile_test_shapes)
 toile_test(spots gpu toile_test_shapes PkgConfig::EPOXY)
 toile_test(reference truth toile_test_shapes)
+toile_test(local gpu toile_test_shapes)
+toile_test(local_shading gpu toile_test_shapes)
+toile_test(local_tables gpu toile_test_shapes)

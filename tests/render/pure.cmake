@@ -8,6 +8,7 @@ foreach(name
     convert
     cube
     emitters
+    fan
     flip
     ground
     layout
