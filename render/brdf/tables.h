@@ -63,8 +63,9 @@ struct tl_brdf_table {
 };
 
 /* The singular factors, G / (pi n.v) and sqrt(n.l / n.v), in fixed point: cut at 1, as the paper's hardware
- * does, which darkens grazing views; or divided by their greatest value, which is bounded by the width of
- * the facets, or by `constant` (and cut there). A float table is never cut. */
+ * does, which darkens grazing views; or divided by `constant` and cut there, or by their greatest value and
+ * not cut. That is 2 / (w sqrt pi) by SMITH; the others have none but what the texels next to n.v = 0 hold,
+ * so that in 8 bits a constant of about 4 serves better. A float table is never cut. */
 enum tl_table_range { TL_RANGE_CLAMPED, TL_RANGE_SCALED };
 
 struct tl_brdf_table_params {
