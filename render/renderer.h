@@ -85,6 +85,8 @@ struct tl_maps_params {  /* table "maps", of TL_METHOD_MAPS */
     float capture_at[3]; /* metres, from the middle of what casts shadows */
 };
 extern const struct tl_option_table tl_maps_options;
+#define TL_MAPS_SIZE_MIN 4
+#define TL_MAPS_SIZE_MAX 512
 
 struct tl_material_params { /* table "material": the garment's look, from the fabric or by hand */
     bool use_file;          /* keep the garment file's own materials where it has them */

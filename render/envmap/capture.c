@@ -45,14 +45,12 @@ static void leave_out(const struct tl_capture_request *request, bool hidden)
 static bool light_view(struct tl_capture *capture, tl_gpu *gpu, const struct tl_capture_request *request,
                        tl_error *error)
 {
-    const float black[] = {0, 0, 0, 0};
     const tl_target *gbuffer = &capture->gbuffer.target;
     const struct tl_envmap_request look_up = {.triangles = &gbuffer->colours[TL_GBUFFER_TRIANGLE],
                                               .exponent_levels = request->exponent_levels,
                                               .eye = request->point,
                                               .params = &around_params};
-    tl_lighting_begin(&capture->lighting, gpu, gbuffer);
-    glClearNamedFramebufferfv(capture->lighting.target.id, GL_COLOR, 0, black);
+    tl_lighting_begin(&capture->lighting, gpu, gbuffer, true);
     bool fine = tl_envmap_draw(&capture->around, gpu, &look_up, error);
     tl_gpu_reset_state(gpu);
     return fine;

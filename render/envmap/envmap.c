@@ -268,6 +268,8 @@ bool tl_envmap_draw(struct tl_envmap *envmap, tl_gpu *gpu, const struct tl_envma
         set_matrices(&envmap->turn);
     else
         glUniformMatrix3fv(TURN, 1, GL_FALSE, envmap->turn.raw[0]);
+    glTextureParameteri(request->triangles->id, GL_TEXTURE_MIN_FILTER, GL_NEAREST); /* numbers do not blend */
+    glTextureParameteri(request->triangles->id, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     glBindTextureUnit(TL_GBUFFER_TRIANGLE, request->triangles->id);
     glBindTextureUnit(LEVELS_UNIT, request->exponent_levels->id);
     glBindTextureUnit(MAPS_UNIT, envmap->maps.id);

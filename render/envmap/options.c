@@ -11,7 +11,7 @@ typedef struct tl_maps_params maps_params;
 static const struct tl_option rows[] = {
     TL_OPTION_ENUM(maps_params, layout, tl_layout_names,
                    "how the environment map is laid out; sphere is made anew whenever the view turns"),
-    TL_OPTION_INT(maps_params, size, 4, 512, "texels",
+    TL_OPTION_INT(maps_params, size, TL_MAPS_SIZE_MIN, TL_MAPS_SIZE_MAX, "texels",
                   "side of a cube's face, height of the others, a power of two; larger sharpens mirrors"),
     TL_OPTION_ENUM(
         maps_params, look_up, look_up_names,

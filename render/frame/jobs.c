@@ -452,7 +452,7 @@ static bool run_look_up(void *context, int level, tl_error *error)
                                               .exponent_levels = &renderer->lighting.exponent_levels,
                                               .eye = renderer->view.eye,
                                               .params = &renderer->settings.maps};
-    tl_lighting_begin(&renderer->lighting, renderer->gpu, gbuffer);
+    tl_lighting_begin(&renderer->lighting, renderer->gpu, gbuffer, true);
     bool fine = tl_envmap_draw(&renderer->envmap, renderer->gpu, &request, error);
     tl_gpu_reset_state(renderer->gpu);
     return fine;

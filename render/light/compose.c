@@ -277,7 +277,8 @@ static void add_fan(const struct block *block, const tl_sample *sample, const tl
     vec3s tangent = into_environment(block, (vec3s){{stored.x, stored.y, stored.z}});
     vec3s normal = into_environment(block, sample->normal);
     lobes->brdf = tl_brdf_of(material, sample->specular, sample->glossiness);
-    lobes->frame = tl_brdf_frame_make(normal, tangent, stored.w, material->gloss.rotation);
+    float side = sample->triangle & TL_SAMPLE_BACK ? -1.0f : 1.0f;
+    lobes->frame = tl_brdf_frame_make(normal, tangent, stored.w, side * material->gloss.rotation);
     lobes->facets =
         tl_fan_make(&lobes->brdf, &lobes->frame, lobes->viewer, request->params->fan, lobes->items);
     for (int k = 0; k < lobes->facets; k++)

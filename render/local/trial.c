@@ -16,7 +16,7 @@ static void wait_for_gpu(void)
 bool tl_local_trial_create(struct tl_local_trial *out, tl_gpu *gpu, tl_error *error)
 {
     *out = (struct tl_local_trial){.gpu = gpu, .surfaces = tl_surfaces_create(gpu)};
-    if (tl_gbuffer_create(&out->gbuffer, gpu, error) && tl_lighting_create(&out->lighting, gpu, error))
+    if (tl_lighting_create(&out->lighting, gpu, error))
         return true;
     tl_local_trial_release(out);
     return false;
@@ -31,8 +31,14 @@ bool tl_local_trial_show(struct tl_local_trial *trial, const tl_surface *surface
     if (!tl_casters_measure(surface, 1, &trial->casters, error) ||
         !tl_surfaces_update(trial->surfaces, &surface, 1, error))
         return false;
-    tl_gbuffer_draw(&trial->gbuffer, trial->gpu, &trial->view, width, height, trial->surfaces, 1, NULL);
-    tl_lighting_begin(&trial->lighting, trial->gpu, &trial->gbuffer.target);
+    const struct tl_gbuffer_request draw = {.view = &trial->view,
+                                            .width = width,
+                                            .height = height,
+                                            .surfaces = trial->surfaces,
+                                            .surface_count = 1};
+    if (!tl_gbuffer_draw(&trial->gbuffer, trial->gpu, &draw, error))
+        return false;
+    tl_lighting_begin(&trial->lighting, trial->gpu, &trial->gbuffer.target, true);
     tl_gpu_reset_state(trial->gpu);
     return true;
 }

@@ -279,9 +279,9 @@ static void set_layers(const struct place *place, vec3s smooth, struct tl_spot *
     layers->base = 1 - layers->coat;
     layers->faceted = material->gloss.model != TL_REFLECT_PHONG;
     if (layers->faceted) {
-        layers->brdf = tl_brdf_of(material, f0_of(place), spot->glossiness);
-        layers->frame =
-            tl_brdf_frame_make(spot->normal, spot->tangent, spot->handedness, material->gloss.rotation);
+        layers->brdf = tl_brdf_of(material, spot->f0, spot->glossiness);
+        layers->frame = tl_brdf_frame_make(spot->normal, spot->tangent, spot->handedness,
+                                           place->side * material->gloss.rotation);
         spot->glossy = (vec3s){{0, 0, 0}};
     }
     spot->diffuse = glms_vec3_scale(spot->diffuse, layers->base);

@@ -85,7 +85,7 @@ static void look_up(struct device *device, const struct tl_maps_params *params, 
                                               .exponent_levels = &device->lighting.exponent_levels,
                                               .params = &mirror};
     tl_gpu_reset_state(device->gpu);
-    tl_lighting_begin(&device->lighting, device->gpu, &gbuffer);
+    tl_lighting_begin(&device->lighting, device->gpu, &gbuffer, true);
     assert_ok(tl_envmap_draw(&device->envmap, device->gpu, &request, &error), error);
     tl_gpu_reset_state(device->gpu);
     size_t texels = (size_t)WIDTH * (size_t)gbuffer.height;
