@@ -172,7 +172,7 @@ static void test_refusals(void **state)
     refuse(
         FOLDER "/bad.yaml", NULL,
         FOLDER
-        "/bad.yaml:2: scene.garment: dres is no name known here: expected dress, skirt, sheet, sphere, torus, none or a file name "
+        "/bad.yaml:2: scene.garment: dres is no name known here: expected dress, skirt, layers, sheet, sphere, torus, none or a file name "
         "with its extension: did you mean dress?");
     /* A preset is about quality, a fabric about cloth: neither may reach into the scene. */
     write_text(FOLDER "/preset.yaml", "scene:\n  fabric: wool\n");
