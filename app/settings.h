@@ -51,7 +51,7 @@ struct tl_settings {
     struct tl_reference_params reference;
 };
 
-#define TL_SETTINGS_TABLES 14
+#define TL_SETTINGS_TABLES 15
 /* The bindings of a settings value, in the order of the reference page. */
 void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[TL_SETTINGS_TABLES]);
 
