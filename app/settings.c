@@ -74,7 +74,22 @@ static const struct tl_option_table camera_table = TL_OPTION_TABLE(
     "camera", "an orbit about a target", camera_rows, struct tl_camera_params, TL_CAMERA_DEFAULTS);
 
 /* The reference page's order. A preset sets CLOTH, LIGHT and IMAGE; a fabric FABRIC, WEAVE and MATERIAL. */
-enum { SCENE, CAMERA, CLOTH, FABRIC, WEAVE, MATERIAL, LIGHT, MAPS, LAMP, FILL, SHADING, IMAGE, REFERENCE };
+enum {
+    SCENE,
+    CAMERA,
+    CLOTH,
+    FABRIC,
+    WEAVE,
+    MATERIAL,
+    LIGHT,
+    MAPS,
+    LAMP,
+    FILL,
+    SHADING,
+    DETAIL,
+    IMAGE,
+    REFERENCE
+};
 
 void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[TL_SETTINGS_TABLES])
 {
@@ -85,6 +100,7 @@ void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[T
     bindings[WEAVE] = (struct tl_binding){&tl_weave_options, &settings->weave};
     bindings[MATERIAL] = (struct tl_binding){&tl_material_options, &settings->material};
     bindings[LIGHT] = (struct tl_binding){&tl_light_options, &settings->light};
+    bindings[DETAIL] = (struct tl_binding){&tl_detail_options, &settings->detail};
     bindings[MAPS] = (struct tl_binding){&tl_maps_options, &settings->maps};
     bindings[LAMP] = (struct tl_binding){&tl_lamp_options, &settings->lamp};
     bindings[FILL] = (struct tl_binding){&tl_fill_options, &settings->fill};
@@ -96,6 +112,7 @@ void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[T
 struct tl_render_settings tl_settings_render(const struct tl_settings *settings)
 {
     return (struct tl_render_settings){.light = settings->light,
+                                       .detail = settings->detail,
                                        .maps = settings->maps,
                                        .shading = settings->shading,
                                        .image = settings->image,

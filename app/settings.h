@@ -39,6 +39,7 @@ struct tl_settings {
     struct tl_weave_params weave;
     struct tl_material_params material;
     struct tl_light_params light;
+    struct tl_detail_params detail;
     struct tl_maps_params maps;
     struct tl_lamp_params lamp, fill;
     struct tl_shading_params shading;
@@ -46,7 +47,7 @@ struct tl_settings {
     struct tl_reference_params reference;
 };
 
-#define TL_SETTINGS_TABLES 13
+#define TL_SETTINGS_TABLES 14
 /* The bindings of a settings value, in the order of the reference page. */
 void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[TL_SETTINGS_TABLES]);
 

@@ -86,6 +86,8 @@ tl_renderer *tl_renderer_create(tl_gpu *gpu, tl_error *error)
     tl_renderer *renderer = TL_NEW(tl_renderer);
     renderer->gpu = gpu;
     renderer->surfaces = tl_surfaces_create(gpu);
+    tl_surfaces_use_detail(renderer->surfaces, &renderer->detail);
+    renderer->detail.params = *(const struct tl_detail_params *)tl_detail_options.defaults;
     renderer->points = tl_points_create();
     renderer->trace = tl_trace_create(error);
     renderer->maps = tl_shadow_maps_create(gpu, error);
@@ -110,6 +112,7 @@ void tl_renderer_destroy(tl_renderer **renderer)
     tl_slice_maps_release(&(*renderer)->slice_maps);
     tl_region_lights_release(&(*renderer)->lights);
     tl_surfaces_destroy(&(*renderer)->surfaces);
+    tl_detail_maps_release(&(*renderer)->detail);
     tl_triangle_ranges_release(&(*renderer)->ranges);
     tl_samples_release(&(*renderer)->samples);
     tl_sheets_release(&(*renderer)->sheets);
@@ -219,7 +222,7 @@ static bool check_camera(const struct tl_camera *camera, tl_error *error)
 static bool check_envmap_size(const tl_frame *frame, const struct tl_render_settings *settings,
                               tl_error *error)
 {
-    uint32_t exponents = tl_frame_map_exponents(frame);
+    uint32_t exponents = tl_frame_map_exponents(frame, &settings->detail);
     uint64_t bytes = tl_envmap_bytes_needed(&settings->maps, exponents);
     if (settings->light.method == TL_METHOD_MAPS && bytes > TEXTURE_BYTES_MAX)
         return tl_fail(error, TL_USAGE,
@@ -369,9 +372,9 @@ struct tl_render_memory tl_renderer_memory(const tl_renderer *renderer)
         .sheets = tl_sheets_bytes(&renderer->sheets),
         .targets = tl_target_bytes(&renderer->gbuffer.target) + tl_target_bytes(&renderer->lighting.target) +
                    tl_present_bytes(present),
-        .surfaces = tl_surfaces_bytes(renderer->surfaces),
-        .other = tl_lighting_bytes(&renderer->lighting) + tl_local_bytes(&renderer->local) + tl_texture_bytes(&present->backdrop) +
-                 tl_texture_bytes(&present->blurred),
+        .surfaces = tl_surfaces_bytes(renderer->surfaces) + tl_detail_maps_bytes(&renderer->detail),
+        .other = tl_lighting_bytes(&renderer->lighting) + tl_local_bytes(&renderer->local) +
+                 tl_texture_bytes(&present->backdrop) + tl_texture_bytes(&present->blurred),
     };
     memory.total = memory.pems + memory.maps + memory.rays + memory.sheets + memory.targets +
                    memory.surfaces + memory.other;

@@ -8,6 +8,7 @@
 #include "assets/environment.h"
 #include "assets/surface.h"
 #include "config/options.h"
+#include "render/detail/options.h"
 #include "render/gpu/gpu.h"
 #include "render/local/shading.h"
 #include "render/plan/plan.h"
@@ -154,6 +155,7 @@ typedef struct tl_frame {
 
 struct tl_render_settings {
     struct tl_light_params light;
+    struct tl_detail_params detail;
     struct tl_maps_params maps;
     struct tl_shading_params shading; /* under lamps */
     struct tl_image_params image;

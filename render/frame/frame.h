@@ -2,6 +2,7 @@
 #ifndef TOILE_RENDER_FRAME_FRAME_H
 #define TOILE_RENDER_FRAME_FRAME_H
 
+#include "render/detail/maps.h"
 #include "render/env/lobes.h"
 #include "render/env/pour.h"
 #include "render/env/sun.h"
@@ -41,6 +42,7 @@ enum tl_resource {
     TL_INPUT_LIGHT,       /* how light is put together */
     TL_INPUT_LAMPS,       /* and how surfaces are shaded under them */
     TL_INPUT_REFERENCE,
+    TL_INPUT_DETAIL,
     TL_INPUT_SHOW,    /* exposure and background */
     TL_INPUT_ENVMAP,  /* size of environment maps, and whether they show the scene */
     TL_INPUT_LAYOUT,  /* their layout; for a sphere map the view's turn */
@@ -55,6 +57,7 @@ enum tl_resource {
     TL_MADE_SLICES,
     TL_MADE_LIGHTS, /* regions as lights */
     TL_MADE_SURFACES,
+    TL_MADE_DETAIL, /* maps derived from the materials' own */
     TL_MADE_DEPTHS,
     TL_MADE_MAPS,
     TL_MADE_GBUFFER,
@@ -89,6 +92,7 @@ enum tl_scene_fact {
     TL_SCENE_SLICES,  /* ... and read exact slices of the regions */
     TL_SCENE_EXACT,   /* exact light of the whole environment is read */
     TL_SCENE_BLUR,    /* shadow maps are variance maps */
+    TL_SCENE_DETAIL,  /* a material's bumps need maps of their own */
     TL_SCENE_REFERENCE,
     TL_SCENE_ENVMAP,  /* environment maps light the image */
     TL_SCENE_CAPTURE, /* ... and show the scene */
@@ -131,12 +135,12 @@ void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *setti
 /* Facts about the scene and how it is to be drawn, and the exponents that its materials need (env/lobes.h).
  */
 tl_bits tl_frame_facts(const tl_frame *frame, const struct tl_render_settings *settings);
-uint32_t tl_frame_exponents(const tl_frame *frame);
+uint32_t tl_frame_exponents(const tl_frame *frame, const struct tl_detail_params *detail);
 /* Whether any material, or any drawn, has this property. */
 bool tl_frame_has(const tl_frame *frame, bool (*property)(const tl_material *material));
 bool tl_material_is_faceted(const tl_material *material);
 /* ... and those of environment maps, with the environment itself for mirrors. */
-uint32_t tl_frame_map_exponents(const tl_frame *frame);
+uint32_t tl_frame_map_exponents(const tl_frame *frame, const struct tl_detail_params *detail);
 
 /* Lists what is drawn, with the ground last when it is drawn. */
 void tl_frame_list_surfaces(tl_renderer *renderer);
@@ -160,6 +164,7 @@ struct tl_renderer {
     struct tl_slice_maps slice_maps;
     struct tl_region_lights lights;
     tl_surfaces *surfaces;
+    struct tl_detail_maps detail;
     size_t surface_count; /* with the ground, which comes last */
     struct tl_casters casters;
     struct tl_ground ground;

@@ -1,4 +1,5 @@
 #include "config/memory.h"
+#include "render/detail/detail.h"
 #include "render/frame/frame.h"
 
 #include "render/brdf/fan.h"
@@ -81,6 +82,12 @@ static uint64_t reference_signature(const struct tl_reference_params *reference)
 {
     uint64_t hash = MIX(MIX(FNV_OFFSET, reference->strata), reference->lobe_samples);
     return MIX(MIX(hash, reference->replicates), reference->terminator);
+}
+
+static uint64_t detail_signature(const struct tl_detail_params *detail)
+{
+    uint64_t hash = MIX(MIX(MIX(FNV_OFFSET, detail->mode), detail->steps), detail->refine);
+    return MIX(MIX(MIX(MIX(hash, detail->shadow), detail->height_scale), detail->silhouette), detail->minify);
 }
 
 static uint64_t layout_signature(const tl_frame *frame, const struct tl_maps_params *maps)
@@ -170,6 +177,7 @@ void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *setti
     signatures[TL_INPUT_LIGHT] = light_signature(light);
     signatures[TL_INPUT_LAMPS] = lamps_signature(frame, &settings->shading);
     signatures[TL_INPUT_REFERENCE] = reference_signature(&settings->reference);
+    signatures[TL_INPUT_DETAIL] = detail_signature(&settings->detail);
     signatures[TL_INPUT_SHOW] = MIX(MIX(start, image->exposure_ev), image->background);
     bool captures = settings->maps.capture_every > 0;
     signatures[TL_INPUT_ENVMAP] = MIX(MIX(start, settings->maps.size), captures);
@@ -227,14 +235,16 @@ static uint32_t layered_exponents(const tl_material *material, float low, float 
     return needed | exponents_between(least, greatest);
 }
 
-uint32_t tl_frame_exponents(const tl_frame *frame)
+uint32_t tl_frame_exponents(const tl_frame *frame, const struct tl_detail_params *detail)
 {
     uint32_t needed = 1;
     for (size_t s = 0; s < frame->surface_count; s++)
         for (size_t p = 0; p < frame->surfaces[s].part_count; p++) {
-            float low, high;
             const tl_material *material = &frame->surfaces[s].materials[frame->surfaces[s].parts[p].material];
+            float low, high;
             glossiness_range(material, &low, &high);
+            if (tl_detail_wants_moments(detail) && tl_detail_wants_maps(detail, material))
+                low = 0; /* averaged bumps dull any gloss */
             low = 1 - (1 - low) * (1 + ROUNDING);
             needed |= tl_exponents_needed(low, 1 - (1 - high) * (1 - ROUNDING));
             if (tl_mirror_ray_count(tl_lobe_exponent(high)) >
@@ -259,9 +269,9 @@ bool tl_frame_has(const tl_frame *frame, bool (*property)(const tl_material *mat
     return false;
 }
 
-uint32_t tl_frame_map_exponents(const tl_frame *frame)
+uint32_t tl_frame_map_exponents(const tl_frame *frame, const struct tl_detail_params *detail)
 {
-    return tl_frame_exponents(frame) | 1u << TL_EXPONENT_COUNT;
+    return tl_frame_exponents(frame, detail) | 1u << TL_EXPONENT_COUNT;
 }
 
 static float greatest_glossiness(const tl_frame *frame)
@@ -275,6 +285,16 @@ static float greatest_glossiness(const tl_frame *frame)
             greatest = fmaxf(greatest, high);
         }
     return greatest;
+}
+
+static bool wants_detail(const tl_frame *frame, const struct tl_detail_params *detail)
+{
+    for (size_t s = 0; s < frame->surface_count; s++)
+        for (size_t p = 0; p < frame->surfaces[s].part_count; p++)
+            if (tl_detail_wants_maps(detail,
+                                     &frame->surfaces[s].materials[frame->surfaces[s].parts[p].material]))
+                return true;
+    return false;
 }
 
 static tl_bits lamp_facts(const tl_frame *frame, const struct tl_light_params *light)
@@ -308,6 +328,8 @@ tl_bits tl_frame_facts(const tl_frame *frame, const struct tl_render_settings *s
     tl_bits facts = TL_BIT(TL_SCENE_RASTER) | TL_BIT(rays ? TL_SCENE_RAYS : TL_SCENE_PASSES);
     if (shadowed)
         facts |= TL_BIT(TL_SCENE_SHADOWS) | (rays ? 0 : TL_BIT(TL_SCENE_MAPS));
+    if (wants_detail(frame, &settings->detail))
+        facts |= TL_BIT(TL_SCENE_DETAIL);
     if (light->visibility == TL_VISIBILITY_VSM)
         facts |= TL_BIT(TL_SCENE_BLUR);
     if (!rays && tl_light_source(light) == TL_LIGHT_CHAIN)

@@ -4,6 +4,9 @@
 
 #include <epoxy/gl.h>
 
+#include <stdio.h>
+#include <string.h>
+
 /* Uniform locations of gbuffer.vert and gbuffer.frag beside those of surface.glsl. */
 enum { VIEW_PROJECTION = 16, EYE = 17, FADING_DISC = 18 };
 
@@ -26,17 +29,30 @@ bool tl_gbuffer_reload(struct tl_gbuffer *gbuffer, tl_error *error)
     return fine;
 }
 
+static void write_defines(const struct tl_gbuffer_request *request, char *out, size_t size)
+{
+    const struct tl_detail_params *detail = request->detail ? request->detail : tl_detail_options.defaults;
+    char lines[TL_DETAIL_DEFINES_SIZE];
+    tl_detail_defines(detail, lines, sizeof lines);
+    snprintf(out, size, "%s%s%s", lines, request->frames ? "#define FRAMES\n" : "",
+             request->passed ? "#define BEHIND\n" : "");
+}
+
 static const tl_program *program_of(struct tl_gbuffer *gbuffer, tl_gpu *gpu,
                                     const struct tl_gbuffer_request *request, tl_error *error)
 {
-    static const char *const defines[TL_GBUFFER_PROGRAMS] = {NULL, "#define FRAMES\n", "#define BEHIND\n",
-                                                             "#define FRAMES\n#define BEHIND\n"};
     int bits = (request->frames ? TL_GBUFFER_FRAMES : 0) | (request->passed ? TL_GBUFFER_BEHIND : 0);
     tl_program *program = &gbuffer->programs[bits];
-    if (!program->id && !tl_program_create_variant(gpu, tl_embedded_shaders, "gbuffer.vert", "gbuffer.frag",
-                                                   defines[bits], program, error))
-        return NULL;
-    return program;
+    char wanted[sizeof gbuffer->defines[bits]];
+    write_defines(request, wanted, sizeof wanted);
+    if (program->id && strcmp(wanted, gbuffer->defines[bits]) == 0)
+        return program;
+    tl_program_destroy(program);
+    strcpy(gbuffer->defines[bits], wanted);
+    return tl_program_create_variant(gpu, tl_embedded_shaders, "gbuffer.vert", "gbuffer.frag",
+                                     gbuffer->defines[bits], program, error)
+               ? program
+               : NULL;
 }
 
 static void allocate(struct tl_gbuffer *gbuffer, tl_gpu *gpu, const struct tl_gbuffer_request *request)

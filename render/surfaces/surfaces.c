@@ -32,6 +32,7 @@ struct tl_surfaces {
     tl_gpu *gpu;
     size_t count;
     struct item *items;
+    const struct tl_detail_maps *detail; /* NULL: none */
 };
 
 static const size_t attribute_bytes[ATTRIBUTES] = {sizeof(vec3s), sizeof(vec3s), sizeof(vec4s),
@@ -57,6 +58,11 @@ tl_surfaces *tl_surfaces_create(tl_gpu *gpu)
     tl_surfaces *surfaces = TL_NEW(tl_surfaces);
     surfaces->gpu = gpu;
     return surfaces;
+}
+
+void tl_surfaces_use_detail(tl_surfaces *surfaces, const struct tl_detail_maps *detail)
+{
+    surfaces->detail = detail;
 }
 
 static void resize(tl_surfaces *surfaces, size_t count)
@@ -321,6 +327,8 @@ void tl_surfaces_draw_part(const tl_surfaces *surfaces, size_t index, size_t par
         first_triangle += surfaces->items[i].index_count / 3;
     glBindVertexArray(item->vertex_array);
     set_material(item, part);
+    tl_detail_maps_bind(surfaces->detail, index, part_index, part->uv_metres, TL_UNIFORM_DETAIL,
+                        TL_DETAIL_UNIT);
     glUniform1ui(TL_UNIFORM_FIRST_TRIANGLE, (GLuint)(first_triangle + part->first_index / 3));
     glDrawElements(GL_TRIANGLES, (GLsizei)part->index_count, GL_UNSIGNED_INT,
                    offset_of_index(part->first_index));
