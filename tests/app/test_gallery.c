@@ -25,7 +25,7 @@ static void test_all_rows_hang(void **state)
     } groups[] = {{'A', 12}, {'B', 7}, {'C', 8}};
     for (size_t g = 0; g < TL_COUNT(groups); g++)
         for (int i = 1; i <= groups[g].count; i++) {
-            char id[8];
+            char id[16];
             snprintf(id, sizeof id, "%c%d", groups[g].group, i);
             if (!hangs(id))
                 fail_msg("%s hangs nowhere", id);
