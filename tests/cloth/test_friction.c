@@ -178,8 +178,7 @@ static void test_capstan(void **state)
             printf("capstan, %s, mu %.1f: T2/T1 %.4f, exp(mu pi) %.4f: off by %+.2f %%\n",
                    tl_cloth_solver_names[solver], frictions[i], ratio, expected,
                    100 * (ratio / expected - 1));
-            double share = solver == TL_CLOTH_SETTLE ? 0.08 : 0.05; /* its rounds for friction are bounded */
-            assert_near(ratio, expected, share * expected);
+            assert_near(ratio, expected, 0.05 * expected);
         }
 }
 
