@@ -91,6 +91,7 @@ enum {
     LAMP,
     FILL,
     SHADING,
+    DETAIL,
     IMAGE,
     REFERENCE
 };
@@ -105,6 +106,7 @@ void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[T
     bindings[MATERIAL] = (struct tl_binding){&tl_material_options, &settings->material};
     bindings[OVERLAY] = (struct tl_binding){&tl_overlay_options, &settings->overlay};
     bindings[LIGHT] = (struct tl_binding){&tl_light_options, &settings->light};
+    bindings[DETAIL] = (struct tl_binding){&tl_detail_options, &settings->detail};
     bindings[MAPS] = (struct tl_binding){&tl_maps_options, &settings->maps};
     bindings[LAMP] = (struct tl_binding){&tl_lamp_options, &settings->lamp};
     bindings[FILL] = (struct tl_binding){&tl_fill_options, &settings->fill};
@@ -116,6 +118,7 @@ void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[T
 struct tl_render_settings tl_settings_render(const struct tl_settings *settings)
 {
     return (struct tl_render_settings){.light = settings->light,
+                                       .detail = settings->detail,
                                        .maps = settings->maps,
                                        .shading = settings->shading,
                                        .image = settings->image,

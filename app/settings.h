@@ -43,6 +43,7 @@ struct tl_settings {
     struct tl_material_params overlay;
     struct tl_weave_params overlay_weave; /* follows from scene.overlay_fabric */
     struct tl_light_params light;
+    struct tl_detail_params detail;
     struct tl_maps_params maps;
     struct tl_lamp_params lamp, fill;
     struct tl_shading_params shading;
@@ -50,7 +51,7 @@ struct tl_settings {
     struct tl_reference_params reference;
 };
 
-#define TL_SETTINGS_TABLES 14
+#define TL_SETTINGS_TABLES 15
 /* The bindings of a settings value, in the order of the reference page. */
 void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[TL_SETTINGS_TABLES]);
 

@@ -8,6 +8,7 @@
 #include "assets/environment.h"
 #include "assets/surface.h"
 #include "config/options.h"
+#include "render/detail/options.h"
 #include "render/gpu/gpu.h"
 #include "render/local/shading.h"
 #include "render/plan/plan.h"
@@ -72,13 +73,21 @@ enum tl_maps_mode {
     TL_MAPS_GLOSSY,
     TL_MAPS_TRANSMISSION
 };
-struct tl_maps_params { /* table "maps", of TL_METHOD_MAPS */
-    int layout;         /* enum tl_layout (render/env/layout.h) */
-    int size;           /* texels, a power of two: side of a cube's face, height of the others */
-    int look_up;        /* enum tl_maps_look_up, of paraboloids */
-    int mode;           /* enum tl_maps_mode */
+/* off: the reflectance of the G-buffer. Else F of a table over the cosine: Lo = F Lm + Ld, or F Lm + (1 - F)
+ * Ld [Heidrich and Seidel 1999, 4.4]. */
+enum tl_maps_fresnel { TL_MAPS_FRESNEL_OFF, TL_MAPS_FRESNEL_ADDITIVE, TL_MAPS_FRESNEL_COAT };
+struct tl_maps_params {  /* table "maps", of TL_METHOD_MAPS */
+    int layout;          /* enum tl_layout (render/env/layout.h) */
+    int size;            /* texels, a power of two: side of a cube's face, height of the others */
+    int look_up;         /* enum tl_maps_look_up, of paraboloids */
+    int mode;            /* enum tl_maps_mode */
+    int fresnel;         /* enum tl_maps_fresnel */
+    int capture_every;   /* frames from one capture of the scene to the next; 0: the environment alone */
+    float capture_at[3]; /* metres, from the middle of what casts shadows */
 };
 extern const struct tl_option_table tl_maps_options;
+#define TL_MAPS_SIZE_MIN 4
+#define TL_MAPS_SIZE_MAX 512
 
 struct tl_material_params { /* table "material": the garment's look, from the fabric or by hand */
     bool use_file;          /* keep the garment file's own materials where it has them */
@@ -148,6 +157,7 @@ typedef struct tl_frame {
 
 struct tl_render_settings {
     struct tl_light_params light;
+    struct tl_detail_params detail;
     struct tl_maps_params maps;
     struct tl_shading_params shading; /* under lamps */
     struct tl_image_params image;
@@ -172,6 +182,10 @@ bool tl_renderer_is_at_rest(const tl_renderer *renderer);
 
 /* The HDR image: F32 RGBA, linear, alpha = coverage, premultiplied, black where nothing is. */
 bool tl_renderer_read(tl_renderer *renderer, tl_image *out, tl_error *error);
+
+/* The scene as it was last captured by TL_METHOD_MAPS, a cube in world axes (render/envmap/capture.h); not
+ * when nothing was. */
+bool tl_renderer_read_capture(const tl_renderer *renderer, tl_image *out, tl_error *error);
 
 /* For show: background, exposure, tone mapping (Khronos PBR Neutral), sRGB. To an image (U8 RGB) or, with
  * `framebuffer`, to the current window's buffer 0 at the given size in pixels. The drawn frame's environment

@@ -154,3 +154,17 @@ struct tl_normalise_error tl_normalise_error(int method, double angle)
     tl_normal_cube_release(&cube);
     return error;
 }
+
+double tl_normalise_limit(int method, int against)
+{
+    const double degree = M_PI / 180;
+    double bound = tl_normalise_error(against, 30 * degree).vector, low = degree, high = 120 * degree;
+    for (int i = 0; i < 16; i++) {
+        double middle = (low + high) / 2;
+        if (tl_normalise_error(method, middle).vector < bound)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}

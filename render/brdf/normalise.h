@@ -47,5 +47,7 @@ struct tl_normalise_error {
 };
 #define TL_NORMALISE_CUBE_SIZE 256 /* texels, of the cubes measured */
 struct tl_normalise_error tl_normalise_error(int method, double angle);
+/* rad: up to which angle between vertices one method's own error is below another's, which does not grow. */
+double tl_normalise_limit(int method, int against);
 
 #endif

@@ -20,8 +20,9 @@ static vec3s direction(float cosine, float turns)
 static vec3s light_of(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int i,
                       int viewer)
 {
+    int row = i / LIGHTS;
     float u1 = ((float)(i % LIGHTS) + 0.5f) / LIGHTS, shift = fmodf((float)viewer * 0.61803399f, 1);
-    float u2 = fmodf(((float)(i / LIGHTS) + 0.5f) / LIGHTS + shift, 1), density;
+    float u2 = fmodf(((float)row + 0.5f) / LIGHTS + shift, 1), density;
     return i % 2 ? direction(u1, u2) : tl_brdf_draw(brdf, frame, v, u1, u2, &density);
 }
 
@@ -63,8 +64,8 @@ struct tl_table_error tl_brdf_table_error(const struct tl_brdf *brdf,
     struct tl_brdf_frame frame = upright();
     struct sums away = {0}, grazing = {0};
     for (int viewer = 0; viewer < VIEWERS * 8; viewer++) {
-        vec3s v =
-            direction(((float)(viewer % VIEWERS) + 0.5f) / VIEWERS, ((float)(viewer / VIEWERS) + 0.3f) / 8);
+        int turn = viewer / VIEWERS;
+        vec3s v = direction(((float)(viewer % VIEWERS) + 0.5f) / VIEWERS, ((float)turn + 0.3f) / 8);
         for (int i = 0; i < LIGHTS * LIGHTS; i++) {
             vec3s l = light_of(brdf, &frame, v, i, viewer);
             float inputs[TL_INPUT_COUNT];

@@ -1,23 +1,28 @@
 #include "render/envmap/envmap.h"
 
 #include "config/memory.h"
+#include "render/brdf/brdf.h"
 #include "render/shaders.h"
 
 #include <epoxy/gl.h>
 
+#include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Uniform locations of envmap.frag and what it includes; sample.glsl has 1 and 2. */
-enum { EYE = 1, MODE = 3, PART_COUNT, TURN, SLOTS, FRONT_MATRIX = 40, BACK_MATRIX };
+enum { EYE = 1, MODE = 3, PART_COUNT, TURN, SLOTS, FRONT_MATRIX = 40, BACK_MATRIX, COMPOSITION };
 /* Texture units; the G-buffer's layers come first. */
-enum { LEVELS_UNIT = 5, MAPS_UNIT };
+enum { LEVELS_UNIT = 5, MAPS_UNIT, FRESNEL_UNIT };
 #define PARTS_BINDING 1
-#define TEXEL_BYTES   16 /* RGBA32F: no light is too bright for it */
+#define COSINES       256 /* of the Fresnel table: its error is a fifteenth of a per mille */
+#define TEXEL_BYTES   16  /* RGBA32F: no light is too bright for it */
 
 /* std430: struct Part in envmap.frag. */
 struct part {
     uint32_t first_triangle;
     float index;
+    uint32_t is_ground;
 };
 
 /* Layers of an array texture that one picture takes. */
@@ -32,6 +37,7 @@ void tl_envmap_release(struct tl_envmap *envmap)
         for (int way = 0; way < 2; way++)
             tl_program_destroy(&envmap->programs[layout][way]);
     tl_texture_destroy(&envmap->maps);
+    tl_texture_destroy(&envmap->fresnel);
     tl_levels_release(&envmap->levels);
     if (envmap->parts_buffer)
         glDeleteBuffers(1, &envmap->parts_buffer);
@@ -50,7 +56,7 @@ bool tl_envmap_reload(struct tl_envmap *envmap, tl_error *error)
 
 size_t tl_envmap_bytes(const struct tl_envmap *envmap)
 {
-    return tl_texture_bytes(&envmap->maps) + envmap->parts_bytes;
+    return tl_texture_bytes(&envmap->maps) + tl_texture_bytes(&envmap->fresnel) + envmap->parts_bytes;
 }
 
 uint64_t tl_envmap_bytes_needed(const struct tl_maps_params *params, uint32_t exponents)
@@ -138,31 +144,79 @@ static size_t count_parts(const struct tl_triangle_ranges *ranges)
     return count;
 }
 
+/* What a part is told by, until its place in the order is known. */
+struct told {
+    uint32_t first_triangle;
+    const tl_material *material;
+    bool is_ground;
+};
+
 static int by_first_triangle(const void *a, const void *b)
 {
-    uint32_t first = ((const struct part *)a)->first_triangle,
-             second = ((const struct part *)b)->first_triangle;
+    uint32_t first = ((const struct told *)a)->first_triangle,
+             second = ((const struct told *)b)->first_triangle;
     return (first > second) - (first < second);
 }
 
-void tl_envmap_set_parts(struct tl_envmap *envmap, const struct tl_triangle_ranges *ranges)
+static size_t list_parts(const struct tl_triangle_ranges *ranges, bool has_ground, struct told *told)
 {
-    size_t capacity = count_parts(ranges), count = 0;
-    struct part *parts = TL_NEW_ARRAY(struct part, capacity + 1); /* GL has no empty buffers */
+    size_t count = 0;
     for (size_t s = 0; s < ranges->surface_count; s++) {
         const tl_surface *surface = ranges->surfaces[s];
+        bool is_ground = has_ground && s + 1 == ranges->surface_count;
         for (size_t p = 0; p < surface->part_count; p++)
             if (surface->parts[p].index_count > 0)
-                parts[count++] = (struct part){ranges->first[s] + surface->parts[p].first_index / 3,
-                                               surface->materials[surface->parts[p].material].gloss.index};
+                told[count++] = (struct told){ranges->first[s] + surface->parts[p].first_index / 3,
+                                              &surface->materials[surface->parts[p].material], is_ground};
     }
-    qsort(parts, count, sizeof *parts, by_first_triangle);
+    qsort(told, count, sizeof *told, by_first_triangle);
+    return count;
+}
+
+static void send_parts(struct tl_envmap *envmap, const struct told *told, size_t count)
+{
+    struct part *parts = TL_NEW_ARRAY(struct part, count + 1); /* GL has no empty buffers */
+    for (size_t i = 0; i < count; i++)
+        parts[i] =
+            (struct part){told[i].first_triangle, fmaxf(told[i].material->gloss.index, 1), told[i].is_ground};
     if (!envmap->parts_buffer)
         glCreateBuffers(1, &envmap->parts_buffer);
-    envmap->parts_bytes = (capacity + 1) * sizeof *parts;
+    envmap->parts_bytes = (count + 1) * sizeof *parts;
     envmap->part_count = (int)count;
     glNamedBufferData(envmap->parts_buffer, (GLsizeiptr)envmap->parts_bytes, parts, GL_STATIC_DRAW);
     free(parts);
+}
+
+/* Parts beyond what a texture can hold share its last row. */
+static void send_fresnel(struct tl_envmap *envmap, tl_gpu *gpu, const struct told *told, size_t count)
+{
+    size_t most = (size_t)tl_gpu_texture_side_max(gpu), rows = count < most ? count : most;
+    float *texels = TL_NEW_ARRAY(float, 4 * COSINES * (rows + 1));
+    for (size_t row = 0; row < rows; row++) {
+        const tl_material *material = told[row].material;
+        struct tl_brdf brdf = tl_brdf_of(material, material->specular, material->glossiness);
+        for (size_t i = 0; i < COSINES; i++) {
+            vec3s reflectance = tl_brdf_fresnel(&brdf, (float)i / (COSINES - 1));
+            memcpy(texels + 4 * (row * COSINES + i), reflectance.raw, sizeof reflectance);
+        }
+    }
+    int height = rows > 0 ? (int)rows : 1;
+    if (envmap->fresnel.height != height) {
+        tl_texture_destroy(&envmap->fresnel);
+        envmap->fresnel = tl_texture_create(gpu, GL_TEXTURE_2D, GL_RGBA32F, COSINES, height, 1, 1);
+    }
+    glTextureSubImage2D(envmap->fresnel.id, 0, 0, 0, COSINES, height, GL_RGBA, GL_FLOAT, texels);
+    free(texels);
+}
+
+void tl_envmap_set_parts(struct tl_envmap *envmap, tl_gpu *gpu, const struct tl_triangle_ranges *ranges,
+                         bool has_ground)
+{
+    struct told *told = TL_NEW_ARRAY(struct told, count_parts(ranges));
+    size_t count = list_parts(ranges, has_ground, told);
+    send_parts(envmap, told, count);
+    send_fresnel(envmap, gpu, told, count);
+    free(told);
 }
 
 static const tl_program *program_of(struct tl_envmap *envmap, tl_gpu *gpu, int look_up, tl_error *error)
@@ -208,14 +262,18 @@ bool tl_envmap_draw(struct tl_envmap *envmap, tl_gpu *gpu, const struct tl_envma
     glUniform3fv(EYE, 1, request->eye.raw);
     glUniform1i(MODE, request->params->mode);
     glUniform1i(PART_COUNT, envmap->part_count);
+    glUniform1i(COMPOSITION, request->params->fresnel);
     glUniform1iv(SLOTS, TL_EXPONENT_COUNT + 1, envmap->slots);
     if (envmap->layout == TL_LAYOUT_PARABOLOID && request->params->look_up == TL_LOOK_UP_MATRIX)
         set_matrices(&envmap->turn);
     else
         glUniformMatrix3fv(TURN, 1, GL_FALSE, envmap->turn.raw[0]);
+    glTextureParameteri(request->triangles->id, GL_TEXTURE_MIN_FILTER, GL_NEAREST); /* numbers do not blend */
+    glTextureParameteri(request->triangles->id, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     glBindTextureUnit(TL_GBUFFER_TRIANGLE, request->triangles->id);
     glBindTextureUnit(LEVELS_UNIT, request->exponent_levels->id);
     glBindTextureUnit(MAPS_UNIT, envmap->maps.id);
+    glBindTextureUnit(FRESNEL_UNIT, envmap->fresnel.id);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, PARTS_BINDING, envmap->parts_buffer);
     tl_gpu_draw_fullscreen(gpu);
     return true;

@@ -5,18 +5,22 @@
 #include "sample.glsl"
 
 const int SURFACE = 0, MIRROR = 1, REFRACTION = 2, DIFFUSE = 3, GLOSSY = 4, TRANSMISSION = 5;
+const int OFF = 0, ADDITIVE = 1, COAT = 2;
 const int ENVIRONMENT = 31; // as if it were the exponent after the last
 const uint TRIANGLE_BACK = 0x80000000u;
 
-layout(location = 3) uniform int mode;
+layout(location = 3) uniform int wanted_mode; // of all but the ground
 layout(location = 4) uniform int part_count;
 layout(location = 6) uniform int slots[32];
+layout(location = 42) uniform int composition;
 
 layout(binding = 4) uniform usampler2D triangles;
+layout(binding = 7) uniform sampler2D fresnel; // F over the cosine, a row for each part
 
 struct Part {
     uint first_triangle; // counted through all surfaces, from 0
     float index;         // of refraction
+    uint is_ground;
 };
 layout(std430, binding = 1) readonly buffer Parts
 {
@@ -66,27 +70,62 @@ vec3 refracted(vec3 v, vec3 n, vec3 mirror, float ratio)
     return square < 0.0 ? mirror : normalize((ratio * cosine - sqrt(square)) * n - ratio * v);
 }
 
+vec3 reflectance(int part, float cosine)
+{
+    ivec2 size = textureSize(fresnel, 0);
+    float row = (float(min(part, size.y - 1)) + 0.5) / float(size.y);
+    return textureLod(fresnel, vec2((cosine * float(size.x - 1) + 0.5) / float(size.x), row), 0.0).rgb;
+}
+
+// What a mirror reflects, and what lies under it.
+vec3 over_light(int mode, Sample place)
+{
+    if (mode == MIRROR || mode == REFRACTION)
+        return environment(place.mirror);
+    return mode == DIFFUSE ? vec3(0.0) : lobe_light(place.mirror, place.glossiness);
+}
+
+vec3 under_light(int mode, Sample place, vec3 v, float ratio)
+{
+    if (mode == REFRACTION)
+        return environment(refracted(v, place.normal, place.mirror, ratio));
+    if (mode == TRANSMISSION)
+        return place.kd * lobe_light(-v, place.glossiness);
+    return mode == GLOSSY ? vec3(0.0) : place.kd * irradiance(place.normal);
+}
+
+vec3 light_of(int mode, Sample place, vec3 v, float ratio)
+{
+    switch (mode) {
+    case MIRROR:
+        return over_light(mode, place);
+    case REFRACTION:
+    case TRANSMISSION:
+    case DIFFUSE:
+        return under_light(mode, place, v, ratio);
+    default:
+        return place.ks * over_light(mode, place) + under_light(mode, place, v, ratio);
+    }
+}
+
 void main()
 {
     ivec2 texel = ivec2(gl_FragCoord.xy);
     Sample place = read_sample(texel);
     uint triangle = texelFetch(triangles, texel, 0).r;
-    Part part = parts[part_of((triangle & ~TRIANGLE_BACK) - 1u)];
+    int number = part_of((triangle & ~TRIANGLE_BACK) - 1u);
+    Part part = parts[number];
+    float ratio = (triangle & TRIANGLE_BACK) != 0u ? part.index : 1.0 / part.index;
     vec3 to_eye = eye - place.point;
     vec3 v = to_eye * inversesqrt(max(dot(to_eye, to_eye), 1e-30)), colour;
-    if (mode == MIRROR) {
-        colour = environment(place.mirror);
-    } else if (mode == REFRACTION) {
-        float ratio = (triangle & TRIANGLE_BACK) != 0u ? part.index : 1.0 / part.index;
-        colour = environment(refracted(v, place.normal, place.mirror, ratio));
-    } else if (mode == TRANSMISSION) {
-        colour = place.kd * lobe_light(-v, place.glossiness);
+    if (part.is_ground != 0u) {
+        colour = light_of(SURFACE, place, v, ratio);
+    } else if (composition == OFF) {
+        colour = light_of(wanted_mode, place, v, ratio);
     } else {
-        colour = vec3(0.0);
-        if (mode != GLOSSY)
-            colour += place.kd * irradiance(place.normal);
-        if (mode != DIFFUSE)
-            colour += place.ks * lobe_light(place.mirror, place.glossiness);
+        vec3 f = reflectance(number, clamp(dot(place.normal, v), 0.0, 1.0));
+        colour = f * over_light(wanted_mode, place) +
+                 (composition == COAT ? 1.0 - f : vec3(1.0)) * under_light(wanted_mode, place, v, ratio);
     }
     light = vec4(colour * place.cover, 0.0);
 }

@@ -10,6 +10,15 @@
  *     GLOSSY        F ks E(r, s)                                                                      (eq. 9)
  *     TRANSMISSION  kd E(-v, s): the lobe straight through a thin sheet, dyed by it                    (4.5)
  *
+ * With `fresnel` a mirror's light Lm lies over what is under it, Ld: of SURFACE and GLOSSY Lm = E(r, s), of
+ * MIRROR, REFRACTION and TRANSMISSION L(r), L(r) and E(r, s); under it lies the diffuse light, or what is
+ * refracted or transmitted. DIFFUSE shows Ld's part alone, GLOSSY Lm's.
+ *
+ *     ADDITIVE      F Lm + Ld
+ *     COAT          F Lm + (1 - F) Ld
+ *
+ * F is the material's own (render/brdf), by a table over n . v, where maps that vary it do not count.
+ *
  * L and E are what is in the map: L of its resolution. World space; needs the context of its tl_gpu. */
 #ifndef TOILE_RENDER_ENVMAP_ENVMAP_H
 #define TOILE_RENDER_ENVMAP_ENVMAP_H
@@ -29,6 +38,7 @@ struct tl_envmap {
     unsigned parts_buffer;            /* GL name: what the pass must know of the surfaces' parts */
     size_t parts_bytes;
     int part_count;
+    tl_texture fresnel; /* F over the cosine, a row for each part */
 };
 
 void tl_envmap_release(struct tl_envmap *envmap);
@@ -43,8 +53,9 @@ uint64_t tl_envmap_bytes_needed(const struct tl_maps_params *params, uint32_t ex
 void tl_envmap_fill(struct tl_envmap *envmap, tl_gpu *gpu, const struct tl_maps_params *params,
                     const struct tl_lobes *lobes, const mat3s *into_world, const struct tl_view *view);
 
-/* Tells the parts' materials. */
-void tl_envmap_set_parts(struct tl_envmap *envmap, const struct tl_triangle_ranges *ranges);
+/* Tells the parts' materials. The ground, which comes last, is always lit as SURFACE. */
+void tl_envmap_set_parts(struct tl_envmap *envmap, tl_gpu *gpu, const struct tl_triangle_ranges *ranges,
+                         bool has_ground);
 
 struct tl_envmap_request {
     const tl_texture *triangles;       /* of the G-buffer */

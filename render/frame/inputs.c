@@ -1,3 +1,5 @@
+#include "config/memory.h"
+#include "render/detail/detail.h"
 #include "render/frame/frame.h"
 
 #include "render/brdf/fan.h"
@@ -82,13 +84,46 @@ static uint64_t reference_signature(const struct tl_reference_params *reference)
     return MIX(MIX(hash, reference->replicates), reference->terminator);
 }
 
-static uint64_t envmap_signature(const tl_frame *frame, const struct tl_maps_params *maps)
+static uint64_t detail_signature(const struct tl_detail_params *detail)
 {
-    uint64_t hash = MIX(MIX(FNV_OFFSET, maps->layout), maps->size);
+    uint64_t hash = MIX(MIX(MIX(FNV_OFFSET, detail->mode), detail->steps), detail->refine);
+    return MIX(MIX(MIX(MIX(hash, detail->shadow), detail->height_scale), detail->silhouette), detail->minify);
+}
+
+static uint64_t layout_signature(const tl_frame *frame, const struct tl_maps_params *maps)
+{
+    uint64_t hash = MIX(FNV_OFFSET, maps->layout);
     if (maps->layout != TL_LAYOUT_SPHERE)
         return hash;
     struct tl_view view = tl_view_make(&frame->camera, 1, 1);
     return MIX(MIX(hash, view.forward), view.up);
+}
+
+/* What a capture shows. */
+static uint64_t scene_signature(const uint64_t signatures[TL_INPUT_COUNT], const struct tl_maps_params *maps)
+{
+    static const enum tl_resource shown[] = {TL_INPUT_ENVIRONMENT, TL_INPUT_YAW, TL_INPUT_SHAPES,
+                                             TL_INPUT_MOTION, TL_INPUT_GROUND};
+    uint64_t hash = MIX(MIX(FNV_OFFSET, maps->size), maps->capture_at);
+    for (size_t i = 0; i < TL_COUNT(shown); i++)
+        hash = MIX(hash, signatures[shown[i]]);
+    return hash;
+}
+
+/* A still image never shows an old scene. */
+static void count_capture(const tl_frame *frame, const struct tl_render_settings *settings,
+                          const uint64_t signatures[TL_INPUT_COUNT], struct tl_rest *rest)
+{
+    const struct tl_maps_params *maps = &settings->maps;
+    bool is_wanted = settings->light.method == TL_METHOD_MAPS && maps->capture_every > 0;
+    uint64_t scene = is_wanted ? scene_signature(signatures, maps) : 0;
+    rest->capture_age = rest->capture_age < maps->capture_every ? rest->capture_age + 1 : maps->capture_every;
+    bool is_time = frame->still || rest->captured == 0 || rest->capture_age >= maps->capture_every;
+    if (scene != rest->captured && (is_time || !is_wanted)) {
+        rest->captured = scene;
+        rest->capture_age = 0;
+    }
+    rest->is_captured = scene == rest->captured;
 }
 
 bool tl_light_averages(const struct tl_light_params *light)
@@ -142,9 +177,15 @@ void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *setti
     signatures[TL_INPUT_LIGHT] = light_signature(light);
     signatures[TL_INPUT_LAMPS] = lamps_signature(frame, &settings->shading);
     signatures[TL_INPUT_REFERENCE] = reference_signature(&settings->reference);
+    signatures[TL_INPUT_DETAIL] = detail_signature(&settings->detail);
     signatures[TL_INPUT_SHOW] = MIX(MIX(start, image->exposure_ev), image->background);
-    signatures[TL_INPUT_ENVMAP] = envmap_signature(frame, &settings->maps);
-    signatures[TL_INPUT_LOOK_UP] = MIX(MIX(start, settings->maps.look_up), settings->maps.mode);
+    bool captures = settings->maps.capture_every > 0;
+    signatures[TL_INPUT_ENVMAP] = MIX(MIX(start, settings->maps.size), captures);
+    signatures[TL_INPUT_LAYOUT] = layout_signature(frame, &settings->maps);
+    count_capture(frame, settings, signatures, rest);
+    signatures[TL_INPUT_CAPTURE] = MIX(start, rest->captured);
+    signatures[TL_INPUT_LOOK_UP] =
+        MIX(MIX(MIX(start, settings->maps.look_up), settings->maps.mode), settings->maps.fresnel);
     count_rest(light, before, signatures, rest);
     signatures[TL_INPUT_ROUND] = MIX(start, rest->image);
     signatures[TL_INPUT_SCENE_ROUND] = MIX(start, rest->scene);
@@ -194,14 +235,16 @@ static uint32_t layered_exponents(const tl_material *material, float low, float 
     return needed | exponents_between(least, greatest);
 }
 
-uint32_t tl_frame_exponents(const tl_frame *frame)
+uint32_t tl_frame_exponents(const tl_frame *frame, const struct tl_detail_params *detail)
 {
     uint32_t needed = 1;
     for (size_t s = 0; s < frame->surface_count; s++)
         for (size_t p = 0; p < frame->surfaces[s].part_count; p++) {
-            float low, high;
             const tl_material *material = &frame->surfaces[s].materials[frame->surfaces[s].parts[p].material];
+            float low, high;
             glossiness_range(material, &low, &high);
+            if (tl_detail_wants_moments(detail) && tl_detail_wants_maps(detail, material))
+                low = 0; /* averaged bumps dull any gloss */
             low = 1 - (1 - low) * (1 + ROUNDING);
             needed |= tl_exponents_needed(low, 1 - (1 - high) * (1 - ROUNDING));
             if (tl_mirror_ray_count(tl_lobe_exponent(high)) >
@@ -226,9 +269,9 @@ bool tl_frame_has(const tl_frame *frame, bool (*property)(const tl_material *mat
     return false;
 }
 
-uint32_t tl_frame_map_exponents(const tl_frame *frame)
+uint32_t tl_frame_map_exponents(const tl_frame *frame, const struct tl_detail_params *detail)
 {
-    return tl_frame_exponents(frame) | 1u << TL_EXPONENT_COUNT;
+    return tl_frame_exponents(frame, detail) | 1u << TL_EXPONENT_COUNT;
 }
 
 static float greatest_glossiness(const tl_frame *frame)
@@ -242,6 +285,16 @@ static float greatest_glossiness(const tl_frame *frame)
             greatest = fmaxf(greatest, high);
         }
     return greatest;
+}
+
+static bool wants_detail(const tl_frame *frame, const struct tl_detail_params *detail)
+{
+    for (size_t s = 0; s < frame->surface_count; s++)
+        for (size_t p = 0; p < frame->surfaces[s].part_count; p++)
+            if (tl_detail_wants_maps(detail,
+                                     &frame->surfaces[s].materials[frame->surfaces[s].parts[p].material]))
+                return true;
+    return false;
 }
 
 static tl_bits lamp_facts(const tl_frame *frame, const struct tl_light_params *light)
@@ -269,11 +322,14 @@ tl_bits tl_frame_facts(const tl_frame *frame, const struct tl_render_settings *s
     if (light->method == TL_METHOD_REFERENCE)
         return TL_BIT(TL_SCENE_REFERENCE);
     if (light->method == TL_METHOD_MAPS)
-        return TL_BIT(TL_SCENE_RASTER) | TL_BIT(TL_SCENE_ENVMAP) | lamp_facts(frame, light);
+        return TL_BIT(TL_SCENE_RASTER) | TL_BIT(TL_SCENE_ENVMAP) | lamp_facts(frame, light) |
+               (settings->maps.capture_every > 0 ? TL_BIT(TL_SCENE_CAPTURE) : 0);
     bool shadowed = light->method != TL_METHOD_UNSHADOWED, rays = light->visibility == TL_VISIBILITY_RAYS;
     tl_bits facts = TL_BIT(TL_SCENE_RASTER) | TL_BIT(rays ? TL_SCENE_RAYS : TL_SCENE_PASSES);
     if (shadowed)
         facts |= TL_BIT(TL_SCENE_SHADOWS) | (rays ? 0 : TL_BIT(TL_SCENE_MAPS));
+    if (wants_detail(frame, &settings->detail))
+        facts |= TL_BIT(TL_SCENE_DETAIL);
     if (light->visibility == TL_VISIBILITY_VSM)
         facts |= TL_BIT(TL_SCENE_BLUR);
     if (!rays && tl_light_source(light) == TL_LIGHT_CHAIN)

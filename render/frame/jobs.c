@@ -11,77 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const tl_resource_names[] = {
-    [TL_INPUT_ENVIRONMENT] = "environment",
-    [TL_INPUT_YAW] = "environment yaw",
-    [TL_INPUT_SHAPES] = "shapes and materials",
-    [TL_INPUT_MOTION] = "motion",
-    [TL_INPUT_CAMERA] = "camera",
-    [TL_INPUT_SIZE] = "image size",
-    [TL_INPUT_GROUND] = "ground option",
-    [TL_INPUT_PEM_SIZE] = "PEM size",
-    [TL_INPUT_FILTER] = "filter option",
-    [TL_INPUT_SUN] = "sun option",
-    [TL_INPUT_REGIONS] = "regions options",
-    [TL_INPUT_PASSES] = "PEMs per pass",
-    [TL_INPUT_MAPS] = "shadow map options",
-    [TL_INPUT_RAYS] = "ray options",
-    [TL_INPUT_ROUND] = "round",
-    [TL_INPUT_SCENE_ROUND] = "round of the scene",
-    [TL_INPUT_LIGHT] = "light options",
-    [TL_INPUT_LAMPS] = "lamps and shading options",
-    [TL_INPUT_REFERENCE] = "reference options",
-    [TL_INPUT_SHOW] = "exposure and background",
-    [TL_INPUT_ENVMAP] = "environment map options",
-    [TL_INPUT_LOOK_UP] = "look-up options",
-    [TL_MADE_CUBE] = "cube",
-    [TL_MADE_REGIONS] = "regions",
-    [TL_MADE_LOBE] = "lobe table",
-    [TL_MADE_PEMS] = "PEMs",
-    [TL_MADE_LOBES] = "lobes",
-    [TL_MADE_SLICES] = "slices",
-    [TL_MADE_LIGHTS] = "regions as lights",
-    [TL_MADE_SURFACES] = "surfaces",
-    [TL_MADE_DEPTHS] = "depths",
-    [TL_MADE_MAPS] = "shadow maps",
-    [TL_MADE_GBUFFER] = "G-buffer",
-    [TL_MADE_SAMPLES] = "samples",
-    [TL_MADE_SHEETS] = "what is seen through cloth",
-    [TL_MADE_MIRRORS] = "what mirrors show",
-    [TL_MADE_POINTS] = "visibility at points",
-    [TL_MADE_ENVMAP_LOBES] = "lobes of the maps",
-    [TL_MADE_ENVMAP] = "environment maps",
-    [TL_MADE_LIGHT] = "light",
-    [TL_MADE_LAMP_MAPS] = "lamps' shadow maps",
-    [TL_MADE_LAMP_RAYS] = "lamps' shadows by rays",
-    [TL_MADE_LAMPLIGHT] = "light of lamps",
-    [TL_MADE_IMAGE] = "image",
-    [TL_MADE_BACKDROP] = "backdrop",
-    [TL_MADE_SHOWN] = "shown image",
-    NULL,
-};
-
-const char *const tl_scene_fact_names[] = {
-    [TL_SCENE_RASTER] = "drawn image",
-    [TL_SCENE_SHADOWS] = "shadows",
-    [TL_SCENE_MAPS] = "shadow maps",
-    [TL_SCENE_RAYS] = "rays",
-    [TL_SCENE_SHEETS] = "cloth that lets light through, by rays",
-    [TL_SCENE_MIRRORS] = "near mirrors by rays",
-    [TL_SCENE_PASSES] = "light passes",
-    [TL_SCENE_CHAINS] = "filter chains",
-    [TL_SCENE_SLICES] = "exact slices",
-    [TL_SCENE_EXACT] = "exact light",
-    [TL_SCENE_BLUR] = "variance maps",
-    [TL_SCENE_REFERENCE] = "reference",
-    [TL_SCENE_ENVMAP] = "environment maps",
-    [TL_SCENE_LAMPS] = "lamps",
-    [TL_SCENE_LAMP_MAPS] = "lamps with shadow maps",
-    [TL_SCENE_LAMP_RAYS] = "lamps with shadow rays",
-    [TL_SCENE_SAMPLES] = "rays from samples",
-    NULL,
-};
-
 static const struct tl_ground *ground_of(const tl_renderer *renderer)
 {
     return renderer->settings.image.ground ? &renderer->ground : NULL;
@@ -118,7 +47,8 @@ static bool run_lobes(void *context, int level, tl_error *error)
 {
     tl_renderer *renderer = context;
     (void)level, (void)error;
-    tl_lobes_make(&renderer->lobes, &renderer->cube, tl_frame_exponents(&renderer->frame));
+    tl_lobes_make(&renderer->lobes, &renderer->cube,
+                  tl_frame_exponents(&renderer->frame, &renderer->settings.detail));
     tl_lighting_set_exact(&renderer->lighting, renderer->gpu, &renderer->lobes);
     return true;
 }
@@ -130,7 +60,7 @@ static bool run_slices(void *context, int level, tl_error *error)
     (void)level, (void)error;
     tl_slices_release(&renderer->slices);
     tl_slices_make(&renderer->slices, &renderer->cube, &renderer->regions,
-                   tl_frame_exponents(&renderer->frame));
+                   tl_frame_exponents(&renderer->frame, &renderer->settings.detail));
     tl_slice_maps_upload(&renderer->slice_maps, renderer->gpu, &renderer->slices);
     return true;
 }
@@ -191,6 +121,14 @@ static bool run_surfaces(void *context, int level, tl_error *error)
     return tl_surfaces_update(renderer->surfaces, renderer->drawn, renderer->surface_count, error);
 }
 
+static bool run_detail(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level;
+    return tl_detail_maps_make(&renderer->detail, renderer->gpu, renderer->drawn, renderer->surface_count,
+                               &renderer->settings.detail, error);
+}
+
 static struct tl_shadow_request shadow_request(const tl_renderer *renderer)
 {
     const struct tl_light_params *light = &renderer->settings.light;
@@ -230,6 +168,15 @@ static bool run_blur(void *context, int level, tl_error *error)
     return true;
 }
 
+/* What no option asks for any more is not kept; bumps are as high as the options say, with maps or without.
+ */
+static void forget_unused_detail(tl_renderer *renderer)
+{
+    if (!(tl_frame_facts(&renderer->frame, &renderer->settings) & TL_BIT(TL_SCENE_DETAIL)))
+        tl_detail_maps_release(&renderer->detail);
+    renderer->detail.params = renderer->settings.detail;
+}
+
 static struct tl_gbuffer_request gbuffer_request(const tl_renderer *renderer)
 {
     const struct tl_image_params *image = &renderer->settings.image;
@@ -239,6 +186,7 @@ static struct tl_gbuffer_request gbuffer_request(const tl_renderer *renderer)
                                        .surfaces = renderer->surfaces,
                                        .surface_count = renderer->surface_count,
                                        .ground = ground_of(renderer),
+                                       .detail = &renderer->settings.detail,
                                        .frames = tl_frame_has(&renderer->frame, tl_material_is_faceted)};
 }
 
@@ -247,6 +195,7 @@ static bool run_gbuffer(void *context, int level, tl_error *error)
     tl_renderer *renderer = context;
     (void)level;
     struct tl_gbuffer_request request = gbuffer_request(renderer);
+    forget_unused_detail(renderer);
     return tl_gbuffer_draw(&renderer->gbuffer, renderer->gpu, &request, error);
 }
 
@@ -387,7 +336,7 @@ static bool run_envmap_lobes(void *context, int level, tl_error *error)
     renderer->surroundings.cube = tl_cube_from_environment_with(
         renderer->frame.environment, renderer->settings.maps.size, &renderer->surroundings.pour);
     tl_lobes_make(&renderer->surroundings.lobes, &renderer->surroundings.cube,
-                  tl_frame_map_exponents(&renderer->frame));
+                  tl_frame_map_exponents(&renderer->frame, &renderer->settings.detail));
     return true;
 }
 
@@ -399,14 +348,44 @@ static mat3s environment_into_world(float yaw)
     return axes;
 }
 
+static bool run_capture(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level;
+    const struct tl_maps_params *maps = &renderer->settings.maps;
+    const struct tl_casters *casters = &renderer->casters;
+    vec3s offset = {{maps->capture_at[0], maps->capture_at[1], maps->capture_at[2]}};
+    mat3s into_world = environment_into_world(renderer->frame.environment_yaw);
+    const struct tl_capture_request request = {
+        .point = glms_vec3_add(casters->centre, offset),
+        .size = maps->size,
+        .environment = &renderer->surroundings.cube,
+        .lobes = &renderer->surroundings.lobes,
+        .environment_yaw = renderer->frame.environment_yaw,
+        .into_world = &into_world,
+        .exponents = tl_frame_map_exponents(&renderer->frame, &renderer->settings.detail),
+        .exponent_levels = &renderer->lighting.exponent_levels,
+        .surfaces = renderer->surfaces,
+        .ranges = &renderer->ranges,
+        .ground = ground_of(renderer),
+        .near_m = 1e-3f * casters->radius,
+        .far_m = glms_vec3_norm(offset) + 100 * casters->radius};
+    return tl_capture_draw(&renderer->capture, renderer->gpu, &request, error);
+}
+
 static bool run_envmap(void *context, int level, tl_error *error)
 {
     tl_renderer *renderer = context;
     (void)level, (void)error;
-    mat3s into_world = environment_into_world(renderer->frame.environment_yaw);
-    tl_envmap_fill(&renderer->envmap, renderer->gpu, &renderer->settings.maps, &renderer->surroundings.lobes,
-                   &into_world, &renderer->view);
-    tl_envmap_set_parts(&renderer->envmap, &renderer->ranges);
+    bool captured = renderer->settings.maps.capture_every > 0; /* in world axes */
+    if (captured)                                              /* materials may have changed since */
+        tl_lobes_make(&renderer->capture.lobes, &renderer->capture.cube,
+                      tl_frame_map_exponents(&renderer->frame, &renderer->settings.detail));
+    mat3s into_world = environment_into_world(captured ? 0 : renderer->frame.environment_yaw);
+    tl_envmap_fill(&renderer->envmap, renderer->gpu, &renderer->settings.maps,
+                   captured ? &renderer->capture.lobes : &renderer->surroundings.lobes, &into_world,
+                   &renderer->view);
+    tl_envmap_set_parts(&renderer->envmap, renderer->gpu, &renderer->ranges, renderer->settings.image.ground);
     return true;
 }
 
@@ -419,7 +398,7 @@ static bool run_look_up(void *context, int level, tl_error *error)
                                               .exponent_levels = &renderer->lighting.exponent_levels,
                                               .eye = renderer->view.eye,
                                               .params = &renderer->settings.maps};
-    tl_lighting_begin(&renderer->lighting, renderer->gpu, gbuffer);
+    tl_lighting_begin(&renderer->lighting, renderer->gpu, gbuffer, true);
     bool fine = tl_envmap_draw(&renderer->envmap, renderer->gpu, &request, error);
     tl_gpu_reset_state(renderer->gpu);
     return fine;
@@ -488,6 +467,7 @@ static bool run_lamps(void *context, int level, tl_error *error)
                                              .lamp_count = list_lamps(renderer, lamps),
                                              .lamps = lamps,
                                              .params = &renderer->settings.shading,
+                                             .detail = &renderer->settings.detail,
                                              .depth_bias_m = renderer->settings.light.depth_bias_m,
                                              .weight = passes ? 1 / (float)(renderer->rest.image + 1) : 1};
     return tl_local_draw(&renderer->local, renderer->gpu, &request, error);
@@ -592,14 +572,14 @@ const tl_job tl_frame_jobs[] = {
      .run = run_pems},
     {.name = "lobes",
      .what = "the whole environment through exact lobes",
-     .reads = SET2(TL_MADE_CUBE, TL_INPUT_SHAPES),
+     .reads = SET3(TL_MADE_CUBE, TL_INPUT_SHAPES, TL_INPUT_DETAIL),
      .writes = SET1(TL_MADE_LOBES),
      .requires_scene = SET1(TL_SCENE_EXACT),
      .levels = LEVELS_ONE,
      .run = run_lobes},
     {.name = "slices",
      .what = "the regions through exact lobes",
-     .reads = SET3(TL_MADE_CUBE, TL_MADE_REGIONS, TL_INPUT_SHAPES),
+     .reads = SET4(TL_MADE_CUBE, TL_MADE_REGIONS, TL_INPUT_SHAPES, TL_INPUT_DETAIL),
      .writes = SET1(TL_MADE_SLICES),
      .requires_scene = SET1(TL_SCENE_SLICES),
      .levels = LEVELS_ONE,
@@ -617,6 +597,13 @@ const tl_job tl_frame_jobs[] = {
      .writes = SET1(TL_MADE_SURFACES),
      .levels = LEVELS_ONE,
      .run = run_surfaces},
+    {.name = "detail",
+     .what = "heights, horizons and spread of normals of the fabrics",
+     .reads = SET3(TL_INPUT_SHAPES, TL_INPUT_DETAIL, TL_INPUT_GROUND),
+     .writes = SET1(TL_MADE_DETAIL),
+     .requires_scene = SET1(TL_SCENE_DETAIL),
+     .levels = LEVELS_ONE,
+     .run = run_detail},
     {.name = "maps",
      .what = "a shadow map for each region and sun",
      .reads = SET5(TL_MADE_SURFACES, TL_MADE_REGIONS, TL_INPUT_YAW, TL_INPUT_MAPS, TL_INPUT_PASSES) |
@@ -634,7 +621,8 @@ const tl_job tl_frame_jobs[] = {
      .run = run_blur},
     {.name = "gbuffer",
      .what = "nearest point, normal and material of every sample",
-     .reads = SET4(TL_MADE_SURFACES, TL_INPUT_CAMERA, TL_INPUT_SIZE, TL_INPUT_GROUND),
+     .reads = SET5(TL_MADE_SURFACES, TL_MADE_DETAIL, TL_INPUT_CAMERA, TL_INPUT_SIZE, TL_INPUT_GROUND) |
+              SET1(TL_INPUT_DETAIL),
      .writes = SET1(TL_MADE_GBUFFER),
      .levels = LEVELS_ONE,
      .run = run_gbuffer},
@@ -687,14 +675,23 @@ const tl_job tl_frame_jobs[] = {
      .run = run_compose},
     {.name = "envmap_lobes",
      .what = "all light through exact lobes, for environment maps",
-     .reads = SET3(TL_INPUT_ENVIRONMENT, TL_INPUT_ENVMAP, TL_INPUT_SHAPES),
+     .reads = SET4(TL_INPUT_ENVIRONMENT, TL_INPUT_ENVMAP, TL_INPUT_SHAPES, TL_INPUT_DETAIL),
      .writes = SET1(TL_MADE_ENVMAP_LOBES),
      .requires_scene = SET1(TL_SCENE_ENVMAP),
      .levels = LEVELS_ONE,
      .run = run_envmap_lobes},
+    /* What it draws is not among what it reads: what has changed since waits for the next capture. */
+    {.name = "capture",
+     .what = "the scene seen from a point, through exact lobes",
+     .reads = SET1(TL_INPUT_CAPTURE),
+     .writes = SET1(TL_MADE_CAPTURE),
+     .requires_scene = SET2(TL_SCENE_ENVMAP, TL_SCENE_CAPTURE),
+     .levels = LEVELS_ONE,
+     .run = run_capture},
     {.name = "envmap",
      .what = "lobes poured into environment maps of a layout",
-     .reads = SET5(TL_MADE_ENVMAP_LOBES, TL_INPUT_ENVMAP, TL_INPUT_YAW, TL_INPUT_SHAPES, TL_INPUT_GROUND),
+     .reads = SET5(TL_MADE_ENVMAP_LOBES, TL_INPUT_LAYOUT, TL_INPUT_YAW, TL_INPUT_SHAPES, TL_INPUT_GROUND) |
+              SET1(TL_MADE_CAPTURE),
      .writes = SET1(TL_MADE_ENVMAP),
      .requires_scene = SET1(TL_SCENE_ENVMAP),
      .levels = LEVELS_ONE,

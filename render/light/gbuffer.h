@@ -2,6 +2,7 @@
 #ifndef TOILE_RENDER_LIGHT_GBUFFER_H
 #define TOILE_RENDER_LIGHT_GBUFFER_H
 
+#include "render/detail/detail.h"
 #include "render/frame/view.h"
 #include "render/surfaces/ground.h"
 #include "render/surfaces/surfaces.h"
@@ -24,7 +25,11 @@ enum tl_gbuffer_layer {
 enum { TL_GBUFFER_FRAMES = 1, TL_GBUFFER_BEHIND = 2, TL_GBUFFER_PROGRAMS = 4 };
 
 struct tl_gbuffer {
-    tl_program programs[TL_GBUFFER_PROGRAMS]; /* made when first used */
+    char detail[TL_DETAIL_DEFINES_SIZE]; /* that the programs were made for */
+    struct tl_gbuffer_program {
+        char defines[TL_DETAIL_DEFINES_SIZE + 64];
+        tl_program program;
+    } programs[TL_GBUFFER_PROGRAMS]; /* made when first used */
     tl_target target;
 };
 
@@ -33,9 +38,10 @@ struct tl_gbuffer_request {
     int width, height; /* samples */
     const tl_surfaces *surfaces;
     size_t surface_count;
-    const struct tl_ground *ground; /* the last of the surfaces, or NULL when none is drawn */
-    bool frames;                    /* with the layer of tangents */
-    const tl_texture *passed;       /* only what lies behind this depth; NULL: what is nearest */
+    const struct tl_ground *ground;        /* the last of the surfaces, or NULL when none is drawn */
+    const struct tl_detail_params *detail; /* NULL: normals alone */
+    bool frames;                           /* with the layer of tangents */
+    const tl_texture *passed;              /* only what lies behind this depth; NULL: what is nearest */
 };
 
 void tl_gbuffer_release(struct tl_gbuffer *gbuffer);

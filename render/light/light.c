@@ -325,9 +325,12 @@ static bool draw_chains(struct tl_lighting *lighting, tl_gpu *gpu, const struct 
     return true;
 }
 
-void tl_lighting_begin(struct tl_lighting *lighting, tl_gpu *gpu, const tl_target *gbuffer)
+void tl_lighting_begin(struct tl_lighting *lighting, tl_gpu *gpu, const tl_target *gbuffer, bool afresh)
 {
+    const float black[] = {0, 0, 0, 0};
     allocate(lighting, gpu, gbuffer);
+    if (afresh)
+        glClearNamedFramebufferfv(lighting->target.id, GL_COLOR, 0, black);
     glBindFramebuffer(GL_FRAMEBUFFER, lighting->target.id);
     glViewport(0, 0, gbuffer->width, gbuffer->height);
     glEnable(GL_DEPTH_TEST); /* the full-screen triangle lies at depth 1: this keeps to what is covered */
@@ -342,11 +345,8 @@ bool tl_lighting_draw(struct tl_lighting *lighting, tl_gpu *gpu, const struct tl
 {
     const tl_target *gbuffer = &request->gbuffer->target;
     enum tl_light_source source = tl_light_source(request->params);
-    const float black[] = {0, 0, 0, 0};
-    tl_lighting_begin(lighting, gpu, gbuffer);
+    tl_lighting_begin(lighting, gpu, gbuffer, request->round == 0);
     upload_regions(lighting, request);
-    if (request->round == 0)
-        glClearNamedFramebufferfv(lighting->target.id, GL_COLOR, 0, black);
     glEnable(GL_BLEND);
     glBlendColor(0, 0, 0, 1 / (float)(request->round + 1));
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, lighting->regions_buffer);

@@ -2,6 +2,7 @@
 // assets/material.h's enums.
 #include "lamp.glsl"
 #include "power.glsl"
+#include "tables.glsl"
 
 layout(location = 71) uniform vec2 gloss_optics; // index, extinction
 
@@ -144,10 +145,14 @@ float lobe(Cosines c, float s)
     return (s + 1.0) / (2.0 * PI) * power(c.mirror, c.mirror_sine2, s);
 }
 
-// f_r cos a.
+// f_r cos a, of a material whose maps say f0 and s; tables know the material alone.
 vec3 gloss(Cosines c, vec3 f0, float s)
 {
     if (!(c.a > 0.0 && c.b > 0.0 && c.half_normal > 0.0))
         return vec3(0.0);
+#if TABLES > 0
+    return tables_gloss(c, tables_product(c));
+#else
     return fresnel(f0, c) * lobe(c, s);
+#endif
 }

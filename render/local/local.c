@@ -22,9 +22,26 @@ enum {
     LAMP_VIEW = 73,
     LAMP_BIAS,
     LAMP_LAYER,
-    LAMP_GROUND
+    LAMP_GROUND,
+    TABLE_AXES = 80,
+    TABLE_SCALES = 83
 };
-enum { TRIANGLE_UNIT = 16, POINT_UNIT, SHADOW_UNIT };
+enum { TRIANGLE_UNIT = 16, POINT_UNIT, SHADOW_UNIT, CUBE_UNIT, TABLE_UNIT, POWER_UNIT = 23, PRODUCT_UNIT };
+
+/* What one draw does: all that there is to it, or its part of several passes. */
+struct pass {
+    int first, last;    /* tables that it takes; none when last < first */
+    const char *define; /* or NULL */
+};
+
+/* A part of a surface, one lamp, and what they are shaded with. */
+struct lit_part {
+    size_t surface, part, lamp;
+    const tl_material *material;
+    enum tl_lamp_shadow shadow;
+    const struct tl_gloss_tables *tables; /* NULL: the formula */
+    const tl_texture *power;              /* of POWER_TABLE */
+};
 
 void tl_local_reload(struct tl_local *local)
 {
@@ -41,12 +58,14 @@ void tl_local_release(struct tl_local *local)
 {
     tl_local_reload(local);
     tl_lamp_shadows_release(&local->shadows);
+    tl_table_textures_release(&local->tables);
+    tl_target_destroy(&local->product);
     *local = (struct tl_local){0};
 }
 
 size_t tl_local_bytes(const struct tl_local *local)
 {
-    return tl_lamp_shadows_bytes(&local->shadows);
+    return tl_table_textures_bytes(&local->tables) + tl_target_bytes(&local->product);
 }
 
 static void define(char defines[TL_LOCAL_DEFINES_SIZE], const char *name)
@@ -73,14 +92,32 @@ static void define_vectors(const struct tl_shading_params *params, char defines[
         define(defines, is_tangent ? "VECTORS\n#define TANGENT_SPACE" : "VECTORS");
 }
 
-static void define_all(const struct tl_local_request *request, const tl_material *material,
-                       enum tl_lamp_shadow shadow, char defines[TL_LOCAL_DEFINES_SIZE])
+static void define_tables(const struct tl_gloss_tables *tables, const struct pass *pass,
+                          char defines[TL_LOCAL_DEFINES_SIZE])
 {
-    const struct tl_shading_params *params = request->params;
-    const struct tl_gloss *gloss = &material->gloss;
+    size_t length = strlen(defines);
+    snprintf(defines + length, TL_LOCAL_DEFINES_SIZE - length,
+             "#define TABLES %d\n#define FIRST_TABLE %d\n#define LAST_TABLE %d\n", tables ? tables->count : 0,
+             pass->first, pass->last);
+    for (int i = 0; tables && i < tables->count; i++) {
+        const struct tl_gloss_table *table = &tables->tables[i];
+        length = strlen(defines);
+        snprintf(defines + length, TL_LOCAL_DEFINES_SIZE - length,
+                 "#define TABLE%d_X %d\n#define TABLE%d_Y %d\n#define TABLE%d_ANGLES %s\n", i, table->x, i,
+                 table->y, i, table->angles ? "true" : "false");
+    }
+    if (tables && tables->times_cos_a)
+        define(defines, "TIMES_COS_A");
+}
+
+static void define_all(const struct tl_shading_params *params, const struct lit_part *part,
+                       const struct pass *pass, char defines[TL_LOCAL_DEFINES_SIZE])
+{
+    const struct tl_gloss *gloss = &part->material->gloss;
     snprintf(defines, TL_LOCAL_DEFINES_SIZE,
              "#define MODEL %d\n#define FACETS %d\n#define MASKING %d\n#define FRESNEL %d\n", gloss->model,
              gloss->facets, gloss->masking, gloss->fresnel);
+    define_tables(part->tables, pass, defines);
     if (params->frequency == TL_FREQUENCY_GOURAUD)
         define(defines, params->coordinates == TL_COORDINATES_MATRIX ? "GOURAUD\n#define MATRIX" : "GOURAUD");
     else if (params->coordinates == TL_COORDINATES_VERTEX)
@@ -89,10 +126,14 @@ static void define_all(const struct tl_local_request *request, const tl_material
         define_vectors(params, defines);
     if (params->self_shadow == TL_SELF_SHADOW_STEP)
         define(defines, "STEP");
-    if (shadow == TL_LAMP_SHADOW_RAYS)
+    if (!part->tables && params->power != TL_POWER_POW)
+        define(defines, params->power == TL_POWER_FIXED8 ? "POWER_FIXED8" : "POWER_TABLE");
+    if (part->shadow == TL_LAMP_SHADOW_RAYS)
         define(defines, "SHADOW_RAYS");
-    else if (shadow == TL_LAMP_SHADOW_MAP)
+    else if (part->shadow == TL_LAMP_SHADOW_MAP)
         define(defines, "SHADOW_MAP");
+    if (pass->define)
+        define(defines, pass->define);
 }
 
 /* The program of these defines, made when it is first asked for. */
@@ -153,44 +194,143 @@ static void bind_shadow(const struct tl_lamp_shadows *shadows, enum tl_lamp_shad
         glBindTextureUnit(SHADOW_UNIT, shadows->depths.id);
 }
 
+static void set_tables(const struct lit_part *part)
+{
+    float axes[TL_GLOSS_TABLES_MAX][4] = {{0}}, scales[3] = {1, 1, 1};
+    for (int i = 0; part->tables && i < part->tables->count; i++) {
+        const struct tl_gloss_table *table = &part->tables->tables[i];
+        memcpy(axes[i], table->axes, sizeof axes[i]);
+        scales[i] = table->scale;
+        glBindTextureUnit(TABLE_UNIT + (GLuint)i, table->texture.id);
+    }
+    glUniform4fv(TABLE_AXES, TL_GLOSS_TABLES_MAX, axes[0]);
+    glUniform3fv(TABLE_SCALES, 1, scales);
+    if (part->power)
+        glBindTextureUnit(POWER_UNIT, part->power->id);
+}
+
+static bool draw_pass(struct tl_local *local, tl_gpu *gpu, const struct tl_local_request *request,
+                      const struct lit_part *part, const struct pass *pass, tl_error *error)
+{
+    char defines[TL_LOCAL_DEFINES_SIZE];
+    define_all(request->params, part, pass, defines);
+    size_t length = strlen(defines);
+    tl_detail_defines(request->detail, defines + length, sizeof defines - length);
+    const tl_program *program = find_program(local, gpu, defines, error);
+    if (!program)
+        return false;
+    glUseProgram(program->id);
+    set_lamp(local, request, part->lamp);
+    set_gloss(part->material);
+    set_tables(part);
+    tl_surfaces_draw_part(request->surfaces, part->surface, part->part);
+    return true;
+}
+
+static void draw_into_light(const struct tl_local_request *request)
+{
+    glBindFramebuffer(GL_FRAMEBUFFER, request->light->id);
+    glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE); /* coverage stays: no light has any of its own */
+}
+
+static void prepare_product(struct tl_local *local, tl_gpu *gpu, const struct tl_local_request *request)
+{
+    const unsigned format = request->params->pass_target == TL_PASS_TARGET_FIXED8 ? GL_RGBA8 : GL_RGBA32F;
+    int width = request->light->width, height = request->light->height;
+    tl_target *product = &local->product;
+    if (product->width != width || product->height != height || product->colours[0].format != format) {
+        tl_target_destroy(product);
+        *product = tl_target_create(gpu, width, height, &format, 1, false);
+    }
+    local->product_used = true;
+    glNamedFramebufferTexture(product->id, GL_DEPTH_ATTACHMENT, request->gbuffer->target.depth.id, 0);
+    glBindTextureUnit(PRODUCT_UNIT, product->colours[0].id);
+}
+
+/* Tables multiplied by blending, some a pass; then one pass that adds them and the matt light [000, 3.1]. */
+static bool draw_passes(struct tl_local *local, tl_gpu *gpu, const struct tl_local_request *request,
+                        const struct lit_part *part, tl_error *error)
+{
+    int count = part->tables->count, each = request->params->max_textures_per_pass;
+    bool fine = true;
+    prepare_product(local, gpu, request);
+    glBindFramebuffer(GL_FRAMEBUFFER, local->product.id);
+    for (int first = 0; fine && first < count; first += each) {
+        int last = first + each < count ? first + each - 1 : count - 1;
+        const struct pass multiply = {first, last, "PASS_PRODUCT"};
+        glBlendFunc(first == 0 ? GL_ONE : GL_DST_COLOR, GL_ZERO);
+        fine = draw_pass(local, gpu, request, part, &multiply, error);
+    }
+    draw_into_light(request);
+    const struct pass add = {0, -1, "PASS_LAST"};
+    return fine && draw_pass(local, gpu, request, part, &add, error);
+}
+
+static bool draw_part(struct tl_local *local, tl_gpu *gpu, const struct tl_local_request *request,
+                      struct lit_part *part, tl_error *error)
+{
+    const struct tl_shading_params *params = request->params;
+    const tl_material *material = part->material;
+    const struct tl_brdf brdf = tl_brdf_of(material, material->specular, material->glossiness);
+    if (params->reflectance == TL_REFLECTANCE_TABLE)
+        part->tables = tl_table_textures_gloss(&local->tables, gpu, &brdf, params);
+    else if (params->power == TL_POWER_TABLE)
+        part->power = tl_table_textures_power(
+            &local->tables, gpu,
+            material->gloss.model == TL_REFLECT_BLINN_PHONG ? 4 * brdf.exponent : brdf.exponent);
+    if (part->tables && part->tables->count > params->max_textures_per_pass &&
+        params->frequency != TL_FREQUENCY_GOURAUD)
+        return draw_passes(local, gpu, request, part, error);
+    const struct pass all = {0, part->tables ? part->tables->count - 1 : -1, NULL};
+    return draw_pass(local, gpu, request, part, &all, error);
+}
+
+static void bind_cube(struct tl_local *local, tl_gpu *gpu, const struct tl_shading_params *params)
+{
+    if (params->normalisation == TL_NORMALISE_CUBE8 || params->normalisation == TL_NORMALISE_CUBE16)
+        glBindTextureUnit(CUBE_UNIT, tl_table_textures_cube(&local->tables, gpu, params->normalisation)->id);
+}
+
 static bool draw_lamp(struct tl_local *local, tl_gpu *gpu, const struct tl_local_request *request,
                       size_t index, tl_error *error)
 {
     enum tl_lamp_shadow shadow = local->shadows.kinds[index];
+    bool fine = true;
     bind_shadow(&local->shadows, shadow);
-    for (size_t s = 0; s < request->surface_count; s++)
-        for (size_t p = 0; p < tl_surfaces_part_count(request->surfaces, s); p++) {
-            const tl_material *material = tl_surfaces_part_material(request->surfaces, s, p);
-            char defines[TL_LOCAL_DEFINES_SIZE];
-            define_all(request, material, shadow, defines);
-            const tl_program *program = find_program(local, gpu, defines, error);
-            if (!program)
-                return false;
-            glUseProgram(program->id);
-            set_lamp(local, request, index);
-            set_gloss(material);
-            tl_surfaces_draw_part(request->surfaces, s, p);
+    for (size_t s = 0; fine && s < request->surface_count; s++)
+        for (size_t p = 0; fine && p < tl_surfaces_part_count(request->surfaces, s); p++) {
+            struct lit_part part = {.surface = s,
+                                    .part = p,
+                                    .lamp = index,
+                                    .material = tl_surfaces_part_material(request->surfaces, s, p),
+                                    .shadow = shadow};
+            fine = draw_part(local, gpu, request, &part, error);
         }
-    return true;
+    return fine;
 }
 
 bool tl_local_draw(struct tl_local *local, tl_gpu *gpu, const struct tl_local_request *request,
                    tl_error *error)
 {
     const tl_target *target = request->light;
-    glBindFramebuffer(GL_FRAMEBUFFER, target->id);
+    tl_table_textures_begin(&local->tables);
+    local->product_used = false;
+    draw_into_light(request);
     glViewport(0, 0, target->width, target->height);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LEQUAL);
     glDepthMask(GL_FALSE);
     glEnable(GL_BLEND);
     glBlendColor(0, 0, 0, request->weight);
-    glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE); /* coverage stays: no light has any of its own */
+    bind_cube(local, gpu, request->params);
     glBindTextureUnit(TRIANGLE_UNIT, request->gbuffer->target.colours[TL_GBUFFER_TRIANGLE].id);
     glBindTextureUnit(POINT_UNIT, request->gbuffer->target.colours[TL_GBUFFER_POINT].id);
     bool fine = true;
     for (size_t i = 0; fine && i < request->lamp_count; i++)
         fine = draw_lamp(local, gpu, request, i, error);
+    tl_table_textures_end(&local->tables);
+    if (!local->product_used)
+        tl_target_destroy(&local->product);
     tl_gpu_reset_state(gpu);
     return fine;
 }

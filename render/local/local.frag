@@ -2,6 +2,7 @@
 // The light of one lamp on what the G-buffer sees, to be added to the rest.
 #include "gloss.glsl"
 #include "ground.glsl"
+#include "material.glsl"
 #include "terms.glsl"
 
 layout(location = 73) uniform mat4 lamp_view; // SHADOW_MAP: world -> clip space of the lamp's map
@@ -18,6 +19,10 @@ layout(binding = 18) uniform sampler2DArrayShadow lamp_depths;
 #endif
 #ifdef NORMALISE_CUBE
 layout(binding = 19) uniform samplerCube normalising; // unit vectors, 0 to 1 standing for -1 to 1
+#endif
+
+#ifdef PASS_LAST
+layout(binding = 24) uniform sampler2D product; // of all tables, multiplied in earlier passes
 #endif
 
 in vec3 point;
@@ -77,13 +82,43 @@ float self_shadow(float facing)
 #endif
 }
 
+// Where detail shows the surface, 1 - g there, and what is left of a matt surface's light where bumps are averaged.
+vec2 seen_uv;
+float seen_rough, seen_share;
+
+// The share of the lamp's light that the surface's own bumps let through.
+float find_detail(float side, vec3 smooth_normal)
+{
+    vec2 across = dFdx(uv), down = dFdy(uv);
+#ifdef DETAIL_SHIFTED
+    unmoved_across = across;
+    unmoved_down = down;
+#endif
+    mat3 frame = detail_frame(smooth_normal, tangent);
+    vec3 view = direction_or(eye - point, smooth_normal) * frame;
+    DetailPlace place = detail_place(uv, view, side);
+    seen_uv = place.uv;
+    seen_rough = 1.0 - glossiness(seen_uv);
+    seen_share = 1.0;
+    if (has_bumps(tangent)) {
+        Bumps bumps = bumps_at(seen_uv);
+        seen_rough = detail_rough(seen_rough, bumps, view);
+        seen_share = bumps.length; // the mean of the normals, not its direction, meets the light
+    }
+    return detail_shadow(place, towards_lamp(point, smooth_normal) * frame, side, across, down);
+}
+
 #ifndef GOURAUD
 // The normal with its bumps, as long as interpolation and the map leave it.
 vec3 bumped_normal()
 {
     if (!has_bumps(tangent))
         return normal;
-    vec3 mapped = tangent_space_normal(uv);
+    vec3 mapped = tangent_space_normal(seen_uv);
+#if DETAIL_MODE == DETAIL_BLINN
+    if (detail_range.z > 0.0)
+        return detail_blinn(mapped, direction_or(normal, vec3(0.0)), point, uv);
+#endif
     return mapped.x * tangent.xyz + mapped.y * tangent.w * cross(normal, tangent.xyz) + mapped.z * normal;
 }
 
@@ -96,7 +131,7 @@ Cosines cosines_here(float side, vec3 smooth_normal, out float facing)
 #elif defined(TANGENT_SPACE)
     vec3 up = vec3(0.0, 0.0, 1.0);
     vec3 l = made_unit(to_lamp, up), v = made_unit(to_eye, up), h = made_unit(halfway, up);
-    vec3 n = side * (has_bumps(tangent) ? made_unit(tangent_space_normal(uv), up) : up);
+    vec3 n = side * (has_bumps(tangent) ? made_unit(tangent_space_normal(seen_uv), up) : up);
     facing = side * l.z;
     return cosines_near(frame_of(n, vec3(1.0, 0.0, 0.0), side * (tangent.w < 0.0 ? -1.0 : 1.0)), l, v, h);
 #elif defined(VECTORS) || defined(MATRIX)
@@ -120,7 +155,7 @@ Cosines cosines_here(float side, vec3 smooth_normal, out float facing)
 // The light sent to the eye for each irradiance, unshadowed.
 vec3 reflected(float side, vec3 smooth_normal)
 {
-    vec3 kd = diffuse(surface_colour(uv).rgb, uv);
+    vec3 kd = seen_share * diffuse(surface_colour(seen_uv).rgb, seen_uv);
 #ifdef GOURAUD
     vec4 lit = side > 0.0 ? lit_front : lit_back;
     return kd * lit.w + lit.rgb;
@@ -128,7 +163,12 @@ vec3 reflected(float side, vec3 smooth_normal)
     float facing;
     Cosines c = cosines_here(side, smooth_normal, facing);
     float shown = self_shadow(facing);
-    vec3 light = kd * (max(c.a, 0.0) / PI) + gloss(c, specular_f0(uv), lobe_exponent(glossiness(uv)));
+#ifdef PASS_LAST
+    vec3 shine = tables_gloss(c, texelFetch(product, ivec2(gl_FragCoord.xy), 0).rgb);
+#else
+    vec3 shine = gloss(c, specular_f0(seen_uv), lobe_exponent(1.0 - seen_rough));
+#endif
+    vec3 light = kd * (max(c.a, 0.0) / PI) + shine;
     return shown > 0.0 ? shown * light : vec3(0.0);
 #endif
 }
@@ -142,6 +182,12 @@ void main()
         discard;
     float side = gl_FrontFacing ? 1.0 : -1.0;
     vec3 smooth_normal = direction_or(normal, facet);
-    float shown = texelFetch(seen_point, texel, 0).w * visibility(towards_lamp(point, side * smooth_normal));
+    float lit = find_detail(side, smooth_normal);
+#ifdef PASS_PRODUCT
+    float facing;
+    out_light = vec4(tables_product(cosines_here(side, smooth_normal, facing)), 1.0);
+#else
+    float shown = lit * texelFetch(seen_point, texel, 0).w * visibility(towards_lamp(point, side * smooth_normal));
     out_light = vec4(shown * irradiance_at(point) * reflected(side, smooth_normal), 0.0);
+#endif
 }

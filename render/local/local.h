@@ -13,8 +13,9 @@
 #include "render/local/lamp.h"
 #include "render/local/lamp_shadows.h"
 #include "render/local/shading.h"
+#include "render/local/table_textures.h"
 
-#define TL_LOCAL_DEFINES_SIZE 512
+#define TL_LOCAL_DEFINES_SIZE 768
 
 struct tl_local_program {
     char defines[TL_LOCAL_DEFINES_SIZE];
@@ -25,6 +26,9 @@ struct tl_local {
     size_t program_count;
     struct tl_local_program **programs; /* apart, because a program's defines must stay where they are */
     struct tl_lamp_shadows shadows;
+    struct tl_table_textures tables;
+    tl_target product; /* what passes multiply in; shares the G-buffer's depth */
+    bool product_used; /* in this frame */
 };
 
 struct tl_local_request {
@@ -38,13 +42,14 @@ struct tl_local_request {
     const struct tl_lamp *lamps;
     size_t lamp_count;
     const struct tl_shading_params *params;
-    float depth_bias_m; /* of shadow maps */
-    float weight;       /* of this image among those that are averaged in the target */
+    const struct tl_detail_params *detail; /* NULL: normals alone */
+    float depth_bias_m;                    /* of shadow maps */
+    float weight;                          /* of this image among those that are averaged in the target */
 };
 
 void tl_local_release(struct tl_local *local);
-void tl_local_reload(struct tl_local *local); /* programs are made again from their files */
-size_t tl_local_bytes(const struct tl_local *local);
+void tl_local_reload(struct tl_local *local);        /* programs are made again from their files */
+size_t tl_local_bytes(const struct tl_local *local); /* of tables and the passes' target, without shadows */
 bool tl_local_draw(struct tl_local *local, tl_gpu *gpu, const struct tl_local_request *request,
                    tl_error *error);
 

@@ -5,6 +5,7 @@ static const char *const frequency_names[] = {"gouraud", "fast_phong", "phong", 
 static const char *const coordinates_names[] = {"matrix", "vertex", "pixel", NULL};
 static const char *const reflectance_names[] = {"direct", "table", NULL};
 static const char *const precision_names[] = {"fixed8", "fixed16", "float", NULL};
+static const char *const range_names[] = {"clamped", "scaled", NULL};
 static const char *const pass_target_names[] = {"fixed8", "float", NULL};
 static const char *const normalisation_names[] = {"none", "cube8", "cube16", "newton", "exact", NULL};
 static const char *const power_names[] = {"pow", "fixed8", "table", NULL};
@@ -19,11 +20,15 @@ static const struct tl_option rows[] = {
     TL_OPTION_ENUM(params, coordinates, coordinates_names,
                    "what it is evaluated with: cosines by one matrix, for a far light and viewer; cosines "
                    "interpolated from vertices, without bumps; vectors at pixels"),
-    TL_OPTION_ENUM(params, reflectance, reflectance_names, "gloss by its formula or from its tables"),
-    TL_OPTION_INT(params, table_size, 8, 1024, "texels", "side of a table; larger is more exact"),
+    TL_OPTION_ENUM(params, reflectance, reflectance_names,
+                   "gloss by its formula, or from tables made for the material, without its maps of gloss"),
+    TL_OPTION_INT(params, table_size, 8, 512, "texels", "side of a table; larger is more exact"),
     TL_OPTION_ENUM(params, table_precision, precision_names, "of a table's values"),
-    TL_OPTION_INT(params, max_textures_per_pass, 1, 2, "tables",
-                  "1: gloss of two tables takes three passes instead of one"),
+    TL_OPTION_ENUM(params, table_range, range_names,
+                   "fixed-point tables of a factor that grows without bounds at grazing angles: cut at 1, or "
+                   "divided by its greatest value"),
+    TL_OPTION_INT(params, max_textures_per_pass, 1, 4, "tables",
+                  "gloss of more tables is multiplied in several passes; smaller takes more of them"),
     TL_OPTION_ENUM(params, pass_target, pass_target_names, "precision in which passes are multiplied"),
     TL_OPTION_ENUM(params, normalisation, normalisation_names,
                    "phong: how vectors are made unit; all but exact begin with interpolated ones"),
@@ -36,6 +41,6 @@ static const struct tl_option rows[] = {
 const struct tl_option_table tl_shading_options = TL_OPTION_TABLE(
     "shading", "how surfaces are shaded under lamps", rows, params, .frequency = TL_FREQUENCY_PHONG,
     .coordinates = TL_COORDINATES_PIXEL, .reflectance = TL_REFLECTANCE_DIRECT, .table_size = 256,
-    .table_precision = TL_PRECISION_FLOAT, .max_textures_per_pass = 2, .pass_target = TL_PASS_TARGET_FLOAT,
-    .normalisation = TL_NORMALISE_EXACT, .power = TL_POWER_POW, .space = TL_SPACE_WORLD,
-    .self_shadow = TL_SELF_SHADOW_RAMP);
+    .table_precision = TL_PRECISION_FLOAT, .table_range = TL_RANGE_SCALED, .max_textures_per_pass = 4,
+    .pass_target = TL_PASS_TARGET_FLOAT, .normalisation = TL_NORMALISE_EXACT, .power = TL_POWER_POW,
+    .space = TL_SPACE_WORLD, .self_shadow = TL_SELF_SHADOW_RAMP);

@@ -5,6 +5,8 @@
 #define TOILE_RENDER_LOCAL_SHADING_H
 
 #include "config/options.h"
+#include "render/brdf/normalise.h"
+#include "render/brdf/power.h"
 
 #include <stdbool.h>
 
@@ -17,15 +19,6 @@ enum tl_frequency { TL_FREQUENCY_GOURAUD, TL_FREQUENCY_FAST_PHONG, TL_FREQUENCY_
 enum tl_coordinates { TL_COORDINATES_MATRIX, TL_COORDINATES_VERTEX, TL_COORDINATES_PIXEL };
 enum tl_reflectance_by { TL_REFLECTANCE_DIRECT, TL_REFLECTANCE_TABLE };
 enum tl_pass_target { TL_PASS_TARGET_FIXED8, TL_PASS_TARGET_FLOAT };
-/* How PHONG makes interpolated vectors unit. */
-enum tl_normalisation {
-    TL_NORMALISE_NONE,
-    TL_NORMALISE_CUBE8,
-    TL_NORMALISE_CUBE16,
-    TL_NORMALISE_NEWTON, /* v/2 (3 - v.v) [001, eq. 6] */
-    TL_NORMALISE_EXACT   /* and light and viewer as seen from the point itself */
-};
-enum tl_power { TL_POWER_POW, TL_POWER_FIXED8, TL_POWER_TABLE };
 enum tl_space { TL_SPACE_WORLD, TL_SPACE_TANGENT };
 enum tl_self_shadow { TL_SELF_SHADOW_STEP, TL_SELF_SHADOW_RAMP };
 
@@ -35,9 +28,10 @@ struct tl_shading_params {
     int reflectance;           /* enum tl_reflectance_by */
     int table_size;            /* texels, side */
     int table_precision;       /* enum tl_precision (render/brdf/tables.h) */
-    int max_textures_per_pass; /* 1: a model of two tables takes several passes */
+    int table_range;           /* enum tl_table_range (...): what becomes of the singular factor */
+    int max_textures_per_pass; /* tables; a model that has more takes several passes */
     int pass_target;           /* enum tl_pass_target: what several passes multiply in */
-    int normalisation;         /* enum tl_normalisation, of PHONG */
+    int normalisation;         /* enum tl_normalisation, of PHONG: how interpolated vectors become unit */
     int power;                 /* enum tl_power, of DIRECT with a model of a power */
     int space;                 /* enum tl_space, of vectors at pixels */
     int self_shadow;           /* enum tl_self_shadow */

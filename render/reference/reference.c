@@ -96,6 +96,7 @@ static void find_spots(const struct drawing *drawing, bool last, struct sights *
     int through = 0;
     bundle->spots.count = 0;
     bundle->spots.any_layered = false;
+    bundle->rays = 0;
     for (int i = 0; i < sights->count; i++) {
         struct sight sight = sights->items[i];
         struct tl_spot spot = tl_spot_find(drawing->scene, &sight.ray);
@@ -164,7 +165,7 @@ static size_t draw_spots(const struct drawing *drawing, int replicate, int tile,
             pixel[c] = fminf(pixel[c] + share * (light[c][i] + bundle->lamplight[i].raw[c]), FLT_MAX);
         pixel[3] += share;
     }
-    return rays;
+    return rays + bundle->rays;
 }
 
 static size_t draw_sample(const struct drawing *drawing, int replicate, int tile, int sample)
@@ -177,7 +178,7 @@ static size_t draw_sample(const struct drawing *drawing, int replicate, int tile
         if (bundle.spots.count > 0)
             rays += draw_spots(drawing, replicate, tile, sample, behind, &bundle);
     }
-    return rays + bundle.rays;
+    return rays;
 }
 
 /* Tiles own their pixels, so the number of threads does not show. False when interrupted. */

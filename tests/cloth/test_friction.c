@@ -95,9 +95,10 @@ static void test_slides(void **state)
  * is held, its last one is drawn on slowly until the whole strip slides; then the tensions of the free ends
  * are compared. A vertex that turns by d has the ratio (1 + mu tan(d/2)) / (1 - mu tan(d/2)), so that turns
  * of 0.1 rad are right to mu phi d^2 / 12 (1 + mu^2): 0.1 %. Contact adds to it: a particle keeps its plane
- * until it has slid half the thickness, 1.5 mm, so that the plane leans against its way by up to 0.015 rad on
- * a radius of 0.1 m, as much friction more: up to exp(0.015 pi), 5 %. `settle` resists a slip by what it
- * expects of it, which is of first order in the step. */
+ * while it slides from 0.9 times 1.5 mm (half the thickness) before the place where it touches to 1.5 mm
+ * after it, so that on a radius of 0.1 m the plane leans against its way by 0.05 * 0.015 rad in the mean, as
+ * much friction more: exp(0.00075 pi), 0.24 %; and what moves a little and turns is asked more often than
+ * that: 1 %. `settle` resists a slip by what it expects of it, which is of first order in the step: 5 %. */
 #define RADIUS   0.1
 #define STRAIGHT 20 /* rows at either end: pins within 0.1 m of the avatar would ride on it */
 #define OVER     30 /* rows on half the cylinder */
@@ -185,7 +186,7 @@ static void test_capstan(void **state)
             printf("capstan, %s, mu %.1f: T2/T1 %.4f, exp(mu pi) %.4f: off by %+.2f %%\n",
                    tl_cloth_solver_names[solver], frictions[i], ratio, expected,
                    100 * (ratio / expected - 1));
-            double share = solver == TL_CLOTH_SETTLE ? 0.08 : 0.05; /* its rounds for friction are bounded */
+            double share = solver == TL_CLOTH_SETTLE ? 0.05 : 0.01; /* its rounds for friction are bounded */
             assert_near(ratio, expected, share * expected);
         }
 }

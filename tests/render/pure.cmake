@@ -12,6 +12,7 @@ foreach(name
     flip
     ground
     layout
+    levels
     lobe
     lobe_error
     lobes

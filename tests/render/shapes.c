@@ -144,6 +144,8 @@ struct tl_render_settings test_settings(int width, int height)
         .image = *(const struct tl_image_params *)tl_image_options.defaults,
         .reference = *(const struct tl_reference_params *)tl_reference_options.defaults,
     };
+    settings.detail = *(const struct tl_detail_params *)tl_detail_options.defaults;
+    settings.detail.minify = TL_DETAIL_MINIFY_NONE;
     settings.light.regions = 24;
     settings.light.pem_size = 32;
     settings.image.width = width;

@@ -45,24 +45,11 @@ static void cube_maps_err_by_their_rounding(void **state)
     assert_true(sixteen.vector < 3e-5); /* texels 0.6 mrad apart leave the chord: 256 a side */
 }
 
-/* The angle from which on the cube map of 8 bits is nearer to unit vectors than Newton's step. */
-static double newton_until(int newton)
-{
-    double cube = tl_normalise_error(TL_NORMALISE_CUBE8, 30 * DEG).vector, low = 1, high = 120;
-    for (int i = 0; i < 20; i++) {
-        double middle = (low + high) / 2;
-        if (tl_normalise_error(newton, middle * DEG).vector < cube)
-            low = middle;
-        else
-            high = middle;
-    }
-    return low;
-}
-
 static void newton_beats_eight_bits_up_to_an_angle(void **state)
 {
     (void)state;
-    double single = newton_until(TL_NORMALISE_NEWTON), fixed = newton_until(TL_NORMALISE_NEWTON_FIXED);
+    double single = tl_normalise_limit(TL_NORMALISE_NEWTON, TL_NORMALISE_CUBE8) / DEG;
+    double fixed = tl_normalise_limit(TL_NORMALISE_NEWTON_FIXED, TL_NORMALISE_CUBE8) / DEG;
     printf("Newton's step beats the 8-bit cube map up to %.1f degrees between vertices, in 8+1 bits up to "
            "%.1f\n",
            single, fixed);
