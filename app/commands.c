@@ -16,7 +16,7 @@ const struct tl_command tl_commands[] = {
     {"plan", "plan [SCENE] [--json] [OPTIONS]",
      "Prints what would run for a frame, why, at what cost and in how much memory.",
      TL_FLAGS_SCENE | TL_FLAGS_FRAME | TL_FLAGS_JSON, tl_command_plan},
-    {"bench", "bench light|cloth [--json] [--quick|--full] [SCENE] [OPTIONS]",
+    {"bench", "bench light|cloth|shading [--json] [--quick|--full] [SCENE] [OPTIONS]",
      "Measures ratios side by side in one run: light: the presets' CPU time and error in motion; cloth: the "
      "solvers' steps per second beside a plain loop's, normals and tangents, a dress that comes to rest.",
      TL_FLAGS_SCENE | TL_FLAGS_JSON | TL_FLAGS_QUICK | TL_FLAGS_FULL, tl_command_bench},

@@ -23,6 +23,17 @@ tl_material tl_material_default(const char *name)
     return material;
 }
 
+bool tl_material_transmits(const tl_material *material)
+{
+    return material->transmission.x > 0 || material->transmission.y > 0 || material->transmission.z > 0;
+}
+
+bool tl_material_is_layered(const tl_material *material)
+{
+    return material->gloss.model != TL_REFLECT_PHONG || material->coat > 0 || material->openness > 0 ||
+           tl_material_transmits(material);
+}
+
 /* The rotation is counter-clockwise with v down, as KHR_texture_transform has it. */
 void tl_uv_transform_rows(const struct tl_uv_transform *transform, float rows[6])
 {

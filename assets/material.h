@@ -94,6 +94,12 @@ typedef struct tl_material {
 /* Matt mid-grey, no maps. */
 tl_material tl_material_default(const char *name);
 
+/* Whether it is more than two cosine lobes about the normal and the mirror direction: facets, a coat, or
+ * light that comes through. */
+bool tl_material_is_layered(const tl_material *material);
+/* ... of which: whether light is scattered through it to the other side. */
+bool tl_material_transmits(const tl_material *material);
+
 /* Glossiness of the cosine lobe about the mirror direction that is nearest to a GGX lobe of glTF roughness r:
  * alpha = r^2, Blinn-Phong exponent 2/alpha^2 - 2 (Walter 2007's match to Beckmann), Phong exponent a quarter
  * of that, at least 1. r = 0 gives 1. */

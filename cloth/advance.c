@@ -106,18 +106,24 @@ static void constrain(tl_cloth *cloth, const struct tl_substep *substep)
 static void advance_preview(tl_cloth *cloth, const struct tl_substep *substep)
 {
     bool bends = cloth->energy.bends_as_force;
+    struct tl_prediction prediction =
+        tl_prediction_make(bends ? cloth->forces : NULL, substep->gravity, substep->drag, substep->h);
+    prediction.moving = substep->follows;
+    const struct tl_move predict = tl_particles_prediction(&cloth->particles, &prediction);
     if (bends)
-        tl_energy_bending_forces(&cloth->energy, cloth->particles.x, cloth->forces);
-    tl_particles_predict(&cloth->particles, bends ? cloth->forces : NULL, substep->gravity, substep->drag,
-                         substep->h);
+        tl_energy_bend(&cloth->energy, cloth->particles.x, cloth->forces, &predict);
+    else
+        tl_particles_move(&predict);
     tl_pins_place(cloth->pins, cloth->pin_count, substep->collider, substep->phase, &cloth->particles);
-    tl_xpbd_solve(&cloth->energy, &cloth->particles);
+    bool limited = cloth->params.strain_limit > 0;
+    tl_xpbd_solve(&cloth->energy, &cloth->particles, limited ? &cloth->limits.watch : NULL);
     if (tl_cloth_sweeps_back(cloth))
         tl_xpbd_solve_back(&cloth->energy, &cloth->particles);
-    if (cloth->params.strain_limit > 0)
-        tl_limits_solve(&cloth->limits, cloth->params.strain_limit, substep->h, &cloth->particles);
+    if (limited)
+        tl_limits_solve(&cloth->limits, &cloth->energy, substep->h, &cloth->particles);
     constrain(cloth, substep);
-    tl_particles_finish(&cloth->particles, substep->h);
+    if (!substep->leads)
+        tl_particles_finish(&cloth->particles, substep->h);
 }
 
 /* Seams that close pull as stiff springs: they must close against what the fabric resists. */
@@ -148,6 +154,7 @@ static void advance_settle(tl_cloth *cloth, const struct tl_substep *substep)
         .gravity = substep->gravity,
         .drag = substep->drag,
         .h = substep->h,
+        .agreement = substep->agreement,
         .tolerance = cloth->params.cg_tolerance,
         .most_iterations = cloth->params.cg_iterations};
     if (!cloth->implicit)
@@ -159,18 +166,34 @@ static void advance_settle(tl_cloth *cloth, const struct tl_substep *substep)
     tl_particles_finish(particles, substep->h);
 }
 
-static void find_forces(tl_cloth *cloth)
+static void find_forces(tl_cloth *cloth, const struct tl_move *then)
 {
-    tl_energy_pull(&cloth->energy, &cloth->fabric, cloth->particles.x, cloth->forces);
+    tl_energy_pull(&cloth->energy, &cloth->fabric, cloth->particles.x, cloth->forces, then);
 }
 
-static void advance_reference(tl_cloth *cloth, const struct tl_substep *substep)
+/* Between substeps velocities may point into the avatar by h/2 of what presses there: the next one's first
+ * half takes that on. Who looks at them after the last one wants to see rest. */
+static void advance_reference(tl_cloth *cloth, const struct tl_substep *substep, bool last)
 {
-    tl_verlet_drift(&cloth->particles, cloth->forces, substep->gravity, substep->drag, substep->h);
-    tl_pins_place(cloth->pins, cloth->pin_count, substep->collider, substep->phase, &cloth->particles);
+    struct tl_particles *particles = &cloth->particles;
+    const struct tl_verlet verlet =
+        tl_verlet_make(cloth->forces, substep->gravity, substep->drag, substep->h);
+    if (!substep->follows)
+        tl_verlet_drift(particles, &verlet);
+    tl_pins_place(cloth->pins, cloth->pin_count, substep->collider, substep->phase, particles);
     constrain(cloth, substep);
-    find_forces(cloth);
-    tl_verlet_kick(&cloth->particles, cloth->forces, substep->gravity, substep->drag, substep->h);
+    const struct tl_move then =
+        substep->leads ? tl_verlet_leap(particles, &verlet) : tl_verlet_kick(particles, &verlet);
+    find_forces(cloth, &then);
+    const struct tl_contact_params contact = contact_params(cloth, substep);
+    if (last)
+        tl_contacts_rub(&cloth->contacts, &contact, particles);
+}
+
+static bool is_blown(const tl_cloth *cloth)
+{
+    const float *velocity = cloth->params.wind;
+    return (velocity[0] != 0 || velocity[1] != 0 || velocity[2] != 0) && !tl_sewing_pulls(&cloth->sewing);
 }
 
 /* Before a substep of any solver. */
@@ -181,8 +204,6 @@ static void blow(tl_cloth *cloth, const struct tl_substep *substep)
                                  .gust = cloth->params.gust,
                                  .time_s = cloth->time_s + substep->phase / cloth->params.frame_rate,
                                  .areal_density = cloth->fabric.areal_density};
-    if (!(vec3d_norm(wind.velocity) > 0) || tl_sewing_pulls(&cloth->sewing))
-        return;
     struct tl_particles *particles = &cloth->particles;
     cloth->external = tl_resize(cloth->external, particles->count, sizeof *cloth->external);
     tl_wind_forces(&wind, &cloth->topology, substep->h, particles, cloth->external);
@@ -206,24 +227,29 @@ static double substeps_now(tl_cloth *cloth)
     return 0;
 }
 
-static void run_step(tl_cloth *cloth, const tl_collider *collider, double drag, int step)
+static void run_step(tl_cloth *cloth, const tl_collider *collider, const struct tl_advance *advance, int step)
 {
     /* Weightless until the panels have met. */
     double gravity = tl_sewing_pulls(&cloth->sewing) ? 0 : cloth->params.gravity;
     double substeps = substeps_now(cloth), total = steps_per_frame(&cloth->params) * substeps;
     if (cloth->params.solver == TL_CLOTH_REFERENCE)
-        find_forces(cloth);
+        find_forces(cloth, NULL);
+    bool blown = is_blown(cloth);
     for (double sub = 0; sub < substeps; sub++) {
         double done = step * substeps + sub;
         const struct tl_substep substep = {.h = step_seconds(cloth) / substeps,
                                            .gravity = gravity,
-                                           .drag = drag,
+                                           .drag = fmax(advance->drag, cloth->fabric.damping),
+                                           .agreement = advance->agreement,
                                            .phase_before = done / total,
                                            .phase = (done + 1) / total,
-                                           .collider = collider};
-        blow(cloth, &substep);
+                                           .collider = collider,
+                                           .follows = sub > 0 && !blown,
+                                           .leads = sub + 1 < substeps && !blown};
+        if (blown)
+            blow(cloth, &substep);
         if (cloth->params.solver == TL_CLOTH_REFERENCE)
-            advance_reference(cloth, &substep);
+            advance_reference(cloth, &substep, sub + 1 == substeps);
         else if (cloth->params.solver == TL_CLOTH_SETTLE)
             advance_settle(cloth, &substep);
         else
@@ -247,7 +273,7 @@ static void find_own_contacts(tl_cloth *cloth)
                        cloth->fabric.thickness_m);
 }
 
-static void run_steps(tl_cloth *cloth, const tl_collider *collider, double drag)
+static void run_steps(tl_cloth *cloth, const tl_collider *collider, const struct tl_advance *advance)
 {
     int steps = steps_per_frame(&cloth->params);
     cloth->refused_step = 0;
@@ -262,7 +288,7 @@ static void run_steps(tl_cloth *cloth, const tl_collider *collider, double drag)
                           (double)step / steps);
         if (cloth->params.self_repulsion)
             find_own_contacts(cloth);
-        run_step(cloth, collider, drag, step);
+        run_step(cloth, collider, advance, step);
         slip_free(cloth, collider);
         tl_contacts_enforce(&cloth->contacts, &contact, &cloth->particles);
         tl_particles_calm(&cloth->particles, (const uint32_t(*)[2])cloth->topology.edges,
@@ -386,15 +412,16 @@ bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct
     uint64_t jump_followed = cloth->jump_followed;
     struct tl_particles *particles = &cloth->particles;
     size_t bytes = particles->count * sizeof(vec3d);
-    vec3d *good_x = TL_NEW_ARRAY(vec3d, particles->count), *good_v = TL_NEW_ARRAY(vec3d, particles->count);
-    memcpy(good_x, particles->x, bytes);
-    memcpy(good_v, particles->v, bytes);
+    cloth->good_x = tl_resize(cloth->good_x, particles->count, sizeof *cloth->good_x);
+    cloth->good_v = tl_resize(cloth->good_v, particles->count, sizeof *cloth->good_v);
+    memcpy(cloth->good_x, particles->x, bytes);
+    memcpy(cloth->good_v, particles->v, bytes);
     follow_jump(cloth, collider);
     unsigned denormals = tl_denormals_off();
     if (collider)
         tl_pins_bind(cloth->pins, cloth->pin_count, collider, cloth->fabric.thickness_m);
     tl_contacts_begin(&cloth->contacts, collider);
-    run_steps(cloth, collider, fmax(advance->drag, cloth->fabric.damping));
+    run_steps(cloth, collider, advance);
     tl_denormals_restore(denormals);
 
     bool good = tl_interrupted()
@@ -404,18 +431,16 @@ bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct
         close_seams(cloth);
         cloth->time_s += advance->clock ? 1 / cloth->params.frame_rate : 0;
     } else {
-        memcpy(particles->x, good_x, bytes);
-        memcpy(particles->v, good_v, bytes);
+        memcpy(particles->x, cloth->good_x, bytes);
+        memcpy(particles->v, cloth->good_v, bytes);
         cloth->jump_followed = jump_followed;
         tl_layers_forget(&cloth->layers);
     }
-    free(good_x);
-    free(good_v);
     return good;
 }
 
 bool tl_cloth_step(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
 {
-    const struct tl_advance advance = {.clock = true};
+    const struct tl_advance advance = {.clock = true, .agreement = 2};
     return tl_cloth_advance(cloth, collider, &advance, error);
 }

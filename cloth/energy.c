@@ -353,7 +353,7 @@ static double fastest_bending(const struct tl_pulls *pulls, const double *w)
     for (size_t i = 0; i < pulls->vertex_count; i++) {
         double sum = 0;
         for (uint32_t k = pulls->along_first[i]; k < pulls->along_first[i + 1]; k++)
-            sum += fabs(pulls->along[k].bending);
+            sum += fabs(pulls->edge_bending[pulls->along[k].edge]);
         for (uint32_t k = pulls->others_first[i]; k < pulls->others_first[i + 1]; k++)
             sum += fabs(pulls->bending[k]);
         fastest = fmax(fastest, 2 * sum * w[i]);

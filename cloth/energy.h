@@ -22,6 +22,7 @@
 
 #include "assets/garment.h"
 #include "cloth/cloth.h"
+#include "cloth/particles.h"
 #include "cloth/pulls.h"
 #include "cloth/topology.h"
 #include "cloth/vec3d.h"
@@ -87,12 +88,14 @@ void tl_energy_set(struct tl_energy *energy, const struct tl_cloth_fabric *fabri
 double tl_energy_forces(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
                         size_t vertex_count, const vec3d *x, vec3d *forces);
 
-/* The forces alone, the same to the last bit, sooner. */
+/* The forces alone, the same to the last bit, sooner. `then`, if not NULL, moves the particles on, a block at
+ * a time, with their forces in `forces`; it may move `x`. */
 void tl_energy_pull(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric, const vec3d *x,
-                    vec3d *forces);
+                    vec3d *forces, const struct tl_move *then);
 
-/* The forces of bending alone. */
-void tl_energy_bending_forces(const struct tl_energy *energy, const vec3d *x, vec3d *forces);
+/* The same of bending alone. */
+void tl_energy_bend(const struct tl_energy *energy, const vec3d *x, vec3d *forces,
+                    const struct tl_move *then);
 
 /* Stiffness against L_uu, L_vv and sqrt(2) L_uv, N m. */
 void tl_bend_stiffness(const struct tl_cloth_fabric *fabric, double out[3]);

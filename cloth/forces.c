@@ -35,10 +35,9 @@ struct stretching {
 
 /* With m = (|F_u|^2, F_u.F_v, |F_v|^2) and the energy per area
  *     e = k_weft/2 (sqrt(m_uu) - 1)^2 + k_warp/2 (sqrt(m_vv) - 1)^2 + k_shear/2 m_uv^2 / (m_uu m_vv):
- * 2A de/d(l_k^2) for each edge k, and A e. */
+ * 2A de/d(l_k^2) for each edge k, and A e where it is wanted. */
 TL_INLINE void differentiate(const struct tl_metric *metric, const struct stretching *k,
-                             const double squared[3][TL_BATCH], double *restrict shares,
-                             double energies[TL_BATCH])
+                             const double squared[3][TL_BATCH], double *restrict shares, double *energies)
 {
     for (int lane = 0; lane < TL_BATCH; lane++) {
         double c0 = metric->c[0][lane], c1 = metric->c[1][lane], c2 = -(c0 + c1);
@@ -52,31 +51,49 @@ TL_INLINE void differentiate(const struct tl_metric *metric, const struct stretc
         double uv = -0.5 * (uv0 * l0 + uv1 * l1 + uv2 * l2);
         double length_u = sqrt(uu > LEAST_LENGTH * LEAST_LENGTH ? uu : LEAST_LENGTH * LEAST_LENGTH);
         double length_v = sqrt(vv > LEAST_LENGTH * LEAST_LENGTH ? vv : LEAST_LENGTH * LEAST_LENGTH);
-        double inverse_u = 1 / length_u, inverse_v = 1 / length_v;
-        double cosine = uv * inverse_u * inverse_v, slant = k->shear * cosine;
-        double by_uu = k->weft * (1 - inverse_u) - slant * cosine * inverse_u * inverse_u; /* 2 de/dm_uu */
-        double by_vv = k->warp * (1 - inverse_v) - slant * cosine * inverse_v * inverse_v;
-        double by_uv = slant * inverse_u * inverse_v; /* de/dm_uv */
-        double area = metric->area[lane];
-        shares[lane] = -area * (by_uu * uu0 + by_vv * vv0 + by_uv * uv0);
-        shares[TL_BATCH + lane] = -area * (by_uu * uu1 + by_vv * vv1 + by_uv * uv1);
-        shares[2 * TL_BATCH + lane] = -area * (by_uu * uu2 + by_vv * vv2 + by_uv * uv2);
-        double weft = length_u - 1, warp = length_v - 1;
-        energies[lane] = 0.5 * area * (k->weft * weft * weft + k->warp * warp * warp + slant * cosine);
+        double both = 1 / (length_u * length_v), inverse_u = both * length_v, inverse_v = both * length_u;
+        double cosine = uv * both, slant = k->shear * cosine, by_uv = slant * both; /* de/dm_uv */
+        double turn = slant * cosine;
+        double by_uu = k->weft * (1 - inverse_u) - turn * (inverse_u * inverse_u); /* 2 de/dm_uu */
+        double by_vv = k->warp * (1 - inverse_v) - turn * (inverse_v * inverse_v);
+        double area = -metric->area[lane];
+        shares[lane] = area * (by_uu * uu0 + by_vv * vv0 + by_uv * uv0);
+        shares[TL_BATCH + lane] = area * (by_uu * uu1 + by_vv * vv1 + by_uv * uv1);
+        shares[2 * TL_BATCH + lane] = area * (by_uu * uu2 + by_vv * vv2 + by_uv * uv2);
+        if (energies) {
+            double weft = length_u - 1, warp = length_v - 1;
+            energies[lane] = -0.5 * area * (k->weft * weft * weft + k->warp * warp * warp + turn);
+        }
     }
+}
+
+TL_INLINE void read_squared(const struct tl_pulls *pulls, const struct tl_metric *metric,
+                            double squared[3][TL_BATCH])
+{
+    for (int corner = 0; corner < 3; corner++)
+        for (int lane = 0; lane < TL_BATCH; lane++)
+            squared[corner][lane] = pulls->squared[metric->edges[corner][lane]];
 }
 
 TL_CLONES static void differentiate_all(const struct tl_pulls *pulls, struct stretching k,
                                         struct tl_range range)
 {
     for (size_t i = range.from; i < range.to; i++) {
-        const struct tl_metric *metric = &pulls->metrics[i];
+        double squared[3][TL_BATCH];
+        read_squared(pulls, &pulls->metrics[i], squared);
+        differentiate(&pulls->metrics[i], &k, (const double(*)[TL_BATCH])squared,
+                      &pulls->shares[i * 3 * TL_BATCH], NULL);
+    }
+}
+
+/* The triangles' energies beside. */
+TL_CLONES static void measure_all(const struct tl_pulls *pulls, struct stretching k, struct tl_range range)
+{
+    for (size_t i = range.from; i < range.to; i++) {
         double squared[3][TL_BATCH], energies[TL_BATCH];
-        for (int corner = 0; corner < 3; corner++)
-            for (int lane = 0; lane < TL_BATCH; lane++)
-                squared[corner][lane] = pulls->squared[metric->edges[corner][lane]];
-        differentiate(metric, &k, (const double(*)[TL_BATCH])squared, &pulls->shares[i * 3 * TL_BATCH],
-                      energies);
+        read_squared(pulls, &pulls->metrics[i], squared);
+        differentiate(&pulls->metrics[i], &k, (const double(*)[TL_BATCH])squared,
+                      &pulls->shares[i * 3 * TL_BATCH], energies);
         double sum = 0;
         for (int lane = 0; lane < TL_BATCH; lane++)
             sum += energies[lane];
@@ -87,7 +104,8 @@ TL_CLONES static void differentiate_all(const struct tl_pulls *pulls, struct str
 TL_CLONES static void add_shares(const struct tl_pulls *pulls, struct tl_range range)
 {
     for (size_t e = range.from; e < range.to; e++)
-        pulls->along_edges[e] = pulls->shares[pulls->slots[e][0]] + pulls->shares[pulls->slots[e][1]];
+        pulls->along_edges[e] =
+            pulls->shares[pulls->slots[e][0]] + pulls->shares[pulls->slots[e][1]] + pulls->edge_bending[e];
 }
 
 /* What few edges have: more than two triangles, and links. Returns the links' energy. */
@@ -122,23 +140,23 @@ TL_INLINE void add_others(const struct tl_pulls *pulls, size_t vertex, struct tl
         add_pull(at, &pulls->places[4 * (size_t)pulls->others[k]], pulls->bending[k], sum);
 }
 
-TL_INLINE void add_along(const struct tl_pulls *pulls, size_t vertex, bool bending_alone,
+/* `strengths` [edge_count]: of bending alone, or of all. */
+TL_INLINE void add_along(const struct tl_pulls *pulls, size_t vertex, const double *strengths,
                          struct tl_wide_force *sum)
 {
     const double *at = &pulls->places[4 * vertex];
     for (uint32_t k = pulls->along_first[vertex]; k < pulls->along_first[vertex + 1]; k++) {
         const struct tl_along *along = &pulls->along[k];
-        double strength = along->bending + (bending_alone ? 0 : pulls->along_edges[along->edge]);
-        add_pull(at, &pulls->places[4 * (size_t)along->other], strength, sum);
+        add_pull(at, &pulls->places[4 * (size_t)along->other], strengths[along->edge], sum);
     }
 }
 
-TL_INLINE void add_block(const struct tl_pulls *pulls, struct tl_range block, bool bending_alone,
+TL_INLINE void add_block(const struct tl_pulls *pulls, struct tl_range block, const double *strengths,
                          vec3d *forces)
 {
     for (size_t i = block.from; i < block.to; i++) {
         struct tl_wide_force sum = {0};
-        add_along(pulls, i, bending_alone, &sum);
+        add_along(pulls, i, strengths, &sum);
         add_others(pulls, i, &sum);
         pulls->sums[i] = sum;
     }
@@ -152,16 +170,16 @@ static struct tl_range block_from(size_t from, struct tl_range range)
     return (struct tl_range){from, to < range.to ? to : range.to};
 }
 
-TL_CLONES static void add_forces(const struct tl_pulls *pulls, struct tl_range range, vec3d *forces)
+/* Each block's particles move as soon as their forces are known, while these are at hand. */
+TL_CLONES static void add_forces(const struct tl_pulls *pulls, const double *strengths, struct tl_range range,
+                                 vec3d *forces, const struct tl_move *then)
 {
-    for (size_t from = range.from; from < range.to; from += TL_PULLS_BLOCK)
-        add_block(pulls, block_from(from, range), false, forces);
-}
-
-TL_CLONES static void add_bending_forces(const struct tl_pulls *pulls, struct tl_range range, vec3d *forces)
-{
-    for (size_t from = range.from; from < range.to; from += TL_PULLS_BLOCK)
-        add_block(pulls, block_from(from, range), true, forces);
+    for (size_t from = range.from; from < range.to; from += TL_PULLS_BLOCK) {
+        struct tl_range block = block_from(from, range);
+        add_block(pulls, block, strengths, forces);
+        if (then)
+            then->move(then->particles, block, then->how);
+    }
 }
 
 /* x.Kx/2 of a block of vertices. Forces add up to nothing, so that x may be measured from anywhere. */
@@ -172,7 +190,7 @@ TL_CLONES static double bending_energy(const struct tl_pulls *pulls, struct tl_r
     for (size_t i = range.from; i < range.to; i++) {
         const double *at = &pulls->places[4 * i];
         struct tl_wide_force sum = {0};
-        add_along(pulls, i, true, &sum);
+        add_along(pulls, i, pulls->edge_bending, &sum);
         add_others(pulls, i, &sum);
         energy -=
             0.5 * (sum.x * (at[0] - origin[0]) + sum.y * (at[1] - origin[1]) + sum.z * (at[2] - origin[2]));
@@ -190,7 +208,7 @@ static void add_energies(const struct tl_pulls *pulls)
 
 /* Returns the links' energy, and leaves the triangles' in pulls->parts, the bending's too if it is wanted. */
 static double evaluate(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric, const vec3d *x,
-                       bool wants_energy, vec3d *forces)
+                       bool wants_energy, vec3d *forces, const struct tl_move *then)
 {
     const struct tl_pulls *pulls = &energy->pulls;
     const struct stretching k = {fabric->stretch_weft, fabric->stretch_warp, fabric->shear};
@@ -202,7 +220,11 @@ static double evaluate(const struct tl_energy *energy, const struct tl_cloth_fab
         square_lengths(x, (const uint32_t(*)[2])pulls->edges, tl_my_part(pulls->edge_count, TL_BATCH),
                        pulls->squared);
 #pragma omp barrier
-        differentiate_all(pulls, k, tl_my_part(pulls->metric_count, 1));
+        struct tl_range triangles = tl_my_part(pulls->metric_count, 1);
+        if (wants_energy)
+            measure_all(pulls, k, triangles);
+        else
+            differentiate_all(pulls, k, triangles);
 #pragma omp barrier
         add_shares(pulls, tl_my_part(pulls->edge_count, TL_BATCH));
         if (pulls->excess_count + energy->link_count > 0) {
@@ -211,7 +233,7 @@ static double evaluate(const struct tl_energy *energy, const struct tl_cloth_fab
             links = add_rare(energy, fabric->stretch_warp);
         }
 #pragma omp barrier
-        add_forces(pulls, tl_my_part(pulls->vertex_count, TL_PULLS_BLOCK), forces);
+        add_forces(pulls, pulls->along_edges, tl_my_part(pulls->vertex_count, TL_PULLS_BLOCK), forces, then);
         if (wants_energy)
             add_energies(pulls);
         tl_denormals_restore(denormals);
@@ -220,12 +242,12 @@ static double evaluate(const struct tl_energy *energy, const struct tl_cloth_fab
 }
 
 void tl_energy_pull(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric, const vec3d *x,
-                    vec3d *forces)
+                    vec3d *forces, const struct tl_move *then)
 {
-    evaluate(energy, fabric, x, false, forces);
+    evaluate(energy, fabric, x, false, forces, then);
 }
 
-void tl_energy_bending_forces(const struct tl_energy *energy, const vec3d *x, vec3d *forces)
+void tl_energy_bend(const struct tl_energy *energy, const vec3d *x, vec3d *forces, const struct tl_move *then)
 {
     const struct tl_pulls *pulls = &energy->pulls;
 #pragma omp parallel if (pulls->vertex_count >= TL_PARALLEL_VERTICES)
@@ -234,7 +256,7 @@ void tl_energy_bending_forces(const struct tl_energy *energy, const vec3d *x, ve
         struct tl_range mine = tl_my_part(pulls->vertex_count, TL_PULLS_BLOCK);
         copy_places(x, mine, pulls->places);
 #pragma omp barrier
-        add_bending_forces(pulls, mine, forces);
+        add_forces(pulls, pulls->edge_bending, mine, forces, then);
         tl_denormals_restore(denormals);
     }
 }
@@ -244,7 +266,7 @@ double tl_energy_forces(const struct tl_energy *energy, const struct tl_cloth_fa
 {
     const struct tl_pulls *pulls = &energy->pulls;
     size_t blocks = (vertex_count + TL_PULLS_BLOCK - 1) / TL_PULLS_BLOCK;
-    double total = evaluate(energy, fabric, x, true, forces);
+    double total = evaluate(energy, fabric, x, true, forces, NULL);
     for (size_t i = 0; i < pulls->metric_count + blocks; i++)
         total += pulls->parts[i];
     return total;

@@ -1,33 +1,42 @@
 /* The strain limit of `preview`: one iteration a substep leaves heavy or soft cloth too long; what is
  * stretched beyond a share of its rest length is drawn back to it, edge by edge (Provot 1995, "Deformation
  * constraints in a mass-spring model to describe rigid cloth behavior"). It is not in the energy: the other
- * solvers know none, and a fabric that truly stretches further needs it off. Threads: pure. */
+ * solvers know none, and a fabric that truly stretches further needs it off.
+ *
+ * Only edges around triangles that came near the limit in this substep are looked at: a substep moves cloth by
+ * far less than what is left then, and what it moves further is seen in the next. Threads: pure. */
 #ifndef TOILE_CLOTH_LIMIT_H
 #define TOILE_CLOTH_LIMIT_H
 
+#include "cloth/energy.h"
 #include "cloth/particles.h"
 #include "cloth/topology.h"
-
-#include <cglm/struct.h>
+#include "cloth/xpbd.h"
 
 struct tl_limited_edge {
     uint32_t ends[2];
-    double rest;    /* m */
-    double allowed; /* m, on its way from where it began to 0 */
+    double rest;  /* m */
+    double began; /* m, its length at first */
 };
 
 struct tl_limits {
-    size_t count;
+    double strain; /* 0: no limit */
+    size_t vertex_count, count;
     struct tl_limited_edge *edges;
+    uint32_t *first;       /* [vertex_count + 1] the edges whose lower end is a vertex */
+    bool *due, *always;    /* [vertex_count + 1] those edges are looked at: now; in any case */
+    struct tl_watch watch; /* for tl_xpbd_solve */
+    double passed_s;
 };
 
 /* Every edge longer than `shortest` metres at rest; `x` is where the cloth is. */
-struct tl_limits tl_limits_create(const struct tl_topology *topology, const vec2s (*rest)[3], double shortest,
-                                  const vec3d *x);
+struct tl_limits tl_limits_create(const struct tl_topology *topology, const struct tl_energy *energy,
+                                  const vec2s (*rest)[3], double shortest, double strain, const vec3d *x);
 void tl_limits_release(struct tl_limits *limits);
 
-/* After a substep of h seconds: draws edges longer than 1 + strain times their rest length back to that,
- * there and back through the list; those that were longer at first, at a limited speed. */
-void tl_limits_solve(struct tl_limits *limits, double strain, double h, struct tl_particles *particles);
+/* After tl_xpbd_solve in a substep of h seconds: draws edges longer than 1 + strain times their rest length
+ * back to that, there and back through the list; those that were longer at first, at a limited speed. */
+void tl_limits_solve(struct tl_limits *limits, const struct tl_energy *energy, double h,
+                     struct tl_particles *particles);
 
 #endif

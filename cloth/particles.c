@@ -2,6 +2,7 @@
 
 #include "cloth/threads.h"
 #include "config/memory.h"
+#include "config/simd.h"
 
 #include <stdlib.h>
 #ifdef __SSE2__
@@ -48,42 +49,60 @@ void tl_particles_release(struct tl_particles *particles)
     *particles = (struct tl_particles){0};
 }
 
-void tl_particles_share(struct tl_particles *particles, tl_particles_mover *move, const void *how)
+void tl_particles_move(const struct tl_move *move)
 {
-#pragma omp parallel if (particles->count >= TL_PARALLEL_VERTICES)
+#pragma omp parallel if (move->particles->count >= TL_PARALLEL_VERTICES)
     {
         unsigned denormals = tl_denormals_off();
-        move(particles, tl_my_part(particles->count, 1), how);
+        move->move(move->particles, tl_my_part(move->particles->count, 1), move->how);
         tl_denormals_restore(denormals);
     }
 }
 
-struct prediction {
-    const vec3d *forces;  /* or NULL */
-    double fall, keep, h; /* m/s, share of v that the drag leaves, s */
-};
-
-static void predict(struct tl_particles *particles, struct tl_range part, const void *how)
+struct tl_prediction tl_prediction_make(const vec3d *forces, double gravity, double drag, double h)
 {
-    const struct prediction to = *(const struct prediction *)how;
-    for (size_t i = part.from; i < part.to; i++) {
-        double w = particles->w[i];
-        vec3d x = particles->x[i], v = w > 0 ? vec3d_scale(particles->v[i], to.keep) : (vec3d){0};
-        if (w > 0)
-            v.y -= to.fall;
-        if (to.forces)
-            v = vec3d_muladd(v, to.forces[i], w * to.h);
-        particles->v[i] = v;
-        particles->previous[i] = x;
-        particles->x[i] = vec3d_muladd(x, v, to.h);
+    return (struct tl_prediction){.forces = forces, .fall = gravity * h, .keep = exp(-drag * h), .h = h};
+}
+
+/* Particles that are moved at once, and their numbers. */
+#define SOME 8
+
+TL_INLINE void predict_some(struct tl_particles *particles, size_t first, size_t count,
+                            const struct tl_prediction *to, bool pushed, bool moving)
+{
+    const double h = to->h, per_h = 1 / h, keep = to->keep;
+    double weights[3 * SOME], falls[3 * SOME];
+    for (size_t i = 0; i < count; i++) {
+        weights[3 * i] = weights[3 * i + 1] = weights[3 * i + 2] = particles->w[first + i];
+        falls[3 * i] = falls[3 * i + 2] = 0;
+        falls[3 * i + 1] = to->fall;
+    }
+    double *restrict x = &particles->x[first].x, *restrict previous = &particles->previous[first].x;
+    const double *restrict v = &particles->v[first].x;
+    const double *restrict forces = pushed ? &to->forces[first].x : v;
+    for (size_t k = 0; k < 3 * count; k++) {
+        double speed = moving ? (x[k] - previous[k]) * per_h : v[k];
+        speed = weights[k] > 0 ? speed * keep - falls[k] : 0;
+        if (pushed)
+            speed += forces[k] * (weights[k] * h);
+        previous[k] = x[k];
+        x[k] += speed * h;
     }
 }
 
-void tl_particles_predict(struct tl_particles *particles, const vec3d *forces, double gravity, double drag,
-                          double h)
+TL_CLONES static void predict(struct tl_particles *particles, struct tl_range part, const void *how)
 {
-    const struct prediction to = {forces, gravity * h, exp(-drag * h), h};
-    tl_particles_share(particles, predict, &to);
+    const struct tl_prediction to = *(const struct tl_prediction *)how;
+    size_t i = part.from;
+    for (; i + SOME <= part.to && to.forces && to.moving; i += SOME) /* the usual ones */
+        predict_some(particles, i, SOME, &to, true, true);
+    for (; i < part.to; i++)
+        predict_some(particles, i, 1, &to, to.forces, to.moving);
+}
+
+struct tl_move tl_particles_prediction(struct tl_particles *particles, const struct tl_prediction *prediction)
+{
+    return (struct tl_move){predict, particles, prediction};
 }
 
 static void finish(struct tl_particles *particles, struct tl_range part, const void *how)
@@ -95,7 +114,7 @@ static void finish(struct tl_particles *particles, struct tl_range part, const v
 
 void tl_particles_finish(struct tl_particles *particles, double h)
 {
-    tl_particles_share(particles, finish, &h);
+    tl_particles_move(&(const struct tl_move){finish, particles, &h});
 }
 
 void tl_particles_calm(struct tl_particles *particles, const uint32_t (*edges)[2], size_t edge_count,

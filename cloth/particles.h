@@ -21,14 +21,27 @@ struct tl_particles {
 struct tl_particles tl_particles_create(size_t count);
 void tl_particles_release(struct tl_particles *particles);
 
-/* Calls `move` on all threads, each for its own part of the particles, denormals off. */
-typedef void tl_particles_mover(struct tl_particles *particles, struct tl_range part, const void *how);
-void tl_particles_share(struct tl_particles *particles, tl_particles_mover *move, const void *how);
+/* What is done to some of the particles, each by itself. */
+struct tl_move {
+    void (*move)(struct tl_particles *particles, struct tl_range part, const void *how);
+    struct tl_particles *particles;
+    const void *how;
+};
+/* On all threads, each for its own part of the particles, denormals off. */
+void tl_particles_move(const struct tl_move *move);
 
-/* v <- v exp(-drag h) + h (g + w f), previous <- x, x <- x + h v, with `forces` f in N, or none when NULL.
- * What is at rest feels its whole weight, whatever the drag. */
-void tl_particles_predict(struct tl_particles *particles, const vec3d *forces, double gravity, double drag,
-                          double h);
+/* previous <- x, x <- x + h (v exp(-drag h) + h (g + w f)), with `forces` f in N, or none when NULL. What is
+ * at rest feels its whole weight, whatever the drag. `v` is left to tl_particles_finish; where that was left
+ * out after the substep before, of as many seconds, `moving` takes (x - previous) / h in its place. The move
+ * borrows the prediction. */
+struct tl_prediction {
+    const vec3d *forces;
+    double fall, keep, h; /* m/s, share of v that the drag leaves, s */
+    bool moving;
+};
+struct tl_prediction tl_prediction_make(const vec3d *forces, double gravity, double drag, double h);
+struct tl_move tl_particles_prediction(struct tl_particles *particles,
+                                       const struct tl_prediction *prediction);
 
 /* v <- (x - previous) / h. */
 void tl_particles_finish(struct tl_particles *particles, double h);

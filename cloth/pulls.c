@@ -6,23 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- Edges ---- */
-
-static uint32_t find_edge(const struct tl_topology *topology, uint32_t a, uint32_t b)
-{
-    uint32_t low = a < b ? a : b, high = a < b ? b : a;
-    size_t from = 0, to = topology->edge_count;
-    while (to - from > 1) {
-        size_t middle = (from + to) / 2;
-        const uint32_t *edge = topology->edges[middle];
-        if (edge[0] < low || (edge[0] == low && edge[1] <= high))
-            from = middle;
-        else
-            to = middle;
-    }
-    return (uint32_t)from;
-}
-
 /* ---- Triangles ---- */
 
 struct placed {
@@ -71,8 +54,8 @@ static void build_metrics(struct tl_pulls *pulls, const struct tl_topology *topo
             continue;
         placed[count].lane = (uint32_t)i;
         for (int k = 0; k < 3; k++)
-            placed[count].edges[k] = find_edge(topology, m->vertices[(k + 1) % 3][i % TL_BATCH],
-                                               m->vertices[(k + 2) % 3][i % TL_BATCH]);
+            placed[count].edges[k] = tl_topology_edge(topology, m->vertices[(k + 1) % 3][i % TL_BATCH],
+                                                      m->vertices[(k + 2) % 3][i % TL_BATCH]);
         count++;
     }
     qsort(placed, count, sizeof *placed, compare_placed);
@@ -202,11 +185,13 @@ static void build_others(struct tl_pulls *pulls, const struct stencils *stencils
     pulls->bending = TL_NEW_ARRAY(double, pulls->others_first[pulls->vertex_count]);
 }
 
-/* Where a row keeps each vertex's number. */
+/* Where a row keeps each vertex's number; an edge's is kept by its lower end, and NULL for the other. */
 static void list_entries(struct tl_pulls *pulls, uint32_t vertex, double **entries)
 {
-    for (uint32_t k = pulls->along_first[vertex]; k < pulls->along_first[vertex + 1]; k++)
-        entries[pulls->along[k].other] = &pulls->along[k].bending;
+    for (uint32_t k = pulls->along_first[vertex]; k < pulls->along_first[vertex + 1]; k++) {
+        const struct tl_along *along = &pulls->along[k];
+        entries[along->other] = vertex < along->other ? &pulls->edge_bending[along->edge] : NULL;
+    }
     for (uint32_t k = pulls->others_first[vertex]; k < pulls->others_first[vertex + 1]; k++)
         entries[pulls->others[k]] = &pulls->bending[k];
 }
@@ -224,7 +209,7 @@ static void add_row(const struct tl_pulls *pulls, const struct tl_energy *energy
         size_t lane = element % TL_BATCH;
         for (size_t i = 0; i < TL_BEND_STENCIL; i++) {
             uint32_t other = stencils->corners[element * TL_BEND_STENCIL + i];
-            if (other == pulls->vertex_count || other == vertex)
+            if (other == pulls->vertex_count || other == vertex || !entries[other])
                 continue;
             for (int row = 0; row < 3; row++)
                 *entries[other] -= stiffness[row] * bend->area[lane] *
@@ -237,8 +222,7 @@ void tl_pulls_set(struct tl_pulls *pulls, const struct tl_energy *energy, const 
 {
     struct stencils stencils = list_stencils(energy, pulls->vertex_count);
     double **entries = TL_NEW_ARRAY(double *, pulls->vertex_count);
-    for (size_t k = 0; k < 2 * pulls->edge_count; k++)
-        pulls->along[k].bending = 0;
+    memset(pulls->edge_bending, 0, pulls->edge_count * sizeof *pulls->edge_bending);
     memset(pulls->bending, 0, pulls->others_first[pulls->vertex_count] * sizeof *pulls->bending);
     for (uint32_t i = 0; i < pulls->vertex_count; i++) {
         list_entries(pulls, i, entries);
@@ -259,13 +243,14 @@ struct tl_pulls tl_pulls_build(const struct tl_topology *topology, const struct 
     build_slots(&pulls);
     pulls.link_edges = TL_NEW_ARRAY(uint32_t, energy->link_count);
     for (size_t i = 0; i < energy->link_count; i++)
-        pulls.link_edges[i] = find_edge(topology, energy->links[i].a, energy->links[i].b);
+        pulls.link_edges[i] = tl_topology_edge(topology, energy->links[i].a, energy->links[i].b);
     struct stencils stencils = list_stencils(energy, pulls.vertex_count);
     build_along(&pulls);
     build_others(&pulls, &stencils);
     release_stencils(&stencils);
 
     size_t blocks = (pulls.vertex_count + TL_PULLS_BLOCK - 1) / TL_PULLS_BLOCK;
+    pulls.edge_bending = TL_NEW_ARRAY(double, pulls.edge_count);
     pulls.places = TL_NEW_ARRAY(double, 4 * pulls.vertex_count);
     pulls.squared = TL_NEW_ARRAY(double, pulls.edge_count);
     pulls.shares = TL_NEW_ARRAY(double, pulls.metric_count * 3 * TL_BATCH + 1);
@@ -282,6 +267,7 @@ void tl_pulls_release(struct tl_pulls *pulls)
     free(pulls->slots);
     free(pulls->excess);
     free(pulls->link_edges);
+    free(pulls->edge_bending);
     free(pulls->along_first);
     free(pulls->others_first);
     free(pulls->along);

@@ -35,7 +35,6 @@ struct tl_wide_force {
 /* One end's view of an edge. */
 struct tl_along {
     uint32_t other, edge;
-    double bending; /* -K_ij, N/m */
 };
 
 struct tl_pulls {
@@ -45,6 +44,7 @@ struct tl_pulls {
     uint32_t (*slots)[2];  /* [edge_count] the two entries of `shares` that make up an edge's pull */
     uint32_t (*excess)[2]; /* [excess_count] edge, entry: third and further triangles at an edge */
     uint32_t *link_edges;  /* [link_count] */
+    double *edge_bending;  /* [edge_count] -K_ij of its ends, N/m */
 
     /* Rows by vertex: along[along_first[i]] and on are along edges, others[others_first[i]] and on are of
      * bending alone. */
@@ -57,7 +57,7 @@ struct tl_pulls {
     double *places;  /* [vertex_count][4] m */
     double *squared; /* [edge_count] m^2 */
     double *shares;  /* [metric_count][3][TL_BATCH] N/m, then a 0 for edges with fewer than two triangles */
-    double *along_edges;        /* [edge_count] N/m */
+    double *along_edges;        /* [edge_count] N/m, with bending */
     struct tl_wide_force *sums; /* [vertex_count] N */
     double *parts;              /* [metric_count + blocks of vertices] J */
 };

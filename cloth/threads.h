@@ -7,7 +7,7 @@
 #include <stddef.h>
 
 /* Cloth of fewer vertices is left to one thread: waiting for the others would cost more than they bring. */
-#define TL_PARALLEL_VERTICES 5000
+#define TL_PARALLEL_VERTICES 30000
 
 struct tl_range {
     size_t from, to;

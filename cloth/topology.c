@@ -197,6 +197,21 @@ uint32_t tl_topology_far_corner(const struct tl_topology *topology, uint32_t tri
     return corner;
 }
 
+uint32_t tl_topology_edge(const struct tl_topology *topology, uint32_t a, uint32_t b)
+{
+    uint32_t low = a < b ? a : b, high = a < b ? b : a;
+    size_t from = 0, to = topology->edge_count;
+    while (to - from > 1) {
+        size_t middle = (from + to) / 2;
+        const uint32_t *edge = topology->edges[middle];
+        if (edge[0] < low || (edge[0] == low && edge[1] <= high))
+            from = middle;
+        else
+            to = middle;
+    }
+    return (uint32_t)from;
+}
+
 struct tl_fans tl_fans_build(const uint32_t *corners, size_t corner_count, size_t vertex_count)
 {
     struct tl_fans fans = {TL_NEW_ARRAY(uint32_t, vertex_count + 1), TL_NEW_ARRAY(uint32_t, corner_count)};

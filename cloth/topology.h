@@ -29,6 +29,9 @@ struct tl_topology tl_topology_build(const uint32_t *indices, size_t index_count
                                      size_t render_count, size_t vertex_count);
 void tl_topology_release(struct tl_topology *topology);
 
+/* The edge between two vertices that have one. */
+uint32_t tl_topology_edge(const struct tl_topology *topology, uint32_t a, uint32_t b);
+
 /* Corner (0 to 2) of `neighbour` that `triangle` does not have: the far corner of their hinge. */
 uint32_t tl_topology_far_corner(const struct tl_topology *topology, uint32_t triangle, uint32_t neighbour);
 

@@ -1,57 +1,87 @@
 #include "cloth/verlet.h"
 
-struct substep {
-    const vec3d *forces;
-    double gravity, keep, h; /* m/s^2, share of v that half the substep's drag leaves, s */
-};
+#include "config/simd.h"
 
-/* v + h/2 a, for one particle. */
-static vec3d pushed(vec3d v, const struct substep *substep, size_t i, double w)
+/* Particles that are moved at once, and their numbers. */
+#define SOME 8
+
+struct tl_verlet tl_verlet_make(const vec3d *forces, double gravity, double drag, double h)
 {
-    v = vec3d_muladd(v, substep->forces[i], w * substep->h / 2);
-    v.y -= substep->gravity * substep->h / 2;
-    return v;
+    return (struct tl_verlet){forces, gravity, exp(-drag * h / 2), h};
 }
 
-static void drift(struct tl_particles *particles, struct tl_range part, const void *how)
+/* v + h/2 a, one number of it. */
+TL_INLINE double pushed(double v, double force, double weight, double fall, double h)
 {
-    const struct substep substep = *(const struct substep *)how;
-    for (size_t i = part.from; i < part.to; i++) {
-        double w = particles->w[i];
-        vec3d x = particles->x[i], v = {0};
-        if (w > 0)
-            v = pushed(vec3d_scale(particles->v[i], substep.keep), &substep, i, w);
-        particles->v[i] = v;
-        particles->previous[i] = x;
-        particles->x[i] = vec3d_muladd(x, v, substep.h);
-    }
-}
-
-void tl_verlet_drift(struct tl_particles *particles, const vec3d *forces, double gravity, double drag,
-                     double h)
-{
-    const struct substep substep = {forces, gravity, exp(-drag * h / 2), h};
-    tl_particles_share(particles, drift, &substep);
+    return v + force * (weight * h / 2) - fall;
 }
 
 /* Velocities are kept, not taken from the places: rounding of a place is 1e-16 m, over a step of 1e-5 s that
  * is 1e-11 m/s each time. What moved nobody adds exactly 0. */
-static void kick(struct tl_particles *particles, struct tl_range part, const void *how)
+TL_INLINE void advance(struct tl_particles *particles, size_t first, size_t count,
+                       const struct tl_verlet *substep, bool kicks, bool drifts)
 {
-    const struct substep substep = *(const struct substep *)how;
-    double per_h = 1 / substep.h;
-    for (size_t i = part.from; i < part.to; i++) {
-        vec3d v = particles->v[i], driven = vec3d_muladd(particles->previous[i], v, substep.h);
-        v = vec3d_muladd(v, vec3d_sub(particles->x[i], driven), per_h);
-        if (particles->w[i] > 0)
-            v = vec3d_scale(pushed(v, &substep, i, particles->w[i]), substep.keep);
-        particles->v[i] = v;
+    const double h = substep->h, per_h = 1 / h, keep = substep->keep;
+    double weights[3 * SOME], falls[3 * SOME];
+    for (size_t i = 0; i < count; i++) {
+        weights[3 * i] = weights[3 * i + 1] = weights[3 * i + 2] = particles->w[first + i];
+        falls[3 * i] = falls[3 * i + 2] = 0;
+        falls[3 * i + 1] = substep->gravity * h / 2;
+    }
+    double *restrict x = &particles->x[first].x, *restrict v = &particles->v[first].x;
+    double *restrict previous = &particles->previous[first].x;
+    const double *restrict forces = &substep->forces[first].x;
+    for (size_t k = 0; k < 3 * count; k++) {
+        double speed = v[k], weight = weights[k];
+        if (kicks) {
+            speed += (x[k] - (previous[k] + speed * h)) * per_h;
+            speed = weight > 0 ? pushed(speed, forces[k], weight, falls[k], h) * keep : speed;
+        }
+        if (drifts) {
+            speed = weight > 0 ? pushed(speed * keep, forces[k], weight, falls[k], h) : 0;
+            previous[k] = x[k];
+            x[k] += speed * h;
+        }
+        v[k] = speed;
     }
 }
 
-void tl_verlet_kick(struct tl_particles *particles, const vec3d *forces, double gravity, double drag,
-                    double h)
+TL_INLINE void advance_part(struct tl_particles *particles, struct tl_range part, const void *how, bool kicks,
+                            bool drifts)
 {
-    const struct substep substep = {forces, gravity, exp(-drag * h / 2), h};
-    tl_particles_share(particles, kick, &substep);
+    const struct tl_verlet substep = *(const struct tl_verlet *)how;
+    size_t i = part.from;
+    for (; i + SOME <= part.to; i += SOME)
+        advance(particles, i, SOME, &substep, kicks, drifts);
+    advance(particles, i, part.to - i, &substep, kicks, drifts);
+}
+
+TL_CLONES static void drift(struct tl_particles *particles, struct tl_range part, const void *how)
+{
+    advance_part(particles, part, how, false, true);
+}
+
+TL_CLONES static void kick(struct tl_particles *particles, struct tl_range part, const void *how)
+{
+    advance_part(particles, part, how, true, false);
+}
+
+TL_CLONES static void leap(struct tl_particles *particles, struct tl_range part, const void *how)
+{
+    advance_part(particles, part, how, true, true);
+}
+
+void tl_verlet_drift(struct tl_particles *particles, const struct tl_verlet *substep)
+{
+    tl_particles_move(&(const struct tl_move){drift, particles, substep});
+}
+
+struct tl_move tl_verlet_kick(struct tl_particles *particles, const struct tl_verlet *substep)
+{
+    return (struct tl_move){kick, particles, substep};
+}
+
+struct tl_move tl_verlet_leap(struct tl_particles *particles, const struct tl_verlet *substep)
+{
+    return (struct tl_move){leap, particles, substep};
 }

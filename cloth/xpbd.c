@@ -51,6 +51,7 @@ TL_INLINE void move(struct places *places, int lane, vec3d by, double share)
  * next batches need not. */
 struct membrane_work {
     struct places x[3], u, v, push_c, push_d;
+    double uu[TL_BATCH], vv[TL_BATCH], uv[TL_BATCH]; /* the metric, before any push */
 };
 
 /* A stretch C = |F| - 1 pushes by factor C along F/|F|: in units of F. */
@@ -66,6 +67,9 @@ TL_INLINE void solve_weft(const struct tl_membrane *m, int lane, struct membrane
     vec3d other = vec3d_sub(at(&work->x[2], lane), origin);
     vec3d u = vec3d_muladd(vec3d_scale(side, m->c[1][lane]), other, m->c[2][lane]);
     vec3d v = vec3d_muladd(vec3d_scale(side, m->d[1][lane]), other, m->d[2][lane]);
+    work->uu[lane] = vec3d_dot(u, u);
+    work->vv[lane] = vec3d_dot(v, v);
+    work->uv[lane] = vec3d_dot(u, v);
     vec3d push = vec3d_scale(u, stretch_push(u, m->weft[lane]));
     put(&work->push_c, lane, push);
     put(&work->u, lane, vec3d_muladd(u, push, m->cc[lane]));
@@ -110,7 +114,18 @@ TL_INLINE void move_corners(const struct tl_membrane *m, int lane, struct membra
 #define GROUP      8
 #define CACHE_LINE 64
 
-TL_INLINE void solve_group(const struct tl_membrane *m, size_t count, vec3d *x)
+/* Whether the metric's larger eigenvalue exceeds `most` in any lane. */
+TL_INLINE bool stretches(const struct membrane_work *work, double most)
+{
+    int any = 0;
+    for (int lane = 0; lane < TL_BATCH; lane++) {
+        double spare_u = most - work->uu[lane], spare_v = most - work->vv[lane], uv = work->uv[lane];
+        any |= (spare_u < 0) | (spare_v < 0) | (spare_u * spare_v < uv * uv);
+    }
+    return any;
+}
+
+TL_INLINE void solve_group(const struct tl_membrane *m, size_t count, double most, vec3d *x, bool *seen)
 {
     struct membrane_work work[GROUP];
     for (size_t k = 0; k < count; k++) {
@@ -134,22 +149,27 @@ TL_INLINE void solve_group(const struct tl_membrane *m, size_t count, vec3d *x)
     for (size_t k = 0; k < count; k++)
         for (int i = 0; i < 3; i++)
             store(&work[k].x[i], m[k].vertices[i], x);
+    for (size_t k = 0; k < count && seen; k++)
+        seen[k] = stretches(&work[k], most);
 }
 
-TL_CLONES static void solve_run(const struct tl_membrane *membranes, size_t count, vec3d *x)
+TL_CLONES static void solve_run(const struct tl_membrane *membranes, size_t count, double most, vec3d *x,
+                                bool *seen)
 {
     for (size_t first = 0; first < count; first += GROUP)
-        solve_group(membranes + first, count - first < GROUP ? count - first : GROUP, x);
+        solve_group(membranes + first, count - first < GROUP ? count - first : GROUP, most, x,
+                    seen ? seen + first : NULL);
 }
 
 /* On the threads of a team: the batches of a run in any order, the runs one after the other. */
-static void solve_membranes(const struct tl_energy *energy, vec3d *x)
+static void solve_membranes(const struct tl_energy *energy, const struct tl_watch *watch, vec3d *x)
 {
     size_t from = 0;
     for (size_t run = 0; run < energy->membrane_run_count; run++) {
         size_t end = energy->membrane_run_ends[run];
         struct tl_range part = tl_my_part(end - from, 1);
-        solve_run(energy->membranes + from + part.from, part.to - part.from, x);
+        solve_run(energy->membranes + from + part.from, part.to - part.from, watch ? watch->most : 0, x,
+                  watch ? watch->seen + from + part.from : NULL);
         from = end;
 #pragma omp barrier
     }
@@ -207,12 +227,13 @@ void tl_xpbd_solve_link(const struct tl_link *link, struct tl_particles *particl
     particles->x[link->b] = vec3d_muladd(particles->x[link->b], push, -wb);
 }
 
-void tl_xpbd_solve(const struct tl_energy *energy, struct tl_particles *particles)
+void tl_xpbd_solve(const struct tl_energy *energy, struct tl_particles *particles,
+                   const struct tl_watch *watch)
 {
 #pragma omp parallel if (particles->count >= TL_PARALLEL_VERTICES)
     {
         unsigned denormals = tl_denormals_off();
-        solve_membranes(energy, particles->x);
+        solve_membranes(energy, watch, particles->x);
         if (!energy->bends_as_force)
             solve_bends(energy, particles->x);
         tl_denormals_restore(denormals);

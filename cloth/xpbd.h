@@ -20,8 +20,16 @@
 #include "cloth/energy.h"
 #include "cloth/particles.h"
 
-/* Every membrane, bend and link once. */
-void tl_xpbd_solve(const struct tl_energy *energy, struct tl_particles *particles);
+/* Which batches of membranes were found stretched so that F turns something into more than sqrt(most) times
+ * its length. */
+struct tl_watch {
+    double most;
+    bool *seen; /* [membrane_count] */
+};
+
+/* Every membrane, bend and link once; `watch` may be NULL. */
+void tl_xpbd_solve(const struct tl_energy *energy, struct tl_particles *particles,
+                   const struct tl_watch *watch);
 /* The same in the opposite order, and at five times the cost: see tl_xpbd_step. */
 void tl_xpbd_solve_back(const struct tl_energy *energy, struct tl_particles *particles);
 

@@ -86,12 +86,13 @@ tl_renderer *tl_renderer_create(tl_gpu *gpu, tl_error *error)
     tl_renderer *renderer = TL_NEW(tl_renderer);
     renderer->gpu = gpu;
     renderer->surfaces = tl_surfaces_create(gpu);
+    tl_surfaces_use_detail(renderer->surfaces, &renderer->detail);
+    renderer->detail.params = *(const struct tl_detail_params *)tl_detail_options.defaults;
     renderer->points = tl_points_create();
     renderer->trace = tl_trace_create(error);
     renderer->maps = tl_shadow_maps_create(gpu, error);
     renderer->shaders_stamp = tl_shaders_stamp(tl_embedded_shaders);
-    if (!renderer->trace || !renderer->maps || !tl_gbuffer_create(&renderer->gbuffer, gpu, error) ||
-        !tl_lighting_create(&renderer->lighting, gpu, error) ||
+    if (!renderer->trace || !renderer->maps || !tl_lighting_create(&renderer->lighting, gpu, error) ||
         !tl_present_create(&renderer->present, gpu, error) ||
         !tl_jobs_check(tl_frame_jobs, tl_frame_job_count, error))
         tl_renderer_destroy(&renderer);
@@ -111,8 +112,10 @@ void tl_renderer_destroy(tl_renderer **renderer)
     tl_slice_maps_release(&(*renderer)->slice_maps);
     tl_region_lights_release(&(*renderer)->lights);
     tl_surfaces_destroy(&(*renderer)->surfaces);
+    tl_detail_maps_release(&(*renderer)->detail);
     tl_triangle_ranges_release(&(*renderer)->ranges);
     tl_samples_release(&(*renderer)->samples);
+    tl_sheets_release(&(*renderer)->sheets);
     tl_mirrors_release(&(*renderer)->mirrors);
     tl_trace_destroy(&(*renderer)->trace);
     tl_points_destroy(&(*renderer)->points);
@@ -125,6 +128,7 @@ void tl_renderer_destroy(tl_renderer **renderer)
     tl_cube_release(&(*renderer)->surroundings.cube);
     tl_lobes_release(&(*renderer)->surroundings.lobes);
     tl_envmap_release(&(*renderer)->envmap);
+    tl_local_release(&(*renderer)->local);
     tl_capture_release(&(*renderer)->capture);
     tl_present_release(&(*renderer)->present);
     free(*renderer);
@@ -189,9 +193,10 @@ static void reload_shaders(tl_renderer *renderer)
     if (stamp == renderer->shaders_stamp)
         return;
     renderer->shaders_stamp = stamp;
+    tl_local_reload(&renderer->local);
     tl_error error = {0};
-    if (!tl_shadow_maps_reload(renderer->maps, &error) ||
-        !tl_program_reload(&renderer->gbuffer.program, &error) ||
+    if (!tl_shadow_maps_reload(renderer->maps, &error) || !tl_gbuffer_reload(&renderer->gbuffer, &error) ||
+        !tl_gbuffer_reload(&renderer->sheets.behind, &error) ||
         !tl_lighting_reload(&renderer->lighting, &error) || !tl_envmap_reload(&renderer->envmap, &error) ||
         !tl_capture_reload(&renderer->capture, &error) ||
         !tl_program_reload(&renderer->present.resolve, &error) ||
@@ -217,7 +222,7 @@ static bool check_camera(const struct tl_camera *camera, tl_error *error)
 static bool check_envmap_size(const tl_frame *frame, const struct tl_render_settings *settings,
                               tl_error *error)
 {
-    uint32_t exponents = tl_frame_map_exponents(frame);
+    uint32_t exponents = tl_frame_map_exponents(frame, &settings->detail);
     uint64_t bytes = tl_envmap_bytes_needed(&settings->maps, exponents);
     if (settings->light.method == TL_METHOD_MAPS && bytes > TEXTURE_BYTES_MAX)
         return tl_fail(error, TL_USAGE,
@@ -244,6 +249,10 @@ bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct
     memcpy(renderer->signatures, signatures, sizeof signatures);
     tl_frame_list_surfaces(renderer);
     const struct tl_plan_input input = plan_input(renderer, frame, &used, changed, TL_MADE_IMAGE);
+    if (!(input.scene & TL_BIT(TL_SCENE_LAMPS)))
+        tl_local_release(&renderer->local);
+    if (!(input.scene & TL_BIT(TL_SCENE_SHEETS)))
+        tl_sheets_release(&renderer->sheets);
     return run_plan(renderer, &input, &renderer->plan, error);
 }
 
@@ -358,14 +367,16 @@ struct tl_render_memory tl_renderer_memory(const tl_renderer *renderer)
         .pems = tl_pems_bytes(&renderer->pems) + tl_lobes_bytes(&renderer->lobes) +
                 tl_slice_maps_bytes(&renderer->slice_maps) + tl_lobes_bytes(&renderer->surroundings.lobes) +
                 tl_envmap_bytes(&renderer->envmap) + tl_capture_bytes(&renderer->capture),
-        .maps = tl_shadow_maps_bytes(renderer->maps),
+        .maps = tl_shadow_maps_bytes(renderer->maps) + tl_lamp_shadows_bytes(&renderer->local.shadows),
         .rays = tl_trace_bytes(renderer->trace) + tl_points_bytes(renderer->points),
+        .sheets = tl_sheets_bytes(&renderer->sheets),
         .targets = tl_target_bytes(&renderer->gbuffer.target) + tl_target_bytes(&renderer->lighting.target) +
                    tl_present_bytes(present),
-        .surfaces = tl_surfaces_bytes(renderer->surfaces),
-        .other = tl_lighting_bytes(&renderer->lighting) + tl_texture_bytes(&present->backdrop) +
-                 tl_texture_bytes(&present->blurred),
+        .surfaces = tl_surfaces_bytes(renderer->surfaces) + tl_detail_maps_bytes(&renderer->detail),
+        .other = tl_lighting_bytes(&renderer->lighting) + tl_local_bytes(&renderer->local) +
+                 tl_texture_bytes(&present->backdrop) + tl_texture_bytes(&present->blurred),
     };
-    memory.total = memory.pems + memory.maps + memory.rays + memory.targets + memory.surfaces + memory.other;
+    memory.total = memory.pems + memory.maps + memory.rays + memory.sheets + memory.targets +
+                   memory.surfaces + memory.other;
     return memory;
 }

@@ -8,7 +8,9 @@
 #include "assets/environment.h"
 #include "assets/surface.h"
 #include "config/options.h"
+#include "render/detail/options.h"
 #include "render/gpu/gpu.h"
+#include "render/local/shading.h"
 #include "render/plan/plan.h"
 
 enum tl_method {
@@ -48,6 +50,7 @@ struct tl_light_params { /* table "light" */
     int rays;            /* rays: directions a region and refresh */
     float repair;        /* rays: share of the samples, the least certain, that get rays of their own */
     float repair_rest;   /* ... once nothing moves, when it is more */
+    int fan;             /* rays: cosine lobes at most that stand for a gloss of facets */
     bool reflect_scene; /* near mirrors (s >= TL_MIRROR_EXPONENT) see the lit scene; false: black, as [002] */
     int map_size;       /* texels, side of a shadow map */
     float blur_m;       /* metres: the Gaussian's sigma is blur_m x tan(cone) */
@@ -56,6 +59,8 @@ struct tl_light_params { /* table "light" */
     float bleed_reduction; /* [0, 1): Chebyshev values below it become 0 */
 };
 extern const struct tl_option_table tl_light_options;
+/* So many sheets are looked through, where cloth is open; the next one is taken as closed. */
+#define TL_SHEETS_BEHIND   4
 #define TL_MIRROR_EXPONENT 199.0f /* a glossiness of 0.995, however it is rounded */
 
 /* How environment maps are looked up (render/envmap/envmap.h), and what is made of it. */
@@ -98,6 +103,8 @@ struct tl_material_params { /* table "material": the garment's look, from the fa
     float openness;
 };
 extern const struct tl_option_table tl_material_options;
+extern const struct tl_option_table
+    tl_overlay_options; /* table "overlay": the same, of a garment's second fabric */
 
 struct tl_image_params { /* table "image" */
     int width, height;
@@ -151,7 +158,9 @@ typedef struct tl_frame {
 
 struct tl_render_settings {
     struct tl_light_params light;
+    struct tl_detail_params detail;
     struct tl_maps_params maps;
+    struct tl_shading_params shading; /* under lamps */
     struct tl_image_params image;
     struct tl_reference_params reference;
 };
@@ -193,7 +202,9 @@ const tl_plan *tl_renderer_last_plan(const tl_renderer *renderer);
 
 /* Bytes by use, summed from what is allocated. */
 struct tl_render_memory {
-    size_t pems, maps, rays, targets, surfaces, other, total;
+    size_t pems, maps, rays;
+    size_t sheets; /* of what is seen through cloth */
+    size_t targets, surfaces, other, total;
 };
 struct tl_render_memory tl_renderer_memory(const tl_renderer *renderer);
 

@@ -39,3 +39,17 @@ TERM float detail_over_horizon(float light, float horizon)
 {
     return clamp(0.5f + 12.0f * (light - horizon), 0.0f, 1.0f);
 }
+
+// Integral of (a cos e + b sin e) ds up to s = sin e: light by a slice of the sky from the horizon to the height e,
+// received by a normal with b along the surface's and a along the slice's azimuth.
+TERM float detail_slice(float a, float b, float s)
+{
+    return 0.5f * (a * (asin(s) + s * sqrt(max(1.0f - s * s, 0.0f))) + b * s * s);
+}
+
+// The same from a horizon upwards, or from where the surface itself turns away, whichever is higher.
+TERM float detail_slice_over(float a, float b, float horizon)
+{
+    float turned = a < 0.0f ? -a / sqrt(max(a * a + b * b, 1e-12f)) : 0.0f;
+    return detail_slice(a, b, 1.0f) - detail_slice(a, b, clamp(max(horizon, turned), 0.0f, 1.0f));
+}

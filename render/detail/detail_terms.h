@@ -8,9 +8,13 @@
 #define TERM  static inline
 #define max   term_max
 #define clamp term_clamp
+#define asin  asinf
+#define sqrt  sqrtf
 #include "render/detail/detail_terms.glsl"
 #undef TERM
 #undef max
 #undef clamp
+#undef asin
+#undef sqrt
 
 #endif

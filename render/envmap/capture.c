@@ -88,9 +88,13 @@ static bool draw_face(struct tl_capture *capture, tl_gpu *gpu, const struct tl_c
     GLsizei bytes = (GLsizei)(4 * sizeof(float)) * side * side;
     struct tl_camera camera = camera_of(request, face);
     struct tl_view view = tl_view_make(&camera, side, side);
-    tl_gbuffer_draw(&capture->gbuffer, gpu, &view, side, side, request->surfaces,
-                    request->ranges->surface_count, request->ground);
-    if (!light_view(capture, gpu, request, error))
+    const struct tl_gbuffer_request draw = {.view = &view,
+                                            .width = side,
+                                            .height = side,
+                                            .surfaces = request->surfaces,
+                                            .surface_count = request->ranges->surface_count,
+                                            .ground = request->ground};
+    if (!tl_gbuffer_draw(&capture->gbuffer, gpu, &draw, error) || !light_view(capture, gpu, request, error))
         return false;
     glGetTextureImage(capture->lighting.target.colours[0].id, 0, GL_RGBA, GL_FLOAT, bytes, staging[0]);
     glGetTextureImage(capture->gbuffer.target.colours[TL_GBUFFER_POINT].id, 0, GL_RGBA, GL_FLOAT, bytes,
@@ -119,8 +123,6 @@ bool tl_capture_draw(struct tl_capture *capture, tl_gpu *gpu, const struct tl_ca
 {
     struct tl_maps_params params = around_params;
     params.size = request->size;
-    if (!capture->gbuffer.program.id && !tl_gbuffer_create(&capture->gbuffer, gpu, error))
-        return false;
     tl_envmap_fill(&capture->around, gpu, &params, request->lobes, request->into_world, NULL);
     tl_envmap_set_parts(&capture->around, gpu, request->ranges, request->ground != NULL);
     tl_cube_release(&capture->cube);
@@ -143,8 +145,7 @@ void tl_capture_release(struct tl_capture *capture)
 
 bool tl_capture_reload(struct tl_capture *capture, tl_error *error)
 {
-    return (!capture->gbuffer.program.id || tl_program_reload(&capture->gbuffer.program, error)) &&
-           tl_envmap_reload(&capture->around, error);
+    return tl_gbuffer_reload(&capture->gbuffer, error) && tl_envmap_reload(&capture->around, error);
 }
 
 size_t tl_capture_bytes(const struct tl_capture *capture)

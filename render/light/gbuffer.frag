@@ -14,8 +14,16 @@ in vec2 uv;
 layout(location = 0) out vec4 out_point;    // world, metres; coverage
 layout(location = 1) out vec4 out_normal;   // world, unit, towards the viewer's side; 1 - glossiness
 layout(location = 2) out vec4 out_diffuse;  // kd with occlusion; octahedral x of the smooth normal
-layout(location = 3) out vec4 out_specular; // F ks; octahedral y of the smooth normal
+layout(location = 3) out vec4 out_specular; // F ks, or F0 of facets where FRAMES; octahedral y of the smooth normal
 layout(location = 4) out uint out_triangle; // 1 + its number, and TRIANGLE_BACK
+#ifdef FRAMES
+layout(location = 5) out vec4 out_tangent; // world, along u, not yet at right angles to the normal; handedness
+#endif
+#ifdef BEHIND
+layout(binding = 15) uniform sampler2D passed; // depth of what is nearer than what is wanted
+
+const float DEPTH_ROUNDING = 1.2e-7;
+#endif
 
 const uint TRIANGLE_BACK = 0x80000000u;
 
@@ -29,21 +37,63 @@ vec2 octahedral(vec3 n)
 
 void main()
 {
+#ifdef BEHIND
+    if (gl_FragCoord.z <= texelFetch(passed, ivec2(gl_FragCoord.xy), 0).r + DEPTH_ROUNDING)
+        discard;
+#endif
     vec3 facet = direction_or(cross(dFdx(point), dFdy(point)), vec3(0.0, 1.0, 0.0));
-    vec4 colour = surface_colour(uv);
-    if (material_scalars.w > 0.0 && surface_cut_away(colour.a))
+    float side = gl_FrontFacing ? 1.0 : -1.0; // a back is a surface of its own: the whole frame turns over
+    vec3 smooth_normal = direction_or(normal, facet);
+    vec2 across = dFdx(uv), down = dFdy(uv);
+#ifdef DETAIL_SHIFTED
+    unmoved_across = across;
+    unmoved_down = down;
+#endif
+    mat3 frame = detail_frame(smooth_normal, tangent);
+    vec3 view = direction_or(eye - point, smooth_normal) * frame;
+    DetailPlace place = detail_place(uv, view, side);
+    vec4 colour = surface_colour(place.uv);
+    if (place.outside || (material_scalars.w > 0.0 && surface_cut_away(colour.a)))
         discard;
     float cover = fading_disc.w > 0.0 ? ground_cover(fading_disc, point.xz) : 1.0;
     if (cover <= 0.0)
         discard;
-    float side = gl_FrontFacing ? 1.0 : -1.0; // a back is a surface of its own: the whole frame turns over
-    vec3 smooth_normal = direction_or(normal, facet);
-    vec3 n = side * shading_normal(normal, tangent, uv, smooth_normal);
+    vec3 n = side * smooth_normal;
+    float rough = 1.0 - glossiness(place.uv);
+    vec3 kd = diffuse(colour.rgb, place.uv);
+    if (has_bumps(tangent)) {
+        Bumps bumps = bumps_at(place.uv);
+#if DETAIL_MODE == DETAIL_BLINN
+        n = side * (detail_range.z > 0.0 ? detail_blinn(bumps.normal, smooth_normal, point, uv)
+                                         : bent_normal(bumps.normal, normal, tangent, smooth_normal));
+#else
+        n = side * bent_normal(bumps.normal, normal, tangent, smooth_normal);
+#endif
+        rough = detail_rough(rough, bumps, view);
+        kd *= detail_open(bumps.length);
+    }
     vec2 horizon = octahedral(side * smooth_normal);
     vec3 v = direction_or(eye - point, n);
+    // Of the mean normal: facets that turn away reflect more, but what lies below the surface's horizon.
+    vec3 ks = schlick(specular_f0(place.uv), dot(n, v));
+#ifdef FRAMES
+    if ((map_flags & FLAG_FACETED) != 0)
+        ks = specular_f0(place.uv); // a facet's Fresnel term is not the normal's
+#endif
+#if DETAIL_SHADOW != 0
+    if (has_detail(DETAIL_HORIZONS)) {
+        DetailHorizon sky = detail_horizon(place.uv, across, down);
+        vec3 seen_side = vec3(1.0, 1.0, side);
+        kd *= detail_ambient(sky, n * frame * seen_side);
+        ks *= detail_gloss_seen(sky, reflect(-v, n) * frame * seen_side, rough);
+    }
+#endif
     out_point = vec4(point, cover);
-    out_normal = vec4(n, 1.0 - glossiness(uv));
-    out_diffuse = vec4(diffuse(colour.rgb, uv), horizon.x);
-    out_specular = vec4(schlick(specular_f0(uv), dot(n, v)), horizon.y);
+    out_normal = vec4(n, rough);
+    out_diffuse = vec4(kd, horizon.x);
+#ifdef FRAMES
+    out_tangent = vec4(direction_or(tangent.xyz, vec3(0.0)), tangent.w * side);
+#endif
+    out_specular = vec4(ks, horizon.y);
     out_triangle = (first_triangle + uint(gl_PrimitiveID) + 1u) | (gl_FrontFacing ? 0u : TRIANGLE_BACK);
 }

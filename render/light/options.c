@@ -1,3 +1,4 @@
+#include "render/brdf/fan.h"
 #include "render/pem/chain.h"
 #include "render/pem/regions.h"
 #include "render/renderer.h"
@@ -50,6 +51,9 @@ static const struct tl_option light_rows[] = {
                     "rays: share of the samples, the least certain ones, that get rays of their own"),
     TL_OPTION_FLOAT(light_params, repair_rest, 0, 1, "",
                     "rays: the same once nothing moves, when it is more: spread over frames at rest"),
+    TL_OPTION_INT(
+        light_params, fan, 1, TL_FAN_MAX, "",
+        "rays: cosine lobes at most for a gloss that is not one itself; more follow it closer, slower"),
     TL_OPTION_BOOL(light_params, reflect_scene,
                    "near mirrors (exponent 200 and more) show the lit scene; off: black"),
     TL_OPTION_INT(light_params, map_size, 1, 4096, "texels",
@@ -67,5 +71,5 @@ static const struct tl_option light_rows[] = {
 const struct tl_option_table tl_light_options = TL_OPTION_TABLE(
     "light", "how the environment lights and shadows the scene", light_rows, light_params,
     .method = TL_METHOD_PEM, .lobe = TL_LOBE_DUAL, .regions = 96, .pem_size = 128,
-    .filter = TL_CHAIN_SQRT_COSINE, .pems_per_pass = 12, .rounds = 1, .rays = 1, .map_size = 256,
+    .filter = TL_CHAIN_SQRT_COSINE, .pems_per_pass = 12, .rounds = 1, .rays = 1, .fan = 5, .map_size = 256,
     .blur_m = 0.05f, .depth_bias_m = 0.004f, .min_variance = 1e-6f, .bleed_reduction = 0.1f);

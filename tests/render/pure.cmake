@@ -8,6 +8,7 @@ foreach(name
     convert
     cube
     emitters
+    fan
     flip
     ground
     layout
@@ -17,13 +18,16 @@ foreach(name
     lobes
     map_fit
     memory
+    normalise
     plan
+    power
     regions
     regions_sphere
     relief
     sky
     slices
     sun
+    tables
     terms
     trace
     )
