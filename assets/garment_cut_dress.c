@@ -19,9 +19,9 @@
 #define CURTAIN_X      0.40
 #define CURTAIN_Y      1.50
 #define CURTAIN_Z      0.46
-#define CURTAIN_FOLDS  6
-#define CURTAIN_GATHER 0.65     /* its width as it hangs over its width as cloth */
-#define CURTAIN_DEPTH  0.0235   /* of the folds, which makes up for the rest */
+#define CURTAIN_FOLDS  3
+#define CURTAIN_GATHER 0.92     /* its width as it hangs over its width as cloth */
+#define CURTAIN_DEPTH  0.0237   /* of the folds, which makes up for the rest */
 #define UNDERARM       0.190    /* metres of cloth above the waist seam */
 #define STRAP_X        0.112    /* the shoulder seam's middle */
 #define RIDGE_Z        (-0.016) /* the shoulders' ridge */

@@ -158,9 +158,9 @@ static void test_refusals(void **state)
     refuse("drss", NULL,
            "drss: no such scene: expected dress, skirt, review, gallery, composed, or a YAML file: did you mean dress?");
     refuse(NULL, "scene.fabric=satn",
-           "--set: scene.fabric: satn is no name known here: expected none, cotton_plain, satin, denim, "
-           "silk, wool, interlock_tee, rib_knit, ponte, swim_knit, fleece, stretch_denim, trouser_twill, "
-           "jacket_polyester, tablecloth_polyester or "
+           "--set: scene.fabric: satn is no name known here: expected none, cotton_plain, satin, "
+           "satin_anisotropic, denim, silk, wool, interlock_tee, rib_knit, ponte, swim_knit, fleece, "
+           "stretch_denim, trouser_twill, voile, jacket_polyester, tablecloth_polyester or "
            "a file name with its extension: did you mean satin?");
     refuse(NULL, "scene.preset=fast",
            "--set: scene.preset: fast is no name known here: expected paper, draft, review, final or a file "
