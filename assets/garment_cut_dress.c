@@ -7,15 +7,18 @@
 
 /* A sleeveless summer dress in four pieces: fitted bodice front and back, and a half circle skirt. It hangs
  * from its shoulder seams; nothing is pinned. */
-#define WAIST_Y      1.035
-#define WAIST_LENGTH 0.75 /* metres around: the form's girth and 7 cm of ease */
-#define SKIRT_LENGTH 0.50
-#define SKIRT_ANGLE  3.0      /* radians: the hem is 0.75 + 3.0 x 0.5 = 2.25 m around */
-#define SKIRT_SLOPE  0.42     /* radians, of the start shape */
-#define SKIRT_FOLDS  5        /* of the start shape: with more they cross as they fall */
-#define UNDERARM     0.190    /* metres of cloth above the waist seam */
-#define STRAP_X      0.112    /* the shoulder seam's middle */
-#define RIDGE_Z      (-0.016) /* the shoulders' ridge */
+#define WAIST_Y          1.035
+#define WAIST_LENGTH     0.75 /* metres around: the form's girth and 7 cm of ease */
+#define SKIRT_LENGTH     0.50
+#define SKIRT_ANGLE      3.0   /* radians: the hem is 0.75 + 3.0 x 0.5 = 2.25 m around */
+#define SKIRT_SLOPE      0.42  /* radians, of the start shape */
+#define SKIRT_FOLDS      5     /* of the start shape: with more they cross as they fall */
+#define OVERSKIRT_WAIST  0.785 /* metres around: half a centimetre off the dress */
+#define OVERSKIRT_LENGTH 0.60
+#define OVERSKIRT_SLOPE  0.60     /* starts outside of the skirt */
+#define UNDERARM         0.190    /* metres of cloth above the waist seam */
+#define STRAP_X          0.112    /* the shoulder seam's middle */
+#define RIDGE_Z          (-0.016) /* the shoulders' ridge */
 
 enum { BODICE_RINGS = 16, PROFILE_STEPS = 64 };
 
@@ -38,6 +41,8 @@ struct dress_placement {
     struct tl_ring rings[BODICE_RINGS];
     struct tl_flare flare;
     struct tl_cut_flared skirt_front, skirt_back;
+    struct tl_flare overskirt; /* of the layers only */
+    struct tl_cut_flared overskirt_front, overskirt_back;
     struct bodice_shape front, back;
 };
 
@@ -189,6 +194,8 @@ static struct tl_cut_piece front_piece(const struct bodice_pattern *pattern, con
     return piece;
 }
 
+enum { FRONT, BACK, SKIRT_FRONT, SKIRT_BACK, OVER_FRONT, OVER_BACK, SKIRT_SIDE = 1, SKIRT_WAIST = 2 };
+
 static void add_seam(struct tl_cut_plan *plan, size_t piece_a, size_t curve_a, size_t piece_b, size_t curve_b)
 {
     plan->seams[plan->seam_count++] = (struct tl_cut_seam){piece_a, curve_a, piece_b, curve_b};
@@ -235,7 +242,6 @@ struct tl_cut_plan tl_cut_plan_dress(void)
     back.rise = UNDERARM + placement->back.profile.length;
 
     struct tl_cut_plan plan = {.name = "dress", .piece_count = 4, .placement = placement};
-    enum { FRONT, BACK, SKIRT_FRONT, SKIRT_BACK, SKIRT_SIDE = 1, SKIRT_WAIST = 2 };
     plan.pieces[FRONT] = front_piece(&front, &placement->front);
     plan.pieces[BACK] = back_piece(&back, &placement->back);
     plan.pieces[SKIRT_FRONT] = tl_cut_flared_piece(&placement->skirt_front);
@@ -249,5 +255,34 @@ struct tl_cut_plan tl_cut_plan_dress(void)
     sew_around(&plan, SKIRT_FRONT, SKIRT_SIDE, SKIRT_BACK, SKIRT_SIDE);
     sew_halves(&plan, FRONT, WAIST, SKIRT_FRONT, SKIRT_WAIST);
     sew_halves(&plan, BACK, WAIST, SKIRT_BACK, SKIRT_WAIST);
+    return plan;
+}
+
+/* The dress under a longer overskirt of its own, which is pinned about the waist. */
+struct tl_cut_plan tl_cut_plan_layers(void)
+{
+    struct tl_cut_plan plan = tl_cut_plan_dress();
+    struct dress_placement *placement = plan.placement;
+    struct tl_ring ring;
+    tl_ring_around_form(WAIST_Y, OVERSKIRT_WAIST, &ring);
+    tl_flare_from_ring(&ring, OVERSKIRT_LENGTH, SKIRT_ANGLE, OVERSKIRT_SLOPE, SKIRT_FOLDS,
+                       &placement->overskirt);
+    placement->overskirt_front =
+        (struct tl_cut_flared){&placement->overskirt, OVERSKIRT_WAIST, SKIRT_ANGLE, 0};
+    placement->overskirt_back =
+        (struct tl_cut_flared){&placement->overskirt, OVERSKIRT_WAIST, SKIRT_ANGLE, 0.5};
+    plan.name = "layers";
+    plan.piece_count = 6;
+    plan.pieces[OVER_FRONT] = tl_cut_flared_piece(&placement->overskirt_front);
+    plan.pieces[OVER_BACK] = tl_cut_flared_piece(&placement->overskirt_back);
+    plan.pieces[OVER_FRONT].table_offset.x = 2.0;
+    plan.pieces[OVER_BACK].table_offset.x = 3.4;
+    sew_around(&plan, OVER_FRONT, SKIRT_SIDE, OVER_BACK, SKIRT_SIDE);
+    for (size_t piece = OVER_FRONT; piece <= OVER_BACK; piece++) {
+        plan.pieces[piece].fabric = TL_CUT_OVERLAY;
+        plan.pins[plan.pin_count++] = (struct tl_cut_pin){piece, SKIRT_WAIST};
+        plan.pins[plan.pin_count++] =
+            (struct tl_cut_pin){piece, tl_cut_mirror(&plan.pieces[piece], SKIRT_WAIST)};
+    }
     return plan;
 }

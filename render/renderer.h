@@ -102,6 +102,8 @@ struct tl_material_params { /* table "material": the garment's look, from the fa
     float openness;
 };
 extern const struct tl_option_table tl_material_options;
+extern const struct tl_option_table
+    tl_overlay_options; /* table "overlay": the same, of a garment's second fabric */
 
 struct tl_image_params { /* table "image" */
     int width, height;

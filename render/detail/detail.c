@@ -82,6 +82,9 @@ bool tl_detail_wants_maps(const struct tl_detail_params *params, const tl_materi
 
 void tl_detail_defines(const struct tl_detail_params *params, char *out, size_t size)
 {
+    out[0] = '\0';
+    if (!params)
+        return;
     bool shifts = params->mode >= TL_DETAIL_PARALLAX,
          clips = params->mode == TL_DETAIL_RELIEF && params->silhouette;
     snprintf(out, size, "#define DETAIL_MODE %d\n#define DETAIL_SHADOW %d\n#define DETAIL_MINIFY %d\n%s%s",

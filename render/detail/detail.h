@@ -28,7 +28,8 @@ bool tl_detail_has_own_normals(const tl_material *material);
 /* Whether drawing this material needs any map that is derived from its own. */
 bool tl_detail_wants_maps(const struct tl_detail_params *params, const tl_material *material);
 
-/* The lines that choose what detail.glsl does; a program must be made anew when they change. */
+/* The lines that choose what detail.glsl does; a program must be made anew when they change. NULL: normals
+ * alone. */
 #define TL_DETAIL_DEFINES_SIZE 160
 void tl_detail_defines(const struct tl_detail_params *params, char *out, size_t size);
 

@@ -4,7 +4,6 @@
 
 #include <epoxy/gl.h>
 
-#include <stdio.h>
 #include <string.h>
 
 /* Uniform locations of gbuffer.vert and gbuffer.frag beside those of surface.glsl. */
@@ -16,7 +15,7 @@ enum { VIEW_PROJECTION = 16, EYE = 17, FADING_DISC = 18 };
 void tl_gbuffer_release(struct tl_gbuffer *gbuffer)
 {
     for (int i = 0; i < TL_GBUFFER_PROGRAMS; i++)
-        tl_program_destroy(&gbuffer->programs[i]);
+        tl_program_destroy(&gbuffer->programs[i].program);
     tl_target_destroy(&gbuffer->target);
 }
 
@@ -24,35 +23,36 @@ bool tl_gbuffer_reload(struct tl_gbuffer *gbuffer, tl_error *error)
 {
     bool fine = true;
     for (int i = 0; i < TL_GBUFFER_PROGRAMS; i++)
-        if (gbuffer->programs[i].id)
-            fine = fine && tl_program_reload(&gbuffer->programs[i], error);
+        if (gbuffer->programs[i].program.id)
+            fine = fine && tl_program_reload(&gbuffer->programs[i].program, error);
     return fine;
 }
 
-static void write_defines(const struct tl_gbuffer_request *request, char *out, size_t size)
+/* Programs of other detail are of no use any more. */
+static void choose_detail(struct tl_gbuffer *gbuffer, const struct tl_detail_params *detail)
 {
-    const struct tl_detail_params *detail = request->detail ? request->detail : tl_detail_options.defaults;
-    char lines[TL_DETAIL_DEFINES_SIZE];
-    tl_detail_defines(detail, lines, sizeof lines);
-    snprintf(out, size, "%s%s%s", lines, request->frames ? "#define FRAMES\n" : "",
-             request->passed ? "#define BEHIND\n" : "");
+    char defines[sizeof gbuffer->detail];
+    tl_detail_defines(detail, defines, sizeof defines);
+    if (strcmp(defines, gbuffer->detail) == 0)
+        return;
+    strcpy(gbuffer->detail, defines);
+    for (int i = 0; i < TL_GBUFFER_PROGRAMS; i++)
+        tl_program_destroy(&gbuffer->programs[i].program);
 }
 
 static const tl_program *program_of(struct tl_gbuffer *gbuffer, tl_gpu *gpu,
                                     const struct tl_gbuffer_request *request, tl_error *error)
 {
+    choose_detail(gbuffer, request->detail);
     int bits = (request->frames ? TL_GBUFFER_FRAMES : 0) | (request->passed ? TL_GBUFFER_BEHIND : 0);
-    tl_program *program = &gbuffer->programs[bits];
-    char wanted[sizeof gbuffer->defines[bits]];
-    write_defines(request, wanted, sizeof wanted);
-    if (program->id && strcmp(wanted, gbuffer->defines[bits]) == 0)
-        return program;
-    tl_program_destroy(program);
-    strcpy(gbuffer->defines[bits], wanted);
-    return tl_program_create_variant(gpu, tl_embedded_shaders, "gbuffer.vert", "gbuffer.frag",
-                                     gbuffer->defines[bits], program, error)
-               ? program
-               : NULL;
+    struct tl_gbuffer_program *made = &gbuffer->programs[bits];
+    tl_detail_defines(request->detail, made->defines, sizeof made->defines);
+    strcat(made->defines, request->frames ? "#define FRAMES\n" : "");
+    strcat(made->defines, request->passed ? "#define BEHIND\n" : "");
+    if (!made->program.id && !tl_program_create_variant(gpu, tl_embedded_shaders, "gbuffer.vert",
+                                                        "gbuffer.frag", made->defines, &made->program, error))
+        return NULL;
+    return &made->program;
 }
 
 static void allocate(struct tl_gbuffer *gbuffer, tl_gpu *gpu, const struct tl_gbuffer_request *request)

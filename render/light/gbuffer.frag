@@ -76,6 +76,10 @@ void main()
     vec3 v = direction_or(eye - point, n);
     // Of the mean normal: facets that turn away reflect more, but what lies below the surface's horizon.
     vec3 ks = schlick(specular_f0(place.uv), dot(n, v));
+#ifdef FRAMES
+    if ((map_flags & FLAG_FACETED) != 0)
+        ks = specular_f0(place.uv); // a facet's Fresnel term is not the normal's
+#endif
 #if DETAIL_SHADOW != 0
     if (has_detail(DETAIL_HORIZONS)) {
         DetailHorizon sky = detail_horizon(place.uv, across, down);
@@ -88,8 +92,6 @@ void main()
     out_normal = vec4(n, rough);
     out_diffuse = vec4(kd, horizon.x);
 #ifdef FRAMES
-    if ((map_flags & FLAG_FACETED) != 0)
-        ks = specular_f0(place.uv); // a facet's Fresnel term is not the normal's
     out_tangent = vec4(direction_or(tangent.xyz, vec3(0.0)), tangent.w * side);
 #endif
     out_specular = vec4(ks, horizon.y);

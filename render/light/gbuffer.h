@@ -25,8 +25,11 @@ enum tl_gbuffer_layer {
 enum { TL_GBUFFER_FRAMES = 1, TL_GBUFFER_BEHIND = 2, TL_GBUFFER_PROGRAMS = 4 };
 
 struct tl_gbuffer {
-    tl_program programs[TL_GBUFFER_PROGRAMS];                       /* made when first used */
-    char defines[TL_GBUFFER_PROGRAMS][TL_DETAIL_DEFINES_SIZE + 32]; /* of the programs */
+    char detail[TL_DETAIL_DEFINES_SIZE]; /* that the programs were made for */
+    struct tl_gbuffer_program {
+        char defines[TL_DETAIL_DEFINES_SIZE + 64];
+        tl_program program;
+    } programs[TL_GBUFFER_PROGRAMS]; /* made when first used */
     tl_target target;
 };
 
@@ -36,14 +39,13 @@ struct tl_gbuffer_request {
     const tl_surfaces *surfaces;
     size_t surface_count;
     const struct tl_ground *ground;        /* the last of the surfaces, or NULL when none is drawn */
-    const struct tl_detail_params *detail; /* NULL: its defaults */
+    const struct tl_detail_params *detail; /* NULL: normals alone */
     bool frames;                           /* with the layer of tangents */
     const tl_texture *passed;              /* only what lies behind this depth; NULL: what is nearest */
 };
 
 void tl_gbuffer_release(struct tl_gbuffer *gbuffer);
 bool tl_gbuffer_reload(struct tl_gbuffer *gbuffer, tl_error *error);
-/* Makes a program anew if the options want another one. */
 bool tl_gbuffer_draw(struct tl_gbuffer *gbuffer, tl_gpu *gpu, const struct tl_gbuffer_request *request,
                      tl_error *error);
 

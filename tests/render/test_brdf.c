@@ -249,6 +249,32 @@ static void banks_shines_along_the_cone(void **state)
     }
 }
 
+/* The disc of the paper's figure 3: threads run in circles about its middle, light and viewer are far away.
+ * Where a thread runs across both, at azimuths 0 and 180 degrees, it mirrors one into the other; the further
+ * its azimuth from there the darker, the same all along a radius and on both sides. */
+static void banks_on_a_disc_is_a_bow_tie(void **state)
+{
+    (void)state;
+    struct tl_brdf brdf = white(TL_REFLECT_BANKS, 0.95f);
+    vec3s l = polar(50, 0), v = polar(20, 0);
+    double before = INFINITY;
+    for (int azimuth = 0; azimuth <= 90; azimuth += 10) {
+        double shown[4];
+        for (int i = 0; i < 4; i++) {
+            double at = (i & 1 ? -azimuth : azimuth) + (i & 2 ? 180 : 0);
+            vec3s around = polar(90, at + 90);
+            struct tl_brdf_frame frame = tl_brdf_frame_make((vec3s){{0, 0, 1}}, around, 1, 0);
+            shown[i] = gloss_of(&brdf, &frame, l, v);
+            assert_near(shown[i], shown[0], 1e-4 * shown[0]);
+        }
+        assert_true(shown[0] < before);
+        before = shown[0];
+    }
+    struct tl_brdf_frame across = tl_brdf_frame_make((vec3s){{0, 0, 1}}, (vec3s){{0, 1, 0}}, 1, 0);
+    double peak = (double)(tl_brdf_lobe_scale(&brdf) * l.z);
+    assert_near(gloss_of(&brdf, &across, l, v), peak, 1e-4 * peak);
+}
+
 /* c(s) by its gamma functions. */
 static void scales_are_the_formulas(void **state)
 {
@@ -501,6 +527,7 @@ int main(void)
         cmocka_unit_test(anisotropy_turns_with_the_tangent),
         cmocka_unit_test(ward_stretches_along_the_wider_slopes),
         cmocka_unit_test(banks_shines_along_the_cone),
+        cmocka_unit_test(banks_on_a_disc_is_a_bow_tie),
         cmocka_unit_test(scales_are_the_formulas),
         cmocka_unit_test(draws_follow_their_density),
         cmocka_unit_test(draws_estimate_the_energy),
