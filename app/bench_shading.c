@@ -18,7 +18,7 @@ struct schedule {
     int cells;  /* of the mesh's side, two triangles each */
     int rounds; /* times that every variant is drawn */
 };
-static const struct schedule full = {512, 100, 9}, quick = {96, 20, 2};
+static const struct schedule full = {512, 100, 4}, quick = {96, 20, 2};
 
 /* A way of shading: assignments to table "shading", and the model, in which ways and tables differ. */
 struct variant {
