@@ -153,6 +153,14 @@ static const struct tl_exhibit b1[] = {
     {"B1", "cube, 32 a face", {"maps.layout=cube", "maps.size=32"}, {NULL}},
 };
 
+static const struct tl_exhibit b3[] = {
+    {"B3", "cube, down to 4 texels a face", {"maps.size=4"}, {NULL}},
+    {"B3", "cube, 16", {"maps.size=16"}, {NULL}},
+    {"B3", "paraboloid, down to 4 texels", {"maps.layout=paraboloid", "maps.size=4"}, {NULL}},
+    {"B3", "paraboloid, 16", {"maps.layout=paraboloid", "maps.size=16"}, {NULL}},
+    {"B3", "sphere, 16", {"maps.layout=sphere", "maps.size=16"}, {NULL}},
+};
+
 static const struct tl_exhibit b4[] = {
     {"B4", "paraboloid, looked up directly", {"maps.look_up=direct"}, {NULL}},
     {"B4", "paraboloid, through the projective matrix", {"maps.look_up=matrix"}, {NULL}},
@@ -378,6 +386,16 @@ const struct tl_gallery_wall tl_gallery_walls[] = {
      .one_truth = true,
      .by_flip = true,
      WALL(b1)},
+    {.name = "b3",
+     .heading = "B3  Levels that keep the light",
+     .text = "Texels weigh by their solid angle when a map shrinks [op. cit., eq. 6], so that even a few "
+             "texels hold the "
+             "diffuse light. Exact is a cube of 256 texels a face.",
+     .solid = "sphere",
+     .base = {"light.method=maps", "maps.mode=diffuse"},
+     .exact = {"maps.layout=cube", "maps.size=256"},
+     .one_truth = true,
+     WALL(b3)},
     {.name = "b4",
      .heading = "B4  Two ways to look a paraboloid up",
      .text = "Reflection vectors computed directly, or by the texture matrix P S M^-1 and a projective "

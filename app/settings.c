@@ -241,8 +241,20 @@ static void choose_role(struct tl_scene_params *scene)
 }
 
 /* What was asked for and will not be done is said. */
-static void tell_what_is_unused(const struct tl_light_params *light)
+static bool is_plain(const struct tl_material_params *look)
 {
+    return look->model == TL_REFLECT_PHONG && !(look->coat > 0) && !(look->openness > 0) &&
+           !(look->transmission[0] > 0 || look->transmission[1] > 0 || look->transmission[2] > 0);
+}
+
+static void tell_what_is_unused(const struct tl_settings *settings)
+{
+    const struct tl_light_params *light = &settings->light;
+    bool plain = is_plain(&settings->material) && is_plain(&settings->overlay);
+    if (!plain && light->method != TL_METHOD_REFERENCE && light->visibility != TL_VISIBILITY_RAYS)
+        tl_warn("material: model, coat, transmission and openness are shown by light.visibility rays and by "
+                "light.method "
+                "reference only: the environment's light sees two plain lobes");
     if (light->method == TL_METHOD_PEM && light->visibility == TL_VISIBILITY_RAYS &&
         light->composition != TL_COMPOSE_RATIO)
         tl_warn(
@@ -270,7 +282,7 @@ bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *
     if (source->scene_file && tl_model_is_file(source->scene_file))
         choose_role(&named);
     settings.scene = named;
-    tell_what_is_unused(&settings.light);
+    tell_what_is_unused(&settings);
     *out = settings;
     return true;
 }

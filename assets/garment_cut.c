@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define EDGE_MINIMUM_M 0.008f
+#define EDGE_MINIMUM_M 0.003f /* 130,000 vertices in the dress */
 #define EDGE_MAXIMUM_M 0.08f
 
 static struct tl_cut_plan (*const plans[])(void) = {tl_cut_plan_dress, tl_cut_plan_skirt, tl_cut_plan_layers};

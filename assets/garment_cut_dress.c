@@ -7,18 +7,24 @@
 
 /* A sleeveless summer dress in four pieces: fitted bodice front and back, and a half circle skirt. It hangs
  * from its shoulder seams; nothing is pinned. */
-#define WAIST_Y          1.035
-#define WAIST_LENGTH     0.75 /* metres around: the form's girth and 7 cm of ease */
-#define SKIRT_LENGTH     0.50
-#define SKIRT_ANGLE      3.0   /* radians: the hem is 0.75 + 3.0 x 0.5 = 2.25 m around */
-#define SKIRT_SLOPE      0.42  /* radians, of the start shape */
-#define SKIRT_FOLDS      5     /* of the start shape: with more they cross as they fall */
-#define OVERSKIRT_WAIST  0.785 /* metres around: half a centimetre off the dress */
-#define OVERSKIRT_LENGTH 0.60
-#define OVERSKIRT_SLOPE  0.60     /* starts outside of the skirt */
-#define UNDERARM         0.190    /* metres of cloth above the waist seam */
-#define STRAP_X          0.112    /* the shoulder seam's middle */
-#define RIDGE_Z          (-0.016) /* the shoulders' ridge */
+#define WAIST_Y      1.035
+#define WAIST_LENGTH 0.75 /* metres around: the form's girth and 7 cm of ease */
+#define SKIRT_LENGTH 0.50
+#define SKIRT_ANGLE  3.0  /* radians: the hem is 0.75 + 3.0 x 0.5 = 2.25 m around */
+#define SKIRT_SLOPE  0.42 /* radians, of the start shape */
+#define SKIRT_FOLDS  5    /* of the start shape: with more they cross as they fall */
+/* A curtain before the dress's left: metres. */
+#define CURTAIN_WIDTH  0.80
+#define CURTAIN_LENGTH 1.05
+#define CURTAIN_X      0.40
+#define CURTAIN_Y      1.50
+#define CURTAIN_Z      0.46
+#define CURTAIN_FOLDS  6
+#define CURTAIN_GATHER 0.65     /* its width as it hangs over its width as cloth */
+#define CURTAIN_DEPTH  0.0235   /* of the folds, which makes up for the rest */
+#define UNDERARM       0.190    /* metres of cloth above the waist seam */
+#define STRAP_X        0.112    /* the shoulder seam's middle */
+#define RIDGE_Z        (-0.016) /* the shoulders' ridge */
 
 enum { BODICE_RINGS = 16, PROFILE_STEPS = 64 };
 
@@ -41,8 +47,6 @@ struct dress_placement {
     struct tl_ring rings[BODICE_RINGS];
     struct tl_flare flare;
     struct tl_cut_flared skirt_front, skirt_back;
-    struct tl_flare overskirt; /* of the layers only */
-    struct tl_cut_flared overskirt_front, overskirt_back;
     struct bodice_shape front, back;
 };
 
@@ -194,7 +198,7 @@ static struct tl_cut_piece front_piece(const struct bodice_pattern *pattern, con
     return piece;
 }
 
-enum { FRONT, BACK, SKIRT_FRONT, SKIRT_BACK, OVER_FRONT, OVER_BACK, SKIRT_SIDE = 1, SKIRT_WAIST = 2 };
+enum { FRONT, BACK, SKIRT_FRONT, SKIRT_BACK, SKIRT_SIDE = 1, SKIRT_WAIST = 2 };
 
 static void add_seam(struct tl_cut_plan *plan, size_t piece_a, size_t curve_a, size_t piece_b, size_t curve_b)
 {
@@ -258,31 +262,38 @@ struct tl_cut_plan tl_cut_plan_dress(void)
     return plan;
 }
 
-/* The dress under a longer overskirt of its own, which is pinned about the waist. */
+/* Waves along its width, nearly as long as the cloth is wide. */
+static void place_curtain(const void *context, struct tl_point p, double position[3])
+{
+    (void)context;
+    double phase = 2 * M_PI * CURTAIN_FOLDS * p.x / CURTAIN_WIDTH, across = CURTAIN_GATHER * p.x;
+    position[0] = CURTAIN_X + across;
+    position[1] = CURTAIN_Y + p.y;
+    position[2] = CURTAIN_Z + CURTAIN_DEPTH * sin(phase);
+}
+
+static struct tl_cut_piece curtain_piece(void)
+{
+    const struct tl_point bottom = {0, -CURTAIN_LENGTH}, top = {0, 0};
+    const struct tl_point lower = {CURTAIN_WIDTH / 2, -CURTAIN_LENGTH}, upper = {CURTAIN_WIDTH / 2, 0};
+    return (struct tl_cut_piece){
+        .half = {tl_curve_line(bottom, lower), tl_curve_line(lower, upper), tl_curve_line(upper, top)},
+        .half_count = 3,
+        .place = place_curtain,
+        .fabric = TL_CUT_OVERLAY,
+    };
+}
+
+/* The dress behind a gathered curtain that hangs before one side of it, out of its way. */
 struct tl_cut_plan tl_cut_plan_layers(void)
 {
+    enum { CURTAIN = 4, TOP = 2 };
     struct tl_cut_plan plan = tl_cut_plan_dress();
-    struct dress_placement *placement = plan.placement;
-    struct tl_ring ring;
-    tl_ring_around_form(WAIST_Y, OVERSKIRT_WAIST, &ring);
-    tl_flare_from_ring(&ring, OVERSKIRT_LENGTH, SKIRT_ANGLE, OVERSKIRT_SLOPE, SKIRT_FOLDS,
-                       &placement->overskirt);
-    placement->overskirt_front =
-        (struct tl_cut_flared){&placement->overskirt, OVERSKIRT_WAIST, SKIRT_ANGLE, 0};
-    placement->overskirt_back =
-        (struct tl_cut_flared){&placement->overskirt, OVERSKIRT_WAIST, SKIRT_ANGLE, 0.5};
     plan.name = "layers";
-    plan.piece_count = 6;
-    plan.pieces[OVER_FRONT] = tl_cut_flared_piece(&placement->overskirt_front);
-    plan.pieces[OVER_BACK] = tl_cut_flared_piece(&placement->overskirt_back);
-    plan.pieces[OVER_FRONT].table_offset.x = 2.0;
-    plan.pieces[OVER_BACK].table_offset.x = 3.4;
-    sew_around(&plan, OVER_FRONT, SKIRT_SIDE, OVER_BACK, SKIRT_SIDE);
-    for (size_t piece = OVER_FRONT; piece <= OVER_BACK; piece++) {
-        plan.pieces[piece].fabric = TL_CUT_OVERLAY;
-        plan.pins[plan.pin_count++] = (struct tl_cut_pin){piece, SKIRT_WAIST};
-        plan.pins[plan.pin_count++] =
-            (struct tl_cut_pin){piece, tl_cut_mirror(&plan.pieces[piece], SKIRT_WAIST)};
-    }
+    plan.piece_count = CURTAIN + 1;
+    plan.pieces[CURTAIN] = curtain_piece();
+    plan.pieces[CURTAIN].table_offset.x = 2.6;
+    plan.pins[plan.pin_count++] = (struct tl_cut_pin){CURTAIN, TOP};
+    plan.pins[plan.pin_count++] = (struct tl_cut_pin){CURTAIN, tl_cut_mirror(&plan.pieces[CURTAIN], TOP)};
     return plan;
 }

@@ -82,6 +82,7 @@ struct tl_maps_params {  /* table "maps", of TL_METHOD_MAPS */
     int look_up;         /* enum tl_maps_look_up, of paraboloids */
     int mode;            /* enum tl_maps_mode */
     int fresnel;         /* enum tl_maps_fresnel */
+    bool minify;         /* mirrors read mip levels */
     int capture_every;   /* frames from one capture of the scene to the next; 0: the environment alone */
     float capture_at[3]; /* metres, from the middle of what casts shadows */
 };

@@ -64,6 +64,7 @@ static void scene_open(struct scene *scene)
     material->normal_scale = 1;
     scene->settings.light.method = TL_METHOD_MAPS;
     scene->settings.maps.size = 128;
+    scene->settings.maps.minify = false; /* one direction a pixel */
 }
 
 static void scene_close(struct scene *scene)
