@@ -140,7 +140,8 @@ static void define_all(const struct tl_local_request *request, const struct lit_
     if (pass->define)
         define(defines, pass->define);
     size_t length = strlen(defines);
-    tl_detail_defines(request->detail, defines + length, TL_LOCAL_DEFINES_SIZE - length);
+    const struct tl_detail_params *detail = request->detail ? request->detail : tl_detail_options.defaults;
+    tl_detail_defines(detail, defines + length, TL_LOCAL_DEFINES_SIZE - length);
 }
 
 /* The program of these defines, made when it is first asked for. */

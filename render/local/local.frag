@@ -152,7 +152,7 @@ vec3 reflected(float side, vec3 smooth_normal)
 {
     vec3 kd = diffuse(surface_colour(place.uv).rgb, place.uv);
     if (bumpy)
-        kd *= detail_open(bumps.length);
+        kd *= bumps.length; // the mean of the normals, not its direction, meets the light
 #ifdef GOURAUD
     vec4 lit = side > 0.0 ? lit_front : lit_back;
     return kd * lit.w + lit.rgb;

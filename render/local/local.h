@@ -44,7 +44,7 @@ struct tl_local_request {
     const struct tl_lamp *lamps;
     size_t lamp_count;
     const struct tl_shading_params *params;
-    const struct tl_detail_params *detail; /* as the G-buffer has it */
+    const struct tl_detail_params *detail; /* as the G-buffer has it; NULL: its defaults */
     float depth_bias_m;                    /* of shadow maps */
     float weight;                          /* of this image among those that are averaged in the target */
 };

@@ -136,8 +136,11 @@ const struct tl_gloss_tables *tl_table_textures_gloss(struct tl_table_textures *
     struct tl_gloss_tables *found = NULL;
     for (size_t i = 0; i < textures->gloss_count && !found; i++) {
         struct tl_gloss_tables *gloss = &textures->gloss[i];
-        if (gloss->size == params->table_size && gloss->precision == params->table_precision &&
-            gloss->range == params->table_range && memcmp(&gloss->brdf, brdf, sizeof *brdf) == 0)
+        bool same = gloss->size == params->table_size && gloss->precision == params->table_precision &&
+                    gloss->range == params->table_range;
+        /* Numbers that differ in their bits only make tables of their own. */
+        if (same &&
+            memcmp(&gloss->brdf, brdf, sizeof *brdf) == 0) // NOLINT(bugprone-suspicious-memory-comparison)
             found = gloss;
     }
     if (!found) {

@@ -46,7 +46,7 @@ const float WEAVE_BIAS = 0.0;
 
 // Maps at their level of detail: by the UV's own derivatives where detail has moved it, for its jumps are no scale.
 #ifdef DETAIL_SHIFTED
-vec2 unmoved_across, unmoved_down; // how UV changes from sample to sample; set by who moves it
+vec2 unmoved_across = vec2(0.0), unmoved_down = vec2(0.0); // how UV changes from sample to sample; set by who moves it
 
 vec4 map_texel(sampler2D map, int use, vec2 uv)
 {

@@ -205,7 +205,7 @@ static void costs_nothing_without_lamps(void **state)
     tl_image out = lamplit_draw(&scene, device->renderer);
     assert_int_equal(tl_renderer_memory(device->renderer).total, bytes);
     assert_int_equal(tl_gpu_texture_bytes(device->gpu), texture_bytes);
-    assert_memory_equal(out.texels, dark.texels, 32 * 32 * 4 * sizeof(float));
+    assert_memory_equal(out.texels, dark.texels, (size_t)32 * 32 * 4 * sizeof(float));
     tl_image_release(&out);
     tl_image_release(&dark);
     lamplit_close(&scene);
@@ -250,13 +250,13 @@ static void adds_once(void **state)
         /* All that is left of the lamp must be its own light, which the dark scene knows. */
         struct lamplit dark = scene;
         dark.environment = test_environment(8, 4, daylight);
-        for (size_t i = 0; i < 8 * 4 * 3; i++)
+        for (size_t i = 0; i < (size_t)8 * 4 * 3; i++)
             tl_image_floats(&dark.environment.image)[i] = 0;
         dark.frame.environment = &dark.environment;
         dark.frame.environment_revision += 1;
         tl_image lamp = lamplit_draw(&dark, device->renderer);
         double worst = 0;
-        for (size_t i = 0; i < 32 * 32 * 4; i++)
+        for (size_t i = 0; i < (size_t)32 * 32 * 4; i++)
             if (i % 4 < 3)
                 worst = fmax(worst,
                              fabs((double)tl_image_floats(&with)[i] - (double)tl_image_floats(&without)[i] -
@@ -306,7 +306,7 @@ static void bears_extremes(void **state)
                 lamplit_refresh(&scene);
                 tl_image image = lamplit_draw(&scene, device->renderer);
                 double sum = 0;
-                for (size_t k = 0; k < 33 * 33 * 4; k++) {
+                for (size_t k = 0; k < (size_t)33 * 33 * 4; k++) {
                     assert_true(isfinite(tl_image_floats(&image)[k]));
                     sum += k % 4 < 3 ? (double)tl_image_floats(&image)[k] : 0;
                 }

@@ -138,7 +138,7 @@ static void clamped_tables_darken_grazing_views(void **state)
     for (int range = 0; range < 2; range++) {
         scene.settings.shading.table_range = range;
         tl_image image = lamplit_draw(&scene, device->renderer);
-        for (size_t i = 0; i < 96 * 96 * 4; i += 4) {
+        for (size_t i = 0; i < (size_t)96 * 96 * 4; i += 4) {
             sums[range] += (double)tl_image_floats(&image)[i];
             exact += range == 0 ? (double)tl_image_floats(&direct)[i] : 0;
         }
@@ -168,7 +168,7 @@ static void tables_come_and_go(void **state)
         tl_image image = lamplit_draw(&scene, device->renderer);
         tl_image_release(&image);
         assert_true(tl_renderer_memory(device->renderer).other > bytes);
-        assert_true(tl_renderer_memory(device->renderer).other <= bytes + 3 * 64 * 64 * 16);
+        assert_true(tl_renderer_memory(device->renderer).other <= bytes + (size_t)3 * 64 * 64 * 16);
     }
     scene.settings.shading.reflectance = TL_REFLECTANCE_DIRECT;
     tl_image image = lamplit_draw(&scene, device->renderer);
