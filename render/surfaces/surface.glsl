@@ -45,7 +45,18 @@ const float WEAVE_BIAS = 0.0;
 #endif
 
 // Maps at their level of detail: by the UV's own derivatives where detail has moved it, for its jumps are no scale.
-#ifdef DETAIL_SHIFTED
+// At vertices (VERTEX_STAGE) there is no scale.
+#if defined(VERTEX_STAGE)
+vec4 map_texel(sampler2D map, int use, vec2 uv)
+{
+    return textureLod(map, map_uv(use, uv), 0.0);
+}
+
+vec4 weave_texel(sampler2D map, vec2 uv)
+{
+    return textureLod(map, uv * weave_scale, 0.0);
+}
+#elif defined(DETAIL_SHIFTED)
 vec2 unmoved_across, unmoved_down; // how UV changes from sample to sample; set by who moves it
 
 vec4 map_texel(sampler2D map, int use, vec2 uv)
