@@ -82,8 +82,8 @@ float self_shadow(float facing)
 }
 
 // Where detail shows the surface, 1 - g there, and what is left of a matt surface's light where bumps are averaged.
-vec2 seen_uv;
-float seen_rough, seen_share;
+vec2 seen_uv = vec2(0.0);
+float seen_rough = 1.0, seen_share = 1.0;
 
 // The share of the lamp's light that the surface's own bumps let through.
 float find_detail(float side, vec3 smooth_normal)

@@ -57,7 +57,7 @@ vec4 weave_texel(sampler2D map, vec2 uv)
     return textureLod(map, uv * weave_scale, 0.0);
 }
 #elif defined(DETAIL_SHIFTED)
-vec2 unmoved_across, unmoved_down; // how UV changes from sample to sample; set by who moves it
+vec2 unmoved_across = vec2(0.0), unmoved_down = vec2(0.0); // how UV changes from sample to sample; set by who moves it
 
 vec4 map_texel(sampler2D map, int use, vec2 uv)
 {
