@@ -211,7 +211,8 @@ static bool hang(struct drawing *drawing, struct tl_hung *hung, tl_error *error)
         struct tl_comparison result = {0};
         done = see_exact(drawing, easel, hung, error) &&
                see_tested(drawing, easel, hung, &tested[i], error) &&
-               tl_image_compare(&tested[i].light, &easel->exact.light, -1, 0, &result, error);
+               tl_image_compare(&tested[i].light, &easel->exact.light, hung->wall->by_flip ? -1 : 0, 0,
+                                &result, error);
         hung->error[i] = hung->wall->by_flip ? result.flip_mean : result.rel_rmse;
         hung->time_ms[i] = tested[i].time_ms;
     }

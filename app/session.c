@@ -29,6 +29,7 @@ struct tl_session {
     tl_avatar *avatar;   /* NULL: none */
     tl_garment *garment; /* NULL: none */
     tl_weave *weave;     /* NULL: the garment shows no yarns */
+    tl_weave *overlay_weave;
 
     int clip; /* -1: rest pose */
     struct tl_moving body;
@@ -128,13 +129,25 @@ static bool load_garment(tl_session *session, tl_error *error)
     return true;
 }
 
-static void forget_weave(tl_session *session)
+static void forget_weave(tl_weave **weave)
 {
-    if (!session->weave)
+    if (!*weave)
         return;
-    tl_weave_release(session->weave);
-    free(session->weave);
-    session->weave = NULL;
+    tl_weave_release(*weave);
+    free(*weave);
+    *weave = NULL;
+}
+
+/* The yarns of a look that is a fabric's. */
+static void make_weave(const struct tl_material_params *look, const struct tl_weave_params *params,
+                       tl_weave **out)
+{
+    tl_weave made;
+    forget_weave(out);
+    if (look->use_file || !tl_weave_create(params, &made))
+        return;
+    *out = TL_NEW(tl_weave);
+    **out = made;
 }
 
 static struct tl_gloss gloss_of(const struct tl_material_params *look)
@@ -150,36 +163,45 @@ static struct tl_gloss gloss_of(const struct tl_material_params *look)
                              .rotation = glm_rad(look->rotation_deg)};
 }
 
-/* The garment's materials from its file and settings.material; the weave they point to. */
+/* The fabric replaces how the surface reflects; a print or dye that the file brings stays. */
+static void set_look(const struct tl_material_params *look, const tl_weave *weave, tl_material *material)
+{
+    if (look->use_file)
+        return;
+    if (!material->diffuse_map.image)
+        memcpy(material->diffuse.raw, look->diffuse, sizeof material->diffuse.raw);
+    memcpy(material->specular.raw, look->specular, sizeof material->specular.raw);
+    memcpy(material->transmission.raw, look->transmission, sizeof material->transmission.raw);
+    material->glossiness = look->glossiness;
+    material->gloss = gloss_of(look);
+    material->coat = look->coat;
+    material->coat_glossiness = look->coat_glossiness;
+    material->openness = look->openness;
+    material->gloss_map.image = NULL;
+    material->specular_map.image = NULL;
+    material->weave = weave;
+}
+
+static bool is_overlay(const tl_session *session, const tl_material *material)
+{
+    return strcmp(session->settings.scene.overlay_fabric, "none") != 0 &&
+           strcmp(material->name, TL_GARMENT_OVERLAY) == 0;
+}
+
+/* The garment's materials from its file and the settings' looks; the weaves they point to. */
 static void make_materials(tl_session *session)
 {
-    const struct tl_material_params *look = &session->settings.material;
-    tl_weave made;
-    forget_weave(session);
-    if (!look->use_file && tl_weave_create(&session->settings.weave, &made)) {
-        session->weave = TL_NEW(tl_weave);
-        *session->weave = made;
-    }
+    const struct tl_settings *settings = &session->settings;
     const tl_model *model = &session->garment->model;
+    make_weave(&settings->material, &settings->weave, &session->weave);
+    make_weave(&settings->overlay, &settings->overlay_weave, &session->overlay_weave);
     session->materials = tl_resize(session->materials, model->material_count, sizeof *session->materials);
     for (size_t i = 0; i < model->material_count; i++) {
-        tl_material material = model->materials[i];
-        if (!look->use_file) {
-            /* The fabric replaces how the surface reflects; a print or dye that the file brings stays. */
-            if (!material.diffuse_map.image)
-                memcpy(material.diffuse.raw, look->diffuse, sizeof material.diffuse.raw);
-            memcpy(material.specular.raw, look->specular, sizeof material.specular.raw);
-            memcpy(material.transmission.raw, look->transmission, sizeof material.transmission.raw);
-            material.glossiness = look->glossiness;
-            material.gloss = gloss_of(look);
-            material.coat = look->coat;
-            material.coat_glossiness = look->coat_glossiness;
-            material.openness = look->openness;
-            material.gloss_map.image = NULL;
-            material.specular_map.image = NULL;
-            material.weave = session->weave;
-        }
-        session->materials[i] = material;
+        session->materials[i] = model->materials[i];
+        if (is_overlay(session, &model->materials[i]))
+            set_look(&settings->overlay, session->overlay_weave, &session->materials[i]);
+        else
+            set_look(&settings->material, session->weave, &session->materials[i]);
     }
     session->look_revision++;
 }
@@ -364,7 +386,8 @@ void tl_session_destroy(tl_session **handle)
     free(session->garment);
     free(session->avatar);
     tl_moving_light_release(&session->light);
-    forget_weave(session);
+    forget_weave(&session->weave);
+    forget_weave(&session->overlay_weave);
     free(session->materials);
     free(session);
     *handle = NULL;
@@ -472,7 +495,9 @@ bool tl_session_apply(tl_session *session, const struct tl_settings *settings, t
             : !tl_moving_light_open(&session->light, environment, position, error))
         return false;
     bool new_look = !tl_options_equal(&tl_weave_options, &old->weave, &settings->weave) ||
-                    !tl_options_equal(&tl_material_options, &old->material, &settings->material);
+                    !tl_options_equal(&tl_material_options, &old->material, &settings->material) ||
+                    !tl_options_equal(&tl_overlay_options, &old->overlay, &settings->overlay) ||
+                    !same_text(old->scene.overlay_fabric, settings->scene.overlay_fabric);
     if (session->cloth && !tl_cloth_set(session->cloth, &settings->fabric, &settings->cloth, error))
         return false;
     session->settings = *settings;

@@ -13,7 +13,8 @@
 /* What assets/garment.h, assets/specimen.h, assets/avatar.h and assets/studio.h make without a file, and
  * "none".
  */
-static const char *const garment_names[] = {"dress", "skirt", "sheet", "sphere", "torus", "none", NULL};
+static const char *const garment_names[] = {"dress",  "skirt", "layers", "sheet",
+                                            "sphere", "torus", "none",   NULL};
 static const char *const avatar_names[] = {"form", "ball", "none", NULL};
 static const char *const environment_names[] = {"studio", "white", "none", NULL};
 static const char *const motion_names[] = {"none", NULL};
@@ -45,6 +46,9 @@ static const struct tl_option scene_rows[] = {
         struct tl_scene_params, fabric, tl_embedded_fabrics_names,
         "sets the tables fabric, weave and material: built in, or a YAML file; left out: satin on built-in "
         "garments, none on a garment file"),
+    TL_OPTION_NAME_OR_PATH(struct tl_scene_params, overlay_fabric, tl_embedded_fabrics_names,
+                           "sets the table overlay, and the weave, of a garment's second fabric; how it "
+                           "moves is scene.fabric's"),
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, preset, tl_embedded_presets_names,
                            "sets quality in the tables cloth, light and image: built in, or a YAML file"),
     TL_OPTION_STRING(struct tl_scene_params, clip,
@@ -81,6 +85,7 @@ enum {
     FABRIC,
     WEAVE,
     MATERIAL,
+    OVERLAY,
     LIGHT,
     MAPS,
     LAMP,
@@ -99,6 +104,7 @@ void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[T
     bindings[FABRIC] = (struct tl_binding){&tl_cloth_fabric_options, &settings->fabric};
     bindings[WEAVE] = (struct tl_binding){&tl_weave_options, &settings->weave};
     bindings[MATERIAL] = (struct tl_binding){&tl_material_options, &settings->material};
+    bindings[OVERLAY] = (struct tl_binding){&tl_overlay_options, &settings->overlay};
     bindings[LIGHT] = (struct tl_binding){&tl_light_options, &settings->light};
     bindings[DETAIL] = (struct tl_binding){&tl_detail_options, &settings->detail};
     bindings[MAPS] = (struct tl_binding){&tl_maps_options, &settings->maps};
@@ -182,6 +188,17 @@ static bool apply_fabric(const struct tl_binding *all, const char *name, tl_erro
     return apply(&fabric_layer, name, bindings, TL_COUNT(bindings), error);
 }
 
+/* Only its look: one cloth has one fabric's stiffness. */
+static bool apply_overlay(struct tl_settings *settings, const char *name, tl_error *error)
+{
+    struct tl_cloth_fabric unused;
+    const struct tl_binding bindings[] = {{&tl_cloth_fabric_options, &unused},
+                                          {&tl_weave_options, &settings->overlay_weave},
+                                          {&tl_material_options, &settings->overlay}};
+    tl_options_reset(bindings, TL_COUNT(bindings));
+    return strcmp(name, "none") == 0 || apply(&fabric_layer, name, bindings, TL_COUNT(bindings), error);
+}
+
 /* A model in place of a scene is shown as it is: no garment to drape, its own materials. */
 static bool apply_model(const struct tl_binding *all, const char *path, tl_error *error)
 {
@@ -207,6 +224,8 @@ static void choose_fabric(struct tl_scene_params *scene)
 {
     if (scene->fabric[0] == '\0')
         strcpy(scene->fabric, tl_option_is_file_name(scene->garment) ? "none" : "satin");
+    if (scene->overlay_fabric[0] == '\0')
+        strcpy(scene->overlay_fabric, "none");
 }
 
 /* A model alone is what a motion moves, and what --units means. */
@@ -222,8 +241,20 @@ static void choose_role(struct tl_scene_params *scene)
 }
 
 /* What was asked for and will not be done is said. */
-static void tell_what_is_unused(const struct tl_light_params *light)
+static bool is_plain(const struct tl_material_params *look)
 {
+    return look->model == TL_REFLECT_PHONG && !(look->coat > 0) && !(look->openness > 0) &&
+           !(look->transmission[0] > 0 || look->transmission[1] > 0 || look->transmission[2] > 0);
+}
+
+static void tell_what_is_unused(const struct tl_settings *settings)
+{
+    const struct tl_light_params *light = &settings->light;
+    bool plain = is_plain(&settings->material) && is_plain(&settings->overlay);
+    if (!plain && light->method != TL_METHOD_REFERENCE && light->visibility != TL_VISIBILITY_RAYS)
+        tl_warn("material: model, coat, transmission and openness are shown by light.visibility rays and by "
+                "light.method "
+                "reference only: the environment's light sees two plain lobes");
     if (light->method == TL_METHOD_PEM && light->visibility == TL_VISIBILITY_RAYS &&
         light->composition != TL_COMPOSE_RATIO)
         tl_warn(
@@ -246,12 +277,12 @@ bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *
     choose_fabric(&named);
     tl_options_reset(all, TL_SETTINGS_TABLES);
     if (!apply_preset(all, named.preset, error) || !apply_fabric(all, named.fabric, error) ||
-        !apply_source(all, source, error))
+        !apply_overlay(&settings, named.overlay_fabric, error) || !apply_source(all, source, error))
         return false;
     if (source->scene_file && tl_model_is_file(source->scene_file))
         choose_role(&named);
     settings.scene = named;
-    tell_what_is_unused(&settings.light);
+    tell_what_is_unused(&settings);
     *out = settings;
     return true;
 }

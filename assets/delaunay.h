@@ -1,5 +1,5 @@
-/* Delaunay triangulation of a planar point set (Bowyer 1981, Watson 1981), for point sets of a few thousand
- * without duplicates. Threads: pure. */
+/* Delaunay triangulation of a planar point set (Bowyer 1981, Watson 1981), for point sets of up to some ten
+ * thousands without duplicates. Threads: pure. */
 #ifndef TOILE_ASSETS_DELAUNAY_H
 #define TOILE_ASSETS_DELAUNAY_H
 

@@ -121,8 +121,10 @@ static void take_means(const tl_image *image, bool is_colour, struct loaded *to)
         for (int level = 0; level < 256; level++) {
             float value = (float)level / 255;
             sum += (double)counts[level] * (double)(is_colour && c < 3 ? tl_srgb_to_linear(value) : value);
-            lowest = counts[level] && level < lowest ? level : lowest;
-            highest = counts[level] ? level : highest;
+            if (counts[level] == 0)
+                continue;
+            lowest = level < lowest ? level : lowest;
+            highest = level;
         }
         to->means[c] = (float)(sum / (double)texels);
         to->varies[c] = highest - lowest > VARIES;

@@ -154,6 +154,7 @@ static void advance_settle(tl_cloth *cloth, const struct tl_substep *substep)
         .gravity = substep->gravity,
         .drag = substep->drag,
         .h = substep->h,
+        .agreement = substep->agreement,
         .tolerance = cloth->params.cg_tolerance,
         .most_iterations = cloth->params.cg_iterations};
     if (!cloth->implicit)
@@ -226,7 +227,7 @@ static double substeps_now(tl_cloth *cloth)
     return 0;
 }
 
-static void run_step(tl_cloth *cloth, const tl_collider *collider, double drag, int step)
+static void run_step(tl_cloth *cloth, const tl_collider *collider, const struct tl_advance *advance, int step)
 {
     /* Weightless until the panels have met. */
     double gravity = tl_sewing_pulls(&cloth->sewing) ? 0 : cloth->params.gravity;
@@ -238,7 +239,8 @@ static void run_step(tl_cloth *cloth, const tl_collider *collider, double drag, 
         double done = step * substeps + sub;
         const struct tl_substep substep = {.h = step_seconds(cloth) / substeps,
                                            .gravity = gravity,
-                                           .drag = drag,
+                                           .drag = fmax(advance->drag, cloth->fabric.damping),
+                                           .agreement = advance->agreement,
                                            .phase_before = done / total,
                                            .phase = (done + 1) / total,
                                            .collider = collider,
@@ -271,7 +273,7 @@ static void find_own_contacts(tl_cloth *cloth)
                        cloth->fabric.thickness_m);
 }
 
-static void run_steps(tl_cloth *cloth, const tl_collider *collider, double drag)
+static void run_steps(tl_cloth *cloth, const tl_collider *collider, const struct tl_advance *advance)
 {
     int steps = steps_per_frame(&cloth->params);
     cloth->refused_step = 0;
@@ -286,7 +288,7 @@ static void run_steps(tl_cloth *cloth, const tl_collider *collider, double drag)
                           (double)step / steps);
         if (cloth->params.self_repulsion)
             find_own_contacts(cloth);
-        run_step(cloth, collider, drag, step);
+        run_step(cloth, collider, advance, step);
         slip_free(cloth, collider);
         tl_contacts_enforce(&cloth->contacts, &contact, &cloth->particles);
         tl_particles_calm(&cloth->particles, (const uint32_t(*)[2])cloth->topology.edges,
@@ -410,15 +412,16 @@ bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct
     uint64_t jump_followed = cloth->jump_followed;
     struct tl_particles *particles = &cloth->particles;
     size_t bytes = particles->count * sizeof(vec3d);
-    vec3d *good_x = TL_NEW_ARRAY(vec3d, particles->count), *good_v = TL_NEW_ARRAY(vec3d, particles->count);
-    memcpy(good_x, particles->x, bytes);
-    memcpy(good_v, particles->v, bytes);
+    cloth->good_x = tl_resize(cloth->good_x, particles->count, sizeof *cloth->good_x);
+    cloth->good_v = tl_resize(cloth->good_v, particles->count, sizeof *cloth->good_v);
+    memcpy(cloth->good_x, particles->x, bytes);
+    memcpy(cloth->good_v, particles->v, bytes);
     follow_jump(cloth, collider);
     unsigned denormals = tl_denormals_off();
     if (collider)
         tl_pins_bind(cloth->pins, cloth->pin_count, collider, cloth->fabric.thickness_m);
     tl_contacts_begin(&cloth->contacts, collider);
-    run_steps(cloth, collider, fmax(advance->drag, cloth->fabric.damping));
+    run_steps(cloth, collider, advance);
     tl_denormals_restore(denormals);
 
     bool good = tl_interrupted()
@@ -428,18 +431,16 @@ bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct
         close_seams(cloth);
         cloth->time_s += advance->clock ? 1 / cloth->params.frame_rate : 0;
     } else {
-        memcpy(particles->x, good_x, bytes);
-        memcpy(particles->v, good_v, bytes);
+        memcpy(particles->x, cloth->good_x, bytes);
+        memcpy(particles->v, cloth->good_v, bytes);
         cloth->jump_followed = jump_followed;
         tl_layers_forget(&cloth->layers);
     }
-    free(good_x);
-    free(good_v);
     return good;
 }
 
 bool tl_cloth_step(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
 {
-    const struct tl_advance advance = {.clock = true};
+    const struct tl_advance advance = {.clock = true, .agreement = 2};
     return tl_cloth_advance(cloth, collider, &advance, error);
 }

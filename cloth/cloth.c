@@ -120,11 +120,12 @@ static void set_constants(tl_cloth *cloth)
     cloth->left_alone = false;
 }
 
-void tl_cloth_use(tl_cloth *cloth, int solver)
+void tl_cloth_use(tl_cloth *cloth, const struct tl_cloth_params *params)
 {
-    if (cloth->params.solver == solver)
+    const struct tl_cloth_params *now = &cloth->params;
+    if (now->solver == params->solver && now->dt == params->dt && now->frame_rate == params->frame_rate)
         return;
-    cloth->params.solver = solver;
+    cloth->params = *params;
     tl_implicit_destroy(&cloth->implicit);
     set_energy(cloth);
 }
@@ -225,11 +226,14 @@ static void release_state(tl_cloth *cloth)
     free(cloth->pins);
     free(cloth->forces);
     free(cloth->external);
+    free(cloth->good_x);
+    free(cloth->good_v);
     cloth->rest = NULL;
     cloth->made_at = NULL;
     cloth->pins = NULL;
     cloth->forces = NULL;
     cloth->external = NULL;
+    cloth->good_x = cloth->good_v = NULL;
 }
 
 void tl_cloth_join(tl_cloth *cloth, const uint32_t *joined, size_t joined_count)

@@ -104,8 +104,8 @@ TL_CLONES static void measure_all(const struct tl_pulls *pulls, struct stretchin
 TL_CLONES static void add_shares(const struct tl_pulls *pulls, struct tl_range range)
 {
     for (size_t e = range.from; e < range.to; e++)
-        pulls->along_edges[e] = pulls->shares[pulls->slots[e][0]] + pulls->shares[pulls->slots[e][1]] +
-                                pulls->edge_bending[e];
+        pulls->along_edges[e] =
+            pulls->shares[pulls->slots[e][0]] + pulls->shares[pulls->slots[e][1]] + pulls->edge_bending[e];
 }
 
 /* What few edges have: more than two triangles, and links. Returns the links' energy. */
@@ -233,8 +233,7 @@ static double evaluate(const struct tl_energy *energy, const struct tl_cloth_fab
             links = add_rare(energy, fabric->stretch_warp);
         }
 #pragma omp barrier
-        add_forces(pulls, pulls->along_edges, tl_my_part(pulls->vertex_count, TL_PULLS_BLOCK), forces,
-                   then);
+        add_forces(pulls, pulls->along_edges, tl_my_part(pulls->vertex_count, TL_PULLS_BLOCK), forces, then);
         if (wants_energy)
             add_energies(pulls);
         tl_denormals_restore(denormals);
@@ -248,8 +247,7 @@ void tl_energy_pull(const struct tl_energy *energy, const struct tl_cloth_fabric
     evaluate(energy, fabric, x, false, forces, then);
 }
 
-void tl_energy_bend(const struct tl_energy *energy, const vec3d *x, vec3d *forces,
-                    const struct tl_move *then)
+void tl_energy_bend(const struct tl_energy *energy, const vec3d *x, vec3d *forces, const struct tl_move *then)
 {
     const struct tl_pulls *pulls = &energy->pulls;
 #pragma omp parallel if (pulls->vertex_count >= TL_PARALLEL_VERTICES)

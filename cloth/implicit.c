@@ -7,9 +7,8 @@
 
 /* Times that a step is solved again for particles that stick, slip or let go otherwise than was assumed. */
 #define ROUNDS 8
-/* What all further rounds may take: so many times the iterations of the first, and a few more. In motion
- * contact changes with every step anyway; at rest, when solves are short, it must agree. */
-#define AGREEMENT       1
+/* Iterations that all further rounds may take in any case: in motion contact changes with every step anyway;
+ * at rest, when solves are short, it must agree. */
 #define AGREEMENT_LEAST 30
 /* Times that a step is linearised, and then halved, while it would gain energy. */
 #define LINEARISED 4
@@ -299,7 +298,8 @@ static void solve(tl_implicit *implicit, const struct tl_implicit_problem *probl
         system.most_iterations = left;
         struct tl_solve_result result = tl_solve(&system, &implicit->space, implicit->given, implicit->step);
         system.floor = result.goal; /* later rounds need no more than the first */
-        left = round == 0 ? AGREEMENT * result.iterations + AGREEMENT_LEAST : left - result.iterations;
+        left = round == 0 ? (int)(problem->agreement * result.iterations) + AGREEMENT_LEAST
+                          : left - result.iterations;
         total->iterations += result.iterations;
         total->converged = total->converged && (result.converged || round > 0);
         bool touches_agree = judge_touches(implicit, problem, &system);

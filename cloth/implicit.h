@@ -33,6 +33,7 @@ struct tl_implicit_problem {
     struct tl_contacts *contacts;
     struct tl_contact_params contact;
     double gravity, drag, h;
+    double agreement; /* what further rounds of contact may take, as a share of the first; and a few more */
     double tolerance; /* of conjugate gradients */
     int most_iterations;
 };

@@ -30,9 +30,9 @@ struct tl_move {
 /* On all threads, each for its own part of the particles, denormals off. */
 void tl_particles_move(const struct tl_move *move);
 
-/* previous <- x, x <- x + h (v exp(-drag h) + h (g + w f)), with `forces` f in N, or none when NULL. What is at
- * rest feels its whole weight, whatever the drag. `v` is left to tl_particles_finish; where that was left out
- * after the substep before, of as many seconds, `moving` takes (x - previous) / h in its place. The move
+/* previous <- x, x <- x + h (v exp(-drag h) + h (g + w f)), with `forces` f in N, or none when NULL. What is
+ * at rest feels its whole weight, whatever the drag. `v` is left to tl_particles_finish; where that was left
+ * out after the substep before, of as many seconds, `moving` takes (x - previous) / h in its place. The move
  * borrows the prediction. */
 struct tl_prediction {
     const vec3d *forces;
@@ -40,7 +40,8 @@ struct tl_prediction {
     bool moving;
 };
 struct tl_prediction tl_prediction_make(const vec3d *forces, double gravity, double drag, double h);
-struct tl_move tl_particles_prediction(struct tl_particles *particles, const struct tl_prediction *prediction);
+struct tl_move tl_particles_prediction(struct tl_particles *particles,
+                                       const struct tl_prediction *prediction);
 
 /* v <- (x - previous) / h. */
 void tl_particles_finish(struct tl_particles *particles, double h);

@@ -55,7 +55,7 @@ static void build_metrics(struct tl_pulls *pulls, const struct tl_topology *topo
         placed[count].lane = (uint32_t)i;
         for (int k = 0; k < 3; k++)
             placed[count].edges[k] = tl_topology_edge(topology, m->vertices[(k + 1) % 3][i % TL_BATCH],
-                                               m->vertices[(k + 2) % 3][i % TL_BATCH]);
+                                                      m->vertices[(k + 2) % 3][i % TL_BATCH]);
         count++;
     }
     qsort(placed, count, sizeof *placed, compare_placed);

@@ -12,10 +12,17 @@ static const struct phase {
     double drag, least_s;
 } phases[] = {{5, 0.25}, {1, 0.5}};
 
+/* On its way to rest a cloth's contact changes with every step; when it is near, solves are so short that all
+ * rounds of contact are run through anyway. */
+#define AGREEMENT 0.25
+
 /* `preview` brings the cloth near to its rest for a fraction of what others take; the chosen one ends it. */
-static int phase_solver(const struct tl_cloth_params *params, size_t phase)
+static struct tl_cloth_params phase_params(const struct tl_cloth_params *chosen, size_t phase)
 {
-    return phase + 1 < TL_COUNT(phases) ? TL_CLOTH_PREVIEW : params->solver;
+    struct tl_cloth_params params = *chosen;
+    if (phase + 1 < TL_COUNT(phases))
+        params.solver = TL_CLOTH_PREVIEW;
+    return params;
 }
 
 bool tl_cloth_settle(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
@@ -27,8 +34,9 @@ bool tl_cloth_settle(tl_cloth *cloth, const tl_collider *collider, tl_error *err
     bool good = true;
     cloth->settled = false;
     while (good && !cloth->settled && hung_s < params->settle_s) {
-        const struct tl_advance advance = {.drag = phases[phase].drag};
-        tl_cloth_use(cloth, phase_solver(params, phase));
+        const struct tl_advance advance = {.drag = phases[phase].drag, .agreement = AGREEMENT};
+        const struct tl_cloth_params now = phase_params(params, phase);
+        tl_cloth_use(cloth, &now);
         good = tl_cloth_advance(cloth, collider, &advance, error);
         double passed_s = tl_sewing_pulls(&cloth->sewing) ? 0 : frame_s;
         hung_s += passed_s;
@@ -41,7 +49,7 @@ bool tl_cloth_settle(tl_cloth *cloth, const tl_collider *collider, tl_error *err
         tl_progress_update(&progress, hung_s, params->settle_s);
     }
     tl_progress_end(&progress);
-    tl_cloth_use(cloth, params->solver);
+    tl_cloth_use(cloth, params);
     if (good && !cloth->settled && params->settle_s > 0)
         tl_info("the cloth still moves at %.3f m/s after settling for %g s: give it more with cloth.settle_s",
                 tl_cloth_max_speed(cloth), params->settle_s);

@@ -23,9 +23,10 @@ struct tl_cloth {
     double critical_step; /* s, at rest */
     double refused_step;  /* s, reference: what a crushed state would have taken; 0: none did */
     struct tl_particles particles;
-    vec3d *forces;         /* [particles.count] N, elastic; reference only, good within a step */
-    vec3d *external;       /* [particles.count] N, of the wind; NULL: it never blew */
-    tl_implicit *implicit; /* settle only */
+    vec3d *forces;          /* [particles.count] N, elastic; reference only, good within a step */
+    vec3d *external;        /* [particles.count] N, of the wind; NULL: it never blew */
+    vec3d *good_x, *good_v; /* [particles.count] at the frame's start: what a failure goes back to */
+    tl_implicit *implicit;  /* settle only */
     struct tl_implicit_tally tally;
     struct tl_limits limits; /* preview */
     struct tl_contacts contacts;
@@ -50,8 +51,9 @@ struct tl_cloth {
 
 /* How one frame is advanced. */
 struct tl_advance {
-    double drag; /* 1/s, in place of the fabric's damping when larger */
-    bool clock;  /* the animation's time passes */
+    double drag;      /* 1/s, in place of the fabric's damping when larger */
+    bool clock;       /* the animation's time passes */
+    double agreement; /* settle: what further rounds of contact may take, as a share of the first */
 };
 
 /* One frame; restores the state and fails when the result is out of its envelope. */
@@ -62,6 +64,7 @@ bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct
 struct tl_substep {
     double h; /* s */
     double gravity, drag;
+    double agreement;           /* see struct tl_advance */
     double phase_before, phase; /* of the collider's motion at its start and end */
     const tl_collider *collider;
     bool follows; /* another one, to whose end nothing was done; solvers may have begun with this one there */
@@ -86,8 +89,8 @@ struct tl_energies tl_cloth_energies(const tl_cloth *cloth);
 double tl_cloth_max_speed(const tl_cloth *cloth);
 double tl_cloth_max_strain(const tl_cloth *cloth);
 
-/* Goes on with another solver, and with the step that it takes. */
-void tl_cloth_use(tl_cloth *cloth, int solver);
+/* Goes on with the solver and the steps of `params`, which are the cloth's own in all else. */
+void tl_cloth_use(tl_cloth *cloth, const struct tl_cloth_params *params);
 
 /* Replaces topology, energy and particles by those of a mesh in which physics vertex i has become
  * joined[i]: masses add up,

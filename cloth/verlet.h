@@ -27,8 +27,8 @@ struct tl_verlet tl_verlet_make(const vec3d *forces, double gravity, double drag
  * x <- x + h v. Then constraints may move x. */
 void tl_verlet_drift(struct tl_particles *particles, const struct tl_verlet *substep);
 
-/* What constraints moved x by, over h, is added to v; then v <- (v + h/2 a) exp(-drag h/2), with the forces at
- * the new x: what tl_energy_pull can do as it goes. */
+/* What constraints moved x by, over h, is added to v; then v <- (v + h/2 a) exp(-drag h/2), with the forces
+ * at the new x: what tl_energy_pull can do as it goes. */
 struct tl_move tl_verlet_kick(struct tl_particles *particles, const struct tl_verlet *substep);
 
 /* The kick, and the drift of the next substep at once. */

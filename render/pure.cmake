@@ -31,6 +31,7 @@ add_library(toile_light STATIC
   light/samples.c
   local/lamp.c
   local/lamp_rays.c
+  local/lamp_samples.c
   metrics/compare.c
   metrics/flip.c
   pem/chain.c

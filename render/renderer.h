@@ -82,6 +82,7 @@ struct tl_maps_params {  /* table "maps", of TL_METHOD_MAPS */
     int look_up;         /* enum tl_maps_look_up, of paraboloids */
     int mode;            /* enum tl_maps_mode */
     int fresnel;         /* enum tl_maps_fresnel */
+    bool minify;         /* mirrors read mip levels */
     int capture_every;   /* frames from one capture of the scene to the next; 0: the environment alone */
     float capture_at[3]; /* metres, from the middle of what casts shadows */
 };
@@ -102,6 +103,8 @@ struct tl_material_params { /* table "material": the garment's look, from the fa
     float openness;
 };
 extern const struct tl_option_table tl_material_options;
+extern const struct tl_option_table
+    tl_overlay_options; /* table "overlay": the same, of a garment's second fabric */
 
 struct tl_image_params { /* table "image" */
     int width, height;

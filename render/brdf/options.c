@@ -38,7 +38,13 @@ static const struct tl_option material_rows[] = {
         material_params, openness, 0, 0.99, "",
         "share of the surface that is holes between threads; larger shows more of what is behind"),
 };
-const struct tl_option_table tl_material_options = TL_OPTION_TABLE(
-    "material", "the garment's look: two lobes, diffuse and glossy", material_rows, material_params,
-    .use_file = true, .diffuse = {0.5f, 0.5f, 0.5f}, .specular = {0.04f, 0.04f, 0.04f}, .glossiness = 0.5f,
-    .index = 1.5f, .coat_glossiness = 0.95f);
+#define DEFAULTS                                                                                             \
+    .use_file = true, .diffuse = {0.5f, 0.5f, 0.5f}, .specular = {0.04f, 0.04f, 0.04f}, .glossiness = 0.5f,  \
+    .index = 1.5f, .coat_glossiness = 0.95f
+
+const struct tl_option_table tl_material_options =
+    TL_OPTION_TABLE("material", "the garment's look: two lobes, diffuse and glossy", material_rows,
+                    material_params, DEFAULTS);
+const struct tl_option_table tl_overlay_options =
+    TL_OPTION_TABLE("overlay", "the look of the garment's materials that are named overlay, as material",
+                    material_rows, material_params, DEFAULTS);

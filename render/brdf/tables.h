@@ -10,12 +10,17 @@
  * they are affine in dot products, they can be made by one texture matrix, or interpolated. Where n.l <= 0 or
  * n.v <= 0 the caller makes it 0.
  *
- *     PHONG             K(r.l) F(n.v)                               one table; ranges end where K is 1e-6 of
- * its BLINN_PHONG       K(n.h) F(h.l)                               ... peak, as beyond that nothing is seen
- *     COSINE_LOBE       K(r.l) F(h.l)                               one table, times_cos_a
+ *     PHONG             K(r.l) F(n.v)
+ *     BLINN_PHONG       K(n.h) F(h.l)
+ *     COSINE_LOBE       K(r.l) F(h.l)                               times_cos_a
  *     TORRANCE_SPARROW  F(h.l) D(n.h)    G(n.l, n.v) / (pi n.v)     V_GROOVES: G / (pi n.v) over (G, n.v)
  *     WARD              D(h.t, h.b)      sqrt(n.l / n.v)   F(h.l)
  *     BANKS             K(t.l, t.v)      F(n.v)                     times_cos_a
+ *
+ * The axes of K and D end where they have fallen to 1e-6 of their peak: beyond it nothing is seen, and all
+ * texels are spent on what is. So 512 texels err by less than half a per cent up to s = 1e4; beyond that a
+ * cosine in float no longer tells the angles of so narrow a lobe (s = 1e6: 8 to 20 %; WARD, whose axes are
+ * sines, does not mind), and BANKS, whose ridge runs across its table, up to s = 500.
  *
  * Folded (PHONG, BLINN_PHONG, COSINE_LOBE): ambient + diffuse n.l / pi + f0 K [n.l], over (r.l or n.h, n.l),
  * in one table: F stays f0. Where n.l <= 0 it is the ambient part, so that the caller cuts by n.v alone.
@@ -60,8 +65,9 @@ struct tl_brdf_table {
 };
 
 /* The singular factors, G / (pi n.v) and sqrt(n.l / n.v), in fixed point: cut at 1, as the paper's hardware
- * does, which darkens grazing views; or divided by their greatest value, which is bounded by the width of
- * the facets, or by `constant` (and cut there). A float table is never cut. */
+ * does, which darkens grazing views; or divided by `constant` and cut there, or by their greatest value and
+ * not cut. That is 2 / (w sqrt pi) by SMITH; the others have none but what the texels next to n.v = 0 hold,
+ * so that in 8 bits a constant of about 4 serves better. A float table is never cut. */
 enum tl_table_range { TL_RANGE_CLAMPED, TL_RANGE_SCALED };
 
 struct tl_brdf_table_params {

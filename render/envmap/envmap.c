@@ -11,7 +11,7 @@
 #include <string.h>
 
 /* Uniform locations of envmap.frag and what it includes; sample.glsl has 1 and 2. */
-enum { EYE = 1, MODE = 3, PART_COUNT, TURN, SLOTS, FRONT_MATRIX = 40, BACK_MATRIX, COMPOSITION };
+enum { EYE = 1, TEXEL_REACH = 3, PART_COUNT, TURN, SLOTS, FRONT_MATRIX = 40, BACK_MATRIX };
 /* Texture units; the G-buffer's layers come first. */
 enum { LEVELS_UNIT = 5, MAPS_UNIT, FRESNEL_UNIT };
 #define PARTS_BINDING 1
@@ -33,9 +33,11 @@ static int layers_of(enum tl_layout layout)
 
 void tl_envmap_release(struct tl_envmap *envmap)
 {
-    for (int layout = 0; layout < TL_LAYOUT_COUNT; layout++)
-        for (int way = 0; way < 2; way++)
-            tl_program_destroy(&envmap->programs[layout][way]);
+    for (size_t i = 0; i < envmap->variant_count; i++) {
+        tl_program_destroy(&envmap->variants[i].program);
+        free(envmap->variants[i].defines);
+    }
+    free(envmap->variants);
     tl_texture_destroy(&envmap->maps);
     tl_texture_destroy(&envmap->fresnel);
     tl_levels_release(&envmap->levels);
@@ -47,10 +49,8 @@ void tl_envmap_release(struct tl_envmap *envmap)
 bool tl_envmap_reload(struct tl_envmap *envmap, tl_error *error)
 {
     bool fine = true;
-    for (int layout = 0; layout < TL_LAYOUT_COUNT; layout++)
-        for (int way = 0; way < 2; way++)
-            if (envmap->programs[layout][way].id)
-                fine = fine && tl_program_reload(&envmap->programs[layout][way], error);
+    for (size_t i = 0; i < envmap->variant_count; i++)
+        fine = fine && tl_program_reload(&envmap->variants[i].program, error);
     return fine;
 }
 
@@ -213,27 +213,45 @@ void tl_envmap_set_parts(struct tl_envmap *envmap, tl_gpu *gpu, const struct tl_
                          bool has_ground)
 {
     struct told *told = TL_NEW_ARRAY(struct told, count_parts(ranges));
+    envmap->has_ground = has_ground;
     size_t count = list_parts(ranges, has_ground, told);
     send_parts(envmap, told, count);
     send_fresnel(envmap, gpu, told, count);
     free(told);
 }
 
-static const tl_program *program_of(struct tl_envmap *envmap, tl_gpu *gpu, int look_up, tl_error *error)
+static bool by_matrix(const struct tl_envmap *envmap, const struct tl_maps_params *params)
 {
-    static const char *const defines[TL_LAYOUT_COUNT][2] = {
-        [TL_LAYOUT_CUBE] = {"#define CUBE\n"},
-        [TL_LAYOUT_SPHERE] = {"#define SPHERE\n"},
-        [TL_LAYOUT_PARABOLOID] = {"#define PARABOLOID\n", "#define PARABOLOID\n#define MATRIX\n"},
-        [TL_LAYOUT_LATLONG] = {"#define LATLONG\n"},
-        [TL_LAYOUT_OCTAHEDRAL] = {"#define OCTAHEDRAL\n"},
-    };
-    int way = envmap->layout == TL_LAYOUT_PARABOLOID && look_up == TL_LOOK_UP_MATRIX;
-    tl_program *program = &envmap->programs[envmap->layout][way];
-    if (!program->id && !tl_program_create_variant(gpu, tl_embedded_shaders, "fullscreen.vert", "envmap.frag",
-                                                   defines[envmap->layout][way], program, error))
+    return envmap->layout == TL_LAYOUT_PARABOLOID && params->look_up == TL_LOOK_UP_MATRIX;
+}
+
+static char *defines_of(const struct tl_envmap *envmap, const struct tl_maps_params *params)
+{
+    static const char *const layouts[TL_LAYOUT_COUNT] = {"CUBE", "SPHERE", "PARABOLOID", "LATLONG",
+                                                         "OCTAHEDRAL"};
+    return tl_format("#define %s\n#define MODE %d\n#define COMPOSITION %d\n%s%s%s", layouts[envmap->layout],
+                     params->mode, params->fresnel, by_matrix(envmap, params) ? "#define MATRIX\n" : "",
+                     envmap->has_ground ? "#define GROUND\n" : "", params->minify ? "#define MINIFY\n" : "");
+}
+
+static const tl_program *program_of(struct tl_envmap *envmap, tl_gpu *gpu,
+                                    const struct tl_maps_params *params, tl_error *error)
+{
+    char *defines = defines_of(envmap, params);
+    for (size_t i = 0; i < envmap->variant_count; i++)
+        if (strcmp(envmap->variants[i].defines, defines) == 0) {
+            free(defines);
+            return &envmap->variants[i].program;
+        }
+    struct tl_envmap_variant variant = {.defines = defines};
+    if (!tl_program_create_variant(gpu, tl_embedded_shaders, "fullscreen.vert", "envmap.frag", defines,
+                                   &variant.program, error)) {
+        free(defines);
         return NULL;
-    return program;
+    }
+    envmap->variants = tl_resize(envmap->variants, envmap->variant_count + 1, sizeof variant);
+    envmap->variants[envmap->variant_count] = variant;
+    return &envmap->variants[envmap->variant_count++].program;
 }
 
 /* P S M^-1 of equation 7, with the texture's own scale: (x, y, z, 1) -> (x, y) / (1 + z) from [-1, 1] to
@@ -252,19 +270,26 @@ static void set_matrices(const mat3s *turn)
     }
 }
 
+/* Root of the mean solid angle of a texel, rad. */
+static float texel_reach(const struct tl_levels *levels)
+{
+    const struct tl_sphere_map *map = &levels->maps[0];
+    float discs = map->layout == TL_LAYOUT_SPHERE || map->layout == TL_LAYOUT_PARABOLOID ? GLM_PI_4f : 1;
+    return sqrtf(4 * GLM_PIf / (discs * (float)map->width * (float)map->height));
+}
+
 bool tl_envmap_draw(struct tl_envmap *envmap, tl_gpu *gpu, const struct tl_envmap_request *request,
                     tl_error *error)
 {
-    const tl_program *program = program_of(envmap, gpu, request->params->look_up, error);
+    const tl_program *program = program_of(envmap, gpu, request->params, error);
     if (!program)
         return false;
     glUseProgram(program->id);
     glUniform3fv(EYE, 1, request->eye.raw);
-    glUniform1i(MODE, request->params->mode);
+    glUniform1f(TEXEL_REACH, texel_reach(&envmap->levels));
     glUniform1i(PART_COUNT, envmap->part_count);
-    glUniform1i(COMPOSITION, request->params->fresnel);
     glUniform1iv(SLOTS, TL_EXPONENT_COUNT + 1, envmap->slots);
-    if (envmap->layout == TL_LAYOUT_PARABOLOID && request->params->look_up == TL_LOOK_UP_MATRIX)
+    if (by_matrix(envmap, request->params))
         set_matrices(&envmap->turn);
     else
         glUniformMatrix3fv(TURN, 1, GL_FALSE, envmap->turn.raw[0]);

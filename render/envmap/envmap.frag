@@ -1,5 +1,7 @@
 #version 450 core
-// The light of every sample of the G-buffer by look-ups in an environment map (envmap.h).
+// The light of every sample of the G-buffer by look-ups in an environment map (envmap.h). MODE and COMPOSITION are
+// #defined as numbers below; GROUND: the ground is drawn, in its own way; MINIFY: what mirrors show is taken from mip
+// levels.
 #include "exponents.glsl"
 #include "look_up.glsl"
 #include "sample.glsl"
@@ -9,10 +11,9 @@ const int OFF = 0, ADDITIVE = 1, COAT = 2;
 const int ENVIRONMENT = 31; // as if it were the exponent after the last
 const uint TRIANGLE_BACK = 0x80000000u;
 
-layout(location = 3) uniform int wanted_mode; // of all but the ground
 layout(location = 4) uniform int part_count;
 layout(location = 6) uniform int slots[32];
-layout(location = 42) uniform int composition;
+layout(location = 3) uniform float texel_reach; // root of a texel's mean solid angle
 
 layout(binding = 4) uniform usampler2D triangles;
 layout(binding = 7) uniform sampler2D fresnel; // F over the cosine, a row for each part
@@ -43,9 +44,21 @@ int part_of(uint triangle)
     return low;
 }
 
+// A pixel's reach over the sphere. Where two surfaces meet one of its two sides is no measure, so the lesser is taken.
+float level_of(vec3 d)
+{
+    vec3 across = dFdx(d), down = dFdy(d);
+    float square = min(dot(across, across), dot(down, down));
+    return 0.5 * log2(max(square / (texel_reach * texel_reach), 1.0));
+}
+
 vec3 environment(vec3 d)
 {
+#ifdef MINIFY
+    return look_up(d, slots[ENVIRONMENT], level_of(d));
+#else
     return look_up(d, slots[ENVIRONMENT], 0.0);
+#endif
 }
 
 vec3 irradiance(vec3 d)
@@ -118,14 +131,16 @@ void main()
     float ratio = (triangle & TRIANGLE_BACK) != 0u ? part.index : 1.0 / part.index;
     vec3 to_eye = eye - place.point;
     vec3 v = to_eye * inversesqrt(max(dot(to_eye, to_eye), 1e-30)), colour;
-    if (part.is_ground != 0u) {
-        colour = light_of(SURFACE, place, v, ratio);
-    } else if (composition == OFF) {
-        colour = light_of(wanted_mode, place, v, ratio);
+    if (COMPOSITION == OFF) {
+        colour = light_of(MODE, place, v, ratio);
     } else {
         vec3 f = reflectance(number, clamp(dot(place.normal, v), 0.0, 1.0));
-        colour = f * over_light(wanted_mode, place) +
-                 (composition == COAT ? 1.0 - f : vec3(1.0)) * under_light(wanted_mode, place, v, ratio);
+        colour = f * over_light(MODE, place) +
+                 (COMPOSITION == COAT ? 1.0 - f : vec3(1.0)) * under_light(MODE, place, v, ratio);
     }
+#ifdef GROUND
+    if (part.is_ground != 0u)
+        colour = light_of(SURFACE, place, v, ratio);
+#endif
     light = vec4(colour * place.cover, 0.0);
 }

@@ -28,9 +28,16 @@
 #include "render/light/samples.h"
 #include "render/renderer.h"
 
+/* Software drivers take both ways of every branch: what does not change within a picture is #defined. */
+struct tl_envmap_variant {
+    char *defines;
+    tl_program program;
+};
+
 struct tl_envmap {
-    tl_program programs[TL_LAYOUT_COUNT][2]; /* by layout and way to look up; made when first used */
-    enum tl_layout layout;                   /* of what is in the texture */
+    struct tl_envmap_variant *variants; /* programs that were asked for so far */
+    size_t variant_count;
+    enum tl_layout layout; /* of what is in the texture */
     struct tl_levels levels;
     tl_texture maps;                  /* layers by slot; faces and discs are layers too */
     int slots[TL_EXPONENT_COUNT + 1]; /* by exponent; -1: not there */
@@ -38,6 +45,7 @@ struct tl_envmap {
     unsigned parts_buffer;            /* GL name: what the pass must know of the surfaces' parts */
     size_t parts_bytes;
     int part_count;
+    bool has_ground;
     tl_texture fresnel; /* F over the cosine, a row for each part */
 };
 

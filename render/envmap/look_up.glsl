@@ -78,8 +78,6 @@ vec3 octahedral_level(vec2 place, int slot, int level)
     int side = max(textureSize(maps, 0).x >> level, 1);
     vec2 texel = place * float(side) - 0.5;
     ivec2 first = ivec2(floor(texel));
-    if (all(greaterThanEqual(first, ivec2(0))) && all(lessThan(first, ivec2(side - 1))))
-        return textureLod(maps, vec3(place, float(slot)), float(level)).rgb;
     vec2 over = texel - vec2(first);
     vec3 upper = mix(octahedral_texel(first, side, slot, level), octahedral_texel(first + ivec2(1, 0), side, slot, level),
                      over.x);
@@ -94,8 +92,11 @@ vec3 look_up(vec3 direction, int slot, float level)
     vec3 p = d / (abs(d.x) + abs(d.y) + abs(d.z));
     vec2 outwards = max(-p.y, 0.0) * vec2(p.x >= 0.0 ? 1.0 : -1.0, p.z >= 0.0 ? 1.0 : -1.0);
     vec2 place = 0.5 + 0.5 * (p.xz + outwards);
-    int whole = int(level);
+    int last = textureQueryLevels(maps) - 1, whole = min(int(level), last);
     vec3 light = octahedral_level(place, slot, whole);
-    return level > float(whole) ? mix(light, octahedral_level(place, slot, whole + 1), level - float(whole)) : light;
+#ifdef MINIFY
+    light = mix(light, octahedral_level(place, slot, min(whole + 1, last)), clamp(level - float(whole), 0.0, 1.0));
+#endif
+    return light;
 }
 #endif

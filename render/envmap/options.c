@@ -23,6 +23,10 @@ static const struct tl_option rows[] = {
         maps_params, fresnel, fresnel_names,
         "what mirrors reflect by material.fresnel; additive: on top of what lies under them; coat: "
         "the rest of the light alone reaches that"),
+    TL_OPTION_BOOL(
+        maps_params, minify,
+        "mirrors and refraction read mip levels, weighted by solid angle, where a pixel sees much of "
+        "the map"),
     TL_OPTION_INT(maps_params, capture_every, 0, 1000000, "frames",
                   "the scene is drawn into the map anew when it has changed and so many frames are over; 0: "
                   "maps hold the environment alone"),
@@ -32,4 +36,4 @@ static const struct tl_option rows[] = {
 };
 const struct tl_option_table tl_maps_options =
     TL_OPTION_TABLE("maps", "classic environment mapping, light.method maps: unshadowed", rows, maps_params,
-                    .layout = TL_LAYOUT_CUBE, .size = 128);
+                    .layout = TL_LAYOUT_CUBE, .size = 128, .minify = true);

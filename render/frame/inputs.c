@@ -99,6 +99,12 @@ static uint64_t layout_signature(const tl_frame *frame, const struct tl_maps_par
     return MIX(MIX(hash, view.forward), view.up);
 }
 
+static uint64_t look_up_signature(const struct tl_maps_params *maps)
+{
+    uint64_t hash = MIX(MIX(FNV_OFFSET, maps->look_up), maps->mode);
+    return MIX(MIX(hash, maps->fresnel), maps->minify);
+}
+
 /* What a capture shows. */
 static uint64_t scene_signature(const uint64_t signatures[TL_INPUT_COUNT], const struct tl_maps_params *maps)
 {
@@ -184,8 +190,7 @@ void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *setti
     signatures[TL_INPUT_LAYOUT] = layout_signature(frame, &settings->maps);
     count_capture(frame, settings, signatures, rest);
     signatures[TL_INPUT_CAPTURE] = MIX(start, rest->captured);
-    signatures[TL_INPUT_LOOK_UP] =
-        MIX(MIX(MIX(start, settings->maps.look_up), settings->maps.mode), settings->maps.fresnel);
+    signatures[TL_INPUT_LOOK_UP] = look_up_signature(&settings->maps);
     count_rest(light, before, signatures, rest);
     signatures[TL_INPUT_ROUND] = MIX(start, rest->image);
     signatures[TL_INPUT_SCENE_ROUND] = MIX(start, rest->scene);

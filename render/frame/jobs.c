@@ -5,6 +5,7 @@
 #include "config/memory.h"
 #include "render/light/compose.h"
 #include "render/local/lamp_rays.h"
+#include "render/local/lamp_samples.h"
 #include "render/reference/reference.h"
 
 #include <math.h>
@@ -194,8 +195,8 @@ static bool run_gbuffer(void *context, int level, tl_error *error)
 {
     tl_renderer *renderer = context;
     (void)level;
-    forget_unused_detail(renderer);
     struct tl_gbuffer_request request = gbuffer_request(renderer);
+    forget_unused_detail(renderer);
     return tl_gbuffer_draw(&renderer->gbuffer, renderer->gpu, &request, error);
 }
 
@@ -290,10 +291,43 @@ static bool run_points(void *context, int level, tl_error *error)
     return true;
 }
 
+/* Which back-end shadows each lamp, kept for the jobs that follow. */
+static size_t list_lamps(tl_renderer *renderer, struct tl_lamp lamps[TL_LAMPS_MAX])
+{
+    size_t count = tl_lamps_lit(&renderer->frame, lamps);
+    for (size_t i = 0; i < count; i++)
+        renderer->local.shadows.kinds[i] =
+            tl_lamp_shadow_of(&lamps[i], &renderer->settings.light, &renderer->casters);
+    return count;
+}
+
+/* Of samples that no pass of the GPU knows. */
+static bool add_lamps(tl_renderer *renderer, const struct tl_compose_request *composed, tl_error *error)
+{
+    struct tl_lamp lamps[TL_LAMPS_MAX];
+    const struct tl_lamp_samples_request request = {.lamp_count = list_lamps(renderer, lamps),
+                                                    .lamps = lamps,
+                                                    .shadowed = renderer->settings.light.method !=
+                                                                TL_METHOD_UNSHADOWED,
+                                                    .trace = renderer->trace,
+                                                    .samples = &renderer->samples,
+                                                    .shares = composed->shares,
+                                                    .mirrors = composed->mirrors,
+                                                    .ranges = &renderer->ranges,
+                                                    .ground = ground_of(renderer),
+                                                    .eye = renderer->view.eye};
+    if (request.lamp_count == 0 || renderer->samples.count == renderer->samples.primary_count)
+        return true;
+    if (request.shadowed && !follow_motion(renderer, error))
+        return false;
+    tl_lamp_samples_add(&request, renderer->light);
+    return true;
+}
+
 static bool run_compose(void *context, int level, tl_error *error)
 {
     tl_renderer *renderer = context;
-    (void)level, (void)error;
+    (void)level;
     const struct tl_samples *samples = &renderer->samples;
     size_t bytes = (size_t)samples->width * (size_t)samples->height * 4 * sizeof(float);
     if (bytes != renderer->light_bytes) {
@@ -323,6 +357,8 @@ static bool run_compose(void *context, int level, tl_error *error)
             request.sun_visibility[i] = tl_points_sun(renderer->points, i);
     }
     tl_compose(&request, renderer->light);
+    if (!add_lamps(renderer, &request, error))
+        return false;
     tl_lighting_set(&renderer->lighting, renderer->gpu, &renderer->gbuffer, renderer->light);
     return true;
 }
@@ -402,16 +438,6 @@ static bool run_look_up(void *context, int level, tl_error *error)
     bool fine = tl_envmap_draw(&renderer->envmap, renderer->gpu, &request, error);
     tl_gpu_reset_state(renderer->gpu);
     return fine;
-}
-
-/* Which back-end shadows each lamp, kept for the jobs that follow. */
-static size_t list_lamps(tl_renderer *renderer, struct tl_lamp lamps[TL_LAMPS_MAX])
-{
-    size_t count = tl_lamps_lit(&renderer->frame, lamps);
-    for (size_t i = 0; i < count; i++)
-        renderer->local.shadows.kinds[i] =
-            tl_lamp_shadow_of(&lamps[i], &renderer->settings.light, &renderer->casters);
-    return count;
 }
 
 static bool run_lamp_maps(void *context, int level, tl_error *error)

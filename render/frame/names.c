@@ -52,7 +52,7 @@ const char *const tl_resource_names[] = {
     [TL_MADE_IMAGE] = "image",
     [TL_MADE_BACKDROP] = "backdrop",
     [TL_MADE_SHOWN] = "shown image",
-    NULL,
+    [TL_RESOURCE_COUNT] = NULL,
 };
 
 const char *const tl_scene_fact_names[] = {
@@ -75,5 +75,5 @@ const char *const tl_scene_fact_names[] = {
     [TL_SCENE_LAMP_RAYS] = "lamps with shadow rays",
     [TL_SCENE_SAMPLES] = "rays from samples",
     [TL_SCENE_CAPTURE] = "captured scene",
-    NULL,
+    [TL_SCENE_FACT_COUNT] = NULL,
 };

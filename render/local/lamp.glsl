@@ -1,5 +1,5 @@
 // The lamp that is being added, and the cosines that a reflectance model is evaluated with.
-#include "material.glsl"
+#include "direction.glsl"
 
 layout(location = 64) uniform mat4 view_projection;
 layout(location = 65) uniform vec3 eye;

@@ -32,10 +32,10 @@ static void look(const struct tl_lamp *lamp, const struct tl_trace *trace, const
     }
     if (bundle.count == 0)
         return;
-    uint32_t stopped = tl_trace_occluded_bundle(trace, &bundle);
+    float seen[BUNDLE];
+    tl_trace_seen_bundle(trace, &bundle, seen);
     for (int k = 0; k < bundle.count; k++)
-        if (!(stopped >> k & 1))
-            out[texels[k]] = (uint8_t)lroundf(255 * shown[k]);
+        out[texels[k]] = (uint8_t)lroundf(255 * shown[k] * seen[k]);
 }
 
 void tl_lamp_rays(const struct tl_lamp *lamp, const struct tl_trace *trace, const struct tl_samples *samples,
@@ -47,4 +47,25 @@ void tl_lamp_rays(const struct tl_lamp *lamp, const struct tl_trace *trace, cons
     for (size_t first = 0; first < count; first += BUNDLE)
         look(lamp, trace, samples->items + first, count - first < BUNDLE ? (int)(count - first) : BUNDLE,
              ranges, ground, out);
+}
+
+vec3s tl_lamp_arriving(const struct tl_lamp *lamp, const tl_trace *trace, const tl_sample *sample,
+                       const struct tl_triangle_ranges *ranges, const struct tl_ground *ground,
+                       vec3s *direction)
+{
+    vec3s start = trace ? tl_sample_start(sample, ranges, tl_trace_offset(trace)) : sample->point;
+    struct tl_lamplight light = tl_lamp_at(lamp, start, sample->smooth);
+    float shown = trace ? tl_lamp_ground_visibility(lamp, ground, start, light.direction) : 1;
+    *direction = light.direction;
+    if (shown <= 0 || glms_vec3_dot(sample->smooth, light.direction) <= 0)
+        return (vec3s){{0, 0, 0}};
+    struct tl_trace_bundle bundle = {.count = trace ? 1 : 0, .to_m = light.distance_m};
+    bundle.origin_x[0] = start.x, bundle.origin_y[0] = start.y, bundle.origin_z[0] = start.z;
+    bundle.direction_x[0] = light.direction.x;
+    bundle.direction_y[0] = light.direction.y;
+    bundle.direction_z[0] = light.direction.z;
+    float seen[BUNDLE] = {1};
+    if (trace)
+        tl_trace_seen_bundle(trace, &bundle, seen);
+    return glms_vec3_scale(light.irradiance, shown * seen[0]);
 }

@@ -1,6 +1,7 @@
 #include "render/local/local.h"
 
 #include "config/memory.h"
+#include "render/pem/lobe.h"
 #include "render/shaders.h"
 
 #include <epoxy/gl.h>
@@ -23,6 +24,7 @@ enum {
     LAMP_BIAS,
     LAMP_LAYER,
     LAMP_GROUND,
+    LAMP_LAYERS,
     TABLE_AXES = 80,
     TABLE_SCALES = 83
 };
@@ -110,9 +112,10 @@ static void define_tables(const struct tl_gloss_tables *tables, const struct pas
         define(defines, "TIMES_COS_A");
 }
 
-static void define_all(const struct tl_shading_params *params, const struct lit_part *part,
+static void define_all(const struct tl_local_request *request, const struct lit_part *part,
                        const struct pass *pass, char defines[TL_LOCAL_DEFINES_SIZE])
 {
+    const struct tl_shading_params *params = request->params;
     const struct tl_gloss *gloss = &part->material->gloss;
     snprintf(defines, TL_LOCAL_DEFINES_SIZE,
              "#define MODEL %d\n#define FACETS %d\n#define MASKING %d\n#define FRESNEL %d\n", gloss->model,
@@ -132,8 +135,12 @@ static void define_all(const struct tl_shading_params *params, const struct lit_
         define(defines, "SHADOW_RAYS");
     else if (part->shadow == TL_LAMP_SHADOW_MAP)
         define(defines, "SHADOW_MAP");
+    if (part->material->coat > 0)
+        define(defines, "COAT");
     if (pass->define)
         define(defines, pass->define);
+    size_t length = strlen(defines);
+    tl_detail_defines(request->detail, defines + length, TL_LOCAL_DEFINES_SIZE - length);
 }
 
 /* The program of these defines, made when it is first asked for. */
@@ -183,6 +190,8 @@ static void set_gloss(const tl_material *material)
     const struct tl_gloss *gloss = &material->gloss;
     glUniform4f(GLOSS_WIDTHS, gloss->width_weft, gloss->width_warp, cosf(gloss->rotation),
                 sinf(gloss->rotation));
+    glUniform3f(LAMP_LAYERS, material->coat, tl_lobe_exponent(material->coat_glossiness),
+                1 - material->openness);
     glUniform2f(GLOSS_OPTICS, gloss->index > 0 ? gloss->index : 1, fmaxf(gloss->extinction, 0));
 }
 
@@ -213,9 +222,7 @@ static bool draw_pass(struct tl_local *local, tl_gpu *gpu, const struct tl_local
                       const struct lit_part *part, const struct pass *pass, tl_error *error)
 {
     char defines[TL_LOCAL_DEFINES_SIZE];
-    define_all(request->params, part, pass, defines);
-    size_t length = strlen(defines);
-    tl_detail_defines(request->detail, defines + length, sizeof defines - length);
+    define_all(request, part, pass, defines);
     const tl_program *program = find_program(local, gpu, defines, error);
     if (!program)
         return false;

@@ -3,7 +3,9 @@
  *
  *     c += cover E(x) V(x) s(n0.l) [ kd/pi max(0, n.l) + f_r(l, v) n.l ]
  *
- * with the gloss f_r cos of render/brdf/brdf.h, n0 the normal without bumps and s the self-shadow. Lamps know
+ * with the gloss f_r cos of render/brdf/brdf.h, n0 the normal without bumps and s the self-shadow, under the
+ * material's coat and as far as it is no hole. What is seen behind open cloth, through cloth and in mirrors
+ * gets its lamplight by lamp_samples.h. Lamps know
  * the material's two lobes; light.lobe is about the environment. Everything is made when it is first used,
  * and nothing without lamps. */
 #ifndef TOILE_RENDER_LOCAL_LOCAL_H
@@ -15,7 +17,7 @@
 #include "render/local/shading.h"
 #include "render/local/table_textures.h"
 
-#define TL_LOCAL_DEFINES_SIZE 768
+#define TL_LOCAL_DEFINES_SIZE 1024
 
 struct tl_local_program {
     char defines[TL_LOCAL_DEFINES_SIZE];
@@ -42,7 +44,7 @@ struct tl_local_request {
     const struct tl_lamp *lamps;
     size_t lamp_count;
     const struct tl_shading_params *params;
-    const struct tl_detail_params *detail; /* NULL: normals alone */
+    const struct tl_detail_params *detail; /* as the G-buffer has it */
     float depth_bias_m;                    /* of shadow maps */
     float weight;                          /* of this image among those that are averaged in the target */
 };

@@ -6,6 +6,10 @@
 #include "gloss.glsl"
 #include "terms.glsl"
 
+// As surface.glsl has them, whose textures are no business of vertices.
+layout(location = 1) uniform vec3 material_specular;
+layout(location = 2) uniform vec4 material_scalars;
+
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 vertex_normal;
 layout(location = 2) in vec4 vertex_tangent;

@@ -70,6 +70,7 @@ bool tl_local_trial_draw(struct tl_local_trial *trial, const struct tl_shading_p
                                              .lamps = &trial->lamp,
                                              .lamp_count = 1,
                                              .params = params,
+                                             .detail = tl_detail_options.defaults,
                                              .weight = 1};
     bool drawn = tl_local_draw(&trial->local, trial->gpu, &request, error);
     wait_for_gpu();

@@ -1,13 +1,7 @@
 // What a material's maps say at a point: shared by every pass that shades a surface while it draws it. The normal and
 // the tangent are those that rasterisation interpolated, as long as they come out.
 #include "detail.glsl"
-
-// A direction that is never NaN: vectors too short to have one become `fallback`.
-vec3 direction_or(vec3 v, vec3 fallback)
-{
-    float square = dot(v, v);
-    return square > 1e-30 ? v * inversesqrt(square) : fallback;
-}
+#include "direction.glsl"
 
 vec3 decode(vec3 texel)
 {

@@ -22,7 +22,7 @@ refuse 'folder'
 refuse 'd9' d99 -o out
 refuse 'one wall' d9 a1 -o out
 
-"$TOILE" gallery --quick --quiet -o out || fail "exit status $?"
+"$TOILE" gallery a9 --quick --quiet -o out || fail "exit status $?"
 [ "$(head -1 out/gallery.csv)" = "id,technique,setting,error,error_metric,time_ms,image" ] || fail "heads of gallery.csv"
 rows=$(($(wc -l <out/gallery.csv) - 1))
 [ "$rows" -ge 1 ] || fail "no rows"

@@ -210,7 +210,8 @@ static void check_topology(const tl_garment *garment, const char *name, float ed
         vertices += weld[v] == v;
     long edge_count = (long)(mesh->index_count + border) / 2;
     long openings = 2 - ((long)vertices - edge_count + (long)mesh->index_count / 3);
-    assert_int_equal(openings, strcmp(name, "dress") == 0 ? 4 : 2);
+    /* The layers have the dress's four and the curtain's one, and two are lost to there being two of them. */
+    assert_int_equal(openings, strcmp(name, "skirt") == 0 ? 2 : strcmp(name, "dress") == 0 ? 4 : 3);
     free(edges);
     free(weld);
 }
@@ -333,10 +334,10 @@ static void test_refusals(void **state)
     assert_int_equal(error.code, TL_USAGE);
     assert_non_null(strstr(error.message, "trousers"));
     assert_non_null(strstr(error.message, "dress, skirt"));
-    const float bad[] = {0.0079f, 0.081f, 0, -1, NAN, INFINITY};
+    const float bad[] = {0.0029f, 0.081f, 0, -1, NAN, INFINITY};
     for (size_t i = 0; i < TL_COUNT(bad); i++) {
         assert_false(tl_garment_cut("dress", bad[i], &garment, &error));
-        assert_non_null(strstr(error.message, "0.008 to 0.08"));
+        assert_non_null(strstr(error.message, "0.003 to 0.08"));
     }
 }
 

@@ -249,11 +249,38 @@ static void banks_shines_along_the_cone(void **state)
     }
 }
 
+/* The disc of the paper's figure 3: threads run in circles about its middle, light and viewer are far away.
+ * Where a thread runs across both, at azimuths 0 and 180 degrees, it mirrors one into the other; the further
+ * its azimuth from there the darker, the same all along a radius and on both sides. */
+static void banks_on_a_disc_is_a_bow_tie(void **state)
+{
+    (void)state;
+    struct tl_brdf brdf = white(TL_REFLECT_BANKS, 0.95f);
+    vec3s l = polar(50, 0), v = polar(20, 0);
+    double before = INFINITY;
+    for (int azimuth = 0; azimuth <= 90; azimuth += 10) {
+        double shown[4];
+        for (int i = 0; i < 4; i++) {
+            double at = (i & 1 ? -azimuth : azimuth) + (i & 2 ? 180 : 0);
+            vec3s around = polar(90, at + 90);
+            struct tl_brdf_frame frame = tl_brdf_frame_make((vec3s){{0, 0, 1}}, around, 1, 0);
+            shown[i] = gloss_of(&brdf, &frame, l, v);
+            assert_near(shown[i], shown[0], 1e-4 * shown[0]);
+        }
+        assert_true(shown[0] < before);
+        before = shown[0];
+    }
+    struct tl_brdf_frame across = tl_brdf_frame_make((vec3s){{0, 0, 1}}, (vec3s){{0, 1, 0}}, 1, 0);
+    double peak = (double)(tl_brdf_lobe_scale(&brdf) * l.z);
+    assert_near(gloss_of(&brdf, &across, l, v), peak, 1e-4 * peak);
+}
+
 /* c(s) by its gamma functions. */
 static void scales_are_the_formulas(void **state)
 {
     (void)state;
-    for (float s = 1; s < 1e6f; s *= 3) {
+    for (int i = 0; i < 13; i++) {
+        float s = powf(3, (float)i); /* 1 to 531,441 */
         struct tl_brdf brdf = white(TL_REFLECT_BANKS, 0);
         brdf.exponent = s;
         double expected = exp(lgamma((double)s / 2 + 2) - lgamma((double)s / 2 + 1.5)) / (2 * sqrt(PI));
@@ -333,9 +360,9 @@ static void draws_estimate_the_energy(void **state)
             vec3s v = polar(40, 70);
             double sum = 0;
             for (int k = 0; k < 128 * 128; k++) {
-                float density;
-                vec3s l = tl_brdf_draw(&brdf, &frame, v, ((float)(k % 128) + 0.5f) / 128,
-                                       ((float)(k / 128) + 0.5f) / 128, &density);
+                int row = k / 128, column = k % 128;
+                float density, u1 = ((float)column + 0.5f) / 128, u2 = ((float)row + 0.5f) / 128;
+                vec3s l = tl_brdf_draw(&brdf, &frame, v, u1, u2, &density);
                 double weight = density > 0 ? gloss_of(&brdf, &frame, l, v) / (double)density : 0;
                 sum += weight / (128 * 128);
                 heaviest = fmax(heaviest, weight);
@@ -389,7 +416,7 @@ static void conductors_are_the_complex_form(void **state)
         assert_near(tl_fresnel_conductor(metals[i][0], metals[i][1], 0), 1, 0);
         for (int j = 1; j < 100; j++) {
             double c = j / 100.0;
-            _Complex double index = n + k * 1.0i, square = index * index;
+            _Complex double index = CMPLX(n, k), square = index * index;
             _Complex double inside = square - (1 - c * c), root = csqrt(inside);
             double across = cabs((c - root) / (c + root)),
                    along = cabs((square * c - root) / (square * c + root));
@@ -501,6 +528,7 @@ int main(void)
         cmocka_unit_test(anisotropy_turns_with_the_tangent),
         cmocka_unit_test(ward_stretches_along_the_wider_slopes),
         cmocka_unit_test(banks_shines_along_the_cone),
+        cmocka_unit_test(banks_on_a_disc_is_a_bow_tie),
         cmocka_unit_test(scales_are_the_formulas),
         cmocka_unit_test(draws_follow_their_density),
         cmocka_unit_test(draws_estimate_the_energy),

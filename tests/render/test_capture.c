@@ -52,6 +52,7 @@ static void scene_open(struct scene *scene)
     scene->settings.light.method = TL_METHOD_MAPS;
     scene->settings.maps.mode = TL_MAPS_MIRROR;
     scene->settings.maps.size = SIZE;
+    scene->settings.maps.minify = false;
     scene->settings.maps.capture_every = 1;
     /* the middle of the scene is that of the box around both */
     struct tl_box boxes[2] = {tl_box_of(scene->surfaces[0].positions, scene->surfaces[0].vertex_count),

@@ -149,6 +149,7 @@ static void scene_open(struct scene *scene, vec3s (*light)(vec3s))
     test_shape_refresh(&scene->ball);
     scene->settings.light.method = TL_METHOD_MAPS;
     scene->settings.maps.size = 64;
+    scene->settings.maps.minify = false; /* one direction a pixel */
     scene->frames[0] = test_frame((vec3s){{1.5f, 1, 3}}, (vec3s){{0, 0, 0}}, 35, &scene->ball.surface, 1,
                                   &scene->environment);
     scene->frames[1] = test_frame((vec3s){{0, 0.8f, 0}}, (vec3s){{0.5f, 0.3f, 0.5f}}, 90,
@@ -329,6 +330,56 @@ static void surfaces_are_lit_as_elsewhere(void **state)
     scene_close(&scene);
 }
 
+/* Bright and dark patches of some degrees. */
+static vec3s checks(vec3s d)
+{
+    int column = (int)floorf(atan2f(d.x, d.z) * 12), row = (int)floorf(asinf(d.y) * 12);
+    return (column + row) & 1 ? (vec3s){{1, 0.9f, 0.8f}} : (vec3s){{0.1f, 0.1f, 0.2f}};
+}
+
+/* Of the covered pixels: an outline is not a map's to smooth. */
+static double difference(const tl_image *a, const tl_image *truth)
+{
+    double squares = 0;
+    int counted = 0;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        const float *first = tl_image_floats(a) + 4 * (size_t)i,
+                    *second = tl_image_floats(truth) + 4 * (size_t)i;
+        if (second[3] < 1)
+            continue;
+        counted++;
+        for (int c = 0; c < 3; c++)
+            squares += pow((double)(first[c] - second[c]), 2) / 3;
+    }
+    return sqrt(squares / counted);
+}
+
+/* A small ball shows checks smaller than its pixels: mip levels against 256 samples a pixel. */
+static void levels_stand_for_samples(void **state)
+{
+    struct test_device *device = *state;
+    for (int layout = 0; layout < TL_LAYOUT_COUNT; layout++) {
+        struct scene scene;
+        scene_open(&scene, checks);
+        scene.settings.maps.layout = layout;
+        scene.settings.maps.mode = TL_MAPS_MIRROR;
+        tl_image sharp = test_draw(device->renderer, &scene.frames[0], &scene.settings);
+        scene.settings.maps.minify = true;
+        tl_image levels = test_draw(device->renderer, &scene.frames[0], &scene.settings);
+        scene.settings.maps.minify = false;
+        scene.settings.image.supersample = 16;
+        tl_image truth = test_draw(device->renderer, &scene.frames[0], &scene.settings);
+        double without = difference(&sharp, &truth), with = difference(&levels, &truth);
+        print_message("%s: RMS error of a small mirror %.3f, by levels %.3f\n", tl_layout_names[layout],
+                      without, with);
+        assert_true(with < 0.6 * without);
+        tl_image_release(&sharp);
+        tl_image_release(&levels);
+        tl_image_release(&truth);
+        scene_close(&scene);
+    }
+}
+
 static enum tl_job_action action_of(const tl_plan *plan, const char *name)
 {
     for (int i = 0; i < plan->count; i++)
@@ -404,8 +455,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(modes_are_integrals),           cmocka_unit_test(backs_refract_outwards),
         cmocka_unit_test(layouts_are_integrals),         cmocka_unit_test(white_furnace),
-        cmocka_unit_test(surfaces_are_lit_as_elsewhere), cmocka_unit_test(sphere_maps_follow_the_view),
-        cmocka_unit_test(nobody_pays_who_does_not_ask),
+        cmocka_unit_test(surfaces_are_lit_as_elsewhere), cmocka_unit_test(levels_stand_for_samples),
+        cmocka_unit_test(sphere_maps_follow_the_view),   cmocka_unit_test(nobody_pays_who_does_not_ask),
     };
     return cmocka_run_group_tests(tests, test_device_open, test_device_close);
 }

@@ -1,5 +1,5 @@
-/* Fans of lobes against the gloss that they stand for, by brute force over the hemisphere: how much of the light is
- * sent elsewhere (L1 over the gloss's own integral), and that none is lost. */
+/* Fans of lobes against the gloss that they stand for, by brute force over the hemisphere: how much of the
+ * light is sent elsewhere (L1 over the gloss's own integral), and that none is lost. */
 #include "render/brdf/fan.h"
 
 #include "testing.h"
@@ -9,29 +9,33 @@
 
 #include <math.h>
 
-#define ROWS    360 /* of the hemisphere, of equal height */
-#define COLUMNS 720
+#define ROWS    180 /* of the hemisphere, of equal height */
+#define COLUMNS 360
 
+/* Nine Gauss-Hermite points for the albedo, and a Gaussian's share above the horizon for a power's. */
+#define ENERGY_OFF 0.09
+
+/* Errors are bounded by what came out, rounded up: they keep a change from making fans worse. What fans are
+ * good for, test_layered bounds against the oracle. */
 struct gloss_case {
     const char *name;
     int model;
     float weft, warp, glossiness;
-    double error[4];        /* L1 with 1, 3, 5 and 7 lobes, mean over the viewers: not to be exceeded */
-    double furnace;         /* energy off by at most so much, towards any viewer */
+    double error[4]; /* L1 with 1, 3, 5 and 7 lobes, mean over the viewers */
 };
 
 static const struct gloss_case cases[] = {
-    {"ward .15 .15", TL_REFLECT_WARD, 0.15f, 0.15f, 0, {1,1,1,1}, 1},
-    {"ward .30 .15", TL_REFLECT_WARD, 0.30f, 0.15f, 0, {1,1,1,1}, 1},
-    {"ward .40 .10", TL_REFLECT_WARD, 0.40f, 0.10f, 0, {1,1,1,1}, 1},
-    {"ward .10 .40", TL_REFLECT_WARD, 0.10f, 0.40f, 0, {1,1,1,1}, 1},
-    {"ward .40 .05", TL_REFLECT_WARD, 0.40f, 0.05f, 0, {1,1,1,1}, 1},
-    {"torrance-sparrow .2", TL_REFLECT_TORRANCE_SPARROW, 0.2f, 0, 0, {1,1,1,1}, 1},
-    {"torrance-sparrow .4", TL_REFLECT_TORRANCE_SPARROW, 0.4f, 0, 0, {1,1,1,1}, 1},
-    {"blinn-phong s 8", TL_REFLECT_BLINN_PHONG, 0, 0, 0.875f, {1,1,1,1}, 1},
-    {"cosine lobe s 8", TL_REFLECT_COSINE_LOBE, 0, 0, 0.875f, {1,1,1,1}, 1},
-    {"banks s 8", TL_REFLECT_BANKS, 0, 0, 0.875f, {1,1,1,1}, 1},
-    {"banks s 32", TL_REFLECT_BANKS, 0, 0, 0.96875f, {1,1,1,1}, 1},
+    {"ward .15 .15", TL_REFLECT_WARD, 0.15f, 0.15f, 0, {0.44, 0.28, 0.19, 0.16}},
+    {"ward .30 .15", TL_REFLECT_WARD, 0.30f, 0.15f, 0, {0.62, 0.42, 0.23, 0.18}},
+    {"ward .40 .10", TL_REFLECT_WARD, 0.40f, 0.10f, 0, {0.87, 0.82, 0.52, 0.33}},
+    {"ward .10 .40", TL_REFLECT_WARD, 0.10f, 0.40f, 0, {0.87, 0.82, 0.52, 0.33}},
+    {"ward .40 .05", TL_REFLECT_WARD, 0.40f, 0.05f, 0, {1.15, 1.23, 0.96, 0.76}},
+    {"torrance-sparrow .2", TL_REFLECT_TORRANCE_SPARROW, 0.2f, 0, 0, {0.40, 0.26, 0.18, 0.17}},
+    {"torrance-sparrow .4", TL_REFLECT_TORRANCE_SPARROW, 0.4f, 0, 0, {0.42, 0.24, 0.20, 0.20}},
+    {"blinn-phong s 8", TL_REFLECT_BLINN_PHONG, 0, 0, 0.875f, {0.39, 0.25, 0.19, 0.18}},
+    {"cosine lobe s 8", TL_REFLECT_COSINE_LOBE, 0, 0, 0.875f, {0.15, 0.15, 0.15, 0.15}},
+    {"banks s 8", TL_REFLECT_BANKS, 0, 0, 0.875f, {0.65, 0.26, 0.23, 0.23}},
+    {"banks s 32", TL_REFLECT_BANKS, 0, 0, 0.96875f, {1.08, 0.58, 0.27, 0.18}},
 };
 
 static const struct tl_brdf_frame frame = {{{0, 0, 1}}, {{1, 0, 0}}, {{0, 1, 0}}};
@@ -95,12 +99,14 @@ static void test_lobes_stand_for_the_gloss(void **state)
                     sum += sums.difference / sums.gloss;
                     least = fmin(least, sums.fan / sums.gloss);
                     greatest = fmax(greatest, sums.fan / sums.gloss);
-                    if (getenv("VERBOSE")) printf("   %g %g n %d: %d lobes s %g: L1 %.3f energy %.3f albedo %.3f\n", (double)polars[p], (double)azimuths[a], 2*n+1, count, (double)lobes[0].exponent, sums.difference/sums.gloss, sums.fan/sums.gloss, sums.gloss);
                 }
             errors[n] = sum / (1 + (TL_COUNT(polars) - 1) * TL_COUNT(azimuths));
         }
-        printf("%-22s %6.1f %6.1f %6.1f %6.1f   %.3f %.3f\n", cases[i].name, 100 * errors[0],
-               100 * errors[1], 100 * errors[2], 100 * errors[3], least, greatest);
+        for (int n = 0; n < 4; n++)
+            assert_true(errors[n] < cases[i].error[n]);
+        assert_true(least > 1 - ENERGY_OFF && greatest < 1 + ENERGY_OFF);
+        printf("%-22s %6.1f %6.1f %6.1f %6.1f   %.3f %.3f\n", cases[i].name, 100 * errors[0], 100 * errors[1],
+               100 * errors[2], 100 * errors[3], least, greatest);
     }
 }
 

@@ -108,6 +108,61 @@ static void shadows_equal_the_reference(void **state)
     lamplit_close(&scene);
 }
 
+/* Coats; holes and what is behind them; light through cloth; mirrors that show what is lit: all under a lamp,
+ * against the oracle. What is left are edges of shadows and of what holes and mirrors show. */
+static void layers_equal_the_reference(void **state)
+{
+    struct test_device *device = *state;
+    for (int kind = 0; kind < 3; kind++) {
+        struct lamplit scene;
+        lamplit_open(&scene, shiny_sphere(32), 96, 96);
+        tl_material *ball = &scene.shapes[0].material;
+        if (kind == 0) { /* a coat over Ward */
+            ball->gloss = (struct tl_gloss){
+                .model = TL_REFLECT_WARD, .width_weft = 0.3f, .width_warp = 0.15f, .index = 1.5f};
+            ball->coat = 0.8f;
+            ball->coat_glossiness = 0.97f;
+        } else {
+            lamplit_add(&scene, test_square((vec3s){{0.2f, 0, kind == 1 ? 1.0f : -0.9f}}, (vec3s){{1, 0, 0}},
+                                            (vec3s){{0, 0, 1}}, kind == 1 ? 0.4f : 1.5f, 8));
+            tl_material *square = &scene.shapes[1].material;
+            if (kind == 1) { /* voile before the sphere, lit from behind itself */
+                square->openness = 0.5f;
+                square->transmission = (vec3s){{0.4f, 0.3f, 0.2f}};
+                scene.lamps[1] = lamp_at((vec3s){{0.9f, 0.9f, 0.4f}}, 2);
+                scene.frame.lamp_count = 2;
+            } else { /* a mirror behind it */
+                square->specular = (vec3s){{0.9f, 0.9f, 0.9f}};
+                square->diffuse = (vec3s){{0, 0, 0}};
+                square->glossiness = 1;
+                ball->glossiness = 0.5f;
+                scene.lamps[0] = lamp_at((vec3s){{0.9f, 0.8f, -0.5f}}, 2);
+                scene.frame.camera.eye.x = 1.5f;
+            }
+        }
+        lamplit_refresh(&scene);
+        scene.settings.light.visibility = TL_VISIBILITY_RAYS;
+        scene.settings.light.reflect_scene = true;
+        scene.settings.shading.self_shadow = TL_SELF_SHADOW_STEP;
+        scene.settings.light.method = TL_METHOD_REFERENCE;
+        scene.settings.reference.replicates = scene.settings.reference.strata = 1;
+        tl_image expected = lamplit_draw(&scene, device->renderer);
+        scene.settings.light.method = TL_METHOD_PEM;
+        struct lamplit_difference off = lamplit_error(&scene, device->renderer, &expected);
+        static const char *const names[] = {"coat", "voile", "mirror"};
+        print_message("%s: rel. RMSE %.4f, largest %.3f of the peak, %zu pixels\n", names[kind], off.rel_rmse,
+                      off.largest, off.pixels);
+        assert_true(off.pixels > 2000);
+        assert_true(off.rel_rmse < 0.05);
+        if (kind == 2) { /* there is something to see in it */
+            scene.settings.light.reflect_scene = false;
+            assert_true(lamplit_error(&scene, device->renderer, &expected).rel_rmse > 0.2);
+        }
+        tl_image_release(&expected);
+        lamplit_close(&scene);
+    }
+}
+
 static const struct tl_plan_row *row_of(const tl_plan *plan, const char *name)
 {
     for (int i = 0; i < plan->count; i++)
@@ -268,6 +323,7 @@ int main(void)
         cmocka_unit_test(equals_the_cpu),
         cmocka_unit_test(backs_equal_the_cpu),
         cmocka_unit_test(shadows_equal_the_reference),
+        cmocka_unit_test(layers_equal_the_reference),
         cmocka_unit_test(costs_nothing_without_lamps),
         cmocka_unit_test(adds_once),
         cmocka_unit_test(bears_extremes),

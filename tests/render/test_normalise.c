@@ -12,8 +12,9 @@ static void exact_is_unit_and_zero_stays_zero(void **state)
     struct tl_normal_cube cube = tl_normal_cube_make(4, 8);
     for (int method = 0; method < TL_NORMALISE_COUNT; method++)
         assert_near(glms_vec3_norm(tl_normalise(method, &cube, (vec3s){{0, 0, 0}})), 0, 0);
+    vec3s unit = tl_normalise(TL_NORMALISE_EXACT, &cube, (vec3s){{3, -4, 12}});
+    assert_near(glms_vec3_norm(unit), 1, 1e-6);
     tl_normal_cube_release(&cube);
-    assert_near(glms_vec3_norm(tl_normalise(TL_NORMALISE_EXACT, NULL, (vec3s){{3, -4, 12}})), 1, 1e-6);
     struct tl_normalise_error error = tl_normalise_error(TL_NORMALISE_EXACT, 60 * DEG);
     assert_true(error.vector < 1e-6 && error.length < 1e-6);
 }

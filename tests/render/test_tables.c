@@ -53,6 +53,21 @@ static void float_tables_are_the_formula(void **state)
     }
 }
 
+/* g -> 1: up to where the header says, and finite to the end. */
+static void near_mirrors_hold_as_far_as_told(void **state)
+{
+    (void)state;
+    for (int model = 0; model < MODELS; model++) {
+        struct tl_brdf brdf =
+            brdf_of(model, model == TL_REFLECT_BANKS ? 0.998f : 0.9999f, TL_FRESNEL_SCHLICK);
+        assert_true(away_of(&brdf, 512, TL_PRECISION_FLOAT) <= 0.005);
+        struct tl_brdf mirror = brdf_of(model, 1, TL_FRESNEL_SCHLICK);
+        double error = away_of(&mirror, 512, TL_PRECISION_FLOAT);
+        printf("%s, s = %.0f: %.2f %%\n", names[model], (double)mirror.exponent, 100 * error);
+        assert_true(isfinite(error) && error < 0.5);
+    }
+}
+
 /* Every variant of the factored model, its two facets, two maskings and three Fresnel terms. */
 static void every_torrance_sparrow_holds(void **state)
 {
@@ -265,6 +280,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(float_tables_are_the_formula),
+        cmocka_unit_test(near_mirrors_hold_as_far_as_told),
         cmocka_unit_test(every_torrance_sparrow_holds),
         cmocka_unit_test(banks_by_angles_is_finer),
         cmocka_unit_test(scaling_keeps_what_clamping_darkens),
