@@ -27,6 +27,9 @@ enum flag_kind {
     FLAG_LAYOUT,
     FLAG_FROM,
     FLAG_MAP_SIZE,
+    FLAG_REPEAT_MM,
+    FLAG_HEIGHT_MM,
+    FLAG_CLAMP,
     FLAG_QUIET,
     FLAG_VERBOSE,
     FLAG_HELP,
@@ -81,6 +84,11 @@ static const struct flag flags_known[] = {
      "height of the result in texels, or the side of a cube's face"},
     {"--capture", TL_FLAGS_CAPTURE, FLAG_CAPTURE, NULL, NULL,
      "instead of a file: what the middle of a scene sees, the scene itself included"},
+    {"--repeat-mm", TL_FLAGS_FABRIC, FLAG_REPEAT_MM, NULL, "MM",
+     "width of the height map on the cloth; else 10"},
+    {"--height-mm", TL_FLAGS_FABRIC, FLAG_HEIGHT_MM, NULL, "MM",
+     "height that a value of 1 (white) stands for; else 0.5"},
+    {"--clamp", TL_FLAGS_FABRIC, FLAG_CLAMP, NULL, NULL, "the map does not repeat"},
     {"--quiet", 0, FLAG_QUIET, NULL, NULL, "say nothing but errors"},
     {"--verbose", 0, FLAG_VERBOSE, NULL, NULL, "say more"},
     {"--help", 0, FLAG_HELP, NULL, NULL, "what the command does and takes"},
@@ -124,6 +132,15 @@ static bool read_whole(const char *flag, const char *text, const char **end, int
         *end = stop;
     *out = (int)value;
     return true;
+}
+
+/* Millimetres: from a micrometre to ten metres, the whole text. */
+static bool read_length(const char *flag, const char *text, double *out, tl_error *error)
+{
+    char *stop;
+    *out = strtod(text, &stop);
+    return (stop != text && !*stop && *out >= 1e-3 && *out <= 1e4) ||
+           tl_fail(error, TL_USAGE, "%s: \"%s\": expected millimetres, from 0.001 to 10000", flag, text);
 }
 
 static void assign(struct tl_arguments *out, char *assignment)
@@ -210,6 +227,13 @@ static bool take_flag(const struct flag *flag, const char *value, struct tl_argu
         return true;
     case FLAG_MAP_SIZE:
         return read_whole("--size", value, NULL, 1, &out->map_size, error);
+    case FLAG_REPEAT_MM:
+        return read_length("--repeat-mm", value, &out->repeat_mm, error);
+    case FLAG_HEIGHT_MM:
+        return read_length("--height-mm", value, &out->height_mm, error);
+    case FLAG_CLAMP:
+        out->clamp = true;
+        return true;
     case FLAG_QUIET:
         out->quiet = true;
         return true;

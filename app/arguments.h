@@ -23,6 +23,7 @@ enum tl_flag_set { /* which groups of flags a command takes */
                    TL_FLAGS_QUICK = 256,       /* --quick */
                    TL_FLAGS_FULL = 512,        /* --full */
                    TL_FLAGS_LAYOUT = 1024,     /* --layout NAME --from NAME --size N */
+                   TL_FLAGS_FABRIC = 2048,     /* --repeat-mm MM --height-mm MM --clamp */
                    TL_FLAGS_CAPTURE = 1 << 16, /* --capture, and those of the scene but the image's */
 };
 
@@ -40,6 +41,8 @@ struct tl_arguments {
     int max_frames;          /* 0: no limit */
     const char *axis;        /* NULL: not given */
     bool quick, full;
+    double repeat_mm, height_mm; /* 0: not given */
+    bool clamp;
     const char *layout, *from; /* NULL: not given */
     int map_size;              /* 0: not given */
     bool capture;

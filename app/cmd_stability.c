@@ -49,15 +49,17 @@ static void print_counts(const struct tl_stability *stability)
 
 bool tl_command_stability(const struct tl_arguments *arguments, tl_error *error)
 {
-    enum { LIGHT, CLOTH };
-    static const char *const topics[] = {[LIGHT] = "light", [CLOTH] = "cloth", NULL};
+    enum { LIGHT, CLOTH, DETAIL };
+    static const char *const topics[] = {[LIGHT] = "light", [CLOTH] = "cloth", [DETAIL] = "detail", NULL};
     struct tl_arguments scene;
     int topic;
     if (!tl_topic_take("stability", arguments, topics, true, &scene, &topic, error))
         return false;
     struct tl_stability stability = {.rows = cJSON_CreateArray()};
-    bool done = (topic == LIGHT || tl_stability_cloth(&scene, &stability, error)) &&
-                (topic == CLOTH || tl_stability_light(&scene, &stability, error));
+    bool all = topic < 0;
+    bool done = (!(all || topic == CLOTH) || tl_stability_cloth(&scene, &stability, error)) &&
+                (!(all || topic == LIGHT) || tl_stability_light(&scene, &stability, error)) &&
+                (!(all || topic == DETAIL) || tl_stability_detail(&scene, &stability, error));
     if (done && arguments->json)
         print_json(&stability);
     else if (done)

@@ -23,7 +23,7 @@ const struct tl_command tl_commands[] = {
     {"trade", "trade [SCENE] -o FOLDER [--axis light|cloth] [--quick] [OPTIONS]",
      "Measures error against time over many choices of settings: FOLDER/trade.csv and report.html.",
      TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_AXIS | TL_FLAGS_QUICK, tl_command_trade},
-    {"stability", "stability [light|cloth] [--json] [--quick] [-o FOLDER] [OPTIONS]",
+    {"stability", "stability [light|cloth|detail] [--json] [--quick] [-o FOLDER] [OPTIONS]",
      "Runs the extremes, cell by cell: exact, within a stated bound, or refused with a clear message; "
      "FOLDER gets a table of all cells and a picture of the cloth's.",
      TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_JSON | TL_FLAGS_QUICK, tl_command_stability},
@@ -44,6 +44,9 @@ const struct tl_command tl_commands[] = {
      "       toile env [SCENE] --capture -o OUT.exr --layout LAYOUT [--size N] [OPTIONS]",
      "Converts an environment map between layouts, keeping its light; or captures one from a scene.",
      TL_FLAGS_OUTPUT | TL_FLAGS_LAYOUT | TL_FLAGS_CAPTURE, tl_command_env},
+    {"fabric", "fabric IN.png|IN.exr -o FOLDER [--repeat-mm MM] [--height-mm MM] [--clamp]",
+     "Bakes normal, offset, horizon and gloss maps from a height map, and tells their size and scale.",
+     TL_FLAGS_OUTPUT | TL_FLAGS_FABRIC, tl_command_fabric},
     {"info", "info FILE|fabrics|presets|garments [--json]",
      "Tells what a file holds and how it will be read, or lists what is built in.", TL_FLAGS_JSON,
      tl_command_info},

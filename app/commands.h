@@ -25,6 +25,7 @@ bool tl_command_stability(const struct tl_arguments *arguments, tl_error *error)
 bool tl_command_gallery(const struct tl_arguments *arguments, tl_error *error);
 bool tl_command_compare(const struct tl_arguments *arguments, tl_error *error);
 bool tl_command_export(const struct tl_arguments *arguments, tl_error *error);
+bool tl_command_fabric(const struct tl_arguments *arguments, tl_error *error);
 bool tl_command_env(const struct tl_arguments *arguments, tl_error *error);
 bool tl_command_info(const struct tl_arguments *arguments, tl_error *error);
 bool tl_command_help(const struct tl_arguments *arguments, tl_error *error);

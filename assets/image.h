@@ -44,6 +44,9 @@ static inline uint8_t *tl_image_bytes(const tl_image *image)
 bool tl_image_decode(const char *name, const void *data, size_t size, tl_image *out, tl_error *error);
 bool tl_image_load(const char *path, tl_image *out, tl_error *error);
 
+/* The first channel of a PNG or JPEG as data, 0 to 1, F32 x1: what 16 bits hold is kept. */
+bool tl_image_load_values(const char *path, tl_image *out, tl_error *error);
+
 /* U8 image as PNG in memory; free(*data). `name` is for messages. */
 bool tl_image_encode_png(const char *name, const tl_image *image, void **data, size_t *size, tl_error *error);
 /* ... and as a file; atomic. */

@@ -120,6 +120,34 @@ bool tl_image_load(const char *path, tl_image *out, tl_error *error)
     return decoded;
 }
 
+static bool decode_values(const char *name, const void *data, size_t size, tl_image *out, tl_error *error)
+{
+    int width, height, channels;
+    if (!check_before_decoding(name, data, size, error))
+        return false;
+    uint16_t *texels = stbi_load_16_from_memory(data, (int)size, &width, &height, &channels, 0);
+    if (!texels)
+        return tl_fail(error, TL_INPUT, "%s: the image cannot be decoded (%s): fetch or write it again", name,
+                       stbi_failure_reason());
+    *out = tl_image_create(width, height, 1, TL_IMAGE_F32);
+    for (size_t i = 0; i < (size_t)width * (size_t)height; i++)
+        tl_image_floats(out)[i] = (float)texels[i * (size_t)channels] / 65535;
+    stbi_image_free(texels);
+    return true;
+}
+
+bool tl_image_load_values(const char *path, tl_image *out, tl_error *error)
+{
+    *out = (tl_image){0};
+    char *data;
+    size_t size;
+    if (!tl_file_read(path, &data, &size, error))
+        return false;
+    bool decoded = decode_values(path, data, size, out, error);
+    free(data);
+    return decoded;
+}
+
 static void write_bytes(void *stream, void *data, int size)
 {
     fwrite(data, 1, (size_t)size, stream);

@@ -11,6 +11,7 @@ add_library(toile_light STATIC
   detail/bumps.c
   detail/detail.c
   detail/field.c
+  detail/options.c
   brdf/power.c
   brdf/table_error.c
   brdf/tables.c
@@ -42,6 +43,7 @@ add_library(toile_light STATIC
   pem/regions_sphere.c
   pem/slices.c
   plan/plan.c
+  reference/detail.c
   reference/gather.c
   reference/lamps.c
   reference/options.c

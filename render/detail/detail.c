@@ -43,6 +43,8 @@ bool tl_detail_heights_make(const tl_material *material, float uv_metres, float 
         heights_of_map(material, uv_metres, scale, out);
     else if (has_weave(material))
         heights_of_weave(material->weave, uv_metres, scale, out);
+    if (out->image.texels)
+        out->back = tl_height_field_back(&out->field);
     return out->image.texels;
 }
 

@@ -51,7 +51,9 @@ vec2 detail_field_uv(vec2 uv)
 // A map that lies over the field, at its level of detail.
 vec4 detail_texel(sampler2D map, vec2 uv)
 {
-#ifdef DETAIL_SHIFTED
+#if defined(VERTEX_STAGE)
+    return textureLod(map, detail_field_uv(uv), 0.0);
+#elif defined(DETAIL_SHIFTED)
     mat2 turned = transpose(mat2(detail_rows[0].xy, detail_rows[1].xy));
     return textureGrad(map, detail_field_uv(uv), turned * unmoved_across, turned * unmoved_down);
 #else
@@ -59,6 +61,7 @@ vec4 detail_texel(sampler2D map, vec2 uv)
 #endif
 }
 
+#ifndef VERTEX_STAGE
 // Columns: tangent, bitangent and normal at right angles, of the outside. `v * frame` is v in tangent space.
 mat3 detail_frame(vec3 smooth_normal, vec4 tangent)
 {
@@ -219,6 +222,8 @@ float detail_shadow(DetailPlace place, vec3 light, float side, vec2 across, vec2
     return 1.0;
 }
 
+#endif
+
 // ---- Averaged normals ----
 
 // Of a tangent-space normal and what became of it: variance of its slopes along x and y, length of the mean.
@@ -251,6 +256,7 @@ float detail_rough(float rough, Bumps bumps, vec3 view)
 #endif
 }
 
+#ifndef VERTEX_STAGE
 // Blinn's N' = N + h_u (N_n x P_v) + h_v (P_u x N_n), by the derivatives of the triangle in the image. `mapped` has slopes
 // over the metres that a UV unit should have.
 vec3 detail_blinn(vec3 mapped, vec3 normal, vec3 point, vec2 uv)
@@ -270,3 +276,4 @@ vec3 detail_blinn(vec3 mapped, vec3 normal, vec3 point, vec2 uv)
     float square = dot(sum, sum);
     return area != 0.0 && square > 1e-30 && square < 1e30 ? sum * inversesqrt(square) : normal;
 }
+#endif

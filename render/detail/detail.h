@@ -9,7 +9,7 @@
 /* A part's height field: of its height map, or else of its weave. */
 struct tl_detail_heights {
     tl_image image; /* metres over the mesh, scaled; owned */
-    struct tl_height_field field;
+    struct tl_height_field field, back;
     float rows[6]; /* from the mesh's UV to repeats of the field, as tl_uv_transform_rows */
 };
 

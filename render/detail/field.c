@@ -20,6 +20,15 @@ struct tl_height_field tl_height_field_make(const tl_image *heights, float width
     return field;
 }
 
+struct tl_height_field tl_height_field_back(const struct tl_height_field *field)
+{
+    struct tl_height_field back = *field;
+    back.turned_over = !field->turned_over;
+    back.low_m = -field->high_m;
+    back.high_m = -field->low_m;
+    return back;
+}
+
 static int wrapped(float at, int size, bool clamp)
 {
     if (clamp)
@@ -40,7 +49,8 @@ float tl_field_height(const struct tl_height_field *field, vec2s uv)
         rows[j] = (1 - across) * row[wrapped(left, width, field->clamp_u)] +
                   across * row[wrapped(left + 1, width, field->clamp_u)];
     }
-    return (1 - down) * rows[0] + down * rows[1];
+    float mean = (1 - down) * rows[0] + down * rows[1];
+    return field->turned_over ? -mean : mean;
 }
 
 vec2s tl_field_moved(const struct tl_height_field *field, vec2s uv, float x_m, float y_m)

@@ -16,11 +16,15 @@ struct tl_height_field {
     bool clamp_u, clamp_v;   /* else periodic */
     float repeats_per_m[4];  /* rows of the matrix from (x, y) in metres to repeats */
     float low_m, high_m;     /* of all heights */
+    bool turned_over;        /* the sheet from below: heights count downwards */
 };
 
 /* A map that is `width_m` x `height_m` large on the surface. Heights that are not finite are not allowed. */
 struct tl_height_field tl_height_field_make(const tl_image *heights, float width_m, float height_m,
                                             bool clamp_u, bool clamp_v);
+
+/* The same sheet seen from its back. */
+struct tl_height_field tl_height_field_back(const struct tl_height_field *field);
 
 /* Bilinear, as GL reads level 0. */
 float tl_field_height(const struct tl_height_field *field, vec2s uv);

@@ -2,6 +2,7 @@
 // Vertices of surfaces that a lamp lights, with what a way of shading computes there. GOURAUD: the light itself.
 // COSINES: what the model is evaluated with. VECTORS: unit vectors to be interpolated, in tangent space with
 // TANGENT_SPACE.
+#define VERTEX_STAGE
 #include "gloss.glsl"
 #include "terms.glsl"
 

@@ -2,6 +2,7 @@
 
 #include "config/memory.h"
 #include "render/brdf/coat.h"
+#include "render/detail/detail_terms.h"
 #include "render/pem/lobe.h"
 #include "render/surfaces/surfaces.h"
 
@@ -21,9 +22,12 @@ struct look_map {
 struct look_material {
     struct look_map maps[TL_MAP_USES];
     const struct tl_map_texture *weave[TL_WEAVE_USES];
+    const struct tl_map_texture *own_moments, *weave_moments; /* NULL: none */
+    struct tl_detail_heights heights;                         /* of its first part; empty: none */
 };
 
 struct tl_look {
+    size_t count;
     struct look_material *materials;
 };
 
@@ -57,8 +61,10 @@ static struct look_material make_material(struct tl_reference_scene *scene, cons
                                            .clamp_v = maps[use]->clamp_v};
         tl_uv_transform_rows(&maps[use]->transform, look.maps[use].rows);
     }
+    look.own_moments = tl_reference_moments(&scene->detail, material->normal_map.image);
     const tl_weave *weave = material->weave;
     if (weave && weave->size_m[0] > 0 && weave->size_m[1] > 0) {
+        look.weave_moments = tl_reference_moments(&scene->detail, &weave->normal);
         look.weave[TL_WEAVE_NORMAL] = find_texture(scene, &weave->normal, false);
         look.weave[TL_WEAVE_GLOSS] = find_texture(scene, &weave->gloss, false);
         look.weave[TL_WEAVE_TINT] = find_texture(scene, &weave->tint, false);
@@ -73,9 +79,17 @@ static struct tl_look make_look(struct tl_reference_scene *scene, const tl_surfa
         size_t needed = (size_t)surface->parts[p].material + 1;
         count = needed > count ? needed : count;
     }
-    struct tl_look look = {TL_NEW_ARRAY(struct look_material, count)};
+    struct tl_look look = {count, TL_NEW_ARRAY(struct look_material, count)};
     for (size_t m = 0; m < count; m++)
         look.materials[m] = make_material(scene, &surface->materials[m]);
+    const struct tl_detail_params *detail = &scene->detail.params;
+    for (size_t p = 0; p < surface->part_count && tl_detail_wants_heights(detail); p++) {
+        const struct tl_mesh_part *part = &surface->parts[p];
+        struct tl_detail_heights *heights = &look.materials[part->material].heights;
+        if (!heights->image.texels)
+            tl_detail_heights_make(&surface->materials[part->material], part->uv_metres, detail->height_scale,
+                                   heights);
+    }
     return look;
 }
 
@@ -87,6 +101,7 @@ bool tl_reference_scene_make(const tl_frame *frame, const struct tl_render_setti
                                        .ground = ground,
                                        .lobe = settings->light.lobe,
                                        .terminator = settings->reference.terminator,
+                                       .detail.params = settings->detail,
                                        .reflect = settings->light.reflect_scene};
     out->looks = TL_NEW_ARRAY(struct tl_look, out->surface_count + 1);
     for (size_t i = 0; i < out->surface_count; i++)
@@ -106,8 +121,12 @@ bool tl_reference_scene_make(const tl_frame *frame, const struct tl_render_setti
 
 void tl_reference_scene_release(struct tl_reference_scene *scene)
 {
-    for (size_t i = 0; scene->looks && i <= scene->surface_count; i++)
+    for (size_t i = 0; scene->looks && i <= scene->surface_count; i++) {
+        for (size_t m = 0; m < scene->looks[i].count; m++)
+            tl_detail_heights_release(&scene->looks[i].materials[m].heights);
         free(scene->looks[i].materials);
+    }
+    tl_reference_detail_release(&scene->detail);
     free(scene->looks);
     for (size_t i = 0; i < scene->texture_count; i++) {
         tl_map_texture_release(scene->textures[i]);
@@ -125,6 +144,8 @@ struct place {
     const struct look_material *look;
     bool woven;
     float weave_scale[2]; /* repeats per UV unit */
+    float uv_metres;
+    const struct tl_detail_params *detail;
     struct tl_footprint footprint;
     vec3s point, facet; /* normal of the triangle, on the viewer's side */
     vec3s normal;       /* interpolated, towards the outside, as long as it comes out */
@@ -161,11 +182,21 @@ static vec4s map_at(const struct place *place, enum tl_map_use use)
     return tl_map_texture_fetch(map->texture, &at, map->clamp_u, map->clamp_v);
 }
 
-static vec4s weave_at(const struct place *place, enum tl_weave_use use)
+/* A level coarser where the spread of normals is kept, as surface.glsl has it. */
+static vec4s weave_texel(const struct place *place, const struct tl_map_texture *texture)
 {
     const float rows[6] = {place->weave_scale[0], 0, 0, 0, place->weave_scale[1], 0};
     struct tl_footprint at = through_rows(&place->footprint, rows);
-    return tl_map_texture_fetch(place->look->weave[use], &at, false, false);
+    if (tl_detail_wants_moments(place->detail)) {
+        at.across = glms_vec2_scale(at.across, 2);
+        at.down = glms_vec2_scale(at.down, 2);
+    }
+    return tl_map_texture_fetch(texture, &at, false, false);
+}
+
+static vec4s weave_at(const struct place *place, enum tl_weave_use use)
+{
+    return weave_texel(place, place->look->weave[use]);
 }
 
 static vec3s decoded(vec4s texel)
@@ -173,34 +204,63 @@ static vec3s decoded(vec4s texel)
     return (vec3s){{2 * texel.x - 1, 2 * texel.y - 1, 2 * texel.z - 1}};
 }
 
-/* Tangent-space normal: the file's map and the weave, their slopes added as the heights behind them would be.
- */
-static vec3s tangent_space_normal(const struct place *place)
+static struct tl_bumps own_bumps(const struct place *place)
 {
-    vec3s n = {{0, 0, 1}};
-    if (has_map(place, TL_MAP_NORMAL)) {
-        n = decoded(map_at(place, TL_MAP_NORMAL));
-        n.x *= place->material->normal_scale;
-        n.y *= place->material->normal_scale;
+    float scale = place->material->normal_scale;
+    if (!has_map(place, TL_MAP_NORMAL))
+        return tl_bumps_of((vec3s){{0, 0, 1}});
+    if (place->look->own_moments) {
+        const struct look_map *map = &place->look->maps[TL_MAP_NORMAL];
+        struct tl_footprint at = through_rows(&place->footprint, map->rows);
+        return tl_bumps_averaged(
+            tl_map_texture_fetch(place->look->own_moments, &at, map->clamp_u, map->clamp_v), scale);
     }
-    if (place->woven) {
-        vec3s weave = decoded(weave_at(place, TL_WEAVE_NORMAL));
-        n = (vec3s){{n.x * weave.z + weave.x * n.z, n.y * weave.z + weave.y * n.z, n.z * weave.z}};
-    }
-    return n;
+    vec3s n = decoded(map_at(place, TL_MAP_NORMAL));
+    return tl_bumps_of((vec3s){{scale * n.x, scale * n.y, n.z}});
 }
 
-static vec3s shading_normal(const struct place *place, vec3s smooth)
+static struct tl_bumps weave_bumps(const struct place *place)
+{
+    float scale = place->detail->height_scale;
+    if (place->look->weave_moments)
+        return tl_bumps_averaged(weave_texel(place, place->look->weave_moments), scale);
+    vec3s n = decoded(weave_at(place, TL_WEAVE_NORMAL));
+    return tl_bumps_of((vec3s){{scale * n.x, scale * n.y, n.z}});
+}
+
+/* In tangent space: the file's map and the weave. */
+static struct tl_bumps bumps_at(const struct place *place)
+{
+    struct tl_bumps own = own_bumps(place);
+    if (!place->woven)
+        return own;
+    struct tl_bumps weave = weave_bumps(place);
+    return tl_bumps_added(&own, &weave);
+}
+
+static bool has_bumps(const struct place *place)
 {
     vec3s tangent = {{place->tangent.x, place->tangent.y, place->tangent.z}};
-    if (!(has_map(place, TL_MAP_NORMAL) || place->woven) || !(glms_vec3_norm2(tangent) > 0))
-        return smooth;
-    vec3s mapped = tangent_space_normal(place);
+    return (has_map(place, TL_MAP_NORMAL) || place->woven) && glms_vec3_norm2(tangent) > 0;
+}
+
+static vec3s bent_normal(const struct place *place, vec3s mapped, vec3s smooth)
+{
+    vec3s tangent = {{place->tangent.x, place->tangent.y, place->tangent.z}};
     vec3s bitangent = glms_vec3_scale(glms_vec3_cross(place->normal, tangent), place->tangent.w);
     vec3s sum = glms_vec3_scale(tangent, mapped.x);
     sum = glms_vec3_add(sum, glms_vec3_scale(bitangent, mapped.y));
     sum = glms_vec3_add(sum, glms_vec3_scale(place->normal, mapped.z));
     return direction_or(sum, smooth);
+}
+
+/* A direction in the outside's tangent space. */
+static vec3s into_tangent(const struct place *place, vec3s smooth, vec3s d)
+{
+    vec3s t = {{place->tangent.x, place->tangent.y, place->tangent.z}};
+    t = direction_or(glms_vec3_sub(t, glms_vec3_scale(smooth, glms_vec3_dot(smooth, t))), (vec3s){{0, 0, 0}});
+    vec3s b = glms_vec3_scale(glms_vec3_cross(smooth, t), place->tangent.w < 0 ? -1 : 1);
+    return (vec3s){{glms_vec3_dot(d, t), glms_vec3_dot(d, b), glms_vec3_dot(d, smooth)}};
 }
 
 static float glossiness_of(const struct place *place)
@@ -292,10 +352,16 @@ static void set_layers(const struct place *place, vec3s smooth, struct tl_spot *
 static void set_lobes(const struct place *place, const struct tl_reference_scene *scene, vec3s viewer,
                       vec3s smooth, struct tl_spot *spot)
 {
-    vec3s n = glms_vec3_scale(shading_normal(place, smooth), place->side);
+    vec3s n = glms_vec3_scale(smooth, place->side);
+    float g = glossiness_of(place), open = 1;
+    if (has_bumps(place)) {
+        struct tl_bumps bumps = bumps_at(place);
+        n = glms_vec3_scale(bent_normal(place, bumps.normal, smooth), place->side);
+        g = 1 - tl_bumps_rough(place->detail, 1 - g, &bumps, into_tangent(place, smooth, viewer));
+        open = detail_open(bumps.length);
+    }
     float n_dot_v = glms_vec3_dot(n, viewer);
     vec3s mirror = glms_vec3_sub(glms_vec3_scale(n, 2 * fmaxf(n_dot_v, 0)), viewer);
-    float g = glossiness_of(place);
     spot->viewer = viewer;
     spot->glossiness = g;
     spot->material = place->material;
@@ -305,7 +371,7 @@ static void set_lobes(const struct place *place, const struct tl_reference_scene
     spot->exponent = tl_lobe_exponent(g);
     spot->side = place->side;
     spot->f0 = f0_of(place);
-    spot->diffuse = spot->albedo = diffuse_of(place);
+    spot->diffuse = spot->albedo = glms_vec3_scale(diffuse_of(place), open);
     spot->glossy = specular_of(spot->f0, n_dot_v);
     if (scene->lobe == TL_LOBE_SINGLE && place->material->gloss.model == TL_REFLECT_PHONG) {
         spot->axis = direction_or(glms_vec3_lerp(n, mirror, g), n);
@@ -399,6 +465,8 @@ static void set_material(const struct tl_reference_scene *scene, const struct tl
     const struct tl_mesh_part *part = part_of(surface, hit->triangle);
     place->material = &surface->materials[part->material];
     place->look = &scene->looks[hit->surface].materials[part->material];
+    place->uv_metres = part->uv_metres;
+    place->detail = &scene->detail.params;
     place->woven = place->look->weave[TL_WEAVE_NORMAL] && part->uv_metres > 0;
     for (int i = 0; place->woven && i < 2; i++)
         place->weave_scale[i] = part->uv_metres / place->material->weave->size_m[i];
@@ -433,6 +501,11 @@ static struct tl_spot surface_spot(const struct tl_reference_scene *scene, const
         corners.normals[i] = direction_or(glms_vec3_scale(corners.normals[i], place.side), place.facet);
     }
     place.footprint = footprint_of(&corners, weights, ray, hit->distance_m, place.facet);
+    vec3s outside = direction_or(place.normal, glms_vec3_scale(place.facet, place.side));
+    vec3s view = into_tangent(&place, outside, glms_vec3_negate(ray->direction));
+    place.footprint.uv = glms_vec2_add(
+        place.footprint.uv, tl_reference_shift(place.detail, &place.look->heights, place.footprint.uv,
+                                               place.uv_metres, view, place.side));
     vec3s smooth = tl_smooth_point(place.point, corners.positions, corners.normals, weights);
     struct tl_spot spot = spot_of(&place, scene, ray, smooth);
     spot.distance_m = hit->distance_m;
@@ -459,6 +532,7 @@ static struct tl_spot ground_spot(const struct tl_reference_scene *scene, const 
     point.y = ground->centre.y;
     float cover = tl_ground_cover(ground, point.x, point.z), side = ray->direction.y < 0 ? 1.0f : -1.0f;
     const struct place place = {
+        .detail = &scene->detail.params,
         .material = &ground->material,
         .look = &scene->looks[scene->surface_count].materials[0],
         .footprint.uv = {{(point.x - ground->centre.x) / ground->radius,

@@ -7,6 +7,7 @@
 
 #include "render/brdf/brdf.h"
 #include "render/local/lamp.h"
+#include "render/reference/detail.h"
 #include "render/reference/reference.h"
 #include "render/reference/sky.h"
 #include "render/reference/texture.h"
@@ -24,6 +25,7 @@ struct tl_reference_scene {
     size_t texture_count;
     struct tl_map_texture **textures;
     struct tl_sky sky;
+    struct tl_reference_detail detail;
     struct tl_lamp lamps[TL_LAMPS_MAX]; /* those that shine */
     size_t lamp_count;
     float offset_m; /* how far off a surface its rays start */

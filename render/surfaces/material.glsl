@@ -48,6 +48,11 @@ Bumps bumps_at(vec2 uv)
     return bumps;
 }
 
+vec3 tangent_space_normal(vec2 uv)
+{
+    return bumps_at(uv).normal;
+}
+
 bool has_bumps(vec4 tangent)
 {
     bool has_normals = has_map(MAP_NORMAL) || has_map(MAP_WEAVE) || has_detail(DETAIL_OWN_MOMENTS);

@@ -16,3 +16,8 @@ value() { sed -n "s/^[[:space:]]*\"$1\":[[:space:]]*\([0-9]*\).*/\1/p" "$out" | 
 # As many as TECHNIQUES.md lists, for two methods; refusals are promised for cameras that see nothing.
 [ "$(value cells)" -ge 70 ] && [ "$(value refused)" -ge 2 ]
 echo "ok     $(value cells) cells: $(value exact) exact, $(value bounded) bounded, $(value refused) refused"
+
+# Detail: 6 fields x 6 views x 4 ways of seeing them.
+$TOILE stability detail --json --quiet >"$out"
+[ "$(value cells)" -eq 144 ] && [ "$(value silent)" -eq 0 ] && [ "$(value nan)" -eq 0 ] && [ "$(value exact)" -ge 24 ]
+echo "ok     $(value cells) cells of detail: $(value exact) exact, $(value bounded) bounded"

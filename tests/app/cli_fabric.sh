@@ -1,0 +1,58 @@
+#!/usr/bin/env bash
+# toile fabric: the maps it bakes are there and as large as it says; what it cannot do it refuses in one line, status 2.
+set -u
+room=$(mktemp -d)
+trap 'rm -rf "$room"' EXIT
+cd "$room" || exit 1
+failed=0
+
+fail() { echo "FAILED $*"; failed=1; }
+
+# refuse NAME PATTERN ARGUMENTS...
+refuse() {
+    local name=$1 pattern=$2 message status
+    shift 2
+    message=$("$TOILE" fabric "$@" --quiet 2>&1)
+    status=$?
+    [ $status -eq 2 ] || fail "$name: exit status $status: $message"
+    [ "$(printf '%s\n' "$message" | wc -l)" -eq 1 ] || fail "$name: expected one line: $message"
+    printf '%s' "$message" | grep -qE "$pattern" || fail "$name: expected /$pattern/: $message"
+    [ ! -e maps ] || fail "$name: files left"
+}
+
+# A PNG of 2 x 2 texels of 16-bit grey: 0, 65535 / 32768, 256.
+base64 -d >height.png <<'PNG' || exit 1
+iVBORw0KGgoAAAANSUhEUgAAAAIAAAACEAAAAAAHTY67AAAAEklEQVR4nGNgYPj/n6GBgZEBAA7/AoBiWyn9AAAAAElFTkSuQmCC
+PNG
+head -c 40 height.png >cut.png
+printf 'no picture at all' >words.png
+: >empty.png
+
+refuse "no input" 'expected one' -o maps
+refuse "two inputs" 'expected one' height.png height.png -o maps
+refuse "no output" 'output' height.png
+refuse "missing input" 'nowhere\.png.*no such file' nowhere.png -o maps
+refuse "cut input" 'cut\.png' cut.png -o maps
+refuse "input of words" 'words\.png.*PNG' words.png -o maps
+refuse "empty input" 'empty\.png.*empty' empty.png -o maps
+refuse "words as EXR" 'no\.exr' no.exr -o maps
+for bad in 0 -1 nan inf 1e9 ten 5mm; do
+    refuse "repeat of $bad" '\-\-repeat-mm.*millimetres' height.png -o maps --repeat-mm "$bad"
+    refuse "height of $bad" '\-\-height-mm.*millimetres' height.png -o maps --height-mm "$bad"
+done
+refuse "unknown option" 'no such option' height.png -o maps --repeat 5
+message=$("$TOILE" fabric height.png -o height.png/maps --quiet 2>&1)
+[ $? -eq 2 ] || fail "output below a file: $message"
+
+told=$("$TOILE" fabric height.png -o maps --repeat-mm 4 --height-mm 1 2>&1) || fail "baking: $told"
+for map in height.exr normal.png offset.exr moments.exr gloss.png horizon_0_45_90_135.png horizon_180_225_270_315.png; do
+    [ -s "maps/$map" ] || fail "$map is missing"
+    printf '%s' "$told" | grep -q "$map: 2 x 2 texels" || fail "$map: its size is not told"
+done
+printf '%s' "$told" | grep -q '4 x 4 mm a repeat, 1 mm deep' || fail "the scale is not told: $told"
+# What 8 bits would lose is there: 256 / 65535 of a millimetre.
+"$TOILE" fabric maps/height.exr -o again --repeat-mm 4 --height-mm 1 2>&1 | grep -q '0.001 mm deep' ||
+    fail "heights in metres are not read back"
+"$TOILE" info maps/normal.png >/dev/null 2>&1 || "$TOILE" fabric maps/normal.png -o again --clamp --quiet || fail "normal.png is not read"
+[ $failed -eq 0 ] && echo "ok"
+exit $failed
