@@ -22,6 +22,7 @@ enum flag_kind {
     FLAG_MAX_FRAMES,
     FLAG_AXIS,
     FLAG_QUICK,
+    FLAG_CAPTURE,
     FLAG_FULL,
     FLAG_LAYOUT,
     FLAG_FROM,
@@ -41,26 +42,27 @@ struct flag {
 };
 
 static const struct flag flags_known[] = {
-    {"--garment", TL_FLAGS_SCENE, FLAG_ASSIGN, "scene.garment", "NAME|FILE",
+    {"--garment", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, "scene.garment", "NAME|FILE",
      "dress, skirt, none, or a .glb, .gltf or .obj file"},
-    {"--units", TL_FLAGS_SCENE, FLAG_ASSIGN, "scene.units", "UNITS",
+    {"--units", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, "scene.units", "UNITS",
      "of the garment's file: auto, m, dm, cm, mm or in"},
-    {"--motion", TL_FLAGS_SCENE, FLAG_ASSIGN, "scene.motion", "FILE",
+    {"--motion", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, "scene.motion", "FILE",
      "plays a point cache on the garment: .pc2, .mdd, or frame.####.obj"},
-    {"--avatar", TL_FLAGS_SCENE, FLAG_ASSIGN, "scene.avatar", "NAME|FILE",
+    {"--avatar", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, "scene.avatar", "NAME|FILE",
      "form, none, or a .glb, .gltf or .obj file"},
-    {"--env", TL_FLAGS_SCENE, FLAG_ASSIGN, "scene.environment", "NAME|FILE",
+    {"--env", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, "scene.environment", "NAME|FILE",
      "studio, an .exr or .hdr file, or a sequence of them: sky.####.exr"},
-    {"--fabric", TL_FLAGS_SCENE, FLAG_ASSIGN, "scene.fabric", "NAME|FILE",
+    {"--fabric", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, "scene.fabric", "NAME|FILE",
      "a fabric: `toile info fabrics` lists them"},
-    {"--preset", TL_FLAGS_SCENE, FLAG_ASSIGN, "scene.preset", "NAME|FILE", "paper, draft, review or final"},
+    {"--preset", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, "scene.preset", "NAME|FILE",
+     "paper, draft, review or final"},
     {"--method", TL_FLAGS_SCENE, FLAG_ASSIGN, "light.method", "METHOD",
-     "pem, lights, ao, ao_colour, unshadowed or reference"},
+     "pem, lights, ao, ao_colour, unshadowed, reference or maps"},
     {"--size", TL_FLAGS_SCENE, FLAG_SIZE, NULL, "WxH", "size of the image in pixels"},
-    {"--set", TL_FLAGS_SCENE, FLAG_SET, NULL, "TABLE.KEY=VALUE",
+    {"--set", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_SET, NULL, "TABLE.KEY=VALUE",
      "any option: `toile help options` lists them"},
     {"-o", TL_FLAGS_OUTPUT, FLAG_OUTPUT, NULL, "FILE", "where the result goes"},
-    {"--frame", TL_FLAGS_FRAME, FLAG_FRAME, NULL, "N",
+    {"--frame", TL_FLAGS_FRAME | TL_FLAGS_CAPTURE, FLAG_FRAME, NULL, "N",
      "still image of the animation's frame N; 0 is the settled start"},
     {"--frames", TL_FLAGS_FRAMES, FLAG_FRAMES, NULL, "A:B",
      "all frames from A to B; of pictures OUT.png becomes OUT.0001.png ..."},
@@ -73,10 +75,12 @@ static const struct flag flags_known[] = {
     {"--quick", TL_FLAGS_QUICK, FLAG_QUICK, NULL, NULL, "a few choices and frames only"},
     {"--full", TL_FLAGS_FULL, FLAG_FULL, NULL, NULL, "what takes minutes too"},
     {"--layout", TL_FLAGS_LAYOUT, FLAG_LAYOUT, NULL, "NAME",
-     "layout of the result: cube, sphere, paraboloid or latlong"},
+     "layout of the result: cube, sphere, paraboloid, latlong or octahedral"},
     {"--from", TL_FLAGS_LAYOUT, FLAG_FROM, NULL, "NAME", "layout of the input; else guessed from its shape"},
     {"--size", TL_FLAGS_LAYOUT, FLAG_MAP_SIZE, NULL, "N",
      "height of the result in texels, or the side of a cube's face"},
+    {"--capture", TL_FLAGS_CAPTURE, FLAG_CAPTURE, NULL, NULL,
+     "instead of a file: what the middle of a scene sees, the scene itself included"},
     {"--quiet", 0, FLAG_QUIET, NULL, NULL, "say nothing but errors"},
     {"--verbose", 0, FLAG_VERBOSE, NULL, NULL, "say more"},
     {"--help", 0, FLAG_HELP, NULL, NULL, "what the command does and takes"},
@@ -188,6 +192,9 @@ static bool take_flag(const struct flag *flag, const char *value, struct tl_argu
         return read_whole("--max-frames", value, NULL, 1, &out->max_frames, error);
     case FLAG_AXIS:
         out->axis = value;
+        return true;
+    case FLAG_CAPTURE:
+        out->capture = true;
         return true;
     case FLAG_QUICK:
         out->quick = true;

@@ -5,9 +5,11 @@
 #include "assets/environment.h"
 #include "assets/model.h"
 #include "assets/point_cache.h"
+#include "assets/specimen.h"
 #include "config/file.h"
 #include "config/memory.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -56,11 +58,32 @@ static cJSON *describe_vector(vec3s vector)
     return cJSON_CreateFloatArray(vector.raw, 3);
 }
 
+/* What most materials have not, where this one has it. */
+static void describe_layers(cJSON *object, const tl_material *material)
+{
+    const struct tl_gloss *gloss = &material->gloss;
+    if (gloss->model == TL_REFLECT_WARD) {
+        cJSON_AddStringToObject(object, "model", "ward");
+        cJSON_AddNumberToObject(object, "width_weft", (double)gloss->width_weft);
+        cJSON_AddNumberToObject(object, "width_warp", (double)gloss->width_warp);
+        cJSON_AddNumberToObject(object, "rotation_deg", (double)gloss->rotation * 180 / M_PI);
+    }
+    if (material->coat > 0) {
+        cJSON_AddNumberToObject(object, "coat", (double)material->coat);
+        cJSON_AddNumberToObject(object, "coat_glossiness", (double)material->coat_glossiness);
+    }
+    if (material->transmission.x + material->transmission.y + material->transmission.z > 0)
+        cJSON_AddItemToObject(object, "transmission", describe_vector(material->transmission));
+    if (material->openness > 0)
+        cJSON_AddNumberToObject(object, "openness", (double)material->openness);
+}
+
 static cJSON *describe_material(const tl_material *material)
 {
     cJSON *object = cJSON_CreateObject();
     cJSON_AddStringToObject(object, "name", material->name);
     cJSON_AddNumberToObject(object, "glossiness", (double)material->glossiness);
+    describe_layers(object, material);
     cJSON_AddBoolToObject(object, "double_sided", material->double_sided);
     cJSON_AddNumberToObject(object, "alpha_cutoff", (double)material->alpha_cutoff);
     const struct {
@@ -94,6 +117,13 @@ static void describe_units(cJSON *object, const tl_model *model)
     }
 }
 
+static void describe_notes(cJSON *object, const char *key, char *const *notes, size_t count)
+{
+    cJSON *array = cJSON_AddArrayToObject(object, key);
+    for (size_t i = 0; i < count; i++)
+        cJSON_AddItemToArray(array, cJSON_CreateString(notes[i]));
+}
+
 static cJSON *describe_model(const tl_model *model)
 {
     cJSON *object = cJSON_CreateObject();
@@ -117,9 +147,8 @@ static cJSON *describe_model(const tl_model *model)
         cJSON_AddNumberToObject(clip, "duration_s", model->clips[i].duration_s);
         cJSON_AddItemToArray(clips, clip);
     }
-    cJSON *ignored = cJSON_AddArrayToObject(object, "ignored");
-    for (size_t i = 0; i < model->ignored_count; i++)
-        cJSON_AddItemToArray(ignored, cJSON_CreateString(model->ignored[i]));
+    describe_notes(object, "approximated", model->approximated, model->approximated_count);
+    describe_notes(object, "ignored", model->ignored, model->ignored_count);
     return object;
 }
 
@@ -179,6 +208,8 @@ static cJSON *describe_built_in(const char *what)
     else {
         cJSON *names = cJSON_AddArrayToObject(object, what);
         for (const char *const *name = tl_garment_names; *name; name++)
+            cJSON_AddItemToArray(names, cJSON_CreateString(*name));
+        for (const char *const *name = tl_specimen_names; *name; name++)
             cJSON_AddItemToArray(names, cJSON_CreateString(*name));
     }
     return object;

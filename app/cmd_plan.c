@@ -18,10 +18,12 @@ static void print_plan(const tl_plan *plan, const struct tl_render_memory *memor
                row->reason);
     }
     const double mebibyte = 1024.0 * 1024.0;
-    printf("\nmemory (MiB): PEMs %.2f, maps %.2f, targets %.2f, surfaces %.2f, other %.2f, total %.2f\n",
+    printf("\nmemory (MiB): PEMs %.2f, maps %.2f, sheets %.2f, targets %.2f, surfaces %.2f, other %.2f, "
+           "total %.2f\n",
            (double)memory->pems / mebibyte, (double)memory->maps / mebibyte,
-           (double)memory->targets / mebibyte, (double)memory->surfaces / mebibyte,
-           (double)memory->other / mebibyte, (double)memory->total / mebibyte);
+           (double)memory->sheets / mebibyte, (double)memory->targets / mebibyte,
+           (double)memory->surfaces / mebibyte, (double)memory->other / mebibyte,
+           (double)memory->total / mebibyte);
 }
 
 /* ---- The cloth ---- */
@@ -105,6 +107,7 @@ static void print_plan_json(const tl_plan *plan, const struct tl_render_memory *
     cJSON *bytes = cJSON_AddObjectToObject(object, "memory_bytes");
     cJSON_AddNumberToObject(bytes, "pems", (double)memory->pems);
     cJSON_AddNumberToObject(bytes, "maps", (double)memory->maps);
+    cJSON_AddNumberToObject(bytes, "sheets", (double)memory->sheets);
     cJSON_AddNumberToObject(bytes, "targets", (double)memory->targets);
     cJSON_AddNumberToObject(bytes, "surfaces", (double)memory->surfaces);
     cJSON_AddNumberToObject(bytes, "other", (double)memory->other);

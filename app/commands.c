@@ -16,7 +16,7 @@ const struct tl_command tl_commands[] = {
     {"plan", "plan [SCENE] [--json] [OPTIONS]",
      "Prints what would run for a frame, why, at what cost and in how much memory.",
      TL_FLAGS_SCENE | TL_FLAGS_FRAME | TL_FLAGS_JSON, tl_command_plan},
-    {"bench", "bench light|cloth [--json] [--quick|--full] [SCENE] [OPTIONS]",
+    {"bench", "bench light|cloth|shading [--json] [--quick|--full] [SCENE] [OPTIONS]",
      "Measures ratios side by side in one run: light: the presets' CPU time and error in motion; cloth: the "
      "solvers' steps per second beside a plain loop's, normals and tangents, a dress that comes to rest.",
      TL_FLAGS_SCENE | TL_FLAGS_JSON | TL_FLAGS_QUICK | TL_FLAGS_FULL, tl_command_bench},
@@ -27,6 +27,10 @@ const struct tl_command tl_commands[] = {
      "Runs the extremes, cell by cell: exact, within a stated bound, or refused with a clear message; "
      "FOLDER gets a table of all cells and a picture of the cloth's.",
      TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_JSON | TL_FLAGS_QUICK, tl_command_stability},
+    {"gallery", "gallery [WALL] -o FOLDER [--quick]",
+     "Hangs every technique and setting beside its exact evaluation, with its error and its time: pictures, "
+     "FOLDER/gallery.html and gallery.csv.",
+     TL_FLAGS_OUTPUT | TL_FLAGS_QUICK, tl_command_gallery},
     {"compare", "compare TESTED REFERENCE [--json] [--ldr|--hdr]",
      "Tells how different two images are: relative RMSE, mean FLIP, largest difference.",
      TL_FLAGS_JSON | TL_FLAGS_METRIC, tl_command_compare},
@@ -35,9 +39,11 @@ const struct tl_command tl_commands[] = {
      "garment's "
      "motion as .pc2 or .mdd.",
      TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_FRAME | TL_FLAGS_FRAMES, tl_command_export},
-    {"env", "env IN -o OUT.exr --layout cube|sphere|paraboloid|latlong [--from LAYOUT] [--size N]",
-     "Converts an environment map between layouts, keeping its light.", TL_FLAGS_OUTPUT | TL_FLAGS_LAYOUT,
-     tl_command_env},
+    {"env",
+     "env IN -o OUT.exr --layout cube|sphere|paraboloid|latlong|octahedral [--from LAYOUT] [--size N]\n"
+     "       toile env [SCENE] --capture -o OUT.exr --layout LAYOUT [--size N] [OPTIONS]",
+     "Converts an environment map between layouts, keeping its light; or captures one from a scene.",
+     TL_FLAGS_OUTPUT | TL_FLAGS_LAYOUT | TL_FLAGS_CAPTURE, tl_command_env},
     {"info", "info FILE|fabrics|presets|garments [--json]",
      "Tells what a file holds and how it will be read, or lists what is built in.", TL_FLAGS_JSON,
      tl_command_info},

@@ -3,10 +3,12 @@
  * A cell is solved twice. A tube that hangs by its rim starts at rest under its own weight, which is known in
  * closed form (app/sheet.h), and should stay there: it is exact when no vertex leaves its place by more than
  * a thousandth of what it would sink, or of a free fall in the time that passes, whichever is less (and a
- * millionth of the tube, for its float positions). Else it is bounded if none falls faster than free. Then
- * the same tube without weight starts with every vertex moved by a fifth of its cells: its energy must not
- * grow beyond TL_ENVELOPE_GROWTH times what it began with. What a solver cannot do it must refuse, with a
- * message and the last good state. Times in CPU ms. */
+ * millionth of the tube, for its float positions). Else it is bounded if none falls faster than free, but for
+ * the way to where `preview` rests and as far beyond (tl_tube_slack: much on needles, which weigh little).
+ * Then the same tube without weight starts with every vertex moved by a fifth of its cells: its energy must
+ * not grow beyond TL_ENVELOPE_GROWTH times what it began with (of `preview`: its motion's, and its strain's
+ * by the square). What a solver cannot do it must refuse, with a message and the last good state. Times in
+ * CPU ms. */
 #ifndef TOILE_APP_ENVELOPE_H
 #define TOILE_APP_ENVELOPE_H
 

@@ -29,6 +29,7 @@ struct trial {
     tl_cloth *cloth;
     tl_collider *collider;
     vec3s *moved; /* where the ball is to be */
+    double pace;  /* m/s, of what went farthest in the last frame */
 };
 
 /* What a trial that is not refused must keep, beside being finite. */
@@ -36,7 +37,7 @@ enum promise {
     REFUSES, /* nothing: a clear message is the promise */
     ENERGY,  /* what starts at rest is never faster than its fall explains, but for HEADROOM */
     OUTSIDE, /* in the end nothing is deeper in the avatar than DEEP_M */
-    RESTS,   /* in the end nothing is faster than REST_MS */
+    RESTS,   /* in the last frame nothing goes farther than at REST_MS: within it explicit substeps tremble */
     FINITE,
 };
 
@@ -563,8 +564,9 @@ static enum tl_outcome judge(const struct trial *trial, enum promise promise, do
         say(found, "%.2g mm deep, largest strain %.2g", 1e3 * report.deepest_m, report.max_strain);
         return report.deepest_m <= DEEP_M ? TL_OUTCOME_BOUNDED : TL_OUTCOME_SILENT;
     case RESTS:
-        say(found, "%.2g mm/s after %.0f s", 1e3 * report.max_speed, report.time_s);
-        return report.max_speed <= REST_MS ? TL_OUTCOME_BOUNDED : TL_OUTCOME_SILENT;
+        say(found, "%.2g mm/s after %.0f s (%.2g mm/s at its end)", 1e3 * trial->pace, report.time_s,
+            1e3 * report.max_speed);
+        return trial->pace <= REST_MS ? TL_OUTCOME_BOUNDED : TL_OUTCOME_SILENT;
     case FINITE:
         say(found, "finite; largest strain %.2g", report.max_strain);
         break;
@@ -572,17 +574,31 @@ static enum tl_outcome judge(const struct trial *trial, enum promise promise, do
     return TL_OUTCOME_BOUNDED;
 }
 
+static void keep_pace(struct trial *trial, const vec3s *before, vec3s *after)
+{
+    trial->pace = 0;
+    tl_cloth_positions(trial->cloth, after);
+    for (size_t i = 0; i < trial->garment.model.mesh.vertex_count; i++)
+        trial->pace =
+            fmax(trial->pace, (double)glms_vec3_distance(before[i], after[i]) * trial->params.frame_rate);
+}
+
 static enum tl_outcome run_frames(struct trial *trial, const struct extreme *extreme, tl_error *found)
 {
     enum tl_outcome outcome = TL_OUTCOME_BOUNDED;
+    size_t count = trial->garment.model.mesh.vertex_count;
+    vec3s *before = TL_NEW_ARRAY(vec3s, count), *after = TL_NEW_ARRAY(vec3s, count);
     double first = motion_energy(trial) + tl_cloth_measure(trial->cloth, NULL).elastic_energy, most = first;
     for (int frame = 0; frame < trial->frames && outcome == TL_OUTCOME_BOUNDED; frame++) {
         if (extreme->act)
             extreme->act(trial, frame);
-        outcome =
-            tl_cloth_try_step(trial->cloth, trial->collider, trial->garment.model.mesh.vertex_count, found);
+        tl_cloth_positions(trial->cloth, before);
+        outcome = tl_cloth_try_step(trial->cloth, trial->collider, count, found);
+        keep_pace(trial, before, after);
         most = fmax(most, motion_energy(trial));
     }
+    free(before);
+    free(after);
     return outcome == TL_OUTCOME_BOUNDED ? judge(trial, extreme->promise, first, most, found) : outcome;
 }
 

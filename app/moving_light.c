@@ -27,6 +27,11 @@ static bool load(struct tl_moving_light *light, const char *name, double positio
         light->environment = tl_environment_studio();
         return true;
     }
+    if (strcmp(name, "none") == 0 || strcmp(name, "white") == 0) {
+        float radiance = strcmp(name, "white") == 0 ? 1 : 0;
+        light->environment = tl_environment_constant(radiance, radiance, radiance);
+        return true;
+    }
     if (!tl_environment_is_sequence(name))
         return tl_environment_load(name, &light->environment, error);
     if (!tl_environment_sequence_open(name, &light->sequence, error))

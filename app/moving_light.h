@@ -13,8 +13,9 @@ struct tl_moving_light {
     int shown;                        /* frame of the sequence that `environment` is */
 };
 
-/* `name`: "studio", a file or a pattern. `position`: in frames of the sequence, from its start. Replaces what
- * the light held; on failure it is as it was. */
+/* `name`: "studio", "white" (1 from everywhere: the furnace), "none" (black), a file or a pattern.
+ * `position`: in frames of the sequence, from its start. Replaces what the light held; on failure it is as it
+ * was. */
 bool tl_moving_light_open(struct tl_moving_light *light, const char *name, double position, tl_error *error);
 /* Shows the frame at `position`; does nothing where that is shown already. */
 bool tl_moving_light_follow(struct tl_moving_light *light, double position, tl_error *error);

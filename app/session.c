@@ -6,6 +6,7 @@
 #include "app/playback.h"
 #include "assets/avatar.h"
 #include "assets/fit.h"
+#include "assets/specimen.h"
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
@@ -28,6 +29,7 @@ struct tl_session {
     tl_avatar *avatar;   /* NULL: none */
     tl_garment *garment; /* NULL: none */
     tl_weave *weave;     /* NULL: the garment shows no yarns */
+    tl_weave *overlay_weave;
 
     int clip; /* -1: rest pose */
     struct tl_moving body;
@@ -44,6 +46,7 @@ struct tl_session {
     struct tl_box framed; /* what the camera frames: all there is at frame 0 */
     tl_surface surfaces[2];
     size_t surface_count;
+    struct tl_lamp lamps[2];
 };
 
 static bool is_built_in_garment(const char *name)
@@ -75,6 +78,8 @@ static bool load_avatar(tl_session *session, tl_error *error)
         return true;
     if (strcmp(name, "form") == 0)
         loaded = tl_avatar_form();
+    else if (strcmp(name, "ball") == 0)
+        loaded = tl_specimen_ball();
     else if (!tl_avatar_load_in(name, (enum tl_units)session->settings.scene.avatar_units, &loaded, error))
         return false;
     tell_units(&loaded.model, "scene.avatar_units");
@@ -98,6 +103,8 @@ static bool load_avatar(tl_session *session, tl_error *error)
 static bool make_garment(tl_session *session, tl_garment *out, tl_error *error)
 {
     const char *name = session->settings.scene.garment, *wearer = session->settings.scene.avatar;
+    if (tl_specimen_make(name, session->settings.cloth.edge_m, out))
+        return true;
     if (!is_built_in_garment(name))
         return tl_garment_load_in(name, (enum tl_units)session->settings.scene.units, out, error);
     if (!tl_garment_cut(name, session->settings.cloth.edge_m, out, error))
@@ -122,40 +129,79 @@ static bool load_garment(tl_session *session, tl_error *error)
     return true;
 }
 
-static void forget_weave(tl_session *session)
+static void forget_weave(tl_weave **weave)
 {
-    if (!session->weave)
+    if (!*weave)
         return;
-    tl_weave_release(session->weave);
-    free(session->weave);
-    session->weave = NULL;
+    tl_weave_release(*weave);
+    free(*weave);
+    *weave = NULL;
 }
 
-/* The garment's materials from its file and settings.material; the weave they point to. */
+/* The yarns of a look that is a fabric's. */
+static void make_weave(const struct tl_material_params *look, const struct tl_weave_params *params,
+                       tl_weave **out)
+{
+    tl_weave made;
+    forget_weave(out);
+    if (look->use_file || !tl_weave_create(params, &made))
+        return;
+    *out = TL_NEW(tl_weave);
+    **out = made;
+}
+
+static struct tl_gloss gloss_of(const struct tl_material_params *look)
+{
+    return (struct tl_gloss){.model = look->model,
+                             .facets = look->facets,
+                             .masking = look->masking,
+                             .fresnel = look->fresnel,
+                             .index = look->index,
+                             .extinction = look->extinction,
+                             .width_weft = look->width_weft,
+                             .width_warp = look->width_warp,
+                             .rotation = glm_rad(look->rotation_deg)};
+}
+
+/* The fabric replaces how the surface reflects; a print or dye that the file brings stays. */
+static void set_look(const struct tl_material_params *look, const tl_weave *weave, tl_material *material)
+{
+    if (look->use_file)
+        return;
+    if (!material->diffuse_map.image)
+        memcpy(material->diffuse.raw, look->diffuse, sizeof material->diffuse.raw);
+    memcpy(material->specular.raw, look->specular, sizeof material->specular.raw);
+    memcpy(material->transmission.raw, look->transmission, sizeof material->transmission.raw);
+    material->glossiness = look->glossiness;
+    material->gloss = gloss_of(look);
+    material->coat = look->coat;
+    material->coat_glossiness = look->coat_glossiness;
+    material->openness = look->openness;
+    material->gloss_map.image = NULL;
+    material->specular_map.image = NULL;
+    material->weave = weave;
+}
+
+static bool is_overlay(const tl_session *session, const tl_material *material)
+{
+    return strcmp(session->settings.scene.overlay_fabric, "none") != 0 &&
+           strcmp(material->name, TL_GARMENT_OVERLAY) == 0;
+}
+
+/* The garment's materials from its file and the settings' looks; the weaves they point to. */
 static void make_materials(tl_session *session)
 {
-    const struct tl_material_params *look = &session->settings.material;
-    tl_weave made;
-    forget_weave(session);
-    if (!look->use_file && tl_weave_create(&session->settings.weave, &made)) {
-        session->weave = TL_NEW(tl_weave);
-        *session->weave = made;
-    }
+    const struct tl_settings *settings = &session->settings;
     const tl_model *model = &session->garment->model;
+    make_weave(&settings->material, &settings->weave, &session->weave);
+    make_weave(&settings->overlay, &settings->overlay_weave, &session->overlay_weave);
     session->materials = tl_resize(session->materials, model->material_count, sizeof *session->materials);
     for (size_t i = 0; i < model->material_count; i++) {
-        tl_material material = model->materials[i];
-        if (!look->use_file) {
-            /* The fabric replaces how the surface reflects; a print or dye that the file brings stays. */
-            if (!material.diffuse_map.image)
-                memcpy(material.diffuse.raw, look->diffuse, sizeof material.diffuse.raw);
-            memcpy(material.specular.raw, look->specular, sizeof material.specular.raw);
-            material.glossiness = look->glossiness;
-            material.gloss_map.image = NULL;
-            material.specular_map.image = NULL;
-            material.weave = session->weave;
-        }
-        session->materials[i] = material;
+        session->materials[i] = model->materials[i];
+        if (is_overlay(session, &model->materials[i]))
+            set_look(&settings->overlay, session->overlay_weave, &session->materials[i]);
+        else
+            set_look(&settings->material, session->weave, &session->materials[i]);
     }
     session->look_revision++;
 }
@@ -209,6 +255,15 @@ static bool drape(tl_session *session, tl_error *error)
     tl_cloth_mark_start(session->cloth);
     tl_moving_create(&session->dress, &session->garment->model, tl_cloth_weld(session->cloth));
     pull_cloth(session);
+    return true;
+}
+
+static bool begin_cloth(tl_session *session, tl_error *error)
+{
+    if (!session->garment->solid)
+        return drape(session, error);
+    tl_moving_create(&session->dress, &session->garment->model, NULL);
+    tl_moving_update(&session->dress);
     return true;
 }
 
@@ -291,7 +346,7 @@ static bool load_all(tl_session *session, tl_error *error)
         tl_moving_create(&session->body, &session->avatar->model, NULL);
     if (session->garment) {
         make_materials(session);
-        if (!(plays_motion(session) ? begin_playback : drape)(session, error))
+        if (plays_motion(session) ? !begin_playback(session, error) : !begin_cloth(session, error))
             return false;
     } else if (plays_motion(session)) {
         return tl_fail(error, TL_USAGE,
@@ -331,7 +386,8 @@ void tl_session_destroy(tl_session **handle)
     free(session->garment);
     free(session->avatar);
     tl_moving_light_release(&session->light);
-    forget_weave(session);
+    forget_weave(&session->weave);
+    forget_weave(&session->overlay_weave);
     free(session->materials);
     free(session);
     *handle = NULL;
@@ -439,7 +495,9 @@ bool tl_session_apply(tl_session *session, const struct tl_settings *settings, t
             : !tl_moving_light_open(&session->light, environment, position, error))
         return false;
     bool new_look = !tl_options_equal(&tl_weave_options, &old->weave, &settings->weave) ||
-                    !tl_options_equal(&tl_material_options, &old->material, &settings->material);
+                    !tl_options_equal(&tl_material_options, &old->material, &settings->material) ||
+                    !tl_options_equal(&tl_overlay_options, &old->overlay, &settings->overlay) ||
+                    !same_text(old->scene.overlay_fabric, settings->scene.overlay_fabric);
     if (session->cloth && !tl_cloth_set(session->cloth, &settings->fabric, &settings->cloth, error))
         return false;
     session->settings = *settings;
@@ -465,14 +523,19 @@ tl_frame tl_session_frame(tl_session *session)
     for (size_t i = 0; i < session->surface_count; i++)
         session->surfaces[i].topology_revision = session->look_revision;
     const struct tl_image_params *image = &session->settings.image;
+    struct tl_camera camera = tl_camera_frame(&session->settings.camera, session->framed,
+                                              (float)image->width / (float)image->height);
+    session->lamps[0] = tl_lamp_make(&session->settings.lamp, camera.target);
+    session->lamps[1] = tl_lamp_make(&session->settings.fill, camera.target);
     return (tl_frame){
-        .camera = tl_camera_frame(&session->settings.camera, session->framed,
-                                  (float)image->width / (float)image->height),
+        .camera = camera,
         .surfaces = session->surfaces,
         .surface_count = session->surface_count,
         .environment = &session->light.environment,
         .environment_revision = session->light.revision,
         .environment_yaw = glm_rad(session->settings.scene.environment_yaw_deg),
+        .lamps = session->lamps,
+        .lamp_count = TL_COUNT(session->lamps),
         .time_s = session->frame / session->settings.cloth.frame_rate,
     };
 }

@@ -10,10 +10,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What assets/garment.h, assets/avatar.h and assets/studio.h make without a file, and "none". */
-static const char *const garment_names[] = {"dress", "skirt", "none", NULL};
-static const char *const avatar_names[] = {"form", "none", NULL};
-static const char *const environment_names[] = {"studio", NULL};
+/* What assets/garment.h, assets/specimen.h, assets/avatar.h and assets/studio.h make without a file, and
+ * "none".
+ */
+static const char *const garment_names[] = {"dress",  "skirt", "layers", "sheet",
+                                            "sphere", "torus", "none",   NULL};
+static const char *const avatar_names[] = {"form", "ball", "none", NULL};
+static const char *const environment_names[] = {"studio", "white", "none", NULL};
 static const char *const motion_names[] = {"none", NULL};
 
 #define TL_SCENE_DEFAULTS                                                                                    \
@@ -36,12 +39,16 @@ static const struct tl_option scene_rows[] = {
                            "who wears it: built in, or a glTF or OBJ file"),
     TL_OPTION_ENUM(struct tl_scene_params, avatar_units, tl_units_names, "of the avatar's file, as units"),
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, environment, environment_names,
-                           "the light: built in, an .exr or .hdr file, or a sequence of them, sky.####.exr: "
+                           "the light: built in (white: 1 from everywhere), an .exr or .hdr file, or a "
+                           "sequence of them, sky.####.exr: "
                            "each # is a digit of the frame's number"),
     TL_OPTION_NAME_OR_PATH(
         struct tl_scene_params, fabric, tl_embedded_fabrics_names,
         "sets the tables fabric, weave and material: built in, or a YAML file; left out: satin on built-in "
         "garments, none on a garment file"),
+    TL_OPTION_NAME_OR_PATH(struct tl_scene_params, overlay_fabric, tl_embedded_fabrics_names,
+                           "sets the table overlay, and the weave, of a garment's second fabric; how it "
+                           "moves is scene.fabric's"),
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, preset, tl_embedded_presets_names,
                            "sets quality in the tables cloth, light and image: built in, or a YAML file"),
     TL_OPTION_STRING(struct tl_scene_params, clip,
@@ -71,7 +78,23 @@ static const struct tl_option_table camera_table = TL_OPTION_TABLE(
     "camera", "an orbit about a target", camera_rows, struct tl_camera_params, TL_CAMERA_DEFAULTS);
 
 /* The reference page's order. A preset sets CLOTH, LIGHT and IMAGE; a fabric FABRIC, WEAVE and MATERIAL. */
-enum { SCENE, CAMERA, CLOTH, FABRIC, WEAVE, MATERIAL, LIGHT, IMAGE, REFERENCE };
+enum {
+    SCENE,
+    CAMERA,
+    CLOTH,
+    FABRIC,
+    WEAVE,
+    MATERIAL,
+    OVERLAY,
+    LIGHT,
+    MAPS,
+    LAMP,
+    FILL,
+    SHADING,
+    DETAIL,
+    IMAGE,
+    REFERENCE
+};
 
 void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[TL_SETTINGS_TABLES])
 {
@@ -81,15 +104,25 @@ void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[T
     bindings[FABRIC] = (struct tl_binding){&tl_cloth_fabric_options, &settings->fabric};
     bindings[WEAVE] = (struct tl_binding){&tl_weave_options, &settings->weave};
     bindings[MATERIAL] = (struct tl_binding){&tl_material_options, &settings->material};
+    bindings[OVERLAY] = (struct tl_binding){&tl_overlay_options, &settings->overlay};
     bindings[LIGHT] = (struct tl_binding){&tl_light_options, &settings->light};
+    bindings[DETAIL] = (struct tl_binding){&tl_detail_options, &settings->detail};
+    bindings[MAPS] = (struct tl_binding){&tl_maps_options, &settings->maps};
+    bindings[LAMP] = (struct tl_binding){&tl_lamp_options, &settings->lamp};
+    bindings[FILL] = (struct tl_binding){&tl_fill_options, &settings->fill};
+    bindings[SHADING] = (struct tl_binding){&tl_shading_options, &settings->shading};
     bindings[IMAGE] = (struct tl_binding){&tl_image_options, &settings->image};
     bindings[REFERENCE] = (struct tl_binding){&tl_reference_options, &settings->reference};
 }
 
 struct tl_render_settings tl_settings_render(const struct tl_settings *settings)
 {
-    return (struct tl_render_settings){
-        .light = settings->light, .image = settings->image, .reference = settings->reference};
+    return (struct tl_render_settings){.light = settings->light,
+                                       .detail = settings->detail,
+                                       .maps = settings->maps,
+                                       .shading = settings->shading,
+                                       .image = settings->image,
+                                       .reference = settings->reference};
 }
 
 bool tl_settings_equal(const struct tl_settings *a, const struct tl_settings *b)
@@ -155,6 +188,17 @@ static bool apply_fabric(const struct tl_binding *all, const char *name, tl_erro
     return apply(&fabric_layer, name, bindings, TL_COUNT(bindings), error);
 }
 
+/* Only its look: one cloth has one fabric's stiffness. */
+static bool apply_overlay(struct tl_settings *settings, const char *name, tl_error *error)
+{
+    struct tl_cloth_fabric unused;
+    const struct tl_binding bindings[] = {{&tl_cloth_fabric_options, &unused},
+                                          {&tl_weave_options, &settings->overlay_weave},
+                                          {&tl_material_options, &settings->overlay}};
+    tl_options_reset(bindings, TL_COUNT(bindings));
+    return strcmp(name, "none") == 0 || apply(&fabric_layer, name, bindings, TL_COUNT(bindings), error);
+}
+
 /* A model in place of a scene is shown as it is: no garment to drape, its own materials. */
 static bool apply_model(const struct tl_binding *all, const char *path, tl_error *error)
 {
@@ -180,6 +224,8 @@ static void choose_fabric(struct tl_scene_params *scene)
 {
     if (scene->fabric[0] == '\0')
         strcpy(scene->fabric, tl_option_is_file_name(scene->garment) ? "none" : "satin");
+    if (scene->overlay_fabric[0] == '\0')
+        strcpy(scene->overlay_fabric, "none");
 }
 
 /* A model alone is what a motion moves, and what --units means. */
@@ -195,8 +241,20 @@ static void choose_role(struct tl_scene_params *scene)
 }
 
 /* What was asked for and will not be done is said. */
-static void tell_what_is_unused(const struct tl_light_params *light)
+static bool is_plain(const struct tl_material_params *look)
 {
+    return look->model == TL_REFLECT_PHONG && !(look->coat > 0) && !(look->openness > 0) &&
+           !(look->transmission[0] > 0 || look->transmission[1] > 0 || look->transmission[2] > 0);
+}
+
+static void tell_what_is_unused(const struct tl_settings *settings)
+{
+    const struct tl_light_params *light = &settings->light;
+    bool plain = is_plain(&settings->material) && is_plain(&settings->overlay);
+    if (!plain && light->method != TL_METHOD_REFERENCE && light->visibility != TL_VISIBILITY_RAYS)
+        tl_warn("material: model, coat, transmission and openness are shown by light.visibility rays and by "
+                "light.method "
+                "reference only: the environment's light sees two plain lobes");
     if (light->method == TL_METHOD_PEM && light->visibility == TL_VISIBILITY_RAYS &&
         light->composition != TL_COMPOSE_RATIO)
         tl_warn(
@@ -219,12 +277,12 @@ bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *
     choose_fabric(&named);
     tl_options_reset(all, TL_SETTINGS_TABLES);
     if (!apply_preset(all, named.preset, error) || !apply_fabric(all, named.fabric, error) ||
-        !apply_source(all, source, error))
+        !apply_overlay(&settings, named.overlay_fabric, error) || !apply_source(all, source, error))
         return false;
     if (source->scene_file && tl_model_is_file(source->scene_file))
         choose_role(&named);
     settings.scene = named;
-    tell_what_is_unused(&settings.light);
+    tell_what_is_unused(&settings);
     *out = settings;
     return true;
 }

@@ -6,18 +6,21 @@
 #include "assets/weave.h"
 #include "cloth/cloth.h"
 #include "config/options.h"
+#include "render/local/lamp.h"
 #include "render/renderer.h"
 
-struct tl_scene_params {              /* table "scene": what to show; names of built-ins or paths */
-    char garment[TL_STRING_SIZE];     /* "dress", "skirt", "none", or a glTF or OBJ file */
-    char avatar[TL_STRING_SIZE];      /* "form", "none", or a glTF or OBJ file */
-    int units, avatar_units;          /* enum tl_units: of their files */
-    char motion[TL_STRING_SIZE];      /* point cache that moves the garment, or "none": it is simulated */
-    float motion_rate;                /* frames of it a second; 0: as its file says */
-    char environment[TL_STRING_SIZE]; /* "studio", an .exr or .hdr file, or a pattern: sky.####.exr */
-    char fabric[TL_STRING_SIZE];      /* name of an embedded fabric, a YAML file, or "none" */
-    char preset[TL_STRING_SIZE];      /* name of an embedded preset, or a YAML file */
-    char clip[TL_STRING_SIZE];        /* animation of the avatar; "": the first; "none": the rest pose */
+struct tl_scene_params {                 /* table "scene": what to show; names of built-ins or paths */
+    char garment[TL_STRING_SIZE];        /* "dress", "skirt", "layers", "none", or a glTF or OBJ file */
+    char avatar[TL_STRING_SIZE];         /* "form", "none", or a glTF or OBJ file */
+    int units, avatar_units;             /* enum tl_units: of their files */
+    char motion[TL_STRING_SIZE];         /* point cache that moves the garment, or "none": it is simulated */
+    float motion_rate;                   /* frames of it a second; 0: as its file says */
+    char environment[TL_STRING_SIZE];    /* "studio", an .exr or .hdr file, or a pattern: sky.####.exr */
+    char fabric[TL_STRING_SIZE];         /* name of an embedded fabric, a YAML file, or "none" */
+    char overlay_fabric[TL_STRING_SIZE]; /* as fabric: of the garment's materials named overlay; "": as the
+                                            others */
+    char preset[TL_STRING_SIZE];         /* name of an embedded preset, or a YAML file */
+    char clip[TL_STRING_SIZE];           /* animation of the avatar; "": the first; "none": the rest pose */
     float environment_yaw_deg;
     float environment_rate; /* frames of a sequence a second */
 };
@@ -37,12 +40,18 @@ struct tl_settings {
     struct tl_cloth_fabric fabric;
     struct tl_weave_params weave;
     struct tl_material_params material;
+    struct tl_material_params overlay;
+    struct tl_weave_params overlay_weave; /* follows from scene.overlay_fabric */
     struct tl_light_params light;
+    struct tl_detail_params detail;
+    struct tl_maps_params maps;
+    struct tl_lamp_params lamp, fill;
+    struct tl_shading_params shading;
     struct tl_image_params image;
     struct tl_reference_params reference;
 };
 
-#define TL_SETTINGS_TABLES 9
+#define TL_SETTINGS_TABLES 15
 /* The bindings of a settings value, in the order of the reference page. */
 void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[TL_SETTINGS_TABLES]);
 

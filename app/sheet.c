@@ -86,6 +86,23 @@ void tl_tube_sink(const struct tl_tube *tube, const struct tl_cloth_fabric *fabr
     }
 }
 
+double tl_tube_slack(const struct tl_tube *tube, const struct tl_cloth_fabric *fabric, double gravity,
+                     double h)
+{
+    double width = tl_tube_width(tube), below = tube->height_m, slack = 0;
+    double mean = tube->height_m * width / (tube->row_count + 1);
+    for (int row = 1; row <= tube->row_count; row++) {
+        double above = tl_tube_row_height(tube, row - 1) / 2;
+        double under = row < tube->row_count ? tl_tube_row_height(tube, row) / 2 : 0;
+        double area = fmax(width * (above + under), TL_CLOTH_LEAST_MASS * mean);
+        double tension = fabric->areal_density * fabs(gravity) * width * (below - above);
+        slack += fmin(h * h * tension / (fabric->areal_density * area),
+                      TL_CLOTH_MOST_STRAIN * hypot(width, 2 * above));
+        below -= 2 * above;
+    }
+    return slack;
+}
+
 /* -1 to 1, by a hash of the vertex and the axis. */
 static float noise(size_t vertex, uint32_t axis)
 {

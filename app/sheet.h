@@ -30,6 +30,13 @@ double tl_tube_width(const struct tl_tube *tube); /* of a cell */
 void tl_tube_sink(const struct tl_tube *tube, const struct tl_cloth_fabric *fabric, double gravity,
                   double *out);
 
+/* How far below its true rest `preview` holds the tube's lower end, at most, in substeps of h seconds: one
+ * sweep leaves every vertex of mass m moved by the pushes that come after those it was balanced by, h^2 T / m
+ * under the tension T of what hangs on it. (Cells whose diagonal is strained further than cloth may be are
+ * refused.) */
+double tl_tube_slack(const struct tl_tube *tube, const struct tl_cloth_fabric *fabric, double gravity,
+                     double h);
+
 /* Rows lowered by `sink` (or NULL: as in its pattern), vertices then moved by up to `scramble` of their own
  * cell's sides, by a fixed hash. */
 tl_garment tl_tube_make(const struct tl_tube *tube, const double *sink, double scramble);

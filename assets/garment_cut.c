@@ -11,8 +11,8 @@
 #define EDGE_MINIMUM_M 0.003f /* 130,000 vertices in the dress */
 #define EDGE_MAXIMUM_M 0.08f
 
-static struct tl_cut_plan (*const plans[])(void) = {tl_cut_plan_dress, tl_cut_plan_skirt};
-const char *const tl_garment_names[] = {"dress", "skirt", NULL};
+static struct tl_cut_plan (*const plans[])(void) = {tl_cut_plan_dress, tl_cut_plan_skirt, tl_cut_plan_layers};
+const char *const tl_garment_names[] = {"dress", "skirt", "layers", NULL};
 
 /* The pieces of a plan after cutting, and where their vertices begin in the garment. */
 struct cutting {
@@ -122,6 +122,23 @@ static void pin(const struct cutting *cutting, tl_garment *garment)
     free(pinned);
 }
 
+/* One part a fabric, its material of the same number. */
+static void part_fabrics(const struct cutting *cutting, tl_mesh *mesh)
+{
+    const struct tl_cut_plan *plan = cutting->plan;
+    uint32_t first = 0;
+    mesh->parts = TL_NEW_ARRAY(struct tl_mesh_part, TL_CUT_FABRICS);
+    for (size_t p = 0; p < plan->piece_count; p++) {
+        struct tl_mesh_part *part = &mesh->parts[plan->pieces[p].fabric];
+        if (part->index_count == 0)
+            *part = (struct tl_mesh_part){
+                .first_index = first, .material = (int)plan->pieces[p].fabric, .uv_metres = 1};
+        part->index_count += 3 * (uint32_t)cutting->panels[p].triangle_count;
+        first = part->first_index + part->index_count;
+        mesh->part_count = (size_t)plan->pieces[p].fabric + 1;
+    }
+}
+
 /* Flat pattern, UVs and triangles of all pieces. */
 static void lay_out(const struct cutting *cutting, tl_garment *garment)
 {
@@ -149,9 +166,7 @@ static void lay_out(const struct cutting *cutting, tl_garment *garment)
                 mesh->indices[next++] = (uint32_t)cutting->first_vertex[p] + panel->triangles[t][k];
         }
     }
-    mesh->part_count = 1;
-    mesh->parts = TL_NEW_ARRAY(struct tl_mesh_part, 1);
-    mesh->parts[0] = (struct tl_mesh_part){.index_count = (uint32_t)mesh->index_count, .uv_metres = 1};
+    part_fabrics(cutting, mesh);
 }
 
 /* body[v]: which of the sewn-together points vertex v belongs to; returns how many points there are. */
@@ -248,13 +263,16 @@ static void fill_normals(tl_garment *garment)
     free(body);
 }
 
-static tl_material *cut_material(const char *name)
+static tl_material *cut_materials(const char *name, size_t count)
 {
-    tl_material *material = TL_NEW(tl_material);
-    *material = tl_material_default(name);
-    material->diffuse = (vec3s){{0.8f, 0.8f, 0.8f}};
-    material->double_sided = true;
-    return material;
+    const char *names[TL_CUT_FABRICS] = {name, TL_GARMENT_OVERLAY};
+    tl_material *materials = TL_NEW_ARRAY(tl_material, count);
+    for (size_t i = 0; i < count; i++) {
+        materials[i] = tl_material_default(names[i]);
+        materials[i].diffuse = (vec3s){{0.8f, 0.8f, 0.8f}};
+        materials[i].double_sided = true;
+    }
+    return materials;
 }
 
 static bool fail_unknown(const char *name, tl_error *error)
@@ -285,9 +303,10 @@ bool tl_garment_cut(const char *name, float edge_m, tl_garment *out, tl_error *e
     struct cutting cutting = {.plan = &plan};
     choose_segments(&plan, (double)edge_m);
     cut_pieces(&cutting, (double)edge_m);
-    *out = (tl_garment){
-        .model = {.name = tl_copy_string(name), .material_count = 1, .materials = cut_material(name)}};
+    *out = (tl_garment){.model = {.name = tl_copy_string(name)}};
     lay_out(&cutting, out);
+    out->model.material_count = out->model.mesh.part_count;
+    out->model.materials = cut_materials(name, out->model.material_count);
     sew(&cutting, out);
     pin(&cutting, out);
     place(&cutting, out);

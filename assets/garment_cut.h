@@ -16,12 +16,16 @@
 
 enum { TL_CUT_MAX_HALF = 8, TL_CUT_MAX_PIECES = 6, TL_CUT_MAX_SEAMS = 16, TL_CUT_MAX_PINS = 4 };
 
+/* Pieces of the overlay come last. */
+enum tl_cut_fabric { TL_CUT_MAIN, TL_CUT_OVERLAY, TL_CUT_FABRICS };
+
 struct tl_cut_piece {
     struct tl_curve half[TL_CUT_MAX_HALF];
     size_t half_count;
     struct tl_point table_offset; /* where the piece lies on the cutting table: pieces do not overlap */
     void (*place)(const void *context, struct tl_point pattern, double position[3]);
     const void *context;
+    enum tl_cut_fabric fabric;
 };
 
 /* Curves that are sewn: they run in opposite directions, as neighbours in counter-clockwise outlines do. */
@@ -55,6 +59,7 @@ struct tl_cut_piece tl_cut_flared_piece(const struct tl_cut_flared *flared);
 
 struct tl_cut_plan tl_cut_plan_dress(void);
 struct tl_cut_plan tl_cut_plan_skirt(void);
+struct tl_cut_plan tl_cut_plan_layers(void);
 
 /* The index of half[i]'s mirror image in the whole outline. */
 static inline size_t tl_cut_mirror(const struct tl_cut_piece *piece, size_t i)

@@ -10,12 +10,21 @@
 #define WAIST_Y      1.035
 #define WAIST_LENGTH 0.75 /* metres around: the form's girth and 7 cm of ease */
 #define SKIRT_LENGTH 0.50
-#define SKIRT_ANGLE  3.0      /* radians: the hem is 0.75 + 3.0 x 0.5 = 2.25 m around */
-#define SKIRT_SLOPE  0.42     /* radians, of the start shape */
-#define SKIRT_FOLDS  5        /* of the start shape: with more they cross as they fall */
-#define UNDERARM     0.190    /* metres of cloth above the waist seam */
-#define STRAP_X      0.112    /* the shoulder seam's middle */
-#define RIDGE_Z      (-0.016) /* the shoulders' ridge */
+#define SKIRT_ANGLE  3.0  /* radians: the hem is 0.75 + 3.0 x 0.5 = 2.25 m around */
+#define SKIRT_SLOPE  0.42 /* radians, of the start shape */
+#define SKIRT_FOLDS  5    /* of the start shape: with more they cross as they fall */
+/* A curtain before the dress's left: metres. */
+#define CURTAIN_WIDTH  0.80
+#define CURTAIN_LENGTH 1.05
+#define CURTAIN_X      0.40
+#define CURTAIN_Y      1.50
+#define CURTAIN_Z      0.46
+#define CURTAIN_FOLDS  6
+#define CURTAIN_GATHER 0.65     /* its width as it hangs over its width as cloth */
+#define CURTAIN_DEPTH  0.0235   /* of the folds, which makes up for the rest */
+#define UNDERARM       0.190    /* metres of cloth above the waist seam */
+#define STRAP_X        0.112    /* the shoulder seam's middle */
+#define RIDGE_Z        (-0.016) /* the shoulders' ridge */
 
 enum { BODICE_RINGS = 16, PROFILE_STEPS = 64 };
 
@@ -189,6 +198,8 @@ static struct tl_cut_piece front_piece(const struct bodice_pattern *pattern, con
     return piece;
 }
 
+enum { FRONT, BACK, SKIRT_FRONT, SKIRT_BACK, SKIRT_SIDE = 1, SKIRT_WAIST = 2 };
+
 static void add_seam(struct tl_cut_plan *plan, size_t piece_a, size_t curve_a, size_t piece_b, size_t curve_b)
 {
     plan->seams[plan->seam_count++] = (struct tl_cut_seam){piece_a, curve_a, piece_b, curve_b};
@@ -235,7 +246,6 @@ struct tl_cut_plan tl_cut_plan_dress(void)
     back.rise = UNDERARM + placement->back.profile.length;
 
     struct tl_cut_plan plan = {.name = "dress", .piece_count = 4, .placement = placement};
-    enum { FRONT, BACK, SKIRT_FRONT, SKIRT_BACK, SKIRT_SIDE = 1, SKIRT_WAIST = 2 };
     plan.pieces[FRONT] = front_piece(&front, &placement->front);
     plan.pieces[BACK] = back_piece(&back, &placement->back);
     plan.pieces[SKIRT_FRONT] = tl_cut_flared_piece(&placement->skirt_front);
@@ -249,5 +259,41 @@ struct tl_cut_plan tl_cut_plan_dress(void)
     sew_around(&plan, SKIRT_FRONT, SKIRT_SIDE, SKIRT_BACK, SKIRT_SIDE);
     sew_halves(&plan, FRONT, WAIST, SKIRT_FRONT, SKIRT_WAIST);
     sew_halves(&plan, BACK, WAIST, SKIRT_BACK, SKIRT_WAIST);
+    return plan;
+}
+
+/* Waves along its width, nearly as long as the cloth is wide. */
+static void place_curtain(const void *context, struct tl_point p, double position[3])
+{
+    (void)context;
+    double phase = 2 * M_PI * CURTAIN_FOLDS * p.x / CURTAIN_WIDTH, across = CURTAIN_GATHER * p.x;
+    position[0] = CURTAIN_X + across;
+    position[1] = CURTAIN_Y + p.y;
+    position[2] = CURTAIN_Z + CURTAIN_DEPTH * sin(phase);
+}
+
+static struct tl_cut_piece curtain_piece(void)
+{
+    const struct tl_point bottom = {0, -CURTAIN_LENGTH}, top = {0, 0};
+    const struct tl_point lower = {CURTAIN_WIDTH / 2, -CURTAIN_LENGTH}, upper = {CURTAIN_WIDTH / 2, 0};
+    return (struct tl_cut_piece){
+        .half = {tl_curve_line(bottom, lower), tl_curve_line(lower, upper), tl_curve_line(upper, top)},
+        .half_count = 3,
+        .place = place_curtain,
+        .fabric = TL_CUT_OVERLAY,
+    };
+}
+
+/* The dress behind a gathered curtain that hangs before one side of it, out of its way. */
+struct tl_cut_plan tl_cut_plan_layers(void)
+{
+    enum { CURTAIN = 4, TOP = 2 };
+    struct tl_cut_plan plan = tl_cut_plan_dress();
+    plan.name = "layers";
+    plan.piece_count = CURTAIN + 1;
+    plan.pieces[CURTAIN] = curtain_piece();
+    plan.pieces[CURTAIN].table_offset.x = 2.6;
+    plan.pins[plan.pin_count++] = (struct tl_cut_pin){CURTAIN, TOP};
+    plan.pins[plan.pin_count++] = (struct tl_cut_pin){CURTAIN, tl_cut_mirror(&plan.pieces[CURTAIN], TOP)};
     return plan;
 }

@@ -94,12 +94,27 @@ struct gltf_texture {
 
 enum gltf_alpha { GLTF_OPAQUE, GLTF_MASK, GLTF_BLEND };
 
+/* KHR_materials_*, by their own names; the defaults are those of a material without the extension. */
+struct gltf_extensions {
+    float anisotropy_strength, anisotropy_rotation; /* rotation: rad */
+    float clearcoat, clearcoat_roughness;
+    float diffuse_transmission, diffuse_transmission_colour[3];
+    float ior;
+    float sheen_colour[3], sheen_roughness;
+    float specular, specular_colour[3];
+    float transmission;
+    struct gltf_texture anisotropy_map, clearcoat_map, clearcoat_roughness_map, clearcoat_normal_map,
+        diffuse_transmission_map, diffuse_transmission_colour_map, sheen_colour_map, sheen_roughness_map,
+        specular_map, specular_colour_map, transmission_map;
+};
+
 struct gltf_material {
     const char *name;
     float base_colour[4], metallic, roughness, normal_scale, occlusion_strength, alpha_cutoff;
     enum gltf_alpha alpha;
     bool double_sided, is_emissive;
     struct gltf_texture base_colour_map, metallic_roughness_map, normal_map, occlusion_map;
+    struct gltf_extensions extensions;
 };
 
 struct gltf_image {

@@ -248,6 +248,78 @@ template <typename Info> gltf_texture copy_texture(const tinygltf::Model &model,
     return to;
 }
 
+/* A member of an extension, which is raw JSON; null where there is none. */
+const tinygltf::Value &member(const tinygltf::Value &object, const char *name)
+{
+    static const tinygltf::Value none;
+    return object.IsObject() && object.Has(name) ? object.Get(name) : none;
+}
+
+void copy_colour(float to[3], const tinygltf::Value &from)
+{
+    if (from.IsArray() && from.ArrayLen() == 3)
+        for (int i = 0; i < 3; i++)
+            to[i] = number_of(from.Get(i), to[i]);
+}
+
+gltf_texture copy_member_texture(const tinygltf::Model &model, const tinygltf::Value &object,
+                                 const char *name)
+{
+    const tinygltf::Value &from = member(object, name);
+    tinygltf::TextureInfo info;
+    info.index = member(from, "index").IsInt() ? member(from, "index").GetNumberAsInt() : -1;
+    info.texCoord = member(from, "texCoord").IsInt() ? member(from, "texCoord").GetNumberAsInt() : 0;
+    const tinygltf::Value &transform = member(member(from, "extensions"), "KHR_texture_transform");
+    if (transform.IsObject())
+        info.extensions["KHR_texture_transform"] = transform;
+    return copy_texture(model, info);
+}
+
+const tinygltf::Value &extension_of(const tinygltf::Material &material, const char *name)
+{
+    static const tinygltf::Value none;
+    auto found = material.extensions.find(name);
+    return found != material.extensions.end() ? found->second : none;
+}
+
+gltf_extensions copy_extensions(const tinygltf::Model &model, const tinygltf::Material &from)
+{
+    gltf_extensions to = {};
+    const tinygltf::Value &anisotropy = extension_of(from, "KHR_materials_anisotropy");
+    to.anisotropy_strength = number_of(member(anisotropy, "anisotropyStrength"), 0);
+    to.anisotropy_rotation = number_of(member(anisotropy, "anisotropyRotation"), 0);
+    to.anisotropy_map = copy_member_texture(model, anisotropy, "anisotropyTexture");
+    const tinygltf::Value &coat = extension_of(from, "KHR_materials_clearcoat");
+    to.clearcoat = number_of(member(coat, "clearcoatFactor"), 0);
+    to.clearcoat_roughness = number_of(member(coat, "clearcoatRoughnessFactor"), 0);
+    to.clearcoat_map = copy_member_texture(model, coat, "clearcoatTexture");
+    to.clearcoat_roughness_map = copy_member_texture(model, coat, "clearcoatRoughnessTexture");
+    to.clearcoat_normal_map = copy_member_texture(model, coat, "clearcoatNormalTexture");
+    const tinygltf::Value &diffuse = extension_of(from, "KHR_materials_diffuse_transmission");
+    to.diffuse_transmission = number_of(member(diffuse, "diffuseTransmissionFactor"), 0);
+    to.diffuse_transmission_map = copy_member_texture(model, diffuse, "diffuseTransmissionTexture");
+    to.diffuse_transmission_colour_map =
+        copy_member_texture(model, diffuse, "diffuseTransmissionColorTexture");
+    to.ior = number_of(member(extension_of(from, "KHR_materials_ior"), "ior"), 1.5F);
+    const tinygltf::Value &sheen = extension_of(from, "KHR_materials_sheen");
+    copy_colour(to.sheen_colour, member(sheen, "sheenColorFactor"));
+    to.sheen_roughness = number_of(member(sheen, "sheenRoughnessFactor"), 0);
+    to.sheen_colour_map = copy_member_texture(model, sheen, "sheenColorTexture");
+    to.sheen_roughness_map = copy_member_texture(model, sheen, "sheenRoughnessTexture");
+    const tinygltf::Value &specular = extension_of(from, "KHR_materials_specular");
+    to.specular = number_of(member(specular, "specularFactor"), 1);
+    to.specular_map = copy_member_texture(model, specular, "specularTexture");
+    to.specular_colour_map = copy_member_texture(model, specular, "specularColorTexture");
+    const tinygltf::Value &transmission = extension_of(from, "KHR_materials_transmission");
+    to.transmission = number_of(member(transmission, "transmissionFactor"), 0);
+    to.transmission_map = copy_member_texture(model, transmission, "transmissionTexture");
+    for (int i = 0; i < 3; i++)
+        to.specular_colour[i] = to.diffuse_transmission_colour[i] = 1;
+    copy_colour(to.specular_colour, member(specular, "specularColorFactor"));
+    copy_colour(to.diffuse_transmission_colour, member(diffuse, "diffuseTransmissionColorFactor"));
+    return to;
+}
+
 gltf_material copy_material(const tinygltf::Model &model, const tinygltf::Material &from)
 {
     const tinygltf::PbrMetallicRoughness &pbr = from.pbrMetallicRoughness;
@@ -269,6 +341,7 @@ gltf_material copy_material(const tinygltf::Model &model, const tinygltf::Materi
     to.metallic_roughness_map = copy_texture(model, pbr.metallicRoughnessTexture);
     to.normal_map = copy_texture(model, from.normalTexture);
     to.occlusion_map = copy_texture(model, from.occlusionTexture);
+    to.extensions = copy_extensions(model, from);
     return to;
 }
 

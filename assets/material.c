@@ -9,15 +9,29 @@ tl_material tl_material_default(const char *name)
     const struct tl_map none = {.transform = identity};
     tl_material material = {.diffuse = {{0.5f, 0.5f, 0.5f}},
                             .specular = {{0.04f, 0.04f, 0.04f}},
+                            .gloss = {.index = 1.5f},
+                            .coat_glossiness = 0.95f,
                             .normal_scale = 1,
                             .occlusion_strength = 1,
                             .diffuse_map = none,
                             .normal_map = none,
                             .gloss_map = none,
                             .specular_map = none,
-                            .occlusion_map = none};
+                            .occlusion_map = none,
+                            .height_map = none};
     snprintf(material.name, sizeof material.name, "%s", name);
     return material;
+}
+
+bool tl_material_transmits(const tl_material *material)
+{
+    return material->transmission.x > 0 || material->transmission.y > 0 || material->transmission.z > 0;
+}
+
+bool tl_material_is_layered(const tl_material *material)
+{
+    return material->gloss.model != TL_REFLECT_PHONG || material->coat > 0 || material->openness > 0 ||
+           tl_material_transmits(material);
 }
 
 /* The rotation is counter-clockwise with v down, as KHR_texture_transform has it. */

@@ -39,12 +39,45 @@ typedef struct tl_weave {
     tl_image tint;   /* F32 x3: factor on the diffuse colour (yarn colours) */
 } tl_weave;
 
+/* How gloss is spread about the mirror direction: render/brdf has the formulas. PHONG is the PEM method's own
+ * lobe, K_s about r, and the only one whose widths follow glossiness alone. */
+enum tl_reflectance {
+    TL_REFLECT_PHONG,
+    TL_REFLECT_BLINN_PHONG,
+    TL_REFLECT_COSINE_LOBE,
+    TL_REFLECT_TORRANCE_SPARROW,
+    TL_REFLECT_WARD, /* anisotropic */
+    TL_REFLECT_BANKS /* of threads along the tangent */
+};
+enum tl_facets { TL_FACETS_GAUSSIAN, TL_FACETS_BECKMANN };
+enum tl_masking { TL_MASKING_SMITH, TL_MASKING_V_GROOVES };
+enum tl_fresnel { TL_FRESNEL_SCHLICK, TL_FRESNEL_DIELECTRIC, TL_FRESNEL_CONDUCTOR };
+
+struct tl_gloss {
+    int model;   /* enum tl_reflectance */
+    int facets;  /* enum tl_facets, of TORRANCE_SPARROW */
+    int masking; /* enum tl_masking, of TORRANCE_SPARROW */
+    int fresnel; /* enum tl_fresnel; SCHLICK: from `specular`; else from the index, and `specular` multiplies
+                  */
+    float index; /* of refraction, real part */
+    float extinction; /* ... its imaginary part, of CONDUCTOR */
+    float width_weft; /* root mean square slope of the facets along u; 0: from glossiness. PHONG, BLINN_PHONG
+                         and COSINE_LOBE have exponents instead */
+    float width_warp; /* ... along v: narrower than width_weft where threads that run along the warp shine */
+    float rotation;   /* rad, counter-clockwise seen from outside: turns weft and warp in the surface */
+};
+
 typedef struct tl_material {
     char name[64];
-    vec3s diffuse;            /* linear albedo at g-independent K_1; [0, 1] */
-    vec3s specular;           /* F0: reflectance at normal incidence; [0, 1] */
-    float glossiness;         /* g in [0, 1] */
-    float normal_scale;       /* factor on the normal map's x and y */
+    vec3s diffuse;    /* linear albedo at g-independent K_1; [0, 1] */
+    vec3s specular;   /* F0: reflectance at normal incidence; [0, 1] */
+    float glossiness; /* g in [0, 1] */
+    struct tl_gloss gloss;
+    float coat;            /* share of the surface under a clear coat: Lo = F Lm + (1 - F) Lbase; [0, 1] */
+    float coat_glossiness; /* g of the coat's own lobe; its index is 1.5 */
+    vec3s transmission;    /* share of light scattered through to the other side, diffusely; [0, 1] */
+    float openness;        /* share of the surface that is holes between threads, straight through; [0, 1) */
+    float normal_scale;    /* factor on the normal map's x and y */
     float occlusion_strength; /* [0, 1] */
     float alpha_cutoff;       /* alpha test; 0: opaque */
     bool double_sided;
@@ -53,11 +86,19 @@ typedef struct tl_material {
     struct tl_map gloss_map;     /* U8 x1, linear: multiplies glossiness */
     struct tl_map specular_map;  /* U8 x3, sRGB: multiplies specular */
     struct tl_map occlusion_map; /* U8, linear, red */
+    struct tl_map height_map;    /* U8 x1, linear: 0 deepest, 1 the mesh's own surface */
+    float height_m;              /* metres from the deepest to the highest of height_map */
     const tl_weave *weave;       /* detail, or NULL */
 } tl_material;
 
 /* Matt mid-grey, no maps. */
 tl_material tl_material_default(const char *name);
+
+/* Whether it is more than two cosine lobes about the normal and the mirror direction: facets, a coat, or
+ * light that comes through. */
+bool tl_material_is_layered(const tl_material *material);
+/* ... of which: whether light is scattered through it to the other side. */
+bool tl_material_transmits(const tl_material *material);
 
 /* Glossiness of the cosine lobe about the mirror direction that is nearest to a GGX lobe of glTF roughness r:
  * alpha = r^2, Blinn-Phong exponent 2/alpha^2 - 2 (Walter 2007's match to Beckmann), Phong exponent a quarter

@@ -30,18 +30,31 @@ struct builder {
     size_t vertex_capacity, index_capacity, part_capacity, slot_capacity;
 };
 
-void model_ignore(tl_model *model, const char *format, ...)
+static void note(char ***list, size_t *count, const char *format, va_list arguments)
 {
     char text[256];
+    vsnprintf(text, sizeof text, format, arguments);
+    for (size_t i = 0; i < *count; i++)
+        if (strcmp((*list)[i], text) == 0)
+            return;
+    *list = tl_resize(*list, *count + 1, sizeof **list);
+    (*list)[(*count)++] = tl_copy_string(text);
+}
+
+void model_ignore(tl_model *model, const char *format, ...)
+{
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
+    note(&model->ignored, &model->ignored_count, format, arguments);
     va_end(arguments);
-    for (size_t i = 0; i < model->ignored_count; i++)
-        if (strcmp(model->ignored[i], text) == 0)
-            return;
-    model->ignored = tl_resize(model->ignored, model->ignored_count + 1, sizeof *model->ignored);
-    model->ignored[model->ignored_count++] = tl_copy_string(text);
+}
+
+void model_approximate(tl_model *model, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    note(&model->approximated, &model->approximated_count, format, arguments);
+    va_end(arguments);
 }
 
 /* ---- Slots: what vertices hang on ---- */
@@ -460,7 +473,10 @@ static bool finish(struct builder *builder, enum tl_units wanted, tl_error *erro
 
 static bool check_extensions(const gltf_document *document, tl_model *model, tl_error *error)
 {
-    static const char *const known[] = {"KHR_texture_transform", "KHR_mesh_quantization"};
+    static const char *const known[] = {
+        "KHR_texture_transform",   "KHR_mesh_quantization",      "KHR_materials_anisotropy",
+        "KHR_materials_clearcoat", "KHR_materials_ior",          "KHR_materials_sheen",
+        "KHR_materials_specular",  "KHR_materials_transmission", "KHR_materials_diffuse_transmission"};
     static const char *const compressed[] = {"KHR_draco_mesh_compression", "EXT_meshopt_compression",
                                              "KHR_meshopt_compression"};
     for (size_t i = 0; i < document->required_count; i++)
@@ -577,6 +593,9 @@ void tl_model_release(tl_model *model)
     for (size_t i = 0; i < model->ignored_count; i++)
         free(model->ignored[i]);
     free(model->ignored);
+    for (size_t i = 0; i < model->approximated_count; i++)
+        free(model->approximated[i]);
+    free(model->approximated);
     free(model->images);
     free(model->materials);
     free(model->clips);

@@ -3,10 +3,12 @@
  *
  * Loaded of glTF: node hierarchy (also scaled, mirrored: winding is mended), skins, animations (step, linear,
  * cubic spline), KHR_texture_transform, KHR_mesh_quantization, base colour, normal, occlusion,
- * metallic-roughness, alpha mask, double-sided, sparse accessors, triangle strips and fans. Loaded of OBJ:
- * polygons, groups, and of its MTL files Kd, Ks, Ns, illum, map_Kd, map_Ks, norm and alpha. Everything else
- * is ignored, and named once in `ignored`. Immutable after load. Threads: tl_model_pose may run on several
- * threads. */
+ * metallic-roughness, alpha mask, double-sided, sparse accessors, triangle strips and fans; and, as the
+ * nearest that a tl_material can say, KHR_materials_anisotropy, _clearcoat, _diffuse_transmission, _ior,
+ * _sheen, _specular and _transmission (model_extensions.c): what that changes is told in `approximated`.
+ * Loaded of OBJ: polygons, groups, and of its MTL files Kd, Ks, Ns, illum, map_Kd, map_Ks, norm and alpha.
+ * Everything else is ignored, and named once in `ignored`. Immutable after load. Threads: tl_model_pose may
+ * run on several threads. */
 #ifndef TOILE_ASSETS_MODEL_H
 #define TOILE_ASSETS_MODEL_H
 
@@ -38,7 +40,9 @@ typedef struct tl_model {
     size_t point_count;
     uint32_t *points; /* [vertex_count] point of each vertex; NULL: each is its own */
     size_t ignored_count;
-    char **ignored; /* "KHR_materials_sheen", "morph targets", ...: each once */
+    char **ignored; /* "KHR_materials_iridescence", "morph targets", ...: each once */
+    size_t approximated_count;
+    char **approximated; /* "KHR_materials_sheen: ...": each once */
 } tl_model;
 
 /* .gltf, .glb or .obj, in units as assets/units.h has it. Refuses indices out of range, NaN positions, files

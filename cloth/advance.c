@@ -11,8 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Strain beyond which the state is no longer cloth. */
-#define STRAIN_LIMIT 10
 /* A hand's pull: a soft spring, and no more than lifts a heavy coat. */
 #define GRAB_STIFFNESS 200.0
 #define GRAB_FORCE     5.0
@@ -119,6 +117,8 @@ static void advance_preview(tl_cloth *cloth, const struct tl_substep *substep)
     tl_pins_place(cloth->pins, cloth->pin_count, substep->collider, substep->phase, &cloth->particles);
     bool limited = cloth->params.strain_limit > 0;
     tl_xpbd_solve(&cloth->energy, &cloth->particles, limited ? &cloth->limits.watch : NULL);
+    if (tl_cloth_sweeps_back(cloth))
+        tl_xpbd_solve_back(&cloth->energy, &cloth->particles);
     if (limited)
         tl_limits_solve(&cloth->limits, &cloth->energy, substep->h, &cloth->particles);
     constrain(cloth, substep);
@@ -171,7 +171,9 @@ static void find_forces(tl_cloth *cloth, const struct tl_move *then)
     tl_energy_pull(&cloth->energy, &cloth->fabric, cloth->particles.x, cloth->forces, then);
 }
 
-static void advance_reference(tl_cloth *cloth, const struct tl_substep *substep)
+/* Between substeps velocities may point into the avatar by h/2 of what presses there: the next one's first
+ * half takes that on. Who looks at them after the last one wants to see rest. */
+static void advance_reference(tl_cloth *cloth, const struct tl_substep *substep, bool last)
 {
     struct tl_particles *particles = &cloth->particles;
     const struct tl_verlet verlet =
@@ -183,6 +185,9 @@ static void advance_reference(tl_cloth *cloth, const struct tl_substep *substep)
     const struct tl_move then =
         substep->leads ? tl_verlet_leap(particles, &verlet) : tl_verlet_kick(particles, &verlet);
     find_forces(cloth, &then);
+    const struct tl_contact_params contact = contact_params(cloth, substep);
+    if (last)
+        tl_contacts_rub(&cloth->contacts, &contact, particles);
 }
 
 static bool is_blown(const tl_cloth *cloth)
@@ -244,7 +249,7 @@ static void run_step(tl_cloth *cloth, const tl_collider *collider, const struct 
         if (blown)
             blow(cloth, &substep);
         if (cloth->params.solver == TL_CLOTH_REFERENCE)
-            advance_reference(cloth, &substep);
+            advance_reference(cloth, &substep, sub + 1 == substeps);
         else if (cloth->params.solver == TL_CLOTH_SETTLE)
             advance_settle(cloth, &substep);
         else
@@ -318,7 +323,7 @@ static bool check_state(const tl_cloth *cloth, tl_error *error)
                 "make cloth.dt smaller or cloth.substeps larger",
                 i, cloth->time_s);
     double strain = tl_cloth_max_strain(cloth);
-    if (strain > STRAIN_LIMIT)
+    if (strain > TL_CLOTH_MOST_STRAIN)
         return tl_fail(error, TL_UNSTABLE,
                        "cloth: stretched by %.0f times at %.3f s; the last good frame is kept: make cloth.dt "
                        "smaller, cloth.substeps larger or the fabric stiffer",
@@ -338,13 +343,15 @@ static bool is_driven(const tl_cloth *cloth, const tl_collider *collider)
            wind[0] != 0 || wind[1] != 0 || wind[2] != 0;
 }
 
-/* What nothing drives cannot gain energy; a solver that makes it do so has left its envelope. That was seen
- * on needles only: crushed to nothing no step is short enough for them, and one sweep of `preview` over stiff
- * ones is not symmetric. Contact may lift the cloth out of the avatar. */
+/* What nothing drives never moves with more energy than it once had of all kinds, elastic energy being above
+ * 0; a solver that makes it do so has left its envelope. That was seen on needles only: crushed to nothing no
+ * step is short enough for them. Elastic energy itself may rise: `preview` rests a little stretched, by
+ * h^2 w T for each vertex of inverse mass w under a tension T, and of stiff needles that is much energy.
+ * Contact may lift the cloth out of the avatar. */
 static bool check_energy(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
 {
     const double lift = 0.25; /* J/kg: 2.5 cm */
-    if (!cloth->has_needles || is_driven(cloth, collider)) {
+    if (!(cloth->needle_share > 0) || is_driven(cloth, collider)) {
         cloth->left_alone = false;
         cloth->collider_revision = cloth->contacts.revision;
         return true;
@@ -356,7 +363,7 @@ static bool check_energy(tl_cloth *cloth, const tl_collider *collider, tl_error 
         cloth->least_energy = total;
         cloth->usual_energy = energies.kinetic + energies.elastic;
     }
-    double gain = total - cloth->least_energy;
+    double gain = energies.kinetic + energies.potential - cloth->least_energy;
     cloth->least_energy = fmin(cloth->least_energy, total);
     if (gain <= cloth->usual_energy + lift * energies.mass)
         return true;

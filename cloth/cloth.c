@@ -2,6 +2,7 @@
 
 #include "cloth/frames.h"
 #include "cloth/state.h"
+#include "cloth/xpbd.h"
 #include "config/memory.h"
 
 #include <stdlib.h>
@@ -72,11 +73,9 @@ static bool check_garment(const tl_garment *garment, tl_error *error)
 
 /* ---- Building the state ---- */
 
-/* Inverse masses: held for pins and for vertices that no triangle uses. Slivers weigh next to nothing; a
- * floor keeps mass ratios where one iteration still moves things. */
+/* Inverse masses: held for pins and for vertices that no triangle uses. Slivers weigh next to nothing. */
 static void set_inverse_masses(tl_cloth *cloth)
 {
-    const double floor_share = 1e-4;
     size_t count = cloth->particles.count;
     double *w = cloth->particles.w, total = 0;
     bool *used = TL_NEW_ARRAY(bool, count);
@@ -85,7 +84,7 @@ static void set_inverse_masses(tl_cloth *cloth)
             used[cloth->topology.triangles[t][i]] = true;
     for (size_t i = 0; i < count; i++)
         total += cloth->energy.masses[i];
-    double least = floor_share * total / (double)count;
+    double least = TL_CLOTH_LEAST_MASS * total / (double)count;
     for (size_t i = 0; i < count; i++) {
         double mass = fmax(cloth->energy.masses[i], least) * cloth->fabric.areal_density;
         w[i] = used[i] && mass > 0 ? 1 / mass : 0;
@@ -93,6 +92,14 @@ static void set_inverse_masses(tl_cloth *cloth)
     for (size_t i = 0; i < cloth->pin_count; i++)
         w[cloth->pins[i].particle] = 0;
     free(used);
+}
+
+static void set_energy(tl_cloth *cloth)
+{
+    bool back = tl_cloth_sweeps_back(cloth);
+    tl_energy_set(&cloth->energy, &cloth->fabric, cloth->particles.w,
+                  tl_xpbd_step(tl_cloth_substep(cloth), back));
+    cloth->energy.bends_as_force = cloth->energy.bends_as_force && !back; /* measured with the whole step */
 }
 
 static void set_constants(tl_cloth *cloth)
@@ -103,7 +110,7 @@ static void set_constants(tl_cloth *cloth)
                                                    cloth->particles.w, NULL);
     cloth->forces = tl_resize(cloth->forces, cloth->particles.count, sizeof *cloth->forces);
     tl_implicit_destroy(&cloth->implicit);
-    tl_energy_set(&cloth->energy, &cloth->fabric, cloth->particles.w, tl_cloth_substep(cloth));
+    set_energy(cloth);
     tl_contacts_release(&cloth->contacts); /* its planes know the thickness */
     cloth->contacts = tl_contacts_create(&cloth->topology, cloth->rest);
     tl_limits_release(&cloth->limits);
@@ -120,7 +127,7 @@ void tl_cloth_use(tl_cloth *cloth, const struct tl_cloth_params *params)
         return;
     cloth->params = *params;
     tl_implicit_destroy(&cloth->implicit);
-    tl_energy_set(&cloth->energy, &cloth->fabric, cloth->particles.w, tl_cloth_substep(cloth));
+    set_energy(cloth);
 }
 
 /* A hundredth of the mean edge. */
@@ -132,19 +139,19 @@ static double find_shortest_edge(const tl_cloth *cloth)
     return 0.01 * sqrt(area / (double)cloth->topology.vertex_count);
 }
 
-/* Whether a triangle's height is less than a sixteenth of its longest side. */
-static bool has_needles(const tl_cloth *cloth)
+/* The share of triangles whose height is less than a sixteenth of their longest side. */
+static double find_needle_share(const tl_cloth *cloth)
 {
     const double needle = 1.0 / 16;
+    size_t count = 0;
     for (size_t t = 0; t < cloth->topology.triangle_count; t++) {
         const vec2s *corners = cloth->rest[t];
         vec2s side = glms_vec2_sub(corners[1], corners[0]), other = glms_vec2_sub(corners[2], corners[0]);
         double longest = (double)fmaxf(glms_vec2_distance(corners[1], corners[2]),
                                        fmaxf(glms_vec2_norm(side), glms_vec2_norm(other)));
-        if (fabs((double)glms_vec2_cross(side, other)) < needle * longest * longest)
-            return true;
+        count += fabs((double)glms_vec2_cross(side, other)) < needle * longest * longest;
     }
-    return false;
+    return (double)count / (double)cloth->topology.triangle_count;
 }
 
 /* Everything that follows from a numbering of the physics vertices, but for positions and velocities. */
@@ -159,7 +166,7 @@ static void build_mesh(tl_cloth *cloth, const uint32_t *weld, size_t vertex_coun
     cloth->rest = tl_rest_shapes(cloth->garment, &cloth->topology);
     cloth->energy = tl_energy_build(&cloth->topology, cloth->rest);
     cloth->shortest_edge = find_shortest_edge(cloth);
-    cloth->has_needles = has_needles(cloth);
+    cloth->needle_share = find_needle_share(cloth);
     cloth->made_at = tl_resize(cloth->made_at, vertex_count, sizeof *cloth->made_at);
     for (size_t i = 0; i < mesh->vertex_count; i++)
         cloth->made_at[weld[i]] = vec3d_from(mesh->positions[i]);

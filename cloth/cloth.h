@@ -30,6 +30,11 @@ struct tl_cloth_fabric {
 };
 extern const struct tl_option_table tl_cloth_fabric_options;
 
+/* No particle weighs less than this share of their mean: one iteration would not move the others. */
+#define TL_CLOTH_LEAST_MASS 1e-4
+/* What is strained beyond this is no longer cloth: refused. */
+#define TL_CLOTH_MOST_STRAIN 10
+
 /* How it is solved. Table "cloth". preview: cloth/xpbd.h; settle: cloth/implicit.h; reference:
  * cloth/verlet.h. */
 enum tl_cloth_solver { TL_CLOTH_PREVIEW, TL_CLOTH_SETTLE, TL_CLOTH_REFERENCE, TL_CLOTH_SOLVER_COUNT };
@@ -92,7 +97,8 @@ void tl_cloth_reset(tl_cloth *cloth);
 
 /* Draws seams together, resolves starting penetration and lets the cloth come to rest against the collider,
  * at rest itself, with strong damping. Shows progress; stops early on tl_interrupted. The clock stays at 0.
- * TL_UNSTABLE when the state left its envelope (non-finite or strain beyond 10): the last good state is kept.
+ * TL_UNSTABLE when the state left its envelope (non-finite or strain beyond TL_CLOTH_MOST_STRAIN): the last
+ * good state is kept.
  */
 bool tl_cloth_settle(tl_cloth *cloth, const tl_collider *collider, tl_error *error);
 

@@ -11,6 +11,9 @@
  * leaves the surface by 2^2 / (2 * 30) mm = 0.07 mm, small against any thickness. */
 #define SLIDE_M    0.002
 #define ROUNDING_M 1e-9
+/* What slides is asked for this share of that way ahead of it, so that its plane leans with its way as much
+ * as against it: a plane that always lags leans against it, and rubs more than friction does. */
+#define LEAD 0.9
 
 /* Edges longer than this are probed: shorter ones sink into a radius of 5 cm by no more than 2.3 mm. */
 #define COARSE_M 0.03
@@ -50,15 +53,38 @@ static vec3d anchor_at(const struct tl_contact_cache *cache, double phase)
     return vec3d_mix(cache->anchor[0], cache->anchor[1], phase);
 }
 
+/* Against its anchor, if it has one. */
+static vec3d moved_since(const struct tl_contact_cache *cache, double phase, vec3d x)
+{
+    vec3d moved = vec3d_sub(x, cache->asked_at);
+    if (cache->near)
+        moved = vec3d_sub(moved, vec3d_sub(anchor_at(cache, phase), anchor_at(cache, cache->asked_phase)));
+    return moved;
+}
+
+static double slide_of(double thickness)
+{
+    return fmin(SLIDE_M, fmax(thickness / 2, ROUNDING_M));
+}
+
+/* Where to ask for a point at x. */
+static vec3d ahead(const struct tl_contact_cache *cache, double thickness, double phase, vec3d x)
+{
+    if (!cache->near || cache->asked_phase > 1)
+        return x;
+    vec3d slid = moved_since(cache, phase, x);
+    slid = vec3d_muladd(slid, cache->normal, -vec3d_dot(slid, cache->normal));
+    double length = vec3d_norm(slid), slide = slide_of(thickness);
+    return length > slide / 2 ? vec3d_muladd(x, slid, LEAD * slide / length) : x;
+}
+
 static bool stale(const struct tl_contact_cache *cache, double travel, double phase, vec3d x)
 {
     if (cache->asked_phase > 1)
         return true;
-    vec3d moved = vec3d_sub(x, cache->asked_at);
+    vec3d moved = moved_since(cache, phase, x);
     double slack = cache->clearance;
-    if (cache->near)
-        moved = vec3d_sub(moved, vec3d_sub(anchor_at(cache, phase), anchor_at(cache, cache->asked_phase)));
-    else
+    if (!cache->near)
         slack -= travel * fabs(phase - cache->asked_phase);
     return slack <= 0 || vec3d_dot(moved, moved) > slack * slack;
 }
@@ -90,7 +116,7 @@ static void ask(const tl_collider *collider, double thickness, double phase, vec
     for (int i = 0; i < 2; i++)
         cache->anchor[i] = (vec3d){ends[i][0], ends[i][1], ends[i][2]};
     cache->normal = (vec3d){contact.normal[0], contact.normal[1], contact.normal[2]};
-    cache->clearance = fmax(contact.distance_m - thickness, fmin(SLIDE_M, fmax(thickness / 2, ROUNDING_M)));
+    cache->clearance = fmax(contact.distance_m - thickness, slide_of(thickness));
     cache->near = true;
 }
 
@@ -240,7 +266,8 @@ static vec3d keep_out(const struct surroundings *around, struct tl_contact_cache
                       vec3d before, const struct tl_contact_params *params)
 {
     if (stale(cache, around->travel, params->phase, x))
-        ask(around->collider, params->thickness_m, params->phase_before, before, cache);
+        ask(around->collider, params->thickness_m, params->phase_before,
+            ahead(cache, params->thickness_m, params->phase_before, before), cache);
     if (cache->near)
         x = tl_contact_push_out(x, before, anchor_at(cache, params->phase),
                                 anchor_at(cache, params->phase_before), cache->normal, params);
@@ -267,7 +294,7 @@ static void solve_probe(const struct surroundings *around, const struct tl_probe
     double inverse = tl_probe_inverse_mass(probe, particles->w);
     vec3d push = vec3d_sub(keep_out(around, cache, x, before, params), x);
     if (inverse > 0 && vec3d_dot(push, push) > 0)
-        tl_probe_push(probe, vec3d_scale(push, 1 / inverse), particles);
+        tl_probe_push(probe, vec3d_scale(push, 1 / inverse), particles->w, particles->x);
 }
 
 void tl_contacts_solve(struct tl_contacts *contacts, const struct tl_contact_params *params,
@@ -286,6 +313,61 @@ void tl_contacts_solve(struct tl_contacts *contacts, const struct tl_contact_par
         else if (particles->driven[i])
             particles->x[i] = set_aside(&around, cache, particles->x[i], params);
     }
+}
+
+/* ---- Velocities ---- */
+
+/* What the velocity of a point at `gap` above a surface that moves at `surface` is left with, if it would
+ * arrive there within the next substep: Coulomb's bound on impulses. */
+static vec3d rub(vec3d v, double gap, vec3d surface, vec3d normal, const struct tl_contact_params *params)
+{
+    vec3d slip = vec3d_sub(v, surface);
+    double approach = vec3d_dot(slip, normal);
+    if (!(approach < 0) || gap + approach * params->h > ROUNDING_M)
+        return v;
+    slip = vec3d_muladd(slip, normal, -approach);
+    double length = vec3d_norm(slip), grip = params->friction * -approach;
+    return vec3d_muladd(surface, slip, length > grip ? 1 - grip / length : 0);
+}
+
+/* Of a point at x, by all that it touches. */
+static vec3d rub_all(const struct surroundings *around, const struct tl_contact_cache *cache, vec3d x,
+                     vec3d v, const struct tl_contact_params *params)
+{
+    if (cache->near) {
+        vec3d motion = vec3d_sub(anchor_at(cache, params->phase), anchor_at(cache, params->phase_before));
+        v = rub(v, distance_to(cache, x, params->phase) - params->thickness_m,
+                vec3d_scale(motion, 1 / params->h), cache->normal, params);
+    }
+    if (around->ground)
+        v = rub(v, x.y - params->thickness_m, (vec3d){0}, (vec3d){0, 1, 0}, params);
+    return v;
+}
+
+static void rub_probe(const struct surroundings *around, const struct tl_probe *probe,
+                      const struct tl_contact_cache *cache, const struct tl_contact_params *params,
+                      struct tl_particles *particles)
+{
+    double inverse = tl_probe_inverse_mass(probe, particles->w);
+    vec3d v = tl_probe_point(probe, particles->v);
+    vec3d change = vec3d_sub(rub_all(around, cache, tl_probe_point(probe, particles->x), v, params), v);
+    if (inverse > 0 && vec3d_dot(change, change) > 0)
+        tl_probe_push(probe, vec3d_scale(change, 1 / inverse), particles->w, particles->v);
+}
+
+void tl_contacts_rub(const struct tl_contacts *contacts, const struct tl_contact_params *params,
+                     struct tl_particles *particles)
+{
+    const struct surroundings around = look_around(contacts->collider);
+    if (!around.collider)
+        return;
+    for (size_t i = 0; i < contacts->probe_count; i++)
+        rub_probe(&around, &contacts->probes[i], &contacts->caches[contacts->particle_count + i], params,
+                  particles);
+    for (size_t i = 0; i < particles->count; i++)
+        if (particles->w[i] > 0)
+            particles->v[i] =
+                rub_all(&around, &contacts->caches[i], particles->x[i], particles->v[i], params);
 }
 
 /* ---- For solvers that heed planes themselves ---- */
@@ -308,7 +390,8 @@ size_t tl_contacts_planes(struct tl_contacts *contacts, const struct tl_contact_
         return 0;
     struct tl_contact_cache *cache = &contacts->caches[particle];
     if (stale(cache, around.travel, params->phase_before, x))
-        ask(around.collider, params->thickness_m, params->phase_before, x, cache);
+        ask(around.collider, params->thickness_m, params->phase_before,
+            ahead(cache, params->thickness_m, params->phase_before, x), cache);
     if (cache->near)
         out[count++] = plane_of(x, anchor_at(cache, params->phase), anchor_at(cache, params->phase_before),
                                 cache->normal, params);

@@ -77,6 +77,12 @@ size_t tl_contacts_planes(struct tl_contacts *contacts, const struct tl_contact_
 void tl_contacts_solve(struct tl_contacts *contacts, const struct tl_contact_params *params,
                        struct tl_particles *particles);
 
+/* After a substep that has moved particles by tl_contacts_solve and then pushed on, as half a kick of Verlet
+ * does: no particle or probe that touches goes on into what it touches, whose impulse rubs too (the second
+ * half of RATTLE, Andersen 1983). */
+void tl_contacts_rub(const struct tl_contacts *contacts, const struct tl_contact_params *params,
+                     struct tl_particles *particles);
+
 /* Once per step, at its end, with the step's own duration and phases: whatever the substeps' planes have
  * missed, no particle is deeper in the avatar than it was before, and none that was outside is inside. Where
  * two parts of the avatar press on one particle the price is strain; what was put back so, or has slipped

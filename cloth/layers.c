@@ -354,7 +354,7 @@ void tl_layers_solve(const struct tl_layers *layers, const struct tl_contact_par
         vec3d push = vec3d_sub(to, x);
         if (!(inverse > 0) || !(vec3d_dot(push, push) > 0))
             continue;
-        tl_probe_push(&touch->point, vec3d_scale(push, 1 / inverse), particles);
-        tl_probe_push(&touch->surface, vec3d_scale(push, -1 / inverse), particles);
+        tl_probe_push(&touch->point, vec3d_scale(push, 1 / inverse), particles->w, particles->x);
+        tl_probe_push(&touch->surface, vec3d_scale(push, -1 / inverse), particles->w, particles->x);
     }
 }

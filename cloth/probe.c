@@ -52,10 +52,10 @@ double tl_probe_inverse_mass(const struct tl_probe *probe, const double *w)
     return sum;
 }
 
-void tl_probe_push(const struct tl_probe *probe, vec3d push, struct tl_particles *particles)
+void tl_probe_push(const struct tl_probe *probe, vec3d push, const double *w, vec3d *x)
 {
     for (int i = 0; i < 3; i++) {
         uint32_t v = probe->vertices[i];
-        particles->x[v] = vec3d_muladd(particles->x[v], push, particles->w[v] * probe->weights[i]);
+        x[v] = vec3d_muladd(x[v], push, w[v] * probe->weights[i]);
     }
 }

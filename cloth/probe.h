@@ -23,7 +23,8 @@ vec3d tl_probe_point(const struct tl_probe *probe, const vec3d *x);
 /* The inverse mass that a push on the probe meets. */
 double tl_probe_inverse_mass(const struct tl_probe *probe, const double *w);
 
-/* Moves the vertices, each in proportion to its share and inverse mass: by push w_i weight_i. */
-void tl_probe_push(const struct tl_probe *probe, vec3d push, struct tl_particles *particles);
+/* Changes x, places or velocities, of the vertices, each in proportion to its share and inverse mass: by push
+ * w_i weight_i. */
+void tl_probe_push(const struct tl_probe *probe, vec3d push, const double *w, vec3d *x);
 
 #endif

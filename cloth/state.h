@@ -41,7 +41,7 @@ struct tl_cloth {
     uint64_t jump_followed; /* the collider's revision whose jump the cloth has gone along with */
     double time_s;
     bool settled;
-    bool has_needles;           /* triangles on which a solver may gain energy */
+    double needle_share;        /* of its triangles */
     uint64_t collider_revision; /* of the last frame that was driven */
     bool left_alone;            /* nothing has driven it since least_energy began */
     double least_energy;        /* J, all kinds: what has been lost cannot come back */
@@ -70,6 +70,13 @@ struct tl_substep {
     bool follows; /* another one, to whose end nothing was done; solvers may have begun with this one there */
     bool leads;   /* to another one that will follow so */
 };
+
+/* Whether `preview` sweeps back as well: xpbd.h. A few slivers among sound triangles need not. */
+#define TL_MANY_NEEDLES 0.01
+static inline bool tl_cloth_sweeps_back(const tl_cloth *cloth)
+{
+    return cloth->needle_share > TL_MANY_NEEDLES;
+}
 
 /* Seconds of one substep of the chosen solver, so that a frame is a whole number of equal ones. */
 double tl_cloth_substep(const tl_cloth *cloth);

@@ -1,17 +1,36 @@
 # The parts of render that know neither GL nor the clock.
 add_library(toile_light STATIC
+  brdf/brdf.c
+  brdf/coat.c
+  brdf/draw.c
+  brdf/fan.c
+  brdf/fresnel.c
+  brdf/normalise.c
+  brdf/options.c
+  detail/bake.c
+  detail/bumps.c
+  detail/detail.c
+  detail/field.c
+  brdf/power.c
+  brdf/table_error.c
+  brdf/tables.c
   env/convert.c
   env/cube.c
   env/emitters.c
   env/layout.c
+  env/levels.c
   env/lobes.c
   light/compose.c
   light/mirrors.c
   env/pour.c
   env/sun.c
+  envmap/pictures.c
   frame/view.c
   light/region_lights.c
   light/samples.c
+  local/lamp.c
+  local/lamp_rays.c
+  local/lamp_samples.c
   metrics/compare.c
   metrics/flip.c
   pem/chain.c
@@ -24,6 +43,7 @@ add_library(toile_light STATIC
   pem/slices.c
   plan/plan.c
   reference/gather.c
+  reference/lamps.c
   reference/options.c
   reference/reference.c
   reference/sky.c

@@ -23,6 +23,8 @@ static struct tl_render_settings usable(const struct tl_render_settings *setting
         used.light.regions = used.light.regions / 6 * 6;
     while (used.light.pem_size & (used.light.pem_size - 1))
         used.light.pem_size &= used.light.pem_size - 1;
+    while (used.maps.size & (used.maps.size - 1))
+        used.maps.size &= used.maps.size - 1;
     return used;
 }
 
@@ -47,7 +49,8 @@ static bool check_image_size(const tl_renderer *renderer, const struct tl_image_
 
 static uint64_t map_texel_bytes(const struct tl_light_params *light)
 {
-    if (light->method == TL_METHOD_UNSHADOWED || light->visibility == TL_VISIBILITY_RAYS)
+    if (light->method == TL_METHOD_UNSHADOWED || light->method == TL_METHOD_MAPS ||
+        light->visibility == TL_VISIBILITY_RAYS)
         return 0;
     return light->visibility == TL_VISIBILITY_DEPTH ? TL_SHADOW_TEXEL_BYTES / 2 : TL_SHADOW_TEXEL_BYTES;
 }
@@ -56,7 +59,8 @@ static bool check_light_size(const struct tl_render_settings *settings, tl_error
 {
     const struct tl_light_params *light = &settings->light;
     /* Six faces and their mips: a third more than 6, so 8. */
-    bool chains = light->visibility != TL_VISIBILITY_RAYS && tl_light_source(light) == TL_LIGHT_CHAIN;
+    bool chains = light->visibility != TL_VISIBILITY_RAYS && light->method != TL_METHOD_MAPS &&
+                  tl_light_source(light) == TL_LIGHT_CHAIN;
     uint64_t pem =
         chains ? (uint64_t)light->pem_size * (uint64_t)light->pem_size * 8 * TL_PEM_TEXEL_BYTES : 0;
     uint64_t map = (uint64_t)light->map_size * (uint64_t)light->map_size * map_texel_bytes(light);
@@ -82,12 +86,13 @@ tl_renderer *tl_renderer_create(tl_gpu *gpu, tl_error *error)
     tl_renderer *renderer = TL_NEW(tl_renderer);
     renderer->gpu = gpu;
     renderer->surfaces = tl_surfaces_create(gpu);
+    tl_surfaces_use_detail(renderer->surfaces, &renderer->detail);
+    renderer->detail.params = *(const struct tl_detail_params *)tl_detail_options.defaults;
     renderer->points = tl_points_create();
     renderer->trace = tl_trace_create(error);
     renderer->maps = tl_shadow_maps_create(gpu, error);
     renderer->shaders_stamp = tl_shaders_stamp(tl_embedded_shaders);
-    if (!renderer->trace || !renderer->maps || !tl_gbuffer_create(&renderer->gbuffer, gpu, error) ||
-        !tl_lighting_create(&renderer->lighting, gpu, error) ||
+    if (!renderer->trace || !renderer->maps || !tl_lighting_create(&renderer->lighting, gpu, error) ||
         !tl_present_create(&renderer->present, gpu, error) ||
         !tl_jobs_check(tl_frame_jobs, tl_frame_job_count, error))
         tl_renderer_destroy(&renderer);
@@ -107,8 +112,10 @@ void tl_renderer_destroy(tl_renderer **renderer)
     tl_slice_maps_release(&(*renderer)->slice_maps);
     tl_region_lights_release(&(*renderer)->lights);
     tl_surfaces_destroy(&(*renderer)->surfaces);
+    tl_detail_maps_release(&(*renderer)->detail);
     tl_triangle_ranges_release(&(*renderer)->ranges);
     tl_samples_release(&(*renderer)->samples);
+    tl_sheets_release(&(*renderer)->sheets);
     tl_mirrors_release(&(*renderer)->mirrors);
     tl_trace_destroy(&(*renderer)->trace);
     tl_points_destroy(&(*renderer)->points);
@@ -117,6 +124,12 @@ void tl_renderer_destroy(tl_renderer **renderer)
     tl_shadow_maps_destroy(&(*renderer)->maps);
     tl_gbuffer_release(&(*renderer)->gbuffer);
     tl_lighting_release(&(*renderer)->lighting);
+    tl_pour_release(&(*renderer)->surroundings.pour);
+    tl_cube_release(&(*renderer)->surroundings.cube);
+    tl_lobes_release(&(*renderer)->surroundings.lobes);
+    tl_envmap_release(&(*renderer)->envmap);
+    tl_local_release(&(*renderer)->local);
+    tl_capture_release(&(*renderer)->capture);
     tl_present_release(&(*renderer)->present);
     free(*renderer);
     *renderer = NULL;
@@ -180,10 +193,12 @@ static void reload_shaders(tl_renderer *renderer)
     if (stamp == renderer->shaders_stamp)
         return;
     renderer->shaders_stamp = stamp;
+    tl_local_reload(&renderer->local);
     tl_error error = {0};
-    if (!tl_shadow_maps_reload(renderer->maps, &error) ||
-        !tl_program_reload(&renderer->gbuffer.program, &error) ||
-        !tl_lighting_reload(&renderer->lighting, &error) ||
+    if (!tl_shadow_maps_reload(renderer->maps, &error) || !tl_gbuffer_reload(&renderer->gbuffer, &error) ||
+        !tl_gbuffer_reload(&renderer->sheets.behind, &error) ||
+        !tl_lighting_reload(&renderer->lighting, &error) || !tl_envmap_reload(&renderer->envmap, &error) ||
+        !tl_capture_reload(&renderer->capture, &error) ||
         !tl_program_reload(&renderer->present.resolve, &error) ||
         !tl_program_reload(&renderer->present.show, &error))
         tl_warn("%s", error.message);
@@ -204,12 +219,25 @@ static bool check_camera(const struct tl_camera *camera, tl_error *error)
     return true;
 }
 
+static bool check_envmap_size(const tl_frame *frame, const struct tl_render_settings *settings,
+                              tl_error *error)
+{
+    uint32_t exponents = tl_frame_map_exponents(frame, &settings->detail);
+    uint64_t bytes = tl_envmap_bytes_needed(&settings->maps, exponents);
+    if (settings->light.method == TL_METHOD_MAPS && bytes > TEXTURE_BYTES_MAX)
+        return tl_fail(error, TL_USAGE,
+                       "maps: %d environment maps of %d texels need %d MB, more than %d: lower maps.size",
+                       __builtin_popcount(exponents), settings->maps.size, (int)(bytes >> 20),
+                       (int)(TEXTURE_BYTES_MAX >> 20));
+    return true;
+}
+
 bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct tl_render_settings *settings,
                       tl_error *error)
 {
     struct tl_render_settings used = usable(settings);
     if (!check_camera(&frame->camera, error) || !check_image_size(renderer, &used.image, error) ||
-        !check_light_size(&used, error))
+        !check_light_size(&used, error) || !check_envmap_size(frame, &used, error))
         return false;
     reload_shaders(renderer);
     uint64_t signatures[TL_INPUT_COUNT];
@@ -221,6 +249,10 @@ bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct
     memcpy(renderer->signatures, signatures, sizeof signatures);
     tl_frame_list_surfaces(renderer);
     const struct tl_plan_input input = plan_input(renderer, frame, &used, changed, TL_MADE_IMAGE);
+    if (!(input.scene & TL_BIT(TL_SCENE_LAMPS)))
+        tl_local_release(&renderer->local);
+    if (!(input.scene & TL_BIT(TL_SCENE_SHEETS)))
+        tl_sheets_release(&renderer->sheets);
     return run_plan(renderer, &input, &renderer->plan, error);
 }
 
@@ -249,6 +281,18 @@ bool tl_renderer_read(tl_renderer *renderer, tl_image *out, tl_error *error)
     glGetTextureImage(target->colours[0].id, 0, GL_RGBA, GL_FLOAT,
                       (GLsizei)(row_bytes * (size_t)target->height), out->texels);
     flip_rows(out, row_bytes);
+    return true;
+}
+
+bool tl_renderer_read_capture(const tl_renderer *renderer, tl_image *out, tl_error *error)
+{
+    const tl_cube *cube = &renderer->capture.cube;
+    if (!(renderer->valid & TL_BIT(TL_MADE_CAPTURE)))
+        return tl_fail(error, TL_USAGE,
+                       "renderer: no scene was captured: draw a frame with light.method maps and "
+                       "maps.capture_every above 0");
+    *out = tl_image_create(cube->size, 6 * cube->size, 3, TL_IMAGE_F32);
+    memcpy(out->texels, cube->texels, 18 * sizeof(float) * (size_t)cube->size * (size_t)cube->size);
     return true;
 }
 
@@ -307,7 +351,8 @@ bool tl_renderer_is_at_rest(const tl_renderer *renderer)
     const struct tl_light_params *light = &renderer->settings.light;
     bool is_done = light->visibility == TL_VISIBILITY_RAYS ? renderer->rest.is_done
                                                            : renderer->rest.image >= light->rounds - 1;
-    return renderer->valid & TL_BIT(TL_MADE_IMAGE) && (is_done || !tl_light_averages(light));
+    return renderer->valid & TL_BIT(TL_MADE_IMAGE) && renderer->rest.is_captured &&
+           (is_done || !tl_light_averages(light));
 }
 
 const tl_plan *tl_renderer_last_plan(const tl_renderer *renderer)
@@ -320,15 +365,18 @@ struct tl_render_memory tl_renderer_memory(const tl_renderer *renderer)
     const struct tl_present *present = &renderer->present;
     struct tl_render_memory memory = {
         .pems = tl_pems_bytes(&renderer->pems) + tl_lobes_bytes(&renderer->lobes) +
-                tl_slice_maps_bytes(&renderer->slice_maps),
-        .maps = tl_shadow_maps_bytes(renderer->maps),
+                tl_slice_maps_bytes(&renderer->slice_maps) + tl_lobes_bytes(&renderer->surroundings.lobes) +
+                tl_envmap_bytes(&renderer->envmap) + tl_capture_bytes(&renderer->capture),
+        .maps = tl_shadow_maps_bytes(renderer->maps) + tl_lamp_shadows_bytes(&renderer->local.shadows),
         .rays = tl_trace_bytes(renderer->trace) + tl_points_bytes(renderer->points),
+        .sheets = tl_sheets_bytes(&renderer->sheets),
         .targets = tl_target_bytes(&renderer->gbuffer.target) + tl_target_bytes(&renderer->lighting.target) +
                    tl_present_bytes(present),
-        .surfaces = tl_surfaces_bytes(renderer->surfaces),
-        .other = tl_lighting_bytes(&renderer->lighting) + tl_texture_bytes(&present->backdrop) +
-                 tl_texture_bytes(&present->blurred),
+        .surfaces = tl_surfaces_bytes(renderer->surfaces) + tl_detail_maps_bytes(&renderer->detail),
+        .other = tl_lighting_bytes(&renderer->lighting) + tl_local_bytes(&renderer->local) +
+                 tl_texture_bytes(&present->backdrop) + tl_texture_bytes(&present->blurred),
     };
-    memory.total = memory.pems + memory.maps + memory.rays + memory.targets + memory.surfaces + memory.other;
+    memory.total = memory.pems + memory.maps + memory.rays + memory.sheets + memory.targets +
+                   memory.surfaces + memory.other;
     return memory;
 }

@@ -8,7 +8,9 @@
 #include "assets/environment.h"
 #include "assets/surface.h"
 #include "config/options.h"
+#include "render/detail/options.h"
 #include "render/gpu/gpu.h"
+#include "render/local/shading.h"
 #include "render/plan/plan.h"
 
 enum tl_method {
@@ -18,7 +20,8 @@ enum tl_method {
     TL_METHOD_AO,     /* unshadowed light times ambient occlusion */
     TL_METHOD_AO_COLOUR,  /* ... times the occlusion of the diffuse light, by channel */
     TL_METHOD_UNSHADOWED, /* visibility is 1 everywhere */
-    TL_METHOD_REFERENCE   /* ray traced: render/reference */
+    TL_METHOD_REFERENCE,  /* ray traced: render/reference */
+    TL_METHOD_MAPS        /* classic environment mapping, unshadowed: render/envmap */
 };
 enum tl_lobe { TL_LOBE_SINGLE, TL_LOBE_DUAL };
 enum tl_cut { TL_CUT_FACES, TL_CUT_SPHERE };
@@ -47,6 +50,7 @@ struct tl_light_params { /* table "light" */
     int rays;            /* rays: directions a region and refresh */
     float repair;        /* rays: share of the samples, the least certain, that get rays of their own */
     float repair_rest;   /* ... once nothing moves, when it is more */
+    int fan;             /* rays: cosine lobes at most that stand for a gloss of facets */
     bool reflect_scene; /* near mirrors (s >= TL_MIRROR_EXPONENT) see the lit scene; false: black, as [002] */
     int map_size;       /* texels, side of a shadow map */
     float blur_m;       /* metres: the Gaussian's sigma is blur_m x tan(cone) */
@@ -55,15 +59,52 @@ struct tl_light_params { /* table "light" */
     float bleed_reduction; /* [0, 1): Chebyshev values below it become 0 */
 };
 extern const struct tl_option_table tl_light_options;
+/* So many sheets are looked through, where cloth is open; the next one is taken as closed. */
+#define TL_SHEETS_BEHIND   4
 #define TL_MIRROR_EXPONENT 199.0f /* a glossiness of 0.995, however it is rounded */
+
+/* How environment maps are looked up (render/envmap/envmap.h), and what is made of it. */
+enum tl_maps_look_up { TL_LOOK_UP_DIRECT, TL_LOOK_UP_MATRIX };
+enum tl_maps_mode {
+    TL_MAPS_SURFACE,
+    TL_MAPS_MIRROR,
+    TL_MAPS_REFRACTION,
+    TL_MAPS_DIFFUSE,
+    TL_MAPS_GLOSSY,
+    TL_MAPS_TRANSMISSION
+};
+/* off: the reflectance of the G-buffer. Else F of a table over the cosine: Lo = F Lm + Ld, or F Lm + (1 - F)
+ * Ld [Heidrich and Seidel 1999, 4.4]. */
+enum tl_maps_fresnel { TL_MAPS_FRESNEL_OFF, TL_MAPS_FRESNEL_ADDITIVE, TL_MAPS_FRESNEL_COAT };
+struct tl_maps_params {  /* table "maps", of TL_METHOD_MAPS */
+    int layout;          /* enum tl_layout (render/env/layout.h) */
+    int size;            /* texels, a power of two: side of a cube's face, height of the others */
+    int look_up;         /* enum tl_maps_look_up, of paraboloids */
+    int mode;            /* enum tl_maps_mode */
+    int fresnel;         /* enum tl_maps_fresnel */
+    bool minify;         /* mirrors read mip levels */
+    int capture_every;   /* frames from one capture of the scene to the next; 0: the environment alone */
+    float capture_at[3]; /* metres, from the middle of what casts shadows */
+};
+extern const struct tl_option_table tl_maps_options;
+#define TL_MAPS_SIZE_MIN 4
+#define TL_MAPS_SIZE_MAX 512
 
 struct tl_material_params { /* table "material": the garment's look, from the fabric or by hand */
     bool use_file;          /* keep the garment file's own materials where it has them */
     float diffuse[3];
     float specular[3];
     float glossiness;
+    int model, facets, masking, fresnel; /* as struct tl_gloss */
+    float index, extinction;
+    float width_weft, width_warp, rotation_deg;
+    float coat, coat_glossiness;
+    float transmission[3];
+    float openness;
 };
 extern const struct tl_option_table tl_material_options;
+extern const struct tl_option_table
+    tl_overlay_options; /* table "overlay": the same, of a garment's second fabric */
 
 struct tl_image_params { /* table "image" */
     int width, height;
@@ -88,6 +129,19 @@ struct tl_camera {
     float near_m, far_m;
 };
 
+/* A light that is no part of the environment. Its irradiance on a surface that faces it is `irradiance`, at
+ * every distance if it is directional, and at 1 m, falling with the square of the distance, if it is a point.
+ */
+enum tl_lamp_kind { TL_LAMP_NONE, TL_LAMP_DIRECTIONAL, TL_LAMP_POINT };
+struct tl_lamp {
+    enum tl_lamp_kind kind;
+    vec3s direction;  /* DIRECTIONAL: towards the light, unit */
+    vec3s position;   /* POINT: metres */
+    vec3s irradiance; /* linear Rec. 709, pi times the radiance that a white matt surface facing it sends back
+                       */
+};
+#define TL_LAMPS_MAX 4
+
 /* Read-only inputs of one frame. */
 typedef struct tl_frame {
     struct tl_camera camera;
@@ -96,12 +150,17 @@ typedef struct tl_frame {
     const tl_environment *environment;
     uint64_t environment_revision; /* changes when the environment does */
     float environment_yaw;         /* rad: the environment turned about +Y, counter-clockwise from above */
+    const struct tl_lamp *lamps;
+    size_t lamp_count; /* at most TL_LAMPS_MAX */
     double time_s;
     bool still; /* drawn until it rests: every round is taken whole, however long that takes */
 } tl_frame;
 
 struct tl_render_settings {
     struct tl_light_params light;
+    struct tl_detail_params detail;
+    struct tl_maps_params maps;
+    struct tl_shading_params shading; /* under lamps */
     struct tl_image_params image;
     struct tl_reference_params reference;
 };
@@ -125,6 +184,10 @@ bool tl_renderer_is_at_rest(const tl_renderer *renderer);
 /* The HDR image: F32 RGBA, linear, alpha = coverage, premultiplied, black where nothing is. */
 bool tl_renderer_read(tl_renderer *renderer, tl_image *out, tl_error *error);
 
+/* The scene as it was last captured by TL_METHOD_MAPS, a cube in world axes (render/envmap/capture.h); not
+ * when nothing was. */
+bool tl_renderer_read_capture(const tl_renderer *renderer, tl_image *out, tl_error *error);
+
 /* For show: background, exposure, tone mapping (Khronos PBR Neutral), sRGB. To an image (U8 RGB) or, with
  * `framebuffer`, to the current window's buffer 0 at the given size in pixels. The drawn frame's environment
  * must still be there. */
@@ -139,7 +202,9 @@ const tl_plan *tl_renderer_last_plan(const tl_renderer *renderer);
 
 /* Bytes by use, summed from what is allocated. */
 struct tl_render_memory {
-    size_t pems, maps, rays, targets, surfaces, other, total;
+    size_t pems, maps, rays;
+    size_t sheets; /* of what is seen through cloth */
+    size_t targets, surfaces, other, total;
 };
 struct tl_render_memory tl_renderer_memory(const tl_renderer *renderer);
 

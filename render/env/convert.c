@@ -1,5 +1,7 @@
 #include "render/env/convert.h"
 
+#include "config/interrupt.h"
+#include "config/log.h"
 #include "config/memory.h"
 
 #include <assert.h>
@@ -21,6 +23,8 @@
 #define ROUNDS_MAX 400
 /* Fixed blocks of texels, each with shares of its own, so that the result does not depend on the threads. */
 #define BLOCKS 64
+/* Finding the shares takes about as long as so many of the usual rounds of scaling; for show only. */
+#define ROUNDS_USUAL 40
 
 struct share {
     uint32_t source, target;
@@ -43,6 +47,7 @@ struct side {
 struct conversion {
     struct side source, target;
     struct block blocks[BLOCKS];
+    struct tl_progress progress;
 };
 
 struct point {
@@ -254,15 +259,20 @@ static void merge_shares(struct block *block, size_t begin)
 static void find_shares(struct conversion *conversion)
 {
     size_t count = texel_count(conversion->target.map);
+    int done = 0;
 #pragma omp parallel for schedule(dynamic)
     for (int i = 0; i < BLOCKS; i++) {
         struct block *block = &conversion->blocks[i];
+        if (tl_interrupted())
+            continue;
         for (size_t texel = count * (size_t)i / BLOCKS; texel < count * (size_t)(i + 1) / BLOCKS; texel++) {
             struct tl_layout_cell cell = texel_cell(conversion->target.map, texel);
             size_t begin = block->count;
             share_cell(conversion, &cell, texel, 0, block);
             merge_shares(block, begin);
         }
+#pragma omp critical
+        tl_progress_update(&conversion->progress, 0.5 * ++done / BLOCKS, 1);
     }
 }
 
@@ -332,7 +342,8 @@ static double worst_source(const struct side *source)
 static double fit_shares(struct conversion *conversion)
 {
     double worst = INFINITY;
-    for (int round = 0; worst >= TL_CONVERT_ERROR && round < ROUNDS_MAX; round++) {
+    for (int round = 0; worst >= TL_CONVERT_ERROR && round < ROUNDS_MAX && !tl_interrupted(); round++) {
+        tl_progress_update(&conversion->progress, 0.5 + 0.5 * fmin((double)round / ROUNDS_USUAL, 0.99), 1);
         if (round > 0)
             scale_to_fit(&conversion->source);
         sum_targets(conversion);
@@ -378,8 +389,11 @@ static void fill_outside(const struct side *target, float *texels)
 
 int tl_convert_size(const struct tl_sphere_map *from, enum tl_layout to)
 {
-    static const int parts[TL_LAYOUT_COUNT] = {
-        [TL_LAYOUT_CUBE] = 1, [TL_LAYOUT_LATLONG] = 2, [TL_LAYOUT_PARABOLOID] = 2, [TL_LAYOUT_SPHERE] = 3};
+    static const int parts[TL_LAYOUT_COUNT] = {[TL_LAYOUT_CUBE] = 1,
+                                               [TL_LAYOUT_LATLONG] = 2,
+                                               [TL_LAYOUT_PARABOLOID] = 2,
+                                               [TL_LAYOUT_SPHERE] = 3,
+                                               [TL_LAYOUT_OCTAHEDRAL] = 3};
     int size = (int)((int64_t)tl_layout_size(from) * parts[to] / parts[from->layout]);
     return size > 1 ? size : 1;
 }
@@ -388,12 +402,14 @@ int tl_convert_size(const struct tl_sphere_map *from, enum tl_layout to)
 static double convert(const tl_image *image, const struct tl_sphere_map *from, const struct tl_sphere_map *to,
                       float *texels)
 {
-    struct conversion conversion = {.source = side_create(from), .target = side_create(to)};
+    struct conversion conversion = {
+        .source = side_create(from), .target = side_create(to), .progress = tl_progress_begin("converting")};
     find_shares(&conversion);
     share_missed(&conversion);
     double worst = fit_shares(&conversion);
     gather_light(&conversion, tl_image_floats(image), texels);
     fill_outside(&conversion.target, texels);
+    tl_progress_end(&conversion.progress);
     for (int i = 0; i < BLOCKS; i++)
         free(conversion.blocks[i].shares);
     side_release(&conversion.source);
@@ -412,6 +428,8 @@ tl_image tl_image_convert(const tl_image *image, const struct tl_sphere_map *fro
         memcpy(converted.texels, image->texels, texel_count(from) * sizeof(float[3]));
     else
         worst = convert(image, from, to, tl_image_floats(&converted));
+    if (tl_interrupted())
+        tl_image_release(&converted);
     if (error)
         *error = worst;
     return converted;

@@ -5,7 +5,8 @@
 #include <assert.h>
 #include <math.h>
 
-const char *const tl_layout_names[TL_LAYOUT_COUNT] = {"cube", "sphere", "paraboloid", "latlong"};
+const char *const tl_layout_names[TL_LAYOUT_COUNT + 1] = {"cube",    "sphere",     "paraboloid",
+                                                          "latlong", "octahedral", NULL};
 
 void tl_layout_extent(enum tl_layout layout, int size, int64_t *width, int64_t *height)
 {
@@ -66,10 +67,29 @@ static vec3s paraboloid_direction(const double point[2], double side)
                     (float)(side * (1 - square) / (1 + square))}};
 }
 
+/* Point of the octahedron, not normalised: its coordinates' magnitudes sum to 1. */
+static void octahedron_point(const struct tl_sphere_map *map, double x, double y, double point[3])
+{
+    double u = 2 * x / map->width - 1, v = 2 * y / map->height - 1;
+    point[1] = 1 - fabs(u) - fabs(v);
+    point[0] = point[1] >= 0 ? u : copysign(1 - fabs(v), u);
+    point[2] = point[1] >= 0 ? v : copysign(1 - fabs(u), v);
+}
+
+static vec3s octahedral_direction(const struct tl_sphere_map *map, double x, double y)
+{
+    double point[3];
+    octahedron_point(map, x, y, point);
+    double length = sqrt(point[0] * point[0] + point[1] * point[1] + point[2] * point[2]);
+    return (vec3s){{(float)(point[0] / length), (float)(point[1] / length), (float)(point[2] / length)}};
+}
+
 vec3s tl_layout_direction(const struct tl_sphere_map *map, double x, double y)
 {
     if (map->layout == TL_LAYOUT_LATLONG)
         return latlong_direction(map, x, y);
+    if (map->layout == TL_LAYOUT_OCTAHEDRAL)
+        return octahedral_direction(map, x, y);
     if (map->layout == TL_LAYOUT_CUBE)
         return cube_direction(map, x, y);
     struct disc disc = disc_at(map, x);
@@ -87,8 +107,24 @@ static void sphere_locate(vec3s direction, double point[2])
     point[1] = across > 0 ? radius * y / across : 0;
 }
 
+/* Below the horizon 1 - |v| = |u| + |y|. */
+static void octahedral_locate(vec3s direction, double *u, double *v)
+{
+    double x = (double)direction.x, y = (double)direction.y, z = (double)direction.z;
+    double sum = fabs(x) + fabs(y) + fabs(z), outwards = fmax(-y / sum, 0);
+    *u = x / sum + copysign(outwards, x);
+    *v = z / sum + copysign(outwards, z);
+}
+
 int tl_layout_locate(const struct tl_sphere_map *map, vec3s direction, double *x, double *y)
 {
+    if (map->layout == TL_LAYOUT_OCTAHEDRAL) {
+        double u, v;
+        octahedral_locate(direction, &u, &v);
+        *x = map->width * (0.5 + 0.5 * u);
+        *y = map->height * (0.5 + 0.5 * v);
+        return 0;
+    }
     if (map->layout == TL_LAYOUT_LATLONG) {
         double x0 = (double)direction.x, y0 = (double)direction.y, z0 = (double)direction.z;
         *x = map->width * (0.5 + atan2(x0, -z0) / (2 * M_PI));
@@ -153,6 +189,11 @@ double tl_layout_density(const struct tl_sphere_map *map, double x, double y)
     }
     if (map->layout == TL_LAYOUT_SPHERE)
         return 1;
+    if (map->layout == TL_LAYOUT_OCTAHEDRAL) {
+        double point[3];
+        octahedron_point(map, x, y, point);
+        return pow(point[0] * point[0] + point[1] * point[1] + point[2] * point[2], -1.5);
+    }
     struct disc disc = disc_at(map, x);
     double point[2];
     to_disc(&disc, x, y, point);
@@ -160,9 +201,14 @@ double tl_layout_density(const struct tl_sphere_map *map, double x, double y)
     return 1 / ((1 + square) * (1 + square));
 }
 
+static bool has_discs(enum tl_layout layout)
+{
+    return layout == TL_LAYOUT_SPHERE || layout == TL_LAYOUT_PARABOLOID;
+}
+
 bool tl_layout_holds(const struct tl_sphere_map *map, double x, double y)
 {
-    if (map->layout == TL_LAYOUT_LATLONG || map->layout == TL_LAYOUT_CUBE)
+    if (!has_discs(map->layout))
         return true;
     struct disc disc = disc_at(map, x);
     double point[2];
@@ -173,7 +219,7 @@ bool tl_layout_holds(const struct tl_sphere_map *map, double x, double y)
 void tl_layout_nearest(const struct tl_sphere_map *map, const struct tl_layout_cell *cell, double *x,
                        double *y)
 {
-    bool round = map->layout == TL_LAYOUT_SPHERE || map->layout == TL_LAYOUT_PARABOLOID;
+    bool round = has_discs(map->layout);
     double middle_x = 0.5 * (cell->x0 + cell->x1), middle_y = 0.5 * (cell->y0 + cell->y1);
     double radius = 0.5 * map->height;
     *x = round ? fmin(fmax(disc_at(map, middle_x).left + radius, cell->x0), cell->x1) : middle_x;
@@ -245,8 +291,87 @@ static double corner_solid_angle(double u, double v)
     return atan2(u * v, sqrt(u * u + v * v + 1));
 }
 
+/* A convex outline on one face of the octahedron: u, v >= 0 and u + v <= 1 stand for (u, 1 - u - v, v). */
+struct face_outline {
+    double points[6][2];
+    int count;
+};
+
+/* Van Oosterom and Strackee 1983, eq. 8. The triple product of points whose coordinates sum to 1 is twice the
+ * area that they span in (u, v). */
+static double triangle_solid_angle(const double a[2], const double b[2], const double c[2])
+{
+    const double *corners[3] = {a, b, c};
+    double points[3][3], lengths[3], below = 1;
+    for (int i = 0; i < 3; i++) {
+        double u = corners[i][0], v = corners[i][1], y = 1 - u - v;
+        points[i][0] = u;
+        points[i][1] = y;
+        points[i][2] = v;
+        lengths[i] = sqrt(u * u + y * y + v * v);
+        below *= lengths[i];
+    }
+    for (int i = 0; i < 3; i++) {
+        const double *p = points[i], *q = points[(i + 1) % 3];
+        below += (p[0] * q[0] + p[1] * q[1] + p[2] * q[2]) * lengths[(i + 2) % 3];
+    }
+    double twice_area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    return 2 * atan2(fabs(twice_area), below);
+}
+
+static double outline_solid_angle(const struct face_outline *outline)
+{
+    double sum = 0;
+    for (int i = 1; i + 1 < outline->count; i++)
+        sum += triangle_solid_angle(outline->points[0], outline->points[i], outline->points[i + 1]);
+    return sum;
+}
+
+/* The part of a rectangle on the upper face (side 1: u + v <= 1), or on the lower one (side -1), which is
+ * laid over the upper one by its mirror image in the line between them. */
+static struct face_outline cut_at_horizon(const double corners[4][2], double side)
+{
+    struct face_outline part = {.count = 0};
+    for (int i = 0; i < 4; i++) {
+        const double *a = corners[i], *b = corners[(i + 1) % 4];
+        double over_a = side * (a[0] + a[1] - 1), over_b = side * (b[0] + b[1] - 1);
+        double along = over_a / (over_a - over_b);
+        for (int step = 0; step < 2; step++) {
+            if (step == 0 ? over_a > 0 : (over_a < 0) == (over_b < 0) || over_a == 0 || over_b == 0)
+                continue;
+            double u = step ? a[0] + along * (b[0] - a[0]) : a[0];
+            double v = step ? a[1] + along * (b[1] - a[1]) : a[1];
+            double *point = part.points[part.count++];
+            point[0] = side > 0 ? u : 1 - v;
+            point[1] = side > 0 ? v : 1 - u;
+        }
+    }
+    return part;
+}
+
+/* A cell is parted where the octahedron has edges: along both axes of the map, and at the horizon. */
+static double octahedral_solid_angle(const struct tl_sphere_map *map, const struct tl_layout_cell *cell)
+{
+    double u[2] = {2 * cell->x0 / map->width - 1, 2 * cell->x1 / map->width - 1};
+    double v[2] = {2 * cell->y0 / map->height - 1, 2 * cell->y1 / map->height - 1};
+    double sum = 0;
+    for (int quadrant = 0; quadrant < 4; quadrant++) {
+        double right = quadrant & 1 ? 1 : -1, down = quadrant & 2 ? 1 : -1;
+        double u0 = fmax(fmin(right * u[0], right * u[1]), 0), u1 = fmax(right * u[0], right * u[1]);
+        double v0 = fmax(fmin(down * v[0], down * v[1]), 0), v1 = fmax(down * v[0], down * v[1]);
+        if (u1 <= u0 || v1 <= v0)
+            continue;
+        const double corners[4][2] = {{u0, v0}, {u1, v0}, {u1, v1}, {u0, v1}};
+        struct face_outline upper = cut_at_horizon(corners, 1), lower = cut_at_horizon(corners, -1);
+        sum += outline_solid_angle(&upper) + outline_solid_angle(&lower);
+    }
+    return sum;
+}
+
 double tl_layout_cell_solid_angle(const struct tl_sphere_map *map, const struct tl_layout_cell *cell)
 {
+    if (map->layout == TL_LAYOUT_OCTAHEDRAL)
+        return octahedral_solid_angle(map, cell);
     if (map->layout == TL_LAYOUT_LATLONG) { /* cos a - cos b, without the cancellation at the poles */
         double middle = 0.5 * M_PI * (cell->y0 + cell->y1) / map->height;
         double half = 0.5 * M_PI * (cell->y1 - cell->y0) / map->height;

@@ -1,15 +1,18 @@
-/* The four ways to lay the sphere of directions out as a picture. Pure.
+/* The ways to lay the sphere of directions out as a picture. Pure.
  *
  * Points of a picture are counted in texels from its top left corner: texel (x, y) is the square from (x, y)
  * to (x + 1, y + 1). `size` is the height of a picture, but for a cube the side of a face.
  *
- *   lat-long    2:1   u = 0.5 + atan2(x, -z) / 2pi, v = acos(y) / pi: the centre looks along -Z, +X right of
- * it. cube        1:6   faces +X -X +Y -Y +Z -Z stacked from the top, each in GL orientation
- * (render/env/cube.h). sphere      1:1   a mirror ball seen by an orthographic camera that looks along -Z: a
- * point of the unit disc, y up, is h.xy, where h halves the angle between the direction and +Z (Heidrich and
- * Seidel 1999, 4.1). The centre shows +Z. -Z is singular: the whole rim shows it. paraboloid  2:1   two
- * mirrors of this kind side by side that show a hemisphere each: d.xy / (1 + d.z) on the left for z >= 0, and
- * on the right the same seen from behind, (-d.x, d.y) / (1 - d.z) (op. cit., eq. 5 to 7).
+ * - lat-long, 2:1: u = 0.5 + atan2(x, -z) / 2pi, v = acos(y) / pi: the centre looks along -Z, +X right of it.
+ * - cube, 1:6: faces +X -X +Y -Y +Z -Z stacked from the top, each in GL orientation (render/env/cube.h).
+ * - sphere, 1:1: a mirror ball seen by an orthographic camera that looks along -Z: a point of the unit disc,
+ *   y up, is h.xy, where h halves the angle between the direction and +Z (Heidrich and Seidel 1999, 4.1). The
+ *   centre shows +Z. -Z is singular: the whole rim shows it.
+ * - paraboloid, 2:1: two mirrors of this kind side by side that show a hemisphere each: d.xy / (1 + d.z) on
+ *   the left for z >= 0, and on the right the same seen from behind, (-d.x, d.y) / (1 - d.z) (op. cit., eq. 5
+ *   to 7).
+ * - octahedral, 1:1: the octahedron |x| + |y| + |z| = 1 unfolded about +Y: the upper half is (x, z), +X right
+ *   and +Z down, and below the horizon the four corners are folded outwards, -Y in each of them.
  *
  * What lies outside of the discs is no part of the sphere. Paraboloids are continued there (op. cit., 4.1),
  * and the ball's rim is repeated, so that filters find no black. */
@@ -18,9 +21,16 @@
 
 #include <cglm/struct.h>
 
-enum tl_layout { TL_LAYOUT_CUBE, TL_LAYOUT_SPHERE, TL_LAYOUT_PARABOLOID, TL_LAYOUT_LATLONG, TL_LAYOUT_COUNT };
+enum tl_layout {
+    TL_LAYOUT_CUBE,
+    TL_LAYOUT_SPHERE,
+    TL_LAYOUT_PARABOLOID,
+    TL_LAYOUT_LATLONG,
+    TL_LAYOUT_OCTAHEDRAL,
+    TL_LAYOUT_COUNT
+};
 
-extern const char *const tl_layout_names[TL_LAYOUT_COUNT]; /* as on the command line */
+extern const char *const tl_layout_names[TL_LAYOUT_COUNT + 1]; /* as on the command line; NULL */
 
 /* A picture's layout and extent, texels. Lat-long pictures may have any. */
 struct tl_sphere_map {

@@ -2,14 +2,19 @@
 #ifndef TOILE_RENDER_FRAME_FRAME_H
 #define TOILE_RENDER_FRAME_FRAME_H
 
+#include "render/detail/maps.h"
 #include "render/env/lobes.h"
 #include "render/env/pour.h"
 #include "render/env/sun.h"
+#include "render/envmap/capture.h"
+#include "render/envmap/envmap.h"
 #include "render/light/gbuffer.h"
 #include "render/light/light.h"
 #include "render/light/mirrors.h"
 #include "render/light/region_lights.h"
 #include "render/light/samples.h"
+#include "render/light/sheets.h"
+#include "render/local/local.h"
 #include "render/present/present.h"
 #include "render/renderer.h"
 #include "render/trace/trace.h"
@@ -35,8 +40,14 @@ enum tl_resource {
     TL_INPUT_ROUND,       /* which of the jittered frames that are averaged while nothing changes */
     TL_INPUT_SCENE_ROUND, /* ... while nothing but the camera does */
     TL_INPUT_LIGHT,       /* how light is put together */
+    TL_INPUT_LAMPS,       /* and how surfaces are shaded under them */
     TL_INPUT_REFERENCE,
-    TL_INPUT_SHOW, /* exposure and background */
+    TL_INPUT_DETAIL,
+    TL_INPUT_SHOW,    /* exposure and background */
+    TL_INPUT_ENVMAP,  /* size of environment maps, and whether they show the scene */
+    TL_INPUT_LAYOUT,  /* their layout; for a sphere map the view's turn */
+    TL_INPUT_LOOK_UP, /* how they are looked up */
+    TL_INPUT_CAPTURE, /* the scene as it was when it was to be captured last */
     TL_INPUT_COUNT,
     TL_MADE_CUBE = TL_INPUT_COUNT, /* and the suns taken from it */
     TL_MADE_REGIONS,
@@ -46,13 +57,21 @@ enum tl_resource {
     TL_MADE_SLICES,
     TL_MADE_LIGHTS, /* regions as lights */
     TL_MADE_SURFACES,
+    TL_MADE_DETAIL, /* maps derived from the materials' own */
     TL_MADE_DEPTHS,
     TL_MADE_MAPS,
     TL_MADE_GBUFFER,
     TL_MADE_SAMPLES,
+    TL_MADE_SHEETS,  /* what is seen through cloth */
     TL_MADE_MIRRORS, /* what near mirrors show */
     TL_MADE_POINTS,
+    TL_MADE_ENVMAP_LOBES,
+    TL_MADE_CAPTURE,
+    TL_MADE_ENVMAP,
     TL_MADE_LIGHT,
+    TL_MADE_LAMP_MAPS,
+    TL_MADE_LAMP_RAYS,
+    TL_MADE_LAMPLIGHT, /* added to the light */
     TL_MADE_IMAGE,
     TL_MADE_BACKDROP,
     TL_MADE_SHOWN,
@@ -66,13 +85,21 @@ enum tl_scene_fact {
     TL_SCENE_SHADOWS, /* somebody asks for visibility */
     TL_SCENE_MAPS,    /* ... of shadow maps */
     TL_SCENE_RAYS,    /* the back-end of rays lights the image */
+    TL_SCENE_SHEETS,  /* ... and something is seen through, or is lit from behind */
     TL_SCENE_MIRRORS, /* ... and something is so glossy that rays follow what it shows */
     TL_SCENE_PASSES,  /* passes on the GPU do */
     TL_SCENE_CHAINS,  /* ... and read filter chains */
     TL_SCENE_SLICES,  /* ... and read exact slices of the regions */
     TL_SCENE_EXACT,   /* exact light of the whole environment is read */
     TL_SCENE_BLUR,    /* shadow maps are variance maps */
+    TL_SCENE_DETAIL,  /* a material's bumps need maps of their own */
     TL_SCENE_REFERENCE,
+    TL_SCENE_ENVMAP,  /* environment maps light the image */
+    TL_SCENE_CAPTURE, /* ... and show the scene */
+    TL_SCENE_LAMPS,
+    TL_SCENE_LAMP_MAPS, /* ... and depth maps shadow one of them */
+    TL_SCENE_LAMP_RAYS, /* ... and rays do */
+    TL_SCENE_SAMPLES,   /* rays start from what is seen */
     TL_SCENE_FACT_COUNT
 };
 
@@ -90,7 +117,10 @@ extern const int tl_frame_job_count;
 /* How many frames have been drawn since something changed: anything, and anything but the camera. */
 struct tl_rest {
     int image, scene;
-    bool is_done; /* rays: all rounds of this image are in */
+    bool is_done;      /* rays: all rounds of this image are in */
+    uint64_t captured; /* environment maps: the signature of the scene that they show; 0: none */
+    int capture_age;   /* ... frames ago */
+    bool is_captured;  /* ... and it is the one that is there */
 };
 
 /* Whether rounds at rest change the image. */
@@ -105,7 +135,12 @@ void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *setti
 /* Facts about the scene and how it is to be drawn, and the exponents that its materials need (env/lobes.h).
  */
 tl_bits tl_frame_facts(const tl_frame *frame, const struct tl_render_settings *settings);
-uint32_t tl_frame_exponents(const tl_frame *frame);
+uint32_t tl_frame_exponents(const tl_frame *frame, const struct tl_detail_params *detail);
+/* Whether any material, or any drawn, has this property. */
+bool tl_frame_has(const tl_frame *frame, bool (*property)(const tl_material *material));
+bool tl_material_is_faceted(const tl_material *material);
+/* ... and those of environment maps, with the environment itself for mirrors. */
+uint32_t tl_frame_map_exponents(const tl_frame *frame, const struct tl_detail_params *detail);
 
 /* Lists what is drawn, with the ground last when it is drawn. */
 void tl_frame_list_surfaces(tl_renderer *renderer);
@@ -129,6 +164,7 @@ struct tl_renderer {
     struct tl_slice_maps slice_maps;
     struct tl_region_lights lights;
     tl_surfaces *surfaces;
+    struct tl_detail_maps detail;
     size_t surface_count; /* with the ground, which comes last */
     struct tl_casters casters;
     struct tl_ground ground;
@@ -137,12 +173,21 @@ struct tl_renderer {
     const tl_surface **drawn; /* what is drawn, with the ground last */
     struct tl_triangle_ranges ranges;
     struct tl_samples samples;
+    struct tl_sheets sheets;
     struct tl_mirrors mirrors;
     tl_trace *trace;
     tl_points *points;
     float *light; /* [height][width][4] of samples, composed on the CPU */
     size_t light_bytes;
     struct tl_lighting lighting;
+    struct {                 /* what environment maps are made of: the whole light, suns and all */
+        struct tl_pour pour; /* ... to their size */
+        tl_cube cube;
+        struct tl_lobes lobes;
+    } surroundings;
+    struct tl_capture capture;
+    struct tl_envmap envmap;
+    struct tl_local local;
     struct tl_present present;
     double standard_error; /* of the last reference */
 

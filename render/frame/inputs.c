@@ -1,4 +1,8 @@
+#include "config/memory.h"
+#include "render/detail/detail.h"
 #include "render/frame/frame.h"
+
+#include "render/brdf/fan.h"
 #include "render/pem/lobe.h"
 
 #include <math.h>
@@ -43,6 +47,7 @@ static uint64_t light_signature(const struct tl_light_params *light)
 {
     uint64_t hash = MIX(MIX(MIX(FNV_OFFSET, light->method), light->lobe), light->prefilter);
     hash = MIX(MIX(MIX(hash, light->visibility), light->composition), light->reflect_scene);
+    hash = MIX(hash, light->fan);
     return MIX(MIX(MIX(hash, light->depth_bias_m), light->min_variance), light->bleed_reduction);
 }
 
@@ -60,15 +65,77 @@ static uint64_t rays_signature(const struct tl_light_params *light)
     return MIX(MIX(MIX(hash, light->repair), light->repair_rest), light->jitter);
 }
 
+/* Always the same without lamps, however surfaces would be shaded under them. */
+static uint64_t lamps_signature(const tl_frame *frame, const struct tl_shading_params *shading)
+{
+    struct tl_lamp lamps[TL_LAMPS_MAX];
+    size_t count = tl_lamps_lit(frame, lamps);
+    uint64_t hash = FNV_OFFSET;
+    for (size_t i = 0; i < count; i++) {
+        hash = MIX(MIX(hash, lamps[i].kind), lamps[i].irradiance);
+        hash = MIX(MIX(hash, lamps[i].direction), lamps[i].position);
+    }
+    return count > 0 ? MIX(hash, *shading) : hash;
+}
+
 static uint64_t reference_signature(const struct tl_reference_params *reference)
 {
     uint64_t hash = MIX(MIX(FNV_OFFSET, reference->strata), reference->lobe_samples);
     return MIX(MIX(hash, reference->replicates), reference->terminator);
 }
 
+static uint64_t detail_signature(const struct tl_detail_params *detail)
+{
+    uint64_t hash = MIX(MIX(MIX(FNV_OFFSET, detail->mode), detail->steps), detail->refine);
+    return MIX(MIX(MIX(MIX(hash, detail->shadow), detail->height_scale), detail->silhouette), detail->minify);
+}
+
+static uint64_t layout_signature(const tl_frame *frame, const struct tl_maps_params *maps)
+{
+    uint64_t hash = MIX(FNV_OFFSET, maps->layout);
+    if (maps->layout != TL_LAYOUT_SPHERE)
+        return hash;
+    struct tl_view view = tl_view_make(&frame->camera, 1, 1);
+    return MIX(MIX(hash, view.forward), view.up);
+}
+
+static uint64_t look_up_signature(const struct tl_maps_params *maps)
+{
+    uint64_t hash = MIX(MIX(FNV_OFFSET, maps->look_up), maps->mode);
+    return MIX(MIX(hash, maps->fresnel), maps->minify);
+}
+
+/* What a capture shows. */
+static uint64_t scene_signature(const uint64_t signatures[TL_INPUT_COUNT], const struct tl_maps_params *maps)
+{
+    static const enum tl_resource shown[] = {TL_INPUT_ENVIRONMENT, TL_INPUT_YAW, TL_INPUT_SHAPES,
+                                             TL_INPUT_MOTION, TL_INPUT_GROUND};
+    uint64_t hash = MIX(MIX(FNV_OFFSET, maps->size), maps->capture_at);
+    for (size_t i = 0; i < TL_COUNT(shown); i++)
+        hash = MIX(hash, signatures[shown[i]]);
+    return hash;
+}
+
+/* A still image never shows an old scene. */
+static void count_capture(const tl_frame *frame, const struct tl_render_settings *settings,
+                          const uint64_t signatures[TL_INPUT_COUNT], struct tl_rest *rest)
+{
+    const struct tl_maps_params *maps = &settings->maps;
+    bool is_wanted = settings->light.method == TL_METHOD_MAPS && maps->capture_every > 0;
+    uint64_t scene = is_wanted ? scene_signature(signatures, maps) : 0;
+    rest->capture_age = rest->capture_age < maps->capture_every ? rest->capture_age + 1 : maps->capture_every;
+    bool is_time = frame->still || rest->captured == 0 || rest->capture_age >= maps->capture_every;
+    if (scene != rest->captured && (is_time || !is_wanted)) {
+        rest->captured = scene;
+        rest->capture_age = 0;
+    }
+    rest->is_captured = scene == rest->captured;
+}
+
 bool tl_light_averages(const struct tl_light_params *light)
 {
-    return light->jitter && light->method != TL_METHOD_REFERENCE && light->method != TL_METHOD_UNSHADOWED;
+    return light->jitter && light->method != TL_METHOD_REFERENCE && light->method != TL_METHOD_UNSHADOWED &&
+           light->method != TL_METHOD_MAPS;
 }
 
 static void count_rest(const struct tl_light_params *light, const uint64_t before[TL_INPUT_COUNT],
@@ -80,7 +147,7 @@ static void count_rest(const struct tl_light_params *light, const uint64_t befor
         if (is_outcome || i == TL_INPUT_SHOW || signatures[i] == before[i])
             continue;
         image_rests = false;
-        scene_rests = scene_rests && (i == TL_INPUT_CAMERA || i == TL_INPUT_SIZE);
+        scene_rests = scene_rests && (i == TL_INPUT_CAMERA || i == TL_INPUT_SIZE || i == TL_INPUT_LAMPS);
     }
     int last = tl_light_averages(light) ? light->rounds - 1 : 0;
     rest->image = !image_rests ? 0 : rest->image < last ? rest->image + 1 : last;
@@ -114,8 +181,16 @@ void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *setti
     signatures[TL_INPUT_MAPS] = maps_signature(light);
     signatures[TL_INPUT_RAYS] = rays_signature(light);
     signatures[TL_INPUT_LIGHT] = light_signature(light);
+    signatures[TL_INPUT_LAMPS] = lamps_signature(frame, &settings->shading);
     signatures[TL_INPUT_REFERENCE] = reference_signature(&settings->reference);
+    signatures[TL_INPUT_DETAIL] = detail_signature(&settings->detail);
     signatures[TL_INPUT_SHOW] = MIX(MIX(start, image->exposure_ev), image->background);
+    bool captures = settings->maps.capture_every > 0;
+    signatures[TL_INPUT_ENVMAP] = MIX(MIX(start, settings->maps.size), captures);
+    signatures[TL_INPUT_LAYOUT] = layout_signature(frame, &settings->maps);
+    count_capture(frame, settings, signatures, rest);
+    signatures[TL_INPUT_CAPTURE] = MIX(start, rest->captured);
+    signatures[TL_INPUT_LOOK_UP] = look_up_signature(&settings->maps);
     count_rest(light, before, signatures, rest);
     signatures[TL_INPUT_ROUND] = MIX(start, rest->image);
     signatures[TL_INPUT_SCENE_ROUND] = MIX(start, rest->scene);
@@ -142,20 +217,66 @@ static void glossiness_range(const tl_material *material, float *low, float *hig
 /* The G-buffer rounds 1 - glossiness to a half. */
 #define ROUNDING 1e-3f
 
-uint32_t tl_frame_exponents(const tl_frame *frame)
+/* Exponents from `least` to `greatest`. */
+static uint32_t exponents_between(float least, float greatest)
+{
+    return tl_exponents_needed(1 - 1 / fmaxf(least * (1 - ROUNDING), 1),
+                               1 - 1 / fmaxf(greatest * (1 + ROUNDING), 1));
+}
+
+/* Of what a material is beyond two lobes. */
+static uint32_t layered_exponents(const tl_material *material, float low, float high)
+{
+    uint32_t needed = 0;
+    if (material->coat > 0)
+        needed |= tl_exponents_needed(material->coat_glossiness, material->coat_glossiness);
+    if (!tl_material_is_faceted(material))
+        return needed;
+    float least, greatest, unused;
+    struct tl_brdf dull = tl_brdf_of(material, material->specular, low);
+    struct tl_brdf shiny = tl_brdf_of(material, material->specular, high);
+    tl_fan_exponents(&dull, &least, &unused);
+    tl_fan_exponents(&shiny, &unused, &greatest);
+    return needed | exponents_between(least, greatest);
+}
+
+uint32_t tl_frame_exponents(const tl_frame *frame, const struct tl_detail_params *detail)
 {
     uint32_t needed = 1;
     for (size_t s = 0; s < frame->surface_count; s++)
         for (size_t p = 0; p < frame->surfaces[s].part_count; p++) {
+            const tl_material *material = &frame->surfaces[s].materials[frame->surfaces[s].parts[p].material];
             float low, high;
-            glossiness_range(&frame->surfaces[s].materials[frame->surfaces[s].parts[p].material], &low,
-                             &high);
-            needed |= tl_exponents_needed(1 - (1 - low) * (1 + ROUNDING), 1 - (1 - high) * (1 - ROUNDING));
+            glossiness_range(material, &low, &high);
+            if (tl_detail_wants_moments(detail) && tl_detail_wants_maps(detail, material))
+                low = 0; /* averaged bumps dull any gloss */
+            low = 1 - (1 - low) * (1 + ROUNDING);
+            needed |= tl_exponents_needed(low, 1 - (1 - high) * (1 - ROUNDING));
             if (tl_mirror_ray_count(tl_lobe_exponent(high)) >
                 0) /* lobes along a mirror's rays are narrower still */
                 needed |= tl_exponents_needed(high, 1);
+            needed |= layered_exponents(material, low, 1 - (1 - high) * (1 - ROUNDING));
         }
     return needed;
+}
+
+bool tl_material_is_faceted(const tl_material *material)
+{
+    return material->gloss.model != TL_REFLECT_PHONG;
+}
+
+bool tl_frame_has(const tl_frame *frame, bool (*property)(const tl_material *material))
+{
+    for (size_t s = 0; s < frame->surface_count; s++)
+        for (size_t p = 0; p < frame->surfaces[s].part_count; p++)
+            if (property(&frame->surfaces[s].materials[frame->surfaces[s].parts[p].material]))
+                return true;
+    return false;
+}
+
+uint32_t tl_frame_map_exponents(const tl_frame *frame, const struct tl_detail_params *detail)
+{
+    return tl_frame_exponents(frame, detail) | 1u << TL_EXPONENT_COUNT;
 }
 
 static float greatest_glossiness(const tl_frame *frame)
@@ -171,15 +292,49 @@ static float greatest_glossiness(const tl_frame *frame)
     return greatest;
 }
 
+static bool wants_detail(const tl_frame *frame, const struct tl_detail_params *detail)
+{
+    for (size_t s = 0; s < frame->surface_count; s++)
+        for (size_t p = 0; p < frame->surfaces[s].part_count; p++)
+            if (tl_detail_wants_maps(detail,
+                                     &frame->surfaces[s].materials[frame->surfaces[s].parts[p].material]))
+                return true;
+    return false;
+}
+
+static tl_bits lamp_facts(const tl_frame *frame, const struct tl_light_params *light)
+{
+    struct tl_lamp lamps[TL_LAMPS_MAX];
+    size_t count = tl_lamps_lit(frame, lamps);
+    tl_bits facts = count > 0 ? TL_BIT(TL_SCENE_LAMPS) : 0;
+    struct tl_casters casters = {0};
+    tl_error error = {0};
+    if (count > 0 && light->visibility != TL_VISIBILITY_RAYS)
+        tl_casters_measure(frame->surfaces, frame->surface_count, &casters, &error);
+    for (size_t i = 0; i < count; i++) {
+        enum tl_lamp_shadow shadow = tl_lamp_shadow_of(&lamps[i], light, &casters);
+        if (shadow == TL_LAMP_SHADOW_RAYS)
+            facts |= TL_BIT(TL_SCENE_LAMP_RAYS) | TL_BIT(TL_SCENE_SAMPLES);
+        else if (shadow == TL_LAMP_SHADOW_MAP)
+            facts |= TL_BIT(TL_SCENE_LAMP_MAPS);
+    }
+    return facts;
+}
+
 tl_bits tl_frame_facts(const tl_frame *frame, const struct tl_render_settings *settings)
 {
     const struct tl_light_params *light = &settings->light;
     if (light->method == TL_METHOD_REFERENCE)
         return TL_BIT(TL_SCENE_REFERENCE);
+    if (light->method == TL_METHOD_MAPS)
+        return TL_BIT(TL_SCENE_RASTER) | TL_BIT(TL_SCENE_ENVMAP) | lamp_facts(frame, light) |
+               (settings->maps.capture_every > 0 ? TL_BIT(TL_SCENE_CAPTURE) : 0);
     bool shadowed = light->method != TL_METHOD_UNSHADOWED, rays = light->visibility == TL_VISIBILITY_RAYS;
     tl_bits facts = TL_BIT(TL_SCENE_RASTER) | TL_BIT(rays ? TL_SCENE_RAYS : TL_SCENE_PASSES);
     if (shadowed)
         facts |= TL_BIT(TL_SCENE_SHADOWS) | (rays ? 0 : TL_BIT(TL_SCENE_MAPS));
+    if (wants_detail(frame, &settings->detail))
+        facts |= TL_BIT(TL_SCENE_DETAIL);
     if (light->visibility == TL_VISIBILITY_VSM)
         facts |= TL_BIT(TL_SCENE_BLUR);
     if (!rays && tl_light_source(light) == TL_LIGHT_CHAIN)
@@ -188,8 +343,12 @@ tl_bits tl_frame_facts(const tl_frame *frame, const struct tl_render_settings *s
         facts |= TL_BIT(TL_SCENE_SLICES);
     if (rays || tl_light_needs_exact(light))
         facts |= TL_BIT(TL_SCENE_EXACT);
+    if (rays && tl_frame_has(frame, tl_material_shows_more))
+        facts |= TL_BIT(TL_SCENE_SHEETS);
     if (rays && light->method == TL_METHOD_PEM && light->reflect_scene &&
         tl_mirror_ray_count(tl_lobe_exponent(greatest_glossiness(frame))) > 0)
         facts |= TL_BIT(TL_SCENE_MIRRORS);
-    return facts;
+    if (rays)
+        facts |= TL_BIT(TL_SCENE_SAMPLES);
+    return facts | lamp_facts(frame, light);
 }

@@ -4,67 +4,13 @@
 #include "config/log.h"
 #include "config/memory.h"
 #include "render/light/compose.h"
+#include "render/local/lamp_rays.h"
+#include "render/local/lamp_samples.h"
 #include "render/reference/reference.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-const char *const tl_resource_names[] = {
-    [TL_INPUT_ENVIRONMENT] = "environment",
-    [TL_INPUT_YAW] = "environment yaw",
-    [TL_INPUT_SHAPES] = "shapes and materials",
-    [TL_INPUT_MOTION] = "motion",
-    [TL_INPUT_CAMERA] = "camera",
-    [TL_INPUT_SIZE] = "image size",
-    [TL_INPUT_GROUND] = "ground option",
-    [TL_INPUT_PEM_SIZE] = "PEM size",
-    [TL_INPUT_FILTER] = "filter option",
-    [TL_INPUT_SUN] = "sun option",
-    [TL_INPUT_REGIONS] = "regions options",
-    [TL_INPUT_PASSES] = "PEMs per pass",
-    [TL_INPUT_MAPS] = "shadow map options",
-    [TL_INPUT_RAYS] = "ray options",
-    [TL_INPUT_ROUND] = "round",
-    [TL_INPUT_SCENE_ROUND] = "round of the scene",
-    [TL_INPUT_LIGHT] = "light options",
-    [TL_INPUT_REFERENCE] = "reference options",
-    [TL_INPUT_SHOW] = "exposure and background",
-    [TL_MADE_CUBE] = "cube",
-    [TL_MADE_REGIONS] = "regions",
-    [TL_MADE_LOBE] = "lobe table",
-    [TL_MADE_PEMS] = "PEMs",
-    [TL_MADE_LOBES] = "lobes",
-    [TL_MADE_SLICES] = "slices",
-    [TL_MADE_LIGHTS] = "regions as lights",
-    [TL_MADE_SURFACES] = "surfaces",
-    [TL_MADE_DEPTHS] = "depths",
-    [TL_MADE_MAPS] = "shadow maps",
-    [TL_MADE_GBUFFER] = "G-buffer",
-    [TL_MADE_SAMPLES] = "samples",
-    [TL_MADE_MIRRORS] = "what mirrors show",
-    [TL_MADE_POINTS] = "visibility at points",
-    [TL_MADE_LIGHT] = "light",
-    [TL_MADE_IMAGE] = "image",
-    [TL_MADE_BACKDROP] = "backdrop",
-    [TL_MADE_SHOWN] = "shown image",
-    NULL,
-};
-
-const char *const tl_scene_fact_names[] = {
-    [TL_SCENE_RASTER] = "drawn image",
-    [TL_SCENE_SHADOWS] = "shadows",
-    [TL_SCENE_MAPS] = "shadow maps",
-    [TL_SCENE_RAYS] = "rays",
-    [TL_SCENE_MIRRORS] = "near mirrors by rays",
-    [TL_SCENE_PASSES] = "light passes",
-    [TL_SCENE_CHAINS] = "filter chains",
-    [TL_SCENE_SLICES] = "exact slices",
-    [TL_SCENE_EXACT] = "exact light",
-    [TL_SCENE_BLUR] = "variance maps",
-    [TL_SCENE_REFERENCE] = "reference",
-    NULL,
-};
 
 static const struct tl_ground *ground_of(const tl_renderer *renderer)
 {
@@ -102,7 +48,8 @@ static bool run_lobes(void *context, int level, tl_error *error)
 {
     tl_renderer *renderer = context;
     (void)level, (void)error;
-    tl_lobes_make(&renderer->lobes, &renderer->cube, tl_frame_exponents(&renderer->frame));
+    tl_lobes_make(&renderer->lobes, &renderer->cube,
+                  tl_frame_exponents(&renderer->frame, &renderer->settings.detail));
     tl_lighting_set_exact(&renderer->lighting, renderer->gpu, &renderer->lobes);
     return true;
 }
@@ -114,7 +61,7 @@ static bool run_slices(void *context, int level, tl_error *error)
     (void)level, (void)error;
     tl_slices_release(&renderer->slices);
     tl_slices_make(&renderer->slices, &renderer->cube, &renderer->regions,
-                   tl_frame_exponents(&renderer->frame));
+                   tl_frame_exponents(&renderer->frame, &renderer->settings.detail));
     tl_slice_maps_upload(&renderer->slice_maps, renderer->gpu, &renderer->slices);
     return true;
 }
@@ -175,6 +122,14 @@ static bool run_surfaces(void *context, int level, tl_error *error)
     return tl_surfaces_update(renderer->surfaces, renderer->drawn, renderer->surface_count, error);
 }
 
+static bool run_detail(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level;
+    return tl_detail_maps_make(&renderer->detail, renderer->gpu, renderer->drawn, renderer->surface_count,
+                               &renderer->settings.detail, error);
+}
+
 static struct tl_shadow_request shadow_request(const tl_renderer *renderer)
 {
     const struct tl_light_params *light = &renderer->settings.light;
@@ -214,15 +169,35 @@ static bool run_blur(void *context, int level, tl_error *error)
     return true;
 }
 
+/* What no option asks for any more is not kept; bumps are as high as the options say, with maps or without.
+ */
+static void forget_unused_detail(tl_renderer *renderer)
+{
+    if (!(tl_frame_facts(&renderer->frame, &renderer->settings) & TL_BIT(TL_SCENE_DETAIL)))
+        tl_detail_maps_release(&renderer->detail);
+    renderer->detail.params = renderer->settings.detail;
+}
+
+static struct tl_gbuffer_request gbuffer_request(const tl_renderer *renderer)
+{
+    const struct tl_image_params *image = &renderer->settings.image;
+    return (struct tl_gbuffer_request){.view = &renderer->view,
+                                       .width = image->width * image->supersample,
+                                       .height = image->height * image->supersample,
+                                       .surfaces = renderer->surfaces,
+                                       .surface_count = renderer->surface_count,
+                                       .ground = ground_of(renderer),
+                                       .detail = &renderer->settings.detail,
+                                       .frames = tl_frame_has(&renderer->frame, tl_material_is_faceted)};
+}
+
 static bool run_gbuffer(void *context, int level, tl_error *error)
 {
     tl_renderer *renderer = context;
-    (void)level, (void)error;
-    const struct tl_image_params *image = &renderer->settings.image;
-    tl_gbuffer_draw(&renderer->gbuffer, renderer->gpu, &renderer->view, image->width * image->supersample,
-                    image->height * image->supersample, renderer->surfaces, renderer->surface_count,
-                    ground_of(renderer));
-    return true;
+    (void)level;
+    struct tl_gbuffer_request request = gbuffer_request(renderer);
+    forget_unused_detail(renderer);
+    return tl_gbuffer_draw(&renderer->gbuffer, renderer->gpu, &request, error);
 }
 
 static bool run_light(void *context, int level, tl_error *error)
@@ -250,6 +225,15 @@ static bool run_samples(void *context, int level, tl_error *error)
     (void)level, (void)error;
     tl_samples_read(&renderer->gbuffer, &renderer->ranges, renderer->view.eye, &renderer->samples);
     return true;
+}
+
+static bool run_sheets(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level;
+    const struct tl_sheets_request request = {
+        .gbuffer = &renderer->gbuffer, .draw = gbuffer_request(renderer), .ranges = &renderer->ranges};
+    return tl_sheets_find(&renderer->sheets, renderer->gpu, &request, &renderer->samples, error);
 }
 
 /* Whoever asks the rays first in a frame brings them up to date; that costs nothing when they are. */
@@ -307,10 +291,43 @@ static bool run_points(void *context, int level, tl_error *error)
     return true;
 }
 
+/* Which back-end shadows each lamp, kept for the jobs that follow. */
+static size_t list_lamps(tl_renderer *renderer, struct tl_lamp lamps[TL_LAMPS_MAX])
+{
+    size_t count = tl_lamps_lit(&renderer->frame, lamps);
+    for (size_t i = 0; i < count; i++)
+        renderer->local.shadows.kinds[i] =
+            tl_lamp_shadow_of(&lamps[i], &renderer->settings.light, &renderer->casters);
+    return count;
+}
+
+/* Of samples that no pass of the GPU knows. */
+static bool add_lamps(tl_renderer *renderer, const struct tl_compose_request *composed, tl_error *error)
+{
+    struct tl_lamp lamps[TL_LAMPS_MAX];
+    const struct tl_lamp_samples_request request = {.lamp_count = list_lamps(renderer, lamps),
+                                                    .lamps = lamps,
+                                                    .shadowed = renderer->settings.light.method !=
+                                                                TL_METHOD_UNSHADOWED,
+                                                    .trace = renderer->trace,
+                                                    .samples = &renderer->samples,
+                                                    .shares = composed->shares,
+                                                    .mirrors = composed->mirrors,
+                                                    .ranges = &renderer->ranges,
+                                                    .ground = ground_of(renderer),
+                                                    .eye = renderer->view.eye};
+    if (request.lamp_count == 0 || renderer->samples.count == renderer->samples.primary_count)
+        return true;
+    if (request.shadowed && !follow_motion(renderer, error))
+        return false;
+    tl_lamp_samples_add(&request, renderer->light);
+    return true;
+}
+
 static bool run_compose(void *context, int level, tl_error *error)
 {
     tl_renderer *renderer = context;
-    (void)level, (void)error;
+    (void)level;
     const struct tl_samples *samples = &renderer->samples;
     size_t bytes = (size_t)samples->width * (size_t)samples->height * 4 * sizeof(float);
     if (bytes != renderer->light_bytes) {
@@ -325,7 +342,12 @@ static bool run_compose(void *context, int level, tl_error *error)
                                          .lobes = &renderer->lobes,
                                          .environment = renderer->frame.environment,
                                          .environment_yaw = renderer->frame.environment_yaw,
-                                         .params = &renderer->settings.light};
+                                         .params = &renderer->settings.light,
+                                         .eye = renderer->view.eye};
+    if (tl_frame_has(&renderer->frame, tl_material_is_layered))
+        request.ranges = &renderer->ranges;
+    if (tl_frame_facts(&renderer->frame, &renderer->settings) & TL_BIT(TL_SCENE_SHEETS))
+        request.shares = renderer->sheets.shares;
     if (renderer->settings.light.method != TL_METHOD_UNSHADOWED) {
         request.values = tl_points_values(renderer->points, &request.stride);
         request.taps = tl_points_taps(renderer->points);
@@ -335,8 +357,146 @@ static bool run_compose(void *context, int level, tl_error *error)
             request.sun_visibility[i] = tl_points_sun(renderer->points, i);
     }
     tl_compose(&request, renderer->light);
+    if (!add_lamps(renderer, &request, error))
+        return false;
     tl_lighting_set(&renderer->lighting, renderer->gpu, &renderer->gbuffer, renderer->light);
     return true;
+}
+
+static bool run_envmap_lobes(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level, (void)error;
+    tl_cube_release(&renderer->surroundings.cube);
+    tl_lobes_release(&renderer->surroundings.lobes);
+    renderer->surroundings.cube = tl_cube_from_environment_with(
+        renderer->frame.environment, renderer->settings.maps.size, &renderer->surroundings.pour);
+    tl_lobes_make(&renderer->surroundings.lobes, &renderer->surroundings.cube,
+                  tl_frame_map_exponents(&renderer->frame, &renderer->settings.detail));
+    return true;
+}
+
+static mat3s environment_into_world(float yaw)
+{
+    mat3s axes = glms_mat3_identity();
+    for (int i = 0; i < 3; i++)
+        axes.col[i] = tl_turn_direction(axes.col[i], yaw);
+    return axes;
+}
+
+static bool run_capture(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level;
+    const struct tl_maps_params *maps = &renderer->settings.maps;
+    const struct tl_casters *casters = &renderer->casters;
+    vec3s offset = {{maps->capture_at[0], maps->capture_at[1], maps->capture_at[2]}};
+    mat3s into_world = environment_into_world(renderer->frame.environment_yaw);
+    const struct tl_capture_request request = {
+        .point = glms_vec3_add(casters->centre, offset),
+        .size = maps->size,
+        .environment = &renderer->surroundings.cube,
+        .lobes = &renderer->surroundings.lobes,
+        .environment_yaw = renderer->frame.environment_yaw,
+        .into_world = &into_world,
+        .exponents = tl_frame_map_exponents(&renderer->frame, &renderer->settings.detail),
+        .exponent_levels = &renderer->lighting.exponent_levels,
+        .surfaces = renderer->surfaces,
+        .ranges = &renderer->ranges,
+        .ground = ground_of(renderer),
+        .near_m = 1e-3f * casters->radius,
+        .far_m = glms_vec3_norm(offset) + 100 * casters->radius};
+    return tl_capture_draw(&renderer->capture, renderer->gpu, &request, error);
+}
+
+static bool run_envmap(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level, (void)error;
+    bool captured = renderer->settings.maps.capture_every > 0; /* in world axes */
+    if (captured)                                              /* materials may have changed since */
+        tl_lobes_make(&renderer->capture.lobes, &renderer->capture.cube,
+                      tl_frame_map_exponents(&renderer->frame, &renderer->settings.detail));
+    mat3s into_world = environment_into_world(captured ? 0 : renderer->frame.environment_yaw);
+    tl_envmap_fill(&renderer->envmap, renderer->gpu, &renderer->settings.maps,
+                   captured ? &renderer->capture.lobes : &renderer->surroundings.lobes, &into_world,
+                   &renderer->view);
+    tl_envmap_set_parts(&renderer->envmap, renderer->gpu, &renderer->ranges, renderer->settings.image.ground);
+    return true;
+}
+
+static bool run_look_up(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level;
+    const tl_target *gbuffer = &renderer->gbuffer.target;
+    const struct tl_envmap_request request = {.triangles = &gbuffer->colours[TL_GBUFFER_TRIANGLE],
+                                              .exponent_levels = &renderer->lighting.exponent_levels,
+                                              .eye = renderer->view.eye,
+                                              .params = &renderer->settings.maps};
+    tl_lighting_begin(&renderer->lighting, renderer->gpu, gbuffer, true);
+    bool fine = tl_envmap_draw(&renderer->envmap, renderer->gpu, &request, error);
+    tl_gpu_reset_state(renderer->gpu);
+    return fine;
+}
+
+static bool run_lamp_maps(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level;
+    struct tl_lamp lamps[TL_LAMPS_MAX];
+    const struct tl_lamp_maps_request request = {.lamp_count = list_lamps(renderer, lamps),
+                                                 .lamps = lamps,
+                                                 .caster_surfaces = renderer->frame.surfaces,
+                                                 .caster_count = renderer->frame.surface_count,
+                                                 .casters = renderer->casters,
+                                                 .surfaces = renderer->surfaces,
+                                                 .map_size = renderer->settings.light.map_size};
+    return tl_lamp_maps_draw(&renderer->local.shadows, renderer->gpu, &request, error);
+}
+
+static bool run_lamp_rays(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level;
+    if (!follow_motion(renderer, error))
+        return false;
+    struct tl_lamp lamps[TL_LAMPS_MAX];
+    struct tl_lamp_shadows *shadows = &renderer->local.shadows;
+    const struct tl_samples *samples = &renderer->samples;
+    size_t count = list_lamps(renderer, lamps);
+    uint8_t *visible = TL_NEW_ARRAY(uint8_t, (size_t)samples->width * (size_t)samples->height);
+    for (size_t i = 0; i < count; i++) {
+        if (shadows->kinds[i] != TL_LAMP_SHADOW_RAYS)
+            continue;
+        tl_lamp_rays(&lamps[i], renderer->trace, samples, &renderer->ranges, ground_of(renderer), visible);
+        tl_lamp_shadows_set(shadows, renderer->gpu, samples->width, samples->height, i, count, visible);
+    }
+    free(visible);
+    return true;
+}
+
+static bool run_lamps(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level;
+    struct tl_lamp lamps[TL_LAMPS_MAX];
+    /* Passes average their rounds in the target. */
+    bool passes = tl_frame_facts(&renderer->frame, &renderer->settings) & TL_BIT(TL_SCENE_PASSES);
+    const struct tl_local_request request = {.gbuffer = &renderer->gbuffer,
+                                             .light = &renderer->lighting.target,
+                                             .view = &renderer->view,
+                                             .surfaces = renderer->surfaces,
+                                             .surface_count = renderer->surface_count,
+                                             .ground = ground_of(renderer),
+                                             .casters = renderer->casters,
+                                             .lamp_count = list_lamps(renderer, lamps),
+                                             .lamps = lamps,
+                                             .params = &renderer->settings.shading,
+                                             .detail = &renderer->settings.detail,
+                                             .depth_bias_m = renderer->settings.light.depth_bias_m,
+                                             .weight = passes ? 1 / (float)(renderer->rest.image + 1) : 1};
+    return tl_local_draw(&renderer->local, renderer->gpu, &request, error);
 }
 
 static bool run_reference(void *context, int level, tl_error *error)
@@ -438,14 +598,14 @@ const tl_job tl_frame_jobs[] = {
      .run = run_pems},
     {.name = "lobes",
      .what = "the whole environment through exact lobes",
-     .reads = SET2(TL_MADE_CUBE, TL_INPUT_SHAPES),
+     .reads = SET3(TL_MADE_CUBE, TL_INPUT_SHAPES, TL_INPUT_DETAIL),
      .writes = SET1(TL_MADE_LOBES),
      .requires_scene = SET1(TL_SCENE_EXACT),
      .levels = LEVELS_ONE,
      .run = run_lobes},
     {.name = "slices",
      .what = "the regions through exact lobes",
-     .reads = SET3(TL_MADE_CUBE, TL_MADE_REGIONS, TL_INPUT_SHAPES),
+     .reads = SET4(TL_MADE_CUBE, TL_MADE_REGIONS, TL_INPUT_SHAPES, TL_INPUT_DETAIL),
      .writes = SET1(TL_MADE_SLICES),
      .requires_scene = SET1(TL_SCENE_SLICES),
      .levels = LEVELS_ONE,
@@ -463,6 +623,13 @@ const tl_job tl_frame_jobs[] = {
      .writes = SET1(TL_MADE_SURFACES),
      .levels = LEVELS_ONE,
      .run = run_surfaces},
+    {.name = "detail",
+     .what = "heights, horizons and spread of normals of the fabrics",
+     .reads = SET3(TL_INPUT_SHAPES, TL_INPUT_DETAIL, TL_INPUT_GROUND),
+     .writes = SET1(TL_MADE_DETAIL),
+     .requires_scene = SET1(TL_SCENE_DETAIL),
+     .levels = LEVELS_ONE,
+     .run = run_detail},
     {.name = "maps",
      .what = "a shadow map for each region and sun",
      .reads = SET5(TL_MADE_SURFACES, TL_MADE_REGIONS, TL_INPUT_YAW, TL_INPUT_MAPS, TL_INPUT_PASSES) |
@@ -480,7 +647,8 @@ const tl_job tl_frame_jobs[] = {
      .run = run_blur},
     {.name = "gbuffer",
      .what = "nearest point, normal and material of every sample",
-     .reads = SET4(TL_MADE_SURFACES, TL_INPUT_CAMERA, TL_INPUT_SIZE, TL_INPUT_GROUND),
+     .reads = SET5(TL_MADE_SURFACES, TL_MADE_DETAIL, TL_INPUT_CAMERA, TL_INPUT_SIZE, TL_INPUT_GROUND) |
+              SET1(TL_INPUT_DETAIL),
      .writes = SET1(TL_MADE_GBUFFER),
      .levels = LEVELS_ONE,
      .run = run_gbuffer},
@@ -488,12 +656,19 @@ const tl_job tl_frame_jobs[] = {
      .what = "the covered samples to the CPU",
      .reads = SET3(TL_MADE_GBUFFER, TL_INPUT_CAMERA, TL_INPUT_SHAPES),
      .writes = SET1(TL_MADE_SAMPLES),
-     .requires_scene = SET1(TL_SCENE_RAYS),
+     .requires_scene = SET1(TL_SCENE_SAMPLES),
      .levels = LEVELS_ONE,
      .run = run_samples},
+    {.name = "sheets",
+     .what = "rays: what lies behind open cloth and shines through it",
+     .reads = SET2(TL_MADE_SAMPLES, TL_MADE_SURFACES),
+     .writes = SET1(TL_MADE_SHEETS),
+     .requires_scene = SET1(TL_SCENE_SHEETS),
+     .levels = LEVELS_ONE,
+     .run = run_sheets},
     {.name = "mirrors",
      .what = "rays: what near mirrors show",
-     .reads = SET4(TL_MADE_SAMPLES, TL_INPUT_SHAPES, TL_INPUT_MOTION, TL_INPUT_GROUND),
+     .reads = SET5(TL_MADE_SAMPLES, TL_MADE_SHEETS, TL_INPUT_SHAPES, TL_INPUT_MOTION, TL_INPUT_GROUND),
      .writes = SET1(TL_MADE_MIRRORS),
      .requires_scene = SET1(TL_SCENE_MIRRORS),
      .levels = LEVELS_ONE,
@@ -501,7 +676,7 @@ const tl_job tl_frame_jobs[] = {
     {.name = "points",
      .what = "rays: visibility of the regions, kept at vertices",
      .reads = SET5(TL_MADE_SAMPLES, TL_MADE_REGIONS, TL_INPUT_SHAPES, TL_INPUT_MOTION, TL_INPUT_GROUND) |
-              SET4(TL_MADE_MIRRORS, TL_INPUT_YAW, TL_INPUT_RAYS, TL_INPUT_SCENE_ROUND),
+              SET5(TL_MADE_SHEETS, TL_MADE_MIRRORS, TL_INPUT_YAW, TL_INPUT_RAYS, TL_INPUT_SCENE_ROUND),
      .writes = SET1(TL_MADE_POINTS),
      .requires_scene = SET2(TL_SCENE_RAYS, TL_SCENE_SHADOWS),
      .levels = LEVELS_ONE,
@@ -510,7 +685,7 @@ const tl_job tl_frame_jobs[] = {
      .what = "visibility times PEM, summed over the regions",
      .reads = SET5(TL_MADE_GBUFFER, TL_MADE_PEMS, TL_MADE_REGIONS, TL_MADE_LOBE, TL_MADE_MAPS) |
               SET5(TL_MADE_SURFACES, TL_INPUT_YAW, TL_INPUT_CAMERA, TL_INPUT_LIGHT, TL_INPUT_GROUND) |
-              SET4(TL_MADE_LOBES, TL_MADE_SLICES, TL_MADE_DEPTHS, TL_INPUT_ROUND),
+              SET5(TL_MADE_LOBES, TL_MADE_SLICES, TL_MADE_DEPTHS, TL_INPUT_ROUND, TL_INPUT_LAMPS),
      .writes = SET1(TL_MADE_LIGHT),
      .requires_scene = SET1(TL_SCENE_PASSES),
      .levels = LEVELS_ONE,
@@ -518,14 +693,69 @@ const tl_job tl_frame_jobs[] = {
     {.name = "compose",
      .what = "exact light times the share of it that is seen",
      .reads = SET5(TL_MADE_SAMPLES, TL_MADE_POINTS, TL_MADE_LIGHTS, TL_MADE_LOBES, TL_MADE_CUBE) |
-              SET3(TL_MADE_MIRRORS, TL_INPUT_YAW, TL_INPUT_LIGHT),
+              SET5(TL_MADE_SHEETS, TL_MADE_MIRRORS, TL_INPUT_YAW, TL_INPUT_LIGHT, TL_INPUT_CAMERA) |
+              SET1(TL_INPUT_LAMPS),
      .writes = SET1(TL_MADE_LIGHT),
      .requires_scene = SET1(TL_SCENE_RAYS),
      .levels = LEVELS_ONE,
      .run = run_compose},
+    {.name = "envmap_lobes",
+     .what = "all light through exact lobes, for environment maps",
+     .reads = SET4(TL_INPUT_ENVIRONMENT, TL_INPUT_ENVMAP, TL_INPUT_SHAPES, TL_INPUT_DETAIL),
+     .writes = SET1(TL_MADE_ENVMAP_LOBES),
+     .requires_scene = SET1(TL_SCENE_ENVMAP),
+     .levels = LEVELS_ONE,
+     .run = run_envmap_lobes},
+    /* What it draws is not among what it reads: what has changed since waits for the next capture. */
+    {.name = "capture",
+     .what = "the scene seen from a point, through exact lobes",
+     .reads = SET1(TL_INPUT_CAPTURE),
+     .writes = SET1(TL_MADE_CAPTURE),
+     .requires_scene = SET2(TL_SCENE_ENVMAP, TL_SCENE_CAPTURE),
+     .levels = LEVELS_ONE,
+     .run = run_capture},
+    {.name = "envmap",
+     .what = "lobes poured into environment maps of a layout",
+     .reads = SET5(TL_MADE_ENVMAP_LOBES, TL_INPUT_LAYOUT, TL_INPUT_YAW, TL_INPUT_SHAPES, TL_INPUT_GROUND) |
+              SET1(TL_MADE_CAPTURE),
+     .writes = SET1(TL_MADE_ENVMAP),
+     .requires_scene = SET1(TL_SCENE_ENVMAP),
+     .levels = LEVELS_ONE,
+     .run = run_envmap},
+    {.name = "look_up",
+     .what = "environment maps looked up for every sample",
+     .reads = SET5(TL_MADE_GBUFFER, TL_MADE_ENVMAP, TL_INPUT_CAMERA, TL_INPUT_LOOK_UP, TL_INPUT_LAMPS),
+     .writes = SET1(TL_MADE_LIGHT),
+     .requires_scene = SET1(TL_SCENE_ENVMAP),
+     .levels = LEVELS_ONE,
+     .run = run_look_up},
+    /* Lamps add to the light in place, which is therefore made anew whenever they change. */
+    {.name = "lamp_maps",
+     .what = "a shadow map for each lamp",
+     .reads = SET4(TL_MADE_SURFACES, TL_INPUT_LAMPS, TL_INPUT_MAPS, TL_INPUT_LIGHT),
+     .writes = SET1(TL_MADE_LAMP_MAPS),
+     .requires_scene = SET1(TL_SCENE_LAMP_MAPS),
+     .levels = LEVELS_ONE,
+     .run = run_lamp_maps},
+    {.name = "lamp_rays",
+     .what = "rays: what is seen of each lamp",
+     .reads = SET5(TL_MADE_SAMPLES, TL_MADE_SURFACES, TL_INPUT_MOTION, TL_INPUT_GROUND, TL_INPUT_LAMPS) |
+              SET1(TL_INPUT_LIGHT),
+     .writes = SET1(TL_MADE_LAMP_RAYS),
+     .requires_scene = SET1(TL_SCENE_LAMP_RAYS),
+     .levels = LEVELS_ONE,
+     .run = run_lamp_rays},
+    {.name = "lamps",
+     .what = "light of the lamps, added",
+     .reads = SET5(TL_MADE_LIGHT, TL_MADE_GBUFFER, TL_MADE_SURFACES, TL_MADE_LAMP_MAPS, TL_MADE_LAMP_RAYS) |
+              SET4(TL_INPUT_CAMERA, TL_INPUT_LAMPS, TL_INPUT_GROUND, TL_INPUT_LIGHT),
+     .writes = SET1(TL_MADE_LAMPLIGHT),
+     .requires_scene = SET1(TL_SCENE_LAMPS),
+     .levels = LEVELS_ONE,
+     .run = run_lamps},
     {.name = "resolve",
      .what = "samples to pixels",
-     .reads = SET3(TL_MADE_LIGHT, TL_MADE_GBUFFER, TL_INPUT_SIZE),
+     .reads = SET4(TL_MADE_LIGHT, TL_MADE_LAMPLIGHT, TL_MADE_GBUFFER, TL_INPUT_SIZE),
      .writes = SET1(TL_MADE_IMAGE),
      .requires_scene = SET1(TL_SCENE_RASTER),
      .levels = LEVELS_ONE,
@@ -533,7 +763,7 @@ const tl_job tl_frame_jobs[] = {
     {.name = "reference",
      .what = "the image, ray traced",
      .reads = SET5(TL_INPUT_ENVIRONMENT, TL_INPUT_YAW, TL_INPUT_CAMERA, TL_INPUT_SIZE, TL_INPUT_LIGHT) |
-              SET3(TL_MADE_SURFACES, TL_INPUT_GROUND, TL_INPUT_REFERENCE),
+              SET4(TL_MADE_SURFACES, TL_INPUT_GROUND, TL_INPUT_LAMPS, TL_INPUT_REFERENCE),
      .writes = SET1(TL_MADE_IMAGE),
      .requires_scene = SET1(TL_SCENE_REFERENCE),
      .levels = LEVELS_ONE,

@@ -41,8 +41,8 @@ size_t tl_texture_bytes(const tl_texture *texture);
 /* Levels of a full mip chain down to one texel. */
 int tl_texture_full_levels(int width, int height);
 
-/* What a pass draws into: up to five 2D colour textures of one size, and a 32-bit float depth texture. */
-#define TL_TARGET_COLOURS_MAX 5
+/* What a pass draws into: up to six 2D colour textures of one size, and a 32-bit float depth texture. */
+#define TL_TARGET_COLOURS_MAX 6
 typedef struct tl_target {
     unsigned id; /* GL framebuffer */
     int width, height, colour_count;

@@ -12,7 +12,7 @@ static size_t texel_bytes(GLenum format)
     } sizes[] = {
         {GL_R8, 1},       {GL_RG8, 2},     {GL_RGBA8, 4}, {GL_SRGB8_ALPHA8, 4}, {GL_RGBA16F, 8},
         {GL_RGBA32F, 16}, {GL_RG32F, 8},   {GL_R32F, 4},  {GL_RG16F, 4},        {GL_DEPTH_COMPONENT32F, 4},
-        {GL_R32UI, 4},    {GL_RGB9_E5, 4},
+        {GL_R32UI, 4},    {GL_RGB9_E5, 4}, {GL_R16, 2},   {GL_RG16, 4},         {GL_RGBA16, 8},
     };
     for (size_t i = 0; i < TL_COUNT(sizes); i++)
         if (sizes[i].format == format)
@@ -59,8 +59,9 @@ tl_texture tl_texture_create(tl_gpu *gpu, unsigned target, unsigned format, int 
         glTextureStorage2D(texture.id, levels, format, width, height);
     else
         glTextureStorage3D(texture.id, levels, format, width, height, layers);
-    glTextureParameteri(texture.id, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    glTextureParameteri(texture.id, GL_TEXTURE_MIN_FILTER, levels > 1 ? GL_LINEAR_MIPMAP_LINEAR : GL_LINEAR);
+    GLint near = format == GL_R32UI ? GL_NEAREST : GL_LINEAR; /* integers with a filter read as nothing */
+    glTextureParameteri(texture.id, GL_TEXTURE_MAG_FILTER, near);
+    glTextureParameteri(texture.id, GL_TEXTURE_MIN_FILTER, levels > 1 ? GL_LINEAR_MIPMAP_LINEAR : near);
     glTextureParameteri(texture.id, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
     glTextureParameteri(texture.id, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
     gpu->texture_bytes += tl_texture_bytes(&texture);

@@ -1,6 +1,8 @@
 #include "render/light/compose.h"
 
 #include "config/memory.h"
+#include "render/brdf/coat.h"
+#include "render/brdf/fan.h"
 #include "render/pem/lobe.h"
 
 #include <math.h>
@@ -21,13 +23,26 @@ struct sums {
     float seen[2][3];
 };
 
+/* The lobes of a sample beyond the two: a fan, and a coat. Environment's frame. */
+#define LOBES_MAX (TL_FAN_MAX + 1)
+struct lobes {
+    int count;
+    struct tl_fan_lobe items[LOBES_MAX];
+    int facets; /* so many of them stand for `brdf`, which suns shine on themselves; the next one is the coat
+                 */
+    struct tl_brdf brdf;
+    struct tl_brdf_frame frame;
+    vec3s viewer;
+    float base; /* what the coat leaves */
+};
+
 /* What a block of samples shares. */
 struct block {
     const struct tl_compose_request *request;
     float turn_cosine, turn_sine; /* of the environment's yaw */
     struct tl_region_exponents exponents;
     float blended;          /* the exponent that `blend` stands for */
-    const vec3s *reflected; /* light of the samples that mirrors show, by index less primary_count */
+    const vec3s *reflected; /* light of all but the nearest samples, by index less primary_count */
     struct tl_exponent_blend blend;
 };
 
@@ -249,12 +264,198 @@ static void replace_by_occlusion(const struct sums *sums, int method, struct rec
         light->shadowed[kind] = glms_vec3_mul(light->unshadowed[kind], share);
 }
 
+static float viewed_by(const struct lobes *lobes, vec3s normal)
+{
+    return fmaxf(glms_vec3_dot(normal, lobes->viewer), 0);
+}
+
+static void add_fan(const struct block *block, const tl_sample *sample, const tl_material *material,
+                    size_t index, struct lobes *lobes)
+{
+    const struct tl_compose_request *request = block->request;
+    vec4s stored = request->samples->tangents ? request->samples->tangents[index] : (vec4s){{0, 0, 0, 1}};
+    vec3s tangent = into_environment(block, (vec3s){{stored.x, stored.y, stored.z}});
+    vec3s normal = into_environment(block, sample->normal);
+    lobes->brdf = tl_brdf_of(material, sample->specular, sample->glossiness);
+    float side = sample->triangle & TL_SAMPLE_BACK ? -1.0f : 1.0f;
+    lobes->frame = tl_brdf_frame_make(normal, tangent, stored.w, side * material->gloss.rotation);
+    lobes->facets =
+        tl_fan_make(&lobes->brdf, &lobes->frame, lobes->viewer, request->params->fan, lobes->items);
+    for (int k = 0; k < lobes->facets; k++)
+        lobes->items[k].weight = glms_vec3_scale(lobes->items[k].weight, lobes->base);
+    lobes->count = lobes->facets;
+}
+
+/* A coat levels the threads out: it lies on the smooth surface. */
+static void add_coat(const struct block *block, const tl_sample *sample, const tl_material *material,
+                     struct lobes *lobes)
+{
+    vec3s n = into_environment(block, sample->smooth);
+    vec3s mirror = glms_vec3_sub(glms_vec3_scale(n, 2 * viewed_by(lobes, n)), lobes->viewer);
+    float share = 1 - lobes->base;
+    lobes->items[lobes->count++] =
+        (struct tl_fan_lobe){.direction = glms_vec3_normalize(mirror),
+                             .exponent = tl_lobe_exponent(material->coat_glossiness),
+                             .weight = {{share, share, share}}};
+}
+
+/* The lobes of a sample that has more than two, and what is left of the two. */
+static void part_lobes(const struct block *block, const tl_material *material, size_t index,
+                       tl_sample *sample, struct lobes *lobes)
+{
+    vec3s view = glms_vec3_normalize(glms_vec3_sub(block->request->eye, sample->point));
+    lobes->viewer = into_environment(block, view);
+    lobes->base = 1 - material->coat * tl_coat_reflectance(fmaxf(glms_vec3_dot(sample->smooth, view), 0));
+    if (material->gloss.model != TL_REFLECT_PHONG) {
+        add_fan(block, sample, material, index, lobes);
+        sample->specular = (vec3s){{0, 0, 0}};
+        sample->glossiness = 0;
+    }
+    if (material->coat > 0)
+        add_coat(block, sample, material, lobes);
+    sample->diffuse = glms_vec3_scale(sample->diffuse, lobes->base);
+    sample->specular = glms_vec3_scale(sample->specular, lobes->base);
+}
+
+/* Sixteen regions through all of the lobes, their visibility read once. */
+TL_INLINE void add_group_of_lobes(float sums[LOBES_MAX][3][TL_LANES], const struct tl_region_group *group,
+                                  const struct lobes *lobes, vec3s smooth, const float visibility[TL_LANES])
+{
+    float above[TL_LANES];
+    for (int lane = 0; lane < TL_LANES; lane++) {
+        float cosine = group->x[lane] * smooth.x + group->y[lane] * smooth.y + group->z[lane] * smooth.z;
+        above[lane] = disc_share(cosine * group->inverse_sine[lane]) * visibility[lane];
+    }
+    for (int k = 0; k < lobes->count; k++) {
+        const vec3s d = lobes->items[k].direction;
+        const float s = tl_lesser(lobes->items[k].exponent, TL_REGION_LOBE_MAX);
+        float glossy[TL_LANES];
+        for (int lane = 0; lane < TL_LANES; lane++) {
+            float cosine = group->x[lane] * d.x + group->y[lane] * d.y + group->z[lane] * d.z;
+            float exponent = lobe_broadened_exponent(s, group->spread[lane]);
+            glossy[lane] =
+                tl_region_lobe(cosine, group->sine[lane], group->inverse_sine[lane], exponent) * above[lane];
+        }
+        for (int c = 0; c < 3; c++)
+            add_weights(sums[k][c], group->power[c], glossy);
+    }
+}
+
+/* What is seen of the regions through each lobe. */
+TL_INLINE void see_lobes(const struct block *block, size_t index, const struct lobes *lobes, vec3s smooth,
+                         vec3s seen[LOBES_MAX])
+{
+    const struct tl_compose_request *request = block->request;
+    const struct tl_region_lights *lights = request->lights;
+    float sums[LOBES_MAX][3][TL_LANES] = {0};
+    for (int g = 0; g < lights->group_count; g++) {
+        const struct tl_region_group *group = &lights->groups[g];
+        if (glms_vec3_dot(group->axis, smooth) < -group->reach_sine)
+            continue;
+        float visibility[TL_LANES];
+        read_visibility(request->values, request->stride, &request->taps[index], g, visibility);
+        add_group_of_lobes(sums, group, lobes, smooth, visibility);
+    }
+    for (int k = 0; k < lobes->count; k++) {
+        struct tl_exponent_blend blend = tl_exponent_blend(lobes->items[k].exponent);
+        vec3s gain = {{1, 1, 1}};
+        if (lights->gain.made)
+            gain = tl_lobes_fetch(&lights->gain, lobes->items[k].direction, blend);
+        for (int c = 0; c < 3; c++)
+            seen[k].raw[c] = gain.raw[c] * tl_sum_lanes(sums[k][c]);
+    }
+}
+
+/* Suns shine on facets themselves, and on a coat as on any lobe. */
+static vec3s sun_on_lobes(const struct block *block, size_t index, const struct lobes *lobes, vec3s smooth,
+                          bool shadowed)
+{
+    const struct tl_compose_request *request = block->request;
+    vec3s light = {{0, 0, 0}};
+    for (int i = 0; i < request->suns->count; i++) {
+        const struct tl_sun *sun = &request->suns->items[i];
+        const float *visibility = request->sun_visibility[i];
+        vec3s gloss = {{0, 0, 0}};
+        if (lobes->facets > 0)
+            gloss = glms_vec3_scale(
+                tl_fan_under_disc(&lobes->brdf, &lobes->frame, sun->direction, lobes->viewer, sun->radius),
+                lobes->base);
+        if (lobes->count > lobes->facets) {
+            const struct tl_fan_lobe *coat = &lobes->items[lobes->facets];
+            float exponent = lobe_broadened_exponent(coat->exponent, sun->radius * GLM_SQRT1_2f);
+            float lobe = lobe_cosine(exponent, glms_vec3_dot(sun->direction, coat->direction));
+            gloss = glms_vec3_add(gloss, glms_vec3_scale(coat->weight, lobe));
+        }
+        float above = disc_share(glms_vec3_dot(sun->direction, smooth) / fmaxf(sun->radius, 1e-3f));
+        float seen = shadowed && visibility ? above * visibility[index] : 1;
+        light = glms_vec3_add(light, glms_vec3_scale(glms_vec3_mul(sun->power, gloss), seen));
+    }
+    return light;
+}
+
+static vec3s share_of(vec3s part, vec3s all)
+{
+    vec3s share;
+    for (int c = 0; c < 3; c++)
+        share.raw[c] = all.raw[c] > 0 ? part.raw[c] / all.raw[c] : 1;
+    return share;
+}
+
+/* The light of a sample's lobes; under ambient occlusion with the share that the two lobes get. */
+TL_INLINE vec3s light_of_lobes(const struct block *block, size_t index, const struct lobes *lobes,
+                               vec3s smooth, const struct received *two)
+{
+    int method = block->request->params->method;
+    bool by_occlusion = method == TL_METHOD_AO || method == TL_METHOD_AO_COLOUR;
+    bool shadowed = method != TL_METHOD_UNSHADOWED && !by_occlusion;
+    vec3s arriving[LOBES_MAX], light = sun_on_lobes(block, index, lobes, smooth, shadowed);
+    if (shadowed)
+        see_lobes(block, index, lobes, smooth, arriving);
+    for (int k = 0; k < lobes->count; k++) {
+        const struct tl_fan_lobe *lobe = &lobes->items[k];
+        if (!shadowed)
+            arriving[k] =
+                tl_lobes_fetch(block->request->lobes, lobe->direction, tl_exponent_blend(lobe->exponent));
+        light = glms_vec3_add(light, glms_vec3_mul(lobe->weight, arriving[k]));
+    }
+    if (by_occlusion)
+        light = glms_vec3_mul(light, share_of(two->shadowed[DIFFUSE], two->unshadowed[DIFFUSE]));
+    return light;
+}
+
+/* The material of a sample that has more than two lobes, or NULL. Mirrors show the two, and so do the other
+ * sides of sheets. */
+static const tl_material *rich_material(const struct tl_compose_request *request, size_t index)
+{
+    const struct tl_samples *samples = request->samples;
+    if (!request->ranges || index >= samples->primary_count + samples->behind_count)
+        return NULL;
+    const tl_material *material =
+        tl_triangle_material(request->ranges, samples->items[index].triangle & ~TL_SAMPLE_BACK);
+    return material->coat > 0 || material->gloss.model != TL_REFLECT_PHONG ? material : NULL;
+}
+
+static float share_of_sample(const struct tl_compose_request *request, size_t index)
+{
+    if (request->shares && index < tl_samples_seen(request->samples))
+        return request->shares[index];
+    return request->samples->items[index].cover;
+}
+
 /* Light of a sample, premultiplied by cover. */
 TL_INLINE vec3s compose_sample(struct block *block, size_t index)
 {
     const struct tl_compose_request *request = block->request;
     const tl_sample *sample = &request->samples->items[index];
+    const tl_material *rich = rich_material(request, index);
     int method = request->params->method;
+    tl_sample rest;
+    struct lobes lobes = {0};
+    if (rich) {
+        rest = *sample;
+        part_lobes(block, rich, index, &rest, &lobes);
+        sample = &rest;
+    }
     struct frame frame = frame_of(block, sample);
     struct received received = {0};
     struct sums sums = {0};
@@ -275,42 +476,71 @@ TL_INLINE vec3s compose_sample(struct block *block, size_t index)
     if (by_occlusion)
         replace_by_occlusion(&sums, method, &received);
     const vec3s *arriving = method == TL_METHOD_UNSHADOWED ? received.unshadowed : received.shadowed;
-    return glms_vec3_scale(colour_of(sample, request->params->lobe, arriving), sample->cover);
+    vec3s colour = colour_of(sample, request->params->lobe, arriving);
+    if (rich)
+        colour = glms_vec3_add(colour, light_of_lobes(block, index, &lobes, frame.smooth, &received));
+    return glms_vec3_scale(colour, share_of_sample(request, index));
 }
 
 #define BLOCK 256 /* samples that a thread takes at a time */
 
-/* Samples first .. last - 1 of the camera into `light`, or of what mirrors show into `reflected`. */
+/* Samples first .. last - 1: the nearest ones into `light`, all others into `further`, by index less their
+ * number. */
 TL_CLONES static void compose_block(const struct tl_compose_request *request, size_t first, size_t last,
-                                    float *light, vec3s *reflected)
+                                    float *light, vec3s *further)
 {
     struct block block = {.request = request,
                           .turn_cosine = cosf(request->environment_yaw),
                           .turn_sine = sinf(request->environment_yaw),
-                          .reflected = reflected};
+                          .reflected = further};
     size_t primary_count = request->samples->primary_count;
     for (size_t i = first; i < last; i++) {
         vec3s colour = compose_sample(&block, i);
         if (i < primary_count)
             memcpy(light + 4 * (size_t)request->samples->items[i].texel, colour.raw, sizeof colour);
         else
-            reflected[i - primary_count] = colour;
+            further[i - primary_count] = colour;
+    }
+}
+
+/* Adds up what is seen through cloth, sheet by sheet, and leaves what none of them keeps to the background.
+ */
+static void look_through(const struct tl_compose_request *request, const vec3s *behind, float *light)
+{
+    const float rounding = 1e-6f;
+    const struct tl_samples *samples = request->samples;
+    size_t seen = tl_samples_seen(samples), fronts = samples->primary_count + samples->behind_count;
+    for (size_t i = 0; i < seen; i++) {
+        float *texel = light + 4 * (size_t)samples->items[i].texel;
+        if (i < samples->primary_count)
+            texel[3] = samples->items[i].cover - request->shares[i];
+        else if (i < fronts)
+            texel[3] -= request->shares[i];
+        for (int c = 0; i >= samples->primary_count && c < 3; c++)
+            texel[c] += behind[i - samples->primary_count].raw[c];
+    }
+    for (size_t i = 0; i < samples->primary_count; i++) {
+        float *through = light + 4 * (size_t)samples->items[i].texel + 3;
+        *through = *through > rounding ? *through : 0;
     }
 }
 
 static void compose_range(const struct tl_compose_request *request, size_t begin, size_t end, float *light,
-                          vec3s *reflected)
+                          vec3s *further)
 {
 #pragma omp parallel for schedule(dynamic)
     for (size_t first = begin; first < end; first += BLOCK)
-        compose_block(request, first, end - first < BLOCK ? end : first + BLOCK, light, reflected);
+        compose_block(request, first, end - first < BLOCK ? end : first + BLOCK, light, further);
 }
 
 void tl_compose(const struct tl_compose_request *request, float *light)
 {
     size_t primary_count = request->samples->primary_count, count = request->samples->count;
-    vec3s *reflected = TL_NEW_ARRAY(vec3s, count - primary_count);
-    compose_range(request, primary_count, count, light, reflected);
-    compose_range(request, 0, primary_count, light, reflected);
-    free(reflected);
+    size_t seen = tl_samples_seen(request->samples);
+    vec3s *further = TL_NEW_ARRAY(vec3s, count - primary_count);
+    compose_range(request, seen, count, light, further);
+    compose_range(request, 0, seen, light, further);
+    if (request->shares)
+        look_through(request, further, light);
+    free(further);
 }

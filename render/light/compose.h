@@ -7,7 +7,11 @@
  * E is the exact unshadowed light (env/lobes.h); w_i and u_i stand for P_i: the region's power times the
  * lobe, broadened by the region's spread. v_i is the visibility of region i at the sample, clipped at the
  * sample's own horizon (FRONTIER, findings 1 and 2). Suns stand apart: power times lobe times their own
- * visibility. The other methods of enum tl_method are made of the same sums. */
+ * visibility. The other methods of enum tl_method are made of the same sums.
+ *
+ * A material whose gloss is not a lobe about r has a few lobes (render/brdf/fan.h), a coat has one more; each
+ * is taken as the glossy one is, but that none has mirrors' rays: what they reflect of the scene is black.
+ * Under suns facets are evaluated themselves. */
 #ifndef TOILE_RENDER_LIGHT_COMPOSE_H
 #define TOILE_RENDER_LIGHT_COMPOSE_H
 
@@ -32,11 +36,16 @@ struct tl_compose_request {
     const struct tl_mirror *mirrors;   /* by sample; NULL: none */
     float environment_yaw;             /* rad */
     const struct tl_light_params *params;
+    /* Where a material is more than two lobes; `ranges` NULL: none is. */
+    const struct tl_triangle_ranges *ranges;
+    vec3s eye;
+    const float *shares; /* by sample that the camera sees, in place of its cover (sheets.h); NULL: nothing is
+                            seen through */
 };
 
-/* Writes light[4 * texel], premultiplied by cover, of every sample of the camera; other texels are left
- * alone. The exponents that the samples' glossiness needs must be in `lobes`. Results do not depend on the
- * number of threads. */
+/* Writes light[4 * texel], premultiplied by cover, of every sample of the camera, and how much of that cover
+ * is looked through; other texels are left alone. The exponents that the samples' glossiness needs must be in
+ * `lobes`. Results do not depend on the number of threads. */
 void tl_compose(const struct tl_compose_request *request, float *light);
 
 #endif

@@ -1,18 +1,10 @@
 // The whole environment through exact cosine lobes (env/lobes.h), one octahedral map an exponent, stacked in a texture.
+#include "exponents.glsl"
+
 layout(location = 8) uniform int last_exponent;
 layout(location = 9) uniform vec2 lobe_places[48]; // by exponent: first row, texels a side without the border
 
-layout(binding = 5) uniform sampler2D exponent_levels; // fractional number of the exponent by log2(s) / LOG_RANGE
 layout(binding = 8) uniform sampler2D lobes;
-
-const float EXPONENT_LOG_RANGE = 15.0; // of light.c
-
-float exponent_level(float s)
-{
-    float steps = float(textureSize(exponent_levels, 0).x);
-    float place = clamp(log2(s) / EXPONENT_LOG_RANGE, 0.0, 1.0);
-    return texture(exponent_levels, vec2((place * (steps - 1.0) + 0.5) / steps, 0.5)).r;
-}
 
 // Unfolded about +Y, as env/lobes.c does.
 vec2 unfolded(vec3 d)

@@ -2,6 +2,7 @@
 #ifndef TOILE_RENDER_LIGHT_GBUFFER_H
 #define TOILE_RENDER_LIGHT_GBUFFER_H
 
+#include "render/detail/detail.h"
 #include "render/frame/view.h"
 #include "render/surfaces/ground.h"
 #include "render/surfaces/surfaces.h"
@@ -15,20 +16,37 @@ enum tl_gbuffer_layer {
     TL_GBUFFER_SPECULAR, /* RGBA16F: F ks; octahedral y of the smooth normal */
     TL_GBUFFER_TRIANGLE, /* R32UI: 0 nothing; else 1 + the triangle's number counted through all surfaces, and
                             TL_SAMPLE_BACK where its back is seen */
+    TL_GBUFFER_TANGENT,  /* RGBA16F: world, along u; handedness. Only where something is faceted: F ks is its
+ F0 then */
     TL_GBUFFER_LAYERS
 };
 
+/* Bits of what a program does beside. */
+enum { TL_GBUFFER_FRAMES = 1, TL_GBUFFER_BEHIND = 2, TL_GBUFFER_PROGRAMS = 4 };
+
 struct tl_gbuffer {
-    tl_program program;
+    char detail[TL_DETAIL_DEFINES_SIZE]; /* that the programs were made for */
+    struct tl_gbuffer_program {
+        char defines[TL_DETAIL_DEFINES_SIZE + 64];
+        tl_program program;
+    } programs[TL_GBUFFER_PROGRAMS]; /* made when first used */
     tl_target target;
 };
 
-bool tl_gbuffer_create(struct tl_gbuffer *gbuffer, tl_gpu *gpu, tl_error *error);
-void tl_gbuffer_release(struct tl_gbuffer *gbuffer);
+struct tl_gbuffer_request {
+    const struct tl_view *view;
+    int width, height; /* samples */
+    const tl_surfaces *surfaces;
+    size_t surface_count;
+    const struct tl_ground *ground;        /* the last of the surfaces, or NULL when none is drawn */
+    const struct tl_detail_params *detail; /* NULL: normals alone */
+    bool frames;                           /* with the layer of tangents */
+    const tl_texture *passed;              /* only what lies behind this depth; NULL: what is nearest */
+};
 
-/* `ground` is the last of the surfaces, or NULL when none is drawn. Sizes are in samples. */
-void tl_gbuffer_draw(struct tl_gbuffer *gbuffer, tl_gpu *gpu, const struct tl_view *view, int width,
-                     int height, const tl_surfaces *surfaces, size_t surface_count,
-                     const struct tl_ground *ground);
+void tl_gbuffer_release(struct tl_gbuffer *gbuffer);
+bool tl_gbuffer_reload(struct tl_gbuffer *gbuffer, tl_error *error);
+bool tl_gbuffer_draw(struct tl_gbuffer *gbuffer, tl_gpu *gpu, const struct tl_gbuffer_request *request,
+                     tl_error *error);
 
 #endif

@@ -6,6 +6,7 @@ layout(location = 3) in vec2 vertex_uv;
 
 layout(location = 16) uniform mat4 view_projection;
 
+invariant gl_Position; // passes that shade what is seen draw it again
 out vec3 point;
 out vec3 normal;
 out vec4 tangent;

@@ -325,25 +325,30 @@ static bool draw_chains(struct tl_lighting *lighting, tl_gpu *gpu, const struct 
     return true;
 }
 
-bool tl_lighting_draw(struct tl_lighting *lighting, tl_gpu *gpu, const struct tl_light_request *request,
-                      tl_error *error)
+void tl_lighting_begin(struct tl_lighting *lighting, tl_gpu *gpu, const tl_target *gbuffer, bool afresh)
 {
-    const tl_target *gbuffer = &request->gbuffer->target;
-    enum tl_light_source source = tl_light_source(request->params);
     const float black[] = {0, 0, 0, 0};
     allocate(lighting, gpu, gbuffer);
-    upload_regions(lighting, request);
-    if (request->round == 0)
+    if (afresh)
         glClearNamedFramebufferfv(lighting->target.id, GL_COLOR, 0, black);
     glBindFramebuffer(GL_FRAMEBUFFER, lighting->target.id);
     glViewport(0, 0, gbuffer->width, gbuffer->height);
     glEnable(GL_DEPTH_TEST); /* the full-screen triangle lies at depth 1: this keeps to what is covered */
     glDepthFunc(GL_GREATER);
     glDepthMask(GL_FALSE);
-    glEnable(GL_BLEND);
-    glBlendColor(0, 0, 0, 1 / (float)(request->round + 1));
     for (GLuint i = 0; i < TL_GBUFFER_TRIANGLE; i++)
         glBindTextureUnit(i, gbuffer->colours[i].id);
+}
+
+bool tl_lighting_draw(struct tl_lighting *lighting, tl_gpu *gpu, const struct tl_light_request *request,
+                      tl_error *error)
+{
+    const tl_target *gbuffer = &request->gbuffer->target;
+    enum tl_light_source source = tl_light_source(request->params);
+    tl_lighting_begin(lighting, gpu, gbuffer, request->round == 0);
+    upload_regions(lighting, request);
+    glEnable(GL_BLEND);
+    glBlendColor(0, 0, 0, 1 / (float)(request->round + 1));
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, lighting->regions_buffer);
     bool fine = source == TL_LIGHT_CHAIN ? draw_chains(lighting, gpu, request, error)
                                          : draw_regions(lighting, gpu, request, source, error);

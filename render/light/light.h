@@ -61,6 +61,10 @@ size_t tl_lighting_bytes(const struct tl_lighting *lighting); /* of textures, wi
 
 void tl_lighting_set_lobe(struct tl_lighting *lighting, tl_gpu *gpu, const struct tl_lobe_table *table);
 void tl_lighting_set_exact(struct tl_lighting *lighting, tl_gpu *gpu, const struct tl_lobes *lobes);
+/* Makes the target as large as the G-buffer and binds it, with the G-buffer's layers in the first units, so
+ * that what is drawn over it (at depth 1) keeps to the samples that are covered. The others are black, if
+ * this image is begun afresh. */
+void tl_lighting_begin(struct tl_lighting *lighting, tl_gpu *gpu, const tl_target *gbuffer, bool afresh);
 /* The light of every sample, as tl_compose writes it, in place of the passes. */
 void tl_lighting_set(struct tl_lighting *lighting, tl_gpu *gpu, const struct tl_gbuffer *gbuffer,
                      const float *light);

@@ -80,7 +80,7 @@ static tl_sample seen_sample(const tl_surface *surface, uint32_t triangle, const
 {
     const uint32_t *corners = surface->indices + 3 * (size_t)triangle;
     const tl_material *material = material_of(surface, triangle);
-    tl_sample sample = {.weights = {weights[0], weights[1], weights[2]}, .cover = 1};
+    tl_sample sample = {.weights = {weights[0], weights[1], weights[2]}, .cover = 1 - material->openness};
     vec2s uv = {{0, 0}};
     for (int i = 0; i < 3; i++) {
         sample.point =
@@ -188,10 +188,9 @@ static void reserve(struct tl_mirrors *mirrors, size_t count)
 static void append(struct tl_mirrors *mirrors, struct block *blocks, size_t block_count, size_t block_size,
                    struct tl_samples *samples)
 {
-    size_t total = samples->primary_count;
+    size_t seen = tl_samples_seen(samples), total = seen;
     for (size_t b = 0; b < block_count; b++) {
-        size_t end =
-            (b + 1) * block_size < samples->primary_count ? (b + 1) * block_size : samples->primary_count;
+        size_t end = (b + 1) * block_size < seen ? (b + 1) * block_size : seen;
         for (size_t i = b * block_size; i < end; i++)
             for (int m = 0; m < mirrors->items[i].ray_count; m++)
                 if (mirrors->items[i].hits[m] < TL_MIRROR_BLACK)
@@ -199,7 +198,7 @@ static void append(struct tl_mirrors *mirrors, struct block *blocks, size_t bloc
         total += blocks[b].count;
     }
     tl_samples_reserve(samples, total);
-    samples->count = samples->primary_count;
+    samples->count = seen;
     for (size_t b = 0; b < block_count; b++) {
         if (blocks[b].count > 0)
             memcpy(samples->items + samples->count, blocks[b].items, blocks[b].count * sizeof(tl_sample));
@@ -213,7 +212,7 @@ void tl_mirrors_trace(struct tl_mirrors *mirrors, const tl_trace *trace,
                       struct tl_samples *samples)
 {
     const size_t block_size = 1024;
-    size_t count = samples->primary_count, block_count = (count + block_size - 1) / block_size;
+    size_t count = tl_samples_seen(samples), block_count = (count + block_size - 1) / block_size;
     const struct scene scene = {trace, ranges, ground};
     float offset_m = tl_trace_offset(trace);
     reserve(mirrors, count);

@@ -5,8 +5,8 @@
  *     F ks [ E(r, s) sum v_m E(w_m, M s) / sum E(w_m, M s)  +  1/M sum (1 - v_m) L(hit_m) ]
  *
  * with M directions w_m spread over the lobe. What is hit shows its plain material: no weave, no normal map,
- * maps at their nearest texel. A mirror in a mirror shows the environment only. World space, metres. Results
- * do not depend on the number of threads. */
+ * maps at their nearest texel; behind open cloth it shows the environment. A mirror in a mirror shows the
+ * environment only. World space, metres. Results do not depend on the number of threads. */
 #ifndef TOILE_RENDER_LIGHT_MIRRORS_H
 #define TOILE_RENDER_LIGHT_MIRRORS_H
 

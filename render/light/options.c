@@ -1,9 +1,10 @@
+#include "render/brdf/fan.h"
 #include "render/pem/chain.h"
 #include "render/pem/regions.h"
 #include "render/renderer.h"
 
-static const char *const method_names[] = {"pem",        "lights",    "ao", "ao_colour",
-                                           "unshadowed", "reference", NULL};
+static const char *const method_names[] = {"pem",        "lights",    "ao",   "ao_colour",
+                                           "unshadowed", "reference", "maps", NULL};
 static const char *const lobe_names[] = {"single", "dual", NULL};
 static const char *const cut_names[] = {"faces", "sphere", NULL};
 static const char *const prefilter_names[] = {"chain", "slices", NULL};
@@ -15,7 +16,8 @@ static const struct tl_option light_rows[] = {
     TL_OPTION_ENUM(
         light_params, method, method_names,
         "pem: light of each region times its visibility; lights: regions as directional lights; ao, "
-        "ao_colour: ambient occlusion; unshadowed: visibility is 1; reference: ray traced"),
+        "ao_colour: ambient occlusion; unshadowed: visibility is 1; reference: ray traced; maps: "
+        "environment maps (table maps), unshadowed"),
     TL_OPTION_ENUM(light_params, lobe, lobe_names,
                    "single: one look-up from diffuse to mirror by glossiness; dual: diffuse plus gloss"),
     TL_OPTION_ENUM(light_params, cut, cut_names,
@@ -49,6 +51,9 @@ static const struct tl_option light_rows[] = {
                     "rays: share of the samples, the least certain ones, that get rays of their own"),
     TL_OPTION_FLOAT(light_params, repair_rest, 0, 1, "",
                     "rays: the same once nothing moves, when it is more: spread over frames at rest"),
+    TL_OPTION_INT(
+        light_params, fan, 1, TL_FAN_MAX, "",
+        "rays: cosine lobes at most for a gloss that is not one itself; more follow it closer, slower"),
     TL_OPTION_BOOL(light_params, reflect_scene,
                    "near mirrors (exponent 200 and more) show the lit scene; off: black"),
     TL_OPTION_INT(light_params, map_size, 1, 4096, "texels",
@@ -66,19 +71,5 @@ static const struct tl_option light_rows[] = {
 const struct tl_option_table tl_light_options = TL_OPTION_TABLE(
     "light", "how the environment lights and shadows the scene", light_rows, light_params,
     .method = TL_METHOD_PEM, .lobe = TL_LOBE_DUAL, .regions = 96, .pem_size = 128,
-    .filter = TL_CHAIN_SQRT_COSINE, .pems_per_pass = 12, .rounds = 1, .rays = 1, .map_size = 256,
+    .filter = TL_CHAIN_SQRT_COSINE, .pems_per_pass = 12, .rounds = 1, .rays = 1, .fan = 5, .map_size = 256,
     .blur_m = 0.05f, .depth_bias_m = 0.004f, .min_variance = 1e-6f, .bleed_reduction = 0.1f);
-
-typedef struct tl_material_params material_params;
-static const struct tl_option material_rows[] = {
-    TL_OPTION_BOOL(material_params, use_file, "keep the materials of the garment's file where it has them"),
-    TL_OPTION_COLOUR(material_params, diffuse, 0, 1, "share of light scattered evenly; larger is brighter"),
-    TL_OPTION_COLOUR(material_params, specular, 0, 1,
-                     "share of light reflected at normal incidence; 0.04 for most fibres, larger is shinier"),
-    TL_OPTION_FLOAT(
-        material_params, glossiness, 0, 1, "",
-        "0 reflects in all directions, 1 is a mirror; the lobe's exponent is 1 / (1 - glossiness)"),
-};
-const struct tl_option_table tl_material_options = TL_OPTION_TABLE(
-    "material", "the garment's look: two lobes, diffuse and glossy", material_rows, material_params,
-    .use_file = true, .diffuse = {0.5f, 0.5f, 0.5f}, .specular = {0.04f, 0.04f, 0.04f}, .glossiness = 0.5f);

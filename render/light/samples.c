@@ -18,6 +18,20 @@ const tl_surface *tl_triangle_find(const struct tl_triangle_ranges *ranges, uint
     return ranges->surfaces[s];
 }
 
+const tl_material *tl_triangle_material(const struct tl_triangle_ranges *ranges, uint32_t number)
+{
+    size_t s = 0;
+    while (s + 1 < ranges->surface_count && number >= ranges->first[s + 1])
+        s++;
+    const tl_surface *surface = ranges->surfaces[s];
+    uint32_t index = 3 * (number - ranges->first[s]);
+    size_t part = 0;
+    while (part + 1 < surface->part_count &&
+           index - surface->parts[part].first_index >= surface->parts[part].index_count)
+        part++;
+    return &surface->materials[surface->parts[part].material];
+}
+
 void tl_triangle_ranges_make(const tl_surface *const *surfaces, size_t count, struct tl_triangle_ranges *out)
 {
     out->surfaces = surfaces;
@@ -57,11 +71,14 @@ void tl_samples_reserve(struct tl_samples *samples, size_t count)
         return;
     samples->capacity = count + count / 4 + 1;
     samples->items = tl_resize(samples->items, samples->capacity, sizeof *samples->items);
+    if (samples->tangents)
+        samples->tangents = tl_resize(samples->tangents, samples->capacity, sizeof *samples->tangents);
 }
 
 void tl_samples_release(struct tl_samples *samples)
 {
     free(samples->items);
+    free(samples->tangents);
     free(samples->staging);
     *samples = (struct tl_samples){0};
 }

@@ -23,12 +23,15 @@ typedef struct tl_sample {
 
 /* In tiles of 4 x 4 texels, so that sixteen samples in a row are neighbours. */
 struct tl_samples {
-    int width, height; /* of the target */
-    size_t
-        primary_count; /* of the camera; what mirrors show comes after them, with the texel of the mirror */
+    int width, height;    /* of the target */
+    size_t primary_count; /* nearest to the camera, one a texel */
+    /* After them, with the texels that they are seen in, come those behind open cloth, and the other sides of
+     * what scatters light through (sheets.h). What mirrors show is last. */
+    size_t behind_count, other_count;
     size_t count, capacity;
     tl_sample *items;
-    void *staging; /* the G-buffer as it was read */
+    vec4s *tangents; /* [capacity]: world, along u; handedness. NULL where the G-buffer has none */
+    void *staging;   /* the G-buffer as it was read */
     size_t staging_bytes;
 };
 
@@ -44,6 +47,15 @@ void tl_triangle_ranges_release(struct tl_triangle_ranges *ranges);
 /* Which surface holds global triangle `number` (without the top bit), and its three corners there. */
 const tl_surface *tl_triangle_find(const struct tl_triangle_ranges *ranges, uint32_t number,
                                    uint32_t corners[3], size_t *surface);
+
+/* How many the camera sees, through and through. */
+static inline size_t tl_samples_seen(const struct tl_samples *samples)
+{
+    return samples->primary_count + samples->behind_count + samples->other_count;
+}
+
+/* The material of a global triangle number (without the top bit). */
+const tl_material *tl_triangle_material(const struct tl_triangle_ranges *ranges, uint32_t number);
 
 /* Where a sample's rays start: on the smooth surface that its triangle stands for, `offset_m` above it. */
 vec3s tl_sample_start(const tl_sample *sample, const struct tl_triangle_ranges *ranges, float offset_m);

@@ -2,7 +2,7 @@
 // Box filter from samples to pixels, in linear light; alpha is coverage.
 layout(location = 0) uniform int side; // samples per pixel side
 
-layout(binding = 0) uniform sampler2D lights; // premultiplied by coverage
+layout(binding = 0) uniform sampler2D lights; // premultiplied by coverage; w: what of it is looked through
 layout(binding = 1) uniform sampler2D points; // coverage in w
 
 layout(location = 0) out vec4 image;
@@ -14,7 +14,8 @@ void main()
     for (int y = 0; y < side; y++)
         for (int x = 0; x < side; x++) {
             ivec2 texel = first + ivec2(x, y);
-            sum += vec4(texelFetch(lights, texel, 0).rgb, texelFetch(points, texel, 0).w);
+            vec4 light = texelFetch(lights, texel, 0);
+            sum += vec4(light.rgb, texelFetch(points, texel, 0).w - light.a);
         }
     image = sum / float(side * side);
 }

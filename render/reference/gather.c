@@ -1,6 +1,7 @@
 #include "render/reference/gather.h"
 
 #include "config/simd.h"
+#include "render/reference/lamps.h"
 
 #include <float.h>
 #include <math.h>
@@ -24,6 +25,12 @@ void tl_spots_add(struct tl_spots *spots, const struct tl_spot *spot)
         spots->glossy[c][i] = spot->glossy.raw[c];
     }
     spots->exponent[i] = spot->exponent;
+    spots->layered[i] = spot->layered;
+    if (spot->layered) {
+        spots->any_layered = true;
+        spots->layers[i] = spot->layers;
+        spots->viewer[i] = spot->viewer;
+    }
 }
 
 /* The state of one call. */
@@ -72,11 +79,10 @@ static void begin_volley(struct volley *volley, bool coherent)
     volley->bundle.coherent = coherent;
 }
 
-static void add_ray(struct volley *volley, const struct gathering *gathering, int spot, vec3s direction,
-                    vec3s light)
+static void add_ray_from(struct volley *volley, const struct gathering *gathering, int spot, vec3s origin,
+                         vec3s direction, vec3s light)
 {
     int i = volley->bundle.count++;
-    vec3s origin = point_of(gathering->spots, spot);
     volley->bundle.origin_x[i] = origin.x;
     volley->bundle.origin_y[i] = origin.y;
     volley->bundle.origin_z[i] = origin.z;
@@ -86,6 +92,12 @@ static void add_ray(struct volley *volley, const struct gathering *gathering, in
     volley->spot[i] = spot;
     volley->light[i] =
         glms_vec3_scale(light, tl_ground_visibility(gathering->scene->ground, origin, direction));
+}
+
+static void add_ray(struct volley *volley, const struct gathering *gathering, int spot, vec3s direction,
+                    vec3s light)
+{
+    add_ray_from(volley, gathering, spot, point_of(gathering->spots, spot), direction, light);
 }
 
 static void add_light(struct gathering *gathering, int spot, vec3s light)
@@ -98,10 +110,10 @@ static void fire(struct gathering *gathering, struct volley *volley)
 {
     if (volley->bundle.count == 0)
         return;
-    uint32_t stopped = tl_trace_occluded_bundle(gathering->scene->trace, &volley->bundle);
+    float seen[TL_SPOTS];
+    tl_trace_seen_bundle(gathering->scene->trace, &volley->bundle, seen);
     for (int i = 0; i < volley->bundle.count; i++)
-        if (!(stopped >> i & 1))
-            add_light(gathering, volley->spot[i], volley->light[i]);
+        add_light(gathering, volley->spot[i], glms_vec3_scale(volley->light[i], seen[i]));
     gathering->rays += (size_t)volley->bundle.count;
 }
 
@@ -141,6 +153,59 @@ TL_CLONES static void measure_angles(const struct tl_spots *spots, vec3s w, stru
     }
 }
 
+/* 1 - the cosine of two directions, without cancellation where they are close. */
+static float off_axis(vec3s axis, vec3s w)
+{
+    return 0.5f * glms_vec3_norm2(glms_vec3_sub(axis, w));
+}
+
+static vec3s finite_product(vec3s radiance, vec3s share)
+{
+    vec3s light;
+    for (int c = 0; c < 3; c++)
+        light.raw[c] = share.raw[c] > 0 ? kept_finite(radiance.raw[c] * share.raw[c]) : 0;
+    return light;
+}
+
+/* What coat and facets send back of a direction from the environment, of which there are `draws` per sr. */
+static vec3s layered_share(const struct gathering *gathering, int i, vec3s direction, float draws)
+{
+    const struct tl_spot_layers *layers = &gathering->spots->layers[i];
+    float count = (float)gathering->asked->lobe_samples;
+    vec3s share = {{0, 0, 0}};
+    if (layers->coat > 0) {
+        float lobe = lobe_value(layers->coat_exponent, off_axis(layers->coat_axis, direction));
+        float coat = layers->coat * lobe / (draws + count * lobe);
+        share = (vec3s){{coat, coat, coat}};
+    }
+    if (layers->faceted) {
+        vec3s viewer = gathering->spots->viewer[i];
+        vec3s gloss = tl_brdf_gloss(&layers->brdf, &layers->frame, direction, viewer);
+        float density = tl_brdf_density(&layers->brdf, &layers->frame, direction, viewer);
+        share = glms_vec3_add(share, glms_vec3_scale(gloss, layers->base / (draws + count * density)));
+    }
+    return share;
+}
+
+/* Light on the other side of sheets that let it through. */
+static void gather_behind(struct gathering *gathering, const struct tl_skylight *sky)
+{
+    const struct tl_spots *spots = gathering->spots;
+    float draws = (float)gathering->asked->strata * sky->density;
+    struct volley volley;
+    begin_volley(&volley, true);
+    for (int i = 0; i < spots->count; i++) {
+        float below = -dot_of(spots->normal, i, sky->direction);
+        if (!spots->layered[i] || !(below > 0) || !(dot_of(spots->horizon, i, sky->direction) < 0))
+            continue;
+        vec3s share = glms_vec3_scale(spots->layers[i].transmitted, below / (float)M_PI / draws);
+        vec3s light = finite_product(sky->radiance, share);
+        if (!is_dark(light))
+            add_ray_from(&volley, gathering, i, spots->layers[i].behind, sky->direction, light);
+    }
+    fire(gathering, &volley);
+}
+
 /* One direction from the environment, for all spots. */
 static void gather_stratum(struct gathering *gathering, const struct tl_skylight *sky)
 {
@@ -161,6 +226,10 @@ static void gather_stratum(struct gathering *gathering, const struct tl_skylight
             glossy = lobe / (draws + (float)gathering->asked->lobe_samples * lobe);
         }
         vec3s light = weigh(spots, i, sky->radiance, diffuse, glossy);
+        if (spots->layered[i]) {
+            vec3s share = layered_share(gathering, i, sky->direction, draws);
+            light = glms_vec3_add(light, finite_product(sky->radiance, share));
+        }
         if (!is_dark(light))
             add_ray(&volley, gathering, i, sky->direction, light);
     }
@@ -178,11 +247,10 @@ void tl_gather_directions(const struct tl_sky *sky, int count, int slot, int slo
 }
 
 /* A direction drawn from K_s about the axis: `off` is 1 - its cosine, whose density is (s + 1) cos^s. */
-static vec3s draw_lobe(const struct tl_spots *spots, int i, double height, double turn, float *off)
+static vec3s draw_lobe(vec3s axis, float exponent, double height, double turn, float *off)
 {
-    double away = -expm1(log(1 - height) / ((double)spots->exponent[i] + 1));
+    double away = -expm1(log(1 - height) / ((double)exponent + 1));
     double radius = sqrt(fmax(away * (2 - away), 0)), angle = 2 * M_PI * turn;
-    vec3s axis = {{spots->axis[0][i], spots->axis[1][i], spots->axis[2][i]}};
     vec3s aside = fabsf(axis.x) < 0.6f ? (vec3s){{1, 0, 0}} : (vec3s){{0, 1, 0}};
     vec3s a = glms_vec3_normalize(glms_vec3_cross(axis, aside)), b = glms_vec3_cross(axis, a);
     vec3s w = glms_vec3_scale(axis, (float)(1 - away));
@@ -197,6 +265,7 @@ struct reflections {
     struct tl_spots spots;
     int owner[TL_SPOTS];
     float share[TL_SPOTS];
+    vec3s lamplight[TL_SPOTS];
 };
 
 /* Where a mirror's ray ends: in the sky, in the scene, or, where the ground fades, in both. */
@@ -206,6 +275,8 @@ static void reflect(struct gathering *gathering, int i, vec3s direction, vec3s s
     const struct tl_ray ray = {
         .origin = point_of(gathering->spots, i), .direction = direction, .to_m = INFINITY};
     struct tl_spot met = tl_spot_find(gathering->scene, &ray);
+    if (met.layered) /* behind an open sheet a mirror shows the sky */
+        met.cover *= 1 - met.layers.openness;
     gathering->rays++;
     add_light(gathering, i, glms_vec3_scale(sky_light, 1 - met.cover));
     if (met.cover > 0) {
@@ -213,6 +284,7 @@ static void reflect(struct gathering *gathering, int i, vec3s direction, vec3s s
         tl_spots_add(&reflections->spots, &met);
         reflections->owner[r] = i;
         reflections->share[r] = met.cover / (float)gathering->asked->lobe_samples;
+        reflections->lamplight[r] = tl_reference_lamps(gathering->scene, &met, &gathering->rays);
     }
 }
 
@@ -232,8 +304,9 @@ static void light_reflections(struct gathering *gathering, const struct reflecti
     gathering->rays += tl_gather(&inner, &reflections->spots, light);
     for (int r = 0; r < reflections->spots.count; r++)
         for (int c = 0; c < 3; c++)
-            gathering->light[c][reflections->owner[r]] +=
-                gathering->spots->glossy[c][reflections->owner[r]] * reflections->share[r] * light[c][r];
+            gathering->light[c][reflections->owner[r]] += gathering->spots->glossy[c][reflections->owner[r]] *
+                                                          reflections->share[r] *
+                                                          (light[c][r] + reflections->lamplight[r].raw[c]);
 }
 
 /* One direction from each spot's lobe. */
@@ -250,7 +323,8 @@ static void gather_lobes(struct gathering *gathering, int sample)
             continue;
         float off;
         double turn = gathering->turn[i] + sample * GOLDEN;
-        vec3s direction = draw_lobe(spots, i, fmin(height, 1 - DBL_EPSILON), turn, &off);
+        vec3s axis = {{spots->axis[0][i], spots->axis[1][i], spots->axis[2][i]}};
+        vec3s direction = draw_lobe(axis, spots->exponent[i], fmin(height, 1 - DBL_EPSILON), turn, &off);
         if (!(dot_of(spots->horizon, i, direction) > 0))
             continue;
         struct tl_skylight sky = tl_sky_look(&gathering->scene->sky, direction);
@@ -266,6 +340,78 @@ static void gather_lobes(struct gathering *gathering, int sample)
     }
     fire(gathering, &volley);
     light_reflections(gathering, &reflections);
+}
+
+/* Two numbers in [0, 1) for sample `sample` of a spot's lobe. */
+static vec2s numbers_for(struct gathering *gathering, int i, int sample)
+{
+    double height = (sample + tl_random_unit(&gathering->random)) / gathering->asked->lobe_samples;
+    double turn = gathering->turn[i] + sample * GOLDEN;
+    const float below_one = 1 - 0x1p-24f;
+    return (vec2s){{fminf((float)height, below_one), fminf((float)(turn - floor(turn)), below_one)}};
+}
+
+/* One direction from each spot's coat ... */
+static void gather_coats(struct gathering *gathering, int sample)
+{
+    const struct tl_gathering *asked = gathering->asked;
+    struct volley volley;
+    begin_volley(&volley, false);
+    for (int i = 0; i < gathering->spots->count; i++) {
+        const struct tl_spot_layers *layers = &gathering->spots->layers[i];
+        if (!gathering->spots->layered[i] || !(layers->coat > 0))
+            continue;
+        float off;
+        vec2s numbers = numbers_for(gathering, i, sample);
+        vec3s direction =
+            draw_lobe(layers->coat_axis, layers->coat_exponent, (double)numbers.x, (double)numbers.y, &off);
+        float lobe = lobe_value(layers->coat_exponent, off);
+        if (!(dot_of(gathering->spots->horizon, i, direction) > 0) || !(lobe > 0))
+            continue;
+        struct tl_skylight sky = tl_sky_look(&gathering->scene->sky, direction);
+        float share =
+            layers->coat * lobe / ((float)asked->strata * sky.density + (float)asked->lobe_samples * lobe);
+        vec3s light = finite_product(sky.radiance, (vec3s){{share, share, share}});
+        if (!is_dark(light))
+            add_ray(&volley, gathering, i, direction, light);
+    }
+    fire(gathering, &volley);
+}
+
+/* ... and from its facets. */
+static void gather_facets(struct gathering *gathering, int sample)
+{
+    const struct tl_gathering *asked = gathering->asked;
+    struct volley volley;
+    begin_volley(&volley, false);
+    for (int i = 0; i < gathering->spots->count; i++) {
+        const struct tl_spot_layers *layers = &gathering->spots->layers[i];
+        if (!gathering->spots->layered[i] || !layers->faceted)
+            continue;
+        float density;
+        vec3s viewer = gathering->spots->viewer[i];
+        vec2s numbers = numbers_for(gathering, i, sample);
+        vec3s direction = tl_brdf_draw(&layers->brdf, &layers->frame, viewer, numbers.x, numbers.y, &density);
+        if (!(density > 0) || !(dot_of(gathering->spots->horizon, i, direction) > 0))
+            continue;
+        struct tl_skylight sky = tl_sky_look(&gathering->scene->sky, direction);
+        vec3s gloss = tl_brdf_gloss(&layers->brdf, &layers->frame, direction, viewer);
+        float draws = (float)asked->strata * sky.density + (float)asked->lobe_samples * density;
+        vec3s light = finite_product(sky.radiance, glms_vec3_scale(gloss, layers->base / draws));
+        if (!is_dark(light))
+            add_ray(&volley, gathering, i, direction, light);
+    }
+    fire(gathering, &volley);
+}
+
+static void gather_layers(struct gathering *gathering)
+{
+    for (int i = 0; i < gathering->asked->strata; i++)
+        gather_behind(gathering, &gathering->asked->sky[i]);
+    for (int i = 0; i < gathering->asked->lobe_samples; i++) {
+        gather_coats(gathering, i);
+        gather_facets(gathering, i);
+    }
 }
 
 size_t tl_gather(const struct tl_gathering *asked, const struct tl_spots *spots, float light[3][TL_SPOTS])
@@ -285,6 +431,8 @@ size_t tl_gather(const struct tl_gathering *asked, const struct tl_spots *spots,
         gather_stratum(&gathering, &asked->sky[i]);
     for (int i = 0; any_glossy && i < asked->lobe_samples; i++)
         gather_lobes(&gathering, i);
+    if (spots->any_layered)
+        gather_layers(&gathering);
     for (int c = 0; c < 3; c++) /* no infinity goes on, so that nothing times zero makes a NaN */
         for (int i = 0; i < spots->count; i++)
             light[c][i] = kept_finite(light[c][i]);

@@ -1,5 +1,5 @@
 /* The light that up to sixteen points send back, by rays: directions drawn from the environment, the same for
- * all, and from each point's glossy lobe, combined by the balance heuristic [Veach 1997, 9.2.2]. */
+ * all, and from each of a point's glossy lobes, combined by the balance heuristic [Veach 1997, 9.2.2]. */
 #ifndef TOILE_RENDER_REFERENCE_GATHER_H
 #define TOILE_RENDER_REFERENCE_GATHER_H
 
@@ -14,6 +14,10 @@ struct tl_spots {
     float point[3][TL_SPOTS], horizon[3][TL_SPOTS], normal[3][TL_SPOTS], axis[3][TL_SPOTS];
     float exponent[TL_SPOTS];
     float diffuse[3][TL_SPOTS], glossy[3][TL_SPOTS];
+    /* Of those that have any, by spot. */
+    bool any_layered, layered[TL_SPOTS];
+    struct tl_spot_layers layers[TL_SPOTS];
+    vec3s viewer[TL_SPOTS];
 };
 
 void tl_spots_add(struct tl_spots *spots, const struct tl_spot *spot);

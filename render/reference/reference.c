@@ -5,6 +5,7 @@
 #include "config/memory.h"
 #include "render/frame/view.h"
 #include "render/reference/gather.h"
+#include "render/reference/lamps.h"
 
 #include <float.h>
 #include <math.h>
@@ -50,31 +51,68 @@ static struct tl_ray camera_ray(const struct drawing *drawing, int x, int y)
                            .down = glms_vec3_scale(view->up, -step_y / length)};
 }
 
-/* What one sample of each of a tile's pixels sees. */
+/* A ray of the camera on its way, and how much of it has got there. */
+struct sight {
+    struct tl_ray ray;
+    size_t pixel;
+    float share;
+};
+
+/* One sample of each of a tile's pixels. */
+struct sights {
+    int count;
+    struct sight items[TL_SPOTS];
+};
+
+/* What they meet. */
 struct bundle {
     struct tl_spots spots;
     size_t pixel[TL_SPOTS];
     float cover[TL_SPOTS];
+    vec3s lamplight[TL_SPOTS];
+    size_t rays; /* spent on it */
 };
 
-static struct bundle find_spots(const struct drawing *drawing, int tile, int sample)
+static struct sights aim(const struct drawing *drawing, int tile, int sample)
 {
     int side = drawing->settings->image.supersample;
     int left = tile % drawing->tiles_x * TILE, top = tile / drawing->tiles_x * TILE;
-    struct bundle bundle = {0};
+    struct sights sights = {0};
     for (int i = 0; i < TILE_PIXELS; i++) {
         int x = left + i % TILE, y = top + i / TILE;
         if (x >= drawing->width || y >= drawing->height)
             continue;
-        struct tl_ray ray = camera_ray(drawing, x * side + sample % side, y * side + sample / side);
-        struct tl_spot spot = tl_spot_find(drawing->scene, &ray);
+        sights.items[sights.count++] =
+            (struct sight){.ray = camera_ray(drawing, x * side + sample % side, y * side + sample / side),
+                           .pixel = (size_t)y * (size_t)drawing->width + (size_t)x,
+                           .share = 1};
+    }
+    return sights;
+}
+
+/* What the sights meet; they become what goes on through it. What is met last is taken as closed. */
+static void find_spots(const struct drawing *drawing, bool last, struct sights *sights, struct bundle *bundle)
+{
+    int through = 0;
+    bundle->spots.count = 0;
+    bundle->spots.any_layered = false;
+    bundle->rays = 0;
+    for (int i = 0; i < sights->count; i++) {
+        struct sight sight = sights->items[i];
+        struct tl_spot spot = tl_spot_find(drawing->scene, &sight.ray);
         if (!(spot.cover > 0))
             continue;
-        bundle.pixel[bundle.spots.count] = (size_t)y * (size_t)drawing->width + (size_t)x;
-        bundle.cover[bundle.spots.count] = spot.cover;
-        tl_spots_add(&bundle.spots, &spot);
+        float openness = spot.layered && !last ? spot.layers.openness : 0;
+        bundle->pixel[bundle->spots.count] = sight.pixel;
+        bundle->cover[bundle->spots.count] = sight.share * spot.cover * (1 - openness);
+        bundle->lamplight[bundle->spots.count] = tl_reference_lamps(drawing->scene, &spot, &bundle->rays);
+        tl_spots_add(&bundle->spots, &spot);
+        sight.share *= openness;
+        sight.ray.from_m = spot.distance_m + drawing->scene->offset_m;
+        if (sight.share > 0)
+            sights->items[through++] = sight;
     }
-    return bundle;
+    sights->count = through;
 }
 
 static struct tl_skylight *directions_of(const struct drawing *drawing, int group, int sample)
@@ -105,29 +143,42 @@ static void draw_directions(const struct drawing *drawing, int replicate)
     }
 }
 
-static size_t draw_sample(const struct drawing *drawing, int replicate, int tile, int sample)
+/* Sample `sample` of a tile's pixels, `behind` sheets that it has passed. Returns the number of rays. */
+static size_t draw_spots(const struct drawing *drawing, int replicate, int tile, int sample, int behind,
+                         const struct bundle *bundle)
 {
     const struct tl_reference_params *params = &drawing->settings->reference;
     int side = drawing->settings->image.supersample, samples = side * side;
-    struct bundle bundle = find_spots(drawing, tile, sample);
-    if (bundle.spots.count == 0)
-        return TILE_PIXELS;
     const struct tl_gathering gathering = {
         .scene = drawing->scene,
         .strata = params->strata,
         .sky = directions_for(drawing, tile, sample),
         .lobe_samples = params->lobe_samples,
         .reflect = drawing->scene->reflect,
-        .random = tl_random_begin((uint64_t)replicate << 32 | (uint32_t)tile, (uint64_t)sample)};
+        .random = tl_random_begin((uint64_t)replicate << 32 | (uint32_t)tile,
+                                  (uint64_t)sample + (uint64_t)behind * (uint64_t)samples)};
     float light[3][TL_SPOTS];
-    size_t rays = tl_gather(&gathering, &bundle.spots, light);
-    for (int i = 0; i < bundle.spots.count; i++) {
-        float *pixel = drawing->replicate + 4 * bundle.pixel[i], share = bundle.cover[i] / (float)samples;
+    size_t rays = tl_gather(&gathering, &bundle->spots, light);
+    for (int i = 0; i < bundle->spots.count; i++) {
+        float *pixel = drawing->replicate + 4 * bundle->pixel[i], share = bundle->cover[i] / (float)samples;
         for (int c = 0; c < 3; c++)
-            pixel[c] = fminf(pixel[c] + share * light[c][i], FLT_MAX);
+            pixel[c] = fminf(pixel[c] + share * (light[c][i] + bundle->lamplight[i].raw[c]), FLT_MAX);
         pixel[3] += share;
     }
-    return rays + TILE_PIXELS;
+    return rays + bundle->rays;
+}
+
+static size_t draw_sample(const struct drawing *drawing, int replicate, int tile, int sample)
+{
+    struct sights sights = aim(drawing, tile, sample);
+    struct bundle bundle = {0};
+    size_t rays = TILE_PIXELS;
+    for (int behind = 0; behind <= TL_SHEETS_BEHIND && sights.count > 0; behind++) {
+        find_spots(drawing, behind == TL_SHEETS_BEHIND, &sights, &bundle);
+        if (bundle.spots.count > 0)
+            rays += draw_spots(drawing, replicate, tile, sample, behind, &bundle);
+    }
+    return rays;
 }
 
 /* Tiles own their pixels, so the number of threads does not show. False when interrupted. */

@@ -1,6 +1,7 @@
 #include "render/reference/spot.h"
 
 #include "config/memory.h"
+#include "render/brdf/coat.h"
 #include "render/pem/lobe.h"
 #include "render/surfaces/surfaces.h"
 
@@ -92,6 +93,7 @@ bool tl_reference_scene_make(const tl_frame *frame, const struct tl_render_setti
         out->looks[i] = make_look(out, &frame->surfaces[i]);
     if (ground)
         out->looks[out->surface_count] = make_look(out, &ground->surface);
+    out->lamp_count = tl_lamps_lit(frame, out->lamps);
     tl_sky_make(frame->environment, frame->environment_yaw, &out->sky);
     out->trace = tl_trace_create(error);
     if (!out->trace || !tl_trace_update(out->trace, out->surfaces, out->surface_count, error)) {
@@ -230,16 +232,61 @@ static vec3s diffuse_of(const struct place *place)
     return colour;
 }
 
-/* Schlick's Fresnel term with f90 = min(50 F0, 1). */
-static vec3s specular_of(const struct place *place, float n_dot_v)
+static vec3s f0_of(const struct place *place)
 {
     vec3s f0 = place->material->specular;
-    if (has_map(place, TL_MAP_SPECULAR))
-        f0 = times_map(f0, map_at(place, TL_MAP_SPECULAR));
+    return has_map(place, TL_MAP_SPECULAR) ? times_map(f0, map_at(place, TL_MAP_SPECULAR)) : f0;
+}
+
+/* Schlick's Fresnel term with f90 = min(50 F0, 1). */
+static vec3s specular_of(vec3s f0, float n_dot_v)
+{
     float away = 1 - fminf(fmaxf(n_dot_v, 0), 1), fifth = away * away * away * away * away;
     for (int c = 0; c < 3; c++)
         f0.raw[c] += (fminf(50 * f0.raw[c], 1) - f0.raw[c]) * fifth;
     return f0;
+}
+
+/* A back is a surface of its own: with its normal the bitangent turns over, the tangent stays. */
+static void set_tangent(const struct place *place, vec3s n, struct tl_spot *spot)
+{
+    vec3s t = {{place->tangent.x, place->tangent.y, place->tangent.z}};
+    t = glms_vec3_sub(t, glms_vec3_scale(n, glms_vec3_dot(n, t)));
+    spot->tangent = direction_or(t, (vec3s){{0, 0, 0}});
+    spot->handedness = place->tangent.w * place->side;
+}
+
+/* A coat levels the threads out: its mirror direction is the smooth surface's. */
+static void set_coat(const struct place *place, vec3s smooth, struct tl_spot *spot)
+{
+    struct tl_spot_layers *layers = &spot->layers;
+    vec3s n = glms_vec3_scale(smooth, place->side);
+    float cosine = fmaxf(glms_vec3_dot(n, spot->viewer), 0);
+    vec3s mirror = glms_vec3_sub(glms_vec3_scale(n, 2 * cosine), spot->viewer);
+    layers->coat = place->material->coat * tl_coat_reflectance(cosine);
+    layers->coat_axis = direction_or(mirror, n);
+    layers->coat_exponent = tl_lobe_exponent(place->material->coat_glossiness);
+}
+
+static void set_layers(const struct place *place, vec3s smooth, struct tl_spot *spot)
+{
+    const tl_material *material = place->material;
+    struct tl_spot_layers *layers = &spot->layers;
+    spot->layered = true;
+    layers->openness = material->openness;
+    if (material->coat > 0)
+        set_coat(place, smooth, spot);
+    layers->base = 1 - layers->coat;
+    layers->faceted = material->gloss.model != TL_REFLECT_PHONG;
+    if (layers->faceted) {
+        layers->brdf = tl_brdf_of(material, spot->f0, spot->glossiness);
+        layers->frame = tl_brdf_frame_make(spot->normal, spot->tangent, spot->handedness,
+                                           place->side * material->gloss.rotation);
+        spot->glossy = (vec3s){{0, 0, 0}};
+    }
+    spot->diffuse = glms_vec3_scale(spot->diffuse, layers->base);
+    spot->glossy = glms_vec3_scale(spot->glossy, layers->base);
+    layers->transmitted = glms_vec3_scale(material->transmission, layers->base);
 }
 
 static void set_lobes(const struct place *place, const struct tl_reference_scene *scene, vec3s viewer,
@@ -249,16 +296,24 @@ static void set_lobes(const struct place *place, const struct tl_reference_scene
     float n_dot_v = glms_vec3_dot(n, viewer);
     vec3s mirror = glms_vec3_sub(glms_vec3_scale(n, 2 * fmaxf(n_dot_v, 0)), viewer);
     float g = glossiness_of(place);
+    spot->viewer = viewer;
+    spot->glossiness = g;
+    spot->material = place->material;
+    set_tangent(place, n, spot);
     spot->normal = n;
     spot->axis = direction_or(mirror, n);
     spot->exponent = tl_lobe_exponent(g);
-    spot->diffuse = diffuse_of(place);
-    spot->glossy = specular_of(place, n_dot_v);
-    if (scene->lobe == TL_LOBE_SINGLE) {
+    spot->side = place->side;
+    spot->f0 = f0_of(place);
+    spot->diffuse = spot->albedo = diffuse_of(place);
+    spot->glossy = specular_of(spot->f0, n_dot_v);
+    if (scene->lobe == TL_LOBE_SINGLE && place->material->gloss.model == TL_REFLECT_PHONG) {
         spot->axis = direction_or(glms_vec3_lerp(n, mirror, g), n);
         spot->glossy = glms_vec3_lerp(spot->diffuse, spot->glossy, g);
         spot->diffuse = (vec3s){{0, 0, 0}};
     }
+    if (tl_material_is_layered(place->material))
+        set_layers(place, smooth, spot);
 }
 
 static struct tl_spot spot_of(const struct place *place, const struct tl_reference_scene *scene,
@@ -349,6 +404,18 @@ static void set_material(const struct tl_reference_scene *scene, const struct tl
         place->weave_scale[i] = part->uv_metres / place->material->weave->size_m[i];
 }
 
+/* Where the same sheet's other side is looked at from. */
+static vec3s point_behind(const struct place *place, const struct tl_reference_scene *scene,
+                          const struct corners *corners, const float weights[3])
+{
+    vec3s normals[3], point = place->point;
+    for (int i = 0; i < 3; i++)
+        normals[i] = glms_vec3_negate(corners->normals[i]);
+    if (scene->terminator != TL_TERMINATOR_GEOMETRIC)
+        point = tl_smooth_point(point, corners->positions, normals, weights);
+    return glms_vec3_sub(point, glms_vec3_scale(place->facet, scene->offset_m));
+}
+
 static struct tl_spot surface_spot(const struct tl_reference_scene *scene, const struct tl_ray *ray,
                                    const struct tl_trace_hit *hit)
 {
@@ -368,7 +435,10 @@ static struct tl_spot surface_spot(const struct tl_reference_scene *scene, const
     place.footprint = footprint_of(&corners, weights, ray, hit->distance_m, place.facet);
     vec3s smooth = tl_smooth_point(place.point, corners.positions, corners.normals, weights);
     struct tl_spot spot = spot_of(&place, scene, ray, smooth);
+    spot.distance_m = hit->distance_m;
     spot.point = glms_vec3_add(spot.point, glms_vec3_scale(place.facet, scene->offset_m));
+    if (spot.layered)
+        spot.layers.behind = point_behind(&place, scene, &corners, weights);
     return spot;
 }
 
@@ -401,6 +471,7 @@ static struct tl_spot ground_spot(const struct tl_reference_scene *scene, const 
     };
     struct tl_spot spot = spot_of(&place, scene, ray, point);
     spot.cover = cover;
+    spot.distance_m = distance;
     return spot;
 }
 

@@ -5,6 +5,8 @@
 #ifndef TOILE_RENDER_REFERENCE_SPOT_H
 #define TOILE_RENDER_REFERENCE_SPOT_H
 
+#include "render/brdf/brdf.h"
+#include "render/local/lamp.h"
 #include "render/reference/reference.h"
 #include "render/reference/sky.h"
 #include "render/reference/texture.h"
@@ -22,6 +24,8 @@ struct tl_reference_scene {
     size_t texture_count;
     struct tl_map_texture **textures;
     struct tl_sky sky;
+    struct tl_lamp lamps[TL_LAMPS_MAX]; /* those that shine */
+    size_t lamp_count;
     float offset_m; /* how far off a surface its rays start */
     int lobe;       /* enum tl_lobe */
     int terminator; /* enum tl_terminator */
@@ -38,14 +42,39 @@ struct tl_ray {
     vec3s across, down; /* how `direction` changes from sample to sample; zero: maps at their finest level */
 };
 
-/* One lobe, or two: c = integral of L V [diffuse K_1(normal, w) + glossy K_s(axis, w)] dw */
+/* What a material is beyond two lobes. Its lobes' colours below, the spot's own among them, are less what the
+ * coat reflects already. */
+struct tl_spot_layers {
+    float openness;    /* share that is seen straight through */
+    vec3s transmitted; /* kt: of the light on the other side, diffusely: K_1(-normal, w) */
+    vec3s behind;      /* where rays to that light start */
+    float coat;        /* F of the coat, times its share */
+    vec3s coat_axis;
+    float coat_exponent;
+    bool faceted; /* gloss is `brdf` times `base`, instead of the lobe about `axis` */
+    float base;   /* 1 - coat */
+    struct tl_brdf brdf;
+    struct tl_brdf_frame frame;
+};
+
+/* One lobe, or two: c = integral of L V [diffuse K_1(normal, w) + glossy K_s(axis, w)] dw; and layers. */
 struct tl_spot {
-    float cover;   /* share of what is seen there; 0: the ray meets nothing */
+    float cover;      /* share of what is seen there; 0: the ray meets nothing */
+    float distance_m; /* along the ray */
+    bool layered;     /* `layers` hold something */
+    struct tl_spot_layers layers;
     vec3s point;   /* where rays to the light start */
     vec3s horizon; /* normal of the plane above which light counts; unit, as all directions here */
     vec3s normal, axis;
     float exponent; /* s */
     vec3s diffuse, glossy;
+    vec3s viewer;                /* towards the eye */
+    vec3s tangent;               /* along u, at right angles to `normal`; zero where the surface has none */
+    float side;                  /* 1; -1 where the back is seen */
+    vec3s albedo, f0;            /* diffuse colour; reflectance at normal incidence: whatever `lobe` says */
+    float handedness;            /* bitangent = handedness * cross(normal, tangent) */
+    float glossiness;            /* of the maps, as `exponent` */
+    const tl_material *material; /* borrowed from the surface */
 };
 
 /* What the ray meets first. */

@@ -8,6 +8,11 @@ layout(location = 3) uniform int map_flags;
 layout(location = 4) uniform vec2 weave_scale; // repeats per UV unit
 layout(location = 5) uniform vec3 uv_rows[10];
 layout(location = 15) uniform uint first_triangle; // of this draw, counted through all surfaces
+// Of detail.glsl, whose maps come at bindings 8 to 11.
+layout(location = 20) uniform int detail_flags;
+layout(location = 21) uniform vec4 detail_range;   // lowest, highest (m), metres of a UV unit, factor on heights
+layout(location = 22) uniform vec3 detail_rows[2]; // from UV to repeats of the height field
+layout(location = 24) uniform ivec2 detail_steps;  // of relief: steps, halvings
 
 layout(binding = 0) uniform sampler2D diffuse_map;
 layout(binding = 1) uniform sampler2D normal_map;
@@ -17,6 +22,8 @@ layout(binding = 4) uniform sampler2D occlusion_map;
 layout(binding = 5) uniform sampler2D weave_normal;
 layout(binding = 6) uniform sampler2D weave_gloss;
 layout(binding = 7) uniform sampler2D weave_tint;
+
+const int FLAG_FACETED = 1 << 30;
 
 bool has_map(int map)
 {
@@ -29,12 +36,47 @@ vec2 map_uv(int map, vec2 uv)
     return vec2(dot(uv_rows[2 * map], point), dot(uv_rows[2 * map + 1], point));
 }
 
+// Yarns are regular, and trilinear filtering lets their moire through: with the spread of normals at hand (DETAIL_MINIFY)
+// they are read a level coarser, for what is lost is not lost.
+#if defined(DETAIL_MINIFY) && DETAIL_MINIFY > 0
+const float WEAVE_BIAS = 1.0;
+#else
+const float WEAVE_BIAS = 0.0;
+#endif
+
+// Maps at their level of detail: by the UV's own derivatives where detail has moved it, for its jumps are no scale.
+#ifdef DETAIL_SHIFTED
+vec2 unmoved_across, unmoved_down; // how UV changes from sample to sample; set by who moves it
+
+vec4 map_texel(sampler2D map, int use, vec2 uv)
+{
+    mat2 turned = transpose(mat2(uv_rows[2 * use].xy, uv_rows[2 * use + 1].xy));
+    return textureGrad(map, map_uv(use, uv), turned * unmoved_across, turned * unmoved_down);
+}
+
+vec4 weave_texel(sampler2D map, vec2 uv)
+{
+    vec2 scale = exp2(WEAVE_BIAS) * weave_scale;
+    return textureGrad(map, uv * weave_scale, unmoved_across * scale, unmoved_down * scale);
+}
+#else
+vec4 map_texel(sampler2D map, int use, vec2 uv)
+{
+    return texture(map, map_uv(use, uv));
+}
+
+vec4 weave_texel(sampler2D map, vec2 uv)
+{
+    return texture(map, uv * weave_scale, WEAVE_BIAS);
+}
+#endif
+
 // The material's colour and alpha, without the weave.
 vec4 surface_colour(vec2 uv)
 {
     vec4 colour = vec4(material_diffuse, 1.0);
     if (has_map(MAP_DIFFUSE))
-        colour *= texture(diffuse_map, map_uv(MAP_DIFFUSE, uv));
+        colour *= map_texel(diffuse_map, MAP_DIFFUSE, uv);
     return colour;
 }
 

@@ -16,6 +16,7 @@ struct uploaded {
 };
 
 struct item {
+    bool hidden;
     GLuint vertex_array, buffers[ATTRIBUTES], indices;
     size_t vertex_count, index_count;
     size_t attribute_counts[ATTRIBUTES]; /* vertices sent; 0 for what the surface does not have */
@@ -31,6 +32,7 @@ struct tl_surfaces {
     tl_gpu *gpu;
     size_t count;
     struct item *items;
+    const struct tl_detail_maps *detail; /* NULL: none */
 };
 
 static const size_t attribute_bytes[ATTRIBUTES] = {sizeof(vec3s), sizeof(vec3s), sizeof(vec4s),
@@ -56,6 +58,11 @@ tl_surfaces *tl_surfaces_create(tl_gpu *gpu)
     tl_surfaces *surfaces = TL_NEW(tl_surfaces);
     surfaces->gpu = gpu;
     return surfaces;
+}
+
+void tl_surfaces_use_detail(tl_surfaces *surfaces, const struct tl_detail_maps *detail)
+{
+    surfaces->detail = detail;
 }
 
 static void resize(tl_surfaces *surfaces, size_t count)
@@ -277,6 +284,8 @@ static void set_material(const struct item *item, const struct tl_mesh_part *par
         bind((GLuint)use, find_texture(item, map->image, is_colour(use)), map->clamp_u, map->clamp_v);
         flags |= 1 << use;
     }
+    if (material->gloss.model != TL_REFLECT_PHONG)
+        flags |= TL_FLAG_FACETED;
     glUniform3fv(TL_UNIFORM_DIFFUSE, 1, material->diffuse.raw);
     glUniform3fv(TL_UNIFORM_SPECULAR, 1, material->specular.raw);
     glUniform4f(TL_UNIFORM_SCALARS, material->glossiness, material->normal_scale,
@@ -296,22 +305,46 @@ static enum tl_surface_parts kind_of(const struct item *item, const struct tl_me
     return item->materials[part->material].alpha_cutoff > 0 ? TL_PARTS_MASKED : TL_PARTS_OPAQUE;
 }
 
-void tl_surfaces_draw(const tl_surfaces *surfaces, size_t index, enum tl_surface_parts parts)
+size_t tl_surfaces_part_count(const tl_surfaces *surfaces, size_t index)
+{
+    return surfaces->items[index].part_count;
+}
+
+const tl_material *tl_surfaces_part_material(const tl_surfaces *surfaces, size_t index, size_t part)
 {
     const struct item *item = &surfaces->items[index];
+    return &item->materials[item->parts[part].material];
+}
+
+void tl_surfaces_draw_part(const tl_surfaces *surfaces, size_t index, size_t part_index)
+{
+    const struct item *item = &surfaces->items[index];
+    const struct tl_mesh_part *part = &item->parts[part_index];
     size_t first_triangle = 0;
+    if (item->hidden)
+        return;
     for (size_t i = 0; i < index; i++)
         first_triangle += surfaces->items[i].index_count / 3;
     glBindVertexArray(item->vertex_array);
-    for (size_t p = 0; p < item->part_count; p++) {
-        const struct tl_mesh_part *part = &item->parts[p];
-        if (!(kind_of(item, part) & parts))
-            continue;
-        set_material(item, part);
-        glUniform1ui(TL_UNIFORM_FIRST_TRIANGLE, (GLuint)(first_triangle + part->first_index / 3));
-        glDrawElements(GL_TRIANGLES, (GLsizei)part->index_count, GL_UNSIGNED_INT,
-                       offset_of_index(part->first_index));
-    }
+    set_material(item, part);
+    tl_detail_maps_bind(surfaces->detail, index, part_index, part->uv_metres, TL_UNIFORM_DETAIL,
+                        TL_DETAIL_UNIT);
+    glUniform1ui(TL_UNIFORM_FIRST_TRIANGLE, (GLuint)(first_triangle + part->first_index / 3));
+    glDrawElements(GL_TRIANGLES, (GLsizei)part->index_count, GL_UNSIGNED_INT,
+                   offset_of_index(part->first_index));
+}
+
+void tl_surfaces_draw(const tl_surfaces *surfaces, size_t index, enum tl_surface_parts parts)
+{
+    const struct item *item = &surfaces->items[index];
+    for (size_t p = 0; p < item->part_count; p++)
+        if (kind_of(item, &item->parts[p]) & parts)
+            tl_surfaces_draw_part(surfaces, index, p);
+}
+
+void tl_surfaces_hide(tl_surfaces *surfaces, size_t index, bool hidden)
+{
+    surfaces->items[index].hidden = hidden;
 }
 
 bool tl_surfaces_have(const tl_surfaces *surfaces, enum tl_surface_parts parts)

@@ -6,6 +6,7 @@
 #define TOILE_RENDER_SURFACES_SURFACES_H
 
 #include "assets/surface.h"
+#include "render/detail/maps.h"
 #include "render/gpu/gpu.h"
 
 enum tl_map_use {
@@ -18,26 +19,34 @@ enum tl_map_use {
 };
 enum tl_weave_use { TL_WEAVE_NORMAL, TL_WEAVE_GLOSS, TL_WEAVE_TINT, TL_WEAVE_USES };
 
-/* Texture units that tl_surfaces_draw binds; a pass's own textures come after them. */
-#define TL_SURFACE_UNITS (TL_MAP_USES + TL_WEAVE_USES)
+/* Texture units that tl_surfaces_draw binds, detail's last; a pass's own textures come after them. */
+#define TL_DETAIL_UNIT   (TL_MAP_USES + TL_WEAVE_USES)
+#define TL_SURFACE_UNITS (TL_DETAIL_UNIT + TL_DETAIL_UNITS)
 
 /* Uniform locations shared with surface.glsl. */
 enum tl_surface_uniform {
     TL_UNIFORM_DIFFUSE,
     TL_UNIFORM_SPECULAR,
     TL_UNIFORM_SCALARS,     /* glossiness, normal scale, occlusion strength, alpha cutoff */
-    TL_UNIFORM_MAP_FLAGS,   /* bits by tl_map_use; the weave's bit is 1 << TL_MAP_USES */
+    TL_UNIFORM_MAP_FLAGS,   /* bits by tl_map_use; the weave's bit is 1 << TL_MAP_USES; and TL_FLAG_FACETED */
     TL_UNIFORM_WEAVE_SCALE, /* repeats per UV unit */
     TL_UNIFORM_UV_ROWS,     /* 2 vec3 a map: rows of the 2x3 UV transform */
     TL_UNIFORM_FIRST_TRIANGLE =
         TL_UNIFORM_UV_ROWS + 2 * TL_MAP_USES, /* number of the draw's first triangle */
     TL_UNIFORM_SURFACE_END,
+    TL_UNIFORM_DETAIL = 20 /* as render/detail/maps.h has them */
 };
+
+/* The material's gloss is not a lobe about the mirror direction. */
+#define TL_FLAG_FACETED (1 << 30)
 
 typedef struct tl_surfaces tl_surfaces;
 
 tl_surfaces *tl_surfaces_create(tl_gpu *gpu);
 void tl_surfaces_destroy(tl_surfaces **surfaces);
+
+/* Whose derived maps are bound from now on with those of the surfaces; borrowed. */
+void tl_surfaces_use_detail(tl_surfaces *surfaces, const struct tl_detail_maps *detail);
 
 /* Brings the GPU's copies up to date. Fails when a map is larger than GL can hold. */
 bool tl_surfaces_update(tl_surfaces *surfaces, const tl_surface *const *items, size_t count, tl_error *error);
@@ -47,6 +56,13 @@ enum tl_surface_parts { TL_PARTS_OPAQUE = 1, TL_PARTS_MASKED = 2, TL_PARTS_ALL =
 
 /* Draws these parts of surface `index` with the program in use, which includes surface.glsl. */
 void tl_surfaces_draw(const tl_surfaces *surfaces, size_t index, enum tl_surface_parts parts);
+/* Part by part, for programs that differ by material. The material is of the last update; its maps' images
+ * may be gone. */
+size_t tl_surfaces_part_count(const tl_surfaces *surfaces, size_t index);
+const tl_material *tl_surfaces_part_material(const tl_surfaces *surfaces, size_t index, size_t part);
+void tl_surfaces_draw_part(const tl_surfaces *surfaces, size_t index, size_t part);
+/* ... and then not, until it is shown again. */
+void tl_surfaces_hide(tl_surfaces *surfaces, size_t index, bool hidden);
 /* Whether any surface has such parts. */
 bool tl_surfaces_have(const tl_surfaces *surfaces, enum tl_surface_parts parts);
 

@@ -17,8 +17,14 @@
 #define OFFSET_SHARE                                                                                         \
     1e-4f /* a thousand times the rounding of positions, a tenth of a millimetre of a figure */
 
-/* A surface is up to two geometries, so that what is opaque needs no filter. */
-enum kind { OPAQUE, MASKED, KINDS };
+/* A surface is up to three geometries, so that what is opaque needs no filter. */
+enum kind { OPAQUE, MASKED, OPEN, KINDS };
+
+/* What a filter is told of the question that is asked. */
+struct question {
+    struct RTCIntersectContext context; /* first: Embree hands on its address */
+    float *through;                     /* by ray: what open sheets leave of it; NULL: they stop rays too */
+};
 
 struct piece {
     RTCGeometry geometry; /* NULL: the surface has no such part */
@@ -124,10 +130,10 @@ static const tl_material *material_of(const tl_surface *surface, uint32_t triang
     return NULL;
 }
 
-static bool in_hole(const struct slot *slot, uint32_t primitive, float u, float v)
+static bool in_hole(const tl_surface *surface, uint32_t triangle, float u, float v)
 {
-    const tl_surface *surface = &slot->surface;
-    uint32_t triangle = slot->pieces[MASKED].triangles[primitive];
+    if (!surface->uvs)
+        return false;
     const uint32_t *corners = surface->indices + 3 * (size_t)triangle;
     vec2s uv = glms_vec2_scale(surface->uvs[corners[0]], 1 - u - v);
     uv = glms_vec2_add(uv, glms_vec2_scale(surface->uvs[corners[1]], u));
@@ -135,22 +141,36 @@ static bool in_hole(const struct slot *slot, uint32_t primitive, float u, float 
     return tl_cutout_at(material_of(surface, triangle), uv);
 }
 
-/* A hit of N rays is arrays of N: three of the normal, u, v, primitive (rtcore_ray.h reads them in C++ only).
- */
+/* Rays and hits of N are arrays of N: a ray's eleventh is its id; a hit's are three of the normal, u, v,
+ * primitive, geometry (rtcore_ray.h reads them in C++ only). */
 static void skip_holes(const struct RTCFilterFunctionNArguments *arguments)
 {
     unsigned count = arguments->N;
     const float *numbers = (const float *)arguments->hit;
     const uint32_t *primitives = (const uint32_t *)arguments->hit + 5 * (size_t)count;
-    for (unsigned i = 0; i < count; i++)
-        if (arguments->valid[i] && in_hole(arguments->geometryUserPtr, primitives[i], numbers[3 * count + i],
-                                           numbers[4 * count + i]))
+    const uint32_t *geometries = (const uint32_t *)arguments->hit + 6 * (size_t)count;
+    const uint32_t *ids = (const uint32_t *)arguments->ray + 10 * (size_t)count;
+    const struct slot *slot = arguments->geometryUserPtr;
+    float *through = ((const struct question *)arguments->context)->through;
+    for (unsigned i = 0; i < count; i++) {
+        if (!arguments->valid[i])
+            continue;
+        enum kind kind = (enum kind)(geometries[i] % KINDS);
+        uint32_t triangle = slot->pieces[kind].triangles[primitives[i]];
+        bool hole = in_hole(&slot->surface, triangle, numbers[3 * count + i], numbers[4 * count + i]);
+        if (!hole && kind == OPEN && through)
+            through[ids[i]] *= material_of(&slot->surface, triangle)->openness;
+        if (hole || (kind == OPEN && through))
             arguments->valid[i] = 0;
+    }
 }
 
 static enum kind kind_of(const tl_surface *surface, const struct tl_mesh_part *part)
 {
-    return surface->materials[part->material].alpha_cutoff > 0 && surface->uvs ? MASKED : OPAQUE;
+    const tl_material *material = &surface->materials[part->material];
+    if (material->openness > 0)
+        return OPEN;
+    return material->alpha_cutoff > 0 && surface->uvs ? MASKED : OPAQUE;
 }
 
 static const uint32_t *collect_triangles(const tl_surface *surface, enum kind kind, struct piece *piece)
@@ -182,7 +202,7 @@ static void build_piece(tl_trace *trace, size_t index, enum kind kind)
         return;
     for (size_t i = 0; i < piece->count; i++)
         memcpy(indices + 3 * i, surface->indices + 3 * (size_t)triangles[i], 3 * sizeof(uint32_t));
-    if (kind == MASKED) {
+    if (kind != OPAQUE) {
         rtcSetGeometryUserData(piece->geometry, slot);
         rtcSetGeometryIntersectFilterFunction(piece->geometry, skip_holes);
         rtcSetGeometryOccludedFilterFunction(piece->geometry, skip_holes);
@@ -280,11 +300,11 @@ struct tl_trace_hit tl_trace_nearest(const tl_trace *trace, vec3s origin, vec3s 
     struct tl_trace_hit none = {.surface = TL_TRACE_NONE};
     if (!is_finite(origin) || !is_finite(direction))
         return none;
-    struct RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
+    struct question question = {.through = NULL};
+    rtcInitIntersectContext(&question.context);
     struct RTCRayHit ray = {.ray = make_ray(origin, direction, from_m, to_m),
                             .hit = {.geomID = RTC_INVALID_GEOMETRY_ID}};
-    rtcIntersect1(trace->scene, &context, &ray);
+    rtcIntersect1(trace->scene, &question.context, &ray);
     if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID)
         return none;
     const struct piece *piece = &trace->slots[ray.hit.geomID / KINDS]->pieces[ray.hit.geomID % KINDS];
@@ -301,18 +321,20 @@ bool tl_trace_occluded(const tl_trace *trace, vec3s origin, vec3s direction, flo
 {
     if (!is_finite(origin) || !is_finite(direction))
         return false;
-    struct RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
+    struct question question = {.through = NULL};
+    rtcInitIntersectContext(&question.context);
     struct RTCRay ray = make_ray(origin, direction, from_m, to_m);
-    rtcOccluded1(trace->scene, &context, &ray);
+    rtcOccluded1(trace->scene, &question.context, &ray);
     return ray.tfar < 0;
 }
 
-uint32_t tl_trace_occluded_bundle(const tl_trace *trace, const struct tl_trace_bundle *bundle)
+/* Bits of the rays that are stopped. */
+static uint32_t ask_bundle(const tl_trace *trace, const struct tl_trace_bundle *bundle, float *through)
 {
-    struct RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = bundle->coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_NONE;
+    struct question question = {.through = through};
+    rtcInitIntersectContext(&question.context);
+    question.context.flags =
+        bundle->coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_NONE;
     struct RTCRay16 rays = {0};
     memcpy(rays.org_x, bundle->origin_x, sizeof rays.org_x);
     memcpy(rays.org_y, bundle->origin_y, sizeof rays.org_y);
@@ -325,16 +347,31 @@ uint32_t tl_trace_occluded_bundle(const tl_trace *trace, const struct tl_trace_b
         rays.tnear[i] = bundle->from_m;
         rays.tfar[i] = bundle->to_m;
         rays.mask[i] = (unsigned)-1;
+        rays.id[i] = (unsigned)i;
         /* One sum is finite only where all six are, or nearly overflow: such rays hit nothing either. */
         float sum =
             rays.org_x[i] + rays.org_y[i] + rays.org_z[i] + rays.dir_x[i] + rays.dir_y[i] + rays.dir_z[i];
         valid[i] = i < bundle->count && isfinite(sum) ? -1 : 0;
     }
-    rtcOccluded16(valid, trace->scene, &context, &rays);
+    rtcOccluded16(valid, trace->scene, &question.context, &rays);
     uint32_t stopped = 0;
     for (int i = 0; i < 16; i++)
         stopped |= (uint32_t)(valid[i] && rays.tfar[i] < 0) << i;
     return stopped;
+}
+
+uint32_t tl_trace_occluded_bundle(const tl_trace *trace, const struct tl_trace_bundle *bundle)
+{
+    return ask_bundle(trace, bundle, NULL);
+}
+
+void tl_trace_seen_bundle(const tl_trace *trace, const struct tl_trace_bundle *bundle, float seen[16])
+{
+    for (int i = 0; i < 16; i++)
+        seen[i] = 1;
+    uint32_t stopped = ask_bundle(trace, bundle, seen);
+    for (int i = 0; i < 16; i++)
+        seen[i] = stopped >> i & 1 ? 0 : seen[i];
 }
 
 vec3s tl_smooth_point(vec3s point, const vec3s corners[3], const vec3s normals[3], const float weights[3])

@@ -1,4 +1,5 @@
-/* Rays against the surfaces of a frame: Embree's BVH, with the holes that alpha maps cut.
+/* Rays against the surfaces of a frame: Embree's BVH, with the holes that alpha maps cut, and with cloth that
+ * is open between its threads.
  *
  * Follows the motion by refitting or rebuilding, by the surfaces' revisions. Both sides of every triangle
  * stop rays. The ground is no part of it: it is an ideal disc whose share is tl_ground_visibility. World
@@ -36,11 +37,17 @@ bool tl_trace_occluded(const tl_trace *trace, vec3s origin, vec3s direction, flo
 struct tl_trace_bundle {
     int count; /* 1 to 16 */
     float origin_x[16], origin_y[16], origin_z[16];
-    float direction_x[16], direction_y[16], direction_z[16]; /* unit */
+    /* Unit; or all of any length, which from_m and to_m are then counted in. */
+    float direction_x[16], direction_y[16], direction_z[16];
     float from_m, to_m;
     bool coherent;
 };
 uint32_t tl_trace_occluded_bundle(const tl_trace *trace, const struct tl_trace_bundle *bundle);
+
+/* What each ray of the bundle is let through, in [0, 1]: every sheet of an open material leaves its openness
+ * of it, at whatever angle it is crossed; what is not open stops it. (To the questions above an open sheet is
+ * a sheet.) */
+void tl_trace_seen_bundle(const tl_trace *trace, const struct tl_trace_bundle *bundle, float seen[16]);
 
 /* A point of a triangle, moved out to where the smooth surface is that the triangle stands for: the weighted
  * mean of its projections on the tangent planes of the corners, where these lie outside [Hanika 2021,

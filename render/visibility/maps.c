@@ -89,7 +89,7 @@ bool tl_shadow_maps_reload(tl_shadow_maps *maps, tl_error *error)
 }
 
 /* A look-up compares four texels with a depth and blends the answers. */
-static tl_texture create_depth_array(tl_gpu *gpu, int size, int layers)
+tl_texture tl_depth_array_create(tl_gpu *gpu, int size, int layers)
 {
     tl_texture array =
         tl_texture_create(gpu, GL_TEXTURE_2D_ARRAY, GL_DEPTH_COMPONENT32F, size, size, layers, 1);
@@ -126,21 +126,26 @@ static void allocate(tl_shadow_maps *maps, const struct tl_shadow_request *reque
         allocate_moments(maps);
     else
         for (int i = 0; i < maps->array_count; i++)
-            maps->arrays[i] = create_depth_array(
+            maps->arrays[i] = tl_depth_array_create(
                 maps->gpu, size, i + 1 < maps->array_count ? per_array : count - i * per_array);
+}
+
+int tl_sun_map_size(const tl_gpu *gpu, int map_size)
+{
+    int size = 2 * map_size, most = tl_gpu_texture_side_max(gpu);
+    size = size < TL_SUN_MAP_SIZE_MIN ? TL_SUN_MAP_SIZE_MIN : size;
+    return size > most ? most : size;
 }
 
 static void allocate_suns(tl_shadow_maps *maps, const struct tl_shadow_request *request)
 {
-    int size = 2 * request->map_size, most = tl_gpu_texture_side_max(maps->gpu);
-    size = size < TL_SUN_MAP_SIZE_MIN ? TL_SUN_MAP_SIZE_MIN : size;
-    size = size > most ? most : size;
+    int size = tl_sun_map_size(maps->gpu, request->map_size);
     int count = request->suns->count;
     if (maps->sun_array.layers == count && (count == 0 || maps->sun_array.width == size))
         return;
     tl_texture_destroy(&maps->sun_array);
     if (count > 0)
-        maps->sun_array = create_depth_array(maps->gpu, size, count);
+        maps->sun_array = tl_depth_array_create(maps->gpu, size, count);
 }
 
 /* Share of the map's side that the casters' sphere takes. */

@@ -64,6 +64,11 @@ const struct tl_region_view *tl_shadow_maps_sun_views(const tl_shadow_maps *maps
 size_t tl_shadow_maps_bytes(const tl_shadow_maps *maps);
 bool tl_shadow_maps_reload(tl_shadow_maps *maps, tl_error *error); /* programs, from disk */
 
+/* A 2D array of depth maps whose look-ups compare four texels with a depth and blend the answers; and the
+ * side of a map that is as sharp as a sun's where the regions' have `map_size`. */
+tl_texture tl_depth_array_create(tl_gpu *gpu, int size, int layers);
+int tl_sun_map_size(const tl_gpu *gpu, int map_size);
+
 /* A region's view of the casters' sphere; world direction. Pure. */
 struct tl_region_view tl_region_view_make(vec3s direction, const struct tl_casters *casters, int map_size);
 

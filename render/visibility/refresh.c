@@ -245,10 +245,10 @@ static size_t look(const struct tl_refresh *refresh, const struct lanes *lanes, 
     }
     if (bundle.count == 0)
         return 0;
-    uint32_t stopped = tl_trace_occluded_bundle(refresh->request->trace, &bundle);
+    float seen[TL_CLUSTER];
+    tl_trace_seen_bundle(refresh->request->trace, &bundle, seen);
     for (int k = 0; k < bundle.count; k++)
-        if (!(stopped >> k & 1))
-            glance->seen[lane_of[k]] += through_ground[k];
+        glance->seen[lane_of[k]] += through_ground[k] * seen[k];
     return (size_t)bundle.count;
 }
 

@@ -62,10 +62,10 @@ static size_t look(const struct tl_points_request *request, const struct tl_star
     }
     if (bundle.count == 0)
         return 0;
-    uint32_t stopped = tl_trace_occluded_bundle(request->trace, &bundle);
+    float through[BUNDLE];
+    tl_trace_seen_bundle(request->trace, &bundle, through);
     for (int k = 0; k < bundle.count; k++)
-        if (stopped >> k & 1)
-            seen[place[k]] = 0;
+        seen[place[k]] *= through[k];
     return (size_t)bundle.count;
 }
 

@@ -40,10 +40,14 @@ refuse "size in words" '\-\-size' light.hdr -o a.exr --layout cube --size big
 refuse "size too large" 'a\.exr.*32768' light.hdr -o a.exr --layout cube --size 6000
 refuse "size beyond an int" '\-\-size' light.hdr -o a.exr --layout latlong --size 99999999999
 refuse "size near the largest int" 'a\.exr.*32768' light.hdr -o a.exr --layout latlong --size 2147483647
+refuse "a scene for a file" 'maps\.size=8.*--capture' light.hdr -o a.exr --layout cube --set maps.size=8
+refuse "--from for a capture" '\-\-from.*cube' --capture -o a.exr --layout cube --from cube
+refuse "a capture too large" 'a\.exr.*32768' --capture -o a.exr --layout cube --size 6000
+refuse "a capture of two scenes" 'one scene' --capture one.yaml two.yaml -o a.exr --layout cube
 refuse "output in no folder" 'nowhere/a\.exr' light.hdr -o nowhere/a.exr --layout cube
 
 expect() { [ "$(shape "$1")" = "$2" ] || fail "$1: $(shape "$1"), expected $2"; }
-for layout in cube sphere paraboloid latlong; do
+for layout in cube sphere paraboloid latlong octahedral; do
     "$TOILE" env light.hdr -o $layout.exr --layout $layout --size 16 --quiet || fail "$layout"
     "$TOILE" env $layout.exr -o back.exr --layout latlong --size 1 --from $layout --quiet || fail "$layout and back"
     "$TOILE" env light.hdr -o same.exr --layout latlong --quiet
@@ -60,9 +64,17 @@ grep -q 'faces +X -X' cube.exr || fail "cube.exr does not say how it is laid out
 "$TOILE" env sphere.exr -o guess.exr --layout cube 2>&1 | grep -q 'taken for sphere' || fail "a guess is not said aloud"
 "$TOILE" env cube.exr -o guess.exr --layout latlong 2>&1 | grep -q 'taken for cube' || fail "a cube is not guessed"
 
+# A figure without a garment, in a file of the studio: the capture shows both.
+"$TOILE" env --capture --garment none -o captured.exr --layout paraboloid --size 16 --quiet || fail "--capture"
+[ "$(shape captured.exr)" = "32 16" ] || fail "captured.exr: $(shape captured.exr)"
+"$TOILE" env --capture --garment none --set maps.capture_at='[0,0,2]' -o aside.exr --layout paraboloid --size 16 \
+    --quiet || fail "--capture from aside"
+"$TOILE" compare aside.exr captured.exr --json | grep -q '"rel_rmse":[[:space:]]*0[,.]0*[,}]' &&
+    fail "the figure is not seen from aside"
+
 if [ -r "$data/exr-features/BrightRingsNanInf.exr" ]; then
-    "$TOILE" env "$data/exr-features/BrightRingsNanInf.exr" -o clean.exr --from latlong --layout cube --size 32 2>&1 |
-        grep -q 'cleaned' || fail "NaN and Inf are not told"
+    message=$("$TOILE" env "$data/exr-features/BrightRingsNanInf.exr" -o clean.exr --from latlong --layout cube --size 32 2>&1)
+    printf '%s' "$message" | grep -q 'cleaned' || fail "NaN and Inf are not told"
     "$TOILE" info clean.exr --json | grep -q '"nan_cleaned":[[:space:]]*0' || fail "NaN went through"
 else
     echo "skipped: NaN and Inf: $data is absent"

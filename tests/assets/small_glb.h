@@ -128,6 +128,18 @@ static inline struct small_glb small_glb_make(void)
     return glb;
 }
 
+/* Another second material, as JSON. */
+static inline void small_glb_set_material(struct small_glb *glb, const char *material)
+{
+    static const char old[] =
+        "{\"name\":\"metal\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,0.25,1,1]}}";
+    char *at = strstr(glb->json, old), rest[sizeof glb->json];
+    assert_non_null(at);
+    snprintf(rest, sizeof rest, "%s", at + strlen(old));
+    int written = snprintf(at, sizeof glb->json - (size_t)(at - glb->json), "%s%s", material, rest);
+    assert_true((size_t)written < sizeof glb->json - (size_t)(at - glb->json));
+}
+
 static inline void small_word(uint8_t *to, size_t word)
 {
     for (int i = 0; i < 4; i++)

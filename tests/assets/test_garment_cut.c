@@ -210,7 +210,8 @@ static void check_topology(const tl_garment *garment, const char *name, float ed
         vertices += weld[v] == v;
     long edge_count = (long)(mesh->index_count + border) / 2;
     long openings = 2 - ((long)vertices - edge_count + (long)mesh->index_count / 3);
-    assert_int_equal(openings, strcmp(name, "dress") == 0 ? 4 : 2);
+    /* The layers have the dress's four and the curtain's one, and two are lost to there being two of them. */
+    assert_int_equal(openings, strcmp(name, "skirt") == 0 ? 2 : strcmp(name, "dress") == 0 ? 4 : 3);
     free(edges);
     free(weld);
 }

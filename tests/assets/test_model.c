@@ -114,14 +114,8 @@ static void small_materials(void **state)
 static tl_model load_with_material(const char *material)
 {
     static const char path[] = TOILE_SCRATCH_DIR "/model_material.glb";
-    static const char old[] =
-        "{\"name\":\"metal\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,0.25,1,1]}}";
     struct small_glb glb = small_glb_make();
-    char *at = strstr(glb.json, old);
-    assert_non_null(at);
-    char *rest = tl_copy_string(at + strlen(old));
-    snprintf(at, sizeof glb.json - (size_t)(at - glb.json), "%s%s", material, rest);
-    free(rest);
+    small_glb_set_material(&glb, material);
     small_glb_write(&glb, path);
     return load(path);
 }
@@ -418,15 +412,11 @@ static void what_has_no_effect_is_named_once(void **state)
 {
     (void)state;
     static const char *const expected[][5] = {
-        {"models/SheenChair/SheenChair.gltf", "KHR_materials_sheen", "KHR_materials_variants",
-         "TEXCOORD_1 and beyond"},
+        {"models/SheenChair/SheenChair.gltf", "KHR_materials_variants", "TEXCOORD_1 and beyond"},
         {"models/AlphaBlendModeTest.glb", "alpha blending (shown as a mask at 0.5)"},
-        {"models/GlamVelvetSofa.glb", "KHR_materials_sheen", "KHR_materials_specular",
-         "KHR_materials_variants", "KHR_lights_punctual"},
-        {"models/AnisotropyStrengthTest.glb", "KHR_materials_anisotropy"},
+        {"models/GlamVelvetSofa.glb", "KHR_materials_variants", "KHR_lights_punctual"},
         {"models/VertexColorTest.glb", "vertex colours"},
-        {"models/TextureTransformMultiTest.glb", "KHR_materials_clearcoat", "KHR_materials_unlit",
-         "emission"},
+        {"models/TextureTransformMultiTest.glb", "KHR_materials_unlit", "emission"},
     };
     for (size_t f = 0; f < TL_COUNT(expected); f++) {
         tl_model model = load_data(expected[f][0]);

@@ -21,8 +21,12 @@ static vec3s place_on_slope(double u, double v)
                     (float)(-sin(tilt_now) * along + cos(tilt_now) * out), (float)(0.1 - v)}};
 }
 
-/* How far the middle of a sheet has slid down a slope after `seconds`. */
-static double slide(const struct slope *slope, int solver, double seconds)
+/* How far the middle of a sheet has slid down a slope after `seconds`, and how fast it says it is then. */
+struct slid {
+    double way, speed;
+};
+
+static struct slid slide(const struct slope *slope, int solver, double seconds)
 {
     tl_error error = {0};
     tilt_now = slope->tilt;
@@ -40,12 +44,13 @@ static double slide(const struct slope *slope, int solver, double seconds)
     vec3d start = cloth->particles.x[60];
     cloth_run(cloth, collider, seconds);
     vec3d moved = vec3d_sub(cloth->particles.x[60], start);
+    double speed = tl_cloth_max_speed(cloth);
     assert_near(moved.x * sin(tilt_now) + moved.y * cos(tilt_now), 0, 2e-4); /* stays on the plane */
     tl_cloth_destroy(&cloth);
     tl_collider_destroy(&collider);
     tl_mesh_release(&box);
     sheet_free(&garment);
-    return moved.x * cos(tilt_now) - moved.y * sin(tilt_now);
+    return (struct slid){moved.x * cos(tilt_now) - moved.y * sin(tilt_now), speed};
 }
 
 static void test_sticks(void **state)
@@ -54,10 +59,12 @@ static void test_sticks(void **state)
     const struct slope slopes[] = {{atan(0.38), 0.4}, {atan(0.9), 1.0}};
     for (int solver = 0; solver < TL_CLOTH_SOLVER_COUNT; solver++)
         for (size_t i = 0; i < TL_COUNT(slopes); i++) {
-            double slid = slide(&slopes[i], solver, 1);
-            printf("sticks, %s, tan %.2f, mu %.1f: slides %.1e m in 1 s\n", tl_cloth_solver_names[solver],
-                   tan(slopes[i].tilt), slopes[i].friction, slid);
-            assert_near(slid, 0, 1e-4);
+            struct slid slid = slide(&slopes[i], solver, 1);
+            printf("sticks, %s, tan %.2f, mu %.1f: slides %.1e m in 1 s, ends at %.1e m/s\n",
+                   tl_cloth_solver_names[solver], tan(slopes[i].tilt), slopes[i].friction, slid.way,
+                   slid.speed);
+            assert_near(slid.way, 0, 1e-4);
+            assert_near(slid.speed, 0, 1e-4); /* not half a substep of falling */
         }
 }
 
@@ -75,7 +82,7 @@ static void test_slides(void **state)
             double h =
                 solver == TL_CLOTH_SETTLE ? params_defaults().dt : 0; /* others' are too short to matter */
             double expected = 0.5 * acceleration * seconds * (seconds + h);
-            double slid = slide(&slopes[i], solver, seconds);
+            double slid = slide(&slopes[i], solver, seconds).way;
             printf("slides, %s, tan %.2f, mu %.1f: off by %+.2f %%\n", tl_cloth_solver_names[solver],
                    tan(slopes[i].tilt), slopes[i].friction, 100 * (slid / expected - 1));
             assert_near(slid, expected, 0.01 * expected);
@@ -88,9 +95,10 @@ static void test_slides(void **state)
  * is held, its last one is drawn on slowly until the whole strip slides; then the tensions of the free ends
  * are compared. A vertex that turns by d has the ratio (1 + mu tan(d/2)) / (1 - mu tan(d/2)), so that turns
  * of 0.1 rad are right to mu phi d^2 / 12 (1 + mu^2): 0.1 %. Contact adds to it: a particle keeps its plane
- * until it has slid half the thickness, 1.5 mm, so that the plane leans against its way by up to 0.015 rad on
- * a radius of 0.1 m, as much friction more: up to exp(0.015 pi), 5 %. `settle` resists a slip by what it
- * expects of it, which is of first order in the step. */
+ * while it slides from 0.9 times 1.5 mm (half the thickness) before the place where it touches to 1.5 mm
+ * after it, so that on a radius of 0.1 m the plane leans against its way by 0.05 * 0.015 rad in the mean, as
+ * much friction more: exp(0.00075 pi), 0.24 %; and what moves a little and turns is asked more often than
+ * that: 1 %. `settle` resists a slip by what it expects of it, which is of first order in the step: 5 %. */
 #define RADIUS   0.1
 #define STRAIGHT 20 /* rows at either end: pins within 0.1 m of the avatar would ride on it */
 #define OVER     30 /* rows on half the cylinder */
@@ -178,7 +186,8 @@ static void test_capstan(void **state)
             printf("capstan, %s, mu %.1f: T2/T1 %.4f, exp(mu pi) %.4f: off by %+.2f %%\n",
                    tl_cloth_solver_names[solver], frictions[i], ratio, expected,
                    100 * (ratio / expected - 1));
-            assert_near(ratio, expected, 0.05 * expected);
+            double share = solver == TL_CLOTH_SETTLE ? 0.05 : 0.01; /* its rounds for friction are bounded */
+            assert_near(ratio, expected, share * expected);
         }
 }
 

@@ -3,6 +3,7 @@
 
 #include "app/settings.h"
 #include "assets/garment.h"
+#include "assets/specimen.h"
 #include "config/embedded.h"
 #include "config/file.h"
 #include "config/memory.h"
@@ -113,19 +114,25 @@ static void test_model_in_place_of_a_scene(void **state)
     assert_string_equal(settings.scene.garment, "shirt.gltf");
 }
 
-/* The names that a scene may use are the garments that can be cut, and "none". */
+static size_t check_garment_names(const char *const *names)
+{
+    tl_error error = {0};
+    size_t count = 0;
+    for (; names[count]; count++) {
+        char *assignment = tl_format("scene.garment=%s", names[count]);
+        const char *const assignments[] = {assignment};
+        assert_ok(load(NULL, assignments, 1, &error), error);
+        assert_string_equal(settings.scene.garment, names[count]);
+        free(assignment);
+    }
+    return count;
+}
+
+/* The names that a scene may use are the garments that can be cut, the specimens, and "none". */
 static void test_garment_names(void **state)
 {
     (void)state;
-    tl_error error = {0};
-    size_t count = 0;
-    for (; tl_garment_names[count]; count++) {
-        char *assignment = tl_format("scene.garment=%s", tl_garment_names[count]);
-        const char *const assignments[] = {assignment};
-        assert_ok(load(NULL, assignments, 1, &error), error);
-        assert_string_equal(settings.scene.garment, tl_garment_names[count]);
-        free(assignment);
-    }
+    size_t count = check_garment_names(tl_garment_names) + check_garment_names(tl_specimen_names);
     struct tl_binding bindings[TL_SETTINGS_TABLES];
     tl_settings_bind(&settings, bindings);
     const struct tl_option *garment = &bindings[0].table->rows[0];
@@ -149,7 +156,7 @@ static void test_refusals(void **state)
     (void)state;
     refuse("nowhere.yaml", NULL, "nowhere.yaml: no such file: check the path");
     refuse("drss", NULL,
-           "drss: no such scene: expected dress, skirt, review, or a YAML file: did you mean dress?");
+           "drss: no such scene: expected dress, skirt, review, gallery, composed, or a YAML file: did you mean dress?");
     refuse(NULL, "scene.fabric=satn",
            "--set: scene.fabric: satn is no name known here: expected none, cotton_plain, satin, denim, "
            "silk, wool, interlock_tee, rib_knit, ponte, swim_knit, fleece, stretch_denim, trouser_twill, "
@@ -165,7 +172,7 @@ static void test_refusals(void **state)
     refuse(
         FOLDER "/bad.yaml", NULL,
         FOLDER
-        "/bad.yaml:2: scene.garment: dres is no name known here: expected dress, skirt, none or a file name "
+        "/bad.yaml:2: scene.garment: dres is no name known here: expected dress, skirt, layers, sheet, sphere, torus, none or a file name "
         "with its extension: did you mean dress?");
     /* A preset is about quality, a fabric about cloth: neither may reach into the scene. */
     write_text(FOLDER "/preset.yaml", "scene:\n  fabric: wool\n");

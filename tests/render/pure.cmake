@@ -1,4 +1,35 @@
 # The parts of render that need no device.
-foreach(name map_fit sky layout convert cube regions chain lobe plan flip compare trace ground lobes terms compose regions_sphere slices sun emitters lobe_error memory)
+foreach(name
+    bake
+    brdf
+    chain
+    compare
+    compose
+    convert
+    cube
+    emitters
+    fan
+    flip
+    ground
+    layout
+    levels
+    lobe
+    lobe_error
+    lobes
+    map_fit
+    memory
+    normalise
+    plan
+    power
+    regions
+    regions_sphere
+    relief
+    sky
+    slices
+    sun
+    tables
+    terms
+    trace
+    )
   toile_test(${name} unit toile_light)
 endforeach()

@@ -139,9 +139,13 @@ struct tl_render_settings test_settings(int width, int height)
 {
     struct tl_render_settings settings = {
         .light = *(const struct tl_light_params *)tl_light_options.defaults,
+        .maps = *(const struct tl_maps_params *)tl_maps_options.defaults,
+        .shading = *(const struct tl_shading_params *)tl_shading_options.defaults,
         .image = *(const struct tl_image_params *)tl_image_options.defaults,
         .reference = *(const struct tl_reference_params *)tl_reference_options.defaults,
     };
+    settings.detail = *(const struct tl_detail_params *)tl_detail_options.defaults;
+    settings.detail.minify = TL_DETAIL_MINIFY_NONE;
     settings.light.regions = 24;
     settings.light.pem_size = 32;
     settings.image.width = width;

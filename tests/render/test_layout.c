@@ -185,11 +185,13 @@ static void sampling_spreads(void **state)
 {
     (void)state;
     double cube = spread(TL_LAYOUT_CUBE), paraboloid = spread(TL_LAYOUT_PARABOLOID),
-           ball = spread(TL_LAYOUT_SPHERE);
-    print_message("spread: cube %.4f, paraboloid %.4f, sphere %.6f\n", cube, paraboloid, ball);
+           ball = spread(TL_LAYOUT_SPHERE), octahedral = spread(TL_LAYOUT_OCTAHEDRAL);
+    print_message("spread: cube %.4f, paraboloid %.4f, sphere %.6f, octahedral %.4f, latlong %.1f\n", cube,
+                  paraboloid, ball, octahedral, spread(TL_LAYOUT_LATLONG));
     assert_near(cube, 3 * sqrt(3), 0.012 * 3 * sqrt(3));
     assert_near(paraboloid, 4, 0.012 * 4);
     assert_near(ball, 1, 1e-9);
+    assert_near(octahedral, 3 * sqrt(3), 0.03 * 3 * sqrt(3)); /* |p|^-3; corners of faces of half the side */
 }
 
 int main(void)

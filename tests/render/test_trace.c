@@ -299,6 +299,57 @@ static void smooth_points_lie_on_the_smooth_side(void **state)
     assert_true(glms_vec3_eqv_eps(tl_smooth_point(corners[0], corners, corners, first), corners[0]));
 }
 
+/* Sheets across a ray: each leaves its openness of it, an alpha map's hole all, and what is closed nothing.
+ * To the other questions an open sheet is a sheet. */
+static void open_sheets_let_light_through(void **state)
+{
+    (void)state;
+    static const vec3s corners[3] = {{{-1, -1, 0}}, {{3, -1, 0}}, {{-1, 3, 0}}};
+    static const uint32_t indices[3] = {0, 1, 2};
+    const struct tl_mesh_part part = {.index_count = 3};
+    const float openness[3] = {0.5f, 0.25f, 0};
+    vec3s positions[3][3];
+    tl_material materials[3];
+    tl_surface surfaces[3];
+    for (int s = 0; s < 3; s++) {
+        materials[s] = tl_material_default("sheet");
+        materials[s].openness = openness[s];
+        for (int i = 0; i < 3; i++)
+            positions[s][i] = (vec3s){{corners[i].x, corners[i].y, (float)s}};
+        surfaces[s] = (tl_surface){.vertex_count = 3,
+                                   .positions = positions[s],
+                                   .index_count = 3,
+                                   .indices = indices,
+                                   .part_count = 1,
+                                   .parts = &part,
+                                   .materials = &materials[s]};
+    }
+    tl_trace *trace = open_trace();
+    update(trace, surfaces, 3);
+    /* Ray i starts before sheet i and goes on; the last two go the other way, from behind two sheets and from
+     * none. */
+    struct tl_trace_bundle bundle = {.count = 5, .to_m = INFINITY};
+    const float from[5] = {-0.5f, 0.5f, 1.5f, 1.5f, -0.5f}, ahead[5] = {1, 1, 1, -1, -1};
+    const float expected[5] = {0, 0, 0, 0.125f, 1};
+    for (int i = 0; i < 5; i++) {
+        bundle.origin_z[i] = from[i];
+        bundle.direction_z[i] = ahead[i];
+    }
+    float seen[16];
+    tl_trace_seen_bundle(trace, &bundle, seen);
+    for (int i = 0; i < 5; i++)
+        assert_near(seen[i], expected[i], 0);
+    assert_int_equal(tl_trace_occluded_bundle(trace, &bundle), 0xf);
+    assert_int_equal(tl_trace_nearest(trace, (vec3s){{0, 0, -0.5f}}, (vec3s){{0, 0, 1}}, 0, INFINITY).surface,
+                     0);
+    update(trace, surfaces, 2);
+    bundle.count = 2;
+    tl_trace_seen_bundle(trace, &bundle, seen);
+    assert_near(seen[0], 0.125, 0);
+    assert_near(seen[1], 0.25, 0);
+    tl_trace_destroy(&trace);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -307,6 +358,7 @@ int main(void)
         cmocka_unit_test(bundles_answer_as_single_rays),
         cmocka_unit_test(alpha_cuts_holes_where_it_says),
         cmocka_unit_test(cutouts_wrap_and_turn),
+        cmocka_unit_test(open_sheets_let_light_through),
         cmocka_unit_test(degenerate_input_is_harmless),
         cmocka_unit_test(smooth_points_lie_on_the_smooth_side),
     };

@@ -1,0 +1,155 @@
+#include "render/brdf/brdf.h"
+#include "render/brdf/lobes.h"
+
+#include <math.h>
+
+#define PI ((float)M_PI)
+
+static bool has_facets(const struct tl_brdf *brdf)
+{
+    return brdf->gloss.model == TL_REFLECT_BLINN_PHONG || brdf->gloss.model == TL_REFLECT_TORRANCE_SPARROW ||
+           brdf->gloss.model == TL_REFLECT_WARD;
+}
+
+static vec3s from_frame(const struct tl_brdf_frame *frame, float x, float y, float z)
+{
+    vec3s flat = glms_vec3_add(glms_vec3_scale(frame->tangent, x), glms_vec3_scale(frame->bitangent, y));
+    return glms_vec3_add(flat, glms_vec3_scale(frame->normal, z));
+}
+
+/* Share of the Gaussian of an angle that lies below a right angle. */
+static float gaussian_share(float width)
+{
+    float end = PI / 2 / width;
+    return 1 - expf(-end * end);
+}
+
+/* Half vectors. Slopes are Gaussian for Ward's and Beckmann's facets, the angle is for the others; Blinn's
+ * lobe is a power. h in the frame. */
+static vec3s draw_half(const struct tl_brdf *brdf, float u1, float u2)
+{
+    const struct tl_gloss *gloss = &brdf->gloss;
+    float c = cosf(2 * PI * u2), s = sinf(2 * PI * u2), x, y, z;
+    if (gloss->model == TL_REFLECT_BLINN_PHONG) {
+        z = powf(1 - u1, 1 / (4 * brdf->exponent + 1));
+        float radius = sqrtf(fmaxf(-expm1f(2 * log1pf(-u1) / (4 * brdf->exponent + 1)), 0)); /* 1 - z^2 */
+        x = radius * c, y = radius * s;
+    } else if (gloss->model == TL_REFLECT_TORRANCE_SPARROW && gloss->facets == TL_FACETS_GAUSSIAN) {
+        float angle = gloss->width_weft * sqrtf(-log1pf(-u1 * gaussian_share(gloss->width_weft)));
+        x = sinf(angle) * c, y = sinf(angle) * s, z = cosf(angle);
+    } else {
+        bool round = gloss->model == TL_REFLECT_TORRANCE_SPARROW;
+        float slope = sqrtf(-log1pf(-u1));
+        x = gloss->width_weft * slope * c, y = (round ? gloss->width_weft : gloss->width_warp) * slope * s;
+        z = 1 / sqrtf(1 + x * x + y * y);
+        x *= z, y *= z;
+    }
+    return (vec3s){{x, y, z}};
+}
+
+/* By solid angle of h. */
+static float half_density(const struct tl_brdf *brdf, vec3s h)
+{
+    const struct tl_gloss *gloss = &brdf->gloss;
+    float sine = hypotf(h.x, h.y);
+    if (!(h.z > 0))
+        return 0;
+    if (gloss->model == TL_REFLECT_BLINN_PHONG) {
+        vec3s up = {{0, 0, 1}};
+        return (4 * brdf->exponent + 1) / (2 * PI) * tl_brdf_cosine_power(h, up, 4 * brdf->exponent);
+    }
+    float u = gloss->width_weft;
+    if (gloss->model == TL_REFLECT_TORRANCE_SPARROW && gloss->facets == TL_FACETS_GAUSSIAN) {
+        float angle = atan2f(sine, h.z);
+        float spread = sine > 1e-4f ? angle / sine : 1;
+        return spread * expf(-angle * angle / (u * u)) / (PI * u * u * gaussian_share(u));
+    }
+    float v = gloss->model == TL_REFLECT_TORRANCE_SPARROW ? u : gloss->width_warp;
+    float x = h.x / (u * h.z), y = h.y / (v * h.z), fall = expf(-(x * x + y * y));
+    return fall > 0 ? fall / (PI * u * v * h.z * h.z * h.z) : 0;
+}
+
+/* How far from a thread's mirror cone: logistic, of width 0.6/sqrt(s), cut where the angle to the thread
+ * leaves [0, pi]. Its tails are heavier than those of cos^s. */
+struct cone {
+    float mirror, scale, low, high; /* rad; rad; of the logistic's integral */
+};
+
+static float logistic(float x)
+{
+    return 1 / (1 + expf(-x));
+}
+
+static struct cone cone_of(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v)
+{
+    float t_dot_v = fminf(fmaxf(glms_vec3_dot(frame->tangent, v), -1), 1);
+    struct cone cone = {.mirror = PI - acosf(t_dot_v), .scale = 0.6f / sqrtf(brdf->exponent)};
+    cone.low = logistic(-cone.mirror / cone.scale);
+    cone.high = logistic((PI - cone.mirror) / cone.scale);
+    return cone;
+}
+
+static vec3s draw_cone(const struct cone *cone, const struct tl_brdf_frame *frame, float u1, float u2)
+{
+    float share = cone->low + u1 * (cone->high - cone->low);
+    share = fminf(fmaxf(share, 1e-7f), 1 - 1e-7f);
+    float angle = cone->mirror + cone->scale * logf(share / (1 - share));
+    angle = fminf(fmaxf(angle, 0), PI);
+    float across = 2 * u2 - 1, sine = sinf(angle);
+    return from_frame(frame, cosf(angle), sine * across, sine * sqrtf(fmaxf(1 - across * across, 0)));
+}
+
+static float cone_density(const struct cone *cone, const struct tl_brdf_frame *frame, vec3s l)
+{
+    float along = fminf(fmaxf(glms_vec3_dot(frame->tangent, l), -1), 1);
+    float sine_squared = 1 - along * along, up = glms_vec3_dot(frame->normal, l);
+    if (!(sine_squared > 1e-12f && up > 0))
+        return 0;
+    float share = logistic((acosf(along) - cone->mirror) / cone->scale);
+    float by_angle = share * (1 - share) / (cone->scale * (cone->high - cone->low));
+    return by_angle * up / (2 * sine_squared);
+}
+
+float tl_brdf_density(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s l, vec3s v)
+{
+    struct tl_brdf_angles at = tl_brdf_angles_of(frame, l, v);
+    if (!(at.cos_a > 0 && at.cos_b > 0))
+        return 0;
+    if (brdf->gloss.model == TL_REFLECT_BANKS) {
+        struct cone cone = cone_of(brdf, frame, v);
+        return cone_density(&cone, frame, l);
+    }
+    if (has_facets(brdf))
+        return at.cos_t > 0 ? half_density(brdf, at.h) / (4 * at.cos_t) : 0;
+    float s = brdf->exponent;
+    return (s + 1) / (2 * PI) * tl_brdf_cosine_power(tl_brdf_mirror(frame->normal, v), l, s);
+}
+
+/* About the mirror direction, cos = (1 - u)^(1 / (s + 1)). */
+static vec3s draw_lobe(float exponent, vec3s axis, float u1, float u2)
+{
+    struct tl_brdf_frame around = tl_brdf_frame_make(axis, (vec3s){{0, 0, 0}}, 1, 2 * PI * u2);
+    float log_cosine = log1pf(-u1) / (exponent + 1);
+    return from_frame(&around, sqrtf(fmaxf(-expm1f(2 * log_cosine), 0)), 0, expf(log_cosine));
+}
+
+vec3s tl_brdf_draw(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, float u1, float u2,
+                   float *density)
+{
+    vec3s l;
+    if (brdf->gloss.model == TL_REFLECT_BANKS) {
+        struct cone cone = cone_of(brdf, frame, v);
+        l = draw_cone(&cone, frame, u1, u2);
+    } else if (has_facets(brdf)) {
+        vec3s h = draw_half(brdf, u1, u2);
+        h = from_frame(frame, h.x, h.y, h.z);
+        l = tl_brdf_mirror(h, v);
+        if (glms_vec3_dot(h, v) <= 0)
+            l = glms_vec3_negate(frame->normal);
+    } else {
+        l = draw_lobe(brdf->exponent, tl_brdf_mirror(frame->normal, v), u1, u2);
+    }
+    l = glms_vec3_normalize(l);
+    *density = tl_brdf_density(brdf, frame, l, v);
+    return l;
+}

@@ -1,0 +1,257 @@
+#include "render/brdf/fan.h"
+
+#include "render/brdf/lobes.h"
+
+#include <math.h>
+
+/* Standard deviations of two neighbours that still look like one: at 0.35 of their distance the mixture's L1
+ * error is least over the models and viewers of test_fan.c. */
+#define TOUCH 0.35f
+/* Towards a viewer that grazes, lobes grow ever narrower across the plane of incidence while the horizon cuts
+ * them along it; their widths are those of this cosine at least. */
+#define LEAST_COSINE (1 / 3.0f)
+
+struct slopes {
+    float weft, warp; /* standard deviations along tangent and bitangent */
+};
+
+/* A width is Beckmann's m: exp(-tan^2 / m^2) has the variance m^2 / 2 along each axis. */
+static struct slopes slopes_of(const struct tl_brdf *brdf)
+{
+    if (brdf->gloss.model == TL_REFLECT_WARD)
+        return (struct slopes){brdf->gloss.width_weft * GLM_SQRT1_2f, brdf->gloss.width_warp * GLM_SQRT1_2f};
+    float both = brdf->gloss.width_weft * GLM_SQRT1_2f;
+    if (brdf->gloss.model == TL_REFLECT_BLINN_PHONG)
+        both = 1 / sqrtf(4 * brdf->exponent + 2);
+    return (struct slopes){both, both};
+}
+
+static float exponent_of(float variance)
+{
+    return fmaxf(1 / fmaxf(variance, 1e-7f) - 1, 1);
+}
+
+/* The spread of reflected light: variances along its two axes, and the broad one as a slope of one standard
+ * deviation.
+ */
+struct spread {
+    float broad, narrow;
+    vec2s slope;
+};
+
+static struct spread spread_of(const struct slopes *slopes, vec3s local_v)
+{
+    float c = fmaxf(local_v.z, LEAST_COSINE), u = slopes->weft, w = slopes->warp;
+    float a = 4 * u * u * (local_v.x * local_v.x + c * c), b = 4 * u * w * local_v.x * local_v.y;
+    float d = 4 * w * w * (local_v.y * local_v.y + c * c);
+    float mean = (a + d) / 2, off = hypotf((a - d) / 2, b), angle = 0.5f * atan2f(2 * b, a - d);
+    return (struct spread){mean + off, fmaxf(mean - off, 0), {{u * cosf(angle), w * sinf(angle)}}};
+}
+
+static vec3s local_of(const struct tl_brdf_frame *frame, vec3s d)
+{
+    return (vec3s){{glms_vec3_dot(d, frame->tangent), glms_vec3_dot(d, frame->bitangent),
+                    glms_vec3_dot(d, frame->normal)}};
+}
+
+/* A facet's normal by its slope. */
+static vec3s facet_of(const struct tl_brdf_frame *frame, vec2s slope)
+{
+    vec3s h = glms_vec3_add(frame->normal, glms_vec3_scale(frame->tangent, slope.x));
+    return glms_vec3_normalize(glms_vec3_add(h, glms_vec3_scale(frame->bitangent, slope.y)));
+}
+
+static vec3s mirrored(vec3s h, vec3s v)
+{
+    return glms_vec3_normalize(glms_vec3_sub(glms_vec3_scale(h, 2 * glms_vec3_dot(h, v)), v));
+}
+
+/* Gloss over the density with which Gaussian slopes send light there: what each of them counts. */
+static vec3s value_of_slope(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame,
+                            const struct slopes *slopes, vec3s v, vec2s slope)
+{
+    vec3s h = facet_of(frame, slope), l = mirrored(h, v);
+    float cosine = glms_vec3_dot(h, frame->normal), towards = glms_vec3_dot(h, v);
+    if (!(towards > 0) || !(glms_vec3_dot(l, frame->normal) > 0))
+        return (vec3s){{0, 0, 0}};
+    float x = slope.x / slopes->weft, y = slope.y / slopes->warp;
+    float density = expf(-0.5f * (x * x + y * y)) / (2 * GLM_PIf * slopes->weft * slopes->warp);
+    density /= cosine * cosine * cosine * 4 * towards;
+    return glms_vec3_scale(tl_brdf_gloss(brdf, frame, l, v), 1 / density);
+}
+
+/* What of all light is reflected towards the viewer. Three Gauss-Hermite points an axis, exact to the fifth
+ * power. */
+static vec3s albedo_of(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame,
+                       const struct slopes *slopes, vec3s v)
+{
+    const float at[3] = {-1.7320508f, 0, 1.7320508f}, share[3] = {1 / 6.0f, 2 / 3.0f, 1 / 6.0f};
+    vec3s sum = {{0, 0, 0}};
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            vec2s slope = {{at[i] * slopes->weft, at[j] * slopes->warp}};
+            vec3s value = value_of_slope(brdf, frame, slopes, v, slope);
+            sum = glms_vec3_add(sum, glms_vec3_scale(value, share[i] * share[j]));
+        }
+    return sum;
+}
+
+/* Share of a lobe above the horizon, when its axis has this cosine. */
+static float share_above(float cosine, float exponent)
+{
+    return 0.5f * (1 + erff(cosine * sqrtf((exponent + 1) / 2)));
+}
+
+static void scale_to(vec3s albedo, const struct tl_brdf_frame *frame, int count, struct tl_fan_lobe *lobes)
+{
+    vec3s sum = {{0, 0, 0}};
+    for (int k = 0; k < count; k++) {
+        float above = share_above(glms_vec3_dot(lobes[k].direction, frame->normal), lobes[k].exponent);
+        sum = glms_vec3_add(sum, glms_vec3_scale(lobes[k].weight, above));
+    }
+    for (int k = 0; k < count; k++)
+        for (int c = 0; c < 3; c++)
+            lobes[k].weight.raw[c] *= sum.raw[c] > 1e-20f ? albedo.raw[c] / sum.raw[c] : 0;
+}
+
+/* Distance of neighbours, in standard deviations of where they lie: three, five and seven of them reach
+ * to 1.7, 2.1 and 2.3. */
+static float step_of(int count)
+{
+    return count <= 3 ? 1.7320508f : count <= 5 ? 1.05f : 0.76f;
+}
+
+/* An odd number, so that one of them is where the gloss is greatest: as many as touch each other. */
+static int count_for(float broad, float narrow, int most)
+{
+    int count = 1;
+    while (count + 2 <= most && broad > 1.5f * narrow &&
+           (count == 1 || TOUCH * step_of(count) * sqrtf(fmaxf(broad - narrow, 0)) > sqrtf(narrow)))
+        count += 2;
+    return count;
+}
+
+static int fan_of_facets(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int most,
+                         struct tl_fan_lobe *lobes)
+{
+    struct slopes slopes = slopes_of(brdf);
+    struct spread spread = spread_of(&slopes, local_of(frame, v));
+    int count = count_for(spread.broad, spread.narrow, most);
+    float touch = TOUCH * step_of(count), square = touch * touch;
+    float variance = count == 1 ? sqrtf(spread.broad * spread.narrow)
+                                : fmaxf(spread.narrow, square / (1 + square) * spread.broad);
+    float reach = sqrtf(fmaxf(1 - variance / spread.broad, 0));
+    for (int k = 0; k < count; k++) {
+        float x = (float)(k - count / 2) * step_of(count);
+        vec2s slope = glms_vec2_scale(spread.slope, x * reach);
+        vec3s value = value_of_slope(brdf, frame, &slopes, v, slope);
+        lobes[k] = (struct tl_fan_lobe){.direction = mirrored(facet_of(frame, slope), v),
+                                        .exponent = exponent_of(variance),
+                                        .weight = glms_vec3_scale(value, expf(-0.5f * x * x))};
+    }
+    scale_to(albedo_of(brdf, frame, &slopes, v), frame, count, lobes);
+    return count;
+}
+
+/* (r.l)^s times a cosine is nearly one lobe more, a little nearer to the normal. Its albedo is the mean of
+ * that cosine over the lobe, which spreads it by about 1 / sqrt(s + 2). */
+static int fan_of_cosine_lobe(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v,
+                              struct tl_fan_lobe *lobes)
+{
+    float s = brdf->exponent, facing = fmaxf(glms_vec3_dot(frame->normal, v), 0);
+    vec3s r = mirrored(frame->normal, v);
+    float spread = 1 / sqrtf(s + 2), mean = facing * (s + 1) / (s + 2), u = mean / spread;
+    float height = mean * share_above(mean, s + 1) + spread * expf(-0.5f * u * u) / sqrtf(2 * GLM_PIf);
+    vec3s albedo = glms_vec3_scale(tl_brdf_fresnel(brdf, facing), (s + 2) / (s + 1) * height);
+    lobes[0] = (struct tl_fan_lobe){
+        .direction = glms_vec3_normalize(glms_vec3_add(glms_vec3_scale(r, s), frame->normal)),
+        .exponent = s + 1,
+        .weight = {{1, 1, 1}}};
+    scale_to(albedo, frame, 1, lobes);
+    return 1;
+}
+
+/* How wide neighbours on a half circle must be to touch. */
+static float thread_variance(const struct tl_brdf *brdf, int count, float sine)
+{
+    float apart = TOUCH * GLM_PIf * sine / (float)count;
+    return fmaxf(1 / (brdf->exponent + 1), apart * apart);
+}
+
+/* A thread sends light into a cone about itself; across it the gloss is a power of a cosine, along it it goes
+ * with the cosine to the normal, of which every lobe takes an equal share. */
+static int fan_of_threads(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int most,
+                          struct tl_fan_lobe *lobes)
+{
+    float s = brdf->exponent, along = -glms_vec3_dot(frame->tangent, v);
+    float sine = sqrtf(fmaxf(1 - along * along, 0)), facing = fmaxf(glms_vec3_dot(frame->normal, v), 0);
+    /* The integral of cos^s, nearly sqrt(2 pi / (s + 1/2)), times the mean of sin^2 over it, times that of the cosine
+     * along the cone. */
+    float across = sine * sine + (along * along - sine * sine) / (s + 2);
+    float all = tl_brdf_lobe_scale(brdf) * sqrtf(2 * GLM_PIf / (s + 0.5f)) * across * 2;
+    vec3s albedo = glms_vec3_scale(tl_brdf_fresnel(brdf, facing), facing > 0 ? all : 0);
+    for (int k = 0; k < most; k++) {
+        float aside = (2 * (float)k + 1) / (float)most - 1, ahead = sqrtf(1 - aside * aside);
+        vec3s d = glms_vec3_scale(frame->tangent, along);
+        d = glms_vec3_add(d, glms_vec3_scale(frame->normal, sine * ahead));
+        d = glms_vec3_add(d, glms_vec3_scale(frame->bitangent, sine * aside));
+        lobes[k] = (struct tl_fan_lobe){.direction = glms_vec3_normalize(d),
+                                        .exponent = exponent_of(thread_variance(brdf, most, sine)),
+                                        .weight = {{1, 1, 1}}};
+    }
+    scale_to(albedo, frame, most, lobes);
+    return most;
+}
+
+int tl_fan_make(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int most,
+                struct tl_fan_lobe lobes[TL_FAN_MAX])
+{
+    if (!(glms_vec3_dot(frame->normal, v) > 0))
+        return 0;
+    switch (brdf->gloss.model) {
+    case TL_REFLECT_PHONG:
+        lobes[0] = (struct tl_fan_lobe){mirrored(frame->normal, v), brdf->exponent,
+                                        tl_brdf_fresnel(brdf, glms_vec3_dot(frame->normal, v))};
+        return 1;
+    case TL_REFLECT_COSINE_LOBE:
+        return fan_of_cosine_lobe(brdf, frame, v, lobes);
+    case TL_REFLECT_BANKS:
+        return fan_of_threads(brdf, frame, v, most, lobes);
+    default:
+        return fan_of_facets(brdf, frame, v, most, lobes);
+    }
+}
+
+void tl_fan_exponents(const struct tl_brdf *brdf, float *least, float *greatest)
+{
+    struct slopes slopes = slopes_of(brdf);
+    float wide = fmaxf(slopes.weft, slopes.warp), thin = fminf(slopes.weft, slopes.warp);
+    switch (brdf->gloss.model) {
+    case TL_REFLECT_PHONG:
+    case TL_REFLECT_COSINE_LOBE:
+        *least = brdf->exponent;
+        *greatest = brdf->exponent + 1;
+        break;
+    case TL_REFLECT_BANKS:
+        *least = exponent_of(thread_variance(brdf, 1, 1));
+        *greatest = brdf->exponent;
+        break;
+    default:
+        *least = exponent_of(4 * wide * wide);
+        *greatest = exponent_of(4 * thin * thin * LEAST_COSINE * LEAST_COSINE);
+    }
+}
+
+vec3s tl_fan_under_disc(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s l, vec3s v,
+                        float radius)
+{
+    /* A disc's variance is radius^2 / 4 along each axis. A facet turns light by twice its own turn, so that
+     * among the facets it is a sixteenth, and of m^2 it is twice that; of a lobe's 1 / (s + 1) it is a
+     * quarter. */
+    struct tl_brdf wide = *brdf;
+    float square = radius * radius / 8;
+    wide.gloss.width_weft = sqrtf(wide.gloss.width_weft * wide.gloss.width_weft + square);
+    wide.gloss.width_warp = sqrtf(wide.gloss.width_warp * wide.gloss.width_warp + square);
+    wide.exponent = fmaxf((brdf->exponent + 1) / (1 + (brdf->exponent + 1) * radius * radius / 4) - 1, 0.25f);
+    return tl_brdf_gloss(&wide, frame, l, v);
+}

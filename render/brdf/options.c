@@ -1,0 +1,50 @@
+#include "render/renderer.h"
+
+static const char *const model_names[] = {"phong", "blinn_phong", "cosine_lobe", "torrance_sparrow",
+                                          "ward",  "banks",       NULL};
+static const char *const facets_names[] = {"gaussian", "beckmann", NULL};
+static const char *const masking_names[] = {"smith", "v_grooves", NULL};
+static const char *const fresnel_names[] = {"schlick", "dielectric", "conductor", NULL};
+
+typedef struct tl_material_params material_params;
+static const struct tl_option material_rows[] = {
+    TL_OPTION_BOOL(material_params, use_file, "keep the materials of the garment's file where it has them"),
+    TL_OPTION_COLOUR(material_params, diffuse, 0, 1, "share of light scattered evenly; larger is brighter"),
+    TL_OPTION_COLOUR(material_params, specular, 0, 1,
+                     "share of light reflected at normal incidence; 0.04 for most fibres, larger is shinier"),
+    TL_OPTION_FLOAT(
+        material_params, glossiness, 0, 1, "",
+        "0 reflects in all directions, 1 is a mirror; the lobe's exponent is 1 / (1 - glossiness)"),
+    TL_OPTION_ENUM(material_params, model, model_names, "how gloss is spread about the mirror direction"),
+    TL_OPTION_ENUM(material_params, facets, facets_names,
+                   "torrance_sparrow: how the slopes of its facets are spread"),
+    TL_OPTION_ENUM(material_params, masking, masking_names, "torrance_sparrow: how facets hide one another"),
+    TL_OPTION_ENUM(material_params, fresnel, fresnel_names,
+                   "how reflectance rises towards grazing angles: from specular, or from the index"),
+    TL_OPTION_FLOAT(material_params, index, 1, 200, "",
+                    "index of refraction of dielectric and conductor; larger reflects more"),
+    TL_OPTION_FLOAT(material_params, extinction, 0, 20, "", "conductor: imaginary part of the index"),
+    TL_OPTION_FLOAT(material_params, width_weft, 0, 1, "",
+                    "torrance_sparrow, ward: root mean square slope of the facets along the weft; larger is "
+                    "duller; 0: from glossiness"),
+    TL_OPTION_FLOAT(material_params, width_warp, 0, 1, "", "ward: ... along the warp"),
+    TL_OPTION_FLOAT(material_params, rotation_deg, -360, 360, "degrees",
+                    "ward, banks: turns weft and warp, counter-clockwise seen from outside"),
+    TL_OPTION_FLOAT(material_params, coat, 0, 1, "", "share of the surface under a clear coat of index 1.5"),
+    TL_OPTION_FLOAT(material_params, coat_glossiness, 0, 1, "", "glossiness of the coat"),
+    TL_OPTION_COLOUR(material_params, transmission, 0, 1,
+                     "share of light scattered through to the other side; larger is more sheer"),
+    TL_OPTION_FLOAT(
+        material_params, openness, 0, 0.99, "",
+        "share of the surface that is holes between threads; larger shows more of what is behind"),
+};
+#define DEFAULTS                                                                                             \
+    .use_file = true, .diffuse = {0.5f, 0.5f, 0.5f}, .specular = {0.04f, 0.04f, 0.04f}, .glossiness = 0.5f,  \
+    .index = 1.5f, .coat_glossiness = 0.95f
+
+const struct tl_option_table tl_material_options =
+    TL_OPTION_TABLE("material", "the garment's look: two lobes, diffuse and glossy", material_rows,
+                    material_params, DEFAULTS);
+const struct tl_option_table tl_overlay_options =
+    TL_OPTION_TABLE("overlay", "the look of the garment's materials that are named overlay, as material",
+                    material_rows, material_params, DEFAULTS);

@@ -1,0 +1,101 @@
+#include "render/brdf/table_error.h"
+
+#include <math.h>
+
+#define VIEWERS 64 /* cosines by as many azimuths */
+#define LIGHTS  16 /* a viewer: LIGHTS^2, one half drawn, one half even */
+
+static struct tl_brdf_frame upright(void)
+{
+    return tl_brdf_frame_make((vec3s){{0, 0, 1}}, (vec3s){{1, 0, 0}}, 1, 0);
+}
+
+static vec3s direction(float cosine, float turns)
+{
+    float sine = sqrtf(1 - cosine * cosine), azimuth = turns * (float)(2 * M_PI);
+    return (vec3s){{sine * cosf(azimuth), sine * sinf(azimuth), cosine}};
+}
+
+/* Light i of a viewer. Rotated by the golden ratio from viewer to viewer, so that no two see the same. */
+static vec3s light_of(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int i,
+                      int viewer)
+{
+    int row = i / LIGHTS;
+    float u1 = ((float)(i % LIGHTS) + 0.5f) / LIGHTS, shift = fmodf((float)viewer * 0.61803399f, 1);
+    float u2 = fmodf(((float)row + 0.5f) / LIGHTS + shift, 1), density;
+    return i % 2 ? direction(u1, u2) : tl_brdf_draw(brdf, frame, v, u1, u2, &density);
+}
+
+struct sums {
+    double difference, square; /* of squares */
+    double shown, wanted;
+};
+
+static void add(struct sums *sums, vec3s shown, vec3s wanted)
+{
+    sums->difference += (double)glms_vec3_distance2(shown, wanted);
+    sums->square += (double)glms_vec3_norm2(wanted);
+    sums->shown += (double)(shown.x + shown.y + shown.z);
+    sums->wanted += (double)(wanted.x + wanted.y + wanted.z);
+}
+
+static double relative(const struct sums *sums)
+{
+    return sums->square > 0 ? sqrt(sums->difference / sums->square) : 0;
+}
+
+static vec3s wanted_of(const struct tl_brdf *brdf, const struct tl_brdf_table_params *params,
+                       const struct tl_brdf_frame *frame, vec3s l, vec3s v)
+{
+    if (!params->folded)
+        return tl_brdf_gloss(brdf, frame, l, v);
+    struct tl_brdf white = *brdf;
+    white.f0 = (vec3s){{1, 1, 1}};
+    white.gloss.fresnel = TL_FRESNEL_SCHLICK; /* of 1 it is 1 at every angle */
+    vec3s lobe = tl_brdf_gloss(&white, frame, l, v);
+    vec3s diffuse = glms_vec3_scale(params->diffuse, fmaxf(glms_vec3_dot(frame->normal, l), 0) / (float)M_PI);
+    return glms_vec3_add(params->ambient, glms_vec3_add(diffuse, glms_vec3_mul(brdf->f0, lobe)));
+}
+
+struct tl_table_error tl_brdf_table_error(const struct tl_brdf *brdf,
+                                          const struct tl_brdf_table_params *params)
+{
+    struct tl_brdf_tables tables = tl_brdf_tables_make(brdf, params);
+    struct tl_brdf_frame frame = upright();
+    struct sums away = {0}, grazing = {0};
+    for (int viewer = 0; viewer < VIEWERS * 8; viewer++) {
+        int turn = viewer / VIEWERS;
+        vec3s v = direction(((float)(viewer % VIEWERS) + 0.5f) / VIEWERS, ((float)turn + 0.3f) / 8);
+        for (int i = 0; i < LIGHTS * LIGHTS; i++) {
+            vec3s l = light_of(brdf, &frame, v, i, viewer);
+            float inputs[TL_INPUT_COUNT];
+            tl_brdf_inputs(&frame, l, v, inputs);
+            bool low = inputs[TL_INPUT_N_DOT_L] < TL_GRAZING_COSINE || v.z < TL_GRAZING_COSINE;
+            if (inputs[TL_INPUT_N_DOT_L] > 0)
+                add(low ? &grazing : &away, tl_brdf_tables_gloss(&tables, inputs),
+                    wanted_of(brdf, params, &frame, l, v));
+        }
+    }
+    struct tl_table_error error = {.away = relative(&away),
+                                   .grazing = relative(&grazing),
+                                   .darkening = grazing.wanted > 0 ? 1 - grazing.shown / grazing.wanted : 0,
+                                   .bytes = tl_brdf_tables_bytes(&tables)};
+    tl_brdf_tables_release(&tables);
+    return error;
+}
+
+double tl_brdf_table_ratio(const struct tl_brdf *brdf, const struct tl_brdf_tables *tables, float n_dot_v)
+{
+    struct tl_brdf_frame frame = upright();
+    struct sums sums = {0};
+    for (int viewer = 0; viewer < 16; viewer++) {
+        vec3s v = direction(n_dot_v, ((float)viewer + 0.3f) / 16);
+        for (int i = 0; i < LIGHTS * LIGHTS; i++) {
+            vec3s l = light_of(brdf, &frame, v, i, viewer);
+            float inputs[TL_INPUT_COUNT];
+            tl_brdf_inputs(&frame, l, v, inputs);
+            add(&sums, tl_brdf_tables_gloss(tables, inputs), tl_brdf_gloss(brdf, &frame, l, v));
+        }
+    }
+    return sums.wanted > 0 ? sums.shown / sums.wanted : 1;
+}

@@ -1,0 +1,405 @@
+#include "render/brdf/tables.h"
+
+#include "config/memory.h"
+#include "render/brdf/lobes.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+
+#define PI ((float)M_PI)
+
+/* Below this share of the peak a lobe is taken for dark: the range of its axis ends there. */
+#define DARK     1e-6f
+#define LOG_DARK 13.815511f
+/* Wider facets fill the whole range of cosines. */
+#define WIDE 0.25f
+
+/* A factor of a model: its value by channel for the inputs on its axes. */
+struct factor {
+    const struct tl_brdf *brdf;
+    const struct tl_brdf_table_params *params;
+    void (*value)(const struct factor *factor, float x, float y, float out[3]);
+    struct range {
+        int input;
+        bool angle;
+        float low, high;
+    } x, y;
+    int channels;
+    bool singular; /* without bound, or with one that narrow facets make large */
+};
+
+static void all_channels(float value, float out[3])
+{
+    out[0] = out[1] = out[2] = value;
+}
+
+/* K: a power of the cosine x, and for BANKS the angle to the mirror cone. */
+static float lobe_at(const struct tl_brdf *brdf, float cosine)
+{
+    float exponent = brdf->gloss.model == TL_REFLECT_BLINN_PHONG ? 4 * brdf->exponent : brdf->exponent;
+    return cosine > 0 ? tl_brdf_lobe_scale(brdf) * powf(cosine, exponent) : 0;
+}
+
+static void lobe_and_fresnel(const struct factor *factor, float x, float y, float out[3])
+{
+    vec3s value = glms_vec3_scale(tl_brdf_fresnel(factor->brdf, y), lobe_at(factor->brdf, x));
+    for (int c = 0; c < 3; c++)
+        out[c] = value.raw[c];
+}
+
+static void folded(const struct factor *factor, float x, float n_dot_l, float out[3])
+{
+    const struct tl_brdf *brdf = factor->brdf;
+    const struct tl_brdf_table_params *params = factor->params;
+    float gloss = n_dot_l > 0 ? lobe_at(brdf, x) : 0;
+    if (brdf->gloss.model == TL_REFLECT_COSINE_LOBE)
+        gloss *= n_dot_l;
+    for (int c = 0; c < 3; c++)
+        out[c] = params->ambient.raw[c] + params->diffuse.raw[c] * n_dot_l / PI + brdf->f0.raw[c] * gloss;
+}
+
+static void fresnel_and_facets(const struct factor *factor, float h_dot_l, float n_dot_h, float out[3])
+{
+    float tangent_squared = fmaxf(1 - n_dot_h * n_dot_h, 0) / (n_dot_h * n_dot_h);
+    float facets = n_dot_h > 0 ? tl_brdf_facets(factor->brdf, tangent_squared) : 0;
+    vec3s value = glms_vec3_scale(tl_brdf_fresnel(factor->brdf, h_dot_l), facets);
+    for (int c = 0; c < 3; c++)
+        out[c] = value.raw[c];
+}
+
+static void fresnel_alone(const struct factor *factor, float cosine, float none, float out[3])
+{
+    (void)none;
+    vec3s value = tl_brdf_fresnel(factor->brdf, cosine);
+    for (int c = 0; c < 3; c++)
+        out[c] = value.raw[c];
+}
+
+/* Smith's term vanishes with n.v as fast as n.v does: so near to 0 the quotient is its limit. */
+static void smith_over_cosine(const struct factor *factor, float n_dot_l, float n_dot_v, float out[3])
+{
+    float b = fmaxf(n_dot_v, 1e-5f);
+    all_channels(n_dot_l > 0 ? tl_brdf_smith(factor->brdf, n_dot_l, b) / (PI * b) : 0, out);
+}
+
+/* What has no limit at n.v = 0 takes, in the texels there, its value half a texel away. */
+static float off_zero(const struct factor *factor, float n_dot_v)
+{
+    return fmaxf(n_dot_v, 0.5f / (float)(factor->params->size - 1));
+}
+
+static void grooves_over_cosine(const struct factor *factor, float grooves, float n_dot_v, float out[3])
+{
+    all_channels(grooves / (PI * off_zero(factor, n_dot_v)), out);
+}
+
+static void root_of_cosines(const struct factor *factor, float n_dot_l, float n_dot_v, float out[3])
+{
+    all_channels(sqrtf(n_dot_l / off_zero(factor, n_dot_v)), out);
+}
+
+static void ward_facets(const struct factor *factor, float h_dot_t, float h_dot_b, float out[3])
+{
+    float u = factor->brdf->gloss.width_weft, v = factor->brdf->gloss.width_warp;
+    float up_squared = 1 - h_dot_t * h_dot_t - h_dot_b * h_dot_b, x = h_dot_t / u, y = h_dot_b / v;
+    all_channels(up_squared > 0 ? expf(-(x * x + y * y) / up_squared) / (4 * PI * u * v) : 0, out);
+}
+
+static void thread(const struct factor *factor, float t_dot_l, float t_dot_v, float out[3])
+{
+    float angle = factor->params->angles ? t_dot_l + t_dot_v - PI : tl_brdf_thread_angle(t_dot_l, t_dot_v);
+    all_channels(lobe_at(factor->brdf, cosf(angle)), out);
+}
+
+static struct range cosines(int input)
+{
+    return (struct range){.input = input, .high = 1};
+}
+
+/* From where cosine^exponent is dark. */
+static struct range lobe_range(int input, float exponent)
+{
+    return (struct range){.input = input, .low = powf(DARK, 1 / exponent), .high = 1};
+}
+
+static struct range facets_range(const struct tl_brdf *brdf)
+{
+    float width = brdf->gloss.width_weft, end = width * sqrtf(LOG_DARK); /* slope or angle */
+    struct range range = cosines(TL_INPUT_N_DOT_H);
+    if (width <= WIDE)
+        range.low = brdf->gloss.facets == TL_FACETS_BECKMANN ? 1 / sqrtf(1 + end * end) : cosf(end);
+    return range;
+}
+
+static struct range slope_range(int input, float width)
+{
+    float slope = width * sqrtf(LOG_DARK), sine = slope / sqrtf(1 + slope * slope);
+    return (struct range){.input = input, .low = -sine, .high = sine};
+}
+
+static struct range thread_range(int input, bool angle)
+{
+    return angle ? (struct range){.input = input, .angle = true, .high = PI}
+                 : (struct range){.input = input, .low = -1, .high = 1};
+}
+
+/* The factors of a model; their number. */
+static int factors_of(const struct tl_brdf *brdf, const struct tl_brdf_table_params *params,
+                      struct factor out[TL_BRDF_TABLES_MAX])
+{
+    struct factor fresnel = {.value = fresnel_alone, .x = cosines(TL_INPUT_H_DOT_L), .channels = 3};
+    switch (brdf->gloss.model) {
+    case TL_REFLECT_TORRANCE_SPARROW: {
+        bool smith = brdf->gloss.masking == TL_MASKING_SMITH;
+        out[0] = (struct factor){.value = fresnel_and_facets,
+                                 .x = cosines(TL_INPUT_H_DOT_L),
+                                 .y = facets_range(brdf),
+                                 .channels = 3};
+        out[1] = (struct factor){.value = smith ? smith_over_cosine : grooves_over_cosine,
+                                 .x = cosines(smith ? TL_INPUT_N_DOT_L : TL_INPUT_GROOVES),
+                                 .y = cosines(TL_INPUT_N_DOT_V),
+                                 .channels = 1,
+                                 .singular = true};
+        return 2;
+    }
+    case TL_REFLECT_WARD:
+        out[0] = (struct factor){.value = ward_facets,
+                                 .x = slope_range(TL_INPUT_H_DOT_T, brdf->gloss.width_weft),
+                                 .y = slope_range(TL_INPUT_H_DOT_B, brdf->gloss.width_warp),
+                                 .channels = 1};
+        out[1] = (struct factor){.value = root_of_cosines,
+                                 .x = cosines(TL_INPUT_N_DOT_L),
+                                 .y = cosines(TL_INPUT_N_DOT_V),
+                                 .channels = 1,
+                                 .singular = true};
+        out[2] = fresnel;
+        return 3;
+    case TL_REFLECT_BANKS:
+        out[0] = (struct factor){.value = thread,
+                                 .x = thread_range(TL_INPUT_T_DOT_L, params->angles),
+                                 .y = thread_range(TL_INPUT_T_DOT_V, params->angles),
+                                 .channels = 1};
+        out[1] = fresnel;
+        out[1].x.input = TL_INPUT_N_DOT_V;
+        return 2;
+    default: {
+        bool half = brdf->gloss.model == TL_REFLECT_BLINN_PHONG,
+             phong = brdf->gloss.model == TL_REFLECT_PHONG;
+        out[0] = (struct factor){.value = params->folded ? folded : lobe_and_fresnel,
+                                 .x = half ? lobe_range(TL_INPUT_N_DOT_H, 4 * brdf->exponent)
+                                           : lobe_range(TL_INPUT_R_DOT_L, brdf->exponent),
+                                 .y = cosines(params->folded ? TL_INPUT_N_DOT_L
+                                              : phong        ? TL_INPUT_N_DOT_V
+                                                             : TL_INPUT_H_DOT_L),
+                                 .channels = 3};
+        return 1;
+    }
+    }
+}
+
+static float at_texel(const struct range *range, int i, int count)
+{
+    return range->low + (range->high - range->low) * (float)i / (float)(count - 1);
+}
+
+/* The range's ends on the centres of the first and the last texel. */
+static struct tl_brdf_axis axis_of(const struct range *range, int count)
+{
+    if (count == 1)
+        return (struct tl_brdf_axis){.input = TL_INPUT_NONE, .bias = 0.5f};
+    float scale = (float)(count - 1) / (float)count / (range->high - range->low);
+    return (struct tl_brdf_axis){range->input, range->angle, scale, 0.5f / (float)count - range->low * scale};
+}
+
+static size_t texel_bytes(int precision)
+{
+    return precision == TL_PRECISION_FIXED8 ? 1 : precision == TL_PRECISION_FIXED16 ? 2 : 4;
+}
+
+static size_t value_count(const struct tl_brdf_table *table)
+{
+    return (size_t)table->width * (size_t)table->height * (size_t)table->channels;
+}
+
+static float greatest(const float *values, size_t count)
+{
+    float most = 0;
+    for (size_t i = 0; i < count; i++)
+        most = fmaxf(most, values[i]);
+    return most > 0 ? most : 1;
+}
+
+/* What the texels are multiplied by. */
+static float scale_of(const struct factor *factor, const float *values, size_t count)
+{
+    const struct tl_brdf_table_params *params = factor->params;
+    if (params->precision == TL_PRECISION_FLOAT || (factor->singular && params->range == TL_RANGE_CLAMPED))
+        return 1;
+    return factor->singular && params->constant > 0 ? params->constant : greatest(values, count);
+}
+
+static void store(struct tl_brdf_table *table, float *values)
+{
+    size_t count = value_count(table);
+    if (table->precision == TL_PRECISION_FLOAT) {
+        table->texels = values;
+        return;
+    }
+    float most = table->precision == TL_PRECISION_FIXED8 ? 255 : 65535;
+    table->texels = tl_alloc(count, texel_bytes(table->precision));
+    for (size_t i = 0; i < count; i++) {
+        float level = roundf(fminf(fmaxf(values[i] / table->scale, 0), 1) * most);
+        if (table->precision == TL_PRECISION_FIXED8)
+            ((uint8_t *)table->texels)[i] = (uint8_t)level;
+        else
+            ((uint16_t *)table->texels)[i] = (uint16_t)level;
+    }
+    free(values);
+}
+
+static struct tl_brdf_table make_table(const struct factor *factor)
+{
+    int size = factor->params->size;
+    assert(size >= 2);
+    struct tl_brdf_table table = {.width = size,
+                                  .height = factor->y.input == TL_INPUT_NONE ? 1 : size,
+                                  .channels = factor->channels,
+                                  .precision = factor->params->precision};
+    table.x = axis_of(&factor->x, table.width);
+    table.y = axis_of(&factor->y, table.height);
+    float *values = TL_NEW_ARRAY(float, value_count(&table));
+#pragma omp parallel for schedule(static)
+    for (int j = 0; j < table.height; j++) {
+        float y = table.height > 1 ? at_texel(&factor->y, j, table.height) : 0;
+        for (int i = 0; i < table.width; i++) {
+            float value[3];
+            factor->value(factor, at_texel(&factor->x, i, table.width), y, value);
+            for (int c = 0; c < table.channels; c++)
+                values[((size_t)j * (size_t)table.width + (size_t)i) * (size_t)table.channels + (size_t)c] =
+                    value[c];
+        }
+    }
+    table.scale = scale_of(factor, values, value_count(&table));
+    store(&table, values);
+    return table;
+}
+
+struct tl_brdf_tables tl_brdf_tables_make(const struct tl_brdf *brdf,
+                                          const struct tl_brdf_table_params *params)
+{
+    struct factor factors[TL_BRDF_TABLES_MAX];
+    int model = brdf->gloss.model;
+    struct tl_brdf_tables tables = {.count = factors_of(brdf, params, factors),
+                                    .times_cos_a = model == TL_REFLECT_BANKS ||
+                                                   (model == TL_REFLECT_COSINE_LOBE && !params->folded)};
+    for (int i = 0; i < tables.count; i++) {
+        factors[i].brdf = brdf;
+        factors[i].params = params;
+        tables.tables[i] = make_table(&factors[i]);
+    }
+    return tables;
+}
+
+struct tl_brdf_table tl_fresnel_table_make(const struct tl_brdf *brdf, int input, int size, int precision)
+{
+    struct tl_brdf_table_params params = {.size = size, .precision = precision};
+    struct factor factor = {
+        .brdf = brdf, .params = &params, .value = fresnel_alone, .x = cosines(input), .channels = 3};
+    return make_table(&factor);
+}
+
+void tl_brdf_tables_release(struct tl_brdf_tables *tables)
+{
+    for (int i = 0; i < tables->count; i++)
+        free(tables->tables[i].texels);
+    *tables = (struct tl_brdf_tables){0};
+}
+
+size_t tl_brdf_tables_bytes(const struct tl_brdf_tables *tables)
+{
+    size_t bytes = 0;
+    for (int i = 0; i < tables->count; i++)
+        bytes += value_count(&tables->tables[i]) * texel_bytes(tables->tables[i].precision);
+    return bytes;
+}
+
+void tl_brdf_inputs(const struct tl_brdf_frame *frame, vec3s l, vec3s v, float inputs[TL_INPUT_COUNT])
+{
+    struct tl_brdf_angles at = tl_brdf_angles_of(frame, l, v);
+    inputs[TL_INPUT_NONE] = 0;
+    inputs[TL_INPUT_N_DOT_L] = at.cos_a;
+    inputs[TL_INPUT_N_DOT_V] = at.cos_b;
+    inputs[TL_INPUT_N_DOT_H] = at.h.z;
+    inputs[TL_INPUT_H_DOT_L] = at.cos_t;
+    inputs[TL_INPUT_R_DOT_L] = glms_vec3_dot(tl_brdf_mirror(frame->normal, v), l);
+    inputs[TL_INPUT_H_DOT_T] = at.h.x;
+    inputs[TL_INPUT_H_DOT_B] = at.h.y;
+    inputs[TL_INPUT_T_DOT_L] = glms_vec3_dot(frame->tangent, l);
+    inputs[TL_INPUT_T_DOT_V] = glms_vec3_dot(frame->tangent, v);
+    inputs[TL_INPUT_GROOVES] = at.cos_t > 0 ? tl_brdf_v_grooves(at.cos_a, at.cos_b, at.cos_t, at.h.z) : 0;
+}
+
+static float texel(const struct tl_brdf_table *table, int x, int y, int channel)
+{
+    size_t i = ((size_t)y * (size_t)table->width + (size_t)x) * (size_t)table->channels +
+               (size_t)(table->channels == 1 ? 0 : channel);
+    if (table->precision == TL_PRECISION_FIXED8)
+        return (float)((const uint8_t *)table->texels)[i] / 255;
+    if (table->precision == TL_PRECISION_FIXED16)
+        return (float)((const uint16_t *)table->texels)[i] / 65535;
+    return ((const float *)table->texels)[i];
+}
+
+/* Two neighbours and where between them, clamped to the edge. */
+static float neighbours(float coordinate, int count, int out[2])
+{
+    float place = fminf(fmaxf(coordinate * (float)count - 0.5f, 0), (float)(count - 1)); /* NaN: 0 */
+    out[0] = (int)place;
+    out[1] = out[0] + 1 < count ? out[0] + 1 : out[0];
+    return place - (float)out[0];
+}
+
+vec3s tl_brdf_table_at(const struct tl_brdf_table *table, float u, float v)
+{
+    int x[2], y[2];
+    float right = neighbours(u, table->width, x), up = neighbours(v, table->height, y);
+    vec3s out;
+    for (int c = 0; c < 3; c++) {
+        float low = texel(table, x[0], y[0], c), high = texel(table, x[0], y[1], c);
+        low += right * (texel(table, x[1], y[0], c) - low);
+        high += right * (texel(table, x[1], y[1], c) - high);
+        out.raw[c] = table->scale * (low + up * (high - low));
+    }
+    return out;
+}
+
+static float coordinate(const struct tl_brdf_axis *axis, const float inputs[TL_INPUT_COUNT])
+{
+    float input = inputs[axis->input];
+    return axis->scale * (axis->angle ? acosf(fminf(fmaxf(input, -1), 1)) : input) + axis->bias;
+}
+
+vec3s tl_brdf_tables_gloss(const struct tl_brdf_tables *tables, const float inputs[TL_INPUT_COUNT])
+{
+    bool ambient_remains = tables->tables[0].y.input == TL_INPUT_N_DOT_L && tables->count == 1;
+    if (!(inputs[TL_INPUT_N_DOT_V] > 0 && (inputs[TL_INPUT_N_DOT_L] > 0 || ambient_remains)))
+        return (vec3s){{0, 0, 0}};
+    vec3s product = {{1, 1, 1}};
+    for (int i = 0; i < tables->count; i++) {
+        const struct tl_brdf_table *table = &tables->tables[i];
+        product = glms_vec3_mul(
+            product, tl_brdf_table_at(table, coordinate(&table->x, inputs), coordinate(&table->y, inputs)));
+    }
+    return tables->times_cos_a ? glms_vec3_scale(product, inputs[TL_INPUT_N_DOT_L]) : product;
+}
+
+vec3s tl_fresnel_additive(vec3s reflectance, vec3s mirror, vec3s diffuse)
+{
+    return glms_vec3_add(glms_vec3_mul(reflectance, mirror), diffuse);
+}
+
+vec3s tl_fresnel_coat(vec3s reflectance, vec3s mirror, vec3s diffuse)
+{
+    return glms_vec3_add(diffuse, glms_vec3_mul(reflectance, glms_vec3_sub(mirror, diffuse)));
+}

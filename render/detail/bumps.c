@@ -1,0 +1,26 @@
+#include "render/detail/bumps.h"
+
+#include <math.h>
+
+static vec3s direction_or(vec3s v, vec3s fallback)
+{
+    float square = glms_vec3_norm2(v);
+    return square > 1e-30f && isfinite(square) ? glms_vec3_scale(v, 1 / sqrtf(square)) : fallback;
+}
+
+vec3s tl_blinn_normal(vec3s normal, vec3s p_u, vec3s p_v, float h_u, float h_v)
+{
+    float area = glms_vec3_dot(normal, glms_vec3_cross(p_u, p_v));
+    vec3s offset = glms_vec3_add(glms_vec3_scale(glms_vec3_cross(normal, p_v), h_u),
+                                 glms_vec3_scale(glms_vec3_cross(p_u, normal), h_v));
+    vec3s sum =
+        glms_vec3_add(glms_vec3_scale(normal, fabsf(area)), glms_vec3_scale(offset, copysignf(1, area)));
+    return area != 0 ? direction_or(sum, normal) : normal;
+}
+
+vec3s tl_patch_normal(vec3s normal, vec3s tangent, float handedness, vec3s mapped)
+{
+    vec3s bitangent = glms_vec3_scale(glms_vec3_cross(normal, tangent), handedness);
+    vec3s sum = glms_vec3_add(glms_vec3_scale(tangent, mapped.x), glms_vec3_scale(bitangent, mapped.y));
+    return direction_or(glms_vec3_add(sum, glms_vec3_scale(normal, mapped.z)), normal);
+}

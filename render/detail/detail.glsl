@@ -1,0 +1,272 @@
+// Fabric detail: where a surface's height field is seen, and what it shadows; the GLSL face of field.c. What is done is
+// chosen by DETAIL_MODE, DETAIL_SHADOW and DETAIL_MINIFY, numbered as in options.h.
+//
+// Its uniforms are those of surface.glsl.
+//
+// Tangent space: x along u, y along minus v, z outwards. Its back sees the same sheet from below: heights turn over.
+#include "surface.glsl"
+#include "detail_terms.glsl"
+
+#ifndef DETAIL_MODE
+#define DETAIL_MODE 0
+#define DETAIL_SHADOW 0
+#define DETAIL_MINIFY 0
+#endif
+#define DETAIL_BLINN 1
+#define DETAIL_PARALLAX 2
+#define DETAIL_PARALLAX_LIMITED 3
+#define DETAIL_RELIEF 4
+#define DETAIL_SHADOW_HORIZON 1
+#define DETAIL_SHADOW_RELIEF 2
+#define DETAIL_TOKSVIG 1
+#define DETAIL_LEAN 2
+
+// Of detail_flags: which of its maps the part has, and where its field does not repeat.
+const int DETAIL_OWN_MOMENTS = 1, DETAIL_WEAVE_MOMENTS = 2, DETAIL_HEIGHTS = 4, DETAIL_HORIZONS = 8;
+const int DETAIL_CLAMP_U = 16, DETAIL_CLAMP_V = 32;
+
+layout(binding = 8) uniform sampler2D detail_heights;       // m
+layout(binding = 9) uniform sampler2DArray detail_horizons; // sines at eight angles, four a layer
+layout(binding = 10) uniform sampler2D detail_own_moments;  // of the normal map: (x, y, x^2, y^2)
+layout(binding = 11) uniform sampler2D detail_weave_moments;
+
+bool has_detail(int map)
+{
+    return (detail_flags & map) != 0;
+}
+
+// Where a surface is seen: moved UV, the height there on the side that is seen, whether it lies beyond the field's end.
+struct DetailPlace {
+    vec2 uv;
+    float height;
+    bool outside;
+};
+
+vec2 detail_field_uv(vec2 uv)
+{
+    vec3 point = vec3(uv, 1.0);
+    return vec2(dot(detail_rows[0], point), dot(detail_rows[1], point));
+}
+
+// A map that lies over the field, at its level of detail.
+vec4 detail_texel(sampler2D map, vec2 uv)
+{
+#ifdef DETAIL_SHIFTED
+    mat2 turned = transpose(mat2(detail_rows[0].xy, detail_rows[1].xy));
+    return textureGrad(map, detail_field_uv(uv), turned * unmoved_across, turned * unmoved_down);
+#else
+    return texture(map, detail_field_uv(uv));
+#endif
+}
+
+// Columns: tangent, bitangent and normal at right angles, of the outside. `v * frame` is v in tangent space.
+mat3 detail_frame(vec3 smooth_normal, vec4 tangent)
+{
+    vec3 along = tangent.xyz - smooth_normal * dot(smooth_normal, tangent.xyz);
+    float square = dot(along, along);
+    vec3 t = square > 1e-30 ? along * inversesqrt(square) : vec3(0.0);
+    return mat3(t, (tangent.w < 0.0 ? -1.0 : 1.0) * cross(smooth_normal, t), smooth_normal);
+}
+
+#if DETAIL_MODE >= DETAIL_PARALLAX || DETAIL_SHADOW == DETAIL_SHADOW_RELIEF
+// Level of the field whose texels are as large as a sample is; of the unmoved UV.
+float detail_level(vec2 uv)
+{
+    vec2 place = detail_field_uv(uv) * vec2(textureSize(detail_heights, 0));
+    vec2 across = dFdx(place), down = dFdy(place);
+    return 0.5 * log2(max(max(dot(across, across), dot(down, down)), 1.0));
+}
+
+// Height of a ray over the field, `rise` metres above the mesh and `along` the surface: UV for a metre of height.
+float detail_clearance(vec2 uv, vec2 along, float rise, float from, float side, float level)
+{
+    vec2 place = detail_field_uv(uv + (rise - from) * along);
+    return rise - side * textureLod(detail_heights, place, level).r;
+}
+
+// UV for a metre of height, along a direction of tangent space.
+vec2 detail_along(vec3 direction, float side)
+{
+    return vec2(direction.x, -direction.y) * (detail_slant(side * direction.z) / detail_range.z);
+}
+
+vec2 detail_bounds(float side)
+{
+    return side > 0.0 ? detail_range.xy : -detail_range.yx;
+}
+#endif
+
+#if DETAIL_MODE == DETAIL_RELIEF
+// The height at which a ray through uv on the mesh meets the field.
+float detail_hit(vec2 uv, vec2 along, float side, float level)
+{
+    vec2 bounds = detail_bounds(side);
+    float stride = (bounds.y - bounds.x) / float(detail_steps.x);
+    float above = bounds.y, over = detail_clearance(uv, along, above, 0.0, side, level), below = above, under = over;
+    for (int i = 1; i <= detail_steps.x && under > 0.0; i++) {
+        above = below;
+        over = under;
+        below = bounds.y - stride * float(i);
+        under = detail_clearance(uv, along, below, 0.0, side, level);
+    }
+    for (int i = 0; i < detail_steps.y; i++) {
+        float middle = 0.5 * (above + below), left = detail_clearance(uv, along, middle, 0.0, side, level);
+        bool is_under = left <= 0.0;
+        above = is_under ? above : middle;
+        over = is_under ? over : left;
+        below = is_under ? middle : below;
+        under = is_under ? left : under;
+    }
+    float span = over - under;
+    return span > 0.0 ? above + (below - above) * min(over / span, 1.0) : above;
+}
+#endif
+
+// `view` towards the eye in the outside's tangent space; `side` is -1 where the back is seen.
+DetailPlace detail_place(vec2 uv, vec3 view, float side)
+{
+    DetailPlace place = DetailPlace(uv, 0.0, false);
+#if DETAIL_MODE >= DETAIL_PARALLAX || DETAIL_SHADOW == DETAIL_SHADOW_RELIEF
+    if (has_detail(DETAIL_HEIGHTS)) {
+        float level = detail_level(uv);
+        float height = side * textureLod(detail_heights, detail_field_uv(uv), level).r;
+#if DETAIL_MODE == DETAIL_PARALLAX
+        place.uv += height * detail_along(view, side);
+#elif DETAIL_MODE == DETAIL_PARALLAX_LIMITED
+        place.uv += height * vec2(view.x, -view.y) / detail_range.z;
+#elif DETAIL_MODE == DETAIL_RELIEF
+        vec2 along = detail_along(view, side);
+        height = detail_hit(uv, along, side, level);
+        place.uv += height * along;
+#endif
+        place.height = height;
+#ifdef DETAIL_CLIPPED
+        vec2 at = detail_field_uv(place.uv), beyond = abs(at - 0.5);
+        place.outside = (has_detail(DETAIL_CLAMP_U) && !(beyond.x <= 0.5)) || (has_detail(DETAIL_CLAMP_V) && !(beyond.y <= 0.5));
+#endif
+    }
+#endif
+    return place;
+}
+
+#if DETAIL_SHADOW != 0
+struct DetailHorizon {
+    vec4 sines[2]; // at angles k pi / 4 from the tangent
+};
+
+// Backs take the horizons of the front.
+DetailHorizon detail_horizon(vec2 uv, vec2 across, vec2 down)
+{
+    vec2 place = detail_field_uv(uv);
+    mat2 turned = transpose(mat2(detail_rows[0].xy, detail_rows[1].xy));
+    vec2 dx = turned * across, dy = turned * down;
+    return DetailHorizon(vec4[2](textureGrad(detail_horizons, vec3(place, 0.0), dx, dy),
+                                 textureGrad(detail_horizons, vec3(place, 1.0), dx, dy)));
+}
+
+float detail_horizon_sine(DetailHorizon horizon, vec2 toward)
+{
+    float turn = dot(toward, toward) > 0.0 ? atan(toward.y, toward.x) * 1.2732395 : 0.0;
+    vec4 first = abs(turn - vec4(0.0, 1.0, 2.0, 3.0)), second = abs(turn - vec4(4.0, -3.0, -2.0, -1.0));
+    vec4 near = max(1.0 - first, 0.0), far = max(1.0 - second, 0.0);
+    far.x = max(1.0 - min(abs(turn - 4.0), abs(turn + 4.0)), 0.0);
+    return dot(near, horizon.sines[0]) + dot(far, horizon.sines[1]);
+}
+
+// Share of an even sky that a place sees: `normal` in tangent space, of the side that is seen.
+float detail_ambient(DetailHorizon horizon, vec3 normal)
+{
+    float seen = 0.0, open = 0.0;
+    for (int k = 0; k < 8; k++) {
+        float angle = 0.78539816 * float(k), a = normal.x * cos(angle) + normal.y * sin(angle);
+        seen += detail_slice_over(a, normal.z, horizon.sines[k / 4][k % 4]);
+        open += detail_slice_over(a, normal.z, 0.0);
+    }
+    return open > 0.0 ? seen / open : 1.0;
+}
+
+// Share of a lobe about `mirror` (tangent space, of the side that is seen) that clears the horizon.
+float detail_gloss_seen(DetailHorizon horizon, vec3 mirror, float rough)
+{
+    float width = max(sqrt(rough), 0.04);
+    return clamp(0.5 + 0.5 * (mirror.z - detail_horizon_sine(horizon, mirror.xy)) / width + 0.5 * min(width, 1.0), 0.0, 1.0);
+}
+#endif
+
+// Share of a lamp's light that the surface's own bumps let through. `light` towards the lamp, in the outside's tangent
+// space; `across` and `down`: how the unmoved UV changes from sample to sample.
+float detail_shadow(DetailPlace place, vec3 light, float side, vec2 across, vec2 down)
+{
+#if DETAIL_SHADOW == DETAIL_SHADOW_HORIZON
+    if (has_detail(DETAIL_HORIZONS))
+        return detail_over_horizon(side * light.z, detail_horizon_sine(detail_horizon(place.uv, across, down), light.xy));
+#elif DETAIL_SHADOW == DETAIL_SHADOW_RELIEF
+    if (has_detail(DETAIL_HEIGHTS)) {
+        vec2 bounds = detail_bounds(side), along = detail_along(light, side);
+        vec2 texels = vec2(textureSize(detail_heights, 0));
+        mat2 turned = transpose(mat2(detail_rows[0].xy, detail_rows[1].xy));
+        vec2 dx = turned * across * texels, dy = turned * down * texels;
+        float level = 0.5 * log2(max(max(dot(dx, dx), dot(dy, dy)), 1.0));
+        float from = place.height + 0.02 * (bounds.y - bounds.x), rise = bounds.y - from;
+        bool lit = side * light.z > 0.0;
+        for (int i = 1; i <= detail_steps.x && lit && rise > 0.0; i++) {
+            float height = from + rise * float(i) / float(detail_steps.x);
+            lit = detail_clearance(place.uv, along, height, place.height, side, level) >= 0.0;
+        }
+        return lit ? 1.0 : 0.0;
+    }
+#endif
+    return 1.0;
+}
+
+// ---- Averaged normals ----
+
+// Of a tangent-space normal and what became of it: variance of its slopes along x and y, length of the mean.
+struct Bumps {
+    vec3 normal;
+    vec2 spread;
+    float length;
+};
+
+Bumps detail_bumps(vec4 moments, float scale)
+{
+    float z = sqrt(max(1.0 - moments.z - moments.w, 0.0));
+    vec3 mean = vec3(scale * moments.xy, z);
+    vec2 spread = max(moments.zw - moments.xy * moments.xy, 0.0) * scale * scale;
+    return Bumps(mean, spread, sqrt(clamp(1.0 - spread.x - spread.y, 0.0025, 1.0))); // but for what z varies itself
+}
+
+// 1 - g of the gloss over averaged normals; `view` in tangent space.
+float detail_rough(float rough, Bumps bumps, vec3 view)
+{
+#if DETAIL_MINIFY == DETAIL_TOKSVIG
+    float variance = detail_variance(bumps.length);
+    return detail_widened(rough, variance, variance, 1.0);
+#elif DETAIL_MINIFY == DETAIL_LEAN
+    float square = dot(view.xy, view.xy);
+    vec2 along = square > 1e-12 ? view.xy * view.xy / square : vec2(0.5);
+    return detail_widened(rough, dot(bumps.spread, along), dot(bumps.spread, along.yx), abs(view.z));
+#else
+    return rough;
+#endif
+}
+
+// Blinn's N' = N + h_u (N_n x P_v) + h_v (P_u x N_n), by the derivatives of the triangle in the image. `mapped` has slopes
+// over the metres that a UV unit should have.
+vec3 detail_blinn(vec3 mapped, vec3 normal, vec3 point, vec2 uv)
+{
+    vec3 point_x = dFdx(point), point_y = dFdy(point);
+    vec2 uv_x = dFdx(uv), uv_y = dFdy(uv);
+    float determinant = uv_x.x * uv_y.y - uv_x.y * uv_y.x;
+    if (!(abs(determinant) > 1e-20))
+        return normal;
+    vec3 p_u = (point_x * uv_y.y - point_y * uv_x.y) / determinant;
+    vec3 p_v = (point_y * uv_x.x - point_x * uv_y.x) / determinant;
+    vec2 slopes = -mapped.xy / max(mapped.z, 1e-3);
+    float h_u = slopes.x * detail_range.z, h_v = -slopes.y * detail_range.z; // v runs down
+    float area = dot(normal, cross(p_u, p_v));
+    vec3 offset = h_u * cross(normal, p_v) + h_v * cross(p_u, normal);
+    vec3 sum = abs(area) * normal + (area < 0.0 ? -1.0 : 1.0) * offset;
+    float square = dot(sum, sum);
+    return area != 0.0 && square > 1e-30 && square < 1e30 ? sum * inversesqrt(square) : normal;
+}

@@ -1,0 +1,49 @@
+/* A height field over the tangent plane of a surface, and how it is seen: parallax [004], relief [004],
+ * shadow. The pure counterpart of detail.glsl.
+ *
+ * Tangent space: x along u, y along minus v, z outwards; metres; directions unit, towards the viewer or the
+ * light. Heights are over the mesh's own surface. Places are in repeats of the map (uv of its texels).
+ * Borrows the image; pure; threads: any. */
+#ifndef TOILE_RENDER_DETAIL_FIELD_H
+#define TOILE_RENDER_DETAIL_FIELD_H
+
+#include "assets/image.h"
+
+#include <cglm/struct.h>
+
+struct tl_height_field {
+    const tl_image *heights; /* F32 x1, metres */
+    bool clamp_u, clamp_v;   /* else periodic */
+    float repeats_per_m[4];  /* rows of the matrix from (x, y) in metres to repeats */
+    float low_m, high_m;     /* of all heights */
+};
+
+/* A map that is `width_m` x `height_m` large on the surface. Heights that are not finite are not allowed. */
+struct tl_height_field tl_height_field_make(const tl_image *heights, float width_m, float height_m,
+                                            bool clamp_u, bool clamp_v);
+
+/* Bilinear, as GL reads level 0. */
+float tl_field_height(const struct tl_height_field *field, vec2s uv);
+/* uv moved along the surface. */
+vec2s tl_field_moved(const struct tl_height_field *field, vec2s uv, float x_m, float y_m);
+
+/* T_n = T_0 + h V_xy / V_z, or without the division: the height at uv is taken for that of all around it. */
+vec2s tl_field_parallax(const struct tl_height_field *field, vec2s uv, vec3s view, bool limited);
+
+/* Where a ray towards the viewer's side, which meets the mesh at uv, meets the field: `steps` of equal height
+ * from high_m to low_m, then `refine` halvings of the step in which it went under, then a straight line. */
+struct tl_relief {
+    vec2s uv;
+    float height_m;
+};
+struct tl_relief tl_field_relief(const struct tl_height_field *field, vec2s uv, vec3s view, int steps,
+                                 int refine);
+
+/* Whether a light is seen from a place on the field, 0 or 1, by `steps` of equal height up to high_m. */
+float tl_field_lit(const struct tl_height_field *field, const struct tl_relief *place, vec3s light,
+                   int steps);
+
+/* True where uv lies off a map that does not repeat: the silhouette's clip. */
+bool tl_field_is_outside(const struct tl_height_field *field, vec2s uv);
+
+#endif

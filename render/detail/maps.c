@@ -1,0 +1,266 @@
+#include "render/detail/maps.h"
+
+#include "config/memory.h"
+#include "render/detail/bake.h"
+#include "render/detail/detail.h"
+
+#include <epoxy/gl.h>
+
+#include <stdlib.h>
+#include <string.h>
+
+/* detail_flags beside 1 << unit, which say which maps there are: detail.glsl has the same numbers. */
+enum {
+    FLAG_OWN_MOMENTS = 1,
+    FLAG_WEAVE_MOMENTS = 2,
+    FLAG_HEIGHTS = 4,
+    FLAG_HORIZONS = 8,
+    FLAG_CLAMP_U = 16,
+    FLAG_CLAMP_V = 32
+};
+static const int unit_flags[TL_DETAIL_UNITS] = {[TL_DETAIL_HEIGHTS] = FLAG_HEIGHTS,
+                                                [TL_DETAIL_HORIZONS] = FLAG_HORIZONS,
+                                                [TL_DETAIL_OWN_MOMENTS] = FLAG_OWN_MOMENTS,
+                                                [TL_DETAIL_WEAVE_MOMENTS] = FLAG_WEAVE_MOMENTS};
+
+struct tl_detail_entry {
+    const tl_material
+        *material; /* of the part that it was made for; compared, and read while maps are made */
+    float uv_metres;
+    float low_m, high_m;
+    float rows[6];
+    int flags;
+    tl_texture textures[TL_DETAIL_UNITS];
+};
+
+static bool same_map(const struct tl_map *a, const struct tl_map *b)
+{
+    return a->image == b->image && memcmp(&a->transform, &b->transform, sizeof a->transform) == 0 &&
+           a->clamp_u == b->clamp_u && a->clamp_v == b->clamp_v;
+}
+
+static bool same_detail(const struct tl_detail_entry *entry, const tl_material *material, float uv_metres)
+{
+    const tl_material *made = entry->material;
+    return made->weave == material->weave && entry->uv_metres == uv_metres &&
+           same_map(&made->normal_map, &material->normal_map) &&
+           same_map(&made->height_map, &material->height_map) && made->height_m == material->height_m;
+}
+
+static void set_wrap(const tl_texture *texture, bool clamp_u, bool clamp_v)
+{
+    glTextureParameteri(texture->id, GL_TEXTURE_WRAP_S, clamp_u ? GL_CLAMP_TO_EDGE : GL_REPEAT);
+    glTextureParameteri(texture->id, GL_TEXTURE_WRAP_T, clamp_v ? GL_CLAMP_TO_EDGE : GL_REPEAT);
+}
+
+static tl_texture upload_heights(tl_gpu *gpu, const tl_image *image)
+{
+    tl_texture texture = tl_texture_create(gpu, GL_TEXTURE_2D, GL_R32F, image->width, image->height, 1,
+                                           tl_texture_full_levels(image->width, image->height));
+    glTextureSubImage2D(texture.id, 0, 0, 0, image->width, image->height, GL_RED, GL_FLOAT, image->texels);
+    glGenerateTextureMipmap(texture.id);
+    return texture;
+}
+
+/* Halves cannot tell the small variances of small maps' narrow lobes; of large maps the memory counts. */
+#define FLOAT_MOMENTS_SIDE 512
+
+static tl_texture upload_moments(tl_gpu *gpu, const tl_image *normals)
+{
+    tl_image moments = tl_bake_moments(normals);
+    int width = moments.width, height = moments.height;
+    GLenum format = width <= FLOAT_MOMENTS_SIDE && height <= FLOAT_MOMENTS_SIDE ? GL_RGBA32F : GL_RGBA16F;
+    tl_texture texture = tl_texture_create(gpu, GL_TEXTURE_2D, format, width, height, 1,
+                                           tl_texture_full_levels(width, height));
+    glTextureSubImage2D(texture.id, 0, 0, 0, width, height, GL_RGBA, GL_FLOAT, moments.texels);
+    glGenerateTextureMipmap(texture.id);
+    tl_image_release(&moments);
+    return texture;
+}
+
+/* Heights averaged until no side is longer than horizons are baked for. */
+static tl_image shrunk(const tl_image *image)
+{
+    int longest = image->width > image->height ? image->width : image->height;
+    int factor = (longest + TL_HORIZON_SIDE_MAX - 1) / TL_HORIZON_SIDE_MAX;
+    int width = image->width / factor > 1 ? image->width / factor : 1;
+    int height = image->height / factor > 1 ? image->height / factor : 1;
+    tl_image small = tl_image_create(width, height, 1, TL_IMAGE_F32);
+    for (int i = 0; i < width * height; i++) {
+        int left = (int)((int64_t)(i % width) * image->width / width),
+            top = (int)((int64_t)(i / width) * image->height / height);
+        int right = (int)((int64_t)(i % width + 1) * image->width / width),
+            bottom = (int)((int64_t)(i / width + 1) * image->height / height);
+        double sum = 0;
+        for (int y = top; y < bottom; y++)
+            for (int x = left; x < right; x++)
+                sum += (double)tl_image_floats(image)[(size_t)y * (size_t)image->width + (size_t)x];
+        tl_image_floats(&small)[i] = (float)(sum / ((double)(right - left) * (bottom - top)));
+    }
+    return small;
+}
+
+static tl_texture upload_horizons(tl_gpu *gpu, const struct tl_height_field *field)
+{
+    tl_image small = shrunk(field->heights);
+    struct tl_height_field baked = *field;
+    baked.heights = &small;
+    struct tl_horizon_maps maps = tl_bake_horizons(&baked);
+    tl_texture texture = tl_texture_create(gpu, GL_TEXTURE_2D_ARRAY, GL_RGBA8, small.width, small.height, 2,
+                                           tl_texture_full_levels(small.width, small.height));
+    for (int i = 0; i < 2; i++)
+        glTextureSubImage3D(texture.id, 0, 0, 0, i, small.width, small.height, 1, GL_RGBA, GL_UNSIGNED_BYTE,
+                            maps.images[i].texels);
+    glGenerateTextureMipmap(texture.id);
+    tl_horizon_maps_release(&maps);
+    tl_image_release(&small);
+    return texture;
+}
+
+static void add_heights(struct tl_detail_entry *entry, tl_gpu *gpu, const struct tl_detail_params *params)
+{
+    struct tl_detail_heights heights;
+    bool own_normals = tl_detail_has_own_normals(entry->material);
+    if (!tl_detail_wants_heights(params) && !tl_detail_wants_horizons(params) && !own_normals)
+        return;
+    if (!tl_detail_heights_make(entry->material, entry->uv_metres, params->height_scale, &heights))
+        return;
+    entry->low_m = heights.field.low_m;
+    entry->high_m = heights.field.high_m;
+    memcpy(entry->rows, heights.rows, sizeof entry->rows);
+    if (tl_detail_wants_heights(params))
+        entry->textures[TL_DETAIL_HEIGHTS] = upload_heights(gpu, &heights.image);
+    if (tl_detail_wants_horizons(params))
+        entry->textures[TL_DETAIL_HORIZONS] = upload_horizons(gpu, &heights.field);
+    if (own_normals) {
+        tl_image slopes = tl_bake_slopes(&heights.field), normals = tl_bake_normals(&slopes, 1);
+        entry->textures[TL_DETAIL_OWN_MOMENTS] = upload_moments(gpu, &normals);
+        tl_image_release(&slopes);
+        tl_image_release(&normals);
+    }
+    entry->flags |= (heights.field.clamp_u ? FLAG_CLAMP_U : 0) | (heights.field.clamp_v ? FLAG_CLAMP_V : 0);
+    for (int i = 0; i < TL_DETAIL_UNITS; i++)
+        if (entry->textures[i].id)
+            set_wrap(&entry->textures[i], heights.field.clamp_u, heights.field.clamp_v);
+    tl_detail_heights_release(&heights);
+}
+
+static void add_moments(struct tl_detail_entry *entry, tl_gpu *gpu)
+{
+    const struct tl_map *map = &entry->material->normal_map;
+    const tl_weave *weave = entry->material->weave;
+    if (map->image) {
+        entry->textures[TL_DETAIL_OWN_MOMENTS] = upload_moments(gpu, map->image);
+        set_wrap(&entry->textures[TL_DETAIL_OWN_MOMENTS], map->clamp_u, map->clamp_v);
+    }
+    if (weave && weave->normal.texels) {
+        entry->textures[TL_DETAIL_WEAVE_MOMENTS] = upload_moments(gpu, &weave->normal);
+        set_wrap(&entry->textures[TL_DETAIL_WEAVE_MOMENTS], false, false);
+    }
+}
+
+static struct tl_detail_entry make_entry(tl_gpu *gpu, const tl_material *material, float uv_metres,
+                                         const struct tl_detail_params *params)
+{
+    struct tl_detail_entry entry = {.material = material, .uv_metres = uv_metres};
+    add_heights(&entry, gpu, params);
+    if (tl_detail_wants_moments(params))
+        add_moments(&entry, gpu);
+    for (int i = 0; i < TL_DETAIL_UNITS; i++)
+        entry.flags |= entry.textures[i].id ? unit_flags[i] : 0;
+    return entry;
+}
+
+static bool check_size(tl_gpu *gpu, const tl_surface *surface, const tl_material *material, tl_error *error)
+{
+    const tl_image *image = material->height_map.image;
+    int limit = tl_gpu_texture_side_max(gpu);
+    if (image && (image->width > limit || image->height > limit))
+        return tl_fail(error, TL_INPUT,
+                       "%s: a height map of %d x %d texels is larger than GL holds: scale it to %d",
+                       surface->name, image->width, image->height, limit);
+    return true;
+}
+
+static int entry_for(struct tl_detail_maps *maps, tl_gpu *gpu, const tl_material *material, float uv_metres)
+{
+    if (!tl_detail_wants_maps(&maps->params, material))
+        return -1;
+    for (size_t i = 0; i < maps->entry_count; i++)
+        if (same_detail(&maps->entries[i], material, uv_metres))
+            return (int)i;
+    maps->entries = tl_resize(maps->entries, maps->entry_count + 1, sizeof *maps->entries);
+    maps->entries[maps->entry_count] = make_entry(gpu, material, uv_metres, &maps->params);
+    return (int)maps->entry_count++;
+}
+
+bool tl_detail_maps_make(struct tl_detail_maps *maps, tl_gpu *gpu, const tl_surface *const *surfaces,
+                         size_t count, const struct tl_detail_params *params, tl_error *error)
+{
+    tl_detail_maps_release(maps);
+    maps->params = *params;
+    maps->surface_count = count;
+    maps->first_parts = TL_NEW_ARRAY(size_t, count);
+    for (size_t s = 0; s < count; s++) {
+        maps->first_parts[s] = maps->part_count;
+        maps->part_count += surfaces[s]->part_count;
+    }
+    maps->entry_of_part = TL_NEW_ARRAY(int, maps->part_count);
+    for (size_t s = 0; s < count; s++)
+        for (size_t p = 0; p < surfaces[s]->part_count; p++) {
+            const struct tl_mesh_part *part = &surfaces[s]->parts[p];
+            const tl_material *material = &surfaces[s]->materials[part->material];
+            if (!check_size(gpu, surfaces[s], material, error)) {
+                tl_detail_maps_release(maps);
+                return false;
+            }
+            maps->entry_of_part[maps->first_parts[s] + p] = entry_for(maps, gpu, material, part->uv_metres);
+        }
+    return true;
+}
+
+void tl_detail_maps_release(struct tl_detail_maps *maps)
+{
+    for (size_t i = 0; i < maps->entry_count; i++)
+        for (int unit = 0; unit < TL_DETAIL_UNITS; unit++)
+            tl_texture_destroy(&maps->entries[i].textures[unit]);
+    free(maps->entries);
+    free(maps->entry_of_part);
+    free(maps->first_parts);
+    *maps = (struct tl_detail_maps){.params = maps->params};
+}
+
+static const struct tl_detail_entry *entry_of(const struct tl_detail_maps *maps, size_t surface, size_t part)
+{
+    if (!maps || surface >= maps->surface_count)
+        return NULL;
+    size_t number = maps->first_parts[surface] + part;
+    int entry = number < maps->part_count ? maps->entry_of_part[number] : -1;
+    return entry >= 0 ? &maps->entries[entry] : NULL;
+}
+
+void tl_detail_maps_bind(const struct tl_detail_maps *maps, size_t surface, size_t part, float uv_metres,
+                         int first_location, int first_unit)
+{
+    static const struct tl_detail_entry none;
+    const struct tl_detail_entry *entry = entry_of(maps, surface, part);
+    float scale = maps ? maps->params.height_scale : 1;
+    entry = entry ? entry : &none;
+    glUniform1i(first_location + TL_DETAIL_FLAGS, entry->flags);
+    glUniform4f(first_location + TL_DETAIL_RANGE, entry->low_m, entry->high_m, uv_metres, scale);
+    glUniform3fv(first_location + TL_DETAIL_ROWS, 2, entry->rows);
+    if (maps)
+        glUniform2i(first_location + TL_DETAIL_STEPS, maps->params.steps, maps->params.refine);
+    for (int i = 0; i < TL_DETAIL_UNITS; i++)
+        if (entry->textures[i].id)
+            glBindTextureUnit((GLuint)(first_unit + i), entry->textures[i].id);
+}
+
+size_t tl_detail_maps_bytes(const struct tl_detail_maps *maps)
+{
+    size_t bytes = 0;
+    for (size_t i = 0; i < maps->entry_count; i++)
+        for (int unit = 0; unit < TL_DETAIL_UNITS; unit++)
+            bytes += tl_texture_bytes(&maps->entries[i].textures[unit]);
+    return bytes;
+}

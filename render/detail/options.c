@@ -1,0 +1,27 @@
+#include "render/detail/options.h"
+
+static const char *const mode_names[] = {"normal", "blinn", "parallax", "parallax_limited", "relief", NULL};
+static const char *const shadow_names[] = {"none", "horizon", "relief", NULL};
+static const char *const minify_names[] = {"none", "toksvig", "lean", NULL};
+
+typedef struct tl_detail_params params;
+static const struct tl_option rows[] = {
+    TL_OPTION_ENUM(
+        params, mode, mode_names,
+        "how bumps are seen: normal and blinn bend the light, parallax and relief also move what is seen"),
+    TL_OPTION_INT(params, steps, 1, 1024, "",
+                  "relief: steps through the heights; more miss less at grazing views"),
+    TL_OPTION_INT(params, refine, 0, 32, "",
+                  "relief: halvings of the step that was too far; more are exacter"),
+    TL_OPTION_ENUM(params, shadow, shadow_names,
+                   "shadows of bumps on their own surface; relief: those of lamps by steps, not by maps"),
+    TL_OPTION_FLOAT(params, height_scale, 0, 100, "", "factor on the heights of weaves and height maps"),
+    TL_OPTION_BOOL(params, silhouette,
+                   "relief: nothing is seen beyond the border of a map that does not repeat"),
+    TL_OPTION_ENUM(
+        params, minify, minify_names,
+        "how bumps too small to be seen dull the gloss; none: they vanish, and far cloth turns to plastic"),
+};
+const struct tl_option_table tl_detail_options = TL_OPTION_TABLE(
+    "detail", "fabric detail: bumps, their depth and their shadows", rows, params, .steps = 32, .refine = 5,
+    .height_scale = 1, .silhouette = true, .minify = TL_DETAIL_MINIFY_LEAN);

@@ -1,0 +1,144 @@
+#include "render/env/levels.h"
+
+#include "config/memory.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+
+static struct tl_sphere_map map_of(enum tl_layout layout, int size)
+{
+    int64_t width, height;
+    tl_layout_extent(layout, size, &width, &height);
+    return (struct tl_sphere_map){layout, (int)width, (int)height};
+}
+
+static size_t texel_count(const struct tl_sphere_map *map)
+{
+    return (size_t)map->width * (size_t)map->height;
+}
+
+static double *first_solid_angles(const struct tl_sphere_map *map)
+{
+    double *solid_angles = TL_NEW_ARRAY(double, texel_count(map));
+#pragma omp parallel for
+    for (int y = 0; y < map->height; y++)
+        for (int x = 0; x < map->width; x++)
+            solid_angles[(size_t)y * (size_t)map->width + (size_t)x] = tl_layout_solid_angle(map, x, y);
+    return solid_angles;
+}
+
+/* Numbers of the four finer texels under one; the pieces of every layout have even sides. */
+static void find_four(int finer_width, int x, int y, size_t four[4])
+{
+    for (int i = 0; i < 4; i++)
+        four[i] = (size_t)(2 * y + (i >> 1)) * (size_t)finer_width + (size_t)(2 * x + (i & 1));
+}
+
+static double *summed_solid_angles(const struct tl_levels *levels, int level)
+{
+    const struct tl_sphere_map *map = &levels->maps[level];
+    double *solid_angles = TL_NEW_ARRAY(double, texel_count(map));
+    for (int y = 0; y < map->height; y++)
+        for (int x = 0; x < map->width; x++) {
+            size_t four[4];
+            find_four(2 * map->width, x, y, four);
+            for (int i = 0; i < 4; i++)
+                solid_angles[(size_t)y * (size_t)map->width + (size_t)x] +=
+                    levels->solid_angles[level - 1][four[i]];
+        }
+    return solid_angles;
+}
+
+struct tl_levels tl_levels_create(enum tl_layout layout, int size)
+{
+    assert(size > 0 && (size & (size - 1)) == 0 && size <= 1 << (TL_LEVELS_MAX - 1));
+    struct tl_levels levels = {.count = 0};
+    for (; size > 0; size /= 2) {
+        int level = levels.count++;
+        levels.maps[level] = map_of(layout, size);
+        levels.solid_angles[level] =
+            level == 0 ? first_solid_angles(&levels.maps[0]) : summed_solid_angles(&levels, level);
+    }
+    return levels;
+}
+
+void tl_levels_release(struct tl_levels *levels)
+{
+    for (int level = 0; level < levels->count; level++)
+        free(levels->solid_angles[level]);
+    *levels = (struct tl_levels){0};
+}
+
+bool tl_levels_reads_first(const struct tl_sphere_map *map, int x, int y)
+{
+    if (map->layout != TL_LAYOUT_PARABOLOID)
+        return true;
+    double radius = 0.5 * map->height;
+    return x < map->height && hypot(x + 0.5 - radius, y + 0.5 - radius) < radius - 1;
+}
+
+/* Where on the sphere's part of the picture a texel outside of the discs finds what it is to show: the other
+ * paraboloid in its direction, and the ball's nearest rim. */
+static int find_shown(const struct tl_sphere_map *map, int x, int y, double *shown_x, double *shown_y)
+{
+    if (map->layout == TL_LAYOUT_PARABOLOID)
+        return tl_layout_locate(map, tl_layout_direction(map, x + 0.5, y + 0.5), shown_x, shown_y);
+    double radius = 0.5 * map->height, across = x + 0.5 - radius, down = y + 0.5 - radius;
+    double length = hypot(across, down);
+    *shown_x = radius * (1 + across / length);
+    *shown_y = radius * (1 + down / length);
+    return 0;
+}
+
+/* Bilinear among the texels that cover some of the sphere. */
+static void show_neighbour(const struct tl_levels *levels, int level, int x, int y, float *texels)
+{
+    const struct tl_sphere_map *map = &levels->maps[level];
+    double place_x, place_y, weights = 0, sum[3] = {0, 0, 0};
+    struct tl_layout_piece piece = tl_layout_piece(map, find_shown(map, x, y, &place_x, &place_y));
+    int left = (int)floor(place_x - 0.5), top = (int)floor(place_y - 0.5);
+    for (int i = 0; i < 4; i++) {
+        int column = left + (i & 1), row = top + (i >> 1);
+        if (column < piece.x0 || column >= piece.x1 || row < piece.y0 || row >= piece.y1)
+            continue;
+        size_t texel = (size_t)row * (size_t)map->width + (size_t)column;
+        double weight = fmax(1 - fabs(place_x - 0.5 - column), 0) * fmax(1 - fabs(place_y - 0.5 - row), 0);
+        if (levels->solid_angles[level][texel] <= 0)
+            continue;
+        weights += weight;
+        for (size_t c = 0; c < 3; c++)
+            sum[c] += weight * (double)texels[4 * texel + c];
+    }
+    for (size_t c = 0; c < 3 && weights > 0; c++)
+        texels[4 * ((size_t)y * (size_t)map->width + (size_t)x) + c] = (float)(sum[c] / weights);
+}
+
+static void fill_outside(const struct tl_levels *levels, int level, float *texels)
+{
+    const struct tl_sphere_map *map = &levels->maps[level];
+    for (int y = 0; y < map->height; y++)
+        for (int x = 0; x < map->width; x++)
+            if (levels->solid_angles[level][(size_t)y * (size_t)map->width + (size_t)x] <= 0)
+                show_neighbour(levels, level, x, y, texels);
+}
+
+void tl_levels_halve(const struct tl_levels *levels, int level, const float *finer, float *coarser)
+{
+    const struct tl_sphere_map *map = &levels->maps[level];
+    const double *weights = levels->solid_angles[level - 1];
+#pragma omp parallel for
+    for (int y = 0; y < map->height; y++)
+        for (int x = 0; x < map->width; x++) {
+            size_t four[4], texel = (size_t)y * (size_t)map->width + (size_t)x;
+            double sum[3] = {0, 0, 0}, whole = levels->solid_angles[level][texel];
+            find_four(2 * map->width, x, y, four);
+            for (int i = 0; i < 4; i++)
+                for (size_t c = 0; c < 3; c++)
+                    sum[c] += weights[four[i]] * (double)finer[4 * four[i] + c];
+            for (size_t c = 0; c < 3; c++)
+                coarser[4 * texel + c] = whole > 0 ? (float)(sum[c] / whole) : 0;
+            coarser[4 * texel + 3] = tl_levels_reads_first(map, x, y) ? 1 : 0;
+        }
+    fill_outside(levels, level, coarser);
+}

@@ -1,0 +1,305 @@
+#include "render/envmap/envmap.h"
+
+#include "config/memory.h"
+#include "render/brdf/brdf.h"
+#include "render/shaders.h"
+
+#include <epoxy/gl.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Uniform locations of envmap.frag and what it includes; sample.glsl has 1 and 2. */
+enum { EYE = 1, TEXEL_REACH = 3, PART_COUNT, TURN, SLOTS, FRONT_MATRIX = 40, BACK_MATRIX };
+/* Texture units; the G-buffer's layers come first. */
+enum { LEVELS_UNIT = 5, MAPS_UNIT, FRESNEL_UNIT };
+#define PARTS_BINDING 1
+#define COSINES       256 /* of the Fresnel table: its error is a fifteenth of a per mille */
+#define TEXEL_BYTES   16  /* RGBA32F: no light is too bright for it */
+
+/* std430: struct Part in envmap.frag. */
+struct part {
+    uint32_t first_triangle;
+    float index;
+    uint32_t is_ground;
+};
+
+/* Layers of an array texture that one picture takes. */
+static int layers_of(enum tl_layout layout)
+{
+    return layout == TL_LAYOUT_CUBE ? 6 : layout == TL_LAYOUT_PARABOLOID ? 2 : 1;
+}
+
+void tl_envmap_release(struct tl_envmap *envmap)
+{
+    for (size_t i = 0; i < envmap->variant_count; i++) {
+        tl_program_destroy(&envmap->variants[i].program);
+        free(envmap->variants[i].defines);
+    }
+    free(envmap->variants);
+    tl_texture_destroy(&envmap->maps);
+    tl_texture_destroy(&envmap->fresnel);
+    tl_levels_release(&envmap->levels);
+    if (envmap->parts_buffer)
+        glDeleteBuffers(1, &envmap->parts_buffer);
+    *envmap = (struct tl_envmap){0};
+}
+
+bool tl_envmap_reload(struct tl_envmap *envmap, tl_error *error)
+{
+    bool fine = true;
+    for (size_t i = 0; i < envmap->variant_count; i++)
+        fine = fine && tl_program_reload(&envmap->variants[i].program, error);
+    return fine;
+}
+
+size_t tl_envmap_bytes(const struct tl_envmap *envmap)
+{
+    return tl_texture_bytes(&envmap->maps) + tl_texture_bytes(&envmap->fresnel) + envmap->parts_bytes;
+}
+
+uint64_t tl_envmap_bytes_needed(const struct tl_maps_params *params, uint32_t exponents)
+{
+    int64_t width, height;
+    tl_layout_extent((enum tl_layout)params->layout, params->size, &width, &height);
+    uint64_t texels = (uint64_t)width * (uint64_t)height;
+    return (uint64_t)__builtin_popcount(exponents) * (texels + texels / 2) *
+           TEXEL_BYTES; /* levels: a third */
+}
+
+/* Rows of the world's axes in the picture's frame. */
+static mat3s world_to_picture(enum tl_layout layout, const mat3s *into_world, const struct tl_view *view)
+{
+    mat3s axes = *into_world;
+    if (layout == TL_LAYOUT_SPHERE) {
+        axes.col[0] = glms_vec3_normalize(view->right);
+        axes.col[1] = glms_vec3_normalize(view->up);
+        axes.col[2] = glms_vec3_negate(view->forward);
+    }
+    return glms_mat3_transpose(axes);
+}
+
+static void allocate(struct tl_envmap *envmap, tl_gpu *gpu, enum tl_layout layout, int size, int slot_count)
+{
+    const struct tl_sphere_map *map = &envmap->levels.maps[0];
+    bool is_cube = layout == TL_LAYOUT_CUBE;
+    if (envmap->levels.count == 0 || map->layout != layout || tl_layout_size(map) != size) {
+        tl_levels_release(&envmap->levels);
+        envmap->levels = tl_levels_create(layout, size);
+    }
+    int layers = layers_of(layout) * slot_count, width = layout == TL_LAYOUT_LATLONG ? 2 * size : size;
+    if (envmap->layout == layout && envmap->maps.width == width && envmap->maps.layers == layers)
+        return;
+    tl_texture_destroy(&envmap->maps);
+    envmap->layout = layout;
+    envmap->maps = tl_texture_create(gpu, is_cube ? GL_TEXTURE_CUBE_MAP_ARRAY : GL_TEXTURE_2D_ARRAY,
+                                     GL_RGBA32F, width, size, layers, envmap->levels.count);
+    if (layout == TL_LAYOUT_LATLONG)
+        glTextureParameteri(envmap->maps.id, GL_TEXTURE_WRAP_S, GL_REPEAT);
+}
+
+/* A cube's faces lie below one another in the picture, as layers do in a texture; discs lie side by side. */
+static void upload(const struct tl_envmap *envmap, const struct tl_picture *picture, int slot)
+{
+    int layers = layers_of(envmap->layout), across = envmap->layout == TL_LAYOUT_PARABOLOID ? 2 : 1;
+    int at_once = layers / across;
+    for (int level = 0; level < picture->level_count; level++) {
+        const struct tl_sphere_map *map = &envmap->levels.maps[level];
+        glPixelStorei(GL_UNPACK_ROW_LENGTH, map->width);
+        for (int part = 0; part < across; part++) {
+            glPixelStorei(GL_UNPACK_SKIP_PIXELS, part * map->width / across);
+            glTextureSubImage3D(envmap->maps.id, level, 0, 0, layers * slot + part, map->width / across,
+                                map->height / at_once, at_once, GL_RGBA, GL_FLOAT, picture->texels[level]);
+        }
+    }
+    glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+    glPixelStorei(GL_UNPACK_SKIP_PIXELS, 0);
+}
+
+void tl_envmap_fill(struct tl_envmap *envmap, tl_gpu *gpu, const struct tl_maps_params *params,
+                    const struct tl_lobes *lobes, const mat3s *into_world, const struct tl_view *view)
+{
+    enum tl_layout layout = (enum tl_layout)params->layout;
+    allocate(envmap, gpu, layout, params->size, __builtin_popcount(lobes->made));
+    envmap->turn = world_to_picture(layout, into_world, view);
+    mat3s from_picture = glms_mat3_mul(glms_mat3_transpose(*into_world), glms_mat3_transpose(envmap->turn));
+    int slot = 0;
+    for (int exponent = 0; exponent <= TL_EXPONENT_COUNT; exponent++) {
+        envmap->slots[exponent] = -1;
+        if (!(lobes->made & 1u << exponent))
+            continue;
+        struct tl_picture picture = tl_picture_pour(&envmap->levels, lobes, exponent, from_picture);
+        upload(envmap, &picture, slot);
+        tl_picture_release(&picture);
+        envmap->slots[exponent] = slot++;
+    }
+}
+
+static size_t count_parts(const struct tl_triangle_ranges *ranges)
+{
+    size_t count = 0;
+    for (size_t s = 0; s < ranges->surface_count; s++)
+        count += ranges->surfaces[s]->part_count;
+    return count;
+}
+
+/* What a part is told by, until its place in the order is known. */
+struct told {
+    uint32_t first_triangle;
+    const tl_material *material;
+    bool is_ground;
+};
+
+static int by_first_triangle(const void *a, const void *b)
+{
+    uint32_t first = ((const struct told *)a)->first_triangle,
+             second = ((const struct told *)b)->first_triangle;
+    return (first > second) - (first < second);
+}
+
+static size_t list_parts(const struct tl_triangle_ranges *ranges, bool has_ground, struct told *told)
+{
+    size_t count = 0;
+    for (size_t s = 0; s < ranges->surface_count; s++) {
+        const tl_surface *surface = ranges->surfaces[s];
+        bool is_ground = has_ground && s + 1 == ranges->surface_count;
+        for (size_t p = 0; p < surface->part_count; p++)
+            if (surface->parts[p].index_count > 0)
+                told[count++] = (struct told){ranges->first[s] + surface->parts[p].first_index / 3,
+                                              &surface->materials[surface->parts[p].material], is_ground};
+    }
+    qsort(told, count, sizeof *told, by_first_triangle);
+    return count;
+}
+
+static void send_parts(struct tl_envmap *envmap, const struct told *told, size_t count)
+{
+    struct part *parts = TL_NEW_ARRAY(struct part, count + 1); /* GL has no empty buffers */
+    for (size_t i = 0; i < count; i++)
+        parts[i] =
+            (struct part){told[i].first_triangle, fmaxf(told[i].material->gloss.index, 1), told[i].is_ground};
+    if (!envmap->parts_buffer)
+        glCreateBuffers(1, &envmap->parts_buffer);
+    envmap->parts_bytes = (count + 1) * sizeof *parts;
+    envmap->part_count = (int)count;
+    glNamedBufferData(envmap->parts_buffer, (GLsizeiptr)envmap->parts_bytes, parts, GL_STATIC_DRAW);
+    free(parts);
+}
+
+/* Parts beyond what a texture can hold share its last row. */
+static void send_fresnel(struct tl_envmap *envmap, tl_gpu *gpu, const struct told *told, size_t count)
+{
+    size_t most = (size_t)tl_gpu_texture_side_max(gpu), rows = count < most ? count : most;
+    float *texels = TL_NEW_ARRAY(float, 4 * COSINES * (rows + 1));
+    for (size_t row = 0; row < rows; row++) {
+        const tl_material *material = told[row].material;
+        struct tl_brdf brdf = tl_brdf_of(material, material->specular, material->glossiness);
+        for (size_t i = 0; i < COSINES; i++) {
+            vec3s reflectance = tl_brdf_fresnel(&brdf, (float)i / (COSINES - 1));
+            memcpy(texels + 4 * (row * COSINES + i), reflectance.raw, sizeof reflectance);
+        }
+    }
+    int height = rows > 0 ? (int)rows : 1;
+    if (envmap->fresnel.height != height) {
+        tl_texture_destroy(&envmap->fresnel);
+        envmap->fresnel = tl_texture_create(gpu, GL_TEXTURE_2D, GL_RGBA32F, COSINES, height, 1, 1);
+    }
+    glTextureSubImage2D(envmap->fresnel.id, 0, 0, 0, COSINES, height, GL_RGBA, GL_FLOAT, texels);
+    free(texels);
+}
+
+void tl_envmap_set_parts(struct tl_envmap *envmap, tl_gpu *gpu, const struct tl_triangle_ranges *ranges,
+                         bool has_ground)
+{
+    struct told *told = TL_NEW_ARRAY(struct told, count_parts(ranges));
+    envmap->has_ground = has_ground;
+    size_t count = list_parts(ranges, has_ground, told);
+    send_parts(envmap, told, count);
+    send_fresnel(envmap, gpu, told, count);
+    free(told);
+}
+
+static bool by_matrix(const struct tl_envmap *envmap, const struct tl_maps_params *params)
+{
+    return envmap->layout == TL_LAYOUT_PARABOLOID && params->look_up == TL_LOOK_UP_MATRIX;
+}
+
+static char *defines_of(const struct tl_envmap *envmap, const struct tl_maps_params *params)
+{
+    static const char *const layouts[TL_LAYOUT_COUNT] = {"CUBE", "SPHERE", "PARABOLOID", "LATLONG",
+                                                         "OCTAHEDRAL"};
+    return tl_format("#define %s\n#define MODE %d\n#define COMPOSITION %d\n%s%s%s", layouts[envmap->layout],
+                     params->mode, params->fresnel, by_matrix(envmap, params) ? "#define MATRIX\n" : "",
+                     envmap->has_ground ? "#define GROUND\n" : "", params->minify ? "#define MINIFY\n" : "");
+}
+
+static const tl_program *program_of(struct tl_envmap *envmap, tl_gpu *gpu,
+                                    const struct tl_maps_params *params, tl_error *error)
+{
+    char *defines = defines_of(envmap, params);
+    for (size_t i = 0; i < envmap->variant_count; i++)
+        if (strcmp(envmap->variants[i].defines, defines) == 0) {
+            free(defines);
+            return &envmap->variants[i].program;
+        }
+    struct tl_envmap_variant variant = {.defines = defines};
+    if (!tl_program_create_variant(gpu, tl_embedded_shaders, "fullscreen.vert", "envmap.frag", defines,
+                                   &variant.program, error)) {
+        free(defines);
+        return NULL;
+    }
+    envmap->variants = tl_resize(envmap->variants, envmap->variant_count + 1, sizeof variant);
+    envmap->variants[envmap->variant_count] = variant;
+    return &envmap->variants[envmap->variant_count++].program;
+}
+
+/* P S M^-1 of equation 7, with the texture's own scale: (x, y, z, 1) -> (x, y) / (1 + z) from [-1, 1] to
+ * [0, 1], rows downwards; M^-1 takes the world to the picture. */
+static void set_matrices(const mat3s *turn)
+{
+    mat3s axes = *turn;
+    mat4s into_picture = glms_mat4_identity();
+    glm_mat4_ins3(axes.raw, into_picture.raw);
+    for (int back = 0; back < 2; back++) {
+        float side = back ? -1 : 1;
+        const mat4s add_axis = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, side, 0}, {0, 0, 1, 1}}};
+        const mat4s project = {{{0.5f * side, 0, 0, 0}, {0, -0.5f, 0, 0}, {0.5f, 0.5f, 1, 1}, {0, 0, 0, 0}}};
+        mat4s matrix = glms_mat4_mul(glms_mat4_mul(project, add_axis), into_picture);
+        glUniformMatrix4fv(back ? BACK_MATRIX : FRONT_MATRIX, 1, GL_FALSE, matrix.raw[0]);
+    }
+}
+
+/* Root of the mean solid angle of a texel, rad. */
+static float texel_reach(const struct tl_levels *levels)
+{
+    const struct tl_sphere_map *map = &levels->maps[0];
+    float discs = map->layout == TL_LAYOUT_SPHERE || map->layout == TL_LAYOUT_PARABOLOID ? GLM_PI_4f : 1;
+    return sqrtf(4 * GLM_PIf / (discs * (float)map->width * (float)map->height));
+}
+
+bool tl_envmap_draw(struct tl_envmap *envmap, tl_gpu *gpu, const struct tl_envmap_request *request,
+                    tl_error *error)
+{
+    const tl_program *program = program_of(envmap, gpu, request->params, error);
+    if (!program)
+        return false;
+    glUseProgram(program->id);
+    glUniform3fv(EYE, 1, request->eye.raw);
+    glUniform1f(TEXEL_REACH, texel_reach(&envmap->levels));
+    glUniform1i(PART_COUNT, envmap->part_count);
+    glUniform1iv(SLOTS, TL_EXPONENT_COUNT + 1, envmap->slots);
+    if (by_matrix(envmap, request->params))
+        set_matrices(&envmap->turn);
+    else
+        glUniformMatrix3fv(TURN, 1, GL_FALSE, envmap->turn.raw[0]);
+    glTextureParameteri(request->triangles->id, GL_TEXTURE_MIN_FILTER, GL_NEAREST); /* numbers do not blend */
+    glTextureParameteri(request->triangles->id, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    glBindTextureUnit(TL_GBUFFER_TRIANGLE, request->triangles->id);
+    glBindTextureUnit(LEVELS_UNIT, request->exponent_levels->id);
+    glBindTextureUnit(MAPS_UNIT, envmap->maps.id);
+    glBindTextureUnit(FRESNEL_UNIT, envmap->fresnel.id);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, PARTS_BINDING, envmap->parts_buffer);
+    tl_gpu_draw_fullscreen(gpu);
+    return true;
+}

@@ -1,0 +1,146 @@
+#version 450 core
+// The light of every sample of the G-buffer by look-ups in an environment map (envmap.h). MODE and COMPOSITION are
+// #defined as numbers below; GROUND: the ground is drawn, in its own way; MINIFY: what mirrors show is taken from mip
+// levels.
+#include "exponents.glsl"
+#include "look_up.glsl"
+#include "sample.glsl"
+
+const int SURFACE = 0, MIRROR = 1, REFRACTION = 2, DIFFUSE = 3, GLOSSY = 4, TRANSMISSION = 5;
+const int OFF = 0, ADDITIVE = 1, COAT = 2;
+const int ENVIRONMENT = 31; // as if it were the exponent after the last
+const uint TRIANGLE_BACK = 0x80000000u;
+
+layout(location = 4) uniform int part_count;
+layout(location = 6) uniform int slots[32];
+layout(location = 3) uniform float texel_reach; // root of a texel's mean solid angle
+
+layout(binding = 4) uniform usampler2D triangles;
+layout(binding = 7) uniform sampler2D fresnel; // F over the cosine, a row for each part
+
+struct Part {
+    uint first_triangle; // counted through all surfaces, from 0
+    float index;         // of refraction
+    uint is_ground;
+};
+layout(std430, binding = 1) readonly buffer Parts
+{
+    Part parts[];
+};
+
+layout(location = 0) out vec4 light;
+
+// Parts come in the order of their triangles.
+int part_of(uint triangle)
+{
+    int low = 0, high = part_count - 1;
+    while (low < high) {
+        int middle = (low + high + 1) / 2;
+        if (parts[middle].first_triangle <= triangle)
+            low = middle;
+        else
+            high = middle - 1;
+    }
+    return low;
+}
+
+// A pixel's reach over the sphere. Where two surfaces meet one of its two sides is no measure, so the lesser is taken.
+float level_of(vec3 d)
+{
+    vec3 across = dFdx(d), down = dFdy(d);
+    float square = min(dot(across, across), dot(down, down));
+    return 0.5 * log2(max(square / (texel_reach * texel_reach), 1.0));
+}
+
+vec3 environment(vec3 d)
+{
+#ifdef MINIFY
+    return look_up(d, slots[ENVIRONMENT], level_of(d));
+#else
+    return look_up(d, slots[ENVIRONMENT], 0.0);
+#endif
+}
+
+vec3 irradiance(vec3 d)
+{
+    return look_up(d, slots[0], 0.0);
+}
+
+// E(d, s), between the two exponents that stand for s.
+vec3 lobe_light(vec3 d, float glossiness)
+{
+    float level = exponent_level(1.0 / max(1.0 - glossiness, 1e-6));
+    int exponent = clamp(int(level), 0, ENVIRONMENT - 1);
+    float weight = level - float(exponent);
+    vec3 lower = look_up(d, slots[exponent], 0.0);
+    return weight > 0.0 ? mix(lower, look_up(d, slots[exponent + 1], 0.0), min(weight, 1.0)) : lower;
+}
+
+// Snell's law for the view vector -v: `ratio` is the index on the viewer's side over the one on the other.
+vec3 refracted(vec3 v, vec3 n, vec3 mirror, float ratio)
+{
+    float cosine = clamp(dot(n, v), 0.0, 1.0), square = 1.0 - ratio * ratio * (1.0 - cosine * cosine);
+    return square < 0.0 ? mirror : normalize((ratio * cosine - sqrt(square)) * n - ratio * v);
+}
+
+vec3 reflectance(int part, float cosine)
+{
+    ivec2 size = textureSize(fresnel, 0);
+    float row = (float(min(part, size.y - 1)) + 0.5) / float(size.y);
+    return textureLod(fresnel, vec2((cosine * float(size.x - 1) + 0.5) / float(size.x), row), 0.0).rgb;
+}
+
+// What a mirror reflects, and what lies under it.
+vec3 over_light(int mode, Sample place)
+{
+    if (mode == MIRROR || mode == REFRACTION)
+        return environment(place.mirror);
+    return mode == DIFFUSE ? vec3(0.0) : lobe_light(place.mirror, place.glossiness);
+}
+
+vec3 under_light(int mode, Sample place, vec3 v, float ratio)
+{
+    if (mode == REFRACTION)
+        return environment(refracted(v, place.normal, place.mirror, ratio));
+    if (mode == TRANSMISSION)
+        return place.kd * lobe_light(-v, place.glossiness);
+    return mode == GLOSSY ? vec3(0.0) : place.kd * irradiance(place.normal);
+}
+
+vec3 light_of(int mode, Sample place, vec3 v, float ratio)
+{
+    switch (mode) {
+    case MIRROR:
+        return over_light(mode, place);
+    case REFRACTION:
+    case TRANSMISSION:
+    case DIFFUSE:
+        return under_light(mode, place, v, ratio);
+    default:
+        return place.ks * over_light(mode, place) + under_light(mode, place, v, ratio);
+    }
+}
+
+void main()
+{
+    ivec2 texel = ivec2(gl_FragCoord.xy);
+    Sample place = read_sample(texel);
+    uint triangle = texelFetch(triangles, texel, 0).r;
+    int number = part_of((triangle & ~TRIANGLE_BACK) - 1u);
+    Part part = parts[number];
+    float ratio = (triangle & TRIANGLE_BACK) != 0u ? part.index : 1.0 / part.index;
+    vec3 to_eye = eye - place.point;
+    vec3 v = to_eye * inversesqrt(max(dot(to_eye, to_eye), 1e-30)), colour;
+    if (COMPOSITION == OFF) {
+        colour = light_of(MODE, place, v, ratio);
+    } else {
+        vec3 f = reflectance(number, clamp(dot(place.normal, v), 0.0, 1.0));
+        colour = f * over_light(MODE, place) +
+                 (COMPOSITION == COAT ? 1.0 - f : vec3(1.0)) * under_light(MODE, place, v, ratio);
+    }
+#ifdef GROUND
+    if (part.is_ground != 0u)
+        colour = light_of(SURFACE, place, v, ratio);
+#endif
+    light = vec4(colour * place.cover, 0.0);
+}

@@ -1,0 +1,158 @@
+// The reflectance models of render/brdf/brdf.h, evaluated directly. MODEL, FACETS, MASKING and FRESNEL are numbers of
+// assets/material.h's enums.
+#include "lamp.glsl"
+#include "power.glsl"
+#include "tables.glsl"
+
+layout(location = 71) uniform vec2 gloss_optics; // index, extinction
+
+const int PHONG = 0, BLINN_PHONG = 1, COSINE_LOBE = 2, TORRANCE_SPARROW = 3, WARD = 4, BANKS = 5;
+const int GAUSSIAN = 0, BECKMANN = 1;
+const int SMITH = 0, V_GROOVES = 1;
+const int SCHLICK = 0, DIELECTRIC = 1, CONDUCTOR = 2;
+
+const float PI = 3.14159265;
+
+float lobe_exponent(float glossiness)
+{
+    return min(1.0 / max(1.0 - glossiness, 1e-6), 1e6); // tl_lobe_exponent
+}
+
+vec2 widths_of(float exponent)
+{
+    float from_exponent = sqrt(2.0 / (4.0 * exponent + 2.0));
+    vec2 width = vec2(gloss_widths.x > 0.0 ? gloss_widths.x : from_exponent,
+                      gloss_widths.y > 0.0 ? gloss_widths.y : from_exponent);
+    return clamp(width, 1e-3, 1.0);
+}
+
+float fresnel_dielectric(float index, float cosine)
+{
+    float inside2 = index * index - (1.0 - cosine * cosine);
+    if (inside2 <= 0.0 || cosine <= 0.0)
+        return 1.0;
+    float g = sqrt(inside2), s = (cosine - g) / (cosine + g);
+    float p = (index * index * cosine - g) / (index * index * cosine + g);
+    return clamp(0.5 * (s * s + p * p), 0.0, 1.0);
+}
+
+float fresnel_conductor(float n, float k, float cosine)
+{
+    float c = cosine, s2 = 1.0 - c * c, real = n * n - k * k - s2;
+    if (k == 0.0)
+        return fresnel_dielectric(n, c);
+    float size = sqrt(real * real + 4.0 * n * n * k * k), p = sqrt(max(0.5 * (size + real), 0.0));
+    float across = (size - 2.0 * p * c + c * c) / max(size + 2.0 * p * c + c * c, 1e-12);
+    float along = (c * c * size - 2.0 * p * c * s2 + s2 * s2) / max(c * c * size + 2.0 * p * c * s2 + s2 * s2, 1e-12);
+    return clamp(0.5 * across * (1.0 + along), 0.0, 1.0);
+}
+
+// What the model reflects of its lobe, which PHONG and BANKS take towards the viewer's cosine, as the G-buffer does.
+vec3 fresnel(vec3 f0, Cosines c)
+{
+    float cosine = clamp(MODEL == PHONG || MODEL == BANKS ? c.b : c.t, 0.0, 1.0);
+    if (FRESNEL == DIELECTRIC)
+        return f0 * fresnel_dielectric(gloss_optics.x, cosine);
+    if (FRESNEL == CONDUCTOR)
+        return f0 * fresnel_conductor(gloss_optics.x, gloss_optics.y, cosine);
+    float away = 1.0 - cosine, away2 = away * away;
+    return f0 + (min(50.0 * f0, vec3(1.0)) - f0) * (away2 * away2 * away);
+}
+
+// Built in, it is only good to the fourth digit.
+float arc_tangent(float x)
+{
+    float y = x * x;
+    if (x > 0.25)
+        return atan(x);
+    return x * (1.0 - y * (1.0 / 3.0 - y * (0.2 - y * (1.0 / 7.0 - y / 9.0))));
+}
+
+float gaussian_volume(float w2)
+{
+    return 0.99992717 + w2 * (-0.66309756 + w2 * (0.24115347 + w2 * (-0.02326816 - w2 * 0.00701674)));
+}
+
+float facets(float tangent2, float width)
+{
+    float w2 = width * width;
+    if (FACETS == BECKMANN) {
+        float rise = 1.0 + tangent2, fall = exp(-tangent2 / w2);
+        return fall > 0.0 ? fall * rise * rise / (4.0 * w2) : 0.0;
+    }
+    float d = arc_tangent(sqrt(tangent2));
+    return exp(-d * d / w2) / (4.0 * w2 * gaussian_volume(w2));
+}
+
+// Smith's share of facets hidden over share seen: (exp(-k^2) / (k sqrt pi) - erfc k) / 2, erfc by [Abramowitz and Stegun
+// 7.1.26], within 1.5e-7.
+float hidden(float width, float cosine)
+{
+    float sine = sqrt(max(1.0 - cosine * cosine, 0.0));
+    if (sine <= 0.0)
+        return 0.0;
+    float k = cosine / (width * sine), t = 1.0 / (1.0 + 0.3275911 * k);
+    float scaled =
+        t * (0.254829592 + t * (-0.284496736 + t * (1.421413741 + t * (-1.453152027 + t * 1.061405429))));
+    return max(0.5 * exp(-k * k) * (0.56418958 / k - scaled), 0.0);
+}
+
+// Multiplied by F it is f_r cos a of a Torrance-Sparrow surface but for D.
+float masked(Cosines c, float width)
+{
+    float g = MASKING == SMITH ? 1.0 / (1.0 + hidden(width, c.a) + hidden(width, c.b))
+                               : min(1.0, 2.0 * c.half_normal * min(c.a, c.b) / c.t);
+    return g / (PI * c.b);
+}
+
+float ward(Cosines c, vec2 widths)
+{
+    vec2 slope = c.half_plane / (widths * c.half_normal);
+    return exp(-dot(slope, slope)) / (4.0 * PI * widths.x * widths.y) * sqrt(c.a / c.b);
+}
+
+// The cosine of l with the nearest mirror direction of a thread, and its sine squared.
+vec2 thread_mirror(vec2 thread)
+{
+    vec2 cosine = clamp(thread, -1.0, 1.0), sine = sqrt(1.0 - cosine * cosine);
+    float across = sine.x * cosine.y + cosine.x * sine.y;
+    return vec2(sine.x * sine.y - cosine.x * cosine.y, across * across);
+}
+
+float thread_scale(float s)
+{
+    float z = 0.5 * s + 1.5;
+    return sqrt(z - 0.25 + 1.0 / (32.0 * z)) * 0.28209479;
+}
+
+// f_r cos a without F.
+float lobe(Cosines c, float s)
+{
+    if (MODEL == TORRANCE_SPARROW) {
+        float width = widths_of(s).x;
+        return facets(c.half_sine2 / (c.half_normal * c.half_normal), width) * masked(c, width);
+    }
+    if (MODEL == WARD)
+        return ward(c, widths_of(s));
+    if (MODEL == BLINN_PHONG)
+        return (4.0 * s + 2.0) / (8.0 * PI) * power(c.half_normal, c.half_sine2, 4.0 * s);
+    if (MODEL == BANKS) {
+        vec2 mirror = thread_mirror(c.thread);
+        return thread_scale(s) * power(mirror.x, mirror.y, s) * c.a;
+    }
+    if (MODEL == COSINE_LOBE)
+        return (s + 2.0) / (2.0 * PI) * power(c.mirror, c.mirror_sine2, s) * c.a;
+    return (s + 1.0) / (2.0 * PI) * power(c.mirror, c.mirror_sine2, s);
+}
+
+// f_r cos a, of a material whose maps say f0 and s; tables know the material alone.
+vec3 gloss(Cosines c, vec3 f0, float s)
+{
+    if (!(c.a > 0.0 && c.b > 0.0 && c.half_normal > 0.0))
+        return vec3(0.0);
+#if TABLES > 0
+    return tables_gloss(c, tables_product(c));
+#else
+    return fresnel(f0, c) * lobe(c, s);
+#endif
+}

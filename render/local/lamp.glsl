@@ -1,0 +1,94 @@
+// The lamp that is being added, and the cosines that a reflectance model is evaluated with.
+#include "direction.glsl"
+
+layout(location = 64) uniform mat4 view_projection;
+layout(location = 65) uniform vec3 eye;
+layout(location = 66) uniform vec4 lamp; // w 1: its place; 0: the direction towards it
+layout(location = 67) uniform vec3 lamp_irradiance;
+layout(location = 68) uniform vec3 constant_lamp; // COORDINATES_MATRIX: l and v for the whole picture
+layout(location = 69) uniform vec3 constant_eye;
+layout(location = 70) uniform vec4 gloss_widths; // weft, warp, 0: from glossiness; cosine and sine of the rotation
+
+const float NEAREST_M = 1e-3; // TL_LAMP_NEAREST_M
+
+vec3 towards_lamp(vec3 point, vec3 fallback)
+{
+    return direction_or(lamp.w > 0.0 ? lamp.xyz - point : lamp.xyz, fallback);
+}
+
+vec3 irradiance_at(vec3 point)
+{
+    vec3 away = lamp.xyz - point;
+    return lamp_irradiance / (lamp.w > 0.0 ? max(dot(away, away), NEAREST_M * NEAREST_M) : 1.0);
+}
+
+// `normal` and `halfway` with their squared sines, which keep their digits near a peak where cosines do not.
+struct Cosines {
+    float a, b;                    // n.l, n.v
+    float t;                       // h.l
+    float half_normal, half_sine2; // n.h
+    float mirror, mirror_sine2;    // r.l
+    vec2 half_plane;               // h along tangent and bitangent
+    vec2 thread;                   // t.l, t.v
+};
+
+struct Frame {
+    vec3 n, t, b;
+};
+
+// At right angles to the unit normal.
+vec3 tangent_across(vec3 n, vec3 tangent)
+{
+    vec3 any = cross(abs(n.x) < 0.6 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0), n);
+    return direction_or(tangent - n * dot(n, tangent), normalize(any));
+}
+
+// As tl_brdf_frame_make: t at right angles to the unit normal, turned counter-clockwise as seen from outside; `side` -1
+// where that is not the viewer's side. The bitangent's sign is nobody's concern: models are symmetric.
+Frame frame_of(vec3 n, vec3 tangent, float side)
+{
+    vec3 t = tangent_across(n, tangent);
+    t = t * gloss_widths.z + cross(n, t) * (side * gloss_widths.w);
+    return Frame(n, t, cross(n, t));
+}
+
+// Of unit vectors.
+Cosines cosines_of(Frame frame, vec3 l, vec3 v, vec3 h)
+{
+    Cosines c;
+    c.a = dot(frame.n, l);
+    c.b = dot(frame.n, v);
+    c.t = dot(h, l);
+    c.half_normal = dot(frame.n, h);
+    vec3 across = cross(frame.n, h);
+    c.half_sine2 = dot(across, across);
+    vec3 r = 2.0 * c.b * frame.n - v;
+    c.mirror = dot(r, l);
+    across = cross(r, l);
+    c.mirror_sine2 = dot(across, across);
+    c.half_plane = vec2(dot(frame.t, h), dot(frame.b, h));
+    c.thread = vec2(dot(frame.t, l), dot(frame.t, v));
+    return c;
+}
+
+// Of vectors that are nearly unit: what follows from cosines alone.
+Cosines cosines_from(vec4 a_b_half_t, vec4 half_plane_thread, float l_dot_v)
+{
+    Cosines c;
+    c.a = a_b_half_t.x;
+    c.b = a_b_half_t.y;
+    c.half_normal = min(a_b_half_t.z, 1.0);
+    c.t = a_b_half_t.w;
+    c.half_sine2 = 1.0 - c.half_normal * c.half_normal;
+    c.mirror = min(2.0 * c.a * c.b - l_dot_v, 1.0);
+    c.mirror_sine2 = 1.0 - c.mirror * c.mirror;
+    c.half_plane = half_plane_thread.xy;
+    c.thread = half_plane_thread.zw;
+    return c;
+}
+
+Cosines cosines_near(Frame frame, vec3 l, vec3 v, vec3 h)
+{
+    return cosines_from(vec4(dot(frame.n, l), dot(frame.n, v), dot(frame.n, h), dot(h, l)),
+                        vec4(dot(frame.t, h), dot(frame.b, h), dot(frame.t, l), dot(frame.t, v)), dot(l, v));
+}

@@ -1,0 +1,126 @@
+#include "render/local/lamp_samples.h"
+
+#include "config/memory.h"
+#include "render/brdf/brdf.h"
+#include "render/brdf/coat.h"
+#include "render/pem/lobe.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* A sample as a lamp finds it. */
+struct lit {
+    const tl_sample *sample;
+    const tl_material *material;
+    vec3s viewer;
+    float base, coat; /* shares of the material under the coat, and of what the coat reflects */
+    bool faceted;     /* gloss is `brdf`, instead of K_s about the mirror direction */
+    struct tl_brdf brdf;
+    struct tl_brdf_frame frame;
+};
+
+static struct lit lit_of(const struct tl_lamp_samples_request *request, size_t index)
+{
+    const struct tl_samples *samples = request->samples;
+    const tl_sample *sample = &samples->items[index];
+    bool is_behind = index < samples->primary_count + samples->behind_count;
+    struct lit lit = {.sample = sample,
+                      .material = tl_triangle_material(request->ranges, sample->triangle & ~TL_SAMPLE_BACK),
+                      .viewer = glms_vec3_normalize(glms_vec3_sub(request->eye, sample->point)),
+                      .base = 1};
+    if (!is_behind) /* other sides are matt and know of their coat; mirrors show two lobes */
+        return lit;
+    float cosine = fmaxf(glms_vec3_dot(sample->smooth, lit.viewer), 0);
+    lit.coat = lit.material->coat > 0 ? lit.material->coat * tl_coat_reflectance(cosine) : 0;
+    lit.base = 1 - lit.coat;
+    lit.faceted = lit.material->gloss.model != TL_REFLECT_PHONG;
+    if (lit.faceted) {
+        vec4s tangent = samples->tangents ? samples->tangents[index] : (vec4s){{0, 0, 0, 1}};
+        float side = sample->triangle & TL_SAMPLE_BACK ? -1.0f : 1.0f;
+        lit.brdf = tl_brdf_of(lit.material, sample->specular, sample->glossiness);
+        lit.frame = tl_brdf_frame_make(sample->normal, (vec3s){{tangent.x, tangent.y, tangent.z}}, tangent.w,
+                                       side * lit.material->gloss.rotation);
+    }
+    return lit;
+}
+
+static vec3s gloss_of(const struct lit *lit, vec3s l)
+{
+    const tl_sample *sample = lit->sample;
+    if (lit->faceted)
+        return tl_brdf_gloss(&lit->brdf, &lit->frame, l, lit->viewer);
+    return glms_vec3_scale(sample->specular, tl_lobe_cosine(tl_lobe_exponent(sample->glossiness),
+                                                            glms_vec3_dot(sample->mirror, l)));
+}
+
+static float coat_of(const struct lit *lit, vec3s l)
+{
+    vec3s n = lit->sample->smooth;
+    if (lit->coat <= 0)
+        return 0;
+    vec3s axis = glms_vec3_sub(glms_vec3_scale(n, 2 * glms_vec3_dot(n, lit->viewer)), lit->viewer);
+    return lit->coat *
+           tl_lobe_cosine(tl_lobe_exponent(lit->material->coat_glossiness), glms_vec3_dot(axis, l));
+}
+
+static vec3s light_of_sample(const struct tl_lamp_samples_request *request, size_t index)
+{
+    const struct lit lit = lit_of(request, index);
+    vec3s sum = {{0, 0, 0}};
+    for (size_t i = 0; i < request->lamp_count; i++) {
+        vec3s l;
+        vec3s arriving = tl_lamp_arriving(&request->lamps[i], request->shadowed ? request->trace : NULL,
+                                          lit.sample, request->ranges, request->ground, &l);
+        if (!(arriving.x > 0 || arriving.y > 0 || arriving.z > 0))
+            continue;
+        float matt = fmaxf(glms_vec3_dot(lit.sample->normal, l), 0) / (float)M_PI, coat = coat_of(&lit, l);
+        vec3s sent = glms_vec3_add(glms_vec3_scale(lit.sample->diffuse, matt), gloss_of(&lit, l));
+        sent = glms_vec3_adds(glms_vec3_scale(sent, lit.base), coat);
+        sum = glms_vec3_add(sum, glms_vec3_mul(arriving, sent));
+    }
+    return sum;
+}
+
+static float share_of(const struct tl_lamp_samples_request *request, size_t index)
+{
+    bool is_seen = index < tl_samples_seen(request->samples);
+    return request->shares && is_seen ? request->shares[index] : request->samples->items[index].cover;
+}
+
+/* What sample `index` shows of the lamplight on others, if it is a near mirror. */
+static vec3s mirrored(const struct tl_lamp_samples_request *request, const vec3s *lit, size_t index)
+{
+    const struct tl_mirror *mirror = &request->mirrors[index];
+    vec3s sum = {{0, 0, 0}};
+    for (int m = 0; m < mirror->ray_count; m++) {
+        uint32_t hit = mirror->hits[m];
+        if (hit < TL_MIRROR_BLACK)
+            sum = glms_vec3_add(sum, glms_vec3_scale(lit[hit - request->samples->primary_count],
+                                                     request->samples->items[hit].cover));
+    }
+    float each = mirror->ray_count > 0 ? 1 / (float)mirror->ray_count : 0;
+    return glms_vec3_scale(glms_vec3_mul(sum, request->samples->items[index].specular), each);
+}
+
+static void add_at(const struct tl_lamp_samples_request *request, size_t index, vec3s light, float *out)
+{
+    float *texel = out + 4 * (size_t)request->samples->items[index].texel;
+    for (int c = 0; c < 3; c++)
+        texel[c] += share_of(request, index) * light.raw[c];
+}
+
+void tl_lamp_samples_add(const struct tl_lamp_samples_request *request, float *light)
+{
+    const struct tl_samples *samples = request->samples;
+    size_t first = samples->primary_count, count = samples->count - first, seen = tl_samples_seen(samples);
+    vec3s *lit = TL_NEW_ARRAY(vec3s, count);
+#pragma omp parallel for schedule(dynamic, 64)
+    for (size_t i = 0; i < count; i++)
+        lit[i] = light_of_sample(request, first + i);
+    for (size_t i = first; i < seen; i++) /* several share a texel, so one thread adds */
+        add_at(request, i, lit[i - first], light);
+    for (size_t i = 0; request->mirrors && i < seen; i++)
+        if (request->mirrors[i].ray_count > 0)
+            add_at(request, i, mirrored(request, lit, i), light);
+    free(lit);
+}

@@ -1,0 +1,343 @@
+#include "render/local/local.h"
+
+#include "config/memory.h"
+#include "render/pem/lobe.h"
+#include "render/shaders.h"
+
+#include <epoxy/gl.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Uniform locations of lamp.glsl, gloss.glsl and local.frag beside those of surface.glsl. */
+enum {
+    VIEW_PROJECTION = 64,
+    EYE,
+    LAMP,
+    LAMP_IRRADIANCE,
+    CONSTANT_LAMP,
+    CONSTANT_EYE,
+    GLOSS_WIDTHS,
+    GLOSS_OPTICS,
+    LAMP_VIEW = 73,
+    LAMP_BIAS,
+    LAMP_LAYER,
+    LAMP_GROUND,
+    LAMP_LAYERS,
+    TABLE_AXES = 80,
+    TABLE_SCALES = 83
+};
+enum { TRIANGLE_UNIT = 16, POINT_UNIT, SHADOW_UNIT, CUBE_UNIT, TABLE_UNIT, POWER_UNIT = 23, PRODUCT_UNIT };
+
+/* What one draw does: all that there is to it, or its part of several passes. */
+struct pass {
+    int first, last;    /* tables that it takes; none when last < first */
+    const char *define; /* or NULL */
+};
+
+/* A part of a surface, one lamp, and what they are shaded with. */
+struct lit_part {
+    size_t surface, part, lamp;
+    const tl_material *material;
+    enum tl_lamp_shadow shadow;
+    const struct tl_gloss_tables *tables; /* NULL: the formula */
+    const tl_texture *power;              /* of POWER_TABLE */
+};
+
+void tl_local_reload(struct tl_local *local)
+{
+    for (size_t i = 0; i < local->program_count; i++) {
+        tl_program_destroy(&local->programs[i]->program);
+        free(local->programs[i]);
+    }
+    free(local->programs);
+    local->programs = NULL;
+    local->program_count = 0;
+}
+
+void tl_local_release(struct tl_local *local)
+{
+    tl_local_reload(local);
+    tl_lamp_shadows_release(&local->shadows);
+    tl_table_textures_release(&local->tables);
+    tl_target_destroy(&local->product);
+    *local = (struct tl_local){0};
+}
+
+size_t tl_local_bytes(const struct tl_local *local)
+{
+    return tl_table_textures_bytes(&local->tables) + tl_target_bytes(&local->product);
+}
+
+static void define(char defines[TL_LOCAL_DEFINES_SIZE], const char *name)
+{
+    size_t length = strlen(defines);
+    snprintf(defines + length, TL_LOCAL_DEFINES_SIZE - length, "#define %s\n", name);
+}
+
+/* Where vectors come from, and how they become unit. */
+static void define_vectors(const struct tl_shading_params *params, char defines[TL_LOCAL_DEFINES_SIZE])
+{
+    static const char *const ways[] = {[TL_NORMALISE_NONE] = "NORMALISE_NONE",
+                                       [TL_NORMALISE_CUBE8] = "NORMALISE_CUBE",
+                                       [TL_NORMALISE_CUBE16] = "NORMALISE_CUBE",
+                                       [TL_NORMALISE_NEWTON] = "NORMALISE_NEWTON",
+                                       [TL_NORMALISE_EXACT] = "NORMALISE_EXACT"};
+    bool is_fast = params->frequency == TL_FREQUENCY_FAST_PHONG;
+    int way = is_fast ? TL_NORMALISE_NONE : params->normalisation;
+    bool is_tangent = params->space == TL_SPACE_TANGENT;
+    define(defines, ways[way]);
+    if (params->coordinates == TL_COORDINATES_MATRIX)
+        define(defines, "MATRIX");
+    else if (is_tangent || way != TL_NORMALISE_EXACT)
+        define(defines, is_tangent ? "VECTORS\n#define TANGENT_SPACE" : "VECTORS");
+}
+
+static void define_tables(const struct tl_gloss_tables *tables, const struct pass *pass,
+                          char defines[TL_LOCAL_DEFINES_SIZE])
+{
+    size_t length = strlen(defines);
+    snprintf(defines + length, TL_LOCAL_DEFINES_SIZE - length,
+             "#define TABLES %d\n#define FIRST_TABLE %d\n#define LAST_TABLE %d\n", tables ? tables->count : 0,
+             pass->first, pass->last);
+    for (int i = 0; tables && i < tables->count; i++) {
+        const struct tl_gloss_table *table = &tables->tables[i];
+        length = strlen(defines);
+        snprintf(defines + length, TL_LOCAL_DEFINES_SIZE - length,
+                 "#define TABLE%d_X %d\n#define TABLE%d_Y %d\n#define TABLE%d_ANGLES %s\n", i, table->x, i,
+                 table->y, i, table->angles ? "true" : "false");
+    }
+    if (tables && tables->times_cos_a)
+        define(defines, "TIMES_COS_A");
+}
+
+static void define_all(const struct tl_local_request *request, const struct lit_part *part,
+                       const struct pass *pass, char defines[TL_LOCAL_DEFINES_SIZE])
+{
+    const struct tl_shading_params *params = request->params;
+    const struct tl_gloss *gloss = &part->material->gloss;
+    snprintf(defines, TL_LOCAL_DEFINES_SIZE,
+             "#define MODEL %d\n#define FACETS %d\n#define MASKING %d\n#define FRESNEL %d\n", gloss->model,
+             gloss->facets, gloss->masking, gloss->fresnel);
+    define_tables(part->tables, pass, defines);
+    if (params->frequency == TL_FREQUENCY_GOURAUD)
+        define(defines, params->coordinates == TL_COORDINATES_MATRIX ? "GOURAUD\n#define MATRIX" : "GOURAUD");
+    else if (params->coordinates == TL_COORDINATES_VERTEX)
+        define(defines, "COSINES");
+    else
+        define_vectors(params, defines);
+    if (params->self_shadow == TL_SELF_SHADOW_STEP)
+        define(defines, "STEP");
+    if (!part->tables && params->power != TL_POWER_POW)
+        define(defines, params->power == TL_POWER_FIXED8 ? "POWER_FIXED8" : "POWER_TABLE");
+    if (part->shadow == TL_LAMP_SHADOW_RAYS)
+        define(defines, "SHADOW_RAYS");
+    else if (part->shadow == TL_LAMP_SHADOW_MAP)
+        define(defines, "SHADOW_MAP");
+    if (part->material->coat > 0)
+        define(defines, "COAT");
+    if (pass->define)
+        define(defines, pass->define);
+    size_t length = strlen(defines);
+    tl_detail_defines(request->detail, defines + length, TL_LOCAL_DEFINES_SIZE - length);
+}
+
+/* The program of these defines, made when it is first asked for. */
+static const tl_program *find_program(struct tl_local *local, tl_gpu *gpu, const char *defines,
+                                      tl_error *error)
+{
+    for (size_t i = 0; i < local->program_count; i++)
+        if (strcmp(local->programs[i]->defines, defines) == 0)
+            return &local->programs[i]->program;
+    struct tl_local_program *made = TL_NEW(struct tl_local_program);
+    snprintf(made->defines, sizeof made->defines, "%s", defines);
+    if (!tl_program_create_variant(gpu, tl_embedded_shaders, "local.vert", "local.frag", made->defines,
+                                   &made->program, error)) {
+        free(made);
+        return NULL;
+    }
+    local->programs = tl_resize(local->programs, local->program_count + 1, sizeof(struct tl_local_program *));
+    local->programs[local->program_count++] = made;
+    return &made->program;
+}
+
+static void set_lamp(const struct tl_local *local, const struct tl_local_request *request, size_t index)
+{
+    const struct tl_lamp *lamp = &request->lamps[index];
+    const struct tl_view *view = request->view;
+    const struct tl_ground *ground = request->ground;
+    bool is_point = lamp->kind == TL_LAMP_POINT;
+    vec3s place = is_point ? lamp->position : glms_vec3_normalize(lamp->direction);
+    vec3s constant_eye = glms_vec3_negate(glms_vec3_normalize(view->forward));
+    vec3s constant_lamp = tl_lamp_at(lamp, request->casters.centre, constant_eye).direction;
+    bool stops = ground && !(is_point && lamp->position.y >= ground->centre.y);
+    glUniformMatrix4fv(VIEW_PROJECTION, 1, GL_FALSE, view->view_projection.raw[0]);
+    glUniform3fv(EYE, 1, view->eye.raw);
+    glUniform4f(LAMP, place.x, place.y, place.z, is_point ? 1 : 0);
+    glUniform3fv(LAMP_IRRADIANCE, 1, lamp->irradiance.raw);
+    glUniform3fv(CONSTANT_LAMP, 1, constant_lamp.raw);
+    glUniform3fv(CONSTANT_EYE, 1, constant_eye.raw);
+    glUniformMatrix4fv(LAMP_VIEW, 1, GL_FALSE, local->shadows.views[index].raw[0]);
+    glUniform1f(LAMP_BIAS, request->depth_bias_m);
+    glUniform1i(LAMP_LAYER, (GLint)index);
+    glUniform4f(LAMP_GROUND, stops ? ground->centre.x : 0, stops ? ground->centre.y : 0,
+                stops ? ground->centre.z : 0, stops ? ground->radius : 0);
+}
+
+static void set_gloss(const tl_material *material)
+{
+    const struct tl_gloss *gloss = &material->gloss;
+    glUniform4f(GLOSS_WIDTHS, gloss->width_weft, gloss->width_warp, cosf(gloss->rotation),
+                sinf(gloss->rotation));
+    glUniform3f(LAMP_LAYERS, material->coat, tl_lobe_exponent(material->coat_glossiness),
+                1 - material->openness);
+    glUniform2f(GLOSS_OPTICS, gloss->index > 0 ? gloss->index : 1, fmaxf(gloss->extinction, 0));
+}
+
+static void bind_shadow(const struct tl_lamp_shadows *shadows, enum tl_lamp_shadow kind)
+{
+    if (kind == TL_LAMP_SHADOW_RAYS)
+        glBindTextureUnit(SHADOW_UNIT, shadows->visibility.id);
+    else if (kind == TL_LAMP_SHADOW_MAP)
+        glBindTextureUnit(SHADOW_UNIT, shadows->depths.id);
+}
+
+static void set_tables(const struct lit_part *part)
+{
+    float axes[TL_GLOSS_TABLES_MAX][4] = {{0}}, scales[3] = {1, 1, 1};
+    for (int i = 0; part->tables && i < part->tables->count; i++) {
+        const struct tl_gloss_table *table = &part->tables->tables[i];
+        memcpy(axes[i], table->axes, sizeof axes[i]);
+        scales[i] = table->scale;
+        glBindTextureUnit(TABLE_UNIT + (GLuint)i, table->texture.id);
+    }
+    glUniform4fv(TABLE_AXES, TL_GLOSS_TABLES_MAX, axes[0]);
+    glUniform3fv(TABLE_SCALES, 1, scales);
+    if (part->power)
+        glBindTextureUnit(POWER_UNIT, part->power->id);
+}
+
+static bool draw_pass(struct tl_local *local, tl_gpu *gpu, const struct tl_local_request *request,
+                      const struct lit_part *part, const struct pass *pass, tl_error *error)
+{
+    char defines[TL_LOCAL_DEFINES_SIZE];
+    define_all(request, part, pass, defines);
+    const tl_program *program = find_program(local, gpu, defines, error);
+    if (!program)
+        return false;
+    glUseProgram(program->id);
+    set_lamp(local, request, part->lamp);
+    set_gloss(part->material);
+    set_tables(part);
+    tl_surfaces_draw_part(request->surfaces, part->surface, part->part);
+    return true;
+}
+
+static void draw_into_light(const struct tl_local_request *request)
+{
+    glBindFramebuffer(GL_FRAMEBUFFER, request->light->id);
+    glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE); /* coverage stays: no light has any of its own */
+}
+
+static void prepare_product(struct tl_local *local, tl_gpu *gpu, const struct tl_local_request *request)
+{
+    const unsigned format = request->params->pass_target == TL_PASS_TARGET_FIXED8 ? GL_RGBA8 : GL_RGBA32F;
+    int width = request->light->width, height = request->light->height;
+    tl_target *product = &local->product;
+    if (product->width != width || product->height != height || product->colours[0].format != format) {
+        tl_target_destroy(product);
+        *product = tl_target_create(gpu, width, height, &format, 1, false);
+    }
+    local->product_used = true;
+    glNamedFramebufferTexture(product->id, GL_DEPTH_ATTACHMENT, request->gbuffer->target.depth.id, 0);
+    glBindTextureUnit(PRODUCT_UNIT, product->colours[0].id);
+}
+
+/* Tables multiplied by blending, some a pass; then one pass that adds them and the matt light [000, 3.1]. */
+static bool draw_passes(struct tl_local *local, tl_gpu *gpu, const struct tl_local_request *request,
+                        const struct lit_part *part, tl_error *error)
+{
+    int count = part->tables->count, each = request->params->max_textures_per_pass;
+    bool fine = true;
+    prepare_product(local, gpu, request);
+    glBindFramebuffer(GL_FRAMEBUFFER, local->product.id);
+    for (int first = 0; fine && first < count; first += each) {
+        int last = first + each < count ? first + each - 1 : count - 1;
+        const struct pass multiply = {first, last, "PASS_PRODUCT"};
+        glBlendFunc(first == 0 ? GL_ONE : GL_DST_COLOR, GL_ZERO);
+        fine = draw_pass(local, gpu, request, part, &multiply, error);
+    }
+    draw_into_light(request);
+    const struct pass add = {0, -1, "PASS_LAST"};
+    return fine && draw_pass(local, gpu, request, part, &add, error);
+}
+
+static bool draw_part(struct tl_local *local, tl_gpu *gpu, const struct tl_local_request *request,
+                      struct lit_part *part, tl_error *error)
+{
+    const struct tl_shading_params *params = request->params;
+    const tl_material *material = part->material;
+    const struct tl_brdf brdf = tl_brdf_of(material, material->specular, material->glossiness);
+    if (params->reflectance == TL_REFLECTANCE_TABLE)
+        part->tables = tl_table_textures_gloss(&local->tables, gpu, &brdf, params);
+    else if (params->power == TL_POWER_TABLE)
+        part->power = tl_table_textures_power(
+            &local->tables, gpu,
+            material->gloss.model == TL_REFLECT_BLINN_PHONG ? 4 * brdf.exponent : brdf.exponent);
+    if (part->tables && part->tables->count > params->max_textures_per_pass &&
+        params->frequency != TL_FREQUENCY_GOURAUD)
+        return draw_passes(local, gpu, request, part, error);
+    const struct pass all = {0, part->tables ? part->tables->count - 1 : -1, NULL};
+    return draw_pass(local, gpu, request, part, &all, error);
+}
+
+static void bind_cube(struct tl_local *local, tl_gpu *gpu, const struct tl_shading_params *params)
+{
+    if (params->normalisation == TL_NORMALISE_CUBE8 || params->normalisation == TL_NORMALISE_CUBE16)
+        glBindTextureUnit(CUBE_UNIT, tl_table_textures_cube(&local->tables, gpu, params->normalisation)->id);
+}
+
+static bool draw_lamp(struct tl_local *local, tl_gpu *gpu, const struct tl_local_request *request,
+                      size_t index, tl_error *error)
+{
+    enum tl_lamp_shadow shadow = local->shadows.kinds[index];
+    bool fine = true;
+    bind_shadow(&local->shadows, shadow);
+    for (size_t s = 0; fine && s < request->surface_count; s++)
+        for (size_t p = 0; fine && p < tl_surfaces_part_count(request->surfaces, s); p++) {
+            struct lit_part part = {.surface = s,
+                                    .part = p,
+                                    .lamp = index,
+                                    .material = tl_surfaces_part_material(request->surfaces, s, p),
+                                    .shadow = shadow};
+            fine = draw_part(local, gpu, request, &part, error);
+        }
+    return fine;
+}
+
+bool tl_local_draw(struct tl_local *local, tl_gpu *gpu, const struct tl_local_request *request,
+                   tl_error *error)
+{
+    const tl_target *target = request->light;
+    tl_table_textures_begin(&local->tables);
+    local->product_used = false;
+    draw_into_light(request);
+    glViewport(0, 0, target->width, target->height);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LEQUAL);
+    glDepthMask(GL_FALSE);
+    glEnable(GL_BLEND);
+    glBlendColor(0, 0, 0, request->weight);
+    bind_cube(local, gpu, request->params);
+    glBindTextureUnit(TRIANGLE_UNIT, request->gbuffer->target.colours[TL_GBUFFER_TRIANGLE].id);
+    glBindTextureUnit(POINT_UNIT, request->gbuffer->target.colours[TL_GBUFFER_POINT].id);
+    bool fine = true;
+    for (size_t i = 0; fine && i < request->lamp_count; i++)
+        fine = draw_lamp(local, gpu, request, i, error);
+    tl_table_textures_end(&local->tables);
+    if (!local->product_used)
+        tl_target_destroy(&local->product);
+    tl_gpu_reset_state(gpu);
+    return fine;
+}

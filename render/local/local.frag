@@ -1,0 +1,212 @@
+#version 450 core
+// The light of one lamp on what the G-buffer sees, to be added to the rest.
+#include "gloss.glsl"
+#include "ground.glsl"
+#include "material.glsl"
+#include "terms.glsl"
+
+layout(location = 73) uniform mat4 lamp_view; // SHADOW_MAP: world -> clip space of the lamp's map
+layout(location = 74) uniform float lamp_bias; // metres
+layout(location = 75) uniform int lamp_layer;
+layout(location = 76) uniform vec4 lamp_ground; // the ground's disc, if it can stop this lamp's light
+
+layout(location = 77) uniform vec3 lamp_layers; // coat, the exponent of its lobe, share of the surface that is no hole
+
+layout(binding = 16) uniform usampler2D seen_triangle;
+layout(binding = 17) uniform sampler2D seen_point; // w: coverage
+#if defined(SHADOW_RAYS)
+layout(binding = 18) uniform sampler2DArray lamp_visibility;
+#elif defined(SHADOW_MAP)
+layout(binding = 18) uniform sampler2DArrayShadow lamp_depths;
+#endif
+#ifdef NORMALISE_CUBE
+layout(binding = 19) uniform samplerCube normalising; // unit vectors, 0 to 1 standing for -1 to 1
+#endif
+
+#ifdef PASS_LAST
+layout(binding = 24) uniform sampler2D product; // of all tables, multiplied in earlier passes
+#endif
+
+in vec3 point;
+in vec3 normal;
+in vec4 tangent;
+in vec2 uv;
+#if defined(GOURAUD)
+in vec4 lit_front, lit_back;
+#elif defined(COSINES)
+in vec4 cosines_normal;
+in vec4 cosines_plane;
+in float cosine_lamp;
+#elif defined(VECTORS)
+in vec3 to_lamp, to_eye, halfway;
+#endif
+
+layout(location = 0) out vec4 out_light; // premultiplied by coverage
+
+const uint TRIANGLE_BACK = 0x80000000u;
+
+// How an interpolated vector becomes unit again. What is exact is nearly never far from it.
+vec3 made_unit(vec3 v, vec3 fallback)
+{
+#if defined(NORMALISE_NONE)
+    return v;
+#elif defined(NORMALISE_CUBE)
+    return 2.0 * texture(normalising, v).xyz - 1.0;
+#elif defined(NORMALISE_NEWTON)
+    return v * (1.5 - 0.5 * dot(v, v));
+#else
+    return direction_or(v, fallback);
+#endif
+}
+
+float visibility(vec3 l)
+{
+#if defined(SHADOW_RAYS)
+    return texelFetch(lamp_visibility, ivec3(gl_FragCoord.xy, lamp_layer), 0).r;
+#elif defined(SHADOW_MAP)
+    float shown = ground_visibility(lamp_ground, point, l);
+    vec4 place = lamp_view * vec4(point + lamp_bias * l, 1.0);
+    if (place.w <= 0.0) // behind a lamp that shines on something else
+        return shown;
+    vec3 texel = 0.5 * place.xyz / place.w + 0.5;
+    return shown * texture(lamp_depths, vec4(texel.xy, float(lamp_layer), min(texel.z, 1.0)));
+#else
+    return 1.0;
+#endif
+}
+
+float self_shadow(float facing)
+{
+#ifdef STEP
+    return facing > 0.0 ? 1.0 : 0.0;
+#else
+    return self_shadow_ramp(facing);
+#endif
+}
+
+// What fabric detail says of the sample: set before anything is asked.
+bool bumpy;
+Bumps bumps;
+DetailPlace place;
+vec3 view; // towards the eye, in tangent space
+
+void find_detail(mat3 frame, float side, vec3 smooth_normal)
+{
+#ifdef DETAIL_SHIFTED
+    unmoved_across = dFdx(uv);
+    unmoved_down = dFdy(uv);
+#endif
+    view = direction_or(eye - point, smooth_normal) * frame;
+    place = detail_place(uv, view, side);
+    bumpy = has_bumps(tangent);
+    if (bumpy)
+        bumps = bumps_at(place.uv);
+}
+
+#ifndef GOURAUD
+// The normal with its bumps, as long as interpolation and the map leave it.
+vec3 bumped_normal(vec3 smooth_normal)
+{
+    if (!bumpy)
+        return normal;
+#if DETAIL_MODE == DETAIL_BLINN
+    if (detail_range.z > 0.0)
+        return detail_blinn(bumps.normal, smooth_normal, point, uv);
+#endif
+    vec3 mapped = bumps.normal;
+    return mapped.x * tangent.xyz + mapped.y * tangent.w * cross(normal, tangent.xyz) + mapped.z * normal;
+}
+
+// `facing`: cosine of the light and the normal without bumps.
+Cosines cosines_here(float side, vec3 smooth_normal, out float facing)
+{
+#if defined(COSINES)
+    facing = side * cosines_normal.x;
+    return cosines_from(cosines_normal * vec4(side, side, side, 1.0), cosines_plane, cosine_lamp);
+#elif defined(TANGENT_SPACE)
+    vec3 up = vec3(0.0, 0.0, 1.0);
+    vec3 l = made_unit(to_lamp, up), v = made_unit(to_eye, up), h = made_unit(halfway, up);
+    vec3 n = side * (bumpy ? made_unit(bumps.normal, up) : up);
+    facing = side * l.z;
+    return cosines_near(frame_of(n, vec3(1.0, 0.0, 0.0), side * (tangent.w < 0.0 ? -1.0 : 1.0)), l, v, h);
+#elif defined(VECTORS) || defined(MATRIX)
+    vec3 n = side * made_unit(bumped_normal(smooth_normal), smooth_normal);
+#ifdef MATRIX
+    vec3 l = constant_lamp, v = constant_eye, h = direction_or(l + v, l);
+#else
+    vec3 l = made_unit(to_lamp, n), v = made_unit(to_eye, n), h = made_unit(halfway, n);
+#endif
+    facing = side * dot(smooth_normal, l);
+    return cosines_near(frame_of(n, tangent.xyz, side), l, v, h);
+#else
+    vec3 n = side * direction_or(bumped_normal(smooth_normal), smooth_normal);
+    vec3 l = towards_lamp(point, n), v = direction_or(eye - point, n);
+    facing = side * dot(smooth_normal, l);
+    return cosines_of(frame_of(n, tangent.xyz, side), l, v, direction_or(l + v, l));
+#endif
+}
+#endif
+
+// The light sent to the eye for each irradiance, unshadowed.
+vec3 reflected(float side, vec3 smooth_normal)
+{
+    vec3 kd = diffuse(surface_colour(place.uv).rgb, place.uv);
+    if (bumpy)
+        kd *= detail_open(bumps.length);
+#ifdef GOURAUD
+    vec4 lit = side > 0.0 ? lit_front : lit_back;
+    return kd * lit.w + lit.rgb;
+#else
+    float facing;
+    Cosines c = cosines_here(side, smooth_normal, facing);
+    float shown = self_shadow(facing);
+#ifdef PASS_LAST
+    vec3 shine = tables_gloss(c, texelFetch(product, ivec2(gl_FragCoord.xy), 0).rgb);
+#else
+    float rough = 1.0 - glossiness(place.uv);
+    if (bumpy)
+        rough = detail_rough(rough, bumps, view);
+    vec3 shine = gloss(c, specular_f0(place.uv), lobe_exponent(1.0 - rough));
+#endif
+    vec3 light = kd * (max(c.a, 0.0) / PI) + shine;
+    return shown > 0.0 ? shown * light : vec3(0.0);
+#endif
+}
+
+// ... of what lies under a coat, and of the coat, which levels bumps out and is always lit exactly.
+vec3 under_coat(vec3 light, vec3 l, vec3 n)
+{
+#ifdef COAT
+    vec3 v = direction_or(eye - point, n);
+    float cosine = max(dot(n, v), 0.0), reflected = lamp_layers.x * fresnel_dielectric(1.5, cosine);
+    vec3 axis = direction_or(2.0 * cosine * n - v, n), across = cross(axis, l);
+    float lobe = exact_power(dot(axis, l), dot(across, across), lamp_layers.y);
+    light *= 1.0 - reflected;
+    light += reflected * self_shadow(dot(n, l)) * (lamp_layers.y + 1.0) / (2.0 * PI) * lobe;
+#endif
+    return light;
+}
+
+void main()
+{
+    vec3 facet = direction_or(cross(dFdx(point), dFdy(point)), vec3(0.0, 1.0, 0.0));
+    vec2 across = dFdx(uv), down = dFdy(uv);
+    float side = gl_FrontFacing ? 1.0 : -1.0;
+    vec3 smooth_normal = direction_or(normal, facet);
+    mat3 frame = detail_frame(smooth_normal, tangent);
+    find_detail(frame, side, smooth_normal);
+    ivec2 texel = ivec2(gl_FragCoord.xy);
+    uint triangle = (first_triangle + uint(gl_PrimitiveID) + 1u) | (gl_FrontFacing ? 0u : TRIANGLE_BACK);
+    if (texelFetch(seen_triangle, texel, 0).r != triangle)
+        discard;
+#ifdef PASS_PRODUCT
+    float facing;
+    out_light = vec4(tables_product(cosines_here(side, smooth_normal, facing)), 1.0);
+#else
+    vec3 l = towards_lamp(point, side * smooth_normal);
+    float shown = texelFetch(seen_point, texel, 0).w * lamp_layers.z * visibility(l);
+    shown *= detail_shadow(place, l * frame, side, across, down);
+    vec3 light = under_coat(reflected(side, smooth_normal), l, side * smooth_normal);
+    out_light = vec4(shown * irradiance_at(point) * light, 0.0);
+#endif
+}

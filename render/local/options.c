@@ -1,0 +1,46 @@
+#include "render/brdf/tables.h"
+#include "render/local/shading.h"
+
+static const char *const frequency_names[] = {"gouraud", "fast_phong", "phong", NULL};
+static const char *const coordinates_names[] = {"matrix", "vertex", "pixel", NULL};
+static const char *const reflectance_names[] = {"direct", "table", NULL};
+static const char *const precision_names[] = {"fixed8", "fixed16", "float", NULL};
+static const char *const range_names[] = {"clamped", "scaled", NULL};
+static const char *const pass_target_names[] = {"fixed8", "float", NULL};
+static const char *const normalisation_names[] = {"none", "cube8", "cube16", "newton", "exact", NULL};
+static const char *const power_names[] = {"pow", "fixed8", "table", NULL};
+static const char *const space_names[] = {"world", "tangent", NULL};
+static const char *const self_shadow_names[] = {"step", "ramp", NULL};
+
+typedef struct tl_shading_params params;
+static const struct tl_option rows[] = {
+    TL_OPTION_ENUM(params, frequency, frequency_names,
+                   "where light is evaluated: at vertices; at pixels with vectors as interpolation leaves "
+                   "them; at pixels with unit vectors"),
+    TL_OPTION_ENUM(params, coordinates, coordinates_names,
+                   "what it is evaluated with: cosines by one matrix, for a far light and viewer; cosines "
+                   "interpolated from vertices, without bumps; vectors at pixels"),
+    TL_OPTION_ENUM(params, reflectance, reflectance_names,
+                   "gloss by its formula, or from tables made for the material, without its maps of gloss"),
+    TL_OPTION_INT(params, table_size, 8, 512, "texels", "side of a table; larger is more exact"),
+    TL_OPTION_ENUM(params, table_precision, precision_names, "of a table's values"),
+    TL_OPTION_ENUM(params, table_range, range_names,
+                   "fixed-point tables of a factor that grows without bounds at grazing angles: cut at 1, or "
+                   "divided by its greatest value"),
+    TL_OPTION_INT(params, max_textures_per_pass, 1, 4, "tables",
+                  "gloss of more tables is multiplied in several passes; smaller takes more of them"),
+    TL_OPTION_ENUM(params, pass_target, pass_target_names, "precision in which passes are multiplied"),
+    TL_OPTION_ENUM(params, normalisation, normalisation_names,
+                   "phong: how vectors are made unit; all but exact begin with interpolated ones"),
+    TL_OPTION_ENUM(params, power, power_names, "how the direct formula raises a cosine to a power"),
+    TL_OPTION_ENUM(params, space, space_names,
+                   "vectors at pixels: taken into the world there, or into tangent space at vertices"),
+    TL_OPTION_ENUM(params, self_shadow, self_shadow_names,
+                   "light ends at the smooth surface's own horizon: at once, or along a steep ramp"),
+};
+const struct tl_option_table tl_shading_options = TL_OPTION_TABLE(
+    "shading", "how surfaces are shaded under lamps", rows, params, .frequency = TL_FREQUENCY_PHONG,
+    .coordinates = TL_COORDINATES_PIXEL, .reflectance = TL_REFLECTANCE_DIRECT, .table_size = 256,
+    .table_precision = TL_PRECISION_FLOAT, .table_range = TL_RANGE_SCALED, .max_textures_per_pass = 4,
+    .pass_target = TL_PASS_TARGET_FLOAT, .normalisation = TL_NORMALISE_EXACT, .power = TL_POWER_POW,
+    .space = TL_SPACE_WORLD, .self_shadow = TL_SELF_SHADOW_RAMP);

@@ -1,0 +1,184 @@
+#include "render/local/table_textures.h"
+
+#include "config/memory.h"
+#include "render/brdf/tables.h"
+
+#include <epoxy/gl.h>
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+static_assert(TL_GLOSS_TABLES_MAX == TL_BRDF_TABLES_MAX, "as many textures as a model has tables");
+
+static void release_gloss(struct tl_gloss_tables *gloss)
+{
+    for (int i = 0; i < gloss->count; i++)
+        tl_texture_destroy(&gloss->tables[i].texture);
+}
+
+void tl_table_textures_release(struct tl_table_textures *textures)
+{
+    for (size_t i = 0; i < textures->gloss_count; i++)
+        release_gloss(&textures->gloss[i]);
+    for (size_t i = 0; i < textures->power_count; i++)
+        tl_texture_destroy(&textures->powers[i].texture);
+    for (int i = 0; i < 2; i++)
+        tl_texture_destroy(&textures->cubes[i]);
+    free(textures->gloss);
+    free(textures->powers);
+    *textures = (struct tl_table_textures){0};
+}
+
+size_t tl_table_textures_bytes(const struct tl_table_textures *textures)
+{
+    size_t bytes = tl_texture_bytes(&textures->cubes[0]) + tl_texture_bytes(&textures->cubes[1]);
+    for (size_t i = 0; i < textures->gloss_count; i++)
+        for (int t = 0; t < textures->gloss[i].count; t++)
+            bytes += tl_texture_bytes(&textures->gloss[i].tables[t].texture);
+    for (size_t i = 0; i < textures->power_count; i++)
+        bytes += tl_texture_bytes(&textures->powers[i].texture);
+    return bytes;
+}
+
+void tl_table_textures_begin(struct tl_table_textures *textures)
+{
+    for (size_t i = 0; i < textures->gloss_count; i++)
+        textures->gloss[i].used = false;
+    for (size_t i = 0; i < textures->power_count; i++)
+        textures->powers[i].used = false;
+    textures->cubes_used[0] = textures->cubes_used[1] = false;
+}
+
+void tl_table_textures_end(struct tl_table_textures *textures)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < textures->gloss_count; i++)
+        if (textures->gloss[i].used)
+            textures->gloss[kept++] = textures->gloss[i];
+        else
+            release_gloss(&textures->gloss[i]);
+    textures->gloss_count = kept;
+    kept = 0;
+    for (size_t i = 0; i < textures->power_count; i++)
+        if (textures->powers[i].used)
+            textures->powers[kept++] = textures->powers[i];
+        else
+            tl_texture_destroy(&textures->powers[i].texture);
+    textures->power_count = kept;
+    for (int i = 0; i < 2; i++)
+        if (!textures->cubes_used[i])
+            tl_texture_destroy(&textures->cubes[i]);
+}
+
+/* A float table's texels brought into [0, 1] too, where passes of 8 bits can hold them. */
+static void bound_floats(struct tl_brdf_table *table)
+{
+    float *texels = table->texels, most = 0;
+    size_t count = (size_t)table->width * (size_t)table->height * (size_t)table->channels;
+    for (size_t i = 0; i < count; i++)
+        most = texels[i] > most ? texels[i] : most;
+    for (size_t i = 0; i < count && most > 0; i++)
+        texels[i] /= most;
+    table->scale *= most > 0 ? most : 1;
+}
+
+static struct tl_gloss_table upload(tl_gpu *gpu, struct tl_brdf_table *table)
+{
+    static const GLenum formats[][2] = {[TL_PRECISION_FIXED8] = {GL_R8, GL_RGBA8},
+                                        [TL_PRECISION_FIXED16] = {GL_R16, GL_RGBA16},
+                                        [TL_PRECISION_FLOAT] = {GL_R32F, GL_RGBA32F}};
+    static const GLenum types[] = {GL_UNSIGNED_BYTE, GL_UNSIGNED_SHORT, GL_FLOAT};
+    static const GLint grey[] = {GL_RED, GL_RED, GL_RED, GL_ONE};
+    bool coloured = table->channels == 3;
+    if (table->precision == TL_PRECISION_FLOAT)
+        bound_floats(table);
+    struct tl_gloss_table made = {
+        .texture = tl_texture_create(gpu, GL_TEXTURE_2D, formats[table->precision][coloured], table->width,
+                                     table->height, 1, 1),
+        .scale = table->scale,
+        .axes = {table->x.scale, table->x.bias, table->y.scale, table->y.bias},
+        .x = table->x.input,
+        .y = table->y.input,
+        .angles = table->x.angle,
+    };
+    glTextureSubImage2D(made.texture.id, 0, 0, 0, table->width, table->height, coloured ? GL_RGB : GL_RED,
+                        types[table->precision], table->texels);
+    if (!coloured)
+        glTextureParameteriv(made.texture.id, GL_TEXTURE_SWIZZLE_RGBA, grey);
+    return made;
+}
+
+static struct tl_gloss_tables make_gloss(tl_gpu *gpu, const struct tl_brdf *brdf,
+                                         const struct tl_shading_params *params)
+{
+    const struct tl_brdf_table_params wanted = {.size = params->table_size,
+                                                .precision = params->table_precision,
+                                                .range = params->table_range,
+                                                .angles = true};
+    struct tl_brdf_tables tables = tl_brdf_tables_make(brdf, &wanted);
+    struct tl_gloss_tables made = {.brdf = *brdf,
+                                   .size = params->table_size,
+                                   .precision = params->table_precision,
+                                   .range = params->table_range,
+                                   .count = tables.count,
+                                   .times_cos_a = tables.times_cos_a};
+    for (int i = 0; i < tables.count; i++)
+        made.tables[i] = upload(gpu, &tables.tables[i]);
+    tl_brdf_tables_release(&tables);
+    return made;
+}
+
+const struct tl_gloss_tables *tl_table_textures_gloss(struct tl_table_textures *textures, tl_gpu *gpu,
+                                                      const struct tl_brdf *brdf,
+                                                      const struct tl_shading_params *params)
+{
+    struct tl_gloss_tables *found = NULL;
+    for (size_t i = 0; i < textures->gloss_count && !found; i++) {
+        struct tl_gloss_tables *gloss = &textures->gloss[i];
+        if (gloss->size == params->table_size && gloss->precision == params->table_precision &&
+            gloss->range == params->table_range && memcmp(&gloss->brdf, brdf, sizeof *brdf) == 0)
+            found = gloss;
+    }
+    if (!found) {
+        textures->gloss =
+            tl_resize(textures->gloss, textures->gloss_count + 1, sizeof(struct tl_gloss_tables));
+        found = &textures->gloss[textures->gloss_count++];
+        *found = make_gloss(gpu, brdf, params);
+    }
+    found->used = true;
+    return found;
+}
+
+const tl_texture *tl_table_textures_power(struct tl_table_textures *textures, tl_gpu *gpu, float exponent)
+{
+    for (size_t i = 0; i < textures->power_count; i++)
+        if (textures->powers[i].exponent == exponent) {
+            textures->powers[i].used = true;
+            return &textures->powers[i].texture;
+        }
+    uint8_t values[TL_POWER_TABLE_SIZE];
+    tl_power_table_make(exponent, TL_POWER_TABLE_SIZE, values);
+    tl_texture texture = tl_texture_create(gpu, GL_TEXTURE_2D, GL_R8, TL_POWER_TABLE_SIZE, 1, 1, 1);
+    glTextureSubImage2D(texture.id, 0, 0, 0, TL_POWER_TABLE_SIZE, 1, GL_RED, GL_UNSIGNED_BYTE, values);
+    textures->powers =
+        tl_resize(textures->powers, textures->power_count + 1, sizeof(struct tl_power_texture));
+    textures->powers[textures->power_count++] = (struct tl_power_texture){exponent, true, texture};
+    return &textures->powers[textures->power_count - 1].texture;
+}
+
+const tl_texture *tl_table_textures_cube(struct tl_table_textures *textures, tl_gpu *gpu, int normalisation)
+{
+    bool wide = normalisation == TL_NORMALISE_CUBE16;
+    tl_texture *texture = &textures->cubes[wide];
+    textures->cubes_used[wide] = true;
+    if (texture->id)
+        return texture;
+    struct tl_normal_cube cube = tl_normal_cube_make(TL_NORMALISE_CUBE_SIZE, wide ? 16 : 8);
+    *texture =
+        tl_texture_create(gpu, GL_TEXTURE_CUBE_MAP, wide ? GL_RGBA16 : GL_RGBA8, cube.size, cube.size, 6, 1);
+    glTextureSubImage3D(texture->id, 0, 0, 0, 0, cube.size, cube.size, 6, GL_RGB,
+                        wide ? GL_UNSIGNED_SHORT : GL_UNSIGNED_BYTE, cube.texels);
+    tl_normal_cube_release(&cube);
+    return texture;
+}

@@ -1,0 +1,58 @@
+/* The tables of render/brdf and their like as textures: factors of gloss, powers, unit vectors. Each is made
+ * when a surface first asks for it, and goes when none did for a frame. */
+#ifndef TOILE_RENDER_LOCAL_TABLE_TEXTURES_H
+#define TOILE_RENDER_LOCAL_TABLE_TEXTURES_H
+
+#include "render/brdf/brdf.h"
+#include "render/gpu/gpu.h"
+#include "render/local/shading.h"
+
+#define TL_GLOSS_TABLES_MAX 3 /* TL_BRDF_TABLES_MAX */
+
+struct tl_gloss_table {
+    tl_texture texture;
+    float scale;   /* what texels, which lie in [0, 1], are multiplied by */
+    float axes[4]; /* scale and bias of x, of y */
+    int x, y;      /* enum tl_table_input */
+    bool angles;   /* of which axes are acos */
+};
+
+/* What a material with constant gloss is shaded by. */
+struct tl_gloss_tables {
+    struct tl_brdf brdf; /* the key, with the next line */
+    int size, precision, range;
+    bool used; /* in this frame */
+    int count;
+    struct tl_gloss_table tables[TL_GLOSS_TABLES_MAX];
+    bool times_cos_a;
+};
+
+struct tl_power_texture {
+    float exponent; /* the key */
+    bool used;
+    tl_texture texture; /* R8, TL_POWER_TABLE_SIZE values over a cosine from 0 to 1 */
+};
+
+struct tl_table_textures {
+    size_t gloss_count, power_count;
+    struct tl_gloss_tables *gloss;
+    struct tl_power_texture *powers;
+    tl_texture cubes[2]; /* unit vectors in 8 and 16 bits */
+    bool cubes_used[2];
+};
+
+void tl_table_textures_release(struct tl_table_textures *textures);
+size_t tl_table_textures_bytes(const struct tl_table_textures *textures);
+/* About a frame: what is not found between them is let go. */
+void tl_table_textures_begin(struct tl_table_textures *textures);
+void tl_table_textures_end(struct tl_table_textures *textures);
+
+/* Valid until the next call of a function of this header. */
+const struct tl_gloss_tables *tl_table_textures_gloss(struct tl_table_textures *textures, tl_gpu *gpu,
+                                                      const struct tl_brdf *brdf,
+                                                      const struct tl_shading_params *params);
+const tl_texture *tl_table_textures_power(struct tl_table_textures *textures, tl_gpu *gpu, float exponent);
+/* `normalisation` is CUBE8 or CUBE16. */
+const tl_texture *tl_table_textures_cube(struct tl_table_textures *textures, tl_gpu *gpu, int normalisation);
+
+#endif

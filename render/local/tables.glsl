@@ -1,0 +1,55 @@
+// Gloss from tables, as render/brdf/tables.h factors it: TABLES of them, of which a pass takes FIRST_TABLE to
+// LAST_TABLE. TABLE0_X and so on are numbers of enum tl_table_input; TABLE0_ANGLES: its axes are angles.
+layout(location = 80) uniform vec4 table_axes[3]; // scale and bias of x, of y: the texture matrix
+layout(location = 83) uniform vec3 table_scales;
+
+layout(binding = 20) uniform sampler2D table0;
+layout(binding = 21) uniform sampler2D table1;
+layout(binding = 22) uniform sampler2D table2;
+
+#if TABLES > 0
+float table_input(int wanted, bool is_angle, Cosines c)
+{
+    float grooves = min(1.0, 2.0 * c.half_normal * min(c.a, c.b) / max(c.t, 1e-6));
+    float inputs[11] = float[](0.0, c.a, c.b, c.half_normal, c.t, c.mirror, c.half_plane.x, c.half_plane.y,
+                               c.thread.x, c.thread.y, grooves);
+    return is_angle ? acos(clamp(inputs[wanted], -1.0, 1.0)) : inputs[wanted];
+}
+
+vec3 table_value(sampler2D table, vec4 axes, float x, float y)
+{
+    return textureLod(table, vec2(axes.x * x + axes.y, axes.z * y + axes.w), 0.0).rgb;
+}
+
+#define TABLE_AT(number)                                                                                               \
+    table_value(table##number, table_axes[number], table_input(TABLE##number##_X, TABLE##number##_ANGLES, c),          \
+                table_input(TABLE##number##_Y, TABLE##number##_ANGLES, c))
+
+// The product of this pass' tables, without their scales.
+vec3 tables_product(Cosines c)
+{
+    vec3 product = vec3(1.0);
+#if FIRST_TABLE <= 0 && LAST_TABLE >= 0
+    product *= TABLE_AT(0);
+#endif
+#if FIRST_TABLE <= 1 && LAST_TABLE >= 1
+    product *= TABLE_AT(1);
+#endif
+#if FIRST_TABLE <= 2 && LAST_TABLE >= 2
+    product *= TABLE_AT(2);
+#endif
+    return product;
+}
+
+// f_r cos a from the product of all tables.
+vec3 tables_gloss(Cosines c, vec3 product)
+{
+    if (!(c.a > 0.0 && c.b > 0.0))
+        return vec3(0.0);
+    float scale = table_scales.x * (TABLES > 1 ? table_scales.y : 1.0) * (TABLES > 2 ? table_scales.z : 1.0);
+#ifdef TIMES_COS_A
+    scale *= c.a;
+#endif
+    return scale * product;
+}
+#endif

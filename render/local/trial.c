@@ -1,0 +1,88 @@
+#include "render/local/trial.h"
+
+#include <epoxy/gl.h>
+
+#include <math.h>
+
+/* Timer queries of software GL do not tell what a draw took; a fence says when it is done. */
+static void wait_for_gpu(void)
+{
+    const GLuint64 forever = ~(GLuint64)0 / 2; /* ns */
+    GLsync fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+    glClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, forever);
+    glDeleteSync(fence);
+}
+
+bool tl_local_trial_create(struct tl_local_trial *out, tl_gpu *gpu, tl_error *error)
+{
+    *out = (struct tl_local_trial){.gpu = gpu, .surfaces = tl_surfaces_create(gpu)};
+    if (tl_lighting_create(&out->lighting, gpu, error))
+        return true;
+    tl_local_trial_release(out);
+    return false;
+}
+
+bool tl_local_trial_show(struct tl_local_trial *trial, const tl_surface *surface,
+                         const struct tl_camera *camera, const struct tl_lamp *lamp, int width, int height,
+                         tl_error *error)
+{
+    trial->view = tl_view_make(camera, width, height);
+    trial->lamp = *lamp;
+    if (!tl_casters_measure(surface, 1, &trial->casters, error) ||
+        !tl_surfaces_update(trial->surfaces, &surface, 1, error))
+        return false;
+    const struct tl_gbuffer_request draw = {.view = &trial->view,
+                                            .width = width,
+                                            .height = height,
+                                            .surfaces = trial->surfaces,
+                                            .surface_count = 1};
+    if (!tl_gbuffer_draw(&trial->gbuffer, trial->gpu, &draw, error))
+        return false;
+    tl_lighting_begin(&trial->lighting, trial->gpu, &trial->gbuffer.target, true);
+    tl_gpu_reset_state(trial->gpu);
+    return true;
+}
+
+void tl_local_trial_release(struct tl_local_trial *trial)
+{
+    tl_local_release(&trial->local);
+    tl_lighting_release(&trial->lighting);
+    tl_gbuffer_release(&trial->gbuffer);
+    tl_surfaces_destroy(&trial->surfaces);
+}
+
+void tl_local_trial_clear(struct tl_local_trial *trial)
+{
+    const float black[] = {0, 0, 0, 0};
+    glClearNamedFramebufferfv(trial->lighting.target.id, GL_COLOR, 0, black);
+    wait_for_gpu();
+}
+
+bool tl_local_trial_draw(struct tl_local_trial *trial, const struct tl_shading_params *params,
+                         tl_error *error)
+{
+    const struct tl_local_request request = {.gbuffer = &trial->gbuffer,
+                                             .light = &trial->lighting.target,
+                                             .view = &trial->view,
+                                             .surfaces = trial->surfaces,
+                                             .surface_count = 1,
+                                             .casters = trial->casters,
+                                             .lamps = &trial->lamp,
+                                             .lamp_count = 1,
+                                             .params = params,
+                                             .detail = tl_detail_options.defaults,
+                                             .weight = 1};
+    bool drawn = tl_local_draw(&trial->local, trial->gpu, &request, error);
+    wait_for_gpu();
+    return drawn;
+}
+
+tl_image tl_local_trial_read(const struct tl_local_trial *trial)
+{
+    const tl_target *target = &trial->lighting.target;
+    tl_image image = tl_image_create(target->width, target->height, 4, TL_IMAGE_F32);
+    glGetTextureImage(target->colours[0].id, 0, GL_RGBA, GL_FLOAT,
+                      (GLsizei)((size_t)target->width * (size_t)target->height * 4 * sizeof(float)),
+                      image.texels);
+    return image;
+}

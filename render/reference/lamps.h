@@ -1,0 +1,11 @@
+/* What lamps send back from a spot to the eye: delta lights, with a shadow ray each, by the exact reflectance
+ * of render/brdf. Pure; threads: any. */
+#ifndef TOILE_RENDER_REFERENCE_LAMPS_H
+#define TOILE_RENDER_REFERENCE_LAMPS_H
+
+#include "render/reference/spot.h"
+
+/* Radiance towards spot.viewer; finite. Adds the number of rays to *rays. */
+vec3s tl_reference_lamps(const struct tl_reference_scene *scene, const struct tl_spot *spot, size_t *rays);
+
+#endif

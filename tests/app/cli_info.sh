@@ -1,0 +1,40 @@
+#!/bin/bash
+# What toile info says of a material that it can only come near to.
+set -u
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder" || exit 1
+failed=0
+check() {
+    local what=$1
+    shift
+    "$@" >/dev/null 2>out || { echo "FAILED $what"; cat out; failed=1; }
+}
+
+# A triangle: (0 0 0) (1 0 0) (0 1 0).
+positions=$(printf '\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200\077\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200\077\0\0\0\0' | base64 -w0)
+write() {
+    cat >"$1" <<END
+{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+ "meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],
+ "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],
+ "bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":36}],
+ "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,$positions"}],
+ "extensionsUsed":[$2],
+ "materials":[{"name":"satin","pbrMetallicRoughness":{"metallicFactor":0,"roughnessFactor":0.5},"extensions":{$3}}]}
+END
+}
+write satin.gltf '"KHR_materials_anisotropy","KHR_materials_clearcoat"' \
+    '"KHR_materials_anisotropy":{"anisotropyStrength":1,"anisotropyRotation":1.5707963},
+     "KHR_materials_clearcoat":{"clearcoatFactor":0.5}'
+check "the model's name" sh -c "$TOILE info satin.gltf | grep -Eq '^ +model +ward$'"
+check "its wide direction" sh -c "$TOILE info satin.gltf | grep -Eq '^ +width_weft +1$'"
+check "its narrow direction" sh -c "$TOILE info satin.gltf | grep -Eq '^ +width_warp +0.25$'"
+check "its rotation" sh -c "$TOILE info satin.gltf | grep -Eq '^ +rotation_deg +90'"
+check "its coat" sh -c "$TOILE info satin.gltf | grep -Eq '^ +coat +0.5$'"
+check "words for what is not GGX" sh -c "$TOILE info satin.gltf | grep -q 'KHR_materials_anisotropy: shown by Ward'"
+check "the same as JSON" sh -c "$TOILE info satin.gltf --json | tr -d '\\n' | grep -q '\"approximated\":.*shown by Ward'"
+check "nothing is called ignored" sh -c "$TOILE info satin.gltf | grep -Eq '^ignored +none$'"
+write odd.gltf '"KHR_materials_iridescence"' '"KHR_materials_iridescence":{"iridescenceFactor":1}'
+check "what has no effect" sh -c "$TOILE info odd.gltf | grep -A1 '^ignored' | grep -q KHR_materials_iridescence"
+exit $failed

@@ -1,0 +1,53 @@
+#!/usr/bin/env bash
+# Lamps on the command line, and what measures ways of shading under them: that every way is there and finite.
+set -eu
+room=$(mktemp -d)
+trap 'rm -rf "$room"' EXIT
+cd "$room"
+small="--size 48x48 --set scene.garment=sphere --set image.supersample=1 --set light.regions=24 --quiet"
+
+check() { # NAME COMMAND...
+    local name=$1
+    shift
+    "$@" || { echo "FAILED $name"; exit 1; }
+    echo "ok     $name"
+}
+refused() { # MESSAGE COMMAND...
+    local message=$1
+    shift
+    "$@" 2>refusal && return 1
+    [ $? -eq 2 ] && grep -q -- "$message" refusal
+}
+
+$TOILE bench shading --quick --json --quiet >shading.json
+check "bench shading" test -s shading.json
+if command -v python3 >/dev/null; then
+    check "every way of shading, finite" python3 - <<'PYTHON'
+import json, math
+rows = json.load(open("shading.json"))["rows"]
+for look in ("plain", "decal and bumps"):
+    names = [row["name"] for row in rows if row["look"] == look]
+    assert len(names) == len(set(names)) == 28, names
+    for wanted in ("gouraud", "fast_phong", "newton", "cube8", "cube16", "fixed8", "table", "tangent", "passes"):
+        assert any(wanted in name for name in names), wanted
+for row in rows:
+    for key in ("cpu_ms", "wall_ms", "ratio"):
+        assert math.isfinite(row[key]) and row[key] > 0, row
+    assert math.isfinite(row["rel_rmse"]) and row["rel_rmse"] >= 0, row
+assert rows[0]["ratio"] == 1, rows[0]
+exact = [row for row in rows if row["name"] == "phong, exact"]
+assert all(row["rel_rmse"] == 0 for row in exact), exact
+PYTHON
+fi
+check "bench shading knows no scene" refused "leave scene" $TOILE bench shading dress
+
+check "a picture without lamps" $TOILE render $small -o dark.exr
+check "a picture with a lamp" $TOILE render $small -o lit.exr --set lamp.kind=directional
+check "a lamp that is none changes nothing" $TOILE render $small -o none.exr --set lamp.irradiance=[9,9,9] \
+    --set shading.frequency=gouraud
+check "the same bytes" cmp dark.exr none.exr
+check "other bytes" test "$(cmp -s dark.exr lit.exr; echo $?)" -eq 1
+check "no lamp, no job" grep -q "lamps *drop .*no lamps here" <($TOILE plan $small)
+check "a lamp, a job" grep -q "lamps *run" <($TOILE plan $small --set fill.kind=point)
+check "no such lamp" refused "kind" $TOILE render $small -o a.exr --set lamp.kind=candle
+echo "all well"
