@@ -75,30 +75,31 @@ TL_INLINE void read_squared(const struct tl_pulls *pulls, const struct tl_metric
             squared[corner][lane] = pulls->squared[metric->edges[corner][lane]];
 }
 
+TL_INLINE void differentiate_range(const struct tl_pulls *pulls, struct stretching k, struct tl_range range,
+                                   bool wants_energy)
+{
+    for (size_t i = range.from; i < range.to; i++) {
+        double squared[3][TL_BATCH], energies[TL_BATCH], sum = 0;
+        read_squared(pulls, &pulls->metrics[i], squared);
+        differentiate(&pulls->metrics[i], &k, (const double(*)[TL_BATCH])squared,
+                      &pulls->shares[i * 3 * TL_BATCH], wants_energy ? energies : NULL);
+        for (int lane = 0; lane < TL_BATCH && wants_energy; lane++)
+            sum += energies[lane];
+        if (wants_energy)
+            pulls->parts[i] = sum;
+    }
+}
+
 TL_CLONES static void differentiate_all(const struct tl_pulls *pulls, struct stretching k,
                                         struct tl_range range)
 {
-    for (size_t i = range.from; i < range.to; i++) {
-        double squared[3][TL_BATCH];
-        read_squared(pulls, &pulls->metrics[i], squared);
-        differentiate(&pulls->metrics[i], &k, (const double(*)[TL_BATCH])squared,
-                      &pulls->shares[i * 3 * TL_BATCH], NULL);
-    }
+    differentiate_range(pulls, k, range, false);
 }
 
 /* The triangles' energies beside. */
 TL_CLONES static void measure_all(const struct tl_pulls *pulls, struct stretching k, struct tl_range range)
 {
-    for (size_t i = range.from; i < range.to; i++) {
-        double squared[3][TL_BATCH], energies[TL_BATCH];
-        read_squared(pulls, &pulls->metrics[i], squared);
-        differentiate(&pulls->metrics[i], &k, (const double(*)[TL_BATCH])squared,
-                      &pulls->shares[i * 3 * TL_BATCH], energies);
-        double sum = 0;
-        for (int lane = 0; lane < TL_BATCH; lane++)
-            sum += energies[lane];
-        pulls->parts[i] = sum;
-    }
+    differentiate_range(pulls, k, range, true);
 }
 
 TL_CLONES static void add_shares(const struct tl_pulls *pulls, struct tl_range range)

@@ -5,7 +5,10 @@
  * and the step do not: factored once, by CHOLMOD, without BLAS, so that it is the same at any number of
  * threads.
  *
- * Ownership: owns its factor. Threads: serial; one at a time. */
+ * Branches of its elimination tree are solved side by side, always the same ones, so that what they add up to
+ * does not depend on the threads either.
+ *
+ * Ownership: owns its factor. Threads: a solve uses all; one at a time. */
 #ifndef TOILE_CLOTH_IMPLICIT_FACTOR_H
 #define TOILE_CLOTH_IMPLICIT_FACTOR_H
 

@@ -3,8 +3,8 @@
  * constraints in a mass-spring model to describe rigid cloth behavior"). It is not in the energy: the other
  * solvers know none, and a fabric that truly stretches further needs it off.
  *
- * Only edges around triangles that came near the limit in this substep are looked at: a substep moves cloth by
- * far less than what is left then, and what it moves further is seen in the next. Threads: pure. */
+ * Only edges around triangles that came near the limit in this substep are looked at: a substep moves cloth
+ * by far less than what is left then, and what it moves further is seen in the next. Threads: pure. */
 #ifndef TOILE_CLOTH_LIMIT_H
 #define TOILE_CLOTH_LIMIT_H
 

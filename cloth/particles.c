@@ -2,7 +2,6 @@
 
 #include "cloth/threads.h"
 #include "config/memory.h"
-#include "config/simd.h"
 
 #include <stdlib.h>
 #ifdef __SSE2__
@@ -64,27 +63,20 @@ struct tl_prediction tl_prediction_make(const vec3d *forces, double gravity, dou
     return (struct tl_prediction){.forces = forces, .fall = gravity * h, .keep = exp(-drag * h), .h = h};
 }
 
-/* Particles that are moved at once, and their numbers. */
-#define SOME 8
-
 TL_INLINE void predict_some(struct tl_particles *particles, size_t first, size_t count,
                             const struct tl_prediction *to, bool pushed, bool moving)
 {
     const double h = to->h, per_h = 1 / h, keep = to->keep;
-    double weights[3 * SOME], falls[3 * SOME];
-    for (size_t i = 0; i < count; i++) {
-        weights[3 * i] = weights[3 * i + 1] = weights[3 * i + 2] = particles->w[first + i];
-        falls[3 * i] = falls[3 * i + 2] = 0;
-        falls[3 * i + 1] = to->fall;
-    }
+    struct tl_some some;
+    tl_some_spread(&particles->w[first], count, to->fall, &some);
     double *restrict x = &particles->x[first].x, *restrict previous = &particles->previous[first].x;
     const double *restrict v = &particles->v[first].x;
     const double *restrict forces = pushed ? &to->forces[first].x : v;
     for (size_t k = 0; k < 3 * count; k++) {
         double speed = moving ? (x[k] - previous[k]) * per_h : v[k];
-        speed = weights[k] > 0 ? speed * keep - falls[k] : 0;
+        speed = some.weights[k] > 0 ? speed * keep - some.falls[k] : 0;
         if (pushed)
-            speed += forces[k] * (weights[k] * h);
+            speed += forces[k] * (some.weights[k] * h);
         previous[k] = x[k];
         x[k] += speed * h;
     }
@@ -94,8 +86,8 @@ TL_CLONES static void predict(struct tl_particles *particles, struct tl_range pa
 {
     const struct tl_prediction to = *(const struct tl_prediction *)how;
     size_t i = part.from;
-    for (; i + SOME <= part.to && to.forces && to.moving; i += SOME) /* the usual ones */
-        predict_some(particles, i, SOME, &to, true, true);
+    for (; i + TL_SOME <= part.to && to.forces && to.moving; i += TL_SOME) /* the usual ones */
+        predict_some(particles, i, TL_SOME, &to, true, true);
     for (; i < part.to; i++)
         predict_some(particles, i, 1, &to, to.forces, to.moving);
 }

@@ -6,6 +6,7 @@
 
 #include "cloth/threads.h"
 #include "cloth/vec3d.h"
+#include "config/simd.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -20,6 +21,21 @@ struct tl_particles {
 };
 struct tl_particles tl_particles_create(size_t count);
 void tl_particles_release(struct tl_particles *particles);
+
+/* Particles that are moved at once as plain numbers, x, y, z after x, y, z: what these need beside them. */
+#define TL_SOME 8
+struct tl_some {
+    double weights[3 * TL_SOME]; /* 1/kg */
+    double falls[3 * TL_SOME];   /* `fall` for each y, else 0 */
+};
+TL_INLINE void tl_some_spread(const double *inverse_masses, size_t count, double fall, struct tl_some *some)
+{
+    for (size_t i = 0; i < count; i++) {
+        some->weights[3 * i] = some->weights[3 * i + 1] = some->weights[3 * i + 2] = inverse_masses[i];
+        some->falls[3 * i] = some->falls[3 * i + 2] = 0;
+        some->falls[3 * i + 1] = fall;
+    }
+}
 
 /* What is done to some of the particles, each by itself. */
 struct tl_move {

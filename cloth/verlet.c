@@ -1,10 +1,5 @@
 #include "cloth/verlet.h"
 
-#include "config/simd.h"
-
-/* Particles that are moved at once, and their numbers. */
-#define SOME 8
-
 struct tl_verlet tl_verlet_make(const vec3d *forces, double gravity, double drag, double h)
 {
     return (struct tl_verlet){forces, gravity, exp(-drag * h / 2), h};
@@ -22,23 +17,19 @@ TL_INLINE void advance(struct tl_particles *particles, size_t first, size_t coun
                        const struct tl_verlet *substep, bool kicks, bool drifts)
 {
     const double h = substep->h, per_h = 1 / h, keep = substep->keep;
-    double weights[3 * SOME], falls[3 * SOME];
-    for (size_t i = 0; i < count; i++) {
-        weights[3 * i] = weights[3 * i + 1] = weights[3 * i + 2] = particles->w[first + i];
-        falls[3 * i] = falls[3 * i + 2] = 0;
-        falls[3 * i + 1] = substep->gravity * h / 2;
-    }
+    struct tl_some some;
+    tl_some_spread(&particles->w[first], count, substep->gravity * h / 2, &some);
     double *restrict x = &particles->x[first].x, *restrict v = &particles->v[first].x;
     double *restrict previous = &particles->previous[first].x;
     const double *restrict forces = &substep->forces[first].x;
     for (size_t k = 0; k < 3 * count; k++) {
-        double speed = v[k], weight = weights[k];
+        double speed = v[k], weight = some.weights[k];
         if (kicks) {
             speed += (x[k] - (previous[k] + speed * h)) * per_h;
-            speed = weight > 0 ? pushed(speed, forces[k], weight, falls[k], h) * keep : speed;
+            speed = weight > 0 ? pushed(speed, forces[k], weight, some.falls[k], h) * keep : speed;
         }
         if (drifts) {
-            speed = weight > 0 ? pushed(speed * keep, forces[k], weight, falls[k], h) : 0;
+            speed = weight > 0 ? pushed(speed * keep, forces[k], weight, some.falls[k], h) : 0;
             previous[k] = x[k];
             x[k] += speed * h;
         }
@@ -51,8 +42,8 @@ TL_INLINE void advance_part(struct tl_particles *particles, struct tl_range part
 {
     const struct tl_verlet substep = *(const struct tl_verlet *)how;
     size_t i = part.from;
-    for (; i + SOME <= part.to; i += SOME)
-        advance(particles, i, SOME, &substep, kicks, drifts);
+    for (; i + TL_SOME <= part.to; i += TL_SOME)
+        advance(particles, i, TL_SOME, &substep, kicks, drifts);
     advance(particles, i, part.to - i, &substep, kicks, drifts);
 }
 

@@ -5,9 +5,9 @@
  * size of triangles, so a stiff fabric takes thousands of substeps a frame, and beyond
  * cloth.reference_substeps it is refused.
  *
- * Cost: 24 to 27 ns a particle and substep on one core of 3.7 GHz with registers of 512 bits (10,000
- * vertices, two triangles each; 129 ns as plain loops), of which bending and the sum of forces 10,
- * membranes 5. Threads: its loops share the particles out. */
+ * Cost: 23 to 25 ns a particle and substep on one core of 3.7 GHz with registers of 512 bits (10,000
+ * vertices, two triangles each; 129 ns as plain loops), of which bending and the sum of forces 9,
+ * membranes 8. Threads: its loops share the particles out. */
 #ifndef TOILE_CLOTH_VERLET_H
 #define TOILE_CLOTH_VERLET_H
 
