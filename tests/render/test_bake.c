@@ -190,7 +190,8 @@ static void test_wall(void **state)
     tl_image heights = heights_of(SIDE, SIDE, wall);
     struct tl_height_field field = tl_height_field_make(&heights, 0.01f, 0.01f, true, true);
     struct tl_horizon_maps maps = tl_bake_horizons(&field);
-    for (int column = 2; column < SIDE / 2; column++) { /* not where the diagonal leaves the map before it meets the wall */
+    for (int column = 2; column < SIDE / 2;
+         column++) { /* not where the diagonal leaves the map before it meets the wall */
         vec2s uv = {{((float)column + 0.5f) / SIDE, 0.5f}};
         double distance = (0.5 - (double)uv.x + 0.5 / SIDE) * 0.01, diagonal = distance * sqrt(2);
         assert_near(tl_horizon_sine(&maps, &field, uv, 1, 0), 1e-3 / hypot(distance, 1e-3), 0.6 / 255);
@@ -246,7 +247,8 @@ static void test_horizon_against_rays(void **state)
      * bytes leave about a hundredth; between eight angles a sine may bend by a few more. */
     assert_true(at_angles > 0.98);
     assert_true(anywhere > 0.96);
-    /* Halfway up the side of a yarn, between a texel that sees it and one that does not, the map says half. */
+    /* Halfway up the side of a yarn, between a texel that sees it and one that does not, the map says half.
+     */
     assert_near(lit[1] / by_map, lit[0] / by_map, 0.01);
     tl_horizon_maps_release(&maps);
     tl_weave_release(&weave);
