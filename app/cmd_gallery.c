@@ -1,45 +1,28 @@
 /* toile gallery: every technique with its error and its time, as pictures, a page and a table. */
 #include "app/commands.h"
+#include "app/folder.h"
 #include "app/gallery.h"
 #include "config/file.h"
-#include "config/memory.h"
 
-#include <stdlib.h>
-
-static bool write_file(const char *folder, const char *name, const struct tl_gallery *gallery,
-                       void (*write)(const struct tl_gallery *, FILE *), tl_error *error)
+static void write_csv(const void *gallery, FILE *out)
 {
-    struct tl_writer writer;
-    char *path = tl_format("%s/%s", folder, name);
-    bool written = tl_writer_begin(&writer, path, error);
-    if (written) {
-        write(gallery, writer.stream);
-        written = tl_writer_commit(&writer, error);
-    }
-    free(path);
-    return written;
+    tl_gallery_write_csv(gallery, out);
 }
 
-static bool write_picture(const char *folder, const struct tl_hung *hung, tl_error *error)
+static void write_html(const void *gallery, FILE *out)
 {
-    struct tl_writer writer;
-    char *path = tl_format("%s/%s", folder, hung->image);
-    bool written = tl_writer_begin(&writer, path, error);
-    if (written) {
-        fwrite(hung->png, 1, hung->png_size, writer.stream);
-        written = tl_writer_commit(&writer, error);
-    }
-    free(path);
-    return written;
+    tl_gallery_write_html(gallery, out);
 }
 
 static bool write_all(const char *folder, const struct tl_gallery *gallery, tl_error *error)
 {
-    for (size_t i = 0; i < gallery->count; i++)
-        if (!write_picture(folder, &gallery->items[i], error))
+    for (size_t i = 0; i < gallery->count; i++) {
+        const struct tl_hung *hung = &gallery->items[i];
+        if (!tl_folder_put(folder, hung->image, hung->png, hung->png_size, error))
             return false;
-    return write_file(folder, "gallery.csv", gallery, tl_gallery_write_csv, error) &&
-           write_file(folder, "gallery.html", gallery, tl_gallery_write_html, error);
+    }
+    return tl_folder_print(folder, "gallery.csv", gallery, write_csv, error) &&
+           tl_folder_print(folder, "gallery.html", gallery, write_html, error);
 }
 
 /* Interrupted, what hangs is worth as much as before. */

@@ -1,5 +1,6 @@
 /* toile trade: error against time along an axis, as CSV and as a report. */
 #include "app/commands.h"
+#include "app/folder.h"
 #include "app/topic.h"
 #include "app/trade_cloth.h"
 #include "app/trade_light.h"
@@ -9,27 +10,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool write_file(const char *folder, const char *name, const void *trade,
-                       void (*write)(const void *trade, FILE *out), tl_error *error)
-{
-    struct tl_writer writer;
-    char *path = tl_format("%s/%s", folder, name);
-    bool written = tl_writer_begin(&writer, path, error);
-    if (written) {
-        write(trade, writer.stream);
-        written = tl_writer_commit(&writer, error);
-    }
-    free(path);
-    return written;
-}
-
 /* Interrupted, what was measured is worth as much as before: `done` says whether all was. */
 static bool write_both(const char *folder, const void *trade, void (*write_csv)(const void *, FILE *),
                        void (*write_html)(const void *, FILE *), bool done, tl_error *error)
 {
     tl_error failure = {0};
-    if (write_file(folder, "trade.csv", trade, write_csv, &failure) &&
-        write_file(folder, "report.html", trade, write_html, &failure))
+    if (tl_folder_print(folder, "trade.csv", trade, write_csv, &failure) &&
+        tl_folder_print(folder, "report.html", trade, write_html, &failure))
         return done;
     *error = failure;
     return false;

@@ -185,8 +185,8 @@ static int fan_of_threads(const struct tl_brdf *brdf, const struct tl_brdf_frame
 {
     float s = brdf->exponent, along = -glms_vec3_dot(frame->tangent, v);
     float sine = sqrtf(fmaxf(1 - along * along, 0)), facing = fmaxf(glms_vec3_dot(frame->normal, v), 0);
-    /* The integral of cos^s, nearly sqrt(2 pi / (s + 1/2)), times the mean of sin^2 over it, times that of the cosine
-     * along the cone. */
+    /* The integral of cos^s, nearly sqrt(2 pi / (s + 1/2)), times the mean of sin^2 over it, times that of
+     * the cosine along the cone. */
     float across = sine * sine + (along * along - sine * sine) / (s + 2);
     float all = tl_brdf_lobe_scale(brdf) * sqrtf(2 * GLM_PIf / (s + 0.5f)) * across * 2;
     vec3s albedo = glms_vec3_scale(tl_brdf_fresnel(brdf, facing), facing > 0 ? all : 0);

@@ -68,10 +68,10 @@ struct tl_table_error tl_brdf_table_error(const struct tl_brdf *brdf,
         vec3s v = direction(((float)(viewer % VIEWERS) + 0.5f) / VIEWERS, ((float)turn + 0.3f) / 8);
         for (int i = 0; i < LIGHTS * LIGHTS; i++) {
             vec3s l = light_of(brdf, &frame, v, i, viewer);
-            float inputs[TL_INPUT_COUNT];
+            float inputs[TL_AXIS_COUNT];
             tl_brdf_inputs(&frame, l, v, inputs);
-            bool low = inputs[TL_INPUT_N_DOT_L] < TL_GRAZING_COSINE || v.z < TL_GRAZING_COSINE;
-            if (inputs[TL_INPUT_N_DOT_L] > 0)
+            bool low = inputs[TL_AXIS_N_DOT_L] < TL_GRAZING_COSINE || v.z < TL_GRAZING_COSINE;
+            if (inputs[TL_AXIS_N_DOT_L] > 0)
                 add(low ? &grazing : &away, tl_brdf_tables_gloss(&tables, inputs),
                     wanted_of(brdf, params, &frame, l, v));
         }
@@ -92,7 +92,7 @@ double tl_brdf_table_ratio(const struct tl_brdf *brdf, const struct tl_brdf_tabl
         vec3s v = direction(n_dot_v, ((float)viewer + 0.3f) / 16);
         for (int i = 0; i < LIGHTS * LIGHTS; i++) {
             vec3s l = light_of(brdf, &frame, v, i, viewer);
-            float inputs[TL_INPUT_COUNT];
+            float inputs[TL_AXIS_COUNT];
             tl_brdf_inputs(&frame, l, v, inputs);
             add(&sums, tl_brdf_tables_gloss(tables, inputs), tl_brdf_gloss(brdf, &frame, l, v));
         }

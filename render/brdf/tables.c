@@ -126,7 +126,7 @@ static struct range lobe_range(int input, float exponent)
 static struct range facets_range(const struct tl_brdf *brdf)
 {
     float width = brdf->gloss.width_weft, end = width * sqrtf(LOG_DARK); /* slope or angle */
-    struct range range = cosines(TL_INPUT_N_DOT_H);
+    struct range range = cosines(TL_AXIS_N_DOT_H);
     if (width <= WIDE)
         range.low = brdf->gloss.facets == TL_FACETS_BECKMANN ? 1 / sqrtf(1 + end * end) : cosf(end);
     return range;
@@ -148,50 +148,50 @@ static struct range thread_range(int input, bool angle)
 static int factors_of(const struct tl_brdf *brdf, const struct tl_brdf_table_params *params,
                       struct factor out[TL_BRDF_TABLES_MAX])
 {
-    struct factor fresnel = {.value = fresnel_alone, .x = cosines(TL_INPUT_H_DOT_L), .channels = 3};
+    struct factor fresnel = {.value = fresnel_alone, .x = cosines(TL_AXIS_H_DOT_L), .channels = 3};
     switch (brdf->gloss.model) {
     case TL_REFLECT_TORRANCE_SPARROW: {
         bool smith = brdf->gloss.masking == TL_MASKING_SMITH;
         out[0] = (struct factor){.value = fresnel_and_facets,
-                                 .x = cosines(TL_INPUT_H_DOT_L),
+                                 .x = cosines(TL_AXIS_H_DOT_L),
                                  .y = facets_range(brdf),
                                  .channels = 3};
         out[1] = (struct factor){.value = smith ? smith_over_cosine : grooves_over_cosine,
-                                 .x = cosines(smith ? TL_INPUT_N_DOT_L : TL_INPUT_GROOVES),
-                                 .y = cosines(TL_INPUT_N_DOT_V),
+                                 .x = cosines(smith ? TL_AXIS_N_DOT_L : TL_AXIS_GROOVES),
+                                 .y = cosines(TL_AXIS_N_DOT_V),
                                  .channels = 1,
                                  .singular = true};
         return 2;
     }
     case TL_REFLECT_WARD:
         out[0] = (struct factor){.value = ward_facets,
-                                 .x = slope_range(TL_INPUT_H_DOT_T, brdf->gloss.width_weft),
-                                 .y = slope_range(TL_INPUT_H_DOT_B, brdf->gloss.width_warp),
+                                 .x = slope_range(TL_AXIS_H_DOT_T, brdf->gloss.width_weft),
+                                 .y = slope_range(TL_AXIS_H_DOT_B, brdf->gloss.width_warp),
                                  .channels = 1};
         out[1] = (struct factor){.value = root_of_cosines,
-                                 .x = cosines(TL_INPUT_N_DOT_L),
-                                 .y = cosines(TL_INPUT_N_DOT_V),
+                                 .x = cosines(TL_AXIS_N_DOT_L),
+                                 .y = cosines(TL_AXIS_N_DOT_V),
                                  .channels = 1,
                                  .singular = true};
         out[2] = fresnel;
         return 3;
     case TL_REFLECT_BANKS:
         out[0] = (struct factor){.value = thread,
-                                 .x = thread_range(TL_INPUT_T_DOT_L, params->angles),
-                                 .y = thread_range(TL_INPUT_T_DOT_V, params->angles),
+                                 .x = thread_range(TL_AXIS_T_DOT_L, params->angles),
+                                 .y = thread_range(TL_AXIS_T_DOT_V, params->angles),
                                  .channels = 1};
         out[1] = fresnel;
-        out[1].x.input = TL_INPUT_N_DOT_V;
+        out[1].x.input = TL_AXIS_N_DOT_V;
         return 2;
     default: {
         bool half = brdf->gloss.model == TL_REFLECT_BLINN_PHONG,
              phong = brdf->gloss.model == TL_REFLECT_PHONG;
         out[0] = (struct factor){.value = params->folded ? folded : lobe_and_fresnel,
-                                 .x = half ? lobe_range(TL_INPUT_N_DOT_H, 4 * brdf->exponent)
-                                           : lobe_range(TL_INPUT_R_DOT_L, brdf->exponent),
-                                 .y = cosines(params->folded ? TL_INPUT_N_DOT_L
-                                              : phong        ? TL_INPUT_N_DOT_V
-                                                             : TL_INPUT_H_DOT_L),
+                                 .x = half ? lobe_range(TL_AXIS_N_DOT_H, 4 * brdf->exponent)
+                                           : lobe_range(TL_AXIS_R_DOT_L, brdf->exponent),
+                                 .y = cosines(params->folded ? TL_AXIS_N_DOT_L
+                                              : phong        ? TL_AXIS_N_DOT_V
+                                                             : TL_AXIS_H_DOT_L),
                                  .channels = 3};
         return 1;
     }
@@ -207,7 +207,7 @@ static float at_texel(const struct range *range, int i, int count)
 static struct tl_brdf_axis axis_of(const struct range *range, int count)
 {
     if (count == 1)
-        return (struct tl_brdf_axis){.input = TL_INPUT_NONE, .bias = 0.5f};
+        return (struct tl_brdf_axis){.input = TL_AXIS_NONE, .bias = 0.5f};
     float scale = (float)(count - 1) / (float)count / (range->high - range->low);
     return (struct tl_brdf_axis){range->input, range->angle, scale, 0.5f / (float)count - range->low * scale};
 }
@@ -263,7 +263,7 @@ static struct tl_brdf_table make_table(const struct factor *factor)
     int size = factor->params->size;
     assert(size >= 2);
     struct tl_brdf_table table = {.width = size,
-                                  .height = factor->y.input == TL_INPUT_NONE ? 1 : size,
+                                  .height = factor->y.input == TL_AXIS_NONE ? 1 : size,
                                   .channels = factor->channels,
                                   .precision = factor->params->precision};
     table.x = axis_of(&factor->x, table.width);
@@ -324,20 +324,20 @@ size_t tl_brdf_tables_bytes(const struct tl_brdf_tables *tables)
     return bytes;
 }
 
-void tl_brdf_inputs(const struct tl_brdf_frame *frame, vec3s l, vec3s v, float inputs[TL_INPUT_COUNT])
+void tl_brdf_inputs(const struct tl_brdf_frame *frame, vec3s l, vec3s v, float inputs[TL_AXIS_COUNT])
 {
     struct tl_brdf_angles at = tl_brdf_angles_of(frame, l, v);
-    inputs[TL_INPUT_NONE] = 0;
-    inputs[TL_INPUT_N_DOT_L] = at.cos_a;
-    inputs[TL_INPUT_N_DOT_V] = at.cos_b;
-    inputs[TL_INPUT_N_DOT_H] = at.h.z;
-    inputs[TL_INPUT_H_DOT_L] = at.cos_t;
-    inputs[TL_INPUT_R_DOT_L] = glms_vec3_dot(tl_brdf_mirror(frame->normal, v), l);
-    inputs[TL_INPUT_H_DOT_T] = at.h.x;
-    inputs[TL_INPUT_H_DOT_B] = at.h.y;
-    inputs[TL_INPUT_T_DOT_L] = glms_vec3_dot(frame->tangent, l);
-    inputs[TL_INPUT_T_DOT_V] = glms_vec3_dot(frame->tangent, v);
-    inputs[TL_INPUT_GROOVES] = at.cos_t > 0 ? tl_brdf_v_grooves(at.cos_a, at.cos_b, at.cos_t, at.h.z) : 0;
+    inputs[TL_AXIS_NONE] = 0;
+    inputs[TL_AXIS_N_DOT_L] = at.cos_a;
+    inputs[TL_AXIS_N_DOT_V] = at.cos_b;
+    inputs[TL_AXIS_N_DOT_H] = at.h.z;
+    inputs[TL_AXIS_H_DOT_L] = at.cos_t;
+    inputs[TL_AXIS_R_DOT_L] = glms_vec3_dot(tl_brdf_mirror(frame->normal, v), l);
+    inputs[TL_AXIS_H_DOT_T] = at.h.x;
+    inputs[TL_AXIS_H_DOT_B] = at.h.y;
+    inputs[TL_AXIS_T_DOT_L] = glms_vec3_dot(frame->tangent, l);
+    inputs[TL_AXIS_T_DOT_V] = glms_vec3_dot(frame->tangent, v);
+    inputs[TL_AXIS_GROOVES] = at.cos_t > 0 ? tl_brdf_v_grooves(at.cos_a, at.cos_b, at.cos_t, at.h.z) : 0;
 }
 
 static float texel(const struct tl_brdf_table *table, int x, int y, int channel)
@@ -374,16 +374,16 @@ vec3s tl_brdf_table_at(const struct tl_brdf_table *table, float u, float v)
     return out;
 }
 
-static float coordinate(const struct tl_brdf_axis *axis, const float inputs[TL_INPUT_COUNT])
+static float coordinate(const struct tl_brdf_axis *axis, const float inputs[TL_AXIS_COUNT])
 {
     float input = inputs[axis->input];
     return axis->scale * (axis->angle ? acosf(fminf(fmaxf(input, -1), 1)) : input) + axis->bias;
 }
 
-vec3s tl_brdf_tables_gloss(const struct tl_brdf_tables *tables, const float inputs[TL_INPUT_COUNT])
+vec3s tl_brdf_tables_gloss(const struct tl_brdf_tables *tables, const float inputs[TL_AXIS_COUNT])
 {
-    bool ambient_remains = tables->tables[0].y.input == TL_INPUT_N_DOT_L && tables->count == 1;
-    if (!(inputs[TL_INPUT_N_DOT_V] > 0 && (inputs[TL_INPUT_N_DOT_L] > 0 || ambient_remains)))
+    bool ambient_remains = tables->tables[0].y.input == TL_AXIS_N_DOT_L && tables->count == 1;
+    if (!(inputs[TL_AXIS_N_DOT_V] > 0 && (inputs[TL_AXIS_N_DOT_L] > 0 || ambient_remains)))
         return (vec3s){{0, 0, 0}};
     vec3s product = {{1, 1, 1}};
     for (int i = 0; i < tables->count; i++) {
@@ -391,7 +391,7 @@ vec3s tl_brdf_tables_gloss(const struct tl_brdf_tables *tables, const float inpu
         product = glms_vec3_mul(
             product, tl_brdf_table_at(table, coordinate(&table->x, inputs), coordinate(&table->y, inputs)));
     }
-    return tables->times_cos_a ? glms_vec3_scale(product, inputs[TL_INPUT_N_DOT_L]) : product;
+    return tables->times_cos_a ? glms_vec3_scale(product, inputs[TL_AXIS_N_DOT_L]) : product;
 }
 
 vec3s tl_fresnel_additive(vec3s reflectance, vec3s mirror, vec3s diffuse)

@@ -36,18 +36,18 @@ enum tl_precision { TL_PRECISION_FIXED8, TL_PRECISION_FIXED16, TL_PRECISION_FLOA
 
 /* What stands on a table's axis; t: the frame's tangent, b: its bitangent. */
 enum tl_table_input {
-    TL_INPUT_NONE, /* a table of one row: any v */
-    TL_INPUT_N_DOT_L,
-    TL_INPUT_N_DOT_V,
-    TL_INPUT_N_DOT_H,
-    TL_INPUT_H_DOT_L,
-    TL_INPUT_R_DOT_L, /* r: the viewer mirrored about n */
-    TL_INPUT_H_DOT_T,
-    TL_INPUT_H_DOT_B,
-    TL_INPUT_T_DOT_L,
-    TL_INPUT_T_DOT_V,
-    TL_INPUT_GROOVES, /* min(1, 2 n.h min(n.l, n.v) / h.l); no texture matrix makes this one */
-    TL_INPUT_COUNT
+    TL_AXIS_NONE, /* a table of one row: any v */
+    TL_AXIS_N_DOT_L,
+    TL_AXIS_N_DOT_V,
+    TL_AXIS_N_DOT_H,
+    TL_AXIS_H_DOT_L,
+    TL_AXIS_R_DOT_L, /* r: the viewer mirrored about n */
+    TL_AXIS_H_DOT_T,
+    TL_AXIS_H_DOT_B,
+    TL_AXIS_T_DOT_L,
+    TL_AXIS_T_DOT_V,
+    TL_AXIS_GROOVES, /* min(1, 2 n.h min(n.l, n.v) / h.l); no texture matrix makes this one */
+    TL_AXIS_COUNT
 };
 
 struct tl_brdf_axis {
@@ -95,12 +95,12 @@ size_t tl_brdf_tables_bytes(const struct tl_brdf_tables *tables);
 
 /* One number for each enum tl_table_input, from unit vectors, not clamped (T_DOT_L and the like may be
  * negative). */
-void tl_brdf_inputs(const struct tl_brdf_frame *frame, vec3s l, vec3s v, float inputs[TL_INPUT_COUNT]);
+void tl_brdf_inputs(const struct tl_brdf_frame *frame, vec3s l, vec3s v, float inputs[TL_AXIS_COUNT]);
 
 /* As a GL sampler does: GL_LINEAR, GL_CLAMP_TO_EDGE, times `scale`. */
 vec3s tl_brdf_table_at(const struct tl_brdf_table *table, float u, float v);
 /* The product of all, 0 where n.l <= 0 or n.v <= 0. */
-vec3s tl_brdf_tables_gloss(const struct tl_brdf_tables *tables, const float inputs[TL_INPUT_COUNT]);
+vec3s tl_brdf_tables_gloss(const struct tl_brdf_tables *tables, const float inputs[TL_AXIS_COUNT]);
 
 /* Fresnel's term alone over its cosine [op. cit., 4.4], size x 1. Released by free(texels). */
 struct tl_brdf_table tl_fresnel_table_make(const struct tl_brdf *brdf, int input, int size, int precision);

@@ -2,6 +2,7 @@
  * frame by frame. The hashes that test_threads prints are those of a Debug build, too. */
 #include "bodies.h"
 #include "cloth/frames.h"
+#include "cloth/implicit_matrix.h"
 #include "cloth/state.h"
 #include "cloth/threads.h"
 #include "sheets.h"
@@ -85,13 +86,15 @@ static void end(struct run *run)
     sheet_free(&run->garment);
 }
 
-/* More vertices than one thread is left alone with. */
+/* More vertices than one thread is left alone with: settle's own loops share out far fewer. */
 static void test_threads(void **state)
 {
     (void)state;
-    const int counts[] = {1, 2, 3, 8}, cells = 72, frames = 4;
-    assert_true((cells + 1) * (cells + 1) > TL_PARALLEL_VERTICES);
+    const int counts[] = {1, 2, 3, 8}, frames = 2;
     for (int solver = 0; solver < TL_CLOTH_SOLVER_COUNT; solver++) {
+        const int cells = solver == TL_CLOTH_SETTLE ? 72 : 174;
+        assert_true((cells + 1) * (cells + 1) >
+                    (solver == TL_CLOTH_SETTLE ? TL_SERIAL : TL_PARALLEL_VERTICES));
         uint64_t hashes[TL_COUNT(counts)][FRAMES] = {0};
         for (size_t i = 0; i < TL_COUNT(counts); i++) {
             struct run run;

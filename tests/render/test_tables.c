@@ -171,10 +171,10 @@ static void folded_tables_hold_three_terms(void **state)
         assert_true(error.away <= 0.005);
         struct tl_brdf_tables tables = tl_brdf_tables_make(&brdf, &params);
         assert_int_equal(tables.count, 1);
-        float inputs[TL_INPUT_COUNT] = {[TL_INPUT_N_DOT_V] = 0.5f,
-                                        [TL_INPUT_N_DOT_L] = -0.2f,
-                                        [TL_INPUT_R_DOT_L] = 1,
-                                        [TL_INPUT_N_DOT_H] = 1};
+        float inputs[TL_AXIS_COUNT] = {[TL_AXIS_N_DOT_V] = 0.5f,
+                                        [TL_AXIS_N_DOT_L] = -0.2f,
+                                        [TL_AXIS_R_DOT_L] = 1,
+                                        [TL_AXIS_N_DOT_H] = 1};
         assert_near(tl_brdf_tables_gloss(&tables, inputs).y, 0.03, 1e-6); /* turned away: ambient alone */
         tl_brdf_tables_release(&tables);
     }
@@ -232,7 +232,7 @@ static void fresnel_table_is_the_formula(void **state)
     for (int i = 0; i < 2; i++) {
         struct tl_brdf brdf = brdf_of(TL_REFLECT_PHONG, 1, TL_FRESNEL_DIELECTRIC);
         brdf.gloss.index = indices[i];
-        struct tl_brdf_table table = tl_fresnel_table_make(&brdf, TL_INPUT_N_DOT_V, 256, TL_PRECISION_FIXED8);
+        struct tl_brdf_table table = tl_fresnel_table_make(&brdf, TL_AXIS_N_DOT_V, 256, TL_PRECISION_FIXED8);
         double worst = 0, worst_away = 0;
         for (int k = 0; k <= 2000; k++) {
             float cosine = (float)k / 2000,
