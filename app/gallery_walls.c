@@ -7,6 +7,9 @@
 
 #define LAMPLIT "scene.environment=none", "light.method=unshadowed", "lamp.kind=directional"
 #define BUMPY   "weave.pattern=plain", "weave.warp_pitch_mm=8", "weave.weft_pitch_mm=8", "weave.crimp_mm=2"
+#define COARSE                                                                                               \
+    "weave.pattern=plain", "weave.warp_pitch_mm=20", "weave.weft_pitch_mm=20", "weave.crimp_mm=5",           \
+        "weave.texels_per_yarn=16"
 
 static const struct tl_exhibit a1[] = {
     {"A1", "direct", {NULL}, {NULL}},
@@ -282,7 +285,7 @@ const struct tl_gallery_wall tl_gallery_walls[] = {
      .solid = "torus",
      .base = {LAMPLIT, "material.model=torrance_sparrow", "material.width_weft=0.2",
               "material.specular=[1, 1, 1]", "lamp.yaw_deg=190", "lamp.pitch_deg=25",
-              "shading.reflectance=table"},
+              "shading.reflectance=table", "shading.table_precision=fixed8"},
      .exact = {"shading.reflectance=direct"},
      WALL(a2),
      .figures = tl_gallery_grazing_figures},
@@ -290,7 +293,7 @@ const struct tl_gallery_wall tl_gallery_walls[] = {
      .heading = "A3  Phong, Blinn-Phong and cosine lobe",
      .text = "One table each. Exact is the formula.",
      .solid = "torus",
-     .base = {LAMPLIT, "shading.reflectance=table", "material.specular=[0.4, 0.4, 0.4]"},
+     .base = {LAMPLIT, "shading.reflectance=table", "material.specular=[0.15, 0.15, 0.15]"},
      .exact = {"shading.reflectance=direct"},
      WALL(a3)},
     {.name = "a4",
@@ -298,14 +301,14 @@ const struct tl_gallery_wall tl_gallery_walls[] = {
      .text = "Facets spread unlike along weft and warp: the highlight lies across the narrower. Exact is the "
              "formula.",
      .solid = "sphere",
-     .base = {LAMPLIT, "material.model=ward", "material.specular=[0.4, 0.4, 0.4]"},
+     .base = {LAMPLIT, "material.model=ward", "material.specular=[0.15, 0.15, 0.15]"},
      .exact = {"shading.reflectance=direct"},
      WALL(a4)},
     {.name = "a5",
      .heading = "A5  Banks's threads",
      .text = "A thread has no normal but a circle of them; the one in the plane of thread and lamp counts.",
      .solid = "sphere",
-     .base = {LAMPLIT, "material.model=banks", "material.specular=[0.3, 0.3, 0.3]"},
+     .base = {LAMPLIT, "material.model=banks", "material.specular=[0.15, 0.15, 0.15]"},
      .exact = {"shading.reflectance=direct"},
      WALL(a5)},
     {.name = "a6",
@@ -315,7 +318,7 @@ const struct tl_gallery_wall tl_gallery_walls[] = {
              "the last, evaluated directly.",
      .solid = "torus",
      .base = {LAMPLIT, "shading.reflectance=table", "material.model=blinn_phong",
-              "material.specular=[0.4, 0.4, 0.4]"},
+              "material.specular=[0.15, 0.15, 0.15]"},
      .exact = {"shading.coordinates=pixel", "shading.reflectance=direct"},
      WALL(a6)},
     {.name = "a7",
@@ -333,16 +336,17 @@ const struct tl_gallery_wall tl_gallery_walls[] = {
              "it between "
              "vertices. Exact is Phong shading on the same mesh.",
      .solid = "torus",
-     .base = {LAMPLIT, "material.specular=[0.4, 0.4, 0.4]"},
+     .base = {LAMPLIT, "material.specular=[0.15, 0.15, 0.15]"},
      .exact = {"shading.frequency=phong"},
      WALL(a8)},
     {.name = "a9",
      .heading = "A9  Making interpolated vectors unit",
-     .text = "As in figure 9 of [001]: the cube map of 8 bits is worse than one step of Newton's, the one of "
-             "16 bits is "
-             "nearly exact. Edges of 3 cm.",
+     .text = "As in figure 9 of [001]: one step of Newton's is better than the cube map of 8 bits as long as "
+             "less than 38 "
+             "degrees lie between vertices, the one of 16 bits is nearly exact. Edges of 1.5 cm; folds turn "
+             "more.",
      .solid = "torus",
-     .base = {LAMPLIT, "material.specular=[0.4, 0.4, 0.4]", "cloth.edge_m=0.03"},
+     .base = {LAMPLIT, "material.specular=[0.15, 0.15, 0.15]", "cloth.edge_m=0.008"},
      .exact = {"shading.normalisation=exact"},
      WALL(a9),
      .figures = tl_gallery_normalise_figures},
@@ -362,7 +366,7 @@ const struct tl_gallery_wall tl_gallery_walls[] = {
              "at every "
              "pixel: what differs is how the frame turns across a triangle.",
      .solid = "torus",
-     .base = {LAMPLIT, BUMPY, "material.specular=[0.4, 0.4, 0.4]"},
+     .base = {LAMPLIT, BUMPY, "material.specular=[0.15, 0.15, 0.15]"},
      .exact = {"shading.space=world"},
      WALL(a11)},
     {.name = "a12",
@@ -413,6 +417,7 @@ const struct tl_gallery_wall tl_gallery_walls[] = {
      .solid = "torus",
      .base = {"light.method=maps", "maps.layout=paraboloid", "maps.size=128"},
      .exact = {"maps.layout=cube", "maps.size=256"},
+     .by_flip = true,
      WALL(b5)},
     {.name = "b2",
      .heading = "B2  The scene in its own map",
@@ -461,7 +466,7 @@ const struct tl_gallery_wall tl_gallery_walls[] = {
              "ray-traced reference of the same mesh.",
      .solid = "torus",
      .base = {"material.model=ward", "material.width_weft=0.4", "material.width_warp=0.1",
-              "material.specular=[0.4, 0.4, 0.4]"},
+              "material.specular=[0.15, 0.15, 0.15]"},
      .exact = {"light.method=reference"},
      WALL(c3)},
     {.name = "c4",
@@ -470,23 +475,25 @@ const struct tl_gallery_wall tl_gallery_walls[] = {
              "tames it at "
              "grazing views. Exact is relief mapping with 256 steps.",
      .solid = "torus",
-     .base = {LAMPLIT, BUMPY},
+     .base = {LAMPLIT, COARSE},
      .exact = {"detail.mode=relief", "detail.steps=256", "detail.refine=8"},
      WALL(c4)},
     {.name = "c5",
      .heading = "C5  Shadows of bumps",
      .text = "Horizon angles baked for eight directions a texel, against a march through the heights. Exact "
              "is the march "
-             "with 256 steps.",
+             "with 256 steps. Under a lamp this low eight angles put shadows at other places than the march "
+             "does: the "
+             "error is that of no shadow, the look is not.",
      .solid = "torus",
-     .base = {LAMPLIT, BUMPY, "detail.mode=relief", "lamp.yaw_deg=-70", "lamp.pitch_deg=20"},
+     .base = {LAMPLIT, COARSE, "detail.mode=relief", "lamp.yaw_deg=-70", "lamp.pitch_deg=20"},
      .exact = {"detail.shadow=relief", "detail.steps=256"},
      WALL(c5)},
     {.name = "c6",
      .heading = "C6  Relief by number of steps",
      .text = "A linear march, then halvings of the last step. Exact is 256 steps.",
      .solid = "torus",
-     .base = {LAMPLIT, BUMPY, "detail.mode=relief"},
+     .base = {LAMPLIT, COARSE, "detail.mode=relief"},
      .exact = {"detail.steps=256", "detail.refine=8"},
      WALL(c6)},
     {.name = "c7",
@@ -498,12 +505,12 @@ const struct tl_gallery_wall tl_gallery_walls[] = {
      WALL(c7)},
     {.name = "c8",
      .heading = "C8  A fine weave far away",
-     .text = "Yarns 0.8 mm apart, smaller than a pixel. Bumps that vanish leave plastic; roughness widened "
+     .text = "Yarns 2.4 mm apart, not two pixels. Bumps that vanish leave plastic; roughness widened "
              "by the spread of "
              "their normals keeps the cloth. Exact is 8 x 8 samples a pixel.",
      .solid = "torus",
-     .base = {LAMPLIT, "weave.pattern=plain", "weave.warp_pitch_mm=0.8", "weave.weft_pitch_mm=0.8",
-              "weave.crimp_mm=0.2", "material.specular=[0.4, 0.4, 0.4]"},
+     .base = {LAMPLIT, "weave.pattern=plain", "weave.warp_pitch_mm=2.4", "weave.weft_pitch_mm=2.4",
+              "weave.crimp_mm=0.6", "material.specular=[0.15, 0.15, 0.15]"},
      .exact = {"image.supersample=8", "detail.minify=none"},
      WALL(c8)},
     {.name = "d9",
