@@ -52,8 +52,9 @@ static void print_comparison_json(const struct tl_comparison *result, int width)
     cJSON_AddNumberToObject(object, "flip_mean", result->flip_mean);
     cJSON_AddNumberToObject(object, "flip_frame", result->flip_frame);
     cJSON_AddNumberToObject(object, "max_abs", result->max_abs);
-    cJSON_AddNumberToObject(object, "worst_x", (int)result->worst % width);
-    cJSON_AddNumberToObject(object, "worst_y", (int)result->worst / width);
+    int worst = (int)result->worst, worst_row = worst / width;
+    cJSON_AddNumberToObject(object, "worst_x", worst % width);
+    cJSON_AddNumberToObject(object, "worst_y", worst_row);
     cJSON_AddNumberToObject(object, "worst_share", result->worst_share);
     cJSON_AddBoolToObject(object, "hdr", result->hdr);
     tl_json_print(object);

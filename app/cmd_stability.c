@@ -49,8 +49,9 @@ static void print_counts(const struct tl_stability *stability)
 
 bool tl_command_stability(const struct tl_arguments *arguments, tl_error *error)
 {
-    enum { LIGHT, CLOTH, DETAIL };
-    static const char *const topics[] = {[LIGHT] = "light", [CLOTH] = "cloth", [DETAIL] = "detail", NULL};
+    enum { LIGHT, CLOTH, DETAIL, SHADING };
+    static const char *const topics[] = {
+        [LIGHT] = "light", [CLOTH] = "cloth", [DETAIL] = "detail", [SHADING] = "shading", NULL};
     struct tl_arguments scene;
     int topic;
     if (!tl_topic_take("stability", arguments, topics, true, &scene, &topic, error))
@@ -59,7 +60,8 @@ bool tl_command_stability(const struct tl_arguments *arguments, tl_error *error)
     bool all = topic < 0;
     bool done = (!(all || topic == CLOTH) || tl_stability_cloth(&scene, &stability, error)) &&
                 (!(all || topic == LIGHT) || tl_stability_light(&scene, &stability, error)) &&
-                (!(all || topic == DETAIL) || tl_stability_detail(&scene, &stability, error));
+                (!(all || topic == DETAIL) || tl_stability_detail(&scene, &stability, error)) &&
+                (!(all || topic == SHADING) || tl_stability_shading(&scene, &stability, error));
     if (done && arguments->json)
         print_json(&stability);
     else if (done)

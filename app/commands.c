@@ -23,7 +23,7 @@ const struct tl_command tl_commands[] = {
     {"trade", "trade [SCENE] -o FOLDER [--axis light|cloth] [--quick] [OPTIONS]",
      "Measures error against time over many choices of settings: FOLDER/trade.csv and report.html.",
      TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_AXIS | TL_FLAGS_QUICK, tl_command_trade},
-    {"stability", "stability [light|cloth|detail] [--json] [--quick] [-o FOLDER] [OPTIONS]",
+    {"stability", "stability [light|cloth|detail|shading] [--json] [--quick] [-o FOLDER] [OPTIONS]",
      "Runs the extremes, cell by cell: exact, within a stated bound, or refused with a clear message; "
      "FOLDER gets a table of all cells and a picture of the cloth's.",
      TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_JSON | TL_FLAGS_QUICK, tl_command_stability},

@@ -71,7 +71,7 @@ static bool choose(const struct drawing *drawing, const struct easel *easel,
                    tl_format("scene.avatar=%s", easel->avatar),
                    tl_format("camera.target=[0, %g, 0]", easel->height_m),
                    tl_format("camera.distance_m=%g", easel->distance_m)};
-    const char *all[TL_COUNT(own) + 2 * TL_GALLERY_ASSIGNMENTS];
+    const char *all[TL_COUNT(own) + (size_t)2 * TL_GALLERY_ASSIGNMENTS];
     size_t count = 0;
     for (; count < TL_COUNT(own); count++)
         all[count] = own[count];

@@ -29,6 +29,7 @@ int tl_stability_cells(const struct tl_stability *stability);
 /* One axis each. They print a table unless the arguments ask for JSON, and add to `out`. */
 bool tl_stability_light(const struct tl_arguments *arguments, struct tl_stability *out, tl_error *error);
 bool tl_stability_detail(const struct tl_arguments *arguments, struct tl_stability *out, tl_error *error);
+bool tl_stability_shading(const struct tl_arguments *arguments, struct tl_stability *out, tl_error *error);
 bool tl_stability_cloth(const struct tl_arguments *arguments, struct tl_stability *out, tl_error *error);
 
 #endif

@@ -235,8 +235,8 @@ static void run_step(tl_cloth *cloth, const tl_collider *collider, const struct 
     if (cloth->params.solver == TL_CLOTH_REFERENCE)
         find_forces(cloth, NULL);
     bool blown = is_blown(cloth);
-    for (double sub = 0; sub < substeps; sub++) {
-        double done = step * substeps + sub;
+    for (int64_t sub = 0; (double)sub < substeps; sub++) {
+        double done = step * substeps + (double)sub;
         const struct tl_substep substep = {.h = step_seconds(cloth) / substeps,
                                            .gravity = gravity,
                                            .drag = fmax(advance->drag, cloth->fabric.damping),
@@ -245,11 +245,11 @@ static void run_step(tl_cloth *cloth, const tl_collider *collider, const struct 
                                            .phase = (done + 1) / total,
                                            .collider = collider,
                                            .follows = sub > 0 && !blown,
-                                           .leads = sub + 1 < substeps && !blown};
+                                           .leads = (double)(sub + 1) < substeps && !blown};
         if (blown)
             blow(cloth, &substep);
         if (cloth->params.solver == TL_CLOTH_REFERENCE)
-            advance_reference(cloth, &substep, sub + 1 == substeps);
+            advance_reference(cloth, &substep, (double)(sub + 1) == substeps);
         else if (cloth->params.solver == TL_CLOTH_SETTLE)
             advance_settle(cloth, &substep);
         else

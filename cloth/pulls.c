@@ -163,7 +163,7 @@ static void find_others(struct finder *finder, uint32_t vertex)
         finder->seen[pulls->along[k].other] = vertex + 1;
     for (uint32_t k = fans->first[vertex]; k < fans->first[vertex + 1]; k++) {
         const uint32_t *corners =
-            &finder->stencils->corners[fans->items[k] / TL_BEND_STENCIL * TL_BEND_STENCIL];
+            &finder->stencils->corners[(size_t)(fans->items[k] / TL_BEND_STENCIL) * TL_BEND_STENCIL];
         for (int i = 0; i < TL_BEND_STENCIL; i++)
             find_other(finder, vertex, corners[i]);
     }

@@ -191,7 +191,7 @@ static void send_parts(struct tl_envmap *envmap, const struct told *told, size_t
 static void send_fresnel(struct tl_envmap *envmap, tl_gpu *gpu, const struct told *told, size_t count)
 {
     size_t most = (size_t)tl_gpu_texture_side_max(gpu), rows = count < most ? count : most;
-    float *texels = TL_NEW_ARRAY(float, 4 * COSINES * (rows + 1));
+    float *texels = TL_NEW_ARRAY(float, (size_t)4 * COSINES * (rows + 1));
     for (size_t row = 0; row < rows; row++) {
         const tl_material *material = told[row].material;
         struct tl_brdf brdf = tl_brdf_of(material, material->specular, material->glossiness);

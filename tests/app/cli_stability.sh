@@ -21,3 +21,8 @@ echo "ok     $(value cells) cells: $(value exact) exact, $(value bounded) bounde
 $TOILE stability detail --json --quiet >"$out"
 [ "$(value cells)" -eq 144 ] && [ "$(value silent)" -eq 0 ] && [ "$(value nan)" -eq 0 ] && [ "$(value exact)" -ge 24 ]
 echo "ok     $(value cells) cells of detail: $(value exact) exact, $(value bounded) bounded"
+
+# Shading: 10 extremes x 6 models x 5 glossinesses; four of the extremes send nothing back.
+$TOILE stability shading --json --quiet >"$out"
+[ "$(value cells)" -eq 300 ] && [ "$(value silent)" -eq 0 ] && [ "$(value nan)" -eq 0 ] && [ "$(value exact)" -ge 120 ]
+echo "ok     $(value cells) cells of shading: $(value exact) exact, $(value bounded) bounded"

@@ -151,15 +151,16 @@ static void directions_stay(void **state)
         pair(number, &from, &to);
         tl_image image = black(&from);
         for (int i = 0; i < from.width * from.height; i++) {
-            vec3s direction = tl_layout_direction(&from, i % from.width + 0.5, i / from.width + 0.5);
+            int row = i / from.width;
+            vec3s direction = tl_layout_direction(&from, i % from.width + 0.5, row + 0.5);
             for (int c = 0; c < 3; c++)
                 tl_image_floats(&image)[3 * i + c] = 2 + direction.raw[c];
         }
         tl_image converted = tl_image_convert(&image, &from, &to, NULL);
         double worst = 0, mean = 0;
         for (int i = 0; i < to.width * to.height; i++) {
-            double x = i % to.width, y = i / to.width,
-                   solid_angle = tl_layout_solid_angle(&to, (int)x, (int)y);
+            int x = i % to.width, y = i / to.width;
+            double solid_angle = tl_layout_solid_angle(&to, x, y);
             vec3s direction = tl_layout_direction(&to, x + 0.5, y + 0.5);
             const float *texel = tl_image_floats(&converted) + 3 * (size_t)i;
             double off =

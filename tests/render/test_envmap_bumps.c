@@ -37,8 +37,9 @@ static tl_image bumps_create(void)
     tl_image image = tl_image_create(BUMPS, BUMPS, 3, TL_IMAGE_U8);
     unsigned char *texel = image.texels;
     for (int i = 0; i < BUMPS * BUMPS; i++, texel += 3) {
+        int column = i % BUMPS, row = i / BUMPS;
         vec3s n = glms_vec3_normalize(
-            (vec3s){{0.4f * sinf(2.1f * (float)(i % BUMPS)), 0.4f * cosf(1.7f * (float)(i / BUMPS)), 1}});
+            (vec3s){{0.4f * sinf(2.1f * (float)column), 0.4f * cosf(1.7f * (float)row), 1}});
         for (int c = 0; c < 3; c++)
             texel[c] = (unsigned char)lroundf(255 * (0.5f + 0.5f * n.raw[c]));
     }
@@ -138,7 +139,8 @@ static vec3s bump_at(const tl_image *bumps, vec2s uv)
         int column = (left + (k & 1) + BUMPS) % BUMPS, row = (top + (k >> 1) + BUMPS) % BUMPS;
         float weight =
             (k & 1 ? x - (float)left : 1 - x + (float)left) * (k >> 1 ? y - (float)top : 1 - y + (float)top);
-        const unsigned char *texel = (const unsigned char *)bumps->texels + 3 * (row * BUMPS + column);
+        const unsigned char *texel =
+            (const unsigned char *)bumps->texels + 3 * (ptrdiff_t)(row * BUMPS + column);
         for (int c = 0; c < 3; c++)
             sum.raw[c] += weight * (2 * (float)texel[c] / 255 - 1);
     }
@@ -176,12 +178,12 @@ static double compare(struct scene *scene, tl_renderer *renderer, const struct t
     int counted = 0;
     *worst = 0;
     for (int i = 0; i < SIDE * SIDE; i++) {
-        float across = 2 * ((float)(i % SIDE) + 0.5f) / SIDE - 1,
-              up = 1 - 2 * ((float)(i / SIDE) + 0.5f) / SIDE;
+        int column = i % SIDE, row = i / SIDE;
+        float across = 2 * ((float)column + 0.5f) / SIDE - 1, up = 1 - 2 * ((float)row + 0.5f) / SIDE;
         vec3s ray = glms_vec3_muladds(view.right, across, view.forward);
         ray = glms_vec3_normalize(glms_vec3_muladds(view.up, up, ray));
         struct hit hit;
-        const float *pixel = test_pixel(&image, i % SIDE, i / SIDE);
+        const float *pixel = test_pixel(&image, column, row);
         if (pixel[3] < 1 || !meet(&scene->sheet.mesh, view.eye, ray, &hit) ||
             glms_vec3_dot(hit.normal, ray) > -0.1f)
             continue;
@@ -226,7 +228,7 @@ static void mirrors_and_gloss_follow_the_sheet(void **state)
     deform(&scene, 1.2f, true);
     tl_image fresh = test_draw(device->renderer, &scene.frame, &scene.settings);
     double squares = 0;
-    for (size_t i = 0; i < 4 * SIDE * SIDE; i++)
+    for (size_t i = 0; i < (size_t)4 * SIDE * SIDE; i++)
         squares += pow((double)(tl_image_floats(&stale)[i] - tl_image_floats(&fresh)[i]) / BRIGHTEST, 2);
     print_message("frames that stay behind: RMS %.1f %%\n", 100 * sqrt(squares / (4 * SIDE * SIDE)));
     assert_true(sqrt(squares / (4 * SIDE * SIDE)) > 0.03);

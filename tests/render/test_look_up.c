@@ -294,7 +294,7 @@ static void borders_show_no_seam(void **state)
         double texel = sqrt(4 * M_PI / texels);
         for (int i = 0; i < BORDERS * PER_BORDER; i++)
             for (int c = 0; c < 3; c++) {
-                double step = fabs((double)(seen[2 * i].raw[c] - seen[2 * i + 1].raw[c]));
+                double step = fabs((double)(seen[2 * (size_t)i].raw[c] - seen[2 * (size_t)i + 1].raw[c]));
                 worst[i / PER_BORDER] = fmax(worst[i / PER_BORDER], step / (SLOPE * texel));
             }
         print_message("%s:", by_matrix ? "paraboloid by matrix" : tl_layout_names[layout]);
@@ -324,7 +324,8 @@ static void seamless_layouts_are_continuous(void **state)
         double worst = 0;
         for (int i = 0; i < BORDERS * PER_BORDER; i++)
             for (int c = 0; c < 3; c++)
-                worst = fmax(worst, fabs((double)(seen[2 * i].raw[c] - seen[2 * i + 1].raw[c])));
+                worst =
+                    fmax(worst, fabs((double)(seen[2 * (size_t)i].raw[c] - seen[2 * (size_t)i + 1].raw[c])));
         print_message("%s: largest step over a border %.1e of a contrast of 1\n", tl_layout_names[layouts[k]],
                       worst);
         assert_true(worst < 5e-3); /* 2e-5 rad of texels of 0.05 rad, two steps of 1 and a corner's three */

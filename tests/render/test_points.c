@@ -346,8 +346,8 @@ static void rest_is_spread_over_frames(void **state)
     for (int i = 0; i < 2; i++)
         while (!tl_points_are_done(both[i]->points)) {
             step(both[i], false);
-            assert_true(i == 1 ||
-                        tl_points_report(spread.points).rays <= 2 * REFRESH * visible + 16 * REGIONS);
+            assert_true(i == 1 || tl_points_report(spread.points).rays <=
+                                      (size_t)2 * REFRESH * visible + (size_t)16 * REGIONS);
             assert_true(++frames[i] < 1000);
         }
     struct tl_points_report report = tl_points_report(spread.points);
