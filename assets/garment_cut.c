@@ -267,7 +267,7 @@ static tl_material *cut_materials(const char *name, size_t count)
 {
     const char *names[TL_CUT_FABRICS] = {name, TL_GARMENT_OVERLAY};
     tl_material *materials = TL_NEW_ARRAY(tl_material, count);
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < count && i < TL_COUNT(names); i++) {
         materials[i] = tl_material_default(names[i]);
         materials[i].diffuse = (vec3s){{0.8f, 0.8f, 0.8f}};
         materials[i].double_sided = true;

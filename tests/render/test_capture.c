@@ -125,8 +125,9 @@ static void check_cube(tl_renderer *renderer, struct scene *scene, float yaw)
         vec3s sum = {{0, 0, 0}}, normal;
         int hits = 0;
         for (int k = 0; k < RAYS * RAYS; k++) {
-            float s = ((float)(i % SIZE) + ((float)(k % RAYS) + 0.5f) / RAYS) / SIZE,
-                  t = ((float)(i / SIZE % SIZE) + ((float)(k / RAYS) + 0.5f) / RAYS) / SIZE;
+            int column = i % SIZE, row = i / SIZE % SIZE, across = k % RAYS, down = k / RAYS;
+            float s = ((float)column + ((float)across + 0.5f) / RAYS) / SIZE,
+                  t = ((float)row + ((float)down + 0.5f) / RAYS) / SIZE;
             vec3s ray = glms_vec3_normalize(tl_cube_direction(i / SIZE / SIZE, s, t));
             hits += meet(ray, &normal);
             sum = glms_vec3_add(sum, glms_vec3_scale(seen(&truth, ray), 1.0f / (RAYS * RAYS)));

@@ -27,13 +27,16 @@ static struct stage *stage_new(void)
 {
     struct stage *stage = TL_NEW(struct stage);
     stage->ramp = tl_image_create(256, 1, 3, TL_IMAGE_F32);
-    for (int i = 0; i < 3 * 256; i++)
-        tl_image_floats(&stage->ramp)[i] = i % 3 == 2 ? 1 : ((float)(i / 3) + 0.5f) / 256;
+    for (int i = 0; i < 3 * 256; i++) {
+        int column = i / 3;
+        tl_image_floats(&stage->ramp)[i] = i % 3 == 2 ? 1 : ((float)column + 0.5f) / 256;
+    }
     stage->bumps = tl_image_create(64, 64, 1, TL_IMAGE_U8);
     stage->bumps.linear = true;
     for (int i = 0; i < 64 * 64; i++) {
-        float x = 2 * (float)M_PI * ((float)(i % 64) + 0.5f) / 16,
-              y = 2 * (float)M_PI * ((float)(i / 64) + 0.5f) / 16;
+        int column = i % 64, row = i / 64;
+        float x = 2 * (float)M_PI * ((float)column + 0.5f) / 16,
+              y = 2 * (float)M_PI * ((float)row + 0.5f) / 16;
         tl_image_bytes(&stage->bumps)[i] = (uint8_t)lrintf(127.5f + 60 * sinf(x) + 60 * cosf(y));
     }
     stage->shape = test_square((vec3s){{0, 0, 0}}, (vec3s){{1, 0, 0}}, (vec3s){{0, 0, 1}}, 0.5f, 2);
@@ -179,7 +182,8 @@ static void test_unused(void **state)
     for (size_t i = 0; i < TL_COUNT(choices); i++) {
         size_t bytes = bytes_with(device, stage, choices[i]);
         assert_true(runs_detail(device->renderer));
-        assert_near(bytes - bare, texel_bytes[i] * (64 * 64 * 4 - 1) / 3, 0); /* with all smaller levels */
+        assert_near(bytes - bare, texel_bytes[i] * ((size_t)(64 * 64 * 4 - 1) / 3),
+                    0); /* with all smaller levels */
         bytes_with(device, stage, choices[i]);
         assert_false(runs_detail(device->renderer)); /* nothing has changed */
         assert_int_equal(bytes_with(device, stage, &none), bare);

@@ -210,7 +210,7 @@ static void test_only_what_the_scene_requires(void **state)
 static void check_sane(const tl_image *image, const char *name)
 {
     for (int p = 0; p < WIDTH * HEIGHT; p++) {
-        const float *pixel = tl_image_floats(image) + 4 * p;
+        const float *pixel = tl_image_floats(image) + 4 * (size_t)p;
         for (int c = 0; c < 4; c++)
             if (!(pixel[c] >= 0 && pixel[c] < 1e4f))
                 fail_msg("%s: channel %d of pixel %d is %g", name, c, p, (double)pixel[c]);

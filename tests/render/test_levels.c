@@ -195,12 +195,11 @@ static void pictures_show_what_lies_there(void **state)
         struct tl_picture mirror = tl_picture_pour(&levels, &lobes, TL_EXPONENT_COUNT, turn);
         struct tl_picture glossy = tl_picture_pour(&levels, &lobes, 12, turn);
         for (int i = 0; i < map->width * map->height; i++) {
-            vec3s d =
-                glms_mat3_mulv(turn, tl_layout_direction(map, i % map->width + 0.5, i / map->width + 0.5));
+            int column = i % map->width, row = i / map->width;
+            vec3s d = glms_mat3_mulv(turn, tl_layout_direction(map, column + 0.5, row + 0.5));
             vec3s expected = smooth(d);
             vec3s lobe = tl_lobes_fetch(&lobes, d, (struct tl_exponent_blend){.index = 12});
-            double across = 2 * (i % map->width + 0.5) / map->width - 1,
-                   down = 2 * (i / map->width + 0.5) / map->height - 1;
+            double across = 2 * (column + 0.5) / map->width - 1, down = 2 * (row + 0.5) / map->height - 1;
             /* texels near a ball's rim reach far over the sphere */
             double reach = layout == TL_LAYOUT_SPHERE && hypot(across, down) > 0.9 ? 1.5 : 0.07;
             for (int c = 0; c < 3; c++) {
@@ -228,7 +227,7 @@ static void power_poured(void **state)
 {
     (void)state;
     tl_cube lamp = cube_of(64, patch), sun = tl_cube_create(64);
-    sun.texels[3 * (2 * 64 * 64 + 20 * 64 + 13)] = 1e5f;
+    sun.texels[(size_t)3 * (2 * 64 * 64 + 20 * 64 + 13)] = 1e5f;
     struct tl_lobes lobes[2] = {{0}};
     const tl_cube *cubes[2] = {&lamp, &sun};
     for (int i = 0; i < 2; i++)
@@ -242,8 +241,8 @@ static void power_poured(void **state)
                 tl_picture_pour(&levels, &lobes[i], TL_EXPONENT_COUNT, glms_mat3_identity());
             double expected = 0;
             for (int k = 0; k < 6 * 64 * 64; k++)
-                expected +=
-                    (double)cubes[i]->texels[3 * k] * (double)tl_cube_solid_angle(64, k % 64, k / 64 % 64);
+                expected += (double)cubes[i]->texels[3 * (size_t)k] *
+                            (double)tl_cube_solid_angle(64, k % 64, k / 64 % 64);
             off[i] = power(&levels, 0, picture.texels[0], 0) / expected - 1;
             tl_picture_release(&picture);
         }

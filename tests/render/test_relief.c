@@ -23,7 +23,8 @@ static void test_parallax(void **state)
         tl_image_floats(&heights)[i] = -2e-3f;
     struct tl_height_field field = tl_height_field_make(&heights, 0.1f, 0.2f, false, false);
     const vec2s uv = {{0.25f, 0.5f}};
-    for (float tilt = 0; tilt < 87; tilt += 6) {
+    for (int degrees = 0; degrees < 87; degrees += 6) {
+        float tilt = (float)degrees;
         vec3s view = direction(tilt, 1);
         vec2s full = tl_field_parallax(&field, uv, view, false),
               limited = tl_field_parallax(&field, uv, view, true);
@@ -36,7 +37,8 @@ static void test_parallax(void **state)
         assert_near(relief.uv.y, full.y, 1e-6);
     }
     /* Grazing and below: limited never more than the height, the others never more than twenty times it. */
-    for (float tilt = 87; tilt <= 180; tilt += 0.5f) {
+    for (int halves = 174; halves <= 360; halves++) {
+        float tilt = 0.5f * (float)halves;
         vec3s view = direction(tilt, 2);
         vec2s full = tl_field_parallax(&field, uv, view, false),
               limited = tl_field_parallax(&field, uv, view, true);
@@ -58,7 +60,8 @@ static void test_slope(void **state)
     for (int i = 0; i < SIDE; i++)
         tl_image_floats(&heights)[i] = 0.2f * 0.1f * (((float)i + 0.5f) / SIDE - 0.5f);
     struct tl_height_field field = tl_height_field_make(&heights, 0.1f, 0.1f, true, true);
-    for (float tilt = 0; tilt <= 60; tilt += 10) {
+    for (int degrees = 0; degrees <= 60; degrees += 10) {
+        float tilt = (float)degrees;
         vec3s view = direction(tilt, 0);
         float x0 = 0.02f, slant = view.x / view.z, x = x0 / (1 - 0.2f * slant);
         struct tl_relief relief = tl_field_relief(&field, (vec2s){{x0 / 0.1f + 0.5f, 0.5f}}, view, 32, 6);
@@ -137,8 +140,9 @@ static void test_steps(void **state)
         tl_weave weave = weave_of(pattern);
         struct tl_height_field field =
             tl_height_field_make(&weave.height, weave.size_m[0], weave.size_m[1], false, false);
-        for (float tilt = 30; tilt <= 75; tilt += 22.5f)
+        for (int view = 0; view < 3; view++)
             for (int steps = 1; steps <= 256; steps *= 4) {
+                float tilt = 30 + 22.5f * (float)view;
                 struct spread spread = relief_errors(&field, steps, 6, tilt);
                 printf("%s, view at %2.0f degrees, %3d steps: %.2f %% within half a texel, mean %.3f, worst "
                        "%.2f texels\n",
@@ -160,11 +164,13 @@ static void test_shadow(void **state)
     for (int i = 0; i < SIDE; i++)
         tl_image_floats(&heights)[i] = i >= SIDE / 2 ? 0.01f : 0;
     struct tl_height_field field = tl_height_field_make(&heights, 0.1f, 0.1f, true, true);
-    for (float tilt = 20; tilt <= 70; tilt += 10) {
+    for (int degrees = 20; degrees <= 70; degrees += 10) {
+        float tilt = (float)degrees;
         vec3s light = direction(tilt, 0);
         float reach = 0.01f * tanf(glm_rad(tilt)),
               step = reach / 64 + 0.1f / SIDE; /* of the march, and a texel */
-        for (float distance = 0.001f; distance < 0.045f; distance += 0.0005f) {
+        for (int half_mm = 2; half_mm < 90; half_mm++) {
+            float distance = 0.0005f * (float)half_mm;
             const struct tl_relief place = {{{0.5f - distance / 0.1f, 0.5f}}, 0};
             float lit = tl_field_lit(&field, &place, light, 64);
             if (distance < reach - step)

@@ -172,9 +172,9 @@ static void folded_tables_hold_three_terms(void **state)
         struct tl_brdf_tables tables = tl_brdf_tables_make(&brdf, &params);
         assert_int_equal(tables.count, 1);
         float inputs[TL_AXIS_COUNT] = {[TL_AXIS_N_DOT_V] = 0.5f,
-                                        [TL_AXIS_N_DOT_L] = -0.2f,
-                                        [TL_AXIS_R_DOT_L] = 1,
-                                        [TL_AXIS_N_DOT_H] = 1};
+                                       [TL_AXIS_N_DOT_L] = -0.2f,
+                                       [TL_AXIS_R_DOT_L] = 1,
+                                       [TL_AXIS_N_DOT_H] = 1};
         assert_near(tl_brdf_tables_gloss(&tables, inputs).y, 0.03, 1e-6); /* turned away: ambient alone */
         tl_brdf_tables_release(&tables);
     }
