@@ -62,8 +62,8 @@ tl_image tl_bake_slopes(const struct tl_height_field *field)
             struct neighbours u = neighbours_of(column, width, field->clamp_u);
             float along_u = difference(here, here, u.before, u.after, width, u.distance);
             float along_v = difference(above, below, column, column, height, v.distance);
-            out[2 * column] = to[0] * along_u + to[2] * along_v;
-            out[2 * column + 1] = to[1] * along_u + to[3] * along_v;
+            out[2 * (size_t)column] = to[0] * along_u + to[2] * along_v;
+            out[2 * (size_t)column + 1] = to[1] * along_u + to[3] * along_v;
         }
     }
     return slopes;

@@ -60,7 +60,7 @@ static void scrambles_stay_in_reach(void **state)
     tl_garment still = tl_tube_make(&tube, NULL, 0), moved = tl_tube_make(&tube, NULL, share);
     double reach = share * fmin(tl_tube_width(&tube), tl_tube_row_height(&tube, 0)), farthest = 0;
     for (int row = 0; row <= tube.row_count; row++) {
-        const vec3s *x = &moved.model.mesh.positions[row * (tube.columns + 1)];
+        const vec3s *x = &moved.model.mesh.positions[(size_t)row * ((size_t)tube.columns + 1)];
         assert_memory_equal(&x[0], &x[tube.columns], sizeof *x);
         for (int column = 0; column <= tube.columns; column++) {
             vec3s from = still.model.mesh.positions[row * (tube.columns + 1) + column];
@@ -124,7 +124,7 @@ static size_t count_colour(const tl_image *canvas, uint8_t red)
 {
     size_t count = 0;
     for (int i = 0; i < canvas->width * canvas->height; i++)
-        count += tl_image_bytes(canvas)[3 * i] == red;
+        count += tl_image_bytes(canvas)[3 * (size_t)i] == red;
     return count;
 }
 
@@ -138,7 +138,7 @@ static void words_stay_on_the_picture(void **state)
     size_t cut = count_colour(&canvas, 0x20);
     tl_canvas_text(&canvas, 2, 3, "l", 0x300000);
     size_t letter = count_colour(&canvas, 0x30);
-    assert_true(cut > 0 && cut < 20 * 8);
+    assert_true(cut > 0 && cut < (size_t)20 * 8);
     assert_true(letter > 0 && letter < (size_t)(tl_canvas_text_width("l") * TL_CANVAS_LETTER));
     tl_image_release(&canvas);
 }

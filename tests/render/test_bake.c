@@ -44,7 +44,7 @@ static void test_sine(void **state)
     for (int i = 0; i < SIDE * SIDE; i++) {
         float u = ((float)(i % SIDE) + 0.5f) / SIDE, v = ((float)(i / SIDE) + 0.5f) / SIDE;
         float x = 1e-3f * 2 * pi / 0.01f * cosf(2 * pi * u), y = -0.5e-3f * 4 * pi / 0.02f * cosf(4 * pi * v);
-        assert_near(tl_image_floats(&slopes)[2 * i], damped_u * x, 1e-4);
+        assert_near(tl_image_floats(&slopes)[2 * (size_t)i], damped_u * x, 1e-4);
         assert_near(tl_image_floats(&slopes)[2 * i + 1], damped_v * y, 1e-4);
         float length = sqrtf(1 + x * x + y * y);
         const float analytic[] = {-x / length, -y / length, 1 / length};
@@ -262,7 +262,7 @@ static void test_gloss(void **state)
     for (int i = 0; i < 64; i++) {
         float x = i % 2 ? 0.1f : -0.1f;
         const float n[] = {x, 0, sqrtf(1 - x * x)};
-        memcpy(tl_image_floats(&normals) + 3 * i, n, sizeof n);
+        memcpy(tl_image_floats(&normals) + 3 * (size_t)i, n, sizeof n);
     }
     tl_image moments = tl_bake_moments(&normals), sharp = tl_bake_gloss(&moments, 0.9f, 1),
              wide = tl_bake_gloss(&moments, 0.9f, 2);
