@@ -299,13 +299,6 @@ float tl_moments_length(vec4s moments)
     return fminf(sqrtf(moments.x * moments.x + moments.y * moments.y + z * z), 1);
 }
 
-vec3s tl_moments_normal(vec4s moments)
-{
-    vec3s sum = {{moments.x, moments.y, mean_z(moments)}};
-    float length = glms_vec3_norm(sum);
-    return length > 0 ? glms_vec3_scale(sum, 1 / length) : (vec3s){{0, 0, 1}};
-}
-
 static float window_gloss(const tl_image *moments, float glossiness, int window, int column, int row)
 {
     vec4s sum = {{0, 0, 0, 0}};

@@ -43,9 +43,8 @@ float tl_horizon_sine(const struct tl_horizon_maps *maps, const struct tl_height
 /* What averages of normals need: (x, y, x^2, y^2) of unit normals, F32 x4, from F32 x3 or from bytes. Means
  * over texels of it give the mean normal and its spread. */
 tl_image tl_bake_moments(const tl_image *normals);
-/* Of averaged moments: the length of the mean normal, and its direction. */
+/* Of averaged moments: the length of the mean normal. */
 float tl_moments_length(vec4s moments);
-vec3s tl_moments_normal(vec4s moments);
 
 /* Glossiness of a surface of `glossiness` whose normals are averaged over `window` x `window` texels
  * [Toksvig]. U8 x1, linear, as a factor on `glossiness`. */
