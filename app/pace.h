@@ -1,0 +1,56 @@
+/* Keeps frames within a time budget: before each frame it chooses the level of every knob from what frames
+ * like it have cost, afterwards it learns what this one took.
+ *
+ *     choose -> settings of this frame -> cloth, draw -> learn
+ *
+ * The choice itself is render/plan/budget.h, pure; here knobs are bound to settings and costs to jobs. A
+ * record of levels, applied to the same settings again, gives the same images bit by bit: only tl_pace_choose
+ * looks at what the clock said. Times: milliseconds on the wall, of the machine as it is. Threads: one at a
+ * time. */
+#ifndef TOILE_APP_PACE_H
+#define TOILE_APP_PACE_H
+
+#include "app/settings.h"
+#include "render/renderer.h"
+
+/* What can be shed, in the order in which people miss it least. */
+enum tl_knob {
+    TL_KNOB_REFRESH, /* light.refresh: visibility renewed a frame, of rays or of shadow maps */
+    TL_KNOB_REGIONS, /* light.regions: how much of the tree of regions is used */
+    TL_KNOB_RELIEF,  /* detail.steps, where relief is marched */
+    TL_KNOB_CLOTH,   /* cloth.dt: substeps of the solver */
+    TL_KNOB_SCALE,   /* image.scale: samples of the image, last of all */
+    TL_KNOB_COUNT
+};
+extern const char *const tl_knob_names[TL_KNOB_COUNT + 1];
+
+/* Level 0 is what the settings ask for; each further one is cheaper and worse. */
+struct tl_levels {
+    uint8_t of[TL_KNOB_COUNT];
+};
+
+struct tl_pace_choice {
+    struct tl_levels levels;
+    double predicted_ms; /* cloth and drawing; NaN while nothing is known */
+    double error;        /* estimated, relative RMSE that the levels add to that of the settings */
+    char reason[120];    /* for people: what was shed or taken back, and why; "" when nothing changed */
+};
+
+typedef struct tl_pace tl_pace;
+
+tl_pace *tl_pace_create(double budget_ms); /* 0: no budget, level 0 always, but it predicts */
+void tl_pace_destroy(tl_pace **handle);
+void tl_pace_set_budget(tl_pace *pace, double budget_ms);
+
+/* `frame` is the last one drawn (or the first, undrawn), `settings` are those of full quality. */
+struct tl_pace_choice tl_pace_choose(tl_pace *pace, const tl_renderer *renderer, const tl_frame *frame,
+                                     const struct tl_settings *settings);
+
+/* The settings of a frame at these levels. Pure. */
+struct tl_settings tl_levels_apply(const struct tl_levels *levels, const struct tl_settings *settings);
+
+/* What a frame took that was drawn at the levels chosen last: its plan with took_ms, the cloth's part, and
+ * the whole from the choice to the finished image. */
+void tl_pace_learn(tl_pace *pace, const tl_plan *plan, double cloth_ms, double total_ms);
+
+#endif

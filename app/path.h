@@ -1,0 +1,38 @@
+/* A camera path: keys in time, smooth between them. Written as YAML, by `view` or by hand; flown by `fly`.
+ *
+ *     keys:
+ *       - {time_s: 0, yaw_deg: 0, pitch_deg: 5, distance_m: 2.5, target: [0, 1, 0], fov_deg: 30,
+ * environment_yaw_deg: 0}
+ *
+ * A key that leaves something out has what the key before it has (the first: the scene's). Angles are not
+ * wrapped: from 0 to 720 turns twice. Failure: TL_INPUT with file, line and field. */
+#ifndef TOILE_APP_PATH_H
+#define TOILE_APP_PATH_H
+
+#include "app/settings.h"
+
+struct tl_path_key {
+    double time_s; /* rising from key to key */
+    struct tl_camera_params camera;
+    float environment_yaw_deg;
+};
+
+struct tl_path {
+    struct tl_path_key *keys; /* owned */
+    size_t count;             /* at least 1 */
+};
+
+bool tl_path_load(const char *file, const struct tl_settings *scene, struct tl_path *out, tl_error *error);
+bool tl_path_save(const char *file, const struct tl_path *path, tl_error *error);
+void tl_path_add(struct tl_path *path, const struct tl_path_key *key); /* at its end */
+void tl_path_release(struct tl_path *path);
+
+/* The built-in path round a scene: one turn, a look close up, the environment turning. */
+struct tl_path tl_path_built_in(const struct tl_settings *scene);
+
+double tl_path_length_s(const struct tl_path *path);
+/* Between keys by a monotone cubic of each number (no overshoot: a camera that is to stop stops); before the
+ * first and after the last key it rests. */
+struct tl_path_key tl_path_at(const struct tl_path *path, double time_s);
+
+#endif
