@@ -20,7 +20,8 @@ const struct tl_command tl_commands[] = {
      "Measures ratios side by side in one run: light: the presets' CPU time and error in motion; cloth: the "
      "solvers' steps per second beside a plain loop's, normals and tangents, a dress that comes to rest.",
      TL_FLAGS_SCENE | TL_FLAGS_JSON | TL_FLAGS_QUICK | TL_FLAGS_FULL, tl_command_bench},
-    {"trade", "trade [SCENE] -o FOLDER [--axis light|cloth] [--quick] [OPTIONS]",
+    {"trade",
+     "trade [SCENE] -o FOLDER [--axis overall|light|resolution|detail|shading|cloth] [--quick] [OPTIONS]",
      "Measures error against time over many choices of settings: FOLDER/trade.csv and report.html.",
      TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_AXIS | TL_FLAGS_QUICK, tl_command_trade},
     {"stability", "stability [light|cloth|detail|shading] [--json] [--quick] [-o FOLDER] [OPTIONS]",

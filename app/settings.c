@@ -199,6 +199,17 @@ static bool apply_overlay(struct tl_settings *settings, const char *name, tl_err
     return strcmp(name, "none") == 0 || apply(&fabric_layer, name, bindings, TL_COUNT(bindings), error);
 }
 
+bool tl_settings_assign(struct tl_settings *settings, const char *const *assignments, size_t most,
+                        tl_error *error)
+{
+    struct tl_binding bindings[TL_SETTINGS_TABLES];
+    tl_settings_bind(settings, bindings);
+    for (size_t i = 0; i < most && assignments[i]; i++)
+        if (!tl_options_set_assignment(bindings, TL_SETTINGS_TABLES, assignments[i], error))
+            return false;
+    return true;
+}
+
 /* A model in place of a scene is shown as it is: no garment to drape, its own materials. */
 static bool apply_model(const struct tl_binding *all, const char *path, tl_error *error)
 {
