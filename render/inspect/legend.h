@@ -54,6 +54,16 @@ bool tl_view_is_visibility(int view);
 /* 0 warp, 1 weft, 2 shear. */
 int tl_view_strain_axis(int view);
 
+/* Where there is nothing to tell: no strain, no UVs. Shaded by how it faces the viewer. */
+extern const vec3s tl_legend_unknown;
+
+/* The uv view's checker: squares within blocks; even and odd. */
+#define TL_CHECKER_SQUARE_MM 20
+#define TL_CHECKER_BLOCK_MM  100
+vec3s tl_checker_colour(int block, int square);
+/* The tangent view's lines along the warp. */
+#define TL_HATCH_MM 20
+
 /* A direction as a colour: 0.5 + 0.5 d. */
 vec3s tl_direction_colour(vec3s direction);
 /* A colour of its own for each number, the same in every run. */
