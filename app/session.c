@@ -7,9 +7,11 @@
 #include "assets/avatar.h"
 #include "assets/fit.h"
 #include "assets/specimen.h"
+#include "cloth/strain.h"
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
+#include "render/inspect/legend.h"
 
 #include <float.h>
 #include <stdlib.h>
@@ -38,6 +40,13 @@ struct tl_session {
     tl_collider *collider;
     tl_playback *playback; /* NULL: the garment is simulated */
     struct tl_moving dress;
+
+    struct {
+        bool wanted;        /* whatever the image shows */
+        tl_strains *rest;   /* made when first asked for */
+        vec3s *of_vertices; /* of the garment */
+        uint64_t revision;  /* dress.motion_revision that they are of; 0: none */
+    } strain;
 
     tl_material *materials; /* of the garment: the file's, or what settings.material makes of them */
     uint64_t look_revision; /* rises when meshes or materials change */
@@ -388,6 +397,8 @@ void tl_session_destroy(tl_session **handle)
     tl_moving_light_release(&session->light);
     forget_weave(&session->weave);
     forget_weave(&session->overlay_weave);
+    tl_strains_destroy(&session->strain.rest);
+    free(session->strain.of_vertices);
     free(session->materials);
     free(session);
     *handle = NULL;
@@ -482,6 +493,7 @@ bool tl_session_apply(tl_session *session, const struct tl_settings *settings, t
         fresh->look_revision += session->look_revision + 1;
         fresh->body.motion_revision += session->body.motion_revision;
         fresh->dress.motion_revision += session->dress.motion_revision;
+        fresh->strain.wanted = session->strain.wanted;
         tl_session swap = *session;
         *session = *fresh;
         *fresh = swap;
@@ -511,15 +523,38 @@ const struct tl_settings *tl_session_settings(const tl_session *session)
     return &session->settings;
 }
 
+/* Of cloth, when somebody looks at them. */
+static const vec3s *strains_of_garment(tl_session *session)
+{
+    bool shown = session->strain.wanted || tl_view_is_strain(session->settings.image.view);
+    if (!shown || session->garment->solid)
+        return NULL;
+    if (!session->strain.rest) {
+        session->strain.rest = tl_strains_create(session->garment);
+        session->strain.of_vertices = TL_NEW_ARRAY(vec3s, session->garment->model.mesh.vertex_count);
+    }
+    if (session->strain.revision != session->dress.motion_revision)
+        tl_strains_update(session->strain.rest, session->dress.positions, session->strain.of_vertices);
+    session->strain.revision = session->dress.motion_revision;
+    return session->strain.of_vertices;
+}
+
+void tl_session_want_strains(tl_session *session, bool wanted)
+{
+    session->strain.wanted = wanted;
+}
+
 tl_frame tl_session_frame(tl_session *session)
 {
     session->surface_count = 0;
     if (session->avatar)
         session->surfaces[session->surface_count++] =
             tl_moving_surface(&session->body, "avatar", session->avatar->model.materials);
-    if (session->garment)
-        session->surfaces[session->surface_count++] =
-            tl_moving_surface(&session->dress, "garment", session->materials);
+    if (session->garment) {
+        tl_surface *garment = &session->surfaces[session->surface_count++];
+        *garment = tl_moving_surface(&session->dress, "garment", session->materials);
+        garment->strains = strains_of_garment(session);
+    }
     for (size_t i = 0; i < session->surface_count; i++)
         session->surfaces[i].topology_revision = session->look_revision;
     const struct tl_image_params *image = &session->settings.image;

@@ -30,6 +30,9 @@ const struct tl_settings *tl_session_settings(const tl_session *session);
  * settings.camera, framed on the avatar and garment when camera.distance_m is 0. */
 tl_frame tl_session_frame(tl_session *session);
 
+/* Whether frames tell the garment's strains whatever they show; else they do in the views of strain. */
+void tl_session_want_strains(tl_session *session, bool wanted);
+
 /* Where a ray meets the garment: its nearest render vertex and the distance along the ray; false when it
  * misses. */
 bool tl_session_pick(const tl_session *session, vec3s origin, vec3s direction, uint32_t *vertex,

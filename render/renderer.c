@@ -3,6 +3,7 @@
 #include "config/log.h"
 #include "config/memory.h"
 #include "render/frame/frame.h"
+#include "render/inspect/job.h"
 #include "render/shaders.h"
 
 #include <epoxy/gl.h>
@@ -25,6 +26,7 @@ static struct tl_render_settings usable(const struct tl_render_settings *setting
         used.light.pem_size &= used.light.pem_size - 1;
     while (used.maps.size & (used.maps.size - 1))
         used.maps.size &= used.maps.size - 1;
+    tl_inspect_settle(&used);
     return used;
 }
 
@@ -352,7 +354,7 @@ bool tl_renderer_is_at_rest(const tl_renderer *renderer)
     bool is_done = light->visibility == TL_VISIBILITY_RAYS ? renderer->rest.is_done
                                                            : renderer->rest.image >= light->rounds - 1;
     return renderer->valid & TL_BIT(TL_MADE_IMAGE) && renderer->rest.is_captured &&
-           (is_done || !tl_light_averages(light));
+           (is_done || !tl_light_averages(light) || !tl_inspect_averages(renderer->settings.image.view));
 }
 
 const tl_plan *tl_renderer_last_plan(const tl_renderer *renderer)

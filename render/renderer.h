@@ -106,12 +106,33 @@ extern const struct tl_option_table tl_material_options;
 extern const struct tl_option_table
     tl_overlay_options; /* table "overlay": the same, of a garment's second fabric */
 
+/* What the image shows: render/inspect. */
+enum tl_image_view {
+    TL_VIEW_LIGHT,
+    TL_VIEW_NORMAL, /* with bumps */
+    TL_VIEW_SMOOTH, /* ... without */
+    TL_VIEW_TANGENT,
+    TL_VIEW_UV,
+    TL_VIEW_ALBEDO,
+    TL_VIEW_GLOSS,
+    TL_VIEW_VISIBILITY,
+    TL_VIEW_REGION,
+    TL_VIEW_STRAIN_WARP,
+    TL_VIEW_STRAIN_WEFT,
+    TL_VIEW_STRAIN_SHEAR,
+    TL_VIEW_COUNT
+};
+extern const char *const tl_image_view_names[]; /* "light", "normal" ...; NULL-terminated */
+
 struct tl_image_params { /* table "image" */
     int width, height;
     int supersample;   /* samples per pixel side, box filtered in linear light */
     float exposure_ev; /* for show only */
     int background;    /* enum tl_background; for show only */
     bool ground;       /* a ground disc at y = 0 */
+    int view;          /* enum tl_image_view */
+    int view_region;   /* visibility view: of this region; -1: of all, by their power */
+    float view_range;  /* strain views: percent at the legend's ends; 0: automatic */
 };
 extern const struct tl_option_table tl_image_options;
 
