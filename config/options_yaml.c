@@ -14,6 +14,8 @@
 struct reader {
     const struct tl_binding *bindings;
     size_t count;
+    const struct tl_record_section *section; /* or NULL */
+    size_t section_line;                     /* where it was given, 0: not yet */
     const char *name;
     const char *data;
     size_t size;
@@ -194,12 +196,81 @@ static const struct tl_binding *read_table_name(struct reader *reader)
     return good ? binding : NULL;
 }
 
+/* ---- The section of records ---- */
+
+static bool read_records(struct reader *reader, const struct tl_record_place *above, int depth);
+
+/* The current event is the name of what is at `depth` in the section: a record, a part or a key; what
+ * belongs to it follows. */
+static bool read_record(struct reader *reader, const struct tl_record_place *above, int depth)
+{
+    if (reader->event.type != YAML_SCALAR_EVENT)
+        return fail(reader, line_of(&reader->event), "a list or table stands where a name was expected");
+    char *name = tl_copy_string(scalar_text(reader)), *text = NULL;
+    struct tl_record_place place = *above;
+    place.line = line_of(&reader->event);
+    const char **const names[] = {&place.record, &place.part, &place.key};
+    *names[depth] = name;
+    const struct tl_record_section *section = reader->section;
+    bool good = next(reader);
+    if (good && place.key) {
+        char *key = tl_format("%s.%s.%s.%s", section->name, place.record, place.part, place.key);
+        text = read_value(reader, NULL, key);
+        free(key);
+        good = text != NULL;
+    }
+    good = good && section->take(section->context, &place, text, reader->error);
+    if (good && !place.key)
+        good = read_records(reader, &place, depth + 1);
+    free(text);
+    free(name);
+    return good;
+}
+
+/* The current event begins a mapping of names at `depth`, or is empty. */
+static bool read_records(struct reader *reader, const struct tl_record_place *above, int depth)
+{
+    static const char *const expected[] = {
+        "expected names, each with its parts, indented below",
+        "expected parts, as in `bodice: {fabric: denim}`",
+        "expected options, as in `{diffuse: [0.1, 0.2, 0.5]}`",
+    };
+    if (is_empty(reader))
+        return true;
+    if (reader->event.type != YAML_MAPPING_START_EVENT)
+        return fail(reader, line_of(&reader->event), expected[depth]);
+    while (next(reader)) {
+        if (reader->event.type == YAML_MAPPING_END_EVENT)
+            return true;
+        if (!read_record(reader, above, depth))
+            return false;
+    }
+    return false;
+}
+
+static bool is_section(const struct reader *reader)
+{
+    return reader->section && reader->event.type == YAML_SCALAR_EVENT &&
+           strcmp(scalar_text(reader), reader->section->name) == 0;
+}
+
+/* The current event is the section's name. */
+static bool read_section(struct reader *reader)
+{
+    const struct tl_record_place place = {.file = reader->name};
+    size_t line = line_of(&reader->event);
+    return give(reader, &reader->section_line, reader->section->name, line) && next(reader) &&
+           read_records(reader, &place, 0);
+}
+
 /* The current event is a table's name; its mapping follows. */
 static bool read_table(struct reader *reader)
 {
     if (reader->event.type != YAML_SCALAR_EVENT)
         return fail(reader, line_of(&reader->event),
                     "a list or table stands where a table's name was expected");
+    if (is_section(reader))
+        return read_section(reader);
     const struct tl_binding *binding = read_table_name(reader);
     if (!binding || is_empty(reader))
         return binding != NULL;
@@ -248,6 +319,13 @@ static bool read_stream(struct reader *reader)
 bool tl_options_read_yaml(const struct tl_binding *bindings, size_t count, const char *name, const char *data,
                           size_t size, tl_error *error)
 {
+    return tl_options_read_yaml_with(bindings, count, NULL, name, data, size, error);
+}
+
+bool tl_options_read_yaml_with(const struct tl_binding *bindings, size_t count,
+                               const struct tl_record_section *section, const char *name, const char *data,
+                               size_t size, tl_error *error)
+{
     if (size > TL_LIMIT_YAML_BYTES)
         return tl_fail(error, TL_USAGE, "%s: is larger than 1 MiB: that is no list of options", name);
     /* Told the encoding, libyaml refuses UTF-16, but also takes the mark that some editors put before UTF-8
@@ -255,6 +333,7 @@ bool tl_options_read_yaml(const struct tl_binding *bindings, size_t count, const
     size_t mark = size >= 3 && memcmp(data, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0;
     struct reader reader = {.bindings = bindings,
                             .count = count,
+                            .section = section,
                             .name = name,
                             .data = data + mark,
                             .size = size - mark,
@@ -278,11 +357,18 @@ bool tl_options_read_yaml(const struct tl_binding *bindings, size_t count, const
 bool tl_options_read_yaml_file(const struct tl_binding *bindings, size_t count, const char *path,
                                tl_error *error)
 {
+    return tl_options_read_yaml_file_with(bindings, count, NULL, path, error);
+}
+
+bool tl_options_read_yaml_file_with(const struct tl_binding *bindings, size_t count,
+                                    const struct tl_record_section *section, const char *path,
+                                    tl_error *error)
+{
     char *data = NULL;
     size_t size = 0;
     if (!tl_file_read_small(path, TL_LIMIT_YAML_BYTES, &data, &size, error))
         return false;
-    bool read = tl_options_read_yaml(bindings, count, path, data, size, error);
+    bool read = tl_options_read_yaml_with(bindings, count, section, path, data, size, error);
     free(data);
     return read;
 }
