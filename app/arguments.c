@@ -57,6 +57,8 @@ static const struct flag flags_known[] = {
      "studio, an .exr or .hdr file, or a sequence of them: sky.####.exr"},
     {"--fabric", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, "scene.fabric", "NAME|FILE",
      "a fabric: `toile info fabrics` lists them"},
+    {"--colourway", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, "scene.colourway", "NAME",
+     "fabrics and colours of the scene or of a glTF file: `toile info FILE` lists them"},
     {"--preset", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, "scene.preset", "NAME|FILE",
      "paper, draft, review or final"},
     {"--method", TL_FLAGS_SCENE, FLAG_ASSIGN, "light.method", "METHOD",
