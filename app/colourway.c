@@ -73,7 +73,9 @@ static bool begin_part(struct tl_colourways_reader *reader, const struct tl_reco
     struct tl_colourways *out = reader->out;
     if (strlen(place->part) >= sizeof reader->swatch.material)
         return fail(place, "a material's name has at most 63 bytes", error);
-    reader->swatch = (struct tl_swatch){.line = (int)place->line, .print = true};
+    memset(&reader->swatch, 0, sizeof reader->swatch); /* padding too, as in all settings */
+    reader->swatch.line = (int)place->line;
+    reader->swatch.print = true;
     strcpy(reader->swatch.material, place->part);
     if (!reader->is_chosen)
         return true;

@@ -419,7 +419,12 @@ static bool change_in_place(tl_session *session, const struct tl_settings *setti
             ? !tl_moving_light_follow(&session->light, position, error)
             : !tl_moving_light_open(&session->light, environment, position, error))
         return false;
-    return !session->cloth || tl_cloth_set(session->cloth, &settings->fabric, &settings->cloth, error);
+    /* Cloth that is set anew forgets what it touches: only what changes it may do that. */
+    const struct tl_settings *old = &session->settings;
+    bool same_cloth = tl_options_equal(&tl_cloth_fabric_options, &old->fabric, &settings->fabric) &&
+                      tl_options_equal(&tl_cloth_options, &old->cloth, &settings->cloth);
+    return !session->cloth || same_cloth ||
+           tl_cloth_set(session->cloth, &settings->fabric, &settings->cloth, error);
 }
 
 bool tl_session_apply(tl_session *session, const struct tl_settings *settings, tl_error *error)
