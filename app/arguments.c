@@ -30,6 +30,11 @@ enum flag_kind {
     FLAG_REPEAT_MM,
     FLAG_HEIGHT_MM,
     FLAG_CLAMP,
+    FLAG_FRAME_COUNT,
+    FLAG_EVERY,
+    FLAG_FURNACE,
+    FLAG_STILL,
+    FLAG_KEEP,
     FLAG_QUIET,
     FLAG_VERBOSE,
     FLAG_HELP,
@@ -91,6 +96,13 @@ static const struct flag flags_known[] = {
     {"--height-mm", TL_FLAGS_FABRIC, FLAG_HEIGHT_MM, NULL, "MM",
      "height that a value of 1 (white) stands for; else 0.5"},
     {"--clamp", TL_FLAGS_FABRIC, FLAG_CLAMP, NULL, NULL, "the map does not repeat"},
+    {"--frames", TL_FLAGS_CHECK, FLAG_FRAME_COUNT, NULL, "N", "how many frames; else 300"},
+    {"--every", TL_FLAGS_CHECK, FLAG_EVERY, NULL, "K",
+     "what takes long is checked in every K-th frame: the oracle, a fresh renderer, sums of light; else 10"},
+    {"--furnace", TL_FLAGS_CHECK, FLAG_FURNACE, NULL, NULL, "those frames in white light too"},
+    {"--still", TL_FLAGS_CHECK, FLAG_STILL, NULL, NULL, "no hand swings the hem"},
+    {"--keep", TL_FLAGS_CHECK, FLAG_KEEP, NULL, "FOLDER",
+     "keeps the first frame that breaks, ready to be opened"},
     {"--quiet", 0, FLAG_QUIET, NULL, NULL, "say nothing but errors"},
     {"--verbose", 0, FLAG_VERBOSE, NULL, NULL, "say more"},
     {"--help", 0, FLAG_HELP, NULL, NULL, "what the command does and takes"},
@@ -235,6 +247,19 @@ static bool take_flag(const struct flag *flag, const char *value, struct tl_argu
         return read_length("--height-mm", value, &out->height_mm, error);
     case FLAG_CLAMP:
         out->clamp = true;
+        return true;
+    case FLAG_FRAME_COUNT:
+        return read_whole("--frames", value, NULL, 1, &out->frame_count, error);
+    case FLAG_EVERY:
+        return read_whole("--every", value, NULL, 1, &out->every, error);
+    case FLAG_FURNACE:
+        out->furnace = true;
+        return true;
+    case FLAG_STILL:
+        out->still = true;
+        return true;
+    case FLAG_KEEP:
+        out->keep = value;
         return true;
     case FLAG_QUIET:
         out->quiet = true;

@@ -1,4 +1,5 @@
-/* The inside of a renderer: what the jobs of a frame read and write. Not for use outside of render/. */
+/* The inside of a renderer: what the jobs of a frame read and write. Not for use outside of render/,
+ * but by checks that look inside (app/check_*.c), which change nothing. */
 #ifndef TOILE_RENDER_FRAME_FRAME_H
 #define TOILE_RENDER_FRAME_FRAME_H
 
