@@ -1,11 +1,13 @@
 /* toile render: frames without a screen. */
 #include "app/commands.h"
+#include "app/legend.h"
 #include "app/stage.h"
 #include "assets/exr.h"
 #include "config/file.h"
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
+#include "render/inspect/inspect.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -37,6 +39,14 @@ static bool check_output(const struct tl_arguments *arguments, tl_error *error)
     return writable;
 }
 
+static void draw_legend(const struct tl_stage *stage, tl_image *image)
+{
+    struct tl_legend legend;
+    tl_renderer_legend(stage->renderer, &legend);
+    if (!tl_legend_draw(&legend, image))
+        tl_info("%s: the picture is too small for its legend", legend.title);
+}
+
 static bool save_frame(struct tl_stage *stage, const char *path, tl_error *error)
 {
     tl_image image = {0};
@@ -46,8 +56,10 @@ static bool save_frame(struct tl_stage *stage, const char *path, tl_error *error
         saved = tl_renderer_read(stage->renderer, &image, error) &&
                 tl_exr_save(path, &(struct tl_exr_layer){.channel_names = names, .image = &image}, 1, error);
     } else {
-        saved =
-            tl_renderer_show_image(stage->renderer, &image, error) && tl_image_save_png(path, &image, error);
+        saved = tl_renderer_show_image(stage->renderer, &image, error);
+        if (saved && stage->settings.image.legend)
+            draw_legend(stage, &image);
+        saved = saved && tl_image_save_png(path, &image, error);
     }
     tl_image_release(&image);
     return saved;

@@ -133,6 +133,7 @@ struct tl_image_params { /* table "image" */
     int view;          /* enum tl_image_view */
     int view_region;   /* visibility view: of this region; -1: of all, by their power */
     float view_range;  /* strain views: percent at the legend's ends; 0: automatic */
+    bool legend;       /* pictures of a view say what its colours mean */
 };
 extern const struct tl_option_table tl_image_options;
 
