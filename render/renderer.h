@@ -175,7 +175,8 @@ typedef struct tl_frame {
     const struct tl_lamp *lamps;
     size_t lamp_count; /* at most TL_LAMPS_MAX */
     double time_s;
-    bool still; /* drawn until it rests: every round is taken whole, however long that takes */
+    bool aovs; /* what render/inspect/aovs.h reads is kept */
+    bool still;  /* drawn until it rests: every round is taken whole, however long that takes */
 } tl_frame;
 
 struct tl_render_settings {
