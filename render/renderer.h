@@ -134,6 +134,7 @@ struct tl_image_params { /* table "image" */
     int view_region;   /* visibility view: of this region; -1: of all, by their power */
     float view_range;  /* strain views: percent at the legend's ends; 0: automatic */
     float scale;       /* samples a side over those that supersample asks for, (0, 1] */
+    bool legend;       /* pictures of a view say what its colours mean */
 };
 /* Size of the G-buffer and of the light. */
 void tl_image_samples(const struct tl_image_params *image, int *width, int *height);
@@ -177,6 +178,7 @@ typedef struct tl_frame {
     const struct tl_lamp *lamps;
     size_t lamp_count; /* at most TL_LAMPS_MAX */
     double time_s;
+    bool aovs;  /* what render/inspect/aovs.h reads is kept */
     bool still; /* drawn until it rests: every round is taken whole, however long that takes */
 } tl_frame;
 

@@ -331,12 +331,9 @@ static tl_bits lamp_facts(const tl_frame *frame, const struct tl_light_params *l
     return facts;
 }
 
-tl_bits tl_frame_facts(const tl_frame *frame, const struct tl_render_settings *settings)
+static tl_bits light_facts(const tl_frame *frame, const struct tl_render_settings *settings)
 {
     const struct tl_light_params *light = &settings->light;
-    if (settings->image.view != TL_VIEW_LIGHT)
-        return tl_inspect_facts(settings->image.view) |
-               (wants_detail(frame, &settings->detail) ? TL_BIT(TL_SCENE_DETAIL) : 0);
     if (light->method == TL_METHOD_REFERENCE)
         return TL_BIT(TL_SCENE_REFERENCE);
     if (light->method == TL_METHOD_MAPS)
@@ -364,4 +361,14 @@ tl_bits tl_frame_facts(const tl_frame *frame, const struct tl_render_settings *s
     if (rays)
         facts |= TL_BIT(TL_SCENE_SAMPLES) | TL_BIT(TL_SCENE_COMPOSED);
     return facts | lamp_facts(frame, light);
+}
+
+tl_bits tl_frame_facts(const tl_frame *frame, const struct tl_render_settings *settings)
+{
+    tl_bits kept = frame->aovs ? TL_BIT(TL_SCENE_SAMPLES) : 0;
+    if (settings->image.view == TL_VIEW_LIGHT)
+        return kept | light_facts(frame, settings);
+    if (wants_detail(frame, &settings->detail))
+        kept |= TL_BIT(TL_SCENE_DETAIL);
+    return kept | tl_inspect_facts(settings->image.view);
 }

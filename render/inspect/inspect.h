@@ -1,5 +1,5 @@
 /* Views that show something other than light (image.view): normals, tangents, UVs, visibility, regions,
- * strain; what lies under a pixel; and the layers of an image (AOVs).
+ * strain; and what lies under a pixel.
  *
  * All on the CPU, from the covered samples of the G-buffer. What these functions tell is of the image that
  * was drawn last: its surfaces, materials and environment must still be there, as for tl_renderer_show_image.

@@ -153,8 +153,7 @@ static void list_regions(const struct tl_regions *regions, struct tl_legend *leg
     for (int i = 0; i < regions->count && i < TL_LEGEND_ENTRIES && order[i]->importance > 0; i++) {
         int number = (int)(order[i] - regions->items);
         char label[40];
-        snprintf(label, sizeof label, "region %d: %.2g %% of the light", number,
-                 100 * (double)order[i]->importance / all);
+        snprintf(label, sizeof label, "%d: %.2g %%", number, 100 * (double)order[i]->importance / all);
         add_entry(legend, tl_number_colour((uint32_t)number), label);
     }
 }
@@ -164,7 +163,7 @@ static void describe_regions(const struct tl_legend_source *source, struct tl_le
     snprintf(legend->title, sizeof legend->title, "region that gives the most light");
     if (!source->regions)
         return;
-    snprintf(legend->note, sizeof legend->note, "%d regions in all; black: none is seen",
+    snprintf(legend->note, sizeof legend->note, "of %d; the brightest and their share of all light",
              source->regions->count);
     list_regions(source->regions, legend);
 }
@@ -174,8 +173,8 @@ static void describe_uv(struct tl_legend *legend)
     snprintf(legend->title, sizeof legend->title, "texture coordinates");
     snprintf(legend->note, sizeof legend->note, "squares of %d mm of cloth, in blocks of %d mm",
              TL_CHECKER_SQUARE_MM, TL_CHECKER_BLOCK_MM);
-    add_entry(legend, tl_checker_colour(0, 1), "even block");
-    add_entry(legend, tl_checker_colour(1, 1), "odd block");
+    add_entry(legend, tl_checker_colour(0, 1), "even blocks");
+    add_entry(legend, tl_checker_colour(1, 1), "odd blocks");
     add_entry(legend, tl_legend_unknown, "no scale known");
 }
 
@@ -192,7 +191,7 @@ void tl_legend_make(const struct tl_legend_source *source, struct tl_legend *out
         break;
     case TL_VIEW_TANGENT:
         snprintf(out->title, sizeof out->title, "tangent: direction of the weft");
-        snprintf(out->note, sizeof out->note, "world axes; dark lines run along the warp, %d mm apart",
+        snprintf(out->note, sizeof out->note, "world axes; lines run along the warp, every %d mm",
                  TL_HATCH_MM);
         list_directions(out);
         break;

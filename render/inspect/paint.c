@@ -120,7 +120,7 @@ static vec3s tangent_colour(const struct tl_paint_request *request, const struct
                                                          spot->sample->weights[i]));
     vec3s smooth = spot->sample->smooth;
     tangent = glms_vec3_sub(tangent, glms_vec3_scale(smooth, glms_vec3_dot(smooth, tangent)));
-    if (!(glms_vec3_norm(tangent) > 1e-6f))
+    if (!(glms_vec3_norm(tangent) > 1e-6f && spot->uv_metres > 0))
         return unknown(request, spot->sample);
     const float ink = 0.75f;
     return glms_vec3_scale(tl_direction_colour(glms_vec3_normalize(tangent)), 1 - ink * hatch(request, spot));
