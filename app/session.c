@@ -12,12 +12,21 @@
 #include "config/memory.h"
 
 #include <float.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* A clip's first pose may be far from the rest pose that a garment was made for. The avatar walks there in
  * this time, before frame 0, so that the cloth is carried along instead of torn. */
 #define POSE_IN_S 1.0
+
+/* The look before the present one, kept for comparisons that go to and fro. */
+struct spare_look {
+    tl_weave *weave, *overlay_weave;
+    tl_material *materials; /* NULL: none is kept */
+    uint64_t revision;
+    struct tl_settings made_of;
+};
 
 struct tl_session {
     struct tl_settings settings;
@@ -40,7 +49,9 @@ struct tl_session {
     struct tl_moving dress;
 
     tl_material *materials; /* of the garment: the file's, or what settings.material makes of them */
-    uint64_t look_revision; /* rises when meshes or materials change */
+    uint64_t look_revision; /* of meshes and materials; the renderer sees another one as new */
+    uint64_t looks_made;    /* the highest revision so far */
+    struct spare_look spare;
 
     int frame;
     struct tl_box framed; /* what the camera frames: all there is at frame 0 */
@@ -203,7 +214,7 @@ static void make_materials(tl_session *session)
         else
             set_look(&settings->material, session->weave, &session->materials[i]);
     }
-    session->look_revision++;
+    session->look_revision = ++session->looks_made;
 }
 
 static void pose_avatar(tl_session *session, double time_s)
@@ -388,6 +399,9 @@ void tl_session_destroy(tl_session **handle)
     tl_moving_light_release(&session->light);
     forget_weave(&session->weave);
     forget_weave(&session->overlay_weave);
+    forget_weave(&session->spare.weave);
+    forget_weave(&session->spare.overlay_weave);
+    free(session->spare.materials);
     free(session->materials);
     free(session);
     *handle = NULL;
@@ -460,8 +474,9 @@ static bool same_text(const char *a, const char *b)
 }
 
 /* What cannot be changed in place: who wears what, and what is decided when the cloth is made. */
-static bool needs_new_scene(const struct tl_settings *old, const struct tl_settings *new)
+bool tl_session_needs_scene(const tl_session *session, const struct tl_settings *new)
 {
+    const struct tl_settings *old = &session->settings;
     return !same_text(old->scene.garment, new->scene.garment) ||
            !same_text(old->scene.avatar, new->scene.avatar) || !same_text(old->scene.clip, new->scene.clip) ||
            !same_text(old->scene.motion, new->scene.motion) || old->scene.units != new->scene.units ||
@@ -470,39 +485,103 @@ static bool needs_new_scene(const struct tl_settings *old, const struct tl_setti
            old->image.ground != new->image.ground;
 }
 
+bool tl_session_needs_light(const tl_session *session, const struct tl_settings *settings)
+{
+    return !same_text(session->settings.scene.environment, settings->scene.environment);
+}
+
+void tl_session_keep_scene(const tl_session *session, struct tl_settings *settings)
+{
+    const struct tl_settings *kept = &session->settings;
+    memcpy(settings->scene.garment, kept->scene.garment, sizeof settings->scene.garment);
+    memcpy(settings->scene.avatar, kept->scene.avatar, sizeof settings->scene.avatar);
+    memcpy(settings->scene.clip, kept->scene.clip, sizeof settings->scene.clip);
+    memcpy(settings->scene.motion, kept->scene.motion, sizeof settings->scene.motion);
+    memcpy(settings->scene.environment, kept->scene.environment, sizeof settings->scene.environment);
+    settings->scene.units = kept->scene.units;
+    settings->scene.avatar_units = kept->scene.avatar_units;
+    settings->scene.motion_rate = kept->scene.motion_rate;
+    settings->cloth.edge_m = kept->cloth.edge_m;
+    settings->image.ground = kept->image.ground;
+}
+
+/* Revisions go on rising, so that the renderer sees everything as new. */
+void tl_session_replace(tl_session *session, tl_session **made)
+{
+    tl_session *fresh = *made;
+    fresh->light.revision += session->light.revision;
+    fresh->look_revision += session->looks_made;
+    fresh->looks_made += session->looks_made;
+    fresh->body.motion_revision += session->body.motion_revision;
+    fresh->dress.motion_revision += session->dress.motion_revision;
+    tl_session swap = *session;
+    *session = *fresh;
+    *fresh = swap;
+    tl_session_destroy(made);
+}
+
+void tl_session_replace_light(tl_session *session, struct tl_moving_light *made, const char *name)
+{
+    made->revision += session->light.revision;
+    tl_moving_light_release(&session->light);
+    session->light = *made;
+    *made = (struct tl_moving_light){0};
+    snprintf(session->settings.scene.environment, sizeof session->settings.scene.environment, "%s", name);
+}
+
+static bool same_look(const struct tl_settings *a, const struct tl_settings *b)
+{
+    return tl_options_equal(&tl_weave_options, &a->weave, &b->weave) &&
+           tl_options_equal(&tl_material_options, &a->material, &b->material) &&
+           tl_options_equal(&tl_overlay_options, &a->overlay, &b->overlay) &&
+           same_text(a->scene.overlay_fabric, b->scene.overlay_fabric);
+}
+
+/* The present look, made of `old`, is kept, and what was kept becomes the present one. */
+static void swap_looks(tl_session *session, const struct tl_settings *old)
+{
+    struct spare_look kept = session->spare;
+    session->spare = (struct spare_look){.weave = session->weave,
+                                         .overlay_weave = session->overlay_weave,
+                                         .materials = session->materials,
+                                         .revision = session->look_revision,
+                                         .made_of = *old};
+    session->weave = kept.weave;
+    session->overlay_weave = kept.overlay_weave;
+    session->materials = kept.materials;
+    session->look_revision = kept.revision;
+}
+
+/* From the look made of `old` to that of the session's settings. */
+static void change_look(tl_session *session, const struct tl_settings *old)
+{
+    bool is_kept = session->spare.materials && same_look(&session->spare.made_of, &session->settings);
+    swap_looks(session, old);
+    if (!is_kept)
+        make_materials(session);
+}
+
 bool tl_session_apply(tl_session *session, const struct tl_settings *settings, tl_error *error)
 {
-    const struct tl_settings *old = &session->settings;
-    if (needs_new_scene(old, settings)) {
+    if (tl_session_needs_scene(session, settings)) {
         tl_session *fresh = tl_session_create(settings, error);
         if (!fresh)
             return false;
-        /* Revisions go on rising, so that the renderer sees everything as new. */
-        fresh->light.revision += session->light.revision;
-        fresh->look_revision += session->look_revision + 1;
-        fresh->body.motion_revision += session->body.motion_revision;
-        fresh->dress.motion_revision += session->dress.motion_revision;
-        tl_session swap = *session;
-        *session = *fresh;
-        *fresh = swap;
-        tl_session_destroy(&fresh);
+        tl_session_replace(session, &fresh);
         return true;
     }
     double position = light_position(settings, session->frame);
     const char *environment = settings->scene.environment;
-    if (same_text(old->scene.environment, environment)
-            ? !tl_moving_light_follow(&session->light, position, error)
-            : !tl_moving_light_open(&session->light, environment, position, error))
+    if (tl_session_needs_light(session, settings)
+            ? !tl_moving_light_open(&session->light, environment, position, error)
+            : !tl_moving_light_follow(&session->light, position, error))
         return false;
-    bool new_look = !tl_options_equal(&tl_weave_options, &old->weave, &settings->weave) ||
-                    !tl_options_equal(&tl_material_options, &old->material, &settings->material) ||
-                    !tl_options_equal(&tl_overlay_options, &old->overlay, &settings->overlay) ||
-                    !same_text(old->scene.overlay_fabric, settings->scene.overlay_fabric);
     if (session->cloth && !tl_cloth_set(session->cloth, &settings->fabric, &settings->cloth, error))
         return false;
+    struct tl_settings old = session->settings;
     session->settings = *settings;
-    if (session->garment && new_look)
-        make_materials(session);
+    if (session->garment && !same_look(&old, settings))
+        change_look(session, &old);
     return true;
 }
 

@@ -3,6 +3,7 @@
 #ifndef TOILE_APP_SESSION_H
 #define TOILE_APP_SESSION_H
 
+#include "app/moving_light.h"
 #include "app/settings.h"
 #include "cloth/cloth.h"
 #include "render/renderer.h"
@@ -22,9 +23,19 @@ int tl_session_frame_number(const tl_session *session);
 bool tl_session_reset(tl_session *session, tl_error *error);
 
 /* Takes over changed settings: reloads or re-weaves only what differs. On failure the session is as it was.
- */
+ * To and fro between two looks costs nothing: the last one is kept. */
 bool tl_session_apply(tl_session *session, const struct tl_settings *settings, tl_error *error);
 const struct tl_settings *tl_session_settings(const tl_session *session);
+
+/* For those who make a scene beside the one that is shown (app/loader.h). True when tl_session_apply would
+ * have to make the scene anew, or to read another environment. */
+bool tl_session_needs_scene(const tl_session *session, const struct tl_settings *settings);
+bool tl_session_needs_light(const tl_session *session, const struct tl_settings *settings);
+/* Sets the options that decide these two to what the session has. */
+void tl_session_keep_scene(const tl_session *session, struct tl_settings *settings);
+/* Becomes what was made beside it; *made is nulled. */
+void tl_session_replace(tl_session *session, tl_session **made);
+void tl_session_replace_light(tl_session *session, struct tl_moving_light *made, const char *name);
 
 /* The frame as the renderer wants it; valid until the next call that changes the session. Orbit camera from
  * settings.camera, framed on the avatar and garment when camera.distance_m is 0. */

@@ -72,5 +72,7 @@ bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *
 /* Layers a named fabric or preset over settings already there (the panel does this). */
 bool tl_settings_apply_fabric(struct tl_settings *settings, const char *name, tl_error *error);
 bool tl_settings_apply_preset(struct tl_settings *settings, const char *name, tl_error *error);
+/* A named fabric as the look of the garment's second one. */
+bool tl_settings_apply_overlay(struct tl_settings *settings, const char *name, tl_error *error);
 
 #endif
