@@ -20,6 +20,8 @@ enum flag_kind {
     FLAG_HDR,
     FLAG_SCREENSHOTS,
     FLAG_MAX_FRAMES,
+    FLAG_FRESH,
+    FLAG_BUDGET,
     FLAG_AXIS,
     FLAG_QUICK,
     FLAG_CAPTURE,
@@ -74,6 +76,10 @@ static const struct flag flags_known[] = {
     {"--hdr", TL_FLAGS_METRIC, FLAG_HDR, NULL, NULL, "compare over all exposures that the reference holds"},
     {"--screenshots", TL_FLAGS_WINDOW, FLAG_SCREENSHOTS, NULL, "FOLDER", "where screenshots go"},
     {"--max-frames", TL_FLAGS_WINDOW, FLAG_MAX_FRAMES, NULL, "N", "close after N frames"},
+    {"--fresh", TL_FLAGS_WINDOW, FLAG_FRESH, NULL, NULL,
+     "as if it were the first time: nothing is remembered, before or after"},
+    {"--budget", TL_FLAGS_WINDOW, FLAG_BUDGET, NULL, "MS",
+     "milliseconds that a frame may take; 0: as long as it takes"},
     {"--axis", TL_FLAGS_AXIS, FLAG_AXIS, NULL, "NAME", "what is varied: light or cloth"},
     {"--quick", TL_FLAGS_QUICK, FLAG_QUICK, NULL, NULL, "a few choices and frames only"},
     {"--full", TL_FLAGS_FULL, FLAG_FULL, NULL, NULL, "what takes minutes too"},
@@ -132,6 +138,15 @@ static bool read_whole(const char *flag, const char *text, const char **end, int
         *end = stop;
     *out = (int)value;
     return true;
+}
+
+/* Milliseconds up to ten seconds, the whole text. */
+static bool read_budget(const char *text, double *out, tl_error *error)
+{
+    char *stop;
+    *out = strtod(text, &stop);
+    return (stop != text && !*stop && *out >= 0 && *out <= 1e4) ||
+           tl_fail(error, TL_USAGE, "--budget: \"%s\": expected milliseconds, from 0 to 10000", text);
 }
 
 /* Millimetres: from a micrometre to ten metres, the whole text. */
@@ -207,6 +222,11 @@ static bool take_flag(const struct flag *flag, const char *value, struct tl_argu
         return true;
     case FLAG_MAX_FRAMES:
         return read_whole("--max-frames", value, NULL, 1, &out->max_frames, error);
+    case FLAG_FRESH:
+        out->fresh = true;
+        return true;
+    case FLAG_BUDGET:
+        return read_budget(value, &out->budget_ms, error);
     case FLAG_AXIS:
         out->axis = value;
         return true;
@@ -249,7 +269,7 @@ static bool take_flag(const struct flag *flag, const char *value, struct tl_argu
 
 bool tl_arguments_parse(int argc, char **argv, unsigned flags, struct tl_arguments *out, tl_error *error)
 {
-    *out = (struct tl_arguments){.hdr = -1};
+    *out = (struct tl_arguments){.hdr = -1, .budget_ms = -1};
     for (int i = 0; i < argc; i++) {
         const char *word = argv[i];
         if (word[0] != '-' || word[1] == '\0') {

@@ -18,7 +18,7 @@ enum tl_flag_set { /* which groups of flags a command takes */
                    TL_FLAGS_FRAMES = 8,        /* --frames A:B */
                    TL_FLAGS_JSON = 16,         /* --json */
                    TL_FLAGS_METRIC = 32,       /* --ldr --hdr */
-                   TL_FLAGS_WINDOW = 64,       /* --screenshots DIR --max-frames N */
+                   TL_FLAGS_WINDOW = 64,       /* --screenshots DIR --max-frames N --fresh --budget MS */
                    TL_FLAGS_AXIS = 128,        /* --axis NAME */
                    TL_FLAGS_QUICK = 256,       /* --quick */
                    TL_FLAGS_FULL = 512,        /* --full */
@@ -39,7 +39,9 @@ struct tl_arguments {
     int hdr;                 /* -1 by content, 0 --ldr, 1 --hdr */
     const char *screenshots; /* folder for screenshots */
     int max_frames;          /* 0: no limit */
-    const char *axis;        /* NULL: not given */
+    bool fresh;
+    double budget_ms; /* -1: not given; 0: none */
+    const char *axis; /* NULL: not given */
     bool quick, full;
     double repeat_mm, height_mm; /* 0: not given */
     bool clamp;

@@ -74,8 +74,7 @@ static char *describe_row(const struct tl_binding *from, const struct tl_binding
 {
     char *before = tl_options_get_text(from, row), *after = tl_options_get_text(to, row);
     bool differs = strcmp(before, after) != 0;
-    char *text =
-        differs ? tl_format("%s.%s %s -> %s", from->table->name, row->name, before, after) : NULL;
+    char *text = differs ? tl_format("%s.%s %s -> %s", from->table->name, row->name, before, after) : NULL;
     free(before);
     free(after);
     return text;
@@ -92,8 +91,7 @@ char *tl_history_describe(const struct tl_settings *from, const struct tl_settin
     size_t count = 0;
     for (size_t i = 0; i < TL_SETTINGS_TABLES; i++)
         for (size_t j = 0; j < old_bindings[i].table->row_count; j++) {
-            char *text =
-                describe_row(&old_bindings[i], &new_bindings[i], &old_bindings[i].table->rows[j]);
+            char *text = describe_row(&old_bindings[i], &new_bindings[i], &old_bindings[i].table->rows[j]);
             count += text != NULL;
             if (!first)
                 first = text;

@@ -15,7 +15,7 @@
 
 static const struct tl_option view_rows[] = {
     TL_OPTION_BOOL(struct tl_saved_view, saved, "the view is there"),
-    TL_OPTION_PATH(struct tl_saved_view, environment, "as scene.environment"),
+    TL_OPTION_STRING(struct tl_saved_view, environment, "as scene.environment"),
     TL_OPTION_FLOAT(struct tl_saved_view, environment_yaw_deg, -3600, 3600, "degrees",
                     "as scene.environment_yaw_deg"),
     TL_OPTION_FLOAT(struct tl_saved_view, exposure_ev, -100, 100, "EV", "as image.exposure_ev"),
@@ -63,6 +63,15 @@ static void bind_views(struct view_tables *tables, struct tl_saved_views *views,
     }
 }
 
+/* The same file, wherever one stands. New string. */
+static char *full_name(const char *name)
+{
+    char *path = tl_option_is_file_name(name) ? realpath(name, NULL) : NULL;
+    char *copy = tl_copy_string(path ? path : name);
+    free(path);
+    return copy;
+}
+
 struct tl_saved_view tl_saved_view_take(const struct tl_settings *settings)
 {
     struct tl_saved_view view = {.saved = true,
@@ -71,7 +80,9 @@ struct tl_saved_view tl_saved_view_take(const struct tl_settings *settings)
                                  .camera = settings->camera,
                                  .lamp = settings->lamp,
                                  .fill = settings->fill};
-    memcpy(view.environment, settings->scene.environment, sizeof view.environment);
+    char *name = full_name(settings->scene.environment);
+    snprintf(view.environment, sizeof view.environment, "%s", name);
+    free(name);
     return view;
 }
 
@@ -128,15 +139,6 @@ static void shorten(const char *name, char *out, size_t size)
     for (const char *c = slash ? slash + 1 : name; *c && *c != '.' && length + 1 < size; c++)
         out[length++] = isalnum((unsigned char)*c) ? *c : '_';
     out[length] = '\0';
-}
-
-/* The same file is the same scene, by whatever path it was named. New string. */
-static char *full_name(const char *name)
-{
-    char *path = tl_option_is_file_name(name) ? realpath(name, NULL) : NULL;
-    char *copy = tl_copy_string(path ? path : name);
-    free(path);
-    return copy;
 }
 
 char *tl_saved_views_name(const struct tl_scene_params *scene)

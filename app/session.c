@@ -474,9 +474,8 @@ static bool same_text(const char *a, const char *b)
 }
 
 /* What cannot be changed in place: who wears what, and what is decided when the cloth is made. */
-bool tl_session_needs_scene(const tl_session *session, const struct tl_settings *new)
+bool tl_session_needs_scene(const struct tl_settings *old, const struct tl_settings *new)
 {
-    const struct tl_settings *old = &session->settings;
     return !same_text(old->scene.garment, new->scene.garment) ||
            !same_text(old->scene.avatar, new->scene.avatar) || !same_text(old->scene.clip, new->scene.clip) ||
            !same_text(old->scene.motion, new->scene.motion) || old->scene.units != new->scene.units ||
@@ -485,14 +484,13 @@ bool tl_session_needs_scene(const tl_session *session, const struct tl_settings 
            old->image.ground != new->image.ground;
 }
 
-bool tl_session_needs_light(const tl_session *session, const struct tl_settings *settings)
+bool tl_session_needs_light(const struct tl_settings *old, const struct tl_settings *new)
 {
-    return !same_text(session->settings.scene.environment, settings->scene.environment);
+    return !same_text(old->scene.environment, new->scene.environment);
 }
 
-void tl_session_keep_scene(const tl_session *session, struct tl_settings *settings)
+void tl_session_keep_scene(const struct tl_settings *kept, struct tl_settings *settings)
 {
-    const struct tl_settings *kept = &session->settings;
     memcpy(settings->scene.garment, kept->scene.garment, sizeof settings->scene.garment);
     memcpy(settings->scene.avatar, kept->scene.avatar, sizeof settings->scene.avatar);
     memcpy(settings->scene.clip, kept->scene.clip, sizeof settings->scene.clip);
@@ -563,7 +561,7 @@ static void change_look(tl_session *session, const struct tl_settings *old)
 
 bool tl_session_apply(tl_session *session, const struct tl_settings *settings, tl_error *error)
 {
-    if (tl_session_needs_scene(session, settings)) {
+    if (tl_session_needs_scene(&session->settings, settings)) {
         tl_session *fresh = tl_session_create(settings, error);
         if (!fresh)
             return false;
@@ -572,7 +570,7 @@ bool tl_session_apply(tl_session *session, const struct tl_settings *settings, t
     }
     double position = light_position(settings, session->frame);
     const char *environment = settings->scene.environment;
-    if (tl_session_needs_light(session, settings)
+    if (tl_session_needs_light(&session->settings, settings)
             ? !tl_moving_light_open(&session->light, environment, position, error)
             : !tl_moving_light_follow(&session->light, position, error))
         return false;

@@ -27,12 +27,12 @@ bool tl_session_reset(tl_session *session, tl_error *error);
 bool tl_session_apply(tl_session *session, const struct tl_settings *settings, tl_error *error);
 const struct tl_settings *tl_session_settings(const tl_session *session);
 
-/* For those who make a scene beside the one that is shown (app/loader.h). True when tl_session_apply would
- * have to make the scene anew, or to read another environment. */
-bool tl_session_needs_scene(const tl_session *session, const struct tl_settings *settings);
-bool tl_session_needs_light(const tl_session *session, const struct tl_settings *settings);
-/* Sets the options that decide these two to what the session has. */
-void tl_session_keep_scene(const tl_session *session, struct tl_settings *settings);
+/* For those who make a scene beside the one that is shown (app/loader.h). True when from `old` to `new` the
+ * scene has to be made anew; or another environment be read. Pure. */
+bool tl_session_needs_scene(const struct tl_settings *old, const struct tl_settings *new);
+bool tl_session_needs_light(const struct tl_settings *old, const struct tl_settings *new);
+/* Sets the options that decide these two to those of `kept`. Pure. */
+void tl_session_keep_scene(const struct tl_settings *kept, struct tl_settings *settings);
 /* Becomes what was made beside it; *made is nulled. */
 void tl_session_replace(tl_session *session, tl_session **made);
 void tl_session_replace_light(tl_session *session, struct tl_moving_light *made, const char *name);

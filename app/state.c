@@ -28,11 +28,10 @@ const struct tl_option_table tl_window_options =
 
 /* Whether a state file has settings in it, besides the window. */
 static const struct tl_option review_rows[] = {
-    TL_OPTION_BOOL(struct tl_state, has_settings, "the other tables are those of the built-in review"),
+    TL_OPTION_BOOL(struct tl_left_review, has_settings, "the other tables are those of the built-in review"),
 };
-static const struct tl_option_table review_table =
-    TL_OPTION_TABLE("review", "how the built-in review was left", review_rows, struct tl_state,
-                    .has_settings = false);
+static const struct tl_option_table review_table = TL_OPTION_TABLE(
+    "review", "how the built-in review was left", review_rows, struct tl_left_review, .has_settings = false);
 
 char *tl_state_folder(void)
 {
@@ -45,8 +44,8 @@ char *tl_state_folder(void)
 static size_t bind(struct tl_state *state, struct tl_binding bindings[TABLES])
 {
     bindings[0] = (struct tl_binding){&tl_window_options, &state->window};
-    bindings[1] = (struct tl_binding){&review_table, state};
-    if (!state->has_settings)
+    bindings[1] = (struct tl_binding){&review_table, &state->review};
+    if (!state->review.has_settings)
         return 2;
     tl_settings_bind(&state->settings, bindings + 2);
     return TABLES;
@@ -65,7 +64,8 @@ static bool follow_overlay(struct tl_settings *settings, tl_error *error)
 bool tl_state_load(const char *file, const struct tl_settings *defaults, struct tl_state *out,
                    tl_error *error)
 {
-    struct tl_state read = {.has_settings = true, .settings = *defaults}; /* true: all tables are known */
+    struct tl_state read = {.review = {.has_settings = true},
+                            .settings = *defaults}; /* true: all tables are known */
     struct tl_binding bindings[TABLES];
     size_t count = bind(&read, bindings);
     tl_options_reset(bindings, 2);
@@ -73,7 +73,7 @@ bool tl_state_load(const char *file, const struct tl_settings *defaults, struct 
     if (!tl_file_exists(file))
         return true;
     if (!tl_options_read_yaml_file(bindings, count, file, error) ||
-        (read.has_settings && !follow_overlay(&read.settings, error)))
+        (read.review.has_settings && !follow_overlay(&read.settings, error)))
         return false;
     *out = read;
     return true;

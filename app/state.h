@@ -19,7 +19,9 @@ extern const struct tl_option_table tl_window_options;
 
 struct tl_state {
     struct tl_window_params window;
-    bool has_settings;
+    struct tl_left_review { /* table "review" */
+        bool has_settings;
+    } review;
     struct tl_settings settings;
 };
 

@@ -32,15 +32,15 @@ static void goes_back_and_forth(void **state)
         assert_false(tl_history_note(history, &edited));
     }
     assert_null(tl_history_redo(history));
-    assert_float_equal(tl_history_undo(history)->material.glossiness, 0.2, 1e-6);
-    assert_float_equal(tl_history_undo(history)->material.glossiness, 0.1, 1e-6);
-    assert_float_equal(tl_history_redo(history)->material.glossiness, 0.2, 1e-6);
+    assert_near(tl_history_undo(history)->material.glossiness, 0.2, 1e-6);
+    assert_near(tl_history_undo(history)->material.glossiness, 0.1, 1e-6);
+    assert_near(tl_history_redo(history)->material.glossiness, 0.2, 1e-6);
     /* An edit made here cuts off what could have been redone. */
     struct tl_settings other = with_gloss(start, 0.9f);
     assert_true(tl_history_note(history, &other));
     assert_null(tl_history_redo(history));
-    assert_float_equal(tl_history_undo(history)->material.glossiness, 0.2, 1e-6);
-    assert_float_equal(tl_history_undo(history)->material.glossiness, 0.1, 1e-6);
+    assert_near(tl_history_undo(history)->material.glossiness, 0.2, 1e-6);
+    assert_near(tl_history_undo(history)->material.glossiness, 0.1, 1e-6);
     assert_true(tl_settings_equal(tl_history_undo(history), &start));
     assert_null(tl_history_undo(history));
     tl_history_destroy(&history);
@@ -61,7 +61,7 @@ static void forgets_the_oldest(void **state)
     for (int i = edits - 1; i >= edits - TL_HISTORY_EDITS; i--) {
         const struct tl_settings *edit = tl_history_undo(history);
         assert_non_null(edit);
-        assert_float_equal(edit->material.glossiness, (double)i / (2 * edits), 1e-6);
+        assert_near(edit->material.glossiness, (double)i / (2 * edits), 1e-6);
     }
     assert_null(tl_history_undo(history));
     tl_history_destroy(&history);

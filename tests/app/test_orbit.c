@@ -163,8 +163,8 @@ static void goes_between(void **state)
     to.yaw_deg = -170;
     to.distance_m = 12;
     to.target[1] = 0.1f;
-    struct tl_camera_params half = tl_orbit_between(&from, &to, 0.5f), start = tl_orbit_between(&from, &to, 0),
-                            end = tl_orbit_between(&from, &to, 1);
+    struct tl_camera_params half = tl_orbit_between(&from, &to, 0.5f),
+                            start = tl_orbit_between(&from, &to, 0), end = tl_orbit_between(&from, &to, 1);
     assert_near(tl_orbit_wrap_deg(half.yaw_deg + 180), 0, 1e-4);
     assert_near(half.distance_m, 6, 1e-5); /* sqrt(3 x 12) */
     assert_near(half.target[1], 0.6, METRES);

@@ -56,22 +56,22 @@ static void comes_back_as_it_was(void **unused)
     struct tl_settings defaults = some_settings();
     struct tl_state state, read;
     assert_true(tl_state_load(file, &defaults, &state, &error)); /* not there: defaults */
-    assert_false(state.has_settings);
+    assert_false(state.review.has_settings);
     assert_true(state.window.panel);
     state.window.width = 1000;
     state.window.panel = false;
     state.window.budget_ms = 33.5f;
-    state.has_settings = true;
+    state.review.has_settings = true;
     assert_true(tl_settings_apply_fabric(&state.settings, "silk", &error));
     assert_true(tl_settings_apply_overlay(&state.settings, "denim", &error));
     state.settings.material.glossiness = 0.1f + 0.2f;
     state.settings.camera.yaw_deg = -123.4567f;
     assert_true(tl_state_save(file, &state, &error));
     assert_true(tl_state_load(file, &defaults, &read, &error));
-    assert_true(read.has_settings);
+    assert_true(read.review.has_settings);
     assert_true(tl_settings_equal(&read.settings, &state.settings));
-    assert_true(tl_options_equal(&tl_weave_options, &read.settings.overlay_weave,
-                                 &state.settings.overlay_weave));
+    assert_true(
+        tl_options_equal(&tl_weave_options, &read.settings.overlay_weave, &state.settings.overlay_weave));
     assert_true(tl_options_equal(&tl_window_options, &read.window, &state.window));
     free(file);
 }
@@ -88,7 +88,7 @@ static void window_alone(void **unused)
     state.window.height = 555;
     assert_true(tl_state_save(file, &state, &error));
     assert_true(tl_state_load(file, &defaults, &read, &error));
-    assert_false(read.has_settings);
+    assert_false(read.review.has_settings);
     assert_int_equal(read.window.height, 555);
     free(file);
 }
@@ -97,7 +97,10 @@ static void broken_file_means_defaults(void **unused)
 {
     (void)unused;
     static const char *const texts[] = {
-        "window: {width: 900, panel: maybe}\n", "window: [\n", "windw: {width: 900}\n", "\xff\xfe\n",
+        "window: {width: 900, panel: maybe}\n",
+        "window: [\n",
+        "windw: {width: 900}\n",
+        "\xff\xfe\n",
         "review: {has_settings: true}\nscene: {overlay_fabric: nosuch}\n",
     };
     tl_error error;
@@ -110,7 +113,7 @@ static void broken_file_means_defaults(void **unused)
         assert_false(tl_state_load(file, &defaults, &state, &error));
         assert_true(strlen(error.message) > 0);
         assert_true(tl_options_equal(&tl_window_options, &state.window, tl_window_options.defaults));
-        assert_false(state.has_settings);
+        assert_false(state.review.has_settings);
         assert_true(tl_settings_equal(&state.settings, &defaults));
         struct tl_saved_views views;
         assert_false(tl_saved_views_load(file, &views, &error));
@@ -126,7 +129,7 @@ static void relative_files_become_absolute(void **unused)
     tl_error error;
     char *file = in_folder("paths.yaml"), *light = in_folder("light.exr");
     struct tl_settings defaults = some_settings();
-    struct tl_state state = {.has_settings = true, .settings = defaults};
+    struct tl_state state = {.review = {.has_settings = true}, .settings = defaults};
     state.window = *(const struct tl_window_params *)tl_window_options.defaults;
     strcpy(state.settings.scene.environment, "light.exr");
     char *before = realpath(".", NULL), *inside = realpath(folder, NULL);
@@ -209,9 +212,12 @@ static void folder_follows_the_standard(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(comes_back_as_it_was),     cmocka_unit_test(window_alone),
-        cmocka_unit_test(broken_file_means_defaults), cmocka_unit_test(relative_files_become_absolute),
-        cmocka_unit_test(views_come_back),          cmocka_unit_test(names_tell_scenes_apart),
+        cmocka_unit_test(comes_back_as_it_was),
+        cmocka_unit_test(window_alone),
+        cmocka_unit_test(broken_file_means_defaults),
+        cmocka_unit_test(relative_files_become_absolute),
+        cmocka_unit_test(views_come_back),
+        cmocka_unit_test(names_tell_scenes_apart),
         cmocka_unit_test(folder_follows_the_standard),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
