@@ -13,19 +13,20 @@ enum tl_flag_set { /* which groups of flags a command takes */
                    TL_FLAGS_SCENE =
                        1, /* --set --garment --units --motion --avatar --env --fabric --preset --size
                              --method */
-                   TL_FLAGS_OUTPUT = 2,    /* -o */
-                   TL_FLAGS_FRAME = 4,     /* --frame N */
-                   TL_FLAGS_FRAMES = 8,    /* --frames A:B */
-                   TL_FLAGS_JSON = 16,     /* --json */
-                   TL_FLAGS_METRIC = 32,   /* --ldr --hdr */
-                   TL_FLAGS_WINDOW = 64,   /* --screenshots DIR --max-frames N */
-                   TL_FLAGS_AXIS = 128,    /* --axis NAME */
-                   TL_FLAGS_QUICK = 256,   /* --quick */
-                   TL_FLAGS_FULL = 512,    /* --full */
-                   TL_FLAGS_LAYOUT = 1024, /* --layout NAME --from NAME --size N */
-                   TL_FLAGS_FABRIC = 2048, /* --repeat-mm MM --height-mm MM --clamp */
-                   TL_FLAGS_SHEET = 1
-                                    << 24, /* --garments --fabrics --colourways --envs --views --same-drape */
+                   TL_FLAGS_OUTPUT = 2,        /* -o */
+                   TL_FLAGS_FRAME = 4,         /* --frame N */
+                   TL_FLAGS_FRAMES = 8,        /* --frames A:B */
+                   TL_FLAGS_JSON = 16,         /* --json */
+                   TL_FLAGS_METRIC = 32,       /* --ldr --hdr */
+                   TL_FLAGS_WINDOW = 64,       /* --screenshots DIR --max-frames N */
+                   TL_FLAGS_AXIS = 128,        /* --axis NAME */
+                   TL_FLAGS_QUICK = 256,       /* --quick */
+                   TL_FLAGS_FULL = 512,        /* --full */
+                   TL_FLAGS_LAYOUT = 1024,     /* --layout NAME --from NAME --size N */
+                   TL_FLAGS_FABRIC = 2048,     /* --repeat-mm MM --height-mm MM --clamp */
+                   TL_FLAGS_CHECK = 1 << 12,   /* --frames N --every K --furnace --still --keep FOLDER */
+                   TL_FLAGS_AOV = 1 << 17,     /* --aov */
+                   TL_FLAGS_SHEET = 1 << 24,   /* lists of what a contact sheet shows, --same-drape */
                    TL_FLAGS_CAPTURE = 1 << 16, /* --capture, and those of the scene but the image's */
 };
 
@@ -52,6 +53,10 @@ struct tl_arguments {
         const char *garments, *fabrics, *colourways, *environments, *views;
         bool same_drape;
     } sheet;
+    int frame_count, every; /* 0: not given */
+    bool furnace, still;
+    const char *keep; /* NULL: not given */
+    bool aovs;
 };
 
 bool tl_arguments_parse(int argc, char **argv, unsigned flags, struct tl_arguments *out, tl_error *error);

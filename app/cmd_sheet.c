@@ -56,9 +56,12 @@ static bool begin_row(struct work *work, const struct tl_settings *settings, tl_
     struct tl_stage *stage = &work->stage;
     if (stage->session && can_take_over(tl_session_settings(stage->session), settings))
         return tl_session_apply(stage->session, settings, error);
-    tl_session_destroy(&stage->session);
-    stage->session = tl_session_create(settings, error);
-    return stage->session && tl_session_go_to(stage->session, work->arguments->first_frame, error);
+    bool draped = true;
+    if (stage->session)
+        draped = tl_session_restart(stage->session, settings, error);
+    else
+        draped = (stage->session = tl_session_create(settings, error)) != NULL;
+    return draped && tl_session_go_to(stage->session, work->arguments->first_frame, error);
 }
 
 /* A camera that the scene has not placed frames the garment, whoever wears it. */

@@ -52,12 +52,12 @@ static bool flows(const struct tl_contact_grid *grid)
     return grid->column_count == 1 && grid->row_count > 2;
 }
 
-/* Cells in a line of a sheet that flows. */
+/* Cells in a line of a sheet that flows: lines of about one length that make about the wanted shape. */
 static size_t cells_across(const struct tl_contact_grid *grid)
 {
     double cells = (double)grid->row_count * grid->cell_height / grid->cell_width;
-    size_t across = (size_t)ceil(sqrt(FLOW_ASPECT * cells));
-    return across < grid->row_count ? across : grid->row_count;
+    size_t lines = (size_t)ceil((double)grid->row_count / ceil(sqrt(FLOW_ASPECT * cells)));
+    return (grid->row_count + lines - 1) / lines;
 }
 
 /* What the font has: a '?' for each other character. New string. */

@@ -8,9 +8,11 @@
 #include "assets/avatar.h"
 #include "assets/fit.h"
 #include "assets/specimen.h"
+#include "cloth/strain.h"
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
+#include "render/inspect/legend.h"
 
 #include <float.h>
 #include <stdlib.h>
@@ -37,6 +39,13 @@ struct tl_session {
     tl_collider *collider;
     tl_playback *playback; /* NULL: the garment is simulated */
     struct tl_moving dress;
+
+    struct {
+        bool wanted;        /* whatever the image shows */
+        tl_strains *rest;   /* made when first asked for */
+        vec3s *of_vertices; /* of the garment */
+        uint64_t revision;  /* dress.motion_revision that they are of; 0: none */
+    } strain;
 
     struct tl_looks looks;
     uint64_t look_revision; /* rises when meshes or materials change */
@@ -317,6 +326,8 @@ void tl_session_destroy(tl_session **handle)
     free(session->garment);
     free(session->avatar);
     tl_moving_light_release(&session->light);
+    tl_strains_destroy(&session->strain.rest);
+    free(session->strain.of_vertices);
     tl_looks_release(&session->looks);
     free(session);
     *handle = NULL;
@@ -399,6 +410,23 @@ static bool needs_new_scene(const struct tl_settings *old, const struct tl_setti
            old->image.ground != new->image.ground;
 }
 
+bool tl_session_restart(tl_session *session, const struct tl_settings *settings, tl_error *error)
+{
+    tl_session *fresh = tl_session_create(settings, error);
+    if (!fresh)
+        return false;
+    /* Revisions go on rising, so that the renderer sees everything as new. */
+    fresh->light.revision += session->light.revision;
+    fresh->look_revision += session->look_revision + 1;
+    fresh->body.motion_revision += session->body.motion_revision;
+    fresh->dress.motion_revision += session->dress.motion_revision;
+    tl_session swap = *session;
+    *session = *fresh;
+    *fresh = swap;
+    tl_session_destroy(&fresh);
+    return true;
+}
+
 /* Light and cloth. */
 static bool change_in_place(tl_session *session, const struct tl_settings *settings, tl_error *error)
 {
@@ -419,21 +447,8 @@ static bool change_in_place(tl_session *session, const struct tl_settings *setti
 bool tl_session_apply(tl_session *session, const struct tl_settings *settings, tl_error *error)
 {
     const struct tl_settings *old = &session->settings;
-    if (needs_new_scene(old, settings)) {
-        tl_session *fresh = tl_session_create(settings, error);
-        if (!fresh)
-            return false;
-        /* Revisions go on rising, so that the renderer sees everything as new. */
-        fresh->light.revision += session->light.revision;
-        fresh->look_revision += session->look_revision + 1;
-        fresh->body.motion_revision += session->body.motion_revision;
-        fresh->dress.motion_revision += session->dress.motion_revision;
-        tl_session swap = *session;
-        *session = *fresh;
-        *fresh = swap;
-        tl_session_destroy(&fresh);
-        return true;
-    }
+    if (needs_new_scene(old, settings))
+        return tl_session_restart(session, settings, error);
     struct tl_looks looks = {0};
     bool new_look = !tl_looks_are_same(old, settings);
     if (new_look && !make_looks(session, settings, &looks, error))
@@ -456,6 +471,27 @@ const struct tl_settings *tl_session_settings(const tl_session *session)
     return &session->settings;
 }
 
+/* Of cloth, when somebody looks at them. */
+static const vec3s *strains_of_garment(tl_session *session)
+{
+    bool shown = session->strain.wanted || tl_view_is_strain(session->settings.image.view);
+    if (!shown || session->garment->solid)
+        return NULL;
+    if (!session->strain.rest) {
+        session->strain.rest = tl_strains_create(session->garment);
+        session->strain.of_vertices = TL_NEW_ARRAY(vec3s, session->garment->model.mesh.vertex_count);
+    }
+    if (session->strain.revision != session->dress.motion_revision)
+        tl_strains_update(session->strain.rest, session->dress.positions, session->strain.of_vertices);
+    session->strain.revision = session->dress.motion_revision;
+    return session->strain.of_vertices;
+}
+
+void tl_session_want_strains(tl_session *session, bool wanted)
+{
+    session->strain.wanted = wanted;
+}
+
 size_t tl_session_colourways(const tl_session *session, const char *const **names)
 {
     *names = (const char *const *)session->looks.names;
@@ -468,9 +504,11 @@ tl_frame tl_session_frame(tl_session *session)
     if (session->avatar)
         session->surfaces[session->surface_count++] =
             tl_moving_surface(&session->body, "avatar", &session->looks.avatar);
-    if (session->garment)
-        session->surfaces[session->surface_count++] =
-            tl_moving_surface(&session->dress, "garment", &session->looks.garment);
+    if (session->garment) {
+        tl_surface *garment = &session->surfaces[session->surface_count++];
+        *garment = tl_moving_surface(&session->dress, "garment", &session->looks.garment);
+        garment->strains = strains_of_garment(session);
+    }
     for (size_t i = 0; i < session->surface_count; i++)
         session->surfaces[i].topology_revision = session->look_revision;
     const struct tl_image_params *image = &session->settings.image;

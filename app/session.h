@@ -24,6 +24,9 @@ bool tl_session_reset(tl_session *session, tl_error *error);
 /* Takes over changed settings: reloads or re-weaves only what differs. On failure the session is as it was.
  */
 bool tl_session_apply(tl_session *session, const struct tl_settings *settings, tl_error *error);
+/* The same, but all is loaded and draped anew: as another fabric would fall, which only moves the cloth on when
+ * it is applied. A new session in a renderer's sight begins like this, not with tl_session_create. */
+bool tl_session_restart(tl_session *session, const struct tl_settings *settings, tl_error *error);
 const struct tl_settings *tl_session_settings(const tl_session *session);
 
 /* The colourways there are, for scene.colourway beside "": those of the scene's section, then the variants of
@@ -36,6 +39,9 @@ size_t tl_session_colourways(const tl_session *session, const char *const **name
 /* The frame as the renderer wants it; valid until the next call that changes the session. Orbit camera from
  * settings.camera, framed on the avatar and garment when camera.distance_m is 0. */
 tl_frame tl_session_frame(tl_session *session);
+
+/* Whether frames tell the garment's strains whatever they show; else they do in the views of strain. */
+void tl_session_want_strains(tl_session *session, bool wanted);
 
 /* Where a ray meets the garment: its nearest render vertex and the distance along the ray; false when it
  * misses. */
