@@ -33,6 +33,12 @@ enum flag_kind {
     FLAG_REPEAT_MM,
     FLAG_HEIGHT_MM,
     FLAG_CLAMP,
+    FLAG_GARMENTS,
+    FLAG_FABRICS,
+    FLAG_COLOURWAYS,
+    FLAG_ENVIRONMENTS,
+    FLAG_VIEWS,
+    FLAG_SAME_DRAPE,
     FLAG_FRAME_COUNT,
     FLAG_EVERY,
     FLAG_FURNACE,
@@ -105,6 +111,15 @@ static const struct flag flags_known[] = {
     {"--height-mm", TL_FLAGS_FABRIC, FLAG_HEIGHT_MM, NULL, "MM",
      "height that a value of 1 (white) stands for; else 0.5"},
     {"--clamp", TL_FLAGS_FABRIC, FLAG_CLAMP, NULL, NULL, "the map does not repeat"},
+    {"--garments", TL_FLAGS_SHEET, FLAG_GARMENTS, NULL, "A,B", "names or files, as --garment takes them"},
+    {"--fabrics", TL_FLAGS_SHEET, FLAG_FABRICS, NULL, "A,B",
+     "names or files, or all; each drapes anew, as the fabric decides how it falls"},
+    {"--colourways", TL_FLAGS_SHEET, FLAG_COLOURWAYS, NULL, "A,B", "names, or all that a garment has"},
+    {"--envs", TL_FLAGS_SHEET, FLAG_ENVIRONMENTS, NULL, "A,B", "names or files, as --env takes them"},
+    {"--views", TL_FLAGS_SHEET, FLAG_VIEWS, NULL, "A,B",
+     "front, 3/4, side, left, back-3/4, back, right, scene, or degrees: 30 or 30:10"},
+    {"--same-drape", TL_FLAGS_SHEET, FLAG_SAME_DRAPE, NULL, NULL,
+     "all fabrics of a garment fall as its first: they only look different"},
     {"--frames", TL_FLAGS_CHECK, FLAG_FRAME_COUNT, NULL, "N", "how many frames; else 300"},
     {"--every", TL_FLAGS_CHECK, FLAG_EVERY, NULL, "K",
      "what takes long is checked in every K-th frame: the oracle, a fresh renderer, sums of light; else 10"},
@@ -273,6 +288,24 @@ static bool take_flag(const struct flag *flag, const char *value, struct tl_argu
         return read_length("--height-mm", value, &out->height_mm, error);
     case FLAG_CLAMP:
         out->clamp = true;
+        return true;
+    case FLAG_GARMENTS:
+        out->sheet.garments = value;
+        return true;
+    case FLAG_FABRICS:
+        out->sheet.fabrics = value;
+        return true;
+    case FLAG_COLOURWAYS:
+        out->sheet.colourways = value;
+        return true;
+    case FLAG_ENVIRONMENTS:
+        out->sheet.environments = value;
+        return true;
+    case FLAG_VIEWS:
+        out->sheet.views = value;
+        return true;
+    case FLAG_SAME_DRAPE:
+        out->sheet.same_drape = true;
         return true;
     case FLAG_FRAME_COUNT:
         return read_whole("--frames", value, NULL, 1, &out->frame_count, error);

@@ -26,6 +26,7 @@ enum tl_flag_set { /* which groups of flags a command takes */
                    TL_FLAGS_FABRIC = 2048,     /* --repeat-mm MM --height-mm MM --clamp */
                    TL_FLAGS_CHECK = 1 << 12,   /* --frames N --every K --furnace --still --keep FOLDER */
                    TL_FLAGS_AOV = 1 << 17,     /* --aov */
+                   TL_FLAGS_SHEET = 1 << 24,   /* lists of what a contact sheet shows, --same-drape */
                    TL_FLAGS_CAPTURE = 1 << 16, /* --capture, and those of the scene but the image's */
 };
 
@@ -50,6 +51,10 @@ struct tl_arguments {
     const char *layout, *from; /* NULL: not given */
     int map_size;              /* 0: not given */
     bool capture;
+    struct { /* NULL: not given; else names with commas between them */
+        const char *garments, *fabrics, *colourways, *environments, *views;
+        bool same_drape;
+    } sheet;
     int frame_count, every; /* 0: not given */
     bool furnace, still;
     const char *keep; /* NULL: not given */

@@ -37,6 +37,11 @@ const struct tl_command tl_commands[] = {
      "Hangs every technique and setting beside its exact evaluation, with its error and its time: pictures, "
      "FOLDER/gallery.html and gallery.csv.",
      TL_FLAGS_OUTPUT | TL_FLAGS_QUICK, tl_command_gallery},
+    {"sheet", "sheet [SCENE] -o OUT.png|FOLDER [OPTIONS]",
+     "Draws a contact sheet: garments x fabrics or colourways down, environments x views across, as one "
+     "image or "
+     "as a folder with a page. Stopped, the same command goes on where it was.",
+     TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_FRAME | TL_FLAGS_SHEET, tl_command_sheet},
     {"compare", "compare TESTED REFERENCE [--json] [--ldr|--hdr]",
      "Tells how different two images are: relative RMSE, mean FLIP, largest difference.",
      TL_FLAGS_JSON | TL_FLAGS_METRIC, tl_command_compare},

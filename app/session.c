@@ -463,6 +463,15 @@ void tl_session_replace_light(tl_session *session, struct tl_moving_light *made,
     snprintf(session->settings.scene.environment, sizeof session->settings.scene.environment, "%s", name);
 }
 
+bool tl_session_restart(tl_session *session, const struct tl_settings *settings, tl_error *error)
+{
+    tl_session *fresh = tl_session_create(settings, error);
+    if (!fresh)
+        return false;
+    tl_session_replace(session, &fresh);
+    return true;
+}
+
 /* Light and cloth. */
 static bool change_in_place(tl_session *session, const struct tl_settings *settings, tl_error *error)
 {
@@ -503,13 +512,8 @@ static void exchange_looks(tl_session *session)
 
 bool tl_session_apply(tl_session *session, const struct tl_settings *settings, tl_error *error)
 {
-    if (tl_session_needs_scene(&session->settings, settings)) {
-        tl_session *fresh = tl_session_create(settings, error);
-        if (!fresh)
-            return false;
-        tl_session_replace(session, &fresh);
-        return true;
-    }
+    if (tl_session_needs_scene(&session->settings, settings))
+        return tl_session_restart(session, settings, error);
     struct tl_looks looks = {0};
     bool new_look = !tl_looks_are_same(&session->settings, settings);
     bool was_seen = session->spare.is_kept && tl_looks_are_same(&session->spare.made_of, settings);

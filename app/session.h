@@ -25,6 +25,9 @@ bool tl_session_reset(tl_session *session, tl_error *error);
 /* Takes over changed settings: reloads or re-weaves only what differs. On failure the session is as it was.
  * To and fro between two looks costs nothing: the last one is kept. */
 bool tl_session_apply(tl_session *session, const struct tl_settings *settings, tl_error *error);
+/* The same, but all is loaded and draped anew: as another fabric would fall, which only moves the cloth on when
+ * it is applied. A new session in a renderer's sight begins like this, not with tl_session_create. */
+bool tl_session_restart(tl_session *session, const struct tl_settings *settings, tl_error *error);
 const struct tl_settings *tl_session_settings(const tl_session *session);
 
 /* For those who make a scene beside the one that is shown (app/loader.h). True when from `old` to `new` the
