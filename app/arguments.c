@@ -30,6 +30,14 @@ enum flag_kind {
     FLAG_REPEAT_MM,
     FLAG_HEIGHT_MM,
     FLAG_CLAMP,
+    FLAG_BUDGET,
+    FLAG_FRAME_COUNT,
+    FLAG_PATH,
+    FLAG_VIDEO,
+    FLAG_AGAINST,
+    FLAG_REPLAY,
+    FLAG_ORACLE,
+    FLAG_HASH,
     FLAG_QUIET,
     FLAG_VERBOSE,
     FLAG_HELP,
@@ -89,6 +97,16 @@ static const struct flag flags_known[] = {
     {"--height-mm", TL_FLAGS_FABRIC, FLAG_HEIGHT_MM, NULL, "MM",
      "height that a value of 1 (white) stands for; else 0.5"},
     {"--clamp", TL_FLAGS_FABRIC, FLAG_CLAMP, NULL, NULL, "the map does not repeat"},
+    {"--budget", TL_FLAGS_FLY, FLAG_BUDGET, NULL, "MS",
+     "time for a frame, in milliseconds; else every frame is drawn in full"},
+    {"--frames", TL_FLAGS_FLY, FLAG_FRAME_COUNT, NULL, "N", "so many frames; else 600, or all of the path's"},
+    {"--path", TL_FLAGS_FLY, FLAG_PATH, NULL, "FILE.yaml", "camera path; else one round the scene"},
+    {"--video", TL_FLAGS_FLY, FLAG_VIDEO, NULL, "FILE.mp4", "what was seen; .mp4, .mkv or .mov, by ffmpeg"},
+    {"--against", TL_FLAGS_FLY, FLAG_AGAINST, NULL, "FOLDER", "compare with an earlier flight, job by job"},
+    {"--replay", TL_FLAGS_FLY, FLAG_REPLAY, NULL, "FOLDER",
+     "fly an earlier flight's path at its levels: the images are the same to the bit"},
+    {"--oracle", TL_FLAGS_FLY, FLAG_ORACLE, NULL, "N", "measure every Nth frame against the ray-traced one"},
+    {"--hash", TL_FLAGS_FLY, FLAG_HASH, NULL, NULL, "record every image's hash, for a replay to compare"},
     {"--quiet", 0, FLAG_QUIET, NULL, NULL, "say nothing but errors"},
     {"--verbose", 0, FLAG_VERBOSE, NULL, NULL, "say more"},
     {"--help", 0, FLAG_HELP, NULL, NULL, "what the command does and takes"},
@@ -141,6 +159,14 @@ static bool read_length(const char *flag, const char *text, double *out, tl_erro
     *out = strtod(text, &stop);
     return (stop != text && !*stop && *out >= 1e-3 && *out <= 1e4) ||
            tl_fail(error, TL_USAGE, "%s: \"%s\": expected millimetres, from 0.001 to 10000", flag, text);
+}
+
+static bool read_budget(const char *text, double *out, tl_error *error)
+{
+    char *stop;
+    *out = strtod(text, &stop);
+    return (stop != text && !*stop && *out >= 0.1 && *out <= 1e6) ||
+           tl_fail(error, TL_USAGE, "--budget: \"%s\": expected milliseconds, from 0.1 to 1000000", text);
 }
 
 static void assign(struct tl_arguments *out, char *assignment)
@@ -233,6 +259,27 @@ static bool take_flag(const struct flag *flag, const char *value, struct tl_argu
         return read_length("--height-mm", value, &out->height_mm, error);
     case FLAG_CLAMP:
         out->clamp = true;
+        return true;
+    case FLAG_BUDGET:
+        return read_budget(value, &out->budget_ms, error);
+    case FLAG_FRAME_COUNT:
+        return read_whole("--frames", value, NULL, 1, &out->frame_count, error);
+    case FLAG_PATH:
+        out->path = value;
+        return true;
+    case FLAG_VIDEO:
+        out->video = value;
+        return true;
+    case FLAG_AGAINST:
+        out->against = value;
+        return true;
+    case FLAG_REPLAY:
+        out->replay = value;
+        return true;
+    case FLAG_ORACLE:
+        return read_whole("--oracle", value, NULL, 1, &out->oracle_every, error);
+    case FLAG_HASH:
+        out->hash = true;
         return true;
     case FLAG_QUIET:
         out->quiet = true;

@@ -25,6 +25,8 @@ enum tl_flag_set { /* which groups of flags a command takes */
                    TL_FLAGS_LAYOUT = 1024,     /* --layout NAME --from NAME --size N */
                    TL_FLAGS_FABRIC = 2048,     /* --repeat-mm MM --height-mm MM --clamp */
                    TL_FLAGS_CAPTURE = 1 << 16, /* --capture, and those of the scene but the image's */
+                   TL_FLAGS_FLY = 1 << 20,     /* --budget --frames --path --video --against --replay
+                                                  --oracle --hash */
 };
 
 struct tl_arguments {
@@ -46,6 +48,11 @@ struct tl_arguments {
     const char *layout, *from; /* NULL: not given */
     int map_size;              /* 0: not given */
     bool capture;
+    double budget_ms; /* 0: not given */
+    int frame_count;  /* 0: not given */
+    int oracle_every; /* 0: not given */
+    bool hash;
+    const char *path, *video, *against, *replay; /* NULL: not given */
 };
 
 bool tl_arguments_parse(int argc, char **argv, unsigned flags, struct tl_arguments *out, tl_error *error);
