@@ -112,7 +112,10 @@ struct tl_image_params { /* table "image" */
     float exposure_ev; /* for show only */
     int background;    /* enum tl_background; for show only */
     bool ground;       /* a ground disc at y = 0 */
+    float scale;       /* samples a side over those that supersample asks for, (0, 1] */
 };
+/* Size of the G-buffer and of the light. */
+void tl_image_samples(const struct tl_image_params *image, int *width, int *height);
 extern const struct tl_option_table tl_image_options;
 
 struct tl_reference_params { /* table "reference" */
@@ -199,6 +202,23 @@ bool tl_renderer_show_window(tl_renderer *renderer, int width, int height, tl_er
 void tl_renderer_plan(const tl_renderer *renderer, const tl_frame *frame,
                       const struct tl_render_settings *settings, tl_plan *out);
 const tl_plan *tl_renderer_last_plan(const tl_renderer *renderer);
+
+/* What a frame to come would take if it moves as the last ones did, for those who choose its settings: first
+ * which jobs (by bit) would run, then how long they would take; the last is cheap enough to be asked for
+ * thousands of settings. Both pure but for reading the renderer's state. */
+tl_bits tl_renderer_would_run(const tl_renderer *renderer, const tl_frame *frame,
+                              const struct tl_render_settings *settings);
+double tl_renderer_would_take(const tl_renderer *renderer, const struct tl_render_settings *settings,
+                              tl_bits jobs); /* ms */
+/* How much slower the machine is than it was: other programs'; 1: not. */
+double tl_renderer_load(const tl_renderer *renderer);
+/* False while nothing but jittered rounds and options made the last frame different from the one before, and
+ * would make this one different from it. */
+bool tl_renderer_is_moving(const tl_renderer *renderer, const tl_frame *frame);
+/* Going to the regions of these settings is cheap once they have been prepared, which takes as long as some
+ * frames do; so are those of the last frames. True where there is nothing to prepare. */
+bool tl_renderer_has_regions(const tl_renderer *renderer, const struct tl_render_settings *settings);
+void tl_renderer_prepare_regions(tl_renderer *renderer, const struct tl_render_settings *settings);
 
 /* Bytes by use, summed from what is allocated. */
 struct tl_render_memory {

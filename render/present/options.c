@@ -1,5 +1,7 @@
 #include "render/renderer.h"
 
+#include <math.h>
+
 typedef struct tl_image_params image_params;
 static const char *const background_names[] = {"environment", "blurred", "grey", NULL};
 
@@ -13,7 +15,21 @@ static const struct tl_option image_rows[] = {
     TL_OPTION_ENUM(image_params, background, background_names,
                    "what is seen behind, on the screen and in PNG files"),
     TL_OPTION_BOOL(image_params, ground, "a matt grey disc at y = 0 that catches the shadow"),
+    TL_OPTION_FLOAT(image_params, scale, 0.1, 1, "",
+                    "samples a side over those of supersample; smaller is faster and softer"),
 };
 const struct tl_option_table tl_image_options = TL_OPTION_TABLE(
     "image", "size and show of the image", image_rows, image_params, .width = 960, .height = 540,
-    .supersample = 1, .exposure_ev = 0, .background = TL_BACKGROUND_BLURRED, .ground = true);
+    .supersample = 1, .exposure_ev = 0, .background = TL_BACKGROUND_BLURRED, .ground = true, .scale = 1);
+
+static int scaled(int side, const struct tl_image_params *image)
+{
+    long samples = lround((double)side * image->supersample * (double)image->scale);
+    return samples > 1 ? (int)samples : 1;
+}
+
+void tl_image_samples(const struct tl_image_params *image, int *width, int *height)
+{
+    *width = scaled(image->width, image);
+    *height = scaled(image->height, image);
+}
