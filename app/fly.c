@@ -17,7 +17,7 @@ struct pilot {
     const struct tl_fly_options *options;
     struct tl_flight *flight;
     struct tl_motion motion;
-    tl_pace *pace;
+    tl_pace *pace; /* NULL: a replay */
 };
 
 /* At full quality. */
@@ -162,10 +162,11 @@ static bool choose(struct pilot *pilot, const struct tl_settings *wanted, int nu
     if (!tl_session_apply(stage->session, wanted, error))
         return false;
     const tl_frame coming = tl_session_frame(stage->session);
-    *out = tl_pace_choose(pilot->pace, stage->renderer, &coming, wanted);
     if (pilot->options->replay) {
-        out->levels = pilot->options->replay->frames[number].levels;
-        out->error = pilot->options->replay->frames[number].error;
+        const struct tl_flight_frame *recorded = &pilot->options->replay->frames[number];
+        *out = (struct tl_pace_choice){recorded->levels, NAN, recorded->error, ""};
+    } else {
+        *out = tl_pace_choose(pilot->pace, stage->renderer, &coming, wanted);
     }
     return true;
 }
@@ -203,7 +204,8 @@ static bool fly_on(struct pilot *pilot, int number, tl_error *error)
     if (!fly_frame(pilot, number, &frame, error))
         return false;
     const tl_plan *plan = tl_renderer_last_plan(pilot->stage->renderer);
-    tl_pace_learn(pilot->pace, plan, frame.cloth_ms, frame.total_ms);
+    if (pilot->pace)
+        tl_pace_learn(pilot->pace, plan, frame.cloth_ms, frame.total_ms);
     record_jobs(flight, plan, &frame);
     frame.memory_bytes = tl_renderer_memory(pilot->stage->renderer).total;
     flight->frames[number] = frame;
@@ -229,7 +231,8 @@ bool tl_fly(struct tl_stage *stage, const struct tl_fly_options *options, struct
                               .path = *path};
     *path = (struct tl_path){0};
     struct pilot pilot = {.stage = stage, .options = options, .flight = out};
-    pilot.pace = tl_pace_create(options->replay ? 0 : options->budget_ms);
+    if (!options->replay)
+        pilot.pace = tl_pace_create(options->budget_ms);
     struct tl_progress progress = tl_progress_begin("flying");
     bool done = begin_motion(stage, out, &pilot.motion, error);
     for (int number = 0; done && number < options->frames; number++) {

@@ -175,6 +175,10 @@ void tl_flight_print(const struct tl_flight_account *account, FILE *out)
 {
     const struct tl_flight *flight = account->flight;
     const struct tl_flight_figures *figures = &account->figures;
+    if (!figures->judged) {
+        fprintf(out, "%d frames, all of them warm-up: nothing is judged\n", flight->count);
+        return;
+    }
     fprintf(out, "%d frames: median %.2f ms, 95 %% within %.2f ms, 99 %% within %.2f ms, longest %.2f ms\n",
             flight->count, figures->p50_ms, figures->p95_ms, figures->p99_ms, figures->worst_ms);
     if (flight->budget_ms > 0)

@@ -204,6 +204,8 @@ static bool read_frame(struct table *table, char *line, struct tl_flight *flight
             return column < table->column_count ? false : fail(table, "has more cells than heads");
     if (column < table->column_count)
         return fail(table, "has fewer cells than heads");
+    if (!tl_levels_exist(&frame->levels))
+        return fail(table, "there is no such level");
     flight->count++;
     return true;
 }

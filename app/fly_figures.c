@@ -202,7 +202,8 @@ static void judge(struct tl_flight_ratio *ratio, double frame_ms)
 int tl_flight_compare(const struct tl_flight *here, const struct tl_flight *there,
                       struct tl_flight_ratio out[TL_FLIGHT_RATIOS_MAX])
 {
-    const size_t fewest = 5; /* of fewer pairs a median says nothing */
+    const size_t fewest = 5;  /* of fewer pairs a median says nothing */
+    const size_t blocks = 10; /* at least, of a short flight */
     struct pairs pairs = {.here = TL_NEW_ARRAY(double, (size_t)here->count),
                           .there = TL_NEW_ARRAY(double, (size_t)here->count)};
     int count = 0;
@@ -215,8 +216,8 @@ int tl_flight_compare(const struct tl_flight *here, const struct tl_flight *ther
         find_pairs(here, job, there, other, &pairs);
         if (pairs.count < fewest)
             continue;
-        out[count] = tl_ratio_of_medians(pairs.here, pairs.there, pairs.count,
-                                         (size_t)fmax(1, rint(here->frame_rate)));
+        double block = fmax(fmin(rint(here->frame_rate), (double)(pairs.count / blocks)), 1);
+        out[count] = tl_ratio_of_medians(pairs.here, pairs.there, pairs.count, (size_t)block);
         snprintf(out[count].name, sizeof out[count].name, "%s", name);
         if (job == WHOLE_FRAME)
             frame_ms = out[count].that_ms;

@@ -61,11 +61,12 @@ struct tiles {
     size_t count;
 };
 
-static void add_tile(struct tiles *tiles, const char *what, const char *format, double value)
+static void add_tile(struct tiles *tiles, const char *what, int digits, double value, const char *unit)
 {
     if (!isfinite(value) || tiles->count + 2 > TL_COUNT(tiles->texts))
         return;
-    snprintf(tiles->texts[tiles->count++], sizeof tiles->texts[0], format, value);
+    snprintf(tiles->texts[tiles->count++], sizeof tiles->texts[0], "%.*f%s", value < 1000 ? digits : 0, value,
+             unit);
     snprintf(tiles->texts[tiles->count++], sizeof tiles->texts[0], "%s", what);
 }
 
@@ -75,18 +76,18 @@ static void print_tiles(const struct tl_flight_account *account, FILE *out)
     const struct tl_flight *flight = account->flight;
     struct tiles tiles = {.count = 0};
     if (flight->budget_ms > 0) {
-        add_tile(&tiles, "budget", "%g ms", flight->budget_ms);
-        add_tile(&tiles, "of frames within 1.1 x budget", "%.1f %%", 100 * figures->within);
+        add_tile(&tiles, "budget", 1, flight->budget_ms, " ms");
+        add_tile(&tiles, "of frames within 1.1 x budget", 1, 100 * figures->within, " %");
     }
-    add_tile(&tiles, "median frame", "%.1f ms", figures->p50_ms);
-    add_tile(&tiles, "95 % of frames take at most", "%.1f ms", figures->p95_ms);
-    add_tile(&tiles, "99 % of frames take at most", "%.1f ms", figures->p99_ms);
-    add_tile(&tiles, "of it for the cloth (median)", "%.1f ms", figures->cloth_ms);
-    add_tile(&tiles, "off: predicted against measured", "%.1f %%", 100 * figures->prediction_error);
-    add_tile(&tiles, "relative error that levels add, estimated", "%.1f %%", 100 * figures->estimated_error);
-    add_tile(&tiles, "mean FLIP against the oracle", "%.3f", figures->flip_mean);
-    add_tile(&tiles, "relative RMSE against the oracle", "%.1f %%", 100 * figures->rel_rmse);
-    add_tile(&tiles, "held by the renderer", "%.0f MiB", (double)figures->memory_bytes / MEBIBYTE);
+    add_tile(&tiles, "median frame", 1, figures->p50_ms, " ms");
+    add_tile(&tiles, "95 % of frames take at most", 1, figures->p95_ms, " ms");
+    add_tile(&tiles, "99 % of frames take at most", 1, figures->p99_ms, " ms");
+    add_tile(&tiles, "of it for the cloth (median)", 1, figures->cloth_ms, " ms");
+    add_tile(&tiles, "off: predicted against measured", 1, 100 * figures->prediction_error, " %");
+    add_tile(&tiles, "relative error that levels add, estimated", 1, 100 * figures->estimated_error, " %");
+    add_tile(&tiles, "mean FLIP against the oracle", 3, figures->flip_mean, "");
+    add_tile(&tiles, "relative RMSE against the oracle", 1, 100 * figures->rel_rmse, " %");
+    add_tile(&tiles, "held by the renderer", 0, (double)figures->memory_bytes / MEBIBYTE, " MiB");
     const char *cells[TL_COUNT(tiles.texts)];
     for (size_t i = 0; i < tiles.count; i++)
         cells[i] = tiles.texts[i];
@@ -121,14 +122,25 @@ static void print_way(const struct tl_flight *flight, FILE *out)
 
 /* -- frame by frame -- */
 
-static void print_strip(const struct tl_flight *flight, FILE *out)
+/* The first frames make everything ready: what they take beyond all others is cut off. */
+static double highest_shown(const struct tl_flight_account *account)
 {
-    char name[40];
+    const double room = 1.25;
+    if (!account->figures.judged)
+        return INFINITY;
+    return room * fmax(account->figures.worst_ms, account->flight->budget_ms);
+}
+
+static void print_strip(const struct tl_flight_account *account, FILE *out)
+{
+    const struct tl_flight *flight = account->flight;
+    double highest_ms = highest_shown(account), first_ms = flight->frames[0].total_ms;
+    char name[40], caption[240];
     struct lines lines = make_lines(flight);
     struct tl_plot_point *frame = add_line(&lines, flight, "frame");
     struct tl_plot_point *cloth = add_line(&lines, flight, "cloth");
     for (int i = 0; i < flight->count; i++) {
-        frame[i].y = flight->frames[i].total_ms;
+        frame[i].y = fmin(flight->frames[i].total_ms, highest_ms);
         cloth[i].y = flight->frames[i].cloth_ms;
     }
     snprintf(name, sizeof name, "budget %g ms", flight->budget_ms);
@@ -136,14 +148,16 @@ static void print_strip(const struct tl_flight *flight, FILE *out)
     struct tl_plot_manner manner = time_manner(flight);
     manner.guides = &budget;
     manner.guide_count = flight->budget_ms > 0;
+    snprintf(
+        caption, sizeof caption,
+        "Time on the wall, from the choice of levels to the finished image. Shaded: warm-up, which is not "
+        "judged%s.",
+        first_ms > highest_ms ? "; what goes beyond the top is cut off" : "");
     tl_report_heading(out, "Every frame");
-    print_lines(&lines, "ms", &manner,
-                "Time on the wall, from the choice of levels to the finished image. Shaded: warm-up, which "
-                "is not judged.",
-                out);
+    print_lines(&lines, "ms", &manner, caption, out);
 }
 
-/* Of the times after the warm-up. The longest fiftieth may lie far out: it is counted in the last bar. */
+/* Of the times after the warm-up. The longest may lie far out: they are counted in the last bar. */
 static void print_histogram(const struct tl_flight_account *account, FILE *out)
 {
     enum { BARS = 40 };
@@ -199,8 +213,10 @@ static int rank_jobs(const struct tl_flight *flight, struct ranked ranked[TL_JOB
 }
 
 /* The cloth at the bottom, the jobs that took most above it, all else on top. */
-static void print_stack(const struct tl_flight *flight, FILE *out)
+static void print_stack(const struct tl_flight_account *account, FILE *out)
 {
+    const struct tl_flight *flight = account->flight;
+    double highest_ms = highest_shown(account);
     struct ranked ranked[TL_JOBS_MAX];
     int count = rank_jobs(flight, ranked), shown = count < JOBS_SHOWN ? count : JOBS_SHOWN;
     struct lines lines = make_lines(flight);
@@ -212,10 +228,12 @@ static void print_stack(const struct tl_flight *flight, FILE *out)
     for (int i = 0; i < flight->count; i++) {
         const struct tl_flight_frame *frame = &flight->frames[i];
         double height = frame->cloth_ms;
-        layers[0][i].y = height;
-        for (int k = 0; k < shown; k++)
-            layers[1 + k][i].y = height += frame->job_ms[ranked[k].job];
-        layers[1 + shown][i].y = fmax(height, frame->total_ms);
+        layers[0][i].y = fmin(height, highest_ms);
+        for (int k = 0; k < shown; k++) {
+            height += frame->job_ms[ranked[k].job];
+            layers[1 + k][i].y = fmin(height, highest_ms);
+        }
+        layers[1 + shown][i].y = fmin(fmax(height, frame->total_ms), highest_ms);
     }
     struct tl_plot_manner manner = time_manner(flight);
     manner.kind = TL_PLOT_AREAS;
@@ -375,7 +393,6 @@ static void print_oracle(const struct tl_flight_account *account, FILE *out)
     }
     lines.series[0].count = lines.series[1].count = (size_t)count;
     struct tl_plot_manner manner = time_manner(flight);
-    manner.guides = NULL;
     tl_report_heading(out, "How wrong it was");
     snprintf(text, sizeof text,
              "%d frames against the ray-traced reference, over covered pixels: mean FLIP %.4f (worst %.4f), "
@@ -449,7 +466,9 @@ static void print_head(const struct tl_flight_account *account, FILE *out)
     const struct tl_flight *flight = account->flight;
     const struct tl_image_params *image = &account->settings->image;
     char title[200], subtitle[700];
-    if (flight->budget_ms > 0)
+    if (!account->figures.judged)
+        snprintf(title, sizeof title, "%d frames, all of them warm-up", flight->count);
+    else if (flight->budget_ms > 0)
         snprintf(title, sizeof title, "%.1f %% of %d frames within 1.1 x %g ms",
                  100 * account->figures.within, account->figures.judged, flight->budget_ms);
     else
@@ -470,10 +489,10 @@ void tl_flight_write_report(const struct tl_flight_account *account, FILE *out)
     print_head(account, out);
     print_tiles(account, out);
     print_replay(account, out);
-    print_strip(flight, out);
+    print_strip(account, out);
     print_histogram(account, out);
     print_way(flight, out);
-    print_stack(flight, out);
+    print_stack(account, out);
     print_job_table(flight, out);
     print_levels(flight, out);
     print_predictions(account, out);
