@@ -65,6 +65,8 @@ static bool load_records(struct flying *flying, tl_error *error)
 {
     const struct tl_arguments *arguments = flying->arguments;
     const struct tl_settings *settings = &flying->settings;
+    if (arguments->video && !tl_video_check(arguments->video, error))
+        return false;
     if (arguments->path) {
         struct tl_path path = {0};
         bool loaded = tl_path_load(arguments->path, settings, &path, error);

@@ -63,8 +63,11 @@ static int wait_for(pid_t process)
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-static bool check_command(tl_error *error)
+bool tl_video_check(const char *path, tl_error *error)
 {
+    if (!container_of(path))
+        return tl_fail(error, TL_USAGE, "%s: unknown kind of video: end the name in .mp4, .mkv or .mov",
+                       path);
     char *const arguments[] = {"ffmpeg", "-version", NULL};
     int nothing = open("/dev/null", O_RDWR | O_CLOEXEC);
     pid_t process;
@@ -80,12 +83,6 @@ static bool check_command(tl_error *error)
 
 tl_video *tl_video_begin(const char *path, double frame_rate, tl_error *error)
 {
-    if (!container_of(path)) {
-        tl_fail(error, TL_USAGE, "%s: unknown kind of video: end the name in .mp4, .mkv or .mov", path);
-        return NULL;
-    }
-    if (!check_command(error))
-        return NULL;
     tl_video *video = TL_NEW(tl_video);
     video->frame_rate = frame_rate;
     if (!tl_writer_begin(&video->writer, path, error)) {

@@ -44,7 +44,7 @@ status=0
 $TOILE fly $small --replay a --frames 6 -o b >/dev/null 2>said || status=$?
 check "an image that differs is named: status 1" sh -c "[ $status -eq 1 ] && grep -q 'frame 3 ' said"
 check "a replay of other work" refused "was flown with light.regions" $TOILE fly $small --set light.regions=30 --replay a -o b
-check "a comparison of other work" refused "was flown with image.width" $TOILE fly --size 32x48 --against a -o b
+check "a comparison of other work" refused "was flown with image.width" $TOILE fly $small --size 32x48 --against a -o b
 
 printf 'keys:\n  - {time_s: 0, yaw_deg: 0}\n  - {time_s: 0.2, yaw_deg: 90}\n' >path.yaml
 $TOILE fly $small --path path.yaml -o c --json >said.json
@@ -98,7 +98,7 @@ exit 3
 TEXT
 chmod +x empty/ffmpeg
 check "an ffmpeg that dies is told of, in its words" sh -c \
-    "! PATH=\"$PWD/empty:\$PATH\" $TOILE fly $small --frames 40 -o e --video flight.mp4 >/dev/null 2>said && grep -q 'status 3: it does not like' said"
+    "! PATH=\"$PWD/empty:\$PATH\" $TOILE fly $small --frames 8 -o e --video flight.mp4 >/dev/null 2>said && grep -q 'status 3: it does not like' said"
 check "the flight is kept all the same, and no video" test -s e/frames.csv -a "$(ls | grep -c flight.mp4)" -eq 0
 if command -v ffmpeg >/dev/null && command -v ffprobe >/dev/null; then
     $TOILE fly $small --size 65x47 --frames 12 -o v --video flight.mp4 >/dev/null
