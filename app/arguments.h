@@ -28,6 +28,8 @@ enum tl_flag_set { /* which groups of flags a command takes */
                    TL_FLAGS_AOV = 1 << 17,     /* --aov */
                    TL_FLAGS_SHEET = 1 << 24,   /* lists of what a contact sheet shows, --same-drape */
                    TL_FLAGS_CAPTURE = 1 << 16, /* --capture, and those of the scene but the image's */
+                   TL_FLAGS_FLY = 1 << 20,     /* --budget --frames --path --video --against --replay
+                                                  --oracle --hash */
 };
 
 struct tl_arguments {
@@ -43,7 +45,7 @@ struct tl_arguments {
     const char *screenshots; /* folder for screenshots */
     int max_frames;          /* 0: no limit */
     bool fresh;
-    double budget_ms; /* -1: not given; 0: none */
+    double budget_ms; /* 0: not given */
     const char *axis; /* NULL: not given */
     bool quick, full;
     double repeat_mm, height_mm; /* 0: not given */
@@ -59,6 +61,9 @@ struct tl_arguments {
     bool furnace, still;
     const char *keep; /* NULL: not given */
     bool aovs;
+    int oracle_every; /* 0: not given */
+    bool hash;
+    const char *path, *video, *against, *replay; /* NULL: not given */
 };
 
 bool tl_arguments_parse(int argc, char **argv, unsigned flags, struct tl_arguments *out, tl_error *error);

@@ -205,7 +205,7 @@ static bool open_review(struct tl_review *review, tl_error *error)
     if (!tl_stage_settings(arguments, &review->wanted, error))
         return false;
     bool is_remembered = tl_review_remember(review);
-    if (arguments->budget_ms >= 0)
+    if (arguments->budget_ms > 0)
         review->params.budget_ms = (float)arguments->budget_ms;
     if (!open_window(review, error))
         return false;
