@@ -7,6 +7,7 @@
 
 #include <openexr.h>
 
+#include <stdbool.h>
 #include <string.h>
 
 /* [height][width], rows downwards; NULL when the file has no channel of that name. Free it. */
@@ -34,7 +35,8 @@ static inline float *exr_read_channel(const char *path, const char *name, int *w
                 continue;
             found = true;
             channel->decode_to_ptr = (uint8_t *)(values + (size_t)y * (size_t)*width);
-            channel->user_bytes_per_element = channel->user_pixel_stride = sizeof(float);
+            channel->user_bytes_per_element = sizeof(float);
+            channel->user_pixel_stride = sizeof(float);
             channel->user_line_stride = *width * (int32_t)sizeof(float);
             channel->user_data_type = EXR_PIXEL_FLOAT;
         }
