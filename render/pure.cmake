@@ -46,7 +46,10 @@ add_library(toile_light STATIC
   pem/regions_faces.c
   pem/regions_sphere.c
   pem/slices.c
+  plan/budget.c
+  plan/cost.c
   plan/plan.c
+  present/resample.c
   reference/detail.c
   reference/gather.c
   reference/lamps.c

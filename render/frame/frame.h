@@ -1,4 +1,5 @@
-/* The inside of a renderer: what the jobs of a frame read and write. Not for use outside of render/. */
+/* The inside of a renderer: what the jobs of a frame read and write. Not for use outside of render/,
+ * but by checks that look inside (app/check_*.c), which change nothing. */
 #ifndef TOILE_RENDER_FRAME_FRAME_H
 #define TOILE_RENDER_FRAME_FRAME_H
 
@@ -151,6 +152,11 @@ void tl_frame_clear_light(tl_renderer *renderer);
 /* Lists what is drawn, with the ground last when it is drawn. */
 void tl_frame_list_surfaces(tl_renderer *renderer);
 
+/* Regions as lights that are not those of the last frame: whether they are kept, and what keeps them. */
+#define TL_LIGHTS_KEPT 4
+bool tl_frame_has_lights(const tl_renderer *renderer, const struct tl_light_params *light);
+void tl_frame_prepare_lights(tl_renderer *renderer, const struct tl_light_params *light);
+
 struct tl_renderer {
     tl_gpu *gpu;
 
@@ -168,7 +174,16 @@ struct tl_renderer {
     struct tl_lobes lobes;
     struct tl_slices slices;
     struct tl_slice_maps slice_maps;
-    struct tl_region_lights lights;
+    const struct tl_region_lights *lights; /* among those kept */
+    struct tl_kept_lights {
+        uint64_t revision; /* of the light that they add up to; 0: empty */
+        int regions, cut;
+        enum tl_region_weight weight;
+        uint64_t used; /* when, counted by kept_uses */
+        struct tl_region_lights lights;
+    } kept[TL_LIGHTS_KEPT]; /* so that going to more or fewer regions and back costs no more than a cut */
+    uint64_t kept_uses;
+    uint64_t light_revision; /* rises with the cube and its exact lobes */
     tl_surfaces *surfaces;
     struct tl_detail_maps detail;
     size_t surface_count; /* with the ground, which comes last */
@@ -205,9 +220,11 @@ struct tl_renderer {
     uint64_t signatures[TL_INPUT_COUNT]; /* of the last draw's inputs */
     struct tl_rest rest;
     uint64_t shaders_stamp;
-    tl_bits valid; /* resources that hold what their inputs call for */
+    tl_bits valid;  /* resources that hold what their inputs call for */
+    tl_bits moving; /* inputs that changed from one frame to the last */
     tl_plan plan;
-    tl_cost cost;
+    struct tl_cost_job costs[TL_JOBS_MAX];
+    double load; /* tl_load_follow */
 };
 
 #endif

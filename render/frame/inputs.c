@@ -179,7 +179,8 @@ void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *setti
     signatures[TL_INPUT_SHAPES] = shapes_signature(frame);
     signatures[TL_INPUT_MOTION] = motion_signature(frame);
     signatures[TL_INPUT_CAMERA] = camera_signature(&frame->camera);
-    signatures[TL_INPUT_SIZE] = MIX(MIX(MIX(start, image->width), image->height), image->supersample);
+    signatures[TL_INPUT_SIZE] =
+        MIX(MIX(MIX(MIX(start, image->width), image->height), image->supersample), image->scale);
     signatures[TL_INPUT_GROUND] = MIX(start, image->ground);
     signatures[TL_INPUT_PEM_SIZE] = MIX(start, light->pem_size);
     signatures[TL_INPUT_FILTER] = MIX(MIX(start, light->filter), light->prefilter);

@@ -1,6 +1,8 @@
 #include "render/pem/regions.h"
 #include "render/renderer.h"
 
+#include <math.h>
+
 typedef struct tl_image_params image_params;
 static const char *const background_names[] = {"environment", "blurred", "grey", NULL};
 const char *const tl_image_view_names[] = {
@@ -24,9 +26,23 @@ static const struct tl_option image_rows[] = {
     TL_OPTION_FLOAT(
         image_params, view_range, 0, 1000, "%",
         "views of strain: strain at the ends of the legend; 0: what 99 % of the cloth keeps within"),
+    TL_OPTION_FLOAT(image_params, scale, 0.1, 1, "",
+                    "samples a side over those of supersample; smaller is faster and softer"),
     TL_OPTION_BOOL(image_params, legend, "pictures of views other than light say what their colours mean"),
 };
 const struct tl_option_table tl_image_options = TL_OPTION_TABLE(
     "image", "size and show of the image", image_rows, image_params, .width = 960, .height = 540,
-    .supersample = 1, .exposure_ev = 0, .background = TL_BACKGROUND_BLURRED, .ground = true,
+    .supersample = 1, .exposure_ev = 0, .background = TL_BACKGROUND_BLURRED, .ground = true, .scale = 1,
     .view = TL_VIEW_LIGHT, .view_region = -1, .view_range = 0, .legend = true);
+
+static int scaled(int side, const struct tl_image_params *image)
+{
+    long samples = lround((double)side * image->supersample * (double)image->scale);
+    return samples > 1 ? (int)samples : 1;
+}
+
+void tl_image_samples(const struct tl_image_params *image, int *width, int *height)
+{
+    *width = scaled(image->width, image);
+    *height = scaled(image->height, image);
+}
