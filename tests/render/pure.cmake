@@ -12,6 +12,7 @@ foreach(name
     flip
     ground
     layout
+    legend
     levels
     lobe
     lobe_error
