@@ -23,6 +23,7 @@ enum flag_kind {
     FLAG_AXIS,
     FLAG_QUICK,
     FLAG_CAPTURE,
+    FLAG_AOV,
     FLAG_FULL,
     FLAG_LAYOUT,
     FLAG_FROM,
@@ -30,6 +31,11 @@ enum flag_kind {
     FLAG_REPEAT_MM,
     FLAG_HEIGHT_MM,
     FLAG_CLAMP,
+    FLAG_FRAME_COUNT,
+    FLAG_EVERY,
+    FLAG_FURNACE,
+    FLAG_STILL,
+    FLAG_KEEP,
     FLAG_QUIET,
     FLAG_VERBOSE,
     FLAG_HELP,
@@ -57,6 +63,8 @@ static const struct flag flags_known[] = {
      "studio, an .exr or .hdr file, or a sequence of them: sky.####.exr"},
     {"--fabric", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, "scene.fabric", "NAME|FILE",
      "a fabric: `toile info fabrics` lists them"},
+    {"--colourway", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, "scene.colourway", "NAME",
+     "fabrics and colours of the scene or of a glTF file: `toile info FILE` lists them"},
     {"--preset", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, "scene.preset", "NAME|FILE",
      "paper, draft, review or final"},
     {"--method", TL_FLAGS_SCENE, FLAG_ASSIGN, "light.method", "METHOD",
@@ -69,6 +77,8 @@ static const struct flag flags_known[] = {
      "still image of the animation's frame N; 0 is the settled start"},
     {"--frames", TL_FLAGS_FRAMES, FLAG_FRAMES, NULL, "A:B",
      "all frames from A to B; of pictures OUT.png becomes OUT.0001.png ..."},
+    {"--aov", TL_FLAGS_AOV, FLAG_AOV, NULL, NULL,
+     ".exr files get layers: N, P, uv, albedo, visibility, strain"},
     {"--json", TL_FLAGS_JSON, FLAG_JSON, NULL, NULL, "print one JSON object and nothing else"},
     {"--ldr", TL_FLAGS_METRIC, FLAG_LDR, NULL, NULL, "compare as display images, clamped to [0, 1]"},
     {"--hdr", TL_FLAGS_METRIC, FLAG_HDR, NULL, NULL, "compare over all exposures that the reference holds"},
@@ -89,6 +99,13 @@ static const struct flag flags_known[] = {
     {"--height-mm", TL_FLAGS_FABRIC, FLAG_HEIGHT_MM, NULL, "MM",
      "height that a value of 1 (white) stands for; else 0.5"},
     {"--clamp", TL_FLAGS_FABRIC, FLAG_CLAMP, NULL, NULL, "the map does not repeat"},
+    {"--frames", TL_FLAGS_CHECK, FLAG_FRAME_COUNT, NULL, "N", "how many frames; else 300"},
+    {"--every", TL_FLAGS_CHECK, FLAG_EVERY, NULL, "K",
+     "what takes long is checked in every K-th frame: the oracle, a fresh renderer, sums of light; else 10"},
+    {"--furnace", TL_FLAGS_CHECK, FLAG_FURNACE, NULL, NULL, "those frames in white light too"},
+    {"--still", TL_FLAGS_CHECK, FLAG_STILL, NULL, NULL, "no hand swings the hem"},
+    {"--keep", TL_FLAGS_CHECK, FLAG_KEEP, NULL, "FOLDER",
+     "keeps the first frame that breaks, ready to be opened"},
     {"--quiet", 0, FLAG_QUIET, NULL, NULL, "say nothing but errors"},
     {"--verbose", 0, FLAG_VERBOSE, NULL, NULL, "say more"},
     {"--help", 0, FLAG_HELP, NULL, NULL, "what the command does and takes"},
@@ -210,6 +227,9 @@ static bool take_flag(const struct flag *flag, const char *value, struct tl_argu
     case FLAG_AXIS:
         out->axis = value;
         return true;
+    case FLAG_AOV:
+        out->aovs = true;
+        return true;
     case FLAG_CAPTURE:
         out->capture = true;
         return true;
@@ -233,6 +253,19 @@ static bool take_flag(const struct flag *flag, const char *value, struct tl_argu
         return read_length("--height-mm", value, &out->height_mm, error);
     case FLAG_CLAMP:
         out->clamp = true;
+        return true;
+    case FLAG_FRAME_COUNT:
+        return read_whole("--frames", value, NULL, 1, &out->frame_count, error);
+    case FLAG_EVERY:
+        return read_whole("--every", value, NULL, 1, &out->every, error);
+    case FLAG_FURNACE:
+        out->furnace = true;
+        return true;
+    case FLAG_STILL:
+        out->still = true;
+        return true;
+    case FLAG_KEEP:
+        out->keep = value;
         return true;
     case FLAG_QUIET:
         out->quiet = true;

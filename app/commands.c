@@ -12,7 +12,8 @@ const struct tl_command tl_commands[] = {
     {"render", "render [SCENE] -o OUT.exr|OUT.png [OPTIONS]",
      "Renders frames without a screen: .exr holds linear radiance and coverage, .png what a person would "
      "see.",
-     TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_FRAME | TL_FLAGS_FRAMES, tl_command_render},
+     TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_FRAME | TL_FLAGS_FRAMES | TL_FLAGS_AOV,
+     tl_command_render},
     {"plan", "plan [SCENE] [--json] [OPTIONS]",
      "Prints what would run for a frame, why, at what cost and in how much memory.",
      TL_FLAGS_SCENE | TL_FLAGS_FRAME | TL_FLAGS_JSON, tl_command_plan},
@@ -20,6 +21,11 @@ const struct tl_command tl_commands[] = {
      "Measures ratios side by side in one run: light: the presets' CPU time and error in motion; cloth: the "
      "solvers' steps per second beside a plain loop's, normals and tangents, a dress that comes to rest.",
      TL_FLAGS_SCENE | TL_FLAGS_JSON | TL_FLAGS_QUICK | TL_FLAGS_FULL, tl_command_bench},
+    {"check", "check [SCENE] [--frames N] [--every K] [--furnace] [--keep FOLDER] [--json] [OPTIONS]",
+     "Plays a scene and holds every frame against a table of invariants: geometry, pixels, shadow maps, "
+     "visibility, regions, cloth, the oracle; tells the worst of each, where it was, and fails when one "
+     "breaks.",
+     TL_FLAGS_SCENE | TL_FLAGS_JSON | TL_FLAGS_CHECK, tl_command_check},
     {"trade", "trade [SCENE] -o FOLDER [--axis light|cloth] [--quick] [OPTIONS]",
      "Measures error against time over many choices of settings: FOLDER/trade.csv and report.html.",
      TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_AXIS | TL_FLAGS_QUICK, tl_command_trade},

@@ -20,6 +20,7 @@ bool tl_command_view(const struct tl_arguments *arguments, tl_error *error);
 bool tl_command_render(const struct tl_arguments *arguments, tl_error *error);
 bool tl_command_plan(const struct tl_arguments *arguments, tl_error *error);
 bool tl_command_bench(const struct tl_arguments *arguments, tl_error *error);
+bool tl_command_check(const struct tl_arguments *arguments, tl_error *error);
 bool tl_command_trade(const struct tl_arguments *arguments, tl_error *error);
 bool tl_command_stability(const struct tl_arguments *arguments, tl_error *error);
 bool tl_command_gallery(const struct tl_arguments *arguments, tl_error *error);

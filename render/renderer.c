@@ -3,6 +3,7 @@
 #include "config/log.h"
 #include "config/memory.h"
 #include "render/frame/work.h"
+#include "render/inspect/job.h"
 #include "render/shaders.h"
 
 #include <epoxy/gl.h>
@@ -25,6 +26,7 @@ static struct tl_render_settings usable(const struct tl_render_settings *setting
         used.light.pem_size &= used.light.pem_size - 1;
     while (used.maps.size & (used.maps.size - 1))
         used.maps.size &= used.maps.size - 1;
+    tl_inspect_settle(&used);
     return used;
 }
 
@@ -141,14 +143,20 @@ void tl_renderer_destroy(tl_renderer **renderer)
 
 static struct tl_plan_input plan_input(const tl_renderer *renderer, const tl_frame *frame,
                                        const struct tl_render_settings *settings, tl_bits changed,
-                                       enum tl_resource wanted)
+                                       tl_bits wanted)
 {
     return (struct tl_plan_input){.changed = changed,
                                   .valid = renderer->valid,
                                   .scene = tl_frame_facts(frame, settings),
-                                  .wanted = TL_BIT(wanted),
+                                  .wanted = wanted,
                                   .scene_fact_names = tl_scene_fact_names,
                                   .resource_names = tl_resource_names};
+}
+
+/* What somebody outside reads of a drawn frame. */
+static tl_bits read_of(const tl_frame *frame)
+{
+    return TL_BIT(TL_MADE_IMAGE) | (frame->aovs ? TL_BIT(TL_MADE_SAMPLES) : 0);
 }
 
 static tl_bits changed_inputs(const tl_renderer *renderer, const uint64_t signatures[TL_INPUT_COUNT])
@@ -300,7 +308,7 @@ bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct
     renderer->view = tl_view_make(&frame->camera, used.image.width, used.image.height);
     memcpy(renderer->signatures, signatures, sizeof signatures);
     tl_frame_list_surfaces(renderer);
-    const struct tl_plan_input input = plan_input(renderer, frame, &used, changed, TL_MADE_IMAGE);
+    const struct tl_plan_input input = plan_input(renderer, frame, &used, changed, read_of(frame));
     if (!(input.scene & TL_BIT(TL_SCENE_LAMPS)))
         tl_local_release(&renderer->local);
     if (!(input.scene & TL_BIT(TL_SCENE_SHEETS)))
@@ -359,7 +367,7 @@ static bool show(tl_renderer *renderer, unsigned framebuffer, int width, int hei
         ~TL_BIT(TL_MADE_SHOWN); /* a window's buffer holds nothing from one frame to the next */
     tl_plan plan;
     const struct tl_plan_input input =
-        plan_input(renderer, &renderer->frame, &renderer->settings, 0, TL_MADE_SHOWN);
+        plan_input(renderer, &renderer->frame, &renderer->settings, 0, TL_BIT(TL_MADE_SHOWN));
     return run_plan(renderer, &input, &plan, error);
 }
 
@@ -389,7 +397,7 @@ void tl_renderer_plan(const tl_renderer *renderer, const tl_frame *frame,
     struct tl_rest rest = renderer->rest;
     tl_frame_sign(frame, &used, renderer->signatures, &rest, signatures);
     const struct tl_plan_input input =
-        plan_input(renderer, frame, &used, changed_inputs(renderer, signatures), TL_MADE_IMAGE);
+        plan_input(renderer, frame, &used, changed_inputs(renderer, signatures), read_of(frame));
     make_plan(renderer, &input, &used, out);
 }
 
@@ -408,7 +416,7 @@ tl_bits tl_renderer_would_run(const tl_renderer *renderer, const tl_frame *frame
     tl_frame_sign(frame, &used, renderer->signatures, &rest, signatures);
     tl_bits moving = renderer->moving ? renderer->moving : TL_BIT(TL_INPUT_MOTION);
     tl_bits changed = changed_inputs(renderer, signatures) | (moving & MOVING_INPUTS) | ROUND_INPUTS;
-    const struct tl_plan_input input = plan_input(renderer, frame, &used, changed, TL_MADE_IMAGE);
+    const struct tl_plan_input input = plan_input(renderer, frame, &used, changed, read_of(frame));
     tl_plan plan;
     tl_plan_make(tl_frame_jobs, tl_frame_job_count, &input, NULL, &plan);
     tl_bits jobs = 0;
@@ -472,7 +480,7 @@ bool tl_renderer_is_at_rest(const tl_renderer *renderer)
     bool is_done = light->visibility == TL_VISIBILITY_RAYS ? renderer->rest.is_done
                                                            : renderer->rest.image >= light->rounds - 1;
     return renderer->valid & TL_BIT(TL_MADE_IMAGE) && renderer->rest.is_captured &&
-           (is_done || !tl_light_averages(light));
+           (is_done || !tl_light_averages(light) || !tl_inspect_averages(renderer->settings.image.view));
 }
 
 const tl_plan *tl_renderer_last_plan(const tl_renderer *renderer)

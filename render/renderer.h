@@ -106,13 +106,35 @@ extern const struct tl_option_table tl_material_options;
 extern const struct tl_option_table
     tl_overlay_options; /* table "overlay": the same, of a garment's second fabric */
 
+/* What the image shows: render/inspect. */
+enum tl_image_view {
+    TL_VIEW_LIGHT,
+    TL_VIEW_NORMAL, /* with bumps */
+    TL_VIEW_SMOOTH, /* ... without */
+    TL_VIEW_TANGENT,
+    TL_VIEW_UV,
+    TL_VIEW_ALBEDO,
+    TL_VIEW_GLOSS,
+    TL_VIEW_VISIBILITY,
+    TL_VIEW_REGION,
+    TL_VIEW_STRAIN_WARP,
+    TL_VIEW_STRAIN_WEFT,
+    TL_VIEW_STRAIN_SHEAR,
+    TL_VIEW_COUNT
+};
+extern const char *const tl_image_view_names[]; /* "light", "normal" ...; NULL-terminated */
+
 struct tl_image_params { /* table "image" */
     int width, height;
     int supersample;   /* samples per pixel side, box filtered in linear light */
     float exposure_ev; /* for show only */
     int background;    /* enum tl_background; for show only */
     bool ground;       /* a ground disc at y = 0 */
+    int view;          /* enum tl_image_view */
+    int view_region;   /* visibility view: of this region; -1: of all, by their power */
+    float view_range;  /* strain views: percent at the legend's ends; 0: automatic */
     float scale;       /* samples a side over those that supersample asks for, (0, 1] */
+    bool legend;       /* pictures of a view say what its colours mean */
 };
 /* Size of the G-buffer and of the light. */
 void tl_image_samples(const struct tl_image_params *image, int *width, int *height);
@@ -156,6 +178,7 @@ typedef struct tl_frame {
     const struct tl_lamp *lamps;
     size_t lamp_count; /* at most TL_LAMPS_MAX */
     double time_s;
+    bool aovs;  /* what render/inspect/aovs.h reads is kept */
     bool still; /* drawn until it rests: every round is taken whole, however long that takes */
 } tl_frame;
 

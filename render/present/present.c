@@ -10,7 +10,7 @@
 #include <stdlib.h>
 
 /* Uniform locations of show.frag. */
-enum { EXPOSURE, BACKGROUND, ENVIRONMENT_TURN, VIEW, LATLONG = 6, BLURRED_SCALE };
+enum { EXPOSURE, BACKGROUND, ENVIRONMENT_TURN, VIEW, LATLONG = 6, BLURRED_SCALE, AS_IT_IS };
 
 bool tl_present_create(struct tl_present *present, tl_gpu *gpu, tl_error *error)
 {
@@ -139,6 +139,7 @@ void tl_present_show(const struct tl_present *present, tl_gpu *gpu, const struct
     glUniformMatrix3fv(VIEW, 1, GL_FALSE, columns[0].raw);
     glUniform1i(LATLONG, latlong);
     glUniform1f(BLURRED_SCALE, present->blurred_scale);
+    glUniform1i(AS_IT_IS, request->params->view != TL_VIEW_LIGHT);
     glBindTextureUnit(0, present->image.colours[0].id);
     glBindTextureUnit(latlong ? 1 : 2, present->backdrop.id);
     glBindTextureUnit(latlong ? 2 : 1, 0);
