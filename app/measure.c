@@ -70,22 +70,28 @@ void tl_truth_release(struct tl_truth *truth)
     truth->standard_error = 0;
 }
 
+bool tl_truth_compare(const tl_image *image, const struct tl_truth *truth, struct tl_measured_error *out,
+                      tl_error *error)
+{
+    struct tl_comparison result;
+    if (!tl_image_compare(image, &truth->image, -1, 0, &result, error))
+        return false;
+    double square = result.rel_rmse * result.rel_rmse - truth->standard_error * truth->standard_error;
+    *out = (struct tl_measured_error){.rel_rmse = sqrt(fmax(square, 0)),
+                                      .standard_error = truth->standard_error,
+                                      .flip_mean = result.flip_mean,
+                                      .max_abs = result.max_abs,
+                                      .worst_share = result.worst_share,
+                                      .covered = result.covered};
+    return true;
+}
+
 bool tl_contender_compare(struct tl_contender *contender, const struct tl_truth *truth,
                           struct tl_measured_error *out, tl_error *error)
 {
     tl_image image = {0};
-    struct tl_comparison result;
-    bool done = tl_renderer_read(contender->renderer, &image, error) &&
-                tl_image_compare(&image, &truth->image, -1, 0, &result, error);
-    if (done) {
-        double square = result.rel_rmse * result.rel_rmse - truth->standard_error * truth->standard_error;
-        *out = (struct tl_measured_error){.rel_rmse = sqrt(fmax(square, 0)),
-                                          .standard_error = truth->standard_error,
-                                          .flip_mean = result.flip_mean,
-                                          .max_abs = result.max_abs,
-                                          .worst_share = result.worst_share,
-                                          .covered = result.covered};
-    }
+    bool done =
+        tl_renderer_read(contender->renderer, &image, error) && tl_truth_compare(&image, truth, out, error);
     tl_image_release(&image);
     return done;
 }

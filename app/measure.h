@@ -61,6 +61,9 @@ struct tl_measured_error {
     double worst_share; /* of the square error: what its worst pixel holds */
     size_t covered;     /* pixels */
 };
+/* Of an image as tl_renderer_read gives it. */
+bool tl_truth_compare(const tl_image *image, const struct tl_truth *truth, struct tl_measured_error *out,
+                      tl_error *error);
 /* Of the image that the contender drew last. */
 bool tl_contender_compare(struct tl_contender *contender, const struct tl_truth *truth,
                           struct tl_measured_error *out, tl_error *error);

@@ -396,3 +396,15 @@ bool tl_settings_apply_preset(struct tl_settings *settings, const char *name, tl
     *settings = changed;
     return true;
 }
+
+bool tl_settings_apply_overlay(struct tl_settings *settings, const char *name, tl_error *error)
+{
+    struct tl_settings changed = *settings;
+    struct tl_binding all[TL_SETTINGS_TABLES];
+    tl_settings_bind(&changed, all);
+    if (!tl_options_set(all, TL_SETTINGS_TABLES, "scene.overlay_fabric", name, "fabric", NULL, error) ||
+        !apply_overlay(&changed, name, error))
+        return false;
+    *settings = changed;
+    return true;
+}
