@@ -23,6 +23,7 @@ enum flag_kind {
     FLAG_AXIS,
     FLAG_QUICK,
     FLAG_CAPTURE,
+    FLAG_AOV,
     FLAG_FULL,
     FLAG_LAYOUT,
     FLAG_FROM,
@@ -62,6 +63,8 @@ static const struct flag flags_known[] = {
      "studio, an .exr or .hdr file, or a sequence of them: sky.####.exr"},
     {"--fabric", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, "scene.fabric", "NAME|FILE",
      "a fabric: `toile info fabrics` lists them"},
+    {"--colourway", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, "scene.colourway", "NAME",
+     "fabrics and colours of the scene or of a glTF file: `toile info FILE` lists them"},
     {"--preset", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, "scene.preset", "NAME|FILE",
      "paper, draft, review or final"},
     {"--method", TL_FLAGS_SCENE, FLAG_ASSIGN, "light.method", "METHOD",
@@ -74,6 +77,8 @@ static const struct flag flags_known[] = {
      "still image of the animation's frame N; 0 is the settled start"},
     {"--frames", TL_FLAGS_FRAMES, FLAG_FRAMES, NULL, "A:B",
      "all frames from A to B; of pictures OUT.png becomes OUT.0001.png ..."},
+    {"--aov", TL_FLAGS_AOV, FLAG_AOV, NULL, NULL,
+     ".exr files get layers: N, P, uv, albedo, visibility, strain"},
     {"--json", TL_FLAGS_JSON, FLAG_JSON, NULL, NULL, "print one JSON object and nothing else"},
     {"--ldr", TL_FLAGS_METRIC, FLAG_LDR, NULL, NULL, "compare as display images, clamped to [0, 1]"},
     {"--hdr", TL_FLAGS_METRIC, FLAG_HDR, NULL, NULL, "compare over all exposures that the reference holds"},
@@ -221,6 +226,9 @@ static bool take_flag(const struct flag *flag, const char *value, struct tl_argu
         return read_whole("--max-frames", value, NULL, 1, &out->max_frames, error);
     case FLAG_AXIS:
         out->axis = value;
+        return true;
+    case FLAG_AOV:
+        out->aovs = true;
         return true;
     case FLAG_CAPTURE:
         out->capture = true;

@@ -25,6 +25,7 @@ enum tl_flag_set { /* which groups of flags a command takes */
                    TL_FLAGS_LAYOUT = 1024,     /* --layout NAME --from NAME --size N */
                    TL_FLAGS_FABRIC = 2048,     /* --repeat-mm MM --height-mm MM --clamp */
                    TL_FLAGS_CHECK = 1 << 12,   /* --frames N --every K --furnace --still --keep FOLDER */
+                   TL_FLAGS_AOV = 1 << 17,     /* --aov */
                    TL_FLAGS_CAPTURE = 1 << 16, /* --capture, and those of the scene but the image's */
 };
 
@@ -50,6 +51,7 @@ struct tl_arguments {
     int frame_count, every; /* 0: not given */
     bool furnace, still;
     const char *keep; /* NULL: not given */
+    bool aovs;
 };
 
 bool tl_arguments_parse(int argc, char **argv, unsigned flags, struct tl_arguments *out, tl_error *error);

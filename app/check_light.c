@@ -103,7 +103,7 @@ static bool is_time(const struct tl_checked *checked)
 
 static bool has_lights(const struct tl_checked *checked)
 {
-    return is_time(checked) && has(checked, TL_MADE_LIGHTS) && checked->renderer->lights.gain.made;
+    return is_time(checked) && has(checked, TL_MADE_LIGHTS) && checked->renderer->lights->gain.made;
 }
 
 static bool has_slices(const struct tl_checked *checked)
@@ -134,7 +134,7 @@ void tl_measure_regions(const struct tl_checked *checked, struct tl_finding *fin
     add_difference(finding, &got, &expected);
     if (!has_lights(checked))
         return;
-    struct power shone = power_of_lights(&renderer->lights);
+    struct power shone = power_of_lights(renderer->lights);
     add_difference(finding, &shone, &expected);
 }
 
@@ -264,7 +264,7 @@ void tl_measure_exact(const struct tl_checked *checked, struct tl_finding *findi
 /* As every sample sums them when all of them are seen (light/region_lights.h). */
 static vec3s sum_lights(const tl_renderer *renderer, vec3s direction, int exponent)
 {
-    const struct tl_region_lights *lights = &renderer->lights;
+    const struct tl_region_lights *lights = renderer->lights;
     double sum[3] = {0};
     for (int g = 0; g < lights->group_count; g++)
         for (int lane = 0; lane < TL_LANES; lane++) {
@@ -295,7 +295,7 @@ void tl_measure_sum(const struct tl_checked *checked, struct tl_finding *finding
 {
     const tl_renderer *renderer = checked->renderer;
     if (has_lights(checked))
-        add_estimates(renderer, renderer->lights.gain.made, sum_lights, finding);
+        add_estimates(renderer, renderer->lights->gain.made, sum_lights, finding);
     if (has_slices(checked))
         add_estimates(renderer, renderer->slices.made, sum_slices, finding);
 }

@@ -12,7 +12,8 @@ const struct tl_command tl_commands[] = {
     {"render", "render [SCENE] -o OUT.exr|OUT.png [OPTIONS]",
      "Renders frames without a screen: .exr holds linear radiance and coverage, .png what a person would "
      "see.",
-     TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_FRAME | TL_FLAGS_FRAMES, tl_command_render},
+     TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_FRAME | TL_FLAGS_FRAMES | TL_FLAGS_AOV,
+     tl_command_render},
     {"plan", "plan [SCENE] [--json] [OPTIONS]",
      "Prints what would run for a frame, why, at what cost and in how much memory.",
      TL_FLAGS_SCENE | TL_FLAGS_FRAME | TL_FLAGS_JSON, tl_command_plan},

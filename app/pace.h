@@ -42,8 +42,11 @@ tl_pace *tl_pace_create(double budget_ms); /* 0: no budget, level 0 always, but 
 void tl_pace_destroy(tl_pace **handle);
 void tl_pace_set_budget(tl_pace *pace, double budget_ms);
 
-/* `frame` is the last one drawn (or the first, undrawn), `settings` are those of full quality. */
-struct tl_pace_choice tl_pace_choose(tl_pace *pace, const tl_renderer *renderer, const tl_frame *frame,
+/* `frame` is the coming one as far as it is known: the last one drawn, with the camera that will be there, so
+ * that the end of a rest is seen; or the first. `settings` are those of full quality. At rest (three frames
+ * in which nothing moved) everything goes into the image: level 0, whatever the budget. In the first frames
+ * after an environment came, the renderer makes the regions of other levels ready, one level a frame. */
+struct tl_pace_choice tl_pace_choose(tl_pace *pace, tl_renderer *renderer, const tl_frame *frame,
                                      const struct tl_settings *settings);
 
 /* The settings of a frame at these levels. Pure. */
@@ -52,5 +55,8 @@ struct tl_settings tl_levels_apply(const struct tl_levels *levels, const struct 
 /* What a frame took that was drawn at the levels chosen last: its plan with took_ms, the cloth's part, and
  * the whole from the choice to the finished image. */
 void tl_pace_learn(tl_pace *pace, const tl_plan *plan, double cloth_ms, double total_ms);
+
+/* Median of |predicted - took| / took over the last 120 frames; NaN before the first. */
+double tl_pace_prediction_error(const tl_pace *pace);
 
 #endif

@@ -26,9 +26,19 @@ bool tl_session_reset(tl_session *session, tl_error *error);
 bool tl_session_apply(tl_session *session, const struct tl_settings *settings, tl_error *error);
 const struct tl_settings *tl_session_settings(const tl_session *session);
 
+/* The colourways there are, for scene.colourway beside "": those of the scene's section, then the variants of
+ * the garment's and the avatar's files. Valid until the next call that changes the session. To change to one:
+ * tl_settings_apply_colourway, then tl_session_apply, which makes new materials and leaves the cloth as it
+ * is.
+ */
+size_t tl_session_colourways(const tl_session *session, const char *const **names);
+
 /* The frame as the renderer wants it; valid until the next call that changes the session. Orbit camera from
  * settings.camera, framed on the avatar and garment when camera.distance_m is 0. */
 tl_frame tl_session_frame(tl_session *session);
+
+/* Whether frames tell the garment's strains whatever they show; else they do in the views of strain. */
+void tl_session_want_strains(tl_session *session, bool wanted);
 
 /* Where a ray meets the garment: its nearest render vertex and the distance along the ray; false when it
  * misses. */

@@ -106,13 +106,38 @@ extern const struct tl_option_table tl_material_options;
 extern const struct tl_option_table
     tl_overlay_options; /* table "overlay": the same, of a garment's second fabric */
 
+/* What the image shows: render/inspect. */
+enum tl_image_view {
+    TL_VIEW_LIGHT,
+    TL_VIEW_NORMAL, /* with bumps */
+    TL_VIEW_SMOOTH, /* ... without */
+    TL_VIEW_TANGENT,
+    TL_VIEW_UV,
+    TL_VIEW_ALBEDO,
+    TL_VIEW_GLOSS,
+    TL_VIEW_VISIBILITY,
+    TL_VIEW_REGION,
+    TL_VIEW_STRAIN_WARP,
+    TL_VIEW_STRAIN_WEFT,
+    TL_VIEW_STRAIN_SHEAR,
+    TL_VIEW_COUNT
+};
+extern const char *const tl_image_view_names[]; /* "light", "normal" ...; NULL-terminated */
+
 struct tl_image_params { /* table "image" */
     int width, height;
     int supersample;   /* samples per pixel side, box filtered in linear light */
     float exposure_ev; /* for show only */
     int background;    /* enum tl_background; for show only */
     bool ground;       /* a ground disc at y = 0 */
+    int view;          /* enum tl_image_view */
+    int view_region;   /* visibility view: of this region; -1: of all, by their power */
+    float view_range;  /* strain views: percent at the legend's ends; 0: automatic */
+    float scale;       /* samples a side over those that supersample asks for, (0, 1] */
+    bool legend;       /* pictures of a view say what its colours mean */
 };
+/* Size of the G-buffer and of the light. */
+void tl_image_samples(const struct tl_image_params *image, int *width, int *height);
 extern const struct tl_option_table tl_image_options;
 
 struct tl_reference_params { /* table "reference" */
@@ -153,6 +178,7 @@ typedef struct tl_frame {
     const struct tl_lamp *lamps;
     size_t lamp_count; /* at most TL_LAMPS_MAX */
     double time_s;
+    bool aovs;  /* what render/inspect/aovs.h reads is kept */
     bool still; /* drawn until it rests: every round is taken whole, however long that takes */
 } tl_frame;
 
@@ -203,6 +229,23 @@ bool tl_renderer_show_window(tl_renderer *renderer, int width, int height, tl_er
 void tl_renderer_plan(const tl_renderer *renderer, const tl_frame *frame,
                       const struct tl_render_settings *settings, tl_plan *out);
 const tl_plan *tl_renderer_last_plan(const tl_renderer *renderer);
+
+/* What a frame to come would take if it moves as the last ones did, for those who choose its settings: first
+ * which jobs (by bit) would run, then how long they would take; the last is cheap enough to be asked for
+ * thousands of settings. Both pure but for reading the renderer's state. */
+tl_bits tl_renderer_would_run(const tl_renderer *renderer, const tl_frame *frame,
+                              const struct tl_render_settings *settings);
+double tl_renderer_would_take(const tl_renderer *renderer, const struct tl_render_settings *settings,
+                              tl_bits jobs); /* ms */
+/* How much slower the machine is than it was: other programs'; 1: not. */
+double tl_renderer_load(const tl_renderer *renderer);
+/* False while nothing but jittered rounds and options made the last frame different from the one before, and
+ * would make this one different from it. */
+bool tl_renderer_is_moving(const tl_renderer *renderer, const tl_frame *frame);
+/* Going to the regions of these settings is cheap once they have been prepared, which takes as long as some
+ * frames do; so are those of the last frames. True where there is nothing to prepare. */
+bool tl_renderer_has_regions(const tl_renderer *renderer, const struct tl_render_settings *settings);
+void tl_renderer_prepare_regions(tl_renderer *renderer, const struct tl_render_settings *settings);
 
 /* Bytes by use, summed from what is allocated. */
 struct tl_render_memory {

@@ -554,13 +554,13 @@ static void lost_light_is_named(void **state)
     assert_breaks(&stand->checked, "light.regions", "");
     renderer->regions.items[40].power = power;
 
-    float *lane = &renderer->lights.groups[2].power[1][8], kept = *lane;
+    float *lane = (float *)(uintptr_t)&renderer->lights->groups[2].power[1][8], kept = *lane;
     *lane = 0;
     assert_breaks(&stand->checked, "light.regions", "green");
     *lane = kept;
     assert_clean(&stand->checked);
 
-    struct tl_lobe_map *map = &renderer->lights.diffuse_gain.maps[0];
+    const struct tl_lobe_map *map = &renderer->lights->diffuse_gain.maps[0];
     for (int i = 0; i < (map->side + 2) * (map->side + 2) * 4; i++)
         map->texels[i] *= 1.05f;
     assert_breaks(&stand->checked, "light.sum", "s = 1 ");
