@@ -200,6 +200,10 @@ void tl_renderer_destroy(tl_renderer **renderer);
 bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct tl_render_settings *settings,
                       tl_error *error);
 
+/* The next draw makes anew all that follows from surfaces and camera, as a new renderer would; what was made of
+ * the environment alone stays. For checks: what is reused must equal what is made anew. */
+bool tl_renderer_forget_scene(tl_renderer *renderer, tl_error *error);
+
 /* Of the image by TL_METHOD_REFERENCE that was drawn last, as rel_rmse of render/metrics/compare.h; 0 before.
  */
 double tl_renderer_standard_error(const tl_renderer *renderer);
