@@ -1,7 +1,7 @@
 /* No particle is inside the avatar after a frame: on a man who walks with his arms through his skirt, and on
  * two bodies that twist, under every solver. TOILE_FRAMES=300 runs the full length: a minute and a half of
- * CPU for the reference on the man, two for settle; the default is a second and a half, and less of what is
- * slow. */
+ * CPU for the reference on the man, half of one for settle; the default is a second and a half, and less of
+ * what is slow. */
 #include "assets/avatar.h"
 #include "assets/fit.h"
 #include "cloth/state.h"
