@@ -2,10 +2,12 @@
 foreach(name
     bake
     brdf
+    budget
     chain
     compare
     compose
     convert
+    cost
     cube
     emitters
     fan
@@ -25,6 +27,7 @@ foreach(name
     regions
     regions_sphere
     relief
+    resample
     sky
     slices
     sun
