@@ -179,7 +179,8 @@ static bool prepare(struct run *run, const tl_frame *frame, tl_image images[IMAG
     checked->hash = tl_check_hash(frame, checked->image);
     if (!checked->is_sampled)
         return true;
-    tl_renderer_destroy(&beside->fresh);
+    if (beside->fresh && !tl_renderer_forget_scene(beside->fresh, error))
+        return false;
     if (!draw_with(&beside->fresh, run, frame, checked->settings, &images[FRESH], error))
         return false;
     checked->fresh = &images[FRESH];

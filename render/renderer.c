@@ -175,6 +175,23 @@ static void forget(tl_renderer *renderer)
     memset(renderer->signatures, 0, sizeof renderer->signatures);
 }
 
+bool tl_renderer_forget_scene(tl_renderer *renderer, tl_error *error)
+{
+    renderer->valid &= TL_BIT(TL_MADE_CUBE) | TL_BIT(TL_MADE_REGIONS) | TL_BIT(TL_MADE_LOBE) |
+                       TL_BIT(TL_MADE_PEMS) | TL_BIT(TL_MADE_LOBES) | TL_BIT(TL_MADE_SLICES) |
+                       TL_BIT(TL_MADE_LIGHTS) | TL_BIT(TL_MADE_ENVMAP_LOBES);
+    renderer->signatures[TL_INPUT_MOTION] = 0; /* no round goes on */
+    renderer->rest = (struct tl_rest){0};
+    tl_surfaces_destroy(&renderer->surfaces);
+    renderer->surfaces = tl_surfaces_create(renderer->gpu);
+    tl_surfaces_use_detail(renderer->surfaces, &renderer->detail);
+    tl_points_destroy(&renderer->points);
+    renderer->points = tl_points_create();
+    tl_trace_destroy(&renderer->trace);
+    renderer->trace = tl_trace_create(error);
+    return renderer->trace != NULL;
+}
+
 static struct tl_work work_of(int job, const struct tl_work_seen *seen)
 {
     return tl_frame_jobs[job].work ? tl_frame_jobs[job].work(seen) : (struct tl_work){{0}};
@@ -376,6 +393,8 @@ static bool show(tl_renderer *renderer, unsigned framebuffer, int width, int hei
 bool tl_renderer_show_image(tl_renderer *renderer, tl_image *out, tl_error *error)
 {
     const tl_target *target = &renderer->present.shown;
+    renderer->show_first = 0;
+    renderer->show_end = target->width;
     if (!show(renderer, target->id, target->width, target->height, error))
         return false;
     *out = tl_image_create(target->width, target->height, 3, TL_IMAGE_U8);
@@ -388,6 +407,14 @@ bool tl_renderer_show_image(tl_renderer *renderer, tl_image *out, tl_error *erro
 
 bool tl_renderer_show_window(tl_renderer *renderer, int width, int height, tl_error *error)
 {
+    return tl_renderer_show_columns(renderer, width, height, 0, width, error);
+}
+
+bool tl_renderer_show_columns(tl_renderer *renderer, int width, int height, int first, int end,
+                              tl_error *error)
+{
+    renderer->show_first = first;
+    renderer->show_end = end;
     return show(renderer, 0, width, height, error);
 }
 

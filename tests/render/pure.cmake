@@ -14,6 +14,7 @@ foreach(name
     flip
     ground
     layout
+    legend
     levels
     lobe
     lobe_error
