@@ -145,8 +145,10 @@ static struct tl_plan_input plan_input(const tl_renderer *renderer, const tl_fra
                                        const struct tl_render_settings *settings, tl_bits changed,
                                        tl_bits wanted)
 {
+    /* Maps that wait for their turn are not what they should be. */
+    tl_bits waiting = tl_shadow_maps_wait(renderer->maps) ? TL_BIT(TL_MADE_DEPTHS) | TL_BIT(TL_MADE_MAPS) : 0;
     return (struct tl_plan_input){.changed = changed,
-                                  .valid = renderer->valid,
+                                  .valid = renderer->valid & ~waiting,
                                   .scene = tl_frame_facts(frame, settings),
                                   .wanted = wanted,
                                   .scene_fact_names = tl_scene_fact_names,
@@ -508,7 +510,8 @@ bool tl_renderer_is_at_rest(const tl_renderer *renderer)
     const struct tl_light_params *light = &renderer->settings.light;
     bool is_done = light->visibility == TL_VISIBILITY_RAYS ? renderer->rest.is_done
                                                            : renderer->rest.image >= light->rounds - 1;
-    return renderer->valid & TL_BIT(TL_MADE_IMAGE) && renderer->rest.is_captured &&
+    bool waits = light->visibility != TL_VISIBILITY_RAYS && tl_shadow_maps_wait(renderer->maps);
+    return renderer->valid & TL_BIT(TL_MADE_IMAGE) && renderer->rest.is_captured && !waits &&
            (is_done || !tl_light_averages(light) || !tl_inspect_averages(renderer->settings.image.view));
 }
 

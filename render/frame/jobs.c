@@ -198,6 +198,7 @@ static struct tl_shadow_request shadow_request(const tl_renderer *renderer)
 {
     const struct tl_light_params *light = &renderer->settings.light;
     bool in_passes = tl_light_source(light) == TL_LIGHT_CHAIN;
+    const tl_bits moves_shadows = TL_BIT(TL_INPUT_MOTION) | TL_BIT(TL_INPUT_YAW);
     return (struct tl_shadow_request){
         .kind = (enum tl_visibility)light->visibility,
         .regions = &renderer->regions,
@@ -212,6 +213,9 @@ static struct tl_shadow_request shadow_request(const tl_renderer *renderer)
         .map_size = light->map_size,
         .maps_per_array = in_passes ? light->pems_per_pass : TL_REGIONS_MAX,
         .blur_m = light->blur_m,
+        .regions_revision = renderer->regions_revision,
+        /* What moves is followed a part at a time; what rests is brought up to date. */
+        .refresh = renderer->moving & moves_shadows && !renderer->frame.still ? light->refresh : 0,
         .round = renderer->rest.image};
 }
 

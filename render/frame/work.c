@@ -123,7 +123,7 @@ struct tl_work tl_passes_work(const void *context)
 struct tl_work tl_maps_work(const void *context)
 {
     const struct tl_work_seen *seen = context;
-    double maps = seen->settings->light.regions, side = seen->settings->light.map_size;
+    double maps = seen->refreshed, side = seen->settings->light.map_size;
     return (struct tl_work){{1e-4 * maps * seen->triangles, 1e-5 * maps * side * side}};
 }
 
