@@ -18,7 +18,7 @@ const struct tl_command tl_commands[] = {
      TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_JSON | TL_FLAGS_FLY, tl_command_fly},
     {"plan", "plan [SCENE] [--json] [OPTIONS]",
      "Prints what would run for a frame, why, at what cost and in how much memory.",
-     TL_FLAGS_SCENE | TL_FLAGS_FRAME | TL_FLAGS_JSON, tl_command_plan},
+     TL_FLAGS_SCENE | TL_FLAGS_FRAME | TL_FLAGS_JSON | TL_FLAGS_BUDGET, tl_command_plan},
     {"bench", "bench light|cloth|shading [--json] [--quick|--full] [SCENE] [OPTIONS]",
      "Measures ratios side by side in one run: light: the presets' CPU time and error in motion; cloth: the "
      "solvers' steps per second beside a plain loop's, normals and tangents, a dress that comes to rest.",

@@ -258,4 +258,12 @@ struct tl_render_memory {
 };
 struct tl_render_memory tl_renderer_memory(const tl_renderer *renderer);
 
+/* The same bytes by what they hold; returns how many rows there are, of what is there at all. */
+#define TL_RESOURCES_MAX 64
+struct tl_resource_memory {
+    const char *name;
+    size_t bytes;
+};
+size_t tl_renderer_resources(const tl_renderer *renderer, struct tl_resource_memory out[TL_RESOURCES_MAX]);
+
 #endif
