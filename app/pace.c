@@ -200,12 +200,16 @@ static int count_levels(enum tl_knob knob, const struct scope *full)
 /* ---- What levels cost ---- */
 
 /* What is always there, then substeps; ms of the built-in dress. */
-static struct tl_work cloth_work(const struct tl_cloth_params *cloth)
+static double substeps_of(const struct tl_cloth_params *cloth)
 {
     const double rounding = 1e-9;
     double steps = fmax(ceil(1 / (cloth->frame_rate * cloth->dt) - rounding), 1);
-    double substeps = cloth->solver == TL_CLOTH_PREVIEW ? steps * cloth->substeps : steps;
-    return (struct tl_work){{1, 0.1 * substeps}};
+    return cloth->solver == TL_CLOTH_PREVIEW ? steps * cloth->substeps : steps;
+}
+
+static struct tl_work cloth_work(const struct tl_cloth_params *cloth)
+{
+    return (struct tl_work){{1, 0.1 * substeps_of(cloth)}};
 }
 
 static const struct tl_work any_work = {{1}};
@@ -266,6 +270,13 @@ static struct coming look_ahead(const tl_pace *pace, const tl_renderer *renderer
                 coming.is_ready[level] = !is_other || tl_renderer_has_regions(renderer, &then.drawn);
         }
     return coming;
+}
+
+static struct tl_budget budget_of(const tl_pace *pace, const struct coming *coming)
+{
+    struct tl_budget budget = {.knob_count = TL_KNOB_COUNT, .cost = cost_of, .context = coming};
+    memcpy(budget.knobs, pace->knobs, sizeof pace->knobs);
+    return budget;
 }
 
 /* One level a frame, the cheapest first, as long as the environment stays what it is. */
@@ -335,8 +346,7 @@ struct tl_pace_choice tl_pace_choose(tl_pace *pace, tl_renderer *renderer, const
     if (pace->budget_ms > 0 && pace->rested < REST_FRAMES)
         prepare_regions(pace, renderer, frame, &full);
     const struct coming coming = look_ahead(pace, renderer, frame, &full);
-    struct tl_budget budget = {.knob_count = TL_KNOB_COUNT, .cost = cost_of, .context = &coming};
-    memcpy(budget.knobs, pace->knobs, sizeof pace->knobs);
+    const struct tl_budget budget = budget_of(pace, &coming);
     pace->choice.reason[0] = '\0';
     if (pace->budget_ms > 0 && pace->rested < REST_FRAMES)
         choose_in_motion(pace, &budget);
@@ -349,6 +359,47 @@ struct tl_pace_choice tl_pace_choose(tl_pace *pace, tl_renderer *renderer, const
     if (pace->cloth.runs == 0)
         pace->choice.predicted_ms = (double)NAN;
     return pace->choice;
+}
+
+static double value_of(enum tl_knob knob, const struct scope *scope)
+{
+    switch (knob) {
+    case TL_KNOB_REFRESH:
+        return all_refreshed(&scope->drawn.light);
+    case TL_KNOB_REGIONS:
+        return scope->drawn.light.regions;
+    case TL_KNOB_RELIEF:
+        return scope->drawn.detail.steps;
+    case TL_KNOB_CLOTH:
+        return substeps_of(&scope->cloth);
+    default:
+        return (double)scope->drawn.image.scale;
+    }
+}
+
+void tl_pace_steps(const tl_pace *pace, const tl_renderer *renderer, const tl_frame *frame,
+                   const struct tl_settings *settings, struct tl_pace_step out[TL_KNOB_COUNT])
+{
+    const struct scope full = scope_of(settings);
+    const struct coming coming = look_ahead(pace, renderer, frame, &full);
+    const struct tl_budget budget = budget_of(pace, &coming);
+    uint8_t now[TL_BUDGET_KNOBS_MAX] = {0};
+    memcpy(now, pace->choice.levels.of, sizeof pace->choice.levels.of);
+    double ms = cost_of(&coming, now), error = tl_budget_error(&budget, now);
+    for (int k = 0; k < TL_KNOB_COUNT; k++) {
+        const struct scope at = at_level(&coming, k, now[k]);
+        out[k] = (struct tl_pace_step){.level = now[k],
+                                       .level_count = pace->knobs[k].level_count,
+                                       .value = value_of((enum tl_knob)k, &at),
+                                       .ms = (double)NAN,
+                                       .error = (double)NAN};
+        if (now[k] == 0)
+            continue;
+        now[k]--;
+        out[k].ms = cost_of(&coming, now) - ms;
+        out[k].error = error - tl_budget_error(&budget, now);
+        now[k]++;
+    }
 }
 
 /* ---- What frames took ---- */

@@ -108,17 +108,35 @@ void tl_report_pictures_begin(FILE *out)
     fputs("<div class=\"pictures\">\n", out);
 }
 
-void tl_report_picture(FILE *out, const void *png, size_t size, const char *name, const char *caption)
+static void begin_picture(FILE *out, const char *name)
 {
     fputs("<figure><img alt=\"", out);
     tl_html_print(out, name);
-    fputs("\" src=\"data:image/png;base64,", out);
-    print_base64(out, png, size);
+    fputs("\" src=\"", out);
+}
+
+static void end_picture(FILE *out, const char *name, const char *caption)
+{
     fputs("\"/><figcaption><b>", out);
     tl_html_print(out, name);
     fputs("</b>", out);
     tl_html_print(out, caption);
     fputs("</figcaption></figure>\n", out);
+}
+
+void tl_report_picture(FILE *out, const void *png, size_t size, const char *name, const char *caption)
+{
+    begin_picture(out, name);
+    fputs("data:image/png;base64,", out);
+    print_base64(out, png, size);
+    end_picture(out, name, caption);
+}
+
+void tl_report_picture_beside(FILE *out, const char *file, const char *name, const char *caption)
+{
+    begin_picture(out, name);
+    tl_html_print(out, file);
+    end_picture(out, name, caption);
 }
 
 void tl_report_pictures_end(FILE *out)

@@ -30,6 +30,8 @@ void tl_report_plot_as(FILE *out, const struct tl_plot *plot, const struct tl_pl
 /* Pictures side by side, as many as fit. */
 void tl_report_pictures_begin(FILE *out);
 void tl_report_picture(FILE *out, const void *png, size_t size, const char *name, const char *caption);
+/* The same of a file beside the report, which then holds only its name. */
+void tl_report_picture_beside(FILE *out, const char *file, const char *name, const char *caption);
 void tl_report_pictures_end(FILE *out);
 
 #endif

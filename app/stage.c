@@ -49,6 +49,7 @@ static bool draw(struct tl_stage *stage, bool still, tl_error *error)
 {
     tl_frame frame = tl_session_frame(stage->session);
     frame.still = still;
+    frame.aovs = stage->aovs;
     const struct tl_render_settings settings = tl_settings_render(&stage->settings);
     return tl_renderer_draw(stage->renderer, &frame, &settings, error);
 }

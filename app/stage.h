@@ -10,6 +10,7 @@ struct tl_stage {
     tl_session *session;
     tl_gpu *gpu;
     tl_renderer *renderer;
+    bool aovs; /* frames are drawn with what render/inspect/aovs.h reads */
 };
 
 /* Settings from the command line: its scene and its assignments. */

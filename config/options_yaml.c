@@ -13,6 +13,8 @@ struct reader {
     struct tl_yaml yaml;
     const struct tl_binding *bindings;
     size_t count;
+    const struct tl_record_section *section; /* or NULL */
+    size_t section_line;                     /* where it was given, 0: not yet */
     /* [binding][row, or the table itself as the last]: line where it was given, 0: not yet */
     size_t **given;
 };
@@ -84,12 +86,82 @@ static const struct tl_binding *read_table_name(struct reader *reader)
     return good ? binding : NULL;
 }
 
+/* ---- The section of records ---- */
+
+static bool read_records(struct reader *reader, const struct tl_record_place *above, int depth);
+
+/* The current event is the name of what is at `depth` in the section: a record, a part or a key; what
+ * belongs to it follows. */
+static bool read_record(struct reader *reader, const struct tl_record_place *above, int depth)
+{
+    if (reader->yaml.event.type != YAML_SCALAR_EVENT)
+        return tl_yaml_fail(&reader->yaml, tl_yaml_line(&reader->yaml),
+                            "a list or table stands where a name was expected");
+    char *name = tl_copy_string(tl_yaml_text(&reader->yaml)), *text = NULL;
+    struct tl_record_place place = *above;
+    place.line = tl_yaml_line(&reader->yaml);
+    const char **const names[] = {&place.record, &place.part, &place.key};
+    *names[depth] = name;
+    const struct tl_record_section *section = reader->section;
+    bool good = tl_yaml_next(&reader->yaml);
+    if (good && place.key) {
+        char *key = tl_format("%s.%s.%s.%s", section->name, place.record, place.part, place.key);
+        text = tl_yaml_value(&reader->yaml, true, key);
+        free(key);
+        good = text != NULL;
+    }
+    good = good && section->take(section->context, &place, text, reader->yaml.error);
+    if (good && !place.key)
+        good = read_records(reader, &place, depth + 1);
+    free(text);
+    free(name);
+    return good;
+}
+
+/* The current event begins a mapping of names at `depth`, or is empty. */
+static bool read_records(struct reader *reader, const struct tl_record_place *above, int depth)
+{
+    static const char *const expected[] = {
+        "expected names, each with its parts, indented below",
+        "expected parts, as in `bodice: {fabric: denim}`",
+        "expected options, as in `{diffuse: [0.1, 0.2, 0.5]}`",
+    };
+    if (tl_yaml_is_empty(&reader->yaml))
+        return true;
+    if (reader->yaml.event.type != YAML_MAPPING_START_EVENT)
+        return tl_yaml_fail(&reader->yaml, tl_yaml_line(&reader->yaml), expected[depth]);
+    while (tl_yaml_next(&reader->yaml)) {
+        if (reader->yaml.event.type == YAML_MAPPING_END_EVENT)
+            return true;
+        if (!read_record(reader, above, depth))
+            return false;
+    }
+    return false;
+}
+
+static bool is_section(const struct reader *reader)
+{
+    return reader->section && reader->yaml.event.type == YAML_SCALAR_EVENT &&
+           strcmp(tl_yaml_text(&reader->yaml), reader->section->name) == 0;
+}
+
+/* The current event is the section's name. */
+static bool read_section(struct reader *reader)
+{
+    const struct tl_record_place place = {.file = reader->yaml.name};
+    size_t line = tl_yaml_line(&reader->yaml);
+    return give(reader, &reader->section_line, reader->section->name, line) && tl_yaml_next(&reader->yaml) &&
+           read_records(reader, &place, 0);
+}
+
 /* The current event is a table's name; its mapping follows. */
 static bool read_table(struct reader *reader)
 {
     if (reader->yaml.event.type != YAML_SCALAR_EVENT)
         return tl_yaml_fail(&reader->yaml, tl_yaml_line(&reader->yaml),
                             "a list or table stands where a table's name was expected");
+    if (is_section(reader))
+        return read_section(reader);
     const struct tl_binding *binding = read_table_name(reader);
     if (!binding || tl_yaml_is_empty(&reader->yaml))
         return binding != NULL;
@@ -123,9 +195,16 @@ static bool read_root(void *context)
 bool tl_options_read_yaml(const struct tl_binding *bindings, size_t count, const char *name, const char *data,
                           size_t size, tl_error *error)
 {
+    return tl_options_read_yaml_with(bindings, count, NULL, name, data, size, error);
+}
+
+bool tl_options_read_yaml_with(const struct tl_binding *bindings, size_t count,
+                               const struct tl_record_section *section, const char *name, const char *data,
+                               size_t size, tl_error *error)
+{
     if (size > TL_LIMIT_YAML_BYTES)
         return tl_fail(error, TL_USAGE, "%s: is larger than 1 MiB: that is no list of options", name);
-    struct reader reader = {.bindings = bindings, .count = count};
+    struct reader reader = {.bindings = bindings, .count = count, .section = section};
     if (!tl_yaml_begin(&reader.yaml, name, data, size, error))
         return false;
     reader.given = TL_NEW_ARRAY(size_t *, count);
@@ -142,11 +221,18 @@ bool tl_options_read_yaml(const struct tl_binding *bindings, size_t count, const
 bool tl_options_read_yaml_file(const struct tl_binding *bindings, size_t count, const char *path,
                                tl_error *error)
 {
+    return tl_options_read_yaml_file_with(bindings, count, NULL, path, error);
+}
+
+bool tl_options_read_yaml_file_with(const struct tl_binding *bindings, size_t count,
+                                    const struct tl_record_section *section, const char *path,
+                                    tl_error *error)
+{
     char *data = NULL;
     size_t size = 0;
     if (!tl_file_read_small(path, TL_LIMIT_YAML_BYTES, &data, &size, error))
         return false;
-    bool read = tl_options_read_yaml(bindings, count, path, data, size, error);
+    bool read = tl_options_read_yaml_with(bindings, count, section, path, data, size, error);
     free(data);
     return read;
 }

@@ -21,6 +21,10 @@ add_library(toile_light STATIC
   env/layout.c
   env/levels.c
   env/lobes.c
+  inspect/legend.c
+  inspect/paint.c
+  inspect/pick.c
+  inspect/seen.c
   light/compose.c
   light/mirrors.c
   env/pour.c

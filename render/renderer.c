@@ -3,6 +3,7 @@
 #include "config/log.h"
 #include "config/memory.h"
 #include "render/frame/work.h"
+#include "render/inspect/job.h"
 #include "render/shaders.h"
 
 #include <epoxy/gl.h>
@@ -25,6 +26,7 @@ static struct tl_render_settings usable(const struct tl_render_settings *setting
         used.light.pem_size &= used.light.pem_size - 1;
     while (used.maps.size & (used.maps.size - 1))
         used.maps.size &= used.maps.size - 1;
+    tl_inspect_settle(&used);
     return used;
 }
 
@@ -141,14 +143,20 @@ void tl_renderer_destroy(tl_renderer **renderer)
 
 static struct tl_plan_input plan_input(const tl_renderer *renderer, const tl_frame *frame,
                                        const struct tl_render_settings *settings, tl_bits changed,
-                                       enum tl_resource wanted)
+                                       tl_bits wanted)
 {
     return (struct tl_plan_input){.changed = changed,
                                   .valid = renderer->valid,
                                   .scene = tl_frame_facts(frame, settings),
-                                  .wanted = TL_BIT(wanted),
+                                  .wanted = wanted,
                                   .scene_fact_names = tl_scene_fact_names,
                                   .resource_names = tl_resource_names};
+}
+
+/* What somebody outside reads of a drawn frame. */
+static tl_bits read_of(const tl_frame *frame)
+{
+    return TL_BIT(TL_MADE_IMAGE) | (frame->aovs ? TL_BIT(TL_MADE_SAMPLES) : 0);
 }
 
 static tl_bits changed_inputs(const tl_renderer *renderer, const uint64_t signatures[TL_INPUT_COUNT])
@@ -165,6 +173,23 @@ static void forget(tl_renderer *renderer)
 {
     renderer->valid = 0;
     memset(renderer->signatures, 0, sizeof renderer->signatures);
+}
+
+bool tl_renderer_forget_scene(tl_renderer *renderer, tl_error *error)
+{
+    renderer->valid &= TL_BIT(TL_MADE_CUBE) | TL_BIT(TL_MADE_REGIONS) | TL_BIT(TL_MADE_LOBE) |
+                       TL_BIT(TL_MADE_PEMS) | TL_BIT(TL_MADE_LOBES) | TL_BIT(TL_MADE_SLICES) |
+                       TL_BIT(TL_MADE_LIGHTS) | TL_BIT(TL_MADE_ENVMAP_LOBES);
+    renderer->signatures[TL_INPUT_MOTION] = 0; /* no round goes on */
+    renderer->rest = (struct tl_rest){0};
+    tl_surfaces_destroy(&renderer->surfaces);
+    renderer->surfaces = tl_surfaces_create(renderer->gpu);
+    tl_surfaces_use_detail(renderer->surfaces, &renderer->detail);
+    tl_points_destroy(&renderer->points);
+    renderer->points = tl_points_create();
+    tl_trace_destroy(&renderer->trace);
+    renderer->trace = tl_trace_create(error);
+    return renderer->trace != NULL;
 }
 
 static struct tl_work work_of(int job, const struct tl_work_seen *seen)
@@ -191,7 +216,7 @@ static void make_plan(const tl_renderer *renderer, const struct tl_plan_input *i
 
 /* Jobs learn from the work that they turned out to have. What slows all of them down is learned apart, from
  * those that are known by now. */
-static void learn_costs(tl_renderer *renderer, const tl_plan *plan, double new_regions)
+static void learn_costs(tl_renderer *renderer, tl_plan *plan, double new_regions)
 {
     const int known = 3; /* runs */
     struct tl_work_seen seen = tl_work_look(renderer, &renderer->settings);
@@ -202,6 +227,7 @@ static void learn_costs(tl_renderer *renderer, const tl_plan *plan, double new_r
             continue;
         struct tl_cost_job *cost = &renderer->costs[i];
         const struct tl_work work = work_of(i, &seen);
+        plan->rows[i].work_ms = tl_work_sum(&work);
         if (cost->runs >= known) {
             predicted_ms += tl_cost_predict(cost, &work, load);
             took_ms += plan->rows[i].took_ms;
@@ -296,11 +322,12 @@ bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct
     if (renderer->valid) /* a first frame moves from nowhere */
         renderer->moving = changed;
     renderer->frame = *frame;
+    tl_work_count(renderer, frame);
     renderer->settings = used;
     renderer->view = tl_view_make(&frame->camera, used.image.width, used.image.height);
     memcpy(renderer->signatures, signatures, sizeof signatures);
     tl_frame_list_surfaces(renderer);
-    const struct tl_plan_input input = plan_input(renderer, frame, &used, changed, TL_MADE_IMAGE);
+    const struct tl_plan_input input = plan_input(renderer, frame, &used, changed, read_of(frame));
     if (!(input.scene & TL_BIT(TL_SCENE_LAMPS)))
         tl_local_release(&renderer->local);
     if (!(input.scene & TL_BIT(TL_SCENE_SHEETS)))
@@ -359,13 +386,15 @@ static bool show(tl_renderer *renderer, unsigned framebuffer, int width, int hei
         ~TL_BIT(TL_MADE_SHOWN); /* a window's buffer holds nothing from one frame to the next */
     tl_plan plan;
     const struct tl_plan_input input =
-        plan_input(renderer, &renderer->frame, &renderer->settings, 0, TL_MADE_SHOWN);
+        plan_input(renderer, &renderer->frame, &renderer->settings, 0, TL_BIT(TL_MADE_SHOWN));
     return run_plan(renderer, &input, &plan, error);
 }
 
 bool tl_renderer_show_image(tl_renderer *renderer, tl_image *out, tl_error *error)
 {
     const tl_target *target = &renderer->present.shown;
+    renderer->show_first = 0;
+    renderer->show_end = target->width;
     if (!show(renderer, target->id, target->width, target->height, error))
         return false;
     *out = tl_image_create(target->width, target->height, 3, TL_IMAGE_U8);
@@ -378,6 +407,14 @@ bool tl_renderer_show_image(tl_renderer *renderer, tl_image *out, tl_error *erro
 
 bool tl_renderer_show_window(tl_renderer *renderer, int width, int height, tl_error *error)
 {
+    return tl_renderer_show_columns(renderer, width, height, 0, width, error);
+}
+
+bool tl_renderer_show_columns(tl_renderer *renderer, int width, int height, int first, int end,
+                              tl_error *error)
+{
+    renderer->show_first = first;
+    renderer->show_end = end;
     return show(renderer, 0, width, height, error);
 }
 
@@ -389,7 +426,7 @@ void tl_renderer_plan(const tl_renderer *renderer, const tl_frame *frame,
     struct tl_rest rest = renderer->rest;
     tl_frame_sign(frame, &used, renderer->signatures, &rest, signatures);
     const struct tl_plan_input input =
-        plan_input(renderer, frame, &used, changed_inputs(renderer, signatures), TL_MADE_IMAGE);
+        plan_input(renderer, frame, &used, changed_inputs(renderer, signatures), read_of(frame));
     make_plan(renderer, &input, &used, out);
 }
 
@@ -408,7 +445,7 @@ tl_bits tl_renderer_would_run(const tl_renderer *renderer, const tl_frame *frame
     tl_frame_sign(frame, &used, renderer->signatures, &rest, signatures);
     tl_bits moving = renderer->moving ? renderer->moving : TL_BIT(TL_INPUT_MOTION);
     tl_bits changed = changed_inputs(renderer, signatures) | (moving & MOVING_INPUTS) | ROUND_INPUTS;
-    const struct tl_plan_input input = plan_input(renderer, frame, &used, changed, TL_MADE_IMAGE);
+    const struct tl_plan_input input = plan_input(renderer, frame, &used, changed, read_of(frame));
     tl_plan plan;
     tl_plan_make(tl_frame_jobs, tl_frame_job_count, &input, NULL, &plan);
     tl_bits jobs = 0;
@@ -472,40 +509,10 @@ bool tl_renderer_is_at_rest(const tl_renderer *renderer)
     bool is_done = light->visibility == TL_VISIBILITY_RAYS ? renderer->rest.is_done
                                                            : renderer->rest.image >= light->rounds - 1;
     return renderer->valid & TL_BIT(TL_MADE_IMAGE) && renderer->rest.is_captured &&
-           (is_done || !tl_light_averages(light));
+           (is_done || !tl_light_averages(light) || !tl_inspect_averages(renderer->settings.image.view));
 }
 
 const tl_plan *tl_renderer_last_plan(const tl_renderer *renderer)
 {
     return &renderer->plan;
-}
-
-static size_t kept_bytes(const tl_renderer *renderer)
-{
-    size_t bytes = 0;
-    for (int i = 0; i < TL_LIGHTS_KEPT; i++)
-        bytes += tl_lobes_bytes(&renderer->kept[i].lights.gain) +
-                 tl_lobes_bytes(&renderer->kept[i].lights.diffuse_gain);
-    return bytes;
-}
-
-struct tl_render_memory tl_renderer_memory(const tl_renderer *renderer)
-{
-    const struct tl_present *present = &renderer->present;
-    struct tl_render_memory memory = {
-        .pems = tl_pems_bytes(&renderer->pems) + tl_lobes_bytes(&renderer->lobes) + kept_bytes(renderer) +
-                tl_slice_maps_bytes(&renderer->slice_maps) + tl_lobes_bytes(&renderer->surroundings.lobes) +
-                tl_envmap_bytes(&renderer->envmap) + tl_capture_bytes(&renderer->capture),
-        .maps = tl_shadow_maps_bytes(renderer->maps) + tl_lamp_shadows_bytes(&renderer->local.shadows),
-        .rays = tl_trace_bytes(renderer->trace) + tl_points_bytes(renderer->points),
-        .sheets = tl_sheets_bytes(&renderer->sheets),
-        .targets = tl_target_bytes(&renderer->gbuffer.target) + tl_target_bytes(&renderer->lighting.target) +
-                   tl_present_bytes(present),
-        .surfaces = tl_surfaces_bytes(renderer->surfaces) + tl_detail_maps_bytes(&renderer->detail),
-        .other = tl_lighting_bytes(&renderer->lighting) + tl_local_bytes(&renderer->local) +
-                 tl_texture_bytes(&present->backdrop) + tl_texture_bytes(&present->blurred),
-    };
-    memory.total = memory.pems + memory.maps + memory.rays + memory.sheets + memory.targets +
-                   memory.surfaces + memory.other;
-    return memory;
 }

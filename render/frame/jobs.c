@@ -4,6 +4,7 @@
 #include "config/log.h"
 #include "config/memory.h"
 #include "render/frame/work.h"
+#include "render/inspect/job.h"
 #include "render/light/compose.h"
 #include "render/local/lamp_rays.h"
 #include "render/local/lamp_samples.h"
@@ -388,10 +389,8 @@ static bool add_lamps(tl_renderer *renderer, const struct tl_compose_request *co
     return true;
 }
 
-static bool run_compose(void *context, int level, tl_error *error)
+void tl_frame_clear_light(tl_renderer *renderer)
 {
-    tl_renderer *renderer = context;
-    (void)level;
     const struct tl_samples *samples = &renderer->samples;
     size_t bytes = (size_t)samples->width * (size_t)samples->height * 4 * sizeof(float);
     if (bytes != renderer->light_bytes) {
@@ -400,7 +399,14 @@ static bool run_compose(void *context, int level, tl_error *error)
         renderer->light_bytes = bytes;
     }
     memset(renderer->light, 0, bytes);
-    struct tl_compose_request request = {.samples = samples,
+}
+
+static bool run_compose(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level;
+    tl_frame_clear_light(renderer);
+    struct tl_compose_request request = {.samples = &renderer->samples,
                                          .lights = renderer->lights,
                                          .suns = &renderer->suns,
                                          .lobes = &renderer->lobes,
@@ -616,6 +622,8 @@ static bool run_show(void *context, int level, tl_error *error)
                                             .params = &renderer->settings.image,
                                             .framebuffer = renderer->show_framebuffer,
                                             .width = renderer->show_width,
+                                            .first_column = renderer->show_first,
+                                            .end_column = renderer->show_end,
                                             .height = renderer->show_height};
     tl_present_show(&renderer->present, renderer->gpu, &request);
     return true;
@@ -754,7 +762,8 @@ const tl_job tl_frame_jobs[] = {
      .what = "visibility times PEM, summed over the regions",
      .reads = SET5(TL_MADE_GBUFFER, TL_MADE_PEMS, TL_MADE_REGIONS, TL_MADE_LOBE, TL_MADE_MAPS) |
               SET5(TL_MADE_SURFACES, TL_INPUT_YAW, TL_INPUT_CAMERA, TL_INPUT_LIGHT, TL_INPUT_GROUND) |
-              SET5(TL_MADE_LOBES, TL_MADE_SLICES, TL_MADE_DEPTHS, TL_INPUT_ROUND, TL_INPUT_LAMPS),
+              SET5(TL_MADE_LOBES, TL_MADE_SLICES, TL_MADE_DEPTHS, TL_INPUT_ROUND, TL_INPUT_LAMPS) |
+              SET1(TL_INPUT_VIEW),
      .writes = SET1(TL_MADE_LIGHT),
      .requires_scene = SET1(TL_SCENE_PASSES),
      .levels = LEVELS_ONE,
@@ -764,12 +773,20 @@ const tl_job tl_frame_jobs[] = {
      .what = "exact light times the share of it that is seen",
      .reads = SET5(TL_MADE_SAMPLES, TL_MADE_POINTS, TL_MADE_LIGHTS, TL_MADE_LOBES, TL_MADE_CUBE) |
               SET5(TL_MADE_SHEETS, TL_MADE_MIRRORS, TL_INPUT_YAW, TL_INPUT_LIGHT, TL_INPUT_CAMERA) |
-              SET1(TL_INPUT_LAMPS),
+              SET2(TL_INPUT_LAMPS, TL_INPUT_VIEW),
      .writes = SET1(TL_MADE_LIGHT),
-     .requires_scene = SET1(TL_SCENE_RAYS),
+     .requires_scene = SET1(TL_SCENE_COMPOSED),
      .levels = LEVELS_ONE,
      .run = run_compose,
      .work = tl_compose_work},
+    {.name = "inspect",
+     .what = "what a view shows in place of light",
+     .reads = SET5(TL_MADE_SAMPLES, TL_MADE_POINTS, TL_MADE_REGIONS, TL_INPUT_MOTION, TL_INPUT_YAW) |
+              SET1(TL_INPUT_VIEW),
+     .writes = SET1(TL_MADE_LIGHT),
+     .requires_scene = SET1(TL_SCENE_INSPECT),
+     .levels = LEVELS_ONE,
+     .run = tl_inspect_run},
     {.name = "envmap_lobes",
      .what = "all light through exact lobes, for environment maps",
      .reads = SET4(TL_INPUT_ENVIRONMENT, TL_INPUT_ENVMAP, TL_INPUT_SHAPES, TL_INPUT_DETAIL),
@@ -795,7 +812,8 @@ const tl_job tl_frame_jobs[] = {
      .run = run_envmap},
     {.name = "look_up",
      .what = "environment maps looked up for every sample",
-     .reads = SET5(TL_MADE_GBUFFER, TL_MADE_ENVMAP, TL_INPUT_CAMERA, TL_INPUT_LOOK_UP, TL_INPUT_LAMPS),
+     .reads = SET5(TL_MADE_GBUFFER, TL_MADE_ENVMAP, TL_INPUT_CAMERA, TL_INPUT_LOOK_UP, TL_INPUT_LAMPS) |
+              SET1(TL_INPUT_VIEW),
      .writes = SET1(TL_MADE_LIGHT),
      .requires_scene = SET1(TL_SCENE_ENVMAP),
      .levels = LEVELS_ONE,
@@ -835,7 +853,7 @@ const tl_job tl_frame_jobs[] = {
     {.name = "reference",
      .what = "the image, ray traced",
      .reads = SET5(TL_INPUT_ENVIRONMENT, TL_INPUT_YAW, TL_INPUT_CAMERA, TL_INPUT_SIZE, TL_INPUT_LIGHT) |
-              SET4(TL_MADE_SURFACES, TL_INPUT_GROUND, TL_INPUT_LAMPS, TL_INPUT_REFERENCE),
+              SET5(TL_MADE_SURFACES, TL_INPUT_GROUND, TL_INPUT_LAMPS, TL_INPUT_REFERENCE, TL_INPUT_VIEW),
      .writes = SET1(TL_MADE_IMAGE),
      .requires_scene = SET1(TL_SCENE_REFERENCE),
      .levels = LEVELS_ONE,

@@ -15,14 +15,6 @@ static double texels_of(const struct tl_image_params *image)
     return (double)width * height;
 }
 
-static double triangles_of(const tl_renderer *renderer)
-{
-    double triangles = 0;
-    for (size_t i = 0; i < renderer->frame.surface_count; i++)
-        triangles += (double)renderer->frame.surfaces[i].index_count / 3;
-    return triangles;
-}
-
 /* Samples fall on points at random: with few of them some points are not seen. */
 static double points_seen(double points, double samples_then, double samples)
 {
@@ -35,6 +27,25 @@ static double refreshed(const struct tl_light_params *light)
 {
     int regions = light->regions;
     return light->rays * (light->refresh > 0 && light->refresh < regions ? light->refresh : regions);
+}
+
+static bool is_glossy(const tl_material *material)
+{
+    return glms_vec3_max(material->specular) > 0 || material->specular_map.image;
+}
+
+void tl_work_count(tl_renderer *renderer, const tl_frame *frame)
+{
+    renderer->counted = (struct tl_work_counts){.is_glossy = tl_frame_has(frame, is_glossy),
+                                                .is_faceted = tl_frame_has(frame, tl_material_is_faceted)};
+    for (size_t i = 0; i < frame->surface_count; i++)
+        renderer->counted.triangles += (double)frame->surfaces[i].index_count / 3;
+}
+
+/* A matt one, a glossy one, those of a fan. */
+static double lobes_of(const struct tl_work_counts *counts, const struct tl_light_params *light)
+{
+    return 1 + (counts->is_glossy ? 1 : 0) + (counts->is_faceted ? light->fan : 0);
 }
 
 struct tl_work_seen tl_work_look(const tl_renderer *renderer, const struct tl_render_settings *settings)
@@ -50,9 +61,10 @@ struct tl_work_seen tl_work_look(const tl_renderer *renderer, const struct tl_re
         .texels = now,
         .covered = covered,
         .points = points_seen((double)tl_points_visible(renderer->points), covered_then, covered),
+        .lobes = lobes_of(&renderer->counted, light),
         .groups = shadowed ? ceil(light->regions / (double)TL_LANES) : 0,
         .refreshed = refreshed(light),
-        .triangles = triangles_of(renderer),
+        .triangles = renderer->counted.triangles,
         .new_regions = tl_frame_has_lights(renderer, light) ? 0 : light->regions};
 }
 
@@ -88,7 +100,7 @@ struct tl_work tl_compose_work(const void *context)
 {
     const struct tl_work_seen *seen = context;
     return (struct tl_work){
-        {3e-6 * seen->texels, 2.5e-4 * seen->covered, 3e-5 * seen->groups * seen->covered}};
+        {3e-6 * seen->texels, 2e-4 * seen->covered, 1e-5 * seen->groups * seen->lobes * seen->covered}};
 }
 
 struct tl_work tl_passes_work(const void *context)

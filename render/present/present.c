@@ -10,7 +10,7 @@
 #include <stdlib.h>
 
 /* Uniform locations of show.frag. */
-enum { EXPOSURE, BACKGROUND, ENVIRONMENT_TURN, VIEW, LATLONG = 6, BLURRED_SCALE };
+enum { EXPOSURE, BACKGROUND, ENVIRONMENT_TURN, VIEW, LATLONG = 6, BLURRED_SCALE, AS_IT_IS };
 
 bool tl_present_create(struct tl_present *present, tl_gpu *gpu, tl_error *error)
 {
@@ -132,6 +132,8 @@ void tl_present_show(const struct tl_present *present, tl_gpu *gpu, const struct
     const vec3s columns[3] = {view->right, view->up, view->forward};
     glBindFramebuffer(GL_FRAMEBUFFER, request->framebuffer);
     glViewport(0, 0, request->width, request->height);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(request->first_column, 0, request->end_column - request->first_column, request->height);
     glUseProgram(present->show.id);
     glUniform1f(EXPOSURE, exp2f(request->params->exposure_ev));
     glUniform1i(BACKGROUND, request->params->background);
@@ -139,11 +141,13 @@ void tl_present_show(const struct tl_present *present, tl_gpu *gpu, const struct
     glUniformMatrix3fv(VIEW, 1, GL_FALSE, columns[0].raw);
     glUniform1i(LATLONG, latlong);
     glUniform1f(BLURRED_SCALE, present->blurred_scale);
+    glUniform1i(AS_IT_IS, request->params->view != TL_VIEW_LIGHT);
     glBindTextureUnit(0, present->image.colours[0].id);
     glBindTextureUnit(latlong ? 1 : 2, present->backdrop.id);
     glBindTextureUnit(latlong ? 2 : 1, 0);
     glBindTextureUnit(3, present->blurred.id);
     tl_gpu_draw_fullscreen(gpu);
+    glDisable(GL_SCISSOR_TEST);
 }
 
 size_t tl_present_bytes(const struct tl_present *present)

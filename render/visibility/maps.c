@@ -365,6 +365,18 @@ const struct tl_region_view *tl_shadow_maps_sun_views(const tl_shadow_maps *maps
     return maps->sun_views;
 }
 
+struct tl_shadow_texels tl_shadow_maps_read(const tl_shadow_maps *maps, int index)
+{
+    bool moments = maps->kind == TL_VISIBILITY_VSM;
+    struct tl_shadow_texels map = {.size = maps->size, .channels = moments ? 2 : 1};
+    size_t values = (size_t)map.size * (size_t)map.size * (size_t)map.channels;
+    map.texels = TL_NEW_ARRAY(float, values);
+    glGetTextureSubImage(maps->arrays[index / maps->per_array].id, 0, 0, 0, index % maps->per_array, map.size,
+                         map.size, 1, moments ? GL_RG : GL_DEPTH_COMPONENT, GL_FLOAT,
+                         (GLsizei)(values * sizeof(float)), map.texels);
+    return map;
+}
+
 size_t tl_shadow_maps_bytes(const tl_shadow_maps *maps)
 {
     size_t bytes = tl_texture_bytes(&maps->depth) + tl_texture_bytes(&maps->scratch) +

@@ -61,6 +61,12 @@ unsigned tl_shadow_maps_sun_texture(const tl_shadow_maps *maps);
 /* How each region, each sun, was seen in the last draw. */
 const struct tl_region_view *tl_shadow_maps_views(const tl_shadow_maps *maps);
 const struct tl_region_view *tl_shadow_maps_sun_views(const tl_shadow_maps *maps);
+/* The map of region `index` as it is on the GPU, rows upwards: for checks. */
+struct tl_shadow_texels {
+    int size, channels; /* VSM: two moments a texel; DEPTH: the depth */
+    float *texels;      /* [size][size][channels]; free it */
+};
+struct tl_shadow_texels tl_shadow_maps_read(const tl_shadow_maps *maps, int index);
 size_t tl_shadow_maps_bytes(const tl_shadow_maps *maps);
 bool tl_shadow_maps_reload(tl_shadow_maps *maps, tl_error *error); /* programs, from disk */
 
