@@ -126,6 +126,14 @@ static struct scope apply(const struct tl_levels *levels, const struct scope *fu
     return applied;
 }
 
+bool tl_levels_exist(const struct tl_levels *levels)
+{
+    for (int knob = 0; knob < TL_KNOB_COUNT; knob++)
+        if (levels->of[knob] >= errors[knob].level_count)
+            return false;
+    return true;
+}
+
 struct tl_settings tl_levels_apply(const struct tl_levels *levels, const struct tl_settings *settings)
 {
     struct tl_settings changed = *settings;

@@ -50,7 +50,10 @@ void tl_pace_set_budget(tl_pace *pace, double budget_ms);
 struct tl_pace_choice tl_pace_choose(tl_pace *pace, tl_renderer *renderer, const tl_frame *frame,
                                      const struct tl_settings *settings);
 
-/* The settings of a frame at these levels. Pure. */
+/* True when there are such levels: those of a record may come from anywhere. Pure. */
+bool tl_levels_exist(const struct tl_levels *levels);
+
+/* The settings of a frame at these levels, which must exist. Pure. */
 struct tl_settings tl_levels_apply(const struct tl_levels *levels, const struct tl_settings *settings);
 
 /* What a frame took that was drawn at the levels chosen last: its plan with took_ms, the cloth's part, and

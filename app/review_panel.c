@@ -3,6 +3,8 @@
 #include "config/log.h"
 #include "config/memory.h"
 
+#include <epoxy/gl.h>
+
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -10,7 +12,7 @@
 #include <unistd.h>
 
 #define MEASURES_MAX 12
-#define HELP_MAX     40
+#define HELP_MAX     64
 
 static const char *const favourites[] = {
     "scene.garment",
@@ -46,7 +48,7 @@ int tl_review_panel_width(const struct tl_review *review)
     int width, height;
     tl_window_size(review->window, &width, &height);
     int panel = (int)(wished * tl_window_scale(review->window));
-    return review->panel_hidden ? 0 : panel < width / 2 ? panel : width / 2;
+    return !review->params.panel ? 0 : panel < width / 2 ? panel : width / 2;
 }
 
 size_t tl_review_resident_bytes(void)
@@ -151,23 +153,96 @@ static size_t list_plan(struct tl_review *review, struct tl_panel_line *lines)
     return (size_t)plan->count;
 }
 
+const struct tl_panel_button *tl_review_answers(const struct tl_review *review, size_t *count)
+{
+    if (!review->dropped)
+        return NULL;
+    bool is_model = tl_model_is_file(review->dropped);
+    *count = is_model ? TL_COUNT(model_answers) : TL_COUNT(text_answers);
+    return is_model ? model_answers : text_answers;
+}
+
 static void ask_about_dropped(const struct tl_review *review, char *question, size_t size,
                               struct tl_panel_input *input)
 {
-    if (!review->dropped)
+    input->answers = tl_review_answers(review, &input->answer_count);
+    if (!input->answers)
         return;
     const char *slash = strrchr(review->dropped, '/');
     snprintf(question, size, "%s: use it as", slash ? slash + 1 : review->dropped);
-    bool is_model = tl_model_is_file(review->dropped);
     input->question = question;
-    input->answers = is_model ? model_answers : text_answers;
-    input->answer_count = is_model ? TL_COUNT(model_answers) : TL_COUNT(text_answers);
 }
 
-static void take_result(struct tl_review *review, const struct tl_panel_result *result)
+static void add_status(char *status, size_t size, bool is_on, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+
+static void add_status(char *status, size_t size, bool is_on, const char *format, ...)
+{
+    size_t length = strlen(status);
+    if (!is_on || length + 1 >= size)
+        return;
+    if (length > 0)
+        length += (size_t)snprintf(status + length, size - length, "   ");
+    if (length >= size)
+        return;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(status + length, size - length, format, arguments);
+    va_end(arguments);
+}
+
+/* What goes on by itself, and how it is ended. */
+static void describe_status(const struct tl_review *review, char *status, size_t size)
+{
+    const struct tl_review_path *path = &review->path;
+    status[0] = '\0';
+    add_status(status, size, path->records, "recording: %.1f s (Shift+K ends)", tl_clock_s() - path->began_s);
+    if (path->plays)
+        add_status(status, size, true, "path: %.1f of %.1f s (L ends)", tl_clock_s() - path->began_s,
+                   tl_path_length_s(&path->path));
+    add_status(status, size, review->motion.turntable, "turntable (T ends)");
+    add_status(status, size, review->motion.environment, "environment turns (Shift+T ends)");
+    add_status(status, size, tl_panel_wants_keys(review->panel), "keys go to the panel (Esc ends)");
+}
+
+static struct tl_panel_progress progress_of(const struct tl_review *review, char *text, size_t size)
+{
+    if (!review->loader)
+        return (struct tl_panel_progress){0};
+    const struct tl_scene_params *scene = &tl_loader_settings(review->loader)->scene;
+    bool is_light = tl_loader_kind(review->loader) == TL_LOAD_LIGHT;
+    const char *name = is_light                              ? scene->environment
+                       : strcmp(scene->garment, "none") == 0 ? scene->avatar
+                                                             : scene->garment;
+    const char *slash = strrchr(name, '/');
+    struct tl_load_progress progress = tl_loader_progress(review->loader);
+    bool is_known = progress.what[0] != '\0';
+    snprintf(text, size, "Loading %.100s%s%s", slash ? slash + 1 : name, is_known ? ": " : "", progress.what);
+    return (struct tl_panel_progress){.what = text, .share = is_known ? (float)progress.share : -1};
+}
+
+void tl_review_build_progress(struct tl_review *review)
+{
+    char text[256];
+    int width, height;
+    tl_window_size(review->window, &width, &height);
+    const struct tl_panel_input input = {
+        .message = "", .status = "", .progress = progress_of(review, text, sizeof text), .height = height};
+    const float surround = 0.13f; /* the panel's grey */
+    glViewport(0, 0, width, height);
+    glClearColor(surround, surround, surround, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    tl_panel_build(review->panel, &input);
+    tl_panel_draw(review->panel);
+    tl_window_show(review->window);
+}
+
+/* The window's own options, which stand among the scene's, change no picture. */
+static void take_result(struct tl_review *review, const struct tl_panel_result *result,
+                        const struct tl_settings *before)
 {
     review->editing = result->editing;
-    if (result->changed) {
+    if (result->changed && !tl_settings_equal(before, &review->wanted)) {
         tl_review_layer(review);
         tl_review_know_environment(review, review->wanted.scene.environment);
         tl_review_touch(review);
@@ -175,6 +250,20 @@ static void take_result(struct tl_review *review, const struct tl_panel_result *
     }
     if (result->command >= 0)
         tl_review_act(review, result->command);
+}
+
+static struct tl_panel_strip strip_of(const struct tl_review *review, float *times, char *label, size_t size)
+{
+    const struct tl_frame_times *all = &review->frame_times;
+    float budget_ms = review->params.budget_ms;
+    for (size_t i = 0; i < all->count; i++)
+        times[i] = tl_frame_times_at(all, i);
+    if (budget_ms > 0)
+        snprintf(label, size, "%.0f ms of %g; image 1/%d", review->times.frame, (double)budget_ms,
+                 review->scale);
+    else
+        snprintf(label, size, "%.0f ms, no budget; image 1/%d", review->times.frame, review->scale);
+    return (struct tl_panel_strip){times, all->count, budget_ms, label};
 }
 
 void tl_review_build_panel(struct tl_review *review)
@@ -185,6 +274,9 @@ void tl_review_build_panel(struct tl_review *review)
         {"Reset", "back to the settled start: R", TL_REVIEW_RESET},
         {"Frame", "frame the whole figure: F", TL_REVIEW_FRAME_ALL},
         {"Next light", "next environment: E", TL_REVIEW_NEXT_ENVIRONMENT},
+        {"Compare", "splits the view: the look of now beside the next one: W", TL_REVIEW_COMPARE},
+        {"Turn", "turntable: T", TL_REVIEW_TURNTABLE},
+        {"Undo", "the last edit: Ctrl+Z", TL_REVIEW_UNDO},
         {"Picture", "screenshot: S, or Shift+S for a linear EXR", TL_REVIEW_SCREENSHOT},
         {"Keys", "keys and gestures: H", TL_REVIEW_HELP},
     };
@@ -201,15 +293,24 @@ void tl_review_build_panel(struct tl_review *review)
          .count = list_plan(review, plan),
          .columns = 4},
     };
-    struct tl_binding bindings[TL_SETTINGS_TABLES];
+    struct tl_binding bindings[TL_SETTINGS_TABLES + 1];
     tl_settings_bind(&review->wanted, bindings);
+    bindings[TL_SETTINGS_TABLES] = (struct tl_binding){&tl_window_options, &review->params};
     int width, height;
     tl_review_size(review, &width, &height);
-    char question[TL_STRING_SIZE];
+    char question[TL_STRING_SIZE], status[256], progress[256], left[256] = "", right[256] = "", label[256];
+    float times[TL_FRAME_TIMES_SHOWN];
+    if (review->wipe.renderer)
+        tl_review_wipe_labels(review, left, right, sizeof left);
+    describe_status(review, status, sizeof status);
     struct tl_panel_input input = {
         .title = review->title,
         .message = review->message,
         .message_is_error = review->message_is_error,
+        .status = status,
+        .strip = strip_of(review, times, label, sizeof label),
+        .wipe = {tl_review_wipe_column(review, width), left, right},
+        .progress = progress_of(review, progress, sizeof progress),
         .buttons = buttons,
         .button_count = TL_COUNT(buttons),
         .favourites = favourites,
@@ -217,7 +318,7 @@ void tl_review_build_panel(struct tl_review *review)
         .measures = groups,
         .measure_count = TL_COUNT(groups),
         .bindings = bindings,
-        .binding_count = TL_SETTINGS_TABLES,
+        .binding_count = TL_COUNT(bindings),
         .help = help,
         .help_count = review->help_shown ? tl_review_help(help, HELP_MAX) : 0,
         .x = width,
@@ -225,6 +326,9 @@ void tl_review_build_panel(struct tl_review *review)
         .height = height,
     };
     ask_about_dropped(review, question, sizeof question, &input);
+    struct tl_settings before = review->wanted;
+    bool had_panel = review->params.panel;
     struct tl_panel_result result = tl_panel_build(review->panel, &input);
-    take_result(review, &result);
+    take_result(review, &result, &before);
+    review->changed |= review->params.panel != had_panel; /* the picture's size */
 }

@@ -414,10 +414,10 @@ double tl_cloth_max_strain(const tl_cloth *cloth)
         const uint32_t *t = cloth->topology.triangles[m];
         for (int i = 0; i < 3; i++) {
             vec2s side = glms_vec2_sub(cloth->rest[m][(i + 1) % 3], cloth->rest[m][i]);
-            double rest = hypot((double)side.x, (double)side.y);
-            double length = vec3d_distance(x[t[(i + 1) % 3]], x[t[i]]);
-            if (rest > cloth->shortest_edge)
-                worst = fmax(worst, fabs(length / rest - 1));
+            double rest = sqrt((double)side.x * (double)side.x + (double)side.y * (double)side.y);
+            double strain = fabs(vec3d_distance(x[t[(i + 1) % 3]], x[t[i]]) / rest - 1);
+            if (rest > cloth->shortest_edge && strain > worst)
+                worst = strain;
         }
     }
     return worst;

@@ -391,6 +391,8 @@ static bool show(tl_renderer *renderer, unsigned framebuffer, int width, int hei
 bool tl_renderer_show_image(tl_renderer *renderer, tl_image *out, tl_error *error)
 {
     const tl_target *target = &renderer->present.shown;
+    renderer->show_first = 0;
+    renderer->show_end = target->width;
     if (!show(renderer, target->id, target->width, target->height, error))
         return false;
     *out = tl_image_create(target->width, target->height, 3, TL_IMAGE_U8);
@@ -403,6 +405,14 @@ bool tl_renderer_show_image(tl_renderer *renderer, tl_image *out, tl_error *erro
 
 bool tl_renderer_show_window(tl_renderer *renderer, int width, int height, tl_error *error)
 {
+    return tl_renderer_show_columns(renderer, width, height, 0, width, error);
+}
+
+bool tl_renderer_show_columns(tl_renderer *renderer, int width, int height, int first, int end,
+                              tl_error *error)
+{
+    renderer->show_first = first;
+    renderer->show_end = end;
     return show(renderer, 0, width, height, error);
 }
 

@@ -223,6 +223,9 @@ bool tl_renderer_read_capture(const tl_renderer *renderer, tl_image *out, tl_err
  * must still be there. */
 bool tl_renderer_show_image(tl_renderer *renderer, tl_image *out, tl_error *error);
 bool tl_renderer_show_window(tl_renderer *renderer, int width, int height, tl_error *error);
+/* The same, but only columns [first, end) of the window: two renderers' images side by side. */
+bool tl_renderer_show_columns(tl_renderer *renderer, int width, int height, int first, int end,
+                              tl_error *error);
 
 /* What draw would do with this frame, and why; and what it has taken so far. Pure but for reading the
  * renderer's state. */

@@ -216,6 +216,7 @@ struct tl_renderer {
     /* where the show job draws */
     unsigned show_framebuffer;
     int show_width, show_height;
+    int show_first, show_end; /* columns */
 
     uint64_t signatures[TL_INPUT_COUNT]; /* of the last draw's inputs */
     struct tl_rest rest;

@@ -622,6 +622,8 @@ static bool run_show(void *context, int level, tl_error *error)
                                             .params = &renderer->settings.image,
                                             .framebuffer = renderer->show_framebuffer,
                                             .width = renderer->show_width,
+                                            .first_column = renderer->show_first,
+                                            .end_column = renderer->show_end,
                                             .height = renderer->show_height};
     tl_present_show(&renderer->present, renderer->gpu, &request);
     return true;

@@ -51,12 +51,13 @@ vec3s tl_direction_colour(vec3s direction)
     return colour;
 }
 
-/* Hues a golden section apart, so that neighbouring numbers differ; lightness in three steps. */
+/* Hue and lightness by Roberts' R2 sequence (2018, "The unreasonable effectiveness of quasirandom
+ * sequences"), which keeps any number of points apart. */
 vec3s tl_number_colour(uint32_t number)
 {
-    const double golden_deg = 137.50776405;
-    float hue = (float)fmod(number * golden_deg, 360);
-    return colour_of_oklch(0.55f + 0.13f * (float)(number % 3), 0.13f, hue);
+    const double plastic = 1.32471795724474602596;
+    double hue = fmod(number / plastic, 1), level = fmod(number / (plastic * plastic), 1);
+    return colour_of_oklch(0.5f + 0.36f * (float)level, 0.125f, 360 * (float)hue);
 }
 
 /* Blue for less, pale grey for none, orange to brown for more: told apart by those who see no red or no

@@ -9,6 +9,7 @@
 #define NOISE_MS          0.05
 #define OUTLIER           3.0 /* standard deviations, beyond which a run says no more */
 #define FIRST_RUNS        2   /* the first run makes what others find made, and says little */
+#define BELIEVED_RUNS     5   /* ... but the next ones are believed whatever they say */
 #define FACTOR_MIN        0.02
 #define UNKNOWN_MS        1.0 /* work of a job that the table knows nothing of */
 
@@ -72,7 +73,7 @@ void tl_cost_learn(struct tl_cost_job *job, const struct tl_work *work, double l
     }
     double noise = NOISE * predicted + NOISE_MS;
     variance += noise * noise;
-    double limit = OUTLIER * sqrt(variance);
+    double limit = job->runs > BELIEVED_RUNS ? OUTLIER * sqrt(variance) : INFINITY;
     double surprise = fmin(fmax(ms / load - predicted, -limit), limit);
     for (int i = 0; i < TL_WORK_PARTS; i++) {
         job->factor[i] = fmax(job->factor[i] + along[i] / variance * surprise, FACTOR_MIN);

@@ -2,16 +2,19 @@
 foreach(name
     bake
     brdf
+    budget
     chain
     compare
     compose
     convert
+    cost
     cube
     emitters
     fan
     flip
     ground
     layout
+    legend
     levels
     lobe
     lobe_error
@@ -24,6 +27,7 @@ foreach(name
     regions
     regions_sphere
     relief
+    resample
     sky
     slices
     sun
