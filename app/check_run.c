@@ -29,9 +29,9 @@ struct run {
     struct tl_check_outcome *outcome;
     struct tl_motion motion;
     struct beside beside;
-    uint64_t *hashes; /* [frames] */
-    int played;       /* of them are there */
-    tl_pace *pace;    /* NULL: no budget */
+    uint64_t *hashes;         /* [frames] */
+    int played;               /* of them are there */
+    tl_pace *pace;            /* NULL: no budget */
     struct tl_levels *levels; /* [frames] */
     struct tl_pace_choice choice;
     double chosen_ms, moved_ms, drawn_ms; /* on the wall, of this frame: the choice, the cloth, the picture */

@@ -23,7 +23,7 @@ const struct tl_command tl_commands[] = {
      "Measures ratios side by side in one run: light: the presets' CPU time and error in motion; cloth: the "
      "solvers' steps per second beside a plain loop's, normals and tangents, a dress that comes to rest.",
      TL_FLAGS_SCENE | TL_FLAGS_JSON | TL_FLAGS_QUICK | TL_FLAGS_FULL, tl_command_bench},
-    {"check", "check [SCENE] [--frames N] [--every K] [--furnace] [--keep FOLDER] [--json] [OPTIONS]",
+    {"check", "check [SCENE] [--frames N] [--budget MS] [--keep FOLDER] [--json] [OPTIONS]",
      "Plays a scene and holds every frame against a table of invariants: geometry, pixels, shadow maps, "
      "visibility, regions, cloth, the oracle; tells the worst of each, where it was, and fails when one "
      "breaks.",
