@@ -332,6 +332,7 @@ static bool take_flag(const struct flag *flag, const char *value, struct tl_argu
         return true;
     case FLAG_KEEP:
         out->keep = value;
+        return true;
     case FLAG_PATH:
         out->path = value;
         return true;

@@ -23,6 +23,8 @@ static const char *const favourites[] = {
     "scene.environment",
     "scene.environment_yaw_deg",
     "scene.preset",
+    "scene.colourway",
+    "image.view",
     "light.method",
     "light.regions",
     "image.exposure_ev",
@@ -115,8 +117,10 @@ static size_t list_measures(struct tl_review *review, struct tl_panel_line *line
              review->times.frame);
     add_line(lines, &count, "cloth", "%.1f ms", review->times.cloth);
     add_line(lines, &count, "drawing", "%.0f ms", review->times.draw);
-    add_line(lines, &count, "image", review->scale > 1 ? "%d x %d at 1/%d" : "%d x %d", width, height,
-             review->scale);
+    int samples_x, samples_y;
+    const struct tl_settings drawn = tl_levels_apply(&review->pace_choice.levels, &review->good);
+    tl_image_samples(&drawn.image, &samples_x, &samples_y);
+    add_line(lines, &count, "image", "%d x %d of %d x %d samples", width, height, samples_x, samples_y);
     count_triangles(review, &triangles, &vertices);
     add_line(lines, &count, "surfaces", "%zu triangles, %zu vertices", triangles, vertices);
     if (tl_session_cloth(review->session)) {
@@ -258,11 +262,16 @@ static struct tl_panel_strip strip_of(const struct tl_review *review, float *tim
     float budget_ms = review->params.budget_ms;
     for (size_t i = 0; i < all->count; i++)
         times[i] = tl_frame_times_at(all, i);
-    if (budget_ms > 0)
-        snprintf(label, size, "%.0f ms of %g; image 1/%d", review->times.frame, (double)budget_ms,
-                 review->scale);
-    else
-        snprintf(label, size, "%.0f ms, no budget; image 1/%d", review->times.frame, review->scale);
+    const struct tl_levels *levels = &review->pace_choice.levels;
+    int length = budget_ms > 0
+                     ? snprintf(label, size, "%.0f ms of %g (- =)", review->times.frame, (double)budget_ms)
+                     : snprintf(label, size, "%.0f ms, no budget (- =)", review->times.frame);
+    if (tl_review_is_sharp(review))
+        snprintf(label + length, size - (size_t)length, ": full quality");
+    for (int i = 0; i < TL_KNOB_COUNT && length < (int)size; i++)
+        if (levels->of[i] > 0)
+            length +=
+                snprintf(label + length, size - (size_t)length, ", %s -%d", tl_knob_names[i], levels->of[i]);
     return (struct tl_panel_strip){times, all->count, budget_ms, label};
 }
 
@@ -300,6 +309,9 @@ void tl_review_build_panel(struct tl_review *review)
     tl_review_size(review, &width, &height);
     char question[TL_STRING_SIZE], status[256], progress[256], left[256] = "", right[256] = "", label[256];
     float times[TL_FRAME_TIMES_SHOWN];
+    char read_out[512];
+    struct tl_panel_legend legend;
+    tl_review_read_out(review, read_out, sizeof read_out);
     if (review->wipe.renderer)
         tl_review_wipe_labels(review, left, right, sizeof left);
     describe_status(review, status, sizeof status);
@@ -310,6 +322,8 @@ void tl_review_build_panel(struct tl_review *review)
         .status = status,
         .strip = strip_of(review, times, label, sizeof label),
         .wipe = {tl_review_wipe_column(review, width), left, right},
+        .legend = tl_review_legend(review, &legend) ? &legend : NULL,
+        .read_out = read_out,
         .progress = progress_of(review, progress, sizeof progress),
         .buttons = buttons,
         .button_count = TL_COUNT(buttons),

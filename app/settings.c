@@ -392,7 +392,7 @@ bool tl_settings_apply_overlay(struct tl_settings *settings, const char *name, t
     struct tl_binding all[TL_SETTINGS_TABLES];
     tl_settings_bind(&changed, all);
     if (!tl_options_set(all, TL_SETTINGS_TABLES, "scene.overlay_fabric", name, "fabric", NULL, error) ||
-        !apply_overlay(&changed, name, error))
+        !tl_settings_read_look(name, &changed.overlay, &changed.overlay_weave, error))
         return false;
     *settings = changed;
     return true;
