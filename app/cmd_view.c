@@ -232,13 +232,18 @@ static void close_review(struct tl_review *review)
     free(review->state_folder);
 }
 
+static void tell_times(const struct tl_frame_times *times, const char *when)
+{
+    tl_info("view: %zu images %s: p50 %.1f ms, p95 %.1f ms, p99 %.1f ms, worst %.1f ms", times->total, when,
+            tl_frame_times_quantile(times, 0.5), tl_frame_times_quantile(times, 0.95),
+            tl_frame_times_quantile(times, 0.99), times->worst_ms);
+}
+
 static void tell_end(const struct tl_review *review, size_t bytes_before)
 {
     const double megabyte = 1 << 20;
-    const struct tl_frame_times *times = &review->frame_times;
-    tl_info("view: frame times of %zu images: p50 %.1f ms, p95 %.1f ms, p99 %.1f ms, worst %.1f ms",
-            times->total, tl_frame_times_quantile(times, 0.5), tl_frame_times_quantile(times, 0.95),
-            tl_frame_times_quantile(times, 0.99), times->worst_ms);
+    tell_times(&review->frame_times, "in motion");
+    tell_times(&review->rest_times, "at rest");
     tl_info("view: closed after %d images, %d shown, %zu GL messages, resident %.0f MB at start, %.0f MB "
             "at end",
             review->drawn_count, review->shown_count, tl_gpu_message_count(review->gpu),

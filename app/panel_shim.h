@@ -102,6 +102,8 @@ void tl_panel_destroy(tl_panel **panel);
 
 bool tl_panel_wants_pointer(const tl_panel *panel);
 bool tl_panel_wants_keys(const tl_panel *panel);
+/* A key (GLFW's number) for the next frame, however short it was held. */
+void tl_panel_press(tl_panel *panel, int key);
 /* From now on keys move through the panel's widgets; or no longer. */
 void tl_panel_use_keys(tl_panel *panel, bool used);
 

@@ -128,7 +128,7 @@ struct tl_review {
     double shown_s; /* when something was presented last */
     tl_pace *pace;
     struct tl_pace_choice pace_choice; /* of the last image */
-    bool learns;                       /* what the frame at hand takes was chosen by the pace */
+    bool is_paced, is_new;             /* the last image: drawn at these levels; not shown yet */
     tl_history *history;
 
     bool playing, closing, help_shown, reads_out;
@@ -166,7 +166,7 @@ struct tl_review {
     double watched_s;
 
     struct tl_review_times times;
-    struct tl_frame_times frame_times;
+    struct tl_frame_times frame_times, rest_times; /* while something moves; else */
     struct tl_cloth_report report;
     int reported_frame;
     double reported_s;

@@ -33,16 +33,21 @@ static bool show_image(struct tl_review *review, int width, int height, tl_error
            tl_renderer_show_columns(review->renderer, width, height, line, width, error);
 }
 
-/* Until here it is the program's time; the swap may wait for the screen. */
-static void learn(struct tl_review *review)
+/* Until here it is the program's time; the swap may wait for the screen. What nobody waits for is shown as
+ * well as it can be: its time says nothing about the budget. */
+static void take_time(struct tl_review *review)
 {
-    if (!review->learns)
+    if (!review->is_new)
         return;
-    double cloth_ms = review->times.cloth;
-    review->times.frame = 1e3 * (tl_clock_s() - review->times.began_s);
-    tl_pace_learn(review->pace, tl_renderer_last_plan(review->renderer), cloth_ms, review->times.frame);
-    tl_frame_times_add(&review->frame_times, review->times.frame);
-    review->learns = false;
+    double frame_ms = 1e3 * (tl_clock_s() - review->times.began_s);
+    review->is_new = false;
+    if (!review->is_paced) {
+        tl_frame_times_add(&review->rest_times, frame_ms);
+        return;
+    }
+    review->times.frame = frame_ms;
+    tl_frame_times_add(&review->frame_times, frame_ms);
+    tl_pace_learn(review->pace, tl_renderer_last_plan(review->renderer), review->times.cloth, frame_ms);
 }
 
 bool tl_review_present(struct tl_review *review, tl_error *error)
@@ -52,7 +57,7 @@ bool tl_review_present(struct tl_review *review, tl_error *error)
     if (!show_image(review, width, height, error))
         return false;
     tl_panel_draw(review->panel);
-    learn(review);
+    take_time(review);
     tl_window_show(review->window);
     review->shown_count++;
     review->shown_s = tl_clock_s();
@@ -154,7 +159,8 @@ static bool draw_image(struct tl_review *review, const struct tl_settings *setti
         return false;
     review->times.draw = 1e3 * (tl_clock_s() - started_s);
     review->drawn_count++;
-    review->learns = is_paced;
+    review->is_new = true;
+    review->is_paced = is_paced;
     tl_debug("view: image %d, frame %d, %.1f ms", review->drawn_count,
              tl_session_frame_number(review->session), review->times.draw);
     return true;
@@ -225,5 +231,5 @@ bool tl_review_update_image(struct tl_review *review, tl_error *error)
     bool improves = !tl_review_is_moving(review) && /* jittered rounds are left to average */
                     !(tl_review_is_at_rest(review) && tl_review_is_sharp(review));
     bool is_due = review->changed || review->image_is_old || is_step_due(review) || improves;
-    return waits || !is_due || renew_image(review, true, error);
+    return waits || !is_due || renew_image(review, tl_review_is_moving(review), error);
 }

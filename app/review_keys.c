@@ -139,8 +139,11 @@ static bool answer(struct tl_review *review, const struct tl_window_event *event
 
 void tl_review_on_key(struct tl_review *review, const struct tl_window_event *event)
 {
-    if (tl_panel_wants_keys(review->panel) && event->key != GLFW_KEY_ESCAPE)
+    if (tl_panel_wants_keys(review->panel) && event->key != GLFW_KEY_ESCAPE) {
+        if (event->key > 0 && event->key <= GLFW_KEY_LAST)
+            tl_panel_press(review->panel, event->key);
         return;
+    }
     if (answer(review, event))
         return;
     int modifiers = event->modifiers & (SHIFT | CTRL | GLFW_MOD_ALT | GLFW_MOD_SUPER);

@@ -264,8 +264,8 @@ static struct tl_panel_strip strip_of(const struct tl_review *review, float *tim
         times[i] = tl_frame_times_at(all, i);
     const struct tl_levels *levels = &review->pace_choice.levels;
     int length = budget_ms > 0
-                     ? snprintf(label, size, "%.0f ms of %g (- =)", review->times.frame, (double)budget_ms)
-                     : snprintf(label, size, "%.0f ms, no budget (- =)", review->times.frame);
+                     ? snprintf(label, size, "%.0f ms of %g", review->times.frame, (double)budget_ms)
+                     : snprintf(label, size, "%.0f ms, no budget", review->times.frame);
     if (tl_review_is_sharp(review))
         snprintf(label + length, size - (size_t)length, ": full quality");
     for (int i = 0; i < TL_KNOB_COUNT && length < (int)size; i++)
