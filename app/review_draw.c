@@ -201,7 +201,8 @@ static bool renew_image(struct tl_review *review, bool is_paced, tl_error *error
         take_as_good(review, &followed);
     }
     review->changed = review->image_is_old = false;
-    review->redraws = review->redraws > 1 ? review->redraws : 1;
+    int settles = is_paced ? 1 : 2; /* the panel's texts take a second frame to find their size */
+    review->redraws = review->redraws > settles ? review->redraws : settles;
     return true;
 }
 

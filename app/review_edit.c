@@ -58,6 +58,10 @@ void tl_review_next_colourway(struct tl_review *review, int by)
 {
     const char *const *names;
     int count = (int)tl_session_colourways(review->session, &names), present = 0; /* 0: none, as cut */
+    if (review->loader) {
+        tl_review_say(review, "the scene is not there yet: its colourways come with it");
+        return;
+    }
     if (count == 0) {
         tl_review_say(review, "this garment has no colourways: a scene's section `colourways` gives it some");
         return;

@@ -177,36 +177,36 @@ static void ask_about_dropped(const struct tl_review *review, char *question, si
     input->question = question;
 }
 
-static void add_status(char *status, size_t size, bool is_on, const char *format, ...)
-    __attribute__((format(printf, 4, 5)));
+static char *append(char *end, const char *stop, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 
-static void add_status(char *status, size_t size, bool is_on, const char *format, ...)
+static char *append(char *end, const char *stop, const char *format, ...)
 {
-    size_t length = strlen(status);
-    if (!is_on || length + 1 >= size)
-        return;
-    if (length > 0)
-        length += (size_t)snprintf(status + length, size - length, "   ");
-    if (length >= size)
-        return;
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(status + length, size - length, format, arguments);
+    int length = vsnprintf(end, (size_t)(stop - end), format, arguments);
     va_end(arguments);
+    return length < stop - end ? end + length : end;
 }
 
 /* What goes on by itself, and how it is ended. */
 static void describe_status(const struct tl_review *review, char *status, size_t size)
 {
     const struct tl_review_path *path = &review->path;
-    status[0] = '\0';
-    add_status(status, size, path->records, "recording: %.1f s (Shift+K ends)", tl_clock_s() - path->began_s);
+    const char *stop = status + size;
+    char *end = status;
+    *end = '\0';
+    if (path->records)
+        end = append(end, stop, "recording: %.1f s (Shift+K ends)  ", tl_clock_s() - path->began_s);
     if (path->plays)
-        add_status(status, size, true, "path: %.1f of %.1f s (L ends)", tl_clock_s() - path->began_s,
-                   tl_path_length_s(&path->path));
-    add_status(status, size, review->motion.turntable, "turntable (T ends)");
-    add_status(status, size, review->motion.environment, "environment turns (Shift+T ends)");
-    add_status(status, size, tl_panel_wants_keys(review->panel), "keys go to the panel (Esc ends)");
+        end = append(end, stop, "path: %.1f of %.1f s (L ends)  ", tl_clock_s() - path->began_s,
+                     tl_path_length_s(&path->path));
+    if (review->motion.turntable)
+        end = append(end, stop, "turntable (T ends)  ");
+    if (review->motion.environment)
+        end = append(end, stop, "environment turns (Shift+T ends)  ");
+    if (tl_panel_wants_keys(review->panel))
+        append(end, stop, "keys go to the panel (Esc ends)");
 }
 
 static struct tl_panel_progress progress_of(const struct tl_review *review, char *text, size_t size)
@@ -256,6 +256,16 @@ static void take_result(struct tl_review *review, const struct tl_panel_result *
         tl_review_act(review, result->command);
 }
 
+/* Percent, of those that the settings ask for. */
+static double share_of_samples(const struct tl_review *review)
+{
+    const struct tl_settings drawn = tl_levels_apply(&review->pace_choice.levels, &review->good);
+    int full_x, full_y, x, y;
+    tl_image_samples(&review->good.image, &full_x, &full_y);
+    tl_image_samples(&drawn.image, &x, &y);
+    return 100.0 * x * y / ((double)full_x * full_y);
+}
+
 static struct tl_panel_strip strip_of(const struct tl_review *review, float *times, char *label, size_t size)
 {
     const struct tl_frame_times *all = &review->frame_times;
@@ -263,15 +273,19 @@ static struct tl_panel_strip strip_of(const struct tl_review *review, float *tim
     for (size_t i = 0; i < all->count; i++)
         times[i] = tl_frame_times_at(all, i);
     const struct tl_levels *levels = &review->pace_choice.levels;
-    int length = budget_ms > 0
-                     ? snprintf(label, size, "%.0f ms of %g", review->times.frame, (double)budget_ms)
-                     : snprintf(label, size, "%.0f ms, no budget", review->times.frame);
+    char *end = label;
+    const char *stop = label + size;
+    if (all->count > 0)
+        end = append(end, stop, "%.0f ms", review->times.frame);
+    end = append(end, stop, budget_ms > 0 ? "%s%.0f ms for a frame" : "%sno budget",
+                 all->count > 0 ? " of " : "", (double)budget_ms);
     if (tl_review_is_sharp(review))
-        snprintf(label + length, size - (size_t)length, ": full quality");
-    for (int i = 0; i < TL_KNOB_COUNT && length < (int)size; i++)
-        if (levels->of[i] > 0)
-            length +=
-                snprintf(label + length, size - (size_t)length, ", %s -%d", tl_knob_names[i], levels->of[i]);
+        end = append(end, stop, ": full quality");
+    for (int i = 0; i < TL_KNOB_COUNT; i++)
+        if (levels->of[i] > 0 && i != TL_KNOB_SCALE)
+            end = append(end, stop, ", %s -%d", tl_knob_names[i], levels->of[i]);
+    if (levels->of[TL_KNOB_SCALE] > 0)
+        append(end, stop, ", %.0f %% of the pixels", share_of_samples(review));
     return (struct tl_panel_strip){times, all->count, budget_ms, label};
 }
 
@@ -283,6 +297,8 @@ void tl_review_build_panel(struct tl_review *review)
         {"Reset", "back to the settled start: R", TL_REVIEW_RESET},
         {"Frame", "frame the whole figure: F", TL_REVIEW_FRAME_ALL},
         {"Next light", "next environment: E", TL_REVIEW_NEXT_ENVIRONMENT},
+        {"Colours", "next colourway: C", TL_REVIEW_NEXT_COLOURWAY},
+        {"Inspect", "normals, UVs, visibility, strain: V; B: light again", TL_REVIEW_NEXT_VIEW},
         {"Compare", "splits the view: the look of now beside the next one: W", TL_REVIEW_COMPARE},
         {"Turn", "turntable: T", TL_REVIEW_TURNTABLE},
         {"Undo", "the last edit: Ctrl+Z", TL_REVIEW_UNDO},
