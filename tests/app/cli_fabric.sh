@@ -55,10 +55,12 @@ printf '%s' "$told" | grep -q '4 x 4 mm a repeat, 1 mm deep' || fail "the scale 
 grep -q 'picture_mm: 4$' maps/height.yaml && grep -q 'depth_mm: 1 ' maps/height.yaml || fail "its scale: $(cat maps/height.yaml)"
 wear() {
     "$TOILE" render -o "$1" --garment sphere --avatar none --size 32x32 --set light.method=unshadowed \
-        --set scene.environment=white --set detail.mode=relief --quiet "${@:2}" || fail "$1 is not drawn"
+        --quiet "${@:2}" || fail "$1 is not drawn"
 }
-wear worn.exr --fabric maps/height.yaml
-wear flat.exr --fabric maps/height.yaml --set weave.depth_mm=0
+wear shape.png
+"$TOILE" fabric shape.png -o shaped --repeat-mm 100 --height-mm 20 --quiet || fail "a picture is not baked"
+wear worn.exr --fabric shaped/shape.yaml
+wear flat.exr --fabric shaped/shape.yaml --set weave.depth_mm=0
 cmp -s worn.exr flat.exr && fail "the heights do not show"
 sed -i 's/picture: height/picture: nowhere/' maps/height.yaml
 message=$("$TOILE" render -o lost.exr --fabric maps/height.yaml --size 8x8 --quiet 2>&1)
