@@ -20,6 +20,8 @@ enum flag_kind {
     FLAG_HDR,
     FLAG_SCREENSHOTS,
     FLAG_MAX_FRAMES,
+    FLAG_FRESH,
+    FLAG_BUDGET,
     FLAG_AXIS,
     FLAG_QUICK,
     FLAG_CAPTURE,
@@ -42,6 +44,12 @@ enum flag_kind {
     FLAG_FURNACE,
     FLAG_STILL,
     FLAG_KEEP,
+    FLAG_PATH,
+    FLAG_VIDEO,
+    FLAG_AGAINST,
+    FLAG_REPLAY,
+    FLAG_ORACLE,
+    FLAG_HASH,
     FLAG_QUIET,
     FLAG_VERBOSE,
     FLAG_HELP,
@@ -90,7 +98,10 @@ static const struct flag flags_known[] = {
     {"--hdr", TL_FLAGS_METRIC, FLAG_HDR, NULL, NULL, "compare over all exposures that the reference holds"},
     {"--screenshots", TL_FLAGS_WINDOW, FLAG_SCREENSHOTS, NULL, "FOLDER", "where screenshots go"},
     {"--max-frames", TL_FLAGS_WINDOW, FLAG_MAX_FRAMES, NULL, "N", "close after N frames"},
-    {"--axis", TL_FLAGS_AXIS, FLAG_AXIS, NULL, "NAME", "what is varied: light or cloth"},
+    {"--axis", TL_FLAGS_AXIS, FLAG_AXIS, NULL, "NAME",
+     "what is varied: overall, light, resolution, detail, shading or cloth"},
+    {"--fresh", TL_FLAGS_WINDOW, FLAG_FRESH, NULL, NULL,
+     "as if it were the first time: nothing is remembered, before or after"},
     {"--quick", TL_FLAGS_QUICK, FLAG_QUICK, NULL, NULL, "a few choices and frames only"},
     {"--full", TL_FLAGS_FULL, FLAG_FULL, NULL, NULL, "what takes minutes too"},
     {"--layout", TL_FLAGS_LAYOUT, FLAG_LAYOUT, NULL, "NAME",
@@ -121,6 +132,16 @@ static const struct flag flags_known[] = {
     {"--still", TL_FLAGS_CHECK, FLAG_STILL, NULL, NULL, "no hand swings the hem"},
     {"--keep", TL_FLAGS_CHECK, FLAG_KEEP, NULL, "FOLDER",
      "keeps the first frame that breaks, ready to be opened"},
+    {"--budget", TL_FLAGS_BUDGET, FLAG_BUDGET, NULL, "MS",
+     "time for a frame, in milliseconds; else every frame is drawn in full"},
+    {"--frames", TL_FLAGS_FLY, FLAG_FRAME_COUNT, NULL, "N", "so many frames; else 600, or all of the path's"},
+    {"--path", TL_FLAGS_FLY, FLAG_PATH, NULL, "FILE.yaml", "camera path; else one round the scene"},
+    {"--video", TL_FLAGS_FLY, FLAG_VIDEO, NULL, "FILE.mp4", "what was seen; .mp4, .mkv or .mov, by ffmpeg"},
+    {"--against", TL_FLAGS_FLY, FLAG_AGAINST, NULL, "FOLDER", "compare with an earlier flight, job by job"},
+    {"--replay", TL_FLAGS_FLY, FLAG_REPLAY, NULL, "FOLDER",
+     "fly an earlier flight's path at its levels: the images are the same to the bit"},
+    {"--oracle", TL_FLAGS_FLY, FLAG_ORACLE, NULL, "N", "measure every Nth frame against the ray-traced one"},
+    {"--hash", TL_FLAGS_FLY, FLAG_HASH, NULL, NULL, "record every image's hash, for a replay to compare"},
     {"--quiet", 0, FLAG_QUIET, NULL, NULL, "say nothing but errors"},
     {"--verbose", 0, FLAG_VERBOSE, NULL, NULL, "say more"},
     {"--help", 0, FLAG_HELP, NULL, NULL, "what the command does and takes"},
@@ -173,6 +194,14 @@ static bool read_length(const char *flag, const char *text, double *out, tl_erro
     *out = strtod(text, &stop);
     return (stop != text && !*stop && *out >= 1e-3 && *out <= 1e4) ||
            tl_fail(error, TL_USAGE, "%s: \"%s\": expected millimetres, from 0.001 to 10000", flag, text);
+}
+
+static bool read_budget(const char *text, double *out, tl_error *error)
+{
+    char *stop;
+    *out = strtod(text, &stop);
+    return (stop != text && !*stop && *out >= 0.1 && *out <= 1e6) ||
+           tl_fail(error, TL_USAGE, "--budget: \"%s\": expected milliseconds, from 0.1 to 1000000", text);
 }
 
 static void assign(struct tl_arguments *out, char *assignment)
@@ -239,6 +268,11 @@ static bool take_flag(const struct flag *flag, const char *value, struct tl_argu
         return true;
     case FLAG_MAX_FRAMES:
         return read_whole("--max-frames", value, NULL, 1, &out->max_frames, error);
+    case FLAG_FRESH:
+        out->fresh = true;
+        return true;
+    case FLAG_BUDGET:
+        return read_budget(value, &out->budget_ms, error);
     case FLAG_AXIS:
         out->axis = value;
         return true;
@@ -299,6 +333,23 @@ static bool take_flag(const struct flag *flag, const char *value, struct tl_argu
         return true;
     case FLAG_KEEP:
         out->keep = value;
+        return true;
+    case FLAG_PATH:
+        out->path = value;
+        return true;
+    case FLAG_VIDEO:
+        out->video = value;
+        return true;
+    case FLAG_AGAINST:
+        out->against = value;
+        return true;
+    case FLAG_REPLAY:
+        out->replay = value;
+        return true;
+    case FLAG_ORACLE:
+        return read_whole("--oracle", value, NULL, 1, &out->oracle_every, error);
+    case FLAG_HASH:
+        out->hash = true;
         return true;
     case FLAG_QUIET:
         out->quiet = true;

@@ -23,6 +23,7 @@ bool tl_command_bench(const struct tl_arguments *arguments, tl_error *error);
 bool tl_command_check(const struct tl_arguments *arguments, tl_error *error);
 bool tl_command_trade(const struct tl_arguments *arguments, tl_error *error);
 bool tl_command_stability(const struct tl_arguments *arguments, tl_error *error);
+bool tl_command_fly(const struct tl_arguments *arguments, tl_error *error);
 bool tl_command_gallery(const struct tl_arguments *arguments, tl_error *error);
 bool tl_command_sheet(const struct tl_arguments *arguments, tl_error *error);
 bool tl_command_compare(const struct tl_arguments *arguments, tl_error *error);

@@ -38,6 +38,11 @@ void tl_path_release(struct tl_path *path)
     *path = (struct tl_path){0};
 }
 
+bool tl_path_same_key(const struct tl_path_key *a, const struct tl_path_key *b)
+{
+    return tl_options_equal(&key_table, a, b);
+}
+
 double tl_path_length_s(const struct tl_path *path)
 {
     return path->keys[path->count - 1].time_s;

@@ -34,6 +34,8 @@ void tl_path_release(struct tl_path *path);
 struct tl_path tl_path_built_in(const struct tl_settings *scene);
 #define TL_PATH_BUILT_IN_S 20.0
 
+bool tl_path_same_key(const struct tl_path_key *a, const struct tl_path_key *b);
+
 double tl_path_length_s(const struct tl_path *path); /* time of the last key */
 /* Between keys by a monotone cubic of each number (no overshoot: a camera that is to stop stops); before the
  * first and after the last key it rests. */

@@ -15,6 +15,7 @@
 #include "render/inspect/legend.h"
 
 #include <float.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -48,7 +49,14 @@ struct tl_session {
     } strain;
 
     struct tl_looks looks;
-    uint64_t look_revision; /* rises when meshes or materials change */
+    uint64_t look_revision; /* of meshes and materials; the renderer sees another one as new */
+    uint64_t looks_made;    /* the highest revision so far */
+    struct {                /* the look before, for comparisons that go to and fro */
+        bool is_kept;
+        struct tl_looks looks;
+        uint64_t revision;
+        struct tl_settings made_of;
+    } spare;
 
     int frame;
     struct tl_box framed; /* what the camera frames: all there is at frame 0 */
@@ -282,7 +290,7 @@ static bool load_all(tl_session *session, tl_error *error)
         return tl_fail(error, TL_USAGE, "scene: neither a garment nor an avatar: name at least one");
     if (!make_looks(session, &session->settings, &session->looks, error))
         return false;
-    session->look_revision++;
+    session->look_revision = ++session->looks_made;
     if (session->avatar)
         tl_moving_create(&session->body, &session->avatar->model, NULL);
     if (session->garment) {
@@ -329,6 +337,7 @@ void tl_session_destroy(tl_session **handle)
     tl_strains_destroy(&session->strain.rest);
     free(session->strain.of_vertices);
     tl_looks_release(&session->looks);
+    tl_looks_release(&session->spare.looks);
     free(session);
     *handle = NULL;
 }
@@ -400,7 +409,7 @@ static bool same_text(const char *a, const char *b)
 }
 
 /* What cannot be changed in place: who wears what, and what is decided when the cloth is made. */
-static bool needs_new_scene(const struct tl_settings *old, const struct tl_settings *new)
+bool tl_session_needs_scene(const struct tl_settings *old, const struct tl_settings *new)
 {
     return !same_text(old->scene.garment, new->scene.garment) ||
            !same_text(old->scene.avatar, new->scene.avatar) || !same_text(old->scene.clip, new->scene.clip) ||
@@ -410,20 +419,61 @@ static bool needs_new_scene(const struct tl_settings *old, const struct tl_setti
            old->image.ground != new->image.ground;
 }
 
+bool tl_session_needs_light(const struct tl_settings *old, const struct tl_settings *new)
+{
+    return !same_text(old->scene.environment, new->scene.environment);
+}
+
+void tl_session_keep_scene(const struct tl_settings *kept, struct tl_settings *settings)
+{
+    if (!same_text(settings->scene.garment, kept->scene.garment)) { /* its colourways are its own */
+        memcpy(settings->scene.colourway, kept->scene.colourway, sizeof settings->scene.colourway);
+        memcpy(settings->scene.colourways, kept->scene.colourways, sizeof settings->scene.colourways);
+        settings->colourways = kept->colourways;
+    }
+    memcpy(settings->scene.garment, kept->scene.garment, sizeof settings->scene.garment);
+    memcpy(settings->scene.avatar, kept->scene.avatar, sizeof settings->scene.avatar);
+    memcpy(settings->scene.clip, kept->scene.clip, sizeof settings->scene.clip);
+    memcpy(settings->scene.motion, kept->scene.motion, sizeof settings->scene.motion);
+    memcpy(settings->scene.environment, kept->scene.environment, sizeof settings->scene.environment);
+    settings->scene.units = kept->scene.units;
+    settings->scene.avatar_units = kept->scene.avatar_units;
+    settings->scene.motion_rate = kept->scene.motion_rate;
+    settings->cloth.edge_m = kept->cloth.edge_m;
+    settings->image.ground = kept->image.ground;
+}
+
+/* Revisions go on rising, so that the renderer sees everything as new. */
+void tl_session_replace(tl_session *session, tl_session **made)
+{
+    tl_session *fresh = *made;
+    fresh->light.revision += session->light.revision;
+    fresh->looks_made += session->looks_made + 1;
+    fresh->look_revision = fresh->looks_made;
+    fresh->body.motion_revision += session->body.motion_revision;
+    fresh->dress.motion_revision += session->dress.motion_revision;
+    fresh->strain.wanted = session->strain.wanted;
+    tl_session swap = *session;
+    *session = *fresh;
+    *fresh = swap;
+    tl_session_destroy(made);
+}
+
+void tl_session_replace_light(tl_session *session, struct tl_moving_light *made, const char *name)
+{
+    made->revision += session->light.revision;
+    tl_moving_light_release(&session->light);
+    session->light = *made;
+    *made = (struct tl_moving_light){0};
+    snprintf(session->settings.scene.environment, sizeof session->settings.scene.environment, "%s", name);
+}
+
 bool tl_session_restart(tl_session *session, const struct tl_settings *settings, tl_error *error)
 {
     tl_session *fresh = tl_session_create(settings, error);
     if (!fresh)
         return false;
-    /* Revisions go on rising, so that the renderer sees everything as new. */
-    fresh->light.revision += session->light.revision;
-    fresh->look_revision += session->look_revision + 1;
-    fresh->body.motion_revision += session->body.motion_revision;
-    fresh->dress.motion_revision += session->dress.motion_revision;
-    tl_session swap = *session;
-    *session = *fresh;
-    *fresh = swap;
-    tl_session_destroy(&fresh);
+    tl_session_replace(session, &fresh);
     return true;
 }
 
@@ -432,9 +482,9 @@ static bool change_in_place(tl_session *session, const struct tl_settings *setti
 {
     double position = light_position(settings, session->frame);
     const char *environment = settings->scene.environment;
-    if (same_text(session->settings.scene.environment, environment)
-            ? !tl_moving_light_follow(&session->light, position, error)
-            : !tl_moving_light_open(&session->light, environment, position, error))
+    if (tl_session_needs_light(&session->settings, settings)
+            ? !tl_moving_light_open(&session->light, environment, position, error)
+            : !tl_moving_light_follow(&session->light, position, error))
         return false;
     /* Cloth that is set anew forgets what it touches: only what changes it may do that. */
     const struct tl_settings *old = &session->settings;
@@ -444,25 +494,48 @@ static bool change_in_place(tl_session *session, const struct tl_settings *setti
            tl_cloth_set(session->cloth, &settings->fabric, &settings->cloth, error);
 }
 
+/* The present look becomes the spare one. */
+static void set_aside_look(tl_session *session)
+{
+    tl_looks_release(&session->spare.looks);
+    session->spare.is_kept = true;
+    session->spare.looks = session->looks;
+    session->spare.revision = session->look_revision;
+    session->spare.made_of = session->settings;
+}
+
+/* Takes up the look that was set aside, in exchange for the present one. */
+static void exchange_looks(tl_session *session)
+{
+    struct tl_looks looks = session->spare.looks;
+    uint64_t revision = session->spare.revision;
+    session->spare.looks = (struct tl_looks){0};
+    set_aside_look(session);
+    session->looks = looks;
+    session->look_revision = revision;
+}
+
 bool tl_session_apply(tl_session *session, const struct tl_settings *settings, tl_error *error)
 {
-    const struct tl_settings *old = &session->settings;
-    if (needs_new_scene(old, settings))
+    if (tl_session_needs_scene(&session->settings, settings))
         return tl_session_restart(session, settings, error);
     struct tl_looks looks = {0};
-    bool new_look = !tl_looks_are_same(old, settings);
-    if (new_look && !make_looks(session, settings, &looks, error))
+    bool new_look = !tl_looks_are_same(&session->settings, settings);
+    bool was_seen = session->spare.is_kept && tl_looks_are_same(&session->spare.made_of, settings);
+    if (new_look && !was_seen && !make_looks(session, settings, &looks, error))
         return false;
     if (!change_in_place(session, settings, error)) {
         tl_looks_release(&looks);
         return false;
     }
-    session->settings = *settings;
-    if (new_look) {
-        tl_looks_release(&session->looks);
+    if (new_look && was_seen) {
+        exchange_looks(session);
+    } else if (new_look) {
+        set_aside_look(session);
         session->looks = looks;
-        session->look_revision++;
+        session->look_revision = ++session->looks_made;
     }
+    session->settings = *settings;
     return true;
 }
 

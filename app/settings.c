@@ -215,6 +215,17 @@ bool tl_settings_read_look(const char *fabric, struct tl_material_params *params
     return apply(&fabric_layer, fabric, bindings, TL_COUNT(bindings), error);
 }
 
+bool tl_settings_assign(struct tl_settings *settings, const char *const *assignments, size_t most,
+                        tl_error *error)
+{
+    struct tl_binding bindings[TL_SETTINGS_TABLES];
+    tl_settings_bind(settings, bindings);
+    for (size_t i = 0; i < most && assignments[i]; i++)
+        if (!tl_options_set_assignment(bindings, TL_SETTINGS_TABLES, assignments[i], error))
+            return false;
+    return true;
+}
+
 /* A model in place of a scene is shown as it is: no garment to drape, its own materials. */
 static bool apply_model(const struct tl_binding *all, const char *path, tl_error *error)
 {
@@ -392,6 +403,18 @@ bool tl_settings_apply_preset(struct tl_settings *settings, const char *name, tl
     tl_options_reset(&all[LIGHT], 1);
     if (!tl_options_set(all, TL_SETTINGS_TABLES, "scene.preset", name, "preset", NULL, error) ||
         !apply_preset(all, name, error))
+        return false;
+    *settings = changed;
+    return true;
+}
+
+bool tl_settings_apply_overlay(struct tl_settings *settings, const char *name, tl_error *error)
+{
+    struct tl_settings changed = *settings;
+    struct tl_binding all[TL_SETTINGS_TABLES];
+    tl_settings_bind(&changed, all);
+    if (!tl_options_set(all, TL_SETTINGS_TABLES, "scene.overlay_fabric", name, "fabric", NULL, error) ||
+        !tl_settings_read_look(name, &changed.overlay, &changed.overlay_weave, error))
         return false;
     *settings = changed;
     return true;

@@ -9,6 +9,7 @@
 #define NOISE_MS          0.05
 #define OUTLIER           3.0 /* standard deviations, beyond which a run says no more */
 #define FIRST_RUNS        2   /* the first run makes what others find made, and says little */
+#define BELIEVED_RUNS     5   /* ... but the next ones are believed whatever they say */
 #define FACTOR_MIN        0.02
 #define UNKNOWN_MS        1.0 /* work of a job that the table knows nothing of */
 
@@ -19,7 +20,7 @@
 #define LOAD_FOLLOW  0.15
 #define LOAD_FORGETS 0.01 /* towards 1: what lasts is learned by the jobs */
 
-static double sum_of(const struct tl_work *work)
+double tl_work_sum(const struct tl_work *work)
 {
     double sum = 0;
     for (int i = 0; i < TL_WORK_PARTS; i++)
@@ -29,7 +30,7 @@ static double sum_of(const struct tl_work *work)
 
 static struct tl_work known(const struct tl_work *work)
 {
-    return sum_of(work) > 0 ? *work : (struct tl_work){.ms = {UNKNOWN_MS}};
+    return tl_work_sum(work) > 0 ? *work : (struct tl_work){.ms = {UNKNOWN_MS}};
 }
 
 static void begin(struct tl_cost_job *job)
@@ -45,7 +46,7 @@ static void begin(struct tl_cost_job *job)
 double tl_cost_predict(const struct tl_cost_job *job, const struct tl_work *work, double load)
 {
     if (job->runs == 0)
-        return sum_of(work) > 0 ? load * sum_of(work) : (double)NAN;
+        return tl_work_sum(work) > 0 ? load * tl_work_sum(work) : (double)NAN;
     struct tl_work used = known(work);
     double ms = 0;
     for (int i = 0; i < TL_WORK_PARTS; i++)
@@ -72,7 +73,7 @@ void tl_cost_learn(struct tl_cost_job *job, const struct tl_work *work, double l
     }
     double noise = NOISE * predicted + NOISE_MS;
     variance += noise * noise;
-    double limit = OUTLIER * sqrt(variance);
+    double limit = job->runs > BELIEVED_RUNS ? OUTLIER * sqrt(variance) : INFINITY;
     double surprise = fmin(fmax(ms / load - predicted, -limit), limit);
     for (int i = 0; i < TL_WORK_PARTS; i++) {
         job->factor[i] = fmax(job->factor[i] + along[i] / variance * surprise, FACTOR_MIN);

@@ -132,6 +132,8 @@ void tl_present_show(const struct tl_present *present, tl_gpu *gpu, const struct
     const vec3s columns[3] = {view->right, view->up, view->forward};
     glBindFramebuffer(GL_FRAMEBUFFER, request->framebuffer);
     glViewport(0, 0, request->width, request->height);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(request->first_column, 0, request->end_column - request->first_column, request->height);
     glUseProgram(present->show.id);
     glUniform1f(EXPOSURE, exp2f(request->params->exposure_ev));
     glUniform1i(BACKGROUND, request->params->background);
@@ -145,6 +147,7 @@ void tl_present_show(const struct tl_present *present, tl_gpu *gpu, const struct
     glBindTextureUnit(latlong ? 2 : 1, 0);
     glBindTextureUnit(3, present->blurred.id);
     tl_gpu_draw_fullscreen(gpu);
+    glDisable(GL_SCISSOR_TEST);
 }
 
 size_t tl_present_bytes(const struct tl_present *present)

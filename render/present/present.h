@@ -22,6 +22,7 @@ struct tl_show_request {
     const struct tl_image_params *params;
     unsigned framebuffer; /* GL name */
     int width, height;    /* pixels */
+    int first_column, end_column; /* what of it is drawn: [first, end) */
 };
 
 bool tl_present_create(struct tl_present *present, tl_gpu *gpu, tl_error *error);

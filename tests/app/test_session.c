@@ -3,6 +3,7 @@
 
 #include "app/session.h"
 #include "config/log.h"
+#include "config/memory.h"
 
 #include <string.h>
 
@@ -171,6 +172,48 @@ static void picking_finds_the_front(void **state)
     tl_session_destroy(&session);
 }
 
+/* The garment's, which comes last. */
+static const vec3s *strains_shown(tl_session *session)
+{
+    tl_frame frame = tl_session_frame(session);
+    return frame.surfaces[frame.surface_count - 1].strains;
+}
+
+static void strains_are_told_when_they_are_looked_at(void **state)
+{
+    (void)state;
+    tl_session *session = quick_session();
+    struct tl_settings settings = *tl_session_settings(session);
+    tl_error error = {0};
+    assert_null(strains_shown(session));
+    tl_session_want_strains(session, true);
+    assert_non_null(strains_shown(session));
+    tl_session_want_strains(session, false);
+    settings.image.view = TL_VIEW_STRAIN_WARP;
+    assert_ok(tl_session_apply(session, &settings, &error), error);
+
+    /* Against the drape's own measure, of edges: across an equilateral triangle strain is up to 5/3 of the
+     * largest of its edges' (of squared lengths), across a panel's less regular ones somewhat more. */
+    size_t count = tl_session_frame(session).surfaces[1].vertex_count;
+    double largest = 0, most = tl_session_report(session).max_strain;
+    vec3s *first = TL_NEW_ARRAY(vec3s, count);
+    memcpy(first, strains_shown(session), count * sizeof *first);
+    for (size_t i = 0; i < count; i++)
+        largest = fmax(largest, (double)first[i].x);
+    assert_true(largest > 1e-4 && largest < 3 * most);
+
+    assert_ok(tl_session_advance(session, &error), error); /* they follow the cloth */
+    assert_true(memcmp(first, strains_shown(session), count * sizeof *first) != 0);
+    strcpy(settings.scene.garment, "skirt");
+    assert_ok(tl_session_apply(session, &settings, &error), error);
+    assert_non_null(strains_shown(session));
+    settings.image.view = TL_VIEW_NORMAL;
+    assert_ok(tl_session_apply(session, &settings, &error), error);
+    assert_null(strains_shown(session));
+    free(first);
+    tl_session_destroy(&session);
+}
+
 int main(void)
 {
     tl_log_set_level(TL_LOG_WARN);
@@ -180,6 +223,7 @@ int main(void)
         cmocka_unit_test(a_failure_keeps_what_was),
         cmocka_unit_test(frames_replay_to_the_bit),
         cmocka_unit_test(picking_finds_the_front),
+        cmocka_unit_test(strains_are_told_when_they_are_looked_at),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
