@@ -24,12 +24,13 @@ enum tl_flag_set { /* which groups of flags a command takes */
                    TL_FLAGS_FULL = 512,        /* --full */
                    TL_FLAGS_LAYOUT = 1024,     /* --layout NAME --from NAME --size N */
                    TL_FLAGS_FABRIC = 2048,     /* --repeat-mm MM --height-mm MM --clamp */
-                   TL_FLAGS_CHECK = 1 << 12,   /* --frames N --every K --furnace --still --keep FOLDER */
+                   TL_FLAGS_CHECK = 1 << 12,   /* --frames --every --furnace --still --budget --keep */
                    TL_FLAGS_AOV = 1 << 17,     /* --aov */
                    TL_FLAGS_SHEET = 1 << 24,   /* lists of what a contact sheet shows, --same-drape */
                    TL_FLAGS_CAPTURE = 1 << 16, /* --capture, and those of the scene but the image's */
                    TL_FLAGS_FLY = 1 << 20,     /* --budget --frames --path --video --against --replay
                                                   --oracle --hash */
+                   TL_FLAGS_BUDGET = 1 << 21,  /* --budget MS */
 };
 
 struct tl_arguments {

@@ -9,13 +9,19 @@
  * cut. */
 #define CAUGHT_STRAIN 0.5
 
+static double energy_of(const struct tl_cloth_report *report)
+{
+    return report->kinetic_energy + report->elastic_energy + report->potential_energy;
+}
+
 void tl_measure_strain(const struct tl_checked *checked, struct tl_finding *finding)
 {
     if (!checked->cloth)
         return;
     const struct tl_cloth_report *report = &checked->cloth->report;
     finding->bound = fmax(2 * checked->cloth->strain_limit, CAUGHT_STRAIN);
-    tl_finding_add(finding, report->max_strain);
+    /* The largest of numbers passes over what is none; a sum does not. */
+    tl_finding_add(finding, isfinite(energy_of(report)) ? report->max_strain : (double)NAN);
     tl_finding_place(finding, "garment: %zu of %zu particles caught", report->caught_count,
                      report->vertex_count);
 }
@@ -28,11 +34,6 @@ void tl_measure_inside(const struct tl_checked *checked, struct tl_finding *find
     tl_finding_add(finding, report->deepest_m);
     tl_finding_place(finding, "garment: %zu of %zu particles caught", report->caught_count,
                      report->vertex_count);
-}
-
-static double energy_of(const struct tl_cloth_report *report)
-{
-    return report->kinetic_energy + report->elastic_energy + report->potential_energy;
 }
 
 void tl_measure_energy(const struct tl_checked *checked, struct tl_finding *finding)

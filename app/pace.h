@@ -32,6 +32,7 @@ struct tl_levels {
 struct tl_pace_choice {
     struct tl_levels levels;
     double predicted_ms; /* cloth and drawing; NaN while nothing is known */
+    double least_ms;     /* of the cheapest levels, where that is more than the budget; else predicted_ms */
     double error;        /* estimated, relative RMSE that the levels add to that of the settings */
     char reason[120];    /* for people: what was shed or taken back, and why; "" when nothing changed */
 };
@@ -58,6 +59,15 @@ struct tl_settings tl_levels_apply(const struct tl_levels *levels, const struct 
 /* What a frame took that was drawn at the levels chosen last: its plan with took_ms, the cloth's part, and
  * the whole from the choice to the finished image. */
 void tl_pace_learn(tl_pace *pace, const tl_plan *plan, double cloth_ms, double total_ms);
+
+/* What the next better level of a knob would change, from the levels chosen last. */
+struct tl_pace_step {
+    int level, level_count;
+    double value;     /* of the setting at this level: regions, steps, substeps a frame, scale */
+    double ms, error; /* dearer by so much, in error by so much less; NaN at level 0 */
+};
+void tl_pace_steps(const tl_pace *pace, const tl_renderer *renderer, const tl_frame *frame,
+                   const struct tl_settings *settings, struct tl_pace_step out[TL_KNOB_COUNT]);
 
 /* Median of |predicted - took| / took over the last 120 frames; NaN before the first. */
 double tl_pace_prediction_error(const tl_pace *pace);

@@ -73,6 +73,10 @@ struct tl_settings_source {
 };
 bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *source, tl_error *error);
 
+/* Single options over settings already there: up to `most` of "table.key=value"; NULL ends them. */
+bool tl_settings_assign(struct tl_settings *settings, const char *const *assignments, size_t most,
+                        tl_error *error);
+
 /* Layers a named fabric, preset or colourway ("": none) over settings already there (the panel does this,
  * also after scene.garment or scene.colourways changed). */
 bool tl_settings_apply_fabric(struct tl_settings *settings, const char *name, tl_error *error);

@@ -220,6 +220,7 @@ static void build_membranes(struct tl_energy *energy, const struct tl_topology *
     energy->membrane_run_ends = batches.run_ends;
     batches.run_ends = NULL;
     energy->membranes = TL_NEW_ARRAY(struct tl_membrane, energy->membrane_count);
+    energy->previewed = tl_alloc_lines(energy->membrane_count, sizeof *energy->previewed);
     for (size_t i = 0; i < energy->membrane_count * TL_BATCH; i++) {
         struct tl_membrane *m = &energy->membranes[i / TL_BATCH];
         for (int k = 0; k < 3; k++)
@@ -289,6 +290,7 @@ struct tl_energy tl_energy_build(const struct tl_topology *topology, const vec2s
 void tl_energy_release(struct tl_energy *energy)
 {
     free(energy->membranes);
+    free(energy->previewed);
     free(energy->membrane_run_ends);
     free(energy->bend_run_ends);
     free(energy->bends);
@@ -321,23 +323,27 @@ static double factor_of(double gradient, double stiffness, double h)
     return gradient > 0 && isfinite(sum) ? -1 / sum : 0;
 }
 
-static void set_membrane(struct tl_membrane *m, const struct tl_cloth_fabric *fabric, const double *w,
-                         double h)
+static void set_preview(const struct tl_membrane *m, const struct tl_cloth_fabric *fabric, const double *w,
+                        double h, struct tl_preview_membrane *out)
 {
+    memcpy(out->vertices, m->vertices, sizeof out->vertices);
+    memcpy(out->c, &m->c[1], sizeof out->c);
+    memcpy(out->d, &m->d[1], sizeof out->d);
     for (int lane = 0; lane < TL_BATCH; lane++) {
         double cc = 0, cd = 0, dd = 0;
         for (int i = 0; i < 3; i++) {
-            double mobility = m->w[i][lane] = w[m->vertices[i][lane]], c = m->c[i][lane], d = m->d[i][lane];
+            double mobility = out->w[i][lane] = w[m->vertices[i][lane]];
+            double c = m->c[i][lane], d = m->d[i][lane];
             cc += mobility * c * c;
             cd += mobility * c * d;
             dd += mobility * d * d;
         }
-        m->cc[lane] = cc;
-        m->cd[lane] = cd;
-        m->dd[lane] = dd;
-        m->weft[lane] = factor_of(cc, fabric->stretch_weft * m->area[lane], h);
-        m->warp[lane] = factor_of(dd, fabric->stretch_warp * m->area[lane], h);
-        m->shear[lane] = 1 / (fabric->shear * m->area[lane] * h * h);
+        out->cc[lane] = cc;
+        out->cd[lane] = cd;
+        out->dd[lane] = dd;
+        out->weft[lane] = factor_of(cc, fabric->stretch_weft * m->area[lane], h);
+        out->warp[lane] = factor_of(dd, fabric->stretch_warp * m->area[lane], h);
+        out->shear[lane] = 1 / (fabric->shear * m->area[lane] * h * h);
     }
 }
 
@@ -376,7 +382,7 @@ void tl_energy_set(struct tl_energy *energy, const struct tl_cloth_fabric *fabri
                    const double *inverse_masses, double h)
 {
     for (size_t i = 0; i < energy->membrane_count; i++)
-        set_membrane(&energy->membranes[i], fabric, inverse_masses, h);
+        set_preview(&energy->membranes[i], fabric, inverse_masses, h, &energy->previewed[i]);
     for (size_t i = 0; i < energy->bend_count; i++)
         set_bend(&energy->bends[i], fabric, inverse_masses, h);
     energy->bends_as_force = h * sqrt(fastest_bending(&energy->pulls, inverse_masses)) <= FORCE_LIMIT;

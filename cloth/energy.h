@@ -26,6 +26,7 @@
 #include "cloth/pulls.h"
 #include "cloth/topology.h"
 #include "cloth/vec3d.h"
+#include "config/memory.h"
 
 /* Triangles are kept in batches that share no vertex, lane by lane. An empty lane has the vertex one past the
  * last, which is held, and zeros. */
@@ -33,12 +34,20 @@
 /* Membranes. F_u = sum c_i x_i, F_v = sum d_i x_i. */
 struct tl_membrane {
     uint32_t vertices[3][TL_BATCH];
-    double c[3][TL_BATCH], d[3][TL_BATCH];           /* 1/m */
-    double area[TL_BATCH];                           /* m^2, at rest */
+    double c[3][TL_BATCH], d[3][TL_BATCH]; /* 1/m */
+    double area[TL_BATCH];                 /* m^2, at rest */
+};
+
+/* The same batches as `preview` solves them: all that it reads in a substep, as it waits for memory. */
+struct tl_preview_membrane {
+    _Alignas(
+        TL_CACHE_LINE) double c[2][TL_BATCH]; /* of the last two vertices; the first's is minus their sum */
+    double d[2][TL_BATCH];
     double w[3][TL_BATCH];                           /* 1/kg, of the vertices */
     double cc[TL_BATCH], cd[TL_BATCH], dd[TL_BATCH]; /* sums of w c_i c_i, ...: fixed while masses are */
     double weft[TL_BATCH], warp[TL_BATCH];           /* -1 / (w |grad|^2 + 1 / (k A h^2)) */
     double shear[TL_BATCH];                          /* 1 / (k A h^2) */
+    uint32_t vertices[3][TL_BATCH];
 };
 
 /* Curvatures: L_uu, L_vv, sqrt(2) L_uv = sum of rows over the stencil's vertices. */
@@ -64,6 +73,7 @@ struct tl_energy {
     size_t membrane_run_count, *membrane_run_ends; /* see struct tl_batches */
     size_t bend_run_count, *bend_run_ends;
     struct tl_membrane *membranes;
+    struct tl_preview_membrane *previewed; /* [membrane_count] */
     struct tl_bend *bends;
     struct tl_link *links;
     double *masses; /* [vertex_count] kg per areal density: a third of the area around */

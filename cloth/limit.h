@@ -3,7 +3,7 @@
  * constraints in a mass-spring model to describe rigid cloth behavior"). It is not in the energy: the other
  * solvers know none, and a fabric that truly stretches further needs it off.
  *
- * Only edges around triangles that came near the limit in this substep are looked at: a substep moves cloth
+ * Only edges of triangles that came near the limit in this substep are looked at: a substep moves cloth
  * by far less than what is left then, and what it moves further is seen in the next. Threads: pure. */
 #ifndef TOILE_CLOTH_LIMIT_H
 #define TOILE_CLOTH_LIMIT_H
@@ -15,17 +15,17 @@
 
 struct tl_limited_edge {
     uint32_t ends[2];
-    double rest;  /* m */
+    double rest;  /* m; HUGE_VAL: too short, or of no triangle; it may be of any length */
     double began; /* m, its length at first */
 };
 
 struct tl_limits {
     double strain; /* 0: no limit */
-    size_t vertex_count, count;
-    struct tl_limited_edge *edges;
-    uint32_t *first;       /* [vertex_count + 1] the edges whose lower end is a vertex */
-    bool *due, *always;    /* [vertex_count + 1] those edges are looked at: now; in any case */
-    struct tl_watch watch; /* for tl_xpbd_solve */
+    size_t count;
+    struct tl_limited_edge *edges;  /* [count] as in the topology */
+    bool *due, *always;             /* [count] it is looked at: now; in any case */
+    uint32_t (*sides)[3][TL_BATCH]; /* [membrane_count] edges of each batch of membranes */
+    struct tl_watch watch;          /* for tl_xpbd_solve */
     double passed_s;
 };
 

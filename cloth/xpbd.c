@@ -45,95 +45,125 @@ TL_INLINE void move(struct places *places, int lane, vec3d by, double share)
     put(places, lane, vec3d_muladd(at(places, lane), by, share));
 }
 
-/* One membrane of each lane on its way: a push p on row c moves vertex i by w_i c_i p, and so F_u by cc p and
- * F_v by cd p. Both stretches and the shear are solved, one after the other, on F alone, and the vertices
- * move once. In four stages: what one stage of a batch waits for, roots and divisions, the same stage of the
- * next batches need not. */
+/* One membrane of each lane on its way. Both stretches and the shear are solved one after the other, on F
+ * alone, and the vertices move once: a push p on row c moves vertex i by w_i c_i p, and so F_u by cc p and
+ * F_v by cd p. All pushes lie in the plane of the first F_u and F_v, u and v: only their shares of these two
+ * change, and scalar products follow from the first three. In stages: what one stage of a batch waits for,
+ * roots and divisions, the same stage of the next batches need not. */
 struct membrane_work {
-    struct places x[3], u, v, push_c, push_d;
-    double uu[TL_BATCH], vv[TL_BATCH], uv[TL_BATCH]; /* the metric, before any push */
+    struct places x[3], u, v;
+    double uu[TL_BATCH], vv[TL_BATCH], uv[TL_BATCH]; /* of F as it is now */
+    double push_u[TL_BATCH], push_v[TL_BATCH];       /* weft's push is push_u F_u, then warp's push_v F_v */
+    double scale_u[TL_BATCH], lean_v[TL_BATCH];      /* after weft: F_u = scale_u u, F_v = v + lean_v u */
+    double scale_v[TL_BATCH], lean_u[TL_BATCH]; /* after warp: F_v scale_v times, F_u more by lean_u F_v */
+    double c_u[TL_BATCH], c_v[TL_BATCH];        /* the whole push on row c: c_u u + c_v v */
+    double d_u[TL_BATCH], d_v[TL_BATCH];
 };
 
-/* A stretch C = |F| - 1 pushes by factor C along F/|F|: in units of F. */
-TL_INLINE double stretch_push(vec3d f, double factor)
-{
-    double squared = vec3d_dot(f, f);
-    return factor * (1 - 1 / sqrt(squared > NO_LENGTH * NO_LENGTH ? squared : NO_LENGTH * NO_LENGTH));
-}
-
-TL_INLINE void solve_weft(const struct tl_membrane *m, int lane, struct membrane_work *work)
+TL_INLINE void measure(const struct tl_preview_membrane *m, int lane, struct membrane_work *work)
 {
     vec3d origin = at(&work->x[0], lane), side = vec3d_sub(at(&work->x[1], lane), origin);
     vec3d other = vec3d_sub(at(&work->x[2], lane), origin);
-    vec3d u = vec3d_muladd(vec3d_scale(side, m->c[1][lane]), other, m->c[2][lane]);
-    vec3d v = vec3d_muladd(vec3d_scale(side, m->d[1][lane]), other, m->d[2][lane]);
+    vec3d u = vec3d_muladd(vec3d_scale(side, m->c[0][lane]), other, m->c[1][lane]);
+    vec3d v = vec3d_muladd(vec3d_scale(side, m->d[0][lane]), other, m->d[1][lane]);
+    put(&work->u, lane, u);
+    put(&work->v, lane, v);
     work->uu[lane] = vec3d_dot(u, u);
     work->vv[lane] = vec3d_dot(v, v);
     work->uv[lane] = vec3d_dot(u, v);
-    vec3d push = vec3d_scale(u, stretch_push(u, m->weft[lane]));
-    put(&work->push_c, lane, push);
-    put(&work->u, lane, vec3d_muladd(u, push, m->cc[lane]));
-    put(&work->v, lane, vec3d_muladd(v, push, m->cd[lane]));
 }
 
-TL_INLINE void solve_warp(const struct tl_membrane *m, int lane, struct membrane_work *work)
+/* A stretch C = |F| - 1 pushes by factor C along F/|F|: in units of F. */
+TL_INLINE double stretch_push(double squared, double factor)
 {
-    vec3d u = at(&work->u, lane), v = at(&work->v, lane);
-    vec3d push = vec3d_scale(v, stretch_push(v, m->warp[lane]));
-    put(&work->push_d, lane, push);
-    put(&work->u, lane, vec3d_muladd(u, push, m->cd[lane]));
-    put(&work->v, lane, vec3d_muladd(v, push, m->dd[lane]));
+    return factor * (1 - 1 / sqrt(squared > NO_LENGTH * NO_LENGTH ? squared : NO_LENGTH * NO_LENGTH));
+}
+
+TL_INLINE void solve_weft(const struct tl_preview_membrane *m, int lane, struct membrane_work *work)
+{
+    double uu = work->uu[lane], uv = work->uv[lane], push = stretch_push(uu, m->weft[lane]);
+    double scale = 1 + push * m->cc[lane], lean = push * m->cd[lane], met = uv + lean * uu;
+    work->push_u[lane] = push;
+    work->scale_u[lane] = scale;
+    work->lean_v[lane] = lean;
+    work->uu[lane] = scale * (scale * uu);
+    work->uv[lane] = scale * met;
+    work->vv[lane] += lean * (uv + met);
+}
+
+TL_INLINE void solve_warp(const struct tl_preview_membrane *m, int lane, struct membrane_work *work)
+{
+    double vv = work->vv[lane], uv = work->uv[lane], push = stretch_push(vv, m->warp[lane]);
+    double scale = 1 + push * m->dd[lane], lean = push * m->cd[lane], met = uv + lean * vv;
+    work->push_v[lane] = push;
+    work->scale_v[lane] = scale;
+    work->lean_u[lane] = lean;
+    work->vv[lane] = scale * (scale * vv);
+    work->uv[lane] = scale * met;
+    work->uu[lane] += lean * (uv + met);
 }
 
 /* C = g/sqrt(p), with g = u.v, a = |u|^2, b = |v|^2, p = a b, has the gradient
  * c_i (v a - u g) / (a sqrt(p)) + d_i (u b - v g) / (b sqrt(p)), of weighted square
  * (p - g^2) (cc b - 2 cd g + dd a) / p^2: its push needs no root, and one division. */
-TL_INLINE void solve_shear(const struct tl_membrane *m, int lane, struct membrane_work *work)
+TL_INLINE void solve_shear(const struct tl_preview_membrane *m, int lane, struct membrane_work *work)
 {
-    vec3d u = at(&work->u, lane), v = at(&work->v, lane);
-    double a = vec3d_dot(u, u), b = vec3d_dot(v, v), g = vec3d_dot(u, v), p = a * b;
+    double a = work->uu[lane], b = work->vv[lane], g = work->uv[lane], p = a * b;
     double square = (p - g * g) * (m->cc[lane] * b - 2 * m->cd[lane] * g + m->dd[lane] * a);
     double sum = m->shear[lane] * p * p + square, multiplier = sum > 0 ? -g / sum : 0;
-    vec3d push_c = vec3d_muladd(at(&work->push_c, lane), v, multiplier * p);
-    vec3d push_d = vec3d_muladd(at(&work->push_d, lane), u, multiplier * p);
-    put(&work->push_c, lane, vec3d_muladd(push_c, u, -multiplier * b * g));
-    put(&work->push_d, lane, vec3d_muladd(push_d, v, -multiplier * a * g));
+    double across = multiplier * p, along_c = multiplier * b * g, along_d = multiplier * a * g;
+    double lean_v = work->lean_v[lane], u_v = work->lean_u[lane], v_v = work->scale_v[lane];
+    double u_u = work->scale_u[lane] + u_v * lean_v, v_u = v_v * lean_v; /* F_u = u_u u + u_v v, ... */
+    work->c_u[lane] = work->push_u[lane] + (across * v_u - along_c * u_u);
+    work->c_v[lane] = across * v_v - along_c * u_v;
+    work->d_u[lane] = work->push_v[lane] * lean_v + (across * u_u - along_d * v_u);
+    work->d_v[lane] = work->push_v[lane] + (across * u_v - along_d * v_v);
 }
 
-TL_INLINE void move_corners(const struct tl_membrane *m, int lane, struct membrane_work *work)
+TL_INLINE void move_corners(const struct tl_preview_membrane *m, int lane, struct membrane_work *work)
 {
-    vec3d push_c = at(&work->push_c, lane), push_d = at(&work->push_d, lane), pushes[3];
-    for (int i = 1; i < 3; i++)
-        pushes[i] = vec3d_muladd(vec3d_scale(push_c, m->c[i][lane]), push_d, m->d[i][lane]);
-    pushes[0] = vec3d_scale(vec3d_add(pushes[1], pushes[2]), -1);
-    for (int i = 0; i < 3; i++)
-        move(&work->x[i], lane, pushes[i], m->w[i][lane]);
+    vec3d u = at(&work->u, lane), v = at(&work->v, lane);
+    double along_u[3], along_v[3];
+    for (int i = 1; i < 3; i++) {
+        double c = m->c[i - 1][lane], d = m->d[i - 1][lane];
+        along_u[i] = c * work->c_u[lane] + d * work->d_u[lane];
+        along_v[i] = c * work->c_v[lane] + d * work->d_v[lane];
+    }
+    along_u[0] = -(along_u[1] + along_u[2]);
+    along_v[0] = -(along_v[1] + along_v[2]);
+    for (int i = 0; i < 3; i++) {
+        double w = m->w[i][lane];
+        vec3d moved = vec3d_muladd(at(&work->x[i], lane), u, w * along_u[i]);
+        put(&work->x[i], lane, vec3d_muladd(moved, v, w * along_v[i]));
+    }
 }
 
 /* Batches of a run that are solved side by side. */
-#define GROUP      8
-#define CACHE_LINE 64
+#define GROUP 8
 
-/* Whether the metric's larger eigenvalue exceeds `most` in any lane. */
-TL_INLINE bool stretches(const struct membrane_work *work, double most)
+/* Whether the metric's larger eigenvalue exceeds `most`. */
+TL_INLINE bool stretches(const struct membrane_work *work, int lane, double most)
 {
-    int any = 0;
-    for (int lane = 0; lane < TL_BATCH; lane++) {
-        double spare_u = most - work->uu[lane], spare_v = most - work->vv[lane], uv = work->uv[lane];
-        any |= (spare_u < 0) | (spare_v < 0) | (spare_u * spare_v < uv * uv);
-    }
-    return any;
+    double spare_u = most - work->uu[lane], spare_v = most - work->vv[lane], uv = work->uv[lane];
+    return (spare_u < 0) | (spare_v < 0) | (spare_u * spare_v < uv * uv);
 }
 
-TL_INLINE void solve_group(const struct tl_membrane *m, size_t count, double most, vec3d *x, bool *seen)
+TL_INLINE void solve_group(const struct tl_preview_membrane *m, size_t count, double most, vec3d *x,
+                           bool (*seen)[TL_BATCH])
 {
     struct membrane_work work[GROUP];
     for (size_t k = 0; k < count; k++) {
-        for (size_t line = 0; line < sizeof *m; line += CACHE_LINE)
+        for (size_t line = 0; line < sizeof *m; line += TL_CACHE_LINE)
             __builtin_prefetch((const char *)&m[k + GROUP] + line);
         for (int i = 0; i < 3; i++)
             load(x, m[k].vertices[i], &work[k].x[i]);
     }
+    for (size_t k = 0; k < count; k++)
+        for (int lane = 0; lane < TL_BATCH; lane++)
+            measure(&m[k], lane, &work[k]);
+    for (size_t k = 0; k < count && seen; k++)
+        for (int lane = 0; lane < TL_BATCH; lane++)
+            seen[k][lane] = stretches(&work[k], lane, most);
     for (size_t k = 0; k < count; k++)
         for (int lane = 0; lane < TL_BATCH; lane++)
             solve_weft(&m[k], lane, &work[k]);
@@ -149,12 +179,10 @@ TL_INLINE void solve_group(const struct tl_membrane *m, size_t count, double mos
     for (size_t k = 0; k < count; k++)
         for (int i = 0; i < 3; i++)
             store(&work[k].x[i], m[k].vertices[i], x);
-    for (size_t k = 0; k < count && seen; k++)
-        seen[k] = stretches(&work[k], most);
 }
 
-TL_CLONES static void solve_run(const struct tl_membrane *membranes, size_t count, double most, vec3d *x,
-                                bool *seen)
+TL_CLONES static void solve_run(const struct tl_preview_membrane *membranes, size_t count, double most,
+                                vec3d *x, bool (*seen)[TL_BATCH])
 {
     for (size_t first = 0; first < count; first += GROUP)
         solve_group(membranes + first, count - first < GROUP ? count - first : GROUP, most, x,
@@ -168,7 +196,7 @@ static void solve_membranes(const struct tl_energy *energy, const struct tl_watc
     for (size_t run = 0; run < energy->membrane_run_count; run++) {
         size_t end = energy->membrane_run_ends[run];
         struct tl_range part = tl_my_part(end - from, 1);
-        solve_run(energy->membranes + from + part.from, part.to - part.from, watch ? watch->most : 0, x,
+        solve_run(energy->previewed + from + part.from, part.to - part.from, watch ? watch->most : 0, x,
                   watch ? watch->seen + from + part.from : NULL);
         from = end;
 #pragma omp barrier

@@ -21,11 +21,11 @@
 #include "cloth/energy.h"
 #include "cloth/particles.h"
 
-/* Which batches of membranes were found stretched so that F turns something into more than sqrt(most) times
- * its length. */
+/* Which membranes were found stretched so that F turns something into more than sqrt(most) times its length.
+ */
 struct tl_watch {
     double most;
-    bool *seen; /* [membrane_count] */
+    bool (*seen)[TL_BATCH]; /* [membrane_count] batches */
 };
 
 /* Every membrane, bend and link once; `watch` may be NULL. */

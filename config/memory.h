@@ -8,6 +8,10 @@
 /* Zeroed array of `count` elements of `size` bytes; free() releases it. Never NULL, also for count 0. */
 void *tl_alloc(size_t count, size_t size);
 
+/* The same, beginning with a line of the processor's cache: what wide registers read crosses none then. */
+#define TL_CACHE_LINE 64
+void *tl_alloc_lines(size_t count, size_t size);
+
 /* realloc of an array to `count` elements; new memory is not zeroed. Never NULL. */
 void *tl_resize(void *memory, size_t count, size_t size);
 
