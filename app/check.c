@@ -69,7 +69,8 @@ const struct tl_invariant tl_invariants[] = {
     {"furnace.shadowed", "shadows only take white light away: by how much it grows", 0.01,
      "as furnace.albedo", true, tl_measure_furnace_shadowed},
     {"cloth.strain", "no edge is longer or shorter than cloth can be: largest strain", BY_SETTINGS,
-     "what the solver is told to keep, and as much again for edges that hold on between parts of a body",
+     "what the solver is told to keep, and room for what is caught between parts of a body; what a hand "
+     "holds, it may stretch until the cloth is refused (TL_CLOTH_MOST_STRAIN)",
      false, tl_measure_strain},
     {"cloth.inside", "no particle is below the avatar's skin or the ground: deepest, metres", 1e-3,
      "a third of the distance that is kept; none is held inside, but a moving body's skin is followed in "
@@ -123,12 +124,18 @@ void tl_finding_vertex(struct tl_finding *finding, const tl_frame *frame, size_t
     tl_finding_place(finding, "%s: vertex %zu", frame->surfaces[surface].name, vertex);
 }
 
+/* Of the bound, where there is one to be a part of. */
+static double severity(const struct tl_finding *finding)
+{
+    return finding->bound > 0 ? finding->worst / finding->bound : finding->worst;
+}
+
 /* What is broken counts more than what is not, then what is worse. */
 static bool is_worse(const struct tl_verdict *verdict, const struct tl_finding *finding, bool ok)
 {
     if (!verdict->finding.is_measured || verdict->ok != ok)
         return !verdict->finding.is_measured || !ok;
-    return !isnan(verdict->finding.worst) && !(finding->worst <= verdict->finding.worst);
+    return !isnan(verdict->finding.worst) && !(severity(finding) <= severity(&verdict->finding));
 }
 
 int tl_check_frame(const struct tl_checked *checked, struct tl_verdicts *verdicts, struct tl_finding *broken)

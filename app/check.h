@@ -20,6 +20,7 @@ struct tl_checked_cloth {
         least_energy_j; /* of the frames since nothing has worked on it but gravity; NaN: this is the first */
     double allowed_speed; /* m/s: what its fall, its wearer and the wind can give it */
     bool is_driven;       /* a hand, a clip or the wind works on it */
+    bool is_held;         /* the hand does */
 };
 
 /* One frame. What is NULL or 0 was not made for it, and what needs it is not measured. */

@@ -19,7 +19,9 @@ void tl_measure_strain(const struct tl_checked *checked, struct tl_finding *find
     if (!checked->cloth)
         return;
     const struct tl_cloth_report *report = &checked->cloth->report;
-    finding->bound = fmax(2 * checked->cloth->strain_limit, CAUGHT_STRAIN);
+    /* A hand does not yield: it pulls a trouser leg through the leg in it. */
+    finding->bound = checked->cloth->is_held ? TL_CLOTH_MOST_STRAIN
+                                             : fmax(2 * checked->cloth->strain_limit, CAUGHT_STRAIN);
     /* The largest of numbers passes over what is none; a sum does not. */
     tl_finding_add(finding, isfinite(energy_of(report)) ? report->max_strain : (double)NAN);
     tl_finding_place(finding, "garment: %zu of %zu particles caught", report->caught_count,

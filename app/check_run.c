@@ -140,6 +140,7 @@ static struct tl_checked_cloth watch_cloth(struct run *run, const tl_frame *fram
         .strain_limit = settings->cloth.solver == TL_CLOTH_PREVIEW ? settings->cloth.strain_limit : 0,
         .weight_n = run->weight_n,
         .least_energy_j = run->least_energy_j,
+        .is_held = is_swung(run, number),
         .is_driven = is_swung(run, number) || tl_session_plays_clip(run->stage->session) || blows > 0};
     cloth.allowed_speed = WHIP * (fall_speed(frame, settings->cloth.gravity) + wearer_speed(run, frame) +
                                   blows + (run->motion.pulls ? HAND_SPEED : 0));
