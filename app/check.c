@@ -44,7 +44,7 @@ const struct tl_invariant tl_invariants[] = {
      "four weights that sum to 1, rounded", true, tl_measure_visibility},
     {"visibility.regions",
      "VIS is what rays to the region see, on average over the sampled points: largest "
-     "difference of a region",
+     "difference of a region, times its light up to the mean",
      0.35, "rays: one ray a vertex and region, a few frames old: spread 0.06 over 64 points", true,
      tl_measure_leaks},
     {"light.environment", "cube and suns hold the environment's light: relative difference", 0.01,
@@ -69,8 +69,9 @@ const struct tl_invariant tl_invariants[] = {
     {"furnace.shadowed", "shadows only take white light away: by how much it grows", 0.01,
      "as furnace.albedo", true, tl_measure_furnace_shadowed},
     {"cloth.strain", "no edge is longer or shorter than cloth can be: largest strain", BY_SETTINGS,
-     "what the solver is told to keep, and room for what is caught between parts of a body; what a hand "
-     "holds, it may stretch until the cloth is refused (TL_CLOTH_MOST_STRAIN)",
+     "half, or twice what the solver is told to keep; when put on 1, and later a quarter more than then; "
+     "what a "
+     "hand holds, it may stretch until the cloth is refused (TL_CLOTH_MOST_STRAIN)",
      false, tl_measure_strain},
     {"cloth.inside", "no particle is below the avatar's skin or the ground: deepest, metres", 1e-3,
      "a third of the distance that is kept; none is held inside, but a moving body's skin is followed in "

@@ -35,8 +35,8 @@ struct run {
     struct tl_levels *levels; /* [frames] */
     struct tl_pace_choice choice;
     double chosen_ms, moved_ms, drawn_ms; /* on the wall, of this frame: the choice, the cloth, the picture */
-    double least_energy_j;
-    vec3s *wearer; /* positions one frame ago; NULL: none */
+    double least_energy_j, first_strain;  /* NaN: not known yet */
+    vec3s *wearer;                        /* positions one frame ago; NULL: none */
     double weight_n;
     struct tl_progress progress;
     int steps; /* all that progress counts */
@@ -139,6 +139,7 @@ static struct tl_checked_cloth watch_cloth(struct run *run, const tl_frame *fram
         .report = tl_session_report(run->stage->session),
         .strain_limit = settings->cloth.solver == TL_CLOTH_PREVIEW ? settings->cloth.strain_limit : 0,
         .weight_n = run->weight_n,
+        .first_strain = run->first_strain,
         .least_energy_j = run->least_energy_j,
         .is_held = is_swung(run, number),
         .is_driven = is_swung(run, number) || tl_session_plays_clip(run->stage->session) || blows > 0};
@@ -146,6 +147,8 @@ static struct tl_checked_cloth watch_cloth(struct run *run, const tl_frame *fram
                                   blows + (run->motion.pulls ? HAND_SPEED : 0));
     double energy_j =
         cloth.report.kinetic_energy + cloth.report.elastic_energy + cloth.report.potential_energy;
+    if (number == 0)
+        run->first_strain = cloth.report.max_strain;
     run->least_energy_j =
         cloth.is_driven ? NAN : fmin(run->least_energy_j, energy_j); /* fmin of a NaN: the other */
     return cloth;
@@ -280,7 +283,7 @@ static bool tell(struct run *run, int step, tl_error *error)
 static void begin(struct run *run)
 {
     tl_motion_begin(&run->motion, run->stage->session);
-    run->least_energy_j = NAN;
+    run->least_energy_j = run->first_strain = NAN;
 }
 
 static void choose(struct run *run, int number)

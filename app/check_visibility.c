@@ -180,14 +180,26 @@ static void hear(struct witness *witness, int frame)
     }
 }
 
+/* The cache traces a region the more seldom the less light it has, so that its errors in the light are alike:
+ * a region counts as its light does, up to the mean. */
+static double weight_of(const struct tl_regions *regions, int region)
+{
+    double all = 0;
+    for (int i = 0; i < regions->count; i++)
+        all += (double)regions->items[i].importance;
+    double share = (double)regions->items[region].importance * regions->count;
+    return share < all ? share / all : 1;
+}
+
 static void add_tallies(const struct witness *witness, struct tl_finding *finding)
 {
-    for (int i = 0; i < witness->renderer->regions.count; i++) {
+    const struct tl_regions *regions = &witness->renderer->regions;
+    for (int i = 0; i < regions->count; i++) {
         const struct tally *tally = &witness->tallies[i];
         if (tally->points < LEAST_POINTS)
             continue;
         double claimed = tally->claimed / tally->points, seen = tally->seen / tally->points;
-        if (tl_finding_add(finding, fabs(claimed - seen)))
+        if (tl_finding_add(finding, weight_of(regions, i) * fabs(claimed - seen)))
             tl_finding_place(finding, "region %d: VIS %.2f, rays %.2f of %d points", i, claimed, seen,
                              tally->points);
     }

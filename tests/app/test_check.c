@@ -637,7 +637,7 @@ static void faults_of_cloth_are_named(void **state)
     tl_session *session = dressed();
     struct tl_cloth *cloth = tl_session_cloth(session);
     struct tl_checked_cloth watched = {
-        .strain_limit = 0.1, .weight_n = 2, .least_energy_j = NAN, .allowed_speed = 20};
+        .strain_limit = 0.1, .weight_n = 2, .first_strain = 0.1, .least_energy_j = NAN, .allowed_speed = 20};
     tl_frame frame;
     struct tl_checked checked = check_cloth(session, &watched, &frame);
     assert_clean(&checked);
