@@ -22,6 +22,9 @@ struct tl_checked_cloth {
     double allowed_speed; /* m/s: what its fall, its wearer and the wind can give it */
     bool is_driven;       /* a hand, a clip or the wind works on it */
     bool is_held;         /* the hand does */
+    /* How far its centre of mass has gone sideways since frame 0, where nothing touches or drives it; else
+     * NaN. */
+    double drift_m;
 };
 
 /* One frame. What is NULL or 0 was not made for it, and what needs it is not measured. */

@@ -57,6 +57,12 @@ void tl_measure_energy(const struct tl_checked *checked, struct tl_finding *find
                      cloth->least_energy_j);
 }
 
+void tl_measure_momentum(const struct tl_checked *checked, struct tl_finding *finding)
+{
+    if (checked->cloth && !isnan(checked->cloth->drift_m))
+        tl_finding_add(finding, checked->cloth->drift_m);
+}
+
 void tl_measure_speed(const struct tl_checked *checked, struct tl_finding *finding)
 {
     const struct tl_checked_cloth *cloth = checked->cloth;
