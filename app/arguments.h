@@ -30,6 +30,7 @@ enum tl_flag_set { /* which groups of flags a command takes */
                    TL_FLAGS_CAPTURE = 1 << 16, /* --capture, and those of the scene but the image's */
                    TL_FLAGS_FLY = 1 << 20,     /* --budget --frames --path --video --against --replay
                                                   --oracle --hash */
+                   TL_FLAGS_BUDGET = 1 << 21,  /* --budget MS */
 };
 
 struct tl_arguments {

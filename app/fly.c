@@ -165,7 +165,7 @@ static bool choose(struct pilot *pilot, const struct tl_settings *wanted, int nu
     if (pilot->options->replay) {
         const struct tl_flight_frame *recorded = &pilot->options->replay->frames[number];
         *out = (struct tl_pace_choice){
-            .levels = recorded->levels, .predicted_ms = NAN, .least_ms = NAN, .error = recorded->error};
+            .levels = recorded->levels, .predicted_ms = NAN, .error = recorded->error};
     } else {
         *out = tl_pace_choose(pilot->pace, stage->renderer, &coming, wanted);
     }

@@ -17,7 +17,7 @@ const char *const tl_knob_names[] = {"refresh", "regions", "relief", "cloth", "s
 #define REGIONS_LEVELS 4
 #define RELIEF_LEVELS  3
 #define CLOTH_LEVELS   3
-#define SCALE_LEVELS   9
+#define SCALE_LEVELS   13
 
 #define REGIONS_MIN  24
 #define REFRESH_MIN  2
@@ -26,14 +26,15 @@ const char *const tl_knob_names[] = {"refresh", "regions", "relief", "cloth", "s
 #define SCALE_MIN    0.1f /* of the option */
 
 /* A fourth root of two a level: the samples halve with every other. */
-static const float scales[SCALE_LEVELS] = {1, 0.841f, 0.707f, 0.595f, 0.5f, 0.42f, 0.354f, 0.297f, 0.25f};
+static const float scales[SCALE_LEVELS] = {1,      0.841f, 0.707f, 0.595f, 0.5f,   0.42f, 0.354f,
+                                           0.297f, 0.25f,  0.21f,  0.177f, 0.149f, 0.125f};
 
 static const struct tl_budget_knob errors[TL_KNOB_COUNT] = {
     [TL_KNOB_REFRESH] = {REFRESH_LEVELS, {0, 0.01, 0.02}},
     [TL_KNOB_REGIONS] = {REGIONS_LEVELS, {0, 0.01, 0.02, 0.04}},
     [TL_KNOB_RELIEF] = {RELIEF_LEVELS, {0, 0.01, 0.03}},
     [TL_KNOB_CLOTH] = {CLOTH_LEVELS, {0, 0.01, 0.02}},
-    [TL_KNOB_SCALE] = {SCALE_LEVELS, {0, 0.03, 0.05, 0.07, 0.09, 0.11, 0.13, 0.15, 0.17}},
+    [TL_KNOB_SCALE] = {SCALE_LEVELS, {0, 0.03, 0.05, 0.07, 0.09, 0.11, 0.13, 0.15, 0.17, .19, .21, .23, .25}},
 };
 
 /* Frames without a change before the image counts as one to be looked at. */
@@ -159,7 +160,6 @@ static bool is_used(enum tl_knob knob, const struct scope *full)
     const struct tl_light_params *light = &full->drawn.light;
     switch (knob) {
     case TL_KNOB_REFRESH:
-        return has_regions(light) && light->visibility == TL_VISIBILITY_RAYS;
     case TL_KNOB_REGIONS:
         return has_regions(light);
     case TL_KNOB_RELIEF:
@@ -200,12 +200,16 @@ static int count_levels(enum tl_knob knob, const struct scope *full)
 /* ---- What levels cost ---- */
 
 /* What is always there, then substeps; ms of the built-in dress. */
-static struct tl_work cloth_work(const struct tl_cloth_params *cloth)
+static double substeps_of(const struct tl_cloth_params *cloth)
 {
     const double rounding = 1e-9;
     double steps = fmax(ceil(1 / (cloth->frame_rate * cloth->dt) - rounding), 1);
-    double substeps = cloth->solver == TL_CLOTH_PREVIEW ? steps * cloth->substeps : steps;
-    return (struct tl_work){{1, 0.1 * substeps}};
+    return cloth->solver == TL_CLOTH_PREVIEW ? steps * cloth->substeps : steps;
+}
+
+static struct tl_work cloth_work(const struct tl_cloth_params *cloth)
+{
+    return (struct tl_work){{1, 0.1 * substeps_of(cloth)}};
 }
 
 static const struct tl_work any_work = {{1}};
@@ -214,9 +218,9 @@ struct coming {
     const tl_pace *pace;
     const tl_renderer *renderer;
     struct scope full;
-    tl_bits running;                                      /* jobs, at the levels of the last frame */
-    tl_bits started[TL_KNOB_COUNT][TL_BUDGET_LEVELS_MAX]; /* ... and with those that another level starts */
-    bool is_ready[TL_BUDGET_LEVELS_MAX];                  /* levels of regions */
+    tl_bits running;                     /* jobs, at the levels of the last frame */
+    tl_bits started[TL_KNOB_COUNT];      /* ... and with those that another level of a knob starts */
+    bool is_ready[TL_BUDGET_LEVELS_MAX]; /* levels of regions */
 };
 
 static double known_ms(const struct tl_cost_job *job, const struct tl_work *work, double load)
@@ -235,7 +239,7 @@ static double cost_of(const void *context, const uint8_t *of)
     struct scope applied = apply(&levels, &coming->full);
     tl_bits jobs = coming->running;
     for (int k = 0; k < TL_KNOB_COUNT; k++)
-        jobs |= coming->started[k][of[k]];
+        jobs |= of[k] != pace->choice.levels.of[k] ? coming->started[k] : 0;
     double load = tl_renderer_load(coming->renderer);
     struct tl_work cloth = cloth_work(&applied.cloth);
     return tl_renderer_would_take(coming->renderer, &applied.drawn, jobs) +
@@ -256,16 +260,25 @@ static struct coming look_ahead(const tl_pace *pace, const tl_renderer *renderer
     struct coming coming = {.pace = pace, .renderer = renderer, .full = *full};
     struct scope now = apply(&pace->choice.levels, full);
     coming.running = tl_renderer_would_run(renderer, frame, &now.drawn);
-    for (int knob = 0; knob < TL_KNOB_COUNT; knob++)
-        for (int level = 0; level < pace->knobs[knob].level_count; level++) {
-            struct scope then = at_level(&coming, knob, level);
-            bool is_other = level != pace->choice.levels.of[knob];
-            if (is_other && knob != TL_KNOB_CLOTH)
-                coming.started[knob][level] = tl_renderer_would_run(renderer, frame, &then.drawn);
-            if (knob == TL_KNOB_REGIONS)
-                coming.is_ready[level] = !is_other || tl_renderer_has_regions(renderer, &then.drawn);
-        }
+    for (int knob = 0; knob < TL_KNOB_COUNT; knob++) {
+        int level = pace->choice.levels.of[knob], other = level > 0 ? level - 1 : level + 1;
+        struct scope then = at_level(&coming, knob, other);
+        if (other < pace->knobs[knob].level_count && knob != TL_KNOB_CLOTH)
+            coming.started[knob] = tl_renderer_would_run(renderer, frame, &then.drawn);
+    }
+    for (int level = 0; level < pace->knobs[TL_KNOB_REGIONS].level_count; level++) {
+        struct scope then = at_level(&coming, TL_KNOB_REGIONS, level);
+        coming.is_ready[level] = level == pace->choice.levels.of[TL_KNOB_REGIONS] ||
+                                 tl_renderer_has_regions(renderer, &then.drawn);
+    }
     return coming;
+}
+
+static struct tl_budget budget_of(const tl_pace *pace, const struct coming *coming)
+{
+    struct tl_budget budget = {.knob_count = TL_KNOB_COUNT, .cost = cost_of, .context = coming};
+    memcpy(budget.knobs, pace->knobs, sizeof pace->knobs);
+    return budget;
 }
 
 /* One level a frame, the cheapest first, as long as the environment stays what it is. */
@@ -346,8 +359,7 @@ struct tl_pace_choice tl_pace_choose(tl_pace *pace, tl_renderer *renderer, const
     if (pace->budget_ms > 0 && pace->rested < REST_FRAMES)
         prepare_regions(pace, renderer, frame, &full);
     const struct coming coming = look_ahead(pace, renderer, frame, &full);
-    struct tl_budget budget = {.knob_count = TL_KNOB_COUNT, .cost = cost_of, .context = &coming};
-    memcpy(budget.knobs, pace->knobs, sizeof pace->knobs);
+    const struct tl_budget budget = budget_of(pace, &coming);
     pace->choice.reason[0] = '\0';
     if (pace->budget_ms > 0 && pace->rested < REST_FRAMES)
         choose_in_motion(pace, &budget);
@@ -360,6 +372,47 @@ struct tl_pace_choice tl_pace_choose(tl_pace *pace, tl_renderer *renderer, const
     if (pace->cloth.runs == 0)
         pace->choice.predicted_ms = (double)NAN;
     return pace->choice;
+}
+
+static double value_of(enum tl_knob knob, const struct scope *scope)
+{
+    switch (knob) {
+    case TL_KNOB_REFRESH:
+        return all_refreshed(&scope->drawn.light);
+    case TL_KNOB_REGIONS:
+        return scope->drawn.light.regions;
+    case TL_KNOB_RELIEF:
+        return scope->drawn.detail.steps;
+    case TL_KNOB_CLOTH:
+        return substeps_of(&scope->cloth);
+    default:
+        return (double)scope->drawn.image.scale;
+    }
+}
+
+void tl_pace_steps(const tl_pace *pace, const tl_renderer *renderer, const tl_frame *frame,
+                   const struct tl_settings *settings, struct tl_pace_step out[TL_KNOB_COUNT])
+{
+    const struct scope full = scope_of(settings);
+    const struct coming coming = look_ahead(pace, renderer, frame, &full);
+    const struct tl_budget budget = budget_of(pace, &coming);
+    uint8_t now[TL_BUDGET_KNOBS_MAX] = {0};
+    memcpy(now, pace->choice.levels.of, sizeof pace->choice.levels.of);
+    double ms = cost_of(&coming, now), error = tl_budget_error(&budget, now);
+    for (int k = 0; k < TL_KNOB_COUNT; k++) {
+        const struct scope at = at_level(&coming, k, now[k]);
+        out[k] = (struct tl_pace_step){.level = now[k],
+                                       .level_count = pace->knobs[k].level_count,
+                                       .value = value_of((enum tl_knob)k, &at),
+                                       .ms = (double)NAN,
+                                       .error = (double)NAN};
+        if (now[k] == 0)
+            continue;
+        now[k]--;
+        out[k].ms = cost_of(&coming, now) - ms;
+        out[k].error = error - tl_budget_error(&budget, now);
+        now[k]++;
+    }
 }
 
 /* ---- What frames took ---- */

@@ -60,6 +60,15 @@ struct tl_settings tl_levels_apply(const struct tl_levels *levels, const struct 
  * the whole from the choice to the finished image. */
 void tl_pace_learn(tl_pace *pace, const tl_plan *plan, double cloth_ms, double total_ms);
 
+/* What the next better level of a knob would change, from the levels chosen last. */
+struct tl_pace_step {
+    int level, level_count;
+    double value;     /* of the setting at this level: regions, steps, substeps a frame, scale */
+    double ms, error; /* dearer by so much, in error by so much less; NaN at level 0 */
+};
+void tl_pace_steps(const tl_pace *pace, const tl_renderer *renderer, const tl_frame *frame,
+                   const struct tl_settings *settings, struct tl_pace_step out[TL_KNOB_COUNT]);
+
 /* Median of |predicted - took| / took over the last 120 frames; NaN before the first. */
 double tl_pace_prediction_error(const tl_pace *pace);
 

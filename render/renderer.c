@@ -145,8 +145,10 @@ static struct tl_plan_input plan_input(const tl_renderer *renderer, const tl_fra
                                        const struct tl_render_settings *settings, tl_bits changed,
                                        tl_bits wanted)
 {
+    /* Maps that wait for their turn are not what they should be. */
+    tl_bits waiting = tl_shadow_maps_wait(renderer->maps) ? TL_BIT(TL_MADE_DEPTHS) | TL_BIT(TL_MADE_MAPS) : 0;
     return (struct tl_plan_input){.changed = changed,
-                                  .valid = renderer->valid,
+                                  .valid = renderer->valid & ~waiting,
                                   .scene = tl_frame_facts(frame, settings),
                                   .wanted = wanted,
                                   .scene_fact_names = tl_scene_fact_names,
@@ -168,11 +170,13 @@ static tl_bits changed_inputs(const tl_renderer *renderer, const uint64_t signat
     return changed;
 }
 
-/* Nothing holds, and the next frame begins anew: rounds are never averaged into what another frame left. */
-static void forget(tl_renderer *renderer)
+/* Rounds are never averaged into what another frame left. */
+void tl_renderer_forget(tl_renderer *renderer)
 {
     renderer->valid = 0;
     memset(renderer->signatures, 0, sizeof renderer->signatures);
+    tl_points_destroy(&renderer->points); /* they refine what they have */
+    renderer->points = tl_points_create();
 }
 
 bool tl_renderer_forget_scene(tl_renderer *renderer, tl_error *error)
@@ -216,7 +220,7 @@ static void make_plan(const tl_renderer *renderer, const struct tl_plan_input *i
 
 /* Jobs learn from the work that they turned out to have. What slows all of them down is learned apart, from
  * those that are known by now. */
-static void learn_costs(tl_renderer *renderer, const tl_plan *plan, double new_regions)
+static void learn_costs(tl_renderer *renderer, tl_plan *plan, double new_regions)
 {
     const int known = 3; /* runs */
     struct tl_work_seen seen = tl_work_look(renderer, &renderer->settings);
@@ -227,6 +231,7 @@ static void learn_costs(tl_renderer *renderer, const tl_plan *plan, double new_r
             continue;
         struct tl_cost_job *cost = &renderer->costs[i];
         const struct tl_work work = work_of(i, &seen);
+        plan->rows[i].work_ms = tl_work_sum(&work);
         if (cost->runs >= known) {
             predicted_ms += tl_cost_predict(cost, &work, load);
             took_ms += plan->rows[i].took_ms;
@@ -246,7 +251,7 @@ static bool run_plan(tl_renderer *renderer, const struct tl_plan_input *input, t
             continue;
         double started_s = tl_clock_s();
         if (!tl_frame_jobs[i].run(renderer, plan->rows[i].level, error)) {
-            forget(renderer);
+            tl_renderer_forget(renderer);
             return false;
         }
         /* The CPU's clock around a finished job: GL's own timers are wrong on software drivers. */
@@ -277,7 +282,7 @@ static void reload_shaders(tl_renderer *renderer)
         !tl_program_reload(&renderer->present.resolve, &error) ||
         !tl_program_reload(&renderer->present.show, &error))
         tl_warn("%s", error.message);
-    forget(renderer);
+    tl_renderer_forget(renderer);
 }
 
 static bool check_camera(const struct tl_camera *camera, tl_error *error)
@@ -321,6 +326,7 @@ bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct
     if (renderer->valid) /* a first frame moves from nowhere */
         renderer->moving = changed;
     renderer->frame = *frame;
+    tl_work_count(renderer, frame);
     renderer->settings = used;
     renderer->view = tl_view_make(&frame->camera, used.image.width, used.image.height);
     memcpy(renderer->signatures, signatures, sizeof signatures);
@@ -506,41 +512,12 @@ bool tl_renderer_is_at_rest(const tl_renderer *renderer)
     const struct tl_light_params *light = &renderer->settings.light;
     bool is_done = light->visibility == TL_VISIBILITY_RAYS ? renderer->rest.is_done
                                                            : renderer->rest.image >= light->rounds - 1;
-    return renderer->valid & TL_BIT(TL_MADE_IMAGE) && renderer->rest.is_captured &&
+    bool waits = light->visibility != TL_VISIBILITY_RAYS && tl_shadow_maps_wait(renderer->maps);
+    return renderer->valid & TL_BIT(TL_MADE_IMAGE) && renderer->rest.is_captured && !waits &&
            (is_done || !tl_light_averages(light) || !tl_inspect_averages(renderer->settings.image.view));
 }
 
 const tl_plan *tl_renderer_last_plan(const tl_renderer *renderer)
 {
     return &renderer->plan;
-}
-
-static size_t kept_bytes(const tl_renderer *renderer)
-{
-    size_t bytes = 0;
-    for (int i = 0; i < TL_LIGHTS_KEPT; i++)
-        bytes += tl_lobes_bytes(&renderer->kept[i].lights.gain) +
-                 tl_lobes_bytes(&renderer->kept[i].lights.diffuse_gain);
-    return bytes;
-}
-
-struct tl_render_memory tl_renderer_memory(const tl_renderer *renderer)
-{
-    const struct tl_present *present = &renderer->present;
-    struct tl_render_memory memory = {
-        .pems = tl_pems_bytes(&renderer->pems) + tl_lobes_bytes(&renderer->lobes) + kept_bytes(renderer) +
-                tl_slice_maps_bytes(&renderer->slice_maps) + tl_lobes_bytes(&renderer->surroundings.lobes) +
-                tl_envmap_bytes(&renderer->envmap) + tl_capture_bytes(&renderer->capture),
-        .maps = tl_shadow_maps_bytes(renderer->maps) + tl_lamp_shadows_bytes(&renderer->local.shadows),
-        .rays = tl_trace_bytes(renderer->trace) + tl_points_bytes(renderer->points),
-        .sheets = tl_sheets_bytes(&renderer->sheets),
-        .targets = tl_target_bytes(&renderer->gbuffer.target) + tl_target_bytes(&renderer->lighting.target) +
-                   tl_present_bytes(present),
-        .surfaces = tl_surfaces_bytes(renderer->surfaces) + tl_detail_maps_bytes(&renderer->detail),
-        .other = tl_lighting_bytes(&renderer->lighting) + tl_local_bytes(&renderer->local) +
-                 tl_texture_bytes(&present->backdrop) + tl_texture_bytes(&present->blurred),
-    };
-    memory.total = memory.pems + memory.maps + memory.rays + memory.sheets + memory.targets +
-                   memory.surfaces + memory.other;
-    return memory;
 }

@@ -221,8 +221,13 @@ struct tl_renderer {
     uint64_t signatures[TL_INPUT_COUNT]; /* of the last draw's inputs */
     struct tl_rest rest;
     uint64_t shaders_stamp;
-    tl_bits valid;  /* resources that hold what their inputs call for */
-    tl_bits moving; /* inputs that changed from one frame to the last */
+    tl_bits valid; /* resources that hold what their inputs call for */
+    struct tl_work_counts {
+        double triangles;
+        int lamps;
+        bool is_glossy, is_faceted, is_bumpy; /* any material */
+    } counted;                                /* of the last frame: work.h */
+    tl_bits moving;                           /* inputs that changed from one frame to the last */
     tl_plan plan;
     struct tl_cost_job costs[TL_JOBS_MAX];
     double load; /* tl_load_follow */

@@ -20,7 +20,7 @@
 #define LOAD_FOLLOW  0.15
 #define LOAD_FORGETS 0.01 /* towards 1: what lasts is learned by the jobs */
 
-static double sum_of(const struct tl_work *work)
+double tl_work_sum(const struct tl_work *work)
 {
     double sum = 0;
     for (int i = 0; i < TL_WORK_PARTS; i++)
@@ -30,7 +30,7 @@ static double sum_of(const struct tl_work *work)
 
 static struct tl_work known(const struct tl_work *work)
 {
-    return sum_of(work) > 0 ? *work : (struct tl_work){.ms = {UNKNOWN_MS}};
+    return tl_work_sum(work) > 0 ? *work : (struct tl_work){.ms = {UNKNOWN_MS}};
 }
 
 static void begin(struct tl_cost_job *job)
@@ -46,7 +46,7 @@ static void begin(struct tl_cost_job *job)
 double tl_cost_predict(const struct tl_cost_job *job, const struct tl_work *work, double load)
 {
     if (job->runs == 0)
-        return sum_of(work) > 0 ? load * sum_of(work) : (double)NAN;
+        return tl_work_sum(work) > 0 ? load * tl_work_sum(work) : (double)NAN;
     struct tl_work used = known(work);
     double ms = 0;
     for (int i = 0; i < TL_WORK_PARTS; i++)

@@ -17,6 +17,8 @@ struct tl_work {
     double ms[TL_WORK_PARTS];
 };
 
+double tl_work_sum(const struct tl_work *work);
+
 struct tl_cost_job {
     int runs;
     double factor[TL_WORK_PARTS];

@@ -47,6 +47,7 @@ struct tl_plan_row {
     char reason[120];
     double predicted_ms; /* by the cost model; NaN while unknown, 0 for what does not run */
     double took_ms;      /* once carried out; 0 for what did not run */
+    double work_ms;      /* ... the same by the table's costs, on the table's machine; 0 where it has none */
 };
 
 typedef struct tl_plan {
