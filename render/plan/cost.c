@@ -4,7 +4,8 @@
 
 #define MACHINE_DEVIATION 1.0  /* of the factor that all parts share, at first */
 #define PART_DEVIATION    0.5  /* of each part beside it */
-#define DRIFT             0.02 /* of each, from run to run: scenes and machines change slowly */
+#define DRIFT             0.02 /* of the machine, from run to run */
+#define PART_DRIFT        0.01 /* of a part: what is seen changes slowly */
 #define NOISE             0.06 /* of a measurement, beside NOISE_MS */
 #define NOISE_MS          0.05
 #define OUTLIER           3.0 /* standard deviations, beyond which a run says no more */
@@ -55,6 +56,18 @@ double tl_cost_predict(const struct tl_cost_job *job, const struct tl_work *work
     return load * ms;
 }
 
+/* All parts together, by their share of the cost; and each for itself, as far as nothing is known of it. */
+static void drift(struct tl_cost_job *job)
+{
+    for (int i = 0; i < TL_WORK_PARTS; i++) {
+        double most = PART_DEVIATION * job->factor[i], part = PART_DRIFT * job->factor[i];
+        if (job->covariance[i][i] < most * most)
+            job->covariance[i][i] += part * part;
+        for (int k = 0; k < TL_WORK_PARTS; k++)
+            job->covariance[i][k] += DRIFT * DRIFT * job->factor[i] * job->factor[k];
+    }
+}
+
 /* One step of the filter, with the part of the covariance along the work. */
 void tl_cost_learn(struct tl_cost_job *job, const struct tl_work *work, double load, double ms)
 {
@@ -63,11 +76,9 @@ void tl_cost_learn(struct tl_cost_job *job, const struct tl_work *work, double l
     if (job->runs++ < FIRST_RUNS)
         begin(job, ms / load);
     struct tl_work used = known(job, work);
+    drift(job);
     double along[TL_WORK_PARTS] = {0}, predicted = 0, variance = 0;
     for (int i = 0; i < TL_WORK_PARTS; i++) {
-        double deviation = fmax(job->factor[i], FACTOR_MIN), most = PART_DEVIATION * deviation;
-        if (job->covariance[i][i] < most * most)
-            job->covariance[i][i] += DRIFT * DRIFT * deviation * deviation;
         predicted += job->factor[i] * used.ms[i];
         for (int k = 0; k < TL_WORK_PARTS; k++)
             along[i] += job->covariance[i][k] * used.ms[k];
