@@ -183,8 +183,7 @@ static void print_histogram(const struct tl_flight_account *account, FILE *out)
     const struct tl_plot_series series = {.name = "frames", .points = points, .count = BARS};
     tl_report_plot_as(
         out, &(struct tl_plot){.x_label = "ms", .y_label = "frames", .series = &series, .series_count = 1},
-        &(struct tl_plot_manner){
-            .kind = TL_PLOT_BARS, .bar_width = width, .height = 260, .y_whole = true, .x_tight = true},
+        &(struct tl_plot_manner){.kind = TL_PLOT_BARS, .bar_width = width, .height = 260, .y_whole = true},
         caption);
 }
 
@@ -263,36 +262,54 @@ static void print_job_table(const struct tl_flight *flight, FILE *out)
     tl_cells_print(&cells, TL_COUNT(heads), out);
 }
 
+static int highest_level(const struct tl_flight *flight, int knob)
+{
+    int highest = 0;
+    for (int i = 0; i < flight->count; i++)
+        if (flight->frames[i].levels.of[knob] > highest)
+            highest = flight->frames[i].levels.of[knob];
+    return highest;
+}
+
+/* A lane for each knob that was turned, the first on top. */
 static void print_levels(const struct tl_flight *flight, FILE *out)
 {
-    static const char *const about[TL_KNOB_COUNT] = {[TL_KNOB_REFRESH] =
-                                                         "refresh: visibility renewed a frame",
-                                                     [TL_KNOB_REGIONS] = "regions of the light",
-                                                     [TL_KNOB_RELIEF] = "relief: steps that are marched",
-                                                     [TL_KNOB_CLOTH] = "cloth: substeps of the solver",
-                                                     [TL_KNOB_SCALE] = "scale: samples of the image"};
-    bool any = false;
-    tl_report_heading(out, "What was shed to keep the time");
+    const double lane_height = 46, used = 0.72; /* of a lane, for its levels */
+    struct lines lines = make_lines(flight);
+    struct tl_plot_guide lanes[TL_KNOB_COUNT];
+    char names[TL_KNOB_COUNT][40];
+    size_t count = 0;
+    for (int knob = 0; knob < TL_KNOB_COUNT; knob++)
+        count += highest_level(flight, knob) > 0;
+    double base = (double)count;
     for (int knob = 0; knob < TL_KNOB_COUNT; knob++) {
-        struct lines lines = make_lines(flight);
-        struct tl_plot_point *points = add_line(&lines, flight, tl_knob_names[knob]);
-        double highest = 0;
+        int highest = highest_level(flight, knob);
+        if (!highest)
+            continue;
+        base--;
+        lanes[lines.series_count] = (struct tl_plot_guide){base, ""};
+        snprintf(names[lines.series_count], sizeof *names, "%s, up to %d", tl_knob_names[knob], highest);
+        struct tl_plot_point *points = add_line(&lines, flight, names[lines.series_count]);
         for (int i = 0; i < flight->count; i++)
-            highest = fmax(highest, points[i].y = flight->frames[i].levels.of[knob]);
-        struct tl_plot_manner manner = time_manner(flight);
-        manner.kind = TL_PLOT_STEPS;
-        manner.height = 150;
-        manner.y_whole = true;
-        if (highest > 0)
-            print_lines(&lines, "level", &manner, about[knob], out);
-        else
-            free(lines.points);
-        any |= highest > 0;
+            points[i].y = base + used * flight->frames[i].levels.of[knob] / highest;
     }
-    tl_report_paragraph(out,
-                        any ? "Level 0 is what the settings ask for; each further one is cheaper and worse. "
-                              "Knobs that are not shown stayed at 0."
-                            : "Nothing: every frame was drawn as the settings ask for.");
+    tl_report_heading(out, "What was shed to keep the time");
+    if (!count) {
+        tl_report_paragraph(out, "Nothing: every frame was drawn as the settings ask for.");
+        free(lines.points);
+        return;
+    }
+    struct tl_plot_manner manner = time_manner(flight);
+    manner.kind = TL_PLOT_STEPS;
+    manner.y_bare = true;
+    manner.guides = lanes;
+    manner.guide_count = count;
+    manner.height = 66 + lane_height * (double)count;
+    print_lines(
+        &lines, "levels", &manner,
+        "On its line a knob is where the settings want it; above, cheaper and worse by as many levels. "
+        "Knobs that are not shown stayed on their line.",
+        out);
 }
 
 static void print_predictions(const struct tl_flight_account *account, FILE *out)

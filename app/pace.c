@@ -315,6 +315,16 @@ static void say(char *out, size_t size, const char *before, const struct tl_leve
         snprintf(out + length, size - length, " for %.1f of %.1f ms", ms, budget_ms);
 }
 
+/* Whoever is over the budget is asked whether anything is cheaper. */
+static double least_of(const struct tl_budget *budget, double budget_ms, double predicted_ms)
+{
+    uint8_t levels[TL_BUDGET_KNOBS_MAX] = {0};
+    if (predicted_ms <= budget_ms)
+        return predicted_ms;
+    tl_budget_best(budget, budget_ms, levels);
+    return budget->cost(budget->context, levels);
+}
+
 static void choose_in_motion(tl_pace *pace, const struct tl_budget *budget)
 {
     struct tl_pace_choice *choice = &pace->choice;
@@ -322,6 +332,7 @@ static void choose_in_motion(tl_pace *pace, const struct tl_budget *budget)
     enum tl_governed how = tl_governor_choose(&pace->governor, budget, pace->budget_ms);
     memcpy(choice->levels.of, pace->governor.levels, sizeof choice->levels.of);
     choice->predicted_ms = budget->cost(budget->context, pace->governor.levels);
+    choice->least_ms = least_of(budget, pace->budget_ms, choice->predicted_ms);
     if (how == TL_GOVERNED_KEPT)
         return;
     say(choice->reason, sizeof choice->reason, how == TL_GOVERNED_UP ? "better" : "cheaper", &before,
@@ -334,7 +345,7 @@ static void choose_at_rest(tl_pace *pace, const struct tl_budget *budget)
 {
     const uint8_t best[TL_BUDGET_KNOBS_MAX] = {0};
     pace->choice.levels = (struct tl_levels){{0}};
-    pace->choice.predicted_ms = budget->cost(budget->context, best);
+    pace->choice.predicted_ms = pace->choice.least_ms = budget->cost(budget->context, best);
 }
 
 struct tl_pace_choice tl_pace_choose(tl_pace *pace, tl_renderer *renderer, const tl_frame *frame,

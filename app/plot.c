@@ -160,6 +160,21 @@ static size_t find_ticks(const struct axis *axis, bool whole, struct tick ticks[
                      : count; /* a narrow range holds none of the round numbers */
 }
 
+static void print_y_ticks(const struct canvas *canvas)
+{
+    struct tick ticks[TICKS_MAX];
+    size_t count = find_ticks(&canvas->y, canvas->manner->y_whole, ticks);
+    for (size_t i = 0; i < count; i++) {
+        double at = place(&canvas->y, ticks[i].value);
+        fprintf(canvas->out, "<line class=\"grid\" x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\"/>\n", LEFT,
+                at, WIDTH - RIGHT, at);
+        if (ticks[i].labelled)
+            fprintf(canvas->out,
+                    "<text class=\"tick\" text-anchor=\"end\" x=\"%.1f\" y=\"%.1f\">%.4g</text>\n", LEFT - 7,
+                    at + 4, ticks[i].value);
+    }
+}
+
 static void print_axes(const struct canvas *canvas, const struct tl_plot *plot)
 {
     struct tick ticks[TICKS_MAX];
@@ -173,15 +188,8 @@ static void print_axes(const struct canvas *canvas, const struct tl_plot *plot)
             fprintf(out, "<text class=\"tick\" text-anchor=\"middle\" x=\"%.1f\" y=\"%.1f\">%.4g</text>\n",
                     at, canvas->height - BOTTOM + 16, ticks[i].value);
     }
-    count = find_ticks(&canvas->y, canvas->manner->y_whole, ticks);
-    for (size_t i = 0; i < count; i++) {
-        double at = place(&canvas->y, ticks[i].value);
-        fprintf(out, "<line class=\"grid\" x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\"/>\n", LEFT, at,
-                WIDTH - RIGHT, at);
-        if (ticks[i].labelled)
-            fprintf(out, "<text class=\"tick\" text-anchor=\"end\" x=\"%.1f\" y=\"%.1f\">%.4g</text>\n",
-                    LEFT - 7, at + 4, ticks[i].value);
-    }
+    if (!canvas->manner->y_bare)
+        print_y_ticks(canvas);
     fprintf(out, "<path class=\"frame\" d=\"M%.1f %.1fV%.1fH%.1f\"/>\n", LEFT, TOP, canvas->height - BOTTOM,
             WIDTH - RIGHT);
     fprintf(out, "<text class=\"axis\" text-anchor=\"middle\" x=\"%.1f\" y=\"%.1f\">",
@@ -273,12 +281,16 @@ static void print_shade(const struct canvas *canvas)
 
 static void print_guides(const struct canvas *canvas)
 {
-    for (size_t i = 0; i < canvas->manner->guide_count; i++) {
-        double y = place(&canvas->y, canvas->manner->guides[i].y);
-        fprintf(canvas->out, "<path class=\"guide\" d=\"M%.1f %.1fH%.1f\"/>\n", LEFT, y, WIDTH - RIGHT);
+    const struct tl_plot_manner *manner = canvas->manner;
+    for (size_t i = 0; i < manner->guide_count; i++) {
+        double y = place(&canvas->y, manner->guides[i].y);
+        fprintf(canvas->out, "<path class=\"%s\" d=\"M%.1f %.1fH%.1f\"/>\n",
+                manner->y_bare ? "grid" : "guide", LEFT, y, WIDTH - RIGHT);
+        if (manner->y_bare)
+            continue;
         fprintf(canvas->out, "<text class=\"name\" text-anchor=\"end\" x=\"%.1f\" y=\"%.1f\">",
                 WIDTH - RIGHT - 4, y - 5);
-        tl_html_print(canvas->out, canvas->manner->guides[i].name);
+        tl_html_print(canvas->out, manner->guides[i].name);
         fputs("</text>\n", canvas->out);
     }
 }

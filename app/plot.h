@@ -56,6 +56,7 @@ struct tl_plot_manner {
     double height;    /* of the drawing, whose width is TL_PLOT_WIDTH; 0: its own */
     bool x_tight;     /* no margin behind the largest x */
     bool y_whole;     /* y counts: ticks at whole numbers only */
+    bool y_bare;      /* y is a matter of drawing: no ticks, guides are plain lines without names */
 };
 
 /* The text with &, <, > and quotes as HTML and SVG want them. */

@@ -170,11 +170,13 @@ static tl_bits changed_inputs(const tl_renderer *renderer, const uint64_t signat
     return changed;
 }
 
-/* Nothing holds, and the next frame begins anew: rounds are never averaged into what another frame left. */
-static void forget(tl_renderer *renderer)
+/* Rounds are never averaged into what another frame left. */
+void tl_renderer_forget(tl_renderer *renderer)
 {
     renderer->valid = 0;
     memset(renderer->signatures, 0, sizeof renderer->signatures);
+    tl_points_destroy(&renderer->points); /* they refine what they have */
+    renderer->points = tl_points_create();
 }
 
 bool tl_renderer_forget_scene(tl_renderer *renderer, tl_error *error)
@@ -249,7 +251,7 @@ static bool run_plan(tl_renderer *renderer, const struct tl_plan_input *input, t
             continue;
         double started_s = tl_clock_s();
         if (!tl_frame_jobs[i].run(renderer, plan->rows[i].level, error)) {
-            forget(renderer);
+            tl_renderer_forget(renderer);
             return false;
         }
         /* The CPU's clock around a finished job: GL's own timers are wrong on software drivers. */
@@ -280,7 +282,7 @@ static void reload_shaders(tl_renderer *renderer)
         !tl_program_reload(&renderer->present.resolve, &error) ||
         !tl_program_reload(&renderer->present.show, &error))
         tl_warn("%s", error.message);
-    forget(renderer);
+    tl_renderer_forget(renderer);
 }
 
 static bool check_camera(const struct tl_camera *camera, tl_error *error)

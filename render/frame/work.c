@@ -3,6 +3,8 @@
  * twelve frames); only their ratios within a job matter, the rest is learned. */
 #include "render/frame/work.h"
 
+#include "render/inspect/legend.h"
+
 #include <math.h>
 
 /* Of a frame's samples, as long as none has been drawn. */
@@ -112,6 +114,13 @@ struct tl_work tl_compose_work(const void *context)
     const struct tl_work_seen *seen = context;
     return (struct tl_work){
         {3e-6 * seen->texels, 2e-4 * seen->covered, 1e-5 * seen->groups * seen->lobes * seen->covered}};
+}
+
+struct tl_work tl_inspect_work(const void *context)
+{
+    const struct tl_work_seen *seen = context;
+    double groups = tl_view_is_visibility(seen->settings->image.view) ? seen->groups : 0;
+    return (struct tl_work){{3e-6 * seen->texels, 1e-4 * seen->covered, 3e-5 * groups * seen->covered}};
 }
 
 struct tl_work tl_passes_work(const void *context)

@@ -27,6 +27,7 @@ struct tl_work tl_gbuffer_work(const void *seen);
 struct tl_work tl_samples_work(const void *seen);
 struct tl_work tl_points_work(const void *seen);
 struct tl_work tl_compose_work(const void *seen);
+struct tl_work tl_inspect_work(const void *seen);
 struct tl_work tl_passes_work(const void *seen); /* light */
 struct tl_work tl_maps_work(const void *seen);   /* and blur */
 struct tl_work tl_resolve_work(const void *seen);
