@@ -20,9 +20,12 @@ enum flag_kind {
     FLAG_HDR,
     FLAG_SCREENSHOTS,
     FLAG_MAX_FRAMES,
+    FLAG_FRESH,
+    FLAG_BUDGET,
     FLAG_AXIS,
     FLAG_QUICK,
     FLAG_CAPTURE,
+    FLAG_AOV,
     FLAG_FULL,
     FLAG_LAYOUT,
     FLAG_FROM,
@@ -30,6 +33,23 @@ enum flag_kind {
     FLAG_REPEAT_MM,
     FLAG_HEIGHT_MM,
     FLAG_CLAMP,
+    FLAG_GARMENTS,
+    FLAG_FABRICS,
+    FLAG_COLOURWAYS,
+    FLAG_ENVIRONMENTS,
+    FLAG_VIEWS,
+    FLAG_SAME_DRAPE,
+    FLAG_FRAME_COUNT,
+    FLAG_EVERY,
+    FLAG_FURNACE,
+    FLAG_STILL,
+    FLAG_KEEP,
+    FLAG_PATH,
+    FLAG_VIDEO,
+    FLAG_AGAINST,
+    FLAG_REPLAY,
+    FLAG_ORACLE,
+    FLAG_HASH,
     FLAG_QUIET,
     FLAG_VERBOSE,
     FLAG_HELP,
@@ -57,6 +77,8 @@ static const struct flag flags_known[] = {
      "studio, an .exr or .hdr file, or a sequence of them: sky.####.exr"},
     {"--fabric", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, "scene.fabric", "NAME|FILE",
      "a fabric: `toile info fabrics` lists them"},
+    {"--colourway", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, "scene.colourway", "NAME",
+     "fabrics and colours of the scene or of a glTF file: `toile info FILE` lists them"},
     {"--preset", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, "scene.preset", "NAME|FILE",
      "paper, draft, review or final"},
     {"--method", TL_FLAGS_SCENE, FLAG_ASSIGN, "light.method", "METHOD",
@@ -69,12 +91,17 @@ static const struct flag flags_known[] = {
      "still image of the animation's frame N; 0 is the settled start"},
     {"--frames", TL_FLAGS_FRAMES, FLAG_FRAMES, NULL, "A:B",
      "all frames from A to B; of pictures OUT.png becomes OUT.0001.png ..."},
+    {"--aov", TL_FLAGS_AOV, FLAG_AOV, NULL, NULL,
+     ".exr files get layers: N, P, uv, albedo, visibility, strain"},
     {"--json", TL_FLAGS_JSON, FLAG_JSON, NULL, NULL, "print one JSON object and nothing else"},
     {"--ldr", TL_FLAGS_METRIC, FLAG_LDR, NULL, NULL, "compare as display images, clamped to [0, 1]"},
     {"--hdr", TL_FLAGS_METRIC, FLAG_HDR, NULL, NULL, "compare over all exposures that the reference holds"},
     {"--screenshots", TL_FLAGS_WINDOW, FLAG_SCREENSHOTS, NULL, "FOLDER", "where screenshots go"},
     {"--max-frames", TL_FLAGS_WINDOW, FLAG_MAX_FRAMES, NULL, "N", "close after N frames"},
-    {"--axis", TL_FLAGS_AXIS, FLAG_AXIS, NULL, "NAME", "what is varied: light or cloth"},
+    {"--axis", TL_FLAGS_AXIS, FLAG_AXIS, NULL, "NAME",
+     "what is varied: overall, light, resolution, detail, shading or cloth"},
+    {"--fresh", TL_FLAGS_WINDOW, FLAG_FRESH, NULL, NULL,
+     "as if it were the first time: nothing is remembered, before or after"},
     {"--quick", TL_FLAGS_QUICK, FLAG_QUICK, NULL, NULL, "a few choices and frames only"},
     {"--full", TL_FLAGS_FULL, FLAG_FULL, NULL, NULL, "what takes minutes too"},
     {"--layout", TL_FLAGS_LAYOUT, FLAG_LAYOUT, NULL, "NAME",
@@ -89,6 +116,32 @@ static const struct flag flags_known[] = {
     {"--height-mm", TL_FLAGS_FABRIC, FLAG_HEIGHT_MM, NULL, "MM",
      "height that a value of 1 (white) stands for; else 0.5"},
     {"--clamp", TL_FLAGS_FABRIC, FLAG_CLAMP, NULL, NULL, "the map does not repeat"},
+    {"--garments", TL_FLAGS_SHEET, FLAG_GARMENTS, NULL, "A,B", "names or files, as --garment takes them"},
+    {"--fabrics", TL_FLAGS_SHEET, FLAG_FABRICS, NULL, "A,B",
+     "names or files, or all; each drapes anew, as the fabric decides how it falls"},
+    {"--colourways", TL_FLAGS_SHEET, FLAG_COLOURWAYS, NULL, "A,B", "names, or all that a garment has"},
+    {"--envs", TL_FLAGS_SHEET, FLAG_ENVIRONMENTS, NULL, "A,B", "names or files, as --env takes them"},
+    {"--views", TL_FLAGS_SHEET, FLAG_VIEWS, NULL, "A,B",
+     "front, 3/4, side, left, back-3/4, back, right, scene, or degrees: 30 or 30:10"},
+    {"--same-drape", TL_FLAGS_SHEET, FLAG_SAME_DRAPE, NULL, NULL,
+     "all fabrics of a garment fall as its first: they only look different"},
+    {"--frames", TL_FLAGS_CHECK, FLAG_FRAME_COUNT, NULL, "N", "how many frames; else 300"},
+    {"--every", TL_FLAGS_CHECK, FLAG_EVERY, NULL, "K",
+     "what takes long is checked in every K-th frame: the oracle, a fresh renderer, sums of light; else 10"},
+    {"--furnace", TL_FLAGS_CHECK, FLAG_FURNACE, NULL, NULL, "those frames in white light too"},
+    {"--still", TL_FLAGS_CHECK, FLAG_STILL, NULL, NULL, "no hand swings the hem"},
+    {"--keep", TL_FLAGS_CHECK, FLAG_KEEP, NULL, "FOLDER",
+     "keeps the first frame that breaks, ready to be opened"},
+    {"--budget", TL_FLAGS_BUDGET, FLAG_BUDGET, NULL, "MS",
+     "time for a frame, in milliseconds; else every frame is drawn in full"},
+    {"--frames", TL_FLAGS_FLY, FLAG_FRAME_COUNT, NULL, "N", "so many frames; else 600, or all of the path's"},
+    {"--path", TL_FLAGS_FLY, FLAG_PATH, NULL, "FILE.yaml", "camera path; else one round the scene"},
+    {"--video", TL_FLAGS_FLY, FLAG_VIDEO, NULL, "FILE.mp4", "what was seen; .mp4, .mkv or .mov, by ffmpeg"},
+    {"--against", TL_FLAGS_FLY, FLAG_AGAINST, NULL, "FOLDER", "compare with an earlier flight, job by job"},
+    {"--replay", TL_FLAGS_FLY, FLAG_REPLAY, NULL, "FOLDER",
+     "fly an earlier flight's path at its levels: the images are the same to the bit"},
+    {"--oracle", TL_FLAGS_FLY, FLAG_ORACLE, NULL, "N", "measure every Nth frame against the ray-traced one"},
+    {"--hash", TL_FLAGS_FLY, FLAG_HASH, NULL, NULL, "record every image's hash, for a replay to compare"},
     {"--quiet", 0, FLAG_QUIET, NULL, NULL, "say nothing but errors"},
     {"--verbose", 0, FLAG_VERBOSE, NULL, NULL, "say more"},
     {"--help", 0, FLAG_HELP, NULL, NULL, "what the command does and takes"},
@@ -141,6 +194,14 @@ static bool read_length(const char *flag, const char *text, double *out, tl_erro
     *out = strtod(text, &stop);
     return (stop != text && !*stop && *out >= 1e-3 && *out <= 1e4) ||
            tl_fail(error, TL_USAGE, "%s: \"%s\": expected millimetres, from 0.001 to 10000", flag, text);
+}
+
+static bool read_budget(const char *text, double *out, tl_error *error)
+{
+    char *stop;
+    *out = strtod(text, &stop);
+    return (stop != text && !*stop && *out >= 0.1 && *out <= 1e6) ||
+           tl_fail(error, TL_USAGE, "--budget: \"%s\": expected milliseconds, from 0.1 to 1000000", text);
 }
 
 static void assign(struct tl_arguments *out, char *assignment)
@@ -207,8 +268,16 @@ static bool take_flag(const struct flag *flag, const char *value, struct tl_argu
         return true;
     case FLAG_MAX_FRAMES:
         return read_whole("--max-frames", value, NULL, 1, &out->max_frames, error);
+    case FLAG_FRESH:
+        out->fresh = true;
+        return true;
+    case FLAG_BUDGET:
+        return read_budget(value, &out->budget_ms, error);
     case FLAG_AXIS:
         out->axis = value;
+        return true;
+    case FLAG_AOV:
+        out->aovs = true;
         return true;
     case FLAG_CAPTURE:
         out->capture = true;
@@ -233,6 +302,54 @@ static bool take_flag(const struct flag *flag, const char *value, struct tl_argu
         return read_length("--height-mm", value, &out->height_mm, error);
     case FLAG_CLAMP:
         out->clamp = true;
+        return true;
+    case FLAG_GARMENTS:
+        out->sheet.garments = value;
+        return true;
+    case FLAG_FABRICS:
+        out->sheet.fabrics = value;
+        return true;
+    case FLAG_COLOURWAYS:
+        out->sheet.colourways = value;
+        return true;
+    case FLAG_ENVIRONMENTS:
+        out->sheet.environments = value;
+        return true;
+    case FLAG_VIEWS:
+        out->sheet.views = value;
+        return true;
+    case FLAG_SAME_DRAPE:
+        out->sheet.same_drape = true;
+        return true;
+    case FLAG_FRAME_COUNT:
+        return read_whole("--frames", value, NULL, 1, &out->frame_count, error);
+    case FLAG_EVERY:
+        return read_whole("--every", value, NULL, 1, &out->every, error);
+    case FLAG_FURNACE:
+        out->furnace = true;
+        return true;
+    case FLAG_STILL:
+        out->still = true;
+        return true;
+    case FLAG_KEEP:
+        out->keep = value;
+        return true;
+    case FLAG_PATH:
+        out->path = value;
+        return true;
+    case FLAG_VIDEO:
+        out->video = value;
+        return true;
+    case FLAG_AGAINST:
+        out->against = value;
+        return true;
+    case FLAG_REPLAY:
+        out->replay = value;
+        return true;
+    case FLAG_ORACLE:
+        return read_whole("--oracle", value, NULL, 1, &out->oracle_every, error);
+    case FLAG_HASH:
+        out->hash = true;
         return true;
     case FLAG_QUIET:
         out->quiet = true;

@@ -18,13 +18,19 @@ enum tl_flag_set { /* which groups of flags a command takes */
                    TL_FLAGS_FRAMES = 8,        /* --frames A:B */
                    TL_FLAGS_JSON = 16,         /* --json */
                    TL_FLAGS_METRIC = 32,       /* --ldr --hdr */
-                   TL_FLAGS_WINDOW = 64,       /* --screenshots DIR --max-frames N */
+                   TL_FLAGS_WINDOW = 64,       /* --screenshots DIR --max-frames N --fresh --budget MS */
                    TL_FLAGS_AXIS = 128,        /* --axis NAME */
                    TL_FLAGS_QUICK = 256,       /* --quick */
                    TL_FLAGS_FULL = 512,        /* --full */
                    TL_FLAGS_LAYOUT = 1024,     /* --layout NAME --from NAME --size N */
                    TL_FLAGS_FABRIC = 2048,     /* --repeat-mm MM --height-mm MM --clamp */
+                   TL_FLAGS_CHECK = 1 << 12,   /* --frames --every --furnace --still --budget --keep */
+                   TL_FLAGS_AOV = 1 << 17,     /* --aov */
+                   TL_FLAGS_SHEET = 1 << 24,   /* lists of what a contact sheet shows, --same-drape */
                    TL_FLAGS_CAPTURE = 1 << 16, /* --capture, and those of the scene but the image's */
+                   TL_FLAGS_FLY = 1 << 20,     /* --budget --frames --path --video --against --replay
+                                                  --oracle --hash */
+                   TL_FLAGS_BUDGET = 1 << 21,  /* --budget MS */
 };
 
 struct tl_arguments {
@@ -39,13 +45,26 @@ struct tl_arguments {
     int hdr;                 /* -1 by content, 0 --ldr, 1 --hdr */
     const char *screenshots; /* folder for screenshots */
     int max_frames;          /* 0: no limit */
-    const char *axis;        /* NULL: not given */
+    bool fresh;
+    double budget_ms; /* 0: not given */
+    const char *axis; /* NULL: not given */
     bool quick, full;
     double repeat_mm, height_mm; /* 0: not given */
     bool clamp;
     const char *layout, *from; /* NULL: not given */
     int map_size;              /* 0: not given */
     bool capture;
+    struct { /* NULL: not given; else names with commas between them */
+        const char *garments, *fabrics, *colourways, *environments, *views;
+        bool same_drape;
+    } sheet;
+    int frame_count, every; /* 0: not given */
+    bool furnace, still;
+    const char *keep; /* NULL: not given */
+    bool aovs;
+    int oracle_every; /* 0: not given */
+    bool hash;
+    const char *path, *video, *against, *replay; /* NULL: not given */
 };
 
 bool tl_arguments_parse(int argc, char **argv, unsigned flags, struct tl_arguments *out, tl_error *error);

@@ -31,7 +31,7 @@ struct corner {
     uint8_t colour[4];
 };
 
-void tl_canvas_text(tl_image *canvas, int x, int y, const char *text, uint32_t colour)
+void tl_canvas_words(tl_image *canvas, int x, int y, int scale, const char *text, uint32_t colour)
 {
     const size_t letter_bytes = 270; /* as the font's documentation says, on average; 500 is never exceeded */
     size_t bytes = (strlen(text) + 1) * 2 * letter_bytes;
@@ -40,17 +40,27 @@ void tl_canvas_text(tl_image *canvas, int x, int y, const char *text, uint32_t c
     int quads = stb_easy_font_print(0, 0, copy, NULL, corners, (int)bytes);
     for (int i = 0; i < quads; i++) {
         const struct corner *first = corners + 4 * (ptrdiff_t)i, *third = first + 2;
-        tl_canvas_box(canvas, x + SCALE * (int)first->x, y + SCALE * (int)first->y,
-                      SCALE * (int)(third->x - first->x), SCALE * (int)(third->y - first->y), colour);
+        tl_canvas_box(canvas, x + scale * (int)first->x, y + scale * (int)first->y,
+                      scale * (int)(third->x - first->x), scale * (int)(third->y - first->y), colour);
     }
     free(copy);
     free(corners);
 }
 
-int tl_canvas_text_width(const char *text)
+int tl_canvas_words_width(int scale, const char *text)
 {
     char *copy = tl_copy_string(text);
-    int width = SCALE * stb_easy_font_width(copy);
+    int width = scale * stb_easy_font_width(copy);
     free(copy);
     return width;
+}
+
+void tl_canvas_text(tl_image *canvas, int x, int y, const char *text, uint32_t colour)
+{
+    tl_canvas_words(canvas, x, y, SCALE, text, colour);
+}
+
+int tl_canvas_text_width(const char *text)
+{
+    return tl_canvas_words_width(SCALE, text);
 }

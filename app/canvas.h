@@ -15,5 +15,8 @@ void tl_canvas_box(tl_image *canvas, int x, int y, int width, int height, uint32
 /* ASCII, with its upper left corner at x, y. */
 void tl_canvas_text(tl_image *canvas, int x, int y, const char *text, uint32_t colour);
 int tl_canvas_text_width(const char *text);
+/* The same with letters `scale` times as large as the smallest, which are 7 pixels high; the above have 2. */
+void tl_canvas_words(tl_image *canvas, int x, int y, int scale, const char *text, uint32_t colour);
+int tl_canvas_words_width(int scale, const char *text);
 
 #endif

@@ -124,6 +124,27 @@ static void describe_notes(cJSON *object, const char *key, char *const *notes, s
         cJSON_AddItemToArray(array, cJSON_CreateString(notes[i]));
 }
 
+static bool varies(const tl_model *model, size_t part)
+{
+    for (size_t i = 0; i < model->variant_count; i++)
+        if (model->variants[i].materials[part] != model->mesh.parts[part].material)
+            return true;
+    return false;
+}
+
+/* Colourways of the file's own: what each makes the parts of that differ between them. */
+static void describe_variants(cJSON *object, const tl_model *model)
+{
+    cJSON *variants = cJSON_AddObjectToObject(object, "colourways");
+    for (size_t i = 0; i < model->variant_count; i++) {
+        const struct tl_variant *variant = &model->variants[i];
+        cJSON *names = cJSON_AddArrayToObject(variants, variant->name);
+        for (size_t p = 0; p < model->mesh.part_count; p++)
+            if (varies(model, p))
+                cJSON_AddItemToArray(names, cJSON_CreateString(model->materials[variant->materials[p]].name));
+    }
+}
+
 static cJSON *describe_model(const tl_model *model)
 {
     cJSON *object = cJSON_CreateObject();
@@ -140,6 +161,7 @@ static cJSON *describe_model(const tl_model *model)
     cJSON *materials = cJSON_AddArrayToObject(object, "materials");
     for (size_t i = 0; i < model->material_count; i++)
         cJSON_AddItemToArray(materials, describe_material(&model->materials[i]));
+    describe_variants(object, model);
     cJSON *clips = cJSON_AddArrayToObject(object, "clips");
     for (size_t i = 0; i < model->clip_count; i++) {
         cJSON *clip = cJSON_CreateObject();
@@ -185,6 +207,34 @@ static cJSON *describe_environment(const tl_environment *environment)
     cJSON_AddNumberToObject(object, "negative_cleaned", (double)environment->negative_count);
     cJSON_AddNumberToObject(object, "nan_cleaned", (double)environment->nan_count);
     cJSON_AddNumberToObject(object, "inf_cleaned", (double)environment->inf_count);
+    return object;
+}
+
+static void add_colourways(cJSON *object, const char *key, const struct tl_settings *settings)
+{
+    cJSON *names = cJSON_AddArrayToObject(object, key);
+    for (size_t i = 0; i < settings->colourways.name_count; i++)
+        cJSON_AddItemToArray(names, cJSON_CreateString(settings->colourways.names[i]));
+}
+
+/* What it names, built-in colourways included. */
+static cJSON *describe_scene(const char *path, tl_error *error)
+{
+    struct tl_settings settings;
+    if (!tl_settings_load(&settings, &(struct tl_settings_source){.scene_file = path}, error))
+        return NULL;
+    const struct tl_scene_params *scene = &settings.scene;
+    const char *const rows[][2] = {{"kind", "scene"},
+                                   {"name", path},
+                                   {"garment", scene->garment},
+                                   {"avatar", scene->avatar},
+                                   {"environment", scene->environment},
+                                   {"fabric", scene->fabric},
+                                   {"preset", scene->preset}};
+    cJSON *object = cJSON_CreateObject();
+    for (size_t i = 0; i < TL_COUNT(rows); i++)
+        cJSON_AddStringToObject(object, rows[i][0], rows[i][1]);
+    add_colourways(object, "colourways", &settings);
     return object;
 }
 
@@ -237,6 +287,10 @@ bool tl_command_info(const struct tl_arguments *arguments, tl_error *error)
             return false;
         object = describe_model(&model);
         tl_model_release(&model);
+    } else if (tl_path_has_extension(path, "yaml") || tl_path_has_extension(path, "yml")) {
+        object = describe_scene(path, error);
+        if (!object)
+            return false;
     } else if (tl_path_has_extension(path, "exr") || tl_path_has_extension(path, "hdr")) {
         tl_environment environment;
         if (!tl_environment_load(path, &environment, error))
@@ -244,9 +298,10 @@ bool tl_command_info(const struct tl_arguments *arguments, tl_error *error)
         object = describe_environment(&environment);
         tl_environment_release(&environment);
     } else {
-        return tl_fail(error, TL_INPUT,
-                       "%s: unknown kind of file: expected .glb, .gltf, .obj, .pc2, .mdd, .exr or .hdr",
-                       path);
+        return tl_fail(
+            error, TL_INPUT,
+            "%s: unknown kind of file: expected .glb, .gltf, .obj, .pc2, .mdd, .exr, .hdr or a scene's .yaml",
+            path);
     }
     print_object(object, arguments->json);
     return true;

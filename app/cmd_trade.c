@@ -1,9 +1,8 @@
 /* toile trade: error against time along an axis, as CSV and as a report. */
 #include "app/commands.h"
 #include "app/folder.h"
-#include "app/topic.h"
+#include "app/trade.h"
 #include "app/trade_cloth.h"
-#include "app/trade_light.h"
 #include "config/file.h"
 #include "config/memory.h"
 
@@ -22,27 +21,26 @@ static bool write_both(const char *folder, const void *trade, void (*write_csv)(
     return false;
 }
 
-static void write_light_csv(const void *trade, FILE *out)
+static void write_frames_csv(const void *trade, FILE *out)
 {
     tl_trade_write_csv(trade, out);
 }
 
-static void write_light_html(const void *trade, FILE *out)
+static void write_frames_html(const void *trade, FILE *out)
 {
     tl_trade_write_html(trade, out);
 }
 
-static bool trade_light(const struct tl_arguments *arguments, tl_error *error)
+static bool trade_frames(const struct tl_trade_axis *axis, const struct tl_arguments *arguments,
+                         tl_error *error)
 {
-    struct tl_arguments scene = *arguments;
-    tl_topic_default_scene(&scene, "review");
     struct tl_stage stage;
-    if (!tl_stage_create(&stage, &scene, error))
+    if (!tl_trade_stage(axis, arguments, &stage, error))
         return false;
     struct tl_trade trade;
-    bool done = tl_trade_light(&stage, arguments->quick, &trade, error);
+    bool done = tl_trade_measure(axis, &stage, arguments->quick, &trade, error);
     if (trade.row_count)
-        done = write_both(arguments->output, &trade, write_light_csv, write_light_html, done, error);
+        done = write_both(arguments->output, &trade, write_frames_csv, write_frames_html, done, error);
     tl_trade_release(&trade);
     tl_stage_release(&stage);
     return done;
@@ -73,12 +71,19 @@ static bool trade_cloth(const struct tl_arguments *arguments, tl_error *error)
 
 bool tl_command_trade(const struct tl_arguments *arguments, tl_error *error)
 {
-    const char *axis = arguments->axis ? arguments->axis : "light";
-    bool light = strcmp(axis, "light") == 0;
-    if (!light && strcmp(axis, "cloth") != 0)
-        return tl_fail(error, TL_USAGE, "--axis: \"%s\": expected light or cloth", axis);
+    static const struct tl_trade_axis *const axes[] = {
+        &tl_trade_light, &tl_trade_resolution, &tl_trade_detail, &tl_trade_shading, &tl_trade_overall};
+    const char *name = arguments->axis ? arguments->axis : "overall";
+    bool cloth = strcmp(name, "cloth") == 0;
+    const struct tl_trade_axis *axis = NULL;
+    for (size_t i = 0; i < TL_COUNT(axes); i++)
+        if (strcmp(axes[i]->name, name) == 0)
+            axis = axes[i];
+    if (!axis && !cloth)
+        return tl_fail(error, TL_USAGE,
+                       "--axis: \"%s\": expected overall, light, resolution, detail, shading or cloth", name);
     if (!arguments->output)
         return tl_fail(error, TL_USAGE, "trade: no folder named: add -o FOLDER");
     return tl_folder_make(arguments->output, error) &&
-           (light ? trade_light(arguments, error) : trade_cloth(arguments, error));
+           (cloth ? trade_cloth(arguments, error) : trade_frames(axis, arguments, error));
 }

@@ -49,16 +49,6 @@ static void release_sight(struct sight *sight)
     tl_image_release(&sight->shown);
 }
 
-static bool assign(struct tl_settings *settings, const char *const *assignments, size_t most, tl_error *error)
-{
-    struct tl_binding bindings[TL_SETTINGS_TABLES];
-    tl_settings_bind(settings, bindings);
-    for (size_t i = 0; i < most && assignments[i]; i++)
-        if (!tl_options_set_assignment(bindings, TL_SETTINGS_TABLES, assignments[i], error))
-            return false;
-    return true;
-}
-
 /* Settings are read anew for every picture: a fabric or preset that an assignment names lies below the
  * others. */
 static bool choose(const struct drawing *drawing, const struct easel *easel,
@@ -83,8 +73,8 @@ static bool choose(const struct drawing *drawing, const struct easel *easel,
         .scene_file = "gallery", .assignments = all, .assignment_count = count};
     bool chosen = tl_settings_load(out, &source, error);
     if (chosen && exact)
-        chosen = assign(out, wall->exact, TL_COUNT(wall->exact), error) &&
-                 assign(out, exhibit->exact, TL_COUNT(exhibit->exact), error);
+        chosen = tl_settings_assign(out, wall->exact, TL_COUNT(wall->exact), error) &&
+                 tl_settings_assign(out, exhibit->exact, TL_COUNT(exhibit->exact), error);
     for (size_t i = 0; i < TL_COUNT(own); i++)
         free(own[i]);
     return chosen;

@@ -5,28 +5,24 @@
 
 #include <math.h>
 
-static bool choose(const struct tl_choice *choice, const struct tl_settings *scene,
-                   struct tl_render_settings *out, tl_error *error)
+bool tl_choice_apply(const struct tl_choice *choice, const struct tl_settings *scene, struct tl_settings *out,
+                     tl_error *error)
 {
-    struct tl_settings chosen = *scene;
-    if (choice->preset && !tl_settings_apply_preset(&chosen, choice->preset, error))
+    *out = *scene;
+    if (choice->preset && !tl_settings_apply_preset(out, choice->preset, error))
         return false;
-    struct tl_binding bindings[TL_SETTINGS_TABLES];
-    tl_settings_bind(&chosen, bindings);
-    for (size_t i = 0; i < TL_COUNT(choice->assignments) && choice->assignments[i]; i++)
-        if (!tl_options_set_assignment(bindings, TL_SETTINGS_TABLES, choice->assignments[i], error))
-            return false;
-    chosen.image = scene->image;
-    *out = tl_settings_render(&chosen);
-    return true;
+    out->image = scene->image; /* a preset is measured for its light */
+    return tl_settings_assign(out, choice->assignments, TL_COUNT(choice->assignments), error);
 }
 
 bool tl_contender_create(struct tl_contender *contender, tl_gpu *gpu, const struct tl_choice *choice,
                          const struct tl_settings *scene, tl_error *error)
 {
     *contender = (struct tl_contender){.name = choice->name};
-    if (!choose(choice, scene, &contender->settings, error))
+    struct tl_settings chosen;
+    if (!tl_choice_apply(choice, scene, &chosen, error))
         return false;
+    contender->settings = tl_settings_render(&chosen);
     contender->renderer = tl_renderer_create(gpu, error);
     return contender->renderer != NULL;
 }
@@ -74,22 +70,28 @@ void tl_truth_release(struct tl_truth *truth)
     truth->standard_error = 0;
 }
 
+bool tl_truth_compare(const tl_image *image, const struct tl_truth *truth, struct tl_measured_error *out,
+                      tl_error *error)
+{
+    struct tl_comparison result;
+    if (!tl_image_compare(image, &truth->image, -1, 0, &result, error))
+        return false;
+    double square = result.rel_rmse * result.rel_rmse - truth->standard_error * truth->standard_error;
+    *out = (struct tl_measured_error){.rel_rmse = sqrt(fmax(square, 0)),
+                                      .standard_error = truth->standard_error,
+                                      .flip_mean = result.flip_mean,
+                                      .max_abs = result.max_abs,
+                                      .worst_share = result.worst_share,
+                                      .covered = result.covered};
+    return true;
+}
+
 bool tl_contender_compare(struct tl_contender *contender, const struct tl_truth *truth,
                           struct tl_measured_error *out, tl_error *error)
 {
     tl_image image = {0};
-    struct tl_comparison result;
-    bool done = tl_renderer_read(contender->renderer, &image, error) &&
-                tl_image_compare(&image, &truth->image, -1, 0, &result, error);
-    if (done) {
-        double square = result.rel_rmse * result.rel_rmse - truth->standard_error * truth->standard_error;
-        *out = (struct tl_measured_error){.rel_rmse = sqrt(fmax(square, 0)),
-                                          .standard_error = truth->standard_error,
-                                          .flip_mean = result.flip_mean,
-                                          .max_abs = result.max_abs,
-                                          .worst_share = result.worst_share,
-                                          .covered = result.covered};
-    }
+    bool done =
+        tl_renderer_read(contender->renderer, &image, error) && tl_truth_compare(&image, truth, out, error);
     tl_image_release(&image);
     return done;
 }

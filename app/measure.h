@@ -10,12 +10,17 @@
 #include "app/motion.h"
 #include "app/stage.h"
 
-/* One choice of light: a preset's light table, then single options. */
+/* One choice of settings: a preset's light table, then single options. */
+#define TL_CHOICE_ASSIGNMENTS 8
 struct tl_choice {
     const char *name;
-    const char *preset;         /* NULL: the scene's own light */
-    const char *assignments[6]; /* "light.key=value"; NULL ends them */
+    const char *preset;                             /* NULL: the scene's own light */
+    const char *assignments[TL_CHOICE_ASSIGNMENTS]; /* "table.key=value"; NULL ends them */
 };
+
+/* The scene's settings with the choice over them. */
+bool tl_choice_apply(const struct tl_choice *choice, const struct tl_settings *scene, struct tl_settings *out,
+                     tl_error *error);
 
 struct tl_contender {
     const char *name; /* borrowed */
@@ -23,7 +28,8 @@ struct tl_contender {
     tl_renderer *renderer;
 };
 
-/* `scene` gives all that a choice leaves open, the image's size and samples among it. */
+/* `scene` gives all that a choice leaves open; the image's size and samples even where a preset has its own.
+ */
 bool tl_contender_create(struct tl_contender *contender, tl_gpu *gpu, const struct tl_choice *choice,
                          const struct tl_settings *scene, tl_error *error);
 void tl_contender_release(struct tl_contender *contender);
@@ -55,6 +61,9 @@ struct tl_measured_error {
     double worst_share; /* of the square error: what its worst pixel holds */
     size_t covered;     /* pixels */
 };
+/* Of an image as tl_renderer_read gives it. */
+bool tl_truth_compare(const tl_image *image, const struct tl_truth *truth, struct tl_measured_error *out,
+                      tl_error *error);
 /* Of the image that the contender drew last. */
 bool tl_contender_compare(struct tl_contender *contender, const struct tl_truth *truth,
                           struct tl_measured_error *out, tl_error *error);

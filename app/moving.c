@@ -41,7 +41,8 @@ void tl_moving_update(struct tl_moving *moving)
     moving->motion_revision++;
 }
 
-tl_surface tl_moving_surface(const struct tl_moving *moving, const char *name, const tl_material *materials)
+tl_surface tl_moving_surface(const struct tl_moving *moving, const char *name,
+                             const struct tl_dressing *dressing)
 {
     const tl_mesh *mesh = &moving->model->mesh;
     return (tl_surface){
@@ -54,8 +55,8 @@ tl_surface tl_moving_surface(const struct tl_moving *moving, const char *name, c
         .index_count = mesh->index_count,
         .indices = mesh->indices,
         .part_count = mesh->part_count,
-        .parts = mesh->parts,
-        .materials = materials,
+        .parts = dressing->parts,
+        .materials = dressing->materials,
         .motion_revision = moving->motion_revision,
     };
 }

@@ -21,7 +21,14 @@ void tl_moving_release(struct tl_moving *moving);
 /* After `positions` changed. */
 void tl_moving_update(struct tl_moving *moving);
 
-/* The view that the renderer gets; `materials` has an entry for each of the model's. */
-tl_surface tl_moving_surface(const struct tl_moving *moving, const char *name, const tl_material *materials);
+/* How it looks: a material for each of the model's, and parts that choose among them. */
+struct tl_dressing {
+    tl_material *materials;
+    struct tl_mesh_part *parts;
+};
+
+/* The view that the renderer gets. */
+tl_surface tl_moving_surface(const struct tl_moving *moving, const char *name,
+                             const struct tl_dressing *dressing);
 
 #endif

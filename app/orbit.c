@@ -77,6 +77,28 @@ void tl_orbit_focus(struct tl_camera_params *params, vec3s point)
     params->distance_m = glm_max(0.5f * params->distance_m, DISTANCE_NEAREST_M);
 }
 
+float tl_orbit_angle_between(float from_deg, float to_deg, float share)
+{
+    if (share >= 1)
+        return to_deg;
+    return tl_orbit_wrap_deg(from_deg + share * tl_orbit_wrap_deg(to_deg - from_deg));
+}
+
+struct tl_camera_params tl_orbit_between(const struct tl_camera_params *from,
+                                         const struct tl_camera_params *to, float share)
+{
+    if (share >= 1)
+        return *to;
+    struct tl_camera_params between = {
+        .yaw_deg = tl_orbit_angle_between(from->yaw_deg, to->yaw_deg, share),
+        .pitch_deg = glm_lerp(from->pitch_deg, to->pitch_deg, share),
+        .distance_m = from->distance_m * powf(to->distance_m / from->distance_m, share),
+        .fov_deg = glm_lerp(from->fov_deg, to->fov_deg, share),
+    };
+    set_target(&between, glms_vec3_lerp(target_of(from), target_of(to), share));
+    return between;
+}
+
 struct tl_ray tl_orbit_ray(const struct tl_camera *camera, float x, float y, float width, float height)
 {
     vec3s forward = glms_vec3_normalize(glms_vec3_sub(camera->target, camera->eye));

@@ -34,6 +34,12 @@ void tl_orbit_zoom(struct tl_camera_params *params, float steps, float x, float 
 /* Makes `point` the target and goes to half the distance. */
 void tl_orbit_focus(struct tl_camera_params *params, vec3s point);
 
+/* `share` of the way from one to the other: the shorter way round, distances by ratios. Both distances above
+ * 0. The angle is within [-180, 180) but at the way's end, where it is exactly `to`. */
+float tl_orbit_angle_between(float from_deg, float to_deg, float share);
+struct tl_camera_params tl_orbit_between(const struct tl_camera_params *from,
+                                         const struct tl_camera_params *to, float share);
+
 /* Through the pixel position (x, y) of a view of width x height pixels. */
 struct tl_ray tl_orbit_ray(const struct tl_camera *camera, float x, float y, float width, float height);
 

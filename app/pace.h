@@ -32,6 +32,7 @@ struct tl_levels {
 struct tl_pace_choice {
     struct tl_levels levels;
     double predicted_ms; /* cloth and drawing; NaN while nothing is known */
+    double least_ms;     /* of the cheapest levels, where that is more than the budget; else predicted_ms */
     double error;        /* estimated, relative RMSE that the levels add to that of the settings */
     char reason[120];    /* for people: what was shed or taken back, and why; "" when nothing changed */
 };
@@ -42,15 +43,33 @@ tl_pace *tl_pace_create(double budget_ms); /* 0: no budget, level 0 always, but 
 void tl_pace_destroy(tl_pace **handle);
 void tl_pace_set_budget(tl_pace *pace, double budget_ms);
 
-/* `frame` is the last one drawn (or the first, undrawn), `settings` are those of full quality. */
-struct tl_pace_choice tl_pace_choose(tl_pace *pace, const tl_renderer *renderer, const tl_frame *frame,
+/* `frame` is the coming one as far as it is known: the last one drawn, with the camera that will be there, so
+ * that the end of a rest is seen; or the first. `settings` are those of full quality. At rest (three frames
+ * in which nothing moved) everything goes into the image: level 0, whatever the budget. In the first frames
+ * after an environment came, the renderer makes the regions of other levels ready, one level a frame. */
+struct tl_pace_choice tl_pace_choose(tl_pace *pace, tl_renderer *renderer, const tl_frame *frame,
                                      const struct tl_settings *settings);
 
-/* The settings of a frame at these levels. Pure. */
+/* True when there are such levels: those of a record may come from anywhere. Pure. */
+bool tl_levels_exist(const struct tl_levels *levels);
+
+/* The settings of a frame at these levels, which must exist. Pure. */
 struct tl_settings tl_levels_apply(const struct tl_levels *levels, const struct tl_settings *settings);
 
 /* What a frame took that was drawn at the levels chosen last: its plan with took_ms, the cloth's part, and
  * the whole from the choice to the finished image. */
 void tl_pace_learn(tl_pace *pace, const tl_plan *plan, double cloth_ms, double total_ms);
+
+/* What the next better level of a knob would change, from the levels chosen last. */
+struct tl_pace_step {
+    int level, level_count;
+    double value;     /* of the setting at this level: regions, steps, substeps a frame, scale */
+    double ms, error; /* dearer by so much, in error by so much less; NaN at level 0 */
+};
+void tl_pace_steps(const tl_pace *pace, const tl_renderer *renderer, const tl_frame *frame,
+                   const struct tl_settings *settings, struct tl_pace_step out[TL_KNOB_COUNT]);
+
+/* Median of |predicted - took| / took over the last 120 frames; NaN before the first. */
+double tl_pace_prediction_error(const tl_pace *pace);
 
 #endif

@@ -2,6 +2,7 @@ extern "C" {
 #include "app/panel_shim.h"
 #include "app/panel_rows_shim.h"
 }
+#include "app/panel_overlay_shim.h"
 
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
@@ -14,6 +15,9 @@ extern "C" {
 
 struct tl_panel {
     bool has_platform, has_drawing; /* which backends are up */
+    bool uses_keys, takes_focus;    /* takes_focus: in the next frame */
+    int pressed[8];                 /* keys for the next frame */
+    int pressed_count;
 };
 
 namespace
@@ -76,18 +80,6 @@ void tooltip_of_last_item(const char *help)
 {
     if (help && help[0] && ImGui::IsItemHovered())
         ImGui::SetTooltip("%s", help);
-}
-
-void draw_message(const tl_panel_input &input)
-{
-    if (!input.message[0])
-        return;
-    const ImVec4 red(1.0f, 0.45f, 0.40f, 1.0f), plain(0.75f, 0.75f, 0.75f, 1.0f);
-    ImGui::PushStyleColor(ImGuiCol_Text, input.message_is_error ? red : plain);
-    ImGui::PushTextWrapPos(0.0f);
-    ImGui::TextUnformatted(input.message);
-    ImGui::PopTextWrapPos();
-    ImGui::PopStyleColor();
 }
 
 /* Side by side, onto the next line where the panel ends. */
@@ -174,20 +166,23 @@ void draw_table(const tl_binding &binding, tl_panel_result &result)
     tl_panel_rows_end();
 }
 
-void draw_panel(const tl_panel_input &input, tl_panel_result &result)
+void draw_panel(tl_panel &panel, const tl_panel_input &input, tl_panel_result &result)
 {
     const ImVec2 ratio = ImGui::GetIO().DisplayFramebufferScale;
     ImGui::SetNextWindowPos(
         ImVec2(static_cast<float>(input.x) / ratio.x, static_cast<float>(input.y) / ratio.y));
     ImGui::SetNextWindowSize(
         ImVec2(static_cast<float>(input.width) / ratio.x, static_cast<float>(input.height) / ratio.y));
+    if (panel.takes_focus)
+        ImGui::SetNextWindowFocus();
+    panel.takes_focus = false;
     ImGui::Begin("panel", nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_NoBringToFrontOnFocus);
     ImGui::PushAllowKeyboardFocus(false); /* Tab hides the panel; it must not begin to type into it */
     ImGui::TextWrapped("%s", input.title);
-    draw_message(input);
     draw_buttons(input.buttons, input.button_count, result);
+    tl_panel_strip_draw(input.strip);
     ImGui::Separator();
     draw_front(input, result);
     ImGui::Separator();
@@ -201,41 +196,11 @@ void draw_panel(const tl_panel_input &input, tl_panel_result &result)
     ImGui::End();
 }
 
-/* In the middle of the view, which is what the panel leaves. */
-void place_over_view(const tl_panel_input &input)
-{
-    const ImGuiIO &io = ImGui::GetIO();
-    const float panel_width = static_cast<float>(input.width) / io.DisplayFramebufferScale.x;
-    ImGui::SetNextWindowPos(ImVec2(0.5f * (io.DisplaySize.x - panel_width), 0.5f * io.DisplaySize.y),
-                            ImGuiCond_Always, ImVec2(0.5f, 0.5f));
-}
-
-void draw_help(const tl_panel_input &input)
-{
-    place_over_view(input);
-    ImGui::SetNextWindowBgAlpha(0.92f);
-    ImGui::Begin("help", nullptr,
-                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs |
-                     ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_AlwaysAutoResize |
-                     ImGuiWindowFlags_NoSavedSettings);
-    if (ImGui::BeginTable("keys", 2, ImGuiTableFlags_SizingFixedFit)) {
-        for (size_t i = 0; i < input.help_count; i++) {
-            ImGui::TableNextRow();
-            ImGui::TableNextColumn();
-            ImGui::TextDisabled("%s", input.help[i].cells[0]);
-            ImGui::TableNextColumn();
-            ImGui::TextUnformatted(input.help[i].cells[1]);
-        }
-        ImGui::EndTable();
-    }
-    ImGui::End();
-}
-
 void draw_question(const tl_panel_input &input, tl_panel_result &result)
 {
     if (!ImGui::IsPopupOpen("question"))
         ImGui::OpenPopup("question");
-    place_over_view(input);
+    tl_panel_place_over_view(input, 0.5f, 0.5f);
     if (!ImGui::BeginPopupModal("question", nullptr,
                                 ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_AlwaysAutoResize |
                                     ImGuiWindowFlags_NoSavedSettings))
@@ -246,7 +211,9 @@ void draw_question(const tl_panel_input &input, tl_panel_result &result)
     for (size_t i = 0; i < input.answer_count; i++) {
         if (i > 0)
             ImGui::SameLine();
-        if (ImGui::Button(input.answers[i].label))
+        char label[64];
+        snprintf(label, sizeof label, "%d  %s", static_cast<int>(i) + 1, input.answers[i].label);
+        if (ImGui::Button(label))
             result.command = input.answers[i].command;
         tooltip_of_last_item(input.answers[i].help);
     }
@@ -257,11 +224,18 @@ void draw_question(const tl_panel_input &input, tl_panel_result &result)
     ImGui::EndPopup();
 }
 
+/* ImGui looks at what is held when a frame begins, and would miss a key that was let go before. */
+void hold_keys(const tl_panel &panel, bool held)
+{
+    for (int i = 0; i < panel.pressed_count; i++)
+        ImGui::GetIO().KeysDown[panel.pressed[i]] = held;
+}
+
 } // namespace
 
 struct tl_panel *tl_panel_create(struct GLFWwindow *window, float scale, tl_error *error)
 {
-    tl_panel *panel = new tl_panel{false, false};
+    tl_panel *panel = new tl_panel{};
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr; /* a review leaves no file behind that nobody asked for */
     choose_font(scale);
@@ -296,25 +270,42 @@ bool tl_panel_wants_pointer(const tl_panel *panel)
 
 bool tl_panel_wants_keys(const tl_panel *panel)
 {
-    (void)panel;
-    return ImGui::GetIO().WantTextInput;
+    return panel->uses_keys || ImGui::GetIO().WantTextInput;
+}
+
+void tl_panel_press(tl_panel *panel, int key)
+{
+    const int room = sizeof panel->pressed / sizeof panel->pressed[0];
+    if (panel->pressed_count < room)
+        panel->pressed[panel->pressed_count++] = key;
+}
+
+void tl_panel_use_keys(tl_panel *panel, bool used)
+{
+    ImGuiIO &io = ImGui::GetIO();
+    panel->uses_keys = panel->takes_focus = used;
+    if (used)
+        io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+    else
+        io.ConfigFlags &= ~ImGuiConfigFlags_NavEnableKeyboard;
 }
 
 struct tl_panel_result tl_panel_build(tl_panel *panel, const struct tl_panel_input *input)
 {
-    (void)panel;
     tl_panel_result result = {false, false, -1};
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
+    hold_keys(*panel, true);
     ImGui::NewFrame();
     if (input->width > 0)
-        draw_panel(*input, result);
-    if (input->help_count > 0)
-        draw_help(*input);
+        draw_panel(*panel, *input, result);
+    tl_panel_overlay_draw(*input);
     if (input->question)
         draw_question(*input, result);
     result.editing = ImGui::IsAnyItemActive();
     ImGui::Render();
+    hold_keys(*panel, false);
+    panel->pressed_count = 0;
     return result;
 }
 

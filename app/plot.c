@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* Of the drawing, in its own units. */
-#define WIDTH  760.0
+#define WIDTH  TL_PLOT_WIDTH
 #define HEIGHT 430.0
 #define LEFT   66.0
 #define RIGHT  20.0
@@ -31,6 +31,8 @@ struct box {
 
 struct canvas {
     FILE *out;
+    const struct tl_plot_manner *manner;
+    double height;
     struct axis x, y;
     struct box *taken; /* by marks and names */
     size_t taken_count;
@@ -71,19 +73,20 @@ static bool usable(const struct tl_plot *plot, const struct tl_plot_point *point
 }
 
 /* Room for all values and a margin around them; a linear axis begins at 0. */
-static struct axis make_axis(double low, double high, bool logarithmic, double from, double to)
+static struct axis make_axis(double low, double high, bool logarithmic, bool tight, double from, double to)
 {
+    const double margin_share = tight ? 0 : 0.07;
     struct axis axis = {low, high, logarithmic, from, to};
     if (low > high) { /* no value at all */
         axis.low = 1;
         axis.high = 10;
     } else if (logarithmic) {
-        double margin = high > low ? fmax(pow(high / low, 0.07), 1.05) : 2;
+        double margin = high > low ? fmax(pow(high / low, margin_share), 1.05) : 2;
         axis.low = low / margin;
         axis.high = high * margin;
     } else {
         axis.low = fmin(low, 0);
-        axis.high = high > axis.low ? high + 0.07 * (high - axis.low) : axis.low + 1;
+        axis.high = high > axis.low ? high + margin_share * (high - axis.low) : axis.low + 1;
     }
     return axis;
 }
@@ -101,8 +104,12 @@ static void find_axes(struct canvas *canvas, const struct tl_plot *plot)
             low[1] = fmin(low[1], point->y);
             high[1] = fmax(high[1], point->y);
         }
-    canvas->x = make_axis(low[0], high[0], plot->x_log, LEFT, WIDTH - RIGHT);
-    canvas->y = make_axis(low[1], high[1], plot->y_log, HEIGHT - BOTTOM, TOP);
+    for (size_t i = 0; i < canvas->manner->guide_count; i++) {
+        low[1] = fmin(low[1], canvas->manner->guides[i].y);
+        high[1] = fmax(high[1], canvas->manner->guides[i].y);
+    }
+    canvas->x = make_axis(low[0], high[0], plot->x_log, canvas->manner->x_tight, LEFT, WIDTH - RIGHT);
+    canvas->y = make_axis(low[1], high[1], plot->y_log, false, canvas->height - BOTTOM, TOP);
 }
 
 struct tick {
@@ -126,12 +133,17 @@ static size_t log_ticks(const struct axis *axis, struct tick ticks[TICKS_MAX])
     return count;
 }
 
-static size_t linear_ticks(const struct axis *axis, struct tick ticks[TICKS_MAX])
+/* As many as have room. */
+static size_t linear_ticks(const struct axis *axis, bool whole, struct tick ticks[TICKS_MAX])
 {
     static const double factors[] = {1, 2, 5, 10};
-    double decade = pow(10, floor(log10((axis->high - axis->low) / 8))), step = decade;
-    for (size_t i = 0; i < TL_COUNT(factors) && (axis->high - axis->low) / step > 8; i++)
+    const double room = 40;
+    double most = fmin(fmax(floor(fabs(axis->to - axis->from) / room), 2), 8);
+    double decade = pow(10, floor(log10((axis->high - axis->low) / most))), step = decade;
+    for (size_t i = 0; i < TL_COUNT(factors) && (axis->high - axis->low) / step > most; i++)
         step = factors[i] * decade;
+    if (whole)
+        step = fmax(step, 1);
     size_t count = 0;
     double first = ceil(axis->low / step);
     while (count < TICKS_MAX && (first + (double)count) * step <= axis->high) {
@@ -141,43 +153,52 @@ static size_t linear_ticks(const struct axis *axis, struct tick ticks[TICKS_MAX]
     return count;
 }
 
-static size_t find_ticks(const struct axis *axis, struct tick ticks[TICKS_MAX])
+static size_t find_ticks(const struct axis *axis, bool whole, struct tick ticks[TICKS_MAX])
 {
     size_t count = axis->logarithmic ? log_ticks(axis, ticks) : 0;
-    return count < 3 ? linear_ticks(axis, ticks) : count; /* a narrow range holds none of the round numbers */
+    return count < 3 ? linear_ticks(axis, whole, ticks)
+                     : count; /* a narrow range holds none of the round numbers */
+}
+
+static void print_y_ticks(const struct canvas *canvas)
+{
+    struct tick ticks[TICKS_MAX];
+    size_t count = find_ticks(&canvas->y, canvas->manner->y_whole, ticks);
+    for (size_t i = 0; i < count; i++) {
+        double at = place(&canvas->y, ticks[i].value);
+        fprintf(canvas->out, "<line class=\"grid\" x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\"/>\n", LEFT,
+                at, WIDTH - RIGHT, at);
+        if (ticks[i].labelled)
+            fprintf(canvas->out,
+                    "<text class=\"tick\" text-anchor=\"end\" x=\"%.1f\" y=\"%.1f\">%.4g</text>\n", LEFT - 7,
+                    at + 4, ticks[i].value);
+    }
 }
 
 static void print_axes(const struct canvas *canvas, const struct tl_plot *plot)
 {
     struct tick ticks[TICKS_MAX];
     FILE *out = canvas->out;
-    size_t count = find_ticks(&canvas->x, ticks);
+    size_t count = find_ticks(&canvas->x, false, ticks);
     for (size_t i = 0; i < count; i++) {
         double at = place(&canvas->x, ticks[i].value);
         fprintf(out, "<line class=\"grid\" x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\"/>\n", at, TOP, at,
-                HEIGHT - BOTTOM);
+                canvas->height - BOTTOM);
         if (ticks[i].labelled)
             fprintf(out, "<text class=\"tick\" text-anchor=\"middle\" x=\"%.1f\" y=\"%.1f\">%.4g</text>\n",
-                    at, HEIGHT - BOTTOM + 16, ticks[i].value);
+                    at, canvas->height - BOTTOM + 16, ticks[i].value);
     }
-    count = find_ticks(&canvas->y, ticks);
-    for (size_t i = 0; i < count; i++) {
-        double at = place(&canvas->y, ticks[i].value);
-        fprintf(out, "<line class=\"grid\" x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\"/>\n", LEFT, at,
-                WIDTH - RIGHT, at);
-        if (ticks[i].labelled)
-            fprintf(out, "<text class=\"tick\" text-anchor=\"end\" x=\"%.1f\" y=\"%.1f\">%.4g</text>\n",
-                    LEFT - 7, at + 4, ticks[i].value);
-    }
-    fprintf(out, "<path class=\"frame\" d=\"M%.1f %.1fV%.1fH%.1f\"/>\n", LEFT, TOP, HEIGHT - BOTTOM,
+    if (!canvas->manner->y_bare)
+        print_y_ticks(canvas);
+    fprintf(out, "<path class=\"frame\" d=\"M%.1f %.1fV%.1fH%.1f\"/>\n", LEFT, TOP, canvas->height - BOTTOM,
             WIDTH - RIGHT);
     fprintf(out, "<text class=\"axis\" text-anchor=\"middle\" x=\"%.1f\" y=\"%.1f\">",
-            0.5 * (LEFT + WIDTH - RIGHT), HEIGHT - 10);
+            0.5 * (LEFT + WIDTH - RIGHT), canvas->height - 10);
     tl_html_print(out, plot->x_label);
     fprintf(
         out,
         "</text>\n<text class=\"axis\" text-anchor=\"middle\" transform=\"translate(15 %.1f) rotate(-90)\">",
-        0.5 * (TOP + HEIGHT - BOTTOM));
+        0.5 * (TOP + canvas->height - BOTTOM));
     tl_html_print(out, plot->y_label);
     fputs("</text>\n", out);
 }
@@ -199,10 +220,13 @@ static void take(struct canvas *canvas, struct box box)
     canvas->taken[canvas->taken_count++] = box;
 }
 
+/* Along the points, and back along 0 where the area below them is filled. */
 static void print_line(const struct canvas *canvas, const struct tl_plot *plot,
                        const struct tl_plot_series *series, size_t style)
 {
+    bool steps = canvas->manner->kind == TL_PLOT_STEPS, areas = canvas->manner->kind == TL_PLOT_AREAS;
     bool begun = false;
+    double first = 0, last = 0;
     for (size_t i = 0; i < series->count; i++) {
         const struct tl_plot_point *point = &series->points[i];
         if (!usable(plot, point))
@@ -210,14 +234,65 @@ static void print_line(const struct canvas *canvas, const struct tl_plot *plot,
         if (!begun && series->front)
             fputs("<path class=\"front\" d=\"M", canvas->out);
         else if (!begun)
-            fprintf(canvas->out, "<path class=\"line s%zu\" d=\"M", style);
-        else
+            fprintf(canvas->out, "<path class=\"%s s%zu\" d=\"M", areas ? "area" : "line", style);
+        else if (!steps)
             fputc('L', canvas->out);
-        fprintf(canvas->out, "%.1f %.1f", place(&canvas->x, point->x), place(&canvas->y, point->y));
+        double x = place(&canvas->x, point->x), y = place(&canvas->y, point->y);
+        if (begun && steps)
+            fprintf(canvas->out, "H%.1fV%.1f", x, y);
+        else
+            fprintf(canvas->out, "%.1f %.1f", x, y);
+        first = begun ? first : x;
+        last = x;
         begun = true;
     }
+    if (begun && areas)
+        fprintf(canvas->out, "L%.1f %.1fH%.1fZ", last, place(&canvas->y, canvas->y.low), first);
     if (begun)
         fputs("\"/>\n", canvas->out);
+}
+
+static void print_bars(const struct canvas *canvas, const struct tl_plot *plot,
+                       const struct tl_plot_series *series, size_t style)
+{
+    double floor_y = place(&canvas->y, canvas->y.low);
+    for (size_t i = 0; i < series->count; i++) {
+        const struct tl_plot_point *point = &series->points[i];
+        if (!usable(plot, point))
+            continue;
+        double from = place(&canvas->x, point->x - 0.5 * canvas->manner->bar_width),
+               to = place(&canvas->x, point->x + 0.5 * canvas->manner->bar_width),
+               top = place(&canvas->y, point->y);
+        fprintf(canvas->out,
+                "<rect class=\"mark s%zu\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"><title>",
+                style, from, top, to - from, floor_y - top);
+        tl_html_print(canvas->out, point->name);
+        fputs("</title></rect>\n", canvas->out);
+    }
+}
+
+static void print_shade(const struct canvas *canvas)
+{
+    if (canvas->manner->shaded_to > canvas->x.low)
+        fprintf(canvas->out, "<rect class=\"shade\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"/>\n",
+                LEFT, TOP, place(&canvas->x, fmin(canvas->manner->shaded_to, canvas->x.high)) - LEFT,
+                canvas->height - BOTTOM - TOP);
+}
+
+static void print_guides(const struct canvas *canvas)
+{
+    const struct tl_plot_manner *manner = canvas->manner;
+    for (size_t i = 0; i < manner->guide_count; i++) {
+        double y = place(&canvas->y, manner->guides[i].y);
+        fprintf(canvas->out, "<path class=\"%s\" d=\"M%.1f %.1fH%.1f\"/>\n",
+                manner->y_bare ? "grid" : "guide", LEFT, y, WIDTH - RIGHT);
+        if (manner->y_bare)
+            continue;
+        fprintf(canvas->out, "<text class=\"name\" text-anchor=\"end\" x=\"%.1f\" y=\"%.1f\">",
+                WIDTH - RIGHT - 4, y - 5);
+        tl_html_print(canvas->out, manner->guides[i].name);
+        fputs("</text>\n", canvas->out);
+    }
 }
 
 static void print_marks(struct canvas *canvas, const struct tl_plot *plot,
@@ -238,7 +313,7 @@ static void print_marks(struct canvas *canvas, const struct tl_plot *plot,
 
 static bool overlaps(const struct canvas *canvas, struct box box)
 {
-    if (box.x0 < LEFT || box.x1 > WIDTH || box.y0 < 0 || box.y1 > HEIGHT - BOTTOM)
+    if (box.x0 < LEFT || box.x1 > WIDTH || box.y0 < 0 || box.y1 > canvas->height - BOTTOM)
         return true;
     for (size_t i = 0; i < canvas->taken_count; i++) {
         const struct box *other = &canvas->taken[i];
@@ -298,25 +373,59 @@ static void print_legend(FILE *out, const struct tl_plot *plot)
     fputs("</ul>\n", out);
 }
 
-void tl_plot_print(FILE *out, const struct tl_plot *plot)
+static bool is_joined(const struct tl_plot_series *series, enum tl_plot_kind kind)
+{
+    return series->front || (series->line && kind != TL_PLOT_AREAS && kind != TL_PLOT_BARS);
+}
+
+static bool has_marks(const struct tl_plot_series *series, enum tl_plot_kind kind)
+{
+    bool curve = series->line && series->count > CURVE_POINTS;
+    return !series->front && !curve && (kind == TL_PLOT_LINES || kind == TL_PLOT_STEPS);
+}
+
+/* Areas lie below the grid, all else above it. */
+static void print_series(struct canvas *canvas, const struct tl_plot *plot)
+{
+    enum tl_plot_kind kind = canvas->manner->kind;
+    for (size_t s = plot->series_count; s-- > 0 && kind == TL_PLOT_AREAS;)
+        print_line(canvas, plot, &plot->series[s], s % TL_PLOT_STYLES);
+    print_axes(canvas, plot);
+    for (size_t s = 0; s < plot->series_count; s++) {
+        if (kind == TL_PLOT_BARS)
+            print_bars(canvas, plot, &plot->series[s], s % TL_PLOT_STYLES);
+        if (is_joined(&plot->series[s], kind))
+            print_line(canvas, plot, &plot->series[s], s % TL_PLOT_STYLES);
+    }
+    for (size_t s = 0; s < plot->series_count; s++)
+        if (has_marks(&plot->series[s], kind))
+            print_marks(canvas, plot, &plot->series[s], s % TL_PLOT_STYLES);
+}
+
+void tl_plot_print_as(FILE *out, const struct tl_plot *plot, const struct tl_plot_manner *manner)
 {
     size_t points = 0;
     for (size_t s = 0; s < plot->series_count; s++)
         points += plot->series[s].count;
-    struct canvas canvas = {.out = out, .taken = TL_NEW_ARRAY(struct box, 2 * points)};
+    struct canvas canvas = {.out = out,
+                            .manner = manner,
+                            .height = manner->height > 0 ? manner->height : HEIGHT,
+                            .taken = TL_NEW_ARRAY(struct box, 2 * points)};
     find_axes(&canvas, plot);
-    print_legend(out, plot);
-    fprintf(out, "<svg class=\"plot\" viewBox=\"0 0 %.0f %.0f\" role=\"img\">\n", WIDTH, HEIGHT);
-    print_axes(&canvas, plot);
-    for (size_t s = 0; s < plot->series_count; s++)
-        if (plot->series[s].line || plot->series[s].front)
-            print_line(&canvas, plot, &plot->series[s], s % TL_PLOT_STYLES);
-    for (size_t s = 0; s < plot->series_count; s++)
-        if (!plot->series[s].front && !(plot->series[s].line && plot->series[s].count > CURVE_POINTS))
-            print_marks(&canvas, plot, &plot->series[s], s % TL_PLOT_STYLES);
+    if (plot->series_count > 1 || manner->kind == TL_PLOT_LINES)
+        print_legend(out, plot);
+    fprintf(out, "<svg class=\"plot\" viewBox=\"0 0 %.0f %.0f\" role=\"img\">\n", WIDTH, canvas.height);
+    print_shade(&canvas);
+    print_series(&canvas, plot);
+    print_guides(&canvas);
     print_names(&canvas, plot);
     fputs("</svg>\n", out);
     free(canvas.taken);
+}
+
+void tl_plot_print(FILE *out, const struct tl_plot *plot)
+{
+    tl_plot_print_as(out, plot, &(const struct tl_plot_manner){0});
 }
 
 struct ranked {

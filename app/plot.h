@@ -30,11 +30,40 @@ struct tl_plot {
     const struct tl_plot_series *series;
     size_t series_count;
 };
+#define TL_PLOT_WIDTH 760.0
+
+/* How series are drawn. */
+enum tl_plot_kind {
+    TL_PLOT_LINES,
+    TL_PLOT_STEPS, /* lines whose values hold until the next point */
+    TL_PLOT_AREAS, /* filled down to 0, later series behind earlier ones */
+    TL_PLOT_BARS   /* on 0, of equal width in x */
+};
+
+/* A level that is told, across the whole plot. */
+struct tl_plot_guide {
+    double y;
+    const char *name;
+};
+
+/* What a plot may have beside its points; all 0 is a plain plot. */
+struct tl_plot_manner {
+    enum tl_plot_kind kind;
+    double bar_width;
+    const struct tl_plot_guide *guides; /* in view whatever the points are */
+    size_t guide_count;
+    double shaded_to; /* x from 0 to here is set apart; 0: nothing is */
+    double height;    /* of the drawing, whose width is TL_PLOT_WIDTH; 0: its own */
+    bool x_tight;     /* no margin behind the largest x */
+    bool y_whole;     /* y counts: ticks at whole numbers only */
+    bool y_bare;      /* y is a matter of drawing: no ticks, guides are plain lines without names */
+};
 
 /* The text with &, <, > and quotes as HTML and SVG want them. */
 void tl_html_print(FILE *out, const char *text);
 
 void tl_plot_print(FILE *out, const struct tl_plot *plot);
+void tl_plot_print_as(FILE *out, const struct tl_plot *plot, const struct tl_plot_manner *manner);
 
 /* The best of `points` where less x and less y are both better: indices in order of rising x. Returns their
  * number; `best` holds up to `count`. */

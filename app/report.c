@@ -53,12 +53,41 @@ void tl_report_table(FILE *out, const char *const *cells, size_t rows, size_t co
     fputs(rows ? "</tbody>\n</table></div>\n" : "</thead>\n</table></div>\n", out);
 }
 
-void tl_report_plot(FILE *out, const struct tl_plot *plot, const char *caption)
+void tl_report_tiles(FILE *out, const char *const *cells, size_t count)
+{
+    fputs("<ul class=\"tiles\">\n", out);
+    for (size_t i = 0; i < count; i++) {
+        fputs("<li>", out);
+        print_element(out, "b", cells[2 * i]);
+        tl_html_print(out, cells[2 * i + 1]);
+        fputs("</li>\n", out);
+    }
+    fputs("</ul>\n", out);
+}
+
+void tl_report_fold_begin(FILE *out, const char *title)
+{
+    fputs("<details>", out);
+    print_element(out, "summary", title);
+}
+
+void tl_report_fold_end(FILE *out)
+{
+    fputs("</details>\n", out);
+}
+
+void tl_report_plot_as(FILE *out, const struct tl_plot *plot, const struct tl_plot_manner *manner,
+                       const char *caption)
 {
     fputs("<figure>\n", out);
-    tl_plot_print(out, plot);
+    tl_plot_print_as(out, plot, manner);
     print_element(out, "figcaption", caption);
     fputs("</figure>\n", out);
+}
+
+void tl_report_plot(FILE *out, const struct tl_plot *plot, const char *caption)
+{
+    tl_report_plot_as(out, plot, &(const struct tl_plot_manner){0}, caption);
 }
 
 static void print_base64(FILE *out, const uint8_t *bytes, size_t size)
@@ -79,17 +108,35 @@ void tl_report_pictures_begin(FILE *out)
     fputs("<div class=\"pictures\">\n", out);
 }
 
-void tl_report_picture(FILE *out, const void *png, size_t size, const char *name, const char *caption)
+static void begin_picture(FILE *out, const char *name)
 {
     fputs("<figure><img alt=\"", out);
     tl_html_print(out, name);
-    fputs("\" src=\"data:image/png;base64,", out);
-    print_base64(out, png, size);
+    fputs("\" src=\"", out);
+}
+
+static void end_picture(FILE *out, const char *name, const char *caption)
+{
     fputs("\"/><figcaption><b>", out);
     tl_html_print(out, name);
     fputs("</b>", out);
     tl_html_print(out, caption);
     fputs("</figcaption></figure>\n", out);
+}
+
+void tl_report_picture(FILE *out, const void *png, size_t size, const char *name, const char *caption)
+{
+    begin_picture(out, name);
+    fputs("data:image/png;base64,", out);
+    print_base64(out, png, size);
+    end_picture(out, name, caption);
+}
+
+void tl_report_picture_beside(FILE *out, const char *file, const char *name, const char *caption)
+{
+    begin_picture(out, name);
+    tl_html_print(out, file);
+    end_picture(out, name, caption);
 }
 
 void tl_report_pictures_end(FILE *out)

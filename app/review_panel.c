@@ -3,6 +3,8 @@
 #include "config/log.h"
 #include "config/memory.h"
 
+#include <epoxy/gl.h>
+
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -10,7 +12,7 @@
 #include <unistd.h>
 
 #define MEASURES_MAX 12
-#define HELP_MAX     40
+#define HELP_MAX     64
 
 static const char *const favourites[] = {
     "scene.garment",
@@ -21,6 +23,8 @@ static const char *const favourites[] = {
     "scene.environment",
     "scene.environment_yaw_deg",
     "scene.preset",
+    "scene.colourway",
+    "image.view",
     "light.method",
     "light.regions",
     "image.exposure_ev",
@@ -46,7 +50,7 @@ int tl_review_panel_width(const struct tl_review *review)
     int width, height;
     tl_window_size(review->window, &width, &height);
     int panel = (int)(wished * tl_window_scale(review->window));
-    return review->panel_hidden ? 0 : panel < width / 2 ? panel : width / 2;
+    return !review->params.panel ? 0 : panel < width / 2 ? panel : width / 2;
 }
 
 size_t tl_review_resident_bytes(void)
@@ -113,8 +117,10 @@ static size_t list_measures(struct tl_review *review, struct tl_panel_line *line
              review->times.frame);
     add_line(lines, &count, "cloth", "%.1f ms", review->times.cloth);
     add_line(lines, &count, "drawing", "%.0f ms", review->times.draw);
-    add_line(lines, &count, "image", review->scale > 1 ? "%d x %d at 1/%d" : "%d x %d", width, height,
-             review->scale);
+    int samples_x, samples_y;
+    const struct tl_settings drawn = tl_levels_apply(&review->pace_choice.levels, &review->good);
+    tl_image_samples(&drawn.image, &samples_x, &samples_y);
+    add_line(lines, &count, "image", "%d x %d of %d x %d samples", width, height, samples_x, samples_y);
     count_triangles(review, &triangles, &vertices);
     add_line(lines, &count, "surfaces", "%zu triangles, %zu vertices", triangles, vertices);
     if (tl_session_cloth(review->session)) {
@@ -151,23 +157,96 @@ static size_t list_plan(struct tl_review *review, struct tl_panel_line *lines)
     return (size_t)plan->count;
 }
 
+const struct tl_panel_button *tl_review_answers(const struct tl_review *review, size_t *count)
+{
+    if (!review->dropped)
+        return NULL;
+    bool is_model = tl_model_is_file(review->dropped);
+    *count = is_model ? TL_COUNT(model_answers) : TL_COUNT(text_answers);
+    return is_model ? model_answers : text_answers;
+}
+
 static void ask_about_dropped(const struct tl_review *review, char *question, size_t size,
                               struct tl_panel_input *input)
 {
-    if (!review->dropped)
+    input->answers = tl_review_answers(review, &input->answer_count);
+    if (!input->answers)
         return;
     const char *slash = strrchr(review->dropped, '/');
     snprintf(question, size, "%s: use it as", slash ? slash + 1 : review->dropped);
-    bool is_model = tl_model_is_file(review->dropped);
     input->question = question;
-    input->answers = is_model ? model_answers : text_answers;
-    input->answer_count = is_model ? TL_COUNT(model_answers) : TL_COUNT(text_answers);
 }
 
-static void take_result(struct tl_review *review, const struct tl_panel_result *result)
+static char *append(char *end, const char *stop, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+static char *append(char *end, const char *stop, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    int length = vsnprintf(end, (size_t)(stop - end), format, arguments);
+    va_end(arguments);
+    return length < stop - end ? end + length : end;
+}
+
+/* What goes on by itself, and how it is ended. */
+static void describe_status(const struct tl_review *review, char *status, size_t size)
+{
+    const struct tl_review_path *path = &review->path;
+    const char *stop = status + size;
+    char *end = status;
+    *end = '\0';
+    if (path->records)
+        end = append(end, stop, "recording: %.1f s (Shift+K ends)  ", tl_clock_s() - path->began_s);
+    if (path->plays)
+        end = append(end, stop, "path: %.1f of %.1f s (L ends)  ", tl_clock_s() - path->began_s,
+                     tl_path_length_s(&path->path));
+    if (review->motion.turntable)
+        end = append(end, stop, "turntable (T ends)  ");
+    if (review->motion.environment)
+        end = append(end, stop, "environment turns (Shift+T ends)  ");
+    if (tl_panel_wants_keys(review->panel))
+        append(end, stop, "keys go to the panel (Esc ends)");
+}
+
+static struct tl_panel_progress progress_of(const struct tl_review *review, char *text, size_t size)
+{
+    if (!review->loader)
+        return (struct tl_panel_progress){0};
+    const struct tl_scene_params *scene = &tl_loader_settings(review->loader)->scene;
+    bool is_light = tl_loader_kind(review->loader) == TL_LOAD_LIGHT;
+    const char *name = is_light                              ? scene->environment
+                       : strcmp(scene->garment, "none") == 0 ? scene->avatar
+                                                             : scene->garment;
+    const char *slash = strrchr(name, '/');
+    struct tl_load_progress progress = tl_loader_progress(review->loader);
+    bool is_known = progress.what[0] != '\0';
+    snprintf(text, size, "Loading %.100s%s%s", slash ? slash + 1 : name, is_known ? ": " : "", progress.what);
+    return (struct tl_panel_progress){.what = text, .share = is_known ? (float)progress.share : -1};
+}
+
+void tl_review_build_progress(struct tl_review *review)
+{
+    char text[256];
+    int width, height;
+    tl_window_size(review->window, &width, &height);
+    const struct tl_panel_input input = {
+        .message = "", .status = "", .progress = progress_of(review, text, sizeof text), .height = height};
+    const float surround = 0.13f; /* the panel's grey */
+    glViewport(0, 0, width, height);
+    glClearColor(surround, surround, surround, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    tl_panel_build(review->panel, &input);
+    tl_panel_draw(review->panel);
+    tl_window_show(review->window);
+}
+
+/* The window's own options, which stand among the scene's, change no picture. */
+static void take_result(struct tl_review *review, const struct tl_panel_result *result,
+                        const struct tl_settings *before)
 {
     review->editing = result->editing;
-    if (result->changed) {
+    if (result->changed && !tl_settings_equal(before, &review->wanted)) {
         tl_review_layer(review);
         tl_review_know_environment(review, review->wanted.scene.environment);
         tl_review_touch(review);
@@ -175,6 +254,39 @@ static void take_result(struct tl_review *review, const struct tl_panel_result *
     }
     if (result->command >= 0)
         tl_review_act(review, result->command);
+}
+
+/* Percent, of those that the settings ask for. */
+static double share_of_samples(const struct tl_review *review)
+{
+    const struct tl_settings drawn = tl_levels_apply(&review->pace_choice.levels, &review->good);
+    int full_x, full_y, x, y;
+    tl_image_samples(&review->good.image, &full_x, &full_y);
+    tl_image_samples(&drawn.image, &x, &y);
+    return 100.0 * x * y / ((double)full_x * full_y);
+}
+
+static struct tl_panel_strip strip_of(const struct tl_review *review, float *times, char *label, size_t size)
+{
+    const struct tl_frame_times *all = &review->frame_times;
+    float budget_ms = review->params.budget_ms;
+    for (size_t i = 0; i < all->count; i++)
+        times[i] = tl_frame_times_at(all, i);
+    const struct tl_levels *levels = &review->pace_choice.levels;
+    char *end = label;
+    const char *stop = label + size;
+    if (all->count > 0)
+        end = append(end, stop, "%.0f ms", review->times.frame);
+    end = append(end, stop, budget_ms > 0 ? "%s%.0f ms for a frame" : "%sno budget",
+                 all->count > 0 ? " of " : "", (double)budget_ms);
+    if (tl_review_is_sharp(review))
+        end = append(end, stop, ": full quality");
+    for (int i = 0; i < TL_KNOB_COUNT; i++)
+        if (levels->of[i] > 0 && i != TL_KNOB_SCALE)
+            end = append(end, stop, ", %s -%d", tl_knob_names[i], levels->of[i]);
+    if (levels->of[TL_KNOB_SCALE] > 0)
+        append(end, stop, ", %.0f %% of the pixels", share_of_samples(review));
+    return (struct tl_panel_strip){times, all->count, budget_ms, label};
 }
 
 void tl_review_build_panel(struct tl_review *review)
@@ -185,6 +297,11 @@ void tl_review_build_panel(struct tl_review *review)
         {"Reset", "back to the settled start: R", TL_REVIEW_RESET},
         {"Frame", "frame the whole figure: F", TL_REVIEW_FRAME_ALL},
         {"Next light", "next environment: E", TL_REVIEW_NEXT_ENVIRONMENT},
+        {"Colours", "next colourway: C", TL_REVIEW_NEXT_COLOURWAY},
+        {"Inspect", "normals, UVs, visibility, strain: V; B: light again", TL_REVIEW_NEXT_VIEW},
+        {"Compare", "splits the view: the look of now beside the next one: W", TL_REVIEW_COMPARE},
+        {"Turn", "turntable: T", TL_REVIEW_TURNTABLE},
+        {"Undo", "the last edit: Ctrl+Z", TL_REVIEW_UNDO},
         {"Picture", "screenshot: S, or Shift+S for a linear EXR", TL_REVIEW_SCREENSHOT},
         {"Keys", "keys and gestures: H", TL_REVIEW_HELP},
     };
@@ -201,15 +318,29 @@ void tl_review_build_panel(struct tl_review *review)
          .count = list_plan(review, plan),
          .columns = 4},
     };
-    struct tl_binding bindings[TL_SETTINGS_TABLES];
+    struct tl_binding bindings[TL_SETTINGS_TABLES + 1];
     tl_settings_bind(&review->wanted, bindings);
+    bindings[TL_SETTINGS_TABLES] = (struct tl_binding){&tl_window_options, &review->params};
     int width, height;
     tl_review_size(review, &width, &height);
-    char question[TL_STRING_SIZE];
+    char question[TL_STRING_SIZE], status[256], progress[256], left[256] = "", right[256] = "", label[256];
+    float times[TL_FRAME_TIMES_SHOWN];
+    char read_out[512];
+    struct tl_panel_legend legend;
+    tl_review_read_out(review, read_out, sizeof read_out);
+    if (review->wipe.renderer)
+        tl_review_wipe_labels(review, left, right, sizeof left);
+    describe_status(review, status, sizeof status);
     struct tl_panel_input input = {
         .title = review->title,
         .message = review->message,
         .message_is_error = review->message_is_error,
+        .status = status,
+        .strip = strip_of(review, times, label, sizeof label),
+        .wipe = {tl_review_wipe_column(review, width), left, right},
+        .legend = tl_review_legend(review, &legend) ? &legend : NULL,
+        .read_out = read_out,
+        .progress = progress_of(review, progress, sizeof progress),
         .buttons = buttons,
         .button_count = TL_COUNT(buttons),
         .favourites = favourites,
@@ -217,7 +348,7 @@ void tl_review_build_panel(struct tl_review *review)
         .measures = groups,
         .measure_count = TL_COUNT(groups),
         .bindings = bindings,
-        .binding_count = TL_SETTINGS_TABLES,
+        .binding_count = TL_COUNT(bindings),
         .help = help,
         .help_count = review->help_shown ? tl_review_help(help, HELP_MAX) : 0,
         .x = width,
@@ -225,6 +356,9 @@ void tl_review_build_panel(struct tl_review *review)
         .height = height,
     };
     ask_about_dropped(review, question, sizeof question, &input);
+    struct tl_settings before = review->wanted;
+    bool had_panel = review->params.panel;
     struct tl_panel_result result = tl_panel_build(review->panel, &input);
-    take_result(review, &result);
+    take_result(review, &result, &before);
+    review->changed |= review->params.panel != had_panel; /* the picture's size */
 }

@@ -1,17 +1,21 @@
 #include "app/session.h"
 
 #include "app/camera.h"
+#include "app/looks.h"
 #include "app/moving.h"
 #include "app/moving_light.h"
 #include "app/playback.h"
 #include "assets/avatar.h"
 #include "assets/fit.h"
 #include "assets/specimen.h"
+#include "cloth/strain.h"
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
+#include "render/inspect/legend.h"
 
 #include <float.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -28,8 +32,6 @@ struct tl_session {
      * contents move when it takes over another's. */
     tl_avatar *avatar;   /* NULL: none */
     tl_garment *garment; /* NULL: none */
-    tl_weave *weave;     /* NULL: the garment shows no yarns */
-    tl_weave *overlay_weave;
 
     int clip; /* -1: rest pose */
     struct tl_moving body;
@@ -39,8 +41,22 @@ struct tl_session {
     tl_playback *playback; /* NULL: the garment is simulated */
     struct tl_moving dress;
 
-    tl_material *materials; /* of the garment: the file's, or what settings.material makes of them */
-    uint64_t look_revision; /* rises when meshes or materials change */
+    struct {
+        bool wanted;        /* whatever the image shows */
+        tl_strains *rest;   /* made when first asked for */
+        vec3s *of_vertices; /* of the garment */
+        uint64_t revision;  /* dress.motion_revision that they are of; 0: none */
+    } strain;
+
+    struct tl_looks looks;
+    uint64_t look_revision; /* of meshes and materials; the renderer sees another one as new */
+    uint64_t looks_made;    /* the highest revision so far */
+    struct {                /* the look before, for comparisons that go to and fro */
+        bool is_kept;
+        struct tl_looks looks;
+        uint64_t revision;
+        struct tl_settings made_of;
+    } spare;
 
     int frame;
     struct tl_box framed; /* what the camera frames: all there is at frame 0 */
@@ -127,83 +143,6 @@ static bool load_garment(tl_session *session, tl_error *error)
     session->garment = TL_NEW(tl_garment);
     *session->garment = made;
     return true;
-}
-
-static void forget_weave(tl_weave **weave)
-{
-    if (!*weave)
-        return;
-    tl_weave_release(*weave);
-    free(*weave);
-    *weave = NULL;
-}
-
-/* The yarns of a look that is a fabric's. */
-static void make_weave(const struct tl_material_params *look, const struct tl_weave_params *params,
-                       tl_weave **out)
-{
-    tl_weave made;
-    forget_weave(out);
-    if (look->use_file || !tl_weave_create(params, &made))
-        return;
-    *out = TL_NEW(tl_weave);
-    **out = made;
-}
-
-static struct tl_gloss gloss_of(const struct tl_material_params *look)
-{
-    return (struct tl_gloss){.model = look->model,
-                             .facets = look->facets,
-                             .masking = look->masking,
-                             .fresnel = look->fresnel,
-                             .index = look->index,
-                             .extinction = look->extinction,
-                             .width_weft = look->width_weft,
-                             .width_warp = look->width_warp,
-                             .rotation = glm_rad(look->rotation_deg)};
-}
-
-/* The fabric replaces how the surface reflects; a print or dye that the file brings stays. */
-static void set_look(const struct tl_material_params *look, const tl_weave *weave, tl_material *material)
-{
-    if (look->use_file)
-        return;
-    if (!material->diffuse_map.image)
-        memcpy(material->diffuse.raw, look->diffuse, sizeof material->diffuse.raw);
-    memcpy(material->specular.raw, look->specular, sizeof material->specular.raw);
-    memcpy(material->transmission.raw, look->transmission, sizeof material->transmission.raw);
-    material->glossiness = look->glossiness;
-    material->gloss = gloss_of(look);
-    material->coat = look->coat;
-    material->coat_glossiness = look->coat_glossiness;
-    material->openness = look->openness;
-    material->gloss_map.image = NULL;
-    material->specular_map.image = NULL;
-    material->weave = weave;
-}
-
-static bool is_overlay(const tl_session *session, const tl_material *material)
-{
-    return strcmp(session->settings.scene.overlay_fabric, "none") != 0 &&
-           strcmp(material->name, TL_GARMENT_OVERLAY) == 0;
-}
-
-/* The garment's materials from its file and the settings' looks; the weaves they point to. */
-static void make_materials(tl_session *session)
-{
-    const struct tl_settings *settings = &session->settings;
-    const tl_model *model = &session->garment->model;
-    make_weave(&settings->material, &settings->weave, &session->weave);
-    make_weave(&settings->overlay, &settings->overlay_weave, &session->overlay_weave);
-    session->materials = tl_resize(session->materials, model->material_count, sizeof *session->materials);
-    for (size_t i = 0; i < model->material_count; i++) {
-        session->materials[i] = model->materials[i];
-        if (is_overlay(session, &model->materials[i]))
-            set_look(&settings->overlay, session->overlay_weave, &session->materials[i]);
-        else
-            set_look(&settings->material, session->weave, &session->materials[i]);
-    }
-    session->look_revision++;
 }
 
 static void pose_avatar(tl_session *session, double time_s)
@@ -334,6 +273,13 @@ static bool plays_motion(const tl_session *session)
     return strcmp(session->settings.scene.motion, "none") != 0;
 }
 
+static bool make_looks(const tl_session *session, const struct tl_settings *settings, struct tl_looks *out,
+                       tl_error *error)
+{
+    return tl_looks_make(settings, session->garment ? &session->garment->model : NULL,
+                         session->avatar ? &session->avatar->model : NULL, out, error);
+}
+
 static bool load_all(tl_session *session, tl_error *error)
 {
     const char *environment = session->settings.scene.environment;
@@ -342,10 +288,12 @@ static bool load_all(tl_session *session, tl_error *error)
         return false;
     if (!session->avatar && !session->garment)
         return tl_fail(error, TL_USAGE, "scene: neither a garment nor an avatar: name at least one");
+    if (!make_looks(session, &session->settings, &session->looks, error))
+        return false;
+    session->look_revision = ++session->looks_made;
     if (session->avatar)
         tl_moving_create(&session->body, &session->avatar->model, NULL);
     if (session->garment) {
-        make_materials(session);
         if (plays_motion(session) ? !begin_playback(session, error) : !begin_cloth(session, error))
             return false;
     } else if (plays_motion(session)) {
@@ -386,9 +334,10 @@ void tl_session_destroy(tl_session **handle)
     free(session->garment);
     free(session->avatar);
     tl_moving_light_release(&session->light);
-    forget_weave(&session->weave);
-    forget_weave(&session->overlay_weave);
-    free(session->materials);
+    tl_strains_destroy(&session->strain.rest);
+    free(session->strain.of_vertices);
+    tl_looks_release(&session->looks);
+    tl_looks_release(&session->spare.looks);
     free(session);
     *handle = NULL;
 }
@@ -460,7 +409,7 @@ static bool same_text(const char *a, const char *b)
 }
 
 /* What cannot be changed in place: who wears what, and what is decided when the cloth is made. */
-static bool needs_new_scene(const struct tl_settings *old, const struct tl_settings *new)
+bool tl_session_needs_scene(const struct tl_settings *old, const struct tl_settings *new)
 {
     return !same_text(old->scene.garment, new->scene.garment) ||
            !same_text(old->scene.avatar, new->scene.avatar) || !same_text(old->scene.clip, new->scene.clip) ||
@@ -470,39 +419,123 @@ static bool needs_new_scene(const struct tl_settings *old, const struct tl_setti
            old->image.ground != new->image.ground;
 }
 
-bool tl_session_apply(tl_session *session, const struct tl_settings *settings, tl_error *error)
+bool tl_session_needs_light(const struct tl_settings *old, const struct tl_settings *new)
 {
-    const struct tl_settings *old = &session->settings;
-    if (needs_new_scene(old, settings)) {
-        tl_session *fresh = tl_session_create(settings, error);
-        if (!fresh)
-            return false;
-        /* Revisions go on rising, so that the renderer sees everything as new. */
-        fresh->light.revision += session->light.revision;
-        fresh->look_revision += session->look_revision + 1;
-        fresh->body.motion_revision += session->body.motion_revision;
-        fresh->dress.motion_revision += session->dress.motion_revision;
-        tl_session swap = *session;
-        *session = *fresh;
-        *fresh = swap;
-        tl_session_destroy(&fresh);
-        return true;
+    return !same_text(old->scene.environment, new->scene.environment);
+}
+
+void tl_session_keep_scene(const struct tl_settings *kept, struct tl_settings *settings)
+{
+    if (!same_text(settings->scene.garment, kept->scene.garment)) { /* its colourways are its own */
+        memcpy(settings->scene.colourway, kept->scene.colourway, sizeof settings->scene.colourway);
+        memcpy(settings->scene.colourways, kept->scene.colourways, sizeof settings->scene.colourways);
+        settings->colourways = kept->colourways;
     }
+    memcpy(settings->scene.garment, kept->scene.garment, sizeof settings->scene.garment);
+    memcpy(settings->scene.avatar, kept->scene.avatar, sizeof settings->scene.avatar);
+    memcpy(settings->scene.clip, kept->scene.clip, sizeof settings->scene.clip);
+    memcpy(settings->scene.motion, kept->scene.motion, sizeof settings->scene.motion);
+    memcpy(settings->scene.environment, kept->scene.environment, sizeof settings->scene.environment);
+    settings->scene.units = kept->scene.units;
+    settings->scene.avatar_units = kept->scene.avatar_units;
+    settings->scene.motion_rate = kept->scene.motion_rate;
+    settings->cloth.edge_m = kept->cloth.edge_m;
+    settings->image.ground = kept->image.ground;
+}
+
+/* Revisions go on rising, so that the renderer sees everything as new. */
+void tl_session_replace(tl_session *session, tl_session **made)
+{
+    tl_session *fresh = *made;
+    fresh->light.revision += session->light.revision;
+    fresh->looks_made += session->looks_made + 1;
+    fresh->look_revision = fresh->looks_made;
+    fresh->body.motion_revision += session->body.motion_revision;
+    fresh->dress.motion_revision += session->dress.motion_revision;
+    fresh->strain.wanted = session->strain.wanted;
+    tl_session swap = *session;
+    *session = *fresh;
+    *fresh = swap;
+    tl_session_destroy(made);
+}
+
+void tl_session_replace_light(tl_session *session, struct tl_moving_light *made, const char *name)
+{
+    made->revision += session->light.revision;
+    tl_moving_light_release(&session->light);
+    session->light = *made;
+    *made = (struct tl_moving_light){0};
+    snprintf(session->settings.scene.environment, sizeof session->settings.scene.environment, "%s", name);
+}
+
+bool tl_session_restart(tl_session *session, const struct tl_settings *settings, tl_error *error)
+{
+    tl_session *fresh = tl_session_create(settings, error);
+    if (!fresh)
+        return false;
+    tl_session_replace(session, &fresh);
+    return true;
+}
+
+/* Light and cloth. */
+static bool change_in_place(tl_session *session, const struct tl_settings *settings, tl_error *error)
+{
     double position = light_position(settings, session->frame);
     const char *environment = settings->scene.environment;
-    if (same_text(old->scene.environment, environment)
-            ? !tl_moving_light_follow(&session->light, position, error)
-            : !tl_moving_light_open(&session->light, environment, position, error))
+    if (tl_session_needs_light(&session->settings, settings)
+            ? !tl_moving_light_open(&session->light, environment, position, error)
+            : !tl_moving_light_follow(&session->light, position, error))
         return false;
-    bool new_look = !tl_options_equal(&tl_weave_options, &old->weave, &settings->weave) ||
-                    !tl_options_equal(&tl_material_options, &old->material, &settings->material) ||
-                    !tl_options_equal(&tl_overlay_options, &old->overlay, &settings->overlay) ||
-                    !same_text(old->scene.overlay_fabric, settings->scene.overlay_fabric);
-    if (session->cloth && !tl_cloth_set(session->cloth, &settings->fabric, &settings->cloth, error))
+    /* Cloth that is set anew forgets what it touches: only what changes it may do that. */
+    const struct tl_settings *old = &session->settings;
+    bool same_cloth = tl_options_equal(&tl_cloth_fabric_options, &old->fabric, &settings->fabric) &&
+                      tl_options_equal(&tl_cloth_options, &old->cloth, &settings->cloth);
+    return !session->cloth || same_cloth ||
+           tl_cloth_set(session->cloth, &settings->fabric, &settings->cloth, error);
+}
+
+/* The present look becomes the spare one. */
+static void set_aside_look(tl_session *session)
+{
+    tl_looks_release(&session->spare.looks);
+    session->spare.is_kept = true;
+    session->spare.looks = session->looks;
+    session->spare.revision = session->look_revision;
+    session->spare.made_of = session->settings;
+}
+
+/* Takes up the look that was set aside, in exchange for the present one. */
+static void exchange_looks(tl_session *session)
+{
+    struct tl_looks looks = session->spare.looks;
+    uint64_t revision = session->spare.revision;
+    session->spare.looks = (struct tl_looks){0};
+    set_aside_look(session);
+    session->looks = looks;
+    session->look_revision = revision;
+}
+
+bool tl_session_apply(tl_session *session, const struct tl_settings *settings, tl_error *error)
+{
+    if (tl_session_needs_scene(&session->settings, settings))
+        return tl_session_restart(session, settings, error);
+    struct tl_looks looks = {0};
+    bool new_look = !tl_looks_are_same(&session->settings, settings);
+    bool was_seen = session->spare.is_kept && tl_looks_are_same(&session->spare.made_of, settings);
+    if (new_look && !was_seen && !make_looks(session, settings, &looks, error))
         return false;
+    if (!change_in_place(session, settings, error)) {
+        tl_looks_release(&looks);
+        return false;
+    }
+    if (new_look && was_seen) {
+        exchange_looks(session);
+    } else if (new_look) {
+        set_aside_look(session);
+        session->looks = looks;
+        session->look_revision = ++session->looks_made;
+    }
     session->settings = *settings;
-    if (session->garment && new_look)
-        make_materials(session);
     return true;
 }
 
@@ -511,15 +544,44 @@ const struct tl_settings *tl_session_settings(const tl_session *session)
     return &session->settings;
 }
 
+/* Of cloth, when somebody looks at them. */
+static const vec3s *strains_of_garment(tl_session *session)
+{
+    bool shown = session->strain.wanted || tl_view_is_strain(session->settings.image.view);
+    if (!shown || session->garment->solid)
+        return NULL;
+    if (!session->strain.rest) {
+        session->strain.rest = tl_strains_create(session->garment);
+        session->strain.of_vertices = TL_NEW_ARRAY(vec3s, session->garment->model.mesh.vertex_count);
+    }
+    if (session->strain.revision != session->dress.motion_revision)
+        tl_strains_update(session->strain.rest, session->dress.positions, session->strain.of_vertices);
+    session->strain.revision = session->dress.motion_revision;
+    return session->strain.of_vertices;
+}
+
+void tl_session_want_strains(tl_session *session, bool wanted)
+{
+    session->strain.wanted = wanted;
+}
+
+size_t tl_session_colourways(const tl_session *session, const char *const **names)
+{
+    *names = (const char *const *)session->looks.names;
+    return session->looks.name_count;
+}
+
 tl_frame tl_session_frame(tl_session *session)
 {
     session->surface_count = 0;
     if (session->avatar)
         session->surfaces[session->surface_count++] =
-            tl_moving_surface(&session->body, "avatar", session->avatar->model.materials);
-    if (session->garment)
-        session->surfaces[session->surface_count++] =
-            tl_moving_surface(&session->dress, "garment", session->materials);
+            tl_moving_surface(&session->body, "avatar", &session->looks.avatar);
+    if (session->garment) {
+        tl_surface *garment = &session->surfaces[session->surface_count++];
+        *garment = tl_moving_surface(&session->dress, "garment", &session->looks.garment);
+        garment->strains = strains_of_garment(session);
+    }
     for (size_t i = 0; i < session->surface_count; i++)
         session->surfaces[i].topology_revision = session->look_revision;
     const struct tl_image_params *image = &session->settings.image;

@@ -49,6 +49,13 @@ static const struct tl_option scene_rows[] = {
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, overlay_fabric, tl_embedded_fabrics_names,
                            "sets the table overlay, and the weave, of a garment's second fabric; how it "
                            "moves is scene.fabric's"),
+    TL_OPTION_STRING(struct tl_scene_params, colourway,
+                     "fabrics and colours that the scene or a glTF file (its variants) has under this name; "
+                     "empty: as they are"),
+    TL_OPTION_NAME_OR_PATH(
+        struct tl_scene_params, colourways, tl_embedded_scenes_names,
+        "the scene whose colourways are meant: built in, or a YAML file; left out: this one's, "
+        "or those of a built-in garment"),
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, preset, tl_embedded_presets_names,
                            "sets quality in the tables cloth, light and image: built in, or a YAML file"),
     TL_OPTION_STRING(struct tl_scene_params, clip,
@@ -134,7 +141,7 @@ bool tl_settings_equal(const struct tl_settings *a, const struct tl_settings *b)
     for (size_t i = 0; i < TL_SETTINGS_TABLES; i++)
         if (!tl_options_equal(first_bindings[i].table, first_bindings[i].params, second_bindings[i].params))
             return false;
-    return true;
+    return tl_colourways_equal(&a->colourways, &b->colourways);
 }
 
 /* One kind of file that can be named or lie on disk. */
@@ -163,17 +170,24 @@ static bool fail_name(const struct layer *layer, const char *name, tl_error *err
     return false;
 }
 
-static bool apply(const struct layer *layer, const char *name, const struct tl_binding *bindings,
-                  size_t count, tl_error *error)
+/* `section`: of records that the file may have, or NULL. */
+static bool apply_with(const struct layer *layer, const char *name, const struct tl_binding *bindings,
+                       size_t count, const struct tl_record_section *section, tl_error *error)
 {
     if (tl_option_is_file_name(name))
-        return tl_options_read_yaml_file(bindings, count, name, error);
+        return tl_options_read_yaml_file_with(bindings, count, section, name, error);
     char *file = tl_format("%s.yaml", name);
     const struct tl_embedded *entry = tl_embedded_find(layer->list, file);
     free(file);
     if (!entry)
         return fail_name(layer, name, error);
-    return tl_options_read_yaml(bindings, count, entry->name, entry->data, entry->size, error);
+    return tl_options_read_yaml_with(bindings, count, section, entry->name, entry->data, entry->size, error);
+}
+
+static bool apply(const struct layer *layer, const char *name, const struct tl_binding *bindings,
+                  size_t count, tl_error *error)
+{
+    return apply_with(layer, name, bindings, count, NULL, error);
 }
 
 static bool apply_preset(const struct tl_binding *all, const char *name, tl_error *error)
@@ -188,15 +202,25 @@ static bool apply_fabric(const struct tl_binding *all, const char *name, tl_erro
     return apply(&fabric_layer, name, bindings, TL_COUNT(bindings), error);
 }
 
-/* Only its look: one cloth has one fabric's stiffness. */
-static bool apply_overlay(struct tl_settings *settings, const char *name, tl_error *error)
+bool tl_settings_read_look(const char *fabric, struct tl_material_params *params,
+                           struct tl_weave_params *weave, tl_error *error)
 {
     struct tl_cloth_fabric unused;
-    const struct tl_binding bindings[] = {{&tl_cloth_fabric_options, &unused},
-                                          {&tl_weave_options, &settings->overlay_weave},
-                                          {&tl_material_options, &settings->overlay}};
+    const struct tl_binding bindings[] = {
+        {&tl_cloth_fabric_options, &unused}, {&tl_weave_options, weave}, {&tl_material_options, params}};
     tl_options_reset(bindings, TL_COUNT(bindings));
-    return strcmp(name, "none") == 0 || apply(&fabric_layer, name, bindings, TL_COUNT(bindings), error);
+    return apply(&fabric_layer, fabric, bindings, TL_COUNT(bindings), error);
+}
+
+bool tl_settings_assign(struct tl_settings *settings, const char *const *assignments, size_t most,
+                        tl_error *error)
+{
+    struct tl_binding bindings[TL_SETTINGS_TABLES];
+    tl_settings_bind(settings, bindings);
+    for (size_t i = 0; i < most && assignments[i]; i++)
+        if (!tl_options_set_assignment(bindings, TL_SETTINGS_TABLES, assignments[i], error))
+            return false;
+    return true;
 }
 
 /* A model in place of a scene is shown as it is: no garment to drape, its own materials. */
@@ -207,13 +231,28 @@ static bool apply_model(const struct tl_binding *all, const char *path, tl_error
            tl_options_set(all, TL_SETTINGS_TABLES, "scene.fabric", "none", "SCENE", NULL, error);
 }
 
+/* A scene's tables. A file's own colourways are meant unless it names others; those of a built-in scene
+ * belong to its garment. */
+static bool apply_scene(const struct tl_binding *all, const char *name, tl_error *error)
+{
+    struct tl_colourways found;
+    struct tl_colourways_reader reader;
+    tl_colourways_begin(&reader, "", &found);
+    const struct tl_record_section section = tl_colourways_section(&reader);
+    if (!apply_with(&scene_layer, name, all, TL_SETTINGS_TABLES, &section, error))
+        return false;
+    const struct tl_scene_params *scene = all[SCENE].params;
+    bool has_own = found.name_count > 0 && tl_option_is_file_name(name);
+    return !has_own || scene->colourways[0] != '\0' ||
+           tl_options_set(all, TL_SETTINGS_TABLES, "scene.colourways", name, "SCENE", NULL, error);
+}
+
 /* The two topmost layers. */
 static bool apply_source(const struct tl_binding *all, const struct tl_settings_source *source,
                          tl_error *error)
 {
     const char *scene = source->scene_file ? source->scene_file : "dress";
-    bool applied = tl_model_is_file(scene) ? apply_model(all, scene, error)
-                                           : apply(&scene_layer, scene, all, TL_SETTINGS_TABLES, error);
+    bool applied = tl_model_is_file(scene) ? apply_model(all, scene, error) : apply_scene(all, scene, error);
     for (size_t i = 0; applied && i < source->assignment_count; i++)
         applied = tl_options_set_assignment(all, TL_SETTINGS_TABLES, source->assignments[i], error);
     return applied;
@@ -226,6 +265,34 @@ static void choose_fabric(struct tl_scene_params *scene)
         strcpy(scene->fabric, tl_option_is_file_name(scene->garment) ? "none" : "satin");
     if (scene->overlay_fabric[0] == '\0')
         strcpy(scene->overlay_fabric, "none");
+}
+
+/* The built-in scene that shows a built-in garment has its colourways too. */
+const char *tl_settings_colourways_source(const struct tl_settings *settings)
+{
+    const struct tl_scene_params *scene = &settings->scene;
+    static const char *const sources[][2] = {{"dress", "dress"}, {"skirt", "skirt"}, {"layers", "composed"}};
+    for (size_t i = 0; i < TL_COUNT(sources) && scene->colourways[0] == '\0'; i++)
+        if (strcmp(scene->garment, sources[i][0]) == 0)
+            return sources[i][1];
+    return scene->colourways;
+}
+
+/* Of the scene only its section of colourways is wanted here. */
+static bool read_colourways(struct tl_settings *settings, tl_error *error)
+{
+    const char *source = tl_settings_colourways_source(settings);
+    struct tl_colourways_reader reader;
+    tl_colourways_begin(&reader, settings->scene.colourway, &settings->colourways);
+    const struct tl_record_section section = tl_colourways_section(&reader);
+    if (source[0] == '\0')
+        return true;
+    struct tl_settings *unused = TL_NEW(struct tl_settings);
+    struct tl_binding all[TL_SETTINGS_TABLES];
+    tl_settings_bind(unused, all);
+    bool read = apply_with(&scene_layer, source, all, TL_SETTINGS_TABLES, &section, error);
+    free(unused);
+    return read;
 }
 
 /* A model alone is what a motion moves, and what --units means. */
@@ -277,11 +344,14 @@ bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *
     choose_fabric(&named);
     tl_options_reset(all, TL_SETTINGS_TABLES);
     if (!apply_preset(all, named.preset, error) || !apply_fabric(all, named.fabric, error) ||
-        !apply_overlay(&settings, named.overlay_fabric, error) || !apply_source(all, source, error))
+        !tl_settings_read_look(named.overlay_fabric, &settings.overlay, &settings.overlay_weave, error) ||
+        !apply_source(all, source, error))
         return false;
     if (source->scene_file && tl_model_is_file(source->scene_file))
         choose_role(&named);
     settings.scene = named;
+    if (!read_colourways(&settings, error))
+        return false;
     tell_what_is_unused(&settings);
     *out = settings;
     return true;
@@ -303,6 +373,18 @@ bool tl_settings_apply_fabric(struct tl_settings *settings, const char *name, tl
     return true;
 }
 
+bool tl_settings_apply_colourway(struct tl_settings *settings, const char *name, tl_error *error)
+{
+    struct tl_settings changed = *settings;
+    struct tl_binding all[TL_SETTINGS_TABLES];
+    tl_settings_bind(&changed, all);
+    if (!tl_options_set(all, TL_SETTINGS_TABLES, "scene.colourway", name, "colourway", NULL, error) ||
+        !read_colourways(&changed, error))
+        return false;
+    *settings = changed;
+    return true;
+}
+
 /* Only light begins anew: cloth and image hold more than quality (the picture's size, say). */
 bool tl_settings_apply_preset(struct tl_settings *settings, const char *name, tl_error *error)
 {
@@ -312,6 +394,18 @@ bool tl_settings_apply_preset(struct tl_settings *settings, const char *name, tl
     tl_options_reset(&all[LIGHT], 1);
     if (!tl_options_set(all, TL_SETTINGS_TABLES, "scene.preset", name, "preset", NULL, error) ||
         !apply_preset(all, name, error))
+        return false;
+    *settings = changed;
+    return true;
+}
+
+bool tl_settings_apply_overlay(struct tl_settings *settings, const char *name, tl_error *error)
+{
+    struct tl_settings changed = *settings;
+    struct tl_binding all[TL_SETTINGS_TABLES];
+    tl_settings_bind(&changed, all);
+    if (!tl_options_set(all, TL_SETTINGS_TABLES, "scene.overlay_fabric", name, "fabric", NULL, error) ||
+        !tl_settings_read_look(name, &changed.overlay, &changed.overlay_weave, error))
         return false;
     *settings = changed;
     return true;

@@ -3,6 +3,7 @@
 #ifndef TOILE_APP_SETTINGS_H
 #define TOILE_APP_SETTINGS_H
 
+#include "app/colourway.h"
 #include "assets/weave.h"
 #include "cloth/cloth.h"
 #include "config/options.h"
@@ -19,8 +20,10 @@ struct tl_scene_params {          /* table "scene": what to show; names of built
     char fabric[TL_STRING_SIZE];         /* name of an embedded fabric, a YAML file, or "none" */
     char overlay_fabric[TL_STRING_SIZE]; /* as fabric: of the garment's materials named overlay; "": as the
                                             others */
-    char preset[TL_STRING_SIZE];         /* name of an embedded preset, or a YAML file */
-    char clip[TL_STRING_SIZE];           /* animation of the avatar; "": the first; "none": the rest pose */
+    char colourway[TL_STRING_SIZE]; /* name of one of the scene's or of a model's variants; "": as they are */
+    char colourways[TL_STRING_SIZE]; /* scene, built in or YAML, whose section is meant; "": the garment's */
+    char preset[TL_STRING_SIZE];     /* name of an embedded preset, or a YAML file */
+    char clip[TL_STRING_SIZE];       /* animation of the avatar; "": the first; "none": the rest pose */
     float environment_yaw_deg;
     float environment_rate; /* frames of a sequence a second */
 };
@@ -42,6 +45,7 @@ struct tl_settings {
     struct tl_material_params material;
     struct tl_material_params overlay;
     struct tl_weave_params overlay_weave; /* follows from scene.overlay_fabric */
+    struct tl_colourways colourways;      /* follow from scene.colourway, .colourways and .garment */
     struct tl_light_params light;
     struct tl_detail_params detail;
     struct tl_maps_params maps;
@@ -69,8 +73,23 @@ struct tl_settings_source {
 };
 bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *source, tl_error *error);
 
-/* Layers a named fabric or preset over settings already there (the panel does this). */
+/* Single options over settings already there: up to `most` of "table.key=value"; NULL ends them. */
+bool tl_settings_assign(struct tl_settings *settings, const char *const *assignments, size_t most,
+                        tl_error *error);
+
+/* Layers a named fabric, preset or colourway ("": none) over settings already there (the panel does this,
+ * also after scene.garment or scene.colourways changed). */
 bool tl_settings_apply_fabric(struct tl_settings *settings, const char *name, tl_error *error);
 bool tl_settings_apply_preset(struct tl_settings *settings, const char *name, tl_error *error);
+/* A named fabric as the look of the garment's second one. */
+bool tl_settings_apply_overlay(struct tl_settings *settings, const char *name, tl_error *error);
+bool tl_settings_apply_colourway(struct tl_settings *settings, const char *name, tl_error *error);
+
+/* The scene that the colourways are read from, "" for none. */
+const char *tl_settings_colourways_source(const struct tl_settings *settings);
+
+/* How a fabric looks. */
+bool tl_settings_read_look(const char *fabric, struct tl_material_params *params,
+                           struct tl_weave_params *weave, tl_error *error);
 
 #endif

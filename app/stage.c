@@ -17,11 +17,9 @@ bool tl_stage_settings(const struct tl_arguments *arguments, struct tl_settings 
     return tl_settings_load(out, &source, error);
 }
 
-bool tl_stage_create(struct tl_stage *stage, const struct tl_arguments *arguments, tl_error *error)
+bool tl_stage_open(struct tl_stage *stage, const struct tl_settings *settings, tl_error *error)
 {
-    *stage = (struct tl_stage){0};
-    if (!tl_stage_settings(arguments, &stage->settings, error))
-        return false;
+    *stage = (struct tl_stage){.settings = *settings};
     stage->gpu = tl_gpu_create_headless(error);
     stage->renderer = stage->gpu ? tl_renderer_create(stage->gpu, error) : NULL;
     stage->session = stage->renderer ? tl_session_create(&stage->settings, error) : NULL;
@@ -31,6 +29,13 @@ bool tl_stage_create(struct tl_stage *stage, const struct tl_arguments *argument
     }
     tl_stage_release(stage);
     return false;
+}
+
+bool tl_stage_create(struct tl_stage *stage, const struct tl_arguments *arguments, tl_error *error)
+{
+    struct tl_settings settings;
+    *stage = (struct tl_stage){0};
+    return tl_stage_settings(arguments, &settings, error) && tl_stage_open(stage, &settings, error);
 }
 
 void tl_stage_release(struct tl_stage *stage)
@@ -44,6 +49,7 @@ static bool draw(struct tl_stage *stage, bool still, tl_error *error)
 {
     tl_frame frame = tl_session_frame(stage->session);
     frame.still = still;
+    frame.aovs = stage->aovs;
     const struct tl_render_settings settings = tl_settings_render(&stage->settings);
     return tl_renderer_draw(stage->renderer, &frame, &settings, error);
 }

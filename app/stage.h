@@ -10,12 +10,15 @@ struct tl_stage {
     tl_session *session;
     tl_gpu *gpu;
     tl_renderer *renderer;
+    bool aovs; /* frames are drawn with what render/inspect/aovs.h reads */
 };
 
 /* Settings from the command line: its scene and its assignments. */
 bool tl_stage_settings(const struct tl_arguments *arguments, struct tl_settings *out, tl_error *error);
 
-/* Settings, device, session (settled). On failure nothing is left. */
+/* Device and session (settled) for settings. On failure nothing is left. */
+bool tl_stage_open(struct tl_stage *stage, const struct tl_settings *settings, tl_error *error);
+/* Both. */
 bool tl_stage_create(struct tl_stage *stage, const struct tl_arguments *arguments, tl_error *error);
 void tl_stage_release(struct tl_stage *stage);
 

@@ -7,6 +7,7 @@
 #include <GLFW/glfw3.h>
 
 #include <ctype.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -60,11 +61,12 @@ static int key_of_layout(int key, int scancode)
 
 static void on_key(GLFWwindow *handle, int key, int scancode, int action, int modifiers)
 {
-    if (action != GLFW_PRESS)
+    if (action == GLFW_RELEASE)
         return;
     queue(glfwGetWindowUserPointer(handle), (struct tl_window_event){.type = TL_WINDOW_KEY,
                                                                      .key = key_of_layout(key, scancode),
-                                                                     .modifiers = modifiers});
+                                                                     .modifiers = modifiers,
+                                                                     .repeated = action == GLFW_REPEAT});
 }
 
 static void on_button(GLFWwindow *handle, int button, int action, int modifiers)
@@ -194,6 +196,15 @@ void tl_window_size(const tl_window *window, int *width, int *height)
     glfwGetFramebufferSize(window->handle, width, height);
 }
 
+void tl_window_wished_size(const tl_window *window, int *width, int *height)
+{
+    float x, y;
+    glfwGetWindowContentScale(window->handle, &x, &y);
+    glfwGetWindowSize(window->handle, width, height);
+    *width = (int)lrintf((float)*width / x);
+    *height = (int)lrintf((float)*height / y);
+}
+
 float tl_window_scale(const tl_window *window)
 {
     float x, y;
@@ -212,6 +223,16 @@ void tl_window_wait(tl_window *window, double patience_s)
         glfwPollEvents();
     else
         glfwWaitEventsTimeout(patience_s);
+}
+
+void tl_window_wake(void)
+{
+    glfwPostEmptyEvent();
+}
+
+bool tl_window_is_escape(const struct tl_window_event *event)
+{
+    return event->type == TL_WINDOW_KEY && event->key == GLFW_KEY_ESCAPE;
 }
 
 bool tl_window_next(tl_window *window, struct tl_window_event *out)

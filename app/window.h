@@ -14,7 +14,7 @@
 typedef struct tl_window tl_window;
 
 enum tl_window_event_type {
-    TL_WINDOW_KEY,     /* pressed; not repeated while held */
+    TL_WINDOW_KEY,     /* pressed, or held: `repeated` */
     TL_WINDOW_PRESS,   /* mouse button down */
     TL_WINDOW_RELEASE, /* mouse button up */
     TL_WINDOW_MOVE,    /* pointer */
@@ -29,6 +29,7 @@ struct tl_window_event {
     int key;       /* GLFW_KEY_*: letters as the keyboard's layout says, others by place */
     int button;    /* GLFW_MOUSE_BUTTON_* */
     int modifiers; /* GLFW_MOD_* */
+    bool repeated; /* KEY: it is held */
     float x, y;    /* pointer */
     float steps;   /* WHEEL: positive is away from the user */
     char *path;    /* DROP: owned by the event, tl_window_event_release */
@@ -39,13 +40,17 @@ void tl_window_destroy(tl_window **window);
 
 void tl_window_set_title(tl_window *window, const char *title);
 void tl_window_size(const tl_window *window, int *width, int *height); /* 0 x 0 while minimised */
+void tl_window_wished_size(const tl_window *window, int *width,
+                           int *height);                      /* that tl_window_create takes */
 float tl_window_scale(const tl_window *window);               /* 1 on a plain screen, 2 on a HiDPI one */
 struct GLFWwindow *tl_window_handle(const tl_window *window); /* for the panel */
 
 /* Waits until something happens, at most `patience_s`; 0 only collects what has happened. */
 void tl_window_wait(tl_window *window, double patience_s);
+void tl_window_wake(void); /* ends a wait; any thread */
 /* False when no event is left. */
 bool tl_window_next(tl_window *window, struct tl_window_event *out);
+bool tl_window_is_escape(const struct tl_window_event *event);
 void tl_window_event_release(struct tl_window_event *event);
 
 void tl_window_show(tl_window *window); /* swaps buffers, in step with the screen */

@@ -122,20 +122,33 @@ static void pin(const struct cutting *cutting, tl_garment *garment)
     free(pinned);
 }
 
-/* One part a fabric, its material of the same number. */
-static void part_fabrics(const struct cutting *cutting, tl_mesh *mesh)
+static tl_material cut_material(const char *name)
+{
+    tl_material material = tl_material_default(name);
+    material.diffuse = (vec3s){{0.8f, 0.8f, 0.8f}};
+    material.double_sided = true;
+    return material;
+}
+
+/* One part a material, of the same number. */
+static void part_materials(const struct cutting *cutting, tl_model *model)
 {
     const struct tl_cut_plan *plan = cutting->plan;
-    uint32_t first = 0;
-    mesh->parts = TL_NEW_ARRAY(struct tl_mesh_part, TL_CUT_FABRICS);
+    tl_mesh *mesh = &model->mesh;
+    uint32_t next = 0;
+    mesh->parts = TL_NEW_ARRAY(struct tl_mesh_part, plan->piece_count);
+    model->materials = TL_NEW_ARRAY(tl_material, plan->piece_count);
     for (size_t p = 0; p < plan->piece_count; p++) {
-        struct tl_mesh_part *part = &mesh->parts[plan->pieces[p].fabric];
-        if (part->index_count == 0)
-            *part = (struct tl_mesh_part){
-                .first_index = first, .material = (int)plan->pieces[p].fabric, .uv_metres = 1};
-        part->index_count += 3 * (uint32_t)cutting->panels[p].triangle_count;
-        first = part->first_index + part->index_count;
-        mesh->part_count = (size_t)plan->pieces[p].fabric + 1;
+        const char *name = plan->pieces[p].material;
+        uint32_t index_count = 3 * (uint32_t)cutting->panels[p].triangle_count;
+        if (p == 0 || strcmp(name, plan->pieces[p - 1].material) != 0) {
+            model->materials[mesh->part_count] = cut_material(name);
+            mesh->parts[mesh->part_count] =
+                (struct tl_mesh_part){.first_index = next, .material = (int)mesh->part_count, .uv_metres = 1};
+            model->material_count = ++mesh->part_count;
+        }
+        mesh->parts[mesh->part_count - 1].index_count += index_count;
+        next += index_count;
     }
 }
 
@@ -166,7 +179,7 @@ static void lay_out(const struct cutting *cutting, tl_garment *garment)
                 mesh->indices[next++] = (uint32_t)cutting->first_vertex[p] + panel->triangles[t][k];
         }
     }
-    part_fabrics(cutting, mesh);
+    part_materials(cutting, &garment->model);
 }
 
 /* body[v]: which of the sewn-together points vertex v belongs to; returns how many points there are. */
@@ -263,18 +276,6 @@ static void fill_normals(tl_garment *garment)
     free(body);
 }
 
-static tl_material *cut_materials(const char *name, size_t count)
-{
-    const char *names[TL_CUT_FABRICS] = {name, TL_GARMENT_OVERLAY};
-    tl_material *materials = TL_NEW_ARRAY(tl_material, count);
-    for (size_t i = 0; i < count && i < TL_COUNT(names); i++) {
-        materials[i] = tl_material_default(names[i]);
-        materials[i].diffuse = (vec3s){{0.8f, 0.8f, 0.8f}};
-        materials[i].double_sided = true;
-    }
-    return materials;
-}
-
 static bool fail_unknown(const char *name, tl_error *error)
 {
     char names[256] = "";
@@ -305,8 +306,6 @@ bool tl_garment_cut(const char *name, float edge_m, tl_garment *out, tl_error *e
     cut_pieces(&cutting, (double)edge_m);
     *out = (tl_garment){.model = {.name = tl_copy_string(name)}};
     lay_out(&cutting, out);
-    out->model.material_count = out->model.mesh.part_count;
-    out->model.materials = cut_materials(name, out->model.material_count);
     sew(&cutting, out);
     pin(&cutting, out);
     place(&cutting, out);

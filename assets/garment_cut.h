@@ -16,16 +16,13 @@
 
 enum { TL_CUT_MAX_HALF = 8, TL_CUT_MAX_PIECES = 6, TL_CUT_MAX_SEAMS = 16, TL_CUT_MAX_PINS = 4 };
 
-/* Pieces of the overlay come last. */
-enum tl_cut_fabric { TL_CUT_MAIN, TL_CUT_OVERLAY, TL_CUT_FABRICS };
-
 struct tl_cut_piece {
     struct tl_curve half[TL_CUT_MAX_HALF];
     size_t half_count;
     struct tl_point table_offset; /* where the piece lies on the cutting table: pieces do not overlap */
     void (*place)(const void *context, struct tl_point pattern, double position[3]);
     const void *context;
-    enum tl_cut_fabric fabric;
+    const char *material; /* its name; pieces of one material follow one another */
 };
 
 /* Curves that are sewn: they run in opposite directions, as neighbours in counter-clockwise outlines do. */

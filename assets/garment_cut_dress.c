@@ -1,4 +1,5 @@
 #include "assets/form.h"
+#include "assets/garment.h"
 #include "assets/garment_cut.h"
 
 #include "config/memory.h"
@@ -178,7 +179,8 @@ static void cut_top(const struct bodice_pattern *pattern, struct tl_point undera
 
 static struct tl_cut_piece back_piece(const struct bodice_pattern *pattern, const struct bodice_shape *shape)
 {
-    struct tl_cut_piece piece = {.half_count = BACK_CURVES, .place = place_bodice, .context = shape};
+    struct tl_cut_piece piece = {
+        .half_count = BACK_CURVES, .place = place_bodice, .context = shape, .material = "bodice"};
     cut_sides(pattern, &piece.half[WAIST], &piece.half[SIDE_LOWER], &piece.half[BACK_SIDE_UPPER]);
     cut_top(pattern, piece.half[BACK_SIDE_UPPER].control[3], &piece.half[BACK_SIDE_UPPER + 1]);
     return piece;
@@ -186,7 +188,8 @@ static struct tl_cut_piece back_piece(const struct bodice_pattern *pattern, cons
 
 static struct tl_cut_piece front_piece(const struct bodice_pattern *pattern, const struct bodice_shape *shape)
 {
-    struct tl_cut_piece piece = {.half_count = FRONT_CURVES, .place = place_bodice, .context = shape};
+    struct tl_cut_piece piece = {
+        .half_count = FRONT_CURVES, .place = place_bodice, .context = shape, .material = "bodice"};
     struct tl_curve upper;
     cut_sides(pattern, &piece.half[WAIST], &piece.half[SIDE_LOWER], &upper);
     struct tl_point dart = upper.control[0], dart_turned = turned(dart, DART_ANGLE);
@@ -280,7 +283,7 @@ static struct tl_cut_piece curtain_piece(void)
         .half = {tl_curve_line(bottom, lower), tl_curve_line(lower, upper), tl_curve_line(upper, top)},
         .half_count = 3,
         .place = place_curtain,
-        .fabric = TL_CUT_OVERLAY,
+        .material = TL_GARMENT_OVERLAY,
     };
 }
 

@@ -42,6 +42,7 @@ struct tl_cut_piece tl_cut_flared_piece(const struct tl_cut_flared *flared)
         .half_count = 3,
         .place = place_flared,
         .context = flared,
+        .material = "skirt",
     };
 }
 

@@ -43,9 +43,16 @@ enum gltf_attribute {
     GLTF_ATTRIBUTE_COUNT
 };
 
+/* KHR_materials_variants: the material that a primitive has in each of some variants. */
+struct gltf_mapping {
+    int material;
+    size_t first_variant, variant_count; /* in mapped_variants */
+};
+
 struct gltf_primitive {
     int attributes[GLTF_ATTRIBUTE_COUNT]; /* accessors */
     int indices, material, mode;
+    size_t first_mapping, mapping_count;
     bool has_targets, has_colours, has_second_uvs, has_second_joints, is_draco;
 };
 
@@ -127,7 +134,8 @@ struct gltf_image {
 typedef struct gltf_document {
     const char *path; /* for messages; borrowed */
     size_t buffer_count, view_count, accessor_count, primitive_count, mesh_count, node_count, skin_count,
-        channel_count, animation_count, material_count, image_count, root_count, used_count, required_count;
+        channel_count, animation_count, material_count, image_count, root_count, used_count, required_count,
+        variant_count;
     const struct gltf_buffer *buffers;
     const struct gltf_view *views;
     const struct gltf_accessor *accessors;
@@ -139,6 +147,9 @@ typedef struct gltf_document {
     const struct gltf_animation *animations;
     const struct gltf_material *materials;
     const struct gltf_image *images;
+    const struct gltf_mapping *mappings;
+    const int *mapped_variants;
+    const char *const *variants; /* names; "": none given */
     bool has_scene;
     const int *roots;                          /* nodes of the scene */
     const char *const *used, *const *required; /* extensions */

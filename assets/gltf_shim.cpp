@@ -31,7 +31,10 @@ struct Owner {
     std::vector<gltf_animation> animations;
     std::vector<gltf_material> materials;
     std::vector<gltf_image> images;
-    std::vector<const char *> used, required;
+    std::vector<gltf_mapping> mappings;
+    std::vector<int> mapped_variants;
+    std::vector<std::string> variant_names;
+    std::vector<const char *> used, required, variants;
 };
 
 /* tinygltf's own callbacks are not used: its path expansion hands names from the file to a shell
@@ -355,6 +358,44 @@ gltf_image copy_image(const tinygltf::Image &from)
     return to;
 }
 
+int index_of(const tinygltf::Value &value)
+{
+    return value.IsInt() ? value.GetNumberAsInt() : -1;
+}
+
+void copy_mappings(Owner &owner, const tinygltf::Primitive &from, gltf_primitive &to)
+{
+    auto found = from.extensions.find("KHR_materials_variants");
+    if (found == from.extensions.end())
+        return;
+    const tinygltf::Value &mappings = member(found->second, "mappings");
+    to.first_mapping = owner.mappings.size();
+    to.mapping_count = mappings.IsArray() ? mappings.ArrayLen() : 0;
+    for (size_t i = 0; i < to.mapping_count; i++) {
+        const tinygltf::Value &mapping = mappings.Get(static_cast<int>(i)),
+                              &variants = member(mapping, "variants");
+        size_t count = variants.IsArray() ? variants.ArrayLen() : 0;
+        owner.mappings.push_back(
+            {index_of(member(mapping, "material")), owner.mapped_variants.size(), count});
+        for (size_t k = 0; k < count; k++)
+            owner.mapped_variants.push_back(index_of(variants.Get(static_cast<int>(k))));
+    }
+}
+
+void copy_variants(Owner &owner)
+{
+    auto found = owner.model.extensions.find("KHR_materials_variants");
+    if (found == owner.model.extensions.end())
+        return;
+    const tinygltf::Value &variants = member(found->second, "variants");
+    for (size_t i = 0; variants.IsArray() && i < variants.ArrayLen(); i++) {
+        const tinygltf::Value &name = member(variants.Get(static_cast<int>(i)), "name");
+        owner.variant_names.push_back(name.IsString() ? name.Get<std::string>() : "");
+    }
+    for (const std::string &name : owner.variant_names)
+        owner.variants.push_back(name.c_str());
+}
+
 void copy_geometry(Owner &owner)
 {
     const tinygltf::Model &model = owner.model;
@@ -366,8 +407,10 @@ void copy_geometry(Owner &owner)
         owner.accessors.push_back(copy_accessor(accessor));
     for (const tinygltf::Mesh &mesh : model.meshes) {
         owner.meshes.push_back({owner.primitives.size(), mesh.primitives.size()});
-        for (const tinygltf::Primitive &primitive : mesh.primitives)
+        for (const tinygltf::Primitive &primitive : mesh.primitives) {
             owner.primitives.push_back(copy_primitive(primitive));
+            copy_mappings(owner, primitive, owner.primitives.back());
+        }
     }
     for (const tinygltf::Node &node : model.nodes)
         owner.nodes.push_back(copy_node(node));
@@ -388,6 +431,7 @@ void copy_looks(Owner &owner)
         owner.materials.push_back(copy_material(model, material));
     for (const tinygltf::Image &image : model.images)
         owner.images.push_back(copy_image(image));
+    copy_variants(owner);
     for (const std::string &name : model.extensionsUsed)
         owner.used.push_back(name.c_str());
     for (const std::string &name : model.extensionsRequired)
@@ -407,6 +451,9 @@ void point_to(const Owner &owner, gltf_document &out)
     out.animations = owner.animations.data(), out.animation_count = owner.animations.size();
     out.materials = owner.materials.data(), out.material_count = owner.materials.size();
     out.images = owner.images.data(), out.image_count = owner.images.size();
+    out.mappings = owner.mappings.data();
+    out.mapped_variants = owner.mapped_variants.data();
+    out.variants = owner.variants.data(), out.variant_count = owner.variants.size();
     out.used = owner.used.data(), out.used_count = owner.used.size();
     out.required = owner.required.data(), out.required_count = owner.required.size();
     const tinygltf::Model &model = owner.model;

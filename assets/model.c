@@ -25,6 +25,7 @@ struct builder {
     uint32_t *skin_slots; /* [skin_count] first slot of each skin, or NO_SLOT */
     /* The vertices added last: primitives of one mesh often share theirs. */
     const int *last_attributes;
+    const struct gltf_primitive **sources; /* [part_count] the primitive of each part */
     int last_node;
     size_t last_base, last_count;
     size_t vertex_capacity, index_capacity, part_capacity, slot_capacity;
@@ -260,6 +261,7 @@ static void reserve(struct builder *builder, size_t vertices, size_t indices)
     if (mesh->part_count == builder->part_capacity) {
         builder->part_capacity = 2 * builder->part_capacity + 8;
         mesh->parts = tl_resize(mesh->parts, builder->part_capacity, sizeof *mesh->parts);
+        builder->sources = tl_resize(builder->sources, builder->part_capacity, sizeof(void *));
     }
 }
 
@@ -281,17 +283,19 @@ static void append_vertices(struct builder *builder, const struct primitive *fro
     builder->rig->vertex_count = mesh->vertex_count;
 }
 
-static void append_part(struct builder *builder, const struct primitive *from, int material)
+static void append_part(struct builder *builder, const struct primitive *from,
+                        const struct gltf_primitive *source)
 {
     tl_mesh *mesh = &builder->model->mesh;
     for (size_t i = 0; i < from->index_count; i++)
         mesh->indices[mesh->index_count + i] = from->indices[i] + (uint32_t)builder->last_base;
     size_t default_material = builder->model->material_count - 1;
-    bool known = material >= 0 && (size_t)material < default_material;
+    bool known = source->material >= 0 && (size_t)source->material < default_material;
+    builder->sources[mesh->part_count] = source;
     mesh->parts[mesh->part_count++] =
         (struct tl_mesh_part){.first_index = (uint32_t)mesh->index_count,
                               .index_count = (uint32_t)from->index_count,
-                              .material = known ? material : (int)default_material};
+                              .material = known ? source->material : (int)default_material};
     mesh->index_count += from->index_count;
 }
 
@@ -326,7 +330,7 @@ static bool append_primitive(struct builder *builder, const struct gltf_primitiv
                         primitive->weights ? builder->skin_slots[document->nodes[node].skin]
                                            : add_slot(builder, node, glms_mat4_identity()));
     }
-    append_part(builder, primitive, from->material);
+    append_part(builder, primitive, from);
     return true;
 }
 
@@ -473,10 +477,11 @@ static bool finish(struct builder *builder, enum tl_units wanted, tl_error *erro
 
 static bool check_extensions(const gltf_document *document, tl_model *model, tl_error *error)
 {
-    static const char *const known[] = {
-        "KHR_texture_transform",   "KHR_mesh_quantization",      "KHR_materials_anisotropy",
-        "KHR_materials_clearcoat", "KHR_materials_ior",          "KHR_materials_sheen",
-        "KHR_materials_specular",  "KHR_materials_transmission", "KHR_materials_diffuse_transmission"};
+    static const char *const known[] = {"KHR_materials_variants",     "KHR_texture_transform",
+                                        "KHR_mesh_quantization",      "KHR_materials_anisotropy",
+                                        "KHR_materials_clearcoat",    "KHR_materials_ior",
+                                        "KHR_materials_sheen",        "KHR_materials_specular",
+                                        "KHR_materials_transmission", "KHR_materials_diffuse_transmission"};
     static const char *const compressed[] = {"KHR_draco_mesh_compression", "EXT_meshopt_compression",
                                              "KHR_meshopt_compression"};
     for (size_t i = 0; i < document->required_count; i++)
@@ -527,13 +532,15 @@ static bool load_gltf(const char *path, enum tl_units wanted, tl_model *out, tl_
     bool loaded = check_extensions(&document, out, error) && rig_read(&document, out->rig, error);
     if (loaded) {
         model_read_materials(&document, out);
-        loaded = add_scene(&builder, error) && finish(&builder, wanted, error);
+        loaded = add_scene(&builder, error) && finish(&builder, wanted, error) &&
+                 model_read_variants(&document, builder.sources, out, error);
     }
     if (loaded)
         name_clips(&document, out);
     if (loaded && out->clip_count == 0)
         rig_destroy(&out->rig);
     free(builder.normals);
+    free((void *)builder.sources);
     free(builder.skin_slots);
     gltf_close(&document);
     return loaded;
@@ -586,6 +593,7 @@ void tl_model_points(const tl_model *model, const vec3s *positions, vec3s *point
 
 void tl_model_release(tl_model *model)
 {
+    model_release_variants(model);
     tl_mesh_release(&model->mesh);
     rig_destroy(&model->rig);
     for (size_t i = 0; i < model->image_count; i++)

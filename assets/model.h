@@ -3,7 +3,8 @@
  *
  * Loaded of glTF: node hierarchy (also scaled, mirrored: winding is mended), skins, animations (step, linear,
  * cubic spline), KHR_texture_transform, KHR_mesh_quantization, base colour, normal, occlusion,
- * metallic-roughness, alpha mask, double-sided, sparse accessors, triangle strips and fans; and, as the
+ * metallic-roughness, alpha mask, double-sided, sparse accessors, triangle strips and fans,
+ * KHR_materials_variants; and, as the
  * nearest that a tl_material can say, KHR_materials_anisotropy, _clearcoat, _diffuse_transmission, _ior,
  * _sheen, _specular and _transmission (model_extensions.c): what that changes is told in `approximated`.
  * Loaded of OBJ: polygons, groups, and of its MTL files Kd, Ks, Ns, illum, map_Kd, map_Ks, norm and alpha.
@@ -24,6 +25,11 @@ struct tl_clip {
     double duration_s;
 };
 
+struct tl_variant { /* KHR_materials_variants: another choice of materials for the same parts */
+    char name[64];
+    int *materials; /* [mesh.part_count] */
+};
+
 typedef struct tl_model {
     char *name;   /* file name without folders */
     tl_mesh mesh; /* rest pose: node transforms and skins applied, no animation */
@@ -31,6 +37,8 @@ typedef struct tl_model {
     tl_material *materials; /* at least one */
     size_t image_count;
     tl_image *images; /* the maps that materials point to */
+    size_t variant_count;
+    struct tl_variant *variants; /* no two of one name */
     size_t clip_count;
     struct tl_clip *clips;
     tl_rig *rig; /* NULL when nothing moves */
@@ -64,6 +72,9 @@ void tl_model_pose(const tl_model *model, int clip, double time_s, vec3s *positi
 
 /* Index of the clip called `name` (exact); "" gives 0; -1 when there is none. */
 int tl_model_find_clip(const tl_model *model, const char *name);
+
+/* The variant called `name` (exact), or NULL. */
+const struct tl_variant *tl_model_find_variant(const tl_model *model, const char *name);
 
 /* Writes surfaces as one GLB: positions, normals, tangents, UVs, materials with colours and PNG maps; atomic.
  */

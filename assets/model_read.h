@@ -25,6 +25,11 @@ void model_smooth_normals(tl_mesh *mesh);
  * missing or cannot be decoded is noted, and its map left out. */
 void model_read_materials(const gltf_document *document, tl_model *model);
 
+/* variants, once the mesh has its parts; sources [mesh.part_count]: the primitive that each part is of. */
+bool model_read_variants(const gltf_document *document, const struct gltf_primitive *const *sources,
+                         tl_model *model, tl_error *error);
+void model_release_variants(tl_model *model);
+
 /* A material while it is read. `base`, `metallic` and `roughness` are the means over the surface. */
 struct model_reader;
 struct model_look {

@@ -13,6 +13,8 @@ typedef struct tl_surface {
     const vec3s *normals;   /* unit; towards the outside */
     const vec4s *tangents;  /* unit xyz, handedness w: bitangent = w * cross(n, t) */
     const vec2s *uvs;
+    const vec3s *strains; /* along the warp, along the weft (length over rest length, less 1), shear (cosine
+                             of the angle between them); NULL: not known, or nobody asked */
     size_t index_count;
     const uint32_t *indices;
     size_t part_count;

@@ -57,16 +57,21 @@ static void flatten(const tl_garment *garment, const uint32_t *vertices, vec2s o
     }
 }
 
+void tl_rest_shape(const tl_garment *garment, size_t triangle, vec2s out[3])
+{
+    const uint32_t *vertices = &garment->model.mesh.indices[3 * triangle];
+    if (garment->pattern)
+        for (int i = 0; i < 3; i++)
+            out[i] = garment->pattern[vertices[i]];
+    else
+        flatten(garment, vertices, out);
+}
+
 vec2s (*tl_rest_shapes(const tl_garment *garment, const struct tl_topology *topology))[3]
 {
     vec2s(*rest)[3] = tl_alloc(topology->triangle_count, sizeof *rest);
     for (size_t t = 0; t < topology->triangle_count; t++) {
-        const uint32_t *vertices = &garment->model.mesh.indices[3 * (size_t)topology->source[t]];
-        if (garment->pattern)
-            for (int i = 0; i < 3; i++)
-                rest[t][i] = garment->pattern[vertices[i]];
-        else
-            flatten(garment, vertices, rest[t]);
+        tl_rest_shape(garment, topology->source[t], rest[t]);
     }
     return rest;
 }
@@ -98,6 +103,12 @@ static struct flat read_flat(const vec2s rest[3])
 static double quality(const struct flat *flat)
 {
     return flat->longest > 0 ? fabs(flat->signed_double_area) / (flat->longest * flat->longest) : 0;
+}
+
+bool tl_rest_is_sliver(const vec2s rest[3])
+{
+    struct flat flat = read_flat(rest);
+    return !(quality(&flat) >= sliver);
 }
 
 static double edge_length(const struct flat *flat, int corner)

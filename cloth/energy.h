@@ -121,8 +121,12 @@ void tl_bend_stiffness(const struct tl_cloth_fabric *fabric, double out[3]);
 double tl_energy_critical_step(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
                                size_t vertex_count, const double *inverse_masses, const vec3d *x);
 
-/* Flat rest shapes of the physics triangles: from the garment's pattern, else from the start shape turned so
- * that x follows the UVs' u direction (an arbitrary one where UVs are degenerate). New array. */
+/* Flat rest shape of a garment's own triangle: from its pattern, else from the start shape turned so that x
+ * follows the UVs' u direction (an arbitrary one where UVs are degenerate). */
+void tl_rest_shape(const tl_garment *garment, size_t triangle, vec2s out[3]);
+/* Whether it is so thin that it has no membrane. */
+bool tl_rest_is_sliver(const vec2s rest[3]);
+/* ... of all physics triangles. New array. */
 vec2s (*tl_rest_shapes(const tl_garment *garment, const struct tl_topology *topology))[3];
 
 #endif

@@ -8,6 +8,7 @@
 #define GUARDS 16
 
 static volatile sig_atomic_t signals_seen;
+static _Thread_local const atomic_bool *thread_flag;
 /* Fixed storage, so that the handler needs nothing but unlink and _exit, which are async-signal-safe. */
 static char guarded[GUARDS][PATH_MAX];
 
@@ -32,7 +33,12 @@ void tl_interrupt_install(void)
 
 bool tl_interrupted(void)
 {
-    return signals_seen > 0;
+    return signals_seen > 0 || (thread_flag && atomic_load(thread_flag));
+}
+
+void tl_interrupt_by(const atomic_bool *flag)
+{
+    thread_flag = flag;
 }
 
 void tl_interrupt_guard(const char *temporary)

@@ -8,6 +8,8 @@
 #include <unistd.h>
 
 static enum tl_log_level current_level = TL_LOG_INFO;
+static _Thread_local tl_progress_observer *current_observer;
+static _Thread_local void *observer_user;
 
 void tl_log_set_level(enum tl_log_level level)
 {
@@ -54,22 +56,33 @@ double tl_clock_s(void)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
+void tl_progress_observe(tl_progress_observer *observer, void *user)
+{
+    current_observer = observer;
+    observer_user = user;
+}
+
 struct tl_progress tl_progress_begin(const char *what)
 {
     double now = tl_clock_s();
+    if (current_observer)
+        current_observer(observer_user, what, 0);
     return (struct tl_progress){.what = what, .started_s = now, .shown_s = now};
 }
 
 void tl_progress_update(struct tl_progress *progress, double done, double total)
 {
     const double patience_s = 2.0, redraw_s = 0.1, line_s = 10.0;
-    double now = tl_clock_s();
+    double now = tl_clock_s(), share = total > 0 ? done / total : 0;
+    if (current_observer) {
+        current_observer(observer_user, progress->what, share);
+        return;
+    }
     if (current_level < TL_LOG_INFO || now - progress->started_s < patience_s)
         return;
     bool terminal = isatty(STDERR_FILENO);
     if (progress->drawn && now - progress->shown_s < (terminal ? redraw_s : line_s))
         return;
-    double share = total > 0 ? done / total : 0;
     double left_s = share > 0 ? (now - progress->started_s) * (1 - share) / share : 0;
     if (terminal)
         fprintf(stderr, "\rtoile: %s: %3.0f %%, about %.0f s left\033[K", progress->what, 100 * share,

@@ -28,6 +28,11 @@ struct tl_progress tl_progress_begin(const char *what);
 void tl_progress_update(struct tl_progress *progress, double done, double total);
 void tl_progress_end(struct tl_progress *progress);
 
+/* Tells `observer` of every step of what this thread does, from the first one on; NULL ends that. For those
+ * who show progress elsewhere than on stderr, which is left alone while one observes. `share` in [0, 1]. */
+typedef void tl_progress_observer(void *user, const char *what, double share);
+void tl_progress_observe(tl_progress_observer *observer, void *user);
+
 /* Seconds on the monotonic clock. For show and for cost, never for results. */
 double tl_clock_s(void);
 

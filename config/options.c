@@ -148,6 +148,11 @@ char *tl_options_get_text(const struct tl_binding *binding, const struct tl_opti
     return tl_option_write(row, (const char *)binding->params + row->offset);
 }
 
+void tl_options_copy(const struct tl_option *row, const void *from, void *to)
+{
+    memcpy((char *)to + row->offset, (const char *)from + row->offset, tl_option_size(row));
+}
+
 bool tl_options_equal(const struct tl_option_table *table, const void *a, const void *b)
 {
     for (size_t i = 0; i < table->row_count; i++) {

@@ -147,6 +147,34 @@ bool tl_options_read_yaml(const struct tl_binding *bindings, size_t count, const
 bool tl_options_read_yaml_file(const struct tl_binding *bindings, size_t count, const char *path,
                                tl_error *error);
 
+/* Where a value stands in a section of records; what has not come yet is NULL. */
+struct tl_record_place {
+    const char *file;
+    size_t line;
+    const char *record, *part, *key;
+};
+
+/* A section beside the tables whose names are the document's own: RECORD: {PART: {key: value}}. `take` is
+ * told of every record and every part as it begins, then of each of its values, as text, in the document's
+ * order. */
+struct tl_record_section {
+    const char *name;
+    bool (*take)(void *context, const struct tl_record_place *place, const char *text, tl_error *error);
+    void *context;
+};
+
+/* The same as tl_options_read_yaml and _file, of a document that may have this section (NULL: it may not). */
+bool tl_options_read_yaml_with(const struct tl_binding *bindings, size_t count,
+                               const struct tl_record_section *section, const char *name, const char *data,
+                               size_t size, tl_error *error);
+
+bool tl_options_read_yaml_file_with(const struct tl_binding *bindings, size_t count,
+                                    const struct tl_record_section *section, const char *path,
+                                    tl_error *error);
+
+/* Copies one option from a params struct to another of the same table. */
+void tl_options_copy(const struct tl_option *row, const void *from, void *to);
+
 /* True when the text of a TL_PATH with choices is a file's name: it has a dot or a slash in it. */
 bool tl_option_is_file_name(const char *text);
 

@@ -356,6 +356,28 @@ char *tl_option_write(const struct tl_option *row, const void *field)
     return tl_copy_string(field);
 }
 
+size_t tl_option_size(const struct tl_option *row)
+{
+    switch (row->type) {
+    case TL_BOOL:
+        return sizeof(bool);
+    case TL_INT:
+    case TL_ENUM:
+        return sizeof(int);
+    case TL_FLOAT:
+        return sizeof(float);
+    case TL_DOUBLE:
+        return sizeof(double);
+    case TL_COLOUR:
+    case TL_VECTOR:
+        return 3 * sizeof(float);
+    case TL_STRING:
+    case TL_PATH:
+        break;
+    }
+    return TL_STRING_SIZE;
+}
+
 static bool is_same_triple(const float *a, const float *b)
 {
     return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];

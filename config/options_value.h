@@ -15,6 +15,9 @@ char *tl_option_read(const struct tl_option *row, const char *text, const char *
 /* The text that tl_option_read takes back. New string. */
 char *tl_option_write(const struct tl_option *row, const void *field);
 
+/* Bytes of a field of the row's type. */
+size_t tl_option_size(const struct tl_option *row);
+
 /* True when two fields of the row's type hold the same value. */
 bool tl_option_equal(const struct tl_option *row, const void *a, const void *b);
 

@@ -21,6 +21,10 @@ add_library(toile_light STATIC
   env/layout.c
   env/levels.c
   env/lobes.c
+  inspect/legend.c
+  inspect/paint.c
+  inspect/pick.c
+  inspect/seen.c
   light/compose.c
   light/mirrors.c
   env/pour.c
@@ -42,7 +46,10 @@ add_library(toile_light STATIC
   pem/regions_faces.c
   pem/regions_sphere.c
   pem/slices.c
+  plan/budget.c
+  plan/cost.c
   plan/plan.c
+  present/resample.c
   reference/detail.c
   reference/gather.c
   reference/lamps.c
@@ -55,5 +62,6 @@ add_library(toile_light STATIC
   trace/cutout.c
   trace/trace.c
   visibility/fit.c
+  visibility/map_order.c
 )
 target_link_libraries(toile_light PUBLIC toile_assets PRIVATE embree)

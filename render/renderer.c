@@ -2,7 +2,8 @@
 
 #include "config/log.h"
 #include "config/memory.h"
-#include "render/frame/frame.h"
+#include "render/frame/work.h"
+#include "render/inspect/job.h"
 #include "render/shaders.h"
 
 #include <epoxy/gl.h>
@@ -25,19 +26,23 @@ static struct tl_render_settings usable(const struct tl_render_settings *setting
         used.light.pem_size &= used.light.pem_size - 1;
     while (used.maps.size & (used.maps.size - 1))
         used.maps.size &= used.maps.size - 1;
+    tl_inspect_settle(&used);
     return used;
 }
 
 static uint64_t sample_count(const struct tl_image_params *image)
 {
-    return (uint64_t)image->width * (uint64_t)image->height *
-           (uint64_t)(image->supersample * image->supersample);
+    int width, height;
+    tl_image_samples(image, &width, &height);
+    return (uint64_t)width * (uint64_t)height;
 }
 
 static bool check_image_size(const tl_renderer *renderer, const struct tl_image_params *image,
                              tl_error *error)
 {
-    int side = image->supersample * (image->width > image->height ? image->width : image->height);
+    int width, height;
+    tl_image_samples(image, &width, &height);
+    int side = width > height ? width : height;
     if (side > tl_gpu_texture_side_max(renderer->gpu) ||
         sample_count(image) * TL_SAMPLE_LAYER_BYTES > TEXTURE_BYTES_MAX)
         return tl_fail(error, TL_USAGE,
@@ -110,7 +115,8 @@ void tl_renderer_destroy(tl_renderer **renderer)
     tl_lobes_release(&(*renderer)->lobes);
     tl_slices_release(&(*renderer)->slices);
     tl_slice_maps_release(&(*renderer)->slice_maps);
-    tl_region_lights_release(&(*renderer)->lights);
+    for (int i = 0; i < TL_LIGHTS_KEPT; i++)
+        tl_region_lights_release(&(*renderer)->kept[i].lights);
     tl_surfaces_destroy(&(*renderer)->surfaces);
     tl_detail_maps_release(&(*renderer)->detail);
     tl_triangle_ranges_release(&(*renderer)->ranges);
@@ -137,14 +143,22 @@ void tl_renderer_destroy(tl_renderer **renderer)
 
 static struct tl_plan_input plan_input(const tl_renderer *renderer, const tl_frame *frame,
                                        const struct tl_render_settings *settings, tl_bits changed,
-                                       enum tl_resource wanted)
+                                       tl_bits wanted)
 {
+    /* Maps that wait for their turn are not what they should be. */
+    tl_bits waiting = tl_shadow_maps_wait(renderer->maps) ? TL_BIT(TL_MADE_DEPTHS) | TL_BIT(TL_MADE_MAPS) : 0;
     return (struct tl_plan_input){.changed = changed,
-                                  .valid = renderer->valid,
+                                  .valid = renderer->valid & ~waiting,
                                   .scene = tl_frame_facts(frame, settings),
-                                  .wanted = TL_BIT(wanted),
+                                  .wanted = wanted,
                                   .scene_fact_names = tl_scene_fact_names,
                                   .resource_names = tl_resource_names};
+}
+
+/* What somebody outside reads of a drawn frame. */
+static tl_bits read_of(const tl_frame *frame)
+{
+    return TL_BIT(TL_MADE_IMAGE) | (frame->aovs ? TL_BIT(TL_MADE_SAMPLES) : 0);
 }
 
 static tl_bits changed_inputs(const tl_renderer *renderer, const uint64_t signatures[TL_INPUT_COUNT])
@@ -156,31 +170,97 @@ static tl_bits changed_inputs(const tl_renderer *renderer, const uint64_t signat
     return changed;
 }
 
-/* Nothing holds, and the next frame begins anew: rounds are never averaged into what another frame left. */
-static void forget(tl_renderer *renderer)
+/* Rounds are never averaged into what another frame left. */
+void tl_renderer_forget(tl_renderer *renderer)
 {
     renderer->valid = 0;
     memset(renderer->signatures, 0, sizeof renderer->signatures);
+    tl_points_destroy(&renderer->points); /* they refine what they have */
+    renderer->points = tl_points_create();
+}
+
+bool tl_renderer_forget_scene(tl_renderer *renderer, tl_error *error)
+{
+    renderer->valid &= TL_BIT(TL_MADE_CUBE) | TL_BIT(TL_MADE_REGIONS) | TL_BIT(TL_MADE_LOBE) |
+                       TL_BIT(TL_MADE_PEMS) | TL_BIT(TL_MADE_LOBES) | TL_BIT(TL_MADE_SLICES) |
+                       TL_BIT(TL_MADE_LIGHTS) | TL_BIT(TL_MADE_ENVMAP_LOBES);
+    renderer->signatures[TL_INPUT_MOTION] = 0; /* no round goes on */
+    renderer->rest = (struct tl_rest){0};
+    tl_surfaces_destroy(&renderer->surfaces);
+    renderer->surfaces = tl_surfaces_create(renderer->gpu);
+    tl_surfaces_use_detail(renderer->surfaces, &renderer->detail);
+    tl_points_destroy(&renderer->points);
+    renderer->points = tl_points_create();
+    tl_trace_destroy(&renderer->trace);
+    renderer->trace = tl_trace_create(error);
+    return renderer->trace != NULL;
+}
+
+static struct tl_work work_of(int job, const struct tl_work_seen *seen)
+{
+    return tl_frame_jobs[job].work ? tl_frame_jobs[job].work(seen) : (struct tl_work){{0}};
+}
+
+static double load_of(const tl_renderer *renderer)
+{
+    return renderer->load > 0 ? renderer->load : 1;
+}
+
+static void make_plan(const tl_renderer *renderer, const struct tl_plan_input *input,
+                      const struct tl_render_settings *settings, tl_plan *plan)
+{
+    double predicted_ms[TL_JOBS_MAX];
+    const struct tl_work_seen seen = tl_work_look(renderer, settings);
+    for (int i = 0; i < tl_frame_job_count; i++) {
+        struct tl_work work = work_of(i, &seen);
+        predicted_ms[i] = tl_cost_predict(&renderer->costs[i], &work, load_of(renderer));
+    }
+    tl_plan_make(tl_frame_jobs, tl_frame_job_count, input, predicted_ms, plan);
+}
+
+/* Jobs learn from the work that they turned out to have. What slows all of them down is learned apart, from
+ * those that are known by now. */
+static void learn_costs(tl_renderer *renderer, tl_plan *plan, double new_regions)
+{
+    const int known = 3; /* runs */
+    struct tl_work_seen seen = tl_work_look(renderer, &renderer->settings);
+    seen.new_regions = new_regions; /* as it was before they were made */
+    double predicted_ms = 0, took_ms = 0, load = load_of(renderer);
+    for (int i = 0; i < plan->count; i++) {
+        if (plan->rows[i].action != TL_JOB_RUN)
+            continue;
+        struct tl_cost_job *cost = &renderer->costs[i];
+        const struct tl_work work = work_of(i, &seen);
+        plan->rows[i].work_ms = tl_work_sum(&work);
+        if (cost->runs >= known) {
+            predicted_ms += tl_cost_predict(cost, &work, load);
+            took_ms += plan->rows[i].took_ms;
+        }
+        tl_cost_learn(cost, &work, load, plan->rows[i].took_ms);
+    }
+    renderer->load = tl_load_follow(load, predicted_ms, took_ms);
 }
 
 static bool run_plan(tl_renderer *renderer, const struct tl_plan_input *input, tl_plan *plan, tl_error *error)
 {
-    tl_plan_make(tl_frame_jobs, tl_frame_job_count, input, &renderer->cost, plan);
+    make_plan(renderer, input, &renderer->settings, plan);
+    double new_regions = tl_work_look(renderer, &renderer->settings).new_regions;
     tl_gpu_reset_state(renderer->gpu);
     for (int i = 0; i < plan->count; i++) {
         if (plan->rows[i].action != TL_JOB_RUN)
             continue;
         double started_s = tl_clock_s();
         if (!tl_frame_jobs[i].run(renderer, plan->rows[i].level, error)) {
-            forget(renderer);
+            tl_renderer_forget(renderer);
             return false;
         }
         /* The CPU's clock around a finished job: GL's own timers are wrong on software drivers. */
         glFinish();
         plan->rows[i].took_ms = 1000 * (tl_clock_s() - started_s);
-        tl_cost_add(&renderer->cost, i, plan->rows[i].level, plan->rows[i].took_ms);
-        tl_debug("%s: %.2f ms", plan->rows[i].name, plan->rows[i].took_ms);
+        tl_debug("%s: %.2f ms, predicted %.2f ms", plan->rows[i].name, plan->rows[i].took_ms,
+                 plan->rows[i].predicted_ms);
     }
+    learn_costs(renderer, plan, new_regions);
     renderer->valid = tl_plan_valid_after(tl_frame_jobs, tl_frame_job_count, input, plan);
     return true;
 }
@@ -202,7 +282,7 @@ static void reload_shaders(tl_renderer *renderer)
         !tl_program_reload(&renderer->present.resolve, &error) ||
         !tl_program_reload(&renderer->present.show, &error))
         tl_warn("%s", error.message);
-    forget(renderer);
+    tl_renderer_forget(renderer);
 }
 
 static bool check_camera(const struct tl_camera *camera, tl_error *error)
@@ -243,12 +323,15 @@ bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct
     uint64_t signatures[TL_INPUT_COUNT];
     tl_frame_sign(frame, &used, renderer->signatures, &renderer->rest, signatures);
     tl_bits changed = changed_inputs(renderer, signatures);
+    if (renderer->valid) /* a first frame moves from nowhere */
+        renderer->moving = changed;
     renderer->frame = *frame;
+    tl_work_count(renderer, frame);
     renderer->settings = used;
     renderer->view = tl_view_make(&frame->camera, used.image.width, used.image.height);
     memcpy(renderer->signatures, signatures, sizeof signatures);
     tl_frame_list_surfaces(renderer);
-    const struct tl_plan_input input = plan_input(renderer, frame, &used, changed, TL_MADE_IMAGE);
+    const struct tl_plan_input input = plan_input(renderer, frame, &used, changed, read_of(frame));
     if (!(input.scene & TL_BIT(TL_SCENE_LAMPS)))
         tl_local_release(&renderer->local);
     if (!(input.scene & TL_BIT(TL_SCENE_SHEETS)))
@@ -307,13 +390,15 @@ static bool show(tl_renderer *renderer, unsigned framebuffer, int width, int hei
         ~TL_BIT(TL_MADE_SHOWN); /* a window's buffer holds nothing from one frame to the next */
     tl_plan plan;
     const struct tl_plan_input input =
-        plan_input(renderer, &renderer->frame, &renderer->settings, 0, TL_MADE_SHOWN);
+        plan_input(renderer, &renderer->frame, &renderer->settings, 0, TL_BIT(TL_MADE_SHOWN));
     return run_plan(renderer, &input, &plan, error);
 }
 
 bool tl_renderer_show_image(tl_renderer *renderer, tl_image *out, tl_error *error)
 {
     const tl_target *target = &renderer->present.shown;
+    renderer->show_first = 0;
+    renderer->show_end = target->width;
     if (!show(renderer, target->id, target->width, target->height, error))
         return false;
     *out = tl_image_create(target->width, target->height, 3, TL_IMAGE_U8);
@@ -326,6 +411,14 @@ bool tl_renderer_show_image(tl_renderer *renderer, tl_image *out, tl_error *erro
 
 bool tl_renderer_show_window(tl_renderer *renderer, int width, int height, tl_error *error)
 {
+    return tl_renderer_show_columns(renderer, width, height, 0, width, error);
+}
+
+bool tl_renderer_show_columns(tl_renderer *renderer, int width, int height, int first, int end,
+                              tl_error *error)
+{
+    renderer->show_first = first;
+    renderer->show_end = end;
     return show(renderer, 0, width, height, error);
 }
 
@@ -337,8 +430,76 @@ void tl_renderer_plan(const tl_renderer *renderer, const tl_frame *frame,
     struct tl_rest rest = renderer->rest;
     tl_frame_sign(frame, &used, renderer->signatures, &rest, signatures);
     const struct tl_plan_input input =
-        plan_input(renderer, frame, &used, changed_inputs(renderer, signatures), TL_MADE_IMAGE);
-    tl_plan_make(tl_frame_jobs, tl_frame_job_count, &input, &renderer->cost, out);
+        plan_input(renderer, frame, &used, changed_inputs(renderer, signatures), read_of(frame));
+    make_plan(renderer, &input, &used, out);
+}
+
+/* What may move by itself; options change when somebody changes them. */
+#define MOVING_INPUTS                                                                                        \
+    (TL_BIT(TL_INPUT_ENVIRONMENT) | TL_BIT(TL_INPUT_YAW) | TL_BIT(TL_INPUT_MOTION) |                         \
+     TL_BIT(TL_INPUT_CAMERA) | TL_BIT(TL_INPUT_LAYOUT) | TL_BIT(TL_INPUT_CAPTURE) | TL_BIT(TL_INPUT_LAMPS))
+#define ROUND_INPUTS (TL_BIT(TL_INPUT_ROUND) | TL_BIT(TL_INPUT_SCENE_ROUND))
+
+tl_bits tl_renderer_would_run(const tl_renderer *renderer, const tl_frame *frame,
+                              const struct tl_render_settings *settings)
+{
+    struct tl_render_settings used = usable(settings);
+    uint64_t signatures[TL_INPUT_COUNT];
+    struct tl_rest rest = renderer->rest;
+    tl_frame_sign(frame, &used, renderer->signatures, &rest, signatures);
+    tl_bits moving = renderer->moving ? renderer->moving : TL_BIT(TL_INPUT_MOTION);
+    tl_bits changed = changed_inputs(renderer, signatures) | (moving & MOVING_INPUTS) | ROUND_INPUTS;
+    const struct tl_plan_input input = plan_input(renderer, frame, &used, changed, read_of(frame));
+    tl_plan plan;
+    tl_plan_make(tl_frame_jobs, tl_frame_job_count, &input, NULL, &plan);
+    tl_bits jobs = 0;
+    for (int i = 0; i < plan.count; i++)
+        if (plan.rows[i].action == TL_JOB_RUN)
+            jobs |= (tl_bits)1 << i;
+    return jobs;
+}
+
+double tl_renderer_would_take(const tl_renderer *renderer, const struct tl_render_settings *settings,
+                              tl_bits jobs)
+{
+    double sum_ms = 0;
+    const struct tl_work_seen seen = tl_work_look(renderer, settings);
+    for (int i = 0; i < tl_frame_job_count; i++) {
+        if (!(jobs & (tl_bits)1 << i))
+            continue;
+        struct tl_work work = work_of(i, &seen);
+        double ms = tl_cost_predict(&renderer->costs[i], &work, load_of(renderer));
+        sum_ms += isfinite(ms) ? ms : 0;
+    }
+    return sum_ms;
+}
+
+double tl_renderer_load(const tl_renderer *renderer)
+{
+    return load_of(renderer);
+}
+
+bool tl_renderer_is_moving(const tl_renderer *renderer, const tl_frame *frame)
+{
+    uint64_t signatures[TL_INPUT_COUNT];
+    struct tl_rest rest = renderer->rest;
+    tl_frame_sign(frame, &renderer->settings, renderer->signatures, &rest, signatures);
+    tl_bits moving = renderer->moving | changed_inputs(renderer, signatures);
+    return !renderer->valid || moving & (MOVING_INPUTS | TL_BIT(TL_INPUT_SHAPES));
+}
+
+bool tl_renderer_has_regions(const tl_renderer *renderer, const struct tl_render_settings *settings)
+{
+    const struct tl_render_settings used = usable(settings);
+    const tl_bits needed = TL_BIT(TL_MADE_CUBE) | TL_BIT(TL_MADE_LOBES) | TL_BIT(TL_MADE_LIGHTS);
+    return (renderer->valid & needed) != needed || tl_frame_has_lights(renderer, &used.light);
+}
+
+void tl_renderer_prepare_regions(tl_renderer *renderer, const struct tl_render_settings *settings)
+{
+    const struct tl_render_settings used = usable(settings);
+    if (!tl_renderer_has_regions(renderer, &used))
+        tl_frame_prepare_lights(renderer, &used.light);
 }
 
 double tl_renderer_standard_error(const tl_renderer *renderer)
@@ -351,32 +512,12 @@ bool tl_renderer_is_at_rest(const tl_renderer *renderer)
     const struct tl_light_params *light = &renderer->settings.light;
     bool is_done = light->visibility == TL_VISIBILITY_RAYS ? renderer->rest.is_done
                                                            : renderer->rest.image >= light->rounds - 1;
-    return renderer->valid & TL_BIT(TL_MADE_IMAGE) && renderer->rest.is_captured &&
-           (is_done || !tl_light_averages(light));
+    bool waits = light->visibility != TL_VISIBILITY_RAYS && tl_shadow_maps_wait(renderer->maps);
+    return renderer->valid & TL_BIT(TL_MADE_IMAGE) && renderer->rest.is_captured && !waits &&
+           (is_done || !tl_light_averages(light) || !tl_inspect_averages(renderer->settings.image.view));
 }
 
 const tl_plan *tl_renderer_last_plan(const tl_renderer *renderer)
 {
     return &renderer->plan;
-}
-
-struct tl_render_memory tl_renderer_memory(const tl_renderer *renderer)
-{
-    const struct tl_present *present = &renderer->present;
-    struct tl_render_memory memory = {
-        .pems = tl_pems_bytes(&renderer->pems) + tl_lobes_bytes(&renderer->lobes) +
-                tl_slice_maps_bytes(&renderer->slice_maps) + tl_lobes_bytes(&renderer->surroundings.lobes) +
-                tl_envmap_bytes(&renderer->envmap) + tl_capture_bytes(&renderer->capture),
-        .maps = tl_shadow_maps_bytes(renderer->maps) + tl_lamp_shadows_bytes(&renderer->local.shadows),
-        .rays = tl_trace_bytes(renderer->trace) + tl_points_bytes(renderer->points),
-        .sheets = tl_sheets_bytes(&renderer->sheets),
-        .targets = tl_target_bytes(&renderer->gbuffer.target) + tl_target_bytes(&renderer->lighting.target) +
-                   tl_present_bytes(present),
-        .surfaces = tl_surfaces_bytes(renderer->surfaces) + tl_detail_maps_bytes(&renderer->detail),
-        .other = tl_lighting_bytes(&renderer->lighting) + tl_local_bytes(&renderer->local) +
-                 tl_texture_bytes(&present->backdrop) + tl_texture_bytes(&present->blurred),
-    };
-    memory.total = memory.pems + memory.maps + memory.rays + memory.sheets + memory.targets +
-                   memory.surfaces + memory.other;
-    return memory;
 }

@@ -106,13 +106,38 @@ extern const struct tl_option_table tl_material_options;
 extern const struct tl_option_table
     tl_overlay_options; /* table "overlay": the same, of a garment's second fabric */
 
+/* What the image shows: render/inspect. */
+enum tl_image_view {
+    TL_VIEW_LIGHT,
+    TL_VIEW_NORMAL, /* with bumps */
+    TL_VIEW_SMOOTH, /* ... without */
+    TL_VIEW_TANGENT,
+    TL_VIEW_UV,
+    TL_VIEW_ALBEDO,
+    TL_VIEW_GLOSS,
+    TL_VIEW_VISIBILITY,
+    TL_VIEW_REGION,
+    TL_VIEW_STRAIN_WARP,
+    TL_VIEW_STRAIN_WEFT,
+    TL_VIEW_STRAIN_SHEAR,
+    TL_VIEW_COUNT
+};
+extern const char *const tl_image_view_names[]; /* "light", "normal" ...; NULL-terminated */
+
 struct tl_image_params { /* table "image" */
     int width, height;
     int supersample;   /* samples per pixel side, box filtered in linear light */
     float exposure_ev; /* for show only */
     int background;    /* enum tl_background; for show only */
     bool ground;       /* a ground disc at y = 0 */
+    int view;          /* enum tl_image_view */
+    int view_region;   /* visibility view: of this region; -1: of all, by their power */
+    float view_range;  /* strain views: percent at the legend's ends; 0: automatic */
+    float scale;       /* samples a side over those that supersample asks for, (0, 1] */
+    bool legend;       /* pictures of a view say what its colours mean */
 };
+/* Size of the G-buffer and of the light. */
+void tl_image_samples(const struct tl_image_params *image, int *width, int *height);
 extern const struct tl_option_table tl_image_options;
 
 struct tl_reference_params { /* table "reference" */
@@ -153,6 +178,7 @@ typedef struct tl_frame {
     const struct tl_lamp *lamps;
     size_t lamp_count; /* at most TL_LAMPS_MAX */
     double time_s;
+    bool aovs;  /* what render/inspect/aovs.h reads is kept */
     bool still; /* drawn until it rests: every round is taken whole, however long that takes */
 } tl_frame;
 
@@ -174,12 +200,19 @@ void tl_renderer_destroy(tl_renderer **renderer);
 bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct tl_render_settings *settings,
                       tl_error *error);
 
+/* The next draw makes anew all that follows from surfaces and camera, as a new renderer would; what was made of
+ * the environment alone stays. For checks: what is reused must equal what is made anew. */
+bool tl_renderer_forget_scene(tl_renderer *renderer, tl_error *error);
+
 /* Of the image by TL_METHOD_REFERENCE that was drawn last, as rel_rmse of render/metrics/compare.h; 0 before.
  */
 double tl_renderer_standard_error(const tl_renderer *renderer);
 
 /* True once drawing the same frame again would change nothing: no jittered round is left to be averaged. */
 bool tl_renderer_is_at_rest(const tl_renderer *renderer);
+
+/* What is drawn next owes nothing to what was drawn before, as in a new renderer. */
+void tl_renderer_forget(tl_renderer *renderer);
 
 /* The HDR image: F32 RGBA, linear, alpha = coverage, premultiplied, black where nothing is. */
 bool tl_renderer_read(tl_renderer *renderer, tl_image *out, tl_error *error);
@@ -193,12 +226,32 @@ bool tl_renderer_read_capture(const tl_renderer *renderer, tl_image *out, tl_err
  * must still be there. */
 bool tl_renderer_show_image(tl_renderer *renderer, tl_image *out, tl_error *error);
 bool tl_renderer_show_window(tl_renderer *renderer, int width, int height, tl_error *error);
+/* The same, but only columns [first, end) of the window: two renderers' images side by side. */
+bool tl_renderer_show_columns(tl_renderer *renderer, int width, int height, int first, int end,
+                              tl_error *error);
 
 /* What draw would do with this frame, and why; and what it has taken so far. Pure but for reading the
  * renderer's state. */
 void tl_renderer_plan(const tl_renderer *renderer, const tl_frame *frame,
                       const struct tl_render_settings *settings, tl_plan *out);
 const tl_plan *tl_renderer_last_plan(const tl_renderer *renderer);
+
+/* What a frame to come would take if it moves as the last ones did, for those who choose its settings: first
+ * which jobs (by bit) would run, then how long they would take; the last is cheap enough to be asked for
+ * thousands of settings. Both pure but for reading the renderer's state. */
+tl_bits tl_renderer_would_run(const tl_renderer *renderer, const tl_frame *frame,
+                              const struct tl_render_settings *settings);
+double tl_renderer_would_take(const tl_renderer *renderer, const struct tl_render_settings *settings,
+                              tl_bits jobs); /* ms */
+/* How much slower the machine is than it was: other programs'; 1: not. */
+double tl_renderer_load(const tl_renderer *renderer);
+/* False while nothing but jittered rounds and options made the last frame different from the one before, and
+ * would make this one different from it. */
+bool tl_renderer_is_moving(const tl_renderer *renderer, const tl_frame *frame);
+/* Going to the regions of these settings is cheap once they have been prepared, which takes as long as some
+ * frames do; so are those of the last frames. True where there is nothing to prepare. */
+bool tl_renderer_has_regions(const tl_renderer *renderer, const struct tl_render_settings *settings);
+void tl_renderer_prepare_regions(tl_renderer *renderer, const struct tl_render_settings *settings);
 
 /* Bytes by use, summed from what is allocated. */
 struct tl_render_memory {
@@ -207,5 +260,13 @@ struct tl_render_memory {
     size_t targets, surfaces, other, total;
 };
 struct tl_render_memory tl_renderer_memory(const tl_renderer *renderer);
+
+/* The same bytes by what they hold; returns how many rows there are, of what is there at all. */
+#define TL_RESOURCES_MAX 64
+struct tl_resource_memory {
+    const char *name;
+    size_t bytes;
+};
+size_t tl_renderer_resources(const tl_renderer *renderer, struct tl_resource_memory out[TL_RESOURCES_MAX]);
 
 #endif

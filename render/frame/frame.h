@@ -1,4 +1,5 @@
-/* The inside of a renderer: what the jobs of a frame read and write. Not for use outside of render/. */
+/* The inside of a renderer: what the jobs of a frame read and write. Not for use outside of render/,
+ * but by checks that look inside (app/check_*.c), which change nothing. */
 #ifndef TOILE_RENDER_FRAME_FRAME_H
 #define TOILE_RENDER_FRAME_FRAME_H
 
@@ -48,6 +49,7 @@ enum tl_resource {
     TL_INPUT_LAYOUT,  /* their layout; for a sphere map the view's turn */
     TL_INPUT_LOOK_UP, /* how they are looked up */
     TL_INPUT_CAPTURE, /* the scene as it was when it was to be captured last */
+    TL_INPUT_VIEW,    /* what is shown in place of light */
     TL_INPUT_COUNT,
     TL_MADE_CUBE = TL_INPUT_COUNT, /* and the suns taken from it */
     TL_MADE_REGIONS,
@@ -84,7 +86,7 @@ enum tl_scene_fact {
     TL_SCENE_RASTER,  /* anything but the reference */
     TL_SCENE_SHADOWS, /* somebody asks for visibility */
     TL_SCENE_MAPS,    /* ... of shadow maps */
-    TL_SCENE_RAYS,    /* the back-end of rays lights the image */
+    TL_SCENE_RAYS,    /* the back-end of rays says what is seen */
     TL_SCENE_SHEETS,  /* ... and something is seen through, or is lit from behind */
     TL_SCENE_MIRRORS, /* ... and something is so glossy that rays follow what it shows */
     TL_SCENE_PASSES,  /* passes on the GPU do */
@@ -100,6 +102,8 @@ enum tl_scene_fact {
     TL_SCENE_LAMP_MAPS, /* ... and depth maps shadow one of them */
     TL_SCENE_LAMP_RAYS, /* ... and rays do */
     TL_SCENE_SAMPLES,   /* rays start from what is seen */
+    TL_SCENE_COMPOSED,  /* light is put together from what rays see */
+    TL_SCENE_INSPECT,   /* something else than light is shown */
     TL_SCENE_FACT_COUNT
 };
 
@@ -142,8 +146,16 @@ bool tl_material_is_faceted(const tl_material *material);
 /* ... and those of environment maps, with the environment itself for mirrors. */
 uint32_t tl_frame_map_exponents(const tl_frame *frame, const struct tl_detail_params *detail);
 
+/* Makes renderer->light as large as its samples, and black. */
+void tl_frame_clear_light(tl_renderer *renderer);
+
 /* Lists what is drawn, with the ground last when it is drawn. */
 void tl_frame_list_surfaces(tl_renderer *renderer);
+
+/* Regions as lights that are not those of the last frame: whether they are kept, and what keeps them. */
+#define TL_LIGHTS_KEPT 4
+bool tl_frame_has_lights(const tl_renderer *renderer, const struct tl_light_params *light);
+void tl_frame_prepare_lights(tl_renderer *renderer, const struct tl_light_params *light);
 
 struct tl_renderer {
     tl_gpu *gpu;
@@ -162,7 +174,16 @@ struct tl_renderer {
     struct tl_lobes lobes;
     struct tl_slices slices;
     struct tl_slice_maps slice_maps;
-    struct tl_region_lights lights;
+    const struct tl_region_lights *lights; /* among those kept */
+    struct tl_kept_lights {
+        uint64_t revision; /* of the light that they add up to; 0: empty */
+        int regions, cut;
+        enum tl_region_weight weight;
+        uint64_t used; /* when, counted by kept_uses */
+        struct tl_region_lights lights;
+    } kept[TL_LIGHTS_KEPT]; /* so that going to more or fewer regions and back costs no more than a cut */
+    uint64_t kept_uses;
+    uint64_t light_revision; /* rises with the cube and its exact lobes */
     tl_surfaces *surfaces;
     struct tl_detail_maps detail;
     size_t surface_count; /* with the ground, which comes last */
@@ -179,6 +200,7 @@ struct tl_renderer {
     tl_points *points;
     float *light; /* [height][width][4] of samples, composed on the CPU */
     size_t light_bytes;
+    float strain_range; /* share of 1 at the ends of the legend, of the last view of strain */
     struct tl_lighting lighting;
     struct {                 /* what environment maps are made of: the whole light, suns and all */
         struct tl_pour pour; /* ... to their size */
@@ -194,13 +216,21 @@ struct tl_renderer {
     /* where the show job draws */
     unsigned show_framebuffer;
     int show_width, show_height;
+    int show_first, show_end; /* columns */
 
     uint64_t signatures[TL_INPUT_COUNT]; /* of the last draw's inputs */
     struct tl_rest rest;
     uint64_t shaders_stamp;
     tl_bits valid; /* resources that hold what their inputs call for */
+    struct tl_work_counts {
+        double triangles;
+        int lamps;
+        bool is_glossy, is_faceted, is_bumpy; /* any material */
+    } counted;                                /* of the last frame: work.h */
+    tl_bits moving;                           /* inputs that changed from one frame to the last */
     tl_plan plan;
-    tl_cost cost;
+    struct tl_cost_job costs[TL_JOBS_MAX];
+    double load; /* tl_load_follow */
 };
 
 #endif

@@ -1,6 +1,7 @@
 #include "config/memory.h"
 #include "render/detail/detail.h"
 #include "render/frame/frame.h"
+#include "render/inspect/job.h"
 
 #include "render/brdf/fan.h"
 #include "render/pem/lobe.h"
@@ -105,6 +106,13 @@ static uint64_t look_up_signature(const struct tl_maps_params *maps)
     return MIX(MIX(hash, maps->fresnel), maps->minify);
 }
 
+/* Always the same while light is shown. */
+static uint64_t view_signature(const struct tl_image_params *image)
+{
+    uint64_t hash = MIX(FNV_OFFSET, image->view);
+    return image->view == TL_VIEW_LIGHT ? hash : MIX(MIX(hash, image->view_region), image->view_range);
+}
+
 /* What a capture shows. */
 static uint64_t scene_signature(const uint64_t signatures[TL_INPUT_COUNT], const struct tl_maps_params *maps)
 {
@@ -171,7 +179,8 @@ void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *setti
     signatures[TL_INPUT_SHAPES] = shapes_signature(frame);
     signatures[TL_INPUT_MOTION] = motion_signature(frame);
     signatures[TL_INPUT_CAMERA] = camera_signature(&frame->camera);
-    signatures[TL_INPUT_SIZE] = MIX(MIX(MIX(start, image->width), image->height), image->supersample);
+    signatures[TL_INPUT_SIZE] =
+        MIX(MIX(MIX(MIX(start, image->width), image->height), image->supersample), image->scale);
     signatures[TL_INPUT_GROUND] = MIX(start, image->ground);
     signatures[TL_INPUT_PEM_SIZE] = MIX(start, light->pem_size);
     signatures[TL_INPUT_FILTER] = MIX(MIX(start, light->filter), light->prefilter);
@@ -190,6 +199,7 @@ void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *setti
     signatures[TL_INPUT_LAYOUT] = layout_signature(frame, &settings->maps);
     count_capture(frame, settings, signatures, rest);
     signatures[TL_INPUT_CAPTURE] = MIX(start, rest->captured);
+    signatures[TL_INPUT_VIEW] = view_signature(image);
     signatures[TL_INPUT_LOOK_UP] = look_up_signature(&settings->maps);
     count_rest(light, before, signatures, rest);
     signatures[TL_INPUT_ROUND] = MIX(start, rest->image);
@@ -321,7 +331,7 @@ static tl_bits lamp_facts(const tl_frame *frame, const struct tl_light_params *l
     return facts;
 }
 
-tl_bits tl_frame_facts(const tl_frame *frame, const struct tl_render_settings *settings)
+static tl_bits light_facts(const tl_frame *frame, const struct tl_render_settings *settings)
 {
     const struct tl_light_params *light = &settings->light;
     if (light->method == TL_METHOD_REFERENCE)
@@ -349,6 +359,16 @@ tl_bits tl_frame_facts(const tl_frame *frame, const struct tl_render_settings *s
         tl_mirror_ray_count(tl_lobe_exponent(greatest_glossiness(frame))) > 0)
         facts |= TL_BIT(TL_SCENE_MIRRORS);
     if (rays)
-        facts |= TL_BIT(TL_SCENE_SAMPLES);
+        facts |= TL_BIT(TL_SCENE_SAMPLES) | TL_BIT(TL_SCENE_COMPOSED);
     return facts | lamp_facts(frame, light);
+}
+
+tl_bits tl_frame_facts(const tl_frame *frame, const struct tl_render_settings *settings)
+{
+    tl_bits kept = frame->aovs ? TL_BIT(TL_SCENE_SAMPLES) : 0;
+    if (settings->image.view == TL_VIEW_LIGHT)
+        return kept | light_facts(frame, settings);
+    if (wants_detail(frame, &settings->detail))
+        kept |= TL_BIT(TL_SCENE_DETAIL);
+    return kept | tl_inspect_facts(settings->image.view);
 }

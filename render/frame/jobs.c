@@ -3,6 +3,8 @@
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
+#include "render/frame/work.h"
+#include "render/inspect/job.h"
 #include "render/light/compose.h"
 #include "render/local/lamp_rays.h"
 #include "render/local/lamp_samples.h"
@@ -23,6 +25,7 @@ static bool run_cube(void *context, int level, tl_error *error)
     (void)level, (void)error;
     tl_cube_release(&renderer->cube);
     tl_lobes_release(&renderer->lobes);
+    renderer->light_revision++;
     renderer->cube = tl_cube_from_environment_with(renderer->frame.environment,
                                                    renderer->settings.light.pem_size, &renderer->pour);
     renderer->suns = (struct tl_suns){0};
@@ -50,6 +53,7 @@ static bool run_lobes(void *context, int level, tl_error *error)
     (void)level, (void)error;
     tl_lobes_make(&renderer->lobes, &renderer->cube,
                   tl_frame_exponents(&renderer->frame, &renderer->settings.detail));
+    renderer->light_revision++;
     tl_lighting_set_exact(&renderer->lighting, renderer->gpu, &renderer->lobes);
     return true;
 }
@@ -86,15 +90,75 @@ static bool run_pems(void *context, int level, tl_error *error)
     return true;
 }
 
+static enum tl_region_weight region_weight(const struct tl_light_params *light)
+{
+    return light->method == TL_METHOD_LIGHTS ? TL_WEIGHT_POINT
+           : light->method == TL_METHOD_AO   ? TL_WEIGHT_WHITE
+                                             : TL_WEIGHT_POWER;
+}
+
+/* What lights follow from, the light's revision apart. */
+static struct tl_kept_lights kept_lights(const tl_renderer *renderer, const struct tl_light_params *light)
+{
+    return (struct tl_kept_lights){.revision = renderer->light_revision,
+                                   .regions = light->regions,
+                                   .cut = light->cut,
+                                   .weight = region_weight(light)};
+}
+
+static struct tl_kept_lights *find_lights(const tl_renderer *renderer, const struct tl_light_params *light)
+{
+    const struct tl_kept_lights sought = kept_lights(renderer, light);
+    for (int i = 0; i < TL_LIGHTS_KEPT; i++) {
+        const struct tl_kept_lights *kept = &renderer->kept[i];
+        if (kept->revision == sought.revision && kept->regions == sought.regions && kept->cut == sought.cut &&
+            kept->weight == sought.weight)
+            return (struct tl_kept_lights *)kept;
+    }
+    return NULL;
+}
+
+bool tl_frame_has_lights(const tl_renderer *renderer, const struct tl_light_params *light)
+{
+    return find_lights(renderer, light) != NULL;
+}
+
+/* In the place of those that were used longest ago. */
+static struct tl_kept_lights *make_lights(tl_renderer *renderer, const struct tl_light_params *light,
+                                          const struct tl_regions *regions)
+{
+    struct tl_kept_lights *oldest = &renderer->kept[0];
+    for (int i = 1; i < TL_LIGHTS_KEPT; i++)
+        if (renderer->kept[i].used < oldest->used)
+            oldest = &renderer->kept[i];
+    tl_region_lights_release(&oldest->lights);
+    *oldest = kept_lights(renderer, light);
+    tl_region_lights_make(&oldest->lights, regions, oldest->weight, &renderer->lobes);
+    oldest->used = ++renderer->kept_uses;
+    return oldest;
+}
+
+void tl_frame_prepare_lights(tl_renderer *renderer, const struct tl_light_params *light)
+{
+    struct tl_regions regions = {0};
+    if (light->cut == TL_CUT_SPHERE)
+        tl_regions_cut_sphere(&renderer->cube, light->regions, &regions);
+    else
+        tl_regions_cut(&renderer->cube, light->regions, &regions);
+    make_lights(renderer, light, &regions);
+    tl_regions_release(&regions);
+}
+
 static bool run_lights(void *context, int level, tl_error *error)
 {
     tl_renderer *renderer = context;
     (void)level, (void)error;
-    int method = renderer->settings.light.method;
-    enum tl_region_weight weight = method == TL_METHOD_LIGHTS ? TL_WEIGHT_POINT
-                                   : method == TL_METHOD_AO   ? TL_WEIGHT_WHITE
-                                                              : TL_WEIGHT_POWER;
-    tl_region_lights_make(&renderer->lights, &renderer->regions, weight, &renderer->lobes);
+    const struct tl_light_params *light = &renderer->settings.light;
+    struct tl_kept_lights *kept = find_lights(renderer, light);
+    if (!kept)
+        kept = make_lights(renderer, light, &renderer->regions);
+    kept->used = ++renderer->kept_uses;
+    renderer->lights = &kept->lights;
     return true;
 }
 
@@ -134,6 +198,7 @@ static struct tl_shadow_request shadow_request(const tl_renderer *renderer)
 {
     const struct tl_light_params *light = &renderer->settings.light;
     bool in_passes = tl_light_source(light) == TL_LIGHT_CHAIN;
+    const tl_bits moves_shadows = TL_BIT(TL_INPUT_MOTION) | TL_BIT(TL_INPUT_YAW);
     return (struct tl_shadow_request){
         .kind = (enum tl_visibility)light->visibility,
         .regions = &renderer->regions,
@@ -148,6 +213,9 @@ static struct tl_shadow_request shadow_request(const tl_renderer *renderer)
         .map_size = light->map_size,
         .maps_per_array = in_passes ? light->pems_per_pass : TL_REGIONS_MAX,
         .blur_m = light->blur_m,
+        .regions_revision = renderer->regions_revision,
+        /* What moves is followed a part at a time; what rests is brought up to date. */
+        .refresh = renderer->moving & moves_shadows && !renderer->frame.still ? light->refresh : 0,
         .round = renderer->rest.image};
 }
 
@@ -180,10 +248,11 @@ static void forget_unused_detail(tl_renderer *renderer)
 
 static struct tl_gbuffer_request gbuffer_request(const tl_renderer *renderer)
 {
-    const struct tl_image_params *image = &renderer->settings.image;
+    int width, height;
+    tl_image_samples(&renderer->settings.image, &width, &height);
     return (struct tl_gbuffer_request){.view = &renderer->view,
-                                       .width = image->width * image->supersample,
-                                       .height = image->height * image->supersample,
+                                       .width = width,
+                                       .height = height,
                                        .surfaces = renderer->surfaces,
                                        .surface_count = renderer->surface_count,
                                        .ground = ground_of(renderer),
@@ -324,10 +393,8 @@ static bool add_lamps(tl_renderer *renderer, const struct tl_compose_request *co
     return true;
 }
 
-static bool run_compose(void *context, int level, tl_error *error)
+void tl_frame_clear_light(tl_renderer *renderer)
 {
-    tl_renderer *renderer = context;
-    (void)level;
     const struct tl_samples *samples = &renderer->samples;
     size_t bytes = (size_t)samples->width * (size_t)samples->height * 4 * sizeof(float);
     if (bytes != renderer->light_bytes) {
@@ -336,8 +403,15 @@ static bool run_compose(void *context, int level, tl_error *error)
         renderer->light_bytes = bytes;
     }
     memset(renderer->light, 0, bytes);
-    struct tl_compose_request request = {.samples = samples,
-                                         .lights = &renderer->lights,
+}
+
+static bool run_compose(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level;
+    tl_frame_clear_light(renderer);
+    struct tl_compose_request request = {.samples = &renderer->samples,
+                                         .lights = renderer->lights,
                                          .suns = &renderer->suns,
                                          .lobes = &renderer->lobes,
                                          .environment = renderer->frame.environment,
@@ -531,8 +605,7 @@ static bool run_resolve(void *context, int level, tl_error *error)
     (void)level, (void)error;
     const struct tl_image_params *image = &renderer->settings.image;
     tl_present_resolve(&renderer->present, renderer->gpu, &renderer->lighting.target.colours[0],
-                       &renderer->gbuffer.target.colours[TL_GBUFFER_POINT], image->width, image->height,
-                       image->supersample);
+                       &renderer->gbuffer.target.colours[TL_GBUFFER_POINT], image->width, image->height);
     return true;
 }
 
@@ -553,6 +626,8 @@ static bool run_show(void *context, int level, tl_error *error)
                                             .params = &renderer->settings.image,
                                             .framebuffer = renderer->show_framebuffer,
                                             .width = renderer->show_width,
+                                            .first_column = renderer->show_first,
+                                            .end_column = renderer->show_end,
                                             .height = renderer->show_height};
     tl_present_show(&renderer->present, renderer->gpu, &request);
     return true;
@@ -616,7 +691,8 @@ const tl_job tl_frame_jobs[] = {
      .writes = SET1(TL_MADE_LIGHTS),
      .requires_scene = SET2(TL_SCENE_RAYS, TL_SCENE_SHADOWS),
      .levels = LEVELS_ONE,
-     .run = run_lights},
+     .run = run_lights,
+     .work = tl_lights_work},
     {.name = "surfaces",
      .what = "vertices and maps to the GPU",
      .reads = SET3(TL_INPUT_SHAPES, TL_INPUT_MOTION, TL_INPUT_GROUND),
@@ -637,42 +713,48 @@ const tl_job tl_frame_jobs[] = {
      .writes = SET1(TL_MADE_DEPTHS),
      .requires_scene = SET1(TL_SCENE_MAPS),
      .levels = LEVELS_ONE,
-     .run = run_maps},
+     .run = run_maps,
+     .work = tl_maps_work},
     {.name = "blur",
      .what = "shadow maps blurred by the size of their regions",
      .reads = SET3(TL_MADE_DEPTHS, TL_MADE_REGIONS, TL_MADE_SURFACES),
      .writes = SET1(TL_MADE_MAPS),
      .requires_scene = SET2(TL_SCENE_MAPS, TL_SCENE_BLUR),
      .levels = LEVELS_ONE,
-     .run = run_blur},
+     .run = run_blur,
+     .work = tl_maps_work},
     {.name = "gbuffer",
      .what = "nearest point, normal and material of every sample",
      .reads = SET5(TL_MADE_SURFACES, TL_MADE_DETAIL, TL_INPUT_CAMERA, TL_INPUT_SIZE, TL_INPUT_GROUND) |
               SET1(TL_INPUT_DETAIL),
      .writes = SET1(TL_MADE_GBUFFER),
      .levels = LEVELS_ONE,
-     .run = run_gbuffer},
+     .run = run_gbuffer,
+     .work = tl_gbuffer_work},
     {.name = "samples",
      .what = "the covered samples to the CPU",
      .reads = SET3(TL_MADE_GBUFFER, TL_INPUT_CAMERA, TL_INPUT_SHAPES),
      .writes = SET1(TL_MADE_SAMPLES),
      .requires_scene = SET1(TL_SCENE_SAMPLES),
      .levels = LEVELS_ONE,
-     .run = run_samples},
+     .run = run_samples,
+     .work = tl_samples_work},
     {.name = "sheets",
      .what = "rays: what lies behind open cloth and shines through it",
      .reads = SET2(TL_MADE_SAMPLES, TL_MADE_SURFACES),
      .writes = SET1(TL_MADE_SHEETS),
      .requires_scene = SET1(TL_SCENE_SHEETS),
      .levels = LEVELS_ONE,
-     .run = run_sheets},
+     .run = run_sheets,
+     .work = tl_sample_rays_work},
     {.name = "mirrors",
      .what = "rays: what near mirrors show",
      .reads = SET5(TL_MADE_SAMPLES, TL_MADE_SHEETS, TL_INPUT_SHAPES, TL_INPUT_MOTION, TL_INPUT_GROUND),
      .writes = SET1(TL_MADE_MIRRORS),
      .requires_scene = SET1(TL_SCENE_MIRRORS),
      .levels = LEVELS_ONE,
-     .run = run_mirrors},
+     .run = run_mirrors,
+     .work = tl_sample_rays_work},
     {.name = "points",
      .what = "rays: visibility of the regions, kept at vertices",
      .reads = SET5(TL_MADE_SAMPLES, TL_MADE_REGIONS, TL_INPUT_SHAPES, TL_INPUT_MOTION, TL_INPUT_GROUND) |
@@ -680,25 +762,38 @@ const tl_job tl_frame_jobs[] = {
      .writes = SET1(TL_MADE_POINTS),
      .requires_scene = SET2(TL_SCENE_RAYS, TL_SCENE_SHADOWS),
      .levels = LEVELS_ONE,
-     .run = run_points},
+     .run = run_points,
+     .work = tl_points_work},
     {.name = "light",
      .what = "visibility times PEM, summed over the regions",
      .reads = SET5(TL_MADE_GBUFFER, TL_MADE_PEMS, TL_MADE_REGIONS, TL_MADE_LOBE, TL_MADE_MAPS) |
               SET5(TL_MADE_SURFACES, TL_INPUT_YAW, TL_INPUT_CAMERA, TL_INPUT_LIGHT, TL_INPUT_GROUND) |
-              SET5(TL_MADE_LOBES, TL_MADE_SLICES, TL_MADE_DEPTHS, TL_INPUT_ROUND, TL_INPUT_LAMPS),
+              SET5(TL_MADE_LOBES, TL_MADE_SLICES, TL_MADE_DEPTHS, TL_INPUT_ROUND, TL_INPUT_LAMPS) |
+              SET1(TL_INPUT_VIEW),
      .writes = SET1(TL_MADE_LIGHT),
      .requires_scene = SET1(TL_SCENE_PASSES),
      .levels = LEVELS_ONE,
-     .run = run_light},
+     .run = run_light,
+     .work = tl_passes_work},
     {.name = "compose",
      .what = "exact light times the share of it that is seen",
      .reads = SET5(TL_MADE_SAMPLES, TL_MADE_POINTS, TL_MADE_LIGHTS, TL_MADE_LOBES, TL_MADE_CUBE) |
               SET5(TL_MADE_SHEETS, TL_MADE_MIRRORS, TL_INPUT_YAW, TL_INPUT_LIGHT, TL_INPUT_CAMERA) |
-              SET1(TL_INPUT_LAMPS),
+              SET2(TL_INPUT_LAMPS, TL_INPUT_VIEW),
      .writes = SET1(TL_MADE_LIGHT),
-     .requires_scene = SET1(TL_SCENE_RAYS),
+     .requires_scene = SET1(TL_SCENE_COMPOSED),
      .levels = LEVELS_ONE,
-     .run = run_compose},
+     .run = run_compose,
+     .work = tl_compose_work},
+    {.name = "inspect",
+     .what = "what a view shows in place of light",
+     .reads = SET5(TL_MADE_SAMPLES, TL_MADE_POINTS, TL_MADE_REGIONS, TL_INPUT_MOTION, TL_INPUT_YAW) |
+              SET1(TL_INPUT_VIEW),
+     .writes = SET1(TL_MADE_LIGHT),
+     .requires_scene = SET1(TL_SCENE_INSPECT),
+     .levels = LEVELS_ONE,
+     .run = tl_inspect_run,
+     .work = tl_inspect_work},
     {.name = "envmap_lobes",
      .what = "all light through exact lobes, for environment maps",
      .reads = SET4(TL_INPUT_ENVIRONMENT, TL_INPUT_ENVMAP, TL_INPUT_SHAPES, TL_INPUT_DETAIL),
@@ -724,7 +819,8 @@ const tl_job tl_frame_jobs[] = {
      .run = run_envmap},
     {.name = "look_up",
      .what = "environment maps looked up for every sample",
-     .reads = SET5(TL_MADE_GBUFFER, TL_MADE_ENVMAP, TL_INPUT_CAMERA, TL_INPUT_LOOK_UP, TL_INPUT_LAMPS),
+     .reads = SET5(TL_MADE_GBUFFER, TL_MADE_ENVMAP, TL_INPUT_CAMERA, TL_INPUT_LOOK_UP, TL_INPUT_LAMPS) |
+              SET1(TL_INPUT_VIEW),
      .writes = SET1(TL_MADE_LIGHT),
      .requires_scene = SET1(TL_SCENE_ENVMAP),
      .levels = LEVELS_ONE,
@@ -736,7 +832,8 @@ const tl_job tl_frame_jobs[] = {
      .writes = SET1(TL_MADE_LAMP_MAPS),
      .requires_scene = SET1(TL_SCENE_LAMP_MAPS),
      .levels = LEVELS_ONE,
-     .run = run_lamp_maps},
+     .run = run_lamp_maps,
+     .work = tl_lamp_maps_work},
     {.name = "lamp_rays",
      .what = "rays: what is seen of each lamp",
      .reads = SET5(TL_MADE_SAMPLES, TL_MADE_SURFACES, TL_INPUT_MOTION, TL_INPUT_GROUND, TL_INPUT_LAMPS) |
@@ -744,7 +841,8 @@ const tl_job tl_frame_jobs[] = {
      .writes = SET1(TL_MADE_LAMP_RAYS),
      .requires_scene = SET1(TL_SCENE_LAMP_RAYS),
      .levels = LEVELS_ONE,
-     .run = run_lamp_rays},
+     .run = run_lamp_rays,
+     .work = tl_sample_rays_work},
     {.name = "lamps",
      .what = "light of the lamps, added",
      .reads = SET5(TL_MADE_LIGHT, TL_MADE_GBUFFER, TL_MADE_SURFACES, TL_MADE_LAMP_MAPS, TL_MADE_LAMP_RAYS) |
@@ -752,18 +850,20 @@ const tl_job tl_frame_jobs[] = {
      .writes = SET1(TL_MADE_LAMPLIGHT),
      .requires_scene = SET1(TL_SCENE_LAMPS),
      .levels = LEVELS_ONE,
-     .run = run_lamps},
+     .run = run_lamps,
+     .work = tl_lamps_work},
     {.name = "resolve",
      .what = "samples to pixels",
      .reads = SET4(TL_MADE_LIGHT, TL_MADE_LAMPLIGHT, TL_MADE_GBUFFER, TL_INPUT_SIZE),
      .writes = SET1(TL_MADE_IMAGE),
      .requires_scene = SET1(TL_SCENE_RASTER),
      .levels = LEVELS_ONE,
-     .run = run_resolve},
+     .run = run_resolve,
+     .work = tl_resolve_work},
     {.name = "reference",
      .what = "the image, ray traced",
      .reads = SET5(TL_INPUT_ENVIRONMENT, TL_INPUT_YAW, TL_INPUT_CAMERA, TL_INPUT_SIZE, TL_INPUT_LIGHT) |
-              SET4(TL_MADE_SURFACES, TL_INPUT_GROUND, TL_INPUT_LAMPS, TL_INPUT_REFERENCE),
+              SET5(TL_MADE_SURFACES, TL_INPUT_GROUND, TL_INPUT_LAMPS, TL_INPUT_REFERENCE, TL_INPUT_VIEW),
      .writes = SET1(TL_MADE_IMAGE),
      .requires_scene = SET1(TL_SCENE_REFERENCE),
      .levels = LEVELS_ONE,

@@ -26,6 +26,7 @@ const char *const tl_resource_names[] = {
     [TL_INPUT_LAYOUT] = "layout",
     [TL_INPUT_LOOK_UP] = "look-up options",
     [TL_INPUT_CAPTURE] = "captured scene",
+    [TL_INPUT_VIEW] = "view",
     [TL_MADE_CUBE] = "cube",
     [TL_MADE_REGIONS] = "regions",
     [TL_MADE_LOBE] = "lobe table",
@@ -74,6 +75,8 @@ const char *const tl_scene_fact_names[] = {
     [TL_SCENE_LAMP_MAPS] = "lamps with shadow maps",
     [TL_SCENE_LAMP_RAYS] = "lamps with shadow rays",
     [TL_SCENE_SAMPLES] = "rays from samples",
+    [TL_SCENE_COMPOSED] = "light from rays",
+    [TL_SCENE_INSPECT] = "view of something else than light",
     [TL_SCENE_CAPTURE] = "captured scene",
     [TL_SCENE_FACT_COUNT] = NULL,
 };

@@ -74,6 +74,12 @@ TL_INLINE void add_weights(float sums[TL_LANES], const float power[TL_LANES], co
         sums[lane] += power[lane] * weights[lane];
 }
 
+/* What a sample's sums need: bumps turn its normal away from the smooth one; something reflects through the
+ * glossy lobe (the ground does not, nor what a fan or a coat stands for). */
+struct kind {
+    bool bumped, glossy;
+};
+
 struct accumulator {
     float seen[2][3][TL_LANES];
 };
@@ -81,7 +87,7 @@ struct accumulator {
 /* Light below the plane of the smooth normal does not arrive, even where a map turns the shading normal
  * towards it. A diffuse lobe about the smooth normal ends there by itself. */
 TL_INLINE void add_group(struct accumulator *sums, const struct tl_region_group *group,
-                         const struct frame *frame, bool bumped, const float exponents[TL_LANES],
+                         const struct frame *frame, struct kind kind, const float exponents[TL_LANES],
                          const float visibility[TL_LANES])
 {
     const vec3s smooth = frame->smooth, normal = frame->normal, gloss = frame->gloss;
@@ -91,38 +97,53 @@ TL_INLINE void add_group(struct accumulator *sums, const struct tl_region_group 
         float sine = group->sine[lane], inverse = group->inverse_sine[lane];
         float above = disc_share((x * smooth.x + y * smooth.y + z * smooth.z) * inverse), both = 1;
         float cosine = x * normal.x + y * normal.y + z * normal.z;
-        if (bumped)
+        if (kind.bumped)
             both = tl_lesser(above / tl_greater(disc_share(cosine * inverse), 1e-6f), 1);
         diffuse[lane] = tl_region_lobe_diffuse(cosine, sine, inverse) * both * visibility[lane];
         float gloss_cosine = x * gloss.x + y * gloss.y + z * gloss.z;
-        glossy[lane] =
-            tl_region_lobe(gloss_cosine, sine, inverse, exponents[lane]) * above * visibility[lane];
+        glossy[lane] = kind.glossy ? tl_region_lobe(gloss_cosine, sine, inverse, exponents[lane]) * above *
+                                         visibility[lane]
+                                   : 0;
     }
     for (int c = 0; c < 3; c++) {
         add_weights(sums->seen[DIFFUSE][c], group->power[c], diffuse);
-        add_weights(sums->seen[GLOSSY][c], group->power[c], glossy);
+        if (kind.glossy)
+            add_weights(sums->seen[GLOSSY][c], group->power[c], glossy);
     }
 }
 
-TL_INLINE struct sums sum_groups(struct block *block, size_t index, const struct frame *frame, bool bumped)
+TL_INLINE struct sums sum_groups(struct block *block, size_t index, const struct frame *frame,
+                                 struct kind kind)
 {
     const struct tl_compose_request *request = block->request;
     const struct tl_region_lights *lights = request->lights;
     struct accumulator lanes = {0};
-    tl_region_broaden(&block->exponents, lights, frame->exponent);
+    if (kind.glossy)
+        tl_region_broaden(&block->exponents, lights, frame->exponent);
     for (int g = 0; g < lights->group_count; g++) {
         const struct tl_region_group *group = &lights->groups[g];
         if (glms_vec3_dot(group->axis, frame->smooth) < -group->reach_sine)
             continue; /* all of it has set */
         float visibility[TL_LANES];
         read_visibility(request->values, request->stride, &request->taps[index], g, visibility);
-        add_group(&lanes, group, frame, bumped, block->exponents.broadened[g], visibility);
+        add_group(&lanes, group, frame, kind, block->exponents.broadened[g], visibility);
     }
     struct sums sums;
-    for (int kind = 0; kind < 2; kind++)
+    for (int lobe = 0; lobe < 2; lobe++)
         for (int c = 0; c < 3; c++)
-            sums.seen[kind][c] = tl_sum_lanes(lanes.seen[kind][c]);
+            sums.seen[lobe][c] = tl_sum_lanes(lanes.seen[lobe][c]);
     return sums;
+}
+
+/* The loops over the regions are compiled once for each kind of sample. */
+TL_INLINE struct sums sum_kind(struct block *block, size_t index, const struct frame *frame,
+                               struct kind kind)
+{
+    if (kind.bumped)
+        return kind.glossy ? sum_groups(block, index, frame, (struct kind){true, true})
+                           : sum_groups(block, index, frame, (struct kind){true, false});
+    return kind.glossy ? sum_groups(block, index, frame, (struct kind){false, true})
+                       : sum_groups(block, index, frame, (struct kind){false, false});
 }
 
 /* What a sample receives through its two lobes, unshadowed and shadowed, before the material's colours. */
@@ -189,17 +210,18 @@ static void receive_unshadowed(const struct block *block, const struct frame *fr
 }
 
 static void receive_shadowed(const struct block *block, const struct frame *frame, const struct sums *sums,
-                             vec3s light[2])
+                             struct kind kind, vec3s light[2])
 {
     const struct tl_region_lights *lights = block->request->lights;
     vec3s gains[2] = {{{1, 1, 1}}, {{1, 1, 1}}};
     if (lights->gain.made) {
         gains[DIFFUSE] = tl_lobes_fetch(&lights->diffuse_gain, frame->normal, only_diffuse);
-        gains[GLOSSY] = tl_lobes_fetch(&lights->gain, frame->gloss, frame->blend);
+        if (kind.glossy)
+            gains[GLOSSY] = tl_lobes_fetch(&lights->gain, frame->gloss, frame->blend);
     }
-    for (int kind = 0; kind < 2; kind++)
+    for (int lobe = 0; lobe < 2; lobe++)
         for (int c = 0; c < 3; c++)
-            light[kind].raw[c] = gains[kind].raw[c] * sums->seen[kind][c];
+            light[lobe].raw[c] = gains[lobe].raw[c] * sums->seen[lobe][c];
 }
 
 /* One ray tells whether the lobe is open; what it shows is the mean over the lobe, for bright texels have
@@ -326,15 +348,20 @@ TL_INLINE void add_group_of_lobes(float sums[LOBES_MAX][3][TL_LANES], const stru
         float cosine = group->x[lane] * smooth.x + group->y[lane] * smooth.y + group->z[lane] * smooth.z;
         above[lane] = disc_share(cosine * group->inverse_sine[lane]) * visibility[lane];
     }
+    float exponents[TL_LANES] = {0}, broadened = -1; /* all lobes of a fan have the same */
     for (int k = 0; k < lobes->count; k++) {
         const vec3s d = lobes->items[k].direction;
         const float s = tl_lesser(lobes->items[k].exponent, TL_REGION_LOBE_MAX);
         float glossy[TL_LANES];
+        if (s != broadened)
+            for (int lane = 0; lane < TL_LANES; lane++)
+                exponents[lane] = lobe_broadened_exponent(s, group->spread[lane]);
+        broadened = s;
         for (int lane = 0; lane < TL_LANES; lane++) {
             float cosine = group->x[lane] * d.x + group->y[lane] * d.y + group->z[lane] * d.z;
-            float exponent = lobe_broadened_exponent(s, group->spread[lane]);
             glossy[lane] =
-                tl_region_lobe(cosine, group->sine[lane], group->inverse_sine[lane], exponent) * above[lane];
+                tl_region_lobe(cosine, group->sine[lane], group->inverse_sine[lane], exponents[lane]) *
+                above[lane];
         }
         for (int c = 0; c < 3; c++)
             add_weights(sums[k][c], group->power[c], glossy);
@@ -442,6 +469,13 @@ static float share_of_sample(const struct tl_compose_request *request, size_t in
     return request->samples->items[index].cover;
 }
 
+/* Whether anything of a sample's glossy lobe arrives in its colour. */
+static bool is_glossy(const struct tl_compose_request *request, const tl_sample *sample)
+{
+    return request->params->lobe == TL_LOBE_SINGLE || sample->specular.x > 0 || sample->specular.y > 0 ||
+           sample->specular.z > 0;
+}
+
 /* Light of a sample, premultiplied by cover. */
 TL_INLINE vec3s compose_sample(struct block *block, size_t index)
 {
@@ -463,9 +497,10 @@ TL_INLINE vec3s compose_sample(struct block *block, size_t index)
     if (method == TL_METHOD_UNSHADOWED || by_occlusion)
         receive_unshadowed(block, &frame, received.unshadowed);
     if (method != TL_METHOD_UNSHADOWED) {
-        bool bumped = glms_vec3_dot(sample->normal, sample->smooth) < 0.99999f;
-        sums = bumped ? sum_groups(block, index, &frame, true) : sum_groups(block, index, &frame, false);
-        receive_shadowed(block, &frame, &sums, received.shadowed);
+        struct kind kind = {.bumped = glms_vec3_dot(sample->normal, sample->smooth) < 0.99999f,
+                            .glossy = is_glossy(request, sample)};
+        sums = sum_kind(block, index, &frame, kind);
+        receive_shadowed(block, &frame, &sums, kind, received.shadowed);
     }
     const struct tl_mirror *mirror = request->mirrors ? &request->mirrors[index] : NULL;
     if (mirror && mirror->ray_count > 0)

@@ -18,18 +18,23 @@ const tl_surface *tl_triangle_find(const struct tl_triangle_ranges *ranges, uint
     return ranges->surfaces[s];
 }
 
+const struct tl_mesh_part *tl_triangle_part(const tl_surface *surface, uint32_t number)
+{
+    uint32_t index = 3 * number;
+    size_t part = 0;
+    while (part + 1 < surface->part_count &&
+           index - surface->parts[part].first_index >= surface->parts[part].index_count)
+        part++;
+    return &surface->parts[part];
+}
+
 const tl_material *tl_triangle_material(const struct tl_triangle_ranges *ranges, uint32_t number)
 {
     size_t s = 0;
     while (s + 1 < ranges->surface_count && number >= ranges->first[s + 1])
         s++;
     const tl_surface *surface = ranges->surfaces[s];
-    uint32_t index = 3 * (number - ranges->first[s]);
-    size_t part = 0;
-    while (part + 1 < surface->part_count &&
-           index - surface->parts[part].first_index >= surface->parts[part].index_count)
-        part++;
-    return &surface->materials[surface->parts[part].material];
+    return &surface->materials[tl_triangle_part(surface, number - ranges->first[s])->material];
 }
 
 void tl_triangle_ranges_make(const tl_surface *const *surfaces, size_t count, struct tl_triangle_ranges *out)

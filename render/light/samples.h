@@ -48,6 +48,9 @@ void tl_triangle_ranges_release(struct tl_triangle_ranges *ranges);
 const tl_surface *tl_triangle_find(const struct tl_triangle_ranges *ranges, uint32_t number,
                                    uint32_t corners[3], size_t *surface);
 
+/* The part that holds a surface's own triangle `number`. */
+const struct tl_mesh_part *tl_triangle_part(const tl_surface *surface, uint32_t number);
+
 /* How many the camera sees, through and through. */
 static inline size_t tl_samples_seen(const struct tl_samples *samples)
 {

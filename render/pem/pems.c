@@ -97,6 +97,18 @@ size_t tl_pems_bytes(const struct tl_pems *pems)
     return bytes;
 }
 
+tl_cube tl_pems_read(const struct tl_pems *pems, int index, int level)
+{
+    const tl_texture *array = &pems->arrays[index / pems->per_array];
+    tl_cube cube = tl_cube_create(array->width >> level);
+    size_t values = 18 * (size_t)cube.size * (size_t)cube.size;
+    glGetTextureSubImage(array->id, level, 0, 0, 6 * (index % pems->per_array), cube.size, cube.size, 6,
+                         GL_RGB, GL_FLOAT, (GLsizei)(values * sizeof(float)), cube.texels);
+    for (size_t i = 0; i < values; i++)
+        cube.texels[i] *= pems->scale;
+    return cube;
+}
+
 tl_texture tl_pem_upload_whole(tl_gpu *gpu, const tl_cube *cube, int filter, float *scale)
 {
     struct tl_chain chain = tl_chain_build(cube, (enum tl_chain_filter)filter);

@@ -25,6 +25,9 @@ void tl_pems_build(struct tl_pems *pems, tl_gpu *gpu, const tl_cube *cube, const
 void tl_pems_release(struct tl_pems *pems);
 size_t tl_pems_bytes(const struct tl_pems *pems);
 
+/* A level of region `index`'s filtered cube as it is on the GPU, radiance: for checks. */
+tl_cube tl_pems_read(const struct tl_pems *pems, int index, int level);
+
 /* One whole cube, filtered, as a cube map: the undivided environment. */
 tl_texture tl_pem_upload_whole(tl_gpu *gpu, const tl_cube *cube, int filter, float *scale);
 

@@ -3,36 +3,8 @@
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 const char *const tl_job_action_names[] = {"run", "reuse", "drop", NULL};
-
-void tl_cost_add(tl_cost *cost, int job, int level, double ms)
-{
-    assert(job >= 0 && job < TL_JOBS_MAX && level >= 0 && level < TL_JOB_LEVELS_MAX);
-    if (!isfinite(ms) || ms < 0) /* a clock that was set back measures nothing */
-        return;
-    cost->ms[job][level][cost->count[job][level]++ % TL_COST_HISTORY] = (float)ms;
-}
-
-static int compare_floats(const void *a, const void *b)
-{
-    float left = *(const float *)a, right = *(const float *)b;
-    return (left > right) - (left < right);
-}
-
-double tl_cost_median(const tl_cost *cost, int job, int level)
-{
-    assert(job >= 0 && job < TL_JOBS_MAX && level >= 0 && level < TL_JOB_LEVELS_MAX);
-    int count = cost->count[job][level] < TL_COST_HISTORY ? cost->count[job][level] : TL_COST_HISTORY;
-    if (count == 0)
-        return (double)NAN;
-    float sorted[TL_COST_HISTORY];
-    memcpy(sorted, cost->ms[job][level], (size_t)count * sizeof(float));
-    qsort(sorted, (size_t)count, sizeof(float), compare_floats);
-    return 0.5 * ((double)sorted[(count - 1) / 2] + (double)sorted[count / 2]);
-}
 
 bool tl_jobs_check(const tl_job *jobs, int count, tl_error *error)
 {
@@ -125,8 +97,8 @@ static void plan_row(const tl_job *job, const struct tl_plan_input *input, tl_bi
     }
 }
 
-void tl_plan_make(const tl_job *jobs, int count, const struct tl_plan_input *input, const tl_cost *cost,
-                  tl_plan *out)
+void tl_plan_make(const tl_job *jobs, int count, const struct tl_plan_input *input,
+                  const double *predicted_ms, tl_plan *out)
 {
     assert(count >= 0 && count <= TL_JOBS_MAX);
     tl_bits changed_reads[TL_JOBS_MAX], needed = input->wanted;
@@ -138,7 +110,7 @@ void tl_plan_make(const tl_job *jobs, int count, const struct tl_plan_input *inp
         if (row->action != TL_JOB_DROP)
             needed |= jobs[i].reads;
         if (row->action == TL_JOB_RUN)
-            row->predicted_ms = cost ? tl_cost_median(cost, i, row->level) : (double)NAN;
+            row->predicted_ms = predicted_ms ? predicted_ms[i] : (double)NAN;
     }
 }
 

@@ -7,6 +7,7 @@
 #define TOILE_RENDER_PLAN_PLAN_H
 
 #include "config/error.h"
+#include "render/plan/cost.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -27,6 +28,7 @@ typedef struct tl_job {
     tl_bits requires_scene;                /* bits of scene facts that must all hold, else dropped */
     const char *levels[TL_JOB_LEVELS_MAX]; /* names, cost grows and error falls; at least one */
     bool (*run)(void *context, int level, tl_error *error);
+    struct tl_work (*work)(const void *seen); /* of a frame to come; NULL: always the same */
 } tl_job;
 
 struct tl_plan_input {
@@ -43,8 +45,9 @@ struct tl_plan_row {
     enum tl_job_action action;
     int level;
     char reason[120];
-    double predicted_ms; /* median of the cost model; NaN while unknown, 0 for what does not run */
+    double predicted_ms; /* by the cost model; NaN while unknown, 0 for what does not run */
     double took_ms;      /* once carried out; 0 for what did not run */
+    double work_ms;      /* ... the same by the table's costs, on the table's machine; 0 where it has none */
 };
 
 typedef struct tl_plan {
@@ -52,19 +55,11 @@ typedef struct tl_plan {
     struct tl_plan_row rows[TL_JOBS_MAX]; /* in the table's order */
 } tl_plan;
 
-/* What jobs took: medians of the last TL_COST_HISTORY runs by (job, level). */
-#define TL_COST_HISTORY 15
-typedef struct tl_cost {
-    float ms[TL_JOBS_MAX][TL_JOB_LEVELS_MAX][TL_COST_HISTORY];
-    int count[TL_JOBS_MAX][TL_JOB_LEVELS_MAX]; /* runs ever recorded */
-} tl_cost;
-void tl_cost_add(tl_cost *cost, int job, int level, double ms);
-double tl_cost_median(const tl_cost *cost, int job, int level); /* NaN when nothing is known */
-
 /* False when the table is not in a possible order: a job reads what only a later one writes. */
 bool tl_jobs_check(const tl_job *jobs, int count, tl_error *error);
-void tl_plan_make(const tl_job *jobs, int count, const struct tl_plan_input *input, const tl_cost *cost,
-                  tl_plan *out);
+/* `predicted_ms` by job, or NULL. */
+void tl_plan_make(const tl_job *jobs, int count, const struct tl_plan_input *input,
+                  const double *predicted_ms, tl_plan *out);
 
 /* The resources that are up to date once the plan has been carried out: the next frame's `valid`. What a job
  * wrote earlier goes stale when the job is dropped while something that it reads changes. */

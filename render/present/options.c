@@ -1,7 +1,13 @@
+#include "render/pem/regions.h"
 #include "render/renderer.h"
+
+#include <math.h>
 
 typedef struct tl_image_params image_params;
 static const char *const background_names[] = {"environment", "blurred", "grey", NULL};
+const char *const tl_image_view_names[] = {
+    "light",      "normal", "smooth",      "tangent",     "uv",           "albedo", "gloss",
+    "visibility", "region", "strain_warp", "strain_weft", "strain_shear", NULL};
 
 static const struct tl_option image_rows[] = {
     TL_OPTION_INT(image_params, width, 1, 16384, "pixels", "width of the image"),
@@ -13,7 +19,30 @@ static const struct tl_option image_rows[] = {
     TL_OPTION_ENUM(image_params, background, background_names,
                    "what is seen behind, on the screen and in PNG files"),
     TL_OPTION_BOOL(image_params, ground, "a matt grey disc at y = 0 that catches the shadow"),
+    TL_OPTION_ENUM(image_params, view, tl_image_view_names,
+                   "what is shown: light, or in its place what it is made of, or the cloth's strain"),
+    TL_OPTION_INT(image_params, view_region, -1, TL_REGIONS_MAX - 1, "",
+                  "view=visibility: of this region alone; -1: of all, by their power"),
+    TL_OPTION_FLOAT(
+        image_params, view_range, 0, 1000, "%",
+        "views of strain: strain at the ends of the legend; 0: what 99 % of the cloth keeps within"),
+    TL_OPTION_FLOAT(image_params, scale, 0.1, 1, "",
+                    "samples a side over those of supersample; smaller is faster and softer"),
+    TL_OPTION_BOOL(image_params, legend, "pictures of views other than light say what their colours mean"),
 };
 const struct tl_option_table tl_image_options = TL_OPTION_TABLE(
     "image", "size and show of the image", image_rows, image_params, .width = 960, .height = 540,
-    .supersample = 1, .exposure_ev = 0, .background = TL_BACKGROUND_BLURRED, .ground = true);
+    .supersample = 1, .exposure_ev = 0, .background = TL_BACKGROUND_BLURRED, .ground = true, .scale = 1,
+    .view = TL_VIEW_LIGHT, .view_region = -1, .view_range = 0, .legend = true);
+
+static int scaled(int side, const struct tl_image_params *image)
+{
+    long samples = lround((double)side * image->supersample * (double)image->scale);
+    return samples > 1 ? (int)samples : 1;
+}
+
+void tl_image_samples(const struct tl_image_params *image, int *width, int *height)
+{
+    *width = scaled(image->width, image);
+    *height = scaled(image->height, image);
+}

@@ -1,13 +1,16 @@
 #include "render/present/present.h"
 
+#include "config/memory.h"
+#include "render/present/resample.h"
 #include "render/shaders.h"
 
 #include <epoxy/gl.h>
 
 #include <math.h>
+#include <stdlib.h>
 
 /* Uniform locations of show.frag. */
-enum { EXPOSURE, BACKGROUND, ENVIRONMENT_TURN, VIEW, LATLONG = 6, BLURRED_SCALE };
+enum { EXPOSURE, BACKGROUND, ENVIRONMENT_TURN, VIEW, LATLONG = 6, BLURRED_SCALE, AS_IT_IS };
 
 bool tl_present_create(struct tl_present *present, tl_gpu *gpu, tl_error *error)
 {
@@ -45,10 +48,46 @@ void tl_present_set_image(struct tl_present *present, tl_gpu *gpu, const tl_imag
                             GL_RGBA, GL_FLOAT, tl_image_floats(image) + 4 * (size_t)y * (size_t)image->width);
 }
 
-void tl_present_resolve(struct tl_present *present, tl_gpu *gpu, const tl_texture *lights,
-                        const tl_texture *points, int width, int height, int side)
+static float *read_texture(const tl_texture *texture)
 {
+    size_t count = 4 * (size_t)texture->width * (size_t)texture->height;
+    float *texels = tl_alloc(count, sizeof *texels);
+    glGetTextureImage(texture->id, 0, GL_RGBA, GL_FLOAT, (GLsizei)(count * sizeof *texels), texels);
+    return texels;
+}
+
+static void resolve_by_resampling(struct tl_present *present, const tl_texture *lights,
+                                  const tl_texture *points)
+{
+    float *light = read_texture(lights), *point = read_texture(points);
+    size_t count = (size_t)lights->width * (size_t)lights->height;
+#pragma omp parallel for
+    for (size_t i = 0; i < count; i++) /* as resolve.frag has it */
+        light[4 * i + 3] = point[4 * i + 3] - light[4 * i + 3];
+    const tl_target *image = &present->image;
+    struct tl_resample resample = {.from = light,
+                                   .from_width = lights->width,
+                                   .from_height = lights->height,
+                                   .to_width = image->width,
+                                   .to_height = image->height};
+    resample.to = tl_alloc(4 * (size_t)image->width * (size_t)image->height, sizeof *resample.to);
+    tl_resample(&resample);
+    glTextureSubImage2D(image->colours[0].id, 0, 0, 0, image->width, image->height, GL_RGBA, GL_FLOAT,
+                        resample.to);
+    free(resample.to);
+    free(point);
+    free(light);
+}
+
+void tl_present_resolve(struct tl_present *present, tl_gpu *gpu, const tl_texture *lights,
+                        const tl_texture *points, int width, int height)
+{
+    int side = lights->width / width;
     allocate(present, gpu, width, height);
+    if (side * width != lights->width || side * height != lights->height) {
+        resolve_by_resampling(present, lights, points);
+        return;
+    }
     glBindFramebuffer(GL_FRAMEBUFFER, present->image.id);
     glViewport(0, 0, width, height);
     glUseProgram(present->resolve.id);
@@ -93,6 +132,8 @@ void tl_present_show(const struct tl_present *present, tl_gpu *gpu, const struct
     const vec3s columns[3] = {view->right, view->up, view->forward};
     glBindFramebuffer(GL_FRAMEBUFFER, request->framebuffer);
     glViewport(0, 0, request->width, request->height);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(request->first_column, 0, request->end_column - request->first_column, request->height);
     glUseProgram(present->show.id);
     glUniform1f(EXPOSURE, exp2f(request->params->exposure_ev));
     glUniform1i(BACKGROUND, request->params->background);
@@ -100,11 +141,13 @@ void tl_present_show(const struct tl_present *present, tl_gpu *gpu, const struct
     glUniformMatrix3fv(VIEW, 1, GL_FALSE, columns[0].raw);
     glUniform1i(LATLONG, latlong);
     glUniform1f(BLURRED_SCALE, present->blurred_scale);
+    glUniform1i(AS_IT_IS, request->params->view != TL_VIEW_LIGHT);
     glBindTextureUnit(0, present->image.colours[0].id);
     glBindTextureUnit(latlong ? 1 : 2, present->backdrop.id);
     glBindTextureUnit(latlong ? 2 : 1, 0);
     glBindTextureUnit(3, present->blurred.id);
     tl_gpu_draw_fullscreen(gpu);
+    glDisable(GL_SCISSOR_TEST);
 }
 
 size_t tl_present_bytes(const struct tl_present *present)

@@ -22,14 +22,16 @@ struct tl_show_request {
     const struct tl_image_params *params;
     unsigned framebuffer; /* GL name */
     int width, height;    /* pixels */
+    int first_column, end_column; /* what of it is drawn: [first, end) */
 };
 
 bool tl_present_create(struct tl_present *present, tl_gpu *gpu, tl_error *error);
 void tl_present_release(struct tl_present *present);
 
-/* Box filter of `side` x `side` samples a pixel; sizes in pixels. */
+/* Sizes in pixels. A whole number of samples a pixel side: their box filter; else render/present/resample.h,
+ * on the CPU, where it takes a third of the time that software GL would. */
 void tl_present_resolve(struct tl_present *present, tl_gpu *gpu, const tl_texture *lights,
-                        const tl_texture *points, int width, int height, int side);
+                        const tl_texture *points, int width, int height);
 
 /* The image as it was made elsewhere: F32 RGBA, rows downwards. */
 void tl_present_set_image(struct tl_present *present, tl_gpu *gpu, const tl_image *image);

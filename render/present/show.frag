@@ -3,6 +3,7 @@
 // gives the same bytes.
 const int BACKGROUND_ENVIRONMENT = 0, BACKGROUND_BLURRED = 1;
 const float GREY = 0.18;
+const float DARK = 0.03;
 const float BLUR_LEVEL = 3.0;
 const float PI = 3.14159265358979;
 
@@ -12,6 +13,7 @@ layout(location = 2) uniform vec2 environment_turn; // cosine and sine of the en
 layout(location = 3) uniform mat3 view;             // columns: right and up to the image's edge, forward
 layout(location = 6) uniform bool latlong;
 layout(location = 7) uniform float blurred_scale;
+layout(location = 8) uniform bool as_it_is; // colours that stand for numbers: neither exposed nor mapped
 
 layout(binding = 0) uniform sampler2D image;
 layout(binding = 1) uniform sampler2D latlong_map;
@@ -60,6 +62,10 @@ vec3 srgb(vec3 linear)
 void main()
 {
     vec4 figure = texture(image, uv);
+    if (as_it_is) {
+        shown = vec4(srgb(figure.rgb + (1.0 - clamp(figure.a, 0.0, 1.0)) * vec3(DARK)), 1.0);
+        return;
+    }
     vec3 behind = vec3(GREY);
     if (background == BACKGROUND_ENVIRONMENT || background == BACKGROUND_BLURRED)
         behind = exposure * backdrop(view * vec3(2.0 * uv - 1.0, 1.0));

@@ -577,6 +577,11 @@ struct tl_points_report tl_points_report(const tl_points *points)
     return report;
 }
 
+size_t tl_points_visible(const tl_points *points)
+{
+    return points->visible_count;
+}
+
 size_t tl_points_bytes(const tl_points *points)
 {
     size_t sites = points->sites.cluster_count * TL_CLUSTER, slots = points->slot_capacity;

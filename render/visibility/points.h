@@ -63,6 +63,7 @@ struct tl_points_report {
     double disagreement; /* mean over samples of the largest difference between a sample's points */
 };
 struct tl_points_report tl_points_report(const tl_points *points);
+size_t tl_points_visible(const tl_points *points); /* in the last update */
 size_t tl_points_bytes(const tl_points *points);
 
 #endif

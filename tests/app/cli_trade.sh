@@ -21,11 +21,11 @@ refused() { # MESSAGE COMMAND...
 }
 
 check "trade without a folder" refused "add -o FOLDER" $TOILE trade --quick
-check "trade along nothing known" refused "expected light or cloth" $TOILE trade --axis wind -o measured
+check "trade along nothing known" refused "expected overall, light" $TOILE trade --axis wind -o measured
 check "bench of nothing" refused "expected a topic" $TOILE bench
 check "stability of nothing known" refused "expected a topic" $TOILE stability wind
 
-check "trade" $TOILE trade $small --quick -o measured
+check "trade" $TOILE trade --axis light $small --quick -o measured
 check "both files" test -s measured/trade.csv -a -s measured/report.html
 check "nothing else" test "$(ls measured | wc -l)" -eq 2
 if command -v python3 >/dev/null; then
@@ -49,6 +49,17 @@ assert any(e.get("src", "").startswith("data:image/png;base64,") for e in root.i
 assert not list(root.iter("script")) and not re.search(r'(src|href)="(?!data:)', text)
 assert "nan" not in text.lower().replace("nanmean", "") or not re.search(r'[ "(]-?nan[ ",)]', text)
 PYTHON
+    for axis in overall resolution detail shading; do
+        check "trade, $axis" $TOILE trade --axis $axis $small --quick -o "$axis"
+        check "finite numbers, $axis" python3 - "$axis/trade.csv" <<'PYTHON'
+import csv, math, sys
+rows = list(csv.DictReader(open(sys.argv[1])))
+assert len(rows) >= 2, len(rows)
+for row in rows:
+    for key in ("cpu_ms_per_frame", "wall_ms_per_frame", "relative_rmse", "mean_flip"):
+        assert math.isfinite(float(row[key])) and float(row[key]) >= 0, (key, row)
+PYTHON
+    done
     check "bench --json" sh -c "$TOILE bench light $small --quick --json | python3 -c '
 import json, math, sys
 bench = json.load(sys.stdin)
@@ -61,7 +72,7 @@ else
 fi
 
 # Ctrl-C once the first choice of settings is measured: exit status 130, and what was measured is there.
-$TOILE trade --size 32x32 --set cloth.edge_m=0.06 --set reference.replicates=2 -o stopped 2>progress & trade=$!
+$TOILE trade --axis light --size 32x32 --set cloth.edge_m=0.06 --set reference.replicates=2 -o stopped 2>progress & trade=$!
 until grep -q "measuring the trade" progress; do
     kill -0 $trade 2>/dev/null || { cat progress; echo "FAILED trade ended early"; exit 1; }
     sleep 1

@@ -153,9 +153,30 @@ static void focus_looks_at_the_point_from_half_as_far(void **state)
     assert_near(orbit.yaw_deg, 35, 0);
 }
 
+/* The way between two cameras starts and ends at them, goes the shorter way round, and changes the distance
+ * by the same ratio in each half. */
+static void goes_between(void **state)
+{
+    (void)state;
+    struct tl_camera_params from = some_orbit(), to = from;
+    from.yaw_deg = 170;
+    to.yaw_deg = -170;
+    to.distance_m = 12;
+    to.target[1] = 0.1f;
+    struct tl_camera_params half = tl_orbit_between(&from, &to, 0.5f),
+                            start = tl_orbit_between(&from, &to, 0), end = tl_orbit_between(&from, &to, 1);
+    assert_near(tl_orbit_wrap_deg(half.yaw_deg + 180), 0, 1e-4);
+    assert_near(half.distance_m, 6, 1e-5); /* sqrt(3 x 12) */
+    assert_near(half.target[1], 0.6, METRES);
+    assert_near(start.yaw_deg, 170, 1e-4);
+    assert_near(start.distance_m, from.distance_m, METRES);
+    assert_memory_equal(&end, &to, sizeof to);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(goes_between),
         cmocka_unit_test(the_orbit_is_found_again_in_its_camera),
         cmocka_unit_test(rays_go_where_points_are_seen),
         cmocka_unit_test(a_turn_moves_the_near_side_with_the_pointer),

@@ -75,11 +75,58 @@ static void awkward_values_are_left_out(void **state)
     }
 }
 
+static size_t count_of(const char *text, const char *what)
+{
+    size_t count = 0;
+    for (; (text = strstr(text, what)); text++)
+        count++;
+    return count;
+}
+
+/* What a plot may have beside its points. The drawing's frame is from 66 to 740. */
+static void manners_are_drawn(void **state)
+{
+    (void)state;
+    const struct tl_plot_point points[] = {{0, 1, "a", false}, {1, 2, "b", false}, {2, 1, "c", false}};
+    const struct tl_plot_series series[] = {{"one", points, 3, true, false}, {"two", points, 3, true, false}};
+    const struct tl_plot plot = {"x", "y", false, false, series, 2};
+    const struct tl_plot_guide guide = {4, "budget <4>"};
+    struct tl_plot_manner manner = {
+        .guides = &guide, .guide_count = 1, .shaded_to = 1, .height = 300, .x_tight = true};
+
+    char *lines = NULL;
+    for (manner.kind = TL_PLOT_LINES; manner.kind <= TL_PLOT_BARS; manner.kind++) {
+        char *text = NULL;
+        size_t size = 0;
+        FILE *out = open_memstream(&text, &size);
+        manner.bar_width = 0.5;
+        tl_plot_print_as(out, &plot, &manner);
+        fclose(out);
+        assert_int_equal(count_of(text, "class=\"shade\""), 1);
+        assert_int_equal(count_of(text, "class=\"guide\""), 1);
+        assert_int_equal(count_of(text, "budget &lt;4&gt;"), 1); /* in view, above all points */
+        assert_int_equal(count_of(text, "class=\"line s"), manner.kind <= TL_PLOT_STEPS ? 2 : 0);
+        assert_int_equal(count_of(text, "class=\"area s"), manner.kind == TL_PLOT_AREAS ? 2 : 0);
+        assert_int_equal(count_of(text, "<rect class=\"mark s"), manner.kind == TL_PLOT_BARS ? 6 : 0);
+        assert_null(strstr(text, "nan"));
+        if (manner.kind == TL_PLOT_AREAS) /* the last lies at the back */
+            assert_true(strstr(text, "area s1") < strstr(text, "area s0"));
+        if (manner.kind == TL_PLOT_LINES)
+            lines = text;
+        else
+            free(text);
+    }
+    /* A tight axis: the shade, up to 1 of 2, is half of it. */
+    assert_non_null(strstr(lines, "class=\"shade\" x=\"66.0\" y=\"14.0\" width=\"337.0\""));
+    free(lines);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(front_is_what_nothing_beats),
         cmocka_unit_test(awkward_values_are_left_out),
+        cmocka_unit_test(manners_are_drawn),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

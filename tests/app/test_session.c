@@ -3,6 +3,7 @@
 
 #include "app/session.h"
 #include "config/log.h"
+#include "config/memory.h"
 
 #include <string.h>
 
@@ -74,6 +75,55 @@ static void new_scenes_and_fabrics_are_taken_over(void **state)
     tl_session_destroy(&session);
 }
 
+/* Another colourway is other materials on the same cloth. */
+static void colourways_change_looks_only(void **state)
+{
+    (void)state;
+    tl_session *session = quick_session();
+    tl_error error = {0};
+    assert_ok(tl_session_go_to(session, 2, &error), error);
+    struct tl_settings settings = *tl_session_settings(session);
+    const char *const *names;
+    size_t count = tl_session_colourways(session, &names);
+    assert_true(count >= 2);
+    tl_surface dress = tl_session_frame(session).surfaces[1];
+    size_t bytes = dress.vertex_count * sizeof *dress.positions;
+    vec3s *before = malloc(bytes);
+    memcpy(before, dress.positions, bytes);
+    const tl_cloth *cloth = tl_session_cloth(session);
+    float blue = dress.materials[0].diffuse.z;
+
+    assert_ok(tl_settings_apply_colourway(&settings, names[0], &error), error);
+    assert_ok(tl_session_apply(session, &settings, &error), error);
+    tl_surface changed = tl_session_frame(session).surfaces[1];
+    assert_ptr_equal(tl_session_cloth(session), cloth);
+    assert_int_equal(tl_session_frame_number(session), 2);
+    assert_memory_equal(changed.positions, before, bytes);
+    assert_true(changed.motion_revision == dress.motion_revision);
+    assert_true(changed.topology_revision > dress.topology_revision);
+    assert_true(changed.materials[0].diffuse.z != blue);
+    assert_true(isfinite(sum_of_frame(session)));
+
+    /* The cloth goes on as it would have gone. */
+    assert_ok(tl_session_advance(session, &error), error);
+    memcpy(before, tl_session_frame(session).surfaces[1].positions, bytes);
+    assert_ok(tl_settings_apply_colourway(&settings, "", &error), error);
+    assert_ok(tl_session_apply(session, &settings, &error), error);
+    assert_true(tl_session_frame(session).surfaces[1].materials[0].diffuse.z == blue);
+    assert_ok(tl_session_go_to(session, 0, &error), error);
+    assert_ok(tl_session_go_to(session, 3, &error), error);
+    assert_memory_equal(tl_session_frame(session).surfaces[1].positions, before, bytes);
+
+    double sum = sum_of_frame(session);
+    assert_ok(tl_settings_apply_colourway(&settings, "Inc", &error), error); /* may be a file's */
+    assert_false(tl_session_apply(session, &settings, &error));
+    assert_non_null(strstr(error.message, "did you mean Ink?"));
+    assert_true(sum_of_frame(session) == sum);
+    assert_string_equal(tl_session_settings(session)->scene.colourway, "");
+    free(before);
+    tl_session_destroy(&session);
+}
+
 static void a_failure_keeps_what_was(void **state)
 {
     (void)state;
@@ -122,14 +172,58 @@ static void picking_finds_the_front(void **state)
     tl_session_destroy(&session);
 }
 
+/* The garment's, which comes last. */
+static const vec3s *strains_shown(tl_session *session)
+{
+    tl_frame frame = tl_session_frame(session);
+    return frame.surfaces[frame.surface_count - 1].strains;
+}
+
+static void strains_are_told_when_they_are_looked_at(void **state)
+{
+    (void)state;
+    tl_session *session = quick_session();
+    struct tl_settings settings = *tl_session_settings(session);
+    tl_error error = {0};
+    assert_null(strains_shown(session));
+    tl_session_want_strains(session, true);
+    assert_non_null(strains_shown(session));
+    tl_session_want_strains(session, false);
+    settings.image.view = TL_VIEW_STRAIN_WARP;
+    assert_ok(tl_session_apply(session, &settings, &error), error);
+
+    /* Against the drape's own measure, of edges: across an equilateral triangle strain is up to 5/3 of the
+     * largest of its edges' (of squared lengths), across a panel's less regular ones somewhat more. */
+    size_t count = tl_session_frame(session).surfaces[1].vertex_count;
+    double largest = 0, most = tl_session_report(session).max_strain;
+    vec3s *first = TL_NEW_ARRAY(vec3s, count);
+    memcpy(first, strains_shown(session), count * sizeof *first);
+    for (size_t i = 0; i < count; i++)
+        largest = fmax(largest, (double)first[i].x);
+    assert_true(largest > 1e-4 && largest < 3 * most);
+
+    assert_ok(tl_session_advance(session, &error), error); /* they follow the cloth */
+    assert_true(memcmp(first, strains_shown(session), count * sizeof *first) != 0);
+    strcpy(settings.scene.garment, "skirt");
+    assert_ok(tl_session_apply(session, &settings, &error), error);
+    assert_non_null(strains_shown(session));
+    settings.image.view = TL_VIEW_NORMAL;
+    assert_ok(tl_session_apply(session, &settings, &error), error);
+    assert_null(strains_shown(session));
+    free(first);
+    tl_session_destroy(&session);
+}
+
 int main(void)
 {
     tl_log_set_level(TL_LOG_WARN);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(new_scenes_and_fabrics_are_taken_over),
+        cmocka_unit_test(colourways_change_looks_only),
         cmocka_unit_test(a_failure_keeps_what_was),
         cmocka_unit_test(frames_replay_to_the_bit),
         cmocka_unit_test(picking_finds_the_front),
+        cmocka_unit_test(strains_are_told_when_they_are_looked_at),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -294,19 +294,28 @@ static void test_outside(void **state)
     for_each_cut(check_outside);
 }
 
-/* What the renderer needs: UVs (x, -y) of the pattern, one part in metres, one two-sided material. */
+/* What the renderer needs: UVs (x, -y) of the pattern, parts in metres that follow one another, a two-sided
+ * material for each. */
 static void test_model(void **state)
 {
     (void)state;
     tl_garment dress = cut("dress", 0.03f);
     const tl_model *model = &dress.model;
     assert_string_equal(model->name, "dress");
-    assert_int_equal(model->material_count, 1);
-    assert_true(model->materials[0].double_sided);
+    assert_int_equal(model->material_count, 2);
+    assert_string_equal(model->materials[0].name, "bodice");
+    assert_string_equal(model->materials[1].name, "skirt");
     assert_null(model->rig);
-    assert_int_equal(model->mesh.part_count, 1);
-    assert_int_equal(model->mesh.parts[0].index_count, model->mesh.index_count);
-    assert_true(model->mesh.parts[0].uv_metres == 1);
+    assert_int_equal(model->mesh.part_count, 2);
+    uint32_t next = 0;
+    for (size_t p = 0; p < model->mesh.part_count; p++) {
+        assert_true(model->materials[p].double_sided);
+        assert_int_equal(model->mesh.parts[p].material, p);
+        assert_int_equal(model->mesh.parts[p].first_index, next);
+        assert_true(model->mesh.parts[p].uv_metres == 1);
+        next += model->mesh.parts[p].index_count;
+    }
+    assert_int_equal(next, model->mesh.index_count);
     for (size_t v = 0; v < model->mesh.vertex_count; v++)
         assert_true(model->mesh.uvs[v].x == dress.pattern[v].x &&
                     model->mesh.uvs[v].y == -dress.pattern[v].y);

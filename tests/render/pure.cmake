@@ -2,21 +2,25 @@
 foreach(name
     bake
     brdf
+    budget
     chain
     compare
     compose
     convert
+    cost
     cube
     emitters
     fan
     flip
     ground
     layout
+    legend
     levels
     lobe
     lobe_error
     lobes
     map_fit
+    map_order
     memory
     normalise
     plan
@@ -24,6 +28,7 @@ foreach(name
     regions
     regions_sphere
     relief
+    resample
     sky
     slices
     sun

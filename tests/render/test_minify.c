@@ -21,7 +21,8 @@
 static tl_weave weave_of(int pattern, int yarns, float uv_metres)
 {
     static const int repeats[] = {[TL_WEAVE_PLAIN] = 2, [TL_WEAVE_TWILL] = 4, [TL_WEAVE_SATIN] = 5};
-    float pitch_mm = 1e3f * uv_metres / (float)(yarns / repeats[pattern] * repeats[pattern]);
+    int whole_repeats = yarns / repeats[pattern];
+    float pitch_mm = 1e3f * uv_metres / (float)(whole_repeats * repeats[pattern]);
     const struct tl_weave_params params = {.pattern = pattern,
                                            .warp_pitch_mm = pitch_mm,
                                            .weft_pitch_mm = pitch_mm,
@@ -198,8 +199,8 @@ static void test_shimmer(void **state)
     test_shape_refresh(&stage->shape);
     /* From yarns of four pixels to repeats of one; below two pixels a yarn is no longer a picture but noise.
      */
-    for (float distance = 0.28f; distance < 3; distance *= 2) {
-        float texels = distance * 0.07f / SIZE * 16000;
+    for (int octave = 0; octave < 4; octave++) {
+        float distance = ldexpf(0.28f, octave), texels = distance * 0.07f / SIZE * 16000;
         double changes[3];
         for (int minify = 0; minify < 3; minify++)
             changes[minify] = shimmer(device->renderer, stage, minify, distance);

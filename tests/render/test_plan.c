@@ -13,18 +13,19 @@ enum { GLOSSY, OPEN_SKY };
 static const char *const facts[] = {"glossy material", "open sky"};
 
 static const tl_job jobs[] = {
-    {"regions", "cut", BIT(ENVIRONMENT), BIT(REGIONS), 0, {"only"}, NULL},
-    {"pems", "filter", BIT(ENVIRONMENT) | BIT(REGIONS), BIT(PEMS), 0, {"only"}, NULL},
-    {"slices", "glossy slices", BIT(ENVIRONMENT), BIT(SLICES), BIT(GLOSSY), {"only"}, NULL},
-    {"maps", "shadow maps", BIT(REGIONS) | BIT(SURFACES), BIT(MAPS), 0, {"128", "256", "512"}, NULL},
+    {"regions", "cut", BIT(ENVIRONMENT), BIT(REGIONS), 0, {"only"}, NULL, NULL},
+    {"pems", "filter", BIT(ENVIRONMENT) | BIT(REGIONS), BIT(PEMS), 0, {"only"}, NULL, NULL},
+    {"slices", "glossy slices", BIT(ENVIRONMENT), BIT(SLICES), BIT(GLOSSY), {"only"}, NULL, NULL},
+    {"maps", "shadow maps", BIT(REGIONS) | BIT(SURFACES), BIT(MAPS), 0, {"128", "256", "512"}, NULL, NULL},
     {"light",
      "sum",
      BIT(PEMS) | BIT(SLICES) | BIT(MAPS) | BIT(SURFACES) | BIT(CAMERA),
      BIT(IMAGE),
      0,
      {"only"},
+     NULL,
      NULL},
-    {"chart", "for people", BIT(IMAGE), BIT(CHART), 0, {"only"}, NULL},
+    {"chart", "for people", BIT(IMAGE), BIT(CHART), 0, {"only"}, NULL, NULL},
 };
 #define JOBS ((int)(sizeof jobs / sizeof *jobs))
 #define ALL  (BIT(REGIONS) | BIT(PEMS) | BIT(SLICES) | BIT(MAPS) | BIT(IMAGE))
@@ -156,42 +157,18 @@ static void levels_are_the_most_exact(void **state)
     assert_int_equal(plan.rows[4].level, 0);
 }
 
-static void predictions_come_from_the_cost(void **state)
+static void predictions_are_of_what_runs(void **state)
 {
     (void)state;
     struct tl_plan_input input = {BIT(SURFACES), ALL, BIT(GLOSSY), BIT(IMAGE), facts, resources};
     tl_plan plan;
-    tl_cost cost = {0};
-    tl_cost_add(&cost, 3, 2, 5);
-    tl_cost_add(&cost, 3, 1, 77);
-    tl_plan_make(jobs, JOBS, &input, &cost, &plan);
+    const double predicted_ms[JOBS] = {1, 2, 3, 5, (double)NAN, 6};
+    tl_plan_make(jobs, JOBS, &input, predicted_ms, &plan);
     assert_near(plan.rows[3].predicted_ms, 5, 0);
-    assert_true(isnan(plan.rows[4].predicted_ms)); /* runs, never measured */
+    assert_true(isnan(plan.rows[4].predicted_ms)); /* runs, nothing is known */
     assert_near(plan.rows[0].predicted_ms, 0, 0);  /* reused */
     tl_plan_make(jobs, JOBS, &input, NULL, &plan);
     assert_true(isnan(plan.rows[3].predicted_ms));
-}
-
-static void costs_are_medians_of_the_last_runs(void **state)
-{
-    (void)state;
-    tl_cost cost = {0};
-    assert_true(isnan(tl_cost_median(&cost, 2, 1)));
-    tl_cost_add(&cost, 2, 1, 3);
-    assert_near(tl_cost_median(&cost, 2, 1), 3, 0);
-    tl_cost_add(&cost, 2, 1, 100);
-    assert_near(tl_cost_median(&cost, 2, 1), 51.5, 0);
-    tl_cost_add(&cost, 2, 1, 4);
-    assert_near(tl_cost_median(&cost, 2, 1), 4, 0); /* one hitch does not count */
-    tl_cost_add(&cost, 2, 1, (double)NAN);
-    tl_cost_add(&cost, 2, 1, -1);
-    assert_near(tl_cost_median(&cost, 2, 1), 4, 0);
-    assert_int_equal(cost.count[2][1], 3);
-    for (int i = 0; i < TL_COST_HISTORY; i++) /* 0 .. 14 push everything earlier out */
-        tl_cost_add(&cost, 2, 1, i);
-    assert_near(tl_cost_median(&cost, 2, 1), 7, 0);
-    assert_int_equal(cost.count[2][1], 3 + TL_COST_HISTORY);
-    assert_true(isnan(tl_cost_median(&cost, 2, 0)));
 }
 
 static void tables_out_of_order_are_refused(void **state)
@@ -205,9 +182,9 @@ static void tables_out_of_order_are_refused(void **state)
     assert_non_null(strstr(error.message, "regions"));
 
     /* its own result of the last frame, and a second writer that comes before, are fine */
-    const tl_job history[] = {{"accumulate", "", BIT(IMAGE), BIT(IMAGE), 0, {"only"}, NULL}, jobs[4]};
+    const tl_job history[] = {{"accumulate", "", BIT(IMAGE), BIT(IMAGE), 0, {"only"}, NULL, NULL}, jobs[4]};
     assert_ok(tl_jobs_check(history, 2, &error), error);
-    const tl_job unlevelled[] = {{"bare", "", 0, BIT(IMAGE), 0, {NULL}, NULL}};
+    const tl_job unlevelled[] = {{"bare", "", 0, BIT(IMAGE), 0, {NULL}, NULL, NULL}};
     assert_false(tl_jobs_check(unlevelled, 1, &error));
     assert_false(tl_jobs_check(jobs, TL_JOBS_MAX + 1, &error));
 }
@@ -219,7 +196,7 @@ static void long_reasons_are_cut(void **state)
     const char *names[64];
     for (int i = 0; i < 64; i++)
         names[i] = "a resource of quite some name";
-    const tl_job greedy[] = {{"greedy", "", 0x7fffffffffffffff, (tl_bits)1 << 63, 0, {"only"}, NULL}};
+    const tl_job greedy[] = {{"greedy", "", 0x7fffffffffffffff, (tl_bits)1 << 63, 0, {"only"}, NULL, NULL}};
     struct tl_plan_input input = {0x7fffffffffffffff, (tl_bits)1 << 63, 0, (tl_bits)1 << 63, NULL, names};
     tl_plan plan;
     tl_plan_make(greedy, 1, &input, NULL, &plan);
@@ -233,8 +210,7 @@ int main(void)
         cmocka_unit_test(plans_follow_the_table),
         cmocka_unit_test(stale_results_are_made_again),
         cmocka_unit_test(levels_are_the_most_exact),
-        cmocka_unit_test(predictions_come_from_the_cost),
-        cmocka_unit_test(costs_are_medians_of_the_last_runs),
+        cmocka_unit_test(predictions_are_of_what_runs),
         cmocka_unit_test(tables_out_of_order_are_refused),
         cmocka_unit_test(long_reasons_are_cut),
     };

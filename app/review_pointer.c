@@ -1,91 +1,12 @@
-/* Keys and pointer of the review window. */
+/* Pointer and gestures of the review window. */
 #include "app/orbit.h"
 #include "app/review.h"
 #include "config/log.h"
-#include "config/memory.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
 #include <math.h>
-#include <stdio.h>
-
-struct key_row {
-    int key, modifiers;
-    int command;
-    const char *label; /* NULL: another key for the row above */
-    const char *help;
-};
-
-static const struct key_row key_rows[] = {
-    {GLFW_KEY_SPACE, 0, TL_REVIEW_PLAY, "Space", "play, pause"},
-    {GLFW_KEY_PERIOD, 0, TL_REVIEW_STEP, ".  or  Right", "one frame on"},
-    {GLFW_KEY_RIGHT, 0, TL_REVIEW_STEP, NULL, NULL},
-    {GLFW_KEY_R, 0, TL_REVIEW_RESET, "R", "back to the settled start"},
-    {GLFW_KEY_P, 0, TL_REVIEW_PIN, "P", "while pulling: pin the cloth here; else: take those pins out"},
-    {GLFW_KEY_F, 0, TL_REVIEW_FRAME_ALL, "F", "frame the whole figure"},
-    {GLFW_KEY_E, 0, TL_REVIEW_NEXT_ENVIRONMENT, "E", "next environment"},
-    {GLFW_KEY_LEFT_BRACKET, 0, TL_REVIEW_TURN_LEFT, "[  ]", "turn the environment by 15\u00b0"},
-    {GLFW_KEY_RIGHT_BRACKET, 0, TL_REVIEW_TURN_RIGHT, NULL, NULL},
-    {GLFW_KEY_S, 0, TL_REVIEW_SCREENSHOT, "S  or  F12", "screenshot as PNG"},
-    {GLFW_KEY_F12, 0, TL_REVIEW_SCREENSHOT, NULL, NULL},
-    {GLFW_KEY_S, GLFW_MOD_SHIFT, TL_REVIEW_SCREENSHOT_LINEAR, "Shift+S", "screenshot as EXR, linear"},
-    {GLFW_KEY_TAB, 0, TL_REVIEW_PANEL, "Tab", "hide or show the panel"},
-    {GLFW_KEY_H, 0, TL_REVIEW_HELP, "H  or  F1", "this list"},
-    {GLFW_KEY_F1, 0, TL_REVIEW_HELP, NULL, NULL},
-    {GLFW_KEY_ESCAPE, 0, TL_REVIEW_BACK, "Esc", "close what is open, or leave"},
-    {GLFW_KEY_Q, 0, TL_REVIEW_QUIT, "Q", "leave"},
-    {GLFW_KEY_1, 0, TL_REVIEW_FABRIC, "1 to 9", "fabrics, in the order of the panel's list"},
-    {GLFW_KEY_2, 0, TL_REVIEW_FABRIC + 1, NULL, NULL},
-    {GLFW_KEY_3, 0, TL_REVIEW_FABRIC + 2, NULL, NULL},
-    {GLFW_KEY_4, 0, TL_REVIEW_FABRIC + 3, NULL, NULL},
-    {GLFW_KEY_5, 0, TL_REVIEW_FABRIC + 4, NULL, NULL},
-    {GLFW_KEY_6, 0, TL_REVIEW_FABRIC + 5, NULL, NULL},
-    {GLFW_KEY_7, 0, TL_REVIEW_FABRIC + 6, NULL, NULL},
-    {GLFW_KEY_8, 0, TL_REVIEW_FABRIC + 7, NULL, NULL},
-    {GLFW_KEY_9, 0, TL_REVIEW_FABRIC + 8, NULL, NULL},
-};
-
-static const char *const gesture_rows[][2] = {
-    {"left drag", "turn about the figure"},
-    {"right or middle drag", "move the figure"},
-    {"wheel", "nearer, farther"},
-    {"double click", "look closely at that point"},
-    {"Ctrl + left drag", "pull on the cloth"},
-    {"Shift + left drag", "turn the environment"},
-    {"drop a file", ".glb .gltf: garment or avatar; .exr .hdr: environment; .yaml: scene, fabric or preset"},
-};
-
-static void add_help(struct tl_panel_line *line, const char *label, const char *help)
-{
-    snprintf(line->cells[0], sizeof line->cells[0], "%s", label);
-    snprintf(line->cells[1], sizeof line->cells[1], "%s", help);
-}
-
-size_t tl_review_help(struct tl_panel_line *lines, size_t capacity)
-{
-    size_t count = 0;
-    for (size_t i = 0; i < TL_COUNT(gesture_rows) && count < capacity; i++)
-        add_help(&lines[count++], gesture_rows[i][0], gesture_rows[i][1]);
-    for (size_t i = 0; i < TL_COUNT(key_rows) && count < capacity; i++)
-        if (key_rows[i].label)
-            add_help(&lines[count++], key_rows[i].label, key_rows[i].help);
-    return count;
-}
-
-static void on_key(struct tl_review *review, const struct tl_window_event *event)
-{
-    const int others = GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER;
-    bool pulls = review->drag == TL_DRAG_CLOTH; /* with Ctrl held */
-    if (tl_panel_wants_keys(review->panel) || (!pulls && (event->modifiers & others)))
-        return;
-    int modifiers = event->modifiers & GLFW_MOD_SHIFT;
-    for (size_t i = 0; i < TL_COUNT(key_rows); i++)
-        if (key_rows[i].key == event->key && key_rows[i].modifiers == modifiers) {
-            tl_review_act(review, key_rows[i].command);
-            return;
-        }
-}
 
 static struct tl_ray ray_under(const struct tl_review *review, const struct tl_camera *camera, float x,
                                float y)
@@ -111,14 +32,6 @@ static bool pick(const struct tl_review *review, const struct tl_camera *camera,
         return false;
     *point = glms_vec3_muladds(ray.direction, distance_m, ray.origin);
     return true;
-}
-
-/* Moves but for a turn need to know how far the eye is, which an automatic frame leaves open. */
-static void fix_camera(struct tl_review *review)
-{
-    struct tl_camera camera = tl_session_frame(review->session).camera;
-    if (review->wanted.camera.distance_m <= 0)
-        tl_orbit_take(&review->wanted.camera, &camera);
 }
 
 /* The pointer in the plane in which the cloth is pulled. */
@@ -172,7 +85,7 @@ static void focus(struct tl_review *review, float x, float y)
     vec3s point;
     if (!pick(review, &camera, x, y, &vertex, &point))
         return;
-    fix_camera(review);
+    tl_review_fix_camera(review);
     tl_orbit_focus(&review->wanted.camera, point);
     review->changed = true;
     tl_info("view: looks at vertex %u", (unsigned)vertex);
@@ -191,6 +104,14 @@ static bool is_double_click(struct tl_review *review, const struct tl_window_eve
     return is_second;
 }
 
+/* The line between two looks, caught within a few pixels. */
+static bool is_on_wipe(const struct tl_review *review, float x, int width)
+{
+    const float reach = 8 * tl_window_scale(review->window);
+    int column = tl_review_wipe_column(review, width);
+    return column > 0 && fabsf(x - (float)column) < reach;
+}
+
 static void on_press(struct tl_review *review, const struct tl_window_event *event)
 {
     int width, height;
@@ -200,8 +121,11 @@ static void on_press(struct tl_review *review, const struct tl_window_event *eve
     review->drag_button = event->button;
     review->pointer_x = event->x;
     review->pointer_y = event->y;
+    tl_review_stop_moving(review);
     if (event->button != GLFW_MOUSE_BUTTON_LEFT)
         review->drag = TL_DRAG_PAN;
+    else if (is_on_wipe(review, event->x, width))
+        review->drag = TL_DRAG_WIPE;
     else if (event->modifiers & GLFW_MOD_CONTROL)
         begin_pull(review, event->x, event->y);
     else if (event->modifiers & GLFW_MOD_SHIFT)
@@ -237,13 +161,16 @@ static void on_move(struct tl_review *review, const struct tl_window_event *even
         tl_orbit_turn(&review->wanted.camera, dx, dy);
         break;
     case TL_DRAG_PAN:
-        fix_camera(review);
+        tl_review_fix_camera(review);
         tl_orbit_pan(&review->wanted.camera, dx, dy);
         break;
     case TL_DRAG_LIGHT:
         review->wanted.scene.environment_yaw_deg =
             tl_orbit_wrap_deg(review->wanted.scene.environment_yaw_deg - dx * TL_ORBIT_DEG_PER_HEIGHT);
         break;
+    case TL_DRAG_WIPE:
+        tl_review_move_wipe(review, event->x / (float)width);
+        return;
     case TL_DRAG_CLOTH: {
         struct tl_camera camera = tl_session_frame(review->session).camera;
         review->grab_target = pull_target(review, &camera, event->x, event->y);
@@ -260,7 +187,8 @@ static void on_wheel(struct tl_review *review, const struct tl_window_event *eve
     tl_review_size(review, &width, &height);
     if (event->x >= (float)width || tl_panel_wants_pointer(review->panel))
         return;
-    fix_camera(review);
+    tl_review_stop_moving(review);
+    tl_review_fix_camera(review);
     float x = (event->x - 0.5f * (float)width) / (float)height;
     float y = (event->y - 0.5f * (float)height) / (float)height;
     tl_orbit_zoom(&review->wanted.camera, event->steps, x, y);
@@ -272,7 +200,7 @@ static void handle(struct tl_review *review, const struct tl_window_event *event
 {
     switch (event->type) {
     case TL_WINDOW_KEY:
-        on_key(review, event);
+        tl_review_on_key(review, event);
         break;
     case TL_WINDOW_PRESS:
         on_press(review, event);

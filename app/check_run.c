@@ -1,0 +1,391 @@
+#include "app/check_run.h"
+
+#include "app/cost.h"
+#include "app/motion.h"
+#include "app/pace.h"
+#include "config/interrupt.h"
+#include "config/log.h"
+#include "config/memory.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The hand of app/motion.c moves no faster. */
+#define HAND_SPEED 1.0
+/* A whip's end is faster than the hand that swings it. */
+#define WHIP 3.0
+
+/* Renderers beside the one that is looked at, made when they are first needed. */
+struct beside {
+    tl_renderer *white, *white_shadowed, *fresh;
+    tl_environment light;
+};
+
+struct run {
+    struct tl_stage *stage;
+    const struct tl_check_params *params;
+    struct tl_check_outcome *outcome;
+    struct tl_motion motion;
+    struct beside beside;
+    uint64_t *hashes;         /* [frames] */
+    int played;               /* of them are there */
+    tl_pace *pace;            /* NULL: no budget */
+    struct tl_levels *levels; /* [frames] */
+    struct tl_pace_choice choice;
+    double chosen_ms, moved_ms, drawn_ms; /* on the wall, of this frame: the choice, the cloth, the picture */
+    double least_energy_j;
+    vec3s *wearer; /* positions one frame ago; NULL: none */
+    double weight_n;
+    struct tl_progress progress;
+    int steps; /* all that progress counts */
+};
+
+static bool is_swung(const struct run *run, int number)
+{
+    int frames = run->params->frames;
+    return run->motion.pulls && !run->params->still && number > frames / 10 && number <= frames * 2 / 3;
+}
+
+/* What frame `number` is drawn and simulated with. */
+static struct tl_settings settings_of(const struct run *run, int number)
+{
+    return tl_levels_apply(&run->levels[number], &run->stage->settings);
+}
+
+static bool advance(struct run *run, int number, tl_error *error)
+{
+    tl_session *session = run->stage->session;
+    const struct tl_settings settings = settings_of(run, number);
+    if (run->pace && !tl_session_apply(session, &settings, error))
+        return false;
+    if (is_swung(run, number))
+        return tl_motion_advance(&run->motion, number - run->params->frames / 10, error);
+    if (is_swung(run, number - 1))
+        tl_cloth_release(tl_session_cloth(session));
+    return tl_session_advance(session, error);
+}
+
+static tl_frame frame_of(const struct run *run, int number)
+{
+    tl_frame frame = tl_session_frame(run->stage->session);
+    frame.camera = tl_motion_camera(&frame.camera, number, run->stage->settings.cloth.frame_rate);
+    return frame;
+}
+
+static bool draw_with(tl_renderer **renderer, const struct run *run, const tl_frame *frame,
+                      const struct tl_render_settings *settings, tl_image *image, tl_error *error)
+{
+    if (!*renderer)
+        *renderer = tl_renderer_create(run->stage->gpu, error);
+    return *renderer && tl_renderer_draw(*renderer, frame, settings, error) &&
+           tl_renderer_read(*renderer, image, error);
+}
+
+/* ---- The cloth ---- */
+
+/* Newtons, of the garment as it was cut. */
+static double weigh(const struct run *run)
+{
+    const tl_model *model = tl_session_garment(run->stage->session);
+    double area = 0;
+    for (size_t i = 0; model && i + 2 < model->mesh.index_count; i += 3) {
+        const uint32_t *index = &model->mesh.indices[i];
+        vec3s origin = model->mesh.positions[index[0]];
+        vec3s a = glms_vec3_sub(model->mesh.positions[index[1]], origin);
+        vec3s b = glms_vec3_sub(model->mesh.positions[index[2]], origin);
+        area += 0.5 * (double)glms_vec3_norm(glms_vec3_cross(a, b));
+    }
+    const struct tl_settings *settings = &run->stage->settings;
+    return area * settings->fabric.areal_density * settings->cloth.gravity;
+}
+
+/* What a fall from the highest point of all to the lowest gives. */
+static double fall_speed(const tl_frame *frame, double gravity)
+{
+    double lowest = DBL_MAX, highest = -DBL_MAX;
+    for (size_t s = 0; s < frame->surface_count; s++)
+        for (size_t v = 0; v < frame->surfaces[s].vertex_count; v++) {
+            lowest = fmin(lowest, (double)frame->surfaces[s].positions[v].y);
+            highest = fmax(highest, (double)frame->surfaces[s].positions[v].y);
+        }
+    return highest > lowest ? sqrt(2 * gravity * (highest - lowest)) : 0;
+}
+
+/* The fastest vertex of the wearer since the last frame, whose positions are then those of this one. */
+static double wearer_speed(struct run *run, const tl_frame *frame)
+{
+    double farthest = 0;
+    for (size_t s = 0; s < frame->surface_count; s++) {
+        const tl_surface *surface = &frame->surfaces[s];
+        if (strcmp(surface->name, "avatar") != 0)
+            continue;
+        size_t bytes = surface->vertex_count * sizeof(vec3s);
+        for (size_t v = 0; run->wearer && v < surface->vertex_count; v++)
+            farthest = fmax(farthest, (double)glms_vec3_distance(surface->positions[v], run->wearer[v]));
+        run->wearer = tl_resize(run->wearer, bytes, 1);
+        memcpy(run->wearer, surface->positions, bytes);
+    }
+    return farthest * run->stage->settings.cloth.frame_rate;
+}
+
+static struct tl_checked_cloth watch_cloth(struct run *run, const tl_frame *frame, int number)
+{
+    const struct tl_settings *settings = &run->stage->settings;
+    const float *wind = settings->cloth.wind;
+    double blows = sqrt((double)(wind[0] * wind[0] + wind[1] * wind[1] + wind[2] * wind[2]));
+    struct tl_checked_cloth cloth = {
+        .report = tl_session_report(run->stage->session),
+        .strain_limit = settings->cloth.solver == TL_CLOTH_PREVIEW ? settings->cloth.strain_limit : 0,
+        .weight_n = run->weight_n,
+        .least_energy_j = run->least_energy_j,
+        .is_driven = is_swung(run, number) || tl_session_plays_clip(run->stage->session) || blows > 0};
+    cloth.allowed_speed = WHIP * (fall_speed(frame, settings->cloth.gravity) + wearer_speed(run, frame) +
+                                  blows + (run->motion.pulls ? HAND_SPEED : 0));
+    double energy_j =
+        cloth.report.kinetic_energy + cloth.report.elastic_energy + cloth.report.potential_energy;
+    run->least_energy_j =
+        cloth.is_driven ? NAN : fmin(run->least_energy_j, energy_j); /* fmin of a NaN: the other */
+    return cloth;
+}
+
+/* ---- One frame ---- */
+
+static void release_images(tl_image *images, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        tl_image_release(&images[i]);
+}
+
+enum { DRAWN, FRESH, WHITE, WHITE_SHADOWED, IMAGES };
+
+static bool draw_white(struct run *run, const tl_frame *frame, tl_image images[IMAGES],
+                       struct tl_checked *checked, tl_error *error)
+{
+    struct beside *beside = &run->beside;
+    struct tl_render_settings settings = *checked->settings;
+    tl_frame lit = *frame;
+    if (!beside->light.image.texels)
+        beside->light = tl_environment_constant(1, 1, 1);
+    lit.environment = &beside->light;
+    lit.environment_revision = 1;
+    lit.lamp_count = 0;
+    if (!draw_with(&beside->white_shadowed, run, &lit, &settings, &images[WHITE_SHADOWED], error))
+        return false;
+    settings.light.method = TL_METHOD_UNSHADOWED;
+    if (!draw_with(&beside->white, run, &lit, &settings, &images[WHITE], error))
+        return false;
+    checked->white = beside->white;
+    checked->white_image = &images[WHITE];
+    checked->white_shadowed = &images[WHITE_SHADOWED];
+    return true;
+}
+
+/* The picture that is looked at; the planner learns what it took. */
+static bool draw_frame(struct run *run, const tl_frame *frame, const struct tl_render_settings *settings,
+                       tl_image *image, tl_error *error)
+{
+    struct tl_stopwatch watch = tl_stopwatch_start();
+    if (!tl_renderer_draw(run->stage->renderer, frame, settings, error))
+        return false;
+    run->drawn_ms = tl_stopwatch_read(&watch).wall_ms;
+    if (run->pace)
+        tl_pace_learn(run->pace, tl_renderer_last_plan(run->stage->renderer), run->moved_ms,
+                      run->chosen_ms + run->moved_ms + run->drawn_ms);
+    return tl_renderer_read(run->stage->renderer, image, error);
+}
+
+/* Everything that the frame's checks look at. */
+static bool prepare(struct run *run, const tl_frame *frame, tl_image images[IMAGES],
+                    struct tl_checked *checked, tl_error *error)
+{
+    struct beside *beside = &run->beside;
+    if (!draw_frame(run, frame, checked->settings, &images[DRAWN], error))
+        return false;
+    checked->renderer = run->stage->renderer;
+    checked->image = &images[DRAWN];
+    checked->hash = tl_check_hash(frame, checked->image);
+    if (!checked->is_sampled)
+        return true;
+    if (beside->fresh && !tl_renderer_forget_scene(beside->fresh, error))
+        return false;
+    if (!draw_with(&beside->fresh, run, frame, checked->settings, &images[FRESH], error))
+        return false;
+    checked->fresh = &images[FRESH];
+    return !run->params->furnace || draw_white(run, frame, images, checked, error);
+}
+
+static bool is_finite(const tl_frame *frame)
+{
+    for (size_t s = 0; s < frame->surface_count; s++)
+        for (size_t i = 0; i < 3 * frame->surfaces[s].vertex_count; i++)
+            if (!isfinite(frame->surfaces[s].positions->raw[i]))
+                return false;
+    return true;
+}
+
+static bool note(struct run *run, const struct tl_checked *checked, tl_error *error)
+{
+    struct tl_finding found;
+    struct tl_check_outcome *outcome = run->outcome;
+    int broken = tl_check_frame(checked, &outcome->verdicts, &found);
+    if (broken < 0 || outcome->broken >= 0)
+        return true;
+    outcome->broken = broken;
+    outcome->broken_frame = checked->number;
+    if (!run->params->keep)
+        return true;
+    outcome->is_kept = true;
+    return tl_check_keep(run->params->keep, run->stage, checked, &found, error);
+}
+
+/* Frame `number`, which the session is at. A frame that is not finite cannot be drawn; it is noted all the
+ * same. */
+static bool check_frame(struct run *run, int number, tl_error *error)
+{
+    tl_image images[IMAGES] = {0};
+    tl_frame frame = frame_of(run, number);
+    const struct tl_settings levelled = settings_of(run, number);
+    const struct tl_render_settings settings = tl_settings_render(&levelled);
+    struct tl_checked_cloth cloth;
+    struct tl_checked checked = {.number = number,
+                                 .frame = &frame,
+                                 .settings = &settings,
+                                 .is_sampled = number % run->params->every == 0,
+                                 .predicted_ms = run->choice.predicted_ms,
+                                 .budget_ms = run->params->budget_ms,
+                                 .least_ms = run->choice.least_ms,
+                                 .planned_error = run->choice.error};
+    if (tl_session_cloth(run->stage->session)) {
+        cloth = watch_cloth(run, &frame, number);
+        checked.cloth = &cloth;
+    }
+    bool done = !is_finite(&frame) || prepare(run, &frame, images, &checked, error);
+    done = done && note(run, &checked, error);
+    run->hashes[number] = checked.hash;
+    run->played = number + 1;
+    release_images(images, IMAGES);
+    return done;
+}
+
+static bool tell(struct run *run, int step, tl_error *error)
+{
+    tl_progress_update(&run->progress, step, run->steps);
+    return !tl_interrupted() ||
+           tl_fail(error, TL_INTERRUPTED, "check: stopped at frame %d of %d", step, run->steps);
+}
+
+static void begin(struct run *run)
+{
+    tl_motion_begin(&run->motion, run->stage->session);
+    run->least_energy_j = NAN;
+}
+
+static void choose(struct run *run, int number)
+{
+    if (!run->pace)
+        return;
+    struct tl_stopwatch watch = tl_stopwatch_start();
+    tl_frame frame = frame_of(run, number);
+    run->choice = tl_pace_choose(run->pace, run->stage->renderer, &frame, &run->stage->settings);
+    run->levels[number] = run->choice.levels;
+    run->chosen_ms = tl_stopwatch_read(&watch).wall_ms;
+}
+
+static bool move_on(struct run *run, int number, tl_error *error)
+{
+    struct tl_stopwatch watch = tl_stopwatch_start();
+    bool moved = number == 0 || advance(run, number, error);
+    run->moved_ms = tl_stopwatch_read(&watch).wall_ms;
+    return moved;
+}
+
+static bool play(struct run *run, tl_error *error)
+{
+    bool done = true;
+    begin(run);
+    for (int number = 0; done && number < run->params->frames; number++) {
+        choose(run, number);
+        done = move_on(run, number, error) && check_frame(run, number, error) && tell(run, number + 1, error);
+        if (done && run->hashes[number] == 0)
+            break; /* what is not finite does not mend itself */
+    }
+    return done;
+}
+
+/* The first frames once more, from the start, drawn by another renderer. */
+static bool play_again(struct run *run, int count, tl_error *error)
+{
+    if (!tl_session_reset(run->stage->session, error))
+        return false;
+    tl_renderer_destroy(&run->stage->renderer);
+    bool done = true;
+    begin(run);
+    for (int number = 0; done && number < count; number++) {
+        tl_image image = {0};
+        const struct tl_settings levelled = settings_of(run, number);
+        const struct tl_render_settings settings = tl_settings_render(&levelled);
+        if (number > 0 && !advance(run, number, error))
+            return false;
+        tl_frame frame = frame_of(run, number);
+        done = draw_with(&run->stage->renderer, run, &frame, &settings, &image, error);
+        if (done) {
+            struct tl_verdicts *verdicts = &run->outcome->verdicts;
+            const struct tl_checked checked = {.number = number,
+                                               .frame = &frame,
+                                               .settings = &settings,
+                                               .renderer = run->stage->renderer,
+                                               .image = &image,
+                                               .hash = tl_check_hash(&frame, &image),
+                                               .first_hash = run->hashes[number]};
+            done = note(run, &checked, error) && tell(run, run->params->frames + number + 1, error);
+            verdicts->frames--; /* it has been counted */
+        }
+        tl_image_release(&image);
+    }
+    return done;
+}
+
+static uint64_t hash_of(const struct run *run)
+{
+    uint64_t hash = 14695981039346656037u;
+    for (int i = 0; i < run->played; i++)
+        hash = (hash ^ run->hashes[i]) * 1099511628211u;
+    return hash;
+}
+
+static void release(struct run *run)
+{
+    tl_renderer_destroy(&run->beside.white);
+    tl_renderer_destroy(&run->beside.white_shadowed);
+    tl_renderer_destroy(&run->beside.fresh);
+    tl_environment_release(&run->beside.light);
+    tl_pace_destroy(&run->pace);
+    free(run->levels);
+    free(run->hashes);
+    free(run->wearer);
+}
+
+bool tl_check_play(struct tl_stage *stage, const struct tl_check_params *params, struct tl_check_outcome *out,
+                   tl_error *error)
+{
+    *out = (struct tl_check_outcome){.broken = -1};
+    struct run run = {.stage = stage,
+                      .params = params,
+                      .outcome = out,
+                      .hashes = TL_NEW_ARRAY(uint64_t, (size_t)params->frames),
+                      .pace = params->budget_ms > 0 ? tl_pace_create(params->budget_ms) : NULL,
+                      .levels = TL_NEW_ARRAY(struct tl_levels, (size_t)params->frames),
+                      .progress = tl_progress_begin("checking")};
+    int again = params->frames < 20 ? (params->frames + 1) / 2 : params->frames / 10;
+    run.steps = params->frames + again;
+    run.weight_n = weigh(&run);
+    bool done = play(&run, error);
+    if (done && run.played == params->frames)
+        done = play_again(&run, again, error);
+    out->hash = hash_of(&run);
+    tl_progress_end(&run.progress);
+    release(&run);
+    return done;
+}

@@ -1,0 +1,216 @@
+/* What is seen of the regions: the range of VIS and of what it is made of, and VIS against rays. */
+#include "app/check_measures.h"
+#include "config/memory.h"
+#include "render/frame/frame.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Points that VIS is measured at, and rays to each region from each of them. */
+enum { POINTS = 64, RAYS = 4 };
+
+/* A region counts when so many points face it, this far above their horizon. */
+enum { LEAST_POINTS = POINTS / 4 };
+#define FACES 0.2f
+
+static bool has_facts(const struct tl_checked *checked, tl_bits facts)
+{
+    return (tl_frame_facts(checked->frame, checked->settings) & facts) == facts;
+}
+
+/* E[z]^2 - E[z^2], of E[z^2]; infinite where either is no number. */
+static double moments_deviation(const float *texel)
+{
+    const double nearest = 1e-2; /* depths near 0 are exact to single precision, their squares are not */
+    double mean = (double)texel[0], square = (double)texel[1];
+    if (!isfinite(mean) || !isfinite(square))
+        return INFINITY;
+    double off = (mean * mean - square) / fmax(square, nearest);
+    return off > 0 ? off : 0;
+}
+
+static double depth_deviation(const float *texel)
+{
+    double depth = (double)texel[0];
+    return !isfinite(depth) ? INFINITY : depth < 0 ? -depth : depth > 1 ? depth - 1 : 0;
+}
+
+void tl_measure_moments(const struct tl_checked *checked, struct tl_finding *finding)
+{
+    const tl_renderer *renderer = checked->renderer;
+    if (!has_facts(checked, TL_BIT(TL_SCENE_MAPS)))
+        return;
+    for (int i = 0; i < renderer->regions.count; i++) {
+        struct tl_shadow_texels map = tl_shadow_maps_read(renderer->maps, i);
+        size_t count = (size_t)map.size * (size_t)map.size, channels = (size_t)map.channels;
+        for (size_t t = 0; t < count; t++) {
+            const float *texel = map.texels + t * channels;
+            if (tl_finding_add(finding, channels == 2 ? moments_deviation(texel) : depth_deviation(texel)))
+                tl_finding_place(finding, "map of region %d, texel %zu, %zu", i, t % (size_t)map.size,
+                                 t / (size_t)map.size);
+        }
+        free(map.texels);
+    }
+}
+
+/* Values lie in [0, 1] as they are kept, so that weights decide: how far these can lead out of it. */
+static double taps_deviation(const struct tl_taps *taps, size_t point_count)
+{
+    double above = 0, below = 0;
+    for (int i = 0; i < TL_TAPS; i++) {
+        double weight = (double)taps->weight[i];
+        if (!isfinite(weight) || taps->point[i] >= point_count)
+            return INFINITY;
+        above += weight > 0 ? weight : 0;
+        below += weight < 0 ? -weight : 0;
+    }
+    return fmax(fabs(above - 1), below);
+}
+
+static double share_deviation(float share)
+{
+    return !isfinite(share) ? INFINITY : share < 0 ? -(double)share : share > 1 ? (double)share - 1 : 0;
+}
+
+static void place_sample(const tl_renderer *renderer, size_t index, struct tl_finding *finding)
+{
+    const struct tl_samples *samples = &renderer->samples;
+    uint32_t texel = samples->items[index].texel, width = (uint32_t)samples->width;
+    tl_finding_place(finding, "sample %u, %u", texel % width, (uint32_t)samples->height - 1 - texel / width);
+}
+
+static bool has_points(const struct tl_checked *checked)
+{
+    return has_facts(checked, TL_BIT(TL_SCENE_RAYS) | TL_BIT(TL_SCENE_SHADOWS));
+}
+
+void tl_measure_visibility(const struct tl_checked *checked, struct tl_finding *finding)
+{
+    if (!has_points(checked))
+        return;
+    const tl_renderer *renderer = checked->renderer;
+    const struct tl_taps *taps = tl_points_taps(renderer->points);
+    size_t points = tl_points_report(renderer->points).points;
+    for (size_t i = 0; i < renderer->samples.count; i++)
+        if (tl_finding_add(finding, taps_deviation(&taps[i], points)))
+            place_sample(renderer, i, finding);
+    for (int sun = 0; sun < renderer->suns.count; sun++) {
+        const float *seen = tl_points_sun(renderer->points, sun);
+        for (size_t i = 0; seen && i < renderer->samples.count; i++)
+            if (tl_finding_add(finding, share_deviation(seen[i])))
+                place_sample(renderer, i, finding);
+    }
+}
+
+/* The sums over points of what is claimed to be seen of a region, and of what rays see of it. */
+struct tally {
+    int points;
+    double claimed, seen;
+};
+
+struct witness {
+    const tl_renderer *renderer;
+    tl_trace *trace; /* of its own, so that an old one shows too */
+    const uint16_t *values;
+    const struct tl_taps *taps;
+    size_t stride;
+    struct tally tallies[TL_REGIONS_MAX];
+};
+
+static double claimed_of(const struct witness *witness, size_t sample, int region)
+{
+    const struct tl_taps *taps = &witness->taps[sample];
+    double claimed = 0;
+    for (int i = 0; i < TL_TAPS; i++)
+        claimed += (double)taps->weight[i] *
+                   (double)witness->values[taps->point[i] * witness->stride + (size_t)region] /
+                   (double)TL_VISIBILITY_ONE;
+    return claimed;
+}
+
+/* Even over the region, from another place in it for every point. */
+static vec3s region_direction(const tl_renderer *renderer, int region, int ray, size_t point)
+{
+    double turn = (double)point * 0.6180339887498949, second = (double)point * 0.7548776662466927;
+    double u = (ray + turn - floor(turn)) / RAYS, v = second + ray * 0.5698402909980532;
+    vec3s direction = tl_region_direction(&renderer->regions, region, (float)u, (float)(v - floor(v)));
+    return tl_turn_direction(direction, renderer->frame.environment_yaw);
+}
+
+/* Adds what one point sees of one region, unless part of it is near its horizon: there VIS stands for what is
+ * above only. */
+static void ask(struct witness *witness, const tl_sample *sample, vec3s start, size_t point, size_t index,
+                int region)
+{
+    const tl_renderer *renderer = witness->renderer;
+    const struct tl_ground *ground = renderer->settings.image.ground ? &renderer->ground : NULL;
+    struct tl_trace_bundle bundle = {.count = RAYS, .to_m = INFINITY};
+    double open = 0;
+    float seen[16];
+    for (int ray = 0; ray < RAYS; ray++) {
+        vec3s direction = region_direction(renderer, region, ray, point);
+        if (glms_vec3_dot(direction, sample->smooth) < FACES)
+            return;
+        bundle.origin_x[ray] = start.x, bundle.origin_y[ray] = start.y, bundle.origin_z[ray] = start.z;
+        bundle.direction_x[ray] = direction.x, bundle.direction_y[ray] = direction.y;
+        bundle.direction_z[ray] = direction.z;
+    }
+    tl_trace_seen_bundle(witness->trace, &bundle, seen);
+    for (int ray = 0; ray < RAYS; ray++) {
+        const vec3s direction = {{bundle.direction_x[ray], bundle.direction_y[ray], bundle.direction_z[ray]}};
+        open += (double)(seen[ray] * tl_ground_visibility(ground, start, direction)) / RAYS;
+    }
+    struct tally *tally = &witness->tallies[region];
+    tally->points++;
+    tally->seen += open;
+    tally->claimed += claimed_of(witness, index, region);
+}
+
+static void hear(struct witness *witness, int frame)
+{
+    const tl_renderer *renderer = witness->renderer;
+    size_t count = renderer->samples.primary_count;
+    float offset_m = tl_trace_offset(witness->trace);
+    for (size_t point = 0; point < POINTS && count > 0; point++) {
+        size_t index = (point * count / POINTS + (size_t)frame * 7919) % count;
+        const tl_sample *sample = &renderer->samples.items[index];
+        vec3s start = tl_sample_start(sample, &renderer->ranges, offset_m);
+        for (int region = 0; region < renderer->regions.count; region++)
+            ask(witness, sample, start, point, index, region);
+    }
+}
+
+static void add_tallies(const struct witness *witness, struct tl_finding *finding)
+{
+    for (int i = 0; i < witness->renderer->regions.count; i++) {
+        const struct tally *tally = &witness->tallies[i];
+        if (tally->points < LEAST_POINTS)
+            continue;
+        double claimed = tally->claimed / tally->points, seen = tally->seen / tally->points;
+        if (tl_finding_add(finding, fabs(claimed - seen)))
+            tl_finding_place(finding, "region %d: VIS %.2f, rays %.2f of %d points", i, claimed, seen,
+                             tally->points);
+    }
+}
+
+void tl_measure_leaks(const struct tl_checked *checked, struct tl_finding *finding)
+{
+    tl_error error = {0};
+    if (!checked->is_sampled || !has_points(checked))
+        return;
+    struct witness *witness = TL_NEW(struct witness);
+    witness->renderer = checked->renderer;
+    witness->trace = tl_trace_create(&error);
+    witness->values = tl_points_values(checked->renderer->points, &witness->stride);
+    witness->taps = tl_points_taps(checked->renderer->points);
+    if (witness->trace &&
+        tl_trace_update(witness->trace, checked->frame->surfaces, checked->frame->surface_count, &error)) {
+        hear(witness, checked->number);
+        add_tallies(witness, finding);
+    } else {
+        tl_finding_add(finding, NAN);
+        tl_finding_place(finding, "%s", error.message);
+    }
+    tl_trace_destroy(&witness->trace);
+    free(witness);
+}

@@ -1,0 +1,33 @@
+/* A scene, or an environment, made ready on a thread of its own, so that the window goes on meanwhile.
+ *
+ * Nothing of it touches GL. Ownership: a loader owns what it makes until it is taken. Threads: these calls
+ * belong to one thread, the window's. */
+#ifndef TOILE_APP_LOADER_H
+#define TOILE_APP_LOADER_H
+
+#include "app/session.h"
+
+typedef struct tl_loader tl_loader;
+
+enum tl_load { TL_LOAD_SCENE, TL_LOAD_LIGHT };
+
+struct tl_load_progress {
+    char what[64]; /* "settling the cloth"; "" until something is known */
+    double share;  /* [0, 1] */
+};
+
+/* `wake` is called, on the loader's thread, when it has finished. `threads`: that its loops may use, 0: all.
+ */
+tl_loader *tl_loader_start(enum tl_load kind, const struct tl_settings *settings, int threads,
+                           void (*wake)(void));
+enum tl_load tl_loader_kind(const tl_loader *loader);
+const struct tl_settings *tl_loader_settings(const tl_loader *loader); /* that it was started with */
+bool tl_loader_is_done(const tl_loader *loader);
+struct tl_load_progress tl_loader_progress(tl_loader *loader);
+
+/* Ends a loader that is done: hands over what it has made, or fails as the making did. */
+bool tl_loader_take(tl_loader **handle, tl_session **session, struct tl_moving_light *light, tl_error *error);
+/* Asks it to stop, waits until it has, and forgets what it made; null is fine. */
+void tl_loader_cancel(tl_loader **handle);
+
+#endif

@@ -1,0 +1,106 @@
+/* Two looks side by side in the review window: A, on the left, as the settings were when the comparison
+ * began; B, on the right, as they are. Camera, light and cloth are the same: only what decides how cloth
+ * looks differs, and how well it is drawn. */
+#include "app/review.h"
+#include "config/log.h"
+#include "config/memory.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void tl_review_compare(struct tl_review *review)
+{
+    struct tl_review_wipe *wipe = &review->wipe;
+    tl_error error;
+    if (wipe->renderer) {
+        tl_renderer_destroy(&wipe->renderer);
+        tl_review_say(review, "comparison ended");
+        review->redraws = 1;
+        return;
+    }
+    wipe->renderer = tl_renderer_create(review->gpu, &error);
+    if (!wipe->renderer) {
+        tl_review_complain(review, &error);
+        return;
+    }
+    wipe->look = review->good;
+    wipe->place = 0.5f;
+    review->image_is_old = true;
+    tl_review_say(review, "compares: A, left, stays as it is now; change fabric, preset or options for B");
+}
+
+void tl_review_exchange(struct tl_review *review)
+{
+    if (!review->wipe.renderer) {
+        tl_review_say(review, "nothing is compared: W begins");
+        return;
+    }
+    struct tl_settings b = review->wanted;
+    review->wanted = tl_review_look_a(review, &b);
+    review->wipe.look = b;
+    review->changed = true;
+    tl_review_say(review, "A and B exchanged");
+}
+
+void tl_review_move_wipe(struct tl_review *review, float place)
+{
+    const float margin = 0.02f; /* so that the line can be caught again */
+    review->wipe.place = fminf(fmaxf(place, margin), 1 - margin);
+    review->redraws = 2;
+}
+
+int tl_review_wipe_column(const struct tl_review *review, int width)
+{
+    return review->wipe.renderer ? (int)lrintf(review->wipe.place * (float)width) : 0;
+}
+
+struct tl_settings tl_review_look_a(const struct tl_review *review, const struct tl_settings *settings)
+{
+    const struct tl_settings *look = &review->wipe.look;
+    struct tl_settings result = *settings;
+    memcpy(result.scene.fabric, look->scene.fabric, sizeof result.scene.fabric);
+    memcpy(result.scene.overlay_fabric, look->scene.overlay_fabric, sizeof result.scene.overlay_fabric);
+    memcpy(result.scene.preset, look->scene.preset, sizeof result.scene.preset);
+    if (strcmp(look->scene.garment, settings->scene.garment) == 0) { /* else it has other colourways */
+        memcpy(result.scene.colourway, look->scene.colourway, sizeof result.scene.colourway);
+        memcpy(result.scene.colourways, look->scene.colourways, sizeof result.scene.colourways);
+        result.colourways = look->colourways;
+    }
+    result.weave = look->weave;
+    result.material = look->material;
+    result.overlay = look->overlay;
+    result.overlay_weave = look->overlay_weave;
+    result.light = look->light;
+    result.detail = look->detail;
+    result.maps = look->maps;
+    result.shading = look->shading;
+    result.image.supersample = look->image.supersample;
+    return result;
+}
+
+static const char *short_name(const char *name)
+{
+    const char *slash = strrchr(name, '/');
+    return slash ? slash + 1 : name;
+}
+
+static void label(char *out, size_t size, const char *side, const struct tl_scene_params *scene,
+                  const char *difference)
+{
+    bool has_colourway = scene->colourway[0] != '\0', differs = difference[0] != '\0';
+    snprintf(out, size, "%s  %.40s, %s%.40s%s%.30s%s%.120s%s", side, short_name(scene->fabric),
+             has_colourway ? "colourway " : "", scene->colourway, has_colourway ? ", " : "",
+             short_name(scene->preset), differs ? " (" : "", difference, differs ? ")" : "");
+}
+
+void tl_review_wipe_labels(const struct tl_review *review, char *a, char *b, size_t size)
+{
+    const struct tl_settings *live = &review->good;
+    struct tl_settings same = tl_review_look_a(review, live);
+    char *difference = tl_history_describe(&same, live);
+    label(a, size, "A", &same.scene, "");
+    label(b, size, "B", &live->scene, strcmp(difference, "nothing") == 0 ? "the same" : difference);
+    free(difference);
+}

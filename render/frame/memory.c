@@ -1,0 +1,119 @@
+/* What the renderer keeps, resource by resource. */
+#include "render/frame/frame.h"
+
+static size_t cube_bytes(const tl_cube *cube)
+{
+    return 18 * sizeof(float) * (size_t)cube->size * (size_t)cube->size;
+}
+
+static size_t regions_bytes(const struct tl_regions *regions)
+{
+    size_t face = (size_t)regions->size * (size_t)regions->size;
+    return face * (6 * (sizeof *regions->labels + sizeof *regions->importance + sizeof *regions->texels +
+                        sizeof *regions->cumulative) +
+                   sizeof *regions->solid_angles);
+}
+
+static size_t lights_bytes(const tl_renderer *renderer)
+{
+    size_t bytes = 0;
+    for (int i = 0; i < TL_LIGHTS_KEPT; i++)
+        bytes += tl_lobes_bytes(&renderer->kept[i].lights.gain) +
+                 tl_lobes_bytes(&renderer->kept[i].lights.diffuse_gain);
+    return bytes;
+}
+
+static size_t samples_bytes(const struct tl_samples *samples)
+{
+    size_t tangent = samples->tangents ? sizeof *samples->tangents : 0;
+    return samples->capacity * (sizeof *samples->items + tangent) + samples->staging_bytes;
+}
+
+static size_t resource_bytes(const tl_renderer *renderer, enum tl_resource resource)
+{
+    const struct tl_present *present = &renderer->present;
+    switch (resource) {
+    case TL_MADE_CUBE:
+        return cube_bytes(&renderer->cube);
+    case TL_MADE_REGIONS:
+        return regions_bytes(&renderer->regions);
+    case TL_MADE_PEMS:
+        return tl_pems_bytes(&renderer->pems);
+    case TL_MADE_LOBES:
+        return tl_lobes_bytes(&renderer->lobes) + tl_lighting_bytes(&renderer->lighting);
+    case TL_MADE_SLICES:
+        return tl_slice_maps_bytes(&renderer->slice_maps);
+    case TL_MADE_LIGHTS:
+        return lights_bytes(renderer);
+    case TL_MADE_SURFACES:
+        return tl_surfaces_bytes(renderer->surfaces);
+    case TL_MADE_DETAIL:
+        return tl_detail_maps_bytes(&renderer->detail);
+    case TL_MADE_DEPTHS:
+        return tl_shadow_maps_bytes(renderer->maps);
+    case TL_MADE_GBUFFER:
+        return tl_target_bytes(&renderer->gbuffer.target);
+    case TL_MADE_SAMPLES:
+        return samples_bytes(&renderer->samples);
+    case TL_MADE_SHEETS:
+        return tl_sheets_bytes(&renderer->sheets);
+    case TL_MADE_POINTS:
+        return tl_points_bytes(renderer->points) + tl_trace_bytes(renderer->trace);
+    case TL_MADE_ENVMAP_LOBES:
+        return cube_bytes(&renderer->surroundings.cube) + tl_lobes_bytes(&renderer->surroundings.lobes);
+    case TL_MADE_CAPTURE:
+        return tl_capture_bytes(&renderer->capture);
+    case TL_MADE_ENVMAP:
+        return tl_envmap_bytes(&renderer->envmap);
+    case TL_MADE_LIGHT:
+        return tl_target_bytes(&renderer->lighting.target) + renderer->light_bytes;
+    case TL_MADE_LAMP_MAPS:
+        return tl_lamp_shadows_bytes(&renderer->local.shadows);
+    case TL_MADE_LAMPLIGHT:
+        return tl_local_bytes(&renderer->local);
+    case TL_MADE_IMAGE:
+        return tl_present_bytes(present);
+    case TL_MADE_BACKDROP:
+        return tl_texture_bytes(&present->backdrop) + tl_texture_bytes(&present->blurred);
+    default:
+        return 0;
+    }
+}
+
+size_t tl_renderer_resources(const tl_renderer *renderer, struct tl_resource_memory out[TL_RESOURCES_MAX])
+{
+    size_t count = 0;
+    for (int i = TL_INPUT_COUNT; i < TL_RESOURCE_COUNT; i++) {
+        size_t bytes = resource_bytes(renderer, (enum tl_resource)i);
+        if (bytes > 0)
+            out[count++] = (struct tl_resource_memory){tl_resource_names[i], bytes};
+    }
+    return count;
+}
+
+static size_t sum_of(const tl_renderer *renderer, const enum tl_resource *resources, size_t count)
+{
+    size_t bytes = 0;
+    for (size_t i = 0; i < count; i++)
+        bytes += resource_bytes(renderer, resources[i]);
+    return bytes;
+}
+#define SUM_OF(...)                                                                                          \
+    sum_of(renderer, (const enum tl_resource[]){__VA_ARGS__},                                                \
+           sizeof((const enum tl_resource[]){__VA_ARGS__}) / sizeof(enum tl_resource))
+
+struct tl_render_memory tl_renderer_memory(const tl_renderer *renderer)
+{
+    struct tl_render_memory memory = {
+        .pems = SUM_OF(TL_MADE_PEMS, TL_MADE_LOBES, TL_MADE_LIGHTS, TL_MADE_SLICES, TL_MADE_ENVMAP_LOBES,
+                       TL_MADE_ENVMAP, TL_MADE_CAPTURE),
+        .maps = SUM_OF(TL_MADE_DEPTHS, TL_MADE_LAMP_MAPS),
+        .rays = SUM_OF(TL_MADE_POINTS, TL_MADE_SAMPLES),
+        .sheets = SUM_OF(TL_MADE_SHEETS),
+        .targets = SUM_OF(TL_MADE_GBUFFER, TL_MADE_LIGHT, TL_MADE_IMAGE),
+        .surfaces = SUM_OF(TL_MADE_SURFACES, TL_MADE_DETAIL),
+        .other = SUM_OF(TL_MADE_CUBE, TL_MADE_REGIONS, TL_MADE_LAMPLIGHT, TL_MADE_BACKDROP)};
+    memory.total = memory.pems + memory.maps + memory.rays + memory.sheets + memory.targets +
+                   memory.surfaces + memory.other;
+    return memory;
+}

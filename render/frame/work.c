@@ -1,0 +1,164 @@
+/* How much work each job of the frame would have: what the last frame saw, at other settings. Costs are CPU
+ * ms on a machine with two cores (the built-in scene, preset draft, 128 x 128 to 1024 x 1024 samples, best of
+ * twelve frames); only their ratios within a job matter, the rest is learned. */
+#include "render/frame/work.h"
+
+#include "render/inspect/legend.h"
+
+#include <math.h>
+
+/* Of a frame's samples, as long as none has been drawn. */
+#define COVERED_AT_FIRST 0.5
+
+static double texels_of(const struct tl_image_params *image)
+{
+    int width, height;
+    tl_image_samples(image, &width, &height);
+    return (double)width * height;
+}
+
+/* Samples fall on points at random: with few of them some points are not seen. */
+static double points_seen(double points, double samples_then, double samples)
+{
+    if (!(points > 0) || !(samples_then > 0))
+        return samples;
+    return points * (1 - exp(-samples / points)) / (1 - exp(-samples_then / points));
+}
+
+static double refreshed(const struct tl_light_params *light)
+{
+    int regions = light->regions;
+    return light->rays * (light->refresh > 0 && light->refresh < regions ? light->refresh : regions);
+}
+
+static bool is_glossy(const tl_material *material)
+{
+    return glms_vec3_max(material->specular) > 0 || material->specular_map.image;
+}
+
+static bool is_bumpy(const tl_material *material)
+{
+    return material->weave || material->normal_map.image;
+}
+
+void tl_work_count(tl_renderer *renderer, const tl_frame *frame)
+{
+    struct tl_lamp lamps[TL_LAMPS_MAX];
+    renderer->counted = (struct tl_work_counts){.lamps = (int)tl_lamps_lit(frame, lamps),
+                                                .is_glossy = tl_frame_has(frame, is_glossy),
+                                                .is_bumpy = tl_frame_has(frame, is_bumpy),
+                                                .is_faceted = tl_frame_has(frame, tl_material_is_faceted)};
+    for (size_t i = 0; i < frame->surface_count; i++)
+        renderer->counted.triangles += (double)frame->surfaces[i].index_count / 3;
+}
+
+/* A matt one, a glossy one, those of a fan. */
+static double lobes_of(const struct tl_work_counts *counts, const struct tl_light_params *light)
+{
+    return 1 + (counts->is_glossy ? 1 : 0) + (counts->is_faceted ? light->fan : 0);
+}
+
+struct tl_work_seen tl_work_look(const tl_renderer *renderer, const struct tl_render_settings *settings)
+{
+    const struct tl_samples *samples = &renderer->samples;
+    const struct tl_light_params *light = &settings->light;
+    double then = (double)samples->width * samples->height, now = texels_of(&settings->image);
+    double covered_then = (double)tl_samples_seen(samples);
+    double covered = then > 0 ? covered_then / then * now : COVERED_AT_FIRST * now;
+    bool shadowed = light->method != TL_METHOD_UNSHADOWED;
+    return (struct tl_work_seen){
+        .settings = settings,
+        .texels = now,
+        .covered = covered,
+        .points = points_seen((double)tl_points_visible(renderer->points), covered_then, covered),
+        .lobes = lobes_of(&renderer->counted, light),
+        .groups = shadowed ? ceil(light->regions / (double)TL_LANES) : 0,
+        .refreshed = refreshed(light),
+        .is_bumpy = renderer->counted.is_bumpy,
+        .suns = shadowed ? renderer->suns.count : 0,
+        .lamps = renderer->counted.lamps,
+        .triangles = renderer->counted.triangles,
+        .new_regions = tl_frame_has_lights(renderer, light) ? 0 : light->regions};
+}
+
+struct tl_work tl_lights_work(const void *context)
+{
+    const struct tl_work_seen *seen = context;
+    return (struct tl_work){{1e-3, seen->new_regions > 0 ? 40 : 0, 2 * seen->new_regions}};
+}
+
+struct tl_work tl_gbuffer_work(const void *context)
+{
+    const struct tl_work_seen *seen = context;
+    const struct tl_detail_params *detail = &seen->settings->detail;
+    double steps = !seen->is_bumpy ? 0 : detail->mode == TL_DETAIL_RELIEF ? 5 + detail->steps : 5;
+    return (struct tl_work){
+        {5.7, 0.041 * sqrt(seen->texels), 5.7e-5 * seen->texels, 2e-5 * steps * seen->covered}};
+}
+
+struct tl_work tl_samples_work(const void *context)
+{
+    const struct tl_work_seen *seen = context;
+    return (struct tl_work){{1e-5 * seen->texels, 4e-5 * seen->covered}};
+}
+
+struct tl_work tl_points_work(const void *context)
+{
+    const struct tl_work_seen *seen = context;
+    return (struct tl_work){{1e-4 * seen->triangles, (4e-5 + 1e-4 * seen->suns) * seen->covered,
+                             2e-4 * seen->points, 8e-5 * seen->points * seen->refreshed}};
+}
+
+struct tl_work tl_compose_work(const void *context)
+{
+    const struct tl_work_seen *seen = context;
+    return (struct tl_work){
+        {3e-6 * seen->texels, 2e-4 * seen->covered, 1e-5 * seen->groups * seen->lobes * seen->covered}};
+}
+
+struct tl_work tl_inspect_work(const void *context)
+{
+    const struct tl_work_seen *seen = context;
+    double groups = tl_view_is_visibility(seen->settings->image.view) ? seen->groups : 0;
+    return (struct tl_work){{3e-6 * seen->texels, 1e-4 * seen->covered, 3e-5 * groups * seen->covered}};
+}
+
+struct tl_work tl_passes_work(const void *context)
+{
+    const struct tl_work_seen *seen = context;
+    return (struct tl_work){{1e-4 * seen->texels, 5e-5 * seen->settings->light.regions * seen->covered}};
+}
+
+struct tl_work tl_maps_work(const void *context)
+{
+    const struct tl_work_seen *seen = context;
+    double maps = seen->refreshed, side = seen->settings->light.map_size;
+    return (struct tl_work){{1e-4 * maps * seen->triangles, 1e-5 * maps * side * side}};
+}
+
+struct tl_work tl_resolve_work(const void *context)
+{
+    const struct tl_work_seen *seen = context;
+    const struct tl_image_params *image = &seen->settings->image;
+    double pixels = (double)image->width * image->height;
+    bool is_resampled = image->scale < 1;
+    return (struct tl_work){{1e-5 * seen->texels, 1e-5 * pixels, is_resampled ? 2e-5 * pixels : 0}};
+}
+
+struct tl_work tl_lamps_work(const void *context)
+{
+    const struct tl_work_seen *seen = context;
+    return (struct tl_work){{5, 1e-4 * seen->lamps * seen->covered}};
+}
+
+struct tl_work tl_lamp_maps_work(const void *context)
+{
+    const struct tl_work_seen *seen = context;
+    return (struct tl_work){{5, 1e-4 * seen->lamps * seen->triangles}};
+}
+
+struct tl_work tl_sample_rays_work(const void *context)
+{
+    const struct tl_work_seen *seen = context;
+    return (struct tl_work){{1e-4 * seen->triangles, 1e-4 * seen->covered}};
+}

@@ -1,0 +1,38 @@
+/* How much work each job of a frame would have: what the last frame saw, at other settings. Pure but for
+ * reading the renderer's state. */
+#ifndef TOILE_RENDER_FRAME_WORK_H
+#define TOILE_RENDER_FRAME_WORK_H
+
+#include "render/frame/frame.h"
+
+struct tl_work_seen {
+    const struct tl_render_settings *settings;
+    double texels, covered; /* samples of the frame to come, and those with something in them */
+    double points;          /* of visibility, in sight */
+    double groups;          /* of sixteen regions, that shadows are summed over */
+    double lobes;           /* at most, that a sample sums them through */
+    double refreshed;       /* rays a point */
+    double triangles;
+    bool is_bumpy;      /* something has maps of normals or heights */
+    double lamps, suns; /* lit; that stand apart */
+    double new_regions; /* as lights that are not kept from an earlier frame */
+};
+/* Before a draw: what of the frame is remembered when its surfaces may be gone. */
+void tl_work_count(tl_renderer *renderer, const tl_frame *frame);
+struct tl_work_seen tl_work_look(const tl_renderer *renderer, const struct tl_render_settings *settings);
+
+/* Of the jobs of the same names; `seen` is a struct tl_work_seen. */
+struct tl_work tl_lights_work(const void *seen);
+struct tl_work tl_gbuffer_work(const void *seen);
+struct tl_work tl_samples_work(const void *seen);
+struct tl_work tl_points_work(const void *seen);
+struct tl_work tl_compose_work(const void *seen);
+struct tl_work tl_inspect_work(const void *seen);
+struct tl_work tl_passes_work(const void *seen); /* light */
+struct tl_work tl_maps_work(const void *seen);   /* and blur */
+struct tl_work tl_resolve_work(const void *seen);
+struct tl_work tl_lamps_work(const void *seen);
+struct tl_work tl_lamp_maps_work(const void *seen);
+struct tl_work tl_sample_rays_work(const void *seen); /* sheets, mirrors, lamp_rays */
+
+#endif

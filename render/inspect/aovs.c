@@ -1,0 +1,100 @@
+#include "render/inspect/aovs.h"
+
+#include "render/inspect/find.h"
+
+#include <string.h>
+
+enum layer { NORMAL, POINT, UV, ALBEDO, VISIBILITY, STRAIN };
+
+static const char *const normal_channels[] = {"N.x", "N.y", "N.z"};
+static const char *const point_channels[] = {"P.x", "P.y", "P.z"};
+static const char *const uv_channels[] = {"uv.u", "uv.v"};
+static const char *const albedo_channels[] = {"albedo.R", "albedo.G", "albedo.B"};
+static const char *const visibility_channels[] = {"visibility.Y"};
+static const char *const strain_channels[] = {"strain.warp", "strain.weft", "strain.shear"};
+
+static const struct kind {
+    const char *const *channels;
+    int channel_count;
+} kinds[TL_AOVS_MAX] = {[NORMAL] = {normal_channels, 3},
+                        [POINT] = {point_channels, 3},
+                        [UV] = {uv_channels, 2},
+                        [ALBEDO] = {albedo_channels, 3},
+                        [VISIBILITY] = {visibility_channels, 1},
+                        [STRAIN] = {strain_channels, 3}};
+
+static bool has_strains(const tl_renderer *renderer)
+{
+    for (size_t i = 0; i < renderer->surface_count; i++)
+        if (renderer->drawn[i]->strains)
+            return true;
+    return false;
+}
+
+static void fill(const tl_renderer *renderer, size_t number, enum layer layer, float *texel)
+{
+    const tl_sample *sample = &renderer->samples.items[number];
+    struct tl_inspection found;
+    switch (layer) {
+    case NORMAL:
+        memcpy(texel, sample->normal.raw, sizeof sample->normal);
+        return;
+    case POINT:
+        memcpy(texel, sample->point.raw, sizeof sample->point);
+        return;
+    case ALBEDO:
+        memcpy(texel, sample->diffuse.raw, sizeof sample->diffuse);
+        return;
+    case UV:
+    case VISIBILITY:
+    case STRAIN:
+        break;
+    }
+    tl_inspect_sample(renderer, number, &found);
+    const float strain[3] = {found.strain_warp, found.strain_weft, found.shear};
+    if (layer == UV)
+        memcpy(texel, found.uv.raw, sizeof found.uv);
+    else if (layer == VISIBILITY)
+        *texel = found.visibility;
+    else
+        memcpy(texel, strain, sizeof strain);
+}
+
+static tl_image read_layer(const tl_renderer *renderer, enum layer layer)
+{
+    const struct tl_image_params *size = &renderer->settings.image;
+    int channels = kinds[layer].channel_count;
+    tl_image image = tl_image_create(size->width, size->height, channels, TL_IMAGE_F32);
+#pragma omp parallel for schedule(dynamic)
+    for (int y = 0; y < size->height; y++)
+        for (int x = 0; x < size->width; x++) {
+            size_t number = tl_inspect_find(renderer, x, y);
+            float *texel =
+                tl_image_floats(&image) + ((size_t)y * (size_t)size->width + (size_t)x) * (size_t)channels;
+            if (number < renderer->samples.primary_count)
+                fill(renderer, number, layer, texel);
+        }
+    return image;
+}
+
+bool tl_renderer_read_aovs(const tl_renderer *renderer, struct tl_aovs *out, tl_error *error)
+{
+    *out = (struct tl_aovs){0};
+    if (!(renderer->valid & TL_BIT(TL_MADE_SAMPLES)))
+        return tl_fail(error, TL_USAGE, "renderer: the frame drawn last was not to have layers");
+    bool is_known[TL_AOVS_MAX] = {[NORMAL] = true, [POINT] = true, [UV] = true, [ALBEDO] = true};
+    is_known[VISIBILITY] = renderer->valid & TL_BIT(TL_MADE_POINTS);
+    is_known[STRAIN] = has_strains(renderer);
+    for (int layer = 0; layer < TL_AOVS_MAX; layer++)
+        if (is_known[layer])
+            out->items[out->count++] = (struct tl_aov){.channels = kinds[layer].channels,
+                                                       .image = read_layer(renderer, (enum layer)layer)};
+    return true;
+}
+
+void tl_aovs_release(struct tl_aovs *aovs)
+{
+    for (int i = 0; i < aovs->count; i++)
+        tl_image_release(&aovs->items[i].image);
+    *aovs = (struct tl_aovs){0};
+}

@@ -1,0 +1,136 @@
+#include "render/inspect/find.h"
+
+#include "render/inspect/paint.h"
+#include "render/inspect/pick.h"
+
+#include <string.h>
+
+#define TILE 4 /* texels a side, as samples are kept (light/samples.h) */
+
+/* Rises from each of the nearest samples to the next. */
+static uint64_t place_of(const struct tl_samples *samples, uint32_t texel)
+{
+    uint32_t width = (uint32_t)samples->width, x = texel % width, y = texel / width;
+    uint32_t tiles = (width + TILE - 1) / TILE;
+    uint64_t tile = (uint64_t)(y / TILE) * tiles + x / TILE;
+    return tile * TILE * TILE + (uint64_t)(y % TILE) * TILE + x % TILE;
+}
+
+/* The number of a texel's nearest sample; primary_count when nothing covers it. */
+static size_t find_sample(const struct tl_samples *samples, uint32_t texel)
+{
+    uint64_t wanted = place_of(samples, texel);
+    size_t low = 0, high = samples->primary_count;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (place_of(samples, samples->items[middle].texel) < wanted)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    bool found = low < samples->primary_count && samples->items[low].texel == texel;
+    return found ? low : samples->primary_count;
+}
+
+size_t tl_inspect_find(const tl_renderer *renderer, int x, int y)
+{
+    const struct tl_image_params *image = &renderer->settings.image;
+    const struct tl_samples *samples = &renderer->samples;
+    uint32_t column =
+        (uint32_t)(((uint64_t)x * 2 + 1) * (uint64_t)samples->width / 2 / (uint64_t)image->width);
+    uint64_t upwards = (uint64_t)(image->height - 1 - y);
+    uint32_t row = (uint32_t)((upwards * 2 + 1) * (uint64_t)samples->height / 2 / (uint64_t)image->height);
+    return find_sample(samples, row * (uint32_t)samples->width + column);
+}
+
+static bool pick(const tl_renderer *renderer, int x, int y, tl_sample *out)
+{
+    const struct tl_image_params *image = &renderer->settings.image;
+    const struct tl_view *view = &renderer->view;
+    float right = 2 * ((float)x + 0.5f) / (float)image->width - 1;
+    float up = 1 - 2 * ((float)y + 0.5f) / (float)image->height;
+    vec3s direction = glms_vec3_add(
+        view->forward, glms_vec3_add(glms_vec3_scale(view->right, right), glms_vec3_scale(view->up, up)));
+    if (!tl_pick(&renderer->ranges, view->eye, glms_vec3_normalize(direction), out))
+        return false;
+    out->glossiness = tl_triangle_material(&renderer->ranges, out->triangle & ~TL_SAMPLE_BACK)->glossiness;
+    return true;
+}
+
+static void tell_visibility(const tl_renderer *renderer, size_t sample, struct tl_inspection *out)
+{
+    struct tl_seen_regions regions;
+    size_t stride;
+    tl_seen_regions_make(&renderer->regions, renderer->frame.environment_yaw, &regions);
+    const uint16_t *values = tl_points_values(renderer->points, &stride);
+    struct tl_seen seen =
+        tl_seen_at(&regions, values, stride, &tl_points_taps(renderer->points)[sample], out->smooth);
+    out->has_visibility = true;
+    out->visibility = seen.visibility;
+    out->strongest_region = seen.strongest;
+    out->strongest_share = seen.share;
+}
+
+static void tell_surface(const tl_renderer *renderer, const tl_sample *sample, struct tl_inspection *out)
+{
+    uint32_t number = sample->triangle & ~TL_SAMPLE_BACK, corners[3];
+    *out = (struct tl_inspection){.strongest_region = -1,
+                                  .back = sample->triangle & TL_SAMPLE_BACK,
+                                  .position = sample->point,
+                                  .normal = sample->normal,
+                                  .smooth = sample->smooth,
+                                  .glossiness = sample->glossiness};
+    memcpy(out->weights, sample->weights, sizeof out->weights);
+    const tl_surface *surface = tl_triangle_find(&renderer->ranges, number, corners, &out->surface_index);
+    uint32_t own = number - renderer->ranges.first[out->surface_index];
+    const struct tl_mesh_part *part = tl_triangle_part(surface, own);
+    out->surface = surface->name;
+    out->material = surface->materials[part->material].name;
+    out->triangle = own;
+    vec3s tangent = {{0, 0, 0}};
+    for (int i = 0; i < 3; i++) {
+        float weight = sample->weights[i];
+        if (surface->uvs)
+            out->uv = glms_vec2_add(out->uv, glms_vec2_scale(surface->uvs[corners[i]], weight));
+        if (surface->tangents)
+            tangent =
+                glms_vec3_add(tangent, glms_vec3_scale(glms_vec3(surface->tangents[corners[i]]), weight));
+    }
+    out->tangent = glms_vec3_normalize(tangent); /* of zero zero */
+    out->uv_mm = glms_vec2_scale(out->uv, 1000 * part->uv_metres);
+    if (surface->strains) {
+        vec3s strain = tl_paint_mix(surface->strains, corners, sample->weights);
+        out->has_strain = true;
+        out->strain_warp = strain.x;
+        out->strain_weft = strain.y;
+        out->shear = strain.z;
+    }
+}
+
+void tl_inspect_sample(const tl_renderer *renderer, size_t number, struct tl_inspection *out)
+{
+    tell_surface(renderer, &renderer->samples.items[number], out);
+    if (renderer->valid & TL_BIT(TL_MADE_POINTS))
+        tell_visibility(renderer, number, out);
+}
+
+bool tl_renderer_inspect(const tl_renderer *renderer, int x, int y, struct tl_inspection *out)
+{
+    const struct tl_image_params *image = &renderer->settings.image;
+    *out = (struct tl_inspection){.strongest_region = -1};
+    if (!(renderer->valid & TL_BIT(TL_MADE_IMAGE)) || x < 0 || y < 0 || x >= image->width ||
+        y >= image->height)
+        return false;
+    if (renderer->valid & TL_BIT(TL_MADE_SAMPLES)) {
+        size_t number = tl_inspect_find(renderer, x, y);
+        if (number == renderer->samples.primary_count)
+            return false;
+        tl_inspect_sample(renderer, number, out);
+        return true;
+    }
+    tl_sample sample;
+    if (!pick(renderer, x, y, &sample))
+        return false;
+    tell_surface(renderer, &sample, out);
+    return true;
+}

@@ -1,0 +1,151 @@
+#include "render/plan/budget.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+#define PATIENCE_MIN 8    /* frames */
+#define PATIENCE_MAX 32   /* within which a load that has gone is found to be gone */
+#define GAIN_MIN     0.95 /* a step up leaves at most this much of the error */
+#define ROOM         0.94 /* ... and costs at most this much of what may be planned with */
+
+/* A frame may be over by 1.1 once in a hundred: 2.6 standard deviations, and a mean deviation is 0.8 of one.
+ */
+#define OVER           1.1
+#define DEVIATIONS     3.2
+#define SHARE_MIN      0.7
+#define SHARE_MAX      0.96
+#define DEVIATION_RATE 0.06
+#define DEVIATION_MAX  0.15 /* of one frame: a single hitch does not count for more */
+#define PANIC_STEP     1.12
+#define PANIC_MAX      1.6
+#define PANIC_DECAY    0.9
+
+double tl_budget_error(const struct tl_budget *budget, const uint8_t *levels)
+{
+    double square = 0;
+    for (int k = 0; k < budget->knob_count; k++) {
+        double error = budget->knobs[k].error[levels[k]];
+        square += error * error;
+    }
+    return sqrt(square);
+}
+
+/* The next combination, counting with the last knob first; false after the last one. */
+static bool next_levels(const struct tl_budget *budget, uint8_t *levels)
+{
+    for (int k = budget->knob_count - 1; k >= 0; k--) {
+        if (++levels[k] < budget->knobs[k].level_count)
+            return true;
+        levels[k] = 0;
+    }
+    return false;
+}
+
+struct candidate {
+    uint8_t levels[TL_BUDGET_KNOBS_MAX];
+    double cost, error;
+    bool fits;
+};
+
+static bool is_better(const struct candidate *a, const struct candidate *b)
+{
+    if (a->fits != b->fits)
+        return a->fits;
+    if (!a->fits)
+        return a->cost < b->cost;
+    return a->error < b->error || (a->error == b->error && a->cost < b->cost);
+}
+
+bool tl_budget_best(const struct tl_budget *budget, double limit_ms, uint8_t *levels)
+{
+    assert(budget->knob_count > 0 && budget->knob_count <= TL_BUDGET_KNOBS_MAX);
+    struct candidate best = {.cost = INFINITY, .error = INFINITY}, each = {0};
+    do {
+        each.cost = budget->cost(budget->context, each.levels);
+        each.error = tl_budget_error(budget, each.levels);
+        each.fits = each.cost <= limit_ms;
+        if (is_better(&each, &best))
+            best = each;
+    } while (next_levels(budget, each.levels));
+    memcpy(levels, best.levels, sizeof best.levels);
+    return best.fits;
+}
+
+double tl_governor_limit(const struct tl_governor *governor, double budget_ms)
+{
+    double share = OVER / (1 + DEVIATIONS * governor->deviation);
+    share = share < SHARE_MIN ? SHARE_MIN : share > SHARE_MAX ? SHARE_MAX : share;
+    return budget_ms * share / governor->panic;
+}
+
+static void begin(struct tl_governor *governor, const struct tl_budget *budget)
+{
+    *governor = (struct tl_governor){.knob_count = budget->knob_count,
+                                     .patience = PATIENCE_MIN,
+                                     .deviation = (OVER / SHARE_MAX - 1) / DEVIATIONS,
+                                     .panic = 1};
+}
+
+/* What the scene no longer asks for has one level only. */
+static bool keep_within(struct tl_governor *governor, const struct tl_budget *budget)
+{
+    bool was_within = true;
+    for (int k = 0; k < budget->knob_count; k++)
+        if (governor->levels[k] >= budget->knobs[k].level_count) {
+            governor->levels[k] = (uint8_t)(budget->knobs[k].level_count - 1);
+            was_within = false;
+        }
+    return was_within;
+}
+
+static enum tl_governed change(struct tl_governor *governor, const uint8_t levels[TL_BUDGET_KNOBS_MAX],
+                               enum tl_governed how)
+{
+    if (memcmp(governor->levels, levels, sizeof governor->levels) == 0)
+        return TL_GOVERNED_KEPT;
+    memcpy(governor->levels, levels, sizeof governor->levels);
+    if (how == TL_GOVERNED_DOWN && governor->is_trial && governor->settled < 2 * governor->patience)
+        governor->patience = 2 * governor->patience < PATIENCE_MAX ? 2 * governor->patience : PATIENCE_MAX;
+    governor->is_trial = how == TL_GOVERNED_UP;
+    governor->settled = 0;
+    return how;
+}
+
+enum tl_governed tl_governor_choose(struct tl_governor *governor, const struct tl_budget *budget,
+                                    double budget_ms)
+{
+    uint8_t best[TL_BUDGET_KNOBS_MAX];
+    bool is_first = governor->knob_count != budget->knob_count;
+    if (is_first)
+        begin(governor, budget);
+    bool within = keep_within(governor, budget);
+    double limit_ms = tl_governor_limit(governor, budget_ms);
+    governor->settled++;
+    double cost = budget->cost(budget->context, governor->levels);
+    if (is_first || !within || cost > limit_ms) {
+        tl_budget_best(budget, is_first ? limit_ms : ROOM * limit_ms, best);
+        return change(governor, best, TL_GOVERNED_DOWN);
+    }
+    if (governor->settled > 4 * PATIENCE_MAX)
+        governor->patience = PATIENCE_MIN;
+    if (governor->settled < governor->patience || governor->panic > 1.01)
+        return TL_GOVERNED_KEPT;
+    bool fits = tl_budget_best(budget, ROOM * limit_ms, best);
+    double now = tl_budget_error(budget, governor->levels), then = tl_budget_error(budget, best);
+    if (!fits || then >= now || (then > 0 && then > GAIN_MIN * now))
+        return TL_GOVERNED_KEPT;
+    return change(governor, best, TL_GOVERNED_UP);
+}
+
+void tl_governor_learn(struct tl_governor *governor, double budget_ms, double predicted_ms, double took_ms)
+{
+    if (!(predicted_ms > 0) || !isfinite(took_ms))
+        return;
+    double deviation = fmin(fabs(took_ms / predicted_ms - 1), DEVIATION_MAX);
+    governor->deviation += DEVIATION_RATE * (deviation - governor->deviation);
+    if (took_ms > OVER * budget_ms)
+        governor->panic = fmin(PANIC_STEP * governor->panic, PANIC_MAX);
+    else
+        governor->panic = 1 + PANIC_DECAY * (governor->panic - 1);
+}

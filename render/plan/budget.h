@@ -1,0 +1,62 @@
+/* Levels within a budget. Pure: no GL, no clock.
+ *
+ * A knob has levels, of which the first is the best and each further one is cheaper and worse. The levels of
+ * all knobs make a few thousand combinations at most, so all of them are looked at: the best one within the
+ * budget is found whenever there is one, and a larger budget never gives a larger error.
+ *
+ * A governor carries the choice from frame to frame. It goes down at once when a frame would be too dear, and
+ * up only for what is better by a margin, fits with room to spare, and some frames after the last change:
+ * longer each time a step up had to be taken back. */
+#ifndef TOILE_RENDER_PLAN_BUDGET_H
+#define TOILE_RENDER_PLAN_BUDGET_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#define TL_BUDGET_KNOBS_MAX  8
+#define TL_BUDGET_LEVELS_MAX 14
+
+struct tl_budget_knob {
+    int level_count;                    /* at least 1 */
+    double error[TL_BUDGET_LEVELS_MAX]; /* what a level adds, relative RMSE; 0 first, and rising */
+};
+
+/* Levels come one a knob, in arrays of TL_BUDGET_KNOBS_MAX. */
+typedef double (*tl_budget_cost)(const void *context, const uint8_t *levels);
+
+struct tl_budget {
+    int knob_count;
+    struct tl_budget_knob knobs[TL_BUDGET_KNOBS_MAX];
+    tl_budget_cost cost; /* ms of a frame at these levels */
+    const void *context;
+};
+
+/* Independent errors: the root of the sum of their squares. */
+double tl_budget_error(const struct tl_budget *budget, const uint8_t *levels);
+
+/* The least error at a cost of at most `limit_ms`, then the least cost; where nothing is as cheap as that,
+ * the cheapest, and false. */
+bool tl_budget_best(const struct tl_budget *budget, double limit_ms, uint8_t *levels);
+
+struct tl_governor {
+    uint8_t levels[TL_BUDGET_KNOBS_MAX];
+    int knob_count;   /* that they were chosen for; 0: nothing was chosen yet */
+    int settled;      /* frames since the last change */
+    int patience;     /* frames to wait before the next step up */
+    bool is_trial;    /* the last change was one up */
+    double deviation; /* mean of |took / predicted - 1| of recent frames */
+    double panic;     /* factor under the budget after frames that were over it; 1: calm */
+};
+
+enum tl_governed { TL_GOVERNED_KEPT, TL_GOVERNED_DOWN, TL_GOVERNED_UP };
+
+/* The part of the budget that may be planned with: what is left of it is for what cannot be foreseen. */
+double tl_governor_limit(const struct tl_governor *governor, double budget_ms);
+
+/* Chooses governor->levels of the next frame. */
+enum tl_governed tl_governor_choose(struct tl_governor *governor, const struct tl_budget *budget,
+                                    double budget_ms);
+/* What the frame took that was chosen last. */
+void tl_governor_learn(struct tl_governor *governor, double budget_ms, double predicted_ms, double took_ms);
+
+#endif

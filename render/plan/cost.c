@@ -1,0 +1,96 @@
+#include "render/plan/cost.h"
+
+#include <math.h>
+
+#define MACHINE_DEVIATION 1.0  /* of the factor that all parts share, at first */
+#define PART_DEVIATION    0.5  /* of each part beside it */
+#define DRIFT             0.01 /* of each, from run to run: scenes and machines change slowly */
+#define NOISE             0.06 /* of a measurement, beside NOISE_MS */
+#define NOISE_MS          0.05
+#define OUTLIER           3.0 /* standard deviations, beyond which a run says no more */
+#define FIRST_RUNS        2   /* the first run makes what others find made, and says little */
+#define BELIEVED_RUNS     5   /* ... but the next ones are believed whatever they say */
+#define FACTOR_MIN        0.02
+#define UNKNOWN_MS        1.0 /* work of a job that the table knows nothing of */
+
+#define LOAD_MIN     0.25
+#define LOAD_MAX     16.0
+#define LOAD_SUDDEN  0.15 /* a deviation that is followed at once */
+#define LOAD_ATTACK  0.6
+#define LOAD_FOLLOW  0.15
+#define LOAD_FORGETS 0.01 /* towards 1: what lasts is learned by the jobs */
+
+double tl_work_sum(const struct tl_work *work)
+{
+    double sum = 0;
+    for (int i = 0; i < TL_WORK_PARTS; i++)
+        sum += work->ms[i];
+    return sum;
+}
+
+static struct tl_work known(const struct tl_work *work)
+{
+    return tl_work_sum(work) > 0 ? *work : (struct tl_work){.ms = {UNKNOWN_MS}};
+}
+
+static void begin(struct tl_cost_job *job)
+{
+    for (int i = 0; i < TL_WORK_PARTS; i++) {
+        job->factor[i] = 1;
+        for (int k = 0; k < TL_WORK_PARTS; k++)
+            job->covariance[i][k] =
+                MACHINE_DEVIATION * MACHINE_DEVIATION + (i == k ? PART_DEVIATION * PART_DEVIATION : 0);
+    }
+}
+
+double tl_cost_predict(const struct tl_cost_job *job, const struct tl_work *work, double load)
+{
+    if (job->runs == 0)
+        return tl_work_sum(work) > 0 ? load * tl_work_sum(work) : (double)NAN;
+    struct tl_work used = known(work);
+    double ms = 0;
+    for (int i = 0; i < TL_WORK_PARTS; i++)
+        ms += job->factor[i] * used.ms[i];
+    return load * ms;
+}
+
+/* One step of the filter, with the part of the covariance along the work. */
+void tl_cost_learn(struct tl_cost_job *job, const struct tl_work *work, double load, double ms)
+{
+    if (!isfinite(ms) || ms < 0)
+        return;
+    if (job->runs++ < FIRST_RUNS)
+        begin(job);
+    struct tl_work used = known(work);
+    double along[TL_WORK_PARTS] = {0}, predicted = 0, variance = 0;
+    for (int i = 0; i < TL_WORK_PARTS; i++) {
+        if (job->covariance[i][i] < PART_DEVIATION * PART_DEVIATION)
+            job->covariance[i][i] += DRIFT * DRIFT;
+        predicted += job->factor[i] * used.ms[i];
+        for (int k = 0; k < TL_WORK_PARTS; k++)
+            along[i] += job->covariance[i][k] * used.ms[k];
+        variance += along[i] * used.ms[i];
+    }
+    double noise = NOISE * predicted + NOISE_MS;
+    variance += noise * noise;
+    double limit = job->runs > BELIEVED_RUNS ? OUTLIER * sqrt(variance) : INFINITY;
+    double surprise = fmin(fmax(ms / load - predicted, -limit), limit);
+    for (int i = 0; i < TL_WORK_PARTS; i++) {
+        job->factor[i] = fmax(job->factor[i] + along[i] / variance * surprise, FACTOR_MIN);
+        for (int k = 0; k < TL_WORK_PARTS; k++)
+            job->covariance[i][k] -= along[i] * along[k] / variance;
+    }
+}
+
+double tl_load_follow(double load, double predicted_ms, double took_ms)
+{
+    if (!(load > 0))
+        load = 1;
+    if (!(predicted_ms > 0) || !isfinite(took_ms) || took_ms < 0)
+        return load;
+    double seen = load * took_ms / predicted_ms;
+    bool is_sudden = seen > (1 + LOAD_SUDDEN) * load;
+    load += (is_sudden ? LOAD_ATTACK : LOAD_FOLLOW) * (seen - load);
+    load += LOAD_FORGETS * (1 - load);
+    return fmin(fmax(load, LOAD_MIN), LOAD_MAX);
+}

@@ -1,0 +1,37 @@
+/* What work costs, learned from what it took. Pure: no GL, no clock.
+ *
+ * A job's work is a few numbers, so many of which lie in each part of it: samples, rays, 1 for what is always
+ * there. Its cost is the sum over the parts of work times ms a unit. At first the units cost what the job
+ * table says, on some machine: only their ratios are believed. Each run then corrects them (a Kalman filter
+ * whose state are the factors on the table's costs), so that levels that never ran are foretold from those
+ * that did. What slows the whole machine down for a while, another program say, is one factor on all. */
+#ifndef TOILE_RENDER_PLAN_COST_H
+#define TOILE_RENDER_PLAN_COST_H
+
+#include <stdbool.h>
+
+#define TL_WORK_PARTS 4
+
+/* Work times the table's ms a unit, part by part: ms on the machine of the table. */
+struct tl_work {
+    double ms[TL_WORK_PARTS];
+};
+
+double tl_work_sum(const struct tl_work *work);
+
+struct tl_cost_job {
+    int runs;
+    double factor[TL_WORK_PARTS];
+    double covariance[TL_WORK_PARTS][TL_WORK_PARTS];
+};
+
+/* NaN for a job that never ran, if the table knows nothing of it (no work in any part). */
+double tl_cost_predict(const struct tl_cost_job *job, const struct tl_work *work, double load);
+/* A run took `ms`, when the machine was slowed down by `load`. What no clock says (NaN, < 0) is left out. */
+void tl_cost_learn(struct tl_cost_job *job, const struct tl_work *work, double load, double ms);
+
+/* How much slower than usual the machine is; 1 or 0: not at all. Follows a frame's measured over predicted
+ * cost within a few frames up, within some tens down. */
+double tl_load_follow(double load, double predicted_ms, double took_ms);
+
+#endif

@@ -1,0 +1,119 @@
+#!/usr/bin/env bash
+# Fly-throughs through the real executable: files, a replay to the bit at other numbers of threads, a comparison,
+# a video, Ctrl-C, refusals. Times are not judged, only that they are there.
+set -eu
+room=$(mktemp -d)
+trap 'rm -rf "$room"' EXIT
+cd "$room"
+small="--size 64x48 --preset draft --set cloth.edge_m=0.08 --set cloth.settle_s=0.3 --set reference.replicates=2 --quiet"
+
+check() { # NAME COMMAND...
+    local name=$1
+    shift
+    "$@" || { echo "FAILED $name"; exit 1; }
+    echo "ok     $name"
+}
+refused() { # MESSAGE COMMAND...
+    local message=$1
+    shift
+    "$@" 2>refusal >/dev/null && return 1
+    [ $? -eq 2 ] && [ "$(wc -l <refusal)" -eq 1 ] && grep -q -- "$message" refusal
+}
+
+check "no folder" refused "add -o FOLDER" $TOILE fly
+check "no budget" refused "expected milliseconds" $TOILE fly -o f --budget 0
+check "no such path" refused "missing.yaml" $TOILE fly -o f --path missing.yaml
+printf 'keys:\n  - {time_s: 0, yaw_deg: 0}\n  - {time_s: 0.2, yaw: 90}\n' >bad.yaml
+check "a bad path, by line and field" refused 'bad.yaml:3: key.yaw' $TOILE fly -o f --path bad.yaml
+check "a replay of nothing" refused "nowhere/frames.csv" $TOILE fly -o f --replay nowhere
+check "a replay with a budget" refused "leave --budget out" $TOILE fly -o f --replay a --budget 5
+check "an unknown kind of video" refused "unknown kind of video" $TOILE fly -o f --video flight.gif
+check "nothing was made" test ! -e f
+
+$TOILE fly $small --frames 24 --budget 10 --hash --oracle 12 -o a >said
+check "it says what it came to" grep -q "within 1.1 x 10 ms" said
+check "four files" test "$(ls a | tr '\n' ' ')" = "frames.csv path.yaml report.html summary.json "
+status=0
+OMP_NUM_THREADS=1 $TOILE fly $small --replay a --against a -o b >said || status=$?
+check "a replay at one thread is the same to the bit" sh -c "[ $status -eq 0 ] && grep -q '24 of 24 images are the same' said"
+check "it is compared job by job" grep -Eq '^ +frame +[0-9.]+ +[0-9.]+ +[0-9.]+ +[0-9.]+ to [0-9.]+' said
+OMP_NUM_THREADS=2 $TOILE fly $small --replay a --frames 6 -o b >said
+check "and so is the beginning of one at two" grep -q "6 of 6 images are the same" said
+sed -i '5s/[0-9a-f]*$/0123456789abcdef/' a/frames.csv
+status=0
+$TOILE fly $small --replay a --frames 6 -o b >/dev/null 2>said || status=$?
+check "an image that differs is named: status 1" sh -c "[ $status -eq 1 ] && grep -q 'frame 3 ' said"
+check "a replay of other work" refused "was flown with light.regions" $TOILE fly $small --set light.regions=30 --replay a -o b
+check "a comparison of other work" refused "was flown with image.width" $TOILE fly $small --size 32x48 --against a -o b
+
+printf 'keys:\n  - {time_s: 0, yaw_deg: 0}\n  - {time_s: 0.2, yaw_deg: 90}\n' >path.yaml
+$TOILE fly $small --path path.yaml -o c --json >said.json
+check "a path of its own has its own length" test "$(wc -l <c/frames.csv)" -eq 8
+check "another path is other work" refused "another path" $TOILE fly $small --path path.yaml --against a -o d
+
+if command -v python3 >/dev/null; then
+    check "figures, and null where there are none" python3 - <<'PYTHON'
+import csv, json, math
+summary = json.load(open("b/summary.json"))
+a = json.load(open("a/summary.json"))
+c = json.load(open("said.json"))
+assert a["frames"] == 24 and a["budget_ms"] == 10 and a["warm_up_frames"] == 12, a["frames"]
+for key in ("p50_ms", "p95_ms", "p99_ms", "within_1_1x", "prediction_error_median"):
+    assert math.isfinite(a[key]) and a[key] >= 0, key
+assert a["p50_ms"] <= a["p95_ms"] <= a["p99_ms"] <= a["worst_ms"]
+assert a["oracle"]["frames"] == 2 and 0 < a["oracle"]["flip_mean"] < 1 and a["oracle"]["rel_rmse"] > 0
+assert a["machine"]["cores"] >= 1 and a["machine"]["gl"] and a["settings"]["image.width"] == "64"
+assert c["budget_ms"] is None and c["within_1_1x"] is None and c["frames"] == 7
+assert c["path"] == "path.yaml" and c == json.load(open("c/summary.json"))
+rows = list(csv.DictReader(open("a/frames.csv")))
+for row in rows:
+    assert None not in row and None not in row.values(), row
+    jobs = sum(float(row[key]) for key in row if key.startswith("job_"))
+    assert 0 < jobs + float(row["cloth_ms"]) <= float(row["total_ms"]), row
+    assert float(row["memory_bytes"]) > 0 and len(row["image_hash"]) == 16
+assert len({row["image_hash"] for row in rows}) > 20, "images do not change"
+PYTHON
+    check "a report that is well formed, whole and alone" python3 - <<'PYTHON'
+import re, xml.etree.ElementTree as tree
+for folder in "abc":
+    text = open(folder + "/report.html").read()
+    root = tree.fromstring(text)
+    assert sum(e.get("class") == "plot" for e in root.iter("svg")) >= 3
+    assert any(e.get("src", "").startswith("data:image/png;base64,") for e in root.iter("img"))
+    assert not list(root.iter("script")) and not re.search(r'(src|href)="(?!data:)', text)
+    assert not re.search(r'[ "(>]-?(nan|inf)[ ",)<%]', text)
+PYTHON
+else
+    echo "skipped: files are not parsed: python3 is absent"
+fi
+
+mkdir empty
+check "no ffmpeg: refused before anything is flown" refused "install the package ffmpeg" \
+    env PATH="$PWD/empty" "$TOILE" fly -o e --video flight.mp4
+cat >empty/ffmpeg <<'TEXT'
+#!/bin/sh
+[ "$1" = -version ] && exit 0
+echo "it does not like this video" >&2
+exit 3
+TEXT
+chmod +x empty/ffmpeg
+check "an ffmpeg that dies is told of, in its words" sh -c \
+    "! PATH=\"$PWD/empty:\$PATH\" $TOILE fly $small --frames 8 -o e --video flight.mp4 >/dev/null 2>said && grep -q 'status 3: it does not like' said"
+check "the flight is kept all the same, and no video" test -s e/frames.csv -a "$(ls | grep -c flight.mp4)" -eq 0
+if command -v ffmpeg >/dev/null && command -v ffprobe >/dev/null; then
+    $TOILE fly $small --size 65x47 --frames 12 -o v --video flight.mp4 >/dev/null
+    check "a video of every frame, with even sides" test \
+        "$(ffprobe -v error -count_frames -show_entries stream=width,height,nb_read_frames -of csv=p=0 flight.mp4)" = 66,48,12
+else
+    echo "skipped: no video is made: ffmpeg is absent"
+fi
+
+# Ctrl-C: exit status 130, and what was flown is there.
+$TOILE fly $small --frames 100000 -o stopped >/dev/null 2>&1 & fly=$!
+until [ -d stopped ]; do sleep 0.2; done
+sleep 4
+kill -INT $fly
+status=0
+wait $fly || status=$?
+check "interrupted: status 130" test $status -eq 130
+check "interrupted: what was flown is kept" test "$(wc -l <stopped/frames.csv)" -ge 2 -a -s stopped/report.html -a -s stopped/summary.json
