@@ -132,7 +132,7 @@ static const struct flag flags_known[] = {
     {"--still", TL_FLAGS_CHECK, FLAG_STILL, NULL, NULL, "no hand swings the hem"},
     {"--keep", TL_FLAGS_CHECK, FLAG_KEEP, NULL, "FOLDER",
      "keeps the first frame that breaks, ready to be opened"},
-    {"--budget", TL_FLAGS_FLY | TL_FLAGS_WINDOW | TL_FLAGS_BUDGET, FLAG_BUDGET, NULL, "MS",
+    {"--budget", TL_FLAGS_BUDGET, FLAG_BUDGET, NULL, "MS",
      "time for a frame, in milliseconds; else every frame is drawn in full"},
     {"--frames", TL_FLAGS_FLY, FLAG_FRAME_COUNT, NULL, "N", "so many frames; else 600, or all of the path's"},
     {"--path", TL_FLAGS_FLY, FLAG_PATH, NULL, "FILE.yaml", "camera path; else one round the scene"},

@@ -24,7 +24,7 @@ enum tl_flag_set { /* which groups of flags a command takes */
                    TL_FLAGS_FULL = 512,        /* --full */
                    TL_FLAGS_LAYOUT = 1024,     /* --layout NAME --from NAME --size N */
                    TL_FLAGS_FABRIC = 2048,     /* --repeat-mm MM --height-mm MM --clamp */
-                   TL_FLAGS_CHECK = 1 << 12,   /* --frames N --every K --furnace --still --keep FOLDER */
+                   TL_FLAGS_CHECK = 1 << 12,   /* --frames --every --furnace --still --budget --keep */
                    TL_FLAGS_AOV = 1 << 17,     /* --aov */
                    TL_FLAGS_SHEET = 1 << 24,   /* lists of what a contact sheet shows, --same-drape */
                    TL_FLAGS_CAPTURE = 1 << 16, /* --capture, and those of the scene but the image's */

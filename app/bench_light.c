@@ -30,7 +30,7 @@ static const struct tl_choice choices[] = {
     {"review by GL maps",
      "review",
      {"light.visibility=depth", "light.prefilter=slices", "light.composition=difference",
-      "light.jitter=true"}},
+      "light.jitter=true", "light.refresh=0"}},
     {"draft", "draft", {NULL}},
     {"final", "final", {NULL}},
 };

@@ -35,10 +35,10 @@ struct tl_checked {
     const tl_image *white_image;    /* ... and this is it; */
     const tl_image *white_shadowed; /* with shadows */
     const struct tl_checked_cloth *cloth;
-    uint64_t hash,
-        first_hash; /* of positions and image; of the same frame when it was drawn first; 0: not yet */
-    double predicted_ms, budget_ms,
-        least_ms; /* of the plan; what was asked for; of the cheapest plan there is */
+    uint64_t hash, first_hash; /* of positions and image; when the same frame was drawn first; 0: not yet */
+    double predicted_ms, budget_ms; /* of the plan; what was asked for */
+    double least_ms;                /* of the cheapest plan there is, where that is more than the budget */
+    double planned_error;           /* relative RMSE that the plan adds to that of the settings */
 };
 
 enum { TL_CHECK_PLACE_SIZE = 112 };

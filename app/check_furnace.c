@@ -50,7 +50,8 @@ static struct albedo *find_albedos(const tl_renderer *renderer, int width, int h
 
 void tl_measure_furnace(const struct tl_checked *checked, struct tl_finding *finding)
 {
-    if (!checked->white)
+    /* With fewer samples than pixels none belongs to one pixel. */
+    if (!checked->white || checked->settings->image.scale < 1)
         return;
     const tl_image *image = checked->white_image;
     struct albedo *albedos = find_albedos(checked->white, image->width, image->height);

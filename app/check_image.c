@@ -119,6 +119,8 @@ void tl_measure_budget(const struct tl_checked *checked, struct tl_finding *find
 {
     if (!(checked->budget_ms > 0) || !isfinite(checked->predicted_ms))
         return;
-    tl_finding_add(finding, checked->predicted_ms / fmax(checked->budget_ms, checked->least_ms));
-    tl_finding_place(finding, "predicted %.1f ms of %.1f", checked->predicted_ms, checked->budget_ms);
+    double could_ms = fmax(checked->budget_ms, fmin(checked->least_ms, checked->predicted_ms));
+    tl_finding_add(finding, checked->predicted_ms / could_ms);
+    tl_finding_place(finding, "predicted %.1f ms of %.1f, the cheapest plan %.1f", checked->predicted_ms,
+                     checked->budget_ms, checked->least_ms);
 }

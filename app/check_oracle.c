@@ -249,7 +249,7 @@ void tl_measure_oracle(const struct tl_checked *checked, struct tl_finding *find
                               .width = params->width,
                               .height = params->height,
                               .side = params->supersample};
-    finding->bound = oracle_bound(&checked->settings->light);
+    finding->bound = oracle_bound(&checked->settings->light) + checked->planned_error;
     choose_pixels(oracle);
     tl_frame frame = *checked->frame;
     const struct tl_ground *ground = params->ground ? &renderer->ground : NULL;

@@ -1,6 +1,8 @@
 #include "app/check_run.h"
 
+#include "app/cost.h"
 #include "app/motion.h"
+#include "app/pace.h"
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
@@ -27,8 +29,12 @@ struct run {
     struct tl_check_outcome *outcome;
     struct tl_motion motion;
     struct beside beside;
-    uint64_t *hashes; /* [frames] */
-    int played;       /* of them are there */
+    uint64_t *hashes;         /* [frames] */
+    int played;               /* of them are there */
+    tl_pace *pace;            /* NULL: no budget */
+    struct tl_levels *levels; /* [frames] */
+    struct tl_pace_choice choice;
+    double chosen_ms, moved_ms, drawn_ms; /* on the wall, of this frame: the choice, the cloth, the picture */
     double least_energy_j;
     vec3s *wearer; /* positions one frame ago; NULL: none */
     double weight_n;
@@ -42,9 +48,18 @@ static bool is_swung(const struct run *run, int number)
     return run->motion.pulls && !run->params->still && number > frames / 10 && number <= frames * 2 / 3;
 }
 
+/* What frame `number` is drawn and simulated with. */
+static struct tl_settings settings_of(const struct run *run, int number)
+{
+    return tl_levels_apply(&run->levels[number], &run->stage->settings);
+}
+
 static bool advance(struct run *run, int number, tl_error *error)
 {
     tl_session *session = run->stage->session;
+    const struct tl_settings settings = settings_of(run, number);
+    if (run->pace && !tl_session_apply(session, &settings, error))
+        return false;
     if (is_swung(run, number))
         return tl_motion_advance(&run->motion, number - run->params->frames / 10, error);
     if (is_swung(run, number - 1))
@@ -167,12 +182,26 @@ static bool draw_white(struct run *run, const tl_frame *frame, tl_image images[I
     return true;
 }
 
+/* The picture that is looked at; the planner learns what it took. */
+static bool draw_frame(struct run *run, const tl_frame *frame, const struct tl_render_settings *settings,
+                       tl_image *image, tl_error *error)
+{
+    struct tl_stopwatch watch = tl_stopwatch_start();
+    if (!tl_renderer_draw(run->stage->renderer, frame, settings, error))
+        return false;
+    run->drawn_ms = tl_stopwatch_read(&watch).wall_ms;
+    if (run->pace)
+        tl_pace_learn(run->pace, tl_renderer_last_plan(run->stage->renderer), run->moved_ms,
+                      run->chosen_ms + run->moved_ms + run->drawn_ms);
+    return tl_renderer_read(run->stage->renderer, image, error);
+}
+
 /* Everything that the frame's checks look at. */
 static bool prepare(struct run *run, const tl_frame *frame, tl_image images[IMAGES],
                     struct tl_checked *checked, tl_error *error)
 {
     struct beside *beside = &run->beside;
-    if (!draw_with(&run->stage->renderer, run, frame, checked->settings, &images[DRAWN], error))
+    if (!draw_frame(run, frame, checked->settings, &images[DRAWN], error))
         return false;
     checked->renderer = run->stage->renderer;
     checked->image = &images[DRAWN];
@@ -217,12 +246,17 @@ static bool check_frame(struct run *run, int number, tl_error *error)
 {
     tl_image images[IMAGES] = {0};
     tl_frame frame = frame_of(run, number);
-    const struct tl_render_settings settings = tl_settings_render(&run->stage->settings);
+    const struct tl_settings levelled = settings_of(run, number);
+    const struct tl_render_settings settings = tl_settings_render(&levelled);
     struct tl_checked_cloth cloth;
     struct tl_checked checked = {.number = number,
                                  .frame = &frame,
                                  .settings = &settings,
-                                 .is_sampled = number % run->params->every == 0};
+                                 .is_sampled = number % run->params->every == 0,
+                                 .predicted_ms = run->choice.predicted_ms,
+                                 .budget_ms = run->params->budget_ms,
+                                 .least_ms = run->choice.least_ms,
+                                 .planned_error = run->choice.error};
     if (tl_session_cloth(run->stage->session)) {
         cloth = watch_cloth(run, &frame, number);
         checked.cloth = &cloth;
@@ -248,13 +282,32 @@ static void begin(struct run *run)
     run->least_energy_j = NAN;
 }
 
+static void choose(struct run *run, int number)
+{
+    if (!run->pace)
+        return;
+    struct tl_stopwatch watch = tl_stopwatch_start();
+    tl_frame frame = frame_of(run, number);
+    run->choice = tl_pace_choose(run->pace, run->stage->renderer, &frame, &run->stage->settings);
+    run->levels[number] = run->choice.levels;
+    run->chosen_ms = tl_stopwatch_read(&watch).wall_ms;
+}
+
+static bool move_on(struct run *run, int number, tl_error *error)
+{
+    struct tl_stopwatch watch = tl_stopwatch_start();
+    bool moved = number == 0 || advance(run, number, error);
+    run->moved_ms = tl_stopwatch_read(&watch).wall_ms;
+    return moved;
+}
+
 static bool play(struct run *run, tl_error *error)
 {
     bool done = true;
     begin(run);
     for (int number = 0; done && number < run->params->frames; number++) {
-        done = (number == 0 || advance(run, number, error)) && check_frame(run, number, error) &&
-               tell(run, number + 1, error);
+        choose(run, number);
+        done = move_on(run, number, error) && check_frame(run, number, error) && tell(run, number + 1, error);
         if (done && run->hashes[number] == 0)
             break; /* what is not finite does not mend itself */
     }
@@ -267,11 +320,12 @@ static bool play_again(struct run *run, int count, tl_error *error)
     if (!tl_session_reset(run->stage->session, error))
         return false;
     tl_renderer_destroy(&run->stage->renderer);
-    const struct tl_render_settings settings = tl_settings_render(&run->stage->settings);
     bool done = true;
     begin(run);
     for (int number = 0; done && number < count; number++) {
         tl_image image = {0};
+        const struct tl_settings levelled = settings_of(run, number);
+        const struct tl_render_settings settings = tl_settings_render(&levelled);
         if (number > 0 && !advance(run, number, error))
             return false;
         tl_frame frame = frame_of(run, number);
@@ -307,6 +361,8 @@ static void release(struct run *run)
     tl_renderer_destroy(&run->beside.white_shadowed);
     tl_renderer_destroy(&run->beside.fresh);
     tl_environment_release(&run->beside.light);
+    tl_pace_destroy(&run->pace);
+    free(run->levels);
     free(run->hashes);
     free(run->wearer);
 }
@@ -319,6 +375,8 @@ bool tl_check_play(struct tl_stage *stage, const struct tl_check_params *params,
                       .params = params,
                       .outcome = out,
                       .hashes = TL_NEW_ARRAY(uint64_t, (size_t)params->frames),
+                      .pace = params->budget_ms > 0 ? tl_pace_create(params->budget_ms) : NULL,
+                      .levels = TL_NEW_ARRAY(struct tl_levels, (size_t)params->frames),
                       .progress = tl_progress_begin("checking")};
     int again = params->frames < 20 ? (params->frames + 1) / 2 : params->frames / 10;
     run.steps = params->frames + again;

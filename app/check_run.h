@@ -14,6 +14,7 @@ struct tl_check_params {
     int frames, every; /* how many; from one frame whose sampled checks are made to the next */
     bool furnace;      /* those in white light too, where sampled checks are made */
     bool still;        /* no hand */
+    double budget_ms;  /* 0: none; else the planner's, whose levels are kept and played again */
     const char *keep;  /* folder for the first frame that breaks something; NULL: it is not kept */
 };
 

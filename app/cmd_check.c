@@ -13,6 +13,8 @@
 #define FRAMES 300
 #define EVERY  10
 
+#define FRAMES_MAX 1000000
+
 static void print_table(const struct tl_check_outcome *outcome)
 {
     printf("%-20s %-4s %12s %10s %6s  %s\n", "invariant", "", "worst", "bound", "frame", "where");
@@ -85,9 +87,12 @@ bool tl_command_check(const struct tl_arguments *arguments, tl_error *error)
                                            .every = arguments->every > 0 ? arguments->every : EVERY,
                                            .furnace = arguments->furnace,
                                            .still = arguments->still,
+                                           .budget_ms = arguments->budget_ms,
                                            .keep = arguments->keep};
     struct tl_stage stage;
     struct tl_check_outcome outcome;
+    if (params.frames > FRAMES_MAX)
+        return tl_fail(error, TL_USAGE, "--frames: %d: at most %d", params.frames, FRAMES_MAX);
     if ((params.keep && !tl_folder_make(params.keep, error)) || !tl_stage_create(&stage, arguments, error))
         return false;
     bool done = tl_check_play(&stage, &params, &outcome, error);

@@ -112,7 +112,7 @@ static bool save_normals(const struct baking *baking, tl_error *error)
 
 static bool save_horizons(const struct baking *baking, tl_error *error)
 {
-    struct tl_horizon_maps maps = tl_bake_horizons(&baking->field);
+    struct tl_horizon_maps maps = tl_bake_horizons(&baking->field, 8);
     bool saved = save_png(baking, "horizon_0_45_90_135", &maps.images[0], error) &&
                  save_png(baking, "horizon_180_225_270_315", &maps.images[1], error);
     tl_horizon_maps_release(&maps);

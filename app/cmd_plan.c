@@ -4,6 +4,7 @@
 #include "app/json.h"
 #include "app/pace.h"
 #include "app/stage.h"
+#include "render/gpu/clocks.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -182,8 +183,22 @@ static void add_memory(cJSON *object, const tl_renderer *renderer)
         cJSON_AddNumberToObject(resources, rows[i].name, (double)rows[i].bytes);
 }
 
+static void print_clocks(const struct tl_gpu_clocks *clocks)
+{
+    printf("clock: the CPU's around finished work; GL's timer says %.3g ms of %.3g: %s\n", clocks->timer_ms,
+           clocks->cpu_ms, clocks->timer_is_trusted ? "it could be trusted too" : "not to be trusted");
+}
+
+static void add_clocks(cJSON *object, const struct tl_gpu_clocks *clocks)
+{
+    cJSON *clock = cJSON_AddObjectToObject(object, "clock");
+    cJSON_AddNumberToObject(clock, "cpu_ms", clocks->cpu_ms);
+    cJSON_AddNumberToObject(clock, "timer_ms", clocks->timer_ms);
+    cJSON_AddBoolToObject(clock, "timer_is_trusted", clocks->timer_is_trusted);
+}
+
 static void tell(const struct tl_stage *stage, const tl_plan *plan, const struct budgeted *budgeted,
-                 bool json)
+                 const struct tl_gpu_clocks *clocks, bool json)
 {
     struct tl_cloth_report report = tl_session_report(stage->session);
     if (json) {
@@ -192,6 +207,7 @@ static void tell(const struct tl_stage *stage, const tl_plan *plan, const struct
         add_memory(object, stage->renderer);
         if (budgeted->budget_ms > 0)
             add_budget(object, budgeted);
+        add_clocks(object, clocks);
         if (report.vertex_count > 0)
             add_cloth(object, &stage->settings, &report);
         tl_json_print(object);
@@ -201,6 +217,7 @@ static void tell(const struct tl_stage *stage, const tl_plan *plan, const struct
     print_memory(stage->renderer);
     if (budgeted->budget_ms > 0)
         print_budget(budgeted);
+    print_clocks(clocks);
     if (report.vertex_count > 0)
         print_cloth(&stage->settings, &report);
 }
@@ -268,8 +285,10 @@ bool tl_command_plan(const struct tl_arguments *arguments, tl_error *error)
         tl_plan plan;
         tl_renderer_plan(stage.renderer, &next, &settings, &plan);
         done = tl_stage_draw(&stage, error); /* memory is what the frame really holds */
+        struct tl_gpu_clocks clocks;
+        done = done && tl_gpu_compare_clocks(stage.gpu, &clocks, error);
         if (done)
-            tell(&stage, &plan, &budgeted, arguments->json);
+            tell(&stage, &plan, &budgeted, &clocks, arguments->json);
     }
     tl_stage_release(&stage);
     return done;

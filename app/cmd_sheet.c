@@ -13,6 +13,7 @@
 #include "config/log.h"
 #include "config/memory.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -64,18 +65,49 @@ static bool begin_row(struct work *work, const struct tl_settings *settings, tl_
     return draped && tl_session_go_to(stage->session, work->arguments->first_frame, error);
 }
 
+/* The box of a garment where it hangs, as large as the cloth was before it fell, a little longer for its
+ * fall: so all fabrics are seen from the same distance. It is as deep as it is wide, for a turn. */
+static struct tl_box worn_box(const struct tl_box *before, const struct tl_box *worn)
+{
+    const float fall = 1.08f, corner = 0.70710678f; /* the camera looks for room for a corner */
+    vec3s size = glms_vec3_sub(before->upper, before->lower);
+    float half_m = 0.5f * fmaxf(size.x, size.z) * corner;
+    vec3s middle = glms_vec3_scale(glms_vec3_add(worn->lower, worn->upper), 0.5f);
+    return (struct tl_box){{{middle.x - half_m, worn->upper.y - fall * size.y, middle.z - half_m}},
+                           {{middle.x + half_m, worn->upper.y, middle.z + half_m}}};
+}
+
+/* Heads and feet are not cut off where they would nearly fit. */
+static void add_wearer(const tl_surface *wearer, struct tl_box *box)
+{
+    const float above = 0.3f, below = 0.15f; /* of the garment's height */
+    struct tl_box body = tl_box_of(wearer->positions, wearer->vertex_count);
+    float height_m = box->upper.y - box->lower.y;
+    float over_m = body.upper.y - box->upper.y, under_m = box->lower.y - body.lower.y;
+    if (over_m > 0 && over_m <= above * height_m)
+        box->upper.y = body.upper.y;
+    if (under_m > 0 && under_m <= below * height_m)
+        box->lower.y = body.lower.y;
+}
+
 /* A camera that the scene has not placed frames the garment, whoever wears it. */
 static void frame_garment(tl_session *session, struct tl_settings *settings)
 {
+    const tl_model *garment = tl_session_garment(session);
+    if (!garment || settings->camera.distance_m > 0)
+        return;
     tl_frame frame = tl_session_frame(session);
-    for (size_t i = 0; i < frame.surface_count; i++) {
-        if (strcmp(frame.surfaces[i].name, "garment") != 0 || settings->camera.distance_m > 0)
-            continue;
-        struct tl_box box = tl_box_of(frame.surfaces[i].positions, frame.surfaces[i].vertex_count);
-        float aspect = (float)settings->image.width / (float)settings->image.height;
-        struct tl_camera camera = tl_camera_frame(&settings->camera, box, aspect);
-        tl_orbit_take(&settings->camera, &camera);
-    }
+    const tl_surface *surface = &frame.surfaces[frame.surface_count - 1]; /* who wears it comes before it */
+    struct tl_box worn = tl_box_of(surface->positions, surface->vertex_count);
+    struct tl_box before = tl_box_of(garment->mesh.positions, garment->mesh.vertex_count);
+    if (!tl_session_cloth(session))
+        before = worn; /* a motion may begin as flat panels */
+    float aspect = (float)settings->image.width / (float)settings->image.height;
+    struct tl_box box = worn_box(&before, &worn);
+    if (frame.surface_count > 1)
+        add_wearer(&frame.surfaces[0], &box);
+    struct tl_camera camera = tl_camera_frame(&settings->camera, box, aspect);
+    tl_orbit_take(&settings->camera, &camera);
 }
 
 static bool draw_cell(struct work *work, size_t row, size_t column, tl_image *out, tl_error *error)
@@ -83,6 +115,7 @@ static bool draw_cell(struct work *work, size_t row, size_t column, tl_image *ou
     struct tl_stage *stage = &work->stage;
     if (!tl_contact_cell_settings(&work->plan, row, column, &stage->settings, error))
         return false;
+    tl_renderer_forget(stage->renderer); /* a cell looks the same whichever were drawn before it */
     if (!work->plan.columns[column].view.is_scene)
         frame_garment(stage->session, &stage->settings);
     return tl_session_apply(stage->session, &stage->settings, error) && tl_stage_draw_still(stage, error) &&

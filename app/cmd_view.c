@@ -74,27 +74,11 @@ bool tl_review_is_moving(const struct tl_review *review)
            tl_clock_s() - review->moved_s < rest_s;
 }
 
-/* One simulated frame when it is due. A machine that is too slow plays slower, and skips nothing. */
-static void play(struct tl_review *review)
-{
-    double now_s = tl_clock_s();
-    if (!review->playing || now_s < review->next_step_s)
-        return;
-    tl_error error;
-    tl_review_move_hand(review);
-    if (!tl_session_advance(review->session, &error))
-        tl_review_complain(review, &error);
-    double frame_s = 1 / review->good.cloth.frame_rate;
-    review->next_step_s = fmax(review->next_step_s + frame_s, now_s);
-    review->times.cloth = 1e3 * (tl_clock_s() - now_s);
-    review->image_is_old = true;
-}
-
 /* How long nothing needs to be done unless something happens. */
 static double patience_s(const struct tl_review *review)
 {
     const double idle_s = 0.5;                    /* Ctrl-C and edited files are looked for */
-    const double settling_s = 0.05, tick_s = 0.1; /* of progress that is shown */
+    const double settling_s = 0.05, tick_s = 0.1; /* tick: of progress that is shown */
     const double screen_s = 1 / 60.0;             /* what moves by itself need not be drawn more often */
     if (review->redraws > 0)
         return 0;
@@ -106,9 +90,10 @@ static double patience_s(const struct tl_review *review)
         return 0;
     if (review->playing)
         return fmax(0, review->next_step_s - tl_clock_s());
-    if (!tl_review_is_moving(review) && !tl_review_is_at_rest(review))
-        return 0;
-    return review->scale > 1 ? settling_s : idle_s;
+    bool is_done = tl_review_is_sharp(review) && tl_review_is_at_rest(review);
+    if (!is_done)
+        return tl_review_is_moving(review) ? settling_s : 0;
+    return idle_s;
 }
 
 static bool is_minimised(const struct tl_review *review)
@@ -121,11 +106,10 @@ static bool is_minimised(const struct tl_review *review)
 /* What the window does between two looks at its events. */
 static bool live(struct tl_review *review, bool always_shows, tl_error *error)
 {
-    double started_s = tl_clock_s();
-    int drawn_before = review->drawn_count;
+    review->times.began_s = tl_clock_s();
+    review->times.cloth = 0;
     tl_review_watch(review);
     tl_review_load(review);
-    play(review);
     tl_review_move(review);
     if (!tl_review_update_image(review, error))
         return false;
@@ -135,13 +119,7 @@ static bool live(struct tl_review *review, bool always_shows, tl_error *error)
         return true;
     review->redraws -= review->redraws > 0;
     tl_review_build_panel(review);
-    if (!tl_review_present(review, error))
-        return false;
-    if (review->drawn_count > drawn_before) {
-        review->times.frame = 1e3 * (tl_clock_s() - started_s);
-        tl_frame_times_add(&review->frame_times, review->times.frame);
-    }
-    return true;
+    return tl_review_present(review, error);
 }
 
 static bool run(struct tl_review *review, int max_frames, tl_error *error)
@@ -215,6 +193,7 @@ static bool open_review(struct tl_review *review, tl_error *error)
     if (!open_scene(review, is_remembered, error))
         return false;
     review->history = tl_history_create(&review->wanted);
+    review->pace = tl_pace_create((double)review->params.budget_ms);
     tl_review_know_environment(review, "studio");
     tl_review_know_environment(review, review->wanted.scene.environment);
     /* The first image must come off: there is nothing good to go back to yet. */
@@ -241,6 +220,7 @@ static void close_review(struct tl_review *review)
     tl_loader_cancel(&review->loader);
     tl_session_destroy(&review->session);
     tl_history_destroy(&review->history);
+    tl_pace_destroy(&review->pace);
     tl_review_path_release(&review->path);
     for (size_t i = 0; i < review->environment_count; i++)
         free(review->environments[i]);
@@ -252,13 +232,18 @@ static void close_review(struct tl_review *review)
     free(review->state_folder);
 }
 
+static void tell_times(const struct tl_frame_times *times, const char *when)
+{
+    tl_info("view: %zu images %s: p50 %.1f ms, p95 %.1f ms, p99 %.1f ms, worst %.1f ms", times->total, when,
+            tl_frame_times_quantile(times, 0.5), tl_frame_times_quantile(times, 0.95),
+            tl_frame_times_quantile(times, 0.99), times->worst_ms);
+}
+
 static void tell_end(const struct tl_review *review, size_t bytes_before)
 {
     const double megabyte = 1 << 20;
-    const struct tl_frame_times *times = &review->frame_times;
-    tl_info("view: frame times of %zu images: p50 %.1f ms, p95 %.1f ms, p99 %.1f ms, worst %.1f ms",
-            times->total, tl_frame_times_quantile(times, 0.5), tl_frame_times_quantile(times, 0.95),
-            tl_frame_times_quantile(times, 0.99), times->worst_ms);
+    tell_times(&review->frame_times, "in motion");
+    tell_times(&review->rest_times, "at rest");
     tl_info("view: closed after %d images, %d shown, %zu GL messages, resident %.0f MB at start, %.0f MB "
             "at end",
             review->drawn_count, review->shown_count, tl_gpu_message_count(review->gpu),
@@ -269,7 +254,6 @@ bool tl_command_view(const struct tl_arguments *arguments, tl_error *error)
 {
     struct tl_review *review = TL_NEW(struct tl_review);
     review->arguments = arguments;
-    review->scale = review->coarse_scale = 1;
     review->redraws = 1;
     review->reported_frame = -1;
     review->output_folder = arguments->screenshots ? arguments->screenshots : ".";

@@ -8,14 +8,14 @@
 const struct tl_command tl_commands[] = {
     {"view", "view [SCENE] [OPTIONS]",
      "Opens the review window: orbit, play, pull on the cloth, change fabric and light.",
-     TL_FLAGS_SCENE | TL_FLAGS_WINDOW, tl_command_view},
+     TL_FLAGS_SCENE | TL_FLAGS_WINDOW | TL_FLAGS_BUDGET, tl_command_view},
     {"render", "render [SCENE] -o OUT.exr|OUT.png [OPTIONS]",
      "Renders frames without a screen: .exr holds linear radiance and coverage, .png what a person would "
      "see.",
      TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_FRAME | TL_FLAGS_FRAMES | TL_FLAGS_AOV, tl_command_render},
     {"fly", "fly [SCENE] -o FOLDER [--budget MS] [--path FILE.yaml] [--frames N] [OPTIONS]",
      "Flies round the moving garment and records every frame: FOLDER/frames.csv, summary.json, report.html.",
-     TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_JSON | TL_FLAGS_FLY, tl_command_fly},
+     TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_JSON | TL_FLAGS_FLY | TL_FLAGS_BUDGET, tl_command_fly},
     {"plan", "plan [SCENE] [--json] [OPTIONS]",
      "Prints what would run for a frame, why, at what cost and in how much memory.",
      TL_FLAGS_SCENE | TL_FLAGS_FRAME | TL_FLAGS_JSON | TL_FLAGS_BUDGET, tl_command_plan},
@@ -23,11 +23,11 @@ const struct tl_command tl_commands[] = {
      "Measures ratios side by side in one run: light: the presets' CPU time and error in motion; cloth: the "
      "solvers' steps per second beside a plain loop's, normals and tangents, a dress that comes to rest.",
      TL_FLAGS_SCENE | TL_FLAGS_JSON | TL_FLAGS_QUICK | TL_FLAGS_FULL, tl_command_bench},
-    {"check", "check [SCENE] [--frames N] [--every K] [--furnace] [--keep FOLDER] [--json] [OPTIONS]",
+    {"check", "check [SCENE] [--frames N] [--budget MS] [--keep FOLDER] [--json] [OPTIONS]",
      "Plays a scene and holds every frame against a table of invariants: geometry, pixels, shadow maps, "
      "visibility, regions, cloth, the oracle; tells the worst of each, where it was, and fails when one "
      "breaks.",
-     TL_FLAGS_SCENE | TL_FLAGS_JSON | TL_FLAGS_CHECK, tl_command_check},
+     TL_FLAGS_SCENE | TL_FLAGS_JSON | TL_FLAGS_CHECK | TL_FLAGS_BUDGET, tl_command_check},
     {"trade",
      "trade [SCENE] -o FOLDER [--axis overall|light|resolution|detail|shading|cloth] [--quick] [OPTIONS]",
      "Measures error against time over many choices of settings: FOLDER/trade.csv and report.html.",

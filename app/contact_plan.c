@@ -270,7 +270,7 @@ static bool load_row(const struct tl_arguments *arguments, const struct choice *
 
 static char *row_name(const struct choice *choice)
 {
-    char *fabric = label_of(choice->fabric);
+    char *fabric = label_of(strcmp(choice->fabric, "none") == 0 ? "its own" : choice->fabric);
     char *name =
         tl_format("%s%s%s", fabric, fabric[0] && choice->colourway[0] ? ", " : "", choice->colourway);
     free(fabric);
@@ -471,9 +471,11 @@ static void label(const struct tl_arguments *arguments, struct tl_contact_plan *
     for (size_t i = 0; i < plan->column_count; i++)
         plan->column_labels[i] =
             (struct tl_contact_label){one_light ? "" : plan->columns[i].group, plan->columns[i].view.name};
-    char *scene = label_of(arguments->positional_count ? arguments->positionals[0] : "built-in scene");
-    plan->title =
-        tl_format("%s%s%s", scene, one_garment ? ": " : "", one_garment ? plan->rows[0].garment : "");
+    char *scene = label_of(arguments->positional_count ? arguments->positionals[0] : "");
+    plan->title = tl_format("%s%s%s", scene, scene[0] && one_garment ? ": " : "",
+                            one_garment ? plan->rows[0].garment
+                            : scene[0]  ? ""
+                                        : "built-in scene");
     free(scene);
     char *preset = label_of(first->scene.preset);
     plan->note =

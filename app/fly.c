@@ -167,7 +167,8 @@ static bool choose(struct pilot *pilot, const struct tl_settings *wanted, int nu
     const tl_frame coming = tl_session_frame(stage->session);
     if (pilot->options->replay) {
         const struct tl_flight_frame *recorded = &pilot->options->replay->frames[number];
-        *out = (struct tl_pace_choice){recorded->levels, NAN, recorded->error, ""};
+        *out = (struct tl_pace_choice){
+            .levels = recorded->levels, .predicted_ms = NAN, .error = recorded->error};
     } else {
         *out = tl_pace_choose(pilot->pace, stage->renderer, &coming, wanted);
     }

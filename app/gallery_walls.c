@@ -221,7 +221,9 @@ static const struct tl_exhibit c4[] = {
 
 static const struct tl_exhibit c5[] = {
     {"C5", "no shadow", {"detail.shadow=none"}, {NULL}},
-    {"C5", "horizon map, 8 angles", {"detail.shadow=horizon"}, {NULL}},
+    {"C5", "horizon map, 8 angles", {"detail.shadow=horizon", "detail.angles=8"}, {NULL}},
+    {"C5", "horizon map, 16 angles", {"detail.shadow=horizon", "detail.angles=16"}, {NULL}},
+    {"C5", "horizon map, 32 angles", {"detail.shadow=horizon", "detail.angles=32"}, {NULL}},
     {"C5", "relief, 32 steps", {"detail.shadow=relief", "detail.steps=32"}, {NULL}},
 };
 
@@ -480,11 +482,10 @@ const struct tl_gallery_wall tl_gallery_walls[] = {
      WALL(c4)},
     {.name = "c5",
      .heading = "C5  Shadows of bumps",
-     .text = "Horizon angles baked for eight directions a texel, against a march through the heights. Exact "
-             "is the march "
-             "with 256 steps. Under a lamp this low eight angles put shadows at other places than the march "
-             "does: the "
-             "error is that of no shadow, the look is not.",
+     .text = "Horizon angles baked for some directions a texel, front and back, against a march through the "
+             "heights. Exact is the march with 256 steps. Between two directions a horizon's slope is linear "
+             "in the direction, which is right for a straight yarn; near the terminator, where the lamp "
+             "stands lowest over the cloth, eight of them still miss the gaps between yarns.",
      .solid = "torus",
      .base = {LAMPLIT, COARSE, "detail.mode=relief", "lamp.yaw_deg=-70", "lamp.pitch_deg=20"},
      .exact = {"detail.shadow=relief", "detail.steps=256"},

@@ -17,7 +17,7 @@ const char *const tl_knob_names[] = {"refresh", "regions", "relief", "cloth", "s
 #define REGIONS_LEVELS 4
 #define RELIEF_LEVELS  3
 #define CLOTH_LEVELS   3
-#define SCALE_LEVELS   9
+#define SCALE_LEVELS   13
 
 #define REGIONS_MIN  24
 #define REFRESH_MIN  2
@@ -26,14 +26,15 @@ const char *const tl_knob_names[] = {"refresh", "regions", "relief", "cloth", "s
 #define SCALE_MIN    0.1f /* of the option */
 
 /* A fourth root of two a level: the samples halve with every other. */
-static const float scales[SCALE_LEVELS] = {1, 0.841f, 0.707f, 0.595f, 0.5f, 0.42f, 0.354f, 0.297f, 0.25f};
+static const float scales[SCALE_LEVELS] = {1,      0.841f, 0.707f, 0.595f, 0.5f,   0.42f, 0.354f,
+                                           0.297f, 0.25f,  0.21f,  0.177f, 0.149f, 0.125f};
 
 static const struct tl_budget_knob errors[TL_KNOB_COUNT] = {
     [TL_KNOB_REFRESH] = {REFRESH_LEVELS, {0, 0.01, 0.02}},
     [TL_KNOB_REGIONS] = {REGIONS_LEVELS, {0, 0.01, 0.02, 0.04}},
     [TL_KNOB_RELIEF] = {RELIEF_LEVELS, {0, 0.01, 0.03}},
     [TL_KNOB_CLOTH] = {CLOTH_LEVELS, {0, 0.01, 0.02}},
-    [TL_KNOB_SCALE] = {SCALE_LEVELS, {0, 0.03, 0.05, 0.07, 0.09, 0.11, 0.13, 0.15, 0.17}},
+    [TL_KNOB_SCALE] = {SCALE_LEVELS, {0, 0.03, 0.05, 0.07, 0.09, 0.11, 0.13, 0.15, 0.17, .19, .21, .23, .25}},
 };
 
 /* Frames without a change before the image counts as one to be looked at. */
@@ -159,7 +160,6 @@ static bool is_used(enum tl_knob knob, const struct scope *full)
     const struct tl_light_params *light = &full->drawn.light;
     switch (knob) {
     case TL_KNOB_REFRESH:
-        return has_regions(light) && light->visibility == TL_VISIBILITY_RAYS;
     case TL_KNOB_REGIONS:
         return has_regions(light);
     case TL_KNOB_RELIEF:
@@ -218,9 +218,9 @@ struct coming {
     const tl_pace *pace;
     const tl_renderer *renderer;
     struct scope full;
-    tl_bits running;                                      /* jobs, at the levels of the last frame */
-    tl_bits started[TL_KNOB_COUNT][TL_BUDGET_LEVELS_MAX]; /* ... and with those that another level starts */
-    bool is_ready[TL_BUDGET_LEVELS_MAX];                  /* levels of regions */
+    tl_bits running;                     /* jobs, at the levels of the last frame */
+    tl_bits started[TL_KNOB_COUNT];      /* ... and with those that another level of a knob starts */
+    bool is_ready[TL_BUDGET_LEVELS_MAX]; /* levels of regions */
 };
 
 static double known_ms(const struct tl_cost_job *job, const struct tl_work *work, double load)
@@ -239,7 +239,7 @@ static double cost_of(const void *context, const uint8_t *of)
     struct scope applied = apply(&levels, &coming->full);
     tl_bits jobs = coming->running;
     for (int k = 0; k < TL_KNOB_COUNT; k++)
-        jobs |= coming->started[k][of[k]];
+        jobs |= of[k] != pace->choice.levels.of[k] ? coming->started[k] : 0;
     double load = tl_renderer_load(coming->renderer);
     struct tl_work cloth = cloth_work(&applied.cloth);
     return tl_renderer_would_take(coming->renderer, &applied.drawn, jobs) +
@@ -260,15 +260,17 @@ static struct coming look_ahead(const tl_pace *pace, const tl_renderer *renderer
     struct coming coming = {.pace = pace, .renderer = renderer, .full = *full};
     struct scope now = apply(&pace->choice.levels, full);
     coming.running = tl_renderer_would_run(renderer, frame, &now.drawn);
-    for (int knob = 0; knob < TL_KNOB_COUNT; knob++)
-        for (int level = 0; level < pace->knobs[knob].level_count; level++) {
-            struct scope then = at_level(&coming, knob, level);
-            bool is_other = level != pace->choice.levels.of[knob];
-            if (is_other && knob != TL_KNOB_CLOTH)
-                coming.started[knob][level] = tl_renderer_would_run(renderer, frame, &then.drawn);
-            if (knob == TL_KNOB_REGIONS)
-                coming.is_ready[level] = !is_other || tl_renderer_has_regions(renderer, &then.drawn);
-        }
+    for (int knob = 0; knob < TL_KNOB_COUNT; knob++) {
+        int level = pace->choice.levels.of[knob], other = level > 0 ? level - 1 : level + 1;
+        struct scope then = at_level(&coming, knob, other);
+        if (other < pace->knobs[knob].level_count && knob != TL_KNOB_CLOTH)
+            coming.started[knob] = tl_renderer_would_run(renderer, frame, &then.drawn);
+    }
+    for (int level = 0; level < pace->knobs[TL_KNOB_REGIONS].level_count; level++) {
+        struct scope then = at_level(&coming, TL_KNOB_REGIONS, level);
+        coming.is_ready[level] = level == pace->choice.levels.of[TL_KNOB_REGIONS] ||
+                                 tl_renderer_has_regions(renderer, &then.drawn);
+    }
     return coming;
 }
 
@@ -310,6 +312,16 @@ static void say(char *out, size_t size, const char *before, const struct tl_leve
         snprintf(out + length, size - length, " for %.1f of %.1f ms", ms, budget_ms);
 }
 
+/* Whoever is over the budget is asked whether anything is cheaper. */
+static double least_of(const struct tl_budget *budget, double budget_ms, double predicted_ms)
+{
+    uint8_t levels[TL_BUDGET_KNOBS_MAX] = {0};
+    if (predicted_ms <= budget_ms)
+        return predicted_ms;
+    tl_budget_best(budget, budget_ms, levels);
+    return budget->cost(budget->context, levels);
+}
+
 static void choose_in_motion(tl_pace *pace, const struct tl_budget *budget)
 {
     struct tl_pace_choice *choice = &pace->choice;
@@ -317,6 +329,7 @@ static void choose_in_motion(tl_pace *pace, const struct tl_budget *budget)
     enum tl_governed how = tl_governor_choose(&pace->governor, budget, pace->budget_ms);
     memcpy(choice->levels.of, pace->governor.levels, sizeof choice->levels.of);
     choice->predicted_ms = budget->cost(budget->context, pace->governor.levels);
+    choice->least_ms = least_of(budget, pace->budget_ms, choice->predicted_ms);
     if (how == TL_GOVERNED_KEPT)
         return;
     say(choice->reason, sizeof choice->reason, how == TL_GOVERNED_UP ? "better" : "cheaper", &before,
@@ -329,7 +342,7 @@ static void choose_at_rest(tl_pace *pace, const struct tl_budget *budget)
 {
     const uint8_t best[TL_BUDGET_KNOBS_MAX] = {0};
     pace->choice.levels = (struct tl_levels){{0}};
-    pace->choice.predicted_ms = budget->cost(budget->context, best);
+    pace->choice.predicted_ms = pace->choice.least_ms = budget->cost(budget->context, best);
 }
 
 struct tl_pace_choice tl_pace_choose(tl_pace *pace, tl_renderer *renderer, const tl_frame *frame,

@@ -91,6 +91,82 @@ void draw_wipe(const tl_panel_input &input)
     list->PopClipRect();
 }
 
+ImU32 colour_of(const float srgb[3])
+{
+    return ImGui::ColorConvertFloat4ToU32(ImVec4(srgb[0], srgb[1], srgb[2], 1));
+}
+
+/* Colours lie between stops that need not be evenly apart. */
+void draw_scale(const tl_panel_legend &legend)
+{
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const float width = 18 * ImGui::GetFontSize(), height = ImGui::GetFontSize();
+    const float span = legend.high - legend.low;
+    ImDrawList *list = ImGui::GetWindowDrawList();
+    for (int i = 0; i + 1 < legend.stop_count && span > 0; i++) {
+        const float from = corner.x + width * (legend.stop_values[i] - legend.low) / span;
+        const float to = corner.x + width * (legend.stop_values[i + 1] - legend.low) / span;
+        const ImU32 left = colour_of(legend.stop_colours[i]), right = colour_of(legend.stop_colours[i + 1]);
+        list->AddRectFilledMultiColor(ImVec2(from, corner.y), ImVec2(to, corner.y + height), left, right,
+                                      right, left);
+    }
+    ImGui::Dummy(ImVec2(width, height));
+    for (int i = 0; i <= 4; i++) {
+        char text[32];
+        const float value = legend.low + 0.25f * static_cast<float>(i) * span;
+        snprintf(text, sizeof text, "%.3g%s%s", static_cast<double>(value), legend.unit[0] ? " " : "",
+                 legend.unit);
+        const float share = 0.25f * static_cast<float>(i), room = ImGui::CalcTextSize(text).x;
+        if (i > 0)
+            ImGui::SameLine();
+        ImGui::SetCursorScreenPos(ImVec2(corner.x + share * (width - room), ImGui::GetCursorScreenPos().y));
+        ImGui::TextUnformatted(text);
+    }
+}
+
+void draw_legend(const tl_panel_input &input)
+{
+    if (!input.legend)
+        return;
+    const tl_panel_legend &legend = *input.legend;
+    begin_overlay("legend", input, 1, 1);
+    ImGui::TextUnformatted(legend.title);
+    if (legend.stop_count > 1)
+        draw_scale(legend);
+    for (int i = 0; i < legend.entry_count; i++) {
+        const ImVec2 corner = ImGui::GetCursorScreenPos();
+        const float side = ImGui::GetFontSize();
+        ImGui::GetWindowDrawList()->AddRectFilled(corner, ImVec2(corner.x + side, corner.y + side),
+                                                  colour_of(legend.entry_colours[i]));
+        ImGui::Dummy(ImVec2(side, side));
+        ImGui::SameLine();
+        ImGui::TextUnformatted(legend.entry_labels[i]);
+    }
+    if (legend.note[0]) {
+        ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + 18 * ImGui::GetFontSize());
+        ImGui::TextDisabled("%s", legend.note);
+        ImGui::PopTextWrapPos();
+    }
+    ImGui::End();
+}
+
+/* Beside the pointer, on the side where there is room. */
+void draw_read_out(const tl_panel_input &input)
+{
+    if (!input.read_out || !input.read_out[0])
+        return;
+    const ImGuiIO &io = ImGui::GetIO();
+    const bool is_right = io.MousePos.x > 0.5f * view_width(input);
+    const bool is_low = io.MousePos.y > 0.5f * io.DisplaySize.y;
+    const float apart = 16;
+    ImGui::SetNextWindowPos(ImVec2(io.MousePos.x + (is_right ? -apart : apart), io.MousePos.y),
+                            ImGuiCond_Always, ImVec2(is_right ? 1.0f : 0.0f, is_low ? 1.0f : 0.0f));
+    ImGui::SetNextWindowBgAlpha(0.85f);
+    ImGui::Begin("read out", nullptr, overlay_flags);
+    ImGui::TextUnformatted(input.read_out);
+    ImGui::End();
+}
+
 /* Half of the rows beside the other half, parted at a heading. */
 size_t middle_of(const tl_panel_line *help, size_t count)
 {
@@ -153,8 +229,10 @@ void tl_panel_overlay_draw(const tl_panel_input &input)
 {
     draw_wipe(input);
     draw_status(input);
+    draw_legend(input);
     draw_message(input);
     draw_progress(input);
+    draw_read_out(input);
     draw_help(input);
 }
 

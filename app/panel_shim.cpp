@@ -16,6 +16,8 @@ extern "C" {
 struct tl_panel {
     bool has_platform, has_drawing; /* which backends are up */
     bool uses_keys, takes_focus;    /* takes_focus: in the next frame */
+    int pressed[8];                 /* keys for the next frame */
+    int pressed_count;
 };
 
 namespace
@@ -222,6 +224,13 @@ void draw_question(const tl_panel_input &input, tl_panel_result &result)
     ImGui::EndPopup();
 }
 
+/* ImGui looks at what is held when a frame begins, and would miss a key that was let go before. */
+void hold_keys(const tl_panel &panel, bool held)
+{
+    for (int i = 0; i < panel.pressed_count; i++)
+        ImGui::GetIO().KeysDown[panel.pressed[i]] = held;
+}
+
 } // namespace
 
 struct tl_panel *tl_panel_create(struct GLFWwindow *window, float scale, tl_error *error)
@@ -264,6 +273,13 @@ bool tl_panel_wants_keys(const tl_panel *panel)
     return panel->uses_keys || ImGui::GetIO().WantTextInput;
 }
 
+void tl_panel_press(tl_panel *panel, int key)
+{
+    const int room = sizeof panel->pressed / sizeof panel->pressed[0];
+    if (panel->pressed_count < room)
+        panel->pressed[panel->pressed_count++] = key;
+}
+
 void tl_panel_use_keys(tl_panel *panel, bool used)
 {
     ImGuiIO &io = ImGui::GetIO();
@@ -279,6 +295,7 @@ struct tl_panel_result tl_panel_build(tl_panel *panel, const struct tl_panel_inp
     tl_panel_result result = {false, false, -1};
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
+    hold_keys(*panel, true);
     ImGui::NewFrame();
     if (input->width > 0)
         draw_panel(*panel, *input, result);
@@ -287,6 +304,8 @@ struct tl_panel_result tl_panel_build(tl_panel *panel, const struct tl_panel_inp
         draw_question(*input, result);
     result.editing = ImGui::IsAnyItemActive();
     ImGui::Render();
+    hold_keys(*panel, false);
+    panel->pressed_count = 0;
     return result;
 }
 

@@ -44,6 +44,19 @@ struct tl_panel_wipe {
     const char *left, *right;
 };
 
+/* What the colours of the image mean: a scale between stops, or entries, or both. Colours: sRGB, [0, 1]. */
+#define TL_PANEL_LEGEND_STOPS   33
+#define TL_PANEL_LEGEND_ENTRIES 8
+struct tl_panel_legend {
+    char title[64], unit[8], note[160];
+    float low, high; /* at the scale's ends */
+    int stop_count;
+    float stop_values[TL_PANEL_LEGEND_STOPS], stop_colours[TL_PANEL_LEGEND_STOPS][3];
+    int entry_count;
+    char entry_labels[TL_PANEL_LEGEND_ENTRIES][40];
+    float entry_colours[TL_PANEL_LEGEND_ENTRIES][3];
+};
+
 /* Something that takes time, and goes on beside the window. */
 struct tl_panel_progress {
     const char *what; /* NULL: nothing */
@@ -58,6 +71,8 @@ struct tl_panel_input {
     struct tl_panel_strip strip;
     struct tl_panel_wipe wipe;
     struct tl_panel_progress progress;
+    const struct tl_panel_legend *legend; /* NULL: none */
+    const char *read_out;                 /* lines beside the pointer, or "" */
     const struct tl_panel_button *buttons;
     size_t button_count;
     const char *const *favourites; /* "table.key" of options that stand on top */
@@ -87,6 +102,8 @@ void tl_panel_destroy(tl_panel **panel);
 
 bool tl_panel_wants_pointer(const tl_panel *panel);
 bool tl_panel_wants_keys(const tl_panel *panel);
+/* A key (GLFW's number) for the next frame, however short it was held. */
+void tl_panel_press(tl_panel *panel, int key);
 /* From now on keys move through the panel's widgets; or no longer. */
 void tl_panel_use_keys(tl_panel *panel, bool used);
 

@@ -6,6 +6,7 @@
  *     review_edit.c     edits of the settings: names, files, undo
  *     review_move.c     what moves by itself: turntable, glides to saved views, camera paths
  *     review_wipe.c     two looks side by side
+ *     review_read.c     what the image's colours mean, and what lies under the pointer
  *     review_keep.c     what is remembered from one time to the next; files that are watched
  *     review_keys.c     keys and their help       review_pointer.c  pointer and gestures
  *     review_act.c      what commands do          review_panel.c    what the panel shows */
@@ -15,6 +16,7 @@
 #include "app/frame_times.h"
 #include "app/history.h"
 #include "app/loader.h"
+#include "app/pace.h"
 #include "app/panel_shim.h"
 #include "app/path.h"
 #include "app/saved_views.h"
@@ -42,6 +44,12 @@ enum tl_review_command { /* what keys, buttons and answers stand for */
                          TL_REVIEW_TURN_ENVIRONMENT,
                          TL_REVIEW_NEXT_FABRIC,
                          TL_REVIEW_PREVIOUS_FABRIC,
+                         TL_REVIEW_NEXT_COLOURWAY,
+                         TL_REVIEW_PREVIOUS_COLOURWAY,
+                         TL_REVIEW_NEXT_VIEW, /* of what the image shows */
+                         TL_REVIEW_PREVIOUS_VIEW,
+                         TL_REVIEW_PLAIN_VIEW, /* light again */
+                         TL_REVIEW_READ_OUT,   /* under the pointer */
                          TL_REVIEW_COMPARE,
                          TL_REVIEW_EXCHANGE, /* the two looks that are compared */
                          TL_REVIEW_WIPE_LEFT,
@@ -73,8 +81,9 @@ enum tl_review_command { /* what keys, buttons and answers stand for */
 
 enum tl_review_drag { TL_DRAG_NONE, TL_DRAG_ORBIT, TL_DRAG_PAN, TL_DRAG_LIGHT, TL_DRAG_CLOTH, TL_DRAG_WIPE };
 
-struct tl_review_times { /* ms, of the last frame that had them */
-    double frame, cloth, draw;
+struct tl_review_times {       /* ms, of the last frame that had them */
+    double frame, cloth, draw; /* frame: all of it, to the swap of buffers */
+    double began_s;            /* the frame at hand */
 };
 
 /* What moves without being pushed. */
@@ -114,14 +123,15 @@ struct tl_review {
     bool changed;              /* wanted has been edited */
     bool editing;              /* a widget of the panel is held: more edits will come */
     bool image_is_old;         /* the image does not show the session's state */
-    int redraws;      /* presentations due though the image is not old: the panel follows the pointer */
-    double moved_s;   /* when the camera, the light or a slider moved last */
-    double shown_s;   /* when something was presented last */
-    int scale;        /* of the last image: one texel for so many pixels */
-    int coarse_scale; /* of images while something moves; follows what the machine can do */
+    int redraws;    /* presentations due though the image is not old: the panel follows the pointer */
+    double moved_s; /* when the camera, the light or a slider moved last */
+    double shown_s; /* when something was presented last */
+    tl_pace *pace;
+    struct tl_pace_choice pace_choice; /* of the last image */
+    bool is_paced, is_new;             /* the last image: drawn at these levels; not shown yet */
     tl_history *history;
 
-    bool playing, closing, help_shown;
+    bool playing, closing, help_shown, reads_out;
     double next_step_s; /* when playing: the next simulated frame is due */
     struct tl_review_motion motion;
     struct tl_review_path path;
@@ -156,7 +166,7 @@ struct tl_review {
     double watched_s;
 
     struct tl_review_times times;
-    struct tl_frame_times frame_times;
+    struct tl_frame_times frame_times, rest_times; /* while something moves; else */
     struct tl_cloth_report report;
     int reported_frame;
     double reported_s;
@@ -177,9 +187,10 @@ bool tl_review_is_moving(const struct tl_review *review); /* while such images a
 
 /* ---- review_draw.c */
 
-/* Draws what is due; reports what cannot be drawn and draws what was good instead. */
+/* Simulates and draws what is due; reports what cannot be drawn and draws what was good instead. */
 bool tl_review_update_image(struct tl_review *review, tl_error *error);
-/* Draws an image of full sharpness, unless there is one. */
+/* Draws an image at full quality, unless there is one. */
+bool tl_review_is_sharp(const struct tl_review *review);
 bool tl_review_draw_sharp(struct tl_review *review, tl_error *error);
 bool tl_review_is_at_rest(const struct tl_review *review);
 /* Puts the last image, and the panel as it was built, on the screen. */
@@ -203,6 +214,8 @@ bool tl_review_set(struct tl_review *review, const char *key, const char *text);
 void tl_review_use_fabric(struct tl_review *review, const char *name);
 void tl_review_use_scene(struct tl_review *review, const char *path);
 void tl_review_next_fabric(struct tl_review *review, int by);
+void tl_review_next_colourway(struct tl_review *review, int by);
+void tl_review_next_view(struct tl_review *review, int by);
 /* After the panel changed wanted.scene.fabric or .preset: takes over what these names stand for. */
 void tl_review_layer(struct tl_review *review);
 void tl_review_drop(struct tl_review *review, const char *path);
@@ -263,11 +276,19 @@ void tl_review_move_hand(struct tl_review *review);
 
 void tl_review_act(struct tl_review *review, int command);
 
+/* ---- review_read.c */
+
+/* What lies under the pointer, as lines of text; "" when nothing is to be said. */
+void tl_review_read_out(const struct tl_review *review, char *text, size_t size);
+/* The colours of the image's view for the panel; false when it shows light. */
+bool tl_review_legend(const struct tl_review *review, struct tl_panel_legend *out);
+
 /* ---- review_panel.c */
 
 /* Builds the panel of this frame and carries out what it asks for. */
 void tl_review_build_panel(struct tl_review *review);
-void tl_review_build_progress(struct tl_review *review);   /* before there is a session */
+void tl_review_build_progress(struct tl_review *review); /* before there is a session */
+
 int tl_review_panel_width(const struct tl_review *review); /* pixels; 0 when hidden */
 size_t tl_review_resident_bytes(void);                     /* of this process */
 /* What may be answered about the dropped file. */

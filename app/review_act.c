@@ -267,6 +267,25 @@ void tl_review_act(struct tl_review *review, int command)
     case TL_REVIEW_PREVIOUS_FABRIC:
         tl_review_next_fabric(review, -1);
         break;
+    case TL_REVIEW_NEXT_COLOURWAY:
+        tl_review_next_colourway(review, 1);
+        break;
+    case TL_REVIEW_PREVIOUS_COLOURWAY:
+        tl_review_next_colourway(review, -1);
+        break;
+    case TL_REVIEW_NEXT_VIEW:
+        tl_review_next_view(review, 1);
+        break;
+    case TL_REVIEW_PREVIOUS_VIEW:
+        tl_review_next_view(review, -1);
+        break;
+    case TL_REVIEW_PLAIN_VIEW:
+        tl_review_next_view(review, TL_VIEW_LIGHT - review->wanted.image.view);
+        break;
+    case TL_REVIEW_READ_OUT:
+        review->reads_out = !review->reads_out;
+        tl_review_say(review, review->reads_out ? "reads out what lies under the pointer" : "no read-out");
+        break;
     case TL_REVIEW_COMPARE:
         tl_review_compare(review);
         break;

@@ -1,12 +1,11 @@
-/* When an image of the review window is drawn: when the session's state or the settings changed; coarsely
- * while something moves, on machines that need it, and sharply as soon as it rests. */
+/* When an image of the review window is drawn: when the session's state or the settings changed; within the
+ * budget while something moves, and as well as the settings ask as soon as it rests. */
 #include "app/review.h"
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
 
-#include <epoxy/gl.h>
-
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -34,6 +33,23 @@ static bool show_image(struct tl_review *review, int width, int height, tl_error
            tl_renderer_show_columns(review->renderer, width, height, line, width, error);
 }
 
+/* Until here it is the program's time; the swap may wait for the screen. What nobody waits for is shown as
+ * well as it can be: its time says nothing about the budget. */
+static void take_time(struct tl_review *review)
+{
+    if (!review->is_new)
+        return;
+    double frame_ms = 1e3 * (tl_clock_s() - review->times.began_s);
+    review->is_new = false;
+    if (!review->is_paced) {
+        tl_frame_times_add(&review->rest_times, frame_ms);
+        return;
+    }
+    review->times.frame = frame_ms;
+    tl_frame_times_add(&review->frame_times, frame_ms);
+    tl_pace_learn(review->pace, tl_renderer_last_plan(review->renderer), review->times.cloth, frame_ms);
+}
+
 bool tl_review_present(struct tl_review *review, tl_error *error)
 {
     int width, height;
@@ -41,6 +57,7 @@ bool tl_review_present(struct tl_review *review, tl_error *error)
     if (!show_image(review, width, height, error))
         return false;
     tl_panel_draw(review->panel);
+    take_time(review);
     tl_window_show(review->window);
     review->shown_count++;
     review->shown_s = tl_clock_s();
@@ -75,15 +92,22 @@ static void log_changes(const struct tl_scene_params *old, const struct tl_scene
             tl_info("view: %s %s", names[i].what, names[i].new);
 }
 
-/* Settings at a resolution of one texel for scale x scale pixels. */
-static struct tl_settings scaled(const struct tl_settings *settings, int scale)
+/* One simulated frame when it is due. A machine that is too slow plays slower, and skips nothing. */
+static bool is_step_due(const struct tl_review *review)
 {
-    struct tl_settings result = *settings;
-    result.image.width = settings->image.width > scale ? settings->image.width / scale : 1;
-    result.image.height = settings->image.height > scale ? settings->image.height / scale : 1;
-    if (scale > 1)
-        result.image.supersample = 1;
-    return result;
+    return review->playing && tl_clock_s() >= review->next_step_s;
+}
+
+static void step(struct tl_review *review)
+{
+    double now_s = tl_clock_s();
+    tl_error error;
+    tl_review_move_hand(review);
+    if (!tl_session_advance(review->session, &error))
+        tl_review_complain(review, &error);
+    double frame_s = 1 / review->good.cloth.frame_rate;
+    review->next_step_s = fmax(review->next_step_s + frame_s, now_s);
+    review->times.cloth = 1e3 * (tl_clock_s() - now_s);
 }
 
 static bool draw_with(struct tl_review *review, tl_renderer *renderer, const struct tl_settings *settings,
@@ -96,25 +120,49 @@ static bool draw_with(struct tl_review *review, tl_renderer *renderer, const str
     return tl_renderer_draw(renderer, &frame, &render, error);
 }
 
-/* Brings the session to what can be followed, and draws it; both looks where two are compared. On failure it
- * stays at what is good. */
-static bool draw_image(struct tl_review *review, const struct tl_settings *settings, int scale,
+/* Both looks share the budget. */
+static void choose_levels(struct tl_review *review, const struct tl_settings *settings)
+{
+    double budget_ms = (double)review->params.budget_ms;
+    tl_pace_set_budget(review->pace, review->wipe.renderer ? budget_ms / 2 : budget_ms);
+    const tl_frame coming = tl_session_frame(review->session);
+    review->pace_choice = tl_pace_choose(review->pace, review->renderer, &coming, settings);
+}
+
+/* Brings the session to what can be followed, a frame further when that is due, and draws it; both looks
+ * where two are compared. */
+static bool draw_image(struct tl_review *review, const struct tl_settings *settings, bool is_paced,
                        tl_error *error)
 {
+    struct tl_levels *levels = &review->pace_choice.levels;
+    if (!is_paced)
+        *levels = (struct tl_levels){{0}};
+    struct tl_settings b = tl_levels_apply(levels, settings); /* the last frame's: the camera goes first */
+    if (!tl_session_apply(review->session, &b, error))
+        return false;
+    if (is_paced)
+        choose_levels(review, settings);
+    b = tl_levels_apply(levels, settings);
+    if (!tl_session_apply(review->session, &b, error))
+        return false;
+    if (is_step_due(review))
+        step(review);
     double started_s = tl_clock_s();
-    const struct tl_settings b = scaled(settings, scale);
     if (review->wipe.renderer) {
-        const struct tl_settings other = tl_review_look_a(review, settings), a = scaled(&other, scale);
+        const struct tl_settings other = tl_review_look_a(review, settings),
+                                 a = tl_levels_apply(levels, &other);
         if (!draw_with(review, review->wipe.renderer, &a, error))
             return false;
+        review->times.began_s += tl_clock_s() - started_s; /* the pace learns of one look alone */
     }
     if (!draw_with(review, review->renderer, &b, error))
         return false;
-    glFinish(); /* else the time, and with it the coarse scale, would be the driver's, not the image's */
     review->times.draw = 1e3 * (tl_clock_s() - started_s);
     review->drawn_count++;
-    tl_debug("view: image %d, frame %d, 1/%d, %.1f ms", review->drawn_count,
-             tl_session_frame_number(review->session), scale, review->times.draw);
+    review->is_new = true;
+    review->is_paced = is_paced;
+    tl_debug("view: image %d, frame %d, %.1f ms", review->drawn_count,
+             tl_session_frame_number(review->session), review->times.draw);
     return true;
 }
 
@@ -132,15 +180,14 @@ static void take_as_good(struct tl_review *review, const struct tl_settings *dra
 
 /* Draws what is wanted. What cannot be drawn is reported, and what was good is drawn instead; false only when
  * that fails too. */
-static bool renew_image(struct tl_review *review, int scale, tl_error *error)
+static bool renew_image(struct tl_review *review, bool is_paced, tl_error *error)
 {
     int width, height;
     tl_review_size(review, &width, &height);
     review->wanted.image.width = width;
     review->wanted.image.height = height;
     struct tl_settings followed = tl_review_followed(review);
-    review->scale = scale;
-    if (!draw_image(review, &followed, scale, error)) {
+    if (!draw_image(review, &followed, is_paced, error)) {
         if (tl_interrupted())
             return false;
         tl_review_complain(review, error);
@@ -148,20 +195,29 @@ static bool renew_image(struct tl_review *review, int scale, tl_error *error)
         review->good.image.width = width;
         review->good.image.height = height;
         review->wanted = review->good;
-        if (!draw_image(review, &review->good, scale, error))
+        if (!draw_image(review, &review->good, is_paced, error))
             return false;
     } else {
         take_as_good(review, &followed);
     }
     review->changed = review->image_is_old = false;
-    review->redraws = review->redraws > 1 ? review->redraws : 1;
+    int settles = is_paced ? 1 : 2; /* the panel's texts take a second frame to find their size */
+    review->redraws = review->redraws > settles ? review->redraws : settles;
+    return true;
+}
+
+bool tl_review_is_sharp(const struct tl_review *review)
+{
+    for (int i = 0; i < TL_KNOB_COUNT; i++)
+        if (review->pace_choice.levels.of[i] > 0)
+            return false;
     return true;
 }
 
 bool tl_review_draw_sharp(struct tl_review *review, tl_error *error)
 {
-    bool is_sharp = review->scale == 1 && !review->changed && !review->image_is_old;
-    return is_sharp || renew_image(review, 1, error);
+    bool is_done = tl_review_is_sharp(review) && !review->changed && !review->image_is_old;
+    return is_done || renew_image(review, false, error);
 }
 
 bool tl_review_is_at_rest(const struct tl_review *review)
@@ -170,29 +226,11 @@ bool tl_review_is_at_rest(const struct tl_review *review)
            (!review->wipe.renderer || tl_renderer_is_at_rest(review->wipe.renderer));
 }
 
-/* Coarser when a moving image takes too long, finer when there is time to spare. */
-static void adapt_coarse_scale(struct tl_review *review)
-{
-    const double slow_ms = 60, quick_ms = 12;
-    const int coarsest = 2;
-    if (review->times.draw > slow_ms && review->coarse_scale < coarsest)
-        review->coarse_scale++;
-    else if (review->times.draw < quick_ms && review->coarse_scale > 1)
-        review->coarse_scale--;
-}
-
 bool tl_review_update_image(struct tl_review *review, tl_error *error)
 {
-    bool moving = tl_review_is_moving(review);
     bool waits = review->changed && review->editing && is_slow_change(review);
-    bool improves = !moving && !tl_review_is_at_rest(review); /* jittered rounds are left to average */
-    bool is_due =
-        (review->changed && !waits) || review->image_is_old || (review->scale > 1 && !moving) || improves;
-    if (!is_due || waits)
-        return true;
-    if (!renew_image(review, moving ? review->coarse_scale : 1, error))
-        return false;
-    if (moving)
-        adapt_coarse_scale(review);
-    return true;
+    bool improves = !tl_review_is_moving(review) && /* jittered rounds are left to average */
+                    !(tl_review_is_at_rest(review) && tl_review_is_sharp(review));
+    bool is_due = review->changed || review->image_is_old || is_step_due(review) || improves;
+    return waits || !is_due || renew_image(review, tl_review_is_moving(review), error);
 }

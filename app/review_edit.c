@@ -47,6 +47,40 @@ void tl_review_layer(struct tl_review *review)
         apply_named(review, tl_settings_apply_overlay, wanted->overlay_fabric);
     if (strcmp(wanted->preset, good->preset) != 0)
         apply_named(review, tl_settings_apply_preset, wanted->preset);
+    if (strcmp(wanted->garment, good->garment) != 0)
+        apply_named(review, tl_settings_apply_colourway, ""); /* another one has others */
+    else if (strcmp(wanted->colourway, good->colourway) != 0 ||
+             strcmp(wanted->colourways, good->colourways) != 0)
+        apply_named(review, tl_settings_apply_colourway, wanted->colourway);
+}
+
+void tl_review_next_colourway(struct tl_review *review, int by)
+{
+    const char *const *names;
+    int count = (int)tl_session_colourways(review->session, &names), present = 0; /* 0: none, as cut */
+    if (review->loader) {
+        tl_review_say(review, "the scene is not there yet: its colourways come with it");
+        return;
+    }
+    if (count == 0) {
+        tl_review_say(review, "this garment has no colourways: a scene's section `colourways` gives it some");
+        return;
+    }
+    for (int i = 0; i < count; i++)
+        if (strcmp(names[i], review->wanted.scene.colourway) == 0)
+            present = i + 1;
+    int next = (present + by + count + 1) % (count + 1);
+    apply_named(review, tl_settings_apply_colourway, next > 0 ? names[next - 1] : "");
+    tl_review_say(review, next > 0 ? "colourway: %s" : "no colourway%s",
+                  next > 0 ? review->wanted.scene.colourway : "");
+}
+
+void tl_review_next_view(struct tl_review *review, int by)
+{
+    int *view = &review->wanted.image.view;
+    *view = (*view + by + TL_VIEW_COUNT) % TL_VIEW_COUNT;
+    review->changed = true;
+    tl_review_say(review, "shows %s", tl_image_view_names[*view]);
 }
 
 void tl_review_use_fabric(struct tl_review *review, const char *name)
@@ -118,7 +152,8 @@ void tl_review_use_dropped(struct tl_review *review, int command)
         return;
     switch (command) {
     case TL_REVIEW_USE_GARMENT:
-        tl_review_set(review, "scene.garment", path);
+        if (tl_review_set(review, "scene.garment", path))
+            tl_review_layer(review);
         break;
     case TL_REVIEW_USE_AVATAR:
         tl_review_set(review, "scene.avatar", path);

@@ -73,11 +73,20 @@ static const struct key_row key_rows[] = {
     {GLFW_KEY_1, CTRL, TL_REVIEW_FABRIC, "Ctrl+1 to 9", "a fabric, in the order of the panel's list", false},
     DIGITS(CTRL, TL_REVIEW_FABRIC),
 
+    {GLFW_KEY_C, 0, TL_REVIEW_NEXT_COLOURWAY, "C, Shift+C", "next colourway, the one before", false},
+    {GLFW_KEY_C, SHIFT, TL_REVIEW_PREVIOUS_COLOURWAY, NULL, NULL, false},
+
     {0, 0, 0, "Compare", NULL, false},
     {GLFW_KEY_W, 0, TL_REVIEW_COMPARE, "W", "split the view: A stays as it looks now", false},
     {GLFW_KEY_X, 0, TL_REVIEW_EXCHANGE, "X", "exchange A and B", false},
     {GLFW_KEY_COMMA, 0, TL_REVIEW_WIPE_LEFT, ",  /", "move the line; or drag it", true},
     {GLFW_KEY_SLASH, 0, TL_REVIEW_WIPE_RIGHT, NULL, NULL, true},
+
+    {0, 0, 0, "Inspect", NULL, false},
+    {GLFW_KEY_V, 0, TL_REVIEW_NEXT_VIEW, "V, Shift+V", "normals, UVs, visibility, strain ...", false},
+    {GLFW_KEY_V, SHIFT, TL_REVIEW_PREVIOUS_VIEW, NULL, NULL, false},
+    {GLFW_KEY_B, 0, TL_REVIEW_PLAIN_VIEW, "B", "light again", false},
+    {GLFW_KEY_I, 0, TL_REVIEW_READ_OUT, "I", "read out what lies under the pointer", false},
 
     {0, 0, 0, "Window", NULL, false},
     {GLFW_KEY_Z, CTRL, TL_REVIEW_UNDO, "Ctrl+Z", "undo", true},
@@ -130,8 +139,11 @@ static bool answer(struct tl_review *review, const struct tl_window_event *event
 
 void tl_review_on_key(struct tl_review *review, const struct tl_window_event *event)
 {
-    if (tl_panel_wants_keys(review->panel) && event->key != GLFW_KEY_ESCAPE)
+    if (tl_panel_wants_keys(review->panel) && event->key != GLFW_KEY_ESCAPE) {
+        if (event->key > 0 && event->key <= GLFW_KEY_LAST)
+            tl_panel_press(review->panel, event->key);
         return;
+    }
     if (answer(review, event))
         return;
     int modifiers = event->modifiers & (SHIFT | CTRL | GLFW_MOD_ALT | GLFW_MOD_SUPER);

@@ -23,6 +23,8 @@ static const char *const favourites[] = {
     "scene.environment",
     "scene.environment_yaw_deg",
     "scene.preset",
+    "scene.colourway",
+    "image.view",
     "light.method",
     "light.regions",
     "image.exposure_ev",
@@ -115,8 +117,10 @@ static size_t list_measures(struct tl_review *review, struct tl_panel_line *line
              review->times.frame);
     add_line(lines, &count, "cloth", "%.1f ms", review->times.cloth);
     add_line(lines, &count, "drawing", "%.0f ms", review->times.draw);
-    add_line(lines, &count, "image", review->scale > 1 ? "%d x %d at 1/%d" : "%d x %d", width, height,
-             review->scale);
+    int samples_x, samples_y;
+    const struct tl_settings drawn = tl_levels_apply(&review->pace_choice.levels, &review->good);
+    tl_image_samples(&drawn.image, &samples_x, &samples_y);
+    add_line(lines, &count, "image", "%d x %d of %d x %d samples", width, height, samples_x, samples_y);
     count_triangles(review, &triangles, &vertices);
     add_line(lines, &count, "surfaces", "%zu triangles, %zu vertices", triangles, vertices);
     if (tl_session_cloth(review->session)) {
@@ -173,36 +177,36 @@ static void ask_about_dropped(const struct tl_review *review, char *question, si
     input->question = question;
 }
 
-static void add_status(char *status, size_t size, bool is_on, const char *format, ...)
-    __attribute__((format(printf, 4, 5)));
+static char *append(char *end, const char *stop, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 
-static void add_status(char *status, size_t size, bool is_on, const char *format, ...)
+static char *append(char *end, const char *stop, const char *format, ...)
 {
-    size_t length = strlen(status);
-    if (!is_on || length + 1 >= size)
-        return;
-    if (length > 0)
-        length += (size_t)snprintf(status + length, size - length, "   ");
-    if (length >= size)
-        return;
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(status + length, size - length, format, arguments);
+    int length = vsnprintf(end, (size_t)(stop - end), format, arguments);
     va_end(arguments);
+    return length < stop - end ? end + length : end;
 }
 
 /* What goes on by itself, and how it is ended. */
 static void describe_status(const struct tl_review *review, char *status, size_t size)
 {
     const struct tl_review_path *path = &review->path;
-    status[0] = '\0';
-    add_status(status, size, path->records, "recording: %.1f s (Shift+K ends)", tl_clock_s() - path->began_s);
+    const char *stop = status + size;
+    char *end = status;
+    *end = '\0';
+    if (path->records)
+        end = append(end, stop, "recording: %.1f s (Shift+K ends)  ", tl_clock_s() - path->began_s);
     if (path->plays)
-        add_status(status, size, true, "path: %.1f of %.1f s (L ends)", tl_clock_s() - path->began_s,
-                   tl_path_length_s(&path->path));
-    add_status(status, size, review->motion.turntable, "turntable (T ends)");
-    add_status(status, size, review->motion.environment, "environment turns (Shift+T ends)");
-    add_status(status, size, tl_panel_wants_keys(review->panel), "keys go to the panel (Esc ends)");
+        end = append(end, stop, "path: %.1f of %.1f s (L ends)  ", tl_clock_s() - path->began_s,
+                     tl_path_length_s(&path->path));
+    if (review->motion.turntable)
+        end = append(end, stop, "turntable (T ends)  ");
+    if (review->motion.environment)
+        end = append(end, stop, "environment turns (Shift+T ends)  ");
+    if (tl_panel_wants_keys(review->panel))
+        append(end, stop, "keys go to the panel (Esc ends)");
 }
 
 static struct tl_panel_progress progress_of(const struct tl_review *review, char *text, size_t size)
@@ -252,17 +256,36 @@ static void take_result(struct tl_review *review, const struct tl_panel_result *
         tl_review_act(review, result->command);
 }
 
+/* Percent, of those that the settings ask for. */
+static double share_of_samples(const struct tl_review *review)
+{
+    const struct tl_settings drawn = tl_levels_apply(&review->pace_choice.levels, &review->good);
+    int full_x, full_y, x, y;
+    tl_image_samples(&review->good.image, &full_x, &full_y);
+    tl_image_samples(&drawn.image, &x, &y);
+    return 100.0 * x * y / ((double)full_x * full_y);
+}
+
 static struct tl_panel_strip strip_of(const struct tl_review *review, float *times, char *label, size_t size)
 {
     const struct tl_frame_times *all = &review->frame_times;
     float budget_ms = review->params.budget_ms;
     for (size_t i = 0; i < all->count; i++)
         times[i] = tl_frame_times_at(all, i);
-    if (budget_ms > 0)
-        snprintf(label, size, "%.0f ms of %g; image 1/%d", review->times.frame, (double)budget_ms,
-                 review->scale);
-    else
-        snprintf(label, size, "%.0f ms, no budget; image 1/%d", review->times.frame, review->scale);
+    const struct tl_levels *levels = &review->pace_choice.levels;
+    char *end = label;
+    const char *stop = label + size;
+    if (all->count > 0)
+        end = append(end, stop, "%.0f ms", review->times.frame);
+    end = append(end, stop, budget_ms > 0 ? "%s%.0f ms for a frame" : "%sno budget",
+                 all->count > 0 ? " of " : "", (double)budget_ms);
+    if (tl_review_is_sharp(review))
+        end = append(end, stop, ": full quality");
+    for (int i = 0; i < TL_KNOB_COUNT; i++)
+        if (levels->of[i] > 0 && i != TL_KNOB_SCALE)
+            end = append(end, stop, ", %s -%d", tl_knob_names[i], levels->of[i]);
+    if (levels->of[TL_KNOB_SCALE] > 0)
+        append(end, stop, ", %.0f %% of the pixels", share_of_samples(review));
     return (struct tl_panel_strip){times, all->count, budget_ms, label};
 }
 
@@ -274,6 +297,8 @@ void tl_review_build_panel(struct tl_review *review)
         {"Reset", "back to the settled start: R", TL_REVIEW_RESET},
         {"Frame", "frame the whole figure: F", TL_REVIEW_FRAME_ALL},
         {"Next light", "next environment: E", TL_REVIEW_NEXT_ENVIRONMENT},
+        {"Colours", "next colourway: C", TL_REVIEW_NEXT_COLOURWAY},
+        {"Inspect", "normals, UVs, visibility, strain: V; B: light again", TL_REVIEW_NEXT_VIEW},
         {"Compare", "splits the view: the look of now beside the next one: W", TL_REVIEW_COMPARE},
         {"Turn", "turntable: T", TL_REVIEW_TURNTABLE},
         {"Undo", "the last edit: Ctrl+Z", TL_REVIEW_UNDO},
@@ -300,6 +325,9 @@ void tl_review_build_panel(struct tl_review *review)
     tl_review_size(review, &width, &height);
     char question[TL_STRING_SIZE], status[256], progress[256], left[256] = "", right[256] = "", label[256];
     float times[TL_FRAME_TIMES_SHOWN];
+    char read_out[512];
+    struct tl_panel_legend legend;
+    tl_review_read_out(review, read_out, sizeof read_out);
     if (review->wipe.renderer)
         tl_review_wipe_labels(review, left, right, sizeof left);
     describe_status(review, status, sizeof status);
@@ -310,6 +338,8 @@ void tl_review_build_panel(struct tl_review *review)
         .status = status,
         .strip = strip_of(review, times, label, sizeof label),
         .wipe = {tl_review_wipe_column(review, width), left, right},
+        .legend = tl_review_legend(review, &legend) ? &legend : NULL,
+        .read_out = read_out,
         .progress = progress_of(review, progress, sizeof progress),
         .buttons = buttons,
         .button_count = TL_COUNT(buttons),

@@ -63,6 +63,11 @@ struct tl_settings tl_review_look_a(const struct tl_review *review, const struct
     memcpy(result.scene.fabric, look->scene.fabric, sizeof result.scene.fabric);
     memcpy(result.scene.overlay_fabric, look->scene.overlay_fabric, sizeof result.scene.overlay_fabric);
     memcpy(result.scene.preset, look->scene.preset, sizeof result.scene.preset);
+    if (strcmp(look->scene.garment, settings->scene.garment) == 0) { /* else it has other colourways */
+        memcpy(result.scene.colourway, look->scene.colourway, sizeof result.scene.colourway);
+        memcpy(result.scene.colourways, look->scene.colourways, sizeof result.scene.colourways);
+        result.colourways = look->colourways;
+    }
     result.weave = look->weave;
     result.material = look->material;
     result.overlay = look->overlay;
@@ -81,13 +86,21 @@ static const char *short_name(const char *name)
     return slash ? slash + 1 : name;
 }
 
+static void label(char *out, size_t size, const char *side, const struct tl_scene_params *scene,
+                  const char *difference)
+{
+    bool has_colourway = scene->colourway[0] != '\0', differs = difference[0] != '\0';
+    snprintf(out, size, "%s  %.40s, %s%.40s%s%.30s%s%.120s%s", side, short_name(scene->fabric),
+             has_colourway ? "colourway " : "", scene->colourway, has_colourway ? ", " : "",
+             short_name(scene->preset), differs ? " (" : "", difference, differs ? ")" : "");
+}
+
 void tl_review_wipe_labels(const struct tl_review *review, char *a, char *b, size_t size)
 {
-    const struct tl_settings *look = &review->wipe.look, *live = &review->good;
+    const struct tl_settings *live = &review->good;
     struct tl_settings same = tl_review_look_a(review, live);
     char *difference = tl_history_describe(&same, live);
-    snprintf(a, size, "A  %s, %s", short_name(look->scene.fabric), short_name(look->scene.preset));
-    snprintf(b, size, "B  %s, %s (%s)", short_name(live->scene.fabric), short_name(live->scene.preset),
-             strcmp(difference, "nothing") == 0 ? "the same" : difference);
+    label(a, size, "A", &same.scene, "");
+    label(b, size, "B", &live->scene, strcmp(difference, "nothing") == 0 ? "the same" : difference);
     free(difference);
 }

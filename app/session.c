@@ -426,6 +426,11 @@ bool tl_session_needs_light(const struct tl_settings *old, const struct tl_setti
 
 void tl_session_keep_scene(const struct tl_settings *kept, struct tl_settings *settings)
 {
+    if (!same_text(settings->scene.garment, kept->scene.garment)) { /* its colourways are its own */
+        memcpy(settings->scene.colourway, kept->scene.colourway, sizeof settings->scene.colourway);
+        memcpy(settings->scene.colourways, kept->scene.colourways, sizeof settings->scene.colourways);
+        settings->colourways = kept->colourways;
+    }
     memcpy(settings->scene.garment, kept->scene.garment, sizeof settings->scene.garment);
     memcpy(settings->scene.avatar, kept->scene.avatar, sizeof settings->scene.avatar);
     memcpy(settings->scene.clip, kept->scene.clip, sizeof settings->scene.clip);

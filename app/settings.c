@@ -231,7 +231,8 @@ static bool apply_model(const struct tl_binding *all, const char *path, tl_error
            tl_options_set(all, TL_SETTINGS_TABLES, "scene.fabric", "none", "SCENE", NULL, error);
 }
 
-/* A scene file's tables; its own colourways are meant unless it names others. */
+/* A scene's tables. A file's own colourways are meant unless it names others; those of a built-in scene
+ * belong to its garment. */
 static bool apply_scene(const struct tl_binding *all, const char *name, tl_error *error)
 {
     struct tl_colourways found;
@@ -241,7 +242,8 @@ static bool apply_scene(const struct tl_binding *all, const char *name, tl_error
     if (!apply_with(&scene_layer, name, all, TL_SETTINGS_TABLES, &section, error))
         return false;
     const struct tl_scene_params *scene = all[SCENE].params;
-    return found.name_count == 0 || scene->colourways[0] != '\0' ||
+    bool has_own = found.name_count > 0 && tl_option_is_file_name(name);
+    return !has_own || scene->colourways[0] != '\0' ||
            tl_options_set(all, TL_SETTINGS_TABLES, "scene.colourways", name, "SCENE", NULL, error);
 }
 

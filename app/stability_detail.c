@@ -83,7 +83,7 @@ static void run_view(const struct extreme *extreme, const struct tl_height_field
     }
     for (size_t s = 0; s < TL_COUNT(steps); s++) {
         struct tl_relief relief = tl_field_relief(field, uv, view, steps[s], 5);
-        float lit = tl_field_lit(field, &relief, view, steps[s]);
+        float lit = tl_field_lit(field, relief.uv, view, steps[s]);
         struct cell cell = judge(extreme, uv, relief.uv, lit, SHIFT_SLANT * height);
         add(extreme, relief_names[s], tilt_deg, &cell, tells, out);
     }

@@ -23,7 +23,7 @@ static const struct tl_option window_rows[] = {
 };
 const struct tl_option_table tl_window_options =
     TL_OPTION_TABLE("window", "the review window itself; remembered, and no part of a scene", window_rows,
-                    struct tl_window_params, .width = 1280, .height = 800, .panel = true,
+                    struct tl_window_params, .width = 1280, .height = 800, .panel = true, .budget_ms = 50,
                     .turntable_deg_s = 30, .environment_turn_deg_s = 30);
 
 /* Whether a state file has settings in it, besides the window. */
@@ -51,14 +51,14 @@ static size_t bind(struct tl_state *state, struct tl_binding bindings[TABLES])
     return TABLES;
 }
 
-/* The weave of the second fabric stands in no table: it follows from its name. */
-static bool follow_overlay(struct tl_settings *settings, tl_error *error)
+/* The weave of the second fabric and the colourways stand in no table: they follow from names. */
+static bool follow_names(struct tl_settings *settings, tl_error *error)
 {
     struct tl_material_params look = settings->overlay;
     if (!tl_settings_apply_overlay(settings, settings->scene.overlay_fabric, error))
         return false;
     settings->overlay = look;
-    return true;
+    return tl_settings_apply_colourway(settings, settings->scene.colourway, error);
 }
 
 bool tl_state_load(const char *file, const struct tl_settings *defaults, struct tl_state *out,
@@ -73,7 +73,7 @@ bool tl_state_load(const char *file, const struct tl_settings *defaults, struct 
     if (!tl_file_exists(file))
         return true;
     if (!tl_options_read_yaml_file(bindings, count, file, error) ||
-        (read.review.has_settings && !follow_overlay(&read.settings, error)))
+        (read.review.has_settings && !follow_names(&read.settings, error)))
         return false;
     *out = read;
     return true;

@@ -17,6 +17,7 @@ target_sources(toile_app PRIVATE
   review_move.c
   review_panel.c
   review_pointer.c
+  review_read.c
   review_wipe.c
   saved_views.c
   state.c

@@ -408,16 +408,21 @@ double tl_cloth_max_speed(const tl_cloth *cloth)
 
 double tl_cloth_max_strain(const tl_cloth *cloth)
 {
-    double worst = 0;
+    double worst = 0, most = 1, least = 1; /* of the squared ratio of lengths: beyond is worse */
+    double shortest = cloth->shortest_edge * cloth->shortest_edge;
     const vec3d *x = cloth->particles.x;
     for (size_t m = 0; m < cloth->topology.triangle_count; m++) {
         const uint32_t *t = cloth->topology.triangles[m];
         for (int i = 0; i < 3; i++) {
             vec2s side = glms_vec2_sub(cloth->rest[m][(i + 1) % 3], cloth->rest[m][i]);
-            double rest = sqrt((double)side.x * (double)side.x + (double)side.y * (double)side.y);
-            double strain = fabs(vec3d_distance(x[t[(i + 1) % 3]], x[t[i]]) / rest - 1);
-            if (rest > cloth->shortest_edge && strain > worst)
-                worst = strain;
+            vec3d now = vec3d_sub(x[t[(i + 1) % 3]], x[t[i]]);
+            double rest = (double)side.x * (double)side.x + (double)side.y * (double)side.y;
+            double length = vec3d_dot(now, now);
+            if (!(rest > shortest) || (length <= most * rest && length >= least * rest))
+                continue;
+            worst = fmax(worst, fabs(sqrt(length / rest) - 1));
+            most = (1 + worst) * (1 + worst);
+            least = worst < 1 ? (1 - worst) * (1 - worst) : 0;
         }
     }
     return worst;

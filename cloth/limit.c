@@ -108,47 +108,55 @@ static void mark_vertex(struct tl_limits *limits, const struct tl_pulls *pulls, 
         limits->due[pulls->along[k].edge] = true;
 }
 
-static bool limit(const struct tl_limits *limits, const struct tl_limited_edge *edge,
-                  struct tl_particles *particles)
+TL_INLINE bool is_long(const struct tl_limits *limits, const struct tl_limited_edge *edge, const vec3d *x)
+{
+    vec3d apart = vec3d_sub(x[edge->ends[1]], x[edge->ends[0]]);
+    double most = (1 + limits->strain) * edge->rest;
+    return vec3d_dot(apart, apart) > most * most;
+}
+
+/* What draws one edge back may stretch its neighbours. Of an edge that is long; whether it moved. */
+static bool draw_back(struct tl_limits *limits, const struct tl_pulls *pulls,
+                      const struct tl_limited_edge *edge, struct tl_particles *particles)
 {
     uint32_t a = edge->ends[0], b = edge->ends[1];
     vec3d apart = vec3d_sub(particles->x[b], particles->x[a]);
-    double squared = vec3d_dot(apart, apart), most = (1 + limits->strain) * edge->rest;
-    if (!(squared > most * most))
-        return false;
-    most = fmax(most, edge->began - DRAW_BACK_SPEED * edge->rest * limits->passed_s);
-    double sum = particles->w[a] + particles->w[b];
+    double squared = vec3d_dot(apart, apart), sum = particles->w[a] + particles->w[b];
+    double most = fmax((1 + limits->strain) * edge->rest,
+                       edge->began - DRAW_BACK_SPEED * edge->rest * limits->passed_s);
     if (!(squared > most * most) || !(sum > 0))
         return false;
     vec3d push = vec3d_scale(apart, (1 - most / sqrt(squared)) / sum);
     particles->x[a] = vec3d_muladd(particles->x[a], push, particles->w[a]);
     particles->x[b] = vec3d_muladd(particles->x[b], push, -particles->w[b]);
+    mark_vertex(limits, pulls, a);
+    mark_vertex(limits, pulls, b);
     return true;
 }
 
-/* What draws one edge back may stretch its neighbours. */
-static bool limit_due(struct tl_limits *limits, const struct tl_pulls *pulls, size_t e,
-                      struct tl_particles *particles)
+/* Through the list, or back through it; whether anything moved. */
+static bool sweep(struct tl_limits *limits, const struct tl_pulls *pulls, bool back,
+                  struct tl_particles *particles)
 {
-    if (!limits->due[e] || !limit(limits, &limits->edges[e], particles))
-        return false;
-    mark_vertex(limits, pulls, limits->edges[e].ends[0]);
-    mark_vertex(limits, pulls, limits->edges[e].ends[1]);
-    return true;
+    bool any = false;
+    size_t words = (limits->count + WORD - 1) / WORD;
+    for (size_t i = 0; i < words; i++) {
+        size_t first = WORD * (back ? words - 1 - i : i);
+        if (none(&limits->due[first]))
+            continue;
+        for (size_t k = 0; k < WORD; k++) {
+            size_t e = first + (back ? WORD - 1 - k : k);
+            if (limits->due[e] && is_long(limits, &limits->edges[e], particles->x))
+                any = draw_back(limits, pulls, &limits->edges[e], particles) || any;
+        }
+    }
+    return any;
 }
 
 void tl_limits_solve(struct tl_limits *limits, const struct tl_energy *energy, double h,
                      struct tl_particles *particles)
 {
     limits->passed_s += h;
-    if (!mark(limits, energy))
-        return;
-    bool any = false;
-    size_t words = (limits->count + WORD - 1) / WORD;
-    for (size_t word = 0; word < words; word++)
-        for (size_t e = WORD * word; e < WORD * (word + 1) && !none(&limits->due[WORD * word]); e++)
-            any = limit_due(limits, &energy->pulls, e, particles) || any;
-    for (size_t word = words; any && word-- > 0;)
-        for (size_t e = WORD * (word + 1); e-- > WORD * word && !none(&limits->due[WORD * word]);)
-            (void)limit_due(limits, &energy->pulls, e, particles);
+    if (mark(limits, energy) && sweep(limits, &energy->pulls, false, particles))
+        (void)sweep(limits, &energy->pulls, true, particles);
 }

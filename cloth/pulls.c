@@ -60,7 +60,7 @@ static void build_metrics(struct tl_pulls *pulls, const struct tl_topology *topo
     }
     qsort(placed, count, sizeof *placed, compare_placed);
     pulls->metric_count = (count + TL_BATCH - 1) / TL_BATCH;
-    pulls->metrics = TL_NEW_ARRAY(struct tl_metric, pulls->metric_count);
+    pulls->metrics = tl_alloc_lines(pulls->metric_count, sizeof *pulls->metrics);
     for (size_t i = 0; i < count; i++)
         place_metric(energy, &placed[i], &pulls->metrics[i / TL_BATCH], i % TL_BATCH);
     free(placed);
@@ -251,11 +251,11 @@ struct tl_pulls tl_pulls_build(const struct tl_topology *topology, const struct 
 
     size_t blocks = (pulls.vertex_count + TL_PULLS_BLOCK - 1) / TL_PULLS_BLOCK;
     pulls.edge_bending = TL_NEW_ARRAY(double, pulls.edge_count);
-    pulls.places = TL_NEW_ARRAY(double, 4 * pulls.vertex_count);
+    pulls.places = tl_alloc_lines(4 * pulls.vertex_count, sizeof *pulls.places);
     pulls.squared = TL_NEW_ARRAY(double, pulls.edge_count);
     pulls.shares = TL_NEW_ARRAY(double, pulls.metric_count * 3 * TL_BATCH + 1);
     pulls.along_edges = TL_NEW_ARRAY(double, pulls.edge_count);
-    pulls.sums = TL_NEW_ARRAY(struct tl_wide_force, pulls.vertex_count);
+    pulls.sums = tl_alloc_lines(pulls.vertex_count, sizeof *pulls.sums);
     pulls.parts = TL_NEW_ARRAY(double, pulls.metric_count + blocks);
     return pulls;
 }

@@ -14,6 +14,7 @@
 #define TOILE_CLOTH_PULLS_H
 
 #include "cloth/topology.h"
+#include "config/memory.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -22,9 +23,11 @@ struct tl_energy;
 
 /* Triangles as functions of their edges' squared lengths; edge i faces corner i. Empty lanes have area 0. */
 struct tl_metric {
-    uint32_t edges[3][TL_BATCH];
-    double c[2][TL_BATCH], d[2][TL_BATCH]; /* 1/m, the third is minus their sum: see struct tl_membrane */
+    _Alignas(
+        TL_CACHE_LINE) double c[2][TL_BATCH]; /* 1/m, the third is minus their sum: see struct tl_membrane */
+    double d[2][TL_BATCH];
     double area[TL_BATCH];
+    uint32_t edges[3][TL_BATCH];
 };
 
 /* Four numbers, so that a wide register adds them at once; the last is 0. */

@@ -62,5 +62,6 @@ add_library(toile_light STATIC
   trace/cutout.c
   trace/trace.c
   visibility/fit.c
+  visibility/map_order.c
 )
 target_link_libraries(toile_light PUBLIC toile_assets PRIVATE embree)

@@ -145,8 +145,10 @@ static struct tl_plan_input plan_input(const tl_renderer *renderer, const tl_fra
                                        const struct tl_render_settings *settings, tl_bits changed,
                                        tl_bits wanted)
 {
+    /* Maps that wait for their turn are not what they should be. */
+    tl_bits waiting = tl_shadow_maps_wait(renderer->maps) ? TL_BIT(TL_MADE_DEPTHS) | TL_BIT(TL_MADE_MAPS) : 0;
     return (struct tl_plan_input){.changed = changed,
-                                  .valid = renderer->valid,
+                                  .valid = renderer->valid & ~waiting,
                                   .scene = tl_frame_facts(frame, settings),
                                   .wanted = wanted,
                                   .scene_fact_names = tl_scene_fact_names,
@@ -168,11 +170,13 @@ static tl_bits changed_inputs(const tl_renderer *renderer, const uint64_t signat
     return changed;
 }
 
-/* Nothing holds, and the next frame begins anew: rounds are never averaged into what another frame left. */
-static void forget(tl_renderer *renderer)
+/* Rounds are never averaged into what another frame left. */
+void tl_renderer_forget(tl_renderer *renderer)
 {
     renderer->valid = 0;
     memset(renderer->signatures, 0, sizeof renderer->signatures);
+    tl_points_destroy(&renderer->points); /* they refine what they have */
+    renderer->points = tl_points_create();
 }
 
 bool tl_renderer_forget_scene(tl_renderer *renderer, tl_error *error)
@@ -247,7 +251,7 @@ static bool run_plan(tl_renderer *renderer, const struct tl_plan_input *input, t
             continue;
         double started_s = tl_clock_s();
         if (!tl_frame_jobs[i].run(renderer, plan->rows[i].level, error)) {
-            forget(renderer);
+            tl_renderer_forget(renderer);
             return false;
         }
         /* The CPU's clock around a finished job: GL's own timers are wrong on software drivers. */
@@ -278,7 +282,7 @@ static void reload_shaders(tl_renderer *renderer)
         !tl_program_reload(&renderer->present.resolve, &error) ||
         !tl_program_reload(&renderer->present.show, &error))
         tl_warn("%s", error.message);
-    forget(renderer);
+    tl_renderer_forget(renderer);
 }
 
 static bool check_camera(const struct tl_camera *camera, tl_error *error)
@@ -508,7 +512,8 @@ bool tl_renderer_is_at_rest(const tl_renderer *renderer)
     const struct tl_light_params *light = &renderer->settings.light;
     bool is_done = light->visibility == TL_VISIBILITY_RAYS ? renderer->rest.is_done
                                                            : renderer->rest.image >= light->rounds - 1;
-    return renderer->valid & TL_BIT(TL_MADE_IMAGE) && renderer->rest.is_captured &&
+    bool waits = light->visibility != TL_VISIBILITY_RAYS && tl_shadow_maps_wait(renderer->maps);
+    return renderer->valid & TL_BIT(TL_MADE_IMAGE) && renderer->rest.is_captured && !waits &&
            (is_done || !tl_light_averages(light) || !tl_inspect_averages(renderer->settings.image.view));
 }
 

@@ -211,6 +211,9 @@ double tl_renderer_standard_error(const tl_renderer *renderer);
 /* True once drawing the same frame again would change nothing: no jittered round is left to be averaged. */
 bool tl_renderer_is_at_rest(const tl_renderer *renderer);
 
+/* What is drawn next owes nothing to what was drawn before, as in a new renderer. */
+void tl_renderer_forget(tl_renderer *renderer);
+
 /* The HDR image: F32 RGBA, linear, alpha = coverage, premultiplied, black where nothing is. */
 bool tl_renderer_read(tl_renderer *renderer, tl_image *out, tl_error *error);
 

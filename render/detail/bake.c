@@ -166,25 +166,26 @@ tl_image tl_bake_object_normals(const tl_mesh *mesh, const tl_image *normals, in
 
 /* ---- Horizons ---- */
 
-#define HORIZON_STEPS_MAX 4096
-
-/* Metres along (x, y) in which the map moves on by half a texel. */
-static float half_texel(const struct tl_height_field *field, float x, float y)
+/* Metres along (x, y) in which the map moves on by half a texel, and how many of them reach as far as shadows
+ * do. */
+static float half_texel(const struct tl_height_field *field, float x, float y, int *count)
 {
     vec2s moved = tl_field_moved(field, (vec2s){{0, 0}}, x, y);
     float texels =
         fmaxf(fabsf(moved.x) * (float)field->heights->width, fabsf(moved.y) * (float)field->heights->height);
-    return texels > 0 ? 0.5f / texels : INFINITY;
+    if (!(texels > 0))
+        return INFINITY;
+    *count = (int)(DETAIL_REACH / glms_vec2_norm(moved) * 2 * texels);
+    return 0.5f / texels;
 }
 
 /* The largest slope from a height at uv to the field along (x, y). Nothing farther than where the highest
  * point would rise above it can matter. */
 static float horizon_slope(const struct tl_height_field *field, vec2s uv, float from_m, float x, float y)
 {
-    float step = half_texel(field, x, y), slope = 0;
-    if (!isfinite(step))
-        return 0;
-    for (int i = 1; i <= HORIZON_STEPS_MAX; i++) {
+    int count = 0;
+    float step = half_texel(field, x, y, &count), slope = 0;
+    for (int i = 1; i <= count; i++) {
         float distance = step * (float)i;
         if ((field->high_m - from_m) <= slope * distance)
             break;
@@ -204,19 +205,20 @@ static void bake_horizons_at(const struct tl_height_field *field, struct tl_hori
     int width = field->heights->width, height = field->heights->height;
     size_t texel = (size_t)row * (size_t)width + (size_t)column;
     vec2s uv = {{((float)column + 0.5f) / (float)width, ((float)row + 0.5f) / (float)height}};
-    float from = tl_image_floats(field->heights)[texel];
-    for (int k = 0; k < TL_HORIZON_ANGLES; k++) {
-        float angle = (float)k * (2 * (float)M_PI / TL_HORIZON_ANGLES);
+    float raised = tl_image_floats(field->heights)[texel], from = field->turned_over ? -raised : raised;
+    for (int k = 0; k < maps->angle_count; k++) {
+        float angle = (float)k * (2 * (float)M_PI / (float)maps->angle_count);
         float slope = horizon_slope(field, uv, from, cosf(angle), sinf(angle));
         float sine = slope / sqrtf(1 + slope * slope);
         tl_image_bytes(&maps->images[k / 4])[4 * texel + (size_t)(k % 4)] = (uint8_t)lrintf(255 * sine);
     }
 }
 
-struct tl_horizon_maps tl_bake_horizons(const struct tl_height_field *field)
+struct tl_horizon_maps tl_bake_horizons(const struct tl_height_field *field, int angle_count)
 {
-    struct tl_horizon_maps maps;
-    for (int i = 0; i < 2; i++) {
+    struct tl_horizon_maps maps = {.angle_count = angle_count};
+    assert(angle_count % 4 == 0 && angle_count <= TL_HORIZON_ANGLES_MAX);
+    for (int i = 0; i < angle_count / 4; i++) {
         maps.images[i] = tl_image_create(field->heights->width, field->heights->height, 4, TL_IMAGE_U8);
         maps.images[i].linear = true;
     }
@@ -229,8 +231,8 @@ struct tl_horizon_maps tl_bake_horizons(const struct tl_height_field *field)
 
 void tl_horizon_maps_release(struct tl_horizon_maps *maps)
 {
-    tl_image_release(&maps->images[0]);
-    tl_image_release(&maps->images[1]);
+    for (int i = 0; i < maps->angle_count / 4; i++)
+        tl_image_release(&maps->images[i]);
 }
 
 static float horizon_texel(const struct tl_horizon_maps *maps, const struct tl_height_field *field, int x,
@@ -244,21 +246,30 @@ static float horizon_texel(const struct tl_horizon_maps *maps, const struct tl_h
            255;
 }
 
-float tl_horizon_sine(const struct tl_horizon_maps *maps, const struct tl_height_field *field, vec2s uv,
-                      float x, float y)
+/* Of one angle, between texels. */
+static float horizon_at(const struct tl_horizon_maps *maps, const struct tl_height_field *field, vec2s uv,
+                        int angle)
 {
     float u = (uv.x - floorf(uv.x)) * (float)field->heights->width - 0.5f;
     float v = (uv.y - floorf(uv.y)) * (float)field->heights->height - 0.5f;
-    float turn = atan2f(y, x) * (TL_HORIZON_ANGLES / (2 * (float)M_PI)) + TL_HORIZON_ANGLES;
-    int column = (int)floorf(u), row = (int)floorf(v), first = (int)turn;
+    int column = (int)floorf(u), row = (int)floorf(v);
     float sine = 0;
-    for (int i = 0; i < 8; i++) {
-        int dx = i & 1, dy = i >> 1 & 1, next = i >> 2;
-        float share = (1 - fabsf((float)(column + dx) - u)) * (1 - fabsf((float)(row + dy) - v)) *
-                      (1 - fabsf((float)(first + next) - turn));
-        sine += share * horizon_texel(maps, field, column + dx, row + dy, (first + next) % TL_HORIZON_ANGLES);
+    for (int i = 0; i < 4; i++) {
+        int x = column + (i & 1), y = row + (i >> 1);
+        float share = (1 - fabsf((float)x - u)) * (1 - fabsf((float)y - v));
+        sine += share * horizon_texel(maps, field, x, y, angle % maps->angle_count);
     }
     return sine;
+}
+
+float tl_horizon_sine(const struct tl_horizon_maps *maps, const struct tl_height_field *field, vec2s uv,
+                      float x, float y)
+{
+    float count = (float)maps->angle_count, step = 2 * (float)M_PI / count,
+          turn = atan2f(y, x) / step + count;
+    int first = (int)turn;
+    return detail_between(horizon_at(maps, field, uv, first), horizon_at(maps, field, uv, first + 1),
+                          (turn - (float)first) * step, step);
 }
 
 /* ---- The spread of normals ---- */

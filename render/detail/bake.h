@@ -27,14 +27,15 @@ tl_image tl_bake_encoded(const tl_image *normals);
  * lies. */
 tl_image tl_bake_object_normals(const tl_mesh *mesh, const tl_image *normals, int width, int height);
 
-/* Sines of the horizon's height over the surface, seen from each texel: angle k looks along
- * (cos, sin)(k pi / 4) in tangent space; angles 0 to 3 are the channels of the first image, 4 to 7 of the
- * second. U8 x4. */
-#define TL_HORIZON_ANGLES 8
+/* Sines of the horizon's height over the surface, seen from each texel: angle k of n looks along
+ * (cos, sin)(2 pi k / n) in tangent space; angles 4 i to 4 i + 3 are the channels of image i. U8 x4. */
+#define TL_HORIZON_ANGLES_MAX 32
 struct tl_horizon_maps {
-    tl_image images[2];
+    int angle_count;
+    tl_image images[TL_HORIZON_ANGLES_MAX / 4];
 };
-struct tl_horizon_maps tl_bake_horizons(const struct tl_height_field *field);
+/* `angle_count`: a multiple of 4, at most TL_HORIZON_ANGLES_MAX. */
+struct tl_horizon_maps tl_bake_horizons(const struct tl_height_field *field, int angle_count);
 void tl_horizon_maps_release(struct tl_horizon_maps *maps);
 /* Interpolated between texels and angles. `x`, `y`: where it looks, not both 0. */
 float tl_horizon_sine(const struct tl_horizon_maps *maps, const struct tl_height_field *field, vec2s uv,

@@ -69,6 +69,11 @@ bool tl_detail_wants_moments(const struct tl_detail_params *params)
     return params->minify != TL_DETAIL_MINIFY_NONE;
 }
 
+int tl_detail_angle_count(const struct tl_detail_params *params)
+{
+    return 8 << params->angles;
+}
+
 bool tl_detail_has_own_normals(const tl_material *material)
 {
     return material->height_map.image && !material->normal_map.image;
@@ -89,7 +94,9 @@ void tl_detail_defines(const struct tl_detail_params *params, char *out, size_t 
         return;
     bool shifts = params->mode >= TL_DETAIL_PARALLAX,
          clips = params->mode == TL_DETAIL_RELIEF && params->silhouette;
-    snprintf(out, size, "#define DETAIL_MODE %d\n#define DETAIL_SHADOW %d\n#define DETAIL_MINIFY %d\n%s%s",
-             params->mode, params->shadow, params->minify, shifts ? "#define DETAIL_SHIFTED\n" : "",
-             clips ? "#define DETAIL_CLIPPED\n" : "");
+    snprintf(out, size,
+             "#define DETAIL_MODE %d\n#define DETAIL_SHADOW %d\n#define DETAIL_ANGLES %d\n"
+             "#define DETAIL_MINIFY %d\n%s%s",
+             params->mode, params->shadow, tl_detail_angle_count(params), params->minify,
+             shifts ? "#define DETAIL_SHIFTED\n" : "", clips ? "#define DETAIL_CLIPPED\n" : "");
 }

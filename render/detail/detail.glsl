@@ -26,7 +26,7 @@ const int DETAIL_OWN_MOMENTS = 1, DETAIL_WEAVE_MOMENTS = 2, DETAIL_HEIGHTS = 4, 
 const int DETAIL_CLAMP_U = 16, DETAIL_CLAMP_V = 32;
 
 layout(binding = 8) uniform sampler2D detail_heights;       // m
-layout(binding = 9) uniform sampler2DArray detail_horizons; // sines at eight angles, four a layer
+layout(binding = 9) uniform sampler2DArray detail_horizons; // sines at DETAIL_ANGLES angles, four a layer; then the back's
 layout(binding = 10) uniform sampler2D detail_own_moments;  // of the normal map: (x, y, x^2, y^2)
 layout(binding = 11) uniform sampler2D detail_weave_moments;
 
@@ -153,35 +153,67 @@ DetailPlace detail_place(vec2 uv, vec3 view, float side)
 }
 
 #if DETAIL_SHADOW != 0
+const float DETAIL_STEP = 6.28318531 / float(DETAIL_ANGLES);
+
 struct DetailHorizon {
-    vec4 sines[2]; // at angles k pi / 4 from the tangent
+    vec4 sines[DETAIL_ANGLES / 4]; // at angles k DETAIL_STEP from the tangent
 };
 
-// Backs take the horizons of the front.
-DetailHorizon detail_horizon(vec2 uv, vec2 across, vec2 down)
+// Where horizons are read, and how that changes from sample to sample.
+struct DetailSight {
+    vec2 place, across, down;
+    int layer; // the first of the side that is seen
+};
+
+DetailSight detail_sight(vec2 uv, float side, vec2 across, vec2 down)
 {
-    vec2 place = detail_field_uv(uv);
     mat2 turned = transpose(mat2(detail_rows[0].xy, detail_rows[1].xy));
-    vec2 dx = turned * across, dy = turned * down;
-    return DetailHorizon(vec4[2](textureGrad(detail_horizons, vec3(place, 0.0), dx, dy),
-                                 textureGrad(detail_horizons, vec3(place, 1.0), dx, dy)));
+    return DetailSight(detail_field_uv(uv), turned * across, turned * down, side > 0.0 ? 0 : DETAIL_ANGLES / 4);
+}
+
+vec4 detail_horizon_layer(DetailSight sight, int layer)
+{
+    return textureGrad(detail_horizons, vec3(sight.place, float(sight.layer + layer)), sight.across, sight.down);
+}
+
+DetailHorizon detail_horizon(DetailSight sight)
+{
+    DetailHorizon horizon;
+    for (int i = 0; i < DETAIL_ANGLES / 4; i++)
+        horizon.sines[i] = detail_horizon_layer(sight, i);
+    return horizon;
+}
+
+// The angle before a direction; `turned`: how far the direction lies beyond it.
+int detail_angle(vec2 toward, out float turned)
+{
+    float turn = dot(toward, toward) > 0.0 ? atan(toward.y, toward.x) / DETAIL_STEP + float(DETAIL_ANGLES) : 0.0;
+    turned = fract(turn) * DETAIL_STEP;
+    return int(turn) % DETAIL_ANGLES;
 }
 
 float detail_horizon_sine(DetailHorizon horizon, vec2 toward)
 {
-    float turn = dot(toward, toward) > 0.0 ? atan(toward.y, toward.x) * 1.2732395 : 0.0;
-    vec4 first = abs(turn - vec4(0.0, 1.0, 2.0, 3.0)), second = abs(turn - vec4(4.0, -3.0, -2.0, -1.0));
-    vec4 near = max(1.0 - first, 0.0), far = max(1.0 - second, 0.0);
-    far.x = max(1.0 - min(abs(turn - 4.0), abs(turn + 4.0)), 0.0);
-    return dot(near, horizon.sines[0]) + dot(far, horizon.sines[1]);
+    float turned;
+    int first = detail_angle(toward, turned), second = (first + 1) % DETAIL_ANGLES;
+    return detail_between(horizon.sines[first / 4][first % 4], horizon.sines[second / 4][second % 4], turned, DETAIL_STEP);
+}
+
+// The same where one direction is all that is asked for.
+float detail_horizon_toward(DetailSight sight, vec2 toward)
+{
+    float turned;
+    int first = detail_angle(toward, turned), second = (first + 1) % DETAIL_ANGLES;
+    return detail_between(detail_horizon_layer(sight, first / 4)[first % 4],
+                          detail_horizon_layer(sight, second / 4)[second % 4], turned, DETAIL_STEP);
 }
 
 // Share of an even sky that a place sees: `normal` in tangent space, of the side that is seen.
 float detail_ambient(DetailHorizon horizon, vec3 normal)
 {
     float seen = 0.0, open = 0.0;
-    for (int k = 0; k < 8; k++) {
-        float angle = 0.78539816 * float(k), a = normal.x * cos(angle) + normal.y * sin(angle);
+    for (int k = 0; k < DETAIL_ANGLES; k++) {
+        float angle = DETAIL_STEP * float(k), a = normal.x * cos(angle) + normal.y * sin(angle);
         seen += detail_slice_over(a, normal.z, horizon.sines[k / 4][k % 4]);
         open += detail_slice_over(a, normal.z, 0.0);
     }
@@ -201,20 +233,25 @@ float detail_gloss_seen(DetailHorizon horizon, vec3 mirror, float rough)
 float detail_shadow(DetailPlace place, vec3 light, float side, vec2 across, vec2 down)
 {
 #if DETAIL_SHADOW == DETAIL_SHADOW_HORIZON
-    if (has_detail(DETAIL_HORIZONS))
-        return detail_over_horizon(side * light.z, detail_horizon_sine(detail_horizon(place.uv, across, down), light.xy));
+    if (has_detail(DETAIL_HORIZONS)) {
+        float horizon = detail_horizon_toward(detail_sight(place.uv, side, across, down), light.xy);
+        return detail_over_horizon(side * light.z, horizon, fwidth(side * light.z - horizon));
+    }
 #elif DETAIL_SHADOW == DETAIL_SHADOW_RELIEF
     if (has_detail(DETAIL_HEIGHTS)) {
-        vec2 bounds = detail_bounds(side), along = detail_along(light, side);
+        vec2 bounds = detail_bounds(side);
+        vec2 along = vec2(light.x, -light.y) * (detail_climb(side * light.z) / detail_range.z); // UV for a metre of height
         vec2 texels = vec2(textureSize(detail_heights, 0));
         mat2 turned = transpose(mat2(detail_rows[0].xy, detail_rows[1].xy));
         vec2 dx = turned * across * texels, dy = turned * down * texels;
         float level = 0.5 * log2(max(max(dot(dx, dx), dot(dy, dy)), 1.0));
-        float from = place.height + 0.02 * (bounds.y - bounds.x), rise = bounds.y - from;
+        float stands = side * textureLod(detail_heights, detail_field_uv(place.uv), level).r;
+        float from = stands + DETAIL_LIFT * (bounds.y - bounds.x);
+        float rise = min(bounds.y - from, DETAIL_REACH / max(length(turned * along), 1e-6));
         bool lit = side * light.z > 0.0;
         for (int i = 1; i <= detail_steps.x && lit && rise > 0.0; i++) {
             float height = from + rise * float(i) / float(detail_steps.x);
-            lit = detail_clearance(place.uv, along, height, place.height, side, level) >= 0.0;
+            lit = detail_clearance(place.uv, along, height, stands, side, level) >= 0.0;
         }
         return lit ? 1.0 : 0.0;
     }

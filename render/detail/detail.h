@@ -23,6 +23,9 @@ bool tl_detail_wants_heights(const struct tl_detail_params *params);
 bool tl_detail_wants_horizons(const struct tl_detail_params *params);
 bool tl_detail_wants_moments(const struct tl_detail_params *params);
 
+/* Of horizons, all around. */
+int tl_detail_angle_count(const struct tl_detail_params *params);
+
 /* A height map without a normal map bends the light by its own slopes, in every mode. */
 bool tl_detail_has_own_normals(const tl_material *material);
 /* Whether drawing this material needs any map that is derived from its own. */
@@ -30,7 +33,7 @@ bool tl_detail_wants_maps(const struct tl_detail_params *params, const tl_materi
 
 /* The lines that choose what detail.glsl does; a program must be made anew when they change. NULL: normals
  * alone. */
-#define TL_DETAIL_DEFINES_SIZE 160
+#define TL_DETAIL_DEFINES_SIZE 192
 void tl_detail_defines(const struct tl_detail_params *params, char *out, size_t size);
 
 #endif

@@ -10,6 +10,15 @@ TERM float detail_slant(float view_z)
     return 1.0f / max(view_z, 0.05f);
 }
 
+// The same for light, which shifts nothing: its shadows are as long as they are. They are looked for so many repeats
+// of the field away, from a little over the surface (in shares of the field's depth), which rounding must not shade.
+#define DETAIL_REACH 2.0f
+#define DETAIL_LIFT 0.002f
+TERM float detail_climb(float light_z)
+{
+    return 1.0f / max(light_z, 1e-4f);
+}
+
 // Normals that are averaged get shorter, and what they lose tells how far they spread [Toksvig 2005]: the variance of
 // their slope along one axis.
 TERM float detail_variance(float mean_length)
@@ -33,11 +42,27 @@ TERM float detail_open(float mean_length)
     return 0.5f + 0.5f * clamp(mean_length, 0.0f, 1.0f);
 }
 
-// How much of a light is seen over a horizon, both as sines of their heights over the surface. The ramp hides the steps
-// of eight angles and 8 bits.
-TERM float detail_over_horizon(float light, float horizon)
+// Slope of a horizon by the sine of its height. Bytes tell slopes above 16 from each other no more.
+TERM float detail_slope(float sine)
 {
-    return clamp(0.5f + 12.0f * (light - horizon), 0.0f, 1.0f);
+    return sine / sqrt(max(1.0f - sine * sine, 0.004f));
+}
+
+// Sine of the horizon between two angles that were baked `step` apart, `turned` from the first. The slope of a straight
+// ridge, and of what lies between two corners of any horizon, is linear in the direction that looks at it: each angle
+// has the share of that direction that a parallelogram gives it.
+TERM float detail_between(float first, float second, float turned, float step)
+{
+    float slope = (sin(step - turned) * detail_slope(first) + sin(turned) * detail_slope(second)) / sin(step);
+    return slope / sqrt(1.0f + slope * slope);
+}
+
+// How much of a light is seen over a horizon, both as sines of their heights over the surface, where the two come
+// nearer by `change` from one sample to the next: an edge is a sample wide, never narrower than the step of 8 bits, and
+// not much wider where a yarn ends. A horizon of 0 hides nothing.
+TERM float detail_over_horizon(float light, float horizon, float change)
+{
+    return horizon > 0.0f ? clamp(0.5f + (light - horizon) / clamp(change, 0.004f, 0.08f), 0.0f, 1.0f) : 1.0f;
 }
 
 // Integral of (a cos e + b sin e) ds up to s = sin e: light by a slice of the sky from the horizon to the height e,

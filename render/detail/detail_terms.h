@@ -10,11 +10,13 @@
 #define clamp term_clamp
 #define asin  asinf
 #define sqrt  sqrtf
+#define sin   sinf
 #include "render/detail/detail_terms.glsl"
 #undef TERM
 #undef max
 #undef clamp
 #undef asin
 #undef sqrt
+#undef sin
 
 #endif

@@ -108,16 +108,15 @@ struct tl_relief tl_field_relief(const struct tl_height_field *field, vec2s uv, 
     return (struct tl_relief){place_at(&ray, hit), hit};
 }
 
-/* A step starts clear of the texel it stands on. */
-#define LIFT 0.02f
-
-float tl_field_lit(const struct tl_height_field *field, const struct tl_relief *place, vec3s light, int steps)
+float tl_field_lit(const struct tl_height_field *field, vec2s uv, vec3s light, int steps)
 {
     if (!(light.z > 0))
         return 0;
-    float slant = detail_slant(light.z), depth = field->high_m - field->low_m;
-    float from = place->height_m + LIFT * depth, rise = field->high_m - from;
-    const struct field_ray ray = {field, place->uv, slant * light.x, slant * light.y, place->height_m};
+    float slant = detail_climb(light.z), depth = field->high_m - field->low_m;
+    const struct field_ray ray = {field, uv, slant * light.x, slant * light.y, tl_field_height(field, uv)};
+    vec2s along = tl_field_moved(field, (vec2s){{0, 0}}, ray.x, ray.y);
+    float from = ray.height_m + DETAIL_LIFT * depth;
+    float rise = fminf(field->high_m - from, DETAIL_REACH / fmaxf(glms_vec2_norm(along), 1e-6f));
     for (int i = 1; i <= steps && rise > 0; i++)
         if (clearance(&ray, from + rise * (float)i / (float)steps) < 0)
             return 0;

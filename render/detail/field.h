@@ -43,9 +43,9 @@ struct tl_relief {
 struct tl_relief tl_field_relief(const struct tl_height_field *field, vec2s uv, vec3s view, int steps,
                                  int refine);
 
-/* Whether a light is seen from a place on the field, 0 or 1, by `steps` of equal height up to high_m. */
-float tl_field_lit(const struct tl_height_field *field, const struct tl_relief *place, vec3s light,
-                   int steps);
+/* Whether a light is seen from the field at uv, 0 or 1, by `steps` of equal height up to high_m, or as far as
+ * DETAIL_REACH. */
+float tl_field_lit(const struct tl_height_field *field, vec2s uv, vec3s light, int steps);
 
 /* True where uv lies off a map that does not repeat: the silhouette's clip. */
 bool tl_field_is_outside(const struct tl_height_field *field, vec2s uv);

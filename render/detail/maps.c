@@ -100,19 +100,24 @@ static tl_image shrunk(const tl_image *image)
     return small;
 }
 
-static tl_texture upload_horizons(tl_gpu *gpu, const struct tl_height_field *field)
+/* Both sides of the sheet, each with all its angles. */
+static tl_texture upload_horizons(tl_gpu *gpu, const struct tl_detail_heights *heights, int angle_count)
 {
-    tl_image small = shrunk(field->heights);
-    struct tl_height_field baked = *field;
-    baked.heights = &small;
-    struct tl_horizon_maps maps = tl_bake_horizons(&baked);
-    tl_texture texture = tl_texture_create(gpu, GL_TEXTURE_2D_ARRAY, GL_RGBA8, small.width, small.height, 2,
-                                           tl_texture_full_levels(small.width, small.height));
-    for (int i = 0; i < 2; i++)
-        glTextureSubImage3D(texture.id, 0, 0, 0, i, small.width, small.height, 1, GL_RGBA, GL_UNSIGNED_BYTE,
-                            maps.images[i].texels);
+    int layers = angle_count / 4;
+    tl_image small = shrunk(&heights->image);
+    const struct tl_height_field *sides[] = {&heights->field, &heights->back};
+    tl_texture texture = tl_texture_create(gpu, GL_TEXTURE_2D_ARRAY, GL_RGBA8, small.width, small.height,
+                                           2 * layers, tl_texture_full_levels(small.width, small.height));
+    for (int side = 0; side < 2; side++) {
+        struct tl_height_field baked = *sides[side];
+        baked.heights = &small;
+        struct tl_horizon_maps maps = tl_bake_horizons(&baked, angle_count);
+        for (int i = 0; i < layers; i++)
+            glTextureSubImage3D(texture.id, 0, 0, 0, side * layers + i, small.width, small.height, 1, GL_RGBA,
+                                GL_UNSIGNED_BYTE, maps.images[i].texels);
+        tl_horizon_maps_release(&maps);
+    }
     glGenerateTextureMipmap(texture.id);
-    tl_horizon_maps_release(&maps);
     tl_image_release(&small);
     return texture;
 }
@@ -131,7 +136,7 @@ static void add_heights(struct tl_detail_entry *entry, tl_gpu *gpu, const struct
     if (tl_detail_wants_heights(params))
         entry->textures[TL_DETAIL_HEIGHTS] = upload_heights(gpu, &heights.image);
     if (tl_detail_wants_horizons(params))
-        entry->textures[TL_DETAIL_HORIZONS] = upload_horizons(gpu, &heights.field);
+        entry->textures[TL_DETAIL_HORIZONS] = upload_horizons(gpu, &heights, tl_detail_angle_count(params));
     if (own_normals) {
         tl_image slopes = tl_bake_slopes(&heights.field), normals = tl_bake_normals(&slopes, 1);
         entry->textures[TL_DETAIL_OWN_MOMENTS] = upload_moments(gpu, &normals);

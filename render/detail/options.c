@@ -2,6 +2,7 @@
 
 static const char *const mode_names[] = {"normal", "blinn", "parallax", "parallax_limited", "relief", NULL};
 static const char *const shadow_names[] = {"none", "horizon", "relief", NULL};
+static const char *const angle_names[] = {"8", "16", "32", NULL};
 static const char *const minify_names[] = {"none", "toksvig", "lean", NULL};
 
 typedef struct tl_detail_params params;
@@ -15,6 +16,9 @@ static const struct tl_option rows[] = {
                   "relief: halvings of the step that was too far; more are exacter"),
     TL_OPTION_ENUM(params, shadow, shadow_names,
                    "shadows of bumps on their own surface; relief: those of lamps by steps, not by maps"),
+    TL_OPTION_ENUM(
+        params, angles, angle_names,
+        "horizon: directions all around that a texel has; more place shadows better under low lamps"),
     TL_OPTION_FLOAT(params, height_scale, 0, 100, "", "factor on the heights of weaves and height maps"),
     TL_OPTION_BOOL(params, silhouette,
                    "relief: nothing is seen beyond the border of a map that does not repeat"),
@@ -24,4 +28,4 @@ static const struct tl_option rows[] = {
 };
 const struct tl_option_table tl_detail_options = TL_OPTION_TABLE(
     "detail", "fabric detail: bumps, their depth and their shadows", rows, params, .steps = 32, .refine = 5,
-    .height_scale = 1, .silhouette = true, .minify = TL_DETAIL_MINIFY_LEAN);
+    .angles = TL_DETAIL_ANGLES_16, .height_scale = 1, .silhouette = true, .minify = TL_DETAIL_MINIFY_LEAN);

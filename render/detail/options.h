@@ -17,6 +17,8 @@ enum tl_detail_mode {
  * horizons.
  */
 enum tl_detail_shadow { TL_DETAIL_SHADOW_NONE, TL_DETAIL_SHADOW_HORIZON, TL_DETAIL_SHADOW_RELIEF };
+/* Of horizons: looked up between the two that are nearest to the light. */
+enum tl_detail_angles { TL_DETAIL_ANGLES_8, TL_DETAIL_ANGLES_16, TL_DETAIL_ANGLES_32 };
 /* What is added to the gloss's width where normals are averaged: nothing; one variance, from how short their
  * mean is [Toksvig 2005]; variances along u and v, seen along the view [Olano and Baker 2010]. */
 enum tl_detail_minify { TL_DETAIL_MINIFY_NONE, TL_DETAIL_MINIFY_TOKSVIG, TL_DETAIL_MINIFY_LEAN };
@@ -25,6 +27,7 @@ struct tl_detail_params { /* table "detail" */
     int mode;             /* enum tl_detail_mode */
     int steps, refine;    /* of relief: equal steps, then halvings */
     int shadow;           /* enum tl_detail_shadow */
+    int angles;           /* enum tl_detail_angles */
     float height_scale;
     bool silhouette; /* relief ends where a map that does not repeat does */
     int minify;      /* enum tl_detail_minify */

@@ -224,9 +224,10 @@ struct tl_renderer {
     tl_bits valid; /* resources that hold what their inputs call for */
     struct tl_work_counts {
         double triangles;
-        bool is_glossy, is_faceted; /* any material */
-    } counted;                      /* of the last frame: work.h */
-    tl_bits moving;                 /* inputs that changed from one frame to the last */
+        int lamps;
+        bool is_glossy, is_faceted, is_bumpy; /* any material */
+    } counted;                                /* of the last frame: work.h */
+    tl_bits moving;                           /* inputs that changed from one frame to the last */
     tl_plan plan;
     struct tl_cost_job costs[TL_JOBS_MAX];
     double load; /* tl_load_follow */

@@ -198,6 +198,7 @@ static struct tl_shadow_request shadow_request(const tl_renderer *renderer)
 {
     const struct tl_light_params *light = &renderer->settings.light;
     bool in_passes = tl_light_source(light) == TL_LIGHT_CHAIN;
+    const tl_bits moves_shadows = TL_BIT(TL_INPUT_MOTION) | TL_BIT(TL_INPUT_YAW);
     return (struct tl_shadow_request){
         .kind = (enum tl_visibility)light->visibility,
         .regions = &renderer->regions,
@@ -212,6 +213,9 @@ static struct tl_shadow_request shadow_request(const tl_renderer *renderer)
         .map_size = light->map_size,
         .maps_per_array = in_passes ? light->pems_per_pass : TL_REGIONS_MAX,
         .blur_m = light->blur_m,
+        .regions_revision = renderer->regions_revision,
+        /* What moves is followed a part at a time; what rests is brought up to date. */
+        .refresh = renderer->moving & moves_shadows && !renderer->frame.still ? light->refresh : 0,
         .round = renderer->rest.image};
 }
 
@@ -741,14 +745,16 @@ const tl_job tl_frame_jobs[] = {
      .writes = SET1(TL_MADE_SHEETS),
      .requires_scene = SET1(TL_SCENE_SHEETS),
      .levels = LEVELS_ONE,
-     .run = run_sheets},
+     .run = run_sheets,
+     .work = tl_sample_rays_work},
     {.name = "mirrors",
      .what = "rays: what near mirrors show",
      .reads = SET5(TL_MADE_SAMPLES, TL_MADE_SHEETS, TL_INPUT_SHAPES, TL_INPUT_MOTION, TL_INPUT_GROUND),
      .writes = SET1(TL_MADE_MIRRORS),
      .requires_scene = SET1(TL_SCENE_MIRRORS),
      .levels = LEVELS_ONE,
-     .run = run_mirrors},
+     .run = run_mirrors,
+     .work = tl_sample_rays_work},
     {.name = "points",
      .what = "rays: visibility of the regions, kept at vertices",
      .reads = SET5(TL_MADE_SAMPLES, TL_MADE_REGIONS, TL_INPUT_SHAPES, TL_INPUT_MOTION, TL_INPUT_GROUND) |
@@ -786,7 +792,8 @@ const tl_job tl_frame_jobs[] = {
      .writes = SET1(TL_MADE_LIGHT),
      .requires_scene = SET1(TL_SCENE_INSPECT),
      .levels = LEVELS_ONE,
-     .run = tl_inspect_run},
+     .run = tl_inspect_run,
+     .work = tl_inspect_work},
     {.name = "envmap_lobes",
      .what = "all light through exact lobes, for environment maps",
      .reads = SET4(TL_INPUT_ENVIRONMENT, TL_INPUT_ENVMAP, TL_INPUT_SHAPES, TL_INPUT_DETAIL),
@@ -825,7 +832,8 @@ const tl_job tl_frame_jobs[] = {
      .writes = SET1(TL_MADE_LAMP_MAPS),
      .requires_scene = SET1(TL_SCENE_LAMP_MAPS),
      .levels = LEVELS_ONE,
-     .run = run_lamp_maps},
+     .run = run_lamp_maps,
+     .work = tl_lamp_maps_work},
     {.name = "lamp_rays",
      .what = "rays: what is seen of each lamp",
      .reads = SET5(TL_MADE_SAMPLES, TL_MADE_SURFACES, TL_INPUT_MOTION, TL_INPUT_GROUND, TL_INPUT_LAMPS) |
@@ -833,7 +841,8 @@ const tl_job tl_frame_jobs[] = {
      .writes = SET1(TL_MADE_LAMP_RAYS),
      .requires_scene = SET1(TL_SCENE_LAMP_RAYS),
      .levels = LEVELS_ONE,
-     .run = run_lamp_rays},
+     .run = run_lamp_rays,
+     .work = tl_sample_rays_work},
     {.name = "lamps",
      .what = "light of the lamps, added",
      .reads = SET5(TL_MADE_LIGHT, TL_MADE_GBUFFER, TL_MADE_SURFACES, TL_MADE_LAMP_MAPS, TL_MADE_LAMP_RAYS) |
@@ -841,7 +850,8 @@ const tl_job tl_frame_jobs[] = {
      .writes = SET1(TL_MADE_LAMPLIGHT),
      .requires_scene = SET1(TL_SCENE_LAMPS),
      .levels = LEVELS_ONE,
-     .run = run_lamps},
+     .run = run_lamps,
+     .work = tl_lamps_work},
     {.name = "resolve",
      .what = "samples to pixels",
      .reads = SET4(TL_MADE_LIGHT, TL_MADE_LAMPLIGHT, TL_MADE_GBUFFER, TL_INPUT_SIZE),

@@ -3,6 +3,8 @@
  * twelve frames); only their ratios within a job matter, the rest is learned. */
 #include "render/frame/work.h"
 
+#include "render/inspect/legend.h"
+
 #include <math.h>
 
 /* Of a frame's samples, as long as none has been drawn. */
@@ -34,9 +36,17 @@ static bool is_glossy(const tl_material *material)
     return glms_vec3_max(material->specular) > 0 || material->specular_map.image;
 }
 
+static bool is_bumpy(const tl_material *material)
+{
+    return material->weave || material->normal_map.image;
+}
+
 void tl_work_count(tl_renderer *renderer, const tl_frame *frame)
 {
-    renderer->counted = (struct tl_work_counts){.is_glossy = tl_frame_has(frame, is_glossy),
+    struct tl_lamp lamps[TL_LAMPS_MAX];
+    renderer->counted = (struct tl_work_counts){.lamps = (int)tl_lamps_lit(frame, lamps),
+                                                .is_glossy = tl_frame_has(frame, is_glossy),
+                                                .is_bumpy = tl_frame_has(frame, is_bumpy),
                                                 .is_faceted = tl_frame_has(frame, tl_material_is_faceted)};
     for (size_t i = 0; i < frame->surface_count; i++)
         renderer->counted.triangles += (double)frame->surfaces[i].index_count / 3;
@@ -64,6 +74,9 @@ struct tl_work_seen tl_work_look(const tl_renderer *renderer, const struct tl_re
         .lobes = lobes_of(&renderer->counted, light),
         .groups = shadowed ? ceil(light->regions / (double)TL_LANES) : 0,
         .refreshed = refreshed(light),
+        .is_bumpy = renderer->counted.is_bumpy,
+        .suns = shadowed ? renderer->suns.count : 0,
+        .lamps = renderer->counted.lamps,
         .triangles = renderer->counted.triangles,
         .new_regions = tl_frame_has_lights(renderer, light) ? 0 : light->regions};
 }
@@ -78,7 +91,7 @@ struct tl_work tl_gbuffer_work(const void *context)
 {
     const struct tl_work_seen *seen = context;
     const struct tl_detail_params *detail = &seen->settings->detail;
-    double steps = detail->mode == TL_DETAIL_RELIEF ? detail->steps : 0;
+    double steps = !seen->is_bumpy ? 0 : detail->mode == TL_DETAIL_RELIEF ? 5 + detail->steps : 5;
     return (struct tl_work){
         {5.7, 0.041 * sqrt(seen->texels), 5.7e-5 * seen->texels, 2e-5 * steps * seen->covered}};
 }
@@ -92,8 +105,8 @@ struct tl_work tl_samples_work(const void *context)
 struct tl_work tl_points_work(const void *context)
 {
     const struct tl_work_seen *seen = context;
-    return (struct tl_work){{1e-4 * seen->triangles, 4e-5 * seen->covered, 2e-4 * seen->points,
-                             8e-5 * seen->points * seen->refreshed}};
+    return (struct tl_work){{1e-4 * seen->triangles, (4e-5 + 1e-4 * seen->suns) * seen->covered,
+                             2e-4 * seen->points, 8e-5 * seen->points * seen->refreshed}};
 }
 
 struct tl_work tl_compose_work(const void *context)
@@ -101,6 +114,13 @@ struct tl_work tl_compose_work(const void *context)
     const struct tl_work_seen *seen = context;
     return (struct tl_work){
         {3e-6 * seen->texels, 2e-4 * seen->covered, 1e-5 * seen->groups * seen->lobes * seen->covered}};
+}
+
+struct tl_work tl_inspect_work(const void *context)
+{
+    const struct tl_work_seen *seen = context;
+    double groups = tl_view_is_visibility(seen->settings->image.view) ? seen->groups : 0;
+    return (struct tl_work){{3e-6 * seen->texels, 1e-4 * seen->covered, 3e-5 * groups * seen->covered}};
 }
 
 struct tl_work tl_passes_work(const void *context)
@@ -112,7 +132,7 @@ struct tl_work tl_passes_work(const void *context)
 struct tl_work tl_maps_work(const void *context)
 {
     const struct tl_work_seen *seen = context;
-    double maps = seen->settings->light.regions, side = seen->settings->light.map_size;
+    double maps = seen->refreshed, side = seen->settings->light.map_size;
     return (struct tl_work){{1e-4 * maps * seen->triangles, 1e-5 * maps * side * side}};
 }
 
@@ -123,4 +143,22 @@ struct tl_work tl_resolve_work(const void *context)
     double pixels = (double)image->width * image->height;
     bool is_resampled = image->scale < 1;
     return (struct tl_work){{1e-5 * seen->texels, 1e-5 * pixels, is_resampled ? 2e-5 * pixels : 0}};
+}
+
+struct tl_work tl_lamps_work(const void *context)
+{
+    const struct tl_work_seen *seen = context;
+    return (struct tl_work){{5, 1e-4 * seen->lamps * seen->covered}};
+}
+
+struct tl_work tl_lamp_maps_work(const void *context)
+{
+    const struct tl_work_seen *seen = context;
+    return (struct tl_work){{5, 1e-4 * seen->lamps * seen->triangles}};
+}
+
+struct tl_work tl_sample_rays_work(const void *context)
+{
+    const struct tl_work_seen *seen = context;
+    return (struct tl_work){{1e-4 * seen->triangles, 1e-4 * seen->covered}};
 }

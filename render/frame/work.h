@@ -13,6 +13,8 @@ struct tl_work_seen {
     double lobes;           /* at most, that a sample sums them through */
     double refreshed;       /* rays a point */
     double triangles;
+    bool is_bumpy;      /* something has maps of normals or heights */
+    double lamps, suns; /* lit; that stand apart */
     double new_regions; /* as lights that are not kept from an earlier frame */
 };
 /* Before a draw: what of the frame is remembered when its surfaces may be gone. */
@@ -25,8 +27,12 @@ struct tl_work tl_gbuffer_work(const void *seen);
 struct tl_work tl_samples_work(const void *seen);
 struct tl_work tl_points_work(const void *seen);
 struct tl_work tl_compose_work(const void *seen);
+struct tl_work tl_inspect_work(const void *seen);
 struct tl_work tl_passes_work(const void *seen); /* light */
 struct tl_work tl_maps_work(const void *seen);   /* and blur */
 struct tl_work tl_resolve_work(const void *seen);
+struct tl_work tl_lamps_work(const void *seen);
+struct tl_work tl_lamp_maps_work(const void *seen);
+struct tl_work tl_sample_rays_work(const void *seen); /* sheets, mirrors, lamp_rays */
 
 #endif

@@ -17,11 +17,11 @@ static const struct kind {
     const char *const *channels;
     int channel_count;
 } kinds[TL_AOVS_MAX] = {[NORMAL] = {normal_channels, 3},
-                          [POINT] = {point_channels, 3},
-                          [UV] = {uv_channels, 2},
-                          [ALBEDO] = {albedo_channels, 3},
-                          [VISIBILITY] = {visibility_channels, 1},
-                          [STRAIN] = {strain_channels, 3}};
+                        [POINT] = {point_channels, 3},
+                        [UV] = {uv_channels, 2},
+                        [ALBEDO] = {albedo_channels, 3},
+                        [VISIBILITY] = {visibility_channels, 1},
+                        [STRAIN] = {strain_channels, 3}};
 
 static bool has_strains(const tl_renderer *renderer)
 {
@@ -88,7 +88,7 @@ bool tl_renderer_read_aovs(const tl_renderer *renderer, struct tl_aovs *out, tl_
     for (int layer = 0; layer < TL_AOVS_MAX; layer++)
         if (is_known[layer])
             out->items[out->count++] = (struct tl_aov){.channels = kinds[layer].channels,
-                                                         .image = read_layer(renderer, (enum layer)layer)};
+                                                       .image = read_layer(renderer, (enum layer)layer)};
     return true;
 }
 

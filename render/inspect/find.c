@@ -61,11 +61,10 @@ static void tell_visibility(const tl_renderer *renderer, size_t sample, struct t
 {
     struct tl_seen_regions regions;
     size_t stride;
-    tl_seen_regions_make(&renderer->regions, &regions);
+    tl_seen_regions_make(&renderer->regions, renderer->frame.environment_yaw, &regions);
     const uint16_t *values = tl_points_values(renderer->points, &stride);
-    vec3s normal = tl_turn_direction(out->smooth, -renderer->frame.environment_yaw);
     struct tl_seen seen =
-        tl_seen_at(&regions, values, stride, &tl_points_taps(renderer->points)[sample], normal);
+        tl_seen_at(&regions, values, stride, &tl_points_taps(renderer->points)[sample], out->smooth);
     out->has_visibility = true;
     out->visibility = seen.visibility;
     out->strongest_region = seen.strongest;

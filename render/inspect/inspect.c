@@ -56,7 +56,7 @@ bool tl_inspect_run(void *context, int level, tl_error *error)
     struct tl_legend legend;
     struct tl_seen_regions regions;
     tl_legend_make(&source, &legend);
-    tl_seen_regions_make(&renderer->regions, &regions);
+    tl_seen_regions_make(&renderer->regions, renderer->frame.environment_yaw, &regions);
     struct tl_paint_request request = {.legend = &legend,
                                        .view = source.view,
                                        .samples = &renderer->samples,
@@ -65,7 +65,6 @@ bool tl_inspect_run(void *context, int level, tl_error *error)
                                        .texel = 2 * glms_vec3_norm(renderer->view.up) /
                                                 (float)renderer->samples.height,
                                        .regions = &regions,
-                                       .environment_yaw = renderer->frame.environment_yaw,
                                        .region = source.region};
     if (tl_view_is_visibility(source.view)) {
         request.values = tl_points_values(renderer->points, &request.stride);

@@ -109,15 +109,14 @@ static void list_directions(struct tl_legend *legend)
 static void describe_strain(const struct tl_legend_source *source, struct tl_legend *legend)
 {
     static const char *const titles[] = {"strain along the warp", "strain along the weft",
-                                         "shear between warp and weft"};
+                                         "shear of the threads"};
     float percent = 100 * source->range;
     snprintf(legend->title, sizeof legend->title, "%s", titles[tl_view_strain_axis(source->view)]);
     snprintf(legend->unit, sizeof legend->unit, "%%");
-    const char *reading = source->view == TL_VIEW_STRAIN_SHEAR
-                              ? "cosine of the angle between the threads; 0: at right angles"
-                              : "blue: shorter than at rest; brown: longer";
+    const char *reading = source->view == TL_VIEW_STRAIN_SHEAR ? "cosine of their angle; 0: at right angles"
+                                                               : "blue: shorter than at rest; brown: longer";
     snprintf(legend->note, sizeof legend->note, "%s%s", reading,
-             source->range_is_given ? "" : "; 99 % of the cloth is in this range");
+             source->range_is_given ? "" : "; holds 99 % of the cloth");
     set_scale(legend, -percent, percent, diverging);
     add_entry(legend, tl_legend_unknown, "no strain known");
 }
@@ -161,10 +160,11 @@ static void list_regions(const struct tl_regions *regions, struct tl_legend *leg
 
 static void describe_regions(const struct tl_legend_source *source, struct tl_legend *legend)
 {
-    snprintf(legend->title, sizeof legend->title, "region that gives the most light");
+    snprintf(legend->title, sizeof legend->title, "brightest region");
     if (!source->regions)
         return;
-    snprintf(legend->note, sizeof legend->note, "of %d; the brightest and their share of all light",
+    snprintf(legend->note, sizeof legend->note,
+             "of %d: the one that lights a point most; some, with their share of all light",
              source->regions->count);
     list_regions(source->regions, legend);
 }

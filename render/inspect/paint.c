@@ -5,6 +5,34 @@
 #include <math.h>
 #include <string.h>
 
+#define CURVE_STEPS 1024
+
+/* What costs too much sample by sample. */
+struct palette {
+    float linear[CURVE_STEPS + 2]; /* of sRGB values in CURVE_STEPS equal steps from 0 to 1 */
+    vec3s checker[2][2];           /* [block][square] */
+    vec3s regions[TL_REGIONS_MAX];
+};
+
+static void mix_palette(struct palette *palette)
+{
+    for (int i = 0; i < CURVE_STEPS + 2; i++)
+        palette->linear[i] = tl_srgb_to_linear((float)i / CURVE_STEPS);
+    for (int i = 0; i < 4; i++)
+        palette->checker[i / 2][i % 2] = tl_checker_colour(i / 2, i % 2);
+    for (uint32_t i = 0; i < TL_REGIONS_MAX; i++)
+        palette->regions[i] = tl_number_colour(i);
+}
+
+/* Within 1e-6. */
+static float linear_of(const struct palette *palette, float encoded)
+{
+    float place = CURVE_STEPS * fminf(fmaxf(encoded, 0), 1);
+    int before = (int)place;
+    float part = place - (float)before;
+    return palette->linear[before] + part * (palette->linear[before + 1] - palette->linear[before]);
+}
+
 /* A sample's triangle. */
 struct spot {
     const tl_sample *sample;
@@ -85,15 +113,16 @@ static float checker(const float mm[2], float width_mm, float side_mm)
            tl_paint_square_wave(mm[1] / period, width_mm / period);
 }
 
-static vec3s uv_colour(const struct tl_paint_request *request, const struct spot *spot)
+static vec3s uv_colour(const struct tl_paint_request *request, const struct palette *palette,
+                       const struct spot *spot)
 {
     float mm[2], width_mm = 1000 * footprint(request, spot->sample);
     if (!millimetres(spot, mm))
         return unknown(request, spot->sample);
     float block = 0.5f - 0.5f * checker(mm, width_mm, TL_CHECKER_BLOCK_MM);
     float square = 0.5f + 0.5f * checker(mm, width_mm, TL_CHECKER_SQUARE_MM);
-    vec3s even = glms_vec3_lerp(tl_checker_colour(0, 0), tl_checker_colour(0, 1), square);
-    vec3s odd = glms_vec3_lerp(tl_checker_colour(1, 0), tl_checker_colour(1, 1), square);
+    vec3s even = glms_vec3_lerp(palette->checker[0][0], palette->checker[0][1], square);
+    vec3s odd = glms_vec3_lerp(palette->checker[1][0], palette->checker[1][1], square);
     return glms_vec3_lerp(even, odd, block);
 }
 
@@ -134,28 +163,23 @@ static vec3s strain_colour(const struct tl_paint_request *request, const struct 
     return tl_legend_colour(request->legend, 100 * strain.raw[tl_view_strain_axis(request->view)]);
 }
 
-static vec3s visibility_colour(const struct tl_paint_request *request, size_t index)
+static vec3s visibility_colour(const struct tl_paint_request *request, const struct palette *palette,
+                               size_t index)
 {
     const tl_sample *sample = &request->samples->items[index];
     const struct tl_taps *taps = &request->taps[index];
     if (request->view == TL_VIEW_VISIBILITY && request->region >= 0)
         return tl_legend_colour(request->legend,
                                 tl_seen_region(request->values, request->stride, taps, request->region));
-    vec3s normal = tl_turn_direction(sample->smooth, -request->environment_yaw);
-    struct tl_seen seen = tl_seen_at(request->regions, request->values, request->stride, taps, normal);
+    struct tl_seen seen =
+        tl_seen_at(request->regions, request->values, request->stride, taps, sample->smooth);
     if (request->view == TL_VIEW_VISIBILITY)
         return tl_legend_colour(request->legend, seen.visibility);
-    return seen.strongest >= 0 ? tl_number_colour((uint32_t)seen.strongest) : (vec3s){{0, 0, 0}};
+    return seen.strongest >= 0 ? palette->regions[seen.strongest] : (vec3s){{0, 0, 0}};
 }
 
-static vec3s encoded(vec3s linear)
-{
-    for (int c = 0; c < 3; c++)
-        linear.raw[c] = tl_srgb_from_linear(fminf(fmaxf(linear.raw[c], 0), 1));
-    return linear;
-}
-
-static vec3s colour_of(const struct tl_paint_request *request, size_t index)
+/* As the legend has it: sRGB. */
+static vec3s colour_of(const struct tl_paint_request *request, const struct palette *palette, size_t index)
 {
     const tl_sample *sample = &request->samples->items[index];
     switch (request->view) {
@@ -163,39 +187,50 @@ static vec3s colour_of(const struct tl_paint_request *request, size_t index)
         return tl_direction_colour(sample->normal);
     case TL_VIEW_SMOOTH:
         return tl_direction_colour(sample->smooth);
-    case TL_VIEW_ALBEDO:
-        return encoded(sample->diffuse);
     case TL_VIEW_GLOSS:
         return tl_legend_colour(request->legend, sample->glossiness);
     case TL_VIEW_VISIBILITY:
     case TL_VIEW_REGION:
-        return visibility_colour(request, index);
+        return visibility_colour(request, palette, index);
     default:
         break;
     }
     struct spot spot = find_spot(request, sample);
-    return request->view == TL_VIEW_UV        ? uv_colour(request, &spot)
+    return request->view == TL_VIEW_UV        ? uv_colour(request, palette, &spot)
            : request->view == TL_VIEW_TANGENT ? tangent_colour(request, &spot)
                                               : strain_colour(request, &spot);
+}
+
+static vec3s linear_colour(const struct tl_paint_request *request, const struct palette *palette,
+                           size_t index)
+{
+    if (request->view == TL_VIEW_ALBEDO)
+        return request->samples->items[index].diffuse;
+    vec3s colour = colour_of(request, palette, index);
+    for (int c = 0; c < 3; c++)
+        colour.raw[c] = linear_of(palette, colour.raw[c]);
+    return colour;
 }
 
 void tl_paint(const struct tl_paint_request *request, float *light)
 {
     const struct tl_samples *samples = request->samples;
+    struct palette palette;
+    mix_palette(&palette);
 #pragma omp parallel for schedule(dynamic, 256)
     for (size_t i = 0; i < samples->primary_count; i++) {
-        vec3s colour = colour_of(request, i);
         float *texel = light + 4 * (size_t)samples->items[i].texel;
-        for (int c = 0; c < 3; c++)
-            texel[c] = samples->items[i].cover * tl_srgb_to_linear(colour.raw[c]);
+        vec3s colour = glms_vec3_scale(linear_colour(request, &palette, i), samples->items[i].cover);
+        memcpy(texel, colour.raw, sizeof colour);
         texel[3] = 0;
     }
 }
 
 float tl_paint_strain_range(const tl_surface *const *surfaces, size_t count, int axis)
 {
-    static const float ranges[] = {0.001f, 0.002f, 0.005f, 0.01f, 0.02f, 0.05f, 0.1f,
-                                   0.2f,   0.5f,   1,      2,     5,     10};
+    static const float ranges[] = {0.001f, 0.0015f, 0.002f, 0.003f, 0.005f, 0.007f, 0.01f,
+                                   0.015f, 0.02f,   0.03f,  0.05f,  0.07f,  0.1f,   0.15f,
+                                   0.2f,   0.3f,    0.5f,   0.7f,   1,      10};
     size_t within[TL_COUNT(ranges)] = {0}, all = 0;
     for (size_t s = 0; s < count; s++)
         for (size_t i = 0; surfaces[s]->strains && i < surfaces[s]->vertex_count; i++) {

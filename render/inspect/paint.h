@@ -15,7 +15,6 @@ struct tl_paint_request {
     float texel; /* side of a texel at distance 1 */
     /* Of the views of visibility. */
     const struct tl_seen_regions *regions;
-    float environment_yaw; /* rad */
     const uint16_t *values;
     size_t stride;
     const struct tl_taps *taps; /* by sample */
@@ -26,8 +25,9 @@ struct tl_paint_request {
  * What a screen then shows is the colour of the legend. */
 void tl_paint(const struct tl_paint_request *request, float *light);
 
-/* The smallest of 0.1, 0.2, 0.5, 1 ... 1000 % within which 99 % of the vertices' strains along `axis` (warp,
- * weft, shear) lie; the smallest of all where no surface knows its strains. As a share of 1. */
+/* The smallest of 0.1, 0.15, 0.2, 0.3, 0.5, 0.7, 1, 1.5 ... 100 and 1000 % within which 99 % of the vertices'
+ * strains along `axis` (warp, weft, shear) lie; the smallest of all where no surface knows its strains. As a
+ * share of 1. */
 float tl_paint_strain_range(const tl_surface *const *surfaces, size_t count, int axis);
 
 /* The signed share of a period's first half in a box about `place`: 1 within it, -1 within the other, between

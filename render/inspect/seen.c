@@ -2,16 +2,17 @@
 
 #include <string.h>
 
-void tl_seen_regions_make(const struct tl_regions *regions, struct tl_seen_regions *out)
+void tl_seen_regions_make(const struct tl_regions *regions, float yaw, struct tl_seen_regions *out)
 {
     memset(out, 0, sizeof *out);
     out->group_count = (regions->count + TL_LANES - 1) / TL_LANES;
     for (int i = 0; i < regions->count; i++) {
         struct tl_seen_group *group = &out->groups[i / TL_LANES];
         const struct tl_region *region = &regions->items[i];
-        group->x[i % TL_LANES] = region->direction.x;
-        group->y[i % TL_LANES] = region->direction.y;
-        group->z[i % TL_LANES] = region->direction.z;
+        vec3s direction = tl_turn_direction(region->direction, yaw);
+        group->x[i % TL_LANES] = direction.x;
+        group->y[i % TL_LANES] = direction.y;
+        group->z[i % TL_LANES] = direction.z;
         group->weight[i % TL_LANES] = region->importance;
     }
 }

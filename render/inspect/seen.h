@@ -9,7 +9,7 @@
 
 #define TL_SEEN_GROUPS_MAX ((TL_REGIONS_MAX + TL_LANES - 1) / TL_LANES)
 
-/* Regions side by side, sixteen a group; lanes beyond the last have no weight. Environment's frame. */
+/* Regions side by side, sixteen a group; lanes beyond the last have no weight. World. */
 struct tl_seen_regions {
     int group_count;
     struct tl_seen_group {
@@ -17,7 +17,8 @@ struct tl_seen_regions {
         float weight[TL_LANES]; /* luminance of the region's power */
     } groups[TL_SEEN_GROUPS_MAX];
 };
-void tl_seen_regions_make(const struct tl_regions *regions, struct tl_seen_regions *out);
+/* Of an environment that is turned by `yaw` (rad). */
+void tl_seen_regions_make(const struct tl_regions *regions, float yaw, struct tl_seen_regions *out);
 
 struct tl_seen {
     float visibility; /* [0, 1]: mean over the regions, each weighted by what it would give a matt surface */
@@ -25,7 +26,7 @@ struct tl_seen {
     float share;      /* [0, 1]: of what all give */
 };
 
-/* `values` and `stride` as tl_points_values gives them; `normal` unit, environment's frame. Where no region
+/* `values` and `stride` as tl_points_values gives them; `normal` unit, world. Where no region
  * is above the horizon the visibility is 0. */
 struct tl_seen tl_seen_at(const struct tl_seen_regions *regions, const uint16_t *values, size_t stride,
                           const struct tl_taps *taps, vec3s normal);

@@ -43,8 +43,10 @@ static const struct tl_option light_rows[] = {
     TL_OPTION_BOOL(light_params, jitter, "directions vary inside their regions from frame to frame"),
     TL_OPTION_INT(light_params, rounds, 1, 4096, "frames",
                   "jittered frames averaged while nothing moves; more make still images truer"),
-    TL_OPTION_INT(light_params, refresh, 0, TL_REGIONS_MAX, "regions",
-                  "rays: regions traced anew for each point and moving frame, twice as many at rest; 0: all"),
+    TL_OPTION_INT(
+        light_params, refresh, 0, TL_REGIONS_MAX, "regions",
+        "regions renewed a moving frame; 0: all. rays: traced for each point, twice as many at rest; "
+        "maps: drawn, in turn by energy and age, and all at rest"),
     TL_OPTION_INT(light_params, rays, 1, 64, "",
                   "rays: directions traced a region; more are truer and slower"),
     TL_OPTION_FLOAT(light_params, repair, 0, 1, "",

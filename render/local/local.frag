@@ -195,6 +195,8 @@ void main()
     vec3 smooth_normal = direction_or(normal, facet);
     mat3 frame = detail_frame(smooth_normal, tangent);
     find_detail(frame, side, smooth_normal);
+    vec3 l = towards_lamp(point, side * smooth_normal);
+    float own_shadow = detail_shadow(place, l * frame, side, across, down); // while all neighbours are there
     ivec2 texel = ivec2(gl_FragCoord.xy);
     uint triangle = (first_triangle + uint(gl_PrimitiveID) + 1u) | (gl_FrontFacing ? 0u : TRIANGLE_BACK);
     if (texelFetch(seen_triangle, texel, 0).r != triangle)
@@ -203,9 +205,7 @@ void main()
     float facing;
     out_light = vec4(tables_product(cosines_here(side, smooth_normal, facing)), 1.0);
 #else
-    vec3 l = towards_lamp(point, side * smooth_normal);
-    float shown = texelFetch(seen_point, texel, 0).w * lamp_layers.z * visibility(l);
-    shown *= detail_shadow(place, l * frame, side, across, down);
+    float shown = texelFetch(seen_point, texel, 0).w * lamp_layers.z * visibility(l) * own_shadow;
     vec3 light = under_coat(reflected(side, smooth_normal), l, side * smooth_normal);
     out_light = vec4(shown * irradiance_at(point) * light, 0.0);
 #endif

@@ -14,7 +14,7 @@
 #include <stdint.h>
 
 #define TL_BUDGET_KNOBS_MAX  8
-#define TL_BUDGET_LEVELS_MAX 10
+#define TL_BUDGET_LEVELS_MAX 14
 
 struct tl_budget_knob {
     int level_count;                    /* at least 1 */

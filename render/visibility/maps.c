@@ -3,6 +3,7 @@
 #include "config/log.h"
 #include "config/memory.h"
 #include "render/shaders.h"
+#include "render/visibility/map_order.h"
 
 #include <epoxy/gl.h>
 
@@ -33,6 +34,10 @@ struct tl_shadow_maps {
     tl_texture sun_array;
     struct tl_caster_cloud cloud;
     struct tl_region_view views[TL_REGIONS_MAX], sun_views[TL_SUNS_MAX];
+    int ages[TL_REGIONS_MAX]; /* draws since each was drawn; 0: in the last one */
+    bool due[TL_REGIONS_MAX]; /* drawn in this draw */
+    bool drawn_before;        /* all of them, of these regions */
+    uint64_t regions_revision;
     bool warned;
 };
 
@@ -116,6 +121,7 @@ static void allocate(tl_shadow_maps *maps, const struct tl_shadow_request *reque
         maps->size == size)
         return;
     release_textures(maps);
+    maps->drawn_before = false;
     maps->kind = request->kind;
     maps->count = count;
     maps->per_array = per_array;
@@ -185,12 +191,38 @@ vec3s tl_region_seen_direction(const struct tl_regions *regions, int i, int roun
                                fraction(begin_v + round * step_v));
 }
 
+static void choose_due(tl_shadow_maps *maps, const struct tl_shadow_request *request)
+{
+    maps->drawn_before = maps->drawn_before && maps->regions_revision == request->regions_revision;
+    maps->regions_revision = request->regions_revision;
+    struct tl_map_wait *waits = TL_NEW_ARRAY(struct tl_map_wait, (size_t)maps->count);
+    for (int i = 0; i < maps->count; i++) {
+        const struct tl_region *region = &request->regions->items[i];
+        waits[i] = (struct tl_map_wait){region->importance, region->spread, maps->ages[i] + 1};
+    }
+    tl_map_order(waits, maps->count, maps->drawn_before ? request->refresh : 0, maps->due);
+    for (int i = 0; i < maps->count; i++)
+        maps->ages[i] = maps->due[i] ? 0 : maps->ages[i] + 1;
+    maps->drawn_before = true;
+    free(waits);
+}
+
+bool tl_shadow_maps_wait(const tl_shadow_maps *maps)
+{
+    for (int i = 0; i < maps->count; i++)
+        if (maps->ages[i] > 0)
+            return true;
+    return false;
+}
+
 static void make_views(tl_shadow_maps *maps, const struct tl_shadow_request *request)
 {
     bool fits = request->kind == TL_VISIBILITY_DEPTH || request->suns->count > 0;
     if (fits)
         tl_caster_cloud_fill(&maps->cloud, request->caster_surfaces, request->caster_count);
     for (int i = 0; i < maps->count; i++) {
+        if (!maps->due[i])
+            continue;
         vec3s direction = tl_turn_direction(tl_region_seen_direction(request->regions, i, request->round),
                                             request->environment_yaw);
         maps->views[i] = request->kind == TL_VISIBILITY_DEPTH
@@ -245,6 +277,8 @@ static void draw_moments(const tl_shadow_maps *maps, const struct tl_shadow_requ
     glViewport(0, 0, maps->size, maps->size);
     glEnable(GL_DEPTH_CLAMP); /* the ground reaches beyond the casters' sphere; its moments are not clamped */
     for (int i = 0; i < maps->count; i++) {
+        if (!maps->due[i])
+            continue;
         attach_layer(maps, i);
         glClearNamedFramebufferfv(maps->framebuffer, GL_COLOR, 0, empty);
         glClearNamedFramebufferfv(maps->framebuffer, GL_DEPTH, 0, &farthest);
@@ -254,9 +288,10 @@ static void draw_moments(const tl_shadow_maps *maps, const struct tl_shadow_requ
     }
 }
 
-/* Layer i of `array` sees views[i]. The ground's shadow needs no map. */
+/* Layer i of `array` sees views[i], and is drawn if due[i] (NULL: all are). The ground's shadow needs no map.
+ */
 static void draw_depths(const tl_shadow_maps *maps, const struct tl_shadow_request *request,
-                        const tl_texture *array, const struct tl_region_view *views)
+                        const tl_texture *array, const struct tl_region_view *views, const bool *due)
 {
     const float farthest = 1;
     glBindFramebuffer(GL_FRAMEBUFFER, maps->depth_framebuffer);
@@ -264,6 +299,8 @@ static void draw_depths(const tl_shadow_maps *maps, const struct tl_shadow_reque
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(SLOPE_OFFSET, 0);
     for (int layer = 0; layer < array->layers; layer++) {
+        if (due && !due[layer])
+            continue;
         glNamedFramebufferTextureLayer(maps->depth_framebuffer, GL_DEPTH_ATTACHMENT, array->id, 0, layer);
         glClearNamedFramebufferfv(maps->depth_framebuffer, GL_DEPTH, 0, &farthest);
         draw_view(&maps->programs[OPAQUE_DEPTH], request, &views[layer], false);
@@ -275,6 +312,7 @@ void tl_shadow_maps_draw(tl_shadow_maps *maps, const struct tl_shadow_request *r
 {
     allocate(maps, request);
     allocate_suns(maps, request);
+    choose_due(maps, request);
     make_views(maps, request);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LEQUAL);
@@ -282,9 +320,10 @@ void tl_shadow_maps_draw(tl_shadow_maps *maps, const struct tl_shadow_request *r
         draw_moments(maps, request);
     else
         for (int i = 0; i < maps->array_count; i++)
-            draw_depths(maps, request, &maps->arrays[i], maps->views + (ptrdiff_t)i * maps->per_array);
+            draw_depths(maps, request, &maps->arrays[i], maps->views + (ptrdiff_t)i * maps->per_array,
+                        maps->due + (ptrdiff_t)i * maps->per_array);
     if (request->suns->count > 0)
-        draw_depths(maps, request, &maps->sun_array, maps->sun_views);
+        draw_depths(maps, request, &maps->sun_array, maps->sun_views, NULL);
     tl_gpu_reset_state(maps->gpu);
 }
 
@@ -333,7 +372,7 @@ void tl_shadow_maps_blur(tl_shadow_maps *maps, const struct tl_shadow_request *r
     for (int i = 0; i < maps->count; i++) {
         float sigma =
             tl_shadow_sigma(&request->regions->items[i], &request->casters, maps->size, request->blur_m);
-        if (sigma < TL_BLUR_SIGMA_MIN)
+        if (!maps->due[i] || sigma < TL_BLUR_SIGMA_MIN)
             continue;
         if (3 * sigma > TL_BLUR_RADIUS_MAX && !maps->warned) {
             tl_warn("light.blur_m: a shadow blur of %.0f texels is cut to %d: lower light.blur_m or "

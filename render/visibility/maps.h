@@ -45,20 +45,26 @@ struct tl_shadow_request {
     int map_size;     /* texels */
     int maps_per_array;
     float blur_m;
+    uint64_t regions_revision; /* changes when the regions do: then all maps are drawn */
+    int refresh;               /* so many maps are drawn at most (render/visibility/map_order.h); 0: all */
     int round; /* 0: regions are seen along their own direction; else one that is jittered inside them */
 };
 
 tl_shadow_maps *tl_shadow_maps_create(tl_gpu *gpu, tl_error *error);
 void tl_shadow_maps_destroy(tl_shadow_maps **maps);
 
-/* Draws every region's and every sun's map; then blurs variance maps that were drawn, in place. */
+/* Draws the regions' maps whose turn it is, and every sun's; then blurs variance maps that were drawn, in
+ * place. */
 void tl_shadow_maps_draw(tl_shadow_maps *maps, const struct tl_shadow_request *request);
 void tl_shadow_maps_blur(tl_shadow_maps *maps, const struct tl_shadow_request *request);
+
+/* Whether maps wait for their turn: they show what was, along the views that they were drawn with. */
+bool tl_shadow_maps_wait(const tl_shadow_maps *maps);
 
 /* The array texture that holds the maps of pass `index`; that of the suns' maps. */
 unsigned tl_shadow_maps_texture(const tl_shadow_maps *maps, int index);
 unsigned tl_shadow_maps_sun_texture(const tl_shadow_maps *maps);
-/* How each region, each sun, was seen in the last draw. */
+/* How each region, each sun, was seen when its map was drawn. */
 const struct tl_region_view *tl_shadow_maps_views(const tl_shadow_maps *maps);
 const struct tl_region_view *tl_shadow_maps_sun_views(const tl_shadow_maps *maps);
 /* The map of region `index` as it is on the GPU, rows upwards: for checks. */

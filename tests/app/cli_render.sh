@@ -26,6 +26,18 @@ $TOILE render $fast -o later.exr --frame 4 --set camera.yaw_deg=40
 check "compare equal images" sh -c "$TOILE compare one.exr two.exr --json | grep -q '\"rel_rmse\":[[:space:]]*0'"
 check "compare different images" sh -c "! $TOILE compare later.exr two.exr --json | grep -q '\"rel_rmse\":[[:space:]]*0,'"
 
+$TOILE render $fast -o plain.exr --set light.rounds=1
+$TOILE render $fast -o layers.exr --set light.rounds=1 --aov
+check "layers leave the image as it is" sh -c "$TOILE compare plain.exr layers.exr --json | grep -q '\"max_abs\":[[:space:]]*0[,}[:space:]]'"
+check "layers are there" test "$(stat -c %s layers.exr)" -gt "$(stat -c %s plain.exr)"
+check "layers want an .exr" sh -c "$TOILE render $fast --aov -o layers.png 2>said; test \$? = 2 && grep -q exr said"
+OMP_NUM_THREADS=1 $TOILE render $fast --size 400x400 -o one.png --set image.view=strain_warp
+OMP_NUM_THREADS=2 $TOILE render $fast --size 400x400 -o two.png --set image.view=strain_warp
+$TOILE render $fast --size 400x400 -o bare.png --set image.view=strain_warp --set image.legend=false
+check "a view is the same at any number of threads" cmp one.png two.png
+check "a view has a legend" sh -c "! cmp -s one.png bare.png"
+check "plan tells what a view runs" sh -c "$TOILE plan $fast --set image.view=strain_warp | grep inspect | grep -q run && $TOILE plan $fast | grep inspect | grep -q drop"
+
 $TOILE render $fast -o range.png --frames 0:2
 check "a range of frames" test -s range.0000.png -a -s range.0001.png -a -s range.0002.png -a ! -e range.png
 

@@ -6,9 +6,9 @@
  * Steven 1991 for plain cotton; the usual class of denim) are of other samples than those our numbers were
  * measured on, and real cloth has several stable drapes, so they bind the mean over seeds only. The number of
  * folds is told, not checked. With names of fabrics as arguments: tells their drape. */
-#include "app/settings.h"
 #include "assets/panel.h"
 #include "config/log.h"
+#include "fabrics.h"
 #include "solvers.h"
 
 #define RADIUS 0.15
@@ -151,22 +151,11 @@ static struct drape drape_once(const struct tl_cloth_fabric *fabric, double edge
     return drape;
 }
 
-static struct tl_cloth_fabric read_fabric(const char *name)
-{
-    static struct tl_settings settings;
-    tl_error error = {0};
-    const struct tl_settings_source source = {NULL, NULL, 0};
-    memset(&settings, 0, sizeof settings);
-    assert_ok(tl_settings_load(&settings, &source, &error), error);
-    assert_ok(tl_settings_apply_fabric(&settings, name, &error), error);
-    return settings.fabric;
-}
-
 /* Mean over seeds, which are orientations too. */
 static double drape_coefficient(const char *name)
 {
     const int seeds = 3;
-    struct tl_cloth_fabric fabric = read_fabric(name);
+    struct tl_cloth_fabric fabric = fabric_read(name);
     double sum = 0;
     for (int seed = 0; seed < seeds; seed++)
         sum += drape_once(&fabric, 0.008, seed).coefficient / seeds;

@@ -1,6 +1,7 @@
 /* The reference solver: what it keeps, how fast it converges, and the step beyond which it blows up. */
 #include "cloth/state.h"
 #include "cloth/verlet.h"
+#include "fabrics.h"
 #include "shadow.h"
 #include "sheets.h"
 #include "solvers.h"
@@ -99,7 +100,7 @@ static double total_energy(const tl_cloth *cloth)
 }
 
 struct swing {
-    double stiffness, stretch, tilt; /* N/m, length at the start over rest length, rad from the vertical */
+    double stretch, tilt; /* length at the start over rest length, rad from the vertical */
 };
 
 #define SECONDS 10
@@ -108,11 +109,10 @@ struct swing {
 /* A banner held by its upper edge is let go. The energy's mean over the tenth second against that over the
  * first, of the largest kinetic energy: means, because Verlet keeps an energy that differs from the true one
  * by a ripple of order (omega h)^2. */
-static void check_drift(const struct swing *swing)
+static void check_drift(const struct tl_cloth_fabric *fabric, const struct swing *swing)
 {
     tl_error error = {0};
-    struct tl_cloth_fabric fabric = undamped(swing->stiffness);
-    struct trial trial = begin(6, &fabric, HELD_EDGE, 0.002);
+    struct trial trial = begin(6, fabric, HELD_EDGE, 0.002);
     struct tl_particles *p = &trial.cloth->particles;
     for (size_t i = 0; i < p->count; i++) {
         double below = 0.12 - p->x[i].y, length = below * swing->stretch;
@@ -130,7 +130,7 @@ static void check_drift(const struct swing *swing)
     end(&trial);
     double drift = fabs(means[SECONDS - 1] - means[0]) / most;
     printf("%g N/m, stretched to %g, tilted by %g: energy drifts by %.2g of %.3g J in 10 s, ripple %.2g\n",
-           swing->stiffness, swing->stretch, swing->tilt, drift, most, worst / most);
+           fabric->stretch_warp, swing->stretch, swing->tilt, drift, most, worst / most);
     assert_true(drift < 1e-3);
     assert_true(worst < 0.05 * most);
 }
@@ -138,16 +138,52 @@ static void check_drift(const struct swing *swing)
 static void test_energy_drift(void **state)
 {
     (void)state;
-    const struct swing swings[] = {{50, 1, 0.3}, {1000, 1, 0.5}, {1000, 1.01, 0}, {20000, 1.001, 0}};
-    for (size_t i = 0; i < TL_COUNT(swings); i++)
-        check_drift(&swings[i]);
+    const double stiffness[] = {50, 1000, 1000, 20000};
+    const struct swing swings[] = {{1, 0.3}, {1, 0.5}, {1.01, 0}, {1.001, 0}};
+    for (size_t i = 0; i < TL_COUNT(swings); i++) {
+        struct tl_cloth_fabric fabric = undamped(stiffness[i]);
+        check_drift(&fabric, &swings[i]);
+    }
 }
 
-/* A sheet that falls from level, crumples and never comes to rest passes energy on to stiffer and stiffer
- * waves, and of those the true energy's mean is less than the kept one, by (omega h)^2 / 24 and more: so the
- * true one seems to drift, by 1 % in 10 s at 0.9 of the critical step, by a quarter of that with half the
- * step, ... What Verlet keeps does not: it is held to a hundredth of the bound on drift. */
-static void check_wild(enum held held)
+/* Fabrics that ship, as cloth moves: let go a little out of its plumb line. No correction. */
+static void test_energy_of_fabrics(void **state)
+{
+    (void)state;
+    const char *const names[] = {"silk", "cotton_plain", "denim", "interlock_tee", "tablecloth_polyester"};
+    for (size_t i = 0; i < TL_COUNT(names); i++) {
+        const struct swing swing = {1, 0.2};
+        struct tl_cloth_fabric fabric = fabric_read(names[i]);
+        fabric.damping = 0;
+        printf("%s, ", names[i]);
+        check_drift(&fabric, &swing);
+    }
+}
+
+/* ---- Energy of wild motion ---- */
+
+/* What is held to be the energy: the plain one, with the h^2 term of the kept one, and the kept one by
+ * differences of rising order. */
+enum measure { PLAIN, CORRECTED, SIXTH, EIGHTH, SIXTEENTH, MEASURE_COUNT };
+static const int measure_reach[MEASURE_COUNT] = {0, 0, 3, 4, SHADOW_REACH};
+
+struct means {
+    double first[MEASURE_COUNT], last[MEASURE_COUNT]; /* J, over the first and the tenth second */
+    double most;                                      /* J, kinetic */
+};
+
+static void add_energies(const struct trial *trial, const struct shadow *shadow, double share, double *sums)
+{
+    double plain = total_energy(trial->cloth);
+    sums[PLAIN] += share * plain;
+    sums[CORRECTED] += share * (plain + shadow_second_order(trial->cloth, shadow->h));
+    for (int m = SIXTH; m < MEASURE_COUNT; m++)
+        sums[m] += share * shadow_energy(shadow, trial->cloth, measure_reach[m]);
+}
+
+/* A sheet that falls from level, crumples and never comes to rest, at a share of the critical step. It is
+ * never crushed so that the step would have to be more than 2 % shorter. */
+static struct means run_wild(enum held held, double share)
 {
     tl_error error = {0};
     struct tl_cloth_fabric fabric = undamped(50);
@@ -155,29 +191,55 @@ static void check_wild(enum held held)
     struct tl_particles *p = &trial.cloth->particles;
     for (size_t i = 0; i < p->count; i++)
         p->x[i] = (vec3d){p->x[i].x, 0.12, 0.12 - p->x[i].y};
-    double h =
-        TL_VERLET_SAFETY * trial.cloth->critical_step * 0.98; /* it is never crushed by more than that */
+    double h = share * trial.cloth->critical_step * 0.98;
     long steps = lround(SECONDS / h), second = steps / SECONDS;
     trial.cloth->params.frame_rate = 1 / h; /* a frame is a substep */
     struct shadow shadow = shadow_begin(trial.cloth, h);
-    double kept[2] = {0}, truth[2] = {0}, most = 0;
+    struct means means = {0};
     for (long i = 0; i < steps; i++) {
         assert_ok(tl_cloth_step(trial.cloth, NULL, &error), error);
-        double energy = shadow_record(&shadow, trial.cloth);
-        int end = i < second ? 0 : 1;
-        if (i < second || i >= steps - second) {
-            kept[end] += isnan(energy) ? 0 : energy / (double)(second - (end ? 0 : SHADOW_STEPS - 1));
-            truth[end] += total_energy(trial.cloth) / (double)second;
-            most = fmax(most, tl_cloth_measure(trial.cloth, NULL).kinetic_energy);
-        }
+        shadow_record(&shadow, trial.cloth);
+        if (shadow_is_full(&shadow) && i < second)
+            add_energies(&trial, &shadow, 1 / (double)(second - (SHADOW_STEPS - 1)), means.first);
+        if (i >= steps - second)
+            add_energies(&trial, &shadow, 1 / (double)second, means.last);
+        means.most = fmax(means.most, tl_cloth_energies(trial.cloth).kinetic);
     }
     shadow_end(&shadow);
     end(&trial);
-    printf(
-        "wild, held by %s: the kept energy drifts by %.2g of %.3g J in 10 s, the true one's mean by %.2g\n",
-        held == HELD_EDGE ? "an edge" : "corners", (kept[1] - kept[0]) / most, most,
-        (truth[1] - truth[0]) / most);
-    assert_near(kept[1], kept[0], 1e-5 * most);
+    return means;
+}
+
+/* Of the largest kinetic energy, in 10 s. */
+static double drift_of(const struct means *means, enum measure measure)
+{
+    return (means->last[measure] - means->first[measure]) / means->most;
+}
+
+/* Energy passes on to stiffer and stiffer waves, whatever the step. Verlet keeps exactly, but for what is
+ * exponentially small, an energy that differs from the plain one by h^2 times what grows with stiff waves: so
+ * the mean of the plain one moves although nothing is lost. That this is all shows in orders: the plain drift
+ * falls with h^2, that of the plain energy with the kept one's h^2 term with h^4, and at the solver's own
+ * step it falls with each further order that is counted. Bounds on ratios are wide, as two runs of a chaotic
+ * sheet agree in their statistics only: 4 and 16 are meant. */
+static void check_wild(enum held held)
+{
+    struct means coarse = run_wild(held, TL_VERLET_SAFETY), fine = run_wild(held, TL_VERLET_SAFETY / 2);
+    printf("wild, held by %s: in 10 s the plain energy drifts by %.2g, with its h^2 term by %.2g, to the "
+           "sixth order by %.2g, eighth %.2g, sixteenth %.2g; with half the step %.2g, %.2g, ..., %.2g\n",
+           held == HELD_EDGE ? "an edge" : "corners", drift_of(&coarse, PLAIN), drift_of(&coarse, CORRECTED),
+           drift_of(&coarse, SIXTH), drift_of(&coarse, EIGHTH), drift_of(&coarse, SIXTEENTH),
+           drift_of(&fine, PLAIN), drift_of(&fine, CORRECTED), drift_of(&fine, SIXTEENTH));
+    assert_true(drift_of(&coarse, PLAIN) / drift_of(&fine, PLAIN) > 2.5 &&
+                drift_of(&coarse, PLAIN) / drift_of(&fine, PLAIN) < 6);
+    assert_true(drift_of(&coarse, CORRECTED) / drift_of(&fine, CORRECTED) > 8 &&
+                drift_of(&coarse, CORRECTED) / drift_of(&fine, CORRECTED) < 32);
+    assert_near(drift_of(&fine, CORRECTED), 0, 1e-3);
+    assert_near(drift_of(&coarse, CORRECTED), 0, 0.4 * fabs(drift_of(&coarse, PLAIN)));
+    assert_near(drift_of(&coarse, SIXTH), 0, 0.6 * fabs(drift_of(&coarse, CORRECTED)));
+    assert_near(drift_of(&coarse, EIGHTH), 0, 1e-3);
+    assert_near(drift_of(&coarse, SIXTEENTH), 0, 1e-5);
+    assert_near(drift_of(&fine, SIXTEENTH), 0, 1e-5);
 }
 
 static void test_wild_energy(void **state)
@@ -298,9 +360,9 @@ static void test_critical_step(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_momentum),      cmocka_unit_test(test_energy_drift),
-        cmocka_unit_test(test_wild_energy),   cmocka_unit_test(test_second_order),
-        cmocka_unit_test(test_critical_step),
+        cmocka_unit_test(test_momentum),          cmocka_unit_test(test_energy_drift),
+        cmocka_unit_test(test_energy_of_fabrics), cmocka_unit_test(test_wild_energy),
+        cmocka_unit_test(test_second_order),      cmocka_unit_test(test_critical_step),
     };
     tl_log_set_level(TL_LOG_WARN);
     return cmocka_run_group_tests(tests, NULL, NULL);

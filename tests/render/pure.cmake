@@ -20,6 +20,7 @@ foreach(name
     lobe_error
     lobes
     map_fit
+    map_order
     memory
     normalise
     plan

@@ -192,7 +192,7 @@ static void test_wall(void **state)
     enum { SIDE = 64 };
     tl_image heights = heights_of(SIDE, SIDE, wall);
     struct tl_height_field field = tl_height_field_make(&heights, 0.01f, 0.01f, true, true);
-    struct tl_horizon_maps maps = tl_bake_horizons(&field);
+    struct tl_horizon_maps maps = tl_bake_horizons(&field, 16);
     for (int column = 2; column < SIDE / 2;
          column++) { /* not where the diagonal leaves the map before it meets the wall */
         vec2s uv = {{((float)column + 0.5f) / SIDE, 0.5f}};
@@ -223,7 +223,7 @@ static void test_horizon_against_rays(void **state)
     tl_weave weave = satin();
     struct tl_height_field field =
         tl_height_field_make(&weave.height, weave.size_m[0], weave.size_m[1], false, false);
-    struct tl_horizon_maps maps = tl_bake_horizons(&field);
+    struct tl_horizon_maps maps = tl_bake_horizons(&field, 16);
     struct tl_random random = tl_random_begin(5, 0);
     int agreed[2] = {0}, cast[2] = {0};
     double lit[2] = {0}, by_map = 0;
@@ -288,7 +288,7 @@ static void test_degenerate(void **state)
     for (int clamp = 0; clamp < 2; clamp++) {
         struct tl_height_field field = tl_height_field_make(&heights, 1, 1, clamp, clamp);
         tl_image slopes = tl_bake_slopes(&field);
-        struct tl_horizon_maps maps = tl_bake_horizons(&field);
+        struct tl_horizon_maps maps = tl_bake_horizons(&field, 16);
         assert_near(tl_image_floats(&slopes)[0], 0, 0);
         assert_near(tl_horizon_sine(&maps, &field, (vec2s){{0.3f, -7}}, 0.1f, 1), 0, 0);
         tl_horizon_maps_release(&maps);

@@ -178,7 +178,7 @@ static void test_unused(void **state)
     size_t bare = bytes_with(device, stage, &none);
     assert_false(runs_detail(device->renderer));
     const struct tl_detail_params *choices[] = {&relief, &horizon, &lean};
-    const size_t texel_bytes[] = {4, 2 * 4, 16}; /* heights; two layers of bytes; moments */
+    const size_t texel_bytes[] = {4, 2 * 16, 16}; /* heights; sixteen bytes a side; moments */
     for (size_t i = 0; i < TL_COUNT(choices); i++) {
         size_t bytes = bytes_with(device, stage, choices[i]);
         assert_true(runs_detail(device->renderer));

@@ -171,16 +171,15 @@ static void test_shadow(void **state)
               step = reach / 64 + 0.1f / SIDE; /* of the march, and a texel */
         for (int half_mm = 2; half_mm < 90; half_mm++) {
             float distance = 0.0005f * (float)half_mm;
-            const struct tl_relief place = {{{0.5f - distance / 0.1f, 0.5f}}, 0};
-            float lit = tl_field_lit(&field, &place, light, 64);
+            float lit = tl_field_lit(&field, (vec2s){{0.5f - distance / 0.1f, 0.5f}}, light, 64);
             if (distance < reach - step)
                 assert_near(lit, 0, 0);
             if (distance > reach + step)
                 assert_near(lit, 1, 0);
         }
-        const struct tl_relief on_top = {{{0.75f, 0.5f}}, 0.01f};
-        assert_near(tl_field_lit(&field, &on_top, light, 64), 1, 0);
-        assert_near(tl_field_lit(&field, &on_top, direction(100, 0), 64), 0, 0);
+        const vec2s on_top = {{0.75f, 0.5f}};
+        assert_near(tl_field_lit(&field, on_top, light, 64), 1, 0);
+        assert_near(tl_field_lit(&field, on_top, direction(100, 0), 64), 0, 0);
     }
     tl_image_release(&heights);
 }

@@ -120,6 +120,41 @@ static void test_only_what_changed(void **state)
     tl_renderer_destroy(&renderer);
 }
 
+/* In motion so many maps are drawn as light.refresh says and the others show what was; the next frame at rest
+ * has all of them, to the bit. */
+static void test_maps_wait_and_catch_up(void **state)
+{
+    struct test_device *device = *state;
+    struct scene scene;
+    tl_error error = {0};
+    const int kinds[] = {TL_VISIBILITY_VSM, TL_VISIBILITY_DEPTH};
+    for (int k = 0; k < 2; k++) {
+        tl_renderer *renderer = tl_renderer_create(device->gpu, &error);
+        tl_renderer *fresh = tl_renderer_create(device->gpu, &error);
+        scene_open(&scene, daylight);
+        scene.settings.light.visibility = kinds[k];
+        scene.settings.light.refresh = 6;
+        draw(renderer, &scene);
+        assert_true(tl_renderer_is_at_rest(renderer));
+        scene.frame.environment_yaw = 0.7f; /* every shadow falls elsewhere */
+        tl_image moving = test_draw(renderer, &scene.frame, &scene.settings);
+        assert_false(tl_renderer_is_at_rest(renderer));
+        tl_image resting = test_draw(renderer, &scene.frame, &scene.settings);
+        assert_true(tl_renderer_is_at_rest(renderer));
+        tl_image anew = test_draw(fresh, &scene.frame, &scene.settings);
+        size_t bytes = (size_t)anew.width * (size_t)anew.height * 4 * sizeof(float);
+        assert_memory_equal(resting.texels, anew.texels, bytes);
+        assert_memory_not_equal(moving.texels, anew.texels, bytes);
+        expect_jobs(renderer, &scene, "");
+        tl_image_release(&moving);
+        tl_image_release(&resting);
+        tl_image_release(&anew);
+        scene_close(&scene);
+        tl_renderer_destroy(&fresh);
+        tl_renderer_destroy(&renderer);
+    }
+}
+
 /* What is drawn from what was kept equals what is drawn from nothing. */
 static void test_reuse_changes_nothing(void **state)
 {
@@ -445,6 +480,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_only_what_changed),
+        cmocka_unit_test(test_maps_wait_and_catch_up),
         cmocka_unit_test(test_reuse_changes_nothing),
         cmocka_unit_test(test_memory),
         cmocka_unit_test(test_too_large),

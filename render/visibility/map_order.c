@@ -1,0 +1,47 @@
+#include "render/visibility/map_order.h"
+
+#include "config/memory.h"
+
+#include <stdlib.h>
+
+#define SHARPEST 0.02f /* rad: a texel's part; what is sharper moves no more */
+
+struct turn {
+    float urgency;
+    int index;
+};
+
+/* The most urgent first; of equals the first. */
+static int compare_turns(const void *a, const void *b)
+{
+    const struct turn *left = a, *right = b;
+    if (left->urgency != right->urgency) // NOLINT: whether they are equals
+        return left->urgency > right->urgency ? -1 : 1;
+    return left->index - right->index;
+}
+
+int tl_map_age_cap(int count, int most)
+{
+    return 2 * ((count + most - 1) / most);
+}
+
+void tl_map_order(const struct tl_map_wait *waits, int count, int most, bool due[])
+{
+    bool all = most <= 0 || most >= count;
+    struct turn *turns = TL_NEW_ARRAY(struct turn, (size_t)count);
+    int taken = 0;
+    for (int i = 0; i < count; i++) {
+        const struct tl_map_wait *wait = &waits[i];
+        due[i] = all || wait->age >= tl_map_age_cap(count, most);
+        taken += due[i];
+        float change = (float)wait->age / (wait->softness > SHARPEST ? wait->softness : SHARPEST);
+        turns[i] = (struct turn){wait->energy * change, i};
+    }
+    qsort(turns, (size_t)count, sizeof *turns, compare_turns);
+    for (int i = 0; i < count && taken < most; i++)
+        if (!due[turns[i].index]) {
+            due[turns[i].index] = true;
+            taken++;
+        }
+    free(turns);
+}

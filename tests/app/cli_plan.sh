@@ -1,0 +1,59 @@
+#!/usr/bin/env bash
+# What a frame is planned to do: each feature that leaves a scene takes its jobs, its memory and its work with it; a budget
+# tells its levels. Work is what jobs have to do, by the table of costs: no clock is asked.
+set -eu
+command -v python3 >/dev/null || { echo "skipped: JSON is not parsed: python3 is absent"; exit 77; }
+room=$(mktemp -d)
+trap 'rm -rf "$room"' EXIT
+cd "$room"
+fast="--preset draft --size 128x96 --set cloth.edge_m=0.05 --quiet --frame 1 --json"
+
+cat >less.py <<'END'
+import json, sys
+name, dropped = sys.argv[1], sys.argv[4].split()
+more, less = (json.load(open(f)) for f in sys.argv[2:4])
+def running(plan): return {j["name"]: j for j in plan["jobs"] if j["action"] == "run"}
+for job in dropped:
+    row = next(j for j in less["jobs"] if j["name"] == job)
+    assert row["action"] == "drop" and row["reason"], (name, row)
+    assert next(j for j in more["jobs"] if j["name"] == job)["action"] != "drop", (name, job)
+bytes_ = [sum(p["resource_bytes"].values()) for p in (more, less)]
+assert [p["memory_bytes"]["total"] for p in (more, less)] == bytes_, (name, "memory by resource")
+assert bytes_[1] < bytes_[0], (name, "memory", bytes_)
+work = [sum(j["work_ms"] for j in p["jobs"]) for p in (more, less)]
+assert work[1] < work[0], (name, "work", work)
+print("ok     %-10s memory %.2f to %.2f MB, work %.1f to %.1f" % (name, *(b / 1e6 for b in bytes_), *work))
+END
+
+without() { # NAME "JOBS" "WITH" "WITHOUT"
+    $TOILE plan $fast $3 >more.json
+    $TOILE plan $fast $4 >less.json
+    python3 less.py "$1" more.json less.json "$2" || { echo "FAILED $1"; exit 1; }
+}
+without gloss "" "--fabric none --set material.glossiness=0.7 --set material.specular=0.04,0.04,0.04" \
+    "--fabric none --set material.glossiness=0 --set material.specular=0,0,0"
+without detail "detail" "--fabric denim --set detail.shadow=horizon" "--fabric none"
+without lamps "lamps lamp_rays" "--set lamp.kind=point" "--set lamp.kind=none"
+without ground "" "--set image.ground=true" "--set image.ground=false"
+without shadows "points lights" "--method pem" "--method unshadowed"
+without regions "" "--set light.regions=192" "--set light.regions=48"
+sun=$TOILE_DATA_DIR/envmaps/hdr/kloppenheim_05_1k.hdr
+if [ -r "$sun" ]; then
+    without sun "" "--env $sun --set light.sun=true" "--env $sun --set light.sun=false"
+else
+    echo "skipped: sun: $sun is absent"
+fi
+
+$TOILE plan $fast --budget 1 >tight.json
+$TOILE plan $fast --budget 100000 >loose.json
+python3 - <<'END'
+import json
+tight, loose = (json.load(open(f))["budget"] for f in ("tight.json", "loose.json"))
+assert loose["error"] == 0 and all(k["level"] == 0 and k["next_ms"] is None for k in loose["knobs"])
+assert tight["error"] > 0 and [k["name"] for k in tight["knobs"]] == ["refresh", "regions", "relief", "cloth", "scale"]
+for knob in tight["knobs"]:
+    assert knob["level"] == knob["levels"] - 1 and (knob["level"] == 0 or knob["next_error"] < 0), knob
+print("ok     budgets")
+END
+$TOILE plan ${fast%--json} --budget 50 | grep -q "levels for 50 ms" || { echo "FAILED text"; exit 1; }
+echo "ok     text"
