@@ -13,7 +13,7 @@
 /* What assets/garment.h, assets/specimen.h, assets/avatar.h and assets/studio.h make without a file, and
  * "none".
  */
-static const char *const garment_names[] = {"dress",  "skirt", "layers", "sheet",
+static const char *const garment_names[] = {"dress",  "skirt", "layers", "sheet", "disc",
                                             "sphere", "torus", "none",   NULL};
 static const char *const avatar_names[] = {"form", "ball", "none", NULL};
 static const char *const environment_names[] = {"studio", "white", "none", NULL};

@@ -319,6 +319,23 @@ static bool check_envmap_size(const tl_frame *frame, const struct tl_render_sett
     return true;
 }
 
+/* What the scene does not call for any more is given back, and made anew when it does again. While something
+ * else than light is shown, light's things wait. */
+static void let_go(tl_renderer *renderer, tl_bits facts)
+{
+    if (facts & TL_BIT(TL_SCENE_INSPECT))
+        return;
+    if (!(facts & TL_BIT(TL_SCENE_LAMPS))) {
+        tl_local_release(&renderer->local);
+        renderer->valid &=
+            ~(TL_BIT(TL_MADE_LAMP_MAPS) | TL_BIT(TL_MADE_LAMP_RAYS) | TL_BIT(TL_MADE_LAMPLIGHT));
+    }
+    if (!(facts & TL_BIT(TL_SCENE_SHEETS))) {
+        tl_sheets_release(&renderer->sheets);
+        renderer->valid &= ~TL_BIT(TL_MADE_SHEETS);
+    }
+}
+
 bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct tl_render_settings *settings,
                       tl_error *error)
 {
@@ -338,11 +355,8 @@ bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct
     renderer->view = tl_view_make(&frame->camera, used.image.width, used.image.height);
     memcpy(renderer->signatures, signatures, sizeof signatures);
     tl_frame_list_surfaces(renderer);
+    let_go(renderer, tl_frame_facts(frame, &used));
     const struct tl_plan_input input = plan_input(renderer, frame, &used, changed, read_of(frame));
-    if (!(input.scene & TL_BIT(TL_SCENE_LAMPS)))
-        tl_local_release(&renderer->local);
-    if (!(input.scene & TL_BIT(TL_SCENE_SHEETS)))
-        tl_sheets_release(&renderer->sheets);
     return run_plan(renderer, &input, &renderer->plan, error);
 }
 
