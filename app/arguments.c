@@ -319,7 +319,7 @@ static bool take_flag(const struct flag *flag, const char *value, struct tl_argu
         out->sheet.views = value;
         return true;
     case FLAG_SAME_DRAPE:
-        out->sheet.same_drape = true;
+        out->same_drape = true;
         return true;
     case FLAG_FRAME_COUNT:
         return read_whole("--frames", value, NULL, 1, &out->frame_count, error);

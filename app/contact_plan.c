@@ -533,7 +533,7 @@ static void label(const struct tl_arguments *arguments, struct tl_contact_plan *
 
 bool tl_contact_plan_make(const struct tl_arguments *arguments, struct tl_contact_plan *out, tl_error *error)
 {
-    *out = (struct tl_contact_plan){.same_drape = arguments->sheet.same_drape};
+    *out = (struct tl_contact_plan){.same_drape = arguments->same_drape};
     bool made = add_rows(arguments, out, error) && add_columns(arguments, out, error);
     size_t cells = out->row_count * out->column_count;
     if (made && cells > TL_CONTACT_CELLS_MAX)
