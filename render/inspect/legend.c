@@ -169,7 +169,7 @@ static void describe_regions(const struct tl_legend_source *source, struct tl_le
     if (!source->regions)
         return;
     snprintf(legend->note, sizeof legend->note,
-             "of %d: the one that lights a point most; some, with their share of all light",
+             "of %d: what lights a point most; the strongest, with their share of all light",
              source->regions->count);
     list_regions(source->regions, legend);
 }
