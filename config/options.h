@@ -186,7 +186,8 @@ bool tl_options_equal(const struct tl_option_table *table, const void *a, const 
 
 /* All options as help text (one line each), as a Markdown reference page, or as a YAML document that
  * tl_options_read_yaml reads back to the same values (relative paths are printed as they stand, so the
- * document must be read from the same working directory, under a name without a folder). */
+ * document must be read from the same working directory, under a name without a folder; a TL_PATH with
+ * choices that is empty was left out, and is again). */
 void tl_options_print_help(const struct tl_binding *bindings, size_t count, FILE *out);
 void tl_options_print_reference(const struct tl_binding *bindings, size_t count, FILE *out);
 void tl_options_print_yaml(const struct tl_binding *bindings, size_t count, FILE *out);

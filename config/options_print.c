@@ -81,6 +81,12 @@ static void print_quoted(const char *text, FILE *out)
     fputc('"', out);
 }
 
+/* A name that was left out: no text stands for it, but not to write it does. */
+static bool is_left_out(const struct tl_option *row, const char *value)
+{
+    return row->type == TL_PATH && row->choices && value[0] == '\0';
+}
+
 void tl_options_print_yaml(const struct tl_binding *bindings, size_t count, FILE *out)
 {
     for (size_t i = 0; i < count; i++) {
@@ -88,6 +94,10 @@ void tl_options_print_yaml(const struct tl_binding *bindings, size_t count, FILE
         for (size_t j = 0; j < bindings[i].table->row_count; j++) {
             const struct tl_option *row = &bindings[i].table->rows[j];
             char *value = tl_options_get_text(&bindings[i], row);
+            if (is_left_out(row, value)) {
+                free(value);
+                continue;
+            }
             fprintf(out, "  %s: ", row->name);
             if (row->type == TL_STRING || row->type == TL_PATH)
                 print_quoted(value, out);
