@@ -51,8 +51,8 @@ static const double sampling_errors[] = {0, 0.040, 0.057, 0.093};
 static double sampling_error(double samples)
 {
     const int last = (int)TL_COUNT(sampling_errors) - 1;
-    double place = fmin(fmax(log2(2 / samples), 0), last);
-    int below = place < last ? (int)place : last - 1;
+    double place = fmax(log2(2 / samples), 0);
+    int below = place < last ? (int)place : last - 1; /* beyond, the last slope goes on */
     double share = place - below;
     return (1 - share) * sampling_errors[below] + share * sampling_errors[below + 1];
 }
