@@ -38,33 +38,26 @@ struct tl_arguments {
     size_t positional_count;
     char **assignments; /* "table.key=value", in order; owned */
     size_t assignment_count;
-    const char *output;          /* NULL: not given */
-    int first_frame, last_frame; /* 0, 0 unless given */
-    bool frames_given;           /* --frames rather than --frame */
-    bool json, quiet, verbose, help;
-    int hdr;                 /* -1 by content, 0 --ldr, 1 --hdr */
+    /* NULL: not given */
+    const char *output, *keep;
     const char *screenshots; /* folder for screenshots */
-    int max_frames;          /* 0: no limit */
-    bool fresh;
-    double budget_ms; /* 0: not given */
-    const char *axis; /* NULL: not given */
-    bool quick, full;
-    double repeat_mm, height_mm; /* 0: not given */
-    bool clamp;
-    const char *layout, *from; /* NULL: not given */
-    int map_size;              /* 0: not given */
-    bool capture;
-    struct { /* NULL: not given; else names with commas between them */
+    const char *axis;
+    const char *layout, *from;
+    const char *path, *video, *against, *replay;
+    struct { /* names with commas between them */
         const char *garments, *fabrics, *colourways, *environments, *views;
-        bool same_drape;
     } sheet;
-    int frame_count, every; /* 0: not given */
-    bool furnace, still;
-    const char *keep; /* NULL: not given */
-    bool aovs;
-    int oracle_every; /* 0: not given */
-    bool hash;
-    const char *path, *video, *against, *replay; /* NULL: not given */
+    /* 0: not given */
+    double budget_ms;
+    double repeat_mm, height_mm;
+    int first_frame, last_frame;
+    int frame_count, every, oracle_every;
+    int max_frames;
+    int map_size;
+    int hdr;           /* -1 by content, 0 --ldr, 1 --hdr */
+    bool frames_given; /* --frames rather than --frame */
+    bool json, quiet, verbose, help;
+    bool fresh, quick, full, clamp, capture, furnace, still, aovs, hash, same_drape;
 };
 
 bool tl_arguments_parse(int argc, char **argv, unsigned flags, struct tl_arguments *out, tl_error *error);

@@ -12,7 +12,7 @@ typedef struct tl_contact_store tl_contact_store;
 
 /* Makes the folder, or takes up what is in it. Fails on a manifest that is none. */
 tl_contact_store *tl_contact_store_open(const char *folder, tl_error *error);
-void tl_contact_store_close(tl_contact_store **store); /* nulls it; null is fine */
+void tl_contact_store_close(tl_contact_store **handle); /* nulls it; null is fine */
 
 /* True when the file of this name is there and shows what the hash stands for. */
 bool tl_contact_store_has(const tl_contact_store *store, const char *name, uint64_t hash);

@@ -66,25 +66,11 @@ static vec3s mirrored(vec3s h, vec3s v)
     return glms_vec3_normalize(glms_vec3_sub(glms_vec3_scale(h, 2 * glms_vec3_dot(h, v)), v));
 }
 
-/* Ward's exponential is the density of the slopes itself: what is left of the quotient below. */
-static vec3s ward_value(const struct tl_brdf *brdf, vec3s normal, vec3s h, vec3s v)
-{
-    float cosine = glms_vec3_dot(h, normal), towards = glms_vec3_dot(h, v), facing = glms_vec3_dot(normal, v);
-    float leaving = 2 * towards * cosine - facing; /* cosine of the light */
-    if (!(towards > 0) || !(leaving > 0))
-        return (vec3s){{0, 0, 0}};
-    return glms_vec3_scale(tl_brdf_fresnel(brdf, fminf(towards, 1)),
-                           cosine * cosine * cosine * towards * sqrtf(leaving / facing));
-}
-
 /* Gloss over the density with which Gaussian slopes send light there: what each of them counts. */
 static vec3s value_of_slope(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame,
                             const struct slopes *slopes, vec3s v, vec2s slope)
 {
-    vec3s h = facet_of(frame, slope), l;
-    if (brdf->gloss.model == TL_REFLECT_WARD)
-        return ward_value(brdf, frame->normal, h, v);
-    l = mirrored(h, v);
+    vec3s h = facet_of(frame, slope), l = mirrored(h, v);
     float cosine = glms_vec3_dot(h, frame->normal), towards = glms_vec3_dot(h, v);
     if (!(towards > 0) || !(glms_vec3_dot(l, frame->normal) > 0))
         return (vec3s){{0, 0, 0}};
