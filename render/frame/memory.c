@@ -37,10 +37,12 @@ static size_t resource_bytes(const tl_renderer *renderer, enum tl_resource resou
         return cube_bytes(&renderer->cube);
     case TL_MADE_REGIONS:
         return regions_bytes(&renderer->regions);
+    case TL_MADE_LOBE:
+        return tl_lighting_bytes(&renderer->lighting);
     case TL_MADE_PEMS:
         return tl_pems_bytes(&renderer->pems);
     case TL_MADE_LOBES:
-        return tl_lobes_bytes(&renderer->lobes) + tl_lighting_bytes(&renderer->lighting);
+        return tl_lobes_bytes(&renderer->lobes);
     case TL_MADE_SLICES:
         return tl_slice_maps_bytes(&renderer->slice_maps);
     case TL_MADE_LIGHTS:
@@ -112,7 +114,7 @@ struct tl_render_memory tl_renderer_memory(const tl_renderer *renderer)
         .sheets = SUM_OF(TL_MADE_SHEETS),
         .targets = SUM_OF(TL_MADE_GBUFFER, TL_MADE_LIGHT, TL_MADE_IMAGE),
         .surfaces = SUM_OF(TL_MADE_SURFACES, TL_MADE_DETAIL),
-        .other = SUM_OF(TL_MADE_CUBE, TL_MADE_REGIONS, TL_MADE_LAMPLIGHT, TL_MADE_BACKDROP)};
+        .other = SUM_OF(TL_MADE_CUBE, TL_MADE_REGIONS, TL_MADE_LOBE, TL_MADE_LAMPLIGHT, TL_MADE_BACKDROP)};
     memory.total = memory.pems + memory.maps + memory.rays + memory.sheets + memory.targets +
                    memory.surfaces + memory.other;
     return memory;

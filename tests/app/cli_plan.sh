@@ -30,8 +30,8 @@ without() { # NAME "JOBS" "WITH" "WITHOUT"
     $TOILE plan $fast $4 >less.json
     python3 less.py "$1" more.json less.json "$2" || { echo "FAILED $1"; exit 1; }
 }
-without gloss "" "--fabric none --set material.glossiness=0.7 --set material.specular=0.04,0.04,0.04" \
-    "--fabric none --set material.glossiness=0 --set material.specular=0,0,0"
+without gloss "" "--fabric satin" \
+    "--fabric satin --set material.model=phong --set material.glossiness=0 --set material.specular=0,0,0"
 without detail "detail" "--fabric denim --set detail.shadow=horizon" "--fabric none"
 without lamps "lamps lamp_rays" "--set lamp.kind=point" "--set lamp.kind=none"
 without ground "" "--set image.ground=true" "--set image.ground=false"
