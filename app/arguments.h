@@ -48,22 +48,18 @@ struct tl_arguments {
     bool fresh;
     double budget_ms; /* 0: not given */
     const char *axis; /* NULL: not given */
-    bool quick, full;
+    bool quick, full, clamp, furnace, still, aovs, hash;
     double repeat_mm, height_mm; /* 0: not given */
-    bool clamp;
-    const char *layout, *from; /* NULL: not given */
-    int map_size;              /* 0: not given */
+    const char *layout, *from;   /* NULL: not given */
+    int map_size;                /* 0: not given */
     bool capture;
     struct { /* NULL: not given; else names with commas between them */
         const char *garments, *fabrics, *colourways, *environments, *views;
         bool same_drape;
     } sheet;
-    int frame_count, every; /* 0: not given */
-    bool furnace, still;
-    const char *keep; /* NULL: not given */
-    bool aovs;
-    int oracle_every; /* 0: not given */
-    bool hash;
+    int frame_count, every;                      /* 0: not given */
+    const char *keep;                            /* NULL: not given */
+    int oracle_every;                            /* 0: not given */
     const char *path, *video, *against, *replay; /* NULL: not given */
 };
 
