@@ -203,7 +203,7 @@ int tl_flight_compare(const struct tl_flight *here, const struct tl_flight *ther
                       struct tl_flight_ratio out[TL_FLIGHT_RATIOS_MAX])
 {
     const size_t fewest = 5;  /* of fewer pairs a median says nothing */
-    const size_t blocks = 10; /* at least, of a short flight */
+    const double blocks = 10; /* at least, of a short flight */
     struct pairs pairs = {.here = TL_NEW_ARRAY(double, (size_t)here->count),
                           .there = TL_NEW_ARRAY(double, (size_t)here->count)};
     int count = 0;
@@ -216,7 +216,7 @@ int tl_flight_compare(const struct tl_flight *here, const struct tl_flight *ther
         find_pairs(here, job, there, other, &pairs);
         if (pairs.count < fewest)
             continue;
-        double block = fmax(fmin(rint(here->frame_rate), (double)(pairs.count / blocks)), 1);
+        double block = fmax(fmin(rint(here->frame_rate), floor((double)pairs.count / blocks)), 1);
         out[count] = tl_ratio_of_medians(pairs.here, pairs.there, pairs.count, (size_t)block);
         snprintf(out[count].name, sizeof out[count].name, "%s", name);
         if (job == WHOLE_FRAME)

@@ -70,7 +70,7 @@ bool tl_video_check(const char *path, tl_error *error)
                        path);
     char *const arguments[] = {"ffmpeg", "-version", NULL};
     int nothing = open("/dev/null", O_RDWR | O_CLOEXEC);
-    pid_t process;
+    pid_t process = 0;
     int reason = nothing < 0 ? errno : start(arguments, nothing, nothing, &process);
     if (nothing >= 0)
         close(nothing);
@@ -196,16 +196,20 @@ static bool encode(tl_video *video, FILE *said, tl_error *error)
                                (char *)container_of(video->writer.path),
                                target,
                                NULL};
-    int ends[2];
-    pid_t process;
+    int ends[2] = {-1, -1};
+    pid_t process = 0;
     int reason = pipe2(ends, O_CLOEXEC) != 0 ? errno : start(arguments, ends[0], fileno(said), &process);
     free(size);
     free(rate);
     free(target);
-    if (reason != 0)
+    if (ends[0] >= 0)
+        close(ends[0]);
+    if (reason != 0) {
+        if (ends[1] >= 0)
+            close(ends[1]);
         return tl_fail(error, TL_OUTPUT, "%s: ffmpeg could not be started: %s", video->writer.path,
                        strerror(reason));
-    close(ends[0]);
+    }
     /* One that has died must not take this program along. */
     struct sigaction ignored = {.sa_handler = SIG_IGN}, before;
     sigaction(SIGPIPE, &ignored, &before);
