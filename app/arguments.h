@@ -41,26 +41,12 @@ struct tl_arguments {
     /* NULL: not given */
     const char *output, *keep;
     const char *screenshots; /* folder for screenshots */
-<<<<<<< HEAD
     const char *axis;
     const char *layout, *from;
     const char *path, *video, *against, *replay;
     struct { /* names with commas between them */
-=======
-    int max_frames;          /* 0: no limit */
-    bool fresh;
-    double budget_ms; /* 0: not given */
-    const char *axis; /* NULL: not given */
-    bool quick, full, clamp, furnace, still, aovs, hash;
-    double repeat_mm, height_mm; /* 0: not given */
-    const char *layout, *from;   /* NULL: not given */
-    int map_size;                /* 0: not given */
-    bool capture;
-    struct { /* NULL: not given; else names with commas between them */
->>>>>>> room/fly
         const char *garments, *fabrics, *colourways, *environments, *views;
     } sheet;
-<<<<<<< HEAD
     /* 0: not given */
     double budget_ms;
     double repeat_mm, height_mm;
@@ -72,12 +58,6 @@ struct tl_arguments {
     bool frames_given; /* --frames rather than --frame */
     bool json, quiet, verbose, help;
     bool fresh, quick, full, clamp, capture, furnace, still, aovs, hash, same_drape;
-=======
-    int frame_count, every;                      /* 0: not given */
-    const char *keep;                            /* NULL: not given */
-    int oracle_every;                            /* 0: not given */
-    const char *path, *video, *against, *replay; /* NULL: not given */
->>>>>>> room/fly
 };
 
 bool tl_arguments_parse(int argc, char **argv, unsigned flags, struct tl_arguments *out, tl_error *error);
