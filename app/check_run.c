@@ -176,6 +176,7 @@ static struct tl_checked_cloth watch_cloth(struct run *run, const tl_frame *fram
         .report = tl_session_report(run->stage->session),
         .strain_limit = settings->cloth.solver == TL_CLOTH_PREVIEW ? settings->cloth.strain_limit : 0,
         .weight_n = run->weight_n,
+        .kept_m = settings->fabric.thickness_m,
         .first_strain = run->first_strain,
         .least_energy_j = run->least_energy_j,
         .is_held = is_swung(run, number),
