@@ -10,18 +10,18 @@
 #include "render/local/lamp.h"
 #include "render/renderer.h"
 
-struct tl_scene_params {                 /* table "scene": what to show; names of built-ins or paths */
-    char garment[TL_STRING_SIZE];        /* "dress", "skirt", "layers", "none", or a glTF or OBJ file */
-    char avatar[TL_STRING_SIZE];         /* "form", "none", or a glTF or OBJ file */
-    int units, avatar_units;             /* enum tl_units: of their files */
-    char motion[TL_STRING_SIZE];         /* point cache that moves the garment, or "none": it is simulated */
-    float motion_rate;                   /* frames of it a second; 0: as its file says */
+struct tl_scene_params {          /* table "scene": what to show; names of built-ins or paths */
+    char garment[TL_STRING_SIZE]; /* "dress", "skirt", "layers", a specimen, "none", or a glTF or OBJ file */
+    char avatar[TL_STRING_SIZE];  /* "form", "none", or a glTF or OBJ file */
+    int units, avatar_units;      /* enum tl_units: of their files */
+    char motion[TL_STRING_SIZE];  /* point cache that moves the garment, or "none": it is simulated */
+    float motion_rate;            /* frames of it a second; 0: as its file says */
     char environment[TL_STRING_SIZE];    /* "studio", an .exr or .hdr file, or a pattern: sky.####.exr */
     char fabric[TL_STRING_SIZE];         /* name of an embedded fabric, a YAML file, or "none" */
     char overlay_fabric[TL_STRING_SIZE]; /* as fabric: of the garment's materials named overlay; "": as the
                                             others */
     char colourway[TL_STRING_SIZE]; /* name of one of the scene's or of a model's variants; "": as they are */
-    char colourways[TL_STRING_SIZE]; /* scene, built in or YAML, whose section is meant; "": the garment's */
+    char colourways[TL_STRING_SIZE]; /* scene, built in or YAML, that has them; "own": the garment's */
     char preset[TL_STRING_SIZE];     /* name of an embedded preset, or a YAML file */
     char clip[TL_STRING_SIZE];       /* animation of the avatar; "": the first; "none": the rest pose */
     float environment_yaw_deg;

@@ -6,10 +6,13 @@
 #include <math.h>
 #include <string.h>
 
-const char *const tl_specimen_names[] = {"sheet", "sphere", "torus", NULL};
+const char *const tl_specimen_names[] = {"sheet", "disc", "sphere", "torus", NULL};
 
 #define SHEET_SIDE_M    0.5
 #define SHEET_HEIGHT_M  0.44f
+#define DISC_RADIUS_M   0.15
+#define PLATE_RADIUS_M  0.09
+#define DISC_HEIGHT_M   0.40f
 #define BALL_RADIUS_M   0.12f
 #define BALL_HEIGHT_M   0.30f
 #define SPHERE_RADIUS_M 0.15f
@@ -118,6 +121,24 @@ static const struct profile torus_profile = {.ring = TORUS_RING_M,
                                              .centre = {{0, SOLID_HEIGHT_M, 0}},
                                              .tilt = TORUS_TILT};
 
+/* Level cloth, its warp away from the viewer. */
+static tl_garment cut_level(const char *name, const struct tl_curve *outline, float edge_m, float height_m)
+{
+    tl_panel panel = tl_panel_cut(outline, 4, (double)edge_m);
+    tl_mesh mesh = new_mesh(panel.point_count, 3 * panel.triangle_count);
+    vec2s *pattern = TL_NEW_ARRAY(vec2s, panel.point_count);
+    for (size_t i = 0; i < panel.point_count; i++) {
+        float x = (float)panel.points[i].x, y = (float)panel.points[i].y;
+        pattern[i] = (vec2s){{x, y}};
+        mesh.positions[i] = (vec3s){{x, height_m, -y}};
+        mesh.normals[i] = (vec3s){{0, 1, 0}};
+        mesh.uvs[i] = (vec2s){{x, -y}};
+    }
+    memcpy(mesh.indices, panel.triangles, mesh.index_count * sizeof *mesh.indices);
+    tl_panel_release(&panel);
+    return (tl_garment){.model = model_of(name, mesh), .pattern = pattern};
+}
+
 static tl_garment cut_sheet(float edge_m)
 {
     const struct tl_point corners[4] = {{-SHEET_SIDE_M / 2, -SHEET_SIDE_M / 2},
@@ -129,25 +150,40 @@ static tl_garment cut_sheet(float edge_m)
         outline[i] = tl_curve_line(corners[i], corners[(i + 1) % 4]);
         outline[i].segments = (int)fmax(SHEET_SIDE_M / (double)edge_m + 0.5, 1);
     }
-    tl_panel panel = tl_panel_cut(outline, 4, (double)edge_m);
-    tl_mesh mesh = new_mesh(panel.point_count, 3 * panel.triangle_count);
-    vec2s *pattern = TL_NEW_ARRAY(vec2s, panel.point_count);
-    for (size_t i = 0; i < panel.point_count; i++) {
-        float x = (float)panel.points[i].x, y = (float)panel.points[i].y;
-        pattern[i] = (vec2s){{x, y}};
-        mesh.positions[i] = (vec3s){{x, SHEET_HEIGHT_M, -y}};
-        mesh.normals[i] = (vec3s){{0, 1, 0}};
-        mesh.uvs[i] = (vec2s){{x, -y}};
+    return cut_level("sheet", outline, edge_m, SHEET_HEIGHT_M);
+}
+
+/* Quarter circles as cubic curves are round to 0.03 %. */
+static tl_garment cut_disc(float edge_m)
+{
+    const double handle = 4 * (M_SQRT2 - 1) / 3 * DISC_RADIUS_M;
+    struct tl_curve outline[4];
+    for (int i = 0; i < 4; i++) {
+        double c = round(cos(M_PI / 2 * i)), s = round(sin(M_PI / 2 * i));
+        const struct tl_point from = {DISC_RADIUS_M * c, DISC_RADIUS_M * s};
+        const struct tl_point to = {-DISC_RADIUS_M * s, DISC_RADIUS_M * c};
+        outline[i] =
+            (struct tl_curve){.control = {from,
+                                          {from.x - handle * s, from.y + handle * c},
+                                          {to.x + handle * c, to.y + handle * s},
+                                          to},
+                              .segments = (int)fmax(M_PI / 2 * DISC_RADIUS_M / (double)edge_m + 0.5, 1)};
     }
-    memcpy(mesh.indices, panel.triangles, mesh.index_count * sizeof *mesh.indices);
-    tl_panel_release(&panel);
-    return (tl_garment){.model = model_of("sheet", mesh), .pattern = pattern};
+    tl_garment disc = cut_level("disc", outline, edge_m, DISC_HEIGHT_M);
+    size_t count = disc.model.mesh.vertex_count;
+    disc.pins = TL_NEW_ARRAY(uint32_t, count);
+    for (uint32_t i = 0; i < count; i++)
+        if (hypot((double)disc.pattern[i].x, (double)disc.pattern[i].y) <= PLATE_RADIUS_M)
+            disc.pins[disc.pin_count++] = i;
+    return disc;
 }
 
 bool tl_specimen_make(const char *name, float edge_m, tl_garment *out)
 {
     if (strcmp(name, "sheet") == 0)
         *out = cut_sheet(edge_m);
+    else if (strcmp(name, "disc") == 0)
+        *out = cut_disc(edge_m);
     else if (strcmp(name, "sphere") == 0)
         *out = (tl_garment){.model = model_of(name, revolve(&sphere_profile, edge_m)), .solid = true};
     else if (strcmp(name, "torus") == 0)

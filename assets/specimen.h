@@ -6,8 +6,9 @@
 #include "assets/avatar.h"
 #include "assets/garment.h"
 
-/* "sheet": a square of 0.5 m that lies above the ball and falls. "sphere", "torus": solid, they do not move.
- */
+/* "sheet": a square of 0.5 m that lies above the ball and falls. "disc": Cusick's drape test (BS 5058, ISO
+ * 9073-9), a disc 30 cm across that lies level, 0.4 m up, its middle held by plates of 18 cm, which are not
+ * drawn. "sphere", "torus": solid, they do not move. */
 extern const char *const tl_specimen_names[]; /* NULL-terminated */
 
 /* Edges of about `edge_m`. False when the name is unknown. */

@@ -52,11 +52,8 @@ TL_INLINE void move(struct places *places, int lane, vec3d by, double share)
  * roots and divisions, the same stage of the next batches need not. */
 struct membrane_work {
     struct places x[3], u, v;
-    double uu[TL_BATCH], vv[TL_BATCH], uv[TL_BATCH]; /* of F as it is now */
-    double push_u[TL_BATCH], push_v[TL_BATCH];       /* weft's push is push_u F_u, then warp's push_v F_v */
-    double scale_u[TL_BATCH], lean_v[TL_BATCH];      /* after weft: F_u = scale_u u, F_v = v + lean_v u */
-    double scale_v[TL_BATCH], lean_u[TL_BATCH]; /* after warp: F_v scale_v times, F_u more by lean_u F_v */
-    double c_u[TL_BATCH], c_v[TL_BATCH];        /* the whole push on row c: c_u u + c_v v */
+    double uu[TL_BATCH], vv[TL_BATCH], uv[TL_BATCH];
+    double c_u[TL_BATCH], c_v[TL_BATCH]; /* the whole push on row c: c_u u + c_v v */
     double d_u[TL_BATCH], d_v[TL_BATCH];
 };
 
@@ -73,51 +70,69 @@ TL_INLINE void measure(const struct tl_preview_membrane *m, int lane, struct mem
     work->uv[lane] = vec3d_dot(u, v);
 }
 
+/* F_u = u_u u + u_v v, F_v = v_u u + v_v v, and their scalar products. */
+struct deformation {
+    double u_u, u_v, v_u, v_v;
+    double a, b, g; /* |F_u|^2, |F_v|^2, F_u.F_v */
+};
+
 /* A stretch C = |F| - 1 pushes by factor C along F/|F|: in units of F. */
 TL_INLINE double stretch_push(double squared, double factor)
 {
     return factor * (1 - 1 / sqrt(squared > NO_LENGTH * NO_LENGTH ? squared : NO_LENGTH * NO_LENGTH));
 }
 
-TL_INLINE void solve_weft(const struct tl_preview_membrane *m, int lane, struct membrane_work *work)
+/* The push is `push` F_u; F_u becomes (1 + cc push) F_u, F_v gets cd push F_u more. */
+TL_INLINE double solve_weft(const struct tl_preview_membrane *m, int lane, struct deformation *f)
 {
-    double uu = work->uu[lane], uv = work->uv[lane], push = stretch_push(uu, m->weft[lane]);
-    double scale = 1 + push * m->cc[lane], lean = push * m->cd[lane], met = uv + lean * uu;
-    work->push_u[lane] = push;
-    work->scale_u[lane] = scale;
-    work->lean_v[lane] = lean;
-    work->uu[lane] = scale * (scale * uu);
-    work->uv[lane] = scale * met;
-    work->vv[lane] += lean * (uv + met);
+    double push = stretch_push(f->a, m->weft[lane]);
+    double scale = 1 + push * m->cc[lane], lean = push * m->cd[lane], met = f->g + lean * f->a;
+    f->v_u = lean;
+    f->b += lean * (f->g + met);
+    f->u_u = scale;
+    f->a *= scale * scale;
+    f->g = scale * met;
+    return push;
 }
 
-TL_INLINE void solve_warp(const struct tl_preview_membrane *m, int lane, struct membrane_work *work)
+TL_INLINE double solve_warp(const struct tl_preview_membrane *m, int lane, struct deformation *f)
 {
-    double vv = work->vv[lane], uv = work->uv[lane], push = stretch_push(vv, m->warp[lane]);
-    double scale = 1 + push * m->dd[lane], lean = push * m->cd[lane], met = uv + lean * vv;
-    work->push_v[lane] = push;
-    work->scale_v[lane] = scale;
-    work->lean_u[lane] = lean;
-    work->vv[lane] = scale * (scale * vv);
-    work->uv[lane] = scale * met;
-    work->uu[lane] += lean * (uv + met);
+    double push = stretch_push(f->b, m->warp[lane]);
+    double scale = 1 + push * m->dd[lane], lean = push * m->cd[lane], met = f->g + lean * f->b;
+    f->u_u += lean * f->v_u;
+    f->u_v = lean;
+    f->a += lean * (f->g + met);
+    f->v_u *= scale;
+    f->v_v = scale;
+    f->b *= scale * scale;
+    f->g = scale * met;
+    return push;
 }
 
-/* C = g/sqrt(p), with g = u.v, a = |u|^2, b = |v|^2, p = a b, has the gradient
+/* C = g/sqrt(p), with p = a b, has the gradient
  * c_i (v a - u g) / (a sqrt(p)) + d_i (u b - v g) / (b sqrt(p)), of weighted square
- * (p - g^2) (cc b - 2 cd g + dd a) / p^2: its push needs no root, and one division. */
-TL_INLINE void solve_shear(const struct tl_preview_membrane *m, int lane, struct membrane_work *work)
+ * (p - g^2) (cc b - 2 cd g + dd a) / p^2: its push needs no root, and one division. Of p, on row c F_v gets
+ * this share; F_u of row c gets -b g of it, F_v of row d -a g. */
+TL_INLINE double solve_shear(const struct tl_preview_membrane *m, int lane, const struct deformation *f)
 {
-    double a = work->uu[lane], b = work->vv[lane], g = work->uv[lane], p = a * b;
-    double square = (p - g * g) * (m->cc[lane] * b - 2 * m->cd[lane] * g + m->dd[lane] * a);
-    double sum = m->shear[lane] * p * p + square, multiplier = sum > 0 ? -g / sum : 0;
-    double across = multiplier * p, along_c = multiplier * b * g, along_d = multiplier * a * g;
-    double lean_v = work->lean_v[lane], u_v = work->lean_u[lane], v_v = work->scale_v[lane];
-    double u_u = work->scale_u[lane] + u_v * lean_v, v_u = v_v * lean_v; /* F_u = u_u u + u_v v, ... */
-    work->c_u[lane] = work->push_u[lane] + (across * v_u - along_c * u_u);
-    work->c_v[lane] = across * v_v - along_c * u_v;
-    work->d_u[lane] = work->push_v[lane] * lean_v + (across * u_u - along_d * v_u);
-    work->d_v[lane] = work->push_v[lane] + (across * u_v - along_d * v_v);
+    double p = f->a * f->b;
+    double square = (p - f->g * f->g) * (m->cc[lane] * f->b - 2 * m->cd[lane] * f->g + m->dd[lane] * f->a);
+    double sum = m->shear[lane] * p * p + square;
+    return sum > 0 ? -f->g / sum : 0;
+}
+
+TL_INLINE void solve(const struct tl_preview_membrane *m, int lane, struct membrane_work *work)
+{
+    struct deformation f = {
+        .u_u = 1, .v_v = 1, .a = work->uu[lane], .b = work->vv[lane], .g = work->uv[lane]};
+    double weft = solve_weft(m, lane, &f);
+    double lean = f.v_u; /* the warp's push is along v + lean u */
+    double warp = solve_warp(m, lane, &f), shear = solve_shear(m, lane, &f);
+    double across = shear * (f.a * f.b), along_c = shear * f.b * f.g, along_d = shear * f.a * f.g;
+    work->c_u[lane] = weft + (across * f.v_u - along_c * f.u_u);
+    work->c_v[lane] = across * f.v_v - along_c * f.u_v;
+    work->d_u[lane] = warp * lean + (across * f.u_u - along_d * f.v_u);
+    work->d_v[lane] = warp + (across * f.u_v - along_d * f.v_v);
 }
 
 TL_INLINE void move_corners(const struct tl_preview_membrane *m, int lane, struct membrane_work *work)
@@ -166,13 +181,7 @@ TL_INLINE void solve_group(const struct tl_preview_membrane *m, size_t count, do
             seen[k][lane] = stretches(&work[k], lane, most);
     for (size_t k = 0; k < count; k++)
         for (int lane = 0; lane < TL_BATCH; lane++)
-            solve_weft(&m[k], lane, &work[k]);
-    for (size_t k = 0; k < count; k++)
-        for (int lane = 0; lane < TL_BATCH; lane++)
-            solve_warp(&m[k], lane, &work[k]);
-    for (size_t k = 0; k < count; k++)
-        for (int lane = 0; lane < TL_BATCH; lane++)
-            solve_shear(&m[k], lane, &work[k]);
+            solve(&m[k], lane, &work[k]);
     for (size_t k = 0; k < count; k++)
         for (int lane = 0; lane < TL_BATCH; lane++)
             move_corners(&m[k], lane, &work[k]);

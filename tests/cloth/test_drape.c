@@ -6,7 +6,7 @@
  * Steven 1991 for plain cotton; the usual class of denim) are of other samples than those our numbers were
  * measured on, and real cloth has several stable drapes, so they bind the mean over seeds only. The number of
  * folds is told, not checked. With names of fabrics as arguments: tells their drape. */
-#include "assets/panel.h"
+#include "assets/specimen.h"
 #include "config/log.h"
 #include "fabrics.h"
 #include "solvers.h"
@@ -16,37 +16,15 @@
 
 /* ---- The specimen ---- */
 
-/* Quarter circles as cubic curves are round to 0.03 %. */
-static void outline_disc(double edge_m, struct tl_curve out[4])
-{
-    const double handle = 4 * (M_SQRT2 - 1) / 3 * RADIUS;
-    for (int i = 0; i < 4; i++) {
-        double c = round(cos(M_PI / 2 * i)), s = round(sin(M_PI / 2 * i));
-        const struct tl_point from = {RADIUS * c, RADIUS * s}, to = {-RADIUS * s, RADIUS * c};
-        out[i] = (struct tl_curve){.control = {from,
-                                               {from.x - handle * s, from.y + handle * c},
-                                               {to.x + handle * c, to.y + handle * s},
-                                               to},
-                                   .segments = (int)round(M_PI / 2 * RADIUS / edge_m)};
-    }
-}
-
-/* Level, its warp turned by `turn` against the triangles; the part between the plates is held. */
+/* Its warp turned by `turn` against the triangles. */
 static tl_garment make_specimen(double edge_m, double turn)
 {
-    struct tl_curve outline[4];
-    outline_disc(edge_m, outline);
-    tl_panel panel = tl_panel_cut(outline, 4, edge_m);
-    tl_garment garment = {0};
-    sheet_add(&garment, &panel);
-    tl_panel_release(&panel);
+    tl_garment garment;
+    assert_true(tl_specimen_make("disc", (float)edge_m, &garment));
     for (uint32_t i = 0; i < garment.model.mesh.vertex_count; i++) {
         double u = (double)garment.pattern[i].x, v = (double)garment.pattern[i].y;
-        garment.model.mesh.positions[i] = (vec3s){{(float)u, 0, (float)-v}};
         garment.pattern[i] =
             (vec2s){{(float)(cos(turn) * u - sin(turn) * v), (float)(sin(turn) * u + cos(turn) * v)}};
-        if (hypot(u, v) <= PLATE)
-            sheet_pin(&garment, i);
     }
     return garment;
 }
@@ -147,7 +125,7 @@ static struct drape drape_once(const struct tl_cloth_fabric *fabric, double edge
     printf("    seed %d: DC %.1f %%, %d folds, %.4f m/s left after %.1f s\n", seed, drape.coefficient,
            drape.folds, drape.speed, cloth->time_s);
     tl_cloth_destroy(&cloth);
-    sheet_free(&garment);
+    tl_garment_release(&garment);
     return drape;
 }
 
