@@ -66,7 +66,7 @@ void tl_measure_furnace(const struct tl_checked *checked, struct tl_finding *fin
 
 void tl_measure_furnace_shadowed(const struct tl_checked *checked, struct tl_finding *finding)
 {
-    if (!checked->white || !checked->white_shadowed)
+    if (!checked->white || !checked->white_shadowed || checked->settings->image.scale < 1)
         return;
     const tl_image *open = checked->white_image, *shadowed = checked->white_shadowed;
     for (int i = 0; i < 4 * open->width * open->height; i++) {

@@ -233,7 +233,7 @@ static void add_estimates(const tl_renderer *renderer, uint32_t made, estimator 
     for (int i = 0; i < count * DIRECTIONS; i++)
         light[i] =
             gather_lobe(&texels, spiral(i % DIRECTIONS), (double)tl_exponent(exponents[i / DIRECTIONS]));
-    double brightest = brightest_of(light, (size_t)(count * DIRECTIONS));
+    double brightest = brightest_of(light, (size_t)count * DIRECTIONS);
     for (int i = 0; i < count * DIRECTIONS; i++) {
         vec3s direction = spiral(i % DIRECTIONS);
         int exponent = exponents[i / DIRECTIONS];

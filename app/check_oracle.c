@@ -129,7 +129,7 @@ static void trace_pixels(struct oracle *oracle)
                 sights.pixels[sights.count] = i;
                 sights.shares[sights.count++] = 1;
             }
-            follow(oracle, &sights, (uint64_t)(group * samples + sample));
+            follow(oracle, &sights, (uint64_t)group * (uint64_t)samples + (uint64_t)sample);
         }
 }
 

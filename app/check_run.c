@@ -176,10 +176,13 @@ static struct tl_checked_cloth watch_cloth(struct run *run, const tl_frame *fram
         .report = tl_session_report(run->stage->session),
         .strain_limit = settings->cloth.solver == TL_CLOTH_PREVIEW ? settings->cloth.strain_limit : 0,
         .weight_n = run->weight_n,
+        .kept_m = settings->fabric.thickness_m,
         .first_strain = run->first_strain,
         .least_energy_j = run->least_energy_j,
         .is_held = is_swung(run, number),
-        .is_driven = is_swung(run, number) || tl_session_plays_clip(run->stage->session) || blows > 0};
+        /* Other steps of the solver are another stiffness, too. */
+        .is_driven =
+            run->pace || is_swung(run, number) || tl_session_plays_clip(run->stage->session) || blows > 0};
     cloth.drift_m = measure_drift(run, frame, number, cloth.is_driven);
     cloth.allowed_speed = WHIP * (fall_speed(frame, settings->cloth.gravity) + wearer_speed(run, frame) +
                                   blows + (run->motion.pulls ? HAND_SPEED : 0));
@@ -359,7 +362,8 @@ static bool play(struct run *run, tl_error *error)
 /* The first frames once more, from the start, drawn by another renderer. */
 static bool play_again(struct run *run, int count, tl_error *error)
 {
-    if (!tl_session_reset(run->stage->session, error))
+    if (!tl_session_apply(run->stage->session, &run->stage->settings, error) ||
+        !tl_session_reset(run->stage->session, error))
         return false;
     tl_renderer_destroy(&run->stage->renderer);
     bool done = true;

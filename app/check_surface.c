@@ -119,30 +119,28 @@ void tl_measure_tangents(const struct tl_checked *checked, struct tl_finding *fi
     add_vertices(checked, finding, tangent_deviation);
 }
 
-/* What makes vertices one. */
+/* What makes vertices one: place, normal and UV, as bits. */
 struct key {
-    float values[8];
+    uint32_t bits[8];
 };
 
 static struct key key_of(const tl_surface *surface, size_t vertex, bool with_uv)
 {
-    struct key key = {{0}};
-    memcpy(key.values, surface->positions[vertex].raw, sizeof(vec3s));
-    memcpy(key.values + 3, surface->normals[vertex].raw, sizeof(vec3s));
-    if (with_uv)
-        memcpy(key.values + 6, surface->uvs[vertex].raw, sizeof(vec2s));
-    for (size_t i = 0; i < TL_COUNT(key.values); i++)
-        key.values[i] += 0.0f; /* -0 becomes 0 */
+    const vec3s place = surface->positions[vertex], normal = surface->normals[vertex];
+    const vec2s uv = with_uv ? surface->uvs[vertex] : (vec2s){{0, 0}};
+    float values[8] = {place.x, place.y, place.z, normal.x, normal.y, normal.z, uv.x, uv.y};
+    struct key key;
+    for (size_t i = 0; i < TL_COUNT(values); i++)
+        values[i] += 0.0f; /* -0 becomes 0 */
+    memcpy(key.bits, values, sizeof key.bits);
     return key;
 }
 
 static uint64_t hash_of(const struct key *key)
 {
     uint64_t hash = 14695981039346656037u;
-    for (size_t i = 0; i < TL_COUNT(key->values); i++) {
-        uint32_t bits;
-        memcpy(&bits, &key->values[i], sizeof bits);
-        hash = (hash ^ bits) * 1099511628211u;
+    for (size_t i = 0; i < TL_COUNT(key->bits); i++) {
+        hash = (hash ^ key->bits[i]) * 1099511628211u;
         hash ^= hash >> 29;
     }
     return hash;
