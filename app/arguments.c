@@ -122,7 +122,7 @@ static const struct flag flags_known[] = {
     {"--colourways", TL_FLAGS_SHEET, FLAG_COLOURWAYS, NULL, "A,B", "names, or all that a garment has"},
     {"--envs", TL_FLAGS_SHEET, FLAG_ENVIRONMENTS, NULL, "A,B", "names or files, as --env takes them"},
     {"--views", TL_FLAGS_SHEET, FLAG_VIEWS, NULL, "A,B",
-     "front, 3/4, side, left, back-3/4, back, right, scene, or degrees: 30 or 30:10"},
+     "front, 3/4, side, left, back-3/4, back, right, scene, degrees (30 or 30:10), or a camera path's .yaml"},
     {"--same-drape", TL_FLAGS_SHEET, FLAG_SAME_DRAPE, NULL, NULL,
      "all fabrics of a garment fall as its first: they only look different"},
     {"--frames", TL_FLAGS_CHECK, FLAG_FRAME_COUNT, NULL, "N", "how many frames; else 300"},

@@ -35,8 +35,9 @@ struct run {
     struct tl_levels *levels; /* [frames] */
     struct tl_pace_choice choice;
     double chosen_ms, moved_ms, drawn_ms; /* on the wall, of this frame: the choice, the cloth, the picture */
-    double least_energy_j;
-    vec3s *wearer; /* positions one frame ago; NULL: none */
+    double least_energy_j, first_strain;  /* NaN: not known yet */
+    double centre[2];                     /* x and z of the garment's centre of mass in frame 0 */
+    vec3s *wearer;                        /* positions one frame ago; NULL: none */
     double weight_n;
     struct tl_progress progress;
     int steps; /* all that progress counts */
@@ -85,18 +86,21 @@ static bool draw_with(tl_renderer **renderer, const struct run *run, const tl_fr
 
 /* ---- The cloth ---- */
 
+static double area_of(const tl_mesh *mesh, const uint32_t corners[3])
+{
+    vec3s origin = mesh->positions[corners[0]];
+    vec3s a = glms_vec3_sub(mesh->positions[corners[1]], origin);
+    vec3s b = glms_vec3_sub(mesh->positions[corners[2]], origin);
+    return 0.5 * (double)glms_vec3_norm(glms_vec3_cross(a, b));
+}
+
 /* Newtons, of the garment as it was cut. */
 static double weigh(const struct run *run)
 {
     const tl_model *model = tl_session_garment(run->stage->session);
     double area = 0;
-    for (size_t i = 0; model && i + 2 < model->mesh.index_count; i += 3) {
-        const uint32_t *index = &model->mesh.indices[i];
-        vec3s origin = model->mesh.positions[index[0]];
-        vec3s a = glms_vec3_sub(model->mesh.positions[index[1]], origin);
-        vec3s b = glms_vec3_sub(model->mesh.positions[index[2]], origin);
-        area += 0.5 * (double)glms_vec3_norm(glms_vec3_cross(a, b));
-    }
+    for (size_t i = 0; model && i + 2 < model->mesh.index_count; i += 3)
+        area += area_of(&model->mesh, &model->mesh.indices[i]);
     const struct tl_settings *settings = &run->stage->settings;
     return area * settings->fabric.areal_density * settings->cloth.gravity;
 }
@@ -130,6 +134,39 @@ static double wearer_speed(struct run *run, const tl_frame *frame)
     return farthest * run->stage->settings.cloth.frame_rate;
 }
 
+/* Where the garment's centre of mass is on the ground plan, each triangle weighed as it was cut. */
+static void find_centre(const struct run *run, const tl_frame *frame, double centre[2])
+{
+    const tl_mesh *cut = &tl_session_garment(run->stage->session)->mesh;
+    const tl_surface *garment = &frame->surfaces[frame->surface_count - 1];
+    double weight = 0, sum[2] = {0};
+    for (size_t i = 0; i + 2 < cut->index_count; i += 3) {
+        const uint32_t *at = &cut->indices[i];
+        double area = area_of(cut, at);
+        weight += 3 * area;
+        for (int c = 0; c < 3; c++) {
+            sum[0] += area * (double)garment->positions[at[c]].x;
+            sum[1] += area * (double)garment->positions[at[c]].z;
+        }
+    }
+    centre[0] = sum[0] / weight;
+    centre[1] = sum[1] / weight;
+}
+
+/* Metres, sideways since frame 0; NaN where anything may hold or push it. */
+static double measure_drift(struct run *run, const tl_frame *frame, int number, bool is_driven)
+{
+    const struct tl_settings *settings = &run->stage->settings;
+    bool is_free = frame->surface_count == 1 && !settings->image.ground && !(settings->cloth.pin_above_m > 0);
+    double centre[2];
+    if (!is_free || is_driven || (run->motion.pulls && !run->params->still))
+        return NAN;
+    find_centre(run, frame, centre);
+    if (number == 0)
+        memcpy(run->centre, centre, sizeof centre);
+    return hypot(centre[0] - run->centre[0], centre[1] - run->centre[1]);
+}
+
 static struct tl_checked_cloth watch_cloth(struct run *run, const tl_frame *frame, int number)
 {
     const struct tl_settings *settings = &run->stage->settings;
@@ -139,12 +176,17 @@ static struct tl_checked_cloth watch_cloth(struct run *run, const tl_frame *fram
         .report = tl_session_report(run->stage->session),
         .strain_limit = settings->cloth.solver == TL_CLOTH_PREVIEW ? settings->cloth.strain_limit : 0,
         .weight_n = run->weight_n,
+        .first_strain = run->first_strain,
         .least_energy_j = run->least_energy_j,
+        .is_held = is_swung(run, number),
         .is_driven = is_swung(run, number) || tl_session_plays_clip(run->stage->session) || blows > 0};
+    cloth.drift_m = measure_drift(run, frame, number, cloth.is_driven);
     cloth.allowed_speed = WHIP * (fall_speed(frame, settings->cloth.gravity) + wearer_speed(run, frame) +
                                   blows + (run->motion.pulls ? HAND_SPEED : 0));
     double energy_j =
         cloth.report.kinetic_energy + cloth.report.elastic_energy + cloth.report.potential_energy;
+    if (number == 0)
+        run->first_strain = cloth.report.max_strain;
     run->least_energy_j =
         cloth.is_driven ? NAN : fmin(run->least_energy_j, energy_j); /* fmin of a NaN: the other */
     return cloth;
@@ -279,7 +321,7 @@ static bool tell(struct run *run, int step, tl_error *error)
 static void begin(struct run *run)
 {
     tl_motion_begin(&run->motion, run->stage->session);
-    run->least_energy_j = NAN;
+    run->least_energy_j = run->first_strain = NAN;
 }
 
 static void choose(struct run *run, int number)

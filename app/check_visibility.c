@@ -6,8 +6,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Points that VIS is measured at, and rays to each region from each of them. */
-enum { POINTS = 64, RAYS = 4 };
+/* Points that VIS is measured at, and directions of each region, the same for all of them: so the cache
+ * traces, a frame one direction for all that it visits. */
+enum { POINTS = 64, RAYS = 8 };
 
 /* A region counts when so many points face it, this far above their horizon. */
 enum { LEAST_POINTS = POINTS / 4 };
@@ -102,10 +103,11 @@ void tl_measure_visibility(const struct tl_checked *checked, struct tl_finding *
     }
 }
 
-/* The sums over points of what is claimed to be seen of a region, and of what rays see of it. */
+/* The sums over points of what is claimed to be seen of a region, and of what is seen along each direction.
+ */
 struct tally {
     int points;
-    double claimed, seen;
+    double claimed, seen[RAYS];
 };
 
 struct witness {
@@ -128,27 +130,25 @@ static double claimed_of(const struct witness *witness, size_t sample, int regio
     return claimed;
 }
 
-/* Even over the region, from another place in it for every point. */
-static vec3s region_direction(const tl_renderer *renderer, int region, int ray, size_t point)
+/* Even over the region. */
+static vec3s region_direction(const tl_renderer *renderer, int region, int ray)
 {
-    double turn = (double)point * 0.6180339887498949, second = (double)point * 0.7548776662466927;
-    double u = (ray + turn - floor(turn)) / RAYS, v = second + ray * 0.5698402909980532;
-    vec3s direction = tl_region_direction(&renderer->regions, region, (float)u, (float)(v - floor(v)));
+    const float step = 0.5698402909980532f; /* of the plastic number, as tl_region_seen_direction has it */
+    float u = ((float)ray + 0.5f) / RAYS, v = (float)ray * step;
+    vec3s direction = tl_region_direction(&renderer->regions, region, u, v - floorf(v));
     return tl_turn_direction(direction, renderer->frame.environment_yaw);
 }
 
 /* Adds what one point sees of one region, unless part of it is near its horizon: there VIS stands for what is
  * above only. */
-static void ask(struct witness *witness, const tl_sample *sample, vec3s start, size_t point, size_t index,
-                int region)
+static void ask(struct witness *witness, const tl_sample *sample, vec3s start, size_t index, int region)
 {
     const tl_renderer *renderer = witness->renderer;
     const struct tl_ground *ground = renderer->settings.image.ground ? &renderer->ground : NULL;
     struct tl_trace_bundle bundle = {.count = RAYS, .to_m = INFINITY};
-    double open = 0;
     float seen[16];
     for (int ray = 0; ray < RAYS; ray++) {
-        vec3s direction = region_direction(renderer, region, ray, point);
+        vec3s direction = region_direction(renderer, region, ray);
         if (glms_vec3_dot(direction, sample->smooth) < FACES)
             return;
         bundle.origin_x[ray] = start.x, bundle.origin_y[ray] = start.y, bundle.origin_z[ray] = start.z;
@@ -156,14 +156,13 @@ static void ask(struct witness *witness, const tl_sample *sample, vec3s start, s
         bundle.direction_z[ray] = direction.z;
     }
     tl_trace_seen_bundle(witness->trace, &bundle, seen);
-    for (int ray = 0; ray < RAYS; ray++) {
-        const vec3s direction = {{bundle.direction_x[ray], bundle.direction_y[ray], bundle.direction_z[ray]}};
-        open += (double)(seen[ray] * tl_ground_visibility(ground, start, direction)) / RAYS;
-    }
     struct tally *tally = &witness->tallies[region];
     tally->points++;
-    tally->seen += open;
     tally->claimed += claimed_of(witness, index, region);
+    for (int ray = 0; ray < RAYS; ray++) {
+        const vec3s direction = {{bundle.direction_x[ray], bundle.direction_y[ray], bundle.direction_z[ray]}};
+        tally->seen[ray] += (double)(seen[ray] * tl_ground_visibility(ground, start, direction));
+    }
 }
 
 static void hear(struct witness *witness, int frame)
@@ -176,20 +175,37 @@ static void hear(struct witness *witness, int frame)
         const tl_sample *sample = &renderer->samples.items[index];
         vec3s start = tl_sample_start(sample, &renderer->ranges, offset_m);
         for (int region = 0; region < renderer->regions.count; region++)
-            ask(witness, sample, start, point, index, region);
+            ask(witness, sample, start, index, region);
     }
+}
+
+/* The cache traces a region the more seldom the less light it has, so that its errors in the light are alike:
+ * a region counts as its light does, up to the mean. */
+static double weight_of(const struct tl_regions *regions, int region)
+{
+    double all = 0;
+    for (int i = 0; i < regions->count; i++)
+        all += (double)regions->items[i].importance;
+    double share = (double)regions->items[region].importance * regions->count;
+    return share < all ? share / all : 1;
 }
 
 static void add_tallies(const struct witness *witness, struct tl_finding *finding)
 {
-    for (int i = 0; i < witness->renderer->regions.count; i++) {
+    const struct tl_regions *regions = &witness->renderer->regions;
+    for (int i = 0; i < regions->count; i++) {
         const struct tally *tally = &witness->tallies[i];
         if (tally->points < LEAST_POINTS)
             continue;
-        double claimed = tally->claimed / tally->points, seen = tally->seen / tally->points;
-        if (tl_finding_add(finding, fabs(claimed - seen)))
-            tl_finding_place(finding, "region %d: VIS %.2f, rays %.2f of %d points", i, claimed, seen,
-                             tally->points);
+        double claimed = tally->claimed, least = INFINITY, most = 0, count = tally->points;
+        for (int ray = 0; ray < RAYS; ray++) {
+            least = fmin(least, tally->seen[ray]);
+            most = fmax(most, tally->seen[ray]);
+        }
+        double off = claimed < least ? least - claimed : claimed > most ? claimed - most : 0 * claimed;
+        if (tl_finding_add(finding, weight_of(regions, i) * off / count))
+            tl_finding_place(finding, "region %d: VIS %.2f, rays %.2f to %.2f of %d points", i,
+                             claimed / count, least / count, most / count, tally->points);
     }
 }
 

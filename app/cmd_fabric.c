@@ -1,6 +1,7 @@
 /* toile fabric: the maps that a height map gives: heights in metres, normals, offsets, moments, gloss,
  * horizons. */
 #include "app/commands.h"
+#include "app/height_picture.h"
 #include "assets/exr.h"
 #include "config/file.h"
 #include "config/log.h"
@@ -10,6 +11,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define DEFAULT_REPEAT_MM 10.0f
 #define DEFAULT_HEIGHT_MM 0.5f
@@ -23,24 +25,6 @@ static bool check_arguments(const struct tl_arguments *arguments, tl_error *erro
                        "fabric: expected one height map: toile fabric IN.png -o FOLDER --repeat-mm 10");
     if (!arguments->output)
         return tl_fail(error, TL_USAGE, "fabric: no output: add -o FOLDER");
-    return true;
-}
-
-/* The first channel; what is not a number has no height. */
-static bool load(const char *path, tl_image *out, tl_error *error)
-{
-    if (!tl_path_has_extension(path, "exr"))
-        return tl_image_load_values(path, out, error);
-    enum tl_exr_envmap unused;
-    if (!tl_exr_load(path, out, &unused, error))
-        return false;
-    size_t count = (size_t)out->width * (size_t)out->height * (size_t)out->channels;
-    for (size_t i = 0; i < count; i++)
-        if (!isfinite(tl_image_floats(out)[i])) {
-            tl_image_release(out);
-            return tl_fail(error, TL_INPUT,
-                           "%s: holds a value that is not finite: mend it in the program that made it", path);
-        }
     return true;
 }
 
@@ -126,6 +110,49 @@ static bool save_heights(const struct baking *baking, tl_error *error)
     return save_exr(baking, "height", names, &heights, error);
 }
 
+/* IN's own name without folder and ending. New string. */
+static char *name_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    char *name = tl_copy_string(slash ? slash + 1 : path), *dot = strrchr(name, '.');
+    if (dot && dot != name)
+        *dot = '\0';
+    return name;
+}
+
+/* What --fabric reads: the renderer makes its own maps of height.exr; the others are for other programs. */
+static bool save_fabric(const struct baking *baking, tl_error *error)
+{
+    struct tl_writer writer;
+    char *name = name_of(baking->arguments->positionals[0]),
+         *path = tl_format("%s/%s.yaml", baking->arguments->output, name);
+    bool saved = tl_writer_begin(&writer, path, error);
+    if (saved) {
+        fprintf(writer.stream,
+                "# Baked by toile fabric; --fabric takes this file.\n"
+                "# Beside it, for other programs: normal.png, offset.exr, moments.exr, gloss.png, "
+                "horizon_*.png.\n"
+                "weave:\n"
+                "  picture: height.exr # metres; a repeat of %g x %g mm\n"
+                "  picture_mm: %.9g\n"
+                "  depth_mm: %.9g # from the lowest to the highest\n"
+                "# The look is yours to choose.\n"
+                "material:\n"
+                "  use_file: false\n"
+                "  diffuse: [0.5, 0.5, 0.5]\n"
+                "  specular: [0.04, 0.04, 0.04]\n"
+                "  glossiness: 0.5\n",
+                1e3 * (double)baking->width_m, 1e3 * (double)baking->height_m, 1e3 * (double)baking->width_m,
+                1e3 * (double)(baking->field.high_m - baking->field.low_m));
+        saved = tl_writer_commit(&writer, error);
+    }
+    if (saved)
+        tl_info("%s: use it by --fabric %s", path, path);
+    free(path);
+    free(name);
+    return saved;
+}
+
 static float steepest(const struct baking *baking)
 {
     tl_image slopes = tl_bake_slopes(&baking->field);
@@ -139,13 +166,14 @@ static float steepest(const struct baking *baking)
 bool tl_command_fabric(const struct tl_arguments *arguments, tl_error *error)
 {
     tl_image picture;
-    if (!check_arguments(arguments, error) || !load(arguments->positionals[0], &picture, error))
+    if (!check_arguments(arguments, error) ||
+        !tl_height_picture_load(arguments->positionals[0], &picture, error))
         return false;
     struct baking baking = {.arguments = arguments};
     begin(&baking, &picture);
     tl_image_release(&picture);
     bool done = tl_folder_make(arguments->output, error) && save_normals(&baking, error) &&
-                save_horizons(&baking, error) && save_heights(&baking, error);
+                save_horizons(&baking, error) && save_heights(&baking, error) && save_fabric(&baking, error);
     if (done)
         tl_info("%s: %g x %g mm a repeat, %g mm deep, slopes to %.3g", arguments->output,
                 1e3 * (double)baking.width_m, 1e3 * (double)baking.height_m,

@@ -116,7 +116,7 @@ static bool draw_cell(struct work *work, size_t row, size_t column, tl_image *ou
     if (!tl_contact_cell_settings(&work->plan, row, column, &stage->settings, error))
         return false;
     tl_renderer_forget(stage->renderer); /* a cell looks the same whichever were drawn before it */
-    if (!work->plan.columns[column].view.is_scene)
+    if (work->plan.columns[column].view.camera == TL_CONTACT_ORBIT)
         frame_garment(stage->session, &stage->settings);
     return tl_session_apply(stage->session, &stage->settings, error) && tl_stage_draw_still(stage, error) &&
            tl_renderer_show_image(stage->renderer, out, error);

@@ -181,7 +181,9 @@ uint64_t tl_contact_cell_hash(const struct tl_contact_plan *plan, size_t row, si
 {
     const struct tl_contact_column *at = &plan->columns[column];
     uint64_t hash = hash_file(plan->rows[row].hash, at->environment);
-    hash = tl_hash(hash, &at->view.is_scene, sizeof at->view.is_scene);
+    hash = tl_hash(hash, &at->view.camera, sizeof at->view.camera);
+    hash = tl_hash(hash, &at->view.key.camera, sizeof at->view.key.camera);
+    hash = tl_hash(hash, &at->view.key.environment_yaw_deg, sizeof at->view.key.environment_yaw_deg);
     hash = tl_hash(hash, &at->view.has_pitch, sizeof at->view.has_pitch);
     hash = tl_hash(hash, &at->view.yaw_deg, sizeof at->view.yaw_deg);
     return tl_hash(hash, &at->view.pitch_deg, sizeof at->view.pitch_deg);
@@ -201,16 +203,16 @@ static bool fail_view(const char *text, tl_error *error)
     for (size_t i = 0; i < TL_COUNT(orbits); i++)
         names[i + 1] = orbits[i].name;
     const char *near = tl_nearest_word(text, names, TL_COUNT(names));
-    return tl_fail(
-        error, TL_USAGE,
-        "--views: \"%s\": expected front, 3/4, side, left, back-3/4, back, right, scene, or degrees "
-        "round and down as in 30 or 30:10%s%s%s",
-        text, near ? ": did you mean " : "", near ? near : "", near ? "?" : "");
+    return tl_fail(error, TL_USAGE,
+                   "--views: \"%s\": expected front, 3/4, side, left, back-3/4, back, right, scene, degrees "
+                   "round and down as in 30 or 30:10, or a camera path's .yaml file%s%s%s",
+                   text, near ? ": did you mean " : "", near ? near : "", near ? "?" : "");
 }
 
 bool tl_contact_view_read(const char *text, struct tl_contact_view *out, tl_error *error)
 {
-    *out = (struct tl_contact_view){.is_scene = strcmp(text, "scene") == 0};
+    *out =
+        (struct tl_contact_view){.camera = strcmp(text, "scene") == 0 ? TL_CONTACT_SCENE : TL_CONTACT_ORBIT};
     for (size_t i = 0; i < TL_COUNT(orbits); i++)
         if (strcmp(text, orbits[i].name) == 0) {
             out->yaw_deg = orbits[i].yaw_deg;
@@ -218,7 +220,7 @@ bool tl_contact_view_read(const char *text, struct tl_contact_view *out, tl_erro
             return true;
         }
     char *end = NULL;
-    if (!out->is_scene) {
+    if (out->camera == TL_CONTACT_ORBIT) {
         out->yaw_deg = strtof(text, &end);
         bool good = end != text && fabsf(out->yaw_deg) <= 3600;
         if (good && *end == ':') {
@@ -385,24 +387,56 @@ static void share_drapes(struct tl_contact_plan *plan)
 
 /* ---- Columns ---- */
 
-static bool add_column(const struct tl_contact_plan *plan, const char *environment, const char *view,
-                       struct tl_contact_column *out, tl_error *error)
+static bool check_environment(const struct tl_contact_plan *plan, const char *name, tl_error *error)
 {
-    *out = (struct tl_contact_column){0};
-    if (!tl_contact_view_read(view, &out->view, error))
-        return false;
     struct tl_settings unused = plan->rows[0].settings;
     struct tl_binding bindings[TL_SETTINGS_TABLES];
     tl_settings_bind(&unused, bindings);
-    const char *name = environment[0] ? environment : unused.scene.environment;
-    out->environment = tl_copy_string(name);
-    out->group = label_of(name);
-    char *parts[] = {tl_contact_slug(name), plain(view, strlen(view))};
-    out->slug = tl_format("%s_%s", parts[0], parts[1]);
+    return tl_options_set(bindings, TL_SETTINGS_TABLES, "scene.environment", name, "--envs", NULL, error);
+}
+
+/* Takes the view over. */
+static void add_column(struct tl_contact_plan *plan, const char *environment,
+                       const struct tl_contact_view *view)
+{
+    const char *name = environment[0] ? environment : plan->rows[0].settings.scene.environment;
+    char *parts[] = {tl_contact_slug(name), plain(view->name, strlen(view->name))};
+    plan->columns = tl_resize(plan->columns, plan->column_count + 1, sizeof *plan->columns);
+    plan->columns[plan->column_count++] =
+        (struct tl_contact_column){.environment = tl_copy_string(name),
+                                   .view = *view,
+                                   .group = label_of(name),
+                                   .slug = tl_format("%s_%s", parts[0], parts[1])};
     free(parts[0]);
     free(parts[1]);
-    return !environment[0] || tl_options_set(bindings, TL_SETTINGS_TABLES, "scene.environment", environment,
-                                             "--envs", NULL, error);
+}
+
+/* A view for every key of a camera path. */
+static bool add_path(struct tl_contact_plan *plan, const char *environment, const char *file, tl_error *error)
+{
+    struct tl_path path;
+    if (!tl_path_load(file, &plan->rows[0].settings, &path, error))
+        return false;
+    char *stem = tl_contact_slug(file);
+    for (size_t i = 0; i < path.count; i++) {
+        struct tl_contact_view view = {
+            .name = tl_format("%s %zu", stem, i + 1), .camera = TL_CONTACT_KEY, .key = path.keys[i]};
+        add_column(plan, environment, &view);
+    }
+    free(stem);
+    tl_path_release(&path);
+    return true;
+}
+
+static bool add_view(struct tl_contact_plan *plan, const char *environment, const char *text, tl_error *error)
+{
+    if (tl_path_has_extension(text, "yaml") || tl_path_has_extension(text, "yml"))
+        return add_path(plan, environment, text, error);
+    struct tl_contact_view view;
+    if (!tl_contact_view_read(text, &view, error))
+        return false;
+    add_column(plan, environment, &view);
+    return true;
 }
 
 static bool add_columns(const struct tl_arguments *arguments, struct tl_contact_plan *plan, tl_error *error)
@@ -411,11 +445,12 @@ static bool add_columns(const struct tl_arguments *arguments, struct tl_contact_
     const char *seen = arguments->sheet.views ? arguments->sheet.views : "front,3/4,back";
     bool added = read_list("--envs", arguments->sheet.environments, "", &environments, error) &&
                  read_list("--views", seen, "", &views, error);
-    plan->columns = TL_NEW_ARRAY(struct tl_contact_column, environments.count * views.count);
-    for (size_t e = 0; added && e < environments.count; e++)
+    for (size_t e = 0; added && e < environments.count; e++) {
+        const char *name = environments.items[e];
+        added = !name[0] || check_environment(plan, name, error);
         for (size_t v = 0; added && v < views.count; v++)
-            added = add_column(plan, environments.items[e], views.items[v],
-                               &plan->columns[plan->column_count++], error);
+            added = add_view(plan, name, views.items[v], error);
+    }
     release_list(&environments);
     release_list(&views);
     return added;
@@ -431,7 +466,11 @@ bool tl_contact_cell_settings(const struct tl_contact_plan *plan, size_t row, si
     if (!tl_options_set(bindings, TL_SETTINGS_TABLES, "scene.environment", at->environment, "--envs", NULL,
                         error))
         return false;
-    if (!at->view.is_scene)
+    if (at->view.camera == TL_CONTACT_KEY) {
+        out->camera = at->view.key.camera;
+        out->scene.environment_yaw_deg = at->view.key.environment_yaw_deg;
+    }
+    if (at->view.camera == TL_CONTACT_ORBIT)
         out->camera.yaw_deg = at->view.yaw_deg;
     if (at->view.has_pitch)
         out->camera.pitch_deg = at->view.pitch_deg;

@@ -5,15 +5,23 @@
 
 #include "app/arguments.h"
 #include "app/contact_layout.h"
+#include "app/path.h"
 #include "app/settings.h"
 
 #define TL_CONTACT_CELLS_MAX 4096
 
+enum tl_contact_camera {
+    TL_CONTACT_ORBIT, /* the scene's, turned; it frames the garment unless the scene has placed it */
+    TL_CONTACT_SCENE, /* the scene's own */
+    TL_CONTACT_KEY    /* of a camera path */
+};
+
 struct tl_contact_view {
     char *name;
-    bool is_scene; /* the scene's own camera; else an orbit that frames the garment */
+    enum tl_contact_camera camera;
     bool has_pitch;
     float yaw_deg, pitch_deg;
+    struct tl_path_key key;
 };
 
 struct tl_contact_row {

@@ -154,12 +154,15 @@ static void record_jobs(struct tl_flight *flight, const tl_plan *plan, struct tl
     }
 }
 
-/* The camera goes first, so that the choice is made for where it will be. */
+/* The camera goes first, so that the choice is made for where it will be. The cloth stays as it is: whenever
+ * its step changes it forgets its contacts. */
 static bool choose(struct pilot *pilot, const struct tl_settings *wanted, int number,
                    struct tl_pace_choice *out, tl_error *error)
 {
     struct tl_stage *stage = pilot->stage;
-    if (!tl_session_apply(stage->session, wanted, error))
+    struct tl_settings looked_from = *wanted;
+    looked_from.cloth = tl_session_settings(stage->session)->cloth;
+    if (!tl_session_apply(stage->session, &looked_from, error))
         return false;
     const tl_frame coming = tl_session_frame(stage->session);
     if (pilot->options->replay) {
@@ -286,7 +289,9 @@ bool tl_fly_judge(struct tl_stage *stage, struct tl_flight *flight, tl_error *er
     struct tl_motion motion;
     struct tl_contender oracle = {0};
     const struct tl_choice choice = tl_choice_oracle();
-    bool done = tl_session_reset(stage->session, error) && begin_motion(stage, flight, &motion, error) &&
+    /* A reset would not do: a cloth whose step has changed goes on otherwise than a fresh one. */
+    bool done = tl_session_restart(stage->session, &stage->settings, error) &&
+                begin_motion(stage, flight, &motion, error) &&
                 tl_contender_create(&oracle, stage->gpu, &choice, &stage->settings, error);
     struct tl_progress progress = tl_progress_begin("ray tracing what was flown");
     int judged = 0;

@@ -88,6 +88,44 @@ void tl_gallery_grazing_figures(FILE *out)
         "not.");
 }
 
+/* ---- A3 ---- */
+
+/* Of the whole light, ambient and diffuse included, so that both ways are measured alike. */
+void tl_gallery_folded_figures(FILE *out)
+{
+    static const struct {
+        const char *name;
+        int model, precision;
+    } ways[] = {{"Phong, 8 bits", TL_REFLECT_PHONG, TL_PRECISION_FIXED8},
+                {"Blinn-Phong, 8 bits", TL_REFLECT_BLINN_PHONG, TL_PRECISION_FIXED8},
+                {"cosine lobe, 8 bits", TL_REFLECT_COSINE_LOBE, TL_PRECISION_FIXED8},
+                {"Phong, float", TL_REFLECT_PHONG, TL_PRECISION_FLOAT}};
+    struct tl_plot_point points[TL_COUNT(ways)][TL_COUNT(sizes)];
+    struct tl_plot_series series[TL_COUNT(ways)];
+    for (size_t way = 0; way < TL_COUNT(ways); way++) {
+        struct tl_brdf brdf = brdf_of(ways[way].model, 0.9f);
+        for (size_t i = 0; i < TL_COUNT(sizes); i++) {
+            struct tl_brdf_table_params params = {.size = sizes[i],
+                                                  .precision = ways[way].precision,
+                                                  .range = TL_RANGE_SCALED,
+                                                  .folded = true,
+                                                  .ambient = {{0.02f, 0.02f, 0.02f}},
+                                                  .diffuse = {{0.3f, 0.3f, 0.3f}}};
+            points[way][i] = (struct tl_plot_point){sizes[i], 100 * tl_brdf_table_error(&brdf, &params).away,
+                                                    ways[way].name, false};
+        }
+        series[way] = (struct tl_plot_series){
+            .name = ways[way].name, .points = points[way], .count = TL_COUNT(sizes), .line = true};
+    }
+    tl_report_plot(
+        out, &(struct tl_plot){"texels a side", "relative RMSE, %", true, true, series, TL_COUNT(series)},
+        "Ambient, diffuse and gloss folded into one table, one look-up for all three, against the formula. A "
+        "folded table holds one colour: cloth whose yarns and prints differ from texel to texel would need a "
+        "table for each, so the shaders keep the diffuse term beside the table, where it costs one product, "
+        "and "
+        "no option folds it.");
+}
+
 /* ---- A9 ---- */
 
 void tl_gallery_normalise_figures(FILE *out)

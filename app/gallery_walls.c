@@ -297,7 +297,8 @@ const struct tl_gallery_wall tl_gallery_walls[] = {
      .solid = "torus",
      .base = {LAMPLIT, "shading.reflectance=table", "material.specular=[0.15, 0.15, 0.15]"},
      .exact = {"shading.reflectance=direct"},
-     WALL(a3)},
+     WALL(a3),
+     .figures = tl_gallery_folded_figures},
     {.name = "a4",
      .heading = "A4  Ward's elliptical Gaussian",
      .text = "Facets spread unlike along weft and warp: the highlight lies across the narrower. Exact is the "

@@ -17,7 +17,7 @@ enum {
     TICKS = 5,
     COLUMNS = 2
 };
-enum { LINES_MAX = 8, LARGE_PICTURE = 800 };
+enum { LINES_MAX = 8, LINE_SIZE = 64, LARGE_PICTURE = 800 };
 #define PAPER 0x181818
 #define INK   0xf0f0f0
 
@@ -26,26 +26,29 @@ struct sheet {
     tl_image *picture;
     int dot; /* pixels of a dot */
     int line_count;
-    char lines[LINES_MAX][64];
+    char lines[LINES_MAX][LINE_SIZE];
 };
 
 /* Words of `text` in lines of at most TEXT_WIDTH. */
 static void wrap(const char *text, struct sheet *sheet)
 {
-    char word[64];
+    char word[LINE_SIZE], *line = NULL;
     int length;
-    bool begun = false;
     for (const char *at = text; sscanf(at, "%63s%n", word, &length) == 1; at += length) {
-        char longer[128] = "";
-        if (begun)
-            snprintf(longer, sizeof longer, "%s %s", sheet->lines[sheet->line_count - 1], word);
-        bool fits = begun && strlen(longer) < sizeof sheet->lines[0] &&
-                    tl_canvas_words_width(1, longer) <= TEXT_WIDTH;
+        size_t used = line ? strlen(line) : 0;
+        bool fits =
+            line && used + 1 + strlen(word) < LINE_SIZE &&
+            tl_canvas_words_width(1, line) + tl_canvas_words_width(1, " ") + tl_canvas_words_width(1, word) <=
+                TEXT_WIDTH;
         if (!fits && sheet->line_count == LINES_MAX)
             return;
-        char *line = sheet->lines[fits ? sheet->line_count - 1 : sheet->line_count++];
-        snprintf(line, sizeof sheet->lines[0], "%s", fits ? longer : word);
-        begun = true;
+        if (fits) {
+            line[used] = ' ';
+            memcpy(line + used + 1, word, strlen(word) + 1);
+        } else {
+            line = sheet->lines[sheet->line_count++];
+            memcpy(line, word, strlen(word) + 1);
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 #include "app/looks.h"
 
+#include "app/height_picture.h"
 #include "assets/garment.h"
 #include "config/memory.h"
 
@@ -57,19 +58,26 @@ static void set_params(const struct tl_material_params *params, tl_material *mat
 }
 
 /* The yarns of a fabric, or NULL: they are shared by the materials that show them. */
-static const tl_weave *weave_of(struct tl_looks *looks, const struct tl_weave_params *params)
+static bool find_weave(struct tl_looks *looks, const struct tl_weave_params *params, const tl_weave **out,
+                       tl_error *error)
 {
-    for (size_t i = 0; i < looks->weave_count; i++)
+    *out = NULL;
+    for (size_t i = 0; i < looks->weave_count && !*out; i++)
         if (tl_options_equal(&tl_weave_options, &looks->weaves[i].params, params))
-            return looks->weaves[i].weave;
+            *out = looks->weaves[i].weave;
     tl_weave made;
-    if (!tl_weave_create(params, &made))
-        return NULL;
+    if (*out)
+        return true;
+    if (params->picture[0] && !tl_height_picture_weave(params, &made, error))
+        return false;
+    if (!params->picture[0] && !tl_weave_create(params, &made))
+        return true;
     looks->weaves = tl_resize(looks->weaves, looks->weave_count + 1, sizeof *looks->weaves);
     tl_weave *kept = TL_NEW(tl_weave);
     *kept = made;
     looks->weaves[looks->weave_count++] = (struct tl_woven){*params, kept};
-    return kept;
+    *out = kept;
+    return true;
 }
 
 /* What is left of a print when it is dyed over: its holes. */
@@ -145,10 +153,12 @@ static void change(const struct tl_swatch *swatch, struct making *making)
         making->params = params_of(making->file);
 }
 
-static tl_material finish(struct tl_looks *looks, const struct making *making)
+static bool finish(struct tl_looks *looks, const struct making *making, tl_material *out, tl_error *error)
 {
     tl_material made = *making->file;
-    const tl_weave *weave = making->is_woven ? weave_of(looks, &making->weave) : NULL;
+    const tl_weave *weave = NULL;
+    if (making->is_woven && !find_weave(looks, &making->weave, &weave, error))
+        return false;
     if (!making->is_file)
         set_fabric(&making->params, weave, &made);
     else if (making->is_changed)
@@ -159,7 +169,8 @@ static tl_material finish(struct tl_looks *looks, const struct making *making)
         forget_print(looks, &made);
     if (making->is_dyed || making->is_plain)
         memcpy(made.diffuse.raw, making->params.diffuse, sizeof made.diffuse.raw);
-    return made;
+    *out = made;
+    return true;
 }
 
 static bool is_meant(const struct tl_swatch *swatch, const tl_material *material)
@@ -167,7 +178,8 @@ static bool is_meant(const struct tl_swatch *swatch, const tl_material *material
     return strcmp(swatch->material, TL_SWATCH_ALL) == 0 || strcmp(swatch->material, material->name) == 0;
 }
 
-static void make_materials(const struct tl_settings *settings, const tl_model *model, struct tl_looks *looks)
+static bool make_materials(const struct tl_settings *settings, const tl_model *model, struct tl_looks *looks,
+                           tl_error *error)
 {
     const struct tl_colourways *colourways = &settings->colourways;
     for (size_t i = 0; i < model->material_count; i++) {
@@ -175,8 +187,10 @@ static void make_materials(const struct tl_settings *settings, const tl_model *m
         for (size_t k = 0; k < colourways->swatch_count; k++)
             if (is_meant(&colourways->swatches[k], making.file))
                 change(&colourways->swatches[k], &making);
-        looks->garment.materials[i] = finish(looks, &making);
+        if (!finish(looks, &making, &looks->garment.materials[i], error))
+            return false;
     }
+    return true;
 }
 
 /* ---- The colourway ---- */
@@ -294,7 +308,10 @@ bool tl_looks_make(const struct tl_settings *settings, const tl_model *garment, 
         dress(avatar, settings->scene.colourway, &out->avatar);
     if (garment) {
         dress(garment, settings->scene.colourway, &out->garment);
-        make_materials(settings, garment, out);
+        if (!make_materials(settings, garment, out, error)) {
+            tl_looks_release(out);
+            return false;
+        }
     }
     return true;
 }

@@ -1,6 +1,6 @@
 /* How garment and avatar look: the materials of their files, what the settings' fabric makes of the
  * garment's, and what the colourway changes: scene.colourway's looks (app/colourway.h) and the files' own
- * variants. Never how anything moves. Pure. */
+ * variants. Never how anything moves. Reads weave.picture's file and nothing else. */
 #ifndef TOILE_APP_LOOKS_H
 #define TOILE_APP_LOOKS_H
 
@@ -22,8 +22,8 @@ struct tl_looks {
     size_t name_count;
 };
 
-/* Either model may be NULL. Fails when nobody knows the colourway, or the garment has no material of a name
- * that it gives. */
+/* Either model may be NULL. Fails when nobody knows the colourway, the garment has no material of a name that
+ * it gives, or a weave's picture cannot be read. */
 bool tl_looks_make(const struct tl_settings *settings, const tl_model *garment, const tl_model *avatar,
                    struct tl_looks *out, tl_error *error);
 void tl_looks_release(struct tl_looks *looks); /* frees and zeroes */

@@ -48,8 +48,9 @@ struct tl_pace {
     struct tl_pace_choice choice;
     struct tl_cost_job cloth, other; /* what is not the renderer's */
     struct tl_work cloth_work;
-    double load; /* when that was chosen */
-    int rested;  /* frames without a change */
+    double load;       /* when that was chosen */
+    bool is_preparing; /* that frame did what no other does */
+    int rested;        /* frames without a change */
     uint64_t environment_revision;
     double errors[ERRORS_KEPT]; /* |predicted - took| / took, of the last frames */
     size_t error_count;         /* ever */
@@ -285,6 +286,7 @@ static struct tl_budget budget_of(const tl_pace *pace, const struct coming *comi
 static void prepare_regions(tl_pace *pace, tl_renderer *renderer, const tl_frame *frame,
                             const struct scope *full)
 {
+    pace->is_preparing = false;
     bool stays = pace->environment_revision == frame->environment_revision;
     pace->environment_revision = frame->environment_revision;
     for (int level = pace->knobs[TL_KNOB_REGIONS].level_count - 1; stays && level >= 0; level--) {
@@ -294,6 +296,7 @@ static void prepare_regions(tl_pace *pace, tl_renderer *renderer, const tl_frame
         if (tl_renderer_has_regions(renderer, &then.drawn))
             continue;
         tl_renderer_prepare_regions(renderer, &then.drawn);
+        pace->is_preparing = true;
         return;
     }
 }
@@ -424,6 +427,8 @@ void tl_pace_learn(tl_pace *pace, const tl_plan *plan, double cloth_ms, double t
         drawn_ms += plan->rows[i].took_ms;
     double predicted_ms = pace->choice.predicted_ms;
     tl_cost_learn(&pace->cloth, &pace->cloth_work, pace->load, cloth_ms);
+    if (pace->is_preparing)
+        return;
     tl_cost_learn(&pace->other, &any_work, pace->load, fmax(total_ms - cloth_ms - drawn_ms, 0));
     if (!isfinite(predicted_ms) || !(total_ms > 0))
         return;

@@ -59,7 +59,7 @@ void draw_progress(const tl_panel_input &input)
     const float width = 22 * ImGui::GetFontSize();
     if (input.progress.share >= 0)
         ImGui::ProgressBar(input.progress.share, ImVec2(width, 0));
-    ImGui::TextDisabled("Esc stops it");
+    ImGui::TextDisabled("%s", input.progress.hint);
     ImGui::End();
 }
 

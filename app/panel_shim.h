@@ -61,6 +61,7 @@ struct tl_panel_legend {
 struct tl_panel_progress {
     const char *what; /* NULL: nothing */
     float share;      /* [0, 1]; negative: not known */
+    const char *hint; /* how it is ended */
 };
 
 struct tl_panel_input {

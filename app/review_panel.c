@@ -222,7 +222,9 @@ static struct tl_panel_progress progress_of(const struct tl_review *review, char
     struct tl_load_progress progress = tl_loader_progress(review->loader);
     bool is_known = progress.what[0] != '\0';
     snprintf(text, size, "Loading %.100s%s%s", slash ? slash + 1 : name, is_known ? ": " : "", progress.what);
-    return (struct tl_panel_progress){.what = text, .share = is_known ? (float)progress.share : -1};
+    return (struct tl_panel_progress){.what = text,
+                                      .share = is_known ? (float)progress.share : -1,
+                                      .hint = review->session ? "Esc stops it" : "Esc leaves"};
 }
 
 void tl_review_build_progress(struct tl_review *review)

@@ -19,9 +19,12 @@ static const char *const avatar_names[] = {"form", "ball", "none", NULL};
 static const char *const environment_names[] = {"studio", "white", "none", NULL};
 static const char *const motion_names[] = {"none", NULL};
 
+#define OWN "own"
+static const char *const colourways_names[] = {OWN, "dress", "skirt", "composed", NULL};
+
 #define TL_SCENE_DEFAULTS                                                                                    \
     .garment = "dress", .avatar = "form", .motion = "none", .environment = "studio", .environment_rate = 30, \
-    .preset = "review"
+    .colourways = OWN, .preset = "review"
 
 static const struct tl_option scene_rows[] = {
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, garment, garment_names,
@@ -53,9 +56,9 @@ static const struct tl_option scene_rows[] = {
                      "fabrics and colours that the scene or a glTF file (its variants) has under this name; "
                      "empty: as they are"),
     TL_OPTION_NAME_OR_PATH(
-        struct tl_scene_params, colourways, tl_embedded_scenes_names,
-        "the scene whose colourways are meant: built in, or a YAML file; left out: this one's, "
-        "or those of a built-in garment"),
+        struct tl_scene_params, colourways, colourways_names,
+        "where colourways are from: this scene or, when it has none, its built-in garment (own); or "
+        "another scene, built in or a YAML file"),
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, preset, tl_embedded_presets_names,
                            "sets quality in the tables cloth, light and image: built in, or a YAML file"),
     TL_OPTION_STRING(struct tl_scene_params, clip,
@@ -231,6 +234,11 @@ static bool apply_model(const struct tl_binding *all, const char *path, tl_error
            tl_options_set(all, TL_SETTINGS_TABLES, "scene.fabric", "none", "SCENE", NULL, error);
 }
 
+static bool has_own_colourways(const struct tl_scene_params *scene)
+{
+    return strcmp(scene->colourways, OWN) == 0;
+}
+
 /* A scene's tables. A file's own colourways are meant unless it names others; those of a built-in scene
  * belong to its garment. */
 static bool apply_scene(const struct tl_binding *all, const char *name, tl_error *error)
@@ -241,9 +249,8 @@ static bool apply_scene(const struct tl_binding *all, const char *name, tl_error
     const struct tl_record_section section = tl_colourways_section(&reader);
     if (!apply_with(&scene_layer, name, all, TL_SETTINGS_TABLES, &section, error))
         return false;
-    const struct tl_scene_params *scene = all[SCENE].params;
-    bool has_own = found.name_count > 0 && tl_option_is_file_name(name);
-    return !has_own || scene->colourways[0] != '\0' ||
+    bool brings = found.name_count > 0 && tl_option_is_file_name(name);
+    return !brings || !has_own_colourways(all[SCENE].params) ||
            tl_options_set(all, TL_SETTINGS_TABLES, "scene.colourways", name, "SCENE", NULL, error);
 }
 
@@ -270,12 +277,14 @@ static void choose_fabric(struct tl_scene_params *scene)
 /* The built-in scene that shows a built-in garment has its colourways too. */
 const char *tl_settings_colourways_source(const struct tl_settings *settings)
 {
-    const struct tl_scene_params *scene = &settings->scene;
     static const char *const sources[][2] = {{"dress", "dress"}, {"skirt", "skirt"}, {"layers", "composed"}};
-    for (size_t i = 0; i < TL_COUNT(sources) && scene->colourways[0] == '\0'; i++)
+    const struct tl_scene_params *scene = &settings->scene;
+    if (!has_own_colourways(scene))
+        return scene->colourways;
+    for (size_t i = 0; i < TL_COUNT(sources); i++)
         if (strcmp(scene->garment, sources[i][0]) == 0)
             return sources[i][1];
-    return scene->colourways;
+    return "";
 }
 
 /* Of the scene only its section of colourways is wanted here. */

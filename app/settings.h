@@ -21,7 +21,7 @@ struct tl_scene_params {          /* table "scene": what to show; names of built
     char overlay_fabric[TL_STRING_SIZE]; /* as fabric: of the garment's materials named overlay; "": as the
                                             others */
     char colourway[TL_STRING_SIZE]; /* name of one of the scene's or of a model's variants; "": as they are */
-    char colourways[TL_STRING_SIZE]; /* scene, built in or YAML, whose section is meant; "": the garment's */
+    char colourways[TL_STRING_SIZE]; /* scene, built in or YAML, that has them; "own": the garment's */
     char preset[TL_STRING_SIZE];     /* name of an embedded preset, or a YAML file */
     char clip[TL_STRING_SIZE];       /* animation of the avatar; "": the first; "none": the rest pose */
     float environment_yaw_deg;

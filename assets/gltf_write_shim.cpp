@@ -1,10 +1,12 @@
 extern "C" {
 #include "assets/model_export.h"
+#include "config/log.h"
 #include "config/memory.h"
 }
 
 #include <tiny_gltf.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -138,35 +140,153 @@ tinygltf::Value pair_of(const float values[2])
     return tinygltf::Value(array);
 }
 
+bool is_identity(const tl_uv_transform &t)
+{
+    return t.offset[0] == 0 && t.offset[1] == 0 && t.scale[0] == 1 && t.scale[1] == 1 && t.rotation == 0;
+}
+
+void use_extension(Writer &writer, const char *name)
+{
+    std::vector<std::string> &used = writer.model.extensionsUsed;
+    if (std::find(used.begin(), used.end(), name) == used.end())
+        used.push_back(name);
+}
+
+tinygltf::Value transform_of(Writer &writer, const tl_uv_transform &t)
+{
+    tinygltf::Value::Object transform;
+    transform["offset"] = pair_of(t.offset);
+    transform["scale"] = pair_of(t.scale);
+    transform["rotation"] = tinygltf::Value(static_cast<double>(t.rotation));
+    use_extension(writer, "KHR_texture_transform");
+    return tinygltf::Value(transform);
+}
+
 template <typename Info>
 void add_map(Writer &writer, const tl_map &map, float glossiness, Info &to, const char *path, tl_error *error)
 {
     if (!map.image)
         return;
     to.index = find_texture(writer, map.image, glossiness, path, error);
-    const tl_uv_transform &t = map.transform;
-    if (t.offset[0] == 0 && t.offset[1] == 0 && t.scale[0] == 1 && t.scale[1] == 1 && t.rotation == 0)
-        return;
-    tinygltf::Value::Object transform;
-    transform["offset"] = pair_of(t.offset);
-    transform["scale"] = pair_of(t.scale);
-    transform["rotation"] = tinygltf::Value(static_cast<double>(t.rotation));
-    to.extensions["KHR_texture_transform"] = tinygltf::Value(transform);
-    if (writer.model.extensionsUsed.empty())
-        writer.model.extensionsUsed.push_back("KHR_texture_transform");
+    if (!is_identity(map.transform))
+        to.extensions["KHR_texture_transform"] = transform_of(writer, map.transform);
 }
 
-/* glTF has one base colour for both lobes: the diffuse one, or for a metal the specular one. Specular
- * maps have no place in it and stay behind. */
+/* ---- Extensions: the inverse of model_extensions.c, where it has one ---- */
+
+tinygltf::Value number(double value)
+{
+    return tinygltf::Value(value);
+}
+
+tinygltf::Value colour(const vec3s &value, double divisor)
+{
+    tinygltf::Value::Array array;
+    for (float channel : value.raw)
+        array.emplace_back(static_cast<double>(channel) / divisor);
+    return tinygltf::Value(array);
+}
+
+void extend(Writer &writer, tinygltf::Material &to, const char *name, const tinygltf::Value::Object &members)
+{
+    to.extensions[name] = tinygltf::Value(members);
+    use_extension(writer, name);
+}
+
+bool is_stretched(const tl_material &from)
+{
+    return from.gloss.model == TL_REFLECT_WARD && from.gloss.width_weft > 0 && from.gloss.width_warp > 0 &&
+           from.gloss.width_weft != from.gloss.width_warp;
+}
+
+/* Ward's wide axis is the direction that GGX is stretched along. */
+void add_anisotropy(Writer &writer, const tl_material &from, tinygltf::Material &to)
+{
+    double weft = static_cast<double>(from.gloss.width_weft),
+           warp = static_cast<double>(from.gloss.width_warp);
+    double wide = std::fmax(weft, warp), alpha = std::fmin(weft, warp);
+    double turned = static_cast<double>(from.gloss.rotation) + (warp > weft ? M_PI / 2 : 0);
+    to.pbrMetallicRoughness.roughnessFactor = std::sqrt(alpha);
+    extend(writer, to, "KHR_materials_anisotropy",
+           {{"anisotropyStrength", number(std::sqrt((wide - alpha) / (1 - alpha)))},
+            {"anisotropyRotation", number(turned)}});
+}
+
+/* F0 of what is no metal, as an index and what it is tinted by. */
+void add_reflectance(Writer &writer, const tl_material &from, const vec3s &f0, tinygltf::Material &to,
+                     const char *path, tl_error *error)
+{
+    double index = from.gloss.index > 1 ? static_cast<double>(from.gloss.index) : 1.5;
+    double root = (index - 1) / (index + 1), plain = root * root;
+    bool tinted = false;
+    for (float channel : f0.raw)
+        tinted = tinted || std::fabs(static_cast<double>(channel) / plain - 1) > 1e-4;
+    if (std::fabs(index - 1.5) > 1e-5)
+        extend(writer, to, "KHR_materials_ior", {{"ior", number(index)}});
+    if (!tinted && !from.specular_map.image)
+        return;
+    tinygltf::Value::Object members = {{"specularColorFactor", colour(f0, plain)}};
+    if (from.specular_map.image) {
+        tinygltf::Value::Object map = {
+            {"index", tinygltf::Value(find_texture(writer, from.specular_map.image, AS_IT_IS, path, error))}};
+        if (!is_identity(from.specular_map.transform))
+            map["extensions"] = tinygltf::Value(tinygltf::Value::Object{
+                {"KHR_texture_transform", transform_of(writer, from.specular_map.transform)}});
+        members["specularColorTexture"] = tinygltf::Value(map);
+    }
+    extend(writer, to, "KHR_materials_specular", members);
+}
+
+void add_coat(Writer &writer, const tl_material &from, tinygltf::Material &to)
+{
+    if (from.coat > 0)
+        extend(writer, to, "KHR_materials_clearcoat",
+               {{"clearcoatFactor", number(static_cast<double>(from.coat))},
+                {"clearcoatRoughnessFactor", number(roughness_of(from.coat_glossiness))}});
+}
+
+/* Share of the light that goes through; the colour below it is what the rest is scattered by. */
+double add_transmission(Writer &writer, const tl_material &from, tinygltf::Material &to)
+{
+    double share = std::fmin(static_cast<double>(glms_vec3_max(from.transmission)), 0.99);
+    if (share > 0)
+        extend(writer, to, "KHR_materials_diffuse_transmission",
+               {{"diffuseTransmissionFactor", number(share)},
+                {"diffuseTransmissionColorFactor", colour(from.transmission, share)}});
+    return share;
+}
+
+void tell_what_is_left_out(const tl_material &from, bool metal, const char *path)
+{
+    std::string left;
+    const std::pair<bool, const char *> parts[] = {
+        {from.gloss.model != TL_REFLECT_PHONG && !is_stretched(from), "its reflectance model"},
+        {from.openness > 0, "its holes"},
+        {metal && glms_vec3_max(from.transmission) > 0, "light through a metal"},
+        {from.weave != nullptr, "its weave"},
+        {from.height_map.image != nullptr, "its heights"}};
+    for (const auto &part : parts)
+        if (part.first)
+            left += std::string(left.empty() ? "" : ", ") + part.second;
+    if (!left.empty())
+        tl_info("%s: %s: glTF has no place for %s", path, from.name, left.c_str());
+}
+
+/* glTF has one base colour for both lobes: the diffuse one, or for a metal the specular one. */
 int add_material(Writer &writer, const tl_material &from, const char *path, tl_error *error)
 {
     tinygltf::Material to;
     to.name = from.name;
     bool metal = glms_vec3_max(from.diffuse) < 0.5f * glms_vec3_max(from.specular);
-    const vec3s &base = metal ? from.specular : from.diffuse;
+    vec3s f0 = from.specular;
+    if (is_stretched(from))
+        f0 = glms_vec3_divs(f0, model_ward_factor(from.gloss.width_weft, from.gloss.width_warp));
+    double scattered_back = metal ? 1 : 1 - add_transmission(writer, from, to);
+    const vec3s &base = metal ? f0 : from.diffuse;
     to.pbrMetallicRoughness.baseColorFactor.clear();
     for (float channel : base.raw)
-        to.pbrMetallicRoughness.baseColorFactor.push_back(static_cast<double>(channel));
+        to.pbrMetallicRoughness.baseColorFactor.push_back(
+            std::fmin(static_cast<double>(channel) / scattered_back, 1));
     to.pbrMetallicRoughness.baseColorFactor.push_back(1);
     to.pbrMetallicRoughness.metallicFactor = metal ? 1 : 0;
     to.pbrMetallicRoughness.roughnessFactor = from.gloss_map.image ? 1 : roughness_of(from.glossiness);
@@ -179,7 +299,14 @@ int add_material(Writer &writer, const tl_material &from, const char *path, tl_e
     }
     tinygltf::PbrMetallicRoughness &pbr = to.pbrMetallicRoughness;
     add_map(writer, from.diffuse_map, AS_IT_IS, pbr.baseColorTexture, path, error);
-    add_map(writer, from.gloss_map, from.glossiness, pbr.metallicRoughnessTexture, path, error);
+    if (is_stretched(from))
+        add_anisotropy(writer, from, to);
+    else
+        add_map(writer, from.gloss_map, from.glossiness, pbr.metallicRoughnessTexture, path, error);
+    if (!metal)
+        add_reflectance(writer, from, f0, to, path, error);
+    add_coat(writer, from, to);
+    tell_what_is_left_out(from, metal, path);
     add_map(writer, from.normal_map, AS_IT_IS, to.normalTexture, path, error);
     add_map(writer, from.occlusion_map, AS_IT_IS, to.occlusionTexture, path, error);
     writer.model.materials.push_back(to);

@@ -1,4 +1,5 @@
 /* glTF's material extensions as the nearest that a tl_material can say, and in words what that changes. */
+#include "assets/model_export.h"
 #include "assets/model_read.h"
 
 #include <math.h>
@@ -29,10 +30,16 @@ vec3s model_dielectric_f0(const struct model_look *look)
     return out;
 }
 
+/* By least squares over views up to 70 degrees, where Ward's lobe falls with the cosine of the view and GGX
+ * does not (tests/assets/test_model_extensions.c). */
+float model_ward_factor(float width_weft, float width_warp)
+{
+    return 1.14f + 0.17f * sqrtf(width_weft * width_warp);
+}
+
 /* GGX of widths mix(alpha, 1, strength^2) along the direction and alpha across, as a Ward lobe of the same
  * widths. Wide slopes along a direction stretch the highlight along it; the grooves that make them run
- * across. Ward's lobe falls with the cosine of the view where GGX does not: by least squares over views up to
- * 70 degrees it is nearest when it is a little brighter (tests/assets/test_model_extensions.c). */
+ * across. It is nearest when it is a little brighter. */
 static void apply_anisotropy(const struct model_look *look)
 {
     const struct gltf_extensions *from = &look->from->extensions;
@@ -52,7 +59,7 @@ static void apply_anisotropy(const struct model_look *look)
     gloss->model = TL_REFLECT_WARD;
     gloss->width_weft = alpha + (1 - alpha) * strength * strength;
     gloss->width_warp = alpha;
-    float brighter = 1.14f + 0.17f * sqrtf(gloss->width_weft * gloss->width_warp);
+    float brighter = model_ward_factor(gloss->width_weft, gloss->width_warp);
     for (int c = 0; c < 3; c++)
         look->to->specular.raw[c] = fminf(look->to->specular.raw[c] * brighter, 1);
     model_approximate(look->model,

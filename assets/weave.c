@@ -19,6 +19,12 @@ static const struct tl_option rows[] = {
     TL_OPTION_COLOUR(struct tl_weave_params, warp_tint, 0, 1, "factor on the diffuse colour of warp yarns"),
     TL_OPTION_COLOUR(struct tl_weave_params, weft_tint, 0, 1, "factor on the diffuse colour of weft yarns"),
     TL_OPTION_INT(struct tl_weave_params, texels_per_yarn, 16, 64, "texels", "resolution of the maps"),
+    TL_OPTION_PATH(struct tl_weave_params, picture,
+                   "heights instead of yarns: a .png or .exr that repeats; empty: none"),
+    TL_OPTION_FLOAT(struct tl_weave_params, picture_mm, 0.001, 10000, "mm",
+                    "width of the picture on the cloth"),
+    TL_OPTION_FLOAT(struct tl_weave_params, depth_mm, 0, 10000, "mm",
+                    "from the picture's lowest to its highest; larger is rougher"),
 };
 const struct tl_option_table tl_weave_options =
     TL_OPTION_TABLE("weave", "woven detail: normals, gloss and yarn colours at millimetre scale", rows,

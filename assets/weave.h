@@ -21,11 +21,16 @@ struct tl_weave_params {
     float warp_tint[3];  /* factor on material.diffuse on warp yarns, linear */
     float weft_tint[3];
     int texels_per_yarn; /* resolution of the maps */
+    /* A picture of heights instead of yarns (app/height_picture.h reads it) */
+    char picture[TL_STRING_SIZE]; /* "": none */
+    float picture_mm;             /* its width on the cloth: of a repeat */
+    float depth_mm;               /* from its lowest to its highest */
 };
 /* A light cotton sheeting. */
 #define TL_WEAVE_DEFAULTS                                                                                    \
     .pattern = TL_WEAVE_PLAIN, .warp_pitch_mm = 0.4f, .weft_pitch_mm = 0.4f, .crimp_mm = 0.1f,               \
-    .warp_tint = {1, 1, 1}, .weft_tint = {1, 1, 1}, .texels_per_yarn = 32
+    .warp_tint = {1, 1, 1}, .weft_tint = {1, 1, 1}, .texels_per_yarn = 32, .picture_mm = 10,                 \
+    .depth_mm = 0.5f
 extern const struct tl_option_table tl_weave_options; /* "weave" */
 
 /* Maps of one repeat. pattern NONE gives false without an error: there is nothing to make. */

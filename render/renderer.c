@@ -170,11 +170,18 @@ static tl_bits changed_inputs(const tl_renderer *renderer, const uint64_t signat
     return changed;
 }
 
-/* Rounds are never averaged into what another frame left. */
-void tl_renderer_forget(tl_renderer *renderer)
+/* Nothing holds, and the next frame begins anew: rounds are never averaged into what another frame left. */
+static void forget(tl_renderer *renderer)
 {
     renderer->valid = 0;
     memset(renderer->signatures, 0, sizeof renderer->signatures);
+}
+
+/* As if all surfaces had moved: what follows from the environment alone is the same however it came about. */
+void tl_renderer_forget(tl_renderer *renderer)
+{
+    renderer->signatures[TL_INPUT_MOTION] = 0;
+    renderer->rest = (struct tl_rest){0};
     tl_points_destroy(&renderer->points); /* they refine what they have */
     renderer->points = tl_points_create();
 }
@@ -251,7 +258,7 @@ static bool run_plan(tl_renderer *renderer, const struct tl_plan_input *input, t
             continue;
         double started_s = tl_clock_s();
         if (!tl_frame_jobs[i].run(renderer, plan->rows[i].level, error)) {
-            tl_renderer_forget(renderer);
+            forget(renderer);
             return false;
         }
         /* The CPU's clock around a finished job: GL's own timers are wrong on software drivers. */
@@ -282,7 +289,7 @@ static void reload_shaders(tl_renderer *renderer)
         !tl_program_reload(&renderer->present.resolve, &error) ||
         !tl_program_reload(&renderer->present.show, &error))
         tl_warn("%s", error.message);
-    tl_renderer_forget(renderer);
+    forget(renderer);
 }
 
 static bool check_camera(const struct tl_camera *camera, tl_error *error)
@@ -312,6 +319,23 @@ static bool check_envmap_size(const tl_frame *frame, const struct tl_render_sett
     return true;
 }
 
+/* What the scene does not call for any more is given back, and made anew when it does again. While something
+ * else than light is shown, light's things wait. */
+static void let_go(tl_renderer *renderer, tl_bits facts)
+{
+    if (facts & TL_BIT(TL_SCENE_INSPECT))
+        return;
+    if (!(facts & TL_BIT(TL_SCENE_LAMPS))) {
+        tl_local_release(&renderer->local);
+        renderer->valid &=
+            ~(TL_BIT(TL_MADE_LAMP_MAPS) | TL_BIT(TL_MADE_LAMP_RAYS) | TL_BIT(TL_MADE_LAMPLIGHT));
+    }
+    if (!(facts & TL_BIT(TL_SCENE_SHEETS))) {
+        tl_sheets_release(&renderer->sheets);
+        renderer->valid &= ~TL_BIT(TL_MADE_SHEETS);
+    }
+}
+
 bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct tl_render_settings *settings,
                       tl_error *error)
 {
@@ -331,11 +355,8 @@ bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct
     renderer->view = tl_view_make(&frame->camera, used.image.width, used.image.height);
     memcpy(renderer->signatures, signatures, sizeof signatures);
     tl_frame_list_surfaces(renderer);
+    let_go(renderer, tl_frame_facts(frame, &used));
     const struct tl_plan_input input = plan_input(renderer, frame, &used, changed, read_of(frame));
-    if (!(input.scene & TL_BIT(TL_SCENE_LAMPS)))
-        tl_local_release(&renderer->local);
-    if (!(input.scene & TL_BIT(TL_SCENE_SHEETS)))
-        tl_sheets_release(&renderer->sheets);
     return run_plan(renderer, &input, &renderer->plan, error);
 }
 

@@ -132,29 +132,34 @@ static void describe_visibility(const struct tl_legend_source *source, struct tl
     set_scale(legend, 0, 1, grey);
 }
 
-static int by_importance(const void *a, const void *b)
+struct ranked {
+    float importance;
+    int number;
+};
+
+/* The brightest first; of equals the lower number. */
+static int compare_ranks(const void *a, const void *b)
 {
-    const struct tl_region *left = *(const struct tl_region *const *)a,
-                           *right = *(const struct tl_region *const *)b;
+    const struct ranked *left = a, *right = b;
     if (left->importance != right->importance)
         return left->importance < right->importance ? 1 : -1;
-    return (left > right) - (left < right);
+    return left->number - right->number;
 }
 
 static void list_regions(const struct tl_regions *regions, struct tl_legend *legend)
 {
-    const struct tl_region *order[TL_REGIONS_MAX];
+    struct ranked order[TL_REGIONS_MAX];
     double all = 0;
     for (int i = 0; i < regions->count; i++) {
-        order[i] = &regions->items[i];
+        order[i] = (struct ranked){regions->items[i].importance, i};
         all += (double)regions->items[i].importance;
     }
-    qsort(order, (size_t)regions->count, sizeof order[0], by_importance);
-    for (int i = 0; i < regions->count && i < TL_LEGEND_ENTRIES && order[i]->importance > 0; i++) {
-        int number = (int)(order[i] - regions->items);
+    qsort(order, (size_t)regions->count, sizeof order[0], compare_ranks);
+    for (int i = 0; i < regions->count && i < TL_LEGEND_ENTRIES && order[i].importance > 0; i++) {
         char label[40];
-        snprintf(label, sizeof label, "%d: %.2g %%", number, 100 * (double)order[i]->importance / all);
-        add_entry(legend, tl_number_colour((uint32_t)number), label);
+        snprintf(label, sizeof label, "%d: %.2g %%", order[i].number,
+                 100 * (double)order[i].importance / all);
+        add_entry(legend, tl_number_colour((uint32_t)order[i].number), label);
     }
 }
 

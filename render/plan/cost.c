@@ -4,14 +4,15 @@
 
 #define MACHINE_DEVIATION 1.0  /* of the factor that all parts share, at first */
 #define PART_DEVIATION    0.5  /* of each part beside it */
-#define DRIFT             0.01 /* of each, from run to run: scenes and machines change slowly */
+#define DRIFT             0.02 /* of the machine, from run to run */
+#define PART_DRIFT        0.01 /* of a part: what is seen changes slowly */
 #define NOISE             0.06 /* of a measurement, beside NOISE_MS */
 #define NOISE_MS          0.05
 #define OUTLIER           3.0 /* standard deviations, beyond which a run says no more */
 #define FIRST_RUNS        2   /* the first run makes what others find made, and says little */
 #define BELIEVED_RUNS     5   /* ... but the next ones are believed whatever they say */
 #define FACTOR_MIN        0.02
-#define UNKNOWN_MS        1.0 /* work of a job that the table knows nothing of */
+#define UNIT_MIN_MS       0.05
 
 #define LOAD_MIN     0.25
 #define LOAD_MAX     16.0
@@ -28,13 +29,14 @@ double tl_work_sum(const struct tl_work *work)
     return sum;
 }
 
-static struct tl_work known(const struct tl_work *work)
+static struct tl_work known(const struct tl_cost_job *job, const struct tl_work *work)
 {
-    return tl_work_sum(work) > 0 ? *work : (struct tl_work){.ms = {UNKNOWN_MS}};
+    return tl_work_sum(work) > 0 ? *work : (struct tl_work){.ms = {job->unit_ms}};
 }
 
-static void begin(struct tl_cost_job *job)
+static void begin(struct tl_cost_job *job, double ms)
 {
+    job->unit_ms = fmax(ms, UNIT_MIN_MS);
     for (int i = 0; i < TL_WORK_PARTS; i++) {
         job->factor[i] = 1;
         for (int k = 0; k < TL_WORK_PARTS; k++)
@@ -47,11 +49,23 @@ double tl_cost_predict(const struct tl_cost_job *job, const struct tl_work *work
 {
     if (job->runs == 0)
         return tl_work_sum(work) > 0 ? load * tl_work_sum(work) : (double)NAN;
-    struct tl_work used = known(work);
+    struct tl_work used = known(job, work);
     double ms = 0;
     for (int i = 0; i < TL_WORK_PARTS; i++)
         ms += job->factor[i] * used.ms[i];
     return load * ms;
+}
+
+/* All parts together, by their share of the cost; and each for itself, as far as nothing is known of it. */
+static void drift(struct tl_cost_job *job)
+{
+    for (int i = 0; i < TL_WORK_PARTS; i++) {
+        double most = PART_DEVIATION * job->factor[i], part = PART_DRIFT * job->factor[i];
+        if (job->covariance[i][i] < most * most)
+            job->covariance[i][i] += part * part;
+        for (int k = 0; k < TL_WORK_PARTS; k++)
+            job->covariance[i][k] += DRIFT * DRIFT * job->factor[i] * job->factor[k];
+    }
 }
 
 /* One step of the filter, with the part of the covariance along the work. */
@@ -60,12 +74,11 @@ void tl_cost_learn(struct tl_cost_job *job, const struct tl_work *work, double l
     if (!isfinite(ms) || ms < 0)
         return;
     if (job->runs++ < FIRST_RUNS)
-        begin(job);
-    struct tl_work used = known(work);
+        begin(job, ms / load);
+    struct tl_work used = known(job, work);
+    drift(job);
     double along[TL_WORK_PARTS] = {0}, predicted = 0, variance = 0;
     for (int i = 0; i < TL_WORK_PARTS; i++) {
-        if (job->covariance[i][i] < PART_DEVIATION * PART_DEVIATION)
-            job->covariance[i][i] += DRIFT * DRIFT;
         predicted += job->factor[i] * used.ms[i];
         for (int k = 0; k < TL_WORK_PARTS; k++)
             along[i] += job->covariance[i][k] * used.ms[k];

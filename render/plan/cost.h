@@ -21,6 +21,7 @@ double tl_work_sum(const struct tl_work *work);
 
 struct tl_cost_job {
     int runs;
+    double unit_ms; /* of work that the table knows nothing of: what the first runs took */
     double factor[TL_WORK_PARTS];
     double covariance[TL_WORK_PARTS][TL_WORK_PARTS];
 };

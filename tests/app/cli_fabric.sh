@@ -50,6 +50,19 @@ for map in height.exr normal.png offset.exr moments.exr gloss.png horizon_0_45_9
     printf '%s' "$told" | grep -q "$map: 2 x 2 texels" || fail "$map: its size is not told"
 done
 printf '%s' "$told" | grep -q '4 x 4 mm a repeat, 1 mm deep' || fail "the scale is not told: $told"
+# The fabric can be worn, from another folder, and is the heights that were baked.
+[ -s maps/height.yaml ] || fail "no fabric was written"
+grep -q 'picture_mm: 4$' maps/height.yaml && grep -q 'depth_mm: 1 ' maps/height.yaml || fail "its scale: $(cat maps/height.yaml)"
+wear() {
+    "$TOILE" render -o "$1" --garment sphere --avatar none --size 32x32 --set light.method=unshadowed \
+        --set scene.environment=white --set detail.mode=relief --quiet "${@:2}" || fail "$1 is not drawn"
+}
+wear worn.exr --fabric maps/height.yaml
+wear flat.exr --fabric maps/height.yaml --set weave.depth_mm=0
+cmp -s worn.exr flat.exr && fail "the heights do not show"
+sed -i 's/picture: height/picture: nowhere/' maps/height.yaml
+message=$("$TOILE" render -o lost.exr --fabric maps/height.yaml --size 8x8 --quiet 2>&1)
+[ $? -eq 2 ] && printf '%s' "$message" | grep -q 'maps/nowhere\.exr' || fail "a lost picture: $message"
 # What 8 bits would lose is there: 256 / 65535 of a millimetre.
 "$TOILE" fabric maps/height.exr -o again --repeat-mm 4 --height-mm 1 2>&1 | grep -q '0.001 mm deep' ||
     fail "heights in metres are not read back"

@@ -30,8 +30,10 @@ static float *read_channel(const char *path, const char *name, size_t *count)
 {
     int width, height;
     float *values = exr_read_channel(path, name, &width, &height);
-    if (!values)
+    if (!values) {
         fail_msg("%s: no channel %s", path, name);
+        return NULL;
+    }
     *count = (size_t)width * (size_t)height;
     for (size_t i = 0; i < *count; i++)
         assert_true(isfinite(values[i]));

@@ -100,6 +100,30 @@ static void cells_have_names_and_settings(void **state)
     tl_contact_plan_release(&plan);
 }
 
+/* A view for each key of a camera path. */
+static void keys_of_a_path_are_views(void **state)
+{
+    (void)state;
+    FILE *file = fopen(TOILE_SCRATCH_DIR "/looks.yaml", "w");
+    assert_non_null(file);
+    fputs("keys:\n"
+          "  - {time_s: 0, yaw_deg: 10, distance_m: 2, target: [0, 1, 0]}\n"
+          "  - {time_s: 1, yaw_deg: 70, environment_yaw_deg: 40}\n",
+          file);
+    fclose(file);
+    struct tl_contact_plan plan = plan_of("--views front," TOILE_SCRATCH_DIR "/looks.yaml");
+    assert_int_equal(plan.column_count, 3);
+    expect_name(&plan, 0, 2, "dress_satin_studio_looks-2.png");
+    struct tl_settings settings;
+    tl_error error = {0};
+    assert_ok(tl_contact_cell_settings(&plan, 0, 2, &settings, &error), error);
+    assert_near(settings.camera.yaw_deg, 70, 0);
+    assert_near(settings.camera.distance_m, 2, 0);
+    assert_near(settings.scene.environment_yaw_deg, 40, 0);
+    assert_true(tl_contact_cell_hash(&plan, 0, 1) != tl_contact_cell_hash(&plan, 0, 2));
+    tl_contact_plan_release(&plan);
+}
+
 static void colourways_are_found(void **state)
 {
     (void)state;
@@ -342,6 +366,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(slugs_are_plain),
         cmocka_unit_test(cells_have_names_and_settings),
+        cmocka_unit_test(keys_of_a_path_are_views),
         cmocka_unit_test(colourways_are_found),
         cmocka_unit_test(hashes_follow_what_is_shown),
         cmocka_unit_test(hashes_follow_files),

@@ -17,7 +17,7 @@ static struct tl_legend strain_legend(void)
 
 static const uint8_t *pixel(const tl_image *picture, int x, int y)
 {
-    return tl_image_bytes(picture) + 3 * (y * picture->width + x);
+    return tl_image_bytes(picture) + 3 * ((ptrdiff_t)y * picture->width + x);
 }
 
 static bool has_colour(const tl_image *picture, vec3s colour)

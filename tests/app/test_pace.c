@@ -168,6 +168,8 @@ static struct tl_settings small_settings(void)
     return settings;
 }
 
+static const enum tl_knob dear[3] = {TL_KNOB_REFRESH, TL_KNOB_REGIONS, TL_KNOB_SCALE};
+
 /* Nothing was drawn: the table's costs decide. No budget gives everything, none at all the least. */
 static void budgets_are_kept_to(void **state)
 {
@@ -186,8 +188,8 @@ static void budgets_are_kept_to(void **state)
         assert_true(isnan(choice.predicted_ms));
         assert_true(choice.error <= before);
         before = choice.error;
-        for (int k = 0; k < TL_KNOB_COUNT; k++)
-            assert_true(i > 0 || choice.levels.of[k] > 0);
+        for (size_t k = 0; k < 3; k++) /* the others cost nothing here, that is known of */
+            assert_true(i > 0 || choice.levels.of[dear[k]] > 0);
         tl_pace_destroy(&pace);
     }
     assert_near(before, 0, 0);
@@ -247,8 +249,9 @@ static void steps_tell_what_a_level_is_worth(void **state)
     }
     struct tl_pace_step steps[TL_KNOB_COUNT];
     tl_pace_steps(pace, device->renderer, &frame, &settings, steps);
+    for (size_t k = 0; k < 3; k++)
+        assert_int_equal(steps[dear[k]].level, steps[dear[k]].level_count - 1);
     for (int k = 0; k < TL_KNOB_COUNT; k++) {
-        assert_int_equal(steps[k].level, steps[k].level_count - 1);
         assert_true(steps[k].level == 0 ? isnan(steps[k].error) : steps[k].error > 0);
     }
     assert_true(steps[TL_KNOB_SCALE].ms > 0);

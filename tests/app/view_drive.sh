@@ -174,10 +174,11 @@ for shot in shots/*.png; do
 done
 [ "$(cat shots/*.png | wc -c)" -gt 0 ] && [ "$(md5sum shots/*.png | cut -d' ' -f1 | sort -u | wc -l)" -ge 5 ] ||
     fail "screenshots do not differ"
-# Up to 40 MB of play were seen between rounds (the allocator and the software driver keep and return textures), with no
-# trend over eight rounds. One forgotten image a frame, 11 MB, would be over 200 MB a round.
+# A round makes a renderer for the comparison, some 130 MB, and ends it. The allocator and the software driver keep and
+# return such pieces: up to 80 MB of play were seen between rounds; over minutes (view_long.sh) there is no trend. One
+# forgotten renderer or one forgotten image a frame would be over this bound.
 echo "resident: $warm_kb kB after the first round, $grown_kb kB more at the end"
-[ "$grown_kb" -lt 65536 ] || fail "memory grew by $grown_kb kB"
+[ "$grown_kb" -lt 122880 ] || fail "memory grew by $grown_kb kB"
 
 # The next review of this dress has its view; the window its size. A broken file of state is told, once.
 grep -q "^view2" state/toile/views/*.yaml || fail "view 2 is not kept"

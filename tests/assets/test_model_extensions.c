@@ -293,6 +293,64 @@ static void nonsense_is_harmless(void **state)
     }
 }
 
+/* What was read is written back so that it is read as the same material: within single precision, through a
+ * glossiness's fourth root for the coat. */
+static void exports_come_back(void **state)
+{
+    (void)state;
+    static const char path[] = TOILE_SCRATCH_DIR "/model_extensions_exported.glb";
+    static const char *const cases[][2] = {
+        {MATT, "\"KHR_materials_anisotropy\":{\"anisotropyStrength\":0.6,\"anisotropyRotation\":1.25}"},
+        {"\"metallicFactor\":1,\"roughnessFactor\":0.3",
+         "\"KHR_materials_anisotropy\":{\"anisotropyStrength\":0.9}"},
+        {MATT, "\"KHR_materials_ior\":{\"ior\":1.8},\"KHR_materials_clearcoat\":{\"clearcoatFactor\":0.75,"
+               "\"clearcoatRoughnessFactor\":0.3}"},
+        {MATT, "\"KHR_materials_specular\":{\"specularColorFactor\":[1,0.5,0],\"specularColorTexture\":"
+               "{\"index\":0,\"extensions\":{\"KHR_texture_transform\":{\"scale\":[3,2]}}}}"},
+        {MATT, "\"KHR_materials_diffuse_transmission\":{\"diffuseTransmissionFactor\":0.25,"
+               "\"diffuseTransmissionColorFactor\":[1,0.5,0]}"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        tl_model model = load_with(cases[i][0], cases[i][1]), back;
+        tl_error error;
+        const tl_mesh *mesh = &model.mesh;
+        const tl_surface surface = {.name = "cloth",
+                                    .vertex_count = mesh->vertex_count,
+                                    .positions = mesh->positions,
+                                    .normals = mesh->normals,
+                                    .uvs = mesh->uvs,
+                                    .index_count = mesh->index_count,
+                                    .indices = mesh->indices,
+                                    .part_count = mesh->part_count,
+                                    .parts = mesh->parts,
+                                    .materials = model.materials};
+        assert_ok(tl_model_export_glb(path, &surface, 1, &error), error);
+        assert_ok(tl_model_load(path, &back, &error), error);
+        const tl_material *a = &model.materials[1], *b = NULL;
+        for (size_t k = 0; k < back.material_count; k++)
+            b = strcmp(back.materials[k].name, "cloth") == 0 ? &back.materials[k] : b;
+        assert_non_null(b);
+        for (int c = 0; c < 3; c++) {
+            assert_near(b->diffuse.raw[c], a->diffuse.raw[c], 2e-6);
+            assert_near(b->specular.raw[c], a->specular.raw[c], 2e-6);
+            assert_near(b->transmission.raw[c], a->transmission.raw[c], 2e-6);
+        }
+        assert_int_equal(b->gloss.model, a->gloss.model);
+        assert_near(b->gloss.width_weft, a->gloss.width_weft, 2e-6);
+        assert_near(b->gloss.width_warp, a->gloss.width_warp, 2e-6);
+        assert_near(b->gloss.rotation, a->gloss.rotation, 2e-6);
+        assert_near(b->gloss.index, a->gloss.index, 2e-6);
+        assert_near(b->glossiness, a->glossiness, 2e-5);
+        assert_near(b->coat, a->coat, 2e-6);
+        assert_near(b->coat_glossiness, a->coat_glossiness, 2e-5);
+        assert_true(!a->specular_map.image == !b->specular_map.image);
+        assert_memory_equal(&b->specular_map.transform, &a->specular_map.transform,
+                            sizeof a->specular_map.transform);
+        tl_model_release(&back);
+        tl_model_release(&model);
+    }
+}
+
 /* Khronos' sample: seven strengths on the same spheres. */
 static void real_files_are_read(void **state)
 {
@@ -325,6 +383,7 @@ int main(void)
         cmocka_unit_test(transmission_is_holes_and_scatter),
         cmocka_unit_test(sheen_is_scattered_light),
         cmocka_unit_test(nonsense_is_harmless),
+        cmocka_unit_test(exports_come_back),
         cmocka_unit_test(real_files_are_read),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

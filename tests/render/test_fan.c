@@ -33,7 +33,7 @@ static const struct gloss_case cases[] = {
     {"torrance-sparrow .2", TL_REFLECT_TORRANCE_SPARROW, 0.2f, 0, 0, {0.40, 0.26, 0.18, 0.17}},
     {"torrance-sparrow .4", TL_REFLECT_TORRANCE_SPARROW, 0.4f, 0, 0, {0.42, 0.24, 0.20, 0.20}},
     {"blinn-phong s 8", TL_REFLECT_BLINN_PHONG, 0, 0, 0.875f, {0.39, 0.25, 0.19, 0.18}},
-    {"cosine lobe s 8", TL_REFLECT_COSINE_LOBE, 0, 0, 0.875f, {0.15, 0.15, 0.15, 0.15}},
+    {"cosine lobe s 8", TL_REFLECT_COSINE_LOBE, 0, 0, 0.875f, {0.09, 0.09, 0.09, 0.09}},
     {"banks s 8", TL_REFLECT_BANKS, 0, 0, 0.875f, {0.65, 0.26, 0.23, 0.23}},
     {"banks s 32", TL_REFLECT_BANKS, 0, 0, 0.96875f, {1.08, 0.58, 0.27, 0.18}},
 };

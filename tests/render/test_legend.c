@@ -172,7 +172,8 @@ static void visibility_is_the_sum_over_regions(void **state)
         for (int i = 0; i < REGIONS; i++) {
             double visibility = 0;
             for (int t = 0; t < TL_TAPS; t++)
-                visibility += (double)taps.weight[t] * values[taps.point[t] * STRIDE + (size_t)i] / 65535;
+                visibility +=
+                    (double)taps.weight[t] * values[(size_t)taps.point[t] * STRIDE + (size_t)i] / 65535;
             double light = (double)regions->items[i].importance *
                            fmax(0, (double)glms_vec3_dot(regions->items[i].direction, normal));
             assert_near(tl_seen_region(values, STRIDE, &taps, i), visibility, 1e-6);
