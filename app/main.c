@@ -6,6 +6,7 @@
 #include "config/options.h"
 
 #include <locale.h>
+#include <malloc.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -55,8 +56,18 @@ static bool run(int argc, char **argv, tl_error *error)
     return done;
 }
 
+/* What a frame frees the next one asks for again, in another size when levels change. Kept in the process it is
+ * there at once; given back, its pages are faulted in and zeroed anew, which takes a frame's time. */
+static void keep_freed_memory(void)
+{
+    const int largest_kept = 32 << 20, trimmed_beyond = 256 << 20; /* bytes; 32 MiB is what glibc allows */
+    mallopt(M_MMAP_THRESHOLD, largest_kept);
+    mallopt(M_TRIM_THRESHOLD, trimmed_beyond);
+}
+
 int main(int argc, char **argv)
 {
+    keep_freed_memory();
     setlocale(LC_ALL, "C"); /* numbers in files and results have a point, wherever the user lives */
     tl_interrupt_install();
     tl_error error = {0};
