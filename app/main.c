@@ -8,7 +8,9 @@
 #include <locale.h>
 #include <malloc.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #define COMMANDS_MAX 32
 
@@ -56,8 +58,8 @@ static bool run(int argc, char **argv, tl_error *error)
     return done;
 }
 
-/* What a frame frees the next one asks for again, in another size when levels change. Kept in the process it is
- * there at once; given back, its pages are faulted in and zeroed anew, which takes a frame's time. */
+/* What a frame frees the next one asks for again, in another size when levels change. Kept in the process it
+ * is there at once; given back, its pages are faulted in and zeroed anew, which takes a frame's time. */
 static void keep_freed_memory(void)
 {
     const int largest_kept = 32 << 20, trimmed_beyond = 256 << 20; /* bytes; 32 MiB is what glibc allows */
@@ -65,8 +67,18 @@ static void keep_freed_memory(void)
     mallopt(M_TRIM_THRESHOLD, trimmed_beyond);
 }
 
+/* OpenMP's idle threads would spin beside software GL's, which want the same cores. Its library reads the
+ * policy before main begins, so the program starts once more; where that fails it only runs slower. */
+static void let_idle_threads_sleep(char **argv)
+{
+    if (getenv("OMP_WAIT_POLICY") || setenv("OMP_WAIT_POLICY", "passive", 0) != 0)
+        return;
+    execv("/proc/self/exe", argv);
+}
+
 int main(int argc, char **argv)
 {
+    let_idle_threads_sleep(argv);
     keep_freed_memory();
     setlocale(LC_ALL, "C"); /* numbers in files and results have a point, wherever the user lives */
     tl_interrupt_install();
