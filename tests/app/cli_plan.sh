@@ -44,6 +44,7 @@ else
     echo "skipped: sun: $sun is absent"
 fi
 
+fast=${fast/--frame 1/--frame 4} # what costs are learned from
 $TOILE plan $fast --budget 1 >tight.json
 $TOILE plan $fast --budget 100000 >loose.json
 python3 - <<'END'
