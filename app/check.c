@@ -82,8 +82,9 @@ const struct tl_invariant tl_invariants[] = {
     {"cloth.energy",
      "a garment on which nothing works gains no energy: gain, in metres that it would be lifted by",
      BY_SETTINGS,
-     "what is worn keeps no momentum, but a contact lifts it by the distance that it keeps at most", false,
-     tl_measure_energy},
+     "what is worn keeps no momentum, but a contact lifts it by the distance that it keeps at most, and the "
+     "solver by a centimetre",
+     false, tl_measure_energy},
     {"cloth.momentum",
      "a garment that falls free of everything falls straight: sideways way of its centre, metres", 1e-5,
      "its own forces and even drag sum to nothing; single precision's positions leave less than a tenth of "

@@ -163,11 +163,11 @@ struct tl_renderer {
     /* of the last draw; borrowed pointers in `frame` live as long as tl_frame says */
     tl_frame frame;
     struct tl_render_settings settings;
+    struct tl_suns suns; /* of its environment */
     struct tl_view view;
 
     struct tl_pour pour; /* from environments of one size to the cube */
     tl_cube cube;        /* without the suns */
-    struct tl_suns suns;
     struct tl_regions regions;
     uint64_t regions_revision;
     struct tl_pems pems;
@@ -200,7 +200,6 @@ struct tl_renderer {
     tl_points *points;
     float *light; /* [height][width][4] of samples, composed on the CPU */
     size_t light_bytes;
-    float strain_range; /* share of 1 at the ends of the legend, of the last view of strain */
     struct tl_lighting lighting;
     struct {                 /* what environment maps are made of: the whole light, suns and all */
         struct tl_pour pour; /* ... to their size */
@@ -217,6 +216,8 @@ struct tl_renderer {
     unsigned show_framebuffer;
     int show_width, show_height;
     int show_first, show_end; /* columns */
+
+    float strain_range; /* share of 1 at the ends of the legend, of the last view of strain */
 
     uint64_t signatures[TL_INPUT_COUNT]; /* of the last draw's inputs */
     struct tl_rest rest;
