@@ -83,7 +83,7 @@ const struct tl_invariant tl_invariants[] = {
      "a garment on which nothing works gains no energy: gain, in metres that it would be lifted by",
      BY_SETTINGS,
      "what is worn keeps no momentum, but a contact lifts it by the distance that it keeps at most, and the "
-     "solver by a centimetre",
+     "preview by what its steps leave unbalanced",
      false, tl_measure_energy},
     {"cloth.momentum",
      "a garment that falls free of everything falls straight: sideways way of its centre, metres", 1e-5,

@@ -15,6 +15,7 @@
 struct tl_checked_cloth {
     struct tl_cloth_report report;
     double strain_limit; /* of the solver; 0: none */
+    double step_lift_m;  /* by which its own steps may lift the garment */
     double kept_m;       /* the distance that contacts keep */
     double first_strain; /* the largest in frame 0; NaN: this is it */
     double weight_n;     /* newtons, of all of it */

@@ -4,11 +4,6 @@
 
 #include <math.h>
 
-/* What a solver's own steps lift: `preview` leaves its constraints unbalanced, and what they hold comes and
- * goes (up to 6 mm as a hem swings out, 2 cm mesh or finer). An instability passes any such bound within
- * frames. */
-#define SOLVER_LIFT_M 1e-2
-
 /* What no drape does to cloth that fits; and what putting on may do to the shortest edges of a garment that a
  * file has inside of its wearer (MakeHuman's sports suit, up to 8 mm: 0.64). */
 #define DRAPED_STRAIN 0.5
@@ -56,7 +51,7 @@ void tl_measure_energy(const struct tl_checked *checked, struct tl_finding *find
     const struct tl_checked_cloth *cloth = checked->cloth;
     if (!cloth || cloth->is_driven || isnan(cloth->least_energy_j) || !(cloth->weight_n > 0))
         return;
-    finding->bound = fmax(cloth->kept_m, SOLVER_LIFT_M);
+    finding->bound = fmax(cloth->kept_m, cloth->step_lift_m);
     double gain_m = (energy_of(&cloth->report) - cloth->least_energy_j) / cloth->weight_n;
     tl_finding_add(finding, gain_m < 0 ? 0 : gain_m);
     tl_finding_place(finding, "garment: %.4g J after %.4g J", energy_of(&cloth->report),
