@@ -40,8 +40,8 @@ struct tl_along {
     uint32_t other, edge;
 };
 
-/* Pulls of bending alone on one vertex, as many as are in flight at once; what a vertex has too few of is made
- * up with pulls of 0 from itself. */
+/* Pulls of bending alone on one vertex, as many as are in flight at once; what a vertex has too few of is
+ * made up with pulls of 0 from itself. */
 #define TL_PULLS_FOUR 4
 struct tl_four_pulls {
     double bending[TL_PULLS_FOUR]; /* -K_ij, N/m */
