@@ -155,9 +155,6 @@ TL_INLINE void move_corners(const struct tl_pair *pair, int side, int lane, stru
     }
 }
 
-/* Batches of a run that are solved side by side. */
-#define GROUP 4
-
 /* Whether the metric's larger eigenvalue exceeds `most`. */
 TL_INLINE bool stretches(const struct pair_work *work, int lane, double most)
 {
@@ -165,46 +162,88 @@ TL_INLINE bool stretches(const struct pair_work *work, int lane, double most)
     return (spare_u < 0) | (spare_v < 0) | (spare_u * spare_v < uv * uv);
 }
 
-TL_INLINE void solve_sides(const struct tl_pair *pairs, size_t count, int side, double most,
-                           struct pair_work *work, bool (*seen)[TL_SIDES][TL_BATCH])
+/* Batches of a run that are solved side by side, `work` being where. */
+#define GROUP 8
+struct group {
+    const struct tl_pair *pairs;
+    bool (*seen)[TL_SIDES][TL_BATCH];
+    struct pair_work *work;
+    size_t count;
+};
+
+TL_INLINE void load_batch(const struct group *group, size_t k, const vec3d *x)
 {
-    for (size_t k = 0; k < count; k++)
-        for (int lane = 0; lane < TL_BATCH; lane++)
-            measure(&pairs[k].sides[side], 2 + side, lane, &work[k]);
-    for (size_t k = 0; k < count && seen; k++)
-        for (int lane = 0; lane < TL_BATCH; lane++)
-            seen[k][side][lane] = stretches(&work[k], lane, most);
-    for (size_t k = 0; k < count; k++)
-        for (int lane = 0; lane < TL_BATCH; lane++)
-            solve(&pairs[k].sides[side], lane, &work[k]);
-    for (size_t k = 0; k < count; k++)
-        for (int lane = 0; lane < TL_BATCH; lane++)
-            move_corners(&pairs[k], side, lane, &work[k]);
+    if (k >= group->count)
+        return;
+    for (size_t line = 0; line < sizeof *group->pairs; line += TL_CACHE_LINE)
+        __builtin_prefetch((const char *)&group->pairs[k + GROUP] + line);
+    for (int i = 0; i < 4; i++)
+        load(x, group->pairs[k].vertices[i], &group->work[k].x[i]);
 }
 
-TL_INLINE void solve_group(const struct tl_pair *pairs, size_t count, double most, vec3d *x,
-                           bool (*seen)[TL_SIDES][TL_BATCH])
+TL_INLINE void store_batch(const struct group *group, size_t k, vec3d *x)
 {
-    struct pair_work work[GROUP];
-    for (size_t k = 0; k < count; k++) {
-        for (size_t line = 0; line < sizeof *pairs; line += TL_CACHE_LINE)
-            __builtin_prefetch((const char *)&pairs[k + GROUP] + line);
-        for (int i = 0; i < 4; i++)
-            load(x, pairs[k].vertices[i], &work[k].x[i]);
-    }
-    solve_sides(pairs, count, 0, most, work, seen);
-    solve_sides(pairs, count, 1, most, work, seen);
-    for (size_t k = 0; k < count; k++)
-        for (int i = 0; i < 4; i++)
-            store(&work[k].x[i], pairs[k].vertices[i], x);
+    if (k >= group->count)
+        return;
+    for (int i = 0; i < 4; i++)
+        store(&group->work[k].x[i], group->pairs[k].vertices[i], x);
 }
 
+TL_INLINE void measure_side(const struct group *group, int side, double most)
+{
+    for (size_t k = 0; k < group->count; k++)
+        for (int lane = 0; lane < TL_BATCH; lane++)
+            measure(&group->pairs[k].sides[side], 2 + side, lane, &group->work[k]);
+    for (size_t k = 0; k < group->count && group->seen; k++)
+        for (int lane = 0; lane < TL_BATCH; lane++)
+            group->seen[k][side][lane] = stretches(&group->work[k], lane, most);
+}
+
+TL_INLINE void solve_batch(const struct group *group, size_t k, int side)
+{
+    if (k >= group->count)
+        return;
+    for (int lane = 0; lane < TL_BATCH; lane++)
+        solve(&group->pairs[k].sides[side], lane, &group->work[k]);
+}
+
+TL_INLINE void move_side(const struct group *group, int side)
+{
+    for (size_t k = 0; k < group->count; k++)
+        for (int lane = 0; lane < TL_BATCH; lane++)
+            move_corners(&group->pairs[k], side, lane, &group->work[k]);
+}
+
+/* While one group waits for roots and divisions, the one before is stored and the next one loaded: those of a
+ * run share no vertex. */
 TL_CLONES static void solve_run(const struct tl_pair *pairs, size_t count, double most, vec3d *x,
                                 bool (*seen)[TL_SIDES][TL_BATCH])
 {
-    for (size_t first = 0; first < count; first += GROUP)
-        solve_group(pairs + first, count - first < GROUP ? count - first : GROUP, most, x,
-                    seen ? seen + first : NULL);
+    struct pair_work work[2][GROUP];
+    struct group now = {pairs, seen, work[0], count < GROUP ? count : GROUP}, before = {0}, next;
+    for (size_t k = 0; k < now.count; k++)
+        load_batch(&now, k, x);
+    for (size_t first = GROUP; now.count > 0; first += GROUP) {
+        size_t left = first < count ? count - first : 0;
+        next = (struct group){pairs + first, seen ? seen + first : NULL, work[first / GROUP % 2],
+                              left < GROUP ? left : GROUP};
+        measure_side(&now, 0, most);
+        for (size_t k = 0; k < GROUP; k++) {
+            solve_batch(&now, k, 0);
+            store_batch(&before, k, x);
+        }
+        move_side(&now, 0);
+        measure_side(&now, 1, most);
+        for (size_t k = 0; k < GROUP; k++) {
+            solve_batch(&now, k, 1);
+            load_batch(&next, k, x);
+        }
+        move_side(&now, 1);
+        before = now;
+        now = next;
+    }
+    for (size_t k = 0; k < before.count; k++)
+        store_batch(&before, k, x);
 }
 
 /* On the threads of a team: the batches of a run in any order, the runs one after the other. */
