@@ -208,11 +208,6 @@ static struct tl_work work_of(int job, const struct tl_work_seen *seen)
     return tl_frame_jobs[job].work ? tl_frame_jobs[job].work(seen) : (struct tl_work){{0}};
 }
 
-static double load_of(const tl_renderer *renderer)
-{
-    return renderer->load > 0 ? renderer->load : 1;
-}
-
 static void make_plan(const tl_renderer *renderer, const struct tl_plan_input *input,
                       const struct tl_render_settings *settings, tl_plan *plan)
 {
@@ -220,7 +215,8 @@ static void make_plan(const tl_renderer *renderer, const struct tl_plan_input *i
     const struct tl_work_seen seen = tl_work_look(renderer, settings);
     for (int i = 0; i < tl_frame_job_count; i++) {
         struct tl_work work = work_of(i, &seen);
-        predicted_ms[i] = tl_cost_predict(&renderer->costs[i], &work, load_of(renderer));
+        predicted_ms[i] =
+            tl_cost_predict(&renderer->costs[i], &work, tl_machine_load_factor(&renderer->load));
     }
     tl_plan_make(tl_frame_jobs, tl_frame_job_count, input, predicted_ms, plan);
 }
@@ -232,7 +228,7 @@ static void learn_costs(tl_renderer *renderer, tl_plan *plan, double new_regions
     const int known = 3; /* runs */
     struct tl_work_seen seen = tl_work_look(renderer, &renderer->settings);
     seen.new_regions = new_regions; /* as it was before they were made */
-    double predicted_ms = 0, took_ms = 0, load = load_of(renderer);
+    double predicted_ms = 0, took_ms = 0, load = tl_machine_load_factor(&renderer->load);
     for (int i = 0; i < plan->count; i++) {
         if (plan->rows[i].action != TL_JOB_RUN)
             continue;
@@ -245,7 +241,7 @@ static void learn_costs(tl_renderer *renderer, tl_plan *plan, double new_regions
         }
         tl_cost_learn(cost, &work, load, plan->rows[i].took_ms);
     }
-    renderer->load = tl_load_follow(load, predicted_ms, took_ms);
+    tl_machine_load_follow(&renderer->load, predicted_ms, took_ms);
 }
 
 static bool run_plan(tl_renderer *renderer, const struct tl_plan_input *input, tl_plan *plan, tl_error *error)
@@ -489,7 +485,7 @@ double tl_renderer_would_take(const tl_renderer *renderer, const struct tl_rende
         if (!(jobs & (tl_bits)1 << i))
             continue;
         struct tl_work work = work_of(i, &seen);
-        double ms = tl_cost_predict(&renderer->costs[i], &work, load_of(renderer));
+        double ms = tl_cost_predict(&renderer->costs[i], &work, tl_machine_load_factor(&renderer->load));
         sum_ms += isfinite(ms) ? ms : 0;
     }
     return sum_ms;
@@ -497,7 +493,7 @@ double tl_renderer_would_take(const tl_renderer *renderer, const struct tl_rende
 
 double tl_renderer_load(const tl_renderer *renderer)
 {
-    return load_of(renderer);
+    return tl_machine_load_factor(&renderer->load);
 }
 
 bool tl_renderer_is_moving(const tl_renderer *renderer, const tl_frame *frame)

@@ -231,7 +231,7 @@ struct tl_renderer {
     tl_bits moving;                           /* inputs that changed from one frame to the last */
     tl_plan plan;
     struct tl_cost_job costs[TL_JOBS_MAX];
-    double load; /* tl_load_follow */
+    struct tl_machine_load load;
 };
 
 #endif
