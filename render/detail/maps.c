@@ -2,6 +2,7 @@
 
 #include "config/memory.h"
 #include "render/detail/bake.h"
+#include "render/detail/cones.h"
 #include "render/detail/detail.h"
 
 #include <epoxy/gl.h>
@@ -9,7 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* detail_flags beside 1 << unit, which say which maps there are: detail.glsl has the same numbers. */
+/* detail_flags, which say which maps there are (cones are where heights are): detail.glsl has the same
+ * numbers. */
 enum {
     FLAG_OWN_MOMENTS = 1,
     FLAG_WEAVE_MOMENTS = 2,
@@ -85,19 +87,29 @@ static tl_image shrunk(const tl_image *image)
     int factor = (longest + TL_HORIZON_SIDE_MAX - 1) / TL_HORIZON_SIDE_MAX;
     int width = image->width / factor > 1 ? image->width / factor : 1;
     int height = image->height / factor > 1 ? image->height / factor : 1;
-    tl_image small = tl_image_create(width, height, 1, TL_IMAGE_F32);
-    for (int i = 0; i < width * height; i++) {
-        int left = (int)((int64_t)(i % width) * image->width / width),
-            top = (int)((int64_t)(i / width) * image->height / height);
-        int right = (int)((int64_t)(i % width + 1) * image->width / width),
-            bottom = (int)((int64_t)(i / width + 1) * image->height / height);
-        double sum = 0;
-        for (int y = top; y < bottom; y++)
-            for (int x = left; x < right; x++)
-                sum += (double)tl_image_floats(image)[(size_t)y * (size_t)image->width + (size_t)x];
-        tl_image_floats(&small)[i] = (float)(sum / ((double)(right - left) * (bottom - top)));
+    return tl_bake_smaller(image, width, height);
+}
+
+/* Of every level of the heights its own: an average is no bound. */
+static tl_texture upload_cones(tl_gpu *gpu, const struct tl_height_field *field)
+{
+    int width = field->heights->width, height = field->heights->height;
+    tl_texture texture = tl_texture_create(gpu, GL_TEXTURE_2D, GL_RG8, width, height, 1,
+                                           tl_texture_full_levels(width, height));
+    glTextureParameteri(texture.id, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    glTextureParameteri(texture.id, GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_NEAREST);
+    for (int level = 0; level < texture.levels; level++) {
+        int across = width >> level > 1 ? width >> level : 1,
+            down = height >> level > 1 ? height >> level : 1;
+        tl_image small = tl_bake_smaller(field->heights, across, down);
+        struct tl_height_field baked = *field;
+        baked.heights = &small;
+        tl_image cones = tl_bake_cones(&baked, (float)(1 << level));
+        glTextureSubImage2D(texture.id, level, 0, 0, across, down, GL_RG, GL_UNSIGNED_BYTE, cones.texels);
+        tl_image_release(&cones);
+        tl_image_release(&small);
     }
-    return small;
+    return texture;
 }
 
 /* Both sides of the sheet, each with all its angles. */
@@ -135,6 +147,8 @@ static void add_heights(struct tl_detail_entry *entry, tl_gpu *gpu, const struct
     memcpy(entry->rows, heights.rows, sizeof entry->rows);
     if (tl_detail_wants_heights(params))
         entry->textures[TL_DETAIL_HEIGHTS] = upload_heights(gpu, &heights.image);
+    if (tl_detail_wants_cones(params))
+        entry->textures[TL_DETAIL_CONES] = upload_cones(gpu, &heights.field);
     if (tl_detail_wants_horizons(params))
         entry->textures[TL_DETAIL_HORIZONS] = upload_horizons(gpu, &heights, tl_detail_angle_count(params));
     if (own_normals) {
