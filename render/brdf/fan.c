@@ -102,13 +102,12 @@ static void sample_normal(float from, float at[POINTS], float share[POINTS])
         share[i] *= mass / sum;
 }
 
-/* What of all light is reflected towards the viewer: the mean over all slopes. Those that turn away from the
- * viewer by more than half of what is left of a right angle send light from below the horizon, which cuts the
- * mean off sharply; beside that, three Gauss-Hermite points do. */
+/* What of all light is reflected towards the viewer: the mean over all slopes. Those that turn away from the viewer
+ * by more than half of what is left of a right angle send light from below the horizon, which cuts the mean off
+ * sharply; beside that, two Gauss-Hermite points do. */
 static vec3s albedo_of(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame,
                        const struct slopes *slopes, vec3s v)
 {
-    const float aside[3] = {-1.7320508f, 0, 1.7320508f}, aside_share[3] = {1 / 6.0f, 2 / 3.0f, 1 / 6.0f};
     vec3s local = local_of(frame, v), sum = {{0, 0, 0}};
     float flat = hypotf(local.x, local.y), u = slopes->weft, w = slopes->warp;
     vec2s towards = flat > 1e-4f ? (vec2s){{local.x / flat, local.y / flat}} : (vec2s){{1, 0}};
@@ -119,10 +118,10 @@ static vec3s albedo_of(const struct tl_brdf *brdf, const struct tl_brdf_frame *f
     float at[POINTS], share[POINTS];
     sample_normal(fmaxf(-REACH, -lowest / deviation), at, share);
     for (int i = 0; i < POINTS; i++)
-        for (int j = 0; j < 3; j++) {
-            vec2s slope = glms_vec2_add(glms_vec2_scale(along, at[i]), glms_vec2_scale(beside, aside[j]));
+        for (int sign = -1; sign <= 1; sign += 2) {
+            vec2s slope = glms_vec2_add(glms_vec2_scale(along, at[i]), glms_vec2_scale(beside, (float)sign));
             vec3s value = value_of_slope(brdf, frame, slopes, v, slope);
-            sum = glms_vec3_add(sum, glms_vec3_scale(value, share[i] * aside_share[j]));
+            sum = glms_vec3_add(sum, glms_vec3_scale(value, 0.5f * share[i]));
         }
     return sum;
 }
