@@ -4,12 +4,17 @@
 #include "render/detail/detail_terms.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 
 /* What is nearer than two texels is looked at by halves of them, where bounds by whole ones would leave
  * nothing of a cone. */
 #define NEAR_HALVES 4
+#define MARGIN      (NEAR_HALVES + 2)
+/* So many times as far away as it is large, a block counts as a whole: the cone is a little narrower for it.
+ */
+#define FAR 6.0f
 
 /* Of the field around a texel's middle, half a texel each way. */
 struct patch {
@@ -26,7 +31,7 @@ struct level {
 #define LEVELS_MAX 16
 struct cells {
     int width, height, copies_x, copies_y; /* how many repeats are looked at on each side */
-    float *halves; /* heights at every half texel: middles at odd places, 2 width x 2 height */
+    float *halves; /* heights at every half texel, middles at odd places, with a margin all around */
     struct patch *patches;
     int level_count;
     struct level levels[LEVELS_MAX];
@@ -89,12 +94,13 @@ static void add_level(struct cells *cells)
 
 static float *halves_of(const struct tl_height_field *field)
 {
-    int width = 2 * field->heights->width, height = 2 * field->heights->height;
-    float *halves = TL_NEW_ARRAY(float, (size_t)width *(size_t)height);
-    for (int row = 0; row < height; row++)
-        for (int column = 0; column < width; column++) {
+    int width = 2 * field->heights->width, height = 2 * field->heights->height,
+        row_length = width + 2 * MARGIN;
+    float *halves = TL_NEW_ARRAY(float, (size_t)row_length *(size_t)(height + 2 * MARGIN));
+    for (int row = -MARGIN; row < height + MARGIN; row++)
+        for (int column = -MARGIN; column < width + MARGIN; column++) {
             const vec2s uv = {{(float)column / (float)width, (float)row / (float)height}};
-            halves[(size_t)row * (size_t)width + (size_t)column] = tl_field_height(field, uv);
+            halves[(row + MARGIN) * (ptrdiff_t)row_length + column + MARGIN] = tl_field_height(field, uv);
         }
     return halves;
 }
@@ -168,16 +174,21 @@ struct block {
     int level, x, y;
 };
 
-/* Whether any point of a block, shifted by whole repeats, could bound the cone; texels reach half a texel. */
-static bool matters(const struct cone *cone, const struct cells *cells, struct block block, int shift_x,
-                    int shift_y)
+/* How a block, shifted by whole repeats, bounds a cone at the narrowest. */
+struct bound {
+    float distance, rise;
+};
+
+/* Texels reach half a texel. */
+static struct bound bound_of(const struct cone *cone, const struct cells *cells, struct block block,
+                             int shift_x, int shift_y)
 {
     const struct level *level = &cells->levels[block.level];
     int side = 1 << block.level, left = block.x * side + shift_x, top = block.y * side + shift_y;
-    float rise = level->high[(size_t)block.y * (size_t)level->width + (size_t)block.x] - cone->apex;
     float across = outside((float)cone->column, (float)(left - 1), (float)(left + side));
     float down = outside((float)cone->row, (float)(top - 1), (float)(top + side));
-    return hypotf(across, down) < cone->ratio * rise;
+    float high = level->high[(size_t)block.y * (size_t)level->width + (size_t)block.x];
+    return (struct bound){hypotf(across, down), high - cone->apex};
 }
 
 static void narrow_by_repeat(struct cone *cone, const struct cells *cells, int shift_x, int shift_y)
@@ -185,8 +196,13 @@ static void narrow_by_repeat(struct cone *cone, const struct cells *cells, int s
     struct block stack[4 * LEVELS_MAX] = {{cells->level_count - 1, 0, 0}};
     for (int count = 1; count > 0;) {
         struct block block = stack[--count];
-        if (!matters(cone, cells, block, shift_x, shift_y))
+        struct bound bound = bound_of(cone, cells, block, shift_x, shift_y);
+        if (!(bound.distance < cone->ratio * bound.rise))
             continue;
+        if (bound.distance > FAR * (float)(1 << block.level) && block.level > 0) {
+            cone->ratio = bound.distance / bound.rise;
+            continue;
+        }
         if (block.level == 0) {
             narrow_by_patch(cone, cells, block.x + shift_x, block.y + shift_y);
             continue;
@@ -205,34 +221,29 @@ static void narrow_by_repeat(struct cone *cone, const struct cells *cells, int s
     }
 }
 
-static float half_at(const struct cells *cells, int x, int y)
-{
-    x = wrapped(x, 2 * cells->width, !cells->copies_x);
-    y = wrapped(y, 2 * cells->height, !cells->copies_y);
-    return cells->halves[(size_t)y * 2 * (size_t)cells->width + (size_t)x];
-}
-
 /* By what is (x, y) half texels away from a place of the apex's texel, if the field falls from there on. */
-static void narrow_by_half(struct cone *cone, const struct cells *cells, int from_x, int from_y, int x, int y)
+static void narrow_by_half(struct cone *cone, const float *from, ptrdiff_t row_length, int x, int y)
 {
-    float distance = hypotf((float)x, (float)y), here = half_at(cells, from_x + x, from_y + y);
-    float rise = here - half_at(cells, from_x, from_y);
+    const float *here = from + y * row_length + x;
+    float rise = *here - *from;
+    if (!(rise > 0))
+        return;
+    float distance = sqrtf((float)(x * x + y * y));
     if (!(distance < 2 * cone->ratio * rise))
         return;
     int beyond_x = (int)lrintf((float)x / distance), beyond_y = (int)lrintf((float)y / distance);
-    if (half_at(cells, from_x + x + beyond_x, from_y + y + beyond_y) < here)
+    if (here[beyond_y * row_length + beyond_x] < *here)
         cone->ratio = distance / (2 * rise);
 }
 
 static void narrow_near(struct cone *cone, const struct cells *cells)
 {
-    for (int k = 0; k < 9; k++) {
-        int from_x = 2 * cone->column + k % 3, from_y = 2 * cone->row + k / 3;
+    ptrdiff_t row_length = 2 * cells->width + 2 * MARGIN;
+    const float *corner = cells->halves + (2 * cone->row + MARGIN) * row_length + 2 * cone->column + MARGIN;
+    for (int k = 0; k < 9; k++)
         for (int y = -NEAR_HALVES; y <= NEAR_HALVES; y++)
             for (int x = -NEAR_HALVES; x <= NEAR_HALVES; x++)
-                if (x != 0 || y != 0)
-                    narrow_by_half(cone, cells, from_x, from_y, x, y);
-    }
+                narrow_by_half(cone, corner + k / 3 * row_length + k % 3, row_length, x, y);
 }
 
 /* Beyond the repeats that are looked at, everything may be as high as anything is. */
@@ -257,23 +268,6 @@ static uint8_t encoded(float ratio, float depth_m)
 {
     float texels = ratio * depth_m;
     return isfinite(texels) ? (uint8_t)(255 * (texels / (texels + DETAIL_CONE_TEXELS))) : 255;
-}
-
-tl_image tl_bake_smaller(const tl_image *heights, int width, int height)
-{
-    tl_image small = tl_image_create(width, height, 1, TL_IMAGE_F32);
-    for (int i = 0; i < width * height; i++) {
-        int left = (int)((int64_t)(i % width) * heights->width / width),
-            top = (int)((int64_t)(i / width) * heights->height / height);
-        int right = (int)((int64_t)(i % width + 1) * heights->width / width),
-            bottom = (int)((int64_t)(i / width + 1) * heights->height / height);
-        double sum = 0;
-        for (int y = top; y < bottom; y++)
-            for (int x = left; x < right; x++)
-                sum += (double)tl_image_floats(heights)[(size_t)y * (size_t)heights->width + (size_t)x];
-        tl_image_floats(&small)[i] = (float)(sum / ((double)(right - left) * (bottom - top)));
-    }
-    return small;
 }
 
 tl_image tl_bake_cones(const struct tl_height_field *field, float texel)

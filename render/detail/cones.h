@@ -19,7 +19,4 @@
  * one of these is; r counts the former. */
 tl_image tl_bake_cones(const struct tl_height_field *field, float texel);
 
-/* By heights, averaged to these sides. F32 x1. */
-tl_image tl_bake_smaller(const tl_image *heights, int width, int height);
-
 #endif

@@ -104,16 +104,18 @@ vec2 detail_bounds(float side)
 // The height at which a ray through uv on the mesh meets the field: tl_field_relief.
 float detail_hit(vec2 uv, vec2 along, float side, float level)
 {
-    vec2 bounds = detail_bounds(side), texels = vec2(textureSize(detail_heights, int(level)));
+    int levels = textureQueryLevels(detail_heights), coarse = min(int(level), levels - 1);
+    float lod = float(max(coarse - levels + textureQueryLevels(detail_cones), 0));
+    vec2 bounds = detail_bounds(side), texels = vec2(textureSize(detail_heights, coarse));
     mat2 turned = transpose(mat2(detail_rows[0].xy, detail_rows[1].xy));
     vec2 speed = -(turned * along) * texels;
-    float slant = (bounds.y - bounds.x) * exp2(floor(level)) * length(speed);
+    float slant = (bounds.y - bounds.x) * exp2(float(coarse)) * length(speed);
     float above = bounds.y, over = detail_clearance(uv, along, above, 0.0, side, level), below = above, under = over;
     for (int left = detail_steps.x; left > 0 && under > 0.0; left--) {
         above = below;
         over = under;
         vec2 place = detail_field_uv(uv + above * along), at = place * texels - 0.5;
-        vec2 cones = textureLod(detail_cones, place, floor(level)).rg;
+        vec2 cones = textureLod(detail_cones, place, lod).rg;
         float stride = over * detail_cone_step(side > 0.0 ? cones.r : cones.g, slant);
         stride = max(stride, min(detail_to_line(at.x, speed.x), detail_to_line(at.y, speed.y)));
         below = max(above - max(stride, detail_due(above - bounds.x, float(left))), bounds.x);

@@ -80,11 +80,11 @@ static tl_texture upload_moments(tl_gpu *gpu, const tl_image *normals)
     return texture;
 }
 
-/* Heights averaged until no side is longer than horizons are baked for. */
-static tl_image shrunk(const tl_image *image)
+/* Heights averaged until no side is longer than `most`. */
+static tl_image shrunk(const tl_image *image, int most)
 {
     int longest = image->width > image->height ? image->width : image->height;
-    int factor = (longest + TL_HORIZON_SIDE_MAX - 1) / TL_HORIZON_SIDE_MAX;
+    int factor = (longest + most - 1) / most;
     int width = image->width / factor > 1 ? image->width / factor : 1;
     int height = image->height / factor > 1 ? image->height / factor : 1;
     return tl_bake_smaller(image, width, height);
@@ -93,22 +93,23 @@ static tl_image shrunk(const tl_image *image)
 /* Of every level of the heights its own: an average is no bound. */
 static tl_texture upload_cones(tl_gpu *gpu, const struct tl_height_field *field)
 {
-    int width = field->heights->width, height = field->heights->height;
-    tl_texture texture = tl_texture_create(gpu, GL_TEXTURE_2D, GL_RG8, width, height, 1,
-                                           tl_texture_full_levels(width, height));
+    tl_image most = shrunk(field->heights, TL_CONE_SIDE_MAX);
+    tl_texture texture = tl_texture_create(gpu, GL_TEXTURE_2D, GL_RG8, most.width, most.height, 1,
+                                           tl_texture_full_levels(most.width, most.height));
     glTextureParameteri(texture.id, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     glTextureParameteri(texture.id, GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_NEAREST);
     for (int level = 0; level < texture.levels; level++) {
-        int across = width >> level > 1 ? width >> level : 1,
-            down = height >> level > 1 ? height >> level : 1;
-        tl_image small = tl_bake_smaller(field->heights, across, down);
+        int width = most.width >> level > 1 ? most.width >> level : 1;
+        int height = most.height >> level > 1 ? most.height >> level : 1;
+        tl_image small = tl_bake_smaller(&most, width, height);
         struct tl_height_field baked = *field;
         baked.heights = &small;
-        tl_image cones = tl_bake_cones(&baked, (float)(1 << level));
-        glTextureSubImage2D(texture.id, level, 0, 0, across, down, GL_RG, GL_UNSIGNED_BYTE, cones.texels);
+        tl_image cones = tl_bake_cones(&baked, (float)field->heights->width / (float)width);
+        glTextureSubImage2D(texture.id, level, 0, 0, width, height, GL_RG, GL_UNSIGNED_BYTE, cones.texels);
         tl_image_release(&cones);
         tl_image_release(&small);
     }
+    tl_image_release(&most);
     return texture;
 }
 
@@ -116,7 +117,7 @@ static tl_texture upload_cones(tl_gpu *gpu, const struct tl_height_field *field)
 static tl_texture upload_horizons(tl_gpu *gpu, const struct tl_detail_heights *heights, int angle_count)
 {
     int layers = angle_count / 4;
-    tl_image small = shrunk(&heights->image);
+    tl_image small = shrunk(&heights->image, TL_HORIZON_SIDE_MAX);
     const struct tl_height_field *sides[] = {&heights->field, &heights->back};
     tl_texture texture = tl_texture_create(gpu, GL_TEXTURE_2D_ARRAY, GL_RGBA8, small.width, small.height,
                                            2 * layers, tl_texture_full_levels(small.width, small.height));

@@ -21,6 +21,8 @@ enum { TL_DETAIL_FLAGS, TL_DETAIL_RANGE, TL_DETAIL_ROWS, TL_DETAIL_STEPS = 4 };
 
 /* Horizons are baked from at most so many texels a side: a larger map's heights are averaged. */
 #define TL_HORIZON_SIDE_MAX 512
+/* And so are cones; of crests that are finer than that a ray may step over one. */
+#define TL_CONE_SIDE_MAX 512
 
 struct tl_detail_entry;
 struct tl_detail_maps {
