@@ -43,13 +43,14 @@ enum tl_resource {
     TL_INPUT_LIGHT,       /* how light is put together */
     TL_INPUT_LAMPS,       /* and how surfaces are shaded under them */
     TL_INPUT_REFERENCE,
-    TL_INPUT_DETAIL,
-    TL_INPUT_SHOW,    /* exposure and background */
-    TL_INPUT_ENVMAP,  /* size of environment maps, and whether they show the scene */
-    TL_INPUT_LAYOUT,  /* their layout; for a sphere map the view's turn */
-    TL_INPUT_LOOK_UP, /* how they are looked up */
-    TL_INPUT_CAPTURE, /* the scene as it was when it was to be captured last */
-    TL_INPUT_VIEW,    /* what is shown in place of light */
+    TL_INPUT_DETAIL,      /* how its maps are read */
+    TL_INPUT_DETAIL_MAPS, /* which there are */
+    TL_INPUT_SHOW,        /* exposure and background */
+    TL_INPUT_ENVMAP,      /* size of environment maps, and whether they show the scene */
+    TL_INPUT_LAYOUT,      /* their layout; for a sphere map the view's turn */
+    TL_INPUT_LOOK_UP,     /* how they are looked up */
+    TL_INPUT_CAPTURE,     /* the scene as it was when it was to be captured last */
+    TL_INPUT_VIEW,        /* what is shown in place of light */
     TL_INPUT_COUNT,
     TL_MADE_CUBE = TL_INPUT_COUNT, /* and the suns taken from it */
     TL_MADE_REGIONS,
