@@ -75,8 +75,8 @@ const struct tl_invariant tl_invariants[] = {
     {"cloth.strain", "no edge is longer or shorter than cloth can be: largest strain", BY_SETTINGS,
      "half, or twice what the solver is told to keep; when put on 1, and later a quarter more than then; "
      "what "
-     "a hand holds, or two parts of the wearer have caught, until the cloth is refused "
-     "(TL_CLOTH_MOST_STRAIN)",
+     "a moving wearer drags, until it slips (TL_SNAG_STRAIN); what a hand or the wearer has caught, "
+     "until it is refused (TL_CLOTH_MOST_STRAIN)",
      false, tl_measure_strain},
     {"cloth.inside", "no particle is below the avatar's skin or the ground: deepest, metres", 1e-3,
      "a third of the distance that is kept; none is held inside, but a moving body's skin is followed in "

@@ -24,6 +24,7 @@ struct tl_checked_cloth {
     double allowed_speed; /* m/s: what its fall, its wearer and the wind can give it */
     bool is_driven;       /* a hand, a clip or the wind works on it */
     bool is_held;         /* the hand does */
+    bool is_dragged;      /* its wearer moves */
     /* How far its centre of mass has gone sideways since frame 0, where nothing touches or drives it; else
      * NaN. */
     double drift_m;

@@ -1,6 +1,7 @@
 /* The cloth within its envelope. What is worn keeps no momentum, for its wearer and the ground take it: there
  * the energy is watched, which only something that works on the cloth may raise. */
 #include "app/check_measures.h"
+#include "cloth/snag.h"
 
 #include <math.h>
 
@@ -18,14 +19,15 @@ static double energy_of(const struct tl_cloth_report *report)
     return report->kinetic_energy + report->elastic_energy + report->potential_energy;
 }
 
-/* A hand does not yield: it pulls a trouser leg through the leg in it. Nor does a wearer whose arm has caught
- * the cloth against the hip: it slips once a frame where it is 2.5 times its length (cloth/snag.h), and in
- * the frame between it goes with the arm. */
+/* A wearer that moves drags along what is between its parts, until that is caught and slips, once a frame.
+ * What is caught goes with an arm in the frame between; and a hand does not yield: it pulls a trouser leg
+ * through the leg in it. */
 static double strain_bound(const struct tl_checked_cloth *cloth)
 {
     if (cloth->is_held || cloth->report.caught_count > 0)
         return TL_CLOTH_MOST_STRAIN;
-    double kept = fmax(DRAPED_STRAIN, 2 * cloth->strain_limit);
+    double draped = cloth->is_dragged ? TL_SNAG_STRAIN : DRAPED_STRAIN;
+    double kept = fmax(draped, 2 * cloth->strain_limit);
     return isnan(cloth->first_strain) ? fmax(kept, WORN_STRAIN) : fmax(kept, LATER * cloth->first_strain);
 }
 

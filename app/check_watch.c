@@ -102,15 +102,16 @@ struct tl_checked_cloth tl_watch_look(struct tl_watch *watch, const tl_frame *fr
 {
     const struct tl_cloth_params *params = &watch->settings->cloth;
     double blows = wind_speed(params->wind), falls = fall_speed(frame, params->gravity);
-    struct tl_checked_cloth cloth = {
-        .report = tl_session_report(watch->session),
-        .strain_limit = params->solver == TL_CLOTH_PREVIEW ? params->strain_limit : 0,
-        .weight_n = watch->weight_n,
-        .kept_m = watch->settings->fabric.thickness_m,
-        .first_strain = watch->first_strain,
-        .least_energy_j = watch->least_energy_j,
-        .is_held = is_held,
-        .is_driven = is_held || is_changed || blows > 0 || tl_session_plays_clip(watch->session)};
+    struct tl_checked_cloth cloth = {.report = tl_session_report(watch->session),
+                                     .strain_limit =
+                                         params->solver == TL_CLOTH_PREVIEW ? params->strain_limit : 0,
+                                     .weight_n = watch->weight_n,
+                                     .kept_m = watch->settings->fabric.thickness_m,
+                                     .first_strain = watch->first_strain,
+                                     .least_energy_j = watch->least_energy_j,
+                                     .is_held = is_held,
+                                     .is_dragged = tl_session_plays_clip(watch->session)};
+    cloth.is_driven = is_held || is_changed || blows > 0 || cloth.is_dragged;
     const struct tl_cloth_report *report = &cloth.report;
     watch->was_held = watch->was_held || is_held;
     cloth.drift_m = measure_drift(watch, frame, cloth.is_driven);
