@@ -9,7 +9,6 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 #define MEASURES_MAX 12
 #define HELP_MAX     64
@@ -51,17 +50,6 @@ int tl_review_panel_width(const struct tl_review *review)
     tl_window_size(review->window, &width, &height);
     int panel = (int)(wished * tl_window_scale(review->window));
     return !review->params.panel ? 0 : panel < width / 2 ? panel : width / 2;
-}
-
-size_t tl_review_resident_bytes(void)
-{
-    unsigned long pages = 0;
-    FILE *file = fopen("/proc/self/statm", "r");
-    if (file && fscanf(file, "%*u %lu", &pages) != 1)
-        pages = 0;
-    if (file)
-        fclose(file);
-    return (size_t)pages * (size_t)sysconf(_SC_PAGESIZE);
 }
 
 static double megabytes(size_t bytes)

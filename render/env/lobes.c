@@ -224,6 +224,27 @@ struct tl_lobes tl_lobes_changed(const struct tl_lobes *from, uint32_t which, tl
     return lobes;
 }
 
+void tl_lobes_keep(struct tl_lobes *lobes, uint32_t which)
+{
+    for (size_t i = 0; i < TL_COUNT(lobes->maps); i++)
+        if (!(which & 1u << i)) {
+            free(lobes->maps[i].texels);
+            lobes->maps[i] = (struct tl_lobe_map){0};
+        }
+    lobes->made &= which;
+}
+
+void tl_lobes_take(struct tl_lobes *lobes, struct tl_lobes *more)
+{
+    for (size_t i = 0; i < TL_COUNT(lobes->maps); i++)
+        if (lobes->maps[i].side == 0) {
+            lobes->maps[i] = more->maps[i];
+            more->maps[i] = (struct tl_lobe_map){0};
+        }
+    lobes->made |= more->made;
+    tl_lobes_release(more);
+}
+
 void tl_lobes_release(struct tl_lobes *lobes)
 {
     for (size_t i = 0; i < TL_COUNT(lobes->maps); i++)
