@@ -9,10 +9,11 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#define GATHERED_BYTES ((size_t)128 << 20) /* at rest: about what the frames of one scene throw about */
-#define TOO_MUCH_BYTES ((size_t)384 << 20) /* then a moving image stumbles once rather than the memory grow  \
-                                            */
-#define LOOK_EVERY_S 1.0
+/* How much may gather. Images in motion throw some 80 MB about, and to give that back at once would cost the
+ * next ones more than it frees; where nobody waits, the first image to come is all that pays. */
+#define GATHERED_IN_MOTION ((size_t)128 << 20)
+#define GATHERED_AT_REST   ((size_t)32 << 20)
+#define LOOK_EVERY_S       1.0
 
 size_t tl_review_resident_bytes(void)
 {
@@ -40,7 +41,7 @@ void tl_review_give_back(struct tl_review *review)
     memory->looked_s = now_s;
     size_t free_bytes = mallinfo2().fordblks;
     memory->least_free = free_bytes < memory->least_free ? free_bytes : memory->least_free;
-    if (free_bytes - memory->least_free < (is_awaited(review) ? TOO_MUCH_BYTES : GATHERED_BYTES))
+    if (free_bytes - memory->least_free < (is_awaited(review) ? GATHERED_IN_MOTION : GATHERED_AT_REST))
         return;
     size_t before = tl_review_resident_bytes();
     malloc_trim(0);

@@ -92,10 +92,20 @@ round() {
     press space "paused at"
     press ctrl+3 "view: fabric satin"
 }
+# At rest memory that lies idle is given back: what is left is in use.
+settle() {
+    local before=0
+    while [ $((before - $(resident_kb))) -gt 2048 ] || [ $(($(resident_kb) - before)) -gt 2048 ]; do
+        before=$(resident_kb)
+        sleep 4
+    done
+}
 round 1
+settle
 warm_kb=$(resident_kb)
 for i in $(seq 2 "${ROUNDS:-2}"); do
     round "$i"
+    settle
     echo "resident: $(resident_kb) kB after round $i"
 done
 grown_kb=$(($(resident_kb) - warm_kb))
