@@ -45,6 +45,7 @@ typedef vec3s tl_lobe_change(vec3s direction, float exponent, vec3s light, const
 struct tl_lobes tl_lobes_changed(const struct tl_lobes *from, uint32_t which, tl_lobe_change *change,
                                  const void *context);
 
+struct tl_lobes tl_lobes_copy(const struct tl_lobes *lobes);
 /* Those of `more` that `lobes` does not have become its own; the rest goes. */
 void tl_lobes_take(struct tl_lobes *lobes, struct tl_lobes *more);
 

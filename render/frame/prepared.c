@@ -82,6 +82,33 @@ tl_prepared *tl_prepared_make(const struct tl_prepared_request *request)
     return prepared;
 }
 
+static void copy_lights(tl_prepared *prepared, const struct tl_kept_lights *kept)
+{
+    struct tl_region_lights *copy = &prepared->lights[prepared->count].lights;
+    prepared->lights[prepared->count++].regions = kept->regions;
+    *copy = kept->lights;
+    copy->gain = tl_lobes_copy(&kept->lights.gain);
+    copy->diffuse_gain = tl_lobes_copy(&kept->lights.diffuse_gain);
+}
+
+tl_prepared *tl_prepared_copy(const tl_renderer *renderer)
+{
+    if (renderer->cube.size == 0)
+        return NULL;
+    tl_prepared *prepared = TL_NEW(tl_prepared);
+    prepared->light = renderer->settings.light;
+    prepared->cube = tl_cube_copy(&renderer->cube);
+    prepared->suns = renderer->suns;
+    prepared->lobes = tl_lobes_copy(&renderer->lobes);
+    for (int i = 0; i < TL_LIGHTS_KEPT; i++) {
+        const struct tl_kept_lights *kept = &renderer->kept[i];
+        if (kept->revision == renderer->light_revision && kept->cut == prepared->light.cut &&
+            kept->weight == tl_frame_region_weight(&prepared->light))
+            copy_lights(prepared, kept);
+    }
+    return prepared;
+}
+
 void tl_prepared_destroy(tl_prepared **prepared)
 {
     if (!*prepared)
@@ -102,19 +129,15 @@ void tl_renderer_take_prepared(tl_renderer *renderer, tl_prepared **prepared, ui
     *prepared = NULL;
 }
 
-static bool is_of_this_frame(const tl_renderer *renderer)
+static bool is_of_this_frame(const tl_prepared *prepared, const tl_renderer *renderer)
 {
-    const tl_prepared *prepared = renderer->prepared;
     const struct tl_light_params *light = &renderer->settings.light;
-    return prepared && prepared->environment_revision == renderer->frame.environment_revision &&
+    return prepared->environment_revision == renderer->frame.environment_revision &&
            prepared->light.pem_size == light->pem_size && prepared->light.sun == light->sun;
 }
 
-bool tl_frame_use_prepared(tl_renderer *renderer)
+static void use(tl_prepared *prepared, tl_renderer *renderer)
 {
-    if (!is_of_this_frame(renderer))
-        return false;
-    tl_prepared *prepared = renderer->prepared;
     renderer->cube = prepared->cube;
     prepared->cube = (tl_cube){0};
     renderer->suns = prepared->suns;
@@ -123,6 +146,13 @@ bool tl_frame_use_prepared(tl_renderer *renderer)
         prepared->light.regions = prepared->lights[i].regions;
         tl_frame_keep_lights(renderer, &prepared->light, &prepared->lights[i].lights);
     }
+}
+
+bool tl_frame_use_prepared(tl_renderer *renderer)
+{
+    bool fits = renderer->prepared && is_of_this_frame(renderer->prepared, renderer);
+    if (fits)
+        use(renderer->prepared, renderer);
     tl_prepared_destroy(&renderer->prepared);
-    return true;
+    return fits;
 }

@@ -25,9 +25,12 @@ uint32_t tl_renderer_exponents(const tl_renderer *renderer); /* of the last fram
 
 /* Shows progress. One that is interrupted holds less. */
 tl_prepared *tl_prepared_make(const struct tl_prepared_request *request);
+/* What this renderer has made of its environment, for another one; NULL when it has made nothing. */
+tl_prepared *tl_prepared_copy(const tl_renderer *renderer);
 void tl_prepared_destroy(tl_prepared **prepared); /* null is fine */
 
-/* The first draw whose environment has this revision uses it up. Nulls it. */
+/* For the next draw, which uses it if its environment has this revision and its settings are those that it
+ * was made for. Nulls it. */
 void tl_renderer_take_prepared(tl_renderer *renderer, tl_prepared **prepared, uint64_t environment_revision);
 
 #endif

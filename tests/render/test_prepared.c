@@ -137,6 +137,25 @@ static void prepared_light_is_that_of_the_renderer(void **state)
     scene_close(&scene);
 }
 
+/* As for a second look beside the first. */
+static void a_copy_serves_another_renderer(void **state)
+{
+    struct test_device *device = *state;
+    tl_renderer *renderer = new_renderer(device), *other = new_renderer(device);
+    struct scene scene;
+    scene_open(&scene);
+    set_glossiness(&scene, 0.8f);
+    assert_null(tl_prepared_copy(renderer));
+    expect_as_new(device, renderer, &scene);
+    tl_prepared *copy = tl_prepared_copy(renderer);
+    tl_renderer_take_prepared(other, &copy, scene.frame.environment_revision);
+    expect_as_new(device, other, &scene);
+    expect_as_new(device, renderer, &scene); /* which still has its own */
+    tl_renderer_destroy(&renderer);
+    tl_renderer_destroy(&other);
+    scene_close(&scene);
+}
+
 /* Of another environment, or of other settings: then it is as if there were none. */
 static void unfit_light_is_not_used(void **state)
 {
@@ -184,6 +203,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(prepared_light_is_that_of_the_renderer),
+        cmocka_unit_test(a_copy_serves_another_renderer),
         cmocka_unit_test(unfit_light_is_not_used),
         cmocka_unit_test(light_grows_with_the_materials),
     };
