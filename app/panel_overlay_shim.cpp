@@ -257,5 +257,11 @@ void tl_panel_strip_draw(const tl_panel_strip &strip)
         list->AddLine(ImVec2(corner.x, y), ImVec2(right, y), light, 1);
     }
     ImGui::Dummy(ImVec2(width, height));
+    /* Room for two lines, so that nothing below moves when there is one. */
+    const ImVec2 label = ImGui::GetCursorPos();
+    ImGui::PushTextWrapPos(label.x + width);
     ImGui::TextDisabled("%s", strip.label);
+    ImGui::PopTextWrapPos();
+    ImGui::SetCursorPos(ImVec2(label.x, label.y + 2 * ImGui::GetTextLineHeight()));
+    ImGui::Dummy(ImVec2(0, 0));
 }
