@@ -111,8 +111,8 @@ struct tl_review_wipe {
     float place; /* of the line between, as a share of the view's width */
 };
 
-struct tl_review_memory { /* bytes that are free in the heap */
-    size_t least_free;    /* since they were given back last */
+struct tl_review_memory {
+    size_t least_unused; /* bytes, since some were given back last */
     double looked_s;
 };
 
