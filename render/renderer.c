@@ -16,8 +16,7 @@
 #define BYTES_MAX         ((uint64_t)4 << 30) /* all together */
 #define TEXTURE_BYTES_MAX ((uint64_t)1 << 30) /* one texture */
 
-/* Settings as the algorithm can use them: regions in sixes, sizes in powers of two. */
-static struct tl_render_settings usable(const struct tl_render_settings *settings)
+struct tl_render_settings tl_frame_usable(const struct tl_render_settings *settings)
 {
     struct tl_render_settings used = *settings;
     if (used.light.cut == TL_CUT_FACES)
@@ -108,6 +107,7 @@ void tl_renderer_destroy(tl_renderer **renderer)
 {
     if (!*renderer)
         return;
+    tl_prepared_destroy(&(*renderer)->prepared);
     tl_pour_release(&(*renderer)->pour);
     tl_cube_release(&(*renderer)->cube);
     tl_regions_release(&(*renderer)->regions);
@@ -335,7 +335,7 @@ static void let_go(tl_renderer *renderer, tl_bits facts)
 bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct tl_render_settings *settings,
                       tl_error *error)
 {
-    struct tl_render_settings used = usable(settings);
+    struct tl_render_settings used = tl_frame_usable(settings);
     if (!check_camera(&frame->camera, error) || !check_image_size(renderer, &used.image, error) ||
         !check_light_size(&used, error) || !check_envmap_size(frame, &used, error))
         return false;
@@ -442,7 +442,7 @@ bool tl_renderer_show_columns(tl_renderer *renderer, int width, int height, int 
 void tl_renderer_plan(const tl_renderer *renderer, const tl_frame *frame,
                       const struct tl_render_settings *settings, tl_plan *out)
 {
-    struct tl_render_settings used = usable(settings);
+    struct tl_render_settings used = tl_frame_usable(settings);
     uint64_t signatures[TL_INPUT_COUNT];
     struct tl_rest rest = renderer->rest;
     tl_frame_sign(frame, &used, renderer->signatures, &rest, signatures);
@@ -460,7 +460,7 @@ void tl_renderer_plan(const tl_renderer *renderer, const tl_frame *frame,
 tl_bits tl_renderer_would_run(const tl_renderer *renderer, const tl_frame *frame,
                               const struct tl_render_settings *settings)
 {
-    struct tl_render_settings used = usable(settings);
+    struct tl_render_settings used = tl_frame_usable(settings);
     uint64_t signatures[TL_INPUT_COUNT];
     struct tl_rest rest = renderer->rest;
     tl_frame_sign(frame, &used, renderer->signatures, &rest, signatures);
@@ -507,14 +507,14 @@ bool tl_renderer_is_moving(const tl_renderer *renderer, const tl_frame *frame)
 
 bool tl_renderer_has_regions(const tl_renderer *renderer, const struct tl_render_settings *settings)
 {
-    const struct tl_render_settings used = usable(settings);
+    const struct tl_render_settings used = tl_frame_usable(settings);
     const tl_bits needed = TL_BIT(TL_MADE_CUBE) | TL_BIT(TL_MADE_LOBES) | TL_BIT(TL_MADE_LIGHTS);
     return (renderer->valid & needed) != needed || tl_frame_has_lights(renderer, &used.light);
 }
 
 void tl_renderer_prepare_regions(tl_renderer *renderer, const struct tl_render_settings *settings)
 {
-    const struct tl_render_settings used = usable(settings);
+    const struct tl_render_settings used = tl_frame_usable(settings);
     if (!tl_renderer_has_regions(renderer, &used))
         tl_frame_prepare_lights(renderer, &used.light);
 }
