@@ -6,6 +6,7 @@
 #include "assets/model.h"
 #include "assets/point_cache.h"
 #include "assets/specimen.h"
+#include "cloth/cloth.h"
 #include "config/file.h"
 #include "config/memory.h"
 
@@ -145,6 +146,23 @@ static void describe_variants(cJSON *object, const tl_model *model)
     }
 }
 
+/* Vertices that the file itself holds as cloth, and those that cloth.pin_colour would. */
+static void describe_pins(cJSON *object, const tl_model *model)
+{
+    size_t pinned = 0, painted[3] = {0};
+    for (size_t i = 0; i < model->mesh.vertex_count; i++) {
+        pinned += model->pins && model->pins[i] > 0.5f;
+        for (int channel = 0; model->colours && channel < 3; channel++)
+            painted[channel] += tl_model_is_painted(model, i, channel);
+    }
+    cJSON_AddNumberToObject(object, "pins", (double)pinned);
+    if (!model->colours)
+        return;
+    cJSON *colours = cJSON_AddObjectToObject(object, "painted_vertices");
+    for (int channel = 0; channel < 3; channel++)
+        cJSON_AddNumberToObject(colours, tl_pin_colour_names[TL_PIN_RED + channel], (double)painted[channel]);
+}
+
 static cJSON *describe_model(const tl_model *model)
 {
     cJSON *object = cJSON_CreateObject();
@@ -155,6 +173,7 @@ static cJSON *describe_model(const tl_model *model)
     cJSON_AddNumberToObject(object, "triangles", (double)model->mesh.index_count / 3);
     cJSON_AddNumberToObject(object, "points", (double)tl_model_point_count(model));
     cJSON_AddNumberToObject(object, "parts", (double)model->mesh.part_count);
+    describe_pins(object, model);
     describe_units(object, model);
     cJSON_AddItemToObject(object, "lower_m", describe_vector(box.lower));
     cJSON_AddItemToObject(object, "upper_m", describe_vector(box.upper));

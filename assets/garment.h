@@ -24,7 +24,8 @@ typedef struct tl_garment {
     bool solid;     /* no cloth: it keeps its shape (assets/specimen.h) */
 } tl_garment;
 
-/* A glTF or OBJ file as a garment; its units as in tl_model_load and tl_model_load_in. */
+/* A glTF or OBJ file as a garment, with its model's pins; its units as in tl_model_load and tl_model_load_in.
+ */
 bool tl_garment_load(const char *path, tl_garment *out, tl_error *error);
 bool tl_garment_load_in(const char *path, enum tl_units units, tl_garment *out, tl_error *error);
 void tl_garment_release(tl_garment *garment);

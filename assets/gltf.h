@@ -40,6 +40,8 @@ enum gltf_attribute {
     GLTF_UV,
     GLTF_JOINTS,
     GLTF_WEIGHTS,
+    GLTF_COLOUR,
+    GLTF_PIN, /* "_PIN", in either case: which vertices hang from something */
     GLTF_ATTRIBUTE_COUNT
 };
 
@@ -53,7 +55,7 @@ struct gltf_primitive {
     int attributes[GLTF_ATTRIBUTE_COUNT]; /* accessors */
     int indices, material, mode;
     size_t first_mapping, mapping_count;
-    bool has_targets, has_colours, has_second_uvs, has_second_joints, is_draco;
+    bool has_targets, has_second_uvs, has_second_joints, is_draco;
 };
 
 struct gltf_mesh {

@@ -126,16 +126,17 @@ int attribute_of(const tinygltf::Primitive &primitive, const char *name)
 
 gltf_primitive copy_primitive(const tinygltf::Primitive &from)
 {
-    static const char *const names[GLTF_ATTRIBUTE_COUNT] = {"POSITION",   "NORMAL",   "TANGENT",
-                                                            "TEXCOORD_0", "JOINTS_0", "WEIGHTS_0"};
+    static const char *const names[GLTF_ATTRIBUTE_COUNT] = {"POSITION", "NORMAL",    "TANGENT", "TEXCOORD_0",
+                                                            "JOINTS_0", "WEIGHTS_0", "COLOR_0", "_PIN"};
     gltf_primitive to = {};
     for (int i = 0; i < GLTF_ATTRIBUTE_COUNT; i++)
         to.attributes[i] = attribute_of(from, names[i]);
+    if (to.attributes[GLTF_PIN] < 0)
+        to.attributes[GLTF_PIN] = attribute_of(from, "_pin");
     to.indices = from.indices;
     to.material = from.material;
     to.mode = from.mode;
     to.has_targets = !from.targets.empty();
-    to.has_colours = attribute_of(from, "COLOR_0") >= 0;
     to.has_second_uvs = attribute_of(from, "TEXCOORD_1") >= 0;
     to.has_second_joints = attribute_of(from, "JOINTS_1") >= 0;
     to.is_draco = from.extensions.count("KHR_draco_mesh_compression") > 0;

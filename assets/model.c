@@ -29,6 +29,7 @@ struct builder {
     int last_node;
     size_t last_base, last_count;
     size_t vertex_capacity, index_capacity, part_capacity, slot_capacity;
+    bool has_pins, has_colours;
 };
 
 static void note(char ***list, size_t *count, const char *format, va_list arguments)
@@ -108,7 +109,8 @@ static bool add_skin(struct builder *builder, int index, tl_error *error)
 /* ---- Primitives ---- */
 
 struct primitive {
-    float *positions, *normals, *uvs, *weights;
+    float *positions, *normals, *uvs, *weights, *colours, *pins;
+    int colour_components;
     uint32_t *joints, *indices;
     size_t vertex_count, index_count;
 };
@@ -119,6 +121,8 @@ static void release_primitive(struct primitive *primitive)
     free(primitive->normals);
     free(primitive->uvs);
     free(primitive->weights);
+    free(primitive->colours);
+    free(primitive->pins);
     free(primitive->joints);
     free(primitive->indices);
 }
@@ -203,13 +207,27 @@ static bool read_indices(const gltf_document *document, const struct gltf_primit
     return true;
 }
 
+/* With or without alpha. */
+static bool read_colours(const gltf_document *document, const struct gltf_primitive *from,
+                         struct primitive *to, tl_error *error)
+{
+    int accessor = from->attributes[GLTF_COLOUR];
+    bool known = accessor >= 0 && (size_t)accessor < document->accessor_count;
+    to->colour_components = known && document->accessors[accessor].components == 4 ? 4 : 3;
+    return read_attribute(document, from, GLTF_COLOUR, "vertex colours", to->colour_components,
+                          to->vertex_count, &to->colours, error);
+}
+
 static bool read_vertices(const gltf_document *document, const struct gltf_primitive *from,
                           size_t joint_count, struct primitive *to, tl_error *error)
 {
     if (!gltf_read_floats(document, from->attributes[GLTF_POSITION], "positions", 3, TL_LIMIT_MESH_VERTICES,
                           false, &to->positions, &to->vertex_count, error) ||
         !read_attribute(document, from, GLTF_NORMAL, "normals", 3, to->vertex_count, &to->normals, error) ||
-        !read_attribute(document, from, GLTF_UV, "texture coordinates", 2, to->vertex_count, &to->uvs, error))
+        !read_attribute(document, from, GLTF_UV, "texture coordinates", 2, to->vertex_count, &to->uvs,
+                        error) ||
+        !read_colours(document, from, to, error) ||
+        !read_attribute(document, from, GLTF_PIN, "_PIN", 1, to->vertex_count, &to->pins, error))
         return false;
     return joint_count == 0 || from->attributes[GLTF_JOINTS] < 0 ||
            read_joints(document, from, joint_count, to, error);
@@ -219,7 +237,7 @@ static void note_ignored(struct builder *builder, const struct gltf_primitive *p
 {
     if (primitive->has_targets)
         model_ignore(builder->model, "morph targets");
-    if (primitive->has_colours)
+    if (primitive->attributes[GLTF_COLOUR] >= 0)
         model_ignore(builder->model, "vertex colours");
     if (primitive->has_second_uvs)
         model_ignore(builder->model, "TEXCOORD_1 and beyond");
@@ -250,6 +268,8 @@ static void reserve(struct builder *builder, size_t vertices, size_t indices)
     if (mesh->vertex_count + vertices > builder->vertex_capacity) {
         size_t capacity = builder->vertex_capacity = 2 * (mesh->vertex_count + vertices);
         mesh->uvs = tl_resize(mesh->uvs, capacity, sizeof *mesh->uvs);
+        builder->model->pins = tl_resize(builder->model->pins, capacity, sizeof(float));
+        builder->model->colours = tl_resize(builder->model->colours, capacity, sizeof(vec3s));
         builder->normals = tl_resize(builder->normals, capacity, sizeof *builder->normals);
         rig->local = tl_resize(rig->local, capacity, sizeof *rig->local);
         rig->influences = tl_resize(rig->influences, capacity, sizeof *rig->influences);
@@ -267,9 +287,15 @@ static void reserve(struct builder *builder, size_t vertices, size_t indices)
 
 static void append_vertices(struct builder *builder, const struct primitive *from, uint32_t first_slot)
 {
-    tl_mesh *mesh = &builder->model->mesh;
+    tl_model *model = builder->model;
+    tl_mesh *mesh = &model->mesh;
     size_t base = mesh->vertex_count;
+    builder->has_pins |= from->pins != NULL;
+    builder->has_colours |= from->colours != NULL;
     for (size_t i = 0; i < from->vertex_count; i++) {
+        const float *colour = from->colours ? from->colours + i * (size_t)from->colour_components : NULL;
+        model->pins[base + i] = from->pins ? from->pins[i] : 0;
+        model->colours[base + i] = colour ? (vec3s){{colour[0], colour[1], colour[2]}} : (vec3s){{1, 1, 1}};
         memcpy(&builder->rig->local[base + i], from->positions + 3 * i, sizeof(vec3s));
         builder->normals[base + i] = (vec3s){{0, 0, 0}};
         if (from->normals)
@@ -517,6 +543,18 @@ static void name_clips(const gltf_document *document, tl_model *model)
     }
 }
 
+static void drop_unused(const struct builder *builder)
+{
+    if (!builder->has_pins) {
+        free(builder->model->pins);
+        builder->model->pins = NULL;
+    }
+    if (!builder->has_colours) {
+        free(builder->model->colours);
+        builder->model->colours = NULL;
+    }
+}
+
 static bool load_gltf(const char *path, enum tl_units wanted, tl_model *out, tl_error *error)
 {
     gltf_document document;
@@ -539,6 +577,7 @@ static bool load_gltf(const char *path, enum tl_units wanted, tl_model *out, tl_
         name_clips(&document, out);
     if (loaded && out->clip_count == 0)
         rig_destroy(&out->rig);
+    drop_unused(&builder);
     free(builder.normals);
     free((void *)builder.sources);
     free(builder.skin_slots);
@@ -591,6 +630,12 @@ void tl_model_points(const tl_model *model, const vec3s *positions, vec3s *point
         points[model->points ? model->points[i] : i] = glms_vec3_divs(positions[i], metres);
 }
 
+bool tl_model_is_painted(const tl_model *model, size_t vertex, int channel)
+{
+    const float *colour = model->colours[vertex].raw;
+    return colour[channel] > 0.5f && colour[(channel + 1) % 3] < 0.5f && colour[(channel + 2) % 3] < 0.5f;
+}
+
 void tl_model_release(tl_model *model)
 {
     model_release_variants(model);
@@ -608,6 +653,8 @@ void tl_model_release(tl_model *model)
     free(model->materials);
     free(model->clips);
     free(model->points);
+    free(model->pins);
+    free(model->colours);
     free(model->name);
     *model = (tl_model){0};
 }

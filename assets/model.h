@@ -47,6 +47,11 @@ typedef struct tl_model {
      */
     size_t point_count;
     uint32_t *points; /* [vertex_count] point of each vertex; NULL: each is its own */
+    /* What may say which vertices of cloth are held; NULL: the file has none. A glTF's attribute _PIN (or
+     * _pin; such names are free to applications [glTF 2.0, 3.7.2.1]), 0 where a part has none; and COLOR_0,
+     * white where a part has none. */
+    float *pins;    /* [vertex_count] held above a half */
+    vec3s *colours; /* [vertex_count] 0 to 1 */
     size_t ignored_count;
     char **ignored; /* "KHR_materials_iridescence", "morph targets", ...: each once */
     size_t approximated_count;
@@ -64,6 +69,11 @@ bool tl_model_is_file(const char *path); /* by the extension */
  * that no triangle uses are put on the first vertex. points [tl_model_point_count]. */
 size_t tl_model_point_count(const tl_model *model);
 void tl_model_points(const tl_model *model, const vec3s *positions, vec3s *points);
+
+/* Whether a vertex's colour has more than half of one channel (0 red, 1 green, 2 blue) and less of the
+ * others. Of a model with colours. */
+bool tl_model_is_painted(const tl_model *model, size_t vertex, int channel);
+
 void tl_model_release(tl_model *model); /* frees and zeroes */
 
 /* Positions of the mesh at `time_s` of clip `clip` (looped), skinned on the CPU; mesh->vertex_count of them.

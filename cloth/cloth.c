@@ -180,7 +180,7 @@ static void add_pin(tl_cloth *cloth, uint32_t particle, bool by_hand)
         .particle = particle, .by_hand = by_hand, .at = cloth->particles.x[particle], .triangle = TL_NONE};
 }
 
-/* The garment's own, and what starts above cloth.pin_above_m, where they are now. */
+/* The garment's own, and what starts above cloth.pin_above_m or has cloth.pin_colour, where they are now. */
 static void make_pins(tl_cloth *cloth)
 {
     const tl_garment *garment = cloth->garment;
@@ -192,6 +192,10 @@ static void make_pins(tl_cloth *cloth)
     for (uint32_t i = 0; above_m > 0 && i < cloth->particles.count; i++)
         if (cloth->made_at[i].y > above_m)
             add_pin(cloth, i, false);
+    int channel = cloth->params.pin_colour - TL_PIN_RED;
+    for (size_t i = 0; channel >= 0 && garment->model.colours && i < garment->model.mesh.vertex_count; i++)
+        if (tl_model_is_painted(&garment->model, i, channel))
+            add_pin(cloth, cloth->topology.weld[i], false);
 }
 
 static void build_state(tl_cloth *cloth)
@@ -302,7 +306,8 @@ bool tl_cloth_set(tl_cloth *cloth, const struct tl_cloth_fabric *fabric, const s
     if (!check_params(&tl_cloth_fabric_options, fabric, error) ||
         !check_params(&tl_cloth_options, params, error))
         return false;
-    bool pins_change = params->pin_above_m != cloth->params.pin_above_m;
+    bool pins_change =
+        params->pin_above_m != cloth->params.pin_above_m || params->pin_colour != cloth->params.pin_colour;
     cloth->fabric = *fabric;
     cloth->params = *params;
     if (pins_change)

@@ -39,6 +39,8 @@ extern const struct tl_option_table tl_cloth_fabric_options;
  * cloth/verlet.h. */
 enum tl_cloth_solver { TL_CLOTH_PREVIEW, TL_CLOTH_SETTLE, TL_CLOTH_REFERENCE, TL_CLOTH_SOLVER_COUNT };
 extern const char *const tl_cloth_solver_names[]; /* NULL-terminated */
+enum tl_pin_colour { TL_PIN_NO_COLOUR, TL_PIN_RED, TL_PIN_GREEN, TL_PIN_BLUE };
+extern const char *const tl_pin_colour_names[]; /* NULL-terminated */
 struct tl_cloth_params {
     int solver;             /* enum tl_cloth_solver */
     double dt;              /* s, one step; a frame is made of whole steps: see frame_rate */
@@ -49,6 +51,7 @@ struct tl_cloth_params {
     int reference_substeps; /* reference: most per frame, beyond which it is refused */
     double strain_limit;    /* preview: no edge gets longer than by this share; 0: as the energy has it */
     double pin_above_m;  /* vertices that start higher are pinned, on the avatar's nearest point; 0: none */
+    int pin_colour;      /* enum tl_pin_colour; vertices of this colour in the file are pinned the same way */
     bool self_repulsion; /* layers of a garment, and folds, keep their distance: layers.h, repulsion.h */
     double gravity;      /* m/s^2, along -Y */
     float wind[3];       /* m/s; air at rest presses on nothing: then only fabric.damping slows the cloth */

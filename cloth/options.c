@@ -34,6 +34,8 @@ const struct tl_option_table tl_cloth_fabric_options = TL_OPTION_TABLE(
 
 const char *const tl_cloth_solver_names[] = {"preview", "settle", "reference", NULL};
 
+const char *const tl_pin_colour_names[] = {"none", "red", "green", "blue", NULL};
+
 static const struct tl_option cloth_rows[] = {
     TL_OPTION_ENUM(
         struct tl_cloth_params, solver, tl_cloth_solver_names,
@@ -54,6 +56,9 @@ static const struct tl_option cloth_rows[] = {
                      "preview: most that an edge may stretch, as a share of its length; 0: no limit"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, pin_above_m, 0, 1000, "m",
                      "holds the vertices that start higher than this, a waistband say; 0: none of them"),
+    TL_OPTION_ENUM(
+        struct tl_cloth_params, pin_colour, tl_pin_colour_names,
+        "holds the vertices that the garment's file has in this colour, where it has vertex colours"),
     TL_OPTION_BOOL(struct tl_cloth_params, self_repulsion,
                    "layers, a shirt over trousers, and folds keep their distance: takes up to twice as long"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, gravity, -100, 100, "m/s^2", "along -Y: hangs more heavily"),

@@ -37,4 +37,19 @@ check "the same as JSON" sh -c "$TOILE info satin.gltf --json | tr -d '\\n' | gr
 check "nothing is called ignored" sh -c "$TOILE info satin.gltf | grep -Eq '^ignored +none$'"
 write odd.gltf '"KHR_materials_iridescence"' '"KHR_materials_iridescence":{"iridescenceFactor":1}'
 check "what has no effect" sh -c "$TOILE info odd.gltf | grep -A1 '^ignored' | grep -q KHR_materials_iridescence"
+# Its first and last vertex are pinned, the last one is painted red.
+pins=$(printf '\0\0\200\077\0\0\0\0\0\0\200\077\377\377\377\377\0\377\377\377\377\0\0\377' | base64 -w0)
+cat >pinned.gltf <<END
+{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+ "meshes":[{"primitives":[{"attributes":{"POSITION":0,"_PIN":1,"COLOR_0":2}}]}],
+ "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},
+  {"bufferView":1,"componentType":5126,"count":3,"type":"SCALAR"},
+  {"bufferView":2,"componentType":5121,"normalized":true,"count":3,"type":"VEC4"}],
+ "bufferViews":[{"buffer":0,"byteLength":36},{"buffer":1,"byteLength":12},{"buffer":1,"byteOffset":12,"byteLength":12}],
+ "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,$positions"},
+  {"byteLength":24,"uri":"data:application/octet-stream;base64,$pins"}]}
+END
+check "pinned vertices" sh -c "$TOILE info pinned.gltf | grep -Eq '^pins +2$'"
+check "painted vertices" sh -c "$TOILE info pinned.gltf | grep -Eq '^ +red +1$'"
+check "no pins" sh -c "$TOILE info satin.gltf | grep -Eq '^pins +0$'"
 exit $failed

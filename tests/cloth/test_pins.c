@@ -1,10 +1,14 @@
-/* Pins: by height, by hand, in the avatar and out of it; and the strain limit on what hangs from them. */
+/* Pins: by height, by hand, from a file, in the avatar and out of it; and the strain limit on what hangs from
+ * them. */
 #include "bodies.h"
 #include "cloth/state.h"
 #include "sheets.h"
 #include "testing.h"
 
 #include "config/log.h"
+
+#include <stdio.h>
+#include <unistd.h>
 
 static const struct sheet_shape shape = {10, 25, 0.2, 0.5};
 
@@ -110,6 +114,81 @@ static void test_in_avatar(void **state)
     sheet_free(&garment);
 }
 
+static void write_file(const char *path, const void *bytes, size_t size)
+{
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(bytes, 1, size, file), size);
+    assert_int_equal(fclose(file), 0);
+}
+
+/* A square whose upper two corners the attribute _PIN holds, and whose third one is red. */
+static tl_garment load_painted(void)
+{
+    static const struct {
+        float positions[4][3], pins[4];
+        uint8_t colours[4][4];
+        uint16_t indices[6];
+    } binary = {{{0, 1, 0}, {1, 1, 0}, {1, 0, 0}, {0, 0, 0}},
+                {1, 0.75f, 0.25f, 0},
+                {{255, 255, 255, 255}, {255, 200, 0, 255}, {200, 10, 10, 255}, {0, 0, 0, 255}},
+                {0, 2, 1, 0, 3, 2}};
+    static const char json[] =
+        "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],"
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"_PIN\":1,\"COLOR_0\":2},\"indices\":"
+        "3}]}],"
+        "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\",\"min\":[0,0,"
+        "0],"
+        "\"max\":[1,1,0]},{\"bufferView\":1,\"componentType\":5126,\"count\":4,\"type\":\"SCALAR\"},"
+        "{\"bufferView\":2,\"componentType\":5121,\"normalized\":true,\"count\":4,\"type\":\"VEC4\"},"
+        "{\"bufferView\":3,\"componentType\":5123,\"count\":6,\"type\":\"SCALAR\"}],"
+        "\"bufferViews\":[{\"buffer\":0,\"byteLength\":48},{\"buffer\":0,\"byteOffset\":48,\"byteLength\":16}"
+        ","
+        "{\"buffer\":0,\"byteOffset\":64,\"byteLength\":16},{\"buffer\":0,\"byteOffset\":80,\"byteLength\":"
+        "12}],"
+        "\"buffers\":[{\"byteLength\":92,\"uri\":\"square.bin\"}]}";
+    char folder[] = "/tmp/toile_pins_XXXXXX", model[64], data[64];
+    assert_non_null(mkdtemp(folder));
+    snprintf(model, sizeof model, "%s/square.gltf", folder);
+    snprintf(data, sizeof data, "%s/square.bin", folder);
+    write_file(model, json, sizeof json - 1);
+    write_file(data, &binary, sizeof binary);
+    tl_garment garment;
+    tl_error error = {0};
+    assert_ok(tl_garment_load(model, &garment, &error), error);
+    remove(model);
+    remove(data);
+    rmdir(folder);
+    return garment;
+}
+
+/* What the file holds stays, to the bit; its colours hold when they are asked to. */
+static void test_from_file(void **state)
+{
+    (void)state;
+    tl_error error = {0};
+    tl_garment garment = load_painted();
+    struct tl_cloth_fabric fabric = fabric_defaults();
+    struct tl_cloth_params params = params_defaults();
+    tl_cloth *cloth = tl_cloth_create(&garment, &fabric, &params, &error);
+    assert_ok(cloth != NULL, error);
+    assert_int_equal(cloth->pin_count, 2);
+    run(cloth, 10);
+    for (size_t i = 0; i < 2; i++)
+        assert_near(vec3d_distance(cloth->particles.x[i], vec3d_from(garment.model.mesh.positions[i])), 0, 0);
+    const struct {
+        int colour;
+        size_t pins;
+    } expected[] = {{TL_PIN_RED, 3}, {TL_PIN_GREEN, 2}, {TL_PIN_BLUE, 2}, {TL_PIN_NO_COLOUR, 2}};
+    for (size_t i = 0; i < TL_COUNT(expected); i++) {
+        params.pin_colour = expected[i].colour;
+        assert_ok(tl_cloth_set(cloth, &fabric, &params, &error), error);
+        assert_int_equal(cloth->pin_count, expected[i].pins);
+    }
+    tl_cloth_destroy(&cloth);
+    tl_garment_release(&garment);
+}
+
 /* At its top a strip of length L stretches by rho g L / k. Beyond the limit preview stops, within one sweep's
  * error; with no limit it does not. */
 static void test_strain_limit(void **state)
@@ -146,9 +225,8 @@ static void test_strain_limit(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_by_height),
-        cmocka_unit_test(test_by_hand),
-        cmocka_unit_test(test_in_avatar),
+        cmocka_unit_test(test_by_height),    cmocka_unit_test(test_by_hand),
+        cmocka_unit_test(test_in_avatar),    cmocka_unit_test(test_from_file),
         cmocka_unit_test(test_strain_limit),
     };
     tl_log_set_level(TL_LOG_WARN);
