@@ -45,22 +45,22 @@ TL_INLINE void move(struct places *places, int lane, vec3d by, double share)
     put(places, lane, vec3d_muladd(at(places, lane), by, share));
 }
 
-/* One pair of each lane on its way, and the side of it that is being solved. Both stretches and the shear are
- * solved one after the other, on F alone, and the vertices move once: a push p on row c moves vertex i by w_i
- * c_i p, and so F_u by cc p and F_v by cd p. All pushes lie in the plane of the first F_u and F_v, u and v:
- * only their shares of these two change, and scalar products follow from the first three. In stages: what one
- * stage of a batch waits for, roots and divisions, the same stage of the next batches need not. */
-struct pair_work {
-    struct places x[4], u, v;
+/* One membrane of each lane on its way. Both stretches and the shear are solved one after the other, on F
+ * alone, and the vertices move once: a push p on row c moves vertex i by w_i c_i p, and so F_u by cc p and
+ * F_v by cd p. All pushes lie in the plane of the first F_u and F_v, u and v: only their shares of these two
+ * change, and scalar products follow from the first three. In stages: what one stage of a batch waits for,
+ * roots and divisions, the same stage of the next batches need not. */
+struct membrane_work {
+    struct places x[3], u, v;
     double uu[TL_BATCH], vv[TL_BATCH], uv[TL_BATCH];
     double c_u[TL_BATCH], c_v[TL_BATCH]; /* the whole push on row c: c_u u + c_v v */
     double d_u[TL_BATCH], d_v[TL_BATCH];
 };
 
-TL_INLINE void measure(const struct tl_side *m, int third, int lane, struct pair_work *work)
+TL_INLINE void measure(const struct tl_preview_membrane *m, int lane, struct membrane_work *work)
 {
     vec3d origin = at(&work->x[0], lane), side = vec3d_sub(at(&work->x[1], lane), origin);
-    vec3d other = vec3d_sub(at(&work->x[third], lane), origin);
+    vec3d other = vec3d_sub(at(&work->x[2], lane), origin);
     vec3d u = vec3d_muladd(vec3d_scale(side, m->c[0][lane]), other, m->c[1][lane]);
     vec3d v = vec3d_muladd(vec3d_scale(side, m->d[0][lane]), other, m->d[1][lane]);
     put(&work->u, lane, u);
@@ -83,7 +83,7 @@ TL_INLINE double stretch_push(double squared, double factor)
 }
 
 /* The push is `push` F_u; F_u becomes (1 + cc push) F_u, F_v gets cd push F_u more. */
-TL_INLINE double solve_weft(const struct tl_side *m, int lane, struct deformation *f)
+TL_INLINE double solve_weft(const struct tl_preview_membrane *m, int lane, struct deformation *f)
 {
     double push = stretch_push(f->a, m->weft[lane]);
     double scale = 1 + push * m->cc[lane], lean = push * m->cd[lane], met = f->g + lean * f->a;
@@ -95,7 +95,7 @@ TL_INLINE double solve_weft(const struct tl_side *m, int lane, struct deformatio
     return push;
 }
 
-TL_INLINE double solve_warp(const struct tl_side *m, int lane, struct deformation *f)
+TL_INLINE double solve_warp(const struct tl_preview_membrane *m, int lane, struct deformation *f)
 {
     double push = stretch_push(f->b, m->warp[lane]);
     double scale = 1 + push * m->dd[lane], lean = push * m->cd[lane], met = f->g + lean * f->b;
@@ -113,7 +113,7 @@ TL_INLINE double solve_warp(const struct tl_side *m, int lane, struct deformatio
  * c_i (v a - u g) / (a sqrt(p)) + d_i (u b - v g) / (b sqrt(p)), of weighted square
  * (p - g^2) (cc b - 2 cd g + dd a) / p^2: its push needs no root, and one division. Of p, on row c F_v gets
  * this share; F_u of row c gets -b g of it, F_v of row d -a g. */
-TL_INLINE double solve_shear(const struct tl_side *m, int lane, const struct deformation *f)
+TL_INLINE double solve_shear(const struct tl_preview_membrane *m, int lane, const struct deformation *f)
 {
     double p = f->a * f->b;
     double square = (p - f->g * f->g) * (m->cc[lane] * f->b - 2 * m->cd[lane] * f->g + m->dd[lane] * f->a);
@@ -121,7 +121,7 @@ TL_INLINE double solve_shear(const struct tl_side *m, int lane, const struct def
     return sum > 0 ? -f->g / sum : 0;
 }
 
-TL_INLINE void solve(const struct tl_side *m, int lane, struct pair_work *work)
+TL_INLINE void solve(const struct tl_preview_membrane *m, int lane, struct membrane_work *work)
 {
     struct deformation f = {
         .u_u = 1, .v_v = 1, .a = work->uu[lane], .b = work->vv[lane], .g = work->uv[lane]};
@@ -135,9 +135,8 @@ TL_INLINE void solve(const struct tl_side *m, int lane, struct pair_work *work)
     work->d_v[lane] = warp + (across * f.u_v - along_d * f.v_v);
 }
 
-TL_INLINE void move_corners(const struct tl_pair *pair, int side, int lane, struct pair_work *work)
+TL_INLINE void move_corners(const struct tl_preview_membrane *m, int lane, struct membrane_work *work)
 {
-    const struct tl_side *m = &pair->sides[side];
     vec3d u = at(&work->u, lane), v = at(&work->v, lane);
     double along_u[3], along_v[3];
     for (int i = 1; i < 3; i++) {
@@ -148,15 +147,14 @@ TL_INLINE void move_corners(const struct tl_pair *pair, int side, int lane, stru
     along_u[0] = -(along_u[1] + along_u[2]);
     along_v[0] = -(along_v[1] + along_v[2]);
     for (int i = 0; i < 3; i++) {
-        int vertex = i < 2 ? i : 2 + side;
-        double w = pair->w[vertex][lane];
-        vec3d moved = vec3d_muladd(at(&work->x[vertex], lane), u, w * along_u[i]);
-        put(&work->x[vertex], lane, vec3d_muladd(moved, v, w * along_v[i]));
+        double w = m->w[i][lane];
+        vec3d moved = vec3d_muladd(at(&work->x[i], lane), u, w * along_u[i]);
+        put(&work->x[i], lane, vec3d_muladd(moved, v, w * along_v[i]));
     }
 }
 
 /* Whether the metric's larger eigenvalue exceeds `most`. */
-TL_INLINE bool stretches(const struct pair_work *work, int lane, double most)
+TL_INLINE bool stretches(const struct membrane_work *work, int lane, double most)
 {
     double spare_u = most - work->uu[lane], spare_v = most - work->vv[lane], uv = work->uv[lane];
     return (spare_u < 0) | (spare_v < 0) | (spare_u * spare_v < uv * uv);
@@ -165,9 +163,9 @@ TL_INLINE bool stretches(const struct pair_work *work, int lane, double most)
 /* Batches of a run that are solved side by side, `work` being where. */
 #define GROUP 8
 struct group {
-    const struct tl_pair *pairs;
-    bool (*seen)[TL_SIDES][TL_BATCH];
-    struct pair_work *work;
+    const struct tl_preview_membrane *membranes;
+    bool (*seen)[TL_BATCH];
+    struct membrane_work *work;
     size_t count;
 };
 
@@ -175,70 +173,65 @@ TL_INLINE void load_batch(const struct group *group, size_t k, const vec3d *x)
 {
     if (k >= group->count)
         return;
-    for (size_t line = 0; line < sizeof *group->pairs; line += TL_CACHE_LINE)
-        __builtin_prefetch((const char *)&group->pairs[k + GROUP] + line);
-    for (int i = 0; i < 4; i++)
-        load(x, group->pairs[k].vertices[i], &group->work[k].x[i]);
+    for (size_t line = 0; line < sizeof *group->membranes; line += TL_CACHE_LINE)
+        __builtin_prefetch((const char *)&group->membranes[k + GROUP] + line);
+    for (int i = 0; i < 3; i++)
+        load(x, group->membranes[k].vertices[i], &group->work[k].x[i]);
 }
 
 TL_INLINE void store_batch(const struct group *group, size_t k, vec3d *x)
 {
     if (k >= group->count)
         return;
-    for (int i = 0; i < 4; i++)
-        store(&group->work[k].x[i], group->pairs[k].vertices[i], x);
+    for (int i = 0; i < 3; i++)
+        store(&group->work[k].x[i], group->membranes[k].vertices[i], x);
 }
 
-TL_INLINE void measure_side(const struct group *group, int side, double most)
+TL_INLINE void measure_group(const struct group *group, double most)
 {
     for (size_t k = 0; k < group->count; k++)
         for (int lane = 0; lane < TL_BATCH; lane++)
-            measure(&group->pairs[k].sides[side], 2 + side, lane, &group->work[k]);
+            measure(&group->membranes[k], lane, &group->work[k]);
     for (size_t k = 0; k < group->count && group->seen; k++)
         for (int lane = 0; lane < TL_BATCH; lane++)
-            group->seen[k][side][lane] = stretches(&group->work[k], lane, most);
+            group->seen[k][lane] = stretches(&group->work[k], lane, most);
 }
 
-TL_INLINE void solve_batch(const struct group *group, size_t k, int side)
+TL_INLINE void solve_batch(const struct group *group, size_t k)
 {
     if (k >= group->count)
         return;
     for (int lane = 0; lane < TL_BATCH; lane++)
-        solve(&group->pairs[k].sides[side], lane, &group->work[k]);
+        solve(&group->membranes[k], lane, &group->work[k]);
 }
 
-TL_INLINE void move_side(const struct group *group, int side)
+TL_INLINE void move_group(const struct group *group)
 {
     for (size_t k = 0; k < group->count; k++)
         for (int lane = 0; lane < TL_BATCH; lane++)
-            move_corners(&group->pairs[k], side, lane, &group->work[k]);
+            move_corners(&group->membranes[k], lane, &group->work[k]);
 }
 
 /* While one group waits for roots and divisions, the one before is stored and the next one loaded: those of a
  * run share no vertex. */
-TL_CLONES static void solve_run(const struct tl_pair *pairs, size_t count, double most, vec3d *x,
-                                bool (*seen)[TL_SIDES][TL_BATCH])
+TL_CLONES static void solve_run(const struct tl_preview_membrane *membranes, size_t count, double most,
+                                vec3d *x, bool (*seen)[TL_BATCH])
 {
-    struct pair_work work[2][GROUP];
-    struct group now = {pairs, seen, work[0], count < GROUP ? count : GROUP}, before = {0}, next;
+    struct membrane_work work[2][GROUP];
+    struct group now = {membranes, seen, work[0], count < GROUP ? count : GROUP}, before = {0};
     for (size_t k = 0; k < now.count; k++)
         load_batch(&now, k, x);
     for (size_t first = GROUP; now.count > 0; first += GROUP) {
         size_t left = first < count ? count - first : 0;
-        next = (struct group){pairs + first, seen ? seen + first : NULL, work[first / GROUP % 2],
-                              left < GROUP ? left : GROUP};
-        measure_side(&now, 0, most);
+        struct group next = {membranes + first, seen ? seen + first : NULL, work[first / GROUP % 2],
+                             left < GROUP ? left : GROUP};
+        measure_group(&now, most);
         for (size_t k = 0; k < GROUP; k++) {
-            solve_batch(&now, k, 0);
+            solve_batch(&now, k);
             store_batch(&before, k, x);
-        }
-        move_side(&now, 0);
-        measure_side(&now, 1, most);
-        for (size_t k = 0; k < GROUP; k++) {
-            solve_batch(&now, k, 1);
             load_batch(&next, k, x);
         }
-        move_side(&now, 1);
+        move_group(&now);
         before = now;
         now = next;
     }
@@ -247,13 +240,13 @@ TL_CLONES static void solve_run(const struct tl_pair *pairs, size_t count, doubl
 }
 
 /* On the threads of a team: the batches of a run in any order, the runs one after the other. */
-static void solve_pairs(const struct tl_pairs *pairs, const struct tl_watch *watch, vec3d *x)
+static void solve_membranes(const struct tl_energy *energy, const struct tl_watch *watch, vec3d *x)
 {
     size_t from = 0;
-    for (size_t run = 0; run < pairs->run_count; run++) {
-        size_t end = pairs->run_ends[run];
+    for (size_t run = 0; run < energy->membrane_run_count; run++) {
+        size_t end = energy->membrane_run_ends[run];
         struct tl_range part = tl_my_part(end - from, 1);
-        solve_run(pairs->batches + from + part.from, part.to - part.from, watch ? watch->most : 0, x,
+        solve_run(energy->previewed + from + part.from, part.to - part.from, watch ? watch->most : 0, x,
                   watch ? watch->seen + from + part.from : NULL);
         from = end;
 #pragma omp barrier
@@ -318,7 +311,7 @@ void tl_xpbd_solve(const struct tl_energy *energy, struct tl_particles *particle
 #pragma omp parallel if (particles->count >= TL_PARALLEL_VERTICES)
     {
         unsigned denormals = tl_denormals_off();
-        solve_pairs(&energy->pairs, watch, particles->x);
+        solve_membranes(energy, watch, particles->x);
         if (!energy->bends_as_force)
             solve_bends(energy, particles->x);
         tl_denormals_restore(denormals);
