@@ -27,6 +27,7 @@ add_library(toile_light STATIC
   inspect/pick.c
   inspect/seen.c
   light/compose.c
+  light/cull.c
   light/mirrors.c
   env/pour.c
   env/sun.c
