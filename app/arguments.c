@@ -2,6 +2,7 @@
 
 #include "config/memory.h"
 #include "config/options.h"
+#include "config/words.h"
 
 #include <limits.h>
 #include <stdio.h>

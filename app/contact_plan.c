@@ -6,6 +6,7 @@
 #include "config/embedded.h"
 #include "config/file.h"
 #include "config/memory.h"
+#include "config/words.h"
 
 #include <ctype.h>
 #include <stdlib.h>

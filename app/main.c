@@ -4,6 +4,7 @@
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/options.h"
+#include "config/words.h"
 
 #include <locale.h>
 #include <malloc.h>

@@ -6,6 +6,7 @@
 #include "config/file.h"
 #include "config/log.h"
 #include "config/memory.h"
+#include "config/words.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -159,15 +160,10 @@ static const struct layer scene_layer = {"scene", tl_embedded_scenes, tl_embedde
 
 static bool fail_name(const struct layer *layer, const char *name, tl_error *error)
 {
-    size_t count = 0;
-    char *list = tl_copy_string("");
-    for (; layer->names[count]; count++) {
-        char *longer = tl_format("%s%s, ", list, layer->names[count]);
-        free(list);
-        list = longer;
-    }
+    size_t count = tl_count_words(layer->names);
+    char *list = tl_join_words(layer->names, count, ", ", ", ");
     const char *near = tl_nearest_word(name, layer->names, count);
-    tl_fail(error, TL_USAGE, "%s: no such %s: expected %sor a YAML file%s%s%s", name, layer->kind, list,
+    tl_fail(error, TL_USAGE, "%s: no such %s: expected %s or a YAML file%s%s%s", name, layer->kind, list,
             near ? ": did you mean " : "", near ? near : "", near ? "?" : "");
     free(list);
     return false;

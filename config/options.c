@@ -2,6 +2,7 @@
 
 #include "config/memory.h"
 #include "config/options_value.h"
+#include "config/words.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -29,18 +30,6 @@ const struct tl_option *tl_options_find_row(const struct tl_option_table *table,
     return NULL;
 }
 
-/* "a, b, c": new string. */
-static char *join(const char *const *words, size_t count)
-{
-    char *list = tl_copy_string("");
-    for (size_t i = 0; i < count; i++) {
-        char *longer = tl_format("%s%s%s", list, i ? ", " : "", words[i]);
-        free(list);
-        list = longer;
-    }
-    return list;
-}
-
 bool tl_options_fail_table(const struct tl_binding *bindings, size_t count, const char *name,
                            const char *where, tl_error *error)
 {
@@ -52,7 +41,7 @@ bool tl_options_fail_table(const struct tl_binding *bindings, size_t count, cons
         tl_fail(error, TL_USAGE, "%s: %s: no such table: did you mean %s?", where, tl_excerpt_of(name).text,
                 near);
     else {
-        char *list = join(names, count);
+        char *list = tl_join_words(names, count, ", ", ", ");
         tl_fail(error, TL_USAGE, "%s: %s: no such table: expected one of %s", where, tl_excerpt_of(name).text,
                 list);
         free(list);
@@ -85,7 +74,7 @@ static bool fail_row(const struct tl_binding *bindings, size_t count, const stru
         tl_fail(error, TL_USAGE, "%s: %s.%s: no such option: did you mean %s.%s?", where, table->name,
                 shown.text, near_table, near ? near : name);
     else {
-        char *list = join(names, table->row_count);
+        char *list = tl_join_words(names, table->row_count, ", ", ", ");
         tl_fail(error, TL_USAGE, "%s: %s.%s: no such option: %s has %s", where, table->name, shown.text,
                 table->name, list);
         free(list);
