@@ -3,6 +3,7 @@
 #include "app/cost.h"
 #include "app/motion.h"
 #include "app/pace.h"
+#include "config/hash.h"
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
@@ -406,10 +407,7 @@ static bool play_again(struct run *run, int count, tl_error *error)
 
 static uint64_t hash_of(const struct run *run)
 {
-    uint64_t hash = 14695981039346656037u;
-    for (int i = 0; i < run->played; i++)
-        hash = (hash ^ run->hashes[i]) * 1099511628211u;
-    return hash;
+    return tl_hash(TL_HASH_START, run->hashes, (size_t)run->played * sizeof run->hashes[0]);
 }
 
 static void release(struct run *run)

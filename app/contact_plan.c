@@ -5,6 +5,7 @@
 #include "assets/model.h"
 #include "config/embedded.h"
 #include "config/file.h"
+#include "config/hash.h"
 #include "config/memory.h"
 #include "config/words.h"
 

@@ -85,7 +85,7 @@ static const struct tl_option camera_rows[] = {
     TL_OPTION_FLOAT(struct tl_camera_params, fov_deg, 1, 150, "degrees",
                     "vertical field of view; larger looks wider"),
 };
-static const struct tl_option_table camera_table = TL_OPTION_TABLE(
+const struct tl_option_table tl_camera_options = TL_OPTION_TABLE(
     "camera", "an orbit about a target", camera_rows, struct tl_camera_params, TL_CAMERA_DEFAULTS);
 
 /* The reference page's order. A preset sets CLOTH, LIGHT and IMAGE; a fabric FABRIC, WEAVE and MATERIAL. */
@@ -110,7 +110,7 @@ enum {
 void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[TL_SETTINGS_TABLES])
 {
     bindings[SCENE] = (struct tl_binding){&scene_table, &settings->scene};
-    bindings[CAMERA] = (struct tl_binding){&camera_table, &settings->camera};
+    bindings[CAMERA] = (struct tl_binding){&tl_camera_options, &settings->camera};
     bindings[CLOTH] = (struct tl_binding){&tl_cloth_options, &settings->cloth};
     bindings[FABRIC] = (struct tl_binding){&tl_cloth_fabric_options, &settings->fabric};
     bindings[WEAVE] = (struct tl_binding){&tl_weave_options, &settings->weave};
