@@ -8,7 +8,6 @@
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* Pixels, and what is spent on each of their samples. The worst of a sixteenth of them is left out: an
  * outline that falls on the other side of a sample's middle puts a highlight in or out, and says nothing of
@@ -24,22 +23,6 @@ struct oracle {
     size_t pixels[PIXELS];
     double light[PIXELS][REPLICATES][3];
 };
-
-static struct tl_ray camera_ray(const struct oracle *oracle, int x, int y)
-{
-    float step_x = 2 / (float)(oracle->width * oracle->side),
-          step_y = 2 / (float)(oracle->height * oracle->side);
-    const struct tl_view *view = &oracle->view;
-    vec3s along = glms_vec3_add(view->forward, glms_vec3_scale(view->right, ((float)x + 0.5f) * step_x - 1));
-    along = glms_vec3_add(along, glms_vec3_scale(view->up, 1 - ((float)y + 0.5f) * step_y));
-    float length = glms_vec3_norm(along);
-    return (struct tl_ray){.origin = view->eye,
-                           .direction = glms_vec3_divs(along, length),
-                           .from_m = view->near_m * length,
-                           .to_m = view->far_m * length,
-                           .across = glms_vec3_scale(view->right, step_x / length),
-                           .down = glms_vec3_scale(view->up, -step_y / length)};
-}
 
 /* Samples of pixels on their way through sheets of open cloth. */
 struct sights {
@@ -116,7 +99,7 @@ static void follow(struct oracle *oracle, struct sights *sights, uint64_t key)
 /* Sixteen pixels' samples of one place at a time. */
 static void trace_pixels(struct oracle *oracle)
 {
-    int samples = oracle->side * oracle->side, groups = (oracle->count + TL_SPOTS - 1) / TL_SPOTS;
+    int side = oracle->side, samples = side * side, groups = (oracle->count + TL_SPOTS - 1) / TL_SPOTS;
 #pragma omp parallel for schedule(dynamic)
     for (int group = 0; group < groups; group++)
         for (int sample = 0; sample < samples; sample++) {
@@ -124,8 +107,9 @@ static void trace_pixels(struct oracle *oracle)
             for (int i = group * TL_SPOTS; i < oracle->count && sights.count < TL_SPOTS; i++) {
                 int x = (int)(oracle->pixels[i] % (size_t)oracle->width);
                 int y = (int)(oracle->pixels[i] / (size_t)oracle->width);
-                sights.rays[sights.count] = camera_ray(oracle, x * oracle->side + sample % oracle->side,
-                                                       y * oracle->side + sample / oracle->side);
+                sights.rays[sights.count] =
+                    tl_camera_ray(&oracle->view, oracle->width * side, oracle->height * side,
+                                  x * side + sample % side, y * side + sample / side);
                 sights.pixels[sights.count] = i;
                 sights.shares[sights.count++] = 1;
             }
@@ -251,21 +235,13 @@ void tl_measure_oracle(const struct tl_checked *checked, struct tl_finding *find
                               .side = params->supersample};
     finding->bound = oracle_bound(&checked->settings->light) + checked->planned_error;
     choose_pixels(oracle);
-    tl_frame frame = *checked->frame;
     const struct tl_ground *ground = params->ground ? &renderer->ground : NULL;
-    tl_surface *surfaces =
-        TL_NEW_ARRAY(tl_surface, frame.surface_count + 1); /* it wants the ground among them */
-    memcpy(surfaces, frame.surfaces, frame.surface_count * sizeof *surfaces);
-    frame.surfaces = surfaces;
-    if (ground)
-        surfaces[frame.surface_count++] = ground->surface;
     tl_error error = {0};
     if (oracle->count == 0) {
-        free(surfaces);
         free(oracle);
         return;
     }
-    if (tl_reference_scene_make(&frame, checked->settings, ground, &oracle->scene, &error)) {
+    if (tl_reference_scene_make(checked->frame, checked->settings, ground, &oracle->scene, &error)) {
         trace_pixels(oracle);
         compare_pixels(oracle, finding);
         tl_reference_scene_release(&oracle->scene);
@@ -273,6 +249,5 @@ void tl_measure_oracle(const struct tl_checked *checked, struct tl_finding *find
         tl_finding_add(finding, NAN);
         tl_finding_place(finding, "%s", error.message);
     }
-    free(surfaces);
     free(oracle);
 }

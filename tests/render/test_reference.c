@@ -76,7 +76,6 @@ static tl_image draw(struct scene *scene, struct tl_reference_report *report)
         struct tl_casters casters;
         assert_ok(tl_casters_measure(scene->surfaces, scene->count, &casters, &error), error);
         tl_ground_make(&casters, &scene->ground);
-        scene->surfaces[scene->frame.surface_count++] = scene->ground.surface;
     }
     assert_ok(tl_reference_draw(&scene->frame, &scene->settings, ground ? &scene->ground : NULL, &image,
                                 report, &error),
