@@ -142,6 +142,26 @@ void tl_options_copy(const struct tl_option *row, const void *from, void *to)
     memcpy((char *)to + row->offset, (const char *)from + row->offset, tl_option_size(row));
 }
 
+static void make_absolute(char *path)
+{
+    char *folder = realpath(".", NULL), *whole = folder ? tl_format("%s/%s", folder, path) : NULL;
+    if (whole && strlen(whole) < TL_STRING_SIZE)
+        strcpy(path, whole);
+    free(whole);
+    free(folder);
+}
+
+void tl_options_make_paths_absolute(const struct tl_binding *bindings, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        for (size_t r = 0; r < bindings[i].table->row_count; r++) {
+            const struct tl_option *row = &bindings[i].table->rows[r];
+            char *field = (char *)bindings[i].params + row->offset;
+            if (row->type == TL_PATH && tl_option_is_file_name(field) && field[0] != '/')
+                make_absolute(field);
+        }
+}
+
 bool tl_options_equal(const struct tl_option_table *table, const void *a, const void *b)
 {
     for (size_t i = 0; i < table->row_count; i++) {

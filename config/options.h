@@ -181,6 +181,10 @@ void tl_options_copy(const struct tl_option *row, const void *from, void *to);
 /* True when the text of a TL_PATH with choices is a file's name: it has a dot or a slash in it. */
 bool tl_option_is_file_name(const char *text);
 
+/* From wherever they are read next, every TL_PATH means the same file. One that would be too long stays as it
+ * is. */
+void tl_options_make_paths_absolute(const struct tl_binding *bindings, size_t count);
+
 /* The option's value as the text that tl_options_set takes back. New string. */
 char *tl_options_get_text(const struct tl_binding *binding, const struct tl_option *row);
 
