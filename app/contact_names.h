@@ -25,7 +25,7 @@ char *tl_contact_label_of(const char *name);
 /* The first `length` bytes of a text as lower-case letters, digits, dots and dashes. */
 char *tl_contact_plain(const char *text, size_t length);
 
-/* A label so, without its extension: "dress", "my-shirt". */
+/* The last part of a path so, without a model's or map's extension: "dress", "my-shirt". */
 char *tl_contact_slug(const char *text);
 
 /* Numbers those that are taken: two files of one name in different folders must not share a cell. */
