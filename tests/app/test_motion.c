@@ -1,11 +1,24 @@
 /* The motion that light is measured in: it moves, is the same every time, and a film shows what was there. */
-#include "quick_session.h"
+#include "testing.h"
 
 #include "app/motion.h"
 
 #include <string.h>
 
 #define FRAMES 4
+
+static tl_session *quick_session(void)
+{
+    static const char *const assignments[] = {"cloth.edge_m=0.08", "cloth.settle_s=0.3", "cloth.substeps=8"};
+    const struct tl_settings_source source = {
+        .scene_file = "review", .assignments = assignments, .assignment_count = 3};
+    struct tl_settings settings;
+    tl_error error = {0};
+    assert_ok(tl_settings_load(&settings, &source, &error), error);
+    tl_session *session = tl_session_create(&settings, &error);
+    assert_ok(session != NULL, error);
+    return session;
+}
 
 /* Turned by 15 degrees a second about the vertical through the target: height, distance and upright stay. */
 static void camera_walks_round(void **state)
@@ -26,7 +39,7 @@ static void film_is_the_motion(void **state)
 {
     (void)state;
     tl_error error = {0};
-    tl_session *session = quick_session("review");
+    tl_session *session = quick_session();
     tl_film *film = tl_film_record(session, FRAMES, &error);
     assert_ok(film != NULL, error);
     struct tl_film_report report = tl_film_report(film);
@@ -59,7 +72,7 @@ static void form_does_not_move(void **state)
 {
     (void)state;
     tl_error error = {0};
-    tl_session *session = quick_session("review");
+    tl_session *session = quick_session();
     uint64_t before = tl_session_frame(session).surfaces[0].motion_revision;
     assert_string_equal(tl_session_frame(session).surfaces[0].name, "avatar");
     assert_ok(tl_session_advance(session, &error), error);
