@@ -17,19 +17,19 @@ check() { # NAME COMMAND...
     if "$@"; then echo "ok     $name"; else fail "$name"; fi
 }
 
-# toile ARGUMENTS exits with 2 and says one line, which matches the pattern; it leaves no file behind.
+# toile ARGUMENTS exits with 2 and says one line, which matches the pattern; it leaves nothing behind.
 refuse() { # NAME PATTERN ARGUMENTS...
     local name=$1 pattern=$2 before after message status=0
     shift 2
-    before=$(find . -type f | sort)
+    before=$(find . | sort)
     message=$($TOILE "$@" --quiet 2>&1) || status=$?
-    after=$(find . -type f | sort)
+    after=$(find . | sort)
     if [ $status -ne 2 ]; then
         fail "$name: exit status $status, expected 2: $message"
     elif [ "$(printf '%s\n' "$message" | wc -l)" -ne 1 ] || ! printf '%s' "$message" | grep -qE -e "$pattern"; then
         fail "$name: expected one line that matches /$pattern/, got: $message"
     elif [ "$before" != "$after" ]; then
-        fail "$name: files left behind: $(diff <(echo "$before") <(echo "$after") | tr '\n' ' ')"
+        fail "$name: left behind: $(diff <(echo "$before") <(echo "$after") | tr '\n' ' ')"
     else
         echo "ok     $name: $message"
     fi
