@@ -277,17 +277,18 @@ static void test_what_covers_a_sample_is_kept(void **state)
     test_shape_release(&ball);
 }
 
-/* What has holes or fades hides nothing; as it is, one half of the square hides the ball. */
+/* What has holes or fades hides nothing; as it is, one half of the square hides the small one. */
 static void test_what_hides(void **state)
 {
     (void)state;
-    struct test_shape ball = test_sphere((vec3s){{0, 0, 0}}, 0.3f, 24);
+    struct test_shape small =
+        test_square((vec3s){{0, 0, 0}}, (vec3s){{1, 0, 0}}, (vec3s){{0, 0, 1}}, 0.3f, 12);
     struct test_shape square =
         test_square((vec3s){{2, 0, 0.6f}}, (vec3s){{1, 0, 0}}, (vec3s){{0, 0, 1}}, 3, 1);
-    refresh(&ball, &square);
-    struct scene alone = scene_of(&ball.surface, NULL, (vec3s){{0.11f, 0.07f, 2.5f}},
+    refresh(&small, &square);
+    struct scene alone = scene_of(&small.surface, NULL, (vec3s){{0.11f, 0.07f, 2.5f}},
                                   (vec3s){{0.11f, 0.07f, 0}}, WIDTH, HEIGHT);
-    struct scene both = scene_of(&ball.surface, &square.surface, (vec3s){{0.11f, 0.07f, 2.5f}},
+    struct scene both = scene_of(&small.surface, &square.surface, (vec3s){{0.11f, 0.07f, 2.5f}},
                                  (vec3s){{0.11f, 0.07f, 0}}, WIDTH, HEIGHT);
     struct tl_cull bare = make(&alone, true, 1), hidden = make(&both, true, 2), fading = make(&both, true, 1);
     square.material.alpha_cutoff = 0.5f;
@@ -301,7 +302,7 @@ static void test_what_hides(void **state)
     struct tl_cull *all[] = {&bare, &hidden, &fading, &masked};
     for (size_t i = 0; i < TL_COUNT(all); i++)
         tl_cull_release(all[i]);
-    test_shape_release(&ball);
+    test_shape_release(&small);
     test_shape_release(&square);
 }
 
