@@ -9,6 +9,7 @@ add_library(toile_light STATIC
   brdf/options.c
   detail/bake.c
   detail/bumps.c
+  detail/cones.c
   detail/detail.c
   detail/field.c
   detail/options.c

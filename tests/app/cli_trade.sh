@@ -49,7 +49,7 @@ assert any(e.get("src", "").startswith("data:image/png;base64,") for e in root.i
 assert not list(root.iter("script")) and not re.search(r'(src|href)="(?!data:)', text)
 assert "nan" not in text.lower().replace("nanmean", "") or not re.search(r'[ "(]-?nan[ ",)]', text)
 PYTHON
-    for axis in overall resolution detail shading; do
+    for axis in overall resolution detail shading levels; do
         check "trade, $axis" $TOILE trade --axis $axis $small --quick -o "$axis"
         check "finite numbers, $axis" python3 - "$axis/trade.csv" <<'PYTHON'
 import csv, math, sys
