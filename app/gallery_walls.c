@@ -166,7 +166,7 @@ static const struct tl_exhibit b3[] = {
 
 static const struct tl_exhibit b4[] = {
     {"B4", "paraboloid, looked up directly", {"maps.look_up=direct"}, {NULL}},
-    {"B4", "paraboloid, through the projective matrix", {"maps.look_up=matrix"}, {NULL}},
+    {"B4", "paraboloid, projective matrix", {"maps.look_up=matrix"}, {NULL}},
 };
 
 static const struct tl_exhibit b5[] = {

@@ -153,6 +153,9 @@ TL_INLINE void move_corners(const struct tl_preview_membrane *m, int lane, struc
     }
 }
 
+/* Batches of a run that are solved side by side. */
+#define GROUP 8
+
 /* Whether the metric's larger eigenvalue exceeds `most`. */
 TL_INLINE bool stretches(const struct membrane_work *work, int lane, double most)
 {
@@ -160,83 +163,39 @@ TL_INLINE bool stretches(const struct membrane_work *work, int lane, double most
     return (spare_u < 0) | (spare_v < 0) | (spare_u * spare_v < uv * uv);
 }
 
-/* Batches of a run that are solved side by side, `work` being where. */
-#define GROUP 8
-struct group {
-    const struct tl_preview_membrane *membranes;
-    bool (*seen)[TL_BATCH];
-    struct membrane_work *work;
-    size_t count;
-};
-
-TL_INLINE void load_batch(const struct group *group, size_t k, const vec3d *x)
+TL_INLINE void solve_group(const struct tl_preview_membrane *m, size_t count, double most, vec3d *x,
+                           bool (*seen)[TL_BATCH])
 {
-    if (k >= group->count)
-        return;
-    for (size_t line = 0; line < sizeof *group->membranes; line += TL_CACHE_LINE)
-        __builtin_prefetch((const char *)&group->membranes[k + GROUP] + line);
-    for (int i = 0; i < 3; i++)
-        load(x, group->membranes[k].vertices[i], &group->work[k].x[i]);
-}
-
-TL_INLINE void store_batch(const struct group *group, size_t k, vec3d *x)
-{
-    if (k >= group->count)
-        return;
-    for (int i = 0; i < 3; i++)
-        store(&group->work[k].x[i], group->membranes[k].vertices[i], x);
-}
-
-TL_INLINE void measure_group(const struct group *group, double most)
-{
-    for (size_t k = 0; k < group->count; k++)
+    struct membrane_work work[GROUP];
+    for (size_t k = 0; k < count; k++) {
+        for (size_t line = 0; line < sizeof *m; line += TL_CACHE_LINE)
+            __builtin_prefetch((const char *)&m[k + GROUP] + line);
+        for (int i = 0; i < 3; i++)
+            load(x, m[k].vertices[i], &work[k].x[i]);
+    }
+    for (size_t k = 0; k < count; k++)
         for (int lane = 0; lane < TL_BATCH; lane++)
-            measure(&group->membranes[k], lane, &group->work[k]);
-    for (size_t k = 0; k < group->count && group->seen; k++)
+            measure(&m[k], lane, &work[k]);
+    for (size_t k = 0; k < count && seen; k++)
         for (int lane = 0; lane < TL_BATCH; lane++)
-            group->seen[k][lane] = stretches(&group->work[k], lane, most);
-}
-
-TL_INLINE void solve_batch(const struct group *group, size_t k)
-{
-    if (k >= group->count)
-        return;
-    for (int lane = 0; lane < TL_BATCH; lane++)
-        solve(&group->membranes[k], lane, &group->work[k]);
-}
-
-TL_INLINE void move_group(const struct group *group)
-{
-    for (size_t k = 0; k < group->count; k++)
+            seen[k][lane] = stretches(&work[k], lane, most);
+    for (size_t k = 0; k < count; k++)
         for (int lane = 0; lane < TL_BATCH; lane++)
-            move_corners(&group->membranes[k], lane, &group->work[k]);
+            solve(&m[k], lane, &work[k]);
+    for (size_t k = 0; k < count; k++)
+        for (int lane = 0; lane < TL_BATCH; lane++)
+            move_corners(&m[k], lane, &work[k]);
+    for (size_t k = 0; k < count; k++)
+        for (int i = 0; i < 3; i++)
+            store(&work[k].x[i], m[k].vertices[i], x);
 }
 
-/* While one group waits for roots and divisions, the one before is stored and the next one loaded: those of a
- * run share no vertex. */
 TL_CLONES static void solve_run(const struct tl_preview_membrane *membranes, size_t count, double most,
                                 vec3d *x, bool (*seen)[TL_BATCH])
 {
-    struct membrane_work work[2][GROUP];
-    struct group now = {membranes, seen, work[0], count < GROUP ? count : GROUP}, before = {0};
-    for (size_t k = 0; k < now.count; k++)
-        load_batch(&now, k, x);
-    for (size_t first = GROUP; now.count > 0; first += GROUP) {
-        size_t left = first < count ? count - first : 0;
-        struct group next = {membranes + first, seen ? seen + first : NULL, work[first / GROUP % 2],
-                             left < GROUP ? left : GROUP};
-        measure_group(&now, most);
-        for (size_t k = 0; k < GROUP; k++) {
-            solve_batch(&now, k);
-            store_batch(&before, k, x);
-            load_batch(&next, k, x);
-        }
-        move_group(&now);
-        before = now;
-        now = next;
-    }
-    for (size_t k = 0; k < before.count; k++)
-        store_batch(&before, k, x);
+    for (size_t first = 0; first < count; first += GROUP)
+        solve_group(membranes + first, count - first < GROUP ? count - first : GROUP, most, x,
+                    seen ? seen + first : NULL);
 }
 
 /* On the threads of a team: the batches of a run in any order, the runs one after the other. */

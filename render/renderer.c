@@ -426,11 +426,6 @@ bool tl_renderer_show_image(tl_renderer *renderer, tl_image *out, tl_error *erro
     return true;
 }
 
-bool tl_renderer_show_window(tl_renderer *renderer, int width, int height, tl_error *error)
-{
-    return tl_renderer_show_columns(renderer, width, height, 0, width, error);
-}
-
 bool tl_renderer_show_columns(tl_renderer *renderer, int width, int height, int first, int end,
                               tl_error *error)
 {

@@ -271,9 +271,8 @@ void tl_detail_maps_bind(const struct tl_detail_maps *maps, size_t surface, size
     glUniform3fv(first_location + TL_DETAIL_ROWS, 2, entry->rows);
     if (maps)
         glUniform2i(first_location + TL_DETAIL_STEPS, maps->params.steps, maps->params.refine);
-    for (int i = 0; i < TL_DETAIL_UNITS; i++)
-        if (entry->textures[i].id)
-            glBindTextureUnit((GLuint)(first_unit + i), entry->textures[i].id);
+    for (int i = 0; i < TL_DETAIL_UNITS; i++) /* of what is not there, too: see set_material in surfaces.c */
+        glBindTextureUnit((GLuint)(first_unit + i), entry->textures[i].id);
 }
 
 size_t tl_detail_maps_bytes(const struct tl_detail_maps *maps)

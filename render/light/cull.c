@@ -135,7 +135,7 @@ TL_INLINE void depth_bounds(const struct facet *facet, float margin, float x, fl
     *high = z + spread + DEPTH_ROUNDING;
 }
 
-static bool covers_any(const struct raster *raster, const struct facet *facet)
+TL_INLINE bool covers_any(const struct raster *raster, const struct facet *facet)
 {
     if (facet->last_x - facet->first_x >= SPAN_TRIED || facet->last_y - facet->first_y >= SPAN_TRIED)
         return true;
@@ -147,7 +147,7 @@ static bool covers_any(const struct raster *raster, const struct facet *facet)
 }
 
 /* The near plane cuts away what lies before it: that hides nothing. */
-static void hide_behind(const struct raster *raster, const struct facet *facet)
+TL_INLINE void hide_behind(const struct raster *raster, const struct facet *facet)
 {
     for (int y = facet->first_y; y <= facet->last_y; y++)
         for (int x = facet->first_x; x <= facet->last_x; x++) {
@@ -161,7 +161,7 @@ static void hide_behind(const struct raster *raster, const struct facet *facet)
         }
 }
 
-static bool is_hidden(const struct raster *raster, const struct facet *facet)
+TL_INLINE bool is_hidden(const struct raster *raster, const struct facet *facet)
 {
     for (int y = facet->first_y; y <= facet->last_y; y++)
         for (int x = facet->first_x; x <= facet->last_x; x++) {
@@ -203,7 +203,7 @@ static void reserve(const struct tl_cull_request *request, struct tl_cull *out)
     }
 }
 
-static void keep(struct tl_cull *out, const uint32_t corners[3], uint32_t number)
+TL_INLINE void keep(struct tl_cull *out, const uint32_t corners[3], uint32_t number)
 {
     uint32_t *indices = out->indices + 3 * out->triangle_count;
     for (int i = 0; i < 3; i++)
@@ -212,8 +212,9 @@ static void keep(struct tl_cull *out, const uint32_t corners[3], uint32_t number
 }
 
 /* `first` is the number of the surface's first triangle. */
-static void keep_part(const struct raster *raster, const tl_surface *surface, const struct tl_mesh_part *part,
-                      const struct tl_cull_place *places, uint32_t first, bool hides, struct tl_cull *out)
+TL_CLONES static void keep_part(const struct raster *raster, const tl_surface *surface,
+                                const struct tl_mesh_part *part, const struct tl_cull_place *places,
+                                uint32_t first, bool hides, struct tl_cull *out)
 {
     struct tl_cull_part *kept = &out->parts[out->part_count++];
     uint32_t begin = part->first_index / 3, end = begin + part->index_count / 3;
@@ -251,7 +252,7 @@ static void keep_covering(const struct raster *raster, struct tl_cull *out)
     }
 }
 
-static void leave_out_hidden(const struct raster *raster, struct tl_cull *out)
+TL_CLONES static void leave_out_hidden(const struct raster *raster, struct tl_cull *out)
 {
     const struct tl_cull_request *request = raster->request;
     const struct tl_cull_place *places = out->places;

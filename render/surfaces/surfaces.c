@@ -271,9 +271,12 @@ static int bind_weave(const struct item *item, const tl_weave *weave, float uv_m
     return 1 << TL_MAP_USES;
 }
 
+/* Units without a map are cleared: software GL samples whatever is bound, wanted or not, and compiles each
+ * shader anew for every set of formats that it meets. */
 static void set_material(const struct item *item, const struct tl_mesh_part *part)
 {
     const tl_material *material = &item->materials[part->material];
+    glBindTextures(0, TL_MAP_USES + TL_WEAVE_USES, NULL);
     int flags = bind_weave(item, material->weave, part->uv_metres);
     float rows[TL_MAP_USES][6];
     for (enum tl_map_use use = 0; use < TL_MAP_USES; use++) {

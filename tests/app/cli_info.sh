@@ -1,15 +1,7 @@
-#!/bin/bash
+#!/usr/bin/env bash
 # What toile info says of a material that it can only come near to.
 set -u
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-failed=0
-check() {
-    local what=$1
-    shift
-    "$@" >/dev/null 2>out || { echo "FAILED $what"; cat out; failed=1; }
-}
+. "$(dirname "$0")/cli.sh"
 
 # A triangle: (0 0 0) (1 0 0) (0 1 0).
 positions=$(printf '\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200\077\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200\077\0\0\0\0' | base64 -w0)
@@ -52,4 +44,3 @@ END
 check "pinned vertices" sh -c "$TOILE info pinned.gltf | grep -Eq '^pins +2$'"
 check "painted vertices" sh -c "$TOILE info pinned.gltf | grep -Eq '^ +red +1$'"
 check "no pins" sh -c "$TOILE info satin.gltf | grep -Eq '^pins +0$'"
-exit $failed

@@ -6,6 +6,7 @@ target_compile_definitions(toile_test_shapes PRIVATE TOILE_DATA_DIR="") # testin
 
 toile_test(gpu gpu toile_render PkgConfig::EPOXY)
 toile_test(light gpu toile_test_shapes)
+toile_test(cull gpu toile_test_shapes)
 toile_test(maps gpu toile_test_shapes)
 toile_test(methods gpu toile_test_shapes)
 toile_test(capture gpu toile_test_shapes)

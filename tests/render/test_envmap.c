@@ -346,7 +346,7 @@ static void layers_are_integrals(void **state)
             worst = fmax(worst, fabs((double)(test_pixel(&image, i % SIDE, i / SIDE)[c] - expected.raw[c])));
     }
     print_message("coat and light from behind: off by %.2f %% of the brightest\n", 100 * worst / BRIGHTEST);
-    assert_true(worst < 1.5 * TOLERANCE); /* four look-ups in place of two */
+    assert_true(worst < TOLERANCE);
     tl_image_release(&image);
     scene_close(&scene);
 }
