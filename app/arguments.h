@@ -9,28 +9,26 @@
 
 #define TL_POSITIONALS_MAX 64
 
-enum tl_flag_set { /* which groups of flags a command takes */
-                   TL_FLAGS_SCENE =
-                       1, /* --set --garment --units --motion --avatar --env --fabric --preset --size
-                             --method */
-                   TL_FLAGS_OUTPUT = 2,        /* -o */
-                   TL_FLAGS_FRAME = 4,         /* --frame N */
-                   TL_FLAGS_FRAMES = 8,        /* --frames A:B */
-                   TL_FLAGS_JSON = 16,         /* --json */
-                   TL_FLAGS_METRIC = 32,       /* --ldr --hdr */
-                   TL_FLAGS_WINDOW = 64,       /* --screenshots DIR --max-frames N --fresh --budget MS */
-                   TL_FLAGS_AXIS = 128,        /* --axis NAME */
-                   TL_FLAGS_QUICK = 256,       /* --quick */
-                   TL_FLAGS_FULL = 512,        /* --full */
-                   TL_FLAGS_LAYOUT = 1024,     /* --layout NAME --from NAME --size N */
-                   TL_FLAGS_FABRIC = 2048,     /* --repeat-mm MM --height-mm MM --clamp */
-                   TL_FLAGS_CHECK = 1 << 12,   /* --frames --every --furnace --still --budget --keep */
-                   TL_FLAGS_AOV = 1 << 17,     /* --aov */
-                   TL_FLAGS_SHEET = 1 << 24,   /* lists of what a contact sheet shows, --same-drape */
-                   TL_FLAGS_CAPTURE = 1 << 16, /* --capture, and those of the scene but the image's */
-                   TL_FLAGS_FLY = 1 << 20,     /* --budget --frames --path --video --against --replay
-                                                  --oracle --hash */
-                   TL_FLAGS_BUDGET = 1 << 21,  /* --budget MS */
+/* Which groups of flags a command takes. */
+enum tl_flag_set {
+    TL_FLAGS_SCENE = 1 << 0,    /* --garment to --set */
+    TL_FLAGS_OUTPUT = 1 << 1,   /* -o */
+    TL_FLAGS_FRAME = 1 << 2,    /* --frame N */
+    TL_FLAGS_FRAMES = 1 << 3,   /* --frames A:B */
+    TL_FLAGS_JSON = 1 << 4,     /* --json */
+    TL_FLAGS_METRIC = 1 << 5,   /* --ldr --hdr */
+    TL_FLAGS_WINDOW = 1 << 6,   /* --screenshots DIR --max-frames N --fresh */
+    TL_FLAGS_AXIS = 1 << 7,     /* --axis NAME */
+    TL_FLAGS_QUICK = 1 << 8,    /* --quick */
+    TL_FLAGS_FULL = 1 << 9,     /* --full */
+    TL_FLAGS_LAYOUT = 1 << 10,  /* --layout NAME --from NAME --size N */
+    TL_FLAGS_FABRIC = 1 << 11,  /* --repeat-mm MM --height-mm MM --clamp */
+    TL_FLAGS_CHECK = 1 << 12,   /* --frames N --every --furnace --still --keep */
+    TL_FLAGS_AOV = 1 << 13,     /* --aov */
+    TL_FLAGS_SHEET = 1 << 14,   /* lists of what a contact sheet shows, --same-drape */
+    TL_FLAGS_CAPTURE = 1 << 15, /* --capture, and those of the scene but the image's */
+    TL_FLAGS_FLY = 1 << 16,     /* --frames N --path --video --against --replay --oracle --hash */
+    TL_FLAGS_BUDGET = 1 << 17,  /* --budget MS */
 };
 
 struct tl_arguments {

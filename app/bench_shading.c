@@ -144,20 +144,8 @@ static bool show(struct bench *bench, int look, enum tl_reflectance model, tl_er
     material->gloss.model = (int)model;
     material->diffuse_map.image = look ? &bench->decal : NULL;
     material->normal_map.image = look ? &bench->bumps : NULL;
-    const tl_mesh *mesh = &bench->mesh;
-    const tl_surface surface = {.name = "mesh",
-                                .vertex_count = mesh->vertex_count,
-                                .positions = mesh->positions,
-                                .normals = mesh->normals,
-                                .tangents = mesh->tangents,
-                                .uvs = mesh->uvs,
-                                .index_count = mesh->index_count,
-                                .indices = mesh->indices,
-                                .part_count = 1,
-                                .parts = mesh->parts,
-                                .materials = material,
-                                .topology_revision = ++bench->shown,
-                                .motion_revision = bench->shown};
+    tl_surface surface = tl_surface_of_mesh("mesh", &bench->mesh, material);
+    surface.topology_revision = surface.motion_revision = ++bench->shown;
     const struct tl_camera camera = {
         .eye = {{0, 0, 1}}, .up = {{0, 1, 0}}, .fov_y = 2 * atanf(0.5f), .near_m = 0.1f, .far_m = 10};
     const struct tl_lamp lamp = {

@@ -1,5 +1,6 @@
 /* Pixels, and pictures beside pictures. */
 #include "app/check_measures.h"
+#include "config/hash.h"
 
 #include <math.h>
 #include <string.h>
@@ -92,20 +93,12 @@ void tl_measure_fresh(const struct tl_checked *checked, struct tl_finding *findi
     place_pixel(finding, checked->image, worst);
 }
 
-static uint64_t mix(uint64_t hash, const void *data, size_t size)
-{
-    const unsigned char *bytes = data;
-    for (size_t i = 0; i < size; i++)
-        hash = (hash ^ bytes[i]) * 1099511628211u;
-    return hash;
-}
-
 uint64_t tl_check_hash(const tl_frame *frame, const tl_image *image)
 {
-    uint64_t hash = 14695981039346656037u;
+    uint64_t hash = TL_HASH_START;
     for (size_t s = 0; s < frame->surface_count; s++)
-        hash = mix(hash, frame->surfaces[s].positions, frame->surfaces[s].vertex_count * sizeof(vec3s));
-    return mix(hash, image->texels, pixel_count(image) * 4 * sizeof(float));
+        hash = tl_hash(hash, frame->surfaces[s].positions, frame->surfaces[s].vertex_count * sizeof(vec3s));
+    return tl_hash(hash, image->texels, pixel_count(image) * 4 * sizeof(float));
 }
 
 void tl_measure_repeat(const struct tl_checked *checked, struct tl_finding *finding)

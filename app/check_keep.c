@@ -30,21 +30,14 @@ static void print_settings(const void *what, FILE *out)
     tl_options_print_yaml(bindings, TL_SETTINGS_TABLES, out);
 }
 
-/* Files that the settings name, from wherever the folder is looked at. */
-static void name_absolutely(struct tl_settings *settings)
+/* The same settings from wherever the folder is looked at. */
+static struct tl_settings rooted(const struct tl_settings *settings)
 {
-    char *const names[] = {settings->scene.garment, settings->scene.avatar, settings->scene.motion,
-                           settings->scene.environment};
-    for (size_t i = 0; i < TL_COUNT(names); i++) {
-        char *folder = names[i][0] != '/' && tl_option_is_file_name(names[i]) ? realpath(".", NULL) : NULL;
-        if (!folder)
-            continue;
-        char *whole = tl_format("%s/%s", folder, names[i]);
-        if (strlen(whole) < TL_STRING_SIZE)
-            memcpy(names[i], whole, strlen(whole) + 1);
-        free(whole);
-        free(folder);
-    }
+    struct tl_settings copy = *settings;
+    struct tl_binding bindings[TL_SETTINGS_TABLES];
+    tl_settings_bind(&copy, bindings);
+    tl_options_make_paths_absolute(bindings, TL_SETTINGS_TABLES);
+    return copy;
 }
 
 /* The orbit that stands where the frame's camera does. */
@@ -60,7 +53,7 @@ static void set_camera(const struct tl_camera *camera, struct tl_camera_params *
 /* One picture of the scene: what it shows lies in files, and nothing moves. */
 static struct tl_settings still_settings(const struct tl_settings *settings, const tl_frame *frame)
 {
-    struct tl_settings still = *settings;
+    struct tl_settings still = rooted(settings);
     bool garment = find_surface(frame, "garment"), avatar = find_surface(frame, "avatar");
     strcpy(still.scene.garment, garment ? "garment.glb" : "none");
     strcpy(still.scene.motion, garment ? "garment.pc2" : "none");
@@ -86,7 +79,7 @@ static bool find_mark(const struct tl_checked *checked, const struct tl_finding 
     vec3s point = checked->frame->surfaces[finding->surface].positions[finding->vertex];
     struct tl_view view = tl_view_make(&checked->frame->camera, image->width, image->height);
     vec4s seen = glms_mat4_mulv(view.view_projection, (vec4s){{point.x, point.y, point.z, 1}});
-    if (!(seen.w > 0))
+    if (!(seen.w > 0 && fabsf(seen.x) <= seen.w && fabsf(seen.y) <= seen.w))
         return false;
     *x = (int)((0.5f + 0.5f * seen.x / seen.w) * (float)image->width);
     *y = (int)((0.5f - 0.5f * seen.y / seen.w) * (float)image->height);
@@ -160,9 +153,8 @@ bool tl_check_keep(const char *folder, struct tl_stage *stage, const struct tl_c
                    const struct tl_finding *broken, tl_error *error)
 {
     const tl_surface *garment = find_surface(checked->frame, "garment");
-    struct tl_settings run = stage->settings;
+    struct tl_settings run = rooted(&stage->settings);
     struct tl_settings still = still_settings(&stage->settings, checked->frame);
-    name_absolutely(&run);
     if (!tl_folder_make(folder, error) || !tl_folder_print(folder, "run.yaml", &run, print_settings, error) ||
         !tl_folder_print(folder, "scene.yaml", &still, print_settings, error) ||
         !keep_environment(folder, checked->frame->environment, error) ||

@@ -8,7 +8,6 @@
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* Pixels, and what is spent on each of their samples. The worst of a sixteenth of them is left out: an
  * outline that falls on the other side of a sample's middle puts a highlight in or out, and says nothing of
@@ -24,22 +23,6 @@ struct oracle {
     size_t pixels[PIXELS];
     double light[PIXELS][REPLICATES][3];
 };
-
-static struct tl_ray camera_ray(const struct oracle *oracle, int x, int y)
-{
-    float step_x = 2 / (float)(oracle->width * oracle->side),
-          step_y = 2 / (float)(oracle->height * oracle->side);
-    const struct tl_view *view = &oracle->view;
-    vec3s along = glms_vec3_add(view->forward, glms_vec3_scale(view->right, ((float)x + 0.5f) * step_x - 1));
-    along = glms_vec3_add(along, glms_vec3_scale(view->up, 1 - ((float)y + 0.5f) * step_y));
-    float length = glms_vec3_norm(along);
-    return (struct tl_ray){.origin = view->eye,
-                           .direction = glms_vec3_divs(along, length),
-                           .from_m = view->near_m * length,
-                           .to_m = view->far_m * length,
-                           .across = glms_vec3_scale(view->right, step_x / length),
-                           .down = glms_vec3_scale(view->up, -step_y / length)};
-}
 
 /* Samples of pixels on their way through sheets of open cloth. */
 struct sights {
@@ -116,7 +99,7 @@ static void follow(struct oracle *oracle, struct sights *sights, uint64_t key)
 /* Sixteen pixels' samples of one place at a time. */
 static void trace_pixels(struct oracle *oracle)
 {
-    int samples = oracle->side * oracle->side, groups = (oracle->count + TL_SPOTS - 1) / TL_SPOTS;
+    int side = oracle->side, samples = side * side, groups = (oracle->count + TL_SPOTS - 1) / TL_SPOTS;
 #pragma omp parallel for schedule(dynamic)
     for (int group = 0; group < groups; group++)
         for (int sample = 0; sample < samples; sample++) {
@@ -124,8 +107,9 @@ static void trace_pixels(struct oracle *oracle)
             for (int i = group * TL_SPOTS; i < oracle->count && sights.count < TL_SPOTS; i++) {
                 int x = (int)(oracle->pixels[i] % (size_t)oracle->width);
                 int y = (int)(oracle->pixels[i] / (size_t)oracle->width);
-                sights.rays[sights.count] = camera_ray(oracle, x * oracle->side + sample % oracle->side,
-                                                       y * oracle->side + sample / oracle->side);
+                sights.rays[sights.count] =
+                    tl_camera_ray(&oracle->view, oracle->width * side, oracle->height * side,
+                                  x * side + sample % side, y * side + sample / side);
                 sights.pixels[sights.count] = i;
                 sights.shares[sights.count++] = 1;
             }
@@ -244,13 +228,7 @@ static void consult(struct oracle *oracle, struct tl_finding *finding)
     const struct tl_checked *checked = oracle->checked;
     const struct tl_ground *ground = checked->settings->image.ground ? &checked->renderer->ground : NULL;
     tl_error error = {0};
-    tl_frame frame = *checked->frame;
-    tl_surface *surfaces = TL_NEW_ARRAY(tl_surface, frame.surface_count + 1);
-    memcpy(surfaces, frame.surfaces, frame.surface_count * sizeof *surfaces);
-    frame.surfaces = surfaces;
-    if (ground) /* which the oracle wants among them */
-        surfaces[frame.surface_count++] = ground->surface;
-    if (tl_reference_scene_make(&frame, checked->settings, ground, &oracle->scene, &error)) {
+    if (tl_reference_scene_make(checked->frame, checked->settings, ground, &oracle->scene, &error)) {
         trace_pixels(oracle);
         compare_pixels(oracle, finding);
         tl_reference_scene_release(&oracle->scene);
@@ -258,12 +236,11 @@ static void consult(struct oracle *oracle, struct tl_finding *finding)
         tl_finding_add(finding, NAN);
         tl_finding_place(finding, "%s", error.message);
     }
-    free(surfaces);
 }
 
 void tl_measure_oracle(const struct tl_checked *checked, struct tl_finding *finding)
 {
-    if (!checked->is_sampled || !is_comparable(checked->settings))
+    if (!checked->is_sampled || checked->is_reduced || !is_comparable(checked->settings))
         return;
     const struct tl_image_params *image = &checked->settings->image;
     struct oracle *oracle = TL_NEW(struct oracle);
@@ -272,7 +249,7 @@ void tl_measure_oracle(const struct tl_checked *checked, struct tl_finding *find
                               .width = image->width,
                               .height = image->height,
                               .side = image->supersample};
-    finding->bound = oracle_bound(&checked->settings->light) + checked->planned_error;
+    finding->bound = oracle_bound(&checked->settings->light);
     choose_pixels(oracle);
     if (oracle->count > 0)
         consult(oracle, finding);

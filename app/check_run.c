@@ -4,6 +4,7 @@
 #include "app/cost.h"
 #include "app/motion.h"
 #include "app/pace.h"
+#include "config/hash.h"
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
@@ -199,7 +200,7 @@ static bool check_frame(struct run *run, int number, tl_error *error)
                                  .predicted_ms = run->choice.predicted_ms,
                                  .budget_ms = run->params->budget_ms,
                                  .least_ms = run->choice.least_ms,
-                                 .planned_error = run->choice.error};
+                                 .is_reduced = run->choice.error > 0};
     if (tl_session_cloth(run->stage->session)) {
         /* Other steps of the solver are another stiffness, too. */
         cloth = tl_watch_look(&run->watch, &frame, is_swung(run, number), run->pace);
@@ -293,10 +294,7 @@ static bool play_again(struct run *run, int count, tl_error *error)
 
 static uint64_t hash_of(const struct run *run)
 {
-    uint64_t hash = 14695981039346656037u;
-    for (int i = 0; i < run->played; i++)
-        hash = (hash ^ run->hashes[i]) * 1099511628211u;
-    return hash;
+    return tl_hash(TL_HASH_START, run->hashes, (size_t)run->played * sizeof run->hashes[0]);
 }
 
 static void release(struct run *run)

@@ -1,6 +1,7 @@
 /* Geometry against its definitions. Vertices that share place, normal and UV are one, as MikkTSpace has it.
  */
 #include "app/check_measures.h"
+#include "config/hash.h"
 #include "config/memory.h"
 
 #include <math.h>
@@ -136,16 +137,6 @@ static struct key key_of(const tl_surface *surface, size_t vertex, bool with_uv)
     return key;
 }
 
-static uint64_t hash_of(const struct key *key)
-{
-    uint64_t hash = 14695981039346656037u;
-    for (size_t i = 0; i < TL_COUNT(key->bits); i++) {
-        hash = (hash ^ key->bits[i]) * 1099511628211u;
-        hash ^= hash >> 29;
-    }
-    return hash;
-}
-
 /* group[v]: the first vertex that is one with v. New array. */
 static uint32_t *join_vertices(const tl_surface *surface, bool with_uv)
 {
@@ -156,7 +147,7 @@ static uint32_t *join_vertices(const tl_surface *surface, bool with_uv)
     uint32_t *group = TL_NEW_ARRAY(uint32_t, surface->vertex_count);
     for (size_t v = 0; v < surface->vertex_count; v++) {
         struct key key = key_of(surface, v, with_uv);
-        size_t slot = hash_of(&key) & (slots - 1);
+        size_t slot = tl_hash(TL_HASH_START, key.bits, sizeof key.bits) & (slots - 1);
         for (; table[slot]; slot = (slot + 1) & (slots - 1)) {
             struct key other = key_of(surface, table[slot] - 1, with_uv);
             if (memcmp(&other, &key, sizeof key) == 0)

@@ -39,12 +39,6 @@ static void print_table(const struct tl_check_outcome *outcome)
            tl_verdicts_failed(&outcome->verdicts), outcome->hash);
 }
 
-/* JSON knows neither NaN nor infinity. */
-static void add_number(cJSON *object, const char *name, double value)
-{
-    cJSON_AddItemToObject(object, name, isfinite(value) ? cJSON_CreateNumber(value) : cJSON_CreateNull());
-}
-
 static void print_json(const struct tl_check_outcome *outcome, const char *keep)
 {
     cJSON *object = cJSON_CreateObject();
@@ -61,9 +55,9 @@ static void print_json(const struct tl_check_outcome *outcome, const char *keep)
         cJSON *row = cJSON_CreateObject();
         bool measured = verdict->finding.is_measured;
         cJSON_AddStringToObject(row, "name", tl_invariants[i].name);
-        add_number(row, "worst", measured ? verdict->finding.worst : NAN);
-        add_number(row, "bound", measured ? verdict->finding.bound : tl_invariants[i].bound);
-        add_number(row, "frame", measured ? (double)verdict->frame : (double)NAN);
+        tl_json_add_number(row, "worst", measured ? verdict->finding.worst : NAN);
+        tl_json_add_number(row, "bound", measured ? verdict->finding.bound : tl_invariants[i].bound);
+        tl_json_add_number(row, "frame", measured ? (double)verdict->frame : (double)NAN);
         cJSON_AddBoolToObject(row, "ok", !measured || verdict->ok);
         cJSON_AddBoolToObject(row, "measured", measured);
         cJSON_AddStringToObject(row, "place", measured ? verdict->finding.place : "");

@@ -1,11 +1,14 @@
 #include "app/commands.h"
 
 #include "app/settings.h"
+#include "config/memory.h"
+#include "config/words.h"
 
 #include <stdio.h>
 #include <string.h>
 
-const struct tl_command tl_commands[] = {
+/* In the order of `toile help`. */
+static const struct tl_command commands[] = {
     {"view", "view [SCENE] [OPTIONS]",
      "Opens the review window: orbit, play, pull on the cloth, change fabric and light.",
      TL_FLAGS_SCENE | TL_FLAGS_WINDOW | TL_FLAGS_BUDGET, tl_command_view},
@@ -29,7 +32,8 @@ const struct tl_command tl_commands[] = {
      "breaks.",
      TL_FLAGS_SCENE | TL_FLAGS_JSON | TL_FLAGS_CHECK | TL_FLAGS_BUDGET, tl_command_check},
     {"trade",
-     "trade [SCENE] -o FOLDER [--axis overall|light|resolution|detail|shading|cloth] [--quick] [OPTIONS]",
+     "trade [SCENE] -o FOLDER [--axis overall|light|resolution|detail|shading|levels|cloth] [--quick] "
+     "[OPTIONS]",
      "Measures error against time over many choices of settings: FOLDER/trade.csv and report.html.",
      TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_AXIS | TL_FLAGS_QUICK, tl_command_trade},
     {"stability", "stability [light|cloth|detail|shading] [--json] [--quick] [-o FOLDER] [OPTIONS]",
@@ -42,8 +46,8 @@ const struct tl_command tl_commands[] = {
      TL_FLAGS_OUTPUT | TL_FLAGS_QUICK, tl_command_gallery},
     {"sheet", "sheet [SCENE] -o OUT.png|FOLDER [OPTIONS]",
      "Draws a contact sheet: garments x fabrics or colourways down, environments x views across, as one "
-     "image or "
-     "as a folder with a page. Stopped, the same command goes on where it was.",
+     "image "
+     "or as a folder with a page. Stopped, the same command goes on where it was.",
      TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_FRAME | TL_FLAGS_SHEET, tl_command_sheet},
     {"compare", "compare TESTED REFERENCE [--json] [--ldr|--hdr]",
      "Tells how different two images are: relative RMSE, mean FLIP, largest difference.",
@@ -67,18 +71,32 @@ const struct tl_command tl_commands[] = {
     {"help", "help [COMMAND|options|reference]",
      "Lists the commands, explains one, or prints every option (reference: as a Markdown page).", 0,
      tl_command_help},
-    {0},
 };
+
+const struct tl_command *tl_command_find(const char *name, tl_error *error)
+{
+    const char *names[TL_COUNT(commands)];
+    for (size_t i = 0; i < TL_COUNT(commands); i++) {
+        if (strcmp(commands[i].name, name) == 0)
+            return &commands[i];
+        names[i] = commands[i].name;
+    }
+    const char *near = tl_nearest_word(name, names, TL_COUNT(commands));
+    if (near)
+        tl_fail(error, TL_USAGE, "%s: no such command: did you mean `toile %s`?", name, near);
+    else
+        tl_fail(error, TL_USAGE, "%s: no such command: `toile help` lists them", name);
+    return NULL;
+}
 
 static bool print_command_help(const char *name, tl_error *error)
 {
-    for (const struct tl_command *command = tl_commands; command->name; command++)
-        if (strcmp(command->name, name) == 0) {
-            printf("usage: toile %s\n\n%s\n\n", command->usage, command->help);
-            tl_arguments_print_flags(command->flags);
-            return true;
-        }
-    return tl_fail(error, TL_USAGE, "%s: no such command: `toile help` lists them", name);
+    const struct tl_command *command = tl_command_find(name, error);
+    if (!command)
+        return false;
+    printf("usage: toile %s\n\n%s\n\n", command->usage, command->help);
+    tl_arguments_print_flags(command->flags);
+    return true;
 }
 
 bool tl_command_help(const struct tl_arguments *arguments, tl_error *error)
@@ -101,8 +119,8 @@ bool tl_command_help(const struct tl_arguments *arguments, tl_error *error)
     printf("toile %s: garment review. usage: toile COMMAND [SCENE] [OPTIONS]\n\n"
            "SCENE is a YAML file, a .glb, .gltf or .obj model, or nothing: the built-in scene.\n\n",
            TOILE_VERSION);
-    for (const struct tl_command *command = tl_commands; command->name; command++)
-        printf("  %-9s %s\n", command->name, command->help);
+    for (size_t i = 0; i < TL_COUNT(commands); i++)
+        printf("  %-9s %s\n", commands[i].name, commands[i].help);
     printf("\n`toile COMMAND --help` tells more, `toile help options` lists every option.\n");
     return true;
 }

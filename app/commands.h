@@ -13,8 +13,8 @@ struct tl_command {
     bool (*run)(const struct tl_arguments *arguments, tl_error *error);
 };
 
-/* In the order of `toile --help`; ends with a NULL name. */
-extern const struct tl_command tl_commands[];
+/* NULL when there is none of this name. */
+const struct tl_command *tl_command_find(const char *name, tl_error *error);
 
 bool tl_command_view(const struct tl_arguments *arguments, tl_error *error);
 bool tl_command_render(const struct tl_arguments *arguments, tl_error *error);

@@ -1,13 +1,15 @@
 #include "app/contact_plan.h"
 
+#include "app/contact_names.h"
 #include "app/contact_store.h"
 #include "app/stage.h"
 #include "assets/model.h"
 #include "config/embedded.h"
 #include "config/file.h"
+#include "config/hash.h"
 #include "config/memory.h"
+#include "config/words.h"
 
-#include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,105 +17,7 @@
 #define CELL_HEIGHT "image.height=320"
 #define ALL         "all"
 
-/* ---- Lists of the command line ---- */
-
-struct list {
-    char **items;
-    size_t count;
-};
-
-static void add_item(struct list *list, char *item)
-{
-    list->items = tl_resize(list->items, list->count + 1, sizeof(char *));
-    list->items[list->count++] = item;
-}
-
-static void release_list(struct list *list)
-{
-    for (size_t i = 0; i < list->count; i++)
-        free(list->items[i]);
-    free((void *)list->items);
-    *list = (struct list){0};
-}
-
-/* "a,b": each once. An option that was not given is a list of `otherwise` alone. */
-static bool read_list(const char *flag, const char *text, const char *otherwise, struct list *out,
-                      tl_error *error)
-{
-    *out = (struct list){0};
-    if (!text) {
-        add_item(out, tl_copy_string(otherwise));
-        return true;
-    }
-    for (const char *from = text; from; from = strchr(from, ',') ? strchr(from, ',') + 1 : NULL) {
-        char *item = tl_format("%.*s", (int)strcspn(from, ","), from);
-        bool again = false;
-        for (size_t i = 0; i < out->count; i++)
-            again = again || strcmp(out->items[i], item) == 0;
-        add_item(out, item);
-        if (item[0] != '\0' && !again)
-            continue;
-        tl_fail(error, TL_USAGE,
-                again ? "%s: \"%s\" is named twice: remove one"
-                      : "%s: \"%s\": expected names with commas between them",
-                flag, again ? item : text);
-        release_list(out);
-        return false;
-    }
-    return true;
-}
-
 /* ---- Names ---- */
-
-static char *plain(const char *text, size_t length)
-{
-    char *slug = tl_format("%.*s", (int)length, text);
-    for (char *letter = slug; *letter; letter++) {
-        unsigned char byte = (unsigned char)*letter;
-        *letter = isalnum(byte) && byte < 0x80 ? (char)tolower(byte) : byte == '.' ? '.' : '-';
-    }
-    return slug;
-}
-
-char *tl_contact_slug(const char *text)
-{
-    const char *slash = strrchr(text, '/'), *last = slash ? slash + 1 : text;
-    static const char *const extensions[] = {"glb", "gltf", "obj", "exr", "hdr", "yaml", "yml"};
-    size_t length = strlen(last);
-    for (size_t i = 0; i < TL_COUNT(extensions); i++)
-        if (tl_path_has_extension(last, extensions[i]))
-            length = (size_t)(strrchr(last, '.') - last);
-    return plain(last, length);
-}
-
-/* How a garment, a fabric or an environment is called on the sheet: a file without its folders. */
-static char *label_of(const char *name)
-{
-    const char *slash = strrchr(name, '/');
-    return tl_copy_string(slash ? slash + 1 : name);
-}
-
-static bool is_taken(char **const *slugs, size_t count, const char *slug)
-{
-    for (size_t i = 0; i < count; i++)
-        if (strcmp(*slugs[i], slug) == 0)
-            return true;
-    return false;
-}
-
-/* Two files of one name in different folders must not share a cell. */
-static void make_differ(char **const *slugs, size_t count)
-{
-    for (size_t i = 1; i < count; i++) {
-        char *slug = tl_copy_string(*slugs[i]);
-        for (int number = 2; is_taken(slugs, i, slug); number++) {
-            free(slug);
-            slug = tl_format("%s-%d", *slugs[i], number);
-        }
-        free(*slugs[i]);
-        *slugs[i] = slug;
-    }
-}
 
 static void make_slugs_differ(struct tl_contact_plan *plan)
 {
@@ -123,8 +27,8 @@ static void make_slugs_differ(struct tl_contact_plan *plan)
         rows[i] = &plan->rows[i].slug;
     for (size_t i = 0; i < plan->column_count; i++)
         columns[i] = &plan->columns[i].slug;
-    make_differ(rows, plan->row_count);
-    make_differ(columns, plan->column_count);
+    tl_contact_make_differ(rows, plan->row_count);
+    tl_contact_make_differ(columns, plan->column_count);
     free((void *)rows);
     free((void *)columns);
 }
@@ -272,7 +176,7 @@ static bool load_row(const struct tl_arguments *arguments, const struct choice *
 
 static char *row_name(const struct choice *choice)
 {
-    char *fabric = label_of(strcmp(choice->fabric, "none") == 0 ? "its own" : choice->fabric);
+    char *fabric = tl_contact_label_of(strcmp(choice->fabric, "none") == 0 ? "its own" : choice->fabric);
     char *name =
         tl_format("%s%s%s", fabric, fabric[0] && choice->colourway[0] ? ", " : "", choice->colourway);
     free(fabric);
@@ -295,7 +199,7 @@ static bool add_row(const struct tl_arguments *arguments, const struct choice *c
     struct tl_contact_row row = {0};
     if (!load_row(arguments, choice, &row.settings, error))
         return false;
-    row.garment = label_of(row.settings.scene.garment);
+    row.garment = tl_contact_label_of(row.settings.scene.garment);
     row.name = row_name(choice);
     row.slug = row_slug(&row.settings);
     plan->rows = tl_resize(plan->rows, plan->row_count + 1, sizeof *plan->rows);
@@ -303,27 +207,27 @@ static bool add_row(const struct tl_arguments *arguments, const struct choice *c
     return true;
 }
 
-static void add_variants(const char *path, struct list *out)
+static void add_variants(const char *path, struct tl_names *out)
 {
     tl_model model;
     tl_error ignored;
     if (!tl_model_is_file(path) || !tl_model_load(path, &model, &ignored))
         return; /* its row will say why */
     for (size_t i = 0; i < model.variant_count; i++)
-        add_item(out, tl_copy_string(model.variants[i].name));
+        tl_names_add(out, tl_copy_string(model.variants[i].name));
     tl_model_release(&model);
 }
 
 /* Every colourway that a garment has, the scene's and its files' own. */
-static bool find_colourways(const struct tl_arguments *arguments, const char *garment, struct list *out,
+static bool find_colourways(const struct tl_arguments *arguments, const char *garment, struct tl_names *out,
                             tl_error *error)
 {
     struct tl_settings settings;
-    *out = (struct list){0};
+    *out = (struct tl_names){0};
     if (!load_row(arguments, &(const struct choice){garment, "", ""}, &settings, error))
         return false;
     for (size_t i = 0; i < settings.colourways.name_count; i++)
-        add_item(out, tl_copy_string(settings.colourways.names[i]));
+        tl_names_add(out, tl_copy_string(settings.colourways.names[i]));
     add_variants(settings.scene.garment, out);
     add_variants(settings.scene.avatar, out);
     return out->count > 0 ||
@@ -332,45 +236,46 @@ static bool find_colourways(const struct tl_arguments *arguments, const char *ga
                    settings.scene.garment);
 }
 
-static bool add_garment(const struct tl_arguments *arguments, const char *garment, const struct list *fabrics,
-                        const struct list *colourways, struct tl_contact_plan *plan, tl_error *error)
+static bool add_garment(const struct tl_arguments *arguments, const char *garment,
+                        const struct tl_names *fabrics, const struct tl_names *colourways,
+                        struct tl_contact_plan *plan, tl_error *error)
 {
-    struct list found = {0};
+    struct tl_names found = {0};
     bool all = colourways->count == 1 && strcmp(colourways->items[0], ALL) == 0;
     if (all && !find_colourways(arguments, garment, &found, error))
         return false;
-    const struct list *used = all ? &found : colourways;
+    const struct tl_names *used = all ? &found : colourways;
     bool added = true;
     for (size_t f = 0; added && f < fabrics->count; f++)
         for (size_t c = 0; added && c < used->count; c++)
             added = add_row(arguments, &(const struct choice){garment, fabrics->items[f], used->items[c]},
                             plan, error);
-    release_list(&found);
+    tl_names_release(&found);
     return added;
 }
 
-static bool read_fabrics(const char *text, struct list *out, tl_error *error)
+static bool read_fabrics(const char *text, struct tl_names *out, tl_error *error)
 {
     if (!text || strcmp(text, ALL) != 0)
-        return read_list("--fabrics", text, "", out, error);
-    *out = (struct list){0};
+        return tl_names_read("--fabrics", text, "", out, error);
+    *out = (struct tl_names){0};
     for (const char *const *name = tl_embedded_fabrics_names; *name; name++)
         if (strcmp(*name, "none") != 0)
-            add_item(out, tl_copy_string(*name));
+            tl_names_add(out, tl_copy_string(*name));
     return true;
 }
 
 static bool add_rows(const struct tl_arguments *arguments, struct tl_contact_plan *plan, tl_error *error)
 {
-    struct list garments = {0}, fabrics = {0}, colourways = {0};
-    bool added = read_list("--garments", arguments->sheet.garments, "", &garments, error) &&
+    struct tl_names garments = {0}, fabrics = {0}, colourways = {0};
+    bool added = tl_names_read("--garments", arguments->sheet.garments, "", &garments, error) &&
                  read_fabrics(arguments->sheet.fabrics, &fabrics, error) &&
-                 read_list("--colourways", arguments->sheet.colourways, "", &colourways, error);
+                 tl_names_read("--colourways", arguments->sheet.colourways, "", &colourways, error);
     for (size_t i = 0; added && i < garments.count; i++)
         added = add_garment(arguments, garments.items[i], &fabrics, &colourways, plan, error);
-    release_list(&garments);
-    release_list(&fabrics);
-    release_list(&colourways);
+    tl_names_release(&garments);
+    tl_names_release(&fabrics);
+    tl_names_release(&colourways);
     return added;
 }
 
@@ -400,12 +305,12 @@ static void add_column(struct tl_contact_plan *plan, const char *environment,
                        const struct tl_contact_view *view)
 {
     const char *name = environment[0] ? environment : plan->rows[0].settings.scene.environment;
-    char *parts[] = {tl_contact_slug(name), plain(view->name, strlen(view->name))};
+    char *parts[] = {tl_contact_slug(name), tl_contact_plain(view->name, strlen(view->name))};
     plan->columns = tl_resize(plan->columns, plan->column_count + 1, sizeof *plan->columns);
     plan->columns[plan->column_count++] =
         (struct tl_contact_column){.environment = tl_copy_string(name),
                                    .view = *view,
-                                   .group = label_of(name),
+                                   .group = tl_contact_label_of(name),
                                    .slug = tl_format("%s_%s", parts[0], parts[1])};
     free(parts[0]);
     free(parts[1]);
@@ -441,18 +346,18 @@ static bool add_view(struct tl_contact_plan *plan, const char *environment, cons
 
 static bool add_columns(const struct tl_arguments *arguments, struct tl_contact_plan *plan, tl_error *error)
 {
-    struct list environments = {0}, views = {0};
+    struct tl_names environments = {0}, views = {0};
     const char *seen = arguments->sheet.views ? arguments->sheet.views : "front,3/4,back";
-    bool added = read_list("--envs", arguments->sheet.environments, "", &environments, error) &&
-                 read_list("--views", seen, "", &views, error);
+    bool added = tl_names_read("--envs", arguments->sheet.environments, "", &environments, error) &&
+                 tl_names_read("--views", seen, "", &views, error);
     for (size_t e = 0; added && e < environments.count; e++) {
         const char *name = environments.items[e];
         added = !name[0] || check_environment(plan, name, error);
         for (size_t v = 0; added && v < views.count; v++)
             added = add_view(plan, name, views.items[v], error);
     }
-    release_list(&environments);
-    release_list(&views);
+    tl_names_release(&environments);
+    tl_names_release(&views);
     return added;
 }
 
@@ -510,13 +415,13 @@ static void label(const struct tl_arguments *arguments, struct tl_contact_plan *
     for (size_t i = 0; i < plan->column_count; i++)
         plan->column_labels[i] =
             (struct tl_contact_label){one_light ? "" : plan->columns[i].group, plan->columns[i].view.name};
-    char *scene = label_of(arguments->positional_count ? arguments->positionals[0] : "");
+    char *scene = tl_contact_label_of(arguments->positional_count ? arguments->positionals[0] : "");
     plan->title = tl_format("%s%s%s", scene, scene[0] && one_garment ? ": " : "",
                             one_garment ? plan->rows[0].garment
                             : scene[0]  ? ""
                                         : "built-in scene");
     free(scene);
-    char *preset = label_of(first->scene.preset);
+    char *preset = tl_contact_label_of(first->scene.preset);
     plan->note =
         tl_format("%s%s%s preset, frame %d%s", one_light ? plan->columns[0].group : "", one_light ? ", " : "",
                   preset, arguments->first_frame, plan->same_drape ? ", one drape for all fabrics" : "");

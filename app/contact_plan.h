@@ -63,8 +63,4 @@ bool tl_contact_cell_settings(const struct tl_contact_plan *plan, size_t row, si
 char *tl_contact_cell_name(const struct tl_contact_plan *plan, size_t row, size_t column);
 uint64_t tl_contact_cell_hash(const struct tl_contact_plan *plan, size_t row, size_t column);
 
-/* Lower case letters, digits, '-' and '.' of the last part of a path, without a model's or map's extension.
- * New string. */
-char *tl_contact_slug(const char *text);
-
 #endif

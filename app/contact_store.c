@@ -19,13 +19,6 @@ struct tl_contact_store {
     cJSON *cells;
 };
 
-uint64_t tl_hash(uint64_t hash, const void *bytes, size_t size)
-{
-    for (size_t i = 0; i < size; i++)
-        hash = (hash ^ ((const uint8_t *)bytes)[i]) * 1099511628211ull;
-    return hash;
-}
-
 static bool fail_manifest(const char *path, tl_error *error)
 {
     return tl_fail(error, TL_INPUT,

@@ -22,8 +22,4 @@ bool tl_contact_store_put(tl_contact_store *store, const char *name, uint64_t ha
 /* Removes the files that it knows of, and the folder if nothing else is in it. */
 void tl_contact_store_remove(tl_contact_store **store);
 
-/* FNV-1a, 64 bit [Fowler, Noll, Vo], going on from `hash`. */
-#define TL_HASH_START 14695981039346656037ull
-uint64_t tl_hash(uint64_t hash, const void *bytes, size_t size);
-
 #endif

@@ -80,19 +80,8 @@ static void fill_surface(struct tl_extreme_scene *scene)
     mesh->part_count = 1;
     mesh->parts = tl_resize(mesh->parts, 1, sizeof *mesh->parts);
     mesh->parts[0] = (struct tl_mesh_part){.index_count = (uint32_t)mesh->index_count, .uv_metres = 1};
-    scene->surface = (tl_surface){.name = "extreme",
-                                  .vertex_count = mesh->vertex_count,
-                                  .positions = mesh->positions,
-                                  .normals = mesh->normals,
-                                  .tangents = mesh->tangents,
-                                  .uvs = mesh->uvs,
-                                  .index_count = mesh->index_count,
-                                  .indices = mesh->indices,
-                                  .part_count = mesh->part_count,
-                                  .parts = mesh->parts,
-                                  .materials = &scene->material,
-                                  .topology_revision = revision,
-                                  .motion_revision = revision};
+    scene->surface = tl_surface_of_mesh("extreme", mesh, &scene->material);
+    scene->surface.topology_revision = scene->surface.motion_revision = revision;
 }
 
 static void make_ordinary(struct tl_extreme_scene *out)

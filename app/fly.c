@@ -1,6 +1,7 @@
 #include "app/fly.h"
 
 #include "app/measure.h"
+#include "config/hash.h"
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
@@ -41,13 +42,11 @@ static bool begin_motion(struct tl_stage *stage, const struct tl_flight *flight,
     return true;
 }
 
-static uint64_t hash_of(const tl_image *image) /* FNV-1a, 64 bits, never 0 */
+/* Never 0. */
+static uint64_t hash_of(const tl_image *image)
 {
-    const uint8_t *bytes = image->texels;
     size_t size = (size_t)image->width * (size_t)image->height * (size_t)image->channels * sizeof(float);
-    uint64_t hash = 0xcbf29ce484222325u;
-    for (size_t i = 0; i < size; i++)
-        hash = (hash ^ bytes[i]) * 0x100000001b3u;
+    uint64_t hash = tl_hash(TL_HASH_START, image->texels, size);
     return hash ? hash : 1;
 }
 

@@ -1,5 +1,6 @@
 #include "app/fly_account.h"
 
+#include "app/json.h"
 #include "config/file.h"
 #include "config/memory.h"
 
@@ -10,15 +11,6 @@
 #define LIMIT_SUMMARY_BYTES ((size_t)16 << 20)
 
 /* -- summary.json -- */
-
-/* JSON knows neither NaN nor infinities. */
-static void add_number(cJSON *object, const char *key, double value)
-{
-    if (isfinite(value))
-        cJSON_AddNumberToObject(object, key, value);
-    else
-        cJSON_AddNullToObject(object, key);
-}
 
 static void add_text(cJSON *object, const char *key, const char *text)
 {
@@ -53,9 +45,9 @@ static void add_jobs(cJSON *summary, const struct tl_flight *flight)
             continue;
         cJSON *object = cJSON_CreateObject();
         add_text(object, "name", flight->job_names[i]);
-        add_number(object, "ran", job.ran);
-        add_number(object, "median_ms", job.median_ms);
-        add_number(object, "total_ms", job.total_ms);
+        tl_json_add_number(object, "ran", job.ran);
+        tl_json_add_number(object, "median_ms", job.median_ms);
+        tl_json_add_number(object, "total_ms", job.total_ms);
         cJSON_AddItemToArray(jobs, object);
     }
 }
@@ -70,20 +62,20 @@ static void add_worst(cJSON *summary, const struct tl_flight *flight)
 static void add_oracle(cJSON *summary, const struct tl_flight_figures *figures)
 {
     cJSON *oracle = cJSON_AddObjectToObject(summary, "oracle");
-    add_number(oracle, "frames", figures->oracle_frames);
-    add_number(oracle, "flip_mean", figures->flip_mean);
-    add_number(oracle, "flip_worst", figures->flip_worst);
-    add_number(oracle, "rel_rmse", figures->rel_rmse);
+    tl_json_add_number(oracle, "frames", figures->oracle_frames);
+    tl_json_add_number(oracle, "flip_mean", figures->flip_mean);
+    tl_json_add_number(oracle, "flip_worst", figures->flip_worst);
+    tl_json_add_number(oracle, "rel_rmse", figures->rel_rmse);
 }
 
 static void add_replay(cJSON *summary, const struct tl_flight_account *account)
 {
     cJSON *replay = cJSON_AddObjectToObject(summary, "replay");
     add_text(replay, "of", account->replay);
-    add_number(replay, "compared", account->compared);
-    add_number(replay, "different", account->different);
-    add_number(replay, "first_different",
-               account->first_different < 0 ? (double)NAN : account->first_different);
+    tl_json_add_number(replay, "compared", account->compared);
+    tl_json_add_number(replay, "different", account->different);
+    tl_json_add_number(replay, "first_different",
+                       account->first_different < 0 ? (double)NAN : account->first_different);
 }
 
 static const char *const verdicts[] = {"alike", "faster", "slower"};
@@ -98,11 +90,11 @@ static void add_against(cJSON *summary, const struct tl_flight_account *account)
         const struct tl_flight_ratio *ratio = &account->ratios[i];
         cJSON *row = cJSON_CreateObject();
         add_text(row, "name", ratio->name);
-        add_number(row, "this_ms", ratio->this_ms);
-        add_number(row, "that_ms", ratio->that_ms);
-        add_number(row, "ratio", ratio->ratio);
-        add_number(row, "low", ratio->low);
-        add_number(row, "high", ratio->high);
+        tl_json_add_number(row, "this_ms", ratio->this_ms);
+        tl_json_add_number(row, "that_ms", ratio->that_ms);
+        tl_json_add_number(row, "ratio", ratio->ratio);
+        tl_json_add_number(row, "low", ratio->low);
+        tl_json_add_number(row, "high", ratio->high);
         add_text(row, "verdict", verdicts[ratio->verdict]);
         cJSON_AddItemToArray(rows, row);
         if (ratio->verdict == TL_FLIGHT_SLOWER)
@@ -115,23 +107,24 @@ cJSON *tl_flight_summary(const struct tl_flight_account *account)
     const struct tl_flight *flight = account->flight;
     const struct tl_flight_figures *figures = &account->figures;
     cJSON *summary = cJSON_CreateObject();
-    add_number(summary, "frames", flight->count);
-    add_number(summary, "frames_planned", flight->planned);
-    add_number(summary, "warm_up_frames", flight->warm_up);
-    add_number(summary, "frame_rate", flight->frame_rate);
+    tl_json_add_number(summary, "frames", flight->count);
+    tl_json_add_number(summary, "frames_planned", flight->planned);
+    tl_json_add_number(summary, "warm_up_frames", flight->warm_up);
+    tl_json_add_number(summary, "frame_rate", flight->frame_rate);
     add_text(summary, "stopped", account->stopped);
-    add_number(summary, "budget_ms", flight->budget_ms > 0 ? flight->budget_ms : (double)NAN);
-    add_number(summary, "p50_ms", figures->p50_ms);
-    add_number(summary, "p95_ms", figures->p95_ms);
-    add_number(summary, "p99_ms", figures->p99_ms);
-    add_number(summary, "mean_ms", figures->mean_ms);
-    add_number(summary, "worst_ms", figures->worst_ms);
-    add_number(summary, "cloth_median_ms", figures->cloth_ms);
-    add_number(summary, "within_1_1x", figures->within);
-    add_number(summary, "over_budget_frames", flight->budget_ms > 0 ? figures->over_budget : (double)NAN);
-    add_number(summary, "prediction_error_median", figures->prediction_error);
-    add_number(summary, "error_estimate_mean", figures->estimated_error);
-    add_number(summary, "memory_bytes", (double)figures->memory_bytes);
+    tl_json_add_number(summary, "budget_ms", flight->budget_ms > 0 ? flight->budget_ms : (double)NAN);
+    tl_json_add_number(summary, "p50_ms", figures->p50_ms);
+    tl_json_add_number(summary, "p95_ms", figures->p95_ms);
+    tl_json_add_number(summary, "p99_ms", figures->p99_ms);
+    tl_json_add_number(summary, "mean_ms", figures->mean_ms);
+    tl_json_add_number(summary, "worst_ms", figures->worst_ms);
+    tl_json_add_number(summary, "cloth_median_ms", figures->cloth_ms);
+    tl_json_add_number(summary, "within_1_1x", figures->within);
+    tl_json_add_number(summary, "over_budget_frames",
+                       flight->budget_ms > 0 ? figures->over_budget : (double)NAN);
+    tl_json_add_number(summary, "prediction_error_median", figures->prediction_error);
+    tl_json_add_number(summary, "error_estimate_mean", figures->estimated_error);
+    tl_json_add_number(summary, "memory_bytes", (double)figures->memory_bytes);
     add_jobs(summary, flight);
     add_worst(summary, flight);
     if (figures->oracle_frames)
@@ -141,7 +134,7 @@ cJSON *tl_flight_summary(const struct tl_flight_account *account)
     if (account->against)
         add_against(summary, account);
     cJSON *machine = cJSON_AddObjectToObject(summary, "machine");
-    add_number(machine, "cores", account->cores);
+    tl_json_add_number(machine, "cores", account->cores);
     add_text(machine, "gl", account->gl);
     add_text(summary, "scene", account->scene);
     add_text(summary, "path", account->path);

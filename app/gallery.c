@@ -6,6 +6,7 @@
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
+#include "config/words.h"
 #include "render/metrics/compare.h"
 
 #include <math.h>

@@ -1,5 +1,6 @@
 #include "app/json.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -9,4 +10,9 @@ void tl_json_print(cJSON *object)
     puts(text);
     free(text);
     cJSON_Delete(object);
+}
+
+void tl_json_add_number(cJSON *object, const char *key, double value)
+{
+    cJSON_AddItemToObject(object, key, isfinite(value) ? cJSON_CreateNumber(value) : cJSON_CreateNull());
 }

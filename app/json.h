@@ -7,4 +7,7 @@
 /* Prints and deletes. */
 void tl_json_print(cJSON *object);
 
+/* A number, or null: JSON knows neither NaN nor infinities. */
+void tl_json_add_number(cJSON *object, const char *key, double value);
+
 #endif

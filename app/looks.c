@@ -3,6 +3,7 @@
 #include "app/height_picture.h"
 #include "assets/garment.h"
 #include "config/memory.h"
+#include "config/words.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -215,23 +216,11 @@ static void gather_names(const struct tl_settings *settings, const tl_model *gar
             add_name(looks, models[m]->variants[i].name);
 }
 
-/* "a, b, c": new string. */
-static char *join(const char *const *words, size_t count)
-{
-    char *list = tl_copy_string("");
-    for (size_t i = 0; i < count; i++) {
-        char *longer = tl_format("%s%s%s", list, i ? ", " : "", words[i]);
-        free(list);
-        list = longer;
-    }
-    return list;
-}
-
 static bool fail_name(const char *what, const char *name, const char *const *names, size_t count,
                       tl_error *error)
 {
     const char *near = tl_nearest_word(name, names, count);
-    char *list = join(names, count);
+    char *list = tl_join_words(names, count, ", ", ", ");
     if (near)
         tl_fail(error, TL_USAGE, "%s: did you mean %s?", what, near);
     else if (count)

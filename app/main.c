@@ -3,7 +3,6 @@
 #include "app/commands.h"
 #include "config/interrupt.h"
 #include "config/log.h"
-#include "config/options.h"
 
 #include <locale.h>
 #include <malloc.h>
@@ -11,25 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-#define COMMANDS_MAX 32
-
-static const struct tl_command *find_command(const char *name, tl_error *error)
-{
-    const char *names[COMMANDS_MAX];
-    size_t count = 0;
-    for (const struct tl_command *command = tl_commands; command->name; command++) {
-        if (strcmp(command->name, name) == 0)
-            return command;
-        names[count++] = command->name;
-    }
-    const char *near = tl_nearest_word(name, names, count);
-    if (near)
-        tl_fail(error, TL_USAGE, "%s: no such command: did you mean `toile %s`?", name, near);
-    else
-        tl_fail(error, TL_USAGE, "%s: no such command: `toile help` lists them", name);
-    return NULL;
-}
 
 static bool run(int argc, char **argv, tl_error *error)
 {
@@ -40,7 +20,7 @@ static bool run(int argc, char **argv, tl_error *error)
         printf("toile %s\n", TOILE_VERSION);
         return true;
     }
-    const struct tl_command *command = find_command(name, error);
+    const struct tl_command *command = tl_command_find(name, error);
     if (!command)
         return false;
     struct tl_arguments arguments;

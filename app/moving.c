@@ -44,19 +44,11 @@ void tl_moving_update(struct tl_moving *moving)
 tl_surface tl_moving_surface(const struct tl_moving *moving, const char *name,
                              const struct tl_dressing *dressing)
 {
-    const tl_mesh *mesh = &moving->model->mesh;
-    return (tl_surface){
-        .name = name,
-        .vertex_count = mesh->vertex_count,
-        .positions = moving->positions,
-        .normals = moving->normals,
-        .tangents = moving->tangents,
-        .uvs = mesh->uvs,
-        .index_count = mesh->index_count,
-        .indices = mesh->indices,
-        .part_count = mesh->part_count,
-        .parts = dressing->parts,
-        .materials = dressing->materials,
-        .motion_revision = moving->motion_revision,
-    };
+    tl_surface surface = tl_surface_of_mesh(name, &moving->model->mesh, dressing->materials);
+    surface.positions = moving->positions;
+    surface.normals = moving->normals;
+    surface.tangents = moving->tangents;
+    surface.parts = dressing->parts;
+    surface.motion_revision = moving->motion_revision;
+    return surface;
 }

@@ -26,28 +26,6 @@ const char *default_of(const tl_binding &binding, const tl_option &row)
     return static_cast<const char *>(binding.table->defaults) + row.offset;
 }
 
-size_t size_of(const tl_option &row)
-{
-    switch (row.type) {
-    case TL_BOOL:
-        return sizeof(bool);
-    case TL_INT:
-    case TL_ENUM:
-        return sizeof(int);
-    case TL_FLOAT:
-        return sizeof(float);
-    case TL_DOUBLE:
-        return sizeof(double);
-    case TL_COLOUR:
-    case TL_VECTOR:
-        return 3 * sizeof(float);
-    case TL_STRING:
-    case TL_PATH:
-        break;
-    }
-    return TL_STRING_SIZE;
-}
-
 bool is_text(const tl_option &row)
 {
     return row.type == TL_STRING || row.type == TL_PATH;
@@ -260,8 +238,7 @@ void explain(const tl_binding &binding, const tl_option &row)
 
 bool tl_panel_row_changed(const struct tl_binding *binding, const struct tl_option *row)
 {
-    const char *value = field_of(*binding, *row), *usual = default_of(*binding, *row);
-    return is_text(*row) ? strcmp(value, usual) != 0 : memcmp(value, usual, size_of(*row)) != 0;
+    return !tl_option_equal(row, field_of(*binding, *row), default_of(*binding, *row));
 }
 
 bool tl_panel_rows_begin(const char *id)
@@ -300,7 +277,7 @@ bool tl_panel_row(const struct tl_binding *binding, const struct tl_option *row)
         explain(*binding, *row);
     ImGui::TableNextColumn();
     if (is_changed && ImGui::ArrowButton("##reset", ImGuiDir_Left)) {
-        memcpy(field_of(*binding, *row), default_of(*binding, *row), size_of(*row));
+        tl_options_copy(row, binding->table->defaults, binding->params);
         edited = true;
     }
     if (is_changed && ImGui::IsItemHovered())

@@ -423,11 +423,6 @@ void tl_plot_print_as(FILE *out, const struct tl_plot *plot, const struct tl_plo
     free(canvas.taken);
 }
 
-void tl_plot_print(FILE *out, const struct tl_plot *plot)
-{
-    tl_plot_print_as(out, plot, &(const struct tl_plot_manner){0});
-}
-
 struct ranked {
     size_t index;
     double x, y;

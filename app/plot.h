@@ -62,7 +62,6 @@ struct tl_plot_manner {
 /* The text with &, <, > and quotes as HTML and SVG want them. */
 void tl_html_print(FILE *out, const char *text);
 
-void tl_plot_print(FILE *out, const struct tl_plot *plot);
 void tl_plot_print_as(FILE *out, const struct tl_plot *plot, const struct tl_plot_manner *manner);
 
 /* The best of `points` where less x and less y are both better: indices in order of rising x. Returns their

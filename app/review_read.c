@@ -21,7 +21,7 @@ static double percent(float share)
 
 static void describe(const struct tl_inspection *found, char *text, size_t size)
 {
-    const double deg = 180 / 3.14159265358979323846, mm = 1000;
+    const double deg = 180 / M_PI, mm = 1000;
     char strain[128] = "", seen[96] = "", place[96];
     if (found->has_strain)
         snprintf(strain, sizeof strain, "\nstrain: warp %+.1f %%, weft %+.1f %%, shear %+.1f\u00b0",

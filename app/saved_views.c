@@ -3,10 +3,11 @@
 #include "app/orbit.h"
 #include "app/state.h"
 #include "config/file.h"
+#include "config/hash.h"
 #include "config/memory.h"
-#include "config/options_value.h"
 
 #include <ctype.h>
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -40,14 +41,6 @@ static void bind(struct view_tables *tables, const struct tl_option_table *table
     tables->bindings[i] = (struct tl_binding){&tables->tables[i], params};
 }
 
-static const struct tl_option_table *camera_table(void)
-{
-    struct tl_settings settings;
-    struct tl_binding all[TL_SETTINGS_TABLES];
-    tl_settings_bind(&settings, all);
-    return tl_options_find_table(all, TL_SETTINGS_TABLES, "camera", strlen("camera"))->table;
-}
-
 /* Tables of every view, or of the saved ones only. */
 static void bind_views(struct view_tables *tables, struct tl_saved_views *views, bool saved_only)
 {
@@ -57,7 +50,7 @@ static void bind_views(struct view_tables *tables, struct tl_saved_views *views,
         if (saved_only && !view->saved)
             continue;
         bind(tables, &view_table, i + 1, view);
-        bind(tables, camera_table(), i + 1, &view->camera);
+        bind(tables, &tl_camera_options, i + 1, &view->camera);
         bind(tables, &tl_lamp_options, i + 1, &view->lamp);
         bind(tables, &tl_fill_options, i + 1, &view->fill);
     }
@@ -147,12 +140,10 @@ char *tl_saved_views_name(const struct tl_scene_params *scene)
     shorten(scene->garment, garment, sizeof garment);
     shorten(scene->avatar, avatar, sizeof avatar);
     char *names[] = {full_name(scene->garment), full_name(scene->avatar)};
-    unsigned long long hash = 14695981039346656037u; /* FNV-1a, 64 bits */
+    uint64_t hash = TL_HASH_START;
     for (size_t i = 0; i < TL_COUNT(names); i++) {
-        for (const char *c = names[i]; *c; c++)
-            hash = (hash ^ (unsigned char)*c) * 1099511628211u;
-        hash = (hash ^ '\n') * 1099511628211u;
+        hash = tl_hash(tl_hash(hash, names[i], strlen(names[i])), "\n", 1);
         free(names[i]);
     }
-    return tl_format("%s-%s-%016llx.yaml", garment, avatar, hash);
+    return tl_format("%s-%s-%016" PRIx64 ".yaml", garment, avatar, hash);
 }

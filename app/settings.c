@@ -6,6 +6,7 @@
 #include "config/file.h"
 #include "config/log.h"
 #include "config/memory.h"
+#include "config/words.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -84,7 +85,7 @@ static const struct tl_option camera_rows[] = {
     TL_OPTION_FLOAT(struct tl_camera_params, fov_deg, 1, 150, "degrees",
                     "vertical field of view; larger looks wider"),
 };
-static const struct tl_option_table camera_table = TL_OPTION_TABLE(
+const struct tl_option_table tl_camera_options = TL_OPTION_TABLE(
     "camera", "an orbit about a target", camera_rows, struct tl_camera_params, TL_CAMERA_DEFAULTS);
 
 /* The reference page's order. A preset sets CLOTH, LIGHT and IMAGE; a fabric FABRIC, WEAVE and MATERIAL. */
@@ -109,7 +110,7 @@ enum {
 void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[TL_SETTINGS_TABLES])
 {
     bindings[SCENE] = (struct tl_binding){&scene_table, &settings->scene};
-    bindings[CAMERA] = (struct tl_binding){&camera_table, &settings->camera};
+    bindings[CAMERA] = (struct tl_binding){&tl_camera_options, &settings->camera};
     bindings[CLOTH] = (struct tl_binding){&tl_cloth_options, &settings->cloth};
     bindings[FABRIC] = (struct tl_binding){&tl_cloth_fabric_options, &settings->fabric};
     bindings[WEAVE] = (struct tl_binding){&tl_weave_options, &settings->weave};
@@ -159,15 +160,10 @@ static const struct layer scene_layer = {"scene", tl_embedded_scenes, tl_embedde
 
 static bool fail_name(const struct layer *layer, const char *name, tl_error *error)
 {
-    size_t count = 0;
-    char *list = tl_copy_string("");
-    for (; layer->names[count]; count++) {
-        char *longer = tl_format("%s%s, ", list, layer->names[count]);
-        free(list);
-        list = longer;
-    }
+    size_t count = tl_count_words(layer->names);
+    char *list = tl_join_words(layer->names, count, ", ", ", ");
     const char *near = tl_nearest_word(name, layer->names, count);
-    tl_fail(error, TL_USAGE, "%s: no such %s: expected %sor a YAML file%s%s%s", name, layer->kind, list,
+    tl_fail(error, TL_USAGE, "%s: no such %s: expected %s or a YAML file%s%s%s", name, layer->kind, list,
             near ? ": did you mean " : "", near ? near : "", near ? "?" : "");
     free(list);
     return false;
@@ -316,21 +312,36 @@ static void choose_role(struct tl_scene_params *scene)
     }
 }
 
-/* What was asked for and will not be done is said. */
-static bool is_plain(const struct tl_material_params *look)
+/* Of what a material is beyond two lobes: what environment maps do not show, and what they do. */
+static bool is_more_than_maps_show(const struct tl_material_params *look)
 {
-    return look->model == TL_REFLECT_PHONG && !(look->coat > 0) && !(look->openness > 0) &&
-           !(look->transmission[0] > 0 || look->transmission[1] > 0 || look->transmission[2] > 0);
+    return look->model != TL_REFLECT_PHONG || look->openness > 0;
 }
 
+static bool is_layered(const struct tl_material_params *look)
+{
+    return look->coat > 0 || look->transmission[0] > 0 || look->transmission[1] > 0 ||
+           look->transmission[2] > 0;
+}
+
+/* What was asked for and will not be done is said. */
 static void tell_what_is_unused(const struct tl_settings *settings)
 {
     const struct tl_light_params *light = &settings->light;
-    bool plain = is_plain(&settings->material) && is_plain(&settings->overlay);
-    if (!plain && light->method != TL_METHOD_REFERENCE && light->visibility != TL_VISIBILITY_RAYS)
-        tl_warn("material: model, coat, transmission and openness are shown by light.visibility rays and by "
-                "light.method "
-                "reference only: the environment's light sees two plain lobes");
+    bool by_maps = light->method == TL_METHOD_MAPS;
+    bool layers = is_layered(&settings->material) || is_layered(&settings->overlay);
+    bool others = is_more_than_maps_show(&settings->material) || is_more_than_maps_show(&settings->overlay);
+    bool shows_all =
+        light->method == TL_METHOD_REFERENCE || (!by_maps && light->visibility == TL_VISIBILITY_RAYS);
+    if (by_maps && others)
+        tl_warn("material: model and openness are shown by light.visibility rays and by light.method "
+                "reference only: "
+                "environment maps show two lobes, a coat and light that comes through");
+    else if (!by_maps && !shows_all && (layers || others))
+        tl_warn(
+            "material: model, coat, transmission and openness are shown by light.visibility rays and by "
+            "light.method reference only: shadow maps know two plain lobes; light.method maps shows coat and "
+            "transmission, without shadows");
     if (light->method == TL_METHOD_PEM && light->visibility == TL_VISIBILITY_RAYS &&
         light->composition != TL_COMPOSE_RATIO)
         tl_warn(

@@ -35,6 +35,7 @@ struct tl_camera_params { /* table "camera": an orbit about a target */
     float target[3];      /* metres; used when distance_m > 0 */
     float fov_deg;        /* vertical */
 };
+extern const struct tl_option_table tl_camera_options;
 
 struct tl_settings {
     struct tl_scene_params scene;

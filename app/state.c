@@ -3,7 +3,6 @@
 #include "config/file.h"
 #include "config/memory.h"
 
-#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -79,29 +78,12 @@ bool tl_state_load(const char *file, const struct tl_settings *defaults, struct 
     return true;
 }
 
-/* Wherever toile is started next, the same files are meant. */
-static void make_paths_absolute(const struct tl_binding *binding)
-{
-    for (size_t i = 0; i < binding->table->row_count; i++) {
-        const struct tl_option *row = &binding->table->rows[i];
-        char *field = (char *)binding->params + row->offset;
-        if (row->type != TL_PATH || !tl_option_is_file_name(field) || field[0] == '/')
-            continue;
-        char *folder = realpath(".", NULL), *path = folder ? tl_format("%s/%s", folder, field) : NULL;
-        if (path && strlen(path) < TL_STRING_SIZE)
-            strcpy(field, path);
-        free(path);
-        free(folder);
-    }
-}
-
 bool tl_state_save(const char *file, const struct tl_state *state, tl_error *error)
 {
     struct tl_state copy = *state; /* bindings can be written through */
     struct tl_binding bindings[TABLES];
     size_t count = bind(&copy, bindings);
-    for (size_t i = 0; i < count; i++)
-        make_paths_absolute(&bindings[i]);
+    tl_options_make_paths_absolute(bindings, count);
     return tl_state_write(file, bindings, count, error);
 }
 

@@ -1,15 +1,16 @@
 #include "app/topic.h"
 
-#include <stdio.h>
+#include "config/words.h"
+
+#include <stdlib.h>
 #include <string.h>
 
 static bool fail_topic(const char *command, const char *const *topics, tl_error *error)
 {
-    char list[100] = "";
-    size_t used = 0;
-    for (int i = 0; topics[i]; i++)
-        used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", i ? "|" : "", topics[i]);
-    return tl_fail(error, TL_USAGE, "%s: expected a topic: toile %s %s", command, command, list);
+    char *list = tl_join_words(topics, tl_count_words(topics), "|", "|");
+    tl_fail(error, TL_USAGE, "%s: expected a topic: toile %s %s", command, command, list);
+    free(list);
+    return false;
 }
 
 bool tl_topic_take(const char *command, const struct tl_arguments *arguments, const char *const *topics,

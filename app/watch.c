@@ -1,5 +1,7 @@
 #include "app/watch.h"
 
+#include "config/hash.h"
+
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -11,9 +13,7 @@ static uint64_t stamp_of(const char *path)
         return 0;
     const uint64_t parts[] = {(uint64_t)status.st_mtim.tv_sec, (uint64_t)status.st_mtim.tv_nsec,
                               (uint64_t)status.st_size, (uint64_t)status.st_ino};
-    uint64_t stamp = 14695981039346656037u; /* FNV-1a, word by word */
-    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++)
-        stamp = (stamp ^ parts[i]) * 1099511628211u;
+    uint64_t stamp = tl_hash(TL_HASH_START, parts, sizeof parts);
     return stamp ? stamp : 1;
 }
 

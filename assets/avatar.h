@@ -17,8 +17,4 @@ void tl_avatar_release(tl_avatar *avatar);
  * 0, facing +Z, closed and manifold, covered in canvas. */
 tl_avatar tl_avatar_form(void);
 
-/* Half-width (x) and half-depth (z) in metres of the form's horizontal section at height `y_m`, for cutting
- * garments around it; false above the neck and below the hips. */
-bool tl_form_section(float y_m, float *half_width_m, float *half_depth_m);
-
 #endif

@@ -167,18 +167,3 @@ double tl_form_girth(double y)
         length += hypot(x[i] - x[i - 1], z[i] - z[i - 1]);
     return 2 * length;
 }
-
-bool tl_form_section(float y_m, float *half_width_m, float *half_depth_m)
-{
-    double y = (double)y_m, width = 0, depth = 0;
-    if (!(y > TL_FORM_BOTTOM && y < TL_FORM_NECK_TOP))
-        return false;
-    for (int i = 0; i <= SECTION_SAMPLES; i++) {
-        double angle = M_PI * i / SECTION_SAMPLES, r = tl_form_radius(y, angle);
-        width = fmax(width, r * sin(angle));
-        depth = fmax(depth, r * fabs(cos(angle)));
-    }
-    *half_width_m = (float)width;
-    *half_depth_m = (float)depth;
-    return true;
-}

@@ -24,4 +24,7 @@ typedef struct tl_surface {
     uint64_t motion_revision;   /* changes when positions do */
 } tl_surface;
 
+/* A mesh as it stands: its own parts, no strains, revisions 0. */
+tl_surface tl_surface_of_mesh(const char *name, const tl_mesh *mesh, const tl_material *materials);
+
 #endif

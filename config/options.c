@@ -2,6 +2,7 @@
 
 #include "config/memory.h"
 #include "config/options_value.h"
+#include "config/words.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -29,18 +30,6 @@ const struct tl_option *tl_options_find_row(const struct tl_option_table *table,
     return NULL;
 }
 
-/* "a, b, c": new string. */
-static char *join(const char *const *words, size_t count)
-{
-    char *list = tl_copy_string("");
-    for (size_t i = 0; i < count; i++) {
-        char *longer = tl_format("%s%s%s", list, i ? ", " : "", words[i]);
-        free(list);
-        list = longer;
-    }
-    return list;
-}
-
 bool tl_options_fail_table(const struct tl_binding *bindings, size_t count, const char *name,
                            const char *where, tl_error *error)
 {
@@ -52,7 +41,7 @@ bool tl_options_fail_table(const struct tl_binding *bindings, size_t count, cons
         tl_fail(error, TL_USAGE, "%s: %s: no such table: did you mean %s?", where, tl_excerpt_of(name).text,
                 near);
     else {
-        char *list = join(names, count);
+        char *list = tl_join_words(names, count, ", ", ", ");
         tl_fail(error, TL_USAGE, "%s: %s: no such table: expected one of %s", where, tl_excerpt_of(name).text,
                 list);
         free(list);
@@ -85,7 +74,7 @@ static bool fail_row(const struct tl_binding *bindings, size_t count, const stru
         tl_fail(error, TL_USAGE, "%s: %s.%s: no such option: did you mean %s.%s?", where, table->name,
                 shown.text, near_table, near ? near : name);
     else {
-        char *list = join(names, table->row_count);
+        char *list = tl_join_words(names, table->row_count, ", ", ", ");
         tl_fail(error, TL_USAGE, "%s: %s.%s: no such option: %s has %s", where, table->name, shown.text,
                 table->name, list);
         free(list);
@@ -151,6 +140,26 @@ char *tl_options_get_text(const struct tl_binding *binding, const struct tl_opti
 void tl_options_copy(const struct tl_option *row, const void *from, void *to)
 {
     memcpy((char *)to + row->offset, (const char *)from + row->offset, tl_option_size(row));
+}
+
+static void make_absolute(char *path)
+{
+    char *folder = realpath(".", NULL), *whole = folder ? tl_format("%s/%s", folder, path) : NULL;
+    if (whole && strlen(whole) < TL_STRING_SIZE)
+        strcpy(path, whole);
+    free(whole);
+    free(folder);
+}
+
+void tl_options_make_paths_absolute(const struct tl_binding *bindings, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        for (size_t r = 0; r < bindings[i].table->row_count; r++) {
+            const struct tl_option *row = &bindings[i].table->rows[r];
+            char *field = (char *)bindings[i].params + row->offset;
+            if (row->type == TL_PATH && tl_option_is_file_name(field) && field[0] != '/')
+                make_absolute(field);
+        }
 }
 
 bool tl_options_equal(const struct tl_option_table *table, const void *a, const void *b)

@@ -172,11 +172,18 @@ bool tl_options_read_yaml_file_with(const struct tl_binding *bindings, size_t co
                                     const struct tl_record_section *section, const char *path,
                                     tl_error *error);
 
+/* True when two fields of the row's type hold the same value. */
+bool tl_option_equal(const struct tl_option *row, const void *a, const void *b);
+
 /* Copies one option from a params struct to another of the same table. */
 void tl_options_copy(const struct tl_option *row, const void *from, void *to);
 
 /* True when the text of a TL_PATH with choices is a file's name: it has a dot or a slash in it. */
 bool tl_option_is_file_name(const char *text);
+
+/* From wherever they are read next, every TL_PATH means the same file. One that would be too long stays as it
+ * is. */
+void tl_options_make_paths_absolute(const struct tl_binding *bindings, size_t count);
 
 /* The option's value as the text that tl_options_set takes back. New string. */
 char *tl_options_get_text(const struct tl_binding *binding, const struct tl_option *row);
@@ -191,9 +198,5 @@ bool tl_options_equal(const struct tl_option_table *table, const void *a, const 
 void tl_options_print_help(const struct tl_binding *bindings, size_t count, FILE *out);
 void tl_options_print_reference(const struct tl_binding *bindings, size_t count, FILE *out);
 void tl_options_print_yaml(const struct tl_binding *bindings, size_t count, FILE *out);
-
-/* The word of `words` nearest to `word` (optimal string alignment distance), or NULL when none is near enough
- * to be a likely slip: distance at most a third of the longer word, at least 1. */
-const char *tl_nearest_word(const char *word, const char *const *words, size_t count);
 
 #endif

@@ -2,6 +2,7 @@
 
 #include "config/file.h"
 #include "config/memory.h"
+#include "config/words.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -98,18 +99,6 @@ bool tl_option_is_file_name(const char *text)
     return strpbrk(text, "./") != NULL;
 }
 
-/* "single or dual", "dress, skirt, none": new string. */
-static char *list_choices(const char *const *choices, const char *last_link)
-{
-    char *list = tl_copy_string(choices[0]);
-    for (size_t i = 1; choices[i]; i++) {
-        char *longer = tl_format("%s%s%s", list, choices[i + 1] ? ", " : last_link, choices[i]);
-        free(list);
-        list = longer;
-    }
-    return list;
-}
-
 static bool is_single(const struct tl_option *row)
 {
     return row->type == TL_FLOAT || row->type == TL_COLOUR || row->type == TL_VECTOR;
@@ -136,7 +125,7 @@ char *tl_option_expectation(const struct tl_option *row)
     case TL_DOUBLE:
         return describe_range("a number", row);
     case TL_ENUM:
-        return list_choices(row->choices, " or ");
+        return tl_join_words(row->choices, tl_count_words(row->choices), ", ", " or ");
     case TL_COLOUR:
         return describe_range("[r, g, b], each", row);
     case TL_VECTOR:
@@ -148,7 +137,7 @@ char *tl_option_expectation(const struct tl_option *row)
     }
     if (!row->choices)
         return tl_copy_string("a file name");
-    char *names = list_choices(row->choices, ", ");
+    char *names = tl_join_words(row->choices, tl_count_words(row->choices), ", ", ", ");
     char *text = tl_format("%s or a file name with its extension", names);
     free(names);
     return text;
@@ -159,12 +148,8 @@ static char *refuse(const struct tl_option *row, const char *text, const char *f
 {
     char *expected = tl_option_expectation(row);
     const char *near = NULL;
-    if (row->choices) {
-        size_t count = 0;
-        while (row->choices[count])
-            count++;
-        near = tl_nearest_word(text, row->choices, count);
-    }
+    if (row->choices)
+        near = tl_nearest_word(text, row->choices, tl_count_words(row->choices));
     char *reason =
         tl_format("%s %s: expected %s%s%s%s", text[0] ? tl_excerpt_of(text).text : "an empty value", fault,
                   expected, near ? ": did you mean " : "", near ? near : "", near ? "?" : "");

@@ -18,9 +18,6 @@ char *tl_option_write(const struct tl_option *row, const void *field);
 /* Bytes of a field of the row's type. */
 size_t tl_option_size(const struct tl_option *row);
 
-/* True when two fields of the row's type hold the same value. */
-bool tl_option_equal(const struct tl_option *row, const void *a, const void *b);
-
 /* Start of `text`, short enough for a message, on a character's border. */
 struct tl_excerpt {
     char text[72];

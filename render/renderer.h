@@ -200,8 +200,8 @@ void tl_renderer_destroy(tl_renderer **renderer);
 bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct tl_render_settings *settings,
                       tl_error *error);
 
-/* The next draw makes anew all that follows from surfaces and camera, as a new renderer would; what was made of
- * the environment alone stays. For checks: what is reused must equal what is made anew. */
+/* The next draw makes anew all that follows from surfaces and camera, as a new renderer would; what was made
+ * of the environment alone stays. For checks: what is reused must equal what is made anew. */
 bool tl_renderer_forget_scene(tl_renderer *renderer, tl_error *error);
 
 /* Of the image by TL_METHOD_REFERENCE that was drawn last, as rel_rmse of render/metrics/compare.h; 0 before.
@@ -221,12 +221,10 @@ bool tl_renderer_read(tl_renderer *renderer, tl_image *out, tl_error *error);
  * when nothing was. */
 bool tl_renderer_read_capture(const tl_renderer *renderer, tl_image *out, tl_error *error);
 
-/* For show: background, exposure, tone mapping (Khronos PBR Neutral), sRGB. To an image (U8 RGB) or, with
- * `framebuffer`, to the current window's buffer 0 at the given size in pixels. The drawn frame's environment
- * must still be there. */
+/* For show: background, exposure, tone mapping (Khronos PBR Neutral), sRGB. To an image (U8 RGB), or to
+ * columns [first, end) of the current window's buffer 0, whose size is given in pixels. The drawn frame's
+ * environment must still be there. */
 bool tl_renderer_show_image(tl_renderer *renderer, tl_image *out, tl_error *error);
-bool tl_renderer_show_window(tl_renderer *renderer, int width, int height, tl_error *error);
-/* The same, but only columns [first, end) of the window: two renderers' images side by side. */
 bool tl_renderer_show_columns(tl_renderer *renderer, int width, int height, int first, int end,
                               tl_error *error);
 

@@ -1,28 +1,18 @@
+#include "config/hash.h"
 #include "config/memory.h"
+#include "render/brdf/fan.h"
 #include "render/detail/detail.h"
 #include "render/frame/frame.h"
 #include "render/inspect/job.h"
-
-#include "render/brdf/fan.h"
 #include "render/pem/lobe.h"
 
 #include <math.h>
 
-#define FNV_OFFSET 14695981039346656037u
-#define FNV_PRIME  1099511628211u
-
-static uint64_t mix(uint64_t hash, const void *data, size_t size)
-{
-    const unsigned char *bytes = data;
-    for (size_t i = 0; i < size; i++)
-        hash = (hash ^ bytes[i]) * FNV_PRIME;
-    return hash;
-}
-#define MIX(hash, field) mix(hash, &(field), sizeof(field))
+#define MIX(hash, field) tl_hash(hash, &(field), sizeof(field))
 
 static uint64_t shapes_signature(const tl_frame *frame)
 {
-    uint64_t hash = MIX(FNV_OFFSET, frame->surface_count);
+    uint64_t hash = MIX(TL_HASH_START, frame->surface_count);
     for (size_t i = 0; i < frame->surface_count; i++) {
         const tl_surface *surface = &frame->surfaces[i];
         hash = MIX(MIX(MIX(hash, surface->topology_revision), surface->vertex_count), surface->index_count);
@@ -32,7 +22,7 @@ static uint64_t shapes_signature(const tl_frame *frame)
 
 static uint64_t motion_signature(const tl_frame *frame)
 {
-    uint64_t hash = FNV_OFFSET;
+    uint64_t hash = TL_HASH_START;
     for (size_t i = 0; i < frame->surface_count; i++)
         hash = MIX(hash, frame->surfaces[i].motion_revision);
     return hash;
@@ -40,13 +30,13 @@ static uint64_t motion_signature(const tl_frame *frame)
 
 static uint64_t camera_signature(const struct tl_camera *camera)
 {
-    uint64_t hash = MIX(MIX(MIX(FNV_OFFSET, camera->eye), camera->target), camera->up);
+    uint64_t hash = MIX(MIX(MIX(TL_HASH_START, camera->eye), camera->target), camera->up);
     return MIX(MIX(MIX(hash, camera->fov_y), camera->near_m), camera->far_m);
 }
 
 static uint64_t light_signature(const struct tl_light_params *light)
 {
-    uint64_t hash = MIX(MIX(MIX(FNV_OFFSET, light->method), light->lobe), light->prefilter);
+    uint64_t hash = MIX(MIX(MIX(TL_HASH_START, light->method), light->lobe), light->prefilter);
     hash = MIX(MIX(MIX(hash, light->visibility), light->composition), light->reflect_scene);
     hash = MIX(hash, light->fan);
     return MIX(MIX(MIX(hash, light->depth_bias_m), light->min_variance), light->bleed_reduction);
@@ -56,13 +46,13 @@ static uint64_t maps_signature(const struct tl_light_params *light)
 {
     bool in_passes =
         tl_light_source(light) == TL_LIGHT_CHAIN; /* so many maps to an array as PEMs to a pass */
-    uint64_t hash = MIX(MIX(MIX(FNV_OFFSET, light->visibility), light->map_size), in_passes);
+    uint64_t hash = MIX(MIX(MIX(TL_HASH_START, light->visibility), light->map_size), in_passes);
     return MIX(MIX(hash, light->blur_m), light->jitter);
 }
 
 static uint64_t rays_signature(const struct tl_light_params *light)
 {
-    uint64_t hash = MIX(MIX(FNV_OFFSET, light->rays), light->refresh);
+    uint64_t hash = MIX(MIX(TL_HASH_START, light->rays), light->refresh);
     return MIX(MIX(MIX(hash, light->repair), light->repair_rest), light->jitter);
 }
 
@@ -71,7 +61,7 @@ static uint64_t lamps_signature(const tl_frame *frame, const struct tl_shading_p
 {
     struct tl_lamp lamps[TL_LAMPS_MAX];
     size_t count = tl_lamps_lit(frame, lamps);
-    uint64_t hash = FNV_OFFSET;
+    uint64_t hash = TL_HASH_START;
     for (size_t i = 0; i < count; i++) {
         hash = MIX(MIX(hash, lamps[i].kind), lamps[i].irradiance);
         hash = MIX(MIX(hash, lamps[i].direction), lamps[i].position);
@@ -81,19 +71,25 @@ static uint64_t lamps_signature(const tl_frame *frame, const struct tl_shading_p
 
 static uint64_t reference_signature(const struct tl_reference_params *reference)
 {
-    uint64_t hash = MIX(MIX(FNV_OFFSET, reference->strata), reference->lobe_samples);
+    uint64_t hash = MIX(MIX(TL_HASH_START, reference->strata), reference->lobe_samples);
     return MIX(MIX(hash, reference->replicates), reference->terminator);
 }
 
 static uint64_t detail_signature(const struct tl_detail_params *detail)
 {
-    uint64_t hash = MIX(MIX(MIX(FNV_OFFSET, detail->mode), detail->steps), detail->refine);
-    return MIX(MIX(MIX(MIX(hash, detail->shadow), detail->height_scale), detail->silhouette), detail->minify);
+    return MIX(MIX(MIX(TL_HASH_START, detail->steps), detail->refine), detail->silhouette);
+}
+
+/* What maps are made by. */
+static uint64_t detail_maps_signature(const struct tl_detail_params *detail)
+{
+    uint64_t hash = MIX(MIX(MIX(TL_HASH_START, detail->mode), detail->shadow), detail->angles);
+    return MIX(MIX(hash, detail->height_scale), detail->minify);
 }
 
 static uint64_t layout_signature(const tl_frame *frame, const struct tl_maps_params *maps)
 {
-    uint64_t hash = MIX(FNV_OFFSET, maps->layout);
+    uint64_t hash = MIX(TL_HASH_START, maps->layout);
     if (maps->layout != TL_LAYOUT_SPHERE)
         return hash;
     struct tl_view view = tl_view_make(&frame->camera, 1, 1);
@@ -102,14 +98,14 @@ static uint64_t layout_signature(const tl_frame *frame, const struct tl_maps_par
 
 static uint64_t look_up_signature(const struct tl_maps_params *maps)
 {
-    uint64_t hash = MIX(MIX(FNV_OFFSET, maps->look_up), maps->mode);
+    uint64_t hash = MIX(MIX(TL_HASH_START, maps->look_up), maps->mode);
     return MIX(MIX(hash, maps->fresnel), maps->minify);
 }
 
 /* Always the same while light is shown. */
 static uint64_t view_signature(const struct tl_image_params *image)
 {
-    uint64_t hash = MIX(FNV_OFFSET, image->view);
+    uint64_t hash = MIX(TL_HASH_START, image->view);
     return image->view == TL_VIEW_LIGHT ? hash : MIX(MIX(hash, image->view_region), image->view_range);
 }
 
@@ -118,7 +114,7 @@ static uint64_t scene_signature(const uint64_t signatures[TL_INPUT_COUNT], const
 {
     static const enum tl_resource shown[] = {TL_INPUT_ENVIRONMENT, TL_INPUT_YAW, TL_INPUT_SHAPES,
                                              TL_INPUT_MOTION, TL_INPUT_GROUND};
-    uint64_t hash = MIX(MIX(FNV_OFFSET, maps->size), maps->capture_at);
+    uint64_t hash = MIX(MIX(TL_HASH_START, maps->size), maps->capture_at);
     for (size_t i = 0; i < TL_COUNT(shown); i++)
         hash = MIX(hash, signatures[shown[i]]);
     return hash;
@@ -173,7 +169,7 @@ void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *setti
 {
     const struct tl_light_params *light = &settings->light;
     const struct tl_image_params *image = &settings->image;
-    const uint64_t start = FNV_OFFSET;
+    const uint64_t start = TL_HASH_START;
     signatures[TL_INPUT_ENVIRONMENT] = MIX(start, frame->environment_revision);
     signatures[TL_INPUT_YAW] = MIX(start, frame->environment_yaw);
     signatures[TL_INPUT_SHAPES] = shapes_signature(frame);
@@ -193,6 +189,7 @@ void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *setti
     signatures[TL_INPUT_LAMPS] = lamps_signature(frame, &settings->shading);
     signatures[TL_INPUT_REFERENCE] = reference_signature(&settings->reference);
     signatures[TL_INPUT_DETAIL] = detail_signature(&settings->detail);
+    signatures[TL_INPUT_DETAIL_MAPS] = detail_maps_signature(&settings->detail);
     signatures[TL_INPUT_SHOW] = MIX(MIX(start, image->exposure_ev), image->background);
     bool captures = settings->maps.capture_every > 0;
     signatures[TL_INPUT_ENVMAP] = MIX(MIX(start, settings->maps.size), captures);

@@ -2,10 +2,7 @@
 #include "render/frame/run.h"
 
 #include "config/log.h"
-#include "config/memory.h"
 #include "render/reference/reference.h"
-
-#include <string.h>
 
 bool tl_run_envmap_lobes(void *context, int level, tl_error *error)
 {
@@ -90,17 +87,8 @@ bool tl_run_reference(void *context, int level, tl_error *error)
     (void)level;
     tl_image image;
     struct tl_reference_report report;
-    tl_frame frame = renderer->frame;
-    const struct tl_ground *ground = tl_frame_ground(renderer);
-    tl_surface *surfaces =
-        TL_NEW_ARRAY(tl_surface, frame.surface_count + 1); /* it wants the ground among them */
-    memcpy(surfaces, frame.surfaces, frame.surface_count * sizeof *surfaces);
-    frame.surfaces = surfaces;
-    if (ground)
-        surfaces[frame.surface_count++] = ground->surface;
-    bool drawn = tl_reference_draw(&frame, &renderer->settings, ground, &image, &report, error);
-    free(surfaces);
-    if (!drawn)
+    if (!tl_reference_draw(&renderer->frame, &renderer->settings, tl_frame_ground(renderer), &image, &report,
+                           error))
         return false;
     tl_info("reference: %d replicates, %.3g million rays, standard error %.2g %%", report.replicates,
             1e-6 * (double)report.rays, 100 * report.standard_error);

@@ -34,23 +34,6 @@ struct drawing {
     struct tl_progress progress;
 };
 
-/* Through the middle of sample (x, y), counted from the image's upper left corner. */
-static struct tl_ray camera_ray(const struct drawing *drawing, int x, int y)
-{
-    int side = drawing->settings->image.supersample;
-    const struct tl_view *view = &drawing->view;
-    float step_x = 2 / (float)(drawing->width * side), step_y = 2 / (float)(drawing->height * side);
-    vec3s along = glms_vec3_add(view->forward, glms_vec3_scale(view->right, ((float)x + 0.5f) * step_x - 1));
-    along = glms_vec3_add(along, glms_vec3_scale(view->up, 1 - ((float)y + 0.5f) * step_y));
-    float length = glms_vec3_norm(along); /* metres of the ray for each metre of depth */
-    return (struct tl_ray){.origin = view->eye,
-                           .direction = glms_vec3_divs(along, length),
-                           .from_m = view->near_m * length,
-                           .to_m = view->far_m * length,
-                           .across = glms_vec3_scale(view->right, step_x / length),
-                           .down = glms_vec3_scale(view->up, -step_y / length)};
-}
-
 /* A ray of the camera on its way, and how much of it has got there. */
 struct sight {
     struct tl_ray ray;
@@ -83,7 +66,8 @@ static struct sights aim(const struct drawing *drawing, int tile, int sample)
         if (x >= drawing->width || y >= drawing->height)
             continue;
         sights.items[sights.count++] =
-            (struct sight){.ray = camera_ray(drawing, x * side + sample % side, y * side + sample / side),
+            (struct sight){.ray = tl_camera_ray(&drawing->view, drawing->width * side, drawing->height * side,
+                                                x * side + sample % side, y * side + sample / side),
                            .pixel = (size_t)y * (size_t)drawing->width + (size_t)x,
                            .share = 1};
     }

@@ -23,8 +23,8 @@ struct tl_reference_report {
     size_t rays;
 };
 
-/* `surfaces` with the ground last when `ground` is not NULL. Image as tl_renderer_read gives it. False, with
- * TL_INTERRUPTED, only when nothing was finished. */
+/* `ground` is not among the frame's surfaces; NULL: there is none. Image as tl_renderer_read gives it. False,
+ * with TL_INTERRUPTED, only when nothing was finished. */
 bool tl_reference_draw(const tl_frame *frame, const struct tl_render_settings *settings,
                        const struct tl_ground *ground, tl_image *out, struct tl_reference_report *report,
                        tl_error *error);

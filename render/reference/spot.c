@@ -97,7 +97,7 @@ bool tl_reference_scene_make(const tl_frame *frame, const struct tl_render_setti
                              const struct tl_ground *ground, struct tl_reference_scene *out, tl_error *error)
 {
     *out = (struct tl_reference_scene){.surfaces = frame->surfaces,
-                                       .surface_count = frame->surface_count - (ground ? 1 : 0),
+                                       .surface_count = frame->surface_count,
                                        .ground = ground,
                                        .lobe = settings->light.lobe,
                                        .terminator = settings->reference.terminator,
@@ -136,6 +136,20 @@ void tl_reference_scene_release(struct tl_reference_scene *scene)
     tl_sky_release(&scene->sky);
     tl_trace_destroy(&scene->trace);
     *scene = (struct tl_reference_scene){0};
+}
+
+struct tl_ray tl_camera_ray(const struct tl_view *view, int columns, int rows, int x, int y)
+{
+    float step_x = 2 / (float)columns, step_y = 2 / (float)rows;
+    vec3s along = glms_vec3_add(view->forward, glms_vec3_scale(view->right, ((float)x + 0.5f) * step_x - 1));
+    along = glms_vec3_add(along, glms_vec3_scale(view->up, 1 - ((float)y + 0.5f) * step_y));
+    float length = glms_vec3_norm(along); /* metres of the ray for each metre of depth */
+    return (struct tl_ray){.origin = view->eye,
+                           .direction = glms_vec3_divs(along, length),
+                           .from_m = view->near_m * length,
+                           .to_m = view->far_m * length,
+                           .across = glms_vec3_scale(view->right, step_x / length),
+                           .down = glms_vec3_scale(view->up, -step_y / length)};
 }
 
 /* A point of a surface with all that its material is asked with. */

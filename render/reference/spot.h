@@ -6,6 +6,7 @@
 #define TOILE_RENDER_REFERENCE_SPOT_H
 
 #include "render/brdf/brdf.h"
+#include "render/frame/view.h"
 #include "render/local/lamp.h"
 #include "render/reference/detail.h"
 #include "render/reference/reference.h"
@@ -17,7 +18,7 @@
 struct tl_look; /* a surface's materials, made ready */
 
 struct tl_reference_scene {
-    const tl_surface *surfaces; /* without the ground */
+    const tl_surface *surfaces; /* the frame's; the ground is none of them */
     size_t surface_count;
     const struct tl_ground *ground; /* NULL: none */
     tl_trace *trace;
@@ -43,6 +44,10 @@ struct tl_ray {
     float from_m, to_m;
     vec3s across, down; /* how `direction` changes from sample to sample; zero: maps at their finest level */
 };
+
+/* The camera's ray through the middle of sample (x, y) of columns x rows, counted from the upper left corner.
+ */
+struct tl_ray tl_camera_ray(const struct tl_view *view, int columns, int rows, int x, int y);
 
 /* What a material is beyond two lobes. Its lobes' colours below, the spot's own among them, are less what the
  * coat reflects already. */

@@ -1,36 +1,7 @@
 #!/usr/bin/env bash
 # Every bad input: exit status 2, exactly one line on stderr that names what is wrong, and no file left behind.
 set -u
-data=${TOILE_DATA:-$TOILE_DATA_DIR}
-room=$(mktemp -d)
-trap 'rm -rf "$room"' EXIT
-cd "$room" || exit 1
-failed=0
-
-# refuse NAME PATTERN COMMAND...: runs `toile COMMAND...`, checks status, message and leftovers.
-refuse() {
-    local name=$1 pattern=$2
-    shift 2
-    local before after message status
-    before=$(find . -type f | sort)
-    "$TOILE" "$@" --quiet >stdout.txt 2>stderr.txt
-    status=$?
-    message=$(cat stderr.txt)
-    rm -f stdout.txt stderr.txt
-    after=$(find . -type f | sort)
-    if [ $status -ne 2 ]; then
-        echo "FAILED $name: exit status $status, expected 2: $message"
-        failed=1
-    elif [ "$(printf '%s\n' "$message" | wc -l)" -ne 1 ] || ! printf '%s' "$message" | grep -qE "$pattern"; then
-        echo "FAILED $name: expected one line that matches /$pattern/, got: $message"
-        failed=1
-    elif [ "$before" != "$after" ]; then
-        echo "FAILED $name: files left behind: $(diff <(echo "$before") <(echo "$after") | tr '\n' ' ')"
-        failed=1
-    else
-        echo "ok     $name: $message"
-    fi
-}
+. "$(dirname "$0")/cli.sh"
 
 # le32 N: four bytes, little endian.
 le32() { printf "\\x$(printf %02x $(($1 & 255)))\\x$(printf %02x $(($1 >> 8 & 255)))\\x$(printf %02x $(($1 >> 16 & 255)))\\x$(printf %02x $(($1 >> 24 & 255)))"; }
@@ -96,10 +67,10 @@ printf 'light:\n  regions: many\n' >type.yaml
 printf 'light: [1\n' >broken.yaml
 
 for file in good.glb good.obj good.pc2; do
-    "$TOILE" info $file >/dev/null || { echo "FAILED $file must load, or the tests below prove nothing"; failed=1; }
+    "$TOILE" info $file >/dev/null || fail "$file must load, or the tests below prove nothing"
 done
 "$TOILE" export -o played.glb --garment good.obj --motion good.pc2 --quiet && rm played.glb ||
-    { echo "FAILED good.pc2 must play"; failed=1; }
+    fail "good.pc2 must play"
 
 for kind in garment avatar; do
     refuse "missing $kind" 'nowhere\.glb.*no such file' render -o a.png --$kind nowhere.glb
@@ -174,7 +145,7 @@ if mount -t tmpfs -o size=8k tmpfs "$full" 2>/dev/null; then
     fast="--preset draft --garment none --size 256x256"
     refuse "full disk, PNG" 'written' render -o "$full/a.png" $fast
     refuse "full disk, EXR" 'written' render -o "$full/a.exr" $fast
-    [ -z "$(ls -A "$full")" ] || { echo "FAILED full disk: files left: $(ls -A "$full")"; failed=1; }
+    [ -z "$(ls -A "$full")" ] || fail "full disk: files left: $(ls -A "$full")"
     umount "$full"
 else
     echo "skipped: full disk: a tmpfs cannot be mounted here"
@@ -190,4 +161,3 @@ if [ -d "$data/broken" ]; then
 else
     echo "skipped: damaged EXR files: $data is absent"
 fi
-exit $failed

@@ -1,17 +1,8 @@
 #!/usr/bin/env bash
 # toile check through the real executable: a clean scene, a broken one that is kept and opened again, messages.
 set -eu
-room=$(mktemp -d)
-trap 'rm -rf "$room"' EXIT
-cd "$room"
+. "$(dirname "$0")/cli.sh"
 quick="--set cloth.edge_m=0.06 --set cloth.settle_s=0.3 --fabric none --size 96x128 --set image.supersample=1 --set light.regions=48"
-
-check() { # NAME COMMAND...
-    local name=$1
-    shift
-    "$@" || { echo "FAILED $name"; exit 1; }
-    echo "ok     $name"
-}
 
 $TOILE check $quick --frames 8 --every 4 --furnace --json --quiet >clean.json
 check "a clean scene has its keys" sh -c 'grep -q "\"frames\":.*8" clean.json && grep -q "\"failed\":.*0" clean.json &&
@@ -47,13 +38,6 @@ $TOILE check $quick --set image.scale=0.5 --frames 2 --every 2 --furnace --json 
 check "a furnace at half the samples" sh -c "! grep -q '\"ok\":.*false' coarse.json &&
     grep -A6 '\"name\":.*\"furnace.albedo\"' coarse.json | grep -q '\"measured\":.*true'"
 
-refused() { # TEXT COMMAND...
-    local text=$1
-    shift
-    local status=0
-    "$@" >out.txt 2>err.txt || status=$?
-    [ "$status" = 2 ] && grep -q -- "$text" err.txt && [ "$(wc -l <err.txt)" = 1 ] && [ ! -s out.txt ]
-}
-check "no frames" refused '--frames: "0"' $TOILE check --frames 0
-check "too many frames" refused '--frames: 2000000' $TOILE check --frames 2000000
-check "a folder that cannot be" refused '/dev/null/kept' $TOILE check --keep /dev/null/kept
+refuse "no frames" '--frames: "0"' check --frames 0
+refuse "too many frames" '--frames: 2000000' check --frames 2000000
+refuse "a folder that cannot be" '/dev/null/kept' check --keep /dev/null/kept

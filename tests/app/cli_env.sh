@@ -1,25 +1,7 @@
 #!/usr/bin/env bash
 # toile env: what it writes is read back as what it is, and what it cannot do it refuses in one line with status 2.
 set -u
-data=${TOILE_DATA:-$TOILE_DATA_DIR}
-room=$(mktemp -d)
-trap 'rm -rf "$room"' EXIT
-cd "$room" || exit 1
-failed=0
-
-fail() { echo "FAILED $*"; failed=1; }
-
-# refuse NAME PATTERN ARGUMENTS...
-refuse() {
-    local name=$1 pattern=$2 message status
-    shift 2
-    message=$("$TOILE" env "$@" --quiet 2>&1)
-    status=$?
-    [ $status -eq 2 ] || fail "$name: exit status $status: $message"
-    [ "$(printf '%s\n' "$message" | wc -l)" -eq 1 ] || fail "$name: expected one line: $message"
-    printf '%s' "$message" | grep -qE "$pattern" || fail "$name: expected /$pattern/: $message"
-    [ "$(find . -type f | sort | tr '\n' ' ')" = "./light.hdr " ] || fail "$name: files left: $(ls)"
-}
+. "$(dirname "$0")/cli.sh"
 
 # shape FILE: "WIDTH HEIGHT" as toile reads it.
 shape() { "$TOILE" info "$1" --json | tr -d '\n\t' | sed 's/.*"width":[[:space:]]*\([0-9]*\).*"height":[[:space:]]*\([0-9]*\).*/\1 \2/'; }
@@ -27,24 +9,24 @@ shape() { "$TOILE" info "$1" --json | tr -d '\n\t' | sed 's/.*"width":[[:space:]
 # Two texels of light, one of them bright.
 printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n\200\200\200\201\200\100\040\205' >light.hdr
 
-refuse "no input" 'expected one' -o a.exr --layout cube
-refuse "missing input" 'nowhere\.exr.*no such file' nowhere.exr -o a.exr --layout cube
-refuse "no output" 'output' light.hdr --layout cube
-refuse "output of another kind" 'a\.png.*\.exr' light.hdr -o a.png --layout cube
-refuse "no layout" 'layout' light.hdr -o a.exr
-refuse "unknown layout" 'cub.*cube, sphere' light.hdr -o a.exr --layout cub
-refuse "unknown --from" '\-\-from.*ball.*sphere' light.hdr -o a.exr --layout cube --from ball
-refuse "--from against the shape" 'light\.hdr.*sphere' light.hdr -o a.exr --layout cube --from sphere
-refuse "size 0" '\-\-size' light.hdr -o a.exr --layout cube --size 0
-refuse "size in words" '\-\-size' light.hdr -o a.exr --layout cube --size big
-refuse "size too large" 'a\.exr.*32768' light.hdr -o a.exr --layout cube --size 6000
-refuse "size beyond an int" '\-\-size' light.hdr -o a.exr --layout latlong --size 99999999999
-refuse "size near the largest int" 'a\.exr.*32768' light.hdr -o a.exr --layout latlong --size 2147483647
-refuse "a scene for a file" 'maps\.size=8.*--capture' light.hdr -o a.exr --layout cube --set maps.size=8
-refuse "--from for a capture" '\-\-from.*cube' --capture -o a.exr --layout cube --from cube
-refuse "a capture too large" 'a\.exr.*32768' --capture -o a.exr --layout cube --size 6000
-refuse "a capture of two scenes" 'one scene' --capture one.yaml two.yaml -o a.exr --layout cube
-refuse "output in no folder" 'nowhere/a\.exr' light.hdr -o nowhere/a.exr --layout cube
+refuse "no input" 'expected one' env -o a.exr --layout cube
+refuse "missing input" 'nowhere\.exr.*no such file' env nowhere.exr -o a.exr --layout cube
+refuse "no output" 'output' env light.hdr --layout cube
+refuse "output of another kind" 'a\.png.*\.exr' env light.hdr -o a.png --layout cube
+refuse "no layout" 'layout' env light.hdr -o a.exr
+refuse "unknown layout" 'cub.*cube, sphere' env light.hdr -o a.exr --layout cub
+refuse "unknown --from" '\-\-from.*ball.*sphere' env light.hdr -o a.exr --layout cube --from ball
+refuse "--from against the shape" 'light\.hdr.*sphere' env light.hdr -o a.exr --layout cube --from sphere
+refuse "size 0" '\-\-size' env light.hdr -o a.exr --layout cube --size 0
+refuse "size in words" '\-\-size' env light.hdr -o a.exr --layout cube --size big
+refuse "size too large" 'a\.exr.*32768' env light.hdr -o a.exr --layout cube --size 6000
+refuse "size beyond an int" '\-\-size' env light.hdr -o a.exr --layout latlong --size 99999999999
+refuse "size near the largest int" 'a\.exr.*32768' env light.hdr -o a.exr --layout latlong --size 2147483647
+refuse "a scene for a file" 'maps\.size=8.*--capture' env light.hdr -o a.exr --layout cube --set maps.size=8
+refuse "--from for a capture" '\-\-from.*cube' env --capture -o a.exr --layout cube --from cube
+refuse "a capture too large" 'a\.exr.*32768' env --capture -o a.exr --layout cube --size 6000
+refuse "a capture of two scenes" 'one scene' env --capture one.yaml two.yaml -o a.exr --layout cube
+refuse "output in no folder" 'nowhere/a\.exr' env light.hdr -o nowhere/a.exr --layout cube
 
 expect() { [ "$(shape "$1")" = "$2" ] || fail "$1: $(shape "$1"), expected $2"; }
 for layout in cube sphere paraboloid latlong octahedral; do
@@ -79,5 +61,3 @@ if [ -r "$data/exr-features/BrightRingsNanInf.exr" ]; then
 else
     echo "skipped: NaN and Inf: $data is absent"
 fi
-[ $failed -eq 0 ] && echo "ok"
-exit $failed

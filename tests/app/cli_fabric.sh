@@ -1,24 +1,7 @@
 #!/usr/bin/env bash
 # toile fabric: the maps it bakes are there and as large as it says; what it cannot do it refuses in one line, status 2.
 set -u
-room=$(mktemp -d)
-trap 'rm -rf "$room"' EXIT
-cd "$room" || exit 1
-failed=0
-
-fail() { echo "FAILED $*"; failed=1; }
-
-# refuse NAME PATTERN ARGUMENTS...
-refuse() {
-    local name=$1 pattern=$2 message status
-    shift 2
-    message=$("$TOILE" fabric "$@" --quiet 2>&1)
-    status=$?
-    [ $status -eq 2 ] || fail "$name: exit status $status: $message"
-    [ "$(printf '%s\n' "$message" | wc -l)" -eq 1 ] || fail "$name: expected one line: $message"
-    printf '%s' "$message" | grep -qE "$pattern" || fail "$name: expected /$pattern/: $message"
-    [ ! -e maps ] || fail "$name: files left"
-}
+. "$(dirname "$0")/cli.sh"
 
 # A PNG of 2 x 2 texels of 16-bit grey: 0, 65535 / 32768, 256.
 base64 -d >height.png <<'PNG' || exit 1
@@ -28,24 +11,24 @@ head -c 40 height.png >cut.png
 printf 'no picture at all' >words.png
 : >empty.png
 
-refuse "no input" 'expected one' -o maps
-refuse "two inputs" 'expected one' height.png height.png -o maps
-refuse "no output" 'output' height.png
-refuse "missing input" 'nowhere\.png.*no such file' nowhere.png -o maps
-refuse "cut input" 'cut\.png' cut.png -o maps
-refuse "input of words" 'words\.png.*PNG' words.png -o maps
-refuse "empty input" 'empty\.png.*empty' empty.png -o maps
-refuse "words as EXR" 'no\.exr' no.exr -o maps
+refuse "no input" 'expected one' fabric -o maps
+refuse "two inputs" 'expected one' fabric height.png height.png -o maps
+refuse "no output" 'output' fabric height.png
+refuse "missing input" 'nowhere\.png.*no such file' fabric nowhere.png -o maps
+refuse "cut input" 'cut\.png' fabric cut.png -o maps
+refuse "input of words" 'words\.png.*PNG' fabric words.png -o maps
+refuse "empty input" 'empty\.png.*empty' fabric empty.png -o maps
+refuse "words as EXR" 'no\.exr' fabric no.exr -o maps
 for bad in 0 -1 nan inf 1e9 ten 5mm; do
-    refuse "repeat of $bad" '\-\-repeat-mm.*millimetres' height.png -o maps --repeat-mm "$bad"
-    refuse "height of $bad" '\-\-height-mm.*millimetres' height.png -o maps --height-mm "$bad"
+    refuse "repeat of $bad" '\-\-repeat-mm.*millimetres' fabric height.png -o maps --repeat-mm "$bad"
+    refuse "height of $bad" '\-\-height-mm.*millimetres' fabric height.png -o maps --height-mm "$bad"
 done
-refuse "unknown option" 'no such option' height.png -o maps --repeat 5
+refuse "unknown option" 'no such option' fabric height.png -o maps --repeat 5
 message=$("$TOILE" fabric height.png -o height.png/maps --quiet 2>&1)
 [ $? -eq 2 ] || fail "output below a file: $message"
 
 told=$("$TOILE" fabric height.png -o maps --repeat-mm 4 --height-mm 1 2>&1) || fail "baking: $told"
-for map in height.exr normal.png offset.exr moments.exr gloss.png horizon_0_45_90_135.png horizon_180_225_270_315.png; do
+for map in height.exr normal.png offset.exr moments.exr gloss.png horizon_0_45_90_135.png horizon_180_225_270_315.png cones.png; do
     [ -s "maps/$map" ] || fail "$map is missing"
     printf '%s' "$told" | grep -q "$map: 2 x 2 texels" || fail "$map: its size is not told"
 done
@@ -69,5 +52,3 @@ message=$("$TOILE" render -o lost.exr --fabric maps/height.yaml --size 8x8 --qui
 "$TOILE" fabric maps/height.exr -o again --repeat-mm 4 --height-mm 1 2>&1 | grep -q '0.001 mm deep' ||
     fail "heights in metres are not read back"
 "$TOILE" info maps/normal.png >/dev/null 2>&1 || "$TOILE" fabric maps/normal.png -o again --clamp --quiet || fail "normal.png is not read"
-[ $failed -eq 0 ] && echo "ok"
-exit $failed

@@ -2,33 +2,17 @@
 # Fly-throughs through the real executable: files, a replay to the bit at other numbers of threads, a comparison,
 # a video, Ctrl-C, refusals. Times are not judged, only that they are there.
 set -eu
-room=$(mktemp -d)
-trap 'rm -rf "$room"' EXIT
-cd "$room"
+. "$(dirname "$0")/cli.sh"
 small="--size 64x48 --preset draft --set cloth.edge_m=0.08 --set cloth.settle_s=0.3 --set reference.replicates=2 --quiet"
 
-check() { # NAME COMMAND...
-    local name=$1
-    shift
-    "$@" || { echo "FAILED $name"; exit 1; }
-    echo "ok     $name"
-}
-refused() { # MESSAGE COMMAND...
-    local message=$1
-    shift
-    "$@" 2>refusal >/dev/null && return 1
-    [ $? -eq 2 ] && [ "$(wc -l <refusal)" -eq 1 ] && grep -q -- "$message" refusal
-}
-
-check "no folder" refused "add -o FOLDER" $TOILE fly
-check "no budget" refused "expected milliseconds" $TOILE fly -o f --budget 0
-check "no such path" refused "missing.yaml" $TOILE fly -o f --path missing.yaml
+refuse "no folder" "add -o FOLDER" fly
+refuse "no budget" "expected milliseconds" fly -o f --budget 0
+refuse "no such path" "missing.yaml" fly -o f --path missing.yaml
 printf 'keys:\n  - {time_s: 0, yaw_deg: 0}\n  - {time_s: 0.2, yaw: 90}\n' >bad.yaml
-check "a bad path, by line and field" refused 'bad.yaml:3: key.yaw' $TOILE fly -o f --path bad.yaml
-check "a replay of nothing" refused "nowhere/frames.csv" $TOILE fly -o f --replay nowhere
-check "a replay with a budget" refused "leave --budget out" $TOILE fly -o f --replay a --budget 5
-check "an unknown kind of video" refused "unknown kind of video" $TOILE fly -o f --video flight.gif
-check "nothing was made" test ! -e f
+refuse "a bad path, by line and field" 'bad.yaml:3: key.yaw' fly -o f --path bad.yaml
+refuse "a replay of nothing" "nowhere/frames.csv" fly -o f --replay nowhere
+refuse "a replay with a budget" "leave --budget out" fly -o f --replay a --budget 5
+refuse "an unknown kind of video" "unknown kind of video" fly -o f --video flight.gif
 
 $TOILE fly $small --frames 24 --budget 10 --hash --oracle 12 -o a >said
 check "it says what it came to" grep -q "within 1.1 x 10 ms" said
@@ -43,13 +27,13 @@ sed -i '5s/[0-9a-f]*$/0123456789abcdef/' a/frames.csv
 status=0
 $TOILE fly $small --replay a --frames 6 -o b >/dev/null 2>said || status=$?
 check "an image that differs is named: status 1" sh -c "[ $status -eq 1 ] && grep -q 'frame 3 ' said"
-check "a replay of other work" refused "was flown with light.regions" $TOILE fly $small --set light.regions=30 --replay a -o b
-check "a comparison of other work" refused "was flown with image.width" $TOILE fly $small --size 32x48 --against a -o b
+refuse "a replay of other work" "was flown with light.regions" fly $small --set light.regions=30 --replay a -o b
+refuse "a comparison of other work" "was flown with image.width" fly $small --size 32x48 --against a -o b
 
 printf 'keys:\n  - {time_s: 0, yaw_deg: 0}\n  - {time_s: 0.2, yaw_deg: 90}\n' >path.yaml
 $TOILE fly $small --path path.yaml -o c --json >said.json
 check "a path of its own has its own length" test "$(wc -l <c/frames.csv)" -eq 8
-check "another path is other work" refused "another path" $TOILE fly $small --path path.yaml --against a -o d
+refuse "another path is other work" "another path" fly $small --path path.yaml --against a -o d
 
 if command -v python3 >/dev/null; then
     check "figures, and null where there are none" python3 - <<'PYTHON'
@@ -73,23 +57,17 @@ for row in rows:
     assert float(row["memory_bytes"]) > 0 and len(row["image_hash"]) == 16
 assert len({row["image_hash"] for row in rows}) > 20, "images do not change"
 PYTHON
-    check "a report that is well formed, whole and alone" python3 - <<'PYTHON'
-import re, xml.etree.ElementTree as tree
-for folder in "abc":
-    text = open(folder + "/report.html").read()
-    root = tree.fromstring(text)
-    assert sum(e.get("class") == "plot" for e in root.iter("svg")) >= 3
-    assert any(e.get("src", "").startswith("data:image/png;base64,") for e in root.iter("img"))
-    assert not list(root.iter("script")) and not re.search(r'(src|href)="(?!data:)', text)
-    assert not re.search(r'[ "(>]-?(nan|inf)[ ",)<%]', text)
-PYTHON
+    for folder in a b c; do
+        check_report $folder/report.html 3
+        check "it shows pictures" grep -q 'src="data:image/png;base64,' $folder/report.html
+    done
 else
     echo "skipped: files are not parsed: python3 is absent"
 fi
 
 mkdir empty
-check "no ffmpeg: refused before anything is flown" refused "install the package ffmpeg" \
-    env PATH="$PWD/empty" "$TOILE" fly -o e --video flight.mp4
+TOILE="env PATH=$PWD/empty $TOILE" refuse "no ffmpeg: refused before anything is flown" "install the package ffmpeg" \
+    fly -o e --video flight.mp4
 cat >empty/ffmpeg <<'TEXT'
 #!/bin/sh
 [ "$1" = -version ] && exit 0
@@ -110,7 +88,7 @@ fi
 
 # Ctrl-C: exit status 130, and what was flown is there.
 $TOILE fly $small --frames 100000 -o stopped >/dev/null 2>&1 & fly=$!
-until [ -d stopped ]; do sleep 0.2; done
+until [ -d stopped ] || ! kill -0 $fly; do sleep 0.2; done
 sleep 4
 kill -INT $fly
 status=0

@@ -1,26 +1,11 @@
 #!/usr/bin/env bash
 # toile gallery: pictures, a table with a row for each of them, and a page that holds them; wrong use exits 2.
 set -u
-room=$(mktemp -d)
-trap 'rm -rf "$room"' EXIT
-cd "$room" || exit 1
-failed=0
+. "$(dirname "$0")/cli.sh"
 
-fail() { echo "FAILED $*"; failed=1; }
-
-refuse() {
-    local pattern=$1 message status
-    shift
-    message=$("$TOILE" gallery "$@" --quiet 2>&1)
-    status=$?
-    [ $status -eq 2 ] || fail "$*: exit status $status: $message"
-    [ "$(printf '%s\n' "$message" | wc -l)" -eq 1 ] || fail "$*: expected one line: $message"
-    printf '%s' "$message" | grep -qE "$pattern" || fail "$*: expected /$pattern/: $message"
-}
-
-refuse 'folder'
-refuse 'd9' d99 -o out
-refuse 'one wall' d9 a1 -o out
+refuse "no folder" 'folder' gallery
+refuse "no such wall" 'd9' gallery d99 -o out
+refuse "two walls" 'one wall' gallery d9 a1 -o out
 
 "$TOILE" gallery a9 --quick --quiet -o out || fail "exit status $?"
 [ "$(head -1 out/gallery.csv)" = "id,technique,setting,error,error_metric,time_ms,image" ] || fail "heads of gallery.csv"
@@ -31,6 +16,5 @@ rows=$(($(wc -l <out/gallery.csv) - 1))
 # Every error is a number, every time positive, every picture there.
 awk -F, 'NR > 1 { if ($(NF-3) !~ /^[0-9.e+-]+$/ || $(NF-1) <= 0) { print "row " NR ": " $0; bad = 1 } } END { exit bad }' \
     out/gallery.csv || fail "figures"
-awk -F, 'NR > 1 { print $NF }' out/gallery.csv | while read -r image; do [ -s "out/$image" ] || echo missing; done | grep -q . && fail "pictures"
-
-exit $failed
+awk -F, 'NR > 1 { print $NF }' out/gallery.csv | while read -r image; do [ -s "out/$image" ] || echo missing; done >missing
+[ ! -s missing ] || fail "pictures"

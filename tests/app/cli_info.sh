@@ -1,15 +1,7 @@
-#!/bin/bash
+#!/usr/bin/env bash
 # What toile info says of a material that it can only come near to.
 set -u
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-failed=0
-check() {
-    local what=$1
-    shift
-    "$@" >/dev/null 2>out || { echo "FAILED $what"; cat out; failed=1; }
-}
+. "$(dirname "$0")/cli.sh"
 
 # A triangle: (0 0 0) (1 0 0) (0 1 0).
 positions=$(printf '\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200\077\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200\077\0\0\0\0' | base64 -w0)
@@ -37,4 +29,3 @@ check "the same as JSON" sh -c "$TOILE info satin.gltf --json | tr -d '\\n' | gr
 check "nothing is called ignored" sh -c "$TOILE info satin.gltf | grep -Eq '^ignored +none$'"
 write odd.gltf '"KHR_materials_iridescence"' '"KHR_materials_iridescence":{"iridescenceFactor":1}'
 check "what has no effect" sh -c "$TOILE info odd.gltf | grep -A1 '^ignored' | grep -q KHR_materials_iridescence"
-exit $failed

@@ -1,18 +1,8 @@
 #!/usr/bin/env bash
 # Motion out of the program and in again, through the real executable; what info and the log say of files.
 set -eu
-data=${TOILE_DATA:-$TOILE_DATA_DIR}
-room=$(mktemp -d)
-trap 'rm -rf "$room"' EXIT
-cd "$room"
+. "$(dirname "$0")/cli.sh"
 quick="--set cloth.edge_m=0.08 --set cloth.settle_s=0.3 --set cloth.substeps=8"
-
-check() { # NAME COMMAND...
-    local name=$1
-    shift
-    "$@" || { echo "FAILED $name"; exit 1; }
-    echo "ok     $name"
-}
 
 $TOILE export $quick --garment skirt -o skirt.pc2 --frames 2:6 --quiet
 $TOILE export $quick --garment skirt -o skirt.mdd --frames 2:6 --quiet

@@ -3,9 +3,7 @@
 # tells its levels. Work is what jobs have to do, by the table of costs: no clock is asked.
 set -eu
 command -v python3 >/dev/null || { echo "skipped: JSON is not parsed: python3 is absent"; exit 77; }
-room=$(mktemp -d)
-trap 'rm -rf "$room"' EXIT
-cd "$room"
+. "$(dirname "$0")/cli.sh"
 fast="--preset draft --size 128x96 --set cloth.edge_m=0.05 --quiet --frame 1 --json"
 
 cat >less.py <<'END'
@@ -28,7 +26,7 @@ END
 without() { # NAME "JOBS" "WITH" "WITHOUT"
     $TOILE plan $fast $3 >more.json
     $TOILE plan $fast $4 >less.json
-    python3 less.py "$1" more.json less.json "$2" || { echo "FAILED $1"; exit 1; }
+    python3 less.py "$1" more.json less.json "$2" || fail "$1"
 }
 without gloss "" "--fabric satin" \
     "--fabric satin --set material.model=phong --set material.glossiness=0 --set material.specular=0,0,0"
@@ -37,7 +35,7 @@ without lamps "lamps lamp_rays" "--set lamp.kind=point" "--set lamp.kind=none"
 without ground "" "--set image.ground=true" "--set image.ground=false"
 without shadows "points lights" "--method pem" "--method unshadowed"
 without regions "" "--set light.regions=192" "--set light.regions=48"
-sun=$TOILE_DATA_DIR/envmaps/hdr/kloppenheim_05_1k.hdr
+sun=$data/envmaps/hdr/kloppenheim_05_1k.hdr
 if [ -r "$sun" ]; then
     without sun "" "--env $sun --set light.sun=true" "--env $sun --set light.sun=false"
 else
@@ -47,14 +45,12 @@ fi
 fast=${fast/--frame 1/--frame 4} # what costs are learned from
 $TOILE plan $fast --budget 1 >tight.json
 $TOILE plan $fast --budget 100000 >loose.json
-python3 - <<'END'
+check "budgets" python3 - <<'END'
 import json
 tight, loose = (json.load(open(f))["budget"] for f in ("tight.json", "loose.json"))
 assert loose["error"] == 0 and all(k["level"] == 0 and k["next_ms"] is None for k in loose["knobs"])
 assert tight["error"] > 0 and [k["name"] for k in tight["knobs"]] == ["refresh", "regions", "relief", "cloth", "scale"]
 for knob in tight["knobs"]:
     assert knob["level"] == knob["levels"] - 1 and (knob["level"] == 0 or knob["next_error"] < 0), knob
-print("ok     budgets")
 END
-$TOILE plan ${fast%--json} --budget 50 | grep -q "levels for 50 ms" || { echo "FAILED text"; exit 1; }
-echo "ok     text"
+check "text" grep -q "levels for 50 ms" <($TOILE plan ${fast%--json} --budget 50)

@@ -2,17 +2,8 @@
 # Rendered frames: the same frame twice gives the same bytes, at any number of threads; every command that writes JSON
 # writes an object; compare knows equal from different; export reads back.
 set -eu
-room=$(mktemp -d)
-trap 'rm -rf "$room"' EXIT
-cd "$room"
+. "$(dirname "$0")/cli.sh"
 fast="--preset draft --size 160x120 --set cloth.edge_m=0.05 --quiet"
-
-check() { # NAME COMMAND...
-    local name=$1
-    shift
-    "$@" || { echo "FAILED $name"; exit 1; }
-    echo "ok     $name"
-}
 
 $TOILE render $fast -o one.exr --frame 3
 $TOILE render $fast -o two.exr --frame 3

@@ -1,23 +1,8 @@
 #!/usr/bin/env bash
 # Lamps on the command line, and what measures ways of shading under them: that every way is there and finite.
 set -eu
-room=$(mktemp -d)
-trap 'rm -rf "$room"' EXIT
-cd "$room"
+. "$(dirname "$0")/cli.sh"
 small="--size 48x48 --set scene.garment=sphere --set image.supersample=1 --set light.regions=24 --quiet"
-
-check() { # NAME COMMAND...
-    local name=$1
-    shift
-    "$@" || { echo "FAILED $name"; exit 1; }
-    echo "ok     $name"
-}
-refused() { # MESSAGE COMMAND...
-    local message=$1
-    shift
-    "$@" 2>refusal && return 1
-    [ $? -eq 2 ] && grep -q -- "$message" refusal
-}
 
 $TOILE bench shading --quick --json --quiet >shading.json
 check "bench shading" test -s shading.json
@@ -39,7 +24,7 @@ exact = [row for row in rows if row["name"] == "phong, exact"]
 assert all(row["rel_rmse"] == 0 for row in exact), exact
 PYTHON
 fi
-check "bench shading knows no scene" refused "leave scene" $TOILE bench shading dress
+refuse "bench shading knows no scene" "leave scene" bench shading dress
 
 check "a picture without lamps" $TOILE render $small -o dark.exr
 check "a picture with a lamp" $TOILE render $small -o lit.exr --set lamp.kind=directional
@@ -49,5 +34,4 @@ check "the same bytes" cmp dark.exr none.exr
 check "other bytes" test "$(cmp -s dark.exr lit.exr; echo $?)" -eq 1
 check "no lamp, no job" grep -q "lamps *drop .*no lamps here" <($TOILE plan $small)
 check "a lamp, a job" grep -q "lamps *run" <($TOILE plan $small --set fill.kind=point)
-check "no such lamp" refused "kind" $TOILE render $small -o a.exr --set lamp.kind=candle
-echo "all well"
+refuse "no such lamp" "kind" render $small -o a.exr --set lamp.kind=candle

@@ -2,30 +2,14 @@
 # toile sheet: a picture a cell, kept by a second run and redrawn when something changes; one image of them all; what
 # cannot be shown is told of and left empty; wrong use exits 2.
 set -u
-room=$(mktemp -d)
-trap 'rm -rf "$room"' EXIT
-cd "$room" || exit 1
-failed=0
+. "$(dirname "$0")/cli.sh"
 fast="--garment sphere --avatar none --preset draft --size 64x64 --set light.jitter=false --set image.supersample=1 --set light.pem_size=32"
 
-fail() { echo "FAILED $*"; failed=1; }
-
-refuse() {
-    local pattern=$1 message status
-    shift
-    message=$("$TOILE" sheet "$@" --quiet 2>&1)
-    status=$?
-    [ $status -eq 2 ] || fail "$*: exit status $status: $message"
-    [ "$(printf '%s\n' "$message" | wc -l)" -eq 1 ] || fail "$*: expected one line: $message"
-    printf '%s' "$message" | grep -qE "$pattern" || fail "$*: expected /$pattern/: $message"
-}
-
-refuse 'OUT.png or -o FOLDER'
-refuse 'a\.exr.*\.png or a folder' -o a.exr
-refuse 'satn.*satin' -o out --fabrics satn
-refuse 'bck.*back' -o out --views bck
-refuse 'would be .* pixels' -o a.png --size 8192x8192 --fabrics all
-[ -e out ] && fail "a refused run leaves a folder"
+refuse "no output" 'OUT.png or -o FOLDER' sheet
+refuse "another kind of output" 'a\.exr.*\.png or a folder' sheet -o a.exr
+refuse "no such fabric" 'satn.*satin' sheet -o out --fabrics satn
+refuse "no such view" 'bck.*back' sheet -o out --views bck
+refuse "too large" 'would be .* pixels' sheet -o a.png --size 8192x8192 --fabrics all
 
 # A folder, and the same again: nothing is drawn twice.
 draw() { "$TOILE" sheet -o out $fast --fabrics satin,denim --views front,back "$@" 2>log || fail "exit $?: $(cat log)"; }
@@ -74,4 +58,3 @@ done_before=$(ls later/*.png | wc -l)
 grep -q "$((6 - done_before)) cells drawn, $done_before kept" log || fail "goes on where it was ($done_before): $(cat log)"
 "$TOILE" sheet -o whole $fast --fabrics satin,denim,wool --views front,back --quiet || fail "in one go"
 for cell in whole/*.png; do cmp -s "$cell" "later/${cell#whole/}" || fail "$cell differs from an uninterrupted run"; done
-exit $failed

@@ -1,5 +1,5 @@
 /* Each fault, put into a frame on purpose, is named by the invariant that it breaks; a clean frame passes. */
-#include "testing.h"
+#include "quick_session.h"
 
 #include "app/check.h"
 #include "app/extremes_light.h"
@@ -617,19 +617,6 @@ static void a_furnace_that_glows_is_named(void **state)
 
 /* ---- Cloth ---- */
 
-static tl_session *dressed(void)
-{
-    static const char *const assignments[] = {"cloth.edge_m=0.08", "cloth.settle_s=0.3", "cloth.substeps=8"};
-    const struct tl_settings_source source = {.assignments = assignments,
-                                              .assignment_count = TL_COUNT(assignments)};
-    struct tl_settings settings;
-    tl_error error = {0};
-    assert_ok(tl_settings_load(&settings, &source, &error), error);
-    tl_session *session = tl_session_create(&settings, &error);
-    assert_ok(session != NULL, error);
-    return session;
-}
-
 static struct tl_checked check_cloth(tl_session *session, struct tl_checked_cloth *cloth, tl_frame *frame)
 {
     static const struct tl_render_settings unused;
@@ -641,7 +628,7 @@ static struct tl_checked check_cloth(tl_session *session, struct tl_checked_clot
 static void faults_of_cloth_are_named(void **state)
 {
     (void)state;
-    tl_session *session = dressed();
+    tl_session *session = quick_session(NULL);
     struct tl_cloth *cloth = tl_session_cloth(session);
     struct tl_checked_cloth watched = {.strain_limit = 0.1,
                                        .weight_n = 2,

@@ -2,6 +2,7 @@
 #include "testing.h"
 
 #include "app/canvas.h"
+#include "app/contact_names.h"
 #include "app/contact_plan.h"
 #include "app/contact_store.h"
 #include "config/file.h"

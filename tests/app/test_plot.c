@@ -42,7 +42,7 @@ static char *plotted(const struct tl_plot *plot)
     char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
-    tl_plot_print(out, plot);
+    tl_plot_print_as(out, plot, &(const struct tl_plot_manner){0});
     fclose(out);
     return text;
 }

@@ -1,31 +1,10 @@
 /* A session takes over changed settings, keeps its state when it cannot, and replays to the bit. */
-#include "testing.h"
+#include "quick_session.h"
 
-#include "app/session.h"
 #include "config/log.h"
 #include "config/memory.h"
 
 #include <string.h>
-
-/* Coarse and quick to settle: what is tested is the bookkeeping. */
-static struct tl_settings quick_settings(void)
-{
-    static const char *const assignments[] = {"cloth.edge_m=0.08", "cloth.settle_s=0.3", "cloth.substeps=8"};
-    const struct tl_settings_source source = {.assignments = assignments, .assignment_count = 3};
-    struct tl_settings settings;
-    tl_error error = {0};
-    assert_ok(tl_settings_load(&settings, &source, &error), error);
-    return settings;
-}
-
-static tl_session *quick_session(void)
-{
-    struct tl_settings settings = quick_settings();
-    tl_error error = {0};
-    tl_session *session = tl_session_create(&settings, &error);
-    assert_ok(session != NULL, error);
-    return session;
-}
 
 /* Touches everything that a frame lends, so that a sanitizer sees what is no longer there. */
 static double sum_of_frame(tl_session *session)
@@ -49,7 +28,7 @@ static double sum_of_frame(tl_session *session)
 static void new_scenes_and_fabrics_are_taken_over(void **state)
 {
     (void)state;
-    tl_session *session = quick_session();
+    tl_session *session = quick_session(NULL);
     struct tl_settings settings = *tl_session_settings(session);
     tl_error error = {0};
     uint64_t revision = tl_session_frame(session).surfaces[0].topology_revision;
@@ -79,7 +58,7 @@ static void new_scenes_and_fabrics_are_taken_over(void **state)
 static void colourways_change_looks_only(void **state)
 {
     (void)state;
-    tl_session *session = quick_session();
+    tl_session *session = quick_session(NULL);
     tl_error error = {0};
     assert_ok(tl_session_go_to(session, 2, &error), error);
     struct tl_settings settings = *tl_session_settings(session);
@@ -127,7 +106,7 @@ static void colourways_change_looks_only(void **state)
 static void a_failure_keeps_what_was(void **state)
 {
     (void)state;
-    tl_session *session = quick_session();
+    tl_session *session = quick_session(NULL);
     struct tl_settings settings = *tl_session_settings(session);
     double before = sum_of_frame(session);
     tl_error error = {0};
@@ -145,7 +124,7 @@ static void a_failure_keeps_what_was(void **state)
 static void frames_replay_to_the_bit(void **state)
 {
     (void)state;
-    tl_session *session = quick_session();
+    tl_session *session = quick_session(NULL);
     tl_error error = {0};
     double start = sum_of_frame(session);
     assert_ok(tl_session_go_to(session, 5, &error), error);
@@ -161,7 +140,7 @@ static void frames_replay_to_the_bit(void **state)
 static void picking_finds_the_front(void **state)
 {
     (void)state;
-    tl_session *session = quick_session();
+    tl_session *session = quick_session(NULL);
     uint32_t vertex;
     float distance;
     assert_true(tl_session_pick(session, (vec3s){{0, 1.1f, 3}}, (vec3s){{0, 0, -1}}, &vertex, &distance));
@@ -182,7 +161,7 @@ static const vec3s *strains_shown(tl_session *session)
 static void strains_are_told_when_they_are_looked_at(void **state)
 {
     (void)state;
-    tl_session *session = quick_session();
+    tl_session *session = quick_session(NULL);
     struct tl_settings settings = *tl_session_settings(session);
     tl_error error = {0};
     assert_null(strains_shown(session));

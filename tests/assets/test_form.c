@@ -186,26 +186,13 @@ static void test_normals_and_uvs(void **state)
         assert_near(mesh->parts[p].uv_metres, 1, 0.2);
 }
 
-/* The section's half-extents bound the section, and are reached. */
-static void test_section(void **state)
-{
-    (void)state;
-    float width = 0, depth = 0;
-    assert_false(tl_form_section(0.69f, &width, &depth));
-    assert_false(tl_form_section(1.48f, &width, &depth));
-    assert_false(tl_form_section(NAN, &width, &depth));
-    assert_true(tl_form_section((float)TL_FORM_WAIST, &width, &depth));
-    assert_near(width, tl_form_radius(TL_FORM_WAIST, M_PI / 2), 1e-3);
-    assert_near(depth, fmax(tl_form_radius(TL_FORM_WAIST, 0), tl_form_radius(TL_FORM_WAIST, M_PI)), 1e-3);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_closed_manifold),  cmocka_unit_test(test_volume),
         cmocka_unit_test(test_measurements),     cmocka_unit_test(test_facing),
         cmocka_unit_test(test_mesh_meets_shape), cmocka_unit_test(test_mirror_symmetry),
-        cmocka_unit_test(test_normals_and_uvs),  cmocka_unit_test(test_section),
+        cmocka_unit_test(test_normals_and_uvs),
     };
     return cmocka_run_group_tests(tests, make_form, drop_form);
 }

@@ -458,16 +458,8 @@ static struct exported make_exported(const char *path)
     e.tangents = TL_NEW_ARRAY(vec4s, mesh->vertex_count);
     for (size_t i = 0; i < mesh->vertex_count; i++)
         e.tangents[i] = (vec4s){{1, 0, 0, 1}};
-    e.surface = (tl_surface){.name = "garment",
-                             .vertex_count = mesh->vertex_count,
-                             .positions = mesh->positions,
-                             .normals = mesh->normals,
-                             .tangents = e.tangents,
-                             .uvs = mesh->uvs,
-                             .index_count = mesh->index_count,
-                             .indices = mesh->indices,
-                             .part_count = mesh->part_count,
-                             .parts = mesh->parts};
+    e.surface = tl_surface_of_mesh("garment", mesh, NULL);
+    e.surface.tangents = e.tangents;
     return e;
 }
 

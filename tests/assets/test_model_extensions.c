@@ -313,17 +313,7 @@ static void exports_come_back(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         tl_model model = load_with(cases[i][0], cases[i][1]), back;
         tl_error error;
-        const tl_mesh *mesh = &model.mesh;
-        const tl_surface surface = {.name = "cloth",
-                                    .vertex_count = mesh->vertex_count,
-                                    .positions = mesh->positions,
-                                    .normals = mesh->normals,
-                                    .uvs = mesh->uvs,
-                                    .index_count = mesh->index_count,
-                                    .indices = mesh->indices,
-                                    .part_count = mesh->part_count,
-                                    .parts = mesh->parts,
-                                    .materials = model.materials};
+        const tl_surface surface = tl_surface_of_mesh("cloth", &model.mesh, model.materials);
         assert_ok(tl_model_export_glb(path, &surface, 1, &error), error);
         assert_ok(tl_model_load(path, &back, &error), error);
         const tl_material *a = &model.materials[1], *b = NULL;

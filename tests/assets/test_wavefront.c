@@ -183,16 +183,7 @@ static void written_objects_are_read_back(void **state)
     tl_error error = {0};
     assert_ok(tl_garment_cut("skirt", 0.08f, &skirt, &error), error);
     const tl_mesh *mesh = &skirt.model.mesh;
-    tl_surface surface = {.name = "garment",
-                          .vertex_count = mesh->vertex_count,
-                          .positions = mesh->positions,
-                          .normals = mesh->normals,
-                          .uvs = mesh->uvs,
-                          .index_count = mesh->index_count,
-                          .indices = mesh->indices,
-                          .part_count = mesh->part_count,
-                          .parts = mesh->parts,
-                          .materials = skirt.model.materials};
+    tl_surface surface = tl_surface_of_mesh("garment", mesh, skirt.model.materials);
     mkdir(SCRATCH, 0777);
     assert_ok(tl_model_export_obj(SCRATCH "/skirt.obj", &skirt.model, &surface, &error), error);
     tl_model back = load_in(SCRATCH "/skirt.obj", TL_UNITS_AUTO);

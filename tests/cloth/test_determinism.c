@@ -8,19 +8,12 @@
 #include "sheets.h"
 #include "testing.h"
 
+#include "config/hash.h"
 #include "config/log.h"
 
 #include <omp.h>
 
 #define FRAMES 12
-
-static uint64_t hash_bytes(uint64_t hash, const void *data, size_t size)
-{
-    const unsigned char *bytes = data;
-    for (size_t i = 0; i < size; i++)
-        hash = (hash ^ bytes[i]) * 1099511628211u;
-    return hash;
-}
 
 static vec3s above(double u, double v)
 {
@@ -67,9 +60,9 @@ static void play(struct run *run, int frames, uint64_t hashes[FRAMES])
         assert_ok(tl_cloth_step(run->cloth, run->collider, &error), error);
         tl_cloth_positions(run->cloth, positions);
         tl_frames_update(run->frames, positions, normals, tangents);
-        hashes[frame] = hash_bytes(14695981039346656037u, positions, count * sizeof *positions);
-        hashes[frame] = hash_bytes(hashes[frame], normals, count * sizeof *normals);
-        hashes[frame] = hash_bytes(hashes[frame], tangents, count * sizeof *tangents);
+        hashes[frame] = tl_hash(TL_HASH_START, positions, count * sizeof *positions);
+        hashes[frame] = tl_hash(hashes[frame], normals, count * sizeof *normals);
+        hashes[frame] = tl_hash(hashes[frame], tangents, count * sizeof *tangents);
     }
     free(positions);
     free(normals);

@@ -5,6 +5,7 @@
 #include "sheets.h"
 #include "testing.h"
 
+#include "config/hash.h"
 #include "config/log.h"
 
 #include <omp.h>
@@ -170,10 +171,7 @@ static uint64_t drape_hash(int threads)
     for (int frame = 0; frame < 10; frame++)
         assert_ok(tl_cloth_step(cloth, collider, &error), error);
     omp_set_num_threads(usual);
-    uint64_t hash = 14695981039346656037u; /* FNV-1a */
-    const unsigned char *bytes = (const unsigned char *)cloth->particles.x;
-    for (size_t i = 0; i < cloth->particles.count * sizeof(vec3d); i++)
-        hash = (hash ^ bytes[i]) * 1099511628211u;
+    uint64_t hash = tl_hash(TL_HASH_START, cloth->particles.x, cloth->particles.count * sizeof(vec3d));
     tl_cloth_destroy(&cloth);
     tl_collider_destroy(&collider);
     tl_mesh_release(&sphere);

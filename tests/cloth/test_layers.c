@@ -5,6 +5,7 @@
 #include "sheets.h"
 #include "testing.h"
 
+#include "config/hash.h"
 #include "config/log.h"
 
 /* ---- Folds ---- */
@@ -272,11 +273,7 @@ static double deepest_in_trousers(const tl_cloth *cloth)
 
 static uint64_t hash_positions(const tl_cloth *cloth)
 {
-    uint64_t hash = 14695981039346656037u; /* FNV-1a */
-    const unsigned char *bytes = (const unsigned char *)cloth->particles.x;
-    for (size_t i = 0; i < cloth->particles.count * sizeof(vec3d); i++)
-        hash = (hash ^ bytes[i]) * 1099511628211u;
-    return hash;
+    return tl_hash(TL_HASH_START, cloth->particles.x, cloth->particles.count * sizeof(vec3d));
 }
 
 static void test_shirt_over_trousers(void **state)

@@ -3,6 +3,7 @@
 
 #include "config/memory.h"
 #include "config/options.h"
+#include "config/words.h"
 #include "sample_tables.h"
 
 #include <locale.h>

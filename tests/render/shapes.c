@@ -14,20 +14,8 @@ void test_shape_refresh(struct test_shape *shape)
 {
     static uint64_t revision; /* no two shapes share one: places in a frame's list are used again */
     revision++;
-    const tl_mesh *mesh = &shape->mesh;
-    shape->surface = (tl_surface){.name = "shape",
-                                  .vertex_count = mesh->vertex_count,
-                                  .positions = mesh->positions,
-                                  .normals = mesh->normals,
-                                  .tangents = mesh->tangents,
-                                  .uvs = mesh->uvs,
-                                  .index_count = mesh->index_count,
-                                  .indices = mesh->indices,
-                                  .part_count = 1,
-                                  .parts = mesh->parts,
-                                  .materials = &shape->material,
-                                  .topology_revision = revision,
-                                  .motion_revision = revision};
+    shape->surface = tl_surface_of_mesh("shape", &shape->mesh, &shape->material);
+    shape->surface.topology_revision = shape->surface.motion_revision = revision;
 }
 
 /* A grid of (columns + 1) x (rows + 1) vertices, to be placed by the caller; u = column / columns, v = row /

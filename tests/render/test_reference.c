@@ -62,21 +62,26 @@ static void scene_free(struct scene *scene)
     free(scene);
 }
 
-static tl_image draw(struct scene *scene, struct tl_reference_report *report)
+/* Shapes may have been edited. */
+static void refresh(struct scene *scene)
 {
-    tl_error error = {0};
-    tl_image image;
     for (size_t i = 0; i < scene->count; i++) {
         test_shape_refresh(&scene->shapes[i]);
         scene->surfaces[i] = scene->shapes[i].surface;
     }
     scene->frame.surface_count = scene->count;
+}
+
+static tl_image draw(struct scene *scene, struct tl_reference_report *report)
+{
+    tl_error error = {0};
+    tl_image image;
+    refresh(scene);
     bool ground = scene->settings.image.ground;
     if (ground) {
         struct tl_casters casters;
         assert_ok(tl_casters_measure(scene->surfaces, scene->count, &casters, &error), error);
         tl_ground_make(&casters, &scene->ground);
-        scene->surfaces[scene->frame.surface_count++] = scene->ground.surface;
     }
     assert_ok(tl_reference_draw(&scene->frame, &scene->settings, ground ? &scene->ground : NULL, &image,
                                 report, &error),
@@ -510,11 +515,7 @@ static void draw_interrupted(struct handed_over *result, bool at_once)
     struct scene *scene = mixed_scene();
     tl_error error = {0};
     tl_image image;
-    for (size_t i = 0; i < scene->count; i++) {
-        test_shape_refresh(&scene->shapes[i]);
-        scene->surfaces[i] = scene->shapes[i].surface;
-    }
-    scene->frame.surface_count = scene->count;
+    refresh(scene);
     scene->settings.reference.replicates = 1 << 16;
     tl_interrupt_install();
     if (at_once) {

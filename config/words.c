@@ -1,8 +1,28 @@
+#include "config/words.h"
+
 #include "config/memory.h"
-#include "config/options.h"
 
 #include <stdlib.h>
 #include <string.h>
+
+size_t tl_count_words(const char *const *words)
+{
+    size_t count = 0;
+    while (words[count])
+        count++;
+    return count;
+}
+
+char *tl_join_words(const char *const *words, size_t count, const char *link, const char *last_link)
+{
+    char *list = tl_copy_string(count ? words[0] : "");
+    for (size_t i = 1; i < count; i++) {
+        char *longer = tl_format("%s%s%s", list, i + 1 < count ? link : last_link, words[i]);
+        free(list);
+        list = longer;
+    }
+    return list;
+}
 
 static size_t least(size_t a, size_t b)
 {

@@ -1,0 +1,48 @@
+# Sourced by every cli_*.sh: each drives the real executable, TOILE, from an empty folder of its own that goes with it.
+# Checks are told as they are made and go on after a failure, which the exit status remembers.
+data=${TOILE_DATA:-${TOILE_DATA_DIR:-}}
+room=$(mktemp -d)
+failed=0
+trap 'status=$?; rm -rf "$room"; exit $((status | failed))' EXIT
+cd "$room" || exit 1
+
+fail() { # WORDS...
+    echo "FAILED $*"
+    failed=1
+}
+
+check() { # NAME COMMAND...
+    local name=$1
+    shift
+    if "$@"; then echo "ok     $name"; else fail "$name"; fi
+}
+
+# toile ARGUMENTS exits with 2 and says one line, which matches the pattern; it leaves nothing behind.
+refuse() { # NAME PATTERN ARGUMENTS...
+    local name=$1 pattern=$2 before after message status=0
+    shift 2
+    before=$(find . | sort)
+    message=$($TOILE "$@" --quiet 2>&1) || status=$?
+    after=$(find . | sort)
+    if [ $status -ne 2 ]; then
+        fail "$name: exit status $status, expected 2: $message"
+    elif [ "$(printf '%s\n' "$message" | wc -l)" -ne 1 ] || ! printf '%s' "$message" | grep -qE -e "$pattern"; then
+        fail "$name: expected one line that matches /$pattern/, got: $message"
+    elif [ "$before" != "$after" ]; then
+        fail "$name: left behind: $(diff <(echo "$before") <(echo "$after") | tr '\n' ' ')"
+    else
+        echo "ok     $name: $message"
+    fi
+}
+
+# The page is well-formed, has plots, and holds nothing that is fetched, run, or no number.
+check_report() { # FILE PLOTS
+    check "$1 is well formed, whole and alone" python3 - "$1" "$2" <<'PYTHON'
+import re, sys, xml.etree.ElementTree as tree
+text = open(sys.argv[1]).read()
+root = tree.fromstring(text)
+assert sum(e.get("class") == "plot" for e in root.iter("svg")) >= int(sys.argv[2])
+assert not list(root.iter("script")) and not re.search(r'(src|href)="(?!data:)', text)
+assert not re.search(r'[ ">(]-?(nan|inf)[ "<,)%]', text.lower())
+PYTHON
+}
