@@ -47,9 +47,9 @@ const struct tl_invariant tl_invariants[] = {
     {"visibility.regions",
      "VIS of a region is what rays see of it along some of its directions, on average over the "
      "sampled points: largest way outside of their range, times its light up to the mean",
-     0.2,
-     "eight directions do not show the whole range, and what is kept is a few frames old and lies at "
-     "vertices",
+     BY_SETTINGS,
+     "eight directions do not show the whole range, the less the fewer regions there are; what is kept is a "
+     "few frames old and lies at vertices",
      true, tl_measure_leaks},
     {"light.environment", "cube and suns hold the environment's light: relative difference", 0.01,
      "cube.h: a texel keeps its energy within 1 %", true, tl_measure_environment},

@@ -209,12 +209,22 @@ static void add_tallies(const struct witness *witness, struct tl_finding *findin
     }
 }
 
+/* How far VIS may lie outside of the range that RAYS directions show: by how it varies along others, which
+ * grows with a region's width, that is with one over the root of how many there are; and by what lies between
+ * vertices, which does not shrink with them. */
+static double leak_bound(int regions)
+{
+    const double least = 0.2, at_regions = 192; /* review's */
+    return least * fmax(1, sqrt(at_regions / regions));
+}
+
 void tl_measure_leaks(const struct tl_checked *checked, struct tl_finding *finding)
 {
     tl_error error = {0};
     if (!checked->is_sampled || !has_points(checked))
         return;
     struct witness *witness = TL_NEW(struct witness);
+    finding->bound = leak_bound(checked->renderer->regions.count);
     witness->renderer = checked->renderer;
     witness->trace = tl_trace_create(&error);
     witness->values = tl_points_values(checked->renderer->points, &witness->stride);

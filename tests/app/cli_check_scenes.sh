@@ -5,7 +5,7 @@ set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 table=$(mktemp)
 trap 'rm -f "$table"' EXIT
-small="--size 64x64 --set light.regions=48 --set cloth.edge_m=0.05 --set cloth.settle_s=0.5 --quiet"
+small="--size 64x64 --set light.regions=48 --set cloth.edge_m=0.06 --set cloth.settle_s=0.3 --quiet"
 
 sound() { # NAME ARGUMENTS...
     local name=$1
@@ -16,11 +16,11 @@ sound() { # NAME ARGUMENTS...
 
 for scene in "$here"/../../config/scenes/*.yaml; do
     scene=$(basename "$scene" .yaml)
-    sound "scene $scene" "$scene" --frames 4 --every 3
+    sound "scene $scene" "$scene" --frames 3 --every 3
 done
 for preset in "$here"/../../config/presets/*.yaml; do
     preset=$(basename "$preset" .yaml)
-    sound "preset $preset" --preset "$preset" --frames 2 --every 2 --furnace
+    sound "preset $preset" gallery --preset "$preset" --frames 2 --every 2 --furnace
 done
 for solver in settle reference; do
     sound "solver $solver" skirt --set cloth.solver=$solver --frames 3 --every 3
