@@ -20,7 +20,9 @@ const struct tl_invariant tl_invariants[] = {
      "frames.h promises 1e-5; ten times that is a thousandth of a half float's step in the G-buffer", false,
      tl_measure_normals},
     {"surface.sides", "normals are the angle-weighted mean of their faces, on their side: 1 - cosine", 1e-4,
-     "0.8 degrees: single precision loses so much where the faces nearly cancel", false, tl_measure_sides},
+     "0.8 degrees: a place is rounded to 1e-7 m, which turns a face of a millimetre by 1e-4, and the mean of "
+     "faces that cancel to a hundredth by 1e-2",
+     false, tl_measure_sides},
     {"surface.tangents", "tangents are unit, at right angles to normals, with w 1 or -1: largest deviation",
      1e-4, "as surface.normals", false, tl_measure_tangents},
     {"surface.handed", "a tangent runs along u, and w is the UVs' handedness: vertices where no face agrees",
@@ -72,19 +74,19 @@ const struct tl_invariant tl_invariants[] = {
      "as furnace.albedo", true, tl_measure_furnace_shadowed},
     {"cloth.strain", "no edge is longer or shorter than cloth can be: largest strain", BY_SETTINGS,
      "half, or twice what the solver is told to keep; when put on 1, and later a quarter more than then; "
-     "what a "
-     "hand holds, it may stretch until the cloth is refused (TL_CLOTH_MOST_STRAIN)",
+     "what "
+     "a moving wearer drags, until it slips (TL_SNAG_STRAIN); what a hand or the wearer has caught, "
+     "until it is refused (TL_CLOTH_MOST_STRAIN)",
      false, tl_measure_strain},
     {"cloth.inside", "no particle is below the avatar's skin or the ground: deepest, metres", 1e-3,
      "a third of the distance that is kept; none is held inside, but a moving body's skin is followed in "
      "steps",
      false, tl_measure_inside},
     {"cloth.energy",
-     "a garment on which nothing works gains no energy: gain, in metres that it would be lifted by",
-     BY_SETTINGS,
-     "what is worn keeps no momentum, but a contact lifts it by the distance that it keeps at most, and the "
-     "preview by what its steps leave unbalanced",
-     false, tl_measure_energy},
+     "motion and height take no more than the least energy that there was since anything worked on the "
+     "garment: gain, in metres that it would be lifted by",
+     BY_SETTINGS, "a contact lifts what it meets by the distance that it keeps at most", false,
+     tl_measure_energy},
     {"cloth.momentum",
      "a garment that falls free of everything falls straight: sideways way of its centre, metres", 1e-5,
      "its own forces and even drag sum to nothing; single precision's positions leave less than a tenth of "

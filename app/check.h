@@ -15,15 +15,16 @@
 struct tl_checked_cloth {
     struct tl_cloth_report report;
     double strain_limit; /* of the solver; 0: none */
-    double step_lift_m;  /* by which its own steps may lift the garment */
     double kept_m;       /* the distance that contacts keep */
     double first_strain; /* the largest in frame 0; NaN: this is it */
     double weight_n;     /* newtons, of all of it */
-    /* Of the frames since nothing has worked on it but gravity; NaN: this is the first. */
+    /* Kinetic, elastic and potential, of the frames since nothing has worked on it but gravity; NaN: this is
+     * the first. */
     double least_energy_j;
     double allowed_speed; /* m/s: what its fall, its wearer and the wind can give it */
     bool is_driven;       /* a hand, a clip or the wind works on it */
     bool is_held;         /* the hand does */
+    bool is_dragged;      /* its wearer moves */
     /* How far its centre of mass has gone sideways since frame 0, where nothing touches or drives it; else
      * NaN. */
     double drift_m;

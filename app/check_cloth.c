@@ -1,6 +1,7 @@
 /* The cloth within its envelope. What is worn keeps no momentum, for its wearer and the ground take it: there
  * the energy is watched, which only something that works on the cloth may raise. */
 #include "app/check_measures.h"
+#include "cloth/snag.h"
 
 #include <math.h>
 
@@ -10,17 +11,23 @@
 #define WORN_STRAIN   1.0
 #define LATER         1.25 /* than when it was put on */
 
+/* Metres: what single precision leaves of places on an avatar. */
+#define ROUNDED_M 1e-6
+
 static double energy_of(const struct tl_cloth_report *report)
 {
     return report->kinetic_energy + report->elastic_energy + report->potential_energy;
 }
 
-/* A hand does not yield: it pulls a trouser leg through the leg in it. */
+/* A wearer that moves drags along what is between its parts, until that is caught and slips, once a frame.
+ * What is caught goes with an arm in the frame between; and a hand does not yield: it pulls a trouser leg
+ * through the leg in it. */
 static double strain_bound(const struct tl_checked_cloth *cloth)
 {
-    if (cloth->is_held)
+    if (cloth->is_held || cloth->report.caught_count > 0)
         return TL_CLOTH_MOST_STRAIN;
-    double kept = fmax(DRAPED_STRAIN, 2 * cloth->strain_limit);
+    double draped = cloth->is_dragged ? TL_SNAG_STRAIN : DRAPED_STRAIN;
+    double kept = fmax(draped, 2 * cloth->strain_limit);
     return isnan(cloth->first_strain) ? fmax(kept, WORN_STRAIN) : fmax(kept, LATER * cloth->first_strain);
 }
 
@@ -46,15 +53,19 @@ void tl_measure_inside(const struct tl_checked *checked, struct tl_finding *find
                      report->vertex_count);
 }
 
+/* Of the energy that there was at the least, all of it may come back as motion and height. What is strained
+ * now would take its part, which is left out: `preview` leaves its constraints unbalanced and strains the
+ * more the harder gravity and swing pull, for which they do not pay. */
 void tl_measure_energy(const struct tl_checked *checked, struct tl_finding *finding)
 {
     const struct tl_checked_cloth *cloth = checked->cloth;
     if (!cloth || cloth->is_driven || isnan(cloth->least_energy_j) || !(cloth->weight_n > 0))
         return;
-    finding->bound = fmax(cloth->kept_m, cloth->step_lift_m);
-    double gain_m = (energy_of(&cloth->report) - cloth->least_energy_j) / cloth->weight_n;
+    finding->bound = fmax(cloth->kept_m, ROUNDED_M);
+    double energy_j = cloth->report.kinetic_energy + cloth->report.potential_energy;
+    double gain_m = (energy_j - cloth->least_energy_j) / cloth->weight_n;
     tl_finding_add(finding, gain_m < 0 ? 0 : gain_m);
-    tl_finding_place(finding, "garment: %.4g J after %.4g J", energy_of(&cloth->report),
+    tl_finding_place(finding, "garment: %.4g J of motion and height after %.4g J of all", energy_j,
                      cloth->least_energy_j);
 }
 

@@ -50,8 +50,7 @@ static struct albedo *find_albedos(const tl_renderer *renderer, int width, int h
 
 void tl_measure_furnace(const struct tl_checked *checked, struct tl_finding *finding)
 {
-    /* With fewer samples than pixels none belongs to one pixel. */
-    if (!checked->white || checked->settings->image.scale < 1)
+    if (!checked->white)
         return;
     const tl_image *image = checked->white_image;
     struct albedo *albedos = find_albedos(checked->white, image->width, image->height);
@@ -66,7 +65,7 @@ void tl_measure_furnace(const struct tl_checked *checked, struct tl_finding *fin
 
 void tl_measure_furnace_shadowed(const struct tl_checked *checked, struct tl_finding *finding)
 {
-    if (!checked->white || !checked->white_shadowed || checked->settings->image.scale < 1)
+    if (!checked->white || !checked->white_shadowed)
         return;
     const tl_image *open = checked->white_image, *shadowed = checked->white_shadowed;
     for (int i = 0; i < 4 * open->width * open->height; i++) {

@@ -215,32 +215,19 @@ static double oracle_bound(const struct tl_light_params *light)
     return light->visibility == TL_VISIBILITY_VSM ? 0.33 : 0.2;
 }
 
-/* Methods that leave shadows out, or stand for them by one number, do not estimate what the oracle knows. */
-static bool is_comparable(const struct tl_light_params *light)
+/* Methods that leave shadows out, or stand for them by one number, do not estimate what the oracle knows; nor
+ * do pictures of other things than light. */
+static bool is_comparable(const struct tl_render_settings *settings)
 {
-    return light->method == TL_METHOD_PEM;
+    return settings->light.method == TL_METHOD_PEM && settings->image.view == TL_VIEW_LIGHT;
 }
 
-void tl_measure_oracle(const struct tl_checked *checked, struct tl_finding *finding)
+/* Traces the pixels chosen, and compares. */
+static void consult(struct oracle *oracle, struct tl_finding *finding)
 {
-    if (!checked->is_sampled || !is_comparable(&checked->settings->light))
-        return;
-    const tl_renderer *renderer = checked->renderer;
-    const struct tl_image_params *params = &checked->settings->image;
-    struct oracle *oracle = TL_NEW(struct oracle);
-    *oracle = (struct oracle){.checked = checked,
-                              .view = tl_view_make(&checked->frame->camera, params->width, params->height),
-                              .width = params->width,
-                              .height = params->height,
-                              .side = params->supersample};
-    finding->bound = oracle_bound(&checked->settings->light) + checked->planned_error;
-    choose_pixels(oracle);
-    const struct tl_ground *ground = params->ground ? &renderer->ground : NULL;
+    const struct tl_checked *checked = oracle->checked;
+    const struct tl_ground *ground = checked->settings->image.ground ? &checked->renderer->ground : NULL;
     tl_error error = {0};
-    if (oracle->count == 0) {
-        free(oracle);
-        return;
-    }
     if (tl_reference_scene_make(checked->frame, checked->settings, ground, &oracle->scene, &error)) {
         trace_pixels(oracle);
         compare_pixels(oracle, finding);
@@ -249,5 +236,22 @@ void tl_measure_oracle(const struct tl_checked *checked, struct tl_finding *find
         tl_finding_add(finding, NAN);
         tl_finding_place(finding, "%s", error.message);
     }
+}
+
+void tl_measure_oracle(const struct tl_checked *checked, struct tl_finding *finding)
+{
+    if (!checked->is_sampled || !is_comparable(checked->settings))
+        return;
+    const struct tl_image_params *image = &checked->settings->image;
+    struct oracle *oracle = TL_NEW(struct oracle);
+    *oracle = (struct oracle){.checked = checked,
+                              .view = tl_view_make(&checked->frame->camera, image->width, image->height),
+                              .width = image->width,
+                              .height = image->height,
+                              .side = image->supersample};
+    finding->bound = oracle_bound(&checked->settings->light) + checked->planned_error;
+    choose_pixels(oracle);
+    if (oracle->count > 0)
+        consult(oracle, finding);
     free(oracle);
 }

@@ -1,5 +1,6 @@
 #include "app/check_run.h"
 
+#include "app/check_watch.h"
 #include "app/cost.h"
 #include "app/motion.h"
 #include "app/pace.h"
@@ -8,15 +9,9 @@
 #include "config/log.h"
 #include "config/memory.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* The hand of app/motion.c moves no faster. */
-#define HAND_SPEED 1.0
-/* A whip's end is faster than the hand that swings it. */
-#define WHIP 3.0
 
 /* Renderers beside the one that is looked at, made when they are first needed. */
 struct beside {
@@ -36,10 +31,7 @@ struct run {
     struct tl_levels *levels; /* [frames] */
     struct tl_pace_choice choice;
     double chosen_ms, moved_ms, drawn_ms; /* on the wall, of this frame: the choice, the cloth, the picture */
-    double least_energy_j, first_strain;  /* NaN: not known yet */
-    double centre[2];                     /* x and z of the garment's centre of mass in frame 0 */
-    vec3s *wearer;                        /* positions one frame ago; NULL: none */
-    double weight_n;
+    struct tl_watch watch;
     struct tl_progress progress;
     int steps; /* all that progress counts */
 };
@@ -85,128 +77,6 @@ static bool draw_with(tl_renderer **renderer, const struct run *run, const tl_fr
            tl_renderer_read(*renderer, image, error);
 }
 
-/* ---- The cloth ---- */
-
-static double area_of(const tl_mesh *mesh, const uint32_t corners[3])
-{
-    vec3s origin = mesh->positions[corners[0]];
-    vec3s a = glms_vec3_sub(mesh->positions[corners[1]], origin);
-    vec3s b = glms_vec3_sub(mesh->positions[corners[2]], origin);
-    return 0.5 * (double)glms_vec3_norm(glms_vec3_cross(a, b));
-}
-
-/* Newtons, of the garment as it was cut. */
-static double weigh(const struct run *run)
-{
-    const tl_model *model = tl_session_garment(run->stage->session);
-    double area = 0;
-    for (size_t i = 0; model && i + 2 < model->mesh.index_count; i += 3)
-        area += area_of(&model->mesh, &model->mesh.indices[i]);
-    const struct tl_settings *settings = &run->stage->settings;
-    return area * settings->fabric.areal_density * settings->cloth.gravity;
-}
-
-/* What a fall from the highest point of all to the lowest gives. */
-static double fall_speed(const tl_frame *frame, double gravity)
-{
-    double lowest = DBL_MAX, highest = -DBL_MAX;
-    for (size_t s = 0; s < frame->surface_count; s++)
-        for (size_t v = 0; v < frame->surfaces[s].vertex_count; v++) {
-            lowest = fmin(lowest, (double)frame->surfaces[s].positions[v].y);
-            highest = fmax(highest, (double)frame->surfaces[s].positions[v].y);
-        }
-    return highest > lowest ? sqrt(2 * gravity * (highest - lowest)) : 0;
-}
-
-/* The fastest vertex of the wearer since the last frame, whose positions are then those of this one. */
-static double wearer_speed(struct run *run, const tl_frame *frame)
-{
-    double farthest = 0;
-    for (size_t s = 0; s < frame->surface_count; s++) {
-        const tl_surface *surface = &frame->surfaces[s];
-        if (strcmp(surface->name, "avatar") != 0)
-            continue;
-        size_t bytes = surface->vertex_count * sizeof(vec3s);
-        for (size_t v = 0; run->wearer && v < surface->vertex_count; v++)
-            farthest = fmax(farthest, (double)glms_vec3_distance(surface->positions[v], run->wearer[v]));
-        run->wearer = tl_resize(run->wearer, bytes, 1);
-        memcpy(run->wearer, surface->positions, bytes);
-    }
-    return farthest * run->stage->settings.cloth.frame_rate;
-}
-
-/* Where the garment's centre of mass is on the ground plan, each triangle weighed as it was cut. */
-static void find_centre(const struct run *run, const tl_frame *frame, double centre[2])
-{
-    const tl_mesh *cut = &tl_session_garment(run->stage->session)->mesh;
-    const tl_surface *garment = &frame->surfaces[frame->surface_count - 1];
-    double weight = 0, sum[2] = {0};
-    for (size_t i = 0; i + 2 < cut->index_count; i += 3) {
-        const uint32_t *at = &cut->indices[i];
-        double area = area_of(cut, at);
-        weight += 3 * area;
-        for (int c = 0; c < 3; c++) {
-            sum[0] += area * (double)garment->positions[at[c]].x;
-            sum[1] += area * (double)garment->positions[at[c]].z;
-        }
-    }
-    centre[0] = sum[0] / weight;
-    centre[1] = sum[1] / weight;
-}
-
-/* Metres, sideways since frame 0; NaN where anything may hold or push it. */
-static double measure_drift(struct run *run, const tl_frame *frame, int number, bool is_driven)
-{
-    const struct tl_settings *settings = &run->stage->settings;
-    bool is_free = frame->surface_count == 1 && !settings->image.ground && !(settings->cloth.pin_above_m > 0);
-    double centre[2];
-    if (!is_free || is_driven || (run->motion.pulls && !run->params->still))
-        return NAN;
-    find_centre(run, frame, centre);
-    if (number == 0)
-        memcpy(run->centre, centre, sizeof centre);
-    return hypot(centre[0] - run->centre[0], centre[1] - run->centre[1]);
-}
-
-/* `preview` leaves its constraints unbalanced, and what they hold comes and goes: the scene review is lifted
- * by 6 mm in steps of 1/1800 s as its hem swings out, by 0.2 mm in a third of them, and not at all by
- * `settle`. */
-static double step_lift(const struct tl_settings *settings, const struct tl_cloth_report *report)
-{
-    const double most_m = 1e-2, at_step_s = 1.0 / 1800, least_m = 1e-3;
-    double steps = report->substep_s / at_step_s;
-    return settings->cloth.solver == TL_CLOTH_PREVIEW ? fmax(most_m * steps * steps, least_m) : least_m;
-}
-
-static struct tl_checked_cloth watch_cloth(struct run *run, const tl_frame *frame, int number)
-{
-    const struct tl_settings *settings = &run->stage->settings;
-    const float *wind = settings->cloth.wind;
-    double blows = sqrt((double)(wind[0] * wind[0] + wind[1] * wind[1] + wind[2] * wind[2]));
-    struct tl_checked_cloth cloth = {
-        .report = tl_session_report(run->stage->session),
-        .strain_limit = settings->cloth.solver == TL_CLOTH_PREVIEW ? settings->cloth.strain_limit : 0,
-        .weight_n = run->weight_n,
-        .kept_m = settings->fabric.thickness_m,
-        .first_strain = run->first_strain,
-        .least_energy_j = run->least_energy_j,
-        .is_held = is_swung(run, number),
-        /* Other steps of the solver are another stiffness, too. */
-        .is_driven =
-            run->pace || is_swung(run, number) || tl_session_plays_clip(run->stage->session) || blows > 0};
-    cloth.step_lift_m = step_lift(settings, &cloth.report);
-    cloth.drift_m = measure_drift(run, frame, number, cloth.is_driven);
-    cloth.allowed_speed = WHIP * (fall_speed(frame, settings->cloth.gravity) + wearer_speed(run, frame) +
-                                  blows + (run->motion.pulls ? HAND_SPEED : 0));
-    double energy_j =
-        cloth.report.kinetic_energy + cloth.report.elastic_energy + cloth.report.potential_energy;
-    if (number == 0)
-        run->first_strain = cloth.report.max_strain;
-    run->least_energy_j =
-        cloth.is_driven ? NAN : fmin(run->least_energy_j, energy_j); /* fmin of a NaN: the other */
-    return cloth;
-}
-
 /* ---- One frame ---- */
 
 static void release_images(tl_image *images, size_t count)
@@ -216,6 +86,20 @@ static void release_images(tl_image *images, size_t count)
 }
 
 enum { DRAWN, FRESH, WHITE, WHITE_SHADOWED, IMAGES };
+
+/* Where an image is spread out from fewer samples than it has pixels, the samples themselves are looked at:
+ * a filter that sharpens says nothing of light. */
+static void show_samples(struct tl_image_params *image)
+{
+    int width, height;
+    if (image->scale >= 1)
+        return;
+    tl_image_samples(image, &width, &height);
+    image->width = width;
+    image->height = height;
+    image->supersample = 1;
+    image->scale = 1;
+}
 
 static bool draw_white(struct run *run, const tl_frame *frame, tl_image images[IMAGES],
                        struct tl_checked *checked, tl_error *error)
@@ -228,6 +112,8 @@ static bool draw_white(struct run *run, const tl_frame *frame, tl_image images[I
     lit.environment = &beside->light;
     lit.environment_revision = 1;
     lit.lamp_count = 0;
+    settings.image.view = TL_VIEW_LIGHT;
+    show_samples(&settings.image);
     if (!draw_with(&beside->white_shadowed, run, &lit, &settings, &images[WHITE_SHADOWED], error))
         return false;
     settings.light.method = TL_METHOD_UNSHADOWED;
@@ -291,6 +177,7 @@ static bool note(struct run *run, const struct tl_checked *checked, tl_error *er
         return true;
     outcome->broken = broken;
     outcome->broken_frame = checked->number;
+    outcome->found = found;
     if (!run->params->keep)
         return true;
     outcome->is_kept = true;
@@ -315,7 +202,8 @@ static bool check_frame(struct run *run, int number, tl_error *error)
                                  .least_ms = run->choice.least_ms,
                                  .planned_error = run->choice.error};
     if (tl_session_cloth(run->stage->session)) {
-        cloth = watch_cloth(run, &frame, number);
+        /* Other steps of the solver are another stiffness, too. */
+        cloth = tl_watch_look(&run->watch, &frame, is_swung(run, number), run->pace);
         checked.cloth = &cloth;
     }
     bool done = !is_finite(&frame) || prepare(run, &frame, images, &checked, error);
@@ -336,7 +224,6 @@ static bool tell(struct run *run, int step, tl_error *error)
 static void begin(struct run *run)
 {
     tl_motion_begin(&run->motion, run->stage->session);
-    run->least_energy_j = run->first_strain = NAN;
 }
 
 static void choose(struct run *run, int number)
@@ -419,7 +306,7 @@ static void release(struct run *run)
     tl_pace_destroy(&run->pace);
     free(run->levels);
     free(run->hashes);
-    free(run->wearer);
+    tl_watch_release(&run->watch);
 }
 
 bool tl_check_play(struct tl_stage *stage, const struct tl_check_params *params, struct tl_check_outcome *out,
@@ -435,7 +322,7 @@ bool tl_check_play(struct tl_stage *stage, const struct tl_check_params *params,
                       .progress = tl_progress_begin("checking")};
     int again = params->frames < 20 ? (params->frames + 1) / 2 : params->frames / 10;
     run.steps = params->frames + again;
-    run.weight_n = weigh(&run);
+    run.watch = tl_watch_begin(stage->session, &stage->settings);
     bool done = play(&run, error);
     if (done && run.played == params->frames)
         done = play_again(&run, again, error);

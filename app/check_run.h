@@ -23,10 +23,12 @@ struct tl_check_outcome {
     uint64_t hash; /* of all frames: positions and images */
     int broken;    /* the invariant that broke first; -1: none */
     int broken_frame;
+    struct tl_finding found; /* there */
     bool is_kept;
 };
 
-/* False only where nothing can be said: bad input, no device, Ctrl-C. */
+/* False only where it cannot go on: bad input, no device, cloth that left its envelope, Ctrl-C. What was
+ * found until then stands in `out`. */
 bool tl_check_play(struct tl_stage *stage, const struct tl_check_params *params, struct tl_check_outcome *out,
                    tl_error *error);
 

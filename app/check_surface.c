@@ -195,7 +195,7 @@ static struct corner corner_of(const tl_surface *surface, size_t triangle, int f
 #define NO_AREA 1e-12
 
 /* Where the faces about a vertex cancel to less than this part of their angles, their mean has no side
- * either. */
+ * either; nor has that of directions in them. */
 #define NO_MEAN 1e-2
 
 struct fan {
@@ -259,7 +259,7 @@ static int opinion_of(const tl_surface *surface, const struct corner *corner, si
         return SAYS_NOTHING;
     double cosine = dot(level, tangent_of(surface, vertex)) * (corner->uv_area > 0 ? 1 : -1);
     bool handed = (surface->tangents[vertex].w > 0) == (corner->uv_area < 0);
-    return cosine > 0 && handed ? AGREES : DISAGREES;
+    return cosine > -NO_MEAN * length(level) && handed ? AGREES : DISAGREES;
 }
 
 /* Corners by the vertex group that they belong to: those of group g are items[first[g]] to items[first[g +

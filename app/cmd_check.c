@@ -15,6 +15,11 @@
 
 #define FRAMES_MAX 1000000
 
+static bool is_broken(const struct tl_verdict *verdict)
+{
+    return verdict->finding.is_measured && !verdict->ok;
+}
+
 static void print_table(const struct tl_check_outcome *outcome)
 {
     printf("%-20s %-4s %12s %10s %6s  %s\n", "invariant", "", "worst", "bound", "frame", "where");
@@ -26,6 +31,10 @@ static void print_table(const struct tl_check_outcome *outcome)
             printf("%-20s %-4s %12.4g %10.4g %6d  %s\n", tl_invariants[i].name, verdict->ok ? "ok" : "FAIL",
                    verdict->finding.worst, verdict->finding.bound, verdict->frame, verdict->finding.place);
     }
+    for (size_t i = 0; i < tl_invariant_count; i++)
+        if (is_broken(&outcome->verdicts.items[i]))
+            printf("\n%s: %s; its bound: %s\n", tl_invariants[i].name, tl_invariants[i].says,
+                   tl_invariants[i].why);
     printf("\n%d frames, %d invariants broken, hash %016" PRIx64 "\n", outcome->verdicts.frames,
            tl_verdicts_failed(&outcome->verdicts), outcome->hash);
 }
@@ -64,7 +73,7 @@ static bool judge(const struct tl_check_outcome *outcome, const char *keep, tl_e
     if (outcome->broken < 0)
         return true;
     const char *name = tl_invariants[outcome->broken].name;
-    const char *place = outcome->verdicts.items[outcome->broken].finding.place;
+    const char *place = outcome->found.place;
     if (outcome->is_kept)
         return tl_fail(error, TL_UNSTABLE,
                        "check: %s breaks at frame %d (%s): `toile view %s/scene.yaml` opens it, "
@@ -90,9 +99,10 @@ bool tl_command_check(const struct tl_arguments *arguments, tl_error *error)
     if ((params.keep && !tl_folder_make(params.keep, error)) || !tl_stage_create(&stage, arguments, error))
         return false;
     bool done = tl_check_play(&stage, &params, &outcome, error);
-    if (done && arguments->json)
+    bool has_found = outcome.verdicts.frames > 0; /* even where it could not go on */
+    if (has_found && arguments->json)
         print_json(&outcome, params.keep);
-    else if (done)
+    else if (has_found)
         print_table(&outcome);
     tl_stage_release(&stage);
     return done && judge(&outcome, params.keep, error);

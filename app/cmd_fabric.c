@@ -1,5 +1,5 @@
 /* toile fabric: the maps that a height map gives: heights in metres, normals, offsets, moments, gloss,
- * horizons. */
+ * horizons, cones. */
 #include "app/commands.h"
 #include "app/height_picture.h"
 #include "assets/exr.h"
@@ -7,6 +7,7 @@
 #include "config/log.h"
 #include "config/memory.h"
 #include "render/detail/bake.h"
+#include "render/detail/cones.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -103,6 +104,18 @@ static bool save_horizons(const struct baking *baking, tl_error *error)
     return saved;
 }
 
+/* Red: of the front, green: of the back. */
+static bool save_cones(const struct baking *baking, tl_error *error)
+{
+    tl_image cones = tl_bake_cones(&baking->field, 1),
+             picture = tl_image_create(cones.width, cones.height, 3, TL_IMAGE_U8);
+    picture.linear = true;
+    for (size_t i = 0; i < (size_t)cones.width * (size_t)cones.height; i++)
+        memcpy(tl_image_bytes(&picture) + 3 * i, tl_image_bytes(&cones) + 2 * i, 2);
+    tl_image_release(&cones);
+    return save_png(baking, "cones", &picture, error);
+}
+
 static bool save_heights(const struct baking *baking, tl_error *error)
 {
     static const char *const names[] = {"Y"};
@@ -131,7 +144,7 @@ static bool save_fabric(const struct baking *baking, tl_error *error)
         fprintf(writer.stream,
                 "# Baked by toile fabric; --fabric takes this file.\n"
                 "# Beside it, for other programs: normal.png, offset.exr, moments.exr, gloss.png, "
-                "horizon_*.png.\n"
+                "horizon_*.png, cones.png.\n"
                 "weave:\n"
                 "  picture: height.exr # metres; a repeat of %g x %g mm\n"
                 "  picture_mm: %g\n"
@@ -173,7 +186,8 @@ bool tl_command_fabric(const struct tl_arguments *arguments, tl_error *error)
     begin(&baking, &picture);
     tl_image_release(&picture);
     bool done = tl_folder_make(arguments->output, error) && save_normals(&baking, error) &&
-                save_horizons(&baking, error) && save_heights(&baking, error) && save_fabric(&baking, error);
+                save_horizons(&baking, error) && save_cones(&baking, error) && save_heights(&baking, error) &&
+                save_fabric(&baking, error);
     if (done)
         tl_info("%s: %g x %g mm a repeat, %g mm deep, slopes to %.3g", arguments->output,
                 1e3 * (double)baking.width_m, 1e3 * (double)baking.height_m,

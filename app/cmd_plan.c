@@ -56,7 +56,7 @@ static void print_budget(const struct budgeted *budgeted)
         const struct tl_pace_step *step = &budgeted->steps[k];
         printf("%-8s %2d of %d %8.4g  ", tl_knob_names[k], step->level, step->level_count - 1, step->value);
         if (step->level > 0)
-            printf("%+.1f ms, %+.2g %% of error\n", step->ms, -100 * step->error);
+            printf("%+.1f ms, %+.2g of FLIP\n", step->ms, -step->error);
         else
             printf("%s\n", step->level_count > 1 ? "as asked for" : "not of this scene");
     }

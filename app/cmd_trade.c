@@ -71,8 +71,9 @@ static bool trade_cloth(const struct tl_arguments *arguments, tl_error *error)
 
 bool tl_command_trade(const struct tl_arguments *arguments, tl_error *error)
 {
-    static const struct tl_trade_axis *const axes[] = {
-        &tl_trade_light, &tl_trade_resolution, &tl_trade_detail, &tl_trade_shading, &tl_trade_overall};
+    static const struct tl_trade_axis *const axes[] = {&tl_trade_light,  &tl_trade_resolution,
+                                                       &tl_trade_detail, &tl_trade_shading,
+                                                       &tl_trade_levels, &tl_trade_overall};
     const char *name = arguments->axis ? arguments->axis : "overall";
     bool cloth = strcmp(name, "cloth") == 0;
     const struct tl_trade_axis *axis = NULL;
@@ -80,8 +81,9 @@ bool tl_command_trade(const struct tl_arguments *arguments, tl_error *error)
         if (strcmp(axes[i]->name, name) == 0)
             axis = axes[i];
     if (!axis && !cloth)
-        return tl_fail(error, TL_USAGE,
-                       "--axis: \"%s\": expected overall, light, resolution, detail, shading or cloth", name);
+        return tl_fail(
+            error, TL_USAGE,
+            "--axis: \"%s\": expected overall, light, resolution, detail, shading, levels or cloth", name);
     if (!arguments->output)
         return tl_fail(error, TL_USAGE, "trade: no folder named: add -o FOLDER");
     return tl_folder_make(arguments->output, error) &&

@@ -131,6 +131,7 @@ static bool run(struct tl_review *review, int max_frames, tl_error *error)
         tl_review_listen(review);
         if (!is_minimised(review) && !live(review, max_frames > 0, error))
             return false;
+        tl_review_give_back(review);
     }
     return true;
 }
@@ -225,7 +226,9 @@ static void close_review(struct tl_review *review)
     for (size_t i = 0; i < review->environment_count; i++)
         free(review->environments[i]);
     free(review->environments);
-    free(review->dropped);
+    while (review->dropped)
+        tl_review_forget_dropped(review);
+    free(review->waiting);
     free(review->title);
     free(review->scene_file);
     free(review->views_file);

@@ -32,7 +32,8 @@ static const struct tl_command commands[] = {
      "breaks.",
      TL_FLAGS_SCENE | TL_FLAGS_JSON | TL_FLAGS_CHECK | TL_FLAGS_BUDGET, tl_command_check},
     {"trade",
-     "trade [SCENE] -o FOLDER [--axis overall|light|resolution|detail|shading|cloth] [--quick] [OPTIONS]",
+     "trade [SCENE] -o FOLDER [--axis overall|light|resolution|detail|shading|levels|cloth] [--quick] "
+     "[OPTIONS]",
      "Measures error against time over many choices of settings: FOLDER/trade.csv and report.html.",
      TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_AXIS | TL_FLAGS_QUICK, tl_command_trade},
     {"stability", "stability [light|cloth|detail|shading] [--json] [--quick] [-o FOLDER] [OPTIONS]",

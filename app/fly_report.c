@@ -84,7 +84,7 @@ static void print_tiles(const struct tl_flight_account *account, FILE *out)
     add_tile(&tiles, "99 % of frames take at most", 1, figures->p99_ms, " ms");
     add_tile(&tiles, "of it for the cloth (median)", 1, figures->cloth_ms, " ms");
     add_tile(&tiles, "off: predicted against measured", 1, 100 * figures->prediction_error, " %");
-    add_tile(&tiles, "relative error that levels add, estimated", 1, 100 * figures->estimated_error, " %");
+    add_tile(&tiles, "mean FLIP that levels add, estimated", 3, figures->estimated_error, "");
     add_tile(&tiles, "mean FLIP against the oracle", 3, figures->flip_mean, "");
     add_tile(&tiles, "relative RMSE against the oracle", 1, 100 * figures->rel_rmse, " %");
     add_tile(&tiles, "held by the renderer", 0, (double)figures->memory_bytes / MEBIBYTE, " MiB");

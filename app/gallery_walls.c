@@ -493,7 +493,9 @@ const struct tl_gallery_wall tl_gallery_walls[] = {
      WALL(c5)},
     {.name = "c6",
      .heading = "C6  Relief by number of steps",
-     .text = "A linear march, then halvings of the last step. Exact is 256 steps.",
+     .text =
+         "From cone to cone, each so wide that a ray goes under the field once at most before it leaves it; "
+         "then halvings of the last step. Exact is 256 steps.",
      .solid = "torus",
      .base = {LAMPLIT, COARSE, "detail.mode=relief"},
      .exact = {"detail.steps=256", "detail.refine=8"},

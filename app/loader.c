@@ -15,6 +15,7 @@ struct tl_loader {
     bool runs; /* the thread has to be joined */
     enum tl_load kind;
     struct tl_settings settings;
+    struct tl_load_lights lights;
     int threads;
     void (*wake)(void);
     atomic_bool stops, is_done;
@@ -22,8 +23,7 @@ struct tl_loader {
     struct tl_load_progress progress;
 
     /* The thread's until is_done. */
-    tl_session *session;
-    struct tl_moving_light light;
+    struct tl_loaded loaded;
     bool made;
     tl_error error;
 };
@@ -37,6 +37,19 @@ static void observe(void *user, const char *what, double share)
     pthread_mutex_unlock(&loader->guard);
 }
 
+static void prepare(tl_loader *loader)
+{
+    tl_session *session = loader->loaded.session;
+    const tl_frame frame = session ? tl_session_frame(session) : (tl_frame){0};
+    for (int i = 0; i < loader->lights.count && !tl_interrupted(); i++) {
+        struct tl_prepared_request request = loader->lights.of[i];
+        request.environment = session ? frame.environment : &loader->loaded.light.environment;
+        if (request.exponents == 0)
+            request.exponents = tl_prepared_exponents(&frame, &request.settings);
+        loader->loaded.prepared[i] = tl_prepared_make(&request);
+    }
+}
+
 static void *make(void *argument)
 {
     tl_loader *loader = argument;
@@ -45,23 +58,26 @@ static void *make(void *argument)
     if (loader->threads > 0)
         omp_set_num_threads(loader->threads); /* of this thread's loops only */
     if (loader->kind == TL_LOAD_SCENE) {
-        loader->session = tl_session_create(&loader->settings, &loader->error);
-        loader->made = loader->session != NULL;
+        loader->loaded.session = tl_session_create(&loader->settings, &loader->error);
+        loader->made = loader->loaded.session != NULL;
     } else {
         const char *name = loader->settings.scene.environment;
-        loader->made = tl_moving_light_open(&loader->light, name, 0, &loader->error);
+        loader->made = tl_moving_light_open(&loader->loaded.light, name, 0, &loader->error);
     }
+    if (loader->made)
+        prepare(loader);
     atomic_store(&loader->is_done, true);
     loader->wake();
     return NULL;
 }
 
-tl_loader *tl_loader_start(enum tl_load kind, const struct tl_settings *settings, int threads,
-                           void (*wake)(void))
+tl_loader *tl_loader_start(enum tl_load kind, const struct tl_settings *settings,
+                           const struct tl_load_lights *lights, int threads, void (*wake)(void))
 {
     tl_loader *loader = TL_NEW(tl_loader);
     loader->kind = kind;
     loader->settings = *settings;
+    loader->lights = *lights;
     loader->threads = threads;
     loader->wake = wake;
     pthread_mutex_init(&loader->guard, NULL);
@@ -103,14 +119,20 @@ struct tl_load_progress tl_loader_progress(tl_loader *loader)
     return progress;
 }
 
-bool tl_loader_take(tl_loader **handle, tl_session **session, struct tl_moving_light *light, tl_error *error)
+void tl_loaded_release(struct tl_loaded *loaded)
+{
+    tl_session_destroy(&loaded->session);
+    tl_moving_light_release(&loaded->light);
+    for (int i = 0; i < TL_LOADER_LIGHTS_MAX; i++)
+        tl_prepared_destroy(&loaded->prepared[i]);
+}
+
+bool tl_loader_take(tl_loader **handle, struct tl_loaded *out, tl_error *error)
 {
     tl_loader *loader = *handle;
     join(loader);
-    *session = loader->session;
-    *light = loader->light;
-    loader->session = NULL;
-    loader->light = (struct tl_moving_light){0};
+    *out = loader->loaded;
+    loader->loaded = (struct tl_loaded){0};
     bool made = loader->made;
     if (!made)
         *error = loader->error;
@@ -125,8 +147,7 @@ void tl_loader_cancel(tl_loader **handle)
         return;
     atomic_store(&loader->stops, true);
     join(loader);
-    tl_session_destroy(&loader->session);
-    tl_moving_light_release(&loader->light);
+    tl_loaded_release(&loader->loaded);
     pthread_mutex_destroy(&loader->guard);
     free(loader);
     *handle = NULL;

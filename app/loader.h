@@ -1,4 +1,5 @@
-/* A scene, or an environment, made ready on a thread of its own, so that the window goes on meanwhile.
+/* A scene, or an environment, made ready on a thread of its own, so that the window goes on meanwhile; with
+ * all that renderers make of its light.
  *
  * Nothing of it touches GL. Ownership: a loader owns what it makes until it is taken. Threads: these calls
  * belong to one thread, the window's. */
@@ -6,6 +7,7 @@
 #define TOILE_APP_LOADER_H
 
 #include "app/session.h"
+#include "render/frame/prepared.h"
 
 typedef struct tl_loader tl_loader;
 
@@ -16,17 +18,34 @@ struct tl_load_progress {
     double share;  /* [0, 1] */
 };
 
+#define TL_LOADER_LIGHTS_MAX 2 /* renderers: two looks may be compared */
+
+/* What light is made ready for, by renderer: requests without an environment. Exponents 0: those of the scene
+ * that is loaded. */
+struct tl_load_lights {
+    int count;
+    struct tl_prepared_request of[TL_LOADER_LIGHTS_MAX];
+};
+
+/* What has been made; what the loader did not make is null or zero. */
+struct tl_loaded {
+    tl_session *session;
+    struct tl_moving_light light;
+    tl_prepared *prepared[TL_LOADER_LIGHTS_MAX]; /* in the order of the requests */
+};
+void tl_loaded_release(struct tl_loaded *loaded);
+
 /* `wake` is called, on the loader's thread, when it has finished. `threads`: that its loops may use, 0: all.
  */
-tl_loader *tl_loader_start(enum tl_load kind, const struct tl_settings *settings, int threads,
-                           void (*wake)(void));
+tl_loader *tl_loader_start(enum tl_load kind, const struct tl_settings *settings,
+                           const struct tl_load_lights *lights, int threads, void (*wake)(void));
 enum tl_load tl_loader_kind(const tl_loader *loader);
 const struct tl_settings *tl_loader_settings(const tl_loader *loader); /* that it was started with */
 bool tl_loader_is_done(const tl_loader *loader);
 struct tl_load_progress tl_loader_progress(tl_loader *loader);
 
 /* Ends a loader that is done: hands over what it has made, or fails as the making did. */
-bool tl_loader_take(tl_loader **handle, tl_session **session, struct tl_moving_light *light, tl_error *error);
+bool tl_loader_take(tl_loader **handle, struct tl_loaded *out, tl_error *error);
 /* Asks it to stop, waits until it has, and forgets what it made; null is fine. */
 void tl_loader_cancel(tl_loader **handle);
 

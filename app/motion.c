@@ -9,10 +9,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The swing of the hand. Chosen so that the built-in dress moves by about 2 mm a frame on average. */
-#define SWING_M  0.16
-#define SWING_HZ 0.8
-#define LIFT_M   0.06
+/* The swing of the hand. Chosen so that the built-in dress moves by about 2 mm a frame on average; and what
+ * is small, a swatch of some centimetres, swings by a part of its size. */
+#define SWING_M     0.16f
+#define SWING_SHARE 0.25f
+#define SWING_HZ    0.8
+#define LIFT_SHARE  0.375 /* of the swing */
 
 static const tl_surface *find_surface(const tl_frame *frame, const char *name)
 {
@@ -40,6 +42,17 @@ static uint32_t hem_vertex(const tl_surface *garment, vec3s eye)
     return best;
 }
 
+/* The longest side of the box about it. */
+static float size_of(const tl_surface *garment)
+{
+    vec3s box[2] = {garment->positions[0], garment->positions[0]};
+    for (size_t i = 1; i < garment->vertex_count; i++) {
+        box[0] = glms_vec3_minv(box[0], garment->positions[i]);
+        box[1] = glms_vec3_maxv(box[1], garment->positions[i]);
+    }
+    return glms_vec3_max(glms_vec3_sub(box[1], box[0]));
+}
+
 void tl_motion_begin(struct tl_motion *motion, tl_session *session)
 {
     tl_frame frame = tl_session_frame(session);
@@ -49,6 +62,7 @@ void tl_motion_begin(struct tl_motion *motion, tl_session *session)
     if (!motion->pulls)
         return;
     motion->vertex = hem_vertex(garment, frame.camera.eye);
+    motion->swing_m = fminf(SWING_M, SWING_SHARE * size_of(garment));
     motion->home = garment->positions[motion->vertex];
     vec3s towards = glms_vec3_sub(frame.camera.target, frame.camera.eye);
     motion->across = glms_vec3_normalize((vec3s){{-towards.z, 0, towards.x}});
@@ -58,8 +72,8 @@ void tl_motion_begin(struct tl_motion *motion, tl_session *session)
 static vec3s hand_at(const struct tl_motion *motion, double time_s)
 {
     double phase = 2 * M_PI * SWING_HZ * time_s;
-    vec3s hand = glms_vec3_muladds(motion->across, (float)(SWING_M * sin(phase)), motion->home);
-    hand.y += (float)(LIFT_M * 0.5 * (1 - cos(2 * phase)));
+    vec3s hand = glms_vec3_muladds(motion->across, motion->swing_m * (float)sin(phase), motion->home);
+    hand.y += motion->swing_m * (float)(LIFT_SHARE * 0.5 * (1 - cos(2 * phase)));
     return hand;
 }
 

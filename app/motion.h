@@ -17,6 +17,7 @@ struct tl_motion {
     bool pulls;          /* there is cloth, and no clip that moves it */
     uint32_t vertex;     /* render vertex of the garment, at its hem */
     vec3s home, across;  /* where it was; the unit direction of the swing */
+    float swing_m;       /* how far to either side */
 };
 
 /* From the session's current state, which is taken as frame 0 of the motion. */

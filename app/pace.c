@@ -11,60 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const tl_knob_names[] = {"refresh", "regions", "relief", "cloth", "scale", NULL};
-
-#define REFRESH_LEVELS 3
-#define REGIONS_LEVELS 4
-#define RELIEF_LEVELS  3
-#define CLOTH_LEVELS   3
-#define SCALE_LEVELS   13
-
-#define REGIONS_MIN  24
-#define REFRESH_MIN  2
-#define RELIEF_MIN   8
-#define SUBSTEPS_MIN 8    /* of preview, a frame */
-#define SCALE_MIN    0.1f /* of the option */
-
-/* A fourth root of two a level: the samples halve with every other. */
-static const float scales[SCALE_LEVELS] = {1,      0.841f, 0.707f, 0.595f, 0.5f,   0.42f, 0.354f,
-                                           0.297f, 0.25f,  0.21f,  0.177f, 0.149f, 0.125f};
-
-/* Relative RMSE against level 0 in motion, by
- *     toile render --preset review --size 256x256 --set cloth.edge_m=0.03 --set cloth.wind=3,0,1
- *         --set cloth.gust=0.8 --frames 24:32 -o L.exr [--set light.refresh=12 ...]
- * and `toile compare` of frames 28 and 32, the mean of both. Of refresh 1.38 and 1.23 %: other jitter is most
- * of it, and no more was seen at a quarter. Relief: of denim at 0.4 m, --set detail.mode=relief, steps 16.
- * Cloth: of the next frame from the same state, for drapes that part for good are no error that anybody sees.
- */
-static const struct tl_budget_knob errors[TL_KNOB_COUNT] = {
-    [TL_KNOB_REFRESH] = {REFRESH_LEVELS, {0, 0.0138, 0.014}},
-    [TL_KNOB_REGIONS] = {REGIONS_LEVELS, {0, 0.021, 0.033, 0.055}},
-    [TL_KNOB_RELIEF] = {RELIEF_LEVELS, {0, 1e-6, 1.1e-6}},
-    [TL_KNOB_CLOTH] = {CLOTH_LEVELS, {0, 0.023, 0.03654}},
-    [TL_KNOB_SCALE] = {SCALE_LEVELS, {0}}, /* scale_error */
-};
-
-/* The same by samples a pixel side, 2, 1, 1/2 and 1/4, against 2; so that what a level takes from an image
- * depends on where it starts. */
-static const double sampling_errors[] = {0, 0.040, 0.057, 0.093};
-
-static double sampling_error(double samples)
-{
-    const int last = (int)TL_COUNT(sampling_errors) - 1;
-    double place = fmax(log2(2 / samples), 0);
-    int below = place < last ? (int)place : last - 1; /* beyond, the last slope goes on */
-    double share = place - below;
-    return (1 - share) * sampling_errors[below] + share * sampling_errors[below + 1];
-}
-
-/* What is added to the error that the settings have by themselves. */
-static double scale_error(const struct tl_image_params *image, int level)
-{
-    double samples = (double)image->scale * image->supersample;
-    double error = sampling_error(samples * (double)scales[level]), before = sampling_error(samples);
-    return sqrt(fmax(error * error - before * before, 0));
-}
-
 /* Frames without a change before the image counts as one to be looked at. */
 #define REST_FRAMES 3
 #define ERRORS_KEPT 120
@@ -72,7 +18,7 @@ static double scale_error(const struct tl_image_params *image, int level)
 struct tl_pace {
     double budget_ms;
     struct tl_governor governor;
-    struct tl_budget_knob knobs[TL_KNOB_COUNT]; /* as the settings have them */
+    int level_counts[TL_KNOB_COUNT]; /* as the settings have them */
     struct tl_pace_choice choice;
     struct tl_cost_job cloth, other; /* what is not the renderer's */
     struct tl_work cloth_work;
@@ -104,141 +50,12 @@ void tl_pace_set_budget(tl_pace *pace, double budget_ms)
     pace->budget_ms = budget_ms;
 }
 
-/* ---- Levels as settings ---- */
-
-static int halved(int value, int times, int least)
-{
-    int half = value >> times;
-    return half > least ? half : least < value ? least : value;
-}
-
-static int all_refreshed(const struct tl_light_params *light)
-{
-    bool is_all = light->refresh == 0 || light->refresh > light->regions;
-    return is_all ? light->regions : light->refresh;
-}
-
-/* Twice as long a step, and once a frame is one step, half as many substeps. */
-static void apply_cloth(int level, struct tl_cloth_params *cloth)
-{
-    double longest_s = 1 / cloth->frame_rate;
-    for (int i = 0; i < level; i++)
-        if (cloth->dt < longest_s)
-            cloth->dt = fmin(2 * cloth->dt, longest_s);
-        else if (cloth->solver == TL_CLOTH_PREVIEW)
-            cloth->substeps = halved(cloth->substeps, 1, SUBSTEPS_MIN);
-}
-
-/* What levels change, without the rest of the settings. */
-struct scope {
-    struct tl_render_settings drawn;
-    struct tl_cloth_params cloth;
-};
-
-static struct scope scope_of(const struct tl_settings *settings)
-{
-    return (struct scope){tl_settings_render(settings), settings->cloth};
-}
-
-static struct scope apply(const struct tl_levels *levels, const struct scope *full)
-{
-    struct scope applied = *full;
-    struct tl_light_params *light = &applied.drawn.light;
-    int *steps = &applied.drawn.detail.steps;
-    float *scale = &applied.drawn.image.scale;
-    if (levels->of[TL_KNOB_REFRESH] > 0)
-        light->refresh = halved(all_refreshed(light), levels->of[TL_KNOB_REFRESH], REFRESH_MIN);
-    light->regions = halved(light->regions, levels->of[TL_KNOB_REGIONS], REGIONS_MIN);
-    *steps = halved(*steps, levels->of[TL_KNOB_RELIEF], RELIEF_MIN);
-    apply_cloth(levels->of[TL_KNOB_CLOTH], &applied.cloth);
-    assert(levels->of[TL_KNOB_SCALE] < SCALE_LEVELS);
-    *scale = fmaxf(*scale * scales[levels->of[TL_KNOB_SCALE]], fminf(*scale, SCALE_MIN));
-    return applied;
-}
-
-bool tl_levels_exist(const struct tl_levels *levels)
-{
-    for (int knob = 0; knob < TL_KNOB_COUNT; knob++)
-        if (levels->of[knob] >= errors[knob].level_count)
-            return false;
-    return true;
-}
-
-struct tl_settings tl_levels_apply(const struct tl_levels *levels, const struct tl_settings *settings)
-{
-    struct tl_settings changed = *settings;
-    const struct scope full = scope_of(settings);
-    struct scope applied = apply(levels, &full);
-    changed.light = applied.drawn.light;
-    changed.detail = applied.drawn.detail;
-    changed.image = applied.drawn.image;
-    changed.cloth = applied.cloth;
-    return changed;
-}
-
-/* ---- What a knob does to these settings ---- */
-
-static bool has_regions(const struct tl_light_params *light)
-{
-    return light->method != TL_METHOD_UNSHADOWED && light->method != TL_METHOD_REFERENCE &&
-           light->method != TL_METHOD_MAPS;
-}
-
-static bool is_used(enum tl_knob knob, const struct scope *full)
-{
-    const struct tl_light_params *light = &full->drawn.light;
-    switch (knob) {
-    case TL_KNOB_REFRESH:
-    case TL_KNOB_REGIONS:
-        return has_regions(light);
-    case TL_KNOB_RELIEF:
-        return full->drawn.detail.mode == TL_DETAIL_RELIEF;
-    case TL_KNOB_CLOTH:
-        return full->cloth.solver != TL_CLOTH_REFERENCE; /* whose step follows the fabric */
-    default:
-        return light->method != TL_METHOD_REFERENCE;
-    }
-}
-
-static bool is_same(const struct scope *a, const struct scope *b)
-{
-    return a->drawn.light.regions == b->drawn.light.regions &&
-           a->drawn.light.refresh == b->drawn.light.refresh &&
-           a->drawn.detail.steps == b->drawn.detail.steps &&
-           a->drawn.image.scale == b->drawn.image.scale && // NOLINT: whether it was changed at all
-           a->cloth.dt == b->cloth.dt &&                   // NOLINT
-           a->cloth.substeps == b->cloth.substeps;
-}
-
-/* A knob ends where its next level would change nothing. */
-static int count_levels(enum tl_knob knob, const struct scope *full)
-{
-    struct tl_levels levels = {{0}};
-    struct scope before = *full;
-    int count = 1;
-    for (; is_used(knob, full) && count < errors[knob].level_count; count++) {
-        levels.of[knob] = (uint8_t)count;
-        struct scope after = apply(&levels, full);
-        if (is_same(&after, &before))
-            break;
-        before = after;
-    }
-    return count;
-}
-
 /* ---- What levels cost ---- */
 
 /* What is always there, then substeps; ms of the built-in dress. */
-static double substeps_of(const struct tl_cloth_params *cloth)
+static struct tl_work cloth_work(const struct tl_level_scope *scope)
 {
-    const double rounding = 1e-9;
-    double steps = fmax(ceil(1 / (cloth->frame_rate * cloth->dt) - rounding), 1);
-    return cloth->solver == TL_CLOTH_PREVIEW ? steps * cloth->substeps : steps;
-}
-
-static struct tl_work cloth_work(const struct tl_cloth_params *cloth)
-{
-    return (struct tl_work){{1, 0.1 * substeps_of(cloth)}};
+    return (struct tl_work){{1, 0.1 * tl_level_value(TL_KNOB_CLOTH, scope)}};
 }
 
 static const struct tl_work any_work = {{1}};
@@ -246,7 +63,7 @@ static const struct tl_work any_work = {{1}};
 struct coming {
     const tl_pace *pace;
     const tl_renderer *renderer;
-    struct scope full;
+    struct tl_level_scope full;
     tl_bits running;                     /* jobs, at the levels of the last frame */
     tl_bits started[TL_KNOB_COUNT];      /* ... and with those that another level of a knob starts */
     bool is_ready[TL_BUDGET_LEVELS_MAX]; /* levels of regions */
@@ -265,38 +82,46 @@ static double cost_of(const void *context, const uint8_t *of)
     memcpy(levels.of, of, sizeof levels.of);
     if (!coming->is_ready[levels.of[TL_KNOB_REGIONS]])
         return INFINITY;
-    struct scope applied = apply(&levels, &coming->full);
+    struct tl_level_scope applied = tl_level_scope_at(&levels, &coming->full);
     tl_bits jobs = coming->running;
     for (int k = 0; k < TL_KNOB_COUNT; k++)
         jobs |= of[k] != pace->choice.levels.of[k] ? coming->started[k] : 0;
     double load = tl_renderer_load(coming->renderer);
-    struct tl_work cloth = cloth_work(&applied.cloth);
+    struct tl_work cloth = cloth_work(&applied);
     return tl_renderer_would_take(coming->renderer, &applied.drawn, jobs) +
            known_ms(&pace->cloth, &cloth, load) + known_ms(&pace->other, &any_work, load);
 }
 
-static struct scope at_level(const struct coming *coming, int knob, int level)
+static double error_of(const void *context, const uint8_t *of)
+{
+    const struct coming *coming = context;
+    struct tl_levels levels;
+    memcpy(levels.of, of, sizeof levels.of);
+    return tl_levels_error(&levels, &coming->full);
+}
+
+static struct tl_level_scope at_level(const struct coming *coming, int knob, int level)
 {
     struct tl_levels levels = coming->pace->choice.levels;
     levels.of[knob] = (uint8_t)level;
-    return apply(&levels, &coming->full);
+    return tl_level_scope_at(&levels, &coming->full);
 }
 
 /* A level other than the last frame's sets jobs going that would have been reused. */
 static struct coming look_ahead(const tl_pace *pace, const tl_renderer *renderer, const tl_frame *frame,
-                                const struct scope *full)
+                                const struct tl_level_scope *full)
 {
     struct coming coming = {.pace = pace, .renderer = renderer, .full = *full};
-    struct scope now = apply(&pace->choice.levels, full);
+    struct tl_level_scope now = tl_level_scope_at(&pace->choice.levels, full);
     coming.running = tl_renderer_would_run(renderer, frame, &now.drawn);
     for (int knob = 0; knob < TL_KNOB_COUNT; knob++) {
         int level = pace->choice.levels.of[knob], other = level > 0 ? level - 1 : level + 1;
-        struct scope then = at_level(&coming, knob, other);
-        if (other < pace->knobs[knob].level_count && knob != TL_KNOB_CLOTH)
+        struct tl_level_scope then = at_level(&coming, knob, other);
+        if (other < pace->level_counts[knob] && knob != TL_KNOB_CLOTH)
             coming.started[knob] = tl_renderer_would_run(renderer, frame, &then.drawn);
     }
-    for (int level = 0; level < pace->knobs[TL_KNOB_REGIONS].level_count; level++) {
-        struct scope then = at_level(&coming, TL_KNOB_REGIONS, level);
+    for (int level = 0; level < pace->level_counts[TL_KNOB_REGIONS]; level++) {
+        struct tl_level_scope then = at_level(&coming, TL_KNOB_REGIONS, level);
         coming.is_ready[level] = level == pace->choice.levels.of[TL_KNOB_REGIONS] ||
                                  tl_renderer_has_regions(renderer, &then.drawn);
     }
@@ -305,22 +130,23 @@ static struct coming look_ahead(const tl_pace *pace, const tl_renderer *renderer
 
 static struct tl_budget budget_of(const tl_pace *pace, const struct coming *coming)
 {
-    struct tl_budget budget = {.knob_count = TL_KNOB_COUNT, .cost = cost_of, .context = coming};
-    memcpy(budget.knobs, pace->knobs, sizeof pace->knobs);
+    struct tl_budget budget = {
+        .knob_count = TL_KNOB_COUNT, .cost = cost_of, .error = error_of, .context = coming};
+    memcpy(budget.level_counts, pace->level_counts, sizeof pace->level_counts);
     return budget;
 }
 
 /* One level a frame, the cheapest first, as long as the environment stays what it is. */
 static void prepare_regions(tl_pace *pace, tl_renderer *renderer, const tl_frame *frame,
-                            const struct scope *full)
+                            const struct tl_level_scope *full)
 {
     pace->is_preparing = false;
     bool stays = pace->environment_revision == frame->environment_revision;
     pace->environment_revision = frame->environment_revision;
-    for (int level = pace->knobs[TL_KNOB_REGIONS].level_count - 1; stays && level >= 0; level--) {
+    for (int level = pace->level_counts[TL_KNOB_REGIONS] - 1; stays && level >= 0; level--) {
         struct tl_levels levels = {{0}};
         levels.of[TL_KNOB_REGIONS] = (uint8_t)level;
-        struct scope then = apply(&levels, full);
+        struct tl_level_scope then = tl_level_scope_at(&levels, full);
         if (tl_renderer_has_regions(renderer, &then.drawn))
             continue;
         tl_renderer_prepare_regions(renderer, &then.drawn);
@@ -379,14 +205,11 @@ static void choose_at_rest(tl_pace *pace, const struct tl_budget *budget)
 struct tl_pace_choice tl_pace_choose(tl_pace *pace, tl_renderer *renderer, const tl_frame *frame,
                                      const struct tl_settings *settings)
 {
-    const struct scope full = scope_of(settings);
+    const struct tl_level_scope full = tl_level_scope_of(settings);
     for (int k = 0; k < TL_KNOB_COUNT; k++) {
-        pace->knobs[k] = errors[k];
-        for (int level = 1; k == TL_KNOB_SCALE && level < SCALE_LEVELS; level++)
-            pace->knobs[k].error[level] = scale_error(&settings->image, level);
-        pace->knobs[k].level_count = count_levels((enum tl_knob)k, &full);
-        if (pace->choice.levels.of[k] >= pace->knobs[k].level_count)
-            pace->choice.levels.of[k] = (uint8_t)(pace->knobs[k].level_count - 1);
+        pace->level_counts[k] = tl_levels_count((enum tl_knob)k, &full);
+        if (pace->choice.levels.of[k] >= pace->level_counts[k])
+            pace->choice.levels.of[k] = (uint8_t)(pace->level_counts[k] - 1);
     }
     pace->rested = tl_renderer_is_moving(renderer, frame) ? 0 : pace->rested + 1;
     if (pace->budget_ms > 0 && pace->rested < REST_FRAMES)
@@ -398,52 +221,35 @@ struct tl_pace_choice tl_pace_choose(tl_pace *pace, tl_renderer *renderer, const
         choose_in_motion(pace, &budget);
     else
         choose_at_rest(pace, &budget);
-    pace->choice.error = tl_budget_error(&budget, pace->choice.levels.of);
-    struct scope applied = apply(&pace->choice.levels, &full);
-    pace->cloth_work = cloth_work(&applied.cloth);
+    pace->choice.error = tl_levels_error(&pace->choice.levels, &full);
+    struct tl_level_scope applied = tl_level_scope_at(&pace->choice.levels, &full);
+    pace->cloth_work = cloth_work(&applied);
     pace->load = tl_renderer_load(renderer);
     if (pace->cloth.runs == 0)
         pace->choice.predicted_ms = (double)NAN;
     return pace->choice;
 }
 
-static double value_of(enum tl_knob knob, const struct scope *scope)
-{
-    switch (knob) {
-    case TL_KNOB_REFRESH:
-        return all_refreshed(&scope->drawn.light);
-    case TL_KNOB_REGIONS:
-        return scope->drawn.light.regions;
-    case TL_KNOB_RELIEF:
-        return scope->drawn.detail.steps;
-    case TL_KNOB_CLOTH:
-        return substeps_of(&scope->cloth);
-    default:
-        return (double)scope->drawn.image.scale;
-    }
-}
-
 void tl_pace_steps(const tl_pace *pace, const tl_renderer *renderer, const tl_frame *frame,
                    const struct tl_settings *settings, struct tl_pace_step out[TL_KNOB_COUNT])
 {
-    const struct scope full = scope_of(settings);
+    const struct tl_level_scope full = tl_level_scope_of(settings);
     const struct coming coming = look_ahead(pace, renderer, frame, &full);
-    const struct tl_budget budget = budget_of(pace, &coming);
     uint8_t now[TL_BUDGET_KNOBS_MAX] = {0};
     memcpy(now, pace->choice.levels.of, sizeof pace->choice.levels.of);
-    double ms = cost_of(&coming, now), error = tl_budget_error(&budget, now);
+    double ms = cost_of(&coming, now), error = error_of(&coming, now);
     for (int k = 0; k < TL_KNOB_COUNT; k++) {
-        const struct scope at = at_level(&coming, k, now[k]);
+        const struct tl_level_scope at = at_level(&coming, k, now[k]);
         out[k] = (struct tl_pace_step){.level = now[k],
-                                       .level_count = pace->knobs[k].level_count,
-                                       .value = value_of((enum tl_knob)k, &at),
+                                       .level_count = pace->level_counts[k],
+                                       .value = tl_level_value((enum tl_knob)k, &at),
                                        .ms = (double)NAN,
                                        .error = (double)NAN};
         if (now[k] == 0)
             continue;
         now[k]--;
         out[k].ms = cost_of(&coming, now) - ms;
-        out[k].error = error - tl_budget_error(&budget, now);
+        out[k].error = error - error_of(&coming, now);
         now[k]++;
     }
 }

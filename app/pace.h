@@ -10,30 +10,14 @@
 #ifndef TOILE_APP_PACE_H
 #define TOILE_APP_PACE_H
 
-#include "app/settings.h"
+#include "app/levels.h"
 #include "render/renderer.h"
-
-/* What can be shed, in the order in which people miss it least. */
-enum tl_knob {
-    TL_KNOB_REFRESH, /* light.refresh: visibility renewed a frame, of rays or of shadow maps */
-    TL_KNOB_REGIONS, /* light.regions: how much of the tree of regions is used */
-    TL_KNOB_RELIEF,  /* detail.steps, where relief is marched */
-    TL_KNOB_CLOTH,   /* cloth.dt: substeps of the solver */
-    TL_KNOB_SCALE,   /* image.scale: samples of the image, last of all */
-    TL_KNOB_COUNT
-};
-extern const char *const tl_knob_names[TL_KNOB_COUNT + 1];
-
-/* Level 0 is what the settings ask for; each further one is cheaper and worse. */
-struct tl_levels {
-    uint8_t of[TL_KNOB_COUNT];
-};
 
 struct tl_pace_choice {
     struct tl_levels levels;
     double predicted_ms; /* cloth and drawing; NaN while nothing is known */
     double least_ms;     /* of the cheapest levels, where that is more than the budget; else predicted_ms */
-    double error;        /* estimated, relative RMSE that the levels add to that of the settings */
+    double error;        /* estimated, mean FLIP that the levels add to that of the settings */
     char reason[120];    /* for people: what was shed or taken back, and why; "" when nothing changed */
 };
 
@@ -49,12 +33,6 @@ void tl_pace_set_budget(tl_pace *pace, double budget_ms);
  * after an environment came, the renderer makes the regions of other levels ready, one level a frame. */
 struct tl_pace_choice tl_pace_choose(tl_pace *pace, tl_renderer *renderer, const tl_frame *frame,
                                      const struct tl_settings *settings);
-
-/* True when there are such levels: those of a record may come from anywhere. Pure. */
-bool tl_levels_exist(const struct tl_levels *levels);
-
-/* The settings of a frame at these levels, which must exist. Pure. */
-struct tl_settings tl_levels_apply(const struct tl_levels *levels, const struct tl_settings *settings);
 
 /* What a frame took that was drawn at the levels chosen last: its plan with took_ms, the cloth's part, and
  * the whole from the choice to the finished image. */

@@ -20,6 +20,13 @@ float view_width(const tl_panel_input &input)
     return io.DisplaySize.x - static_cast<float>(input.width) / io.DisplayFramebufferScale.x;
 }
 
+/* Room for a text that is new: ImGui finds the size of what a window holds one frame later, and until then it
+ * would be cut off. */
+void make_room(const char *text, float wrap = -1)
+{
+    ImGui::SetNextWindowContentSize(ImGui::CalcTextSize(text, nullptr, false, wrap));
+}
+
 bool begin_overlay(const char *name, const tl_panel_input &input, float x, float y)
 {
     tl_panel_place_over_view(input, x, y);
@@ -32,9 +39,11 @@ void draw_message(const tl_panel_input &input)
     if (!input.message[0])
         return;
     const ImVec4 red(1.0f, 0.55f, 0.50f, 1.0f), plain(0.92f, 0.92f, 0.92f, 1.0f);
+    const float wrap = 0.8f * view_width(input);
+    make_room(input.message, wrap);
     begin_overlay("message", input, 0, 1);
     ImGui::PushStyleColor(ImGuiCol_Text, input.message_is_error ? red : plain);
-    ImGui::PushTextWrapPos(0.8f * view_width(input));
+    ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + wrap);
     ImGui::TextUnformatted(input.message);
     ImGui::PopTextWrapPos();
     ImGui::PopStyleColor();
@@ -45,6 +54,7 @@ void draw_status(const tl_panel_input &input)
 {
     if (!input.status || !input.status[0])
         return;
+    make_room(input.status);
     begin_overlay("status", input, 0, 0);
     ImGui::TextUnformatted(input.status);
     ImGui::End();
@@ -162,6 +172,7 @@ void draw_read_out(const tl_panel_input &input)
     ImGui::SetNextWindowPos(ImVec2(io.MousePos.x + (is_right ? -apart : apart), io.MousePos.y),
                             ImGuiCond_Always, ImVec2(is_right ? 1.0f : 0.0f, is_low ? 1.0f : 0.0f));
     ImGui::SetNextWindowBgAlpha(0.85f);
+    make_room(input.read_out);
     ImGui::Begin("read out", nullptr, overlay_flags);
     ImGui::TextUnformatted(input.read_out);
     ImGui::End();
@@ -257,5 +268,11 @@ void tl_panel_strip_draw(const tl_panel_strip &strip)
         list->AddLine(ImVec2(corner.x, y), ImVec2(right, y), light, 1);
     }
     ImGui::Dummy(ImVec2(width, height));
+    /* Room for two lines, so that nothing below moves when there is one. */
+    const ImVec2 label = ImGui::GetCursorPos();
+    ImGui::PushTextWrapPos(label.x + width);
     ImGui::TextDisabled("%s", strip.label);
+    ImGui::PopTextWrapPos();
+    ImGui::SetCursorPos(ImVec2(label.x, label.y + 2 * ImGui::GetTextLineHeight()));
+    ImGui::Dummy(ImVec2(0, 0));
 }

@@ -9,6 +9,7 @@
  *     review_read.c     what the image's colours mean, and what lies under the pointer
  *     review_keep.c     what is remembered from one time to the next; files that are watched
  *     review_keys.c     keys and their help       review_pointer.c  pointer and gestures
+ *     review_memory.c   what it holds of memory
  *     review_act.c      what commands do          review_panel.c    what the panel shows */
 #ifndef TOILE_APP_REVIEW_H
 #define TOILE_APP_REVIEW_H
@@ -110,6 +111,11 @@ struct tl_review_wipe {
     float place; /* of the line between, as a share of the view's width */
 };
 
+struct tl_review_memory {
+    size_t least_unused; /* bytes, since some were given back last */
+    double looked_s;
+};
+
 struct tl_review {
     tl_window *window;
     tl_gpu *gpu;
@@ -150,7 +156,9 @@ struct tl_review {
     char message[1200]; /* "": none is shown */
     bool message_is_error;
     double said_s;
-    char *dropped;       /* the file that the panel asks about, or NULL */
+    char *dropped;  /* the file that the panel asks about, or NULL */
+    char **waiting; /* those that it will ask about next */
+    size_t waiting_count;
     char **environments; /* known ones, for TL_REVIEW_NEXT_ENVIRONMENT */
     size_t environment_count;
     const char *output_folder; /* of screenshots and camera paths */
@@ -165,6 +173,7 @@ struct tl_review {
     struct tl_watch watch;
     double watched_s;
 
+    struct tl_review_memory memory;
     struct tl_review_times times;
     struct tl_frame_times frame_times, rest_times; /* while something moves; else */
     struct tl_cloth_report report;
@@ -283,6 +292,11 @@ void tl_review_read_out(const struct tl_review *review, char *text, size_t size)
 /* The colours of the image's view for the panel; false when it shows light. */
 bool tl_review_legend(const struct tl_review *review, struct tl_panel_legend *out);
 
+/* ---- review_memory.c */
+
+size_t tl_review_resident_bytes(void);              /* of this process */
+void tl_review_give_back(struct tl_review *review); /* memory that lies idle, now and then */
+
 /* ---- review_panel.c */
 
 /* Builds the panel of this frame and carries out what it asks for. */
@@ -290,7 +304,6 @@ void tl_review_build_panel(struct tl_review *review);
 void tl_review_build_progress(struct tl_review *review); /* before there is a session */
 
 int tl_review_panel_width(const struct tl_review *review); /* pixels; 0 when hidden */
-size_t tl_review_resident_bytes(void);                     /* of this process */
 /* What may be answered about the dropped file. */
 const struct tl_panel_button *tl_review_answers(const struct tl_review *review, size_t *count);
 

@@ -53,7 +53,7 @@ static void pin(struct tl_review *review)
     } else {
         size_t count = tl_cloth_unpin(cloth);
         if (count > 0)
-            tl_review_say(review, "%zu pins taken out", count);
+            tl_review_say(review, "%zu %s taken out", count, count == 1 ? "pin" : "pins");
         else
             tl_review_say(review, "no pins: pull on the cloth with Ctrl + drag and press P to set one");
     }

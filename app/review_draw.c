@@ -183,6 +183,7 @@ static void take_as_good(struct tl_review *review, const struct tl_settings *dra
 static bool renew_image(struct tl_review *review, bool is_paced, tl_error *error)
 {
     int width, height;
+    bool is_another = review->changed || review->image_is_old; /* not the same, refined */
     tl_review_size(review, &width, &height);
     review->wanted.image.width = width;
     review->wanted.image.height = height;
@@ -201,7 +202,8 @@ static bool renew_image(struct tl_review *review, bool is_paced, tl_error *error
         take_as_good(review, &followed);
     }
     review->changed = review->image_is_old = false;
-    int settles = is_paced ? 1 : 2; /* the panel's texts take a second frame to find their size */
+    int settles =
+        is_paced || !is_another ? 1 : 2; /* the panel's texts take a second frame to find their size */
     review->redraws = review->redraws > settles ? review->redraws : settles;
     return true;
 }
@@ -229,8 +231,9 @@ bool tl_review_is_at_rest(const struct tl_review *review)
 bool tl_review_update_image(struct tl_review *review, tl_error *error)
 {
     bool waits = review->changed && review->editing && is_slow_change(review);
-    bool improves = !tl_review_is_moving(review) && /* jittered rounds are left to average */
-                    !(tl_review_is_at_rest(review) && tl_review_is_sharp(review));
+    /* Jittered rounds are left to average; keys and the panel are answered first. */
+    bool is_refined = tl_review_is_at_rest(review) || review->redraws > 0;
+    bool improves = !tl_review_is_moving(review) && !(is_refined && tl_review_is_sharp(review));
     bool is_due = review->changed || review->image_is_old || is_step_due(review) || improves;
     return waits || !is_due || renew_image(review, tl_review_is_moving(review), error);
 }

@@ -138,16 +138,36 @@ void tl_review_next_environment(struct tl_review *review)
         tl_review_set(review, "scene.environment", review->environments[next]);
 }
 
+/* Files that are dropped together are asked about one after the other. */
+static void ask_about(struct tl_review *review, const char *path)
+{
+    if (!review->dropped) {
+        review->dropped = tl_copy_string(path);
+        return;
+    }
+    review->waiting = tl_resize(review->waiting, review->waiting_count + 1, sizeof *review->waiting);
+    review->waiting[review->waiting_count++] = tl_copy_string(path);
+}
+
+static char *take_dropped(struct tl_review *review)
+{
+    char *path = review->dropped;
+    review->dropped = NULL;
+    if (review->waiting_count > 0) {
+        review->dropped = review->waiting[0];
+        memmove(review->waiting, review->waiting + 1, --review->waiting_count * sizeof *review->waiting);
+    }
+    return path;
+}
+
 void tl_review_forget_dropped(struct tl_review *review)
 {
-    free(review->dropped);
-    review->dropped = NULL;
+    free(take_dropped(review));
 }
 
 void tl_review_use_dropped(struct tl_review *review, int command)
 {
-    char *path = review->dropped;
-    review->dropped = NULL;
+    char *path = take_dropped(review);
     if (!path)
         return;
     switch (command) {
@@ -175,7 +195,6 @@ void tl_review_use_dropped(struct tl_review *review, int command)
 
 void tl_review_drop(struct tl_review *review, const char *path)
 {
-    tl_review_forget_dropped(review);
     if (tl_path_has_extension(path, "exr") || tl_path_has_extension(path, "hdr")) {
         tl_review_know_environment(review, path);
         tl_review_set(review, "scene.environment", path);
@@ -183,7 +202,7 @@ void tl_review_drop(struct tl_review *review, const char *path)
         tl_review_set(review, "scene.motion", path);
     } else if (tl_model_is_file(path) || tl_path_has_extension(path, "yaml") ||
                tl_path_has_extension(path, "yml")) {
-        review->dropped = tl_copy_string(path);
+        ask_about(review, path);
     } else {
         tl_error error;
         tl_fail(&error, TL_INPUT,

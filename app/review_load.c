@@ -7,17 +7,10 @@
 #include <omp.h>
 #include <string.h>
 
-/* A built-in environment is there at once. */
-static bool is_slow_light(const struct tl_review *review, const struct tl_settings *settings)
-{
-    return tl_session_needs_light(tl_session_settings(review->session), settings) &&
-           tl_option_is_file_name(settings->scene.environment);
-}
-
 static bool is_slow(const struct tl_review *review, const struct tl_settings *settings)
 {
-    return tl_session_needs_scene(tl_session_settings(review->session), settings) ||
-           is_slow_light(review, settings);
+    const struct tl_settings *present = tl_session_settings(review->session);
+    return tl_session_needs_scene(present, settings) || tl_session_needs_light(present, settings);
 }
 
 struct tl_settings tl_review_followed(const struct tl_review *review)
@@ -35,10 +28,42 @@ static int loader_threads(void)
     return cores > 1 ? cores - 1 : 1;
 }
 
+/* With the regions of every level that the pace may choose. */
+static struct tl_prepared_request light_of(const struct tl_review *review, const tl_renderer *renderer,
+                                           const struct tl_settings *settings)
+{
+    struct tl_prepared_request request = {.settings = tl_settings_render(settings),
+                                          .exponents = tl_renderer_exponents(renderer)};
+    request.region_counts[0] = settings->light.regions;
+    for (int level = 1; review->params.budget_ms > 0 && level < TL_PREPARED_COUNTS_MAX; level++) {
+        struct tl_levels levels = {.of[TL_KNOB_REGIONS] = (uint8_t)level};
+        if (!tl_levels_exist(&levels))
+            break;
+        int regions = tl_levels_apply(&levels, settings).light.regions;
+        request.region_counts[level] = regions < request.region_counts[level - 1] ? regions : 0;
+        if (request.region_counts[level] == 0)
+            break;
+    }
+    return request;
+}
+
+static struct tl_load_lights lights_of(const struct tl_review *review, bool is_scene)
+{
+    struct tl_load_lights lights = {.count = 1, .of = {light_of(review, review->renderer, &review->wanted)}};
+    if (is_scene)
+        lights.of[0].exponents = 0;
+    if (review->wipe.renderer) {
+        const struct tl_settings other = tl_review_look_a(review, &review->wanted);
+        lights.of[lights.count++] = light_of(review, review->wipe.renderer, &other);
+    }
+    return lights;
+}
+
 static void start(struct tl_review *review)
 {
     bool is_scene = tl_session_needs_scene(tl_session_settings(review->session), &review->wanted);
-    review->loader = tl_loader_start(is_scene ? TL_LOAD_SCENE : TL_LOAD_LIGHT, &review->wanted,
+    const struct tl_load_lights lights = lights_of(review, is_scene);
+    review->loader = tl_loader_start(is_scene ? TL_LOAD_SCENE : TL_LOAD_LIGHT, &review->wanted, &lights,
                                      loader_threads(), tl_window_wake);
     tl_info("view: loads %s", is_scene ? review->wanted.scene.garment : review->wanted.scene.environment);
 }
@@ -50,23 +75,35 @@ static bool is_outdated(const struct tl_review *review)
     return tl_session_needs_scene(made, &review->wanted) || tl_session_needs_light(made, &review->wanted);
 }
 
+/* Hands the light that was made ready to the renderers. */
+static void take_lights(struct tl_review *review, struct tl_loaded *loaded)
+{
+    uint64_t revision = tl_session_frame(review->session).environment_revision;
+    tl_renderer *renderers[TL_LOADER_LIGHTS_MAX] = {review->renderer, review->wipe.renderer};
+    for (int i = 0; i < TL_LOADER_LIGHTS_MAX; i++)
+        if (renderers[i] && loaded->prepared[i])
+            tl_renderer_take_prepared(renderers[i], &loaded->prepared[i], revision);
+}
+
 static void finish(struct tl_review *review)
 {
     enum tl_load kind = tl_loader_kind(review->loader);
     const char *environment = review->wanted.scene.environment;
-    tl_session *session;
-    struct tl_moving_light light;
+    struct tl_loaded loaded;
     tl_error error;
-    if (!tl_loader_take(&review->loader, &session, &light, &error)) {
+    if (!tl_loader_take(&review->loader, &loaded, &error)) {
         tl_session_keep_scene(tl_session_settings(review->session), &review->wanted);
         tl_review_complain(review, &error);
     } else if (kind == TL_LOAD_SCENE) {
-        tl_session_replace(review->session, &session);
+        tl_session_replace(review->session, &loaded.session);
+        take_lights(review, &loaded);
         review->reported_frame = -1;
         review->drag = TL_DRAG_NONE; /* what was held is gone */
     } else {
-        tl_session_replace_light(review->session, &light, environment);
+        tl_session_replace_light(review->session, &loaded.light, environment);
+        take_lights(review, &loaded);
     }
+    tl_loaded_release(&loaded);
     review->changed = true;
 }
 
@@ -103,7 +140,8 @@ static void listen_while_waiting(struct tl_review *review)
 bool tl_review_load_first(struct tl_review *review, tl_error *error)
 {
     const double tick_s = 0.1;
-    review->loader = tl_loader_start(TL_LOAD_SCENE, &review->wanted, 0, tl_window_wake);
+    const struct tl_load_lights lights = lights_of(review, true);
+    review->loader = tl_loader_start(TL_LOAD_SCENE, &review->wanted, &lights, 0, tl_window_wake);
     while (!tl_loader_is_done(review->loader)) {
         tl_window_wait(review->window, tick_s);
         listen_while_waiting(review);
@@ -113,6 +151,12 @@ bool tl_review_load_first(struct tl_review *review, tl_error *error)
             return tl_fail(error, TL_INTERRUPTED, "view: stopped");
         tl_review_build_progress(review);
     }
-    struct tl_moving_light none;
-    return tl_loader_take(&review->loader, &review->session, &none, error);
+    struct tl_loaded loaded;
+    if (!tl_loader_take(&review->loader, &loaded, error))
+        return false;
+    review->session = loaded.session;
+    loaded.session = NULL;
+    take_lights(review, &loaded);
+    tl_loaded_release(&loaded);
+    return true;
 }

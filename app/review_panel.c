@@ -9,7 +9,6 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 #define MEASURES_MAX 12
 #define HELP_MAX     64
@@ -51,17 +50,6 @@ int tl_review_panel_width(const struct tl_review *review)
     tl_window_size(review->window, &width, &height);
     int panel = (int)(wished * tl_window_scale(review->window));
     return !review->params.panel ? 0 : panel < width / 2 ? panel : width / 2;
-}
-
-size_t tl_review_resident_bytes(void)
-{
-    unsigned long pages = 0;
-    FILE *file = fopen("/proc/self/statm", "r");
-    if (file && fscanf(file, "%*u %lu", &pages) != 1)
-        pages = 0;
-    if (file)
-        fclose(file);
-    return (size_t)pages * (size_t)sysconf(_SC_PAGESIZE);
 }
 
 static double megabytes(size_t bytes)
@@ -277,17 +265,23 @@ static struct tl_panel_strip strip_of(const struct tl_review *review, float *tim
     const struct tl_levels *levels = &review->pace_choice.levels;
     char *end = label;
     const char *stop = label + size;
-    if (all->count > 0)
+    bool has_frames = all->count > 0;
+    if (has_frames)
         end = append(end, stop, "%.0f ms", review->times.frame);
-    end = append(end, stop, budget_ms > 0 ? "%s%.0f ms for a frame" : "%sno budget",
-                 all->count > 0 ? " of " : "", (double)budget_ms);
+    if (budget_ms > 0)
+        end = append(end, stop, "%s%.0f ms", has_frames ? " of " : "budget ", (double)budget_ms);
+    else
+        end = append(end, stop, "%sno budget", has_frames ? ", " : "");
     if (tl_review_is_sharp(review))
         end = append(end, stop, ": full quality");
+    const char *before = ": ";
     for (int i = 0; i < TL_KNOB_COUNT; i++)
-        if (levels->of[i] > 0 && i != TL_KNOB_SCALE)
-            end = append(end, stop, ", %s -%d", tl_knob_names[i], levels->of[i]);
+        if (levels->of[i] > 0 && i != TL_KNOB_SCALE) {
+            end = append(end, stop, "%s%s -%d", before, tl_knob_names[i], levels->of[i]);
+            before = ", ";
+        }
     if (levels->of[TL_KNOB_SCALE] > 0)
-        append(end, stop, ", %.0f %% of the pixels", share_of_samples(review));
+        append(end, stop, "%s%.0f %% of the pixels", before, share_of_samples(review));
     return (struct tl_panel_strip){times, all->count, budget_ms, label};
 }
 

@@ -25,6 +25,10 @@ void tl_review_compare(struct tl_review *review)
         tl_review_complain(review, &error);
         return;
     }
+    tl_prepared *light = tl_prepared_copy(review->renderer); /* the same light */
+    if (light)
+        tl_renderer_take_prepared(wipe->renderer, &light,
+                                  tl_session_frame(review->session).environment_revision);
     wipe->look = review->good;
     wipe->place = 0.5f;
     review->image_is_old = true;

@@ -312,21 +312,36 @@ static void choose_role(struct tl_scene_params *scene)
     }
 }
 
-/* What was asked for and will not be done is said. */
-static bool is_plain(const struct tl_material_params *look)
+/* Of what a material is beyond two lobes: what environment maps do not show, and what they do. */
+static bool is_more_than_maps_show(const struct tl_material_params *look)
 {
-    return look->model == TL_REFLECT_PHONG && !(look->coat > 0) && !(look->openness > 0) &&
-           !(look->transmission[0] > 0 || look->transmission[1] > 0 || look->transmission[2] > 0);
+    return look->model != TL_REFLECT_PHONG || look->openness > 0;
 }
 
+static bool is_layered(const struct tl_material_params *look)
+{
+    return look->coat > 0 || look->transmission[0] > 0 || look->transmission[1] > 0 ||
+           look->transmission[2] > 0;
+}
+
+/* What was asked for and will not be done is said. */
 static void tell_what_is_unused(const struct tl_settings *settings)
 {
     const struct tl_light_params *light = &settings->light;
-    bool plain = is_plain(&settings->material) && is_plain(&settings->overlay);
-    if (!plain && light->method != TL_METHOD_REFERENCE && light->visibility != TL_VISIBILITY_RAYS)
-        tl_warn("material: model, coat, transmission and openness are shown by light.visibility rays and by "
-                "light.method "
-                "reference only: the environment's light sees two plain lobes");
+    bool by_maps = light->method == TL_METHOD_MAPS;
+    bool layers = is_layered(&settings->material) || is_layered(&settings->overlay);
+    bool others = is_more_than_maps_show(&settings->material) || is_more_than_maps_show(&settings->overlay);
+    bool shows_all =
+        light->method == TL_METHOD_REFERENCE || (!by_maps && light->visibility == TL_VISIBILITY_RAYS);
+    if (by_maps && others)
+        tl_warn("material: model and openness are shown by light.visibility rays and by light.method "
+                "reference only: "
+                "environment maps show two lobes, a coat and light that comes through");
+    else if (!by_maps && !shows_all && (layers || others))
+        tl_warn(
+            "material: model, coat, transmission and openness are shown by light.visibility rays and by "
+            "light.method reference only: shadow maps know two plain lobes; light.method maps shows coat and "
+            "transmission, without shadows");
     if (light->method == TL_METHOD_PEM && light->visibility == TL_VISIBILITY_RAYS &&
         light->composition != TL_COMPOSE_RATIO)
         tl_warn(

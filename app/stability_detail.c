@@ -3,6 +3,7 @@
  * itself where the shift is limited; flat fields are exact. */
 #include "app/stability.h"
 #include "config/memory.h"
+#include "render/detail/cones.h"
 #include "render/detail/field.h"
 
 #include <math.h>
@@ -96,8 +97,11 @@ bool tl_stability_detail(const struct tl_arguments *arguments, struct tl_stabili
         tl_image heights = make_heights(&extremes[i]);
         struct tl_height_field field =
             tl_height_field_make(&heights, extremes[i].mirrored * SIDE_M, SIDE_M, false, false);
+        tl_image cones = tl_bake_cones(&field, 1);
+        field.cones = &cones;
         for (size_t t = 0; t < TL_COUNT(tilts_deg); t++)
             run_view(&extremes[i], &field, tilts_deg[t], !arguments->json, out);
+        tl_image_release(&cones);
         tl_image_release(&heights);
     }
     return true;

@@ -41,12 +41,13 @@ struct tl_trade_axis {
     int warm, measured; /* frames before the first measured one, and those measured */
     bool rests;         /* the last frame is drawn until it rests, too */
     bool by_wall;       /* plots have time on the wall: what is kept is a frame's time */
+    bool by_flip;       /* ... and mean FLIP, not relative RMSE: errors as they are seen */
     void (*figures)(const struct tl_trade *trade, FILE *out); /* further ones of the report, or NULL */
 };
 
 extern const struct tl_trade_axis tl_trade_light; /* trade_light.c */
 extern const struct tl_trade_axis tl_trade_resolution, tl_trade_detail, tl_trade_shading,
-    tl_trade_overall; /* trade_axes.c */
+    tl_trade_overall, tl_trade_levels; /* trade_axes.c */
 
 struct tl_trade_row {
     const char *group, *name; /* literals */

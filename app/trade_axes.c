@@ -218,4 +218,84 @@ const struct tl_trade_axis tl_trade_overall = {
     .warm = 60,
     .measured = 16,
     .by_wall = true,
+    .by_flip = true,
+};
+
+/* ---- Levels: what each of the planner's knobs costs and errs by itself (app/pace.c) ---- */
+
+static const struct tl_trade_look level_looks[] = {
+    {"one sample", "plain satin", {NULL}, {NULL}, false},
+    {"four samples", "plain satin, four samples a pixel", {"image.supersample=2"}, {NULL}, false},
+    {"relief",
+     "threads of twelve pixels, marched",
+     {WOVEN("20", "5"), "detail.mode=relief", "detail.steps=64"},
+     {"detail.steps=256", "detail.refine=16"},
+     false},
+};
+
+#define LIGHT(regions, refresh)                                                                              \
+    {                                                                                                        \
+        "regions",                                                                                           \
+            {regions " regions, " refresh " renewed",                                                        \
+             NULL,                                                                                           \
+             {"light.regions=" regions, "light.refresh=" refresh}},                                          \
+            false, false, 0                                                                                  \
+    }
+#define SCALE(value)                                                                                         \
+    {                                                                                                        \
+        "scale", {"scale " value, NULL, {"image.scale=" value}}, false, false, 0                             \
+    }
+static const struct tl_entrant level_entrants[] = {
+    {"settings", {"review", NULL, {NULL}}, true, true, 0},
+    LIGHT("192", "96"),
+    LIGHT("192", "48"),
+    LIGHT("192", "24"),
+    LIGHT("192", "12"),
+    LIGHT("192", "6"),
+    LIGHT("96", "96"),
+    LIGHT("96", "48"),
+    LIGHT("96", "24"),
+    LIGHT("96", "12"),
+    LIGHT("96", "6"),
+    LIGHT("48", "48"),
+    LIGHT("48", "24"),
+    LIGHT("48", "12"),
+    LIGHT("48", "6"),
+    LIGHT("24", "24"),
+    LIGHT("24", "12"),
+    LIGHT("24", "6"),
+    LIGHT("24", "3"),
+    {"steps", {"steps 32", NULL, {"detail.steps=32"}}, false, false, 0},
+    {"steps", {"steps 16", NULL, {"detail.steps=16"}}, false, false, 0},
+    {"steps", {"steps 8", NULL, {"detail.steps=8"}}, true, true, 0},
+    SCALE("0.841"),
+    SCALE("0.707"),
+    SCALE("0.595"),
+    SCALE("0.5"),
+    SCALE("0.42"),
+    SCALE("0.354"),
+    SCALE("0.297"),
+    SCALE("0.25"),
+    SCALE("0.21"),
+    SCALE("0.177"),
+    SCALE("0.149"),
+    SCALE("0.125"),
+};
+
+const struct tl_trade_axis tl_trade_levels = {
+    .name = "levels",
+    .title = "What each level of the planner costs and errs by itself",
+    .text = FRONT "What the planner can turn (but the cloth, whose motion is recorded), from the preset "
+                  "review; the truth is ray traced. What a level adds is what its error's square has over "
+                  "that of the settings.",
+    .scene = "review",
+    .truth = {.name = "reference", .assignments = {"light.method=reference"}},
+    .looks = level_looks,
+    .look_count = TL_COUNT(level_looks),
+    .entrants = level_entrants,
+    .entrant_count = TL_COUNT(level_entrants),
+    .warm = 24,
+    .measured = 9,
+    .by_wall = true,
+    .by_flip = true,
 };

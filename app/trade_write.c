@@ -109,6 +109,11 @@ static double time_of(const struct tl_trade *trade, const struct tl_trade_row *r
     return trade->axis->by_wall ? row->taken.wall_ms : row->taken.cpu_ms;
 }
 
+static double error_of(const struct tl_trade *trade, const struct tl_trade_row *row)
+{
+    return trade->axis->by_flip ? row->error.flip_mean : 100 * row->error.rel_rmse;
+}
+
 /* Points of a plot by group, with room for the Pareto front. */
 struct scatter {
     struct tl_plot_point *points; /* all, group after group */
@@ -137,7 +142,7 @@ static void make_scatter(const struct tl_trade *trade, int look, struct scatter 
         }
         out->series[out->series_count - 1].count++;
         out->rows[out->count] = row;
-        out->points[out->count++] = (struct tl_plot_point){time_of(trade, row), 100 * row->error.rel_rmse,
+        out->points[out->count++] = (struct tl_plot_point){time_of(trade, row), error_of(trade, row),
                                                            row->name, strcmp(row->group, "presets") == 0};
     }
     out->front_count = tl_pareto_front(out->points, out->count, out->front);
@@ -180,18 +185,19 @@ static void print_scatters(const struct tl_trade *trade, FILE *out)
 {
     tl_report_heading(out, "Error against time, in motion");
     tl_report_paragraph(out, trade->axis->text);
+    const char *measure = trade->axis->by_flip ? "mean FLIP" : "relative RMSE, %";
     for (int look = 0; look < trade->axis->look_count; look++) {
         if (!tl_trade_next(trade, NULL, NULL, look, false))
             continue;
         struct scatter scatter;
         make_scatter(trade, look, &scatter);
         char caption[200];
-        snprintf(caption, sizeof caption, "%c%s. Relative RMSE over covered pixels against the truth.",
+        snprintf(caption, sizeof caption, "%c%s. Errors over covered pixels against the truth.",
                  trade->axis->looks[look].title[0] - 'a' + 'A', trade->axis->looks[look].title + 1);
         tl_report_plot(
             out,
             &(struct tl_plot){trade->axis->by_wall ? "ms a frame on the wall" : "CPU ms a frame, all threads",
-                              "relative RMSE, %", true, true, scatter.series, scatter.series_count},
+                              measure, true, true, scatter.series, scatter.series_count},
             caption);
         print_front(&scatter, out);
         release_scatter(&scatter);

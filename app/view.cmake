@@ -14,6 +14,7 @@ target_sources(toile_app PRIVATE
   review_keep.c
   review_keys.c
   review_load.c
+  review_memory.c
   review_move.c
   review_panel.c
   review_pointer.c

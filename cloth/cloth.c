@@ -311,9 +311,11 @@ bool tl_cloth_set(tl_cloth *cloth, const struct tl_cloth_fabric *fabric, const s
     return true;
 }
 
-/* What contacts remember would make a run after a reset differ from the first one. */
+/* What contacts remember would make a run after a reset differ from the first one: the planes, and of
+ * `settle` what stuck and slipped. */
 static void forget_contacts(tl_cloth *cloth)
 {
+    tl_implicit_destroy(&cloth->implicit);
     tl_contacts_release(&cloth->contacts);
     cloth->contacts = tl_contacts_create(&cloth->topology, cloth->rest);
     tl_layers_forget(&cloth->layers);

@@ -211,26 +211,16 @@ static void add_links(struct tl_energy *energy, const uint32_t *vertices, const 
 static void build_membranes(struct tl_energy *energy, const struct tl_topology *topology,
                             const struct flat *flats, const uint32_t *triangles, size_t count)
 {
-    uint32_t(*corners)[3] = tl_alloc(count, sizeof *corners);
-    for (size_t i = 0; i < count; i++)
-        memcpy(corners[i], topology->triangles[triangles[i]], sizeof *corners);
-    struct tl_batches batches = tl_batches_build(&corners[0][0], 3, 3, count, topology->vertex_count);
-    energy->membrane_count = batches.count;
-    energy->membrane_run_count = batches.run_count;
-    energy->membrane_run_ends = batches.run_ends;
-    batches.run_ends = NULL;
+    energy->membrane_count = (count + TL_BATCH - 1) / TL_BATCH;
     energy->membranes = TL_NEW_ARRAY(struct tl_membrane, energy->membrane_count);
-    energy->previewed = tl_alloc_lines(energy->membrane_count, sizeof *energy->previewed);
     for (size_t i = 0; i < energy->membrane_count * TL_BATCH; i++) {
         struct tl_membrane *m = &energy->membranes[i / TL_BATCH];
         for (int k = 0; k < 3; k++)
             m->vertices[k][i % TL_BATCH] = (uint32_t)topology->vertex_count;
-        uint32_t element = batches.elements[i];
-        if (element != TL_NONE)
-            set_up_membrane(corners[element], &flats[triangles[element]], m, i % TL_BATCH);
+        if (i < count)
+            set_up_membrane(topology->triangles[triangles[i]], &flats[triangles[i]], m, i % TL_BATCH);
     }
-    tl_batches_release(&batches);
-    free(corners);
+    energy->pairs = tl_pairs_build(topology, energy->membranes, triangles, count);
 }
 
 static void build_bends(struct tl_energy *energy, const struct tl_topology *topology,
@@ -290,12 +280,11 @@ struct tl_energy tl_energy_build(const struct tl_topology *topology, const vec2s
 void tl_energy_release(struct tl_energy *energy)
 {
     free(energy->membranes);
-    free(energy->previewed);
-    free(energy->membrane_run_ends);
     free(energy->bend_run_ends);
     free(energy->bends);
     free(energy->links);
     free(energy->masses);
+    tl_pairs_release(&energy->pairs);
     tl_pulls_release(&energy->pulls);
     *energy = (struct tl_energy){0};
 }
@@ -316,35 +305,10 @@ void tl_energy_set_fabric(struct tl_energy *energy, const struct tl_cloth_fabric
     tl_pulls_set(&energy->pulls, energy, stiffness);
 }
 
-/* -1 / (gradient + 1/(stiffness h^2)), 0 where nothing can move or resist. */
-static double factor_of(double gradient, double stiffness, double h)
+double tl_xpbd_factor(double gradient, double stiffness, double h)
 {
     double sum = gradient + 1 / (stiffness * h * h);
     return gradient > 0 && isfinite(sum) ? -1 / sum : 0;
-}
-
-static void set_preview(const struct tl_membrane *m, const struct tl_cloth_fabric *fabric, const double *w,
-                        double h, struct tl_preview_membrane *out)
-{
-    memcpy(out->vertices, m->vertices, sizeof out->vertices);
-    memcpy(out->c, &m->c[1], sizeof out->c);
-    memcpy(out->d, &m->d[1], sizeof out->d);
-    for (int lane = 0; lane < TL_BATCH; lane++) {
-        double cc = 0, cd = 0, dd = 0;
-        for (int i = 0; i < 3; i++) {
-            double mobility = out->w[i][lane] = w[m->vertices[i][lane]];
-            double c = m->c[i][lane], d = m->d[i][lane];
-            cc += mobility * c * c;
-            cd += mobility * c * d;
-            dd += mobility * d * d;
-        }
-        out->cc[lane] = cc;
-        out->cd[lane] = cd;
-        out->dd[lane] = dd;
-        out->weft[lane] = factor_of(cc, fabric->stretch_weft * m->area[lane], h);
-        out->warp[lane] = factor_of(dd, fabric->stretch_warp * m->area[lane], h);
-        out->shear[lane] = 1 / (fabric->shear * m->area[lane] * h * h);
-    }
 }
 
 static void set_bend(struct tl_bend *bend, const struct tl_cloth_fabric *fabric, const double *w, double h)
@@ -359,7 +323,7 @@ static void set_bend(struct tl_bend *bend, const struct tl_cloth_fabric *fabric,
             double gradient = 0;
             for (int i = 0; i < TL_BEND_STENCIL; i++)
                 gradient += bend->w[i][lane] * bend->rows[row][i][lane] * bend->rows[row][i][lane];
-            bend->factors[row][lane] = factor_of(gradient, stiffness[row] * bend->area[lane], h);
+            bend->factors[row][lane] = tl_xpbd_factor(gradient, stiffness[row] * bend->area[lane], h);
         }
 }
 
@@ -381,8 +345,7 @@ static double fastest_bending(const struct tl_pulls *pulls, const double *w)
 void tl_energy_set(struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
                    const double *inverse_masses, double h)
 {
-    for (size_t i = 0; i < energy->membrane_count; i++)
-        set_preview(&energy->membranes[i], fabric, inverse_masses, h, &energy->previewed[i]);
+    tl_pairs_set(&energy->pairs, energy->membranes, fabric, inverse_masses, h);
     for (size_t i = 0; i < energy->bend_count; i++)
         set_bend(&energy->bends[i], fabric, inverse_masses, h);
     energy->bends_as_force = h * sqrt(fastest_bending(&energy->pulls, inverse_masses)) <= FORCE_LIMIT;

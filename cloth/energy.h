@@ -22,35 +22,25 @@
 
 #include "assets/garment.h"
 #include "cloth/cloth.h"
+#include "cloth/pairs.h"
 #include "cloth/particles.h"
 #include "cloth/pulls.h"
 #include "cloth/topology.h"
 #include "cloth/vec3d.h"
 #include "config/memory.h"
 
-/* Triangles are kept in batches that share no vertex, lane by lane. An empty lane has the vertex one past the
- * last, which is held, and zeros. */
+/* Elements are kept in batches, lane by lane. An empty lane has the vertex one past the last, which is held,
+ * and zeros. */
 
-/* Membranes. F_u = sum c_i x_i, F_v = sum d_i x_i. */
+/* Membranes, in the triangles' order. F_u = sum c_i x_i, F_v = sum d_i x_i. */
 struct tl_membrane {
     uint32_t vertices[3][TL_BATCH];
     double c[3][TL_BATCH], d[3][TL_BATCH]; /* 1/m */
     double area[TL_BATCH];                 /* m^2, at rest */
 };
 
-/* The same batches as `preview` solves them: all that it reads in a substep, as it waits for memory. */
-struct tl_preview_membrane {
-    _Alignas(
-        TL_CACHE_LINE) double c[2][TL_BATCH]; /* of the last two vertices; the first's is minus their sum */
-    double d[2][TL_BATCH];
-    double w[3][TL_BATCH];                           /* 1/kg, of the vertices */
-    double cc[TL_BATCH], cd[TL_BATCH], dd[TL_BATCH]; /* sums of w c_i c_i, ...: fixed while masses are */
-    double weft[TL_BATCH], warp[TL_BATCH];           /* -1 / (w |grad|^2 + 1 / (k A h^2)) */
-    double shear[TL_BATCH];                          /* 1 / (k A h^2) */
-    uint32_t vertices[3][TL_BATCH];
-};
-
-/* Curvatures: L_uu, L_vv, sqrt(2) L_uv = sum of rows over the stencil's vertices. */
+/* Curvatures: L_uu, L_vv, sqrt(2) L_uv = sum of rows over the stencil's vertices. No two of a batch share a
+ * vertex. */
 #define TL_BEND_STENCIL 6
 struct tl_bend {
     uint32_t vertices[TL_BEND_STENCIL][TL_BATCH]; /* own three, then across each edge; a missing one repeats
@@ -70,10 +60,9 @@ struct tl_link {
 
 struct tl_energy {
     size_t membrane_count, bend_count, link_count; /* batches, batches, links */
-    size_t membrane_run_count, *membrane_run_ends; /* see struct tl_batches */
-    size_t bend_run_count, *bend_run_ends;
+    size_t bend_run_count, *bend_run_ends;         /* see struct tl_batches */
     struct tl_membrane *membranes;
-    struct tl_preview_membrane *previewed; /* [membrane_count] */
+    struct tl_pairs pairs;
     struct tl_bend *bends;
     struct tl_link *links;
     double *masses; /* [vertex_count] kg per areal density: a third of the area around */
@@ -91,6 +80,9 @@ void tl_energy_set_fabric(struct tl_energy *energy, const struct tl_cloth_fabric
 /* Sets what `preview` needs: material, substep `h` seconds and inverse masses [vertex_count + 1]. */
 void tl_energy_set(struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
                    const double *inverse_masses, double h);
+
+/* A constraint's -1 / (gradient + 1/(stiffness h^2)), 0 where nothing can move or resist. */
+double tl_xpbd_factor(double gradient, double stiffness, double h);
 
 /* The elastic energy (J) at positions `x` [vertex_count]; writes its forces -dE/dx (N) to `forces`
  * [vertex_count]. A link's energy is k/2 (length - rest)^2 with the warp's stretch stiffness. The fabric is

@@ -141,7 +141,7 @@ TL_INLINE void add_others(const struct tl_pulls *pulls, size_t vertex, struct tl
         add_pull(at, &pulls->places[4 * (size_t)pulls->others[k]], pulls->bending[k], sum);
 }
 
-/* `strengths` [edge_count]: of bending alone, or of all. */
+/* `strengths` [edge_count]. */
 TL_INLINE void add_along(const struct tl_pulls *pulls, size_t vertex, const double *strengths,
                          struct tl_wide_force *sum)
 {
@@ -152,13 +152,33 @@ TL_INLINE void add_along(const struct tl_pulls *pulls, size_t vertex, const doub
     }
 }
 
+/* All of bending, in two sums: what one adds the other need not wait for. */
+TL_INLINE struct tl_wide_force add_fours(const struct tl_pulls *pulls, size_t vertex)
+{
+    const double *places = pulls->places, *at = &places[4 * vertex];
+    const struct tl_four_pulls *end = &pulls->fours[pulls->fours_first[vertex + 1]];
+    struct tl_wide_force even = {0}, odd = {0};
+    for (const struct tl_four_pulls *four = &pulls->fours[pulls->fours_first[vertex]]; four < end; four++) {
+        add_pull(at, &places[four->from[0]], four->bending[0], &even);
+        add_pull(at, &places[four->from[1]], four->bending[1], &odd);
+        add_pull(at, &places[four->from[2]], four->bending[2], &even);
+        add_pull(at, &places[four->from[3]], four->bending[3], &odd);
+    }
+    return (struct tl_wide_force){even.x + odd.x, even.y + odd.y, even.z + odd.z, even.unused + odd.unused};
+}
+
+/* `strengths` [edge_count] of all that acts along edges; NULL: bending alone. */
 TL_INLINE void add_block(const struct tl_pulls *pulls, struct tl_range block, const double *strengths,
                          vec3d *forces)
 {
     for (size_t i = block.from; i < block.to; i++) {
         struct tl_wide_force sum = {0};
-        add_along(pulls, i, strengths, &sum);
-        add_others(pulls, i, &sum);
+        if (strengths) {
+            add_along(pulls, i, strengths, &sum);
+            add_others(pulls, i, &sum);
+        } else {
+            sum = add_fours(pulls, i);
+        }
         pulls->sums[i] = sum;
     }
     for (size_t i = block.from; i < block.to; i++)
@@ -172,8 +192,8 @@ static struct tl_range block_from(size_t from, struct tl_range range)
 }
 
 /* Each block's particles move as soon as their forces are known, while these are at hand. */
-TL_CLONES static void add_forces(const struct tl_pulls *pulls, const double *strengths, struct tl_range range,
-                                 vec3d *forces, const struct tl_move *then)
+TL_INLINE void add_range(const struct tl_pulls *pulls, const double *strengths, struct tl_range range,
+                         vec3d *forces, const struct tl_move *then)
 {
     for (size_t from = range.from; from < range.to; from += TL_PULLS_BLOCK) {
         struct tl_range block = block_from(from, range);
@@ -183,6 +203,18 @@ TL_CLONES static void add_forces(const struct tl_pulls *pulls, const double *str
     }
 }
 
+TL_CLONES static void add_forces(const struct tl_pulls *pulls, struct tl_range range, vec3d *forces,
+                                 const struct tl_move *then)
+{
+    add_range(pulls, pulls->along_edges, range, forces, then);
+}
+
+TL_CLONES static void add_bending(const struct tl_pulls *pulls, struct tl_range range, vec3d *forces,
+                                  const struct tl_move *then)
+{
+    add_range(pulls, NULL, range, forces, then);
+}
+
 /* x.Kx/2 of a block of vertices. Forces add up to nothing, so that x may be measured from anywhere. */
 TL_CLONES static double bending_energy(const struct tl_pulls *pulls, struct tl_range range)
 {
@@ -190,9 +222,7 @@ TL_CLONES static double bending_energy(const struct tl_pulls *pulls, struct tl_r
     const double *origin = pulls->places;
     for (size_t i = range.from; i < range.to; i++) {
         const double *at = &pulls->places[4 * i];
-        struct tl_wide_force sum = {0};
-        add_along(pulls, i, pulls->edge_bending, &sum);
-        add_others(pulls, i, &sum);
+        struct tl_wide_force sum = add_fours(pulls, i);
         energy -=
             0.5 * (sum.x * (at[0] - origin[0]) + sum.y * (at[1] - origin[1]) + sum.z * (at[2] - origin[2]));
     }
@@ -234,7 +264,7 @@ static double evaluate(const struct tl_energy *energy, const struct tl_cloth_fab
             links = add_rare(energy, fabric->stretch_warp);
         }
 #pragma omp barrier
-        add_forces(pulls, pulls->along_edges, tl_my_part(pulls->vertex_count, TL_PULLS_BLOCK), forces, then);
+        add_forces(pulls, tl_my_part(pulls->vertex_count, TL_PULLS_BLOCK), forces, then);
         if (wants_energy)
             add_energies(pulls);
         tl_denormals_restore(denormals);
@@ -257,7 +287,7 @@ void tl_energy_bend(const struct tl_energy *energy, const vec3d *x, vec3d *force
         struct tl_range mine = tl_my_part(pulls->vertex_count, TL_PULLS_BLOCK);
         copy_places(x, mine, pulls->places);
 #pragma omp barrier
-        add_forces(pulls, pulls->edge_bending, mine, forces, then);
+        add_bending(pulls, mine, forces, then);
         tl_denormals_restore(denormals);
     }
 }

@@ -33,32 +33,40 @@ static void list_edges(struct tl_limits *limits, const struct tl_topology *topol
         }
 }
 
+/* Of the membrane in a lane. */
+static void list_sides_of(const struct tl_topology *topology, const struct tl_membrane *m, size_t from,
+                          uint32_t sides[3][TL_BATCH], size_t lane)
+{
+    for (int k = 0; k < 3; k++)
+        sides[k][lane] =
+            tl_topology_edge(topology, m->vertices[(k + 1) % 3][from], m->vertices[(k + 2) % 3][from]);
+}
+
 /* Empty lanes stay with edge 0, as they are never seen. */
 static void list_sides(struct tl_limits *limits, const struct tl_topology *topology,
                        const struct tl_energy *energy)
 {
-    for (size_t i = 0; i < energy->membrane_count * TL_BATCH; i++) {
-        const struct tl_membrane *m = &energy->membranes[i / TL_BATCH];
-        size_t lane = i % TL_BATCH;
-        for (int k = 0; k < 3 && m->area[lane] > 0; k++)
-            limits->sides[i / TL_BATCH][k][lane] =
-                tl_topology_edge(topology, m->vertices[(k + 1) % 3][lane], m->vertices[(k + 2) % 3][lane]);
-    }
+    for (size_t i = 0; i < energy->pairs.count * TL_BATCH; i++)
+        for (int side = 0; side < TL_SIDES; side++) {
+            uint32_t membrane = energy->pairs.membranes[i / TL_BATCH][side][i % TL_BATCH];
+            if (membrane != TL_NONE)
+                list_sides_of(topology, &energy->membranes[membrane / TL_BATCH], membrane % TL_BATCH,
+                              limits->sides[i / TL_BATCH][side], i % TL_BATCH);
+        }
 }
 
 struct tl_limits tl_limits_create(const struct tl_topology *topology, const struct tl_energy *energy,
                                   const vec2s (*rest)[3], double shortest, double strain, const vec3d *x)
 {
     size_t count = topology->edge_count, words = (count + WORD - 1) / WORD;
-    struct tl_limits limits = {
-        .strain = strain,
-        .count = count,
-        .edges = TL_NEW_ARRAY(struct tl_limited_edge, count),
-        .due = TL_NEW_ARRAY(bool, words *WORD),
-        .always = TL_NEW_ARRAY(bool, words *WORD),
-        .sides = tl_alloc(energy->membrane_count, sizeof *limits.sides),
-        .watch = {.most = (1 + NEAR * strain) * (1 + NEAR * strain),
-                  .seen = tl_alloc(energy->membrane_count, sizeof *limits.watch.seen)}};
+    struct tl_limits limits = {.strain = strain,
+                               .count = count,
+                               .edges = TL_NEW_ARRAY(struct tl_limited_edge, count),
+                               .due = TL_NEW_ARRAY(bool, words *WORD),
+                               .always = TL_NEW_ARRAY(bool, words *WORD),
+                               .sides = tl_alloc(energy->pairs.count, sizeof *limits.sides),
+                               .watch = {.most = (1 + NEAR * strain) * (1 + NEAR * strain),
+                                         .seen = tl_alloc(energy->pairs.count, sizeof *limits.watch.seen)}};
     list_edges(&limits, topology, rest, shortest, x);
     list_sides(&limits, topology, energy);
     for (size_t i = 0; i < energy->link_count; i++) /* slivers have no membrane that could be watched */
@@ -89,14 +97,14 @@ static bool mark(struct tl_limits *limits, const struct tl_energy *energy)
 {
     bool any = energy->link_count > 0;
     memcpy(limits->due, limits->always, limits->count * sizeof(bool));
-    for (size_t i = 0; i < energy->membrane_count; i++) {
-        const bool *seen = limits->watch.seen[i];
+    for (size_t i = 0; i < TL_SIDES * energy->pairs.count; i++) {
+        const bool *seen = limits->watch.seen[i / TL_SIDES][i % TL_SIDES];
         if (none(seen))
             continue;
         any = true;
         for (int lane = 0; lane < TL_BATCH; lane++)
             for (int k = 0; k < 3 && seen[lane]; k++)
-                limits->due[limits->sides[i][k][lane]] = true;
+                limits->due[limits->sides[i / TL_SIDES][i % TL_SIDES][k][lane]] = true;
     }
     return any;
 }

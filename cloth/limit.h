@@ -22,10 +22,10 @@ struct tl_limited_edge {
 struct tl_limits {
     double strain; /* 0: no limit */
     size_t count;
-    struct tl_limited_edge *edges;  /* [count] as in the topology */
-    bool *due, *always;             /* [count] it is looked at: now; in any case */
-    uint32_t (*sides)[3][TL_BATCH]; /* [membrane_count] edges of each batch of membranes */
-    struct tl_watch watch;          /* for tl_xpbd_solve */
+    struct tl_limited_edge *edges;            /* [count] as in the topology */
+    bool *due, *always;                       /* [count] it is looked at: now; in any case */
+    uint32_t (*sides)[TL_SIDES][3][TL_BATCH]; /* [pairs.count] edges of each batch */
+    struct tl_watch watch;                    /* for tl_xpbd_solve */
     double passed_s;
 };
 

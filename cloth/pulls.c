@@ -185,6 +185,49 @@ static void build_others(struct tl_pulls *pulls, const struct stencils *stencils
     pulls->bending = TL_NEW_ARRAY(double, pulls->others_first[pulls->vertex_count]);
 }
 
+/* A vertex's others along edges, then those of bending alone. */
+static uint32_t other_end(const struct tl_pulls *pulls, uint32_t vertex, uint32_t k)
+{
+    uint32_t along = pulls->along_first[vertex + 1] - pulls->along_first[vertex];
+    return k < along ? pulls->along[pulls->along_first[vertex] + k].other
+                     : pulls->others[pulls->others_first[vertex] + k - along];
+}
+
+static double other_bending(const struct tl_pulls *pulls, uint32_t vertex, uint32_t k)
+{
+    uint32_t along = pulls->along_first[vertex + 1] - pulls->along_first[vertex];
+    return k < along ? pulls->edge_bending[pulls->along[pulls->along_first[vertex] + k].edge]
+                     : pulls->bending[pulls->others_first[vertex] + k - along];
+}
+
+static uint32_t count_pulls(const struct tl_pulls *pulls, uint32_t vertex)
+{
+    return pulls->along_first[vertex + 1] - pulls->along_first[vertex] + pulls->others_first[vertex + 1] -
+           pulls->others_first[vertex];
+}
+
+static void build_fours(struct tl_pulls *pulls)
+{
+    pulls->fours_first = TL_NEW_ARRAY(uint32_t, pulls->vertex_count + 1);
+    for (uint32_t i = 0; i < pulls->vertex_count; i++)
+        pulls->fours_first[i + 1] =
+            pulls->fours_first[i] + (count_pulls(pulls, i) + TL_PULLS_FOUR - 1) / TL_PULLS_FOUR;
+    pulls->fours = TL_NEW_ARRAY(struct tl_four_pulls, pulls->fours_first[pulls->vertex_count]);
+}
+
+static void set_fours(struct tl_pulls *pulls)
+{
+    for (uint32_t i = 0; i < pulls->vertex_count; i++) {
+        uint32_t count = count_pulls(pulls, i), first = pulls->fours_first[i];
+        uint32_t end = (pulls->fours_first[i + 1] - first) * TL_PULLS_FOUR;
+        for (uint32_t k = 0; k < end; k++) {
+            struct tl_four_pulls *four = &pulls->fours[first + k / TL_PULLS_FOUR];
+            four->from[k % TL_PULLS_FOUR] = 4 * (k < count ? other_end(pulls, i, k) : i);
+            four->bending[k % TL_PULLS_FOUR] = k < count ? other_bending(pulls, i, k) : 0;
+        }
+    }
+}
+
 /* Where a row keeps each vertex's number; an edge's is kept by its lower end, and NULL for the other. */
 static void list_entries(struct tl_pulls *pulls, uint32_t vertex, double **entries)
 {
@@ -230,6 +273,7 @@ void tl_pulls_set(struct tl_pulls *pulls, const struct tl_energy *energy, const 
     }
     free(entries);
     release_stencils(&stencils);
+    set_fours(pulls);
 }
 
 /* ---- The whole ---- */
@@ -247,6 +291,7 @@ struct tl_pulls tl_pulls_build(const struct tl_topology *topology, const struct 
     struct stencils stencils = list_stencils(energy, pulls.vertex_count);
     build_along(&pulls);
     build_others(&pulls, &stencils);
+    build_fours(&pulls);
     release_stencils(&stencils);
 
     size_t blocks = (pulls.vertex_count + TL_PULLS_BLOCK - 1) / TL_PULLS_BLOCK;
@@ -273,6 +318,8 @@ void tl_pulls_release(struct tl_pulls *pulls)
     free(pulls->along);
     free(pulls->others);
     free(pulls->bending);
+    free(pulls->fours_first);
+    free(pulls->fours);
     free(pulls->places);
     free(pulls->squared);
     free(pulls->shares);

@@ -40,6 +40,14 @@ struct tl_along {
     uint32_t other, edge;
 };
 
+/* Pulls of bending alone on one vertex, as many as are in flight at once; what a vertex has too few of is
+ * made up with pulls of 0 from itself. */
+#define TL_PULLS_FOUR 4
+struct tl_four_pulls {
+    double bending[TL_PULLS_FOUR]; /* -K_ij, N/m */
+    uint32_t from[TL_PULLS_FOUR];  /* the other end's first number in `places` */
+};
+
 struct tl_pulls {
     size_t vertex_count, edge_count, metric_count, excess_count;
     uint32_t (*edges)[2]; /* as in the topology */
@@ -55,6 +63,10 @@ struct tl_pulls {
     struct tl_along *along;
     uint32_t *others; /* the vertex at the other end */
     double *bending;  /* [entries of others] -K_ij, N/m */
+
+    /* The same of bending alone, along edges or not: fours[fours_first[i]] and on. */
+    uint32_t *fours_first; /* [vertex_count + 1] */
+    struct tl_four_pulls *fours;
 
     /* Scratch. */
     double *places;  /* [vertex_count][4] m */

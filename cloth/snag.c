@@ -1,7 +1,6 @@
 #include "cloth/snag.h"
 
-/* Stretched to more than this an edge is caught: no fabric is worn like that. */
-#define CAUGHT_STRETCH 2.5
+#define CAUGHT_STRETCH (1 + TL_SNAG_STRAIN)
 /* What it slips back to. Sweeps carry that along a chain of edges. */
 #define SLIPPED_STRETCH 1.5
 #define SWEEPS          8

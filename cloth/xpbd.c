@@ -45,22 +45,22 @@ TL_INLINE void move(struct places *places, int lane, vec3d by, double share)
     put(places, lane, vec3d_muladd(at(places, lane), by, share));
 }
 
-/* One membrane of each lane on its way. Both stretches and the shear are solved one after the other, on F
- * alone, and the vertices move once: a push p on row c moves vertex i by w_i c_i p, and so F_u by cc p and
- * F_v by cd p. All pushes lie in the plane of the first F_u and F_v, u and v: only their shares of these two
- * change, and scalar products follow from the first three. In stages: what one stage of a batch waits for,
- * roots and divisions, the same stage of the next batches need not. */
-struct membrane_work {
-    struct places x[3], u, v;
+/* One pair of each lane on its way, and the side of it that is being solved. Both stretches and the shear are
+ * solved one after the other, on F alone, and the vertices move once: a push p on row c moves vertex i by w_i
+ * c_i p, and so F_u by cc p and F_v by cd p. All pushes lie in the plane of the first F_u and F_v, u and v:
+ * only their shares of these two change, and scalar products follow from the first three. In stages: what one
+ * stage of a batch waits for, roots and divisions, the same stage of the next batches need not. */
+struct pair_work {
+    struct places x[4], u, v;
     double uu[TL_BATCH], vv[TL_BATCH], uv[TL_BATCH];
     double c_u[TL_BATCH], c_v[TL_BATCH]; /* the whole push on row c: c_u u + c_v v */
     double d_u[TL_BATCH], d_v[TL_BATCH];
 };
 
-TL_INLINE void measure(const struct tl_preview_membrane *m, int lane, struct membrane_work *work)
+TL_INLINE void measure(const struct tl_side *m, int third, int lane, struct pair_work *work)
 {
     vec3d origin = at(&work->x[0], lane), side = vec3d_sub(at(&work->x[1], lane), origin);
-    vec3d other = vec3d_sub(at(&work->x[2], lane), origin);
+    vec3d other = vec3d_sub(at(&work->x[third], lane), origin);
     vec3d u = vec3d_muladd(vec3d_scale(side, m->c[0][lane]), other, m->c[1][lane]);
     vec3d v = vec3d_muladd(vec3d_scale(side, m->d[0][lane]), other, m->d[1][lane]);
     put(&work->u, lane, u);
@@ -83,7 +83,7 @@ TL_INLINE double stretch_push(double squared, double factor)
 }
 
 /* The push is `push` F_u; F_u becomes (1 + cc push) F_u, F_v gets cd push F_u more. */
-TL_INLINE double solve_weft(const struct tl_preview_membrane *m, int lane, struct deformation *f)
+TL_INLINE double solve_weft(const struct tl_side *m, int lane, struct deformation *f)
 {
     double push = stretch_push(f->a, m->weft[lane]);
     double scale = 1 + push * m->cc[lane], lean = push * m->cd[lane], met = f->g + lean * f->a;
@@ -95,7 +95,7 @@ TL_INLINE double solve_weft(const struct tl_preview_membrane *m, int lane, struc
     return push;
 }
 
-TL_INLINE double solve_warp(const struct tl_preview_membrane *m, int lane, struct deformation *f)
+TL_INLINE double solve_warp(const struct tl_side *m, int lane, struct deformation *f)
 {
     double push = stretch_push(f->b, m->warp[lane]);
     double scale = 1 + push * m->dd[lane], lean = push * m->cd[lane], met = f->g + lean * f->b;
@@ -113,7 +113,7 @@ TL_INLINE double solve_warp(const struct tl_preview_membrane *m, int lane, struc
  * c_i (v a - u g) / (a sqrt(p)) + d_i (u b - v g) / (b sqrt(p)), of weighted square
  * (p - g^2) (cc b - 2 cd g + dd a) / p^2: its push needs no root, and one division. Of p, on row c F_v gets
  * this share; F_u of row c gets -b g of it, F_v of row d -a g. */
-TL_INLINE double solve_shear(const struct tl_preview_membrane *m, int lane, const struct deformation *f)
+TL_INLINE double solve_shear(const struct tl_side *m, int lane, const struct deformation *f)
 {
     double p = f->a * f->b;
     double square = (p - f->g * f->g) * (m->cc[lane] * f->b - 2 * m->cd[lane] * f->g + m->dd[lane] * f->a);
@@ -121,7 +121,7 @@ TL_INLINE double solve_shear(const struct tl_preview_membrane *m, int lane, cons
     return sum > 0 ? -f->g / sum : 0;
 }
 
-TL_INLINE void solve(const struct tl_preview_membrane *m, int lane, struct membrane_work *work)
+TL_INLINE void solve(const struct tl_side *m, int lane, struct pair_work *work)
 {
     struct deformation f = {
         .u_u = 1, .v_v = 1, .a = work->uu[lane], .b = work->vv[lane], .g = work->uv[lane]};
@@ -135,8 +135,9 @@ TL_INLINE void solve(const struct tl_preview_membrane *m, int lane, struct membr
     work->d_v[lane] = warp + (across * f.u_v - along_d * f.v_v);
 }
 
-TL_INLINE void move_corners(const struct tl_preview_membrane *m, int lane, struct membrane_work *work)
+TL_INLINE void move_corners(const struct tl_pair *pair, int side, int lane, struct pair_work *work)
 {
+    const struct tl_side *m = &pair->sides[side];
     vec3d u = at(&work->u, lane), v = at(&work->v, lane);
     double along_u[3], along_v[3];
     for (int i = 1; i < 3; i++) {
@@ -147,65 +148,73 @@ TL_INLINE void move_corners(const struct tl_preview_membrane *m, int lane, struc
     along_u[0] = -(along_u[1] + along_u[2]);
     along_v[0] = -(along_v[1] + along_v[2]);
     for (int i = 0; i < 3; i++) {
-        double w = m->w[i][lane];
-        vec3d moved = vec3d_muladd(at(&work->x[i], lane), u, w * along_u[i]);
-        put(&work->x[i], lane, vec3d_muladd(moved, v, w * along_v[i]));
+        int vertex = i < 2 ? i : 2 + side;
+        double w = pair->w[vertex][lane];
+        vec3d moved = vec3d_muladd(at(&work->x[vertex], lane), u, w * along_u[i]);
+        put(&work->x[vertex], lane, vec3d_muladd(moved, v, w * along_v[i]));
     }
 }
 
 /* Batches of a run that are solved side by side. */
-#define GROUP 8
+#define GROUP 4
 
 /* Whether the metric's larger eigenvalue exceeds `most`. */
-TL_INLINE bool stretches(const struct membrane_work *work, int lane, double most)
+TL_INLINE bool stretches(const struct pair_work *work, int lane, double most)
 {
     double spare_u = most - work->uu[lane], spare_v = most - work->vv[lane], uv = work->uv[lane];
     return (spare_u < 0) | (spare_v < 0) | (spare_u * spare_v < uv * uv);
 }
 
-TL_INLINE void solve_group(const struct tl_preview_membrane *m, size_t count, double most, vec3d *x,
-                           bool (*seen)[TL_BATCH])
+TL_INLINE void solve_sides(const struct tl_pair *pairs, size_t count, int side, double most,
+                           struct pair_work *work, bool (*seen)[TL_SIDES][TL_BATCH])
 {
-    struct membrane_work work[GROUP];
-    for (size_t k = 0; k < count; k++) {
-        for (size_t line = 0; line < sizeof *m; line += TL_CACHE_LINE)
-            __builtin_prefetch((const char *)&m[k + GROUP] + line);
-        for (int i = 0; i < 3; i++)
-            load(x, m[k].vertices[i], &work[k].x[i]);
-    }
     for (size_t k = 0; k < count; k++)
         for (int lane = 0; lane < TL_BATCH; lane++)
-            measure(&m[k], lane, &work[k]);
+            measure(&pairs[k].sides[side], 2 + side, lane, &work[k]);
     for (size_t k = 0; k < count && seen; k++)
         for (int lane = 0; lane < TL_BATCH; lane++)
-            seen[k][lane] = stretches(&work[k], lane, most);
+            seen[k][side][lane] = stretches(&work[k], lane, most);
     for (size_t k = 0; k < count; k++)
         for (int lane = 0; lane < TL_BATCH; lane++)
-            solve(&m[k], lane, &work[k]);
+            solve(&pairs[k].sides[side], lane, &work[k]);
     for (size_t k = 0; k < count; k++)
         for (int lane = 0; lane < TL_BATCH; lane++)
-            move_corners(&m[k], lane, &work[k]);
-    for (size_t k = 0; k < count; k++)
-        for (int i = 0; i < 3; i++)
-            store(&work[k].x[i], m[k].vertices[i], x);
+            move_corners(&pairs[k], side, lane, &work[k]);
 }
 
-TL_CLONES static void solve_run(const struct tl_preview_membrane *membranes, size_t count, double most,
-                                vec3d *x, bool (*seen)[TL_BATCH])
+TL_INLINE void solve_group(const struct tl_pair *pairs, size_t count, double most, vec3d *x,
+                           bool (*seen)[TL_SIDES][TL_BATCH])
+{
+    struct pair_work work[GROUP];
+    for (size_t k = 0; k < count; k++) {
+        for (size_t line = 0; line < sizeof *pairs; line += TL_CACHE_LINE)
+            __builtin_prefetch((const char *)&pairs[k + GROUP] + line);
+        for (int i = 0; i < 4; i++)
+            load(x, pairs[k].vertices[i], &work[k].x[i]);
+    }
+    solve_sides(pairs, count, 0, most, work, seen);
+    solve_sides(pairs, count, 1, most, work, seen);
+    for (size_t k = 0; k < count; k++)
+        for (int i = 0; i < 4; i++)
+            store(&work[k].x[i], pairs[k].vertices[i], x);
+}
+
+TL_CLONES static void solve_run(const struct tl_pair *pairs, size_t count, double most, vec3d *x,
+                                bool (*seen)[TL_SIDES][TL_BATCH])
 {
     for (size_t first = 0; first < count; first += GROUP)
-        solve_group(membranes + first, count - first < GROUP ? count - first : GROUP, most, x,
+        solve_group(pairs + first, count - first < GROUP ? count - first : GROUP, most, x,
                     seen ? seen + first : NULL);
 }
 
 /* On the threads of a team: the batches of a run in any order, the runs one after the other. */
-static void solve_membranes(const struct tl_energy *energy, const struct tl_watch *watch, vec3d *x)
+static void solve_pairs(const struct tl_pairs *pairs, const struct tl_watch *watch, vec3d *x)
 {
     size_t from = 0;
-    for (size_t run = 0; run < energy->membrane_run_count; run++) {
-        size_t end = energy->membrane_run_ends[run];
+    for (size_t run = 0; run < pairs->run_count; run++) {
+        size_t end = pairs->run_ends[run];
         struct tl_range part = tl_my_part(end - from, 1);
-        solve_run(energy->previewed + from + part.from, part.to - part.from, watch ? watch->most : 0, x,
+        solve_run(pairs->batches + from + part.from, part.to - part.from, watch ? watch->most : 0, x,
                   watch ? watch->seen + from + part.from : NULL);
         from = end;
 #pragma omp barrier
@@ -270,7 +279,7 @@ void tl_xpbd_solve(const struct tl_energy *energy, struct tl_particles *particle
 #pragma omp parallel if (particles->count >= TL_PARALLEL_VERTICES)
     {
         unsigned denormals = tl_denormals_off();
-        solve_membranes(energy, watch, particles->x);
+        solve_pairs(&energy->pairs, watch, particles->x);
         if (!energy->bends_as_force)
             solve_bends(energy, particles->x);
         tl_denormals_restore(denormals);

@@ -25,7 +25,7 @@
  */
 struct tl_watch {
     double most;
-    bool (*seen)[TL_BATCH]; /* [membrane_count] batches */
+    bool (*seen)[TL_SIDES][TL_BATCH]; /* [pairs.count] */
 };
 
 /* Every membrane, bend and link once; `watch` may be NULL. */

@@ -11,8 +11,7 @@ struct membrane_state {
     vec3d u, v, push_c, push_d;
 };
 
-TL_INLINE void push(const struct tl_preview_membrane *m, int lane, vec3d c, vec3d d,
-                    struct membrane_state *state)
+TL_INLINE void push(const struct tl_side *m, int lane, vec3d c, vec3d d, struct membrane_state *state)
 {
     state->push_c = vec3d_add(state->push_c, c);
     state->push_d = vec3d_add(state->push_d, d);
@@ -21,7 +20,7 @@ TL_INLINE void push(const struct tl_preview_membrane *m, int lane, vec3d c, vec3
 }
 
 /* As in xpbd.c. */
-TL_INLINE void push_shear(const struct tl_preview_membrane *m, int lane, struct membrane_state *state)
+TL_INLINE void push_shear(const struct tl_side *m, int lane, struct membrane_state *state)
 {
     vec3d u = state->u, v = state->v;
     double a = vec3d_dot(u, u), b = vec3d_dot(v, v), g = vec3d_dot(u, v), p = a * b;
@@ -36,13 +35,15 @@ TL_INLINE vec3d stretch_push(vec3d f, double factor)
     return vec3d_scale(f, factor * (1 - 1 / fmax(vec3d_norm(f), NO_LENGTH)));
 }
 
-TL_INLINE void solve_membrane(const struct tl_preview_membrane *m, int lane, vec3d corners[3][TL_BATCH])
+TL_INLINE void solve_side(const struct tl_pair *pair, int side, int lane, vec3d corners[4][TL_BATCH])
 {
     struct membrane_state state = {0};
+    const struct tl_side *m = &pair->sides[side];
+    const int vertices[3] = {0, 1, 2 + side};
     for (int i = 1; i < 3; i++) {
-        vec3d side = vec3d_sub(corners[i][lane], corners[0][lane]);
-        state.u = vec3d_muladd(state.u, side, m->c[i - 1][lane]);
-        state.v = vec3d_muladd(state.v, side, m->d[i - 1][lane]);
+        vec3d apart = vec3d_sub(corners[vertices[i]][lane], corners[0][lane]);
+        state.u = vec3d_muladd(state.u, apart, m->c[i - 1][lane]);
+        state.v = vec3d_muladd(state.v, apart, m->d[i - 1][lane]);
     }
     push_shear(m, lane, &state);
     push(m, lane, (vec3d){0}, stretch_push(state.v, m->warp[lane]), &state);
@@ -51,23 +52,25 @@ TL_INLINE void solve_membrane(const struct tl_preview_membrane *m, int lane, vec
     for (int i = 1; i < 3; i++)
         ways[i] = vec3d_muladd(vec3d_scale(state.push_c, m->c[i - 1][lane]), state.push_d, m->d[i - 1][lane]);
     ways[0] = vec3d_scale(vec3d_add(ways[1], ways[2]), -1);
-    for (int i = 0; i < 3; i++)
-        corners[i][lane] = vec3d_muladd(corners[i][lane], ways[i], m->w[i][lane]);
+    for (int i = 0; i < 3; i++) {
+        vec3d *x = &corners[vertices[i]][lane];
+        *x = vec3d_muladd(*x, ways[i], pair->w[vertices[i]][lane]);
+    }
 }
 
-TL_CLONES static void solve_membranes(const struct tl_preview_membrane *membranes, struct tl_range range,
-                                      vec3d *x)
+TL_CLONES static void solve_pairs(const struct tl_pair *pairs, struct tl_range range, vec3d *x)
 {
-    for (const struct tl_preview_membrane *m = membranes + range.from; m < membranes + range.to; m++) {
-        vec3d corners[3][TL_BATCH];
-        for (int i = 0; i < 3; i++)
+    for (const struct tl_pair *pair = pairs + range.from; pair < pairs + range.to; pair++) {
+        vec3d corners[4][TL_BATCH];
+        for (int i = 0; i < 4; i++)
             for (int lane = 0; lane < TL_BATCH; lane++)
-                corners[i][lane] = x[m->vertices[i][lane]];
-        for (int lane = 0; lane < TL_BATCH; lane++)
-            solve_membrane(m, lane, corners);
-        for (int i = 0; i < 3; i++)
+                corners[i][lane] = x[pair->vertices[i][lane]];
+        for (int side = TL_SIDES - 1; side >= 0; side--)
             for (int lane = 0; lane < TL_BATCH; lane++)
-                x[m->vertices[i][lane]] = corners[i][lane];
+                solve_side(pair, side, lane, corners);
+        for (int i = 0; i < 4; i++)
+            for (int lane = 0; lane < TL_BATCH; lane++)
+                x[pair->vertices[i][lane]] = corners[i][lane];
     }
 }
 
@@ -101,8 +104,8 @@ static void solve_on_team(const struct tl_energy *energy, vec3d *x)
             solve_bend(&energy->bends[i / TL_BATCH], (int)(i % TL_BATCH), x);
 #pragma omp barrier
     }
-    for (size_t run = energy->membrane_run_count; run-- > 0;) {
-        solve_membranes(energy->previewed, part_of_run(energy->membrane_run_ends, run), x);
+    for (size_t run = energy->pairs.run_count; run-- > 0;) {
+        solve_pairs(energy->pairs.batches, part_of_run(energy->pairs.run_ends, run), x);
 #pragma omp barrier
     }
 }

@@ -9,6 +9,7 @@ add_library(toile_light STATIC
   brdf/options.c
   detail/bake.c
   detail/bumps.c
+  detail/cones.c
   detail/detail.c
   detail/field.c
   detail/options.c
@@ -26,6 +27,7 @@ add_library(toile_light STATIC
   inspect/pick.c
   inspect/seen.c
   light/compose.c
+  light/cull.c
   light/mirrors.c
   env/pour.c
   env/sun.c

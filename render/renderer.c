@@ -16,8 +16,7 @@
 #define BYTES_MAX         ((uint64_t)4 << 30) /* all together */
 #define TEXTURE_BYTES_MAX ((uint64_t)1 << 30) /* one texture */
 
-/* Settings as the algorithm can use them: regions in sixes, sizes in powers of two. */
-static struct tl_render_settings usable(const struct tl_render_settings *settings)
+struct tl_render_settings tl_frame_usable(const struct tl_render_settings *settings)
 {
     struct tl_render_settings used = *settings;
     if (used.light.cut == TL_CUT_FACES)
@@ -108,6 +107,7 @@ void tl_renderer_destroy(tl_renderer **renderer)
 {
     if (!*renderer)
         return;
+    tl_prepared_destroy(&(*renderer)->prepared);
     tl_pour_release(&(*renderer)->pour);
     tl_cube_release(&(*renderer)->cube);
     tl_regions_release(&(*renderer)->regions);
@@ -208,11 +208,6 @@ static struct tl_work work_of(int job, const struct tl_work_seen *seen)
     return tl_frame_jobs[job].work ? tl_frame_jobs[job].work(seen) : (struct tl_work){{0}};
 }
 
-static double load_of(const tl_renderer *renderer)
-{
-    return renderer->load > 0 ? renderer->load : 1;
-}
-
 static void make_plan(const tl_renderer *renderer, const struct tl_plan_input *input,
                       const struct tl_render_settings *settings, tl_plan *plan)
 {
@@ -220,7 +215,8 @@ static void make_plan(const tl_renderer *renderer, const struct tl_plan_input *i
     const struct tl_work_seen seen = tl_work_look(renderer, settings);
     for (int i = 0; i < tl_frame_job_count; i++) {
         struct tl_work work = work_of(i, &seen);
-        predicted_ms[i] = tl_cost_predict(&renderer->costs[i], &work, load_of(renderer));
+        predicted_ms[i] =
+            tl_cost_predict(&renderer->costs[i], &work, tl_machine_load_factor(&renderer->load));
     }
     tl_plan_make(tl_frame_jobs, tl_frame_job_count, input, predicted_ms, plan);
 }
@@ -232,7 +228,7 @@ static void learn_costs(tl_renderer *renderer, tl_plan *plan, double new_regions
     const int known = 3; /* runs */
     struct tl_work_seen seen = tl_work_look(renderer, &renderer->settings);
     seen.new_regions = new_regions; /* as it was before they were made */
-    double predicted_ms = 0, took_ms = 0, load = load_of(renderer);
+    double predicted_ms = 0, took_ms = 0, load = tl_machine_load_factor(&renderer->load);
     for (int i = 0; i < plan->count; i++) {
         if (plan->rows[i].action != TL_JOB_RUN)
             continue;
@@ -245,7 +241,7 @@ static void learn_costs(tl_renderer *renderer, tl_plan *plan, double new_regions
         }
         tl_cost_learn(cost, &work, load, plan->rows[i].took_ms);
     }
-    renderer->load = tl_load_follow(load, predicted_ms, took_ms);
+    tl_machine_load_follow(&renderer->load, predicted_ms, took_ms);
 }
 
 static bool run_plan(tl_renderer *renderer, const struct tl_plan_input *input, tl_plan *plan, tl_error *error)
@@ -339,7 +335,7 @@ static void let_go(tl_renderer *renderer, tl_bits facts)
 bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct tl_render_settings *settings,
                       tl_error *error)
 {
-    struct tl_render_settings used = usable(settings);
+    struct tl_render_settings used = tl_frame_usable(settings);
     if (!check_camera(&frame->camera, error) || !check_image_size(renderer, &used.image, error) ||
         !check_light_size(&used, error) || !check_envmap_size(frame, &used, error))
         return false;
@@ -441,7 +437,7 @@ bool tl_renderer_show_columns(tl_renderer *renderer, int width, int height, int 
 void tl_renderer_plan(const tl_renderer *renderer, const tl_frame *frame,
                       const struct tl_render_settings *settings, tl_plan *out)
 {
-    struct tl_render_settings used = usable(settings);
+    struct tl_render_settings used = tl_frame_usable(settings);
     uint64_t signatures[TL_INPUT_COUNT];
     struct tl_rest rest = renderer->rest;
     tl_frame_sign(frame, &used, renderer->signatures, &rest, signatures);
@@ -459,7 +455,7 @@ void tl_renderer_plan(const tl_renderer *renderer, const tl_frame *frame,
 tl_bits tl_renderer_would_run(const tl_renderer *renderer, const tl_frame *frame,
                               const struct tl_render_settings *settings)
 {
-    struct tl_render_settings used = usable(settings);
+    struct tl_render_settings used = tl_frame_usable(settings);
     uint64_t signatures[TL_INPUT_COUNT];
     struct tl_rest rest = renderer->rest;
     tl_frame_sign(frame, &used, renderer->signatures, &rest, signatures);
@@ -484,7 +480,7 @@ double tl_renderer_would_take(const tl_renderer *renderer, const struct tl_rende
         if (!(jobs & (tl_bits)1 << i))
             continue;
         struct tl_work work = work_of(i, &seen);
-        double ms = tl_cost_predict(&renderer->costs[i], &work, load_of(renderer));
+        double ms = tl_cost_predict(&renderer->costs[i], &work, tl_machine_load_factor(&renderer->load));
         sum_ms += isfinite(ms) ? ms : 0;
     }
     return sum_ms;
@@ -492,7 +488,7 @@ double tl_renderer_would_take(const tl_renderer *renderer, const struct tl_rende
 
 double tl_renderer_load(const tl_renderer *renderer)
 {
-    return load_of(renderer);
+    return tl_machine_load_factor(&renderer->load);
 }
 
 bool tl_renderer_is_moving(const tl_renderer *renderer, const tl_frame *frame)
@@ -506,14 +502,14 @@ bool tl_renderer_is_moving(const tl_renderer *renderer, const tl_frame *frame)
 
 bool tl_renderer_has_regions(const tl_renderer *renderer, const struct tl_render_settings *settings)
 {
-    const struct tl_render_settings used = usable(settings);
+    const struct tl_render_settings used = tl_frame_usable(settings);
     const tl_bits needed = TL_BIT(TL_MADE_CUBE) | TL_BIT(TL_MADE_LOBES) | TL_BIT(TL_MADE_LIGHTS);
     return (renderer->valid & needed) != needed || tl_frame_has_lights(renderer, &used.light);
 }
 
 void tl_renderer_prepare_regions(tl_renderer *renderer, const struct tl_render_settings *settings)
 {
-    const struct tl_render_settings used = usable(settings);
+    const struct tl_render_settings used = tl_frame_usable(settings);
     if (!tl_renderer_has_regions(renderer, &used))
         tl_frame_prepare_lights(renderer, &used.light);
 }

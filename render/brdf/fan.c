@@ -80,18 +80,48 @@ static vec3s value_of_slope(const struct tl_brdf *brdf, const struct tl_brdf_fra
     return glms_vec3_scale(tl_brdf_gloss(brdf, frame, l, v), 1 / density);
 }
 
-/* What of all light is reflected towards the viewer. Three Gauss-Hermite points an axis, exact to the fifth
- * power. */
+/* Gauss and Legendre's points and weights of [-1, 1]. */
+#define POINTS 5
+static const float points[POINTS] = {-0.9061798f, -0.5384693f, 0, 0.5384693f, 0.9061798f};
+static const float weights[POINTS] = {0.2369269f, 0.4786287f, 0.5688889f, 0.4786287f, 0.2369269f};
+/* In standard deviations: what lies farther out is less than 3 in a thousand. */
+#define REACH 3.0f
+
+/* Where a normal distribution is asked for its mean between `from` (REACH at most) and REACH, and what each
+ * place counts; together as much as there is between them. */
+static void sample_normal(float from, float at[POINTS], float share[POINTS])
+{
+    float middle = (REACH + from) / 2, half = (REACH - from) / 2, sum = 0;
+    for (int i = 0; i < POINTS; i++) {
+        at[i] = middle + half * points[i];
+        share[i] = weights[i] * expf(-0.5f * at[i] * at[i]);
+        sum += share[i];
+    }
+    float mass = (erff(REACH * GLM_SQRT1_2f) - erff(from * GLM_SQRT1_2f)) / 2;
+    for (int i = 0; i < POINTS; i++)
+        share[i] *= mass / sum;
+}
+
+/* What of all light is reflected towards the viewer: the mean over all slopes. Those that turn away from the viewer
+ * by more than half of what is left of a right angle send light from below the horizon, which cuts the mean off
+ * sharply; beside that, two Gauss-Hermite points do. */
 static vec3s albedo_of(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame,
                        const struct slopes *slopes, vec3s v)
 {
-    const float at[3] = {-1.7320508f, 0, 1.7320508f}, share[3] = {1 / 6.0f, 2 / 3.0f, 1 / 6.0f};
-    vec3s sum = {{0, 0, 0}};
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) {
-            vec2s slope = {{at[i] * slopes->weft, at[j] * slopes->warp}};
+    vec3s local = local_of(frame, v), sum = {{0, 0, 0}};
+    float flat = hypotf(local.x, local.y), u = slopes->weft, w = slopes->warp;
+    vec2s towards = flat > 1e-4f ? (vec2s){{local.x / flat, local.y / flat}} : (vec2s){{1, 0}};
+    float deviation = hypotf(towards.x * u, towards.y * w);
+    vec2s along = {{towards.x * u * u / deviation, towards.y * w * w / deviation}};
+    vec2s beside = {{-towards.y * u * w / deviation, towards.x * u * w / deviation}};
+    float lowest = (1 - flat) / fmaxf(local.z, 1e-6f); /* tan((90 degrees - b) / 2) */
+    float at[POINTS], share[POINTS];
+    sample_normal(fmaxf(-REACH, -lowest / deviation), at, share);
+    for (int i = 0; i < POINTS; i++)
+        for (int sign = -1; sign <= 1; sign += 2) {
+            vec2s slope = glms_vec2_add(glms_vec2_scale(along, at[i]), glms_vec2_scale(beside, (float)sign));
             vec3s value = value_of_slope(brdf, frame, slopes, v, slope);
-            sum = glms_vec3_add(sum, glms_vec3_scale(value, share[i] * share[j]));
+            sum = glms_vec3_add(sum, glms_vec3_scale(value, 0.5f * share[i]));
         }
     return sum;
 }
@@ -153,21 +183,35 @@ static int fan_of_facets(const struct tl_brdf *brdf, const struct tl_brdf_frame 
     return count;
 }
 
-/* (r.l)^s times a cosine is nearly one lobe more, a little nearer to the normal. Its albedo is the mean of
- * that cosine over the lobe, which spreads it by about 1 / sqrt(s + 2). */
+/* Of F (s + 2) / (s + 1) K_s(r, l) cos a: the mean of F cos a over the lobe. Its directions spread by about
+ * 1 / sqrt(s + 2) in the plane of incidence, where the horizon cuts them off; what they spread beside it
+ * takes the root of (s + 1) / (s + 2) off the cosine. */
+static vec3s albedo_of_cosine_lobe(const struct tl_brdf *brdf, float facing)
+{
+    float spread = 1 / sqrtf(brdf->exponent + 2), across = sqrtf(fmaxf(1 - facing * facing, 0));
+    float at[POINTS], share[POINTS];
+    vec3s sum = {{0, 0, 0}};
+    sample_normal(fmaxf(-REACH, -asinf(fminf(facing, 1)) / spread), at, share);
+    for (int i = 0; i < POINTS; i++) {
+        float turn = spread * at[i], cosine = facing * cosf(turn) + across * sinf(turn);
+        float from_half = cosf((2 * acosf(fminf(facing, 1)) - turn) / 2);
+        vec3s reflectance = tl_brdf_fresnel(brdf, from_half);
+        sum = glms_vec3_add(sum, glms_vec3_scale(reflectance, share[i] * fmaxf(cosine, 0)));
+    }
+    return glms_vec3_scale(sum, sqrtf((brdf->exponent + 2) / (brdf->exponent + 1)));
+}
+
+/* (r.l)^s times a cosine is nearly one lobe more, a little nearer to the normal. */
 static int fan_of_cosine_lobe(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v,
                               struct tl_fan_lobe *lobes)
 {
     float s = brdf->exponent, facing = fmaxf(glms_vec3_dot(frame->normal, v), 0);
     vec3s r = mirrored(frame->normal, v);
-    float spread = 1 / sqrtf(s + 2), mean = facing * (s + 1) / (s + 2), u = mean / spread;
-    float height = mean * share_above(mean, s + 1) + spread * expf(-0.5f * u * u) / sqrtf(2 * GLM_PIf);
-    vec3s albedo = glms_vec3_scale(tl_brdf_fresnel(brdf, facing), (s + 2) / (s + 1) * height);
     lobes[0] = (struct tl_fan_lobe){
         .direction = glms_vec3_normalize(glms_vec3_add(glms_vec3_scale(r, s), frame->normal)),
         .exponent = s + 1,
         .weight = {{1, 1, 1}}};
-    scale_to(albedo, frame, 1, lobes);
+    scale_to(albedo_of_cosine_lobe(brdf, facing), frame, 1, lobes);
     return 1;
 }
 

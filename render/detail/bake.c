@@ -27,6 +27,23 @@ tl_image tl_bake_heights(const tl_image *picture, float base_m, float scale_m)
     return heights;
 }
 
+tl_image tl_bake_smaller(const tl_image *heights, int width, int height)
+{
+    tl_image small = tl_image_create(width, height, 1, TL_IMAGE_F32);
+    for (int i = 0; i < width * height; i++) {
+        int left = (int)((int64_t)(i % width) * heights->width / width),
+            top = (int)((int64_t)(i / width) * heights->height / height);
+        int right = (int)((int64_t)(i % width + 1) * heights->width / width),
+            bottom = (int)((int64_t)(i / width + 1) * heights->height / height);
+        double sum = 0;
+        for (int y = top; y < bottom; y++)
+            for (int x = left; x < right; x++)
+                sum += (double)tl_image_floats(heights)[(size_t)y * (size_t)heights->width + (size_t)x];
+        tl_image_floats(&small)[i] = (float)(sum / ((double)(right - left) * (bottom - top)));
+    }
+    return small;
+}
+
 /* Of neighbours along one axis: their texels, and how many texels lie between them. */
 struct neighbours {
     int before, after, distance;

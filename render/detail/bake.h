@@ -11,6 +11,9 @@
  * of 255. */
 tl_image tl_bake_heights(const tl_image *picture, float base_m, float scale_m);
 
+/* Heights averaged to fewer texels: `width` and `height` at most those of `heights`, which is F32 x1. */
+tl_image tl_bake_smaller(const tl_image *heights, int width, int height);
+
 /* Slopes (dh/dx, dh/dy) in tangent space, metres a metre, by central differences; one-sided at borders that
  * do not repeat. F32 x2. */
 tl_image tl_bake_slopes(const struct tl_height_field *field);

@@ -59,6 +59,11 @@ bool tl_detail_wants_heights(const struct tl_detail_params *params)
     return params->mode >= TL_DETAIL_PARALLAX || params->shadow == TL_DETAIL_SHADOW_RELIEF;
 }
 
+bool tl_detail_wants_cones(const struct tl_detail_params *params)
+{
+    return params->mode == TL_DETAIL_RELIEF;
+}
+
 bool tl_detail_wants_horizons(const struct tl_detail_params *params)
 {
     return params->shadow != TL_DETAIL_SHADOW_NONE;

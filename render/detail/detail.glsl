@@ -29,6 +29,7 @@ layout(binding = 8) uniform sampler2D detail_heights;       // m
 layout(binding = 9) uniform sampler2DArray detail_horizons; // sines at DETAIL_ANGLES angles, four a layer; then the back's
 layout(binding = 10) uniform sampler2D detail_own_moments;  // of the normal map: (x, y, x^2, y^2)
 layout(binding = 11) uniform sampler2D detail_weave_moments;
+layout(binding = 12) uniform sampler2D detail_cones; // of the front, and of the back
 
 bool has_detail(int map)
 {
@@ -100,16 +101,24 @@ vec2 detail_bounds(float side)
 #endif
 
 #if DETAIL_MODE == DETAIL_RELIEF
-// The height at which a ray through uv on the mesh meets the field.
+// The height at which a ray through uv on the mesh meets the field: tl_field_relief.
 float detail_hit(vec2 uv, vec2 along, float side, float level)
 {
-    vec2 bounds = detail_bounds(side);
-    float stride = (bounds.y - bounds.x) / float(detail_steps.x);
+    int levels = textureQueryLevels(detail_heights), coarse = min(int(level), levels - 1);
+    float lod = float(max(coarse - levels + textureQueryLevels(detail_cones), 0));
+    vec2 bounds = detail_bounds(side), texels = vec2(textureSize(detail_heights, coarse));
+    mat2 turned = transpose(mat2(detail_rows[0].xy, detail_rows[1].xy));
+    vec2 speed = -(turned * along) * texels;
+    float slant = (bounds.y - bounds.x) * exp2(float(coarse)) * length(speed);
     float above = bounds.y, over = detail_clearance(uv, along, above, 0.0, side, level), below = above, under = over;
-    for (int i = 1; i <= detail_steps.x && under > 0.0; i++) {
+    for (int left = detail_steps.x; left > 0 && under > 0.0; left--) {
         above = below;
         over = under;
-        below = bounds.y - stride * float(i);
+        vec2 place = detail_field_uv(uv + above * along), at = place * texels - 0.5;
+        vec2 cones = textureLod(detail_cones, place, lod).rg;
+        float stride = over * detail_cone_step(side > 0.0 ? cones.r : cones.g, slant);
+        stride = max(stride, min(detail_to_line(at.x, speed.x), detail_to_line(at.y, speed.y)));
+        below = max(above - max(stride, detail_due(above - bounds.x, float(left))), bounds.x);
         under = detail_clearance(uv, along, below, 0.0, side, level);
     }
     for (int i = 0; i < detail_steps.y; i++) {

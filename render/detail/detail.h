@@ -18,8 +18,9 @@ bool tl_detail_heights_make(const tl_material *material, float uv_metres, float 
                             struct tl_detail_heights *out);
 void tl_detail_heights_release(struct tl_detail_heights *heights);
 
-/* Whether heights are read while drawing; horizons; moments of normals. */
+/* Whether heights are read while drawing; cones of relief; horizons; moments of normals. */
 bool tl_detail_wants_heights(const struct tl_detail_params *params);
+bool tl_detail_wants_cones(const struct tl_detail_params *params);
 bool tl_detail_wants_horizons(const struct tl_detail_params *params);
 bool tl_detail_wants_moments(const struct tl_detail_params *params);
 

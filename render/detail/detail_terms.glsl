@@ -19,6 +19,30 @@ TERM float detail_climb(float light_z)
     return 1.0f / max(light_z, 1e-4f);
 }
 
+// Relief walks from cone to cone (cones.h). The share of its clearance that a ray may come down at once: `cone` is the
+// map's, `slant` how many texels the ray passes from the field's top to its bottom.
+#define DETAIL_CONE_TEXELS 16.0f
+TERM float detail_cone_step(float cone, float slant)
+{
+    float opens = DETAIL_CONE_TEXELS * cone;
+    return opens / max(opens + (1.0f - cone) * slant, 1e-6f);
+}
+
+// Where a cone says less, a ray goes on to the next line between middles of texels, for between two of them a bilinear
+// field has no crest: by how much height along one axis. `at`: texels from any of these lines; `speed`: texels that the
+// ray passes while it comes down a metre.
+TERM float detail_to_line(float at, float speed)
+{
+    float passed = at - floor(at), left = speed > 0.0f ? 1.0f - passed : passed;
+    return (left + 0.001f) / max(max(speed, -speed), 1e-6f);
+}
+
+// And so far that the last of `steps` that are left reaches the bottom from `rest` above it: hardly at all at first.
+TERM float detail_due(float rest, float steps)
+{
+    return rest / (steps * steps);
+}
+
 // Normals that are averaged get shorter, and what they lose tells how far they spread [Toksvig 2005]: the variance of
 // their slope along one axis.
 TERM float detail_variance(float mean_length)

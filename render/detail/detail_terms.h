@@ -9,6 +9,7 @@
 #define max   term_max
 #define clamp term_clamp
 #define asin  asinf
+#define floor floorf
 #define sqrt  sqrtf
 #define sin   sinf
 #include "render/detail/detail_terms.glsl"
@@ -16,6 +17,7 @@
 #undef max
 #undef clamp
 #undef asin
+#undef floor
 #undef sqrt
 #undef sin
 

@@ -4,6 +4,8 @@
 
 #include <math.h>
 
+#define MARCH_HALVINGS 12
+
 struct tl_height_field tl_height_field_make(const tl_image *heights, float width_m, float height_m,
                                             bool clamp_u, bool clamp_v)
 {
@@ -84,28 +86,87 @@ static float clearance(const struct field_ray *ray, float height)
     return height - tl_field_height(ray->field, place_at(ray, height));
 }
 
+/* A part of a ray, from over the field to under it: heights, and how far from it they are. */
+struct bracket {
+    float above, over, below, under;
+};
+
+static struct tl_relief refined(const struct field_ray *ray, struct bracket part, int refine)
+{
+    for (int i = 0; i < refine; i++) {
+        float middle = 0.5f * (part.above + part.below), left = clearance(ray, middle);
+        bool is_under = left <= 0;
+        part.above = is_under ? part.above : middle;
+        part.over = is_under ? part.over : left;
+        part.below = is_under ? middle : part.below;
+        part.under = is_under ? left : part.under;
+    }
+    float span = part.over - part.under, share = span > 0 ? fminf(part.over / span, 1) : 0;
+    float hit = part.above + (part.below - part.above) * share;
+    return (struct tl_relief){place_at(ray, hit), hit};
+}
+
+static struct field_ray view_ray(const struct tl_height_field *field, vec2s uv, vec3s view)
+{
+    float slant = detail_slant(view.z);
+    return (struct field_ray){field, uv, slant * view.x, slant * view.y, 0};
+}
+
+/* A byte's share of 255, of the texel that is nearest. */
+static float cone_at(const struct tl_height_field *field, vec2s uv)
+{
+    int column = wrapped(floorf(uv.x * (float)field->cones->width), field->cones->width, field->clamp_u);
+    int row = wrapped(floorf(uv.y * (float)field->cones->height), field->cones->height, field->clamp_v);
+    size_t texel = (size_t)row * (size_t)field->cones->width + (size_t)column;
+    return (float)tl_image_bytes(field->cones)[2 * texel + (field->turned_over ? 1 : 0)] / 255;
+}
+
+/* Texels that a ray passes while it comes down a metre. */
+static vec2s texels_down(const struct field_ray *ray)
+{
+    vec2s along = tl_field_moved(ray->field, (vec2s){{0, 0}}, ray->x, ray->y);
+    return (vec2s){
+        {-along.x * (float)ray->field->heights->width, -along.y * (float)ray->field->heights->height}};
+}
+
+static float to_next_line(const struct tl_height_field *field, vec2s at, vec2s speed)
+{
+    return fminf(detail_to_line(at.x * (float)field->heights->width - 0.5f, speed.x),
+                 detail_to_line(at.y * (float)field->heights->height - 0.5f, speed.y));
+}
+
 struct tl_relief tl_field_relief(const struct tl_height_field *field, vec2s uv, vec3s view, int steps,
                                  int refine)
 {
-    float slant = detail_slant(view.z), high = field->high_m, depth = high - field->low_m;
-    const struct field_ray ray = {field, uv, slant * view.x, slant * view.y, 0};
-    float above = high, over = clearance(&ray, above), below = above, under = over;
-    for (int i = 1; i <= steps && under > 0; i++) {
-        above = below;
-        over = under;
-        below = high - depth * (float)i / (float)steps;
-        under = clearance(&ray, below);
+    const struct field_ray ray = view_ray(field, uv, view);
+    vec2s speed = texels_down(&ray);
+    float high = field->high_m, low = field->low_m, slant = glms_vec2_norm(speed) * (high - low);
+    float over = clearance(&ray, high);
+    struct bracket part = {high, over, high, over};
+    for (int left = steps; left > 0 && part.under > 0; left--) {
+        part.above = part.below;
+        part.over = part.under;
+        vec2s at = place_at(&ray, part.above);
+        float step =
+            fmaxf(part.over * detail_cone_step(cone_at(field, at), slant), to_next_line(field, at, speed));
+        part.below = fmaxf(part.above - fmaxf(step, detail_due(part.above - low, (float)left)), low);
+        part.under = clearance(&ray, part.below);
     }
-    for (int i = 0; i < refine; i++) {
-        float middle = 0.5f * (above + below), left = clearance(&ray, middle);
-        bool is_under = left <= 0;
-        above = is_under ? above : middle;
-        over = is_under ? over : left;
-        below = is_under ? middle : below;
-        under = is_under ? left : under;
+    return refined(&ray, part, refine);
+}
+
+struct tl_relief tl_field_march(const struct tl_height_field *field, vec2s uv, vec3s view, int steps)
+{
+    const struct field_ray ray = view_ray(field, uv, view);
+    float high = field->high_m, depth = high - field->low_m, over = clearance(&ray, high);
+    struct bracket part = {high, over, high, over};
+    for (int i = 1; i <= steps && part.under > 0; i++) {
+        part.above = part.below;
+        part.over = part.under;
+        part.below = high - depth * (float)i / (float)steps;
+        part.under = clearance(&ray, part.below);
     }
-    float span = over - under, hit = span > 0 ? above + (below - above) * fminf(over / span, 1) : above;
-    return (struct tl_relief){place_at(&ray, hit), hit};
+    return refined(&ray, part, MARCH_HALVINGS);
 }
 
 float tl_field_lit(const struct tl_height_field *field, vec2s uv, vec3s light, int steps)

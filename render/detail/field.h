@@ -17,6 +17,7 @@ struct tl_height_field {
     float repeats_per_m[4];  /* rows of the matrix from (x, y) in metres to repeats */
     float low_m, high_m;     /* of all heights */
     bool turned_over;        /* the sheet from below: heights count downwards */
+    const tl_image *cones;   /* of tl_bake_cones, for relief; else NULL */
 };
 
 /* A map that is `width_m` x `height_m` large on the surface. Heights that are not finite are not allowed. */
@@ -34,14 +35,17 @@ vec2s tl_field_moved(const struct tl_height_field *field, vec2s uv, float x_m, f
 /* T_n = T_0 + h V_xy / V_z, or without the division: the height at uv is taken for that of all around it. */
 vec2s tl_field_parallax(const struct tl_height_field *field, vec2s uv, vec3s view, bool limited);
 
-/* Where a ray towards the viewer's side, which meets the mesh at uv, meets the field: `steps` of equal height
- * from high_m to low_m, then `refine` halvings of the step in which it went under, then a straight line. */
+/* Where a ray towards the viewer's side, which meets the mesh at uv, meets the field. */
 struct tl_relief {
     vec2s uv;
     float height_m;
 };
+/* As images are drawn: at most `steps` from cone to cone, from high_m to low_m, then `refine` halvings of the
+ * step in which the ray went under, then a straight line. The field must have cones. */
 struct tl_relief tl_field_relief(const struct tl_height_field *field, vec2s uv, vec3s view, int steps,
                                  int refine);
+/* The truth that it is held against: `steps` of equal height, then halvings to the end. */
+struct tl_relief tl_field_march(const struct tl_height_field *field, vec2s uv, vec3s view, int steps);
 
 /* Whether a light is seen from the field at uv, 0 or 1, by `steps` of equal height up to high_m, or as far as
  * DETAIL_REACH. */

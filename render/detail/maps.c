@@ -2,6 +2,7 @@
 
 #include "config/memory.h"
 #include "render/detail/bake.h"
+#include "render/detail/cones.h"
 #include "render/detail/detail.h"
 
 #include <epoxy/gl.h>
@@ -9,7 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* detail_flags beside 1 << unit, which say which maps there are: detail.glsl has the same numbers. */
+/* detail_flags, which say which maps there are (cones are where heights are): detail.glsl has the same
+ * numbers. */
 enum {
     FLAG_OWN_MOMENTS = 1,
     FLAG_WEAVE_MOMENTS = 2,
@@ -78,33 +80,44 @@ static tl_texture upload_moments(tl_gpu *gpu, const tl_image *normals)
     return texture;
 }
 
-/* Heights averaged until no side is longer than horizons are baked for. */
-static tl_image shrunk(const tl_image *image)
+/* Heights averaged until no side is longer than `most`. */
+static tl_image shrunk(const tl_image *image, int most)
 {
     int longest = image->width > image->height ? image->width : image->height;
-    int factor = (longest + TL_HORIZON_SIDE_MAX - 1) / TL_HORIZON_SIDE_MAX;
+    int factor = (longest + most - 1) / most;
     int width = image->width / factor > 1 ? image->width / factor : 1;
     int height = image->height / factor > 1 ? image->height / factor : 1;
-    tl_image small = tl_image_create(width, height, 1, TL_IMAGE_F32);
-    for (int i = 0; i < width * height; i++) {
-        int left = (int)((int64_t)(i % width) * image->width / width),
-            top = (int)((int64_t)(i / width) * image->height / height);
-        int right = (int)((int64_t)(i % width + 1) * image->width / width),
-            bottom = (int)((int64_t)(i / width + 1) * image->height / height);
-        double sum = 0;
-        for (int y = top; y < bottom; y++)
-            for (int x = left; x < right; x++)
-                sum += (double)tl_image_floats(image)[(size_t)y * (size_t)image->width + (size_t)x];
-        tl_image_floats(&small)[i] = (float)(sum / ((double)(right - left) * (bottom - top)));
+    return tl_bake_smaller(image, width, height);
+}
+
+/* Of every level of the heights its own: an average is no bound. */
+static tl_texture upload_cones(tl_gpu *gpu, const struct tl_height_field *field)
+{
+    tl_image most = shrunk(field->heights, TL_CONE_SIDE_MAX);
+    tl_texture texture = tl_texture_create(gpu, GL_TEXTURE_2D, GL_RG8, most.width, most.height, 1,
+                                           tl_texture_full_levels(most.width, most.height));
+    glTextureParameteri(texture.id, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    glTextureParameteri(texture.id, GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_NEAREST);
+    for (int level = 0; level < texture.levels; level++) {
+        int width = most.width >> level > 1 ? most.width >> level : 1;
+        int height = most.height >> level > 1 ? most.height >> level : 1;
+        tl_image small = tl_bake_smaller(&most, width, height);
+        struct tl_height_field baked = *field;
+        baked.heights = &small;
+        tl_image cones = tl_bake_cones(&baked, (float)field->heights->width / (float)width);
+        glTextureSubImage2D(texture.id, level, 0, 0, width, height, GL_RG, GL_UNSIGNED_BYTE, cones.texels);
+        tl_image_release(&cones);
+        tl_image_release(&small);
     }
-    return small;
+    tl_image_release(&most);
+    return texture;
 }
 
 /* Both sides of the sheet, each with all its angles. */
 static tl_texture upload_horizons(tl_gpu *gpu, const struct tl_detail_heights *heights, int angle_count)
 {
     int layers = angle_count / 4;
-    tl_image small = shrunk(&heights->image);
+    tl_image small = shrunk(&heights->image, TL_HORIZON_SIDE_MAX);
     const struct tl_height_field *sides[] = {&heights->field, &heights->back};
     tl_texture texture = tl_texture_create(gpu, GL_TEXTURE_2D_ARRAY, GL_RGBA8, small.width, small.height,
                                            2 * layers, tl_texture_full_levels(small.width, small.height));
@@ -135,6 +148,8 @@ static void add_heights(struct tl_detail_entry *entry, tl_gpu *gpu, const struct
     memcpy(entry->rows, heights.rows, sizeof entry->rows);
     if (tl_detail_wants_heights(params))
         entry->textures[TL_DETAIL_HEIGHTS] = upload_heights(gpu, &heights.image);
+    if (tl_detail_wants_cones(params))
+        entry->textures[TL_DETAIL_CONES] = upload_cones(gpu, &heights.field);
     if (tl_detail_wants_horizons(params))
         entry->textures[TL_DETAIL_HORIZONS] = upload_horizons(gpu, &heights, tl_detail_angle_count(params));
     if (own_normals) {

@@ -1,5 +1,5 @@
-/* The maps on the GPU that detail derives from those of the materials: heights, horizons, moments of normals.
- * Made only where an option asks for them. Owns its textures; one GL thread. */
+/* The maps on the GPU that detail derives from those of the materials: heights, horizons, cones, moments of
+ * normals. Made only where an option asks for them. Owns its textures; one GL thread. */
 #ifndef TOILE_RENDER_DETAIL_MAPS_H
 #define TOILE_RENDER_DETAIL_MAPS_H
 
@@ -13,6 +13,7 @@ enum tl_detail_unit {
     TL_DETAIL_HORIZONS,
     TL_DETAIL_OWN_MOMENTS,
     TL_DETAIL_WEAVE_MOMENTS,
+    TL_DETAIL_CONES,
     TL_DETAIL_UNITS
 };
 /* Uniform locations, counted from the first one. */
@@ -20,6 +21,8 @@ enum { TL_DETAIL_FLAGS, TL_DETAIL_RANGE, TL_DETAIL_ROWS, TL_DETAIL_STEPS = 4 };
 
 /* Horizons are baked from at most so many texels a side: a larger map's heights are averaged. */
 #define TL_HORIZON_SIDE_MAX 512
+/* And so are cones; of crests that are finer than that a ray may step over one. */
+#define TL_CONE_SIDE_MAX 512
 
 struct tl_detail_entry;
 struct tl_detail_maps {

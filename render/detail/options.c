@@ -10,8 +10,9 @@ static const struct tl_option rows[] = {
     TL_OPTION_ENUM(
         params, mode, mode_names,
         "how bumps are seen: normal and blinn bend the light, parallax and relief also move what is seen"),
-    TL_OPTION_INT(params, steps, 1, 1024, "",
-                  "relief: steps through the heights; more miss less at grazing views"),
+    TL_OPTION_INT(
+        params, steps, 1, 1024, "",
+        "relief: steps at most, from cone to cone through the heights; few miss crests at grazing views"),
     TL_OPTION_INT(params, refine, 0, 32, "",
                   "relief: halvings of the step that was too far; more are exacter"),
     TL_OPTION_ENUM(params, shadow, shadow_names,

@@ -6,11 +6,19 @@
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 tl_cube tl_cube_create(int size)
 {
     assert(size > 0);
     return (tl_cube){.size = size, .texels = TL_NEW_ARRAY(float, 18 * (size_t)size * (size_t)size)};
+}
+
+tl_cube tl_cube_copy(const tl_cube *cube)
+{
+    tl_cube copy = tl_cube_create(cube->size);
+    memcpy(copy.texels, cube->texels, 18 * (size_t)cube->size * (size_t)cube->size * sizeof(float));
+    return copy;
 }
 
 void tl_cube_release(tl_cube *cube)

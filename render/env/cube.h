@@ -15,6 +15,7 @@ typedef struct tl_cube {
 } tl_cube;
 
 tl_cube tl_cube_create(int size); /* black */
+tl_cube tl_cube_copy(const tl_cube *cube);
 void tl_cube_release(tl_cube *cube);
 
 /* Area average of the environment over every texel (supersampled so that no source texel is missed: a single

@@ -224,6 +224,40 @@ struct tl_lobes tl_lobes_changed(const struct tl_lobes *from, uint32_t which, tl
     return lobes;
 }
 
+struct tl_lobes tl_lobes_copy(const struct tl_lobes *lobes)
+{
+    struct tl_lobes copy = {.made = lobes->made};
+    for (size_t i = 0; i < TL_COUNT(copy.maps); i++) {
+        size_t side = (size_t)lobes->maps[i].side + 2;
+        if (lobes->maps[i].side == 0)
+            continue;
+        copy.maps[i] = create_map(lobes->maps[i].side);
+        memcpy(copy.maps[i].texels, lobes->maps[i].texels, 4 * side * side * sizeof(float));
+    }
+    return copy;
+}
+
+void tl_lobes_keep(struct tl_lobes *lobes, uint32_t which)
+{
+    for (size_t i = 0; i < TL_COUNT(lobes->maps); i++)
+        if (!(which & 1u << i)) {
+            free(lobes->maps[i].texels);
+            lobes->maps[i] = (struct tl_lobe_map){0};
+        }
+    lobes->made &= which;
+}
+
+void tl_lobes_take(struct tl_lobes *lobes, struct tl_lobes *more)
+{
+    for (size_t i = 0; i < TL_COUNT(lobes->maps); i++)
+        if (lobes->maps[i].side == 0) {
+            lobes->maps[i] = more->maps[i];
+            more->maps[i] = (struct tl_lobe_map){0};
+        }
+    lobes->made |= more->made;
+    tl_lobes_release(more);
+}
+
 void tl_lobes_release(struct tl_lobes *lobes)
 {
     for (size_t i = 0; i < TL_COUNT(lobes->maps); i++)

@@ -37,12 +37,17 @@ struct tl_lobes {
 /* Makes those of `needed` that are not there yet. Call tl_lobes_release when the cube changes. */
 void tl_lobes_make(struct tl_lobes *lobes, const tl_cube *cube, uint32_t needed);
 void tl_lobes_release(struct tl_lobes *lobes);
+void tl_lobes_keep(struct tl_lobes *lobes, uint32_t which); /* releases the others */
 
 /* Maps laid out as those of `from` are, of the exponents in `which`: each texel is what `change` makes of it.
  * May be called from several threads at once. */
 typedef vec3s tl_lobe_change(vec3s direction, float exponent, vec3s light, const void *context);
 struct tl_lobes tl_lobes_changed(const struct tl_lobes *from, uint32_t which, tl_lobe_change *change,
                                  const void *context);
+
+struct tl_lobes tl_lobes_copy(const struct tl_lobes *lobes);
+/* Those of `more` that `lobes` does not have become its own; the rest goes. */
+void tl_lobes_take(struct tl_lobes *lobes, struct tl_lobes *more);
 
 /* E(d, s); d unit, in the environment's frame. The exponents that s needs must have been made. */
 vec3s tl_lobes_fetch(const struct tl_lobes *lobes, vec3s direction, struct tl_exponent_blend blend);

@@ -92,6 +92,7 @@ static bool draw_face(struct tl_capture *capture, tl_gpu *gpu, const struct tl_c
                                             .width = side,
                                             .height = side,
                                             .surfaces = request->surfaces,
+                                            .drawn = request->ranges->surfaces,
                                             .surface_count = request->ranges->surface_count,
                                             .ground = request->ground};
     if (!tl_gbuffer_draw(&capture->gbuffer, gpu, &draw, error) || !light_view(capture, gpu, request, error))
@@ -150,6 +151,6 @@ bool tl_capture_reload(struct tl_capture *capture, tl_error *error)
 
 size_t tl_capture_bytes(const struct tl_capture *capture)
 {
-    return tl_target_bytes(&capture->gbuffer.target) + tl_target_bytes(&capture->lighting.target) +
+    return tl_gbuffer_bytes(&capture->gbuffer) + tl_target_bytes(&capture->lighting.target) +
            tl_envmap_bytes(&capture->around) + tl_lobes_bytes(&capture->lobes);
 }

@@ -23,6 +23,9 @@ struct part {
     uint32_t first_triangle;
     float index;
     uint32_t is_ground;
+    float coat, coat_glossiness;
+    float rest[3]; /* std430 has vectors of three at multiples of 16 bytes */
+    float transmission[4];
 };
 
 /* Layers of an array texture that one picture takes. */
@@ -173,12 +176,32 @@ static size_t list_parts(const struct tl_triangle_ranges *ranges, bool has_groun
     return count;
 }
 
+static bool is_layered(const tl_material *material)
+{
+    vec3s through = material->transmission;
+    return material->coat > 0 || through.x > 0 || through.y > 0 || through.z > 0;
+}
+
+static struct part part_of(const struct told *told)
+{
+    const tl_material *material = told->material;
+    vec3s through = material->transmission;
+    return (struct part){.first_triangle = told->first_triangle,
+                         .index = fmaxf(material->gloss.index, 1),
+                         .is_ground = told->is_ground,
+                         .coat = material->coat,
+                         .coat_glossiness = material->coat_glossiness,
+                         .transmission = {through.x, through.y, through.z}};
+}
+
 static void send_parts(struct tl_envmap *envmap, const struct told *told, size_t count)
 {
     struct part *parts = TL_NEW_ARRAY(struct part, count + 1); /* GL has no empty buffers */
-    for (size_t i = 0; i < count; i++)
-        parts[i] =
-            (struct part){told[i].first_triangle, fmaxf(told[i].material->gloss.index, 1), told[i].is_ground};
+    envmap->has_layers = false;
+    for (size_t i = 0; i < count; i++) {
+        parts[i] = part_of(&told[i]);
+        envmap->has_layers |= is_layered(told[i].material);
+    }
     if (!envmap->parts_buffer)
         glCreateBuffers(1, &envmap->parts_buffer);
     envmap->parts_bytes = (count + 1) * sizeof *parts;
@@ -229,9 +252,12 @@ static char *defines_of(const struct tl_envmap *envmap, const struct tl_maps_par
 {
     static const char *const layouts[TL_LAYOUT_COUNT] = {"CUBE", "SPHERE", "PARABOLOID", "LATLONG",
                                                          "OCTAHEDRAL"};
-    return tl_format("#define %s\n#define MODE %d\n#define COMPOSITION %d\n%s%s%s", layouts[envmap->layout],
+    bool layered =
+        envmap->has_layers && params->mode == TL_MAPS_SURFACE && params->fresnel == TL_MAPS_FRESNEL_OFF;
+    return tl_format("#define %s\n#define MODE %d\n#define COMPOSITION %d\n%s%s%s%s", layouts[envmap->layout],
                      params->mode, params->fresnel, by_matrix(envmap, params) ? "#define MATRIX\n" : "",
-                     envmap->has_ground ? "#define GROUND\n" : "", params->minify ? "#define MINIFY\n" : "");
+                     envmap->has_ground ? "#define GROUND\n" : "", params->minify ? "#define MINIFY\n" : "",
+                     layered ? "#define LAYERED\n" : "");
 }
 
 static const tl_program *program_of(struct tl_envmap *envmap, tl_gpu *gpu,

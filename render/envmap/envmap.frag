@@ -1,7 +1,7 @@
 #version 450 core
 // The light of every sample of the G-buffer by look-ups in an environment map (envmap.h). MODE and COMPOSITION are
 // #defined as numbers below; GROUND: the ground is drawn, in its own way; MINIFY: what mirrors show is taken from mip
-// levels.
+// levels; LAYERED: surfaces have coats or let light through.
 #include "exponents.glsl"
 #include "look_up.glsl"
 #include "sample.glsl"
@@ -22,6 +22,8 @@ struct Part {
     uint first_triangle; // counted through all surfaces, from 0
     float index;         // of refraction
     uint is_ground;
+    float coat, coat_glossiness;
+    vec3 transmission;
 };
 layout(std430, binding = 1) readonly buffer Parts
 {
@@ -121,6 +123,28 @@ vec3 light_of(int mode, Sample place, vec3 v, float ratio)
     }
 }
 
+#ifdef LAYERED
+const float COAT_INDEX = 1.5;
+
+// Of a film, as brdf/fresnel.c has it.
+float coat_reflectance(float cosine)
+{
+    float g = sqrt(COAT_INDEX * COAT_INDEX - 1.0 + cosine * cosine), under = COAT_INDEX * COAT_INDEX * cosine;
+    float s = (cosine - g) / (cosine + g), p = (under - g) / (under + g);
+    return 0.5 * (s * s + p * p);
+}
+
+// What a thin sheet lets through adds to what it sends back; a clear coat, which lies on the smooth surface, is over both.
+vec3 layered(Part part, Sample place, vec3 v, vec3 light)
+{
+    float cosine = clamp(dot(place.smooth_normal, v), 0.0, 1.0), coat = part.coat * coat_reflectance(cosine);
+    vec3 through = part.transmission * irradiance(-place.normal);
+    vec3 mirror = 2.0 * cosine * place.smooth_normal - v;
+    vec3 over = coat > 0.0 ? coat * lobe_light(mirror, part.coat_glossiness) : vec3(0.0);
+    return (1.0 - coat) * (light + through) + over;
+}
+#endif
+
 void main()
 {
     ivec2 texel = ivec2(gl_FragCoord.xy);
@@ -133,6 +157,9 @@ void main()
     vec3 v = to_eye * inversesqrt(max(dot(to_eye, to_eye), 1e-30)), colour;
     if (COMPOSITION == OFF) {
         colour = light_of(MODE, place, v, ratio);
+#ifdef LAYERED
+        colour = layered(part, place, v, colour);
+#endif
     } else {
         vec3 f = reflectance(number, clamp(dot(place.normal, v), 0.0, 1.0));
         colour = f * over_light(MODE, place) +

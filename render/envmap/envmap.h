@@ -45,7 +45,7 @@ struct tl_envmap {
     unsigned parts_buffer;            /* GL name: what the pass must know of the surfaces' parts */
     size_t parts_bytes;
     int part_count;
-    bool has_ground;
+    bool has_ground, has_layers; /* what the parts are */
     tl_texture fresnel; /* F over the cosine, a row for each part */
 };
 

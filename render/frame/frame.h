@@ -9,6 +9,7 @@
 #include "render/env/sun.h"
 #include "render/envmap/capture.h"
 #include "render/envmap/envmap.h"
+#include "render/frame/prepared.h"
 #include "render/light/gbuffer.h"
 #include "render/light/light.h"
 #include "render/light/mirrors.h"
@@ -43,13 +44,14 @@ enum tl_resource {
     TL_INPUT_LIGHT,       /* how light is put together */
     TL_INPUT_LAMPS,       /* and how surfaces are shaded under them */
     TL_INPUT_REFERENCE,
-    TL_INPUT_DETAIL,
-    TL_INPUT_SHOW,    /* exposure and background */
-    TL_INPUT_ENVMAP,  /* size of environment maps, and whether they show the scene */
-    TL_INPUT_LAYOUT,  /* their layout; for a sphere map the view's turn */
-    TL_INPUT_LOOK_UP, /* how they are looked up */
-    TL_INPUT_CAPTURE, /* the scene as it was when it was to be captured last */
-    TL_INPUT_VIEW,    /* what is shown in place of light */
+    TL_INPUT_DETAIL,      /* how its maps are read */
+    TL_INPUT_DETAIL_MAPS, /* which there are */
+    TL_INPUT_SHOW,        /* exposure and background */
+    TL_INPUT_ENVMAP,      /* size of environment maps, and whether they show the scene */
+    TL_INPUT_LAYOUT,      /* their layout; for a sphere map the view's turn */
+    TL_INPUT_LOOK_UP,     /* how they are looked up */
+    TL_INPUT_CAPTURE,     /* the scene as it was when it was to be captured last */
+    TL_INPUT_VIEW,        /* what is shown in place of light */
     TL_INPUT_COUNT,
     TL_MADE_CUBE = TL_INPUT_COUNT, /* and the suns taken from it */
     TL_MADE_REGIONS,
@@ -153,9 +155,22 @@ void tl_frame_clear_light(tl_renderer *renderer);
 void tl_frame_list_surfaces(tl_renderer *renderer);
 
 /* Regions as lights that are not those of the last frame: whether they are kept, and what keeps them. */
-#define TL_LIGHTS_KEPT 4
+#define TL_LIGHTS_KEPT TL_PREPARED_COUNTS_MAX
 bool tl_frame_has_lights(const tl_renderer *renderer, const struct tl_light_params *light);
 void tl_frame_prepare_lights(tl_renderer *renderer, const struct tl_light_params *light);
+/* Lights of the present cube that were made elsewhere; *lights is emptied. */
+void tl_frame_keep_lights(tl_renderer *renderer, const struct tl_light_params *light,
+                          struct tl_region_lights *lights);
+
+void tl_frame_cut_regions(const tl_cube *cube, const struct tl_light_params *light, struct tl_regions *out);
+enum tl_region_weight tl_frame_region_weight(const struct tl_light_params *light);
+
+/* Settings as the algorithm can use them: regions in sixes, sizes in powers of two. */
+struct tl_render_settings tl_frame_usable(const struct tl_render_settings *settings);
+
+/* In place of cube, suns, lobes and lights: those made ready for this frame's environment; false when there
+ * are none. */
+bool tl_frame_use_prepared(tl_renderer *renderer);
 
 struct tl_renderer {
     tl_gpu *gpu;
@@ -183,7 +198,11 @@ struct tl_renderer {
         struct tl_region_lights lights;
     } kept[TL_LIGHTS_KEPT]; /* so that going to more or fewer regions and back costs no more than a cut */
     uint64_t kept_uses;
-    uint64_t light_revision; /* rises with the cube and its exact lobes */
+    uint64_t light_revision;   /* rises with the cube */
+    uint32_t exponents;        /* of the lobes: that the last frame needed */
+    uint32_t exponents_before; /* ... that were needed last before these: kept for looks that go to and fro */
+    uint32_t exponents_sent;   /* ... that the GPU has */
+    tl_prepared *prepared;     /* NULL: nothing was made ready */
     tl_surfaces *surfaces;
     struct tl_detail_maps detail;
     size_t surface_count; /* with the ground, which comes last */
@@ -231,7 +250,7 @@ struct tl_renderer {
     tl_bits moving;                           /* inputs that changed from one frame to the last */
     tl_plan plan;
     struct tl_cost_job costs[TL_JOBS_MAX];
-    double load; /* tl_load_follow */
+    struct tl_machine_load load;
 };
 
 #endif

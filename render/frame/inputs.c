@@ -77,8 +77,14 @@ static uint64_t reference_signature(const struct tl_reference_params *reference)
 
 static uint64_t detail_signature(const struct tl_detail_params *detail)
 {
-    uint64_t hash = MIX(MIX(MIX(TL_HASH_START, detail->mode), detail->steps), detail->refine);
-    return MIX(MIX(MIX(MIX(hash, detail->shadow), detail->height_scale), detail->silhouette), detail->minify);
+    return MIX(MIX(MIX(TL_HASH_START, detail->steps), detail->refine), detail->silhouette);
+}
+
+/* What maps are made by. */
+static uint64_t detail_maps_signature(const struct tl_detail_params *detail)
+{
+    uint64_t hash = MIX(MIX(MIX(TL_HASH_START, detail->mode), detail->shadow), detail->angles);
+    return MIX(MIX(hash, detail->height_scale), detail->minify);
 }
 
 static uint64_t layout_signature(const tl_frame *frame, const struct tl_maps_params *maps)
@@ -183,6 +189,7 @@ void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *setti
     signatures[TL_INPUT_LAMPS] = lamps_signature(frame, &settings->shading);
     signatures[TL_INPUT_REFERENCE] = reference_signature(&settings->reference);
     signatures[TL_INPUT_DETAIL] = detail_signature(&settings->detail);
+    signatures[TL_INPUT_DETAIL_MAPS] = detail_maps_signature(&settings->detail);
     signatures[TL_INPUT_SHOW] = MIX(MIX(start, image->exposure_ev), image->background);
     bool captures = settings->maps.capture_every > 0;
     signatures[TL_INPUT_ENVMAP] = MIX(MIX(start, settings->maps.size), captures);

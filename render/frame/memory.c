@@ -54,7 +54,7 @@ static size_t resource_bytes(const tl_renderer *renderer, enum tl_resource resou
     case TL_MADE_DEPTHS:
         return tl_shadow_maps_bytes(renderer->maps);
     case TL_MADE_GBUFFER:
-        return tl_target_bytes(&renderer->gbuffer.target);
+        return tl_gbuffer_bytes(&renderer->gbuffer);
     case TL_MADE_SAMPLES:
         return samples_bytes(&renderer->samples);
     case TL_MADE_SHEETS:

@@ -8,6 +8,9 @@ bool tl_run_cube(void *context, int level, tl_error *error)
     tl_cube_release(&renderer->cube);
     tl_lobes_release(&renderer->lobes);
     renderer->light_revision++;
+    renderer->exponents_sent = 0;
+    if (tl_frame_use_prepared(renderer))
+        return true;
     renderer->cube = tl_cube_from_environment_with(renderer->frame.environment,
                                                    renderer->settings.light.pem_size, &renderer->pour);
     renderer->suns = (struct tl_suns){0};
@@ -16,27 +19,45 @@ bool tl_run_cube(void *context, int level, tl_error *error)
     return true;
 }
 
+void tl_frame_cut_regions(const tl_cube *cube, const struct tl_light_params *light, struct tl_regions *out)
+{
+    if (light->cut == TL_CUT_SPHERE)
+        tl_regions_cut_sphere(cube, light->regions, out);
+    else
+        tl_regions_cut(cube, light->regions, out);
+}
+
 bool tl_run_regions(void *context, int level, tl_error *error)
 {
     tl_renderer *renderer = context;
-    const struct tl_light_params *light = &renderer->settings.light;
     (void)level, (void)error;
-    if (light->cut == TL_CUT_SPHERE)
-        tl_regions_cut_sphere(&renderer->cube, light->regions, &renderer->regions);
-    else
-        tl_regions_cut(&renderer->cube, light->regions, &renderer->regions);
+    tl_frame_cut_regions(&renderer->cube, &renderer->settings.light, &renderer->regions);
     renderer->regions_revision++;
     return true;
+}
+
+/* All exponents, with all that is made of them, would be more than 100 MB. */
+static void need_exponents(tl_renderer *renderer, uint32_t needed)
+{
+    if (needed == renderer->exponents)
+        return;
+    renderer->exponents_before = renderer->exponents;
+    renderer->exponents = needed;
+    uint32_t kept = needed | renderer->exponents_before;
+    tl_lobes_keep(&renderer->lobes, kept);
+    for (int i = 0; i < TL_LIGHTS_KEPT; i++)
+        tl_lobes_keep(&renderer->kept[i].lights.gain, kept);
 }
 
 bool tl_run_lobes(void *context, int level, tl_error *error)
 {
     tl_renderer *renderer = context;
     (void)level, (void)error;
-    tl_lobes_make(&renderer->lobes, &renderer->cube,
-                  tl_frame_exponents(&renderer->frame, &renderer->settings.detail));
-    renderer->light_revision++;
-    tl_lighting_set_exact(&renderer->lighting, renderer->gpu, &renderer->lobes);
+    need_exponents(renderer, tl_frame_exponents(&renderer->frame, &renderer->settings.detail));
+    tl_lobes_make(&renderer->lobes, &renderer->cube, renderer->exponents);
+    if (renderer->exponents_sent != renderer->lobes.made)
+        tl_lighting_set_exact(&renderer->lighting, renderer->gpu, &renderer->lobes);
+    renderer->exponents_sent = renderer->lobes.made;
     return true;
 }
 
@@ -72,7 +93,7 @@ bool tl_run_pems(void *context, int level, tl_error *error)
     return true;
 }
 
-static enum tl_region_weight region_weight(const struct tl_light_params *light)
+enum tl_region_weight tl_frame_region_weight(const struct tl_light_params *light)
 {
     return light->method == TL_METHOD_LIGHTS ? TL_WEIGHT_POINT
            : light->method == TL_METHOD_AO   ? TL_WEIGHT_WHITE
@@ -85,7 +106,7 @@ static struct tl_kept_lights kept_lights(const tl_renderer *renderer, const stru
     return (struct tl_kept_lights){.revision = renderer->light_revision,
                                    .regions = light->regions,
                                    .cut = light->cut,
-                                   .weight = region_weight(light)};
+                                   .weight = tl_frame_region_weight(light)};
 }
 
 static struct tl_kept_lights *find_lights(const tl_renderer *renderer, const struct tl_light_params *light)
@@ -102,12 +123,12 @@ static struct tl_kept_lights *find_lights(const tl_renderer *renderer, const str
 
 bool tl_frame_has_lights(const tl_renderer *renderer, const struct tl_light_params *light)
 {
-    return find_lights(renderer, light) != NULL;
+    const struct tl_kept_lights *kept = find_lights(renderer, light);
+    return kept && tl_region_lights_have(&kept->lights, renderer->exponents);
 }
 
 /* In the place of those that were used longest ago. */
-static struct tl_kept_lights *make_lights(tl_renderer *renderer, const struct tl_light_params *light,
-                                          const struct tl_regions *regions)
+static struct tl_kept_lights *replace_oldest(tl_renderer *renderer, const struct tl_light_params *light)
 {
     struct tl_kept_lights *oldest = &renderer->kept[0];
     for (int i = 1; i < TL_LIGHTS_KEPT; i++)
@@ -115,19 +136,42 @@ static struct tl_kept_lights *make_lights(tl_renderer *renderer, const struct tl
             oldest = &renderer->kept[i];
     tl_region_lights_release(&oldest->lights);
     *oldest = kept_lights(renderer, light);
-    tl_region_lights_make(&oldest->lights, regions, oldest->weight, &renderer->lobes);
     oldest->used = ++renderer->kept_uses;
     return oldest;
 }
 
+static struct tl_kept_lights *begin_lights(tl_renderer *renderer, const struct tl_light_params *light,
+                                           const struct tl_regions *regions)
+{
+    struct tl_kept_lights *kept = replace_oldest(renderer, light);
+    tl_region_lights_begin(&kept->lights, regions, kept->weight);
+    return kept;
+}
+
+void tl_frame_keep_lights(tl_renderer *renderer, const struct tl_light_params *light,
+                          struct tl_region_lights *lights)
+{
+    replace_oldest(renderer, light)->lights = *lights;
+    *lights = (struct tl_region_lights){0};
+}
+
+/* Those kept, complete for what is drawn. */
+static struct tl_kept_lights *complete_lights(tl_renderer *renderer, struct tl_kept_lights *kept)
+{
+    tl_region_lights_add(&kept->lights, &renderer->lobes, renderer->exponents);
+    kept->used = ++renderer->kept_uses;
+    return kept;
+}
+
 void tl_frame_prepare_lights(tl_renderer *renderer, const struct tl_light_params *light)
 {
+    struct tl_kept_lights *kept = find_lights(renderer, light);
     struct tl_regions regions = {0};
-    if (light->cut == TL_CUT_SPHERE)
-        tl_regions_cut_sphere(&renderer->cube, light->regions, &regions);
-    else
-        tl_regions_cut(&renderer->cube, light->regions, &regions);
-    make_lights(renderer, light, &regions);
+    if (!kept) {
+        tl_frame_cut_regions(&renderer->cube, light, &regions);
+        kept = begin_lights(renderer, light, &regions);
+    }
+    complete_lights(renderer, kept);
     tl_regions_release(&regions);
 }
 
@@ -138,9 +182,8 @@ bool tl_run_lights(void *context, int level, tl_error *error)
     const struct tl_light_params *light = &renderer->settings.light;
     struct tl_kept_lights *kept = find_lights(renderer, light);
     if (!kept)
-        kept = make_lights(renderer, light, &renderer->regions);
-    kept->used = ++renderer->kept_uses;
-    renderer->lights = &kept->lights;
+        kept = begin_lights(renderer, light, &renderer->regions);
+    renderer->lights = &complete_lights(renderer, kept)->lights;
     return true;
 }
 

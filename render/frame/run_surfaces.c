@@ -105,6 +105,7 @@ static struct tl_gbuffer_request gbuffer_request(const tl_renderer *renderer)
                                        .width = width,
                                        .height = height,
                                        .surfaces = renderer->surfaces,
+                                       .drawn = renderer->drawn,
                                        .surface_count = renderer->surface_count,
                                        .ground = tl_frame_ground(renderer),
                                        .detail = &renderer->settings.detail,

@@ -31,6 +31,7 @@ static bool take_over(tl_gpu *gpu, tl_error *error)
     glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
     glDebugMessageCallback(on_message, gpu);
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &gpu->texture_side_max);
+    glGetIntegerv(GL_SUBPIXEL_BITS, &gpu->subpixel_bits);
     glCreateVertexArrays(1, &gpu->empty_vertices);
     return true;
 }
@@ -117,6 +118,11 @@ size_t tl_gpu_texture_bytes(const tl_gpu *gpu)
 int tl_gpu_texture_side_max(const tl_gpu *gpu)
 {
     return gpu->texture_side_max;
+}
+
+int tl_gpu_subpixel_bits(const tl_gpu *gpu)
+{
+    return gpu->subpixel_bits;
 }
 
 void tl_gpu_reset_state(const tl_gpu *gpu)

@@ -11,7 +11,7 @@ struct tl_gpu {
     EGLDisplay display; /* EGL_NO_DISPLAY for an adopted context */
     EGLContext context;
     GLuint empty_vertices; /* vertex array without attributes, for the full-screen triangle */
-    GLint texture_side_max;
+    GLint texture_side_max, subpixel_bits;
     size_t message_count;
     size_t texture_bytes;
     char name[256];

@@ -24,6 +24,7 @@ const char *tl_gpu_name(const tl_gpu *gpu);     /* GL_RENDERER and version, for 
 size_t tl_gpu_message_count(const tl_gpu *gpu); /* GL debug messages so far */
 size_t tl_gpu_texture_bytes(const tl_gpu *gpu); /* memory of all live textures, computed from their formats */
 int tl_gpu_texture_side_max(const tl_gpu *gpu); /* texels */
+int tl_gpu_subpixel_bits(const tl_gpu *gpu); /* places are rounded to 2^-bits of a sample as they are drawn */
 
 typedef struct tl_texture {
     tl_gpu *gpu;

@@ -9,14 +9,29 @@
 /* Uniform locations of gbuffer.vert and gbuffer.frag beside those of surface.glsl. */
 enum { VIEW_PROJECTION = 16, EYE = 17, FADING_DISC = 18 };
 
-/* Texture unit of gbuffer.frag's own: the last one, out of the surfaces' way. */
-#define PASSED_UNIT 15
+/* Texture units of gbuffer.frag's own: the last ones, out of the surfaces' way. */
+#define NUMBERS_UNIT 14
+#define PASSED_UNIT  15
+
+enum { KEPT_INDICES, KEPT_NUMBERS, KEPT_BUFFERS };
 
 void tl_gbuffer_release(struct tl_gbuffer *gbuffer)
 {
     for (int i = 0; i < TL_GBUFFER_PROGRAMS; i++)
         tl_program_destroy(&gbuffer->programs[i].program);
     tl_target_destroy(&gbuffer->target);
+    tl_cull_release(&gbuffer->cull);
+    if (gbuffer->numbers) {
+        glDeleteTextures(1, &gbuffer->numbers);
+        glDeleteBuffers(KEPT_BUFFERS, gbuffer->kept);
+    }
+    gbuffer->numbers = 0;
+}
+
+size_t tl_gbuffer_bytes(const struct tl_gbuffer *gbuffer)
+{
+    return tl_target_bytes(&gbuffer->target) + tl_cull_bytes(&gbuffer->cull) +
+           gbuffer->cull.triangle_count * 4 * sizeof(uint32_t);
 }
 
 bool tl_gbuffer_reload(struct tl_gbuffer *gbuffer, tl_error *error)
@@ -80,8 +95,51 @@ static void clear(const tl_target *target)
     glClearNamedFramebufferfv(target->id, GL_DEPTH, 0, &farthest);
 }
 
-static void draw_surfaces(const struct tl_gbuffer_request *request)
+/* Many samples to a triangle leave little to save. */
+#define SAMPLES_PER_TRIANGLE 4
+
+/* What is behind is asked for, what is not drawn hides nothing, and relief has holes at its rim: there every
+ * triangle counts. */
+static bool counts_nearest_only(const struct tl_gbuffer_request *request)
 {
+    size_t triangles = 0;
+    for (size_t i = 0; i < request->surface_count; i++) {
+        if (tl_surfaces_is_hidden(request->surfaces, i))
+            return false;
+        triangles += request->drawn[i]->index_count / 3;
+    }
+    bool moves_rims = request->detail && request->detail->mode == TL_DETAIL_RELIEF;
+    return !request->passed && !moves_rims &&
+           (size_t)request->width * (size_t)request->height <= SAMPLES_PER_TRIANGLE * triangles;
+}
+
+static void keep_triangles(struct tl_gbuffer *gbuffer, const tl_gpu *gpu,
+                           const struct tl_gbuffer_request *request)
+{
+    struct tl_cull *cull = &gbuffer->cull;
+    const struct tl_cull_request what = {.surfaces = request->drawn,
+                                         .surface_count = request->surface_count,
+                                         .view_projection = request->view->view_projection,
+                                         .width = request->width,
+                                         .height = request->height,
+                                         .subpixel_bits = tl_gpu_subpixel_bits(gpu),
+                                         .nearest_only = counts_nearest_only(request),
+                                         .first_fading = request->surface_count - (request->ground ? 1 : 0)};
+    tl_cull_make(&what, cull);
+    if (!gbuffer->numbers) {
+        glCreateBuffers(KEPT_BUFFERS, gbuffer->kept);
+        glCreateTextures(GL_TEXTURE_BUFFER, 1, &gbuffer->numbers);
+    }
+    const GLsizeiptr number_bytes = (GLsizeiptr)(cull->triangle_count * sizeof *cull->numbers);
+    glNamedBufferData(gbuffer->kept[KEPT_INDICES], 3 * number_bytes, cull->indices, GL_STREAM_DRAW);
+    glNamedBufferData(gbuffer->kept[KEPT_NUMBERS], number_bytes, cull->numbers, GL_STREAM_DRAW);
+    glTextureBuffer(gbuffer->numbers, GL_R32UI, gbuffer->kept[KEPT_NUMBERS]);
+    glBindTextureUnit(NUMBERS_UNIT, gbuffer->numbers);
+}
+
+static void draw_surfaces(const struct tl_gbuffer *gbuffer, const struct tl_gbuffer_request *request)
+{
+    const struct tl_cull_part *kept = gbuffer->cull.parts;
     const struct tl_ground *ground = request->ground;
     for (size_t i = 0; i < request->surface_count; i++) {
         bool is_ground = ground && i + 1 == request->surface_count;
@@ -89,7 +147,9 @@ static void draw_surfaces(const struct tl_gbuffer_request *request)
             glUniform4f(FADING_DISC, ground->centre.x, ground->centre.y, ground->centre.z, ground->radius);
         else
             glUniform4f(FADING_DISC, 0, 0, 0, 0);
-        tl_surfaces_draw(request->surfaces, i, TL_PARTS_ALL);
+        for (size_t p = 0; p < request->drawn[i]->part_count; p++, kept++)
+            tl_surfaces_draw_some(request->surfaces, i, p, gbuffer->kept[KEPT_INDICES], kept->first,
+                                  kept->count);
     }
 }
 
@@ -109,7 +169,8 @@ bool tl_gbuffer_draw(struct tl_gbuffer *gbuffer, tl_gpu *gpu, const struct tl_gb
     glUniform3fv(EYE, 1, request->view->eye.raw);
     if (request->passed)
         glBindTextureUnit(PASSED_UNIT, request->passed->id);
-    draw_surfaces(request);
+    keep_triangles(gbuffer, gpu, request);
+    draw_surfaces(gbuffer, request);
     tl_gpu_reset_state(gpu);
     return true;
 }

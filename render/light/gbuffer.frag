@@ -4,6 +4,7 @@
 #include "ground.glsl"
 
 layout(location = 17) uniform vec3 eye;
+layout(binding = 14) uniform usamplerBuffer numbers; // of the triangles that are drawn
 layout(location = 18) uniform vec4 fading_disc; // centre and radius of the ground, while the ground is drawn
 
 in vec3 point;
@@ -95,5 +96,6 @@ void main()
     out_tangent = vec4(direction_or(tangent.xyz, vec3(0.0)), tangent.w * side);
 #endif
     out_specular = vec4(ks, horizon.y);
-    out_triangle = (first_triangle + uint(gl_PrimitiveID) + 1u) | (gl_FrontFacing ? 0u : TRIANGLE_BACK);
+    uint number = texelFetch(numbers, int(first_triangle) + gl_PrimitiveID).r;
+    out_triangle = (number + 1u) | (gl_FrontFacing ? 0u : TRIANGLE_BACK);
 }

@@ -4,6 +4,7 @@
 
 #include "render/detail/detail.h"
 #include "render/frame/view.h"
+#include "render/light/cull.h"
 #include "render/surfaces/ground.h"
 #include "render/surfaces/surfaces.h"
 
@@ -31,12 +32,16 @@ struct tl_gbuffer {
         tl_program program;
     } programs[TL_GBUFFER_PROGRAMS]; /* made when first used */
     tl_target target;
+    struct tl_cull cull; /* of the last draw */
+    unsigned kept[2];    /* GL names: its indices, its numbers */
+    unsigned numbers;    /* ... and a texture of these */
 };
 
 struct tl_gbuffer_request {
     const struct tl_view *view;
     int width, height; /* samples */
     const tl_surfaces *surfaces;
+    const tl_surface *const *drawn; /* what they were made of */
     size_t surface_count;
     const struct tl_ground *ground;        /* the last of the surfaces, or NULL when none is drawn */
     const struct tl_detail_params *detail; /* NULL: normals alone */
@@ -45,6 +50,7 @@ struct tl_gbuffer_request {
 };
 
 void tl_gbuffer_release(struct tl_gbuffer *gbuffer);
+size_t tl_gbuffer_bytes(const struct tl_gbuffer *gbuffer);
 bool tl_gbuffer_reload(struct tl_gbuffer *gbuffer, tl_error *error);
 bool tl_gbuffer_draw(struct tl_gbuffer *gbuffer, tl_gpu *gpu, const struct tl_gbuffer_request *request,
                      tl_error *error);

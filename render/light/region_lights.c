@@ -83,8 +83,8 @@ static vec3s diffuse_gain_of(vec3s direction, float exponent, vec3s light, const
     return divide(light, sum);
 }
 
-void tl_region_lights_make(struct tl_region_lights *lights, const struct tl_regions *regions,
-                           enum tl_region_weight weight, const struct tl_lobes *lobes)
+void tl_region_lights_begin(struct tl_region_lights *lights, const struct tl_regions *regions,
+                            enum tl_region_weight weight)
 {
     tl_region_lights_release(lights);
     lights->group_count = (regions->count + TL_LANES - 1) / TL_LANES;
@@ -92,10 +92,30 @@ void tl_region_lights_make(struct tl_region_lights *lights, const struct tl_regi
         int first = g * TL_LANES, left = regions->count - first;
         fill_group(&lights->groups[g], &regions->items[first], left < TL_LANES ? left : TL_LANES, weight);
     }
-    if (weight != TL_WEIGHT_POWER)
+    lights->is_exact = weight == TL_WEIGHT_POWER;
+}
+
+void tl_region_lights_add(struct tl_region_lights *lights, const struct tl_lobes *lobes, uint32_t exponents)
+{
+    if (!lights->is_exact)
         return;
-    lights->gain = tl_lobes_changed(lobes, ~0u, gain_of, lights);
-    lights->diffuse_gain = tl_lobes_changed(lobes, 1u, diffuse_gain_of, lights);
+    struct tl_lobes gain = tl_lobes_changed(lobes, exponents & ~lights->gain.made, gain_of, lights);
+    tl_lobes_take(&lights->gain, &gain);
+    struct tl_lobes diffuse =
+        tl_lobes_changed(lobes, 1u & ~lights->diffuse_gain.made, diffuse_gain_of, lights);
+    tl_lobes_take(&lights->diffuse_gain, &diffuse);
+}
+
+bool tl_region_lights_have(const struct tl_region_lights *lights, uint32_t exponents)
+{
+    return !lights->is_exact || !(exponents & ~lights->gain.made);
+}
+
+void tl_region_lights_make(struct tl_region_lights *lights, const struct tl_regions *regions,
+                           enum tl_region_weight weight, const struct tl_lobes *lobes)
+{
+    tl_region_lights_begin(lights, regions, weight);
+    tl_region_lights_add(lights, lobes, ~0u);
 }
 
 void tl_region_lights_release(struct tl_region_lights *lights)

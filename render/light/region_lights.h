@@ -41,14 +41,21 @@ struct tl_region_group {
 struct tl_region_lights {
     int group_count;
     struct tl_region_group groups[TL_REGION_GROUPS_MAX];
-    /* Empty unless the weight is POWER. K_1 about a normal is a cosine and does without a power, so it has
-     * its own. */
+    bool is_exact; /* there are gains: the weight is POWER */
+    /* Of the exponents that were asked for. K_1 about a normal is a cosine and does without a power, so it
+     * has its own. */
     struct tl_lobes gain, diffuse_gain;
 };
 
 /* Replaces what `lights` held. `lobes` are E, of the exponents that will be asked for. */
 void tl_region_lights_make(struct tl_region_lights *lights, const struct tl_regions *regions,
                            enum tl_region_weight weight, const struct tl_lobes *lobes);
+/* In two steps, of which the first is quick: without gains; then those of `exponents`, bits as in `lobes`,
+ * that are not there yet. Most of what lights take is the gains of the sharpest lobes. */
+void tl_region_lights_begin(struct tl_region_lights *lights, const struct tl_regions *regions,
+                            enum tl_region_weight weight);
+void tl_region_lights_add(struct tl_region_lights *lights, const struct tl_lobes *lobes, uint32_t exponents);
+bool tl_region_lights_have(const struct tl_region_lights *lights, uint32_t exponents);
 void tl_region_lights_release(struct tl_region_lights *lights);
 
 /* Exponents of a lobe of exponent `s`, by region. */

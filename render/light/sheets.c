@@ -174,7 +174,7 @@ void tl_sheets_release(struct tl_sheets *sheets)
 
 size_t tl_sheets_bytes(const struct tl_sheets *sheets)
 {
-    return tl_target_bytes(&sheets->behind.target) + tl_texture_bytes(&sheets->passed) +
+    return tl_gbuffer_bytes(&sheets->behind) + tl_texture_bytes(&sheets->passed) +
            sheets->nearer.capacity * sizeof(tl_sample) + sheets->nearer.staging_bytes +
            sheets->open_capacity * sizeof *sheets->opens + sheets->share_capacity * sizeof *sheets->shares;
 }

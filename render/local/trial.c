@@ -35,6 +35,7 @@ bool tl_local_trial_show(struct tl_local_trial *trial, const tl_surface *surface
                                             .width = width,
                                             .height = height,
                                             .surfaces = trial->surfaces,
+                                            .drawn = &surface,
                                             .surface_count = 1};
     if (!tl_gbuffer_draw(&trial->gbuffer, trial->gpu, &draw, error))
         return false;

@@ -187,17 +187,10 @@ static void filter_cube(const tl_cube *source, const float weights[5], const tl_
     free(bordered.rows);
 }
 
-static tl_cube copy_cube(const tl_cube *cube)
-{
-    tl_cube copy = tl_cube_create(cube->size);
-    memcpy(copy.texels, cube->texels, 18 * (size_t)cube->size * (size_t)cube->size * sizeof(float));
-    return copy;
-}
-
 struct tl_chain tl_chain_build(const tl_cube *base, enum tl_chain_filter filter)
 {
     assert((base->size & (base->size - 1)) == 0 && base->size < 1 << TL_CHAIN_LEVELS_MAX);
-    struct tl_chain chain = {.level_count = 1, .levels = {copy_cube(base)}};
+    struct tl_chain chain = {.level_count = 1, .levels = {tl_cube_copy(base)}};
     float weights[5];
     tl_chain_weights(filter, weights);
     for (int size = base->size / 2; size > 0; size /= 2) {

@@ -16,26 +16,17 @@
 #define SHARE_MIN      0.7
 #define SHARE_MAX      0.96
 #define DEVIATION_RATE 0.06
-#define DEVIATION_MAX  0.15 /* of one frame: a single hitch does not count for more */
+#define DEARER_MAX     0.15 /* of one frame: a single hitch does not count for more */
+#define CHEAPER_MAX    0.05 /* frames that take less than foretold do no harm, but noise has two sides */
 #define PANIC_STEP     1.12
 #define PANIC_MAX      1.6
 #define PANIC_DECAY    0.9
-
-double tl_budget_error(const struct tl_budget *budget, const uint8_t *levels)
-{
-    double square = 0;
-    for (int k = 0; k < budget->knob_count; k++) {
-        double error = budget->knobs[k].error[levels[k]];
-        square += error * error;
-    }
-    return sqrt(square);
-}
 
 /* The next combination, counting with the last knob first; false after the last one. */
 static bool next_levels(const struct tl_budget *budget, uint8_t *levels)
 {
     for (int k = budget->knob_count - 1; k >= 0; k--) {
-        if (++levels[k] < budget->knobs[k].level_count)
+        if (++levels[k] < budget->level_counts[k])
             return true;
         levels[k] = 0;
     }
@@ -63,7 +54,7 @@ bool tl_budget_best(const struct tl_budget *budget, double limit_ms, uint8_t *le
     struct candidate best = {.cost = INFINITY, .error = INFINITY}, each = {0};
     do {
         each.cost = budget->cost(budget->context, each.levels);
-        each.error = tl_budget_error(budget, each.levels);
+        each.error = budget->error(budget->context, each.levels);
         each.fits = each.cost <= limit_ms;
         if (is_better(&each, &best))
             best = each;
@@ -92,8 +83,8 @@ static bool keep_within(struct tl_governor *governor, const struct tl_budget *bu
 {
     bool was_within = true;
     for (int k = 0; k < budget->knob_count; k++)
-        if (governor->levels[k] >= budget->knobs[k].level_count) {
-            governor->levels[k] = (uint8_t)(budget->knobs[k].level_count - 1);
+        if (governor->levels[k] >= budget->level_counts[k]) {
+            governor->levels[k] = (uint8_t)(budget->level_counts[k] - 1);
             was_within = false;
         }
     return was_within;
@@ -132,7 +123,8 @@ enum tl_governed tl_governor_choose(struct tl_governor *governor, const struct t
     if (governor->settled < governor->patience || governor->panic > 1.01)
         return TL_GOVERNED_KEPT;
     bool fits = tl_budget_best(budget, ROOM * limit_ms, best);
-    double now = tl_budget_error(budget, governor->levels), then = tl_budget_error(budget, best);
+    double now = budget->error(budget->context, governor->levels);
+    double then = budget->error(budget->context, best);
     if (!fits || then >= now || (then > 0 && then > GAIN_MIN * now))
         return TL_GOVERNED_KEPT;
     return change(governor, best, TL_GOVERNED_UP);
@@ -142,10 +134,13 @@ void tl_governor_learn(struct tl_governor *governor, double budget_ms, double pr
 {
     if (!(predicted_ms > 0) || !isfinite(took_ms))
         return;
-    double deviation = fmin(fabs(took_ms / predicted_ms - 1), DEVIATION_MAX);
+    double excess = took_ms / predicted_ms - 1;
+    double deviation = excess > 0 ? fmin(excess, DEARER_MAX) : fmin(-excess, CHEAPER_MAX);
     governor->deviation += DEVIATION_RATE * (deviation - governor->deviation);
-    if (took_ms > OVER * budget_ms)
+    bool is_over = took_ms > OVER * budget_ms;
+    if (is_over && governor->was_over)
         governor->panic = fmin(PANIC_STEP * governor->panic, PANIC_MAX);
-    else
+    else if (!is_over)
         governor->panic = 1 + PANIC_DECAY * (governor->panic - 1);
+    governor->was_over = is_over;
 }

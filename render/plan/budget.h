@@ -1,8 +1,8 @@
 /* Levels within a budget. Pure: no GL, no clock.
  *
- * A knob has levels, of which the first is the best and each further one is cheaper and worse. The levels of
- * all knobs make a few thousand combinations at most, so all of them are looked at: the best one within the
- * budget is found whenever there is one, and a larger budget never gives a larger error.
+ * A knob has levels, of which the first is what is asked for. The levels of all knobs make a few thousand
+ * combinations at most, so all of them are looked at: the best one within the budget is found whenever there
+ * is one, and a larger budget never gives a larger error.
  *
  * A governor carries the choice from frame to frame. It goes down at once when a frame would be too dear, and
  * up only for what is better by a margin, fits with room to spare, and some frames after the last change:
@@ -16,23 +16,16 @@
 #define TL_BUDGET_KNOBS_MAX  8
 #define TL_BUDGET_LEVELS_MAX 14
 
-struct tl_budget_knob {
-    int level_count;                    /* at least 1 */
-    double error[TL_BUDGET_LEVELS_MAX]; /* what a level adds, relative RMSE; 0 first, and rising */
-};
-
 /* Levels come one a knob, in arrays of TL_BUDGET_KNOBS_MAX. */
-typedef double (*tl_budget_cost)(const void *context, const uint8_t *levels);
+typedef double (*tl_budget_figure)(const void *context, const uint8_t *levels);
 
 struct tl_budget {
     int knob_count;
-    struct tl_budget_knob knobs[TL_BUDGET_KNOBS_MAX];
-    tl_budget_cost cost; /* ms of a frame at these levels */
+    int level_counts[TL_BUDGET_KNOBS_MAX]; /* at least 1 */
+    tl_budget_figure cost;                 /* ms of a frame at these levels */
+    tl_budget_figure error;                /* of a frame at these levels, in any unit; >= 0 */
     const void *context;
 };
-
-/* Independent errors: the root of the sum of their squares. */
-double tl_budget_error(const struct tl_budget *budget, const uint8_t *levels);
 
 /* The least error at a cost of at most `limit_ms`, then the least cost; where nothing is as cheap as that,
  * the cheapest, and false. */
@@ -44,6 +37,7 @@ struct tl_governor {
     int settled;      /* frames since the last change */
     int patience;     /* frames to wait before the next step up */
     bool is_trial;    /* the last change was one up */
+    bool was_over;    /* the last frame was: one may be, a second says that the costs are wrong */
     double deviation; /* mean of |took / predicted - 1| of recent frames */
     double panic;     /* factor under the budget after frames that were over it; 1: calm */
 };

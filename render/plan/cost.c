@@ -95,15 +95,22 @@ void tl_cost_learn(struct tl_cost_job *job, const struct tl_work *work, double l
     }
 }
 
-double tl_load_follow(double load, double predicted_ms, double took_ms)
+double tl_machine_load_factor(const struct tl_machine_load *load)
 {
-    if (!(load > 0))
-        load = 1;
+    return load->factor > 0 ? load->factor : 1;
+}
+
+void tl_machine_load_follow(struct tl_machine_load *load, double predicted_ms, double took_ms)
+{
+    double factor = tl_machine_load_factor(load);
     if (!(predicted_ms > 0) || !isfinite(took_ms) || took_ms < 0)
-        return load;
-    double seen = load * took_ms / predicted_ms;
-    bool is_sudden = seen > (1 + LOAD_SUDDEN) * load;
-    load += (is_sudden ? LOAD_ATTACK : LOAD_FOLLOW) * (seen - load);
-    load += LOAD_FORGETS * (1 - load);
-    return fmin(fmax(load, LOAD_MIN), LOAD_MAX);
+        return;
+    double seen = factor * took_ms / predicted_ms;
+    bool is_sudden = seen > (1 + LOAD_SUDDEN) * factor, is_first = is_sudden && !load->was_sudden;
+    load->was_sudden = is_sudden;
+    if (is_first)
+        return;
+    factor += (is_sudden ? LOAD_ATTACK : LOAD_FOLLOW) * (seen - factor);
+    factor += LOAD_FORGETS * (1 - factor);
+    load->factor = fmin(fmax(factor, LOAD_MIN), LOAD_MAX);
 }

@@ -31,8 +31,15 @@ double tl_cost_predict(const struct tl_cost_job *job, const struct tl_work *work
 /* A run took `ms`, when the machine was slowed down by `load`. What no clock says (NaN, < 0) is left out. */
 void tl_cost_learn(struct tl_cost_job *job, const struct tl_work *work, double load, double ms);
 
-/* How much slower than usual the machine is; 1 or 0: not at all. Follows a frame's measured over predicted
- * cost within a few frames up, within some tens down. */
-double tl_load_follow(double load, double predicted_ms, double took_ms);
+/* How much slower than usual the machine is; a load of 1, or an empty one: not at all. Follows frames'
+ * measured over predicted cost within a few frames up, within some tens down. A single frame that was slow
+ * is over when it is known, and is not followed. */
+struct tl_machine_load {
+    double factor;
+    bool was_sudden; /* the last frame was much slower than those before */
+};
+
+double tl_machine_load_factor(const struct tl_machine_load *load);
+void tl_machine_load_follow(struct tl_machine_load *load, double predicted_ms, double took_ms);
 
 #endif

@@ -99,7 +99,7 @@ vec2s tl_reference_shift(const struct tl_detail_params *params, const struct tl_
     vec3s seen = {{view.x, view.y, side * view.z}};
     float rise = tl_field_height(field, at);
     if (params->mode == TL_DETAIL_RELIEF)
-        rise = tl_field_relief(field, at, seen, fine_steps(field, seen), params->refine).height_m;
+        rise = tl_field_march(field, at, seen, fine_steps(field, seen)).height_m;
     if (params->mode != TL_DETAIL_PARALLAX_LIMITED)
         rise *= detail_slant(seen.z);
     return (vec2s){{rise * seen.x / uv_metres, -rise * seen.y / uv_metres}};

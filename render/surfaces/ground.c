@@ -127,7 +127,8 @@ float tl_ground_visibility(const struct tl_ground *ground, vec3s point, vec3s di
     return 1 - tl_ground_cover(ground, point.x + direction.x * distance, point.z + direction.z * distance);
 }
 
-/* Weights of (x, z) in a triangle, seen from above; all are at least -1e-4 inside. */
+/* Weights of (x, z) in a triangle, seen from above; what rounding leaves outside, by 1e-4 at most, is put on
+ * its edge. */
 static bool weigh(const struct tl_ground *ground, uint32_t triangle, float x, float z, float weights[3])
 {
     const uint32_t *corners = ground->indices + 3 * (size_t)triangle;
@@ -137,7 +138,13 @@ static bool weigh(const struct tl_ground *ground, uint32_t triangle, float x, fl
     weights[1] = ((x - a.x) * (c.z - a.z) - (c.x - a.x) * (z - a.z)) / area;
     weights[2] = ((b.x - a.x) * (z - a.z) - (x - a.x) * (b.z - a.z)) / area;
     weights[0] = 1 - weights[1] - weights[2];
-    return weights[0] > -1e-4f && weights[1] > -1e-4f && weights[2] > -1e-4f;
+    bool inside = weights[0] > -1e-4f && weights[1] > -1e-4f && weights[2] > -1e-4f;
+    float sum = 0;
+    for (int i = 0; i < 3; i++)
+        sum += weights[i] = fmaxf(weights[i], 0);
+    for (int i = 0; i < 3; i++)
+        weights[i] /= sum;
+    return inside;
 }
 
 bool tl_ground_meet(const struct tl_ground *ground, vec3s origin, vec3s direction, vec3s *point,

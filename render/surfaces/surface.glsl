@@ -7,8 +7,8 @@ layout(location = 2) uniform vec4 material_scalars; // glossiness, normal scale,
 layout(location = 3) uniform int map_flags;
 layout(location = 4) uniform vec2 weave_scale; // repeats per UV unit
 layout(location = 5) uniform vec3 uv_rows[10];
-layout(location = 15) uniform uint first_triangle; // of this draw, counted through all surfaces
-// Of detail.glsl, whose maps come at bindings 8 to 11.
+layout(location = 15) uniform uint first_triangle; // of this draw, counted through all that there are
+// Of detail.glsl, whose maps come at bindings 8 to 12.
 layout(location = 20) uniform int detail_flags;
 layout(location = 21) uniform vec4 detail_range;   // lowest, highest (m), metres of a UV unit, factor on heights
 layout(location = 22) uniform vec3 detail_rows[2]; // from UV to repeats of the height field

@@ -295,9 +295,9 @@ static void set_material(const struct item *item, const struct tl_mesh_part *par
 }
 
 /* GL takes an offset into the bound buffer as a pointer. */
-static const void *offset_of_index(uint32_t index)
+static const void *offset_of_index(size_t index)
 {
-    return (const void *)((uintptr_t)index * sizeof(uint32_t)); /* NOLINT(performance-no-int-to-ptr) */
+    return (const void *)(index * sizeof(uint32_t)); /* NOLINT(performance-no-int-to-ptr) */
 }
 
 static enum tl_surface_parts kind_of(const struct item *item, const struct tl_mesh_part *part)
@@ -316,22 +316,41 @@ const tl_material *tl_surfaces_part_material(const tl_surfaces *surfaces, size_t
     return &item->materials[item->parts[part].material];
 }
 
-void tl_surfaces_draw_part(const tl_surfaces *surfaces, size_t index, size_t part_index)
+/* From the index buffer that is bound; `number` is what the shader is told of the first triangle. */
+static void draw_indices(const tl_surfaces *surfaces, size_t index, size_t part_index, size_t first_index,
+                         size_t index_count, size_t number)
 {
     const struct item *item = &surfaces->items[index];
     const struct tl_mesh_part *part = &item->parts[part_index];
-    size_t first_triangle = 0;
-    if (item->hidden)
-        return;
-    for (size_t i = 0; i < index; i++)
-        first_triangle += surfaces->items[i].index_count / 3;
     glBindVertexArray(item->vertex_array);
     set_material(item, part);
     tl_detail_maps_bind(surfaces->detail, index, part_index, part->uv_metres, TL_UNIFORM_DETAIL,
                         TL_DETAIL_UNIT);
-    glUniform1ui(TL_UNIFORM_FIRST_TRIANGLE, (GLuint)(first_triangle + part->first_index / 3));
-    glDrawElements(GL_TRIANGLES, (GLsizei)part->index_count, GL_UNSIGNED_INT,
-                   offset_of_index(part->first_index));
+    glUniform1ui(TL_UNIFORM_FIRST_TRIANGLE, (GLuint)number);
+    glDrawElements(GL_TRIANGLES, (GLsizei)index_count, GL_UNSIGNED_INT, offset_of_index(first_index));
+}
+
+void tl_surfaces_draw_part(const tl_surfaces *surfaces, size_t index, size_t part_index)
+{
+    const struct item *item = &surfaces->items[index];
+    const struct tl_mesh_part *part = &item->parts[part_index];
+    size_t first_triangle = part->first_index / 3;
+    if (item->hidden)
+        return;
+    for (size_t i = 0; i < index; i++)
+        first_triangle += surfaces->items[i].index_count / 3;
+    draw_indices(surfaces, index, part_index, part->first_index, part->index_count, first_triangle);
+}
+
+void tl_surfaces_draw_some(const tl_surfaces *surfaces, size_t index, size_t part, unsigned indices,
+                           size_t first, size_t count)
+{
+    const struct item *item = &surfaces->items[index];
+    if (item->hidden || count == 0)
+        return;
+    glVertexArrayElementBuffer(item->vertex_array, indices);
+    draw_indices(surfaces, index, part, 3 * first, 3 * count, first);
+    glVertexArrayElementBuffer(item->vertex_array, item->indices);
 }
 
 void tl_surfaces_draw(const tl_surfaces *surfaces, size_t index, enum tl_surface_parts parts)
@@ -345,6 +364,11 @@ void tl_surfaces_draw(const tl_surfaces *surfaces, size_t index, enum tl_surface
 void tl_surfaces_hide(tl_surfaces *surfaces, size_t index, bool hidden)
 {
     surfaces->items[index].hidden = hidden;
+}
+
+bool tl_surfaces_is_hidden(const tl_surfaces *surfaces, size_t index)
+{
+    return surfaces->items[index].hidden;
 }
 
 bool tl_surfaces_have(const tl_surfaces *surfaces, enum tl_surface_parts parts)

@@ -61,8 +61,13 @@ void tl_surfaces_draw(const tl_surfaces *surfaces, size_t index, enum tl_surface
 size_t tl_surfaces_part_count(const tl_surfaces *surfaces, size_t index);
 const tl_material *tl_surfaces_part_material(const tl_surfaces *surfaces, size_t index, size_t part);
 void tl_surfaces_draw_part(const tl_surfaces *surfaces, size_t index, size_t part);
+/* The same with triangles first .. first + count - 1 of a GL buffer of indices in place of its own; the
+ * shader's `first_triangle` is then counted through that buffer. */
+void tl_surfaces_draw_some(const tl_surfaces *surfaces, size_t index, size_t part, unsigned indices,
+                           size_t first, size_t count);
 /* ... and then not, until it is shown again. */
 void tl_surfaces_hide(tl_surfaces *surfaces, size_t index, bool hidden);
+bool tl_surfaces_is_hidden(const tl_surfaces *surfaces, size_t index);
 /* Whether any surface has such parts. */
 bool tl_surfaces_have(const tl_surfaces *surfaces, enum tl_surface_parts parts);
 

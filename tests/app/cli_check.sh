@@ -9,8 +9,10 @@ check "a clean scene has its keys" sh -c 'grep -q "\"frames\":.*8" clean.json &&
     grep -q "\"name\":.*\"image.oracle\"" clean.json && grep -q "\"worst\":" clean.json && grep -q "\"bound\":" clean.json &&
     ! grep -q "\"ok\":.*false" clean.json'
 hash_of() { sed -n 's/.*"hash":[^"]*"\([0-9a-f]*\)".*/\1/p' "$1"; }
-OMP_NUM_THREADS=1 $TOILE check $quick --frames 8 --every 8 --json --quiet >again.json
-check "its frames are the same at another number of threads" [ "$(hash_of clean.json)" = "$(hash_of again.json)" ]
+for threads in 1 3; do
+    OMP_NUM_THREADS=$threads $TOILE check $quick --frames 8 --every 8 --json --quiet >again.json
+    check "its frames are the same at $threads threads" [ "$(hash_of clean.json)" = "$(hash_of again.json)" ]
+done
 
 # Rubber instead of cloth: it hangs down to twice its length.
 status=0
@@ -25,6 +27,16 @@ check "what was kept opens as it was" sh -c "$TOILE compare opened.exr kept/imag
 status=0
 $TOILE check kept/run.yaml --frames 1 --quiet >table.txt 2>message.txt || status=$?
 check "and its run breaks again" sh -c "[ $status = 1 ] && grep -q 'cloth.strain breaks at frame 0' message.txt"
+
+status=0
+timeout --preserve-status --signal=INT 6 $TOILE check $quick --frames 100000 --quiet >table.txt 2>message.txt || status=$?
+check "Ctrl-C shows what was found until then" sh -c "[ $status = 130 ] && grep -Eq '^surface.finite +ok' table.txt &&
+    grep -q 'check: stopped at frame' message.txt"
+
+# Fewer samples than pixels: white light is looked at in the samples.
+$TOILE check $quick --set image.scale=0.5 --frames 2 --every 2 --furnace --json --quiet >coarse.json
+check "a furnace at half the samples" sh -c "! grep -q '\"ok\":.*false' coarse.json &&
+    grep -A6 '\"name\":.*\"furnace.albedo\"' coarse.json | grep -q '\"measured\":.*true'"
 
 refuse "no frames" '--frames: "0"' check --frames 0
 refuse "too many frames" '--frames: 2000000' check --frames 2000000

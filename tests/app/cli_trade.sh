@@ -27,7 +27,7 @@ assert {"moving", "rest"} == {row["state"] for row in rows}
 PYTHON
     check_report measured/report.html 1
     check "it shows pictures" grep -q 'src="data:image/png;base64,' measured/report.html
-    for axis in overall resolution detail shading; do
+    for axis in overall resolution detail shading levels; do
         check "trade, $axis" $TOILE trade --axis $axis $small --quick -o "$axis"
         check "finite numbers, $axis" python3 - "$axis/trade.csv" <<'PYTHON'
 import csv, math, sys

@@ -1,27 +1,11 @@
 #!/usr/bin/env bash
 # Not a test: the review window under a virtual display, driven at random for MINUTES (first argument, default 30)
 # through every feature, with a fixed SEED (second argument, default 1). Prints frame times, GL messages, and how
-# memory grew. TOILE is the program. Fails when the window dies or hangs, or GL complains.
+# memory grew. TOILE is the program. Fails when the window dies or hangs, memory grows, or GL complains.
 set -eu
 minutes=${1:-30}
 RANDOM=${2:-1}
-room=$(mktemp -d)
-viewer= display=
-finish() {
-    [ -z "$viewer" ] || kill "$viewer" 2>/dev/null || true
-    [ -z "$display" ] || kill "$display" 2>/dev/null || true
-    wait 2>/dev/null || true
-    rm -rf "$room"
-}
-trap finish EXIT
-cd "$room"
-export XDG_STATE_HOME=$room/state
-
-fail() {
-    echo "FAILED $*"
-    grep -v "debug:" log | tail -n 40
-    exit 1
-}
+. "$(dirname "$0")/view_room.sh"
 
 scene() {
     printf 'scene: {garment: %s, environment: %s, fabric: fabric.yaml, preset: draft}\ncloth: {edge_m: 0.04}\n' \
@@ -33,33 +17,20 @@ fabric() {
     mv new.yaml fabric.yaml
 }
 
-exec 3>number
-Xvfb -displayfd 3 -screen 0 1280x800x24 -nolisten tcp >/dev/null 2>&1 &
-display=$!
-for _ in $(seq 100); do [ -s number ] && break; sleep 0.1; done
-export DISPLAY=:$(cat number)
-unset WAYLAND_DISPLAY
-
+open_display
 $TOILE render --preset draft --set cloth.edge_m=0.05 --size 256x128 --quiet -o light.exr
 fabric
 scene dress light.exr
 : >log
 $TOILE view scene.yaml --budget 50 --screenshots shots 2>log &
 viewer=$!
-for _ in $(seq 600); do grep -q "view: ready" log && break; sleep 0.1; done
-grep -q "view: ready" log || fail "it never opened"
+said "view: ready"
 window=$(xdotool search --pid "$viewer" | tail -n 1)
 
 point() { xdotool mousemove $((100 + RANDOM % 700)) $((100 + RANDOM % 600)); }
-# drag BUTTON: eight steps, as a hand does.
-drag() {
-    local i x=$((200 + RANDOM % 500)) y=$((200 + RANDOM % 400)) dx=$((RANDOM % 200 - 100)) dy=$((RANDOM % 200 - 100))
-    xdotool mousemove $x $y mousedown "$1"
-    for i in 1 2 3 4 5 6 7 8; do
-        xdotool mousemove $((x + dx * i / 8)) $((y + dy * i / 8))
-        sleep 0.03
-    done
-    xdotool mouseup "$1"
+drag_anywhere() {
+    local x=$((200 + RANDOM % 500)) y=$((200 + RANDOM % 400))
+    drag "$1" $x $y $((x + RANDOM % 200 - 100)) $((y + RANDOM % 200 - 100))
 }
 # Keys that neither close the window nor answer questions.
 keys=(space space period r p f t t shift+t shift+t e bracketleft bracketright g shift+g c shift+c w w x comma slash
@@ -67,10 +38,10 @@ keys=(space space period r p f t t shift+t shift+t e bracketleft bracketright g 
     ctrl+shift+z minus equal Left Right Up Down Page_Up Page_Down h h Tab Tab)
 step() {
     case $((RANDOM % 24)) in
-    0 | 1 | 2) drag 1 ;;
-    3) drag 3 ;;
-    4) xdotool keydown shift; drag 1; xdotool keyup shift ;;
-    5 | 6) xdotool keydown ctrl; drag 1; xdotool keyup ctrl ;;
+    0 | 1 | 2) drag_anywhere 1 ;;
+    3) drag_anywhere 3 ;;
+    4) xdotool keydown shift; drag_anywhere 1; xdotool keyup shift ;;
+    5 | 6) xdotool keydown ctrl; drag_anywhere 1; xdotool keyup ctrl ;;
     7) point; xdotool click --repeat $((RANDOM % 4 + 1)) $((RANDOM % 2 + 4)) ;;
     8) point; xdotool click --repeat 2 --delay 50 1 ;;
     9) fabric ;;
@@ -91,22 +62,30 @@ while [ $((SECONDS - started)) -lt $((minutes * 60)) ]; do
     sleep 0.$((RANDOM % 4 + 1))
     if [ $((SECONDS - sampled)) -ge 10 ]; then
         sampled=$SECONDS
-        echo "$((SECONDS - started)) $(awk '/^VmRSS/ { print $2 }' "/proc/$viewer/status")" >>resident
+        echo "$((SECONDS - started)) $(resident_kb)" >>resident
     fi
 done
 xdotool key Escape Escape Escape Escape 2>/dev/null || true
 for _ in $(seq 300); do kill -0 "$viewer" 2>/dev/null || break; xdotool key q; sleep 0.2; done
 ! kill -0 "$viewer" 2>/dev/null || fail "it hangs: it does not close within a minute"
-status=0
-wait "$viewer" || status=$?
-viewer=
+closed
 grep -e "images in motion" -e "images at rest" -e "closed after" log
-# Least squares over the second half: what a start allocates once is no growth.
-awk 'NR == FNR { n = FNR; next } FNR > n / 2 { c++; x += $1; y += $2; xx += $1 * $1; xy += $1 * $2; if ($2 > top) top = $2 }
-    END { s = c > 1 ? (c * xy - x * y) / (c * xx - x * x) : 0
-          printf "resident: %d samples in the second half, mean %.0f MB, most %.0f MB, slope %+.2f MB a minute\n", c, y / c / 1024, top / 1024, s * 60 / 1024 }' resident resident
+# Memory plays by some 100 MB as scenes, levels and comparisons come and go and idle pages are given back; the least of
+# each minute plays less, and what is never freed lifts it all the same. Least squares over the second half: what a start
+# allocates once is no growth. What is certain of the slope may be 1 MB a minute at most: a review of a working day then
+# stays within half a gigabyte of where it began.
+awk '{ minute = int($1 / 60); last = minute; if (!(minute in least) || $2 < least[minute]) least[minute] = $2; if ($2 > top) top = $2 }
+    END { for (m = int((last + 1) / 2); m <= last; m++) {
+              if (!(m in least)) continue
+              c++; x += m; y += least[m]; xx += m * m; xy += m * least[m]; yy += least[m] * least[m]
+          }
+          printf "resident: %d minutes in the second half, mean of their least %.0f MB, most ever %.0f MB\n", c, y / c / 1024, top / 1024
+          if (c < 4) { print "resident: too short a run to tell its slope"; exit }
+          spread = xx - x * x / c; slope = (xy - x * y / c) / spread
+          error = sqrt(((yy - y * y / c) - slope * slope * spread) / (c - 2) / spread)
+          printf "resident: slope %+.2f MB a minute, standard error %.2f\n", slope / 1024, error / 1024
+          exit slope - 2 * error > 1024 }' resident || grows=yes
 echo "warnings: $(grep -c "warning" log || true)"
 grep "warning" log | sort | uniq -c | sort -rn | head -n 5
-[ "$status" = 0 ] || fail "closed with status $status"
-grep -q ", 0 GL messages" log || fail "GL messages"
+[ -z "${grows:-}" ] || fail "memory grows"
 echo "ok     all"

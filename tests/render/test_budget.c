@@ -18,6 +18,7 @@ static double noise(uint32_t *state)
 struct table {
     int knobs;
     double fixed, part[TL_BUDGET_KNOBS_MAX], left[TL_BUDGET_KNOBS_MAX][TL_BUDGET_LEVELS_MAX];
+    double error[TL_BUDGET_KNOBS_MAX][TL_BUDGET_LEVELS_MAX];
     double factor; /* on all of it: the machine's */
 };
 
@@ -32,17 +33,27 @@ static double table_cost(const void *context, const uint8_t *levels)
     return table->factor * sum;
 }
 
+static double table_error(const void *context, const uint8_t *levels)
+{
+    const struct table *table = context;
+    double square = 0;
+    for (int k = 0; k < table->knobs; k++)
+        square += pow(table->error[k][levels[k]], 2);
+    return sqrt(square);
+}
+
 static struct tl_budget make_budget(struct table *table, int knobs, uint32_t seed)
 {
-    struct tl_budget budget = {.knob_count = knobs, .cost = table_cost, .context = table};
+    struct tl_budget budget = {
+        .knob_count = knobs, .cost = table_cost, .error = table_error, .context = table};
     *table = (struct table){.knobs = knobs, .fixed = 5 * noise(&seed), .factor = 1};
     for (int k = 0; k < knobs; k++) {
         table->part[k] = 10 + 40 * noise(&seed);
         table->left[k][0] = 1;
-        budget.knobs[k].level_count = 1 + (int)(4 * noise(&seed)) + k;
-        for (int level = 1; level < budget.knobs[k].level_count; level++) {
+        budget.level_counts[k] = 1 + (int)(4 * noise(&seed)) + k;
+        for (int level = 1; level < budget.level_counts[k]; level++) {
             table->left[k][level] = table->left[k][level - 1] * (0.5 + 0.45 * noise(&seed));
-            budget.knobs[k].error[level] = budget.knobs[k].error[level - 1] + 0.001 + 0.02 * noise(&seed);
+            table->error[k][level] = table->error[k][level - 1] + 0.001 + 0.02 * noise(&seed);
         }
     }
     return budget;
@@ -53,17 +64,15 @@ static void search(const struct tl_budget *budget, int knob, double limit, uint8
                    double *cost)
 {
     if (knob < budget->knob_count) {
-        for (int level = 0; level < budget->knobs[knob].level_count; level++) {
+        for (int level = 0; level < budget->level_counts[knob]; level++) {
             levels[knob] = (uint8_t)level;
             search(budget, knob + 1, limit, levels, error, cost);
         }
         return;
     }
-    double square = 0, ms = budget->cost(budget->context, levels);
-    for (int k = 0; k < budget->knob_count; k++)
-        square += pow(budget->knobs[k].error[levels[k]], 2);
-    if (ms <= limit && sqrt(square) < *error)
-        *error = sqrt(square);
+    double ms = budget->cost(budget->context, levels);
+    if (ms <= limit)
+        *error = fmin(*error, budget->error(budget->context, levels));
     *cost = fmin(*cost, ms);
 }
 
@@ -82,7 +91,7 @@ static void the_best_of_all_is_found(void **state)
             assert_int_equal(fits, cost <= limit);
             if (fits) {
                 assert_true(found_ms <= limit);
-                assert_near(tl_budget_error(&budget, found), error, 1e-15);
+                assert_near(table_error(&table, found), error, 1e-15);
             } else {
                 assert_near(found_ms, cost, 0);
             }
@@ -101,7 +110,7 @@ static void more_budget_never_errs_more(void **state)
             uint8_t found[TL_BUDGET_KNOBS_MAX];
             if (!tl_budget_best(&budget, limit, found))
                 continue;
-            double error = tl_budget_error(&budget, found);
+            double error = table_error(&table, found);
             assert_true(error <= before);
             before = error;
         }
@@ -123,11 +132,12 @@ static void run_frames(struct run *run, struct table *table, const struct tl_bud
     const int settled = 60, absorbed = 10;
     struct tl_governor governor = {0};
     uint32_t seed = 7;
-    double load = 1, waited = INFINITY;
+    struct tl_machine_load load = {0};
+    double waited = INFINITY;
     run->shortest_wait = INFINITY;
     for (int frame = 0; frame < run->frames; frame++) {
         bool spike = frame >= run->spike_begins && frame < run->spike_ends;
-        table->factor = load;
+        table->factor = tl_machine_load_factor(&load);
         uint8_t before[TL_BUDGET_KNOBS_MAX];
         memcpy(before, governor.levels, sizeof before);
         enum tl_governed how = tl_governor_choose(&governor, budget, run->budget);
@@ -135,7 +145,7 @@ static void run_frames(struct run *run, struct table *table, const struct tl_bud
         table->factor = (spike ? 2 : 1) * (1 + run->deviation * sqrt(3) * (2 * noise(&seed) - 1));
         double took = table_cost(table, governor.levels);
         tl_governor_learn(&governor, run->budget, predicted, took);
-        load = tl_load_follow(load, predicted, took);
+        tl_machine_load_follow(&load, predicted, took);
 
         waited = how == TL_GOVERNED_KEPT ? waited + 1 : 0;
         if (how == TL_GOVERNED_UP) {
@@ -147,9 +157,9 @@ static void run_frames(struct run *run, struct table *table, const struct tl_bud
         run->over += frame >= 30 && is_over; /* after the first second */
         run->over_late += is_over && frame >= run->spike_begins + absorbed && frame < run->spike_ends;
         if (frame == run->spike_begins - 1)
-            run->error_before = tl_budget_error(budget, governor.levels);
+            run->error_before = table_error(table, governor.levels);
         if (frame >= run->spike_ends && run->back == 0 &&
-            tl_budget_error(budget, governor.levels) <= 1.1 * run->error_before)
+            table_error(table, governor.levels) <= 1.1 * run->error_before)
             run->back = frame - run->spike_ends + 1;
     }
 }
@@ -201,7 +211,7 @@ static void steps_down_do_not_wait(void **state)
     const uint8_t best[TL_BUDGET_KNOBS_MAX] = {0};
     double whole_ms = table_cost(&table, best), budget_ms = 1.2 * whole_ms;
     tl_governor_choose(&governor, &budget, budget_ms);
-    assert_near(tl_budget_error(&budget, governor.levels), 0, 0);
+    assert_near(table_error(&table, governor.levels), 0, 0);
 
     table.factor = 2;
     assert_int_equal(tl_governor_choose(&governor, &budget, budget_ms), TL_GOVERNED_DOWN);
@@ -212,11 +222,11 @@ static void steps_down_do_not_wait(void **state)
     while (tl_governor_choose(&governor, &budget, budget_ms) == TL_GOVERNED_KEPT && waited < 100)
         waited++;
     assert_in_range(waited, 8, 40);
-    assert_near(tl_budget_error(&budget, governor.levels), 0, 0);
+    assert_near(table_error(&table, governor.levels), 0, 0);
 
     /* A knob that ended is followed at once. */
-    governor.levels[3] = (uint8_t)(budget.knobs[3].level_count - 1);
-    budget.knobs[3].level_count = 1;
+    governor.levels[3] = (uint8_t)(budget.level_counts[3] - 1);
+    budget.level_counts[3] = 1;
     tl_governor_choose(&governor, &budget, budget_ms);
     assert_int_equal(governor.levels[3], 0);
 }

@@ -82,31 +82,49 @@ static void a_change_is_followed(void **state)
     assert_near(tl_cost_predict(&job, &work, 1), 30, 3);
 }
 
+/* The machine takes `factor` times as long as it should. */
+static void follow(struct tl_machine_load *load, double factor)
+{
+    tl_machine_load_follow(load, 10 * tl_machine_load_factor(load), 10 * factor);
+}
+
 static void a_load_comes_fast_and_goes_slower(void **state)
 {
     (void)state;
-    double load = 1;
+    struct tl_machine_load load = {0};
     int frames = 0;
-    for (; load < 1.8 && frames < 100; frames++)
-        load = tl_load_follow(load, load * 10, 20);
-    assert_in_range(frames, 1, 5);
+    for (; tl_machine_load_factor(&load) < 1.8 && frames < 100; frames++)
+        follow(&load, 2);
+    assert_in_range(frames, 2, 5);
     for (int i = 0; i < 100; i++)
-        load = tl_load_follow(load, load * 10, 20);
-    assert_near(load, 2, 0.15);
-    for (frames = 0; load > 1.1 && frames < 200; frames++)
-        load = tl_load_follow(load, load * 10, 10);
+        follow(&load, 2);
+    assert_near(tl_machine_load_factor(&load), 2, 0.15);
+    for (frames = 0; tl_machine_load_factor(&load) > 1.1 && frames < 200; frames++)
+        follow(&load, 1);
     assert_in_range(frames, 6, 40);
-    assert_near(tl_load_follow(0, 0, 10), 1, 0); /* nothing is known yet */
-    assert_near(tl_load_follow(1.5, 10, (double)NAN), 1.5, 0);
+}
+
+static void what_says_nothing_is_no_load(void **state)
+{
+    (void)state;
+    struct tl_machine_load load = {0};
+    tl_machine_load_follow(&load, 0, 10);
+    assert_near(tl_machine_load_factor(&load), 1, 0);
+    tl_machine_load_follow(&load, 10, (double)NAN);
+    assert_near(tl_machine_load_factor(&load), 1, 0);
+    for (int i = 0; i < 5; i++) { /* hitches of single frames */
+        follow(&load, 3);
+        assert_near(tl_machine_load_factor(&load), 1, 0);
+        follow(&load, 1);
+    }
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(unseen_levels_are_foretold),
-        cmocka_unit_test(one_level_tells_the_machine),
-        cmocka_unit_test(a_change_is_followed),
-        cmocka_unit_test(a_load_comes_fast_and_goes_slower),
+        cmocka_unit_test(unseen_levels_are_foretold),   cmocka_unit_test(one_level_tells_the_machine),
+        cmocka_unit_test(a_change_is_followed),         cmocka_unit_test(a_load_comes_fast_and_goes_slower),
+        cmocka_unit_test(what_says_nothing_is_no_load),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

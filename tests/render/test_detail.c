@@ -4,6 +4,7 @@
 #include "shapes.h"
 
 #include "config/memory.h"
+#include "render/detail/cones.h"
 #include "render/detail/field.h"
 #include "render/metrics/compare.h"
 #include "render/reference/reference.h"
@@ -92,31 +93,45 @@ static float expected_u(const struct tl_height_field *field, const struct tl_det
 }
 
 /* The G-buffer keeps colours as halves: 0.0005 of 1. Bilinear weights of 8 bits are as coarse. */
-static void test_shift(void **state)
+static void check_shift(struct test_device *device, struct stage *stage, const struct tl_height_field *field)
 {
-    struct test_device *device = *state;
-    struct stage *stage = stage_new();
-    tl_image heights = tl_image_create(64, 64, 1, TL_IMAGE_F32);
-    for (int i = 0; i < 64 * 64; i++)
-        tl_image_floats(&heights)[i] = DEPTH * ((float)tl_image_bytes(&stage->bumps)[i] / 255 - 1);
-    struct tl_height_field field = tl_height_field_make(&heights, 1, 1, false, false);
+    bool behind = field->turned_over;
+    stage->frame.camera.eye.z = behind ? -1.3f : 1.3f;
     for (int mode = TL_DETAIL_NORMAL; mode <= TL_DETAIL_RELIEF; mode++) {
         stage->settings.detail.mode = mode;
         tl_image image = test_draw(device->renderer, &stage->frame, &stage->settings);
         double worst = 0, mean = 0;
         for (int i = 0; i < SIZE * SIZE; i++) {
             vec3s view, at = pixel_point(stage, i % SIZE, i / SIZE, &view);
-            float u = expected_u(&field, &stage->settings.detail, (vec2s){{at.x + 0.5f, 0.5f - at.y}}, view);
+            view.z *= behind ? -1 : 1;
+            float u = expected_u(field, &stage->settings.detail, (vec2s){{at.x + 0.5f, 0.5f - at.y}}, view);
             const float *pixel = test_pixel(&image, i % SIZE, i / SIZE);
             double off = fabs((double)(pixel[0] / pixel[2] - u));
             worst = fmax(worst, off);
             mean += off / (SIZE * SIZE);
         }
-        printf("mode %d: u off by %.5f, at worst %.5f\n", mode, mean, worst);
+        printf("%s, mode %d: u off by %.5f, at worst %.5f\n", behind ? "back" : "front", mode, mean, worst);
         assert_true(mean < 1e-3);
         assert_true(worst < 4e-3); /* a quarter of a texel of the height map */
         tl_image_release(&image);
     }
+}
+
+static void test_shift(void **state)
+{
+    struct stage *stage = stage_new();
+    tl_image heights = tl_image_create(64, 64, 1, TL_IMAGE_F32);
+    for (int i = 0; i < 64 * 64; i++)
+        tl_image_floats(&heights)[i] = DEPTH * ((float)tl_image_bytes(&stage->bumps)[i] / 255 - 1);
+    struct tl_height_field field = tl_height_field_make(&heights, 1, 1, false, false), back;
+    tl_image cones = tl_bake_cones(&field, 1);
+    field.cones = &cones;
+    back = tl_height_field_back(&field);
+    stage->shape.material.double_sided = true;
+    test_shape_refresh(&stage->shape);
+    check_shift(*state, stage, &field);
+    check_shift(*state, stage, &back);
+    tl_image_release(&cones);
     tl_image_release(&heights);
     stage_free(stage);
 }
@@ -178,7 +193,7 @@ static void test_unused(void **state)
     size_t bare = bytes_with(device, stage, &none);
     assert_false(runs_detail(device->renderer));
     const struct tl_detail_params *choices[] = {&relief, &horizon, &lean};
-    const size_t texel_bytes[] = {4, 2 * 16, 16}; /* heights; sixteen bytes a side; moments */
+    const size_t texel_bytes[] = {4 + 2, 2 * 16, 16}; /* heights and cones; sixteen bytes a side; moments */
     for (size_t i = 0; i < TL_COUNT(choices); i++) {
         size_t bytes = bytes_with(device, stage, choices[i]);
         assert_true(runs_detail(device->renderer));

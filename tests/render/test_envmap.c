@@ -310,6 +310,47 @@ static void white_furnace(void **state)
     scene_close(&scene);
 }
 
+/* Of a material with a coat, and light that comes through: what the film leaves of the two lobes and of the
+ * diffuse light of the other side, and what it reflects. */
+static vec3s layered_light(const struct scene *scene, const struct point *point)
+{
+    const tl_environment *environment = &scene->environment;
+    const tl_material *material = &scene->ball.material;
+    float coat = material->coat * (float)dielectric(1.5, point->cosine);
+    vec3s through = integrate(environment, glms_vec3_negate(point->normal), 1);
+    vec3s under = glms_vec3_add(glms_vec3_mul(kd, integrate(environment, point->normal, 1)),
+                                glms_vec3_mul(material->transmission, through));
+    under = glms_vec3_add(under, integrate(environment, point->mirror, 10));
+    return glms_vec3_add(glms_vec3_scale(under, 1 - coat),
+                         glms_vec3_scale(integrate(environment, point->mirror, 20), coat));
+}
+
+static void layers_are_integrals(void **state)
+{
+    struct test_device *device = *state;
+    struct scene scene;
+    scene_open(&scene, lights);
+    scene.ball.material.coat = 0.8f;
+    scene.ball.material.coat_glossiness = 0.95f; /* s = 20 */
+    scene.ball.material.transmission = (vec3s){{0.3f, 0.2f, 0.1f}};
+    test_shape_refresh(&scene.ball);
+    tl_image image = test_draw(device->renderer, &scene.frames[0], &scene.settings);
+    struct tl_view view = tl_view_make(&scene.frames[0].camera, SIDE, SIDE);
+    double worst = 0;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        struct point point;
+        if (!find_point(&view, i % SIDE, i / SIDE, false, &point))
+            continue;
+        vec3s expected = layered_light(&scene, &point);
+        for (int c = 0; c < 3; c++)
+            worst = fmax(worst, fabs((double)(test_pixel(&image, i % SIDE, i / SIDE)[c] - expected.raw[c])));
+    }
+    print_message("coat and light from behind: off by %.2f %% of the brightest\n", 100 * worst / BRIGHTEST);
+    assert_true(worst < 1.5 * TOLERANCE); /* four look-ups in place of two */
+    tl_image_release(&image);
+    scene_close(&scene);
+}
+
 /* The unshadowed light of the other passes, which have exact lobes of their own: no more than texels differ.
  */
 static void surfaces_are_lit_as_elsewhere(void **state)
@@ -453,10 +494,11 @@ static void nobody_pays_who_does_not_ask(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(modes_are_integrals),           cmocka_unit_test(backs_refract_outwards),
-        cmocka_unit_test(layouts_are_integrals),         cmocka_unit_test(white_furnace),
-        cmocka_unit_test(surfaces_are_lit_as_elsewhere), cmocka_unit_test(levels_stand_for_samples),
-        cmocka_unit_test(sphere_maps_follow_the_view),   cmocka_unit_test(nobody_pays_who_does_not_ask),
+        cmocka_unit_test(modes_are_integrals),          cmocka_unit_test(backs_refract_outwards),
+        cmocka_unit_test(layouts_are_integrals),        cmocka_unit_test(white_furnace),
+        cmocka_unit_test(layers_are_integrals),         cmocka_unit_test(surfaces_are_lit_as_elsewhere),
+        cmocka_unit_test(levels_stand_for_samples),     cmocka_unit_test(sphere_maps_follow_the_view),
+        cmocka_unit_test(nobody_pays_who_does_not_ask),
     };
     return cmocka_run_group_tests(tests, test_device_open, test_device_close);
 }

@@ -12,8 +12,10 @@
 #define ROWS    180 /* of the hemisphere, of equal height */
 #define COLUMNS 360
 
-/* Nine Gauss-Hermite points for the albedo, and a Gaussian's share above the horizon for a power's. */
-#define ENERGY_OFF 0.09
+/* Fifteen points for the albedo, and a Gaussian's share above the horizon for a power's. The threads' albedo
+ * leaves the horizon out. */
+#define ENERGY_OFF         0.05
+#define ENERGY_OFF_THREADS 0.09
 
 /* Errors are bounded by what came out, rounded up: they keep a change from making fans worse. What fans are
  * good for, test_layered bounds against the oracle. */
@@ -104,7 +106,8 @@ static void test_lobes_stand_for_the_gloss(void **state)
         }
         for (int n = 0; n < 4; n++)
             assert_true(errors[n] < cases[i].error[n]);
-        assert_true(least > 1 - ENERGY_OFF && greatest < 1 + ENERGY_OFF);
+        double off = cases[i].model == TL_REFLECT_BANKS ? ENERGY_OFF_THREADS : ENERGY_OFF;
+        assert_true(least > 1 - off && greatest < 1 + off);
         printf("%-22s %6.1f %6.1f %6.1f %6.1f   %.3f %.3f\n", cases[i].name, 100 * errors[0], 100 * errors[1],
                100 * errors[2], 100 * errors[3], least, greatest);
     }

@@ -162,7 +162,9 @@ static void ground_is_met_where_it_lies(void **state)
     struct tl_ground *ground = TL_NEW(struct tl_ground);
     tl_ground_make(&(struct tl_casters){.centre = {{0.2f, 1, -0.1f}}, .radius = 1}, ground);
     for (int i = 0; i < 500; i++) {
-        float angle = 0.37f * (float)i, reach = 0.01f * (float)i;
+        bool on_border = i % 2; /* of two segments */
+        float angle = on_border ? 2 * (float)M_PI * (float)i / TL_GROUND_SEGMENTS : 0.37f * (float)i;
+        float reach = 0.01f * (float)i;
         vec3s to = {{0.2f + reach * cosf(angle), 0, -0.1f + reach * sinf(angle)}}, from = {{1, 2, 3}}, point;
         uint32_t triangle;
         float weights[3];
@@ -177,6 +179,9 @@ static void ground_is_met_where_it_lies(void **state)
                 joined, glms_vec3_scale(ground->positions[ground->indices[3 * (size_t)triangle + (size_t)k]],
                                         weights[k]));
         assert_near(glms_vec3_distance(joined, to), 0, 2e-3);
+        for (int k = 0; k < 3; k++)
+            assert_true(weights[k] >= 0);
+        assert_near(weights[0] + weights[1] + weights[2], 1, 3e-7);
     }
     free(ground);
 }

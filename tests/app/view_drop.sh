@@ -1,0 +1,62 @@
+#!/usr/bin/env bash
+# Files dropped on the real window, as a file manager drops them (drop_files.c): each is opened, asked about or refused
+# with one line. TOILE is the program, DROP the source of the drops; empty where X11's headers are absent.
+set -eu
+. "$(dirname "$0")/view_room.sh"
+[ -n "${DROP:-}" ] || { echo "skipped: built without X11's headers (libx11-dev), there is nothing to drop with"; exit 77; }
+
+fast="--preset draft --set cloth.edge_m=0.08"
+$TOILE render $fast --size 64x32 --quiet -o light.exr # any picture is an environment
+$TOILE export $fast --set image.ground=false --avatar none --garment skirt --quiet -o skirt.obj
+printf 'material: {diffuse: [0.1, 0.2, 0.3], glossiness: 0.4}\n' >"bleu é 100%.yaml"
+printf 'scene: {garment: dress, preset: draft}\ncloth: {edge_m: 0.08}\n' >scene.yaml
+echo "material: [" >broken.yaml
+echo "no light" >broken.exr
+echo "no model" >broken.glb
+echo "a letter" >letter.txt
+
+open_display
+: >log
+$TOILE view $fast --fresh >out 2>log &
+viewer=$!
+said "view: ready"
+window=$(xdotool search --pid "$viewer" | tail -n 1)
+
+drop() { $DROP "$window" 200 200 "$@" || fail "not taken: $*"; }
+# drops FILE TEXT: dropped, the log holds the text once more. answers FILE NUMBER TEXT: ... after that answer.
+drops() {
+    local before
+    before=$(grep -c -e "$2" log || true)
+    drop "$1"
+    said "$2" $((before + 1))
+}
+answers() {
+    drop "$1"
+    press "$2" "$3"
+}
+
+drops light.exr "view: environment .*/light.exr"
+answers "bleu é 100%.yaml" 2 "view: fabric .*/bleu é 100%.yaml"
+answers skirt.obj 1 "view: garment .*/skirt.obj"
+answers scene.yaml 1 "view: garment dress"
+
+drops letter.txt "warning: view: .*letter.txt: cannot be used here"
+drops broken.exr "warning: view: .*broken.exr"
+answers broken.glb 1 "warning: view: .*broken.glb"
+answers broken.yaml 2 "warning: view: .*broken.yaml"
+answers broken.yaml 1 "warning: view: .*broken.yaml"
+
+# Several at once: each in its turn.
+drop skirt.obj light.exr "bleu é 100%.yaml"
+said "view: environment .*/light.exr" 2
+press 1 "view: garment .*/skirt.obj"
+press 2 "view: fabric .*/bleu é 100%.yaml"
+
+# It goes on, shows what could be opened, and closes.
+press t "turntable turns"
+press t "turntable stands"
+xdotool key q
+closed
+[ "$(grep -c "warning" log)" = 5 ] || fail "not one line for each file that is refused"
+[ ! -s out ] || fail "something on standard output"
+echo "ok     all"

@@ -1,0 +1,74 @@
+# Sourced by the scripts that drive the review window: a folder of their own, a virtual display, words with the window.
+# TOILE is the program.
+for tool in Xvfb xdotool; do
+    command -v "$tool" >/dev/null || { echo "skipped: $tool is absent"; exit 77; }
+done
+room=$(mktemp -d)
+viewer= display=
+finish() {
+    [ -z "$viewer" ] || kill "$viewer" 2>/dev/null || true
+    [ -z "$display" ] || kill "$display" 2>/dev/null || true
+    wait 2>/dev/null || true
+    rm -rf "$room"
+}
+trap finish EXIT
+cd "$room"
+export XDG_STATE_HOME=$room/state # nothing of the user's is read, or written
+
+fail() {
+    echo "FAILED $*"
+    echo "--- the log:"
+    grep -v "debug:" log | tail -n 60
+    exit 1
+}
+
+open_display() {
+    exec 3>number
+    Xvfb -displayfd 3 -screen 0 1280x800x24 -nolisten tcp >/dev/null 2>&1 &
+    display=$!
+    for _ in $(seq 100); do [ -s number ] && break; sleep 0.1; done
+    [ -s number ] || { echo "skipped: Xvfb does not start here"; exit 77; }
+    export DISPLAY=:$(cat number)
+    unset WAYLAND_DISPLAY
+}
+
+# said TEXT [TIMES]: waits until the log holds the text so many times.
+said() {
+    for _ in $(seq 600); do
+        [ "$(grep -c -e "$1" log)" -ge "${2:-1}" ] && { echo "ok     $1"; return; }
+        kill -0 "$viewer" 2>/dev/null || fail "the window closed before it said: $1"
+        sleep 0.1
+    done
+    fail "never said: $1"
+}
+
+# press KEY TEXT: the log then holds the text once more.
+press() {
+    local before
+    before=$(grep -c -e "$2" log || true)
+    xdotool key $1
+    said "$2" $((before + 1))
+}
+
+resident_kb() { awk '/^VmRSS/ { print $2 }' "/proc/$viewer/status"; }
+
+# drag BUTTON X0 Y0 X1 Y1: eight steps, as a hand does.
+drag() {
+    local i
+    xdotool mousemove "$2" "$3" mousedown "$1"
+    for i in 1 2 3 4 5 6 7 8; do
+        xdotool mousemove $(($2 + ($4 - $2) * i / 8)) $(($3 + ($5 - $3) * i / 8))
+        sleep 0.03
+    done
+    xdotool mouseup "$1"
+}
+
+# The window must have closed by itself: what it said of its end.
+closed() {
+    local status=0
+    wait "$viewer" || status=$?
+    viewer=
+    [ "$status" = 0 ] || fail "closed with status $status"
+    grep -q "view: closed after" log || fail "no closing line"
+    grep -q ", 0 GL messages" log || fail "GL messages"
+}
