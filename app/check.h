@@ -46,7 +46,7 @@ struct tl_checked {
     uint64_t hash, first_hash; /* of positions and image; when the same frame was drawn first; 0: not yet */
     double predicted_ms, budget_ms; /* of the plan; what was asked for */
     double least_ms;                /* of the cheapest plan there is, where that is more than the budget */
-    double planned_error;           /* relative RMSE that the plan adds to that of the settings */
+    bool is_reduced;                /* a budget took from the image: it is not what the oracle is asked for */
 };
 
 enum { TL_CHECK_PLACE_SIZE = 112 };

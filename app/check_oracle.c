@@ -240,7 +240,7 @@ static void consult(struct oracle *oracle, struct tl_finding *finding)
 
 void tl_measure_oracle(const struct tl_checked *checked, struct tl_finding *finding)
 {
-    if (!checked->is_sampled || !is_comparable(checked->settings))
+    if (!checked->is_sampled || checked->is_reduced || !is_comparable(checked->settings))
         return;
     const struct tl_image_params *image = &checked->settings->image;
     struct oracle *oracle = TL_NEW(struct oracle);
@@ -249,7 +249,7 @@ void tl_measure_oracle(const struct tl_checked *checked, struct tl_finding *find
                               .width = image->width,
                               .height = image->height,
                               .side = image->supersample};
-    finding->bound = oracle_bound(&checked->settings->light) + checked->planned_error;
+    finding->bound = oracle_bound(&checked->settings->light);
     choose_pixels(oracle);
     if (oracle->count > 0)
         consult(oracle, finding);

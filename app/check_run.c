@@ -200,7 +200,7 @@ static bool check_frame(struct run *run, int number, tl_error *error)
                                  .predicted_ms = run->choice.predicted_ms,
                                  .budget_ms = run->params->budget_ms,
                                  .least_ms = run->choice.least_ms,
-                                 .planned_error = run->choice.error};
+                                 .is_reduced = run->choice.error > 0};
     if (tl_session_cloth(run->stage->session)) {
         /* Other steps of the solver are another stiffness, too. */
         cloth = tl_watch_look(&run->watch, &frame, is_swung(run, number), run->pace);
