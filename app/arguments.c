@@ -73,7 +73,7 @@ static const struct flag flags_known[] = {
     {"--screenshots", TL_FLAGS_WINDOW, FLAG_TEXT, AT(screenshots), NULL, "FOLDER", "where screenshots go"},
     {"--max-frames", TL_FLAGS_WINDOW, FLAG_WHOLE, AT(max_frames), NULL, "N", "close after N frames"},
     {"--axis", TL_FLAGS_AXIS, FLAG_TEXT, AT(axis), NULL, "NAME",
-     "what is varied: overall, light, resolution, detail, shading or cloth"},
+     "what is varied: overall, light, resolution, detail, shading, levels or cloth"},
     {"--fresh", TL_FLAGS_WINDOW, FLAG_SWITCH, AT(fresh), NULL, NULL,
      "as if it were the first time: nothing is remembered, before or after"},
     {"--quick", TL_FLAGS_QUICK, FLAG_SWITCH, AT(quick), NULL, NULL, "a few choices and frames only"},

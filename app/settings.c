@@ -163,7 +163,7 @@ static bool fail_name(const struct layer *layer, const char *name, tl_error *err
     size_t count = tl_count_words(layer->names);
     char *list = tl_join_words(layer->names, count, ", ", ", ");
     const char *near = tl_nearest_word(name, layer->names, count);
-    tl_fail(error, TL_USAGE, "%s: no such %s: expected %s or a YAML file%s%s%s", name, layer->kind, list,
+    tl_fail(error, TL_USAGE, "%s: no such %s: expected %s, or a YAML file%s%s%s", name, layer->kind, list,
             near ? ": did you mean " : "", near ? near : "", near ? "?" : "");
     free(list);
     return false;
