@@ -29,8 +29,9 @@ void tl_pace_set_budget(tl_pace *pace, double budget_ms);
 
 /* `frame` is the coming one as far as it is known: the last one drawn, with the camera that will be there, so
  * that the end of a rest is seen; or the first. `settings` are those of full quality. At rest (three frames
- * in which nothing moved) everything goes into the image: level 0, whatever the budget. In the first frames
- * after an environment came, the renderer makes the regions of other levels ready, one level a frame. */
+ * in which nothing moved) everything goes into the image: level 0, whatever the budget; and so is the first.
+ * In the first frames after an environment came, the renderer makes the regions of other levels ready, one
+ * level a frame. */
 struct tl_pace_choice tl_pace_choose(tl_pace *pace, tl_renderer *renderer, const tl_frame *frame,
                                      const struct tl_settings *settings);
 

@@ -115,8 +115,10 @@ void tl_renderer_destroy(tl_renderer **renderer)
     tl_lobes_release(&(*renderer)->lobes);
     tl_slices_release(&(*renderer)->slices);
     tl_slice_maps_release(&(*renderer)->slice_maps);
-    for (int i = 0; i < TL_LIGHTS_KEPT; i++)
+    for (int i = 0; i < TL_LIGHTS_KEPT; i++) {
+        tl_regions_release(&(*renderer)->kept[i].cut_regions);
         tl_region_lights_release(&(*renderer)->kept[i].lights);
+    }
     tl_surfaces_destroy(&(*renderer)->surfaces);
     tl_detail_maps_release(&(*renderer)->detail);
     tl_triangle_ranges_release(&(*renderer)->ranges);

@@ -158,9 +158,9 @@ void tl_frame_list_surfaces(tl_renderer *renderer);
 #define TL_LIGHTS_KEPT TL_PREPARED_COUNTS_MAX
 bool tl_frame_has_lights(const tl_renderer *renderer, const struct tl_light_params *light);
 void tl_frame_prepare_lights(tl_renderer *renderer, const struct tl_light_params *light);
-/* Lights of the present cube that were made elsewhere; *lights is emptied. */
+/* Regions of the present cube and their lights that were made elsewhere; both are emptied. */
 void tl_frame_keep_lights(tl_renderer *renderer, const struct tl_light_params *light,
-                          struct tl_region_lights *lights);
+                          struct tl_regions *regions, struct tl_region_lights *lights);
 
 void tl_frame_cut_regions(const tl_cube *cube, const struct tl_light_params *light, struct tl_regions *out);
 enum tl_region_weight tl_frame_region_weight(const struct tl_light_params *light);
@@ -195,8 +195,9 @@ struct tl_renderer {
         int regions, cut;
         enum tl_region_weight weight;
         uint64_t used; /* when, counted by kept_uses */
+        struct tl_regions cut_regions;
         struct tl_region_lights lights;
-    } kept[TL_LIGHTS_KEPT]; /* so that going to more or fewer regions and back costs no more than a cut */
+    } kept[TL_LIGHTS_KEPT]; /* so that going to more or fewer regions and back costs little */
     uint64_t kept_uses;
     uint64_t light_revision;   /* rises with the cube */
     uint32_t exponents;        /* of the lobes: that the last frame needed */

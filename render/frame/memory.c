@@ -18,7 +18,8 @@ static size_t lights_bytes(const tl_renderer *renderer)
 {
     size_t bytes = 0;
     for (int i = 0; i < TL_LIGHTS_KEPT; i++)
-        bytes += tl_lobes_bytes(&renderer->kept[i].lights.gain) +
+        bytes += regions_bytes(&renderer->kept[i].cut_regions) +
+                 tl_lobes_bytes(&renderer->kept[i].lights.gain) +
                  tl_lobes_bytes(&renderer->kept[i].lights.diffuse_gain);
     return bytes;
 }

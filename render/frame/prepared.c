@@ -15,7 +15,8 @@ struct tl_prepared {
     struct tl_lobes lobes;
     int count;
     struct {
-        int regions;
+        int count;
+        struct tl_regions regions;
         struct tl_region_lights lights;
     } lights[TL_PREPARED_COUNTS_MAX];
 };
@@ -42,13 +43,12 @@ static void add_lights(tl_prepared *prepared, const struct tl_prepared_request *
     struct tl_render_settings settings = request->settings;
     settings.light.regions = region_count;
     const struct tl_light_params light = tl_frame_usable(&settings).light;
-    struct tl_regions regions = {0};
+    struct tl_regions *regions = &prepared->lights[prepared->count].regions;
     struct tl_region_lights *lights = &prepared->lights[prepared->count].lights;
-    tl_frame_cut_regions(&prepared->cube, &light, &regions);
-    tl_region_lights_begin(lights, &regions, tl_frame_region_weight(&light));
+    tl_frame_cut_regions(&prepared->cube, &light, regions);
+    tl_region_lights_begin(lights, regions, tl_frame_region_weight(&light));
     tl_region_lights_add(lights, &prepared->lobes, request->exponents);
-    tl_regions_release(&regions);
-    prepared->lights[prepared->count++].regions = light.regions;
+    prepared->lights[prepared->count++].count = light.regions;
 }
 
 /* One exponent at a time, so that nobody waits long for a loader to stop. */
@@ -85,7 +85,8 @@ tl_prepared *tl_prepared_make(const struct tl_prepared_request *request)
 static void copy_lights(tl_prepared *prepared, const struct tl_kept_lights *kept)
 {
     struct tl_region_lights *copy = &prepared->lights[prepared->count].lights;
-    prepared->lights[prepared->count++].regions = kept->regions;
+    prepared->lights[prepared->count].regions = tl_regions_copy(&kept->cut_regions);
+    prepared->lights[prepared->count++].count = kept->regions;
     *copy = kept->lights;
     copy->gain = tl_lobes_copy(&kept->lights.gain);
     copy->diffuse_gain = tl_lobes_copy(&kept->lights.diffuse_gain);
@@ -115,8 +116,10 @@ void tl_prepared_destroy(tl_prepared **prepared)
         return;
     tl_cube_release(&(*prepared)->cube);
     tl_lobes_release(&(*prepared)->lobes);
-    for (int i = 0; i < (*prepared)->count; i++)
+    for (int i = 0; i < (*prepared)->count; i++) {
+        tl_regions_release(&(*prepared)->lights[i].regions);
         tl_region_lights_release(&(*prepared)->lights[i].lights);
+    }
     free(*prepared);
     *prepared = NULL;
 }
@@ -143,8 +146,9 @@ static void use(tl_prepared *prepared, tl_renderer *renderer)
     renderer->suns = prepared->suns;
     tl_lobes_take(&renderer->lobes, &prepared->lobes);
     for (int i = 0; i < prepared->count; i++) {
-        prepared->light.regions = prepared->lights[i].regions;
-        tl_frame_keep_lights(renderer, &prepared->light, &prepared->lights[i].lights);
+        prepared->light.regions = prepared->lights[i].count;
+        tl_frame_keep_lights(renderer, &prepared->light, &prepared->lights[i].regions,
+                             &prepared->lights[i].lights);
     }
 }
 

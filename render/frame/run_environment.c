@@ -27,15 +27,6 @@ void tl_frame_cut_regions(const tl_cube *cube, const struct tl_light_params *lig
         tl_regions_cut(cube, light->regions, out);
 }
 
-bool tl_run_regions(void *context, int level, tl_error *error)
-{
-    tl_renderer *renderer = context;
-    (void)level, (void)error;
-    tl_frame_cut_regions(&renderer->cube, &renderer->settings.light, &renderer->regions);
-    renderer->regions_revision++;
-    return true;
-}
-
 /* All exponents, with all that is made of them, would be more than 100 MB. */
 static void need_exponents(tl_renderer *renderer, uint32_t needed)
 {
@@ -121,6 +112,22 @@ static struct tl_kept_lights *find_lights(const tl_renderer *renderer, const str
     return NULL;
 }
 
+bool tl_run_regions(void *context, int level, tl_error *error)
+{
+    tl_renderer *renderer = context;
+    (void)level, (void)error;
+    const struct tl_light_params *light = &renderer->settings.light;
+    const struct tl_kept_lights *kept = find_lights(renderer, light);
+    if (kept) {
+        tl_regions_release(&renderer->regions);
+        renderer->regions = tl_regions_copy(&kept->cut_regions);
+    } else {
+        tl_frame_cut_regions(&renderer->cube, light, &renderer->regions);
+    }
+    renderer->regions_revision++;
+    return true;
+}
+
 bool tl_frame_has_lights(const tl_renderer *renderer, const struct tl_light_params *light)
 {
     const struct tl_kept_lights *kept = find_lights(renderer, light);
@@ -134,6 +141,7 @@ static struct tl_kept_lights *replace_oldest(tl_renderer *renderer, const struct
     for (int i = 1; i < TL_LIGHTS_KEPT; i++)
         if (renderer->kept[i].used < oldest->used)
             oldest = &renderer->kept[i];
+    tl_regions_release(&oldest->cut_regions);
     tl_region_lights_release(&oldest->lights);
     *oldest = kept_lights(renderer, light);
     oldest->used = ++renderer->kept_uses;
@@ -144,14 +152,18 @@ static struct tl_kept_lights *begin_lights(tl_renderer *renderer, const struct t
                                            const struct tl_regions *regions)
 {
     struct tl_kept_lights *kept = replace_oldest(renderer, light);
+    kept->cut_regions = tl_regions_copy(regions);
     tl_region_lights_begin(&kept->lights, regions, kept->weight);
     return kept;
 }
 
 void tl_frame_keep_lights(tl_renderer *renderer, const struct tl_light_params *light,
-                          struct tl_region_lights *lights)
+                          struct tl_regions *regions, struct tl_region_lights *lights)
 {
-    replace_oldest(renderer, light)->lights = *lights;
+    struct tl_kept_lights *kept = replace_oldest(renderer, light);
+    kept->cut_regions = *regions;
+    kept->lights = *lights;
+    *regions = (struct tl_regions){0};
     *lights = (struct tl_region_lights){0};
 }
 

@@ -91,9 +91,12 @@ struct tl_work tl_gbuffer_work(const void *context)
 {
     const struct tl_work_seen *seen = context;
     const struct tl_detail_params *detail = &seen->settings->detail;
-    double steps = !seen->is_bumpy ? 0 : detail->mode == TL_DETAIL_RELIEF ? 5 + detail->steps : 5;
+    const double enough = 24; /* steps from cone to cone, for most rays */
+    double steps = !seen->is_bumpy                    ? 0
+                   : detail->mode == TL_DETAIL_RELIEF ? 5 + fmin(detail->steps, enough)
+                                                      : 5;
     return (struct tl_work){
-        {5.7, 0.041 * sqrt(seen->texels), 5.7e-5 * seen->texels, 2e-5 * steps * seen->covered}};
+        {0.5, 0.039 * sqrt(seen->texels), 2e-6 * seen->texels, 2e-5 * steps * seen->covered}};
 }
 
 struct tl_work tl_samples_work(const void *context)

@@ -27,6 +27,25 @@ void tl_regions_release(struct tl_regions *regions)
     *regions = (struct tl_regions){0};
 }
 
+static void *copy_of(const void *values, size_t count, size_t size)
+{
+    void *copy = tl_alloc(count, size);
+    memcpy(copy, values, count * size);
+    return copy;
+}
+
+struct tl_regions tl_regions_copy(const struct tl_regions *regions)
+{
+    struct tl_regions copy = *regions;
+    size_t texels = texel_count(regions);
+    copy.labels = copy_of(regions->labels, texels, sizeof *copy.labels);
+    copy.solid_angles = copy_of(regions->solid_angles, texels / 6, sizeof *copy.solid_angles);
+    copy.importance = copy_of(regions->importance, texels, sizeof *copy.importance);
+    copy.texels = copy_of(regions->texels, texels, sizeof *copy.texels);
+    copy.cumulative = copy_of(regions->cumulative, texels, sizeof *copy.cumulative);
+    return copy;
+}
+
 static void allocate(int size, struct tl_regions *out)
 {
     tl_regions_release(out);

@@ -61,6 +61,7 @@ void tl_regions_cut_sphere(const tl_cube *cube, int count, struct tl_regions *ou
  * first. What tl_regions_cut_sphere makes of the same cube with `count`, but for the rounding of `power`.
  * `out` is not `from`. */
 void tl_regions_merge(const struct tl_regions *from, int count, struct tl_regions *out);
+struct tl_regions tl_regions_copy(const struct tl_regions *regions); /* to be released like any other */
 void tl_regions_release(struct tl_regions *regions);
 
 /* A direction inside region i, distributed as its luminance, for (u, v) uniform in [0, 1)^2; neighbouring u

@@ -9,18 +9,18 @@
 #define GAIN_MIN     0.95 /* a step up leaves at most this much of the error */
 #define ROOM         0.94 /* ... and costs at most this much of what may be planned with */
 
-/* A frame may be over by 1.1 once in a hundred: 2.6 standard deviations, and a mean deviation is 0.8 of one.
- */
-#define OVER           1.1
-#define DEVIATIONS     3.2
-#define SHARE_MIN      0.7
-#define SHARE_MAX      0.96
-#define DEVIATION_RATE 0.06
-#define DEARER_MAX     0.15 /* of one frame: a single hitch does not count for more */
-#define CHEAPER_MAX    0.05 /* frames that take less than foretold do no harm, but noise has two sides */
-#define PANIC_STEP     1.12
-#define PANIC_MAX      1.6
-#define PANIC_DECAY    0.9
+/* A frame may be over by 1.1 once in a hundred. The share of the budget that is planned with is led there:
+ * down a step with each such frame, and up by so little with each other that they balance at one in two
+ * hundred. */
+#define OVER        1.1
+#define OVER_RATE   0.005
+#define SHARE_STEP  0.03
+#define SHARE_MIN   0.75
+#define SHARE_FIRST 0.93
+#define SHARE_MAX   0.96
+#define PANIC_STEP  1.12
+#define PANIC_MAX   1.6
+#define PANIC_DECAY 0.9
 
 /* The next combination, counting with the last knob first; false after the last one. */
 static bool next_levels(const struct tl_budget *budget, uint8_t *levels)
@@ -48,14 +48,15 @@ static bool is_better(const struct candidate *a, const struct candidate *b)
     return a->error < b->error || (a->error == b->error && a->cost < b->cost);
 }
 
-bool tl_budget_best(const struct tl_budget *budget, double limit_ms, uint8_t *levels)
+bool tl_budget_best(const struct tl_budget *budget, double limit_ms, double first_ms, uint8_t *levels)
 {
     assert(budget->knob_count > 0 && budget->knob_count <= TL_BUDGET_KNOBS_MAX);
     struct candidate best = {.cost = INFINITY, .error = INFINITY}, each = {0};
     do {
         each.cost = budget->cost(budget->context, each.levels);
         each.error = budget->error(budget->context, each.levels);
-        each.fits = each.cost <= limit_ms;
+        each.fits =
+            each.cost <= limit_ms && each.cost + budget->change(budget->context, each.levels) <= first_ms;
         if (is_better(&each, &best))
             best = each;
     } while (next_levels(budget, each.levels));
@@ -65,17 +66,13 @@ bool tl_budget_best(const struct tl_budget *budget, double limit_ms, uint8_t *le
 
 double tl_governor_limit(const struct tl_governor *governor, double budget_ms)
 {
-    double share = OVER / (1 + DEVIATIONS * governor->deviation);
-    share = share < SHARE_MIN ? SHARE_MIN : share > SHARE_MAX ? SHARE_MAX : share;
-    return budget_ms * share / governor->panic;
+    return budget_ms * governor->share / governor->panic;
 }
 
 static void begin(struct tl_governor *governor, const struct tl_budget *budget)
 {
-    *governor = (struct tl_governor){.knob_count = budget->knob_count,
-                                     .patience = PATIENCE_MIN,
-                                     .deviation = (OVER / SHARE_MAX - 1) / DEVIATIONS,
-                                     .panic = 1};
+    *governor = (struct tl_governor){
+        .knob_count = budget->knob_count, .patience = PATIENCE_MIN, .share = SHARE_FIRST, .panic = 1};
 }
 
 /* What the scene no longer asks for has one level only. */
@@ -115,14 +112,15 @@ enum tl_governed tl_governor_choose(struct tl_governor *governor, const struct t
     governor->settled++;
     double cost = budget->cost(budget->context, governor->levels);
     if (is_first || !within || cost > limit_ms) {
-        tl_budget_best(budget, is_first ? limit_ms : ROOM * limit_ms, best);
+        if (is_first || !tl_budget_best(budget, ROOM * limit_ms, OVER * budget_ms, best))
+            tl_budget_best(budget, is_first ? limit_ms : ROOM * limit_ms, INFINITY, best);
         return change(governor, best, TL_GOVERNED_DOWN);
     }
     if (governor->settled > 4 * PATIENCE_MAX)
         governor->patience = PATIENCE_MIN;
     if (governor->settled < governor->patience || governor->panic > 1.01)
         return TL_GOVERNED_KEPT;
-    bool fits = tl_budget_best(budget, ROOM * limit_ms, best);
+    bool fits = tl_budget_best(budget, ROOM * limit_ms, OVER * budget_ms, best);
     double now = budget->error(budget->context, governor->levels);
     double then = budget->error(budget->context, best);
     if (!fits || then >= now || (then > 0 && then > GAIN_MIN * now))
@@ -130,17 +128,18 @@ enum tl_governed tl_governor_choose(struct tl_governor *governor, const struct t
     return change(governor, best, TL_GOVERNED_UP);
 }
 
-void tl_governor_learn(struct tl_governor *governor, double budget_ms, double predicted_ms, double took_ms)
+void tl_governor_learn(struct tl_governor *governor, double budget_ms, double took_ms)
 {
-    if (!(predicted_ms > 0) || !isfinite(took_ms))
+    if (!isfinite(took_ms))
         return;
-    double excess = took_ms / predicted_ms - 1;
-    double deviation = excess > 0 ? fmin(excess, DEARER_MAX) : fmin(-excess, CHEAPER_MAX);
-    governor->deviation += DEVIATION_RATE * (deviation - governor->deviation);
     bool is_over = took_ms > OVER * budget_ms;
-    if (is_over && governor->was_over)
-        governor->panic = fmin(PANIC_STEP * governor->panic, PANIC_MAX);
-    else if (!is_over)
+    if (!is_over) {
+        governor->share = fmin(governor->share + SHARE_STEP * OVER_RATE / (1 - OVER_RATE), SHARE_MAX);
         governor->panic = 1 + PANIC_DECAY * (governor->panic - 1);
+    } else if (!governor->was_over) {
+        governor->share = fmax(governor->share - SHARE_STEP, SHARE_MIN);
+    } else {
+        governor->panic = fmin(PANIC_STEP * governor->panic, PANIC_MAX);
+    }
     governor->was_over = is_over;
 }
