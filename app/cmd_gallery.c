@@ -33,11 +33,11 @@ bool tl_command_gallery(const struct tl_arguments *arguments, tl_error *error)
     if (arguments->positional_count > 1)
         return tl_fail(error, TL_USAGE, "gallery: %s: one wall at a time, or none for all",
                        arguments->positionals[1]);
-    if (!tl_folder_make(arguments->output, error))
+    const char *only = arguments->positional_count ? arguments->positionals[0] : NULL;
+    if (!tl_gallery_has(only, error) || !tl_folder_make(arguments->output, error))
         return false;
     struct tl_gallery gallery;
     tl_error failure = {0};
-    const char *only = arguments->positional_count ? arguments->positionals[0] : NULL;
     bool done = tl_gallery_draw(arguments->quick, only, &gallery, error);
     if (gallery.count && !write_all(arguments->output, &gallery, &failure)) {
         *error = failure;

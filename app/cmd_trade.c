@@ -58,9 +58,6 @@ static void write_cloth_html(const void *trade, FILE *out)
 
 static bool trade_cloth(const struct tl_arguments *arguments, tl_error *error)
 {
-    if (arguments->positional_count)
-        return tl_fail(error, TL_USAGE, "trade: %s: the axis cloth measures sheets of its own: name no scene",
-                       arguments->positionals[0]);
     struct tl_trade_cloth trade;
     bool done = tl_trade_cloth(arguments->quick, &trade, error);
     if (trade.row_count)
@@ -84,6 +81,9 @@ bool tl_command_trade(const struct tl_arguments *arguments, tl_error *error)
         return tl_fail(
             error, TL_USAGE,
             "--axis: \"%s\": expected overall, light, resolution, detail, shading, levels or cloth", name);
+    if (cloth && arguments->positional_count)
+        return tl_fail(error, TL_USAGE, "trade: %s: the axis cloth measures sheets of its own: name no scene",
+                       arguments->positionals[0]);
     if (!arguments->output)
         return tl_fail(error, TL_USAGE, "trade: no folder named: add -o FOLDER");
     return tl_folder_make(arguments->output, error) &&

@@ -228,8 +228,10 @@ static size_t count_exhibits(bool quick, const char *only)
     return count;
 }
 
-static bool fail_unknown_wall(const char *name, tl_error *error)
+bool tl_gallery_has(const char *name, tl_error *error)
 {
+    if (count_exhibits(true, name))
+        return true;
     const char **names = TL_NEW_ARRAY(const char *, tl_gallery_wall_count);
     for (size_t w = 0; w < tl_gallery_wall_count; w++)
         names[w] = tl_gallery_walls[w].name;
@@ -277,8 +279,6 @@ bool tl_gallery_draw(bool quick, const char *only, struct tl_gallery *out, tl_er
             [TL_GALLERY_SHEET] = {
                 .garment = "sheet", .avatar = "ball", .height_m = 0.27, .distance_m = 1.15}}};
     *out = (struct tl_gallery){.side = drawing.side};
-    if (!count_exhibits(quick, only))
-        return fail_unknown_wall(only, error);
     drawing.gpu = tl_gpu_create_headless(error);
     bool ready = drawing.gpu != NULL;
     for (int i = 0; ready && i < TL_GALLERY_OBJECTS; i++) {

@@ -58,8 +58,11 @@ struct tl_gallery {
     bool complete; /* not interrupted */
 };
 
-/* Draws all walls, or the first exhibit of each (`quick`), or only the wall called `only`. On Ctrl-C what was
- * drawn stays in `out` and the error is TL_INTERRUPTED. */
+/* That there is such a wall; NULL stands for all. */
+bool tl_gallery_has(const char *name, tl_error *error);
+
+/* Draws all walls, or the first exhibit of each (`quick`), or only the wall called `only`, which there must
+ * be. On Ctrl-C what was drawn stays in `out` and the error is TL_INTERRUPTED. */
 bool tl_gallery_draw(bool quick, const char *only, struct tl_gallery *out, tl_error *error);
 void tl_gallery_release(struct tl_gallery *gallery);
 

@@ -33,7 +33,7 @@ refuse "a comparison of other work" "was flown with image.width" fly $small --si
 printf 'keys:\n  - {time_s: 0, yaw_deg: 0}\n  - {time_s: 0.2, yaw_deg: 90}\n' >path.yaml
 $TOILE fly $small --path path.yaml -o c --json >said.json
 check "a path of its own has its own length" test "$(wc -l <c/frames.csv)" -eq 8
-refuse "another path is other work" "another path" fly $small --path path.yaml --against a -o d
+refuse "another path is other work" "another path" fly $small --path path.yaml --against a -o b
 
 if command -v python3 >/dev/null; then
     check "figures, and null where there are none" python3 - <<'PYTHON'
