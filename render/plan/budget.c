@@ -16,7 +16,7 @@
 #define OVER_RATE   0.005
 #define SHARE_STEP  0.03
 #define SHARE_MIN   0.75
-#define SHARE_FIRST 0.93
+#define SHARE_FIRST 0.9
 #define SHARE_MAX   0.96
 #define PANIC_STEP  1.12
 #define PANIC_MAX   1.6
