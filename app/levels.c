@@ -203,6 +203,7 @@ static const double cloth_errors[] = {0, 0.039, 0.056};
 
 double tl_levels_error(const struct tl_levels *levels, const struct tl_level_scope *full)
 {
+    assert(tl_levels_exist(levels));
     const struct tl_level_scope at = tl_level_scope_at(levels, full);
     double relief = relief_errors[levels->of[TL_KNOB_RELIEF]],
            cloth = cloth_errors[levels->of[TL_KNOB_CLOTH]];

@@ -239,11 +239,12 @@ static void narrow_by_half(struct cone *cone, const float *from, ptrdiff_t row_l
 static void narrow_near(struct cone *cone, const struct cells *cells)
 {
     ptrdiff_t row_length = 2 * cells->width + 2 * MARGIN;
-    const float *corner = cells->halves + (2 * cone->row + MARGIN) * row_length + 2 * cone->column + MARGIN;
+    const float *corner = cells->halves + (ptrdiff_t)(2 * cone->row + MARGIN) * row_length +
+                          (ptrdiff_t)(2 * cone->column + MARGIN);
     for (int k = 0; k < 9; k++)
         for (int y = -NEAR_HALVES; y <= NEAR_HALVES; y++)
             for (int x = -NEAR_HALVES; x <= NEAR_HALVES; x++)
-                narrow_by_half(cone, corner + k / 3 * row_length + k % 3, row_length, x, y);
+                narrow_by_half(cone, corner + (k / 3) * row_length + k % 3, row_length, x, y);
 }
 
 /* Beyond the repeats that are looked at, everything may be as high as anything is. */

@@ -76,7 +76,7 @@ tl_prepared *tl_prepared_make(const struct tl_prepared_request *request)
     for (int i = 0; wants_lights(&used.light) && i < TL_PREPARED_COUNTS_MAX && !tl_interrupted(); i++) {
         if (request->region_counts[i] > 0)
             add_lights(prepared, request, request->region_counts[i]);
-        tl_progress_update(&progress, 1 + lobe_count + lobe_count * (i + 1) / TL_PREPARED_COUNTS_MAX, total);
+        tl_progress_update(&progress, 1 + lobe_count * (1 + (i + 1.0) / TL_PREPARED_COUNTS_MAX), total);
     }
     tl_progress_end(&progress);
     return prepared;
