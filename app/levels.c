@@ -203,7 +203,8 @@ static const double cloth_errors[] = {0, 0.039, 0.056};
 
 double tl_levels_error(const struct tl_levels *levels, const struct tl_level_scope *full)
 {
-    assert(tl_levels_exist(levels));
+    assert(levels->of[TL_KNOB_RELIEF] < TL_COUNT(relief_errors) &&
+           levels->of[TL_KNOB_CLOTH] < TL_COUNT(cloth_errors));
     const struct tl_level_scope at = tl_level_scope_at(levels, full);
     double relief = relief_errors[levels->of[TL_KNOB_RELIEF]],
            cloth = cloth_errors[levels->of[TL_KNOB_CLOTH]];
