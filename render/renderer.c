@@ -355,6 +355,7 @@ bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct
     tl_frame_list_surfaces(renderer);
     let_go(renderer, tl_frame_facts(frame, &used));
     const struct tl_plan_input input = plan_input(renderer, frame, &used, changed, read_of(frame));
+    renderer->facts = input.scene;
     return run_plan(renderer, &input, &renderer->plan, error);
 }
 
@@ -408,8 +409,12 @@ static bool show(tl_renderer *renderer, unsigned framebuffer, int width, int hei
     renderer->valid &=
         ~TL_BIT(TL_MADE_SHOWN); /* a window's buffer holds nothing from one frame to the next */
     tl_plan plan;
-    const struct tl_plan_input input =
-        plan_input(renderer, &renderer->frame, &renderer->settings, 0, TL_BIT(TL_MADE_SHOWN));
+    /* The image is there; the scene may have gone on since, and says nothing about it. */
+    const struct tl_plan_input input = {.valid = renderer->valid,
+                                        .scene = renderer->facts,
+                                        .wanted = TL_BIT(TL_MADE_SHOWN),
+                                        .scene_fact_names = tl_scene_fact_names,
+                                        .resource_names = tl_resource_names};
     return run_plan(renderer, &input, &plan, error);
 }
 

@@ -240,6 +240,7 @@ struct tl_renderer {
     float strain_range; /* share of 1 at the ends of the legend, of the last view of strain */
 
     uint64_t signatures[TL_INPUT_COUNT]; /* of the last draw's inputs */
+    tl_bits facts;                       /* of its scene */
     struct tl_rest rest;
     uint64_t shaders_stamp;
     tl_bits valid; /* resources that hold what their inputs call for */

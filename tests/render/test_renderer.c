@@ -439,6 +439,32 @@ static void test_show(void **state)
     scene_close(&scene);
 }
 
+/* Another look in the same surfaces, as when two are compared, does not change the image that was drawn. */
+static void test_show_what_was_drawn(void **state)
+{
+    struct test_device *device = *state;
+    struct scene scene;
+    tl_error error = {0};
+    scene_open(&scene, daylight);
+    scene.settings.light.visibility = TL_VISIBILITY_RAYS;
+    scene.settings.light.composition = TL_COMPOSE_RATIO;
+    tl_image shown, before, after;
+    draw(device->renderer, &scene);
+    assert_ok(tl_renderer_read(device->renderer, &before, &error), error);
+    tl_material *material = &scene.shapes[1].material;
+    material->openness = 0.5f;
+    material->gloss.model = TL_REFLECT_WARD;
+    material->gloss.width_weft = 0.3f;
+    material->gloss.width_warp = 0.1f;
+    assert_ok(tl_renderer_show_image(device->renderer, &shown, &error), error);
+    assert_ok(tl_renderer_read(device->renderer, &after, &error), error);
+    assert_memory_equal(before.texels, after.texels, (size_t)48 * 32 * 4 * sizeof(float));
+    tl_image_release(&shown);
+    tl_image_release(&before);
+    tl_image_release(&after);
+    scene_close(&scene);
+}
+
 static vec3s four_colours(vec3s d)
 {
     if (fabsf(d.y) > 0.5f)
@@ -497,6 +523,7 @@ int main(void)
         cmocka_unit_test(test_extreme_cameras),
         cmocka_unit_test(test_coverage),
         cmocka_unit_test(test_show),
+        cmocka_unit_test(test_show_what_was_drawn),
         cmocka_unit_test(test_background_direction),
     };
     return cmocka_run_group_tests(tests, test_device_open, test_device_close);
