@@ -1,6 +1,5 @@
 #include "app/pace.h"
 
-#include "app/cost.h"
 #include "config/log.h"
 #include "config/memory.h"
 #include "render/plan/budget.h"
@@ -13,7 +12,6 @@
 
 /* Frames without a change before the image counts as one to be looked at. */
 #define REST_FRAMES 3
-#define ERRORS_KEPT 120
 
 struct tl_pace {
     double budget_ms;
@@ -26,8 +24,6 @@ struct tl_pace {
     bool is_preparing; /* that frame did what no other does */
     int rested;        /* frames without a change */
     uint64_t environment_revision;
-    double errors[ERRORS_KEPT]; /* |predicted - took| / took, of the last frames */
-    size_t error_count;         /* ever */
 };
 
 tl_pace *tl_pace_create(double budget_ms)
@@ -300,12 +296,6 @@ void tl_pace_learn(tl_pace *pace, const tl_plan *plan, double cloth_ms, double t
         return;
     if (pace->budget_ms > 0 && pace->rested < REST_FRAMES)
         tl_governor_learn(&pace->governor, pace->budget_ms, total_ms);
-    pace->errors[pace->error_count++ % ERRORS_KEPT] = fabs(predicted_ms - total_ms) / total_ms;
     tl_debug("pace: predicted %.2f ms, took %.2f ms (cloth %.2f, drawing %.2f)", predicted_ms, total_ms,
              cloth_ms, drawn_ms);
-}
-
-double tl_pace_prediction_error(const tl_pace *pace)
-{
-    return tl_median(pace->errors, pace->error_count < ERRORS_KEPT ? pace->error_count : ERRORS_KEPT);
 }

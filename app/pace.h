@@ -48,7 +48,4 @@ struct tl_pace_step {
 void tl_pace_steps(const tl_pace *pace, const tl_renderer *renderer, const tl_frame *frame,
                    const struct tl_settings *settings, struct tl_pace_step out[TL_KNOB_COUNT]);
 
-/* Median of |predicted - took| / took over the last 120 frames; NaN before the first. */
-double tl_pace_prediction_error(const tl_pace *pace);
-
 #endif
