@@ -1,6 +1,7 @@
 /* The shadows that bumps cast on their own surface, as lamps see them: horizon maps and the march of the
  * shaders against a march in double through the same heights, front and back, under
  * low lamps. On a flat square of white cloth, light with shadows over light without is the mask. */
+#include "height_oracle.h"
 #include "lamplight.h"
 
 #include "assets/weave.h"
@@ -105,20 +106,6 @@ static bool clears_ripples(const struct bench *bench, double u, double v, vec3s 
             return false;
     }
     return true;
-}
-
-static double height_at(const struct tl_height_field *field, double u, double v)
-{
-    int width = field->heights->width, height = field->heights->height;
-    double x = (u - floor(u)) * width - 0.5, y = (v - floor(v)) * height - 0.5, sum = 0;
-    int column = (int)floor(x), row = (int)floor(y);
-    for (int i = 0; i < 4; i++) {
-        int at_x = column + (i & 1), at_y = row + (i >> 1);
-        double share = (1 - fabs(at_x - x)) * (1 - fabs(at_y - y));
-        size_t texel = (size_t)((at_y + height) % height) * (size_t)width + (size_t)((at_x + width) % width);
-        sum += share * (double)tl_image_floats(field->heights)[texel];
-    }
-    return field->turned_over ? -sum : sum;
 }
 
 static const struct tl_height_field *field_of(const struct bench *bench)

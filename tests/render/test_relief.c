@@ -1,4 +1,6 @@
 /* Parallax and relief in height fields, against closed forms and a fine march. */
+#include "height_oracle.h"
+
 #include "assets/weave.h"
 #include "config/memory.h"
 #include "render/detail/cones.h"
@@ -94,21 +96,6 @@ static tl_weave weave_of(int pattern)
     return weave;
 }
 
-/* Height of the bilinear field, in double. */
-static double height_at(const struct tl_height_field *field, double u, double v)
-{
-    int width = field->heights->width, height = field->heights->height;
-    double x = (u - floor(u)) * width - 0.5, y = (v - floor(v)) * height - 0.5, sum = 0;
-    int column = (int)floor(x), row = (int)floor(y);
-    for (int i = 0; i < 4; i++) {
-        int at_x = column + (i & 1), at_y = row + (i >> 1);
-        double share = (1 - fabs(at_x - x)) * (1 - fabs(at_y - y));
-        size_t texel = (size_t)((at_y + height) % height) * (size_t)width + (size_t)((at_x + width) % width);
-        sum += share * (double)tl_image_floats(field->heights)[texel];
-    }
-    return field->turned_over ? -sum : sum;
-}
-
 /* The first meeting by steps of a fiftieth texel along the surface (or of the depth, seen from above). In
  * texels. */
 static void fine_march(const struct tl_height_field *field, vec2s uv, vec3s view, double at[2])
@@ -152,8 +139,9 @@ static struct spread relief_errors(const struct tl_height_field *field, int step
     return spread;
 }
 
-/* 64 steps find every place, and so do as many more as one likes. With fewer the last ones are as long as what is
- * left asks for, and a ray that grazes may pass a crest in them: with 16 less than one in a hundred, as it comes out. */
+/* 64 steps find every place, and so do as many more as one likes. With fewer the last ones are as long as
+ * what is left asks for, and a ray that grazes may pass a crest in them: with 16 less than one in a hundred,
+ * as it comes out. */
 static void check_steps(const struct tl_height_field *field, const char *name, float tilt)
 {
     for (int steps = 1; steps <= 256; steps *= 4) {
