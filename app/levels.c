@@ -194,8 +194,12 @@ static double sampling_square(const struct tl_image_params *image)
     return error * error;
 }
 
-/* Fewer steps are not seen (0.0004 at 8); but more are better. */
-static const double relief_errors[] = {0, 2e-4, 4e-4};
+/* What a level adds at least: where no difference was measured, what is asked for is kept as long as it fits.
+ */
+#define UNSEEN 2e-4
+
+/* Fewer steps are not seen (0.0004 at 8). */
+static const double relief_errors[] = {0, UNSEEN, 2 * UNSEEN};
 
 /* Of the next frame from the same state, where a hem swings: drapes that part for good are no error that
  * anybody sees. A replayed flight's image against its original, mean of three frames. */
@@ -209,8 +213,10 @@ double tl_levels_error(const struct tl_levels *levels, const struct tl_level_sco
     double relief = relief_errors[levels->of[TL_KNOB_RELIEF]],
            cloth = cloth_errors[levels->of[TL_KNOB_CLOTH]];
     double square = relief * relief + cloth * cloth;
-    if (has_regions(&full->drawn.light))
-        square += fmax(light_square(&at.drawn.light) - light_square(&full->drawn.light), 0);
+    if (has_regions(&full->drawn.light)) {
+        double unseen = UNSEEN * (levels->of[TL_KNOB_REGIONS] + levels->of[TL_KNOB_REFRESH]);
+        square += fmax(light_square(&at.drawn.light) - light_square(&full->drawn.light), unseen * unseen);
+    }
     if (levels->of[TL_KNOB_SCALE] > 0)
         square += sampling_square(&at.drawn.image) + sampling_square(&full->drawn.image);
     return sqrt(square);

@@ -94,6 +94,26 @@ static void levels_end_somewhere(void **state)
     assert_int_equal(at(TL_KNOB_REFRESH, 1, &full).light.refresh, 96);
 }
 
+/* Whatever the settings ask for, no level below is thought to be as good. */
+static void what_is_asked_for_errs_least(void **state)
+{
+    (void)state;
+    struct tl_settings full = full_settings();
+    const int regions[] = {384, 192, 96};
+    for (size_t i = 0; i < sizeof regions / sizeof *regions; i++)
+        for (int knob = 0; knob < TL_KNOB_COUNT; knob++) {
+            full.light.regions = regions[i];
+            full.light.refresh = 0;
+            const struct tl_level_scope scope = tl_level_scope_of(&full);
+            struct tl_levels levels = {{0}};
+            assert_near(tl_levels_error(&levels, &scope), 0, 0);
+            for (int level = 1; level < tl_levels_count((enum tl_knob)knob, &scope); level++) {
+                levels.of[knob] = (uint8_t)level;
+                assert_true(tl_levels_error(&levels, &scope) > 0);
+            }
+        }
+}
+
 /* ---- With a renderer, small enough to be quick ---- */
 
 struct device {
@@ -267,9 +287,13 @@ static void steps_tell_what_a_level_is_worth(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(level_0_is_what_was_asked_for), cmocka_unit_test(levels_change_their_own_setting),
-        cmocka_unit_test(levels_end_somewhere),          cmocka_unit_test(budgets_are_kept_to),
-        cmocka_unit_test(rest_gives_everything_back),    cmocka_unit_test(steps_tell_what_a_level_is_worth),
+        cmocka_unit_test(level_0_is_what_was_asked_for),
+        cmocka_unit_test(levels_change_their_own_setting),
+        cmocka_unit_test(levels_end_somewhere),
+        cmocka_unit_test(what_is_asked_for_errs_least),
+        cmocka_unit_test(budgets_are_kept_to),
+        cmocka_unit_test(rest_gives_everything_back),
+        cmocka_unit_test(steps_tell_what_a_level_is_worth),
     };
     return cmocka_run_group_tests(tests, open_device, close_device);
 }
