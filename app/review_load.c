@@ -71,9 +71,12 @@ static struct tl_prepared_request light_of(const struct tl_review *review, const
 static struct tl_load_lights lights_of(struct tl_review *review, enum tl_load kind)
 {
     const tl_renderer *renderers[TL_LOADER_LIGHTS_MAX] = {review->renderer, review->wipe.renderer};
-    const struct tl_settings other = tl_review_look_a(review, &review->wanted);
+    struct tl_settings drawn = review->wanted;
+    if (kind == TL_LOAD_LIGHT && needs_look(review, &drawn)) /* which comes after the light */
+        tl_looks_take(tl_session_settings(review->session), &drawn);
+    const struct tl_settings other = tl_review_look_a(review, &drawn);
     struct tl_load_lights lights = {.count = review->wipe.renderer ? 2 : 1,
-                                    .of = {light_of(review, &review->wanted), light_of(review, &other)}};
+                                    .of = {light_of(review, &drawn), light_of(review, &other)}};
     for (int i = 0; i < lights.count; i++) {
         struct tl_prepared_request *request = &lights.of[i];
         if (kind != TL_LOAD_SCENE)

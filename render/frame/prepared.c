@@ -160,9 +160,15 @@ static void copy_lights(tl_prepared *prepared, const struct tl_kept_lights *kept
     copy->diffuse_gain = tl_lobes_copy(&kept->lights.diffuse_gain);
 }
 
+/* The cube is that of the last frame: an image without light leaves it as it was. */
+static bool has_cube(const tl_renderer *renderer)
+{
+    return renderer->valid & TL_BIT(TL_MADE_CUBE);
+}
+
 tl_prepared *tl_prepared_copy(const tl_renderer *renderer)
 {
-    if (renderer->cube.size == 0)
+    if (!has_cube(renderer))
         return NULL;
     tl_prepared *prepared = TL_NEW(tl_prepared);
     prepared->light = renderer->settings.light;
@@ -211,7 +217,7 @@ void tl_renderer_take_prepared(tl_renderer *renderer, tl_prepared **prepared, ui
 {
     tl_prepared_destroy(&renderer->prepared);
     (*prepared)->environment_revision = environment_revision;
-    if (renderer->cube.size > 0 && is_of_this_frame(*prepared, renderer)) {
+    if (has_cube(renderer) && is_of_this_frame(*prepared, renderer)) {
         add(*prepared, renderer);
         tl_prepared_destroy(prepared);
         return;
