@@ -361,9 +361,14 @@ void tl_cloth_reset(tl_cloth *cloth)
 
 void tl_cloth_grab(tl_cloth *cloth, uint32_t render_vertex, vec3s target)
 {
+    bool held = cloth->grabbed && cloth->grabbed_vertex == render_vertex;
     cloth->grabbed = render_vertex < cloth->topology.render_count && vec3d_finite(vec3d_from(target));
+    if (!cloth->grabbed)
+        return;
     cloth->grabbed_vertex = render_vertex;
     cloth->grab_target = vec3d_from(target);
+    if (!held)
+        cloth->grab_from = cloth->particles.x[cloth->topology.weld[render_vertex]];
 }
 
 void tl_cloth_release(tl_cloth *cloth)
@@ -413,10 +418,16 @@ double tl_cloth_max_speed(const tl_cloth *cloth)
     return sqrt(fastest);
 }
 
+/* A mesh shows folds as fine as its usual edge, and the short edge of a sliver takes what its neighbours
+ * leave of them: below a quarter of the usual length it counts as that long. (A dress as a heap on the floor:
+ * one edge of 0.4 mm among such of 8 is 1.5 mm long, no other is strained by more than 0.7.) */
+#define RESOLVED_EDGES 25 /* shortest ones, of a hundredth */
+
 double tl_cloth_max_strain(const tl_cloth *cloth)
 {
     double worst = 0, most = 1, least = 1; /* of the squared ratio of lengths: beyond is worse */
     double shortest = cloth->shortest_edge * cloth->shortest_edge;
+    double resolved = RESOLVED_EDGES * cloth->shortest_edge;
     const vec3d *x = cloth->particles.x;
     for (size_t m = 0; m < cloth->topology.triangle_count; m++) {
         const uint32_t *t = cloth->topology.triangles[m];
@@ -427,7 +438,7 @@ double tl_cloth_max_strain(const tl_cloth *cloth)
             double length = vec3d_dot(now, now);
             if (!(rest > shortest) || (length <= most * rest && length >= least * rest))
                 continue;
-            worst = fmax(worst, fabs(sqrt(length / rest) - 1));
+            worst = fmax(worst, fabs(sqrt(length) - sqrt(rest)) / fmax(sqrt(rest), resolved));
             most = (1 + worst) * (1 + worst);
             least = worst < 1 ? (1 - worst) * (1 - worst) : 0;
         }
