@@ -11,6 +11,9 @@
 #define WORN_STRAIN   1.0
 #define LATER         1.25 /* than when it was put on */
 
+/* Of cloth as a whole: what `preview` is told to keep by default. */
+#define USUAL_STRAIN 0.1
+
 /* Metres: what single precision leaves of places on an avatar. */
 #define ROUNDED_M 1e-6
 
@@ -41,6 +44,17 @@ void tl_measure_strain(const struct tl_checked *checked, struct tl_finding *find
     tl_finding_add(finding, isfinite(energy_of(report)) ? report->max_strain : (double)NAN);
     tl_finding_place(finding, "garment: %zu of %zu particles caught", report->caught_count,
                      report->vertex_count);
+}
+
+/* Whatever a few edges have to bear where they are caught, most keep what the solver is told to keep. */
+void tl_measure_stretch(const struct tl_checked *checked, struct tl_finding *finding)
+{
+    const struct tl_checked_cloth *cloth = checked->cloth;
+    if (!cloth)
+        return;
+    finding->bound = fmax(USUAL_STRAIN, cloth->strain_limit);
+    tl_finding_add(finding, cloth->report.usual_strain);
+    tl_finding_place(finding, "garment: root mean square over %zu edges", cloth->report.edge_count);
 }
 
 void tl_measure_inside(const struct tl_checked *checked, struct tl_finding *finding)

@@ -73,6 +73,7 @@ struct tl_cloth_report {
     double max_speed;         /* m/s */
     double max_strain;        /* largest |length / rest length - 1| over edges that are not seams; of one
                                  below a quarter of the usual length that is the share it is of */
+    double usual_strain;      /* root mean square of the same over the triangles' sides */
     double kinetic_energy;    /* J */
     double elastic_energy;    /* J */
     double potential_energy;  /* J, in gravity, of what is not held; 0 at y = 0 */
