@@ -101,7 +101,8 @@ const struct tl_invariant tl_invariants[] = {
      "three times their sum, for a whip's end", false, tl_measure_speed},
     {"run.repeat", "the same frame again gives the same positions and pixels: differing frames", 0,
      "to the bit, at any number of threads", true, tl_measure_repeat},
-    {"plan.budget", "the chosen plan is predicted to keep the budget, where any plan can: ratio", 1,
+    {"plan.budget",
+     "the chosen plan is predicted to keep the budget while it lasts, where any plan can: ratio", 1,
      "what the planner promises (app/pace.h)", false, tl_measure_budget},
 };
 /* clang-format on */

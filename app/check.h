@@ -25,6 +25,7 @@ struct tl_checked_cloth {
     bool is_driven;       /* a hand, a clip or the wind works on it */
     bool is_held;         /* the hand does */
     bool is_dragged;      /* its wearer moves */
+    bool is_hurried;      /* a budget may take from its steps */
     /* How far its centre of mass has gone sideways since frame 0, where nothing touches or drives it; else
      * NaN. */
     double drift_m;
@@ -45,7 +46,7 @@ struct tl_checked {
     const struct tl_checked_cloth *cloth;
     uint64_t hash, first_hash; /* of positions and image; when the same frame was drawn first; 0: not yet */
     uint64_t places_hash, first_places_hash; /* the same of positions alone */
-    double predicted_ms, budget_ms;          /* of the plan; what was asked for */
+    double predicted_ms, budget_ms;          /* of the plan while it lasts; what was asked for */
     double least_ms; /* of the cheapest plan there is, where that is more than the budget */
     bool is_reduced; /* a budget took from the image: it is not what the oracle is asked for */
 };

@@ -11,6 +11,10 @@
 #define WORN_STRAIN   1.0
 #define LATER         1.25 /* than when it was put on */
 
+/* With the fewest substeps that a budget leaves: eight of a frame, instead of sixty, leave the dress's worst
+ * edge at 0.85 instead of 0.16. */
+#define HURRIED_STRAIN 1.0
+
 /* Of cloth as a whole: what `preview` is told to keep by default. */
 #define USUAL_STRAIN 0.1
 
@@ -29,7 +33,7 @@ static double strain_bound(const struct tl_checked_cloth *cloth)
 {
     if (cloth->is_held || cloth->report.caught_count > 0)
         return TL_CLOTH_MOST_STRAIN;
-    double draped = cloth->is_dragged ? TL_SNAG_STRAIN : DRAPED_STRAIN;
+    double draped = cloth->is_dragged ? TL_SNAG_STRAIN : cloth->is_hurried ? HURRIED_STRAIN : DRAPED_STRAIN;
     double kept = fmax(draped, 2 * cloth->strain_limit);
     return isnan(cloth->first_strain) ? fmax(kept, WORN_STRAIN) : fmax(kept, LATER * cloth->first_strain);
 }

@@ -198,7 +198,7 @@ static bool check_frame(struct run *run, int number, tl_error *error)
                                  .frame = &frame,
                                  .settings = &settings,
                                  .is_sampled = number % run->params->every == 0,
-                                 .predicted_ms = run->choice.predicted_ms,
+                                 .predicted_ms = run->choice.predicted_ms - run->choice.change_ms,
                                  .budget_ms = run->params->budget_ms,
                                  .least_ms = run->choice.least_ms,
                                  .is_reduced = run->choice.error > 0};
