@@ -77,8 +77,9 @@ const struct tl_invariant tl_invariants[] = {
     {"cloth.strain", "no edge is longer or shorter than cloth can be: largest strain", BY_SETTINGS,
      "half, or twice what the solver is told to keep; when put on 1, and later a quarter more than then; "
      "what "
-     "a moving wearer drags, until it slips (TL_SNAG_STRAIN); what a hand or the wearer has caught, "
-     "until it is refused (TL_CLOTH_MOST_STRAIN)",
+     "a budget hurries, 1; what a hand holds, three times what it yields at (TL_HAND_STRAIN); what a moving "
+     "wearer drags, until it slips (TL_SNAG_STRAIN), and what it has caught, until it is refused "
+     "(TL_CLOTH_MOST_STRAIN)",
      false, tl_measure_strain},
     {"cloth.stretch",
      "the weave as a whole is neither stretched nor crushed: root mean square of the edges' strains",
