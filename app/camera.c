@@ -15,13 +15,23 @@ static float fitting_distance(struct tl_box box, float fov_y, float aspect)
     return MARGIN * fmaxf(for_height, for_width) + radius;
 }
 
+static vec3s target_of(const struct tl_camera_params *params)
+{
+    return (vec3s){{params->target[0], params->target[1], params->target[2]}};
+}
+
+bool tl_camera_is_placed(const struct tl_camera_params *params)
+{
+    return params->distance_m > 0 && !glms_vec3_eqv(target_of(params), glms_vec3_zero());
+}
+
 struct tl_camera tl_camera_frame(const struct tl_camera_params *params, struct tl_box box, float aspect)
 {
     float fov_y = glm_rad(params->fov_deg);
     float yaw = glm_rad(params->yaw_deg), pitch = glm_rad(params->pitch_deg);
     bool framed = params->distance_m <= 0;
-    vec3s target = framed ? glms_vec3_scale(glms_vec3_add(box.lower, box.upper), 0.5f)
-                          : (vec3s){{params->target[0], params->target[1], params->target[2]}};
+    vec3s target = tl_camera_is_placed(params) ? target_of(params)
+                                               : glms_vec3_scale(glms_vec3_add(box.lower, box.upper), 0.5f);
     float distance = framed ? fitting_distance(box, fov_y, aspect) : params->distance_m;
     vec3s back = {{sinf(yaw) * cosf(pitch), sinf(pitch), cosf(yaw) * cosf(pitch)}};
     float reach = glms_vec3_norm(glms_vec3_sub(box.upper, box.lower));

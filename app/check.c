@@ -45,11 +45,13 @@ const struct tl_invariant tl_invariants[] = {
     {"visibility.range", "VIS lies in [0, 1] for every sample, region and sun: how far outside", 1e-5,
      "four weights that sum to 1, rounded", true, tl_measure_visibility},
     {"visibility.regions",
-     "VIS of a region is what rays see of it along some of its directions, on average over the "
-     "sampled points: largest way outside of their range, times its light up to the mean",
-     BY_SETTINGS,
-     "eight directions do not show the whole range, the less the fewer regions there are; what is kept is a "
-     "few frames old and lies at vertices",
+     "VIS of a region is what rays see of it, on average over the sampled points: difference from their mean "
+     "beyond three of their deviations from one direction of the region to the next, times the region's "
+     "light "
+     "up to the mean",
+     0.15,
+     "what is kept is a few frames old and lies at vertices: at most 0.10 in 7300 cases in dress, review, a "
+     "T-shirt's motion and a walk, by 24 to 384 regions",
      true, tl_measure_leaks},
     {"light.environment", "cube and suns hold the environment's light: relative difference", 0.01,
      "cube.h: a texel keeps its energy within 1 %", true, tl_measure_environment},
@@ -75,9 +77,13 @@ const struct tl_invariant tl_invariants[] = {
     {"cloth.strain", "no edge is longer or shorter than cloth can be: largest strain", BY_SETTINGS,
      "half, or twice what the solver is told to keep; when put on 1, and later a quarter more than then; "
      "what "
-     "a moving wearer drags, until it slips (TL_SNAG_STRAIN); what a hand or the wearer has caught, "
-     "until it is refused (TL_CLOTH_MOST_STRAIN)",
+     "a budget hurries, 1; what a hand holds, three times what it yields at (TL_HAND_STRAIN); what a moving "
+     "wearer drags, until it slips (TL_SNAG_STRAIN), and what it has caught, until it is refused "
+     "(TL_CLOTH_MOST_STRAIN)",
      false, tl_measure_strain},
+    {"cloth.stretch",
+     "the weave as a whole is neither stretched nor crushed: root mean square of the edges' strains",
+     BY_SETTINGS, "what the solver is told to keep of each edge, 0.1 if nothing", false, tl_measure_stretch},
     {"cloth.inside", "no particle is below the avatar's skin or the ground: deepest, metres", 1e-3,
      "a third of the distance that is kept; none is held inside, but a moving body's skin is followed in "
      "steps",
@@ -96,7 +102,8 @@ const struct tl_invariant tl_invariants[] = {
      "three times their sum, for a whip's end", false, tl_measure_speed},
     {"run.repeat", "the same frame again gives the same positions and pixels: differing frames", 0,
      "to the bit, at any number of threads", true, tl_measure_repeat},
-    {"plan.budget", "the chosen plan is predicted to keep the budget, where any plan can: ratio", 1,
+    {"plan.budget",
+     "the chosen plan is predicted to keep the budget while it lasts, where any plan can: ratio", 1,
      "what the planner promises (app/pace.h)", false, tl_measure_budget},
 };
 /* clang-format on */

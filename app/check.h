@@ -25,6 +25,7 @@ struct tl_checked_cloth {
     bool is_driven;       /* a hand, a clip or the wind works on it */
     bool is_held;         /* the hand does */
     bool is_dragged;      /* its wearer moves */
+    bool is_hurried;      /* a budget may take from its steps */
     /* How far its centre of mass has gone sideways since frame 0, where nothing touches or drives it; else
      * NaN. */
     double drift_m;
@@ -44,9 +45,10 @@ struct tl_checked {
     const tl_image *white_shadowed; /* with shadows */
     const struct tl_checked_cloth *cloth;
     uint64_t hash, first_hash; /* of positions and image; when the same frame was drawn first; 0: not yet */
-    double predicted_ms, budget_ms; /* of the plan; what was asked for */
-    double least_ms;                /* of the cheapest plan there is, where that is more than the budget */
-    bool is_reduced;                /* a budget took from the image: it is not what the oracle is asked for */
+    uint64_t places_hash, first_places_hash; /* the same of positions alone */
+    double predicted_ms, budget_ms;          /* of the plan while it lasts; what was asked for */
+    double least_ms; /* of the cheapest plan there is, where that is more than the budget */
+    bool is_reduced; /* a budget took from the image: it is not what the oracle is asked for */
 };
 
 enum { TL_CHECK_PLACE_SIZE = 112 };
@@ -100,7 +102,7 @@ void tl_finding_place(struct tl_finding *finding, const char *format, ...)
 void tl_finding_pixel(struct tl_finding *finding, int x, int y);
 void tl_finding_vertex(struct tl_finding *finding, const tl_frame *frame, size_t surface, size_t vertex);
 
-/* FNV-1a over what a frame shows: positions of all surfaces, and the image. */
+/* FNV-1a over what a frame shows: positions of all surfaces, and the image; NULL: without it. */
 uint64_t tl_check_hash(const tl_frame *frame, const tl_image *image);
 
 #endif

@@ -98,13 +98,18 @@ uint64_t tl_check_hash(const tl_frame *frame, const tl_image *image)
     uint64_t hash = TL_HASH_START;
     for (size_t s = 0; s < frame->surface_count; s++)
         hash = tl_hash(hash, frame->surfaces[s].positions, frame->surfaces[s].vertex_count * sizeof(vec3s));
-    return tl_hash(hash, image->texels, pixel_count(image) * 4 * sizeof(float));
+    return image ? tl_hash(hash, image->texels, pixel_count(image) * 4 * sizeof(float)) : hash;
 }
 
 void tl_measure_repeat(const struct tl_checked *checked, struct tl_finding *finding)
 {
-    if (checked->first_hash)
-        tl_finding_add(finding, checked->hash == checked->first_hash ? 0 : 1);
+    if (!checked->first_hash)
+        return;
+    tl_finding_add(finding, checked->hash == checked->first_hash ? 0 : 1);
+    tl_finding_place(finding, "%s",
+                     checked->places_hash != checked->first_places_hash ? "in positions"
+                     : checked->hash != checked->first_hash             ? "in pixels only"
+                                                                        : "");
 }
 
 /* A budget that no plan can keep is nobody's fault. */

@@ -25,10 +25,10 @@ struct run {
     struct tl_check_outcome *outcome;
     struct tl_motion motion;
     struct beside beside;
-    uint64_t *hashes;         /* [frames] */
-    int played;               /* of them are there */
-    tl_pace *pace;            /* NULL: no budget */
-    struct tl_levels *levels; /* [frames] */
+    uint64_t *hashes, *places; /* [frames]: of all that is seen; of positions alone */
+    int played;                /* of them are there */
+    tl_pace *pace;             /* NULL: no budget */
+    struct tl_levels *levels;  /* [frames] */
     struct tl_pace_choice choice;
     double chosen_ms, moved_ms, drawn_ms; /* on the wall, of this frame: the choice, the cloth, the picture */
     struct tl_watch watch;
@@ -149,6 +149,7 @@ static bool prepare(struct run *run, const tl_frame *frame, tl_image images[IMAG
     checked->renderer = run->stage->renderer;
     checked->image = &images[DRAWN];
     checked->hash = tl_check_hash(frame, checked->image);
+    checked->places_hash = tl_check_hash(frame, NULL);
     if (!checked->is_sampled)
         return true;
     if (beside->fresh && !tl_renderer_forget_scene(beside->fresh, error))
@@ -197,7 +198,7 @@ static bool check_frame(struct run *run, int number, tl_error *error)
                                  .frame = &frame,
                                  .settings = &settings,
                                  .is_sampled = number % run->params->every == 0,
-                                 .predicted_ms = run->choice.predicted_ms,
+                                 .predicted_ms = run->choice.predicted_ms - run->choice.change_ms,
                                  .budget_ms = run->params->budget_ms,
                                  .least_ms = run->choice.least_ms,
                                  .is_reduced = run->choice.error > 0};
@@ -209,6 +210,7 @@ static bool check_frame(struct run *run, int number, tl_error *error)
     bool done = !is_finite(&frame) || prepare(run, &frame, images, &checked, error);
     done = done && note(run, &checked, error);
     run->hashes[number] = checked.hash;
+    run->places[number] = checked.places_hash;
     run->played = number + 1;
     release_images(images, IMAGES);
     return done;
@@ -283,7 +285,9 @@ static bool play_again(struct run *run, int count, tl_error *error)
                                                .renderer = run->stage->renderer,
                                                .image = &image,
                                                .hash = tl_check_hash(&frame, &image),
-                                               .first_hash = run->hashes[number]};
+                                               .first_hash = run->hashes[number],
+                                               .places_hash = tl_check_hash(&frame, NULL),
+                                               .first_places_hash = run->places[number]};
             done = note(run, &checked, error) && tell(run, run->params->frames + number + 1, error);
             verdicts->frames--; /* it has been counted */
         }
@@ -306,6 +310,7 @@ static void release(struct run *run)
     tl_pace_destroy(&run->pace);
     free(run->levels);
     free(run->hashes);
+    free(run->places);
     tl_watch_release(&run->watch);
 }
 
@@ -317,6 +322,7 @@ bool tl_check_play(struct tl_stage *stage, const struct tl_check_params *params,
                       .params = params,
                       .outcome = out,
                       .hashes = TL_NEW_ARRAY(uint64_t, (size_t)params->frames),
+                      .places = TL_NEW_ARRAY(uint64_t, (size_t)params->frames),
                       .pace = params->budget_ms > 0 ? tl_pace_create(params->budget_ms) : NULL,
                       .levels = TL_NEW_ARRAY(struct tl_levels, (size_t)params->frames),
                       .progress = tl_progress_begin("checking")};

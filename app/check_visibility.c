@@ -8,11 +8,14 @@
 
 /* Points that VIS is measured at, and directions of each region, the same for all of them: so the cache
  * traces, a frame one direction for all that it visits. */
-enum { POINTS = 64, RAYS = 8 };
+enum { POINTS = 64, RAYS = 32, BUNDLE = 16 };
 
 /* A region counts when so many points face it, this far above their horizon. */
 enum { LEAST_POINTS = POINTS / 4 };
 #define FACES 0.2f
+
+/* Of chance: a value within a range lies within three of its standard deviations nearly always. */
+#define DEVIATIONS 3
 
 static bool has_facts(const struct tl_checked *checked, tl_bits facts)
 {
@@ -116,6 +119,7 @@ struct witness {
     const uint16_t *values;
     const struct tl_taps *taps;
     size_t stride;
+    vec3s directions[TL_REGIONS_MAX][RAYS]; /* world */
     struct tally tallies[TL_REGIONS_MAX];
 };
 
@@ -139,29 +143,40 @@ static vec3s region_direction(const tl_renderer *renderer, int region, int ray)
     return tl_turn_direction(direction, renderer->frame.environment_yaw);
 }
 
-/* Adds what one point sees of one region, unless part of it is near its horizon: there VIS stands for what is
- * above only. */
+/* Whether all of a region is well above a point's horizon: of what is not, VIS stands for what is above only.
+ */
+static bool faces(const struct tl_sample *sample, const vec3s directions[RAYS])
+{
+    for (int ray = 0; ray < RAYS; ray++)
+        if (glms_vec3_dot(directions[ray], sample->smooth) < FACES)
+            return false;
+    return true;
+}
+
+/* Adds what one point sees of one region. */
 static void ask(struct witness *witness, const tl_sample *sample, vec3s start, size_t index, int region)
 {
     const tl_renderer *renderer = witness->renderer;
     const struct tl_ground *ground = renderer->settings.image.ground ? &renderer->ground : NULL;
-    struct tl_trace_bundle bundle = {.count = RAYS, .to_m = INFINITY};
-    float seen[16];
-    for (int ray = 0; ray < RAYS; ray++) {
-        vec3s direction = region_direction(renderer, region, ray);
-        if (glms_vec3_dot(direction, sample->smooth) < FACES)
-            return;
-        bundle.origin_x[ray] = start.x, bundle.origin_y[ray] = start.y, bundle.origin_z[ray] = start.z;
-        bundle.direction_x[ray] = direction.x, bundle.direction_y[ray] = direction.y;
-        bundle.direction_z[ray] = direction.z;
-    }
-    tl_trace_seen_bundle(witness->trace, &bundle, seen);
+    const vec3s *directions = witness->directions[region];
     struct tally *tally = &witness->tallies[region];
+    if (!faces(sample, directions))
+        return;
     tally->points++;
     tally->claimed += claimed_of(witness, index, region);
-    for (int ray = 0; ray < RAYS; ray++) {
-        const vec3s direction = {{bundle.direction_x[ray], bundle.direction_y[ray], bundle.direction_z[ray]}};
-        tally->seen[ray] += (double)(seen[ray] * tl_ground_visibility(ground, start, direction));
+    for (int first = 0; first < RAYS; first += BUNDLE) {
+        struct tl_trace_bundle bundle = {.count = BUNDLE, .to_m = INFINITY};
+        float seen[BUNDLE];
+        for (int i = 0; i < BUNDLE; i++) {
+            vec3s direction = directions[first + i];
+            bundle.origin_x[i] = start.x, bundle.origin_y[i] = start.y, bundle.origin_z[i] = start.z;
+            bundle.direction_x[i] = direction.x, bundle.direction_y[i] = direction.y;
+            bundle.direction_z[i] = direction.z;
+        }
+        tl_trace_seen_bundle(witness->trace, &bundle, seen);
+        for (int i = 0; i < BUNDLE; i++)
+            tally->seen[first + i] +=
+                (double)(seen[i] * tl_ground_visibility(ground, start, directions[first + i]));
     }
 }
 
@@ -170,6 +185,9 @@ static void hear(struct witness *witness, int frame)
     const tl_renderer *renderer = witness->renderer;
     size_t count = renderer->samples.primary_count;
     float offset_m = tl_trace_offset(witness->trace);
+    for (int region = 0; region < renderer->regions.count; region++)
+        for (int ray = 0; ray < RAYS; ray++)
+            witness->directions[region][ray] = region_direction(renderer, region, ray);
     for (size_t point = 0; point < POINTS && count > 0; point++) {
         size_t index = (point * count / POINTS + (size_t)frame * 7919) % count;
         const tl_sample *sample = &renderer->samples.items[index];
@@ -190,32 +208,36 @@ static double weight_of(const struct tl_regions *regions, int region)
     return share < all ? share / all : 1;
 }
 
+/* Of what the points see along one direction or another. */
+static void spread_of(const struct tally *tally, double *mean, double *deviation)
+{
+    double sum = 0, squares = 0;
+    for (int ray = 0; ray < RAYS; ray++) {
+        double seen = tally->seen[ray] / tally->points;
+        sum += seen;
+        squares += seen * seen;
+    }
+    *mean = sum / RAYS;
+    *deviation = sqrt(fmax(squares / RAYS - *mean * *mean, 0));
+}
+
+/* What is kept was seen along one direction of the region in a frame, by all points or by each along its own:
+ * so far as chance goes it is off by no more than DEVIATIONS of what the rays see, the less the narrower the
+ * region. */
 static void add_tallies(const struct witness *witness, struct tl_finding *finding)
 {
     const struct tl_regions *regions = &witness->renderer->regions;
     for (int i = 0; i < regions->count; i++) {
         const struct tally *tally = &witness->tallies[i];
+        double mean, deviation;
         if (tally->points < LEAST_POINTS)
             continue;
-        double claimed = tally->claimed, least = INFINITY, most = 0, count = tally->points;
-        for (int ray = 0; ray < RAYS; ray++) {
-            least = fmin(least, tally->seen[ray]);
-            most = fmax(most, tally->seen[ray]);
-        }
-        double off = claimed < least ? least - claimed : claimed > most ? claimed - most : 0 * claimed;
-        if (tl_finding_add(finding, weight_of(regions, i) * off / count))
-            tl_finding_place(finding, "region %d: VIS %.2f, rays %.2f to %.2f of %d points", i,
-                             claimed / count, least / count, most / count, tally->points);
+        spread_of(tally, &mean, &deviation);
+        double claimed = tally->claimed / tally->points, off = fabs(claimed - mean) - DEVIATIONS * deviation;
+        if (tl_finding_add(finding, weight_of(regions, i) * (off < 0 ? 0 : off)))
+            tl_finding_place(finding, "region %d: VIS %.2f, rays %.2f, deviating by %.2f, of %d points", i,
+                             claimed, mean, deviation, tally->points);
     }
-}
-
-/* How far VIS may lie outside of the range that RAYS directions show: by how it varies along others, which
- * grows with a region's width, that is with one over the root of how many there are; and by what lies between
- * vertices, which does not shrink with them. */
-static double leak_bound(int regions)
-{
-    const double least = 0.2, at_regions = 192; /* review's */
-    return least * fmax(1, sqrt(at_regions / regions));
 }
 
 void tl_measure_leaks(const struct tl_checked *checked, struct tl_finding *finding)
@@ -224,7 +246,6 @@ void tl_measure_leaks(const struct tl_checked *checked, struct tl_finding *findi
     if (!checked->is_sampled || !has_points(checked))
         return;
     struct witness *witness = TL_NEW(struct witness);
-    finding->bound = leak_bound(checked->renderer->regions.count);
     witness->renderer = checked->renderer;
     witness->trace = tl_trace_create(&error);
     witness->values = tl_points_values(checked->renderer->points, &witness->stride);

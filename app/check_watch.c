@@ -110,6 +110,7 @@ struct tl_checked_cloth tl_watch_look(struct tl_watch *watch, const tl_frame *fr
                                      .first_strain = watch->first_strain,
                                      .least_energy_j = watch->least_energy_j,
                                      .is_held = is_held,
+                                     .is_hurried = is_changed,
                                      .is_dragged = tl_session_plays_clip(watch->session)};
     cloth.is_driven = is_held || is_changed || blows > 0 || cloth.is_dragged;
     const struct tl_cloth_report *report = &cloth.report;

@@ -1,4 +1,5 @@
 /* toile fly: a recorded fly-through, and what it came to. */
+#include "app/camera.h"
 #include "app/commands.h"
 #include "app/fly_account.h"
 #include "app/folder.h"
@@ -87,7 +88,7 @@ static bool load_records(struct flying *flying, tl_error *error)
 static void make_camera_explicit(struct tl_stage *stage)
 {
     const tl_frame frame = tl_session_frame(stage->session);
-    if (!(stage->settings.camera.distance_m > 0))
+    if (!tl_camera_is_placed(&stage->settings.camera))
         tl_orbit_take(&stage->settings.camera, &frame.camera);
 }
 

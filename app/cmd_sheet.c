@@ -94,7 +94,7 @@ static void add_wearer(const tl_surface *wearer, struct tl_box *box)
 static void frame_garment(tl_session *session, struct tl_settings *settings)
 {
     const tl_model *garment = tl_session_garment(session);
-    if (!garment || settings->camera.distance_m > 0)
+    if (!garment || tl_camera_is_placed(&settings->camera))
         return;
     tl_frame frame = tl_session_frame(session);
     const tl_surface *surface = &frame.surfaces[frame.surface_count - 1]; /* who wears it comes before it */

@@ -14,7 +14,6 @@ void tl_moving_create(struct tl_moving *moving, const tl_model *model, const uin
         .normals = TL_NEW_ARRAY(vec3s, count),
         .tangents = TL_NEW_ARRAY(vec4s, count),
     };
-    memcpy(moving->positions, model->mesh.positions, count * sizeof *moving->positions);
     if (weld) {
         moving->frames = tl_frames_create(&model->mesh, weld);
     } else {
@@ -23,6 +22,14 @@ void tl_moving_create(struct tl_moving *moving, const tl_model *model, const uin
         moving->frames = tl_frames_create(&model->mesh, by_position);
         free(by_position);
     }
+    tl_moving_restart(moving);
+}
+
+void tl_moving_restart(struct tl_moving *moving)
+{
+    const tl_mesh *mesh = &moving->model->mesh;
+    memcpy(moving->positions, mesh->positions, mesh->vertex_count * sizeof *moving->positions);
+    tl_frames_forget(moving->frames);
     tl_moving_update(moving);
 }
 

@@ -18,6 +18,9 @@ struct tl_moving {
 void tl_moving_create(struct tl_moving *moving, const tl_model *model, const uint32_t *weld);
 void tl_moving_release(struct tl_moving *moving);
 
+/* As it was when it was created: in the rest pose, whatever it has gone through since. */
+void tl_moving_restart(struct tl_moving *moving);
+
 /* After `positions` changed. */
 void tl_moving_update(struct tl_moving *moving);
 

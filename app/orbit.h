@@ -12,7 +12,7 @@ struct tl_ray {
     vec3s origin, direction; /* metres; unit */
 };
 
-/* Takes target and distance from a camera that was framed automatically (distance_m was 0). */
+/* Takes target and distance from a camera that was framed automatically (tl_camera_is_placed was false). */
 void tl_orbit_take(struct tl_camera_params *params, const struct tl_camera *framed);
 
 #define TL_ORBIT_DEG_PER_HEIGHT 180.0f /* of a drag over the view's whole height */

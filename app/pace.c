@@ -207,8 +207,8 @@ static void choose_in_motion(tl_pace *pace, const struct tl_budget *budget)
     struct tl_pace_choice *choice = &pace->choice;
     struct tl_levels before = choice->levels;
     enum tl_governed how = tl_governor_choose(&pace->governor, budget, pace->budget_ms);
-    choice->predicted_ms = budget->cost(budget->context, pace->governor.levels) +
-                           budget->change(budget->context, pace->governor.levels);
+    choice->change_ms = budget->change(budget->context, pace->governor.levels);
+    choice->predicted_ms = budget->cost(budget->context, pace->governor.levels) + choice->change_ms;
     choice->least_ms = least_of(budget, pace->budget_ms, choice->predicted_ms);
     memcpy(choice->levels.of, pace->governor.levels, sizeof choice->levels.of);
     if (how == TL_GOVERNED_KEPT)
@@ -223,8 +223,9 @@ static void choose_in_motion(tl_pace *pace, const struct tl_budget *budget)
 static void choose_whole(tl_pace *pace, const struct tl_budget *budget)
 {
     const uint8_t best[TL_BUDGET_KNOBS_MAX] = {0};
+    pace->choice.change_ms = budget->change(budget->context, best);
     pace->choice.predicted_ms = pace->choice.least_ms =
-        budget->cost(budget->context, best) + budget->change(budget->context, best);
+        budget->cost(budget->context, best) + pace->choice.change_ms;
     pace->choice.levels = (struct tl_levels){{0}};
 }
 

@@ -16,6 +16,7 @@
 struct tl_pace_choice {
     struct tl_levels levels;
     double predicted_ms; /* cloth and drawing; NaN while nothing is known */
+    double change_ms;    /* of these, what changing to the levels takes, once */
     double least_ms;     /* of the cheapest levels, where that is more than the budget; else predicted_ms */
     double error;        /* estimated, mean FLIP that the levels add to that of the settings */
     char reason[120];    /* for people: what was shed or taken back, and why; "" when nothing changed */

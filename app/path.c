@@ -1,5 +1,6 @@
 #include "app/path.h"
 
+#include "app/camera.h"
 #include "config/file.h"
 #include "config/memory.h"
 #include "config/yaml.h"
@@ -162,6 +163,16 @@ static bool read_root(void *context)
     return false;
 }
 
+/* What has no target of its own has the scene's. */
+static void aim_keys(struct tl_path *path, const struct tl_camera_params *scene)
+{
+    for (size_t i = 0; i < path->count; i++) {
+        struct tl_camera_params *camera = &path->keys[i].camera;
+        if (!tl_camera_is_placed(camera))
+            memcpy(camera->target, scene->target, sizeof camera->target);
+    }
+}
+
 bool tl_path_load(const char *file, const struct tl_settings *scene, struct tl_path *out, tl_error *error)
 {
     struct tl_path path = {0};
@@ -175,6 +186,7 @@ bool tl_path_load(const char *file, const struct tl_settings *scene, struct tl_p
     if (begun)
         tl_yaml_end(&reader.yaml);
     free(data);
+    aim_keys(&path, &scene->camera);
     if (read && path.count == 0)
         read = tl_fail(error, TL_USAGE, "%s: holds no key: add `keys:` and at least one below it", file);
     if (read)

@@ -6,8 +6,8 @@
  *
  * A key that leaves something out has what the key before it has (the first: the scene's, and time 0). Angles
  * are not wrapped: from 0 to 720 turns twice. A distance of 0 frames the scene (app/camera.h): so do all keys
- * or none, for nothing lies between a distance and none. Failure: as scene files (config/yaml.h), with file,
- * line and field. Pure but for the files. */
+ * or none, for nothing lies between a distance and none. A target of 0 0 0 is the scene's. Failure: as scene
+ * files (config/yaml.h), with file, line and field. Pure but for the files. */
 #ifndef TOILE_APP_PATH_H
 #define TOILE_APP_PATH_H
 

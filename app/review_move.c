@@ -1,6 +1,7 @@
 /* What moves by itself in the review window: the turntable, the environment, glides to saved views, and
  * camera paths that are recorded or played. By the clock: a slow machine shows fewer steps of the same way.
  */
+#include "app/camera.h"
 #include "app/orbit.h"
 #include "app/review.h"
 #include "config/file.h"
@@ -17,7 +18,7 @@
 void tl_review_fix_camera(struct tl_review *review)
 {
     struct tl_camera camera = tl_session_frame(review->session).camera;
-    if (review->wanted.camera.distance_m <= 0)
+    if (!tl_camera_is_placed(&review->wanted.camera))
         tl_orbit_take(&review->wanted.camera, &camera);
 }
 

@@ -366,11 +366,14 @@ bool tl_session_reset(tl_session *session, tl_error *error)
 {
     if (!tl_moving_light_follow(&session->light, 0, error))
         return false;
+    if (session->garment)
+        tl_moving_restart(&session->dress);
     if (session->playback && !play_back(session, 0, error))
         return false;
     session->frame = 0;
     if (session->avatar) {
         pose_avatar(session, 0);
+        tl_moving_restart(&session->body);
         pose_avatar(session, 0); /* twice: the collider is at rest */
     }
     if (session->cloth) {

@@ -81,7 +81,8 @@ static const struct tl_option camera_rows[] = {
     TL_OPTION_FLOAT(struct tl_camera_params, distance_m, 0, 10000, "m",
                     "from the target; 0 frames the avatar and the garment"),
     TL_OPTION_VECTOR(struct tl_camera_params, target, -10000, 10000, "m",
-                     "what the eye looks at and turns about, once distance_m is given"),
+                     "what the eye looks at and turns about, once distance_m is given; 0 0 0: the middle of "
+                     "all there is"),
     TL_OPTION_FLOAT(struct tl_camera_params, fov_deg, 1, 150, "degrees",
                     "vertical field of view; larger looks wider"),
 };

@@ -1,4 +1,5 @@
 /* Time: a frame is made of equal steps, a step of equal substeps. */
+#include "cloth/hand.h"
 #include "cloth/snag.h"
 #include "cloth/state.h"
 #include "cloth/verlet.h"
@@ -58,18 +59,29 @@ static bool check_budget(const tl_cloth *cloth, tl_error *error)
 
 /* ---- A frame ---- */
 
-static void pull_grabbed(tl_cloth *cloth, double h)
+/* A hand that jumped once a frame would stretch a fine mesh by many of its edges before any other vertex
+ * knows. */
+static vec3d hand_at(const tl_cloth *cloth, double phase)
 {
+    vec3d way = vec3d_sub(cloth->grab_target, cloth->grab_from);
+    return vec3d_muladd(cloth->grab_from, way, phase);
+}
+
+static void pull_grabbed(tl_cloth *cloth, const struct tl_substep *substep)
+{
+    double h = substep->h;
     if (!cloth->grabbed)
         return;
     uint32_t i = cloth->topology.weld[cloth->grabbed_vertex];
     double w = cloth->particles.w[i];
-    vec3d way = vec3d_sub(cloth->grab_target, cloth->particles.x[i]);
+    vec3d way = vec3d_sub(hand_at(cloth, substep->phase), cloth->particles.x[i]);
     double length = vec3d_norm(way);
     if (!(w > 0) || !(length > 0))
         return;
     double impulse = fmin(length / (w + 1 / (GRAB_STIFFNESS * h * h)), GRAB_FORCE * h * h);
-    cloth->particles.x[i] = vec3d_muladd(cloth->particles.x[i], way, w * impulse / length);
+    way = vec3d_scale(way, w * impulse / length);
+    double share = tl_hand_share(&cloth->limits, &cloth->energy.pulls, &cloth->particles, i, way);
+    cloth->particles.x[i] = vec3d_muladd(cloth->particles.x[i], way, share);
 }
 
 static struct tl_contact_params contact_params(const tl_cloth *cloth, const struct tl_substep *substep)
@@ -99,7 +111,7 @@ static void constrain(tl_cloth *cloth, const struct tl_substep *substep)
     const struct tl_contact_params contact = contact_params(cloth, substep);
     if (cloth->sewing.pair_count > 0)
         tl_sewing_solve(&cloth->sewing, &cloth->particles, substep->h);
-    pull_grabbed(cloth, substep->h);
+    pull_grabbed(cloth, substep);
     keep_apart(cloth, &contact);
 }
 
@@ -146,7 +158,7 @@ static void advance_settle(tl_cloth *cloth, const struct tl_substep *substep)
         .fabric = &cloth->fabric,
         .springs = springs,
         .hand = {.particle = cloth->grabbed ? cloth->topology.weld[cloth->grabbed_vertex] : TL_NONE,
-                 .target = cloth->grab_target,
+                 .target = hand_at(cloth, substep->phase),
                  .stiffness = GRAB_STIFFNESS,
                  .most_force = GRAB_FORCE},
         .contacts = &cloth->contacts,
@@ -429,6 +441,7 @@ bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct
                     : check_state(cloth, error) && check_energy(cloth, collider, error);
     if (good) {
         close_seams(cloth);
+        cloth->grab_from = cloth->grab_target;
         cloth->time_s += advance->clock ? 1 / cloth->params.frame_rate : 0;
     } else {
         memcpy(particles->x, cloth->good_x, bytes);

@@ -71,7 +71,9 @@ struct tl_cloth_report {
     size_t open_seams;        /* seam pairs not yet welded */
     double time_s;            /* simulated since creation or reset, settling excluded */
     double max_speed;         /* m/s */
-    double max_strain;        /* largest |length / rest length - 1| over edges that are not seams */
+    double max_strain;        /* largest |length / rest length - 1| over edges that are not seams; of one
+                                 below a quarter of the usual length that is the share it is of */
+    double usual_strain;      /* root mean square of the same over the triangles' sides */
     double kinetic_energy;    /* J */
     double elastic_energy;    /* J */
     double potential_energy;  /* J, in gravity, of what is not held; 0 at y = 0 */
@@ -109,8 +111,8 @@ bool tl_cloth_settle(tl_cloth *cloth, const tl_collider *collider, tl_error *err
  * current pose during it. Failure as above. */
 bool tl_cloth_step(tl_cloth *cloth, const tl_collider *collider, tl_error *error);
 
-/* Pull: holds the physics vertex of a render vertex at a target (metres) by a soft constraint until released.
- */
+/* Pull: draws the physics vertex of a render vertex to a target (metres) by a soft constraint, until it is
+ * released. The hand goes there evenly during the next frame, from where it was or from the vertex. */
 void tl_cloth_grab(tl_cloth *cloth, uint32_t render_vertex, vec3s target);
 void tl_cloth_release(tl_cloth *cloth);
 

@@ -288,6 +288,17 @@ TL_CLONES static void update_block(tl_frames *frames, size_t index, const vec3s 
     write_outputs(frames, index, normals, tangents);
 }
 
+void tl_frames_forget(tl_frames *frames)
+{
+    for (size_t b = 0; b < frames->block_count; b++) {
+        struct tl_frame_state *state = &frames->states[b];
+        memset(state->normal, 0, sizeof state->normal);
+        memset(state->tangent, 0, sizeof state->tangent);
+        for (size_t lane = 0; lane < LANES; lane++)
+            state->normal[1][lane] = 1;
+    }
+}
+
 #define WORTH_THREADS 256 /* blocks: fewer are done before another thread wakes */
 
 /* Borrowers last: their normals must be there. Blocks write what no other block reads or writes. */

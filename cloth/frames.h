@@ -33,4 +33,7 @@ void tl_frames_destroy(tl_frames **frames);
  * on one core. */
 void tl_frames_update(tl_frames *frames, const vec3s *positions, vec3s *normals, vec4s *tangents);
 
+/* Nothing is kept of updates so far: the next ones are what they would be after tl_frames_create. */
+void tl_frames_forget(tl_frames *frames);
+
 #endif

@@ -16,13 +16,19 @@
 #define WORD 8
 _Static_assert(WORD == TL_BATCH && sizeof(bool) == 1, "eight flags are read as 64 bits");
 
-static void list_edges(struct tl_limits *limits, const struct tl_topology *topology, const vec2s (*rest)[3],
-                       double shortest, const vec3d *x)
+void tl_limits_restart(struct tl_limits *limits, const vec3d *x)
 {
-    for (size_t e = 0; e < topology->edge_count; e++) {
-        uint32_t from = topology->edges[e][0], to = topology->edges[e][1];
-        limits->edges[e] = (struct tl_limited_edge){{from, to}, HUGE_VAL, vec3d_distance(x[from], x[to])};
-    }
+    limits->passed_s = 0;
+    for (size_t e = 0; e < limits->count; e++)
+        limits->edges[e].began = vec3d_distance(x[limits->edges[e].ends[0]], x[limits->edges[e].ends[1]]);
+}
+
+static void list_edges(struct tl_limits *limits, const struct tl_topology *topology, const vec2s (*rest)[3],
+                       double shortest)
+{
+    for (size_t e = 0; e < topology->edge_count; e++)
+        limits->edges[e] = (struct tl_limited_edge){.ends = {topology->edges[e][0], topology->edges[e][1]},
+                                                    .rest = HUGE_VAL};
     for (size_t t = topology->triangle_count; t-- > 0;) /* of several the first triangle's */
         for (int corner = 0; corner < 3; corner++) {
             int a = (corner + 1) % 3, b = (corner + 2) % 3;
@@ -59,7 +65,8 @@ struct tl_limits tl_limits_create(const struct tl_topology *topology, const stru
         .sides = tl_alloc(energy->membrane_count, sizeof *limits.sides),
         .watch = {.most = (1 + NEAR * strain) * (1 + NEAR * strain),
                   .seen = tl_alloc(energy->membrane_count, sizeof *limits.watch.seen)}};
-    list_edges(&limits, topology, rest, shortest, x);
+    list_edges(&limits, topology, rest, shortest);
+    tl_limits_restart(&limits, x);
     list_sides(&limits, topology, energy);
     for (size_t i = 0; i < energy->link_count; i++) /* slivers have no membrane that could be watched */
         limits.always[energy->pulls.link_edges[i]] = true;

@@ -32,6 +32,8 @@ struct tl_limits {
 /* Every edge longer than `shortest` metres at rest; `x` is where the cloth is. */
 struct tl_limits tl_limits_create(const struct tl_topology *topology, const struct tl_energy *energy,
                                   const vec2s (*rest)[3], double shortest, double strain, const vec3d *x);
+/* From here on it is as it was made: what is longer than the limit now is drawn back from there. */
+void tl_limits_restart(struct tl_limits *limits, const vec3d *x);
 void tl_limits_release(struct tl_limits *limits);
 
 /* After tl_xpbd_solve in a substep of h seconds: draws edges longer than 1 + strain times their rest length

@@ -36,9 +36,9 @@ struct tl_cloth {
     size_t pin_count;
     struct tl_pin *pins;
     bool grabbed;
-    uint32_t grabbed_vertex; /* render vertex */
-    vec3d grab_target;
-    uint64_t jump_followed; /* the collider's revision whose jump the cloth has gone along with */
+    uint32_t grabbed_vertex;      /* render vertex */
+    vec3d grab_from, grab_target; /* the hand at the start of a frame and at its end */
+    uint64_t jump_followed;       /* the collider's revision whose jump the cloth has gone along with */
     double time_s;
     bool settled;
     double needle_share;        /* of its triangles */

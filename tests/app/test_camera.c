@@ -52,11 +52,34 @@ static void yaw_zero_looks_from_plus_z_and_grows_towards_plus_x(void **state)
     assert_near(camera.eye.y, 2, 1e-6); /* 1 + 2 sin 30 */
 }
 
+/* The same target and direction as when the scene is framed, the distance that was asked for. */
+static void distance_alone_goes_nearer(void **state)
+{
+    (void)state;
+    const struct tl_box box = {{{-0.4f, 0.5f, -0.2f}}, {{0.5f, 1.8f, 0.3f}}};
+    struct tl_camera_params params = {.yaw_deg = 25, .pitch_deg = 8, .fov_deg = 30};
+    const struct tl_camera framed = tl_camera_frame(&params, box, 1);
+    const vec3s framed_back = glms_vec3_normalize(glms_vec3_sub(framed.eye, framed.target));
+    assert_false(tl_camera_is_placed(&params));
+    params.distance_m = 0.75f;
+    assert_false(tl_camera_is_placed(&params));
+    const struct tl_camera camera = tl_camera_frame(&params, box, 1);
+    const vec3s back = glms_vec3_normalize(glms_vec3_sub(camera.eye, camera.target));
+    assert_near(glms_vec3_distance(camera.target, framed.target), 0, 0);
+    assert_near(camera.target.y, 1.15, 1e-6);
+    assert_near(glms_vec3_distance(camera.eye, camera.target), 0.75, 1e-6);
+    assert_near(glms_vec3_distance(back, framed_back), 0, 1e-6);
+    params.target[1] = 0.25f;
+    assert_true(tl_camera_is_placed(&params));
+    assert_near(tl_camera_frame(&params, box, 1).target.y, 0.25, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_corner_is_in_view),
         cmocka_unit_test(yaw_zero_looks_from_plus_z_and_grows_towards_plus_x),
+        cmocka_unit_test(distance_alone_goes_nearer),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -362,7 +362,9 @@ static void faults_of_pixels_are_named(void **state)
     uint32_t *bits = (uint32_t *)stand->image.texels + 4 * (30 * WIDTH + 40);
     *bits ^= 1;
     stand->checked.hash = tl_check_hash(&stand->frame, &stand->image);
-    assert_breaks(&stand->checked, "run.repeat", "");
+    assert_breaks(&stand->checked, "run.repeat", "in pixels only");
+    stand->checked.places_hash++;
+    assert_breaks(&stand->checked, "run.repeat", "in positions");
     take_down(&stand);
 }
 
@@ -670,6 +672,14 @@ static void faults_of_cloth_are_named(void **state)
     place->y = NAN;
     checked = check_cloth(session, &watched, &frame);
     assert_breaks(&checked, "cloth.strain", "garment"); /* no number is no pass */
+    *place = outside;
+
+    /* ... all of it is drawn apart by an eighth, by which no edge is too long. */
+    for (size_t i = 0; i < cloth->particles.count; i++)
+        cloth->particles.x[i] = vec3d_scale(cloth->particles.x[i], 1.125);
+    checked = check_cloth(session, &watched, &frame);
+    assert_true(verdict_on(&checked, "cloth.strain").ok);
+    assert_breaks(&checked, "cloth.stretch", "garment");
     tl_session_destroy(&session);
 }
 

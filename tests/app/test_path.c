@@ -229,6 +229,20 @@ static void what_is_left_out_is_kept(void **state)
     tl_path_release(&path);
 }
 
+/* A target of 0 0 0 stands for the middle of the scene, which nothing can lie beside. */
+static void what_has_no_target_has_the_scenes(void **state)
+{
+    (void)state;
+    struct tl_path path;
+    tl_error error = {0};
+    assert_ok(
+        load_text("keys:\n  - {target: [0, 0, 0]}\n  - {time_s: 1, target: [1, 2, 3]}\n", &path, &error),
+        error);
+    assert_near(path.keys[0].camera.target[1], 1.1f, 0);
+    assert_near(path.keys[1].camera.target[1], 2, 0);
+    tl_path_release(&path);
+}
+
 static void bad_files_are_named_with_line_and_field(void **state)
 {
     (void)state;
@@ -277,6 +291,7 @@ int main(void)
         cmocka_unit_test(the_built_in_path_turns_nears_and_turns_the_light),
         cmocka_unit_test(files_come_back_to_the_bit),
         cmocka_unit_test(what_is_left_out_is_kept),
+        cmocka_unit_test(what_has_no_target_has_the_scenes),
         cmocka_unit_test(bad_files_are_named_with_line_and_field),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

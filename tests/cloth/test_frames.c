@@ -331,15 +331,27 @@ static void test_degenerate_input_stays_finite(void **state)
     for (size_t i = 0; i < mesh->index_count; i++)
         if (mesh->indices[i] == 48)
             mesh->indices[i] = 47;
-    struct buffers b = make_buffers(mesh);
+    struct buffers b = make_buffers(mesh), first = make_buffers(mesh);
     tl_frames *frames = tl_frames_create(mesh, b.weld);
     tl_frames_update(frames, b.positions, b.normals, b.tangents);
+    memcpy(first.tangents, b.tangents, mesh->vertex_count * sizeof(vec4s));
     assert_orthonormal(&b, mesh->vertex_count);
     assert_near(b.normals[48].y, 1, 0); /* unused: +Y */
     memset(b.positions, 0, mesh->vertex_count * sizeof(vec3s));
     tl_frames_update(frames, b.positions, b.normals, b.tangents);
     assert_orthonormal(&b, mesh->vertex_count);
     assert_near(b.normals[24].z, 1, 1e-6); /* kept from before */
+
+    /* Bent over, the vertices without UVs keep tangents of their own; forgotten, they begin anew. */
+    deform(mesh, b.weld, 1, 0.1, b.positions);
+    tl_frames_update(frames, b.positions, b.normals, b.tangents);
+    memcpy(b.positions, mesh->positions, mesh->vertex_count * sizeof(vec3s));
+    tl_frames_update(frames, b.positions, b.normals, b.tangents);
+    assert_memory_not_equal(first.tangents, b.tangents, mesh->vertex_count * sizeof(vec4s));
+    tl_frames_forget(frames);
+    tl_frames_update(frames, b.positions, b.normals, b.tangents);
+    assert_memory_equal(first.tangents, b.tangents, mesh->vertex_count * sizeof(vec4s));
+    free_buffers(&first);
     tl_frames_destroy(&frames);
     free_buffers(&b);
     sheet_free(&garment);
