@@ -69,7 +69,7 @@ struct tl_pulls {
     struct tl_four_pulls *fours;
 
     /* Scratch. */
-    double *places;  /* [vertex_count][4] m */
+    double *places;  /* [vertex_count + 1][4] m, the last one for the empty lanes of batches */
     double *squared; /* [edge_count] m^2 */
     double *shares;  /* [metric_count][3][TL_BATCH] N/m, then a 0 for edges with fewer than two triangles */
     double *along_edges;        /* [edge_count] N/m, with bending */
