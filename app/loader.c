@@ -15,7 +15,9 @@ struct tl_loader {
     bool runs; /* the thread has to be joined */
     enum tl_load kind;
     struct tl_settings settings;
+    const tl_session *session;
     struct tl_load_lights lights;
+    double began_s;
     int threads;
     void (*wake)(void);
     atomic_bool stops, is_done;
@@ -37,17 +39,45 @@ static void observe(void *user, const char *what, double share)
     pthread_mutex_unlock(&loader->guard);
 }
 
+static tl_frame frame_of(tl_loader *loader, tl_surface surfaces[2])
+{
+    struct tl_loaded *loaded = &loader->loaded;
+    if (loader->kind == TL_LOAD_SCENE)
+        return tl_session_frame(loaded->session);
+    tl_frame frame = {.environment = &loaded->light.environment};
+    if (loader->kind == TL_LOAD_LOOK)
+        frame = tl_session_frame_in(loader->session, &loaded->looks, surfaces);
+    return frame;
+}
+
 static void prepare(tl_loader *loader)
 {
-    tl_session *session = loader->loaded.session;
-    const tl_frame frame = session ? tl_session_frame(session) : (tl_frame){0};
+    tl_surface surfaces[2];
+    const tl_frame frame = frame_of(loader, surfaces);
     for (int i = 0; i < loader->lights.count && !tl_interrupted(); i++) {
-        struct tl_prepared_request request = loader->lights.of[i];
-        request.environment = session ? frame.environment : &loader->loaded.light.environment;
-        if (request.exponents == 0)
-            request.exponents = tl_prepared_exponents(&frame, &request.settings);
-        loader->loaded.prepared[i] = tl_prepared_make(&request);
+        struct tl_prepared_request *request = &loader->lights.of[i];
+        if (!request->environment)
+            request->environment = frame.environment;
+        if (loader->kind != TL_LOAD_LOOK || i == 0)
+            request->exponents |= tl_prepared_exponents(&frame, &request->settings);
+        loader->loaded.prepared[i] = tl_prepared_make(request);
     }
+}
+
+static bool load(tl_loader *loader)
+{
+    const struct tl_settings *settings = &loader->settings;
+    struct tl_loaded *loaded = &loader->loaded;
+    switch (loader->kind) {
+    case TL_LOAD_SCENE:
+        loaded->session = tl_session_create(settings, &loader->error);
+        return loaded->session != NULL;
+    case TL_LOAD_LIGHT:
+        return tl_moving_light_open(&loaded->light, settings->scene.environment, 0, &loader->error);
+    case TL_LOAD_LOOK:
+        return tl_session_make_look(loader->session, settings, &loaded->looks, &loader->error);
+    }
+    return false;
 }
 
 static void *make(void *argument)
@@ -57,13 +87,7 @@ static void *make(void *argument)
     tl_progress_observe(observe, loader);
     if (loader->threads > 0)
         omp_set_num_threads(loader->threads); /* of this thread's loops only */
-    if (loader->kind == TL_LOAD_SCENE) {
-        loader->loaded.session = tl_session_create(&loader->settings, &loader->error);
-        loader->made = loader->loaded.session != NULL;
-    } else {
-        const char *name = loader->settings.scene.environment;
-        loader->made = tl_moving_light_open(&loader->loaded.light, name, 0, &loader->error);
-    }
+    loader->made = load(loader);
     if (loader->made)
         prepare(loader);
     atomic_store(&loader->is_done, true);
@@ -71,12 +95,14 @@ static void *make(void *argument)
     return NULL;
 }
 
-tl_loader *tl_loader_start(enum tl_load kind, const struct tl_settings *settings,
+tl_loader *tl_loader_start(enum tl_load kind, const struct tl_settings *settings, const tl_session *session,
                            const struct tl_load_lights *lights, int threads, void (*wake)(void))
 {
     tl_loader *loader = TL_NEW(tl_loader);
     loader->kind = kind;
     loader->settings = *settings;
+    loader->session = session;
+    loader->began_s = tl_clock_s();
     loader->lights = *lights;
     loader->threads = threads;
     loader->wake = wake;
@@ -116,6 +142,7 @@ struct tl_load_progress tl_loader_progress(tl_loader *loader)
     pthread_mutex_lock(&loader->guard);
     struct tl_load_progress progress = loader->progress;
     pthread_mutex_unlock(&loader->guard);
+    progress.seconds = tl_clock_s() - loader->began_s;
     return progress;
 }
 
@@ -123,6 +150,7 @@ void tl_loaded_release(struct tl_loaded *loaded)
 {
     tl_session_destroy(&loaded->session);
     tl_moving_light_release(&loaded->light);
+    tl_looks_release(&loaded->looks);
     for (int i = 0; i < TL_LOADER_LIGHTS_MAX; i++)
         tl_prepared_destroy(&loaded->prepared[i]);
 }
@@ -148,6 +176,8 @@ void tl_loader_cancel(tl_loader **handle)
     atomic_store(&loader->stops, true);
     join(loader);
     tl_loaded_release(&loader->loaded);
+    for (int i = 0; i < loader->lights.count; i++)
+        tl_prepared_destroy(&loader->lights.of[i].known);
     pthread_mutex_destroy(&loader->guard);
     free(loader);
     *handle = NULL;

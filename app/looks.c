@@ -337,3 +337,25 @@ bool tl_looks_are_same(const struct tl_settings *a, const struct tl_settings *b)
            strcmp(a->scene.colourway, b->scene.colourway) == 0 &&
            tl_colourways_equal(&a->colourways, &b->colourways);
 }
+
+void tl_looks_take(const struct tl_settings *look, struct tl_settings *settings)
+{
+    struct tl_scene_params *scene = &settings->scene;
+    memcpy(scene->fabric, look->scene.fabric, sizeof scene->fabric);
+    memcpy(scene->overlay_fabric, look->scene.overlay_fabric, sizeof scene->overlay_fabric);
+    memcpy(scene->preset, look->scene.preset, sizeof scene->preset);
+    if (strcmp(look->scene.garment, scene->garment) == 0) { /* else it has other colourways */
+        memcpy(scene->colourway, look->scene.colourway, sizeof scene->colourway);
+        memcpy(scene->colourways, look->scene.colourways, sizeof scene->colourways);
+        settings->colourways = look->colourways;
+    }
+    settings->weave = look->weave;
+    settings->material = look->material;
+    settings->overlay = look->overlay;
+    settings->overlay_weave = look->overlay_weave;
+    settings->light = look->light;
+    settings->detail = look->detail;
+    settings->maps = look->maps;
+    settings->shading = look->shading;
+    settings->image.supersample = look->image.supersample;
+}

@@ -31,4 +31,8 @@ void tl_looks_release(struct tl_looks *looks); /* frees and zeroes */
 /* Whether two settings make the same looks of the same models. */
 bool tl_looks_are_same(const struct tl_settings *a, const struct tl_settings *b);
 
+/* Gives `settings` the look of others, and the way in which it is drawn: what may differ between two looks
+ * that are compared. Camera, light and cloth stay; of another garment, its colourways. Pure. */
+void tl_looks_take(const struct tl_settings *look, struct tl_settings *settings);
+
 #endif

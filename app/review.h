@@ -113,7 +113,7 @@ struct tl_review_wipe {
 
 struct tl_review_memory {
     size_t least_unused; /* bytes, since some were given back last */
-    double looked_s;
+    double looked_s, told_s;
 };
 
 struct tl_review {
@@ -122,7 +122,8 @@ struct tl_review {
     tl_panel *panel;
     tl_renderer *renderer;
     tl_session *session;
-    tl_loader *loader; /* NULL: nothing is being made ready */
+    tl_loader *loader;             /* NULL: nothing is being made ready */
+    struct tl_settings made_ready; /* the last look that was */
 
     struct tl_settings wanted; /* edited by keys, pointer and panel; the session follows */
     struct tl_settings good;   /* the last that could be loaded and drawn; where a failure goes back to */

@@ -33,6 +33,22 @@ static bool show_image(struct tl_review *review, int width, int height, tl_error
            tl_renderer_show_columns(review->renderer, width, height, line, width, error);
 }
 
+/* What an image that one feels spent its time on, for whoever wants to know why. */
+static void tell_slow(const struct tl_review *review, double image_ms)
+{
+    const double slow_ms = 250;
+    if (image_ms < slow_ms)
+        return;
+    const tl_plan *plan = tl_renderer_last_plan(review->renderer);
+    tl_debug("view: slow image %d, %s: %.0f ms with the cloth's %.0f%s", review->drawn_count,
+             review->is_paced ? "in motion" : "at rest", image_ms, review->times.cloth,
+             review->wipe.renderer ? ", compared" : "");
+    for (int i = 0; i < plan->count; i++)
+        if (plan->rows[i].took_ms > 0.1 * image_ms)
+            tl_debug("view:   %s %.0f ms: %s", plan->rows[i].name, plan->rows[i].took_ms,
+                     plan->rows[i].reason);
+}
+
 /* Until here it is the program's time; the swap may wait for the screen. What nobody waits for is shown as
  * well as it can be: its time says nothing about the budget. */
 static void take_time(struct tl_review *review)
@@ -41,6 +57,7 @@ static void take_time(struct tl_review *review)
         return;
     double frame_ms = 1e3 * (tl_clock_s() - review->times.began_s);
     review->is_new = false;
+    tell_slow(review, frame_ms);
     if (!review->is_paced) {
         tl_frame_times_add(&review->rest_times, frame_ms);
         return;

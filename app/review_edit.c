@@ -58,7 +58,7 @@ void tl_review_next_colourway(struct tl_review *review, int by)
 {
     const char *const *names;
     int count = (int)tl_session_colourways(review->session, &names), present = 0; /* 0: none, as cut */
-    if (review->loader) {
+    if (review->loader && tl_loader_kind(review->loader) == TL_LOAD_SCENE) {
         tl_review_say(review, "the scene is not there yet: its colourways come with it");
         return;
     }
@@ -228,8 +228,9 @@ void tl_review_note_edit(struct tl_review *review)
 
 void tl_review_undo(struct tl_review *review, bool redo)
 {
-    if (!review->changed && !review->loader) /* a gesture that has just ended is an edit too */
-        tl_history_note(review->history, &review->good);
+    /* What is wanted is an edit, though its gesture has just ended, or it is still made ready. */
+    if (!tl_review_moves_itself(review))
+        tl_history_note(review->history, &review->wanted);
     const struct tl_settings *edit =
         redo ? tl_history_redo(review->history) : tl_history_undo(review->history);
     if (!edit) {

@@ -1,5 +1,5 @@
-/* Scenes and environments are made ready beside the review window. Until one is there the old one stays, with
- * all that can be done to it; one that cannot be had changes nothing. */
+/* Scenes, environments and looks are made ready beside the review window. Until one is there the old one
+ * stays, with all that can be done to it; one that cannot be had changes nothing. */
 #include "app/review.h"
 #include "config/interrupt.h"
 #include "config/log.h"
@@ -7,17 +7,38 @@
 #include <omp.h>
 #include <string.h>
 
+/* A look has to be made ready unless the session has it, or it was just made. Light that plays is new with
+ * every frame: nothing can be made ready for it. The material follows a slider at once. */
+static bool needs_look(const struct tl_review *review, const struct tl_settings *settings)
+{
+    struct tl_settings present = *tl_session_settings(review->session);
+    if (review->editing)
+        present.material = settings->material;
+    return !tl_session_light_plays(review->session) && tl_session_needs_look(&present, settings) &&
+           tl_session_needs_look(&review->made_ready, settings);
+}
+
 static bool is_slow(const struct tl_review *review, const struct tl_settings *settings)
 {
     const struct tl_settings *present = tl_session_settings(review->session);
-    return tl_session_needs_scene(present, settings) || tl_session_needs_light(present, settings);
+    return tl_session_needs_scene(present, settings) || tl_session_needs_light(present, settings) ||
+           needs_look(review, settings);
+}
+
+/* What of `settings` has to be made ready is left as it is. */
+static void stay(const struct tl_review *review, struct tl_settings *settings)
+{
+    const struct tl_settings *present = tl_session_settings(review->session);
+    tl_session_keep_scene(present, settings);
+    if (needs_look(review, settings))
+        tl_looks_take(present, settings);
 }
 
 struct tl_settings tl_review_followed(const struct tl_review *review)
 {
     struct tl_settings followed = review->wanted;
     if (is_slow(review, &followed))
-        tl_session_keep_scene(tl_session_settings(review->session), &followed);
+        stay(review, &followed);
     return followed;
 }
 
@@ -29,11 +50,9 @@ static int loader_threads(void)
 }
 
 /* With the regions of every level that the pace may choose. */
-static struct tl_prepared_request light_of(const struct tl_review *review, const tl_renderer *renderer,
-                                           const struct tl_settings *settings)
+static struct tl_prepared_request light_of(const struct tl_review *review, const struct tl_settings *settings)
 {
-    struct tl_prepared_request request = {.settings = tl_settings_render(settings),
-                                          .exponents = tl_renderer_exponents(renderer)};
+    struct tl_prepared_request request = {.settings = tl_settings_render(settings)};
     request.region_counts[0] = settings->light.regions;
     for (int level = 1; review->params.budget_ms > 0 && level < TL_PREPARED_COUNTS_MAX; level++) {
         struct tl_levels levels = {.of[TL_KNOB_REGIONS] = (uint8_t)level};
@@ -47,32 +66,53 @@ static struct tl_prepared_request light_of(const struct tl_review *review, const
     return request;
 }
 
-static struct tl_load_lights lights_of(const struct tl_review *review, bool is_scene)
+/* Another scene needs its own light, another environment that of the looks there are; another look, beside
+ * its own, what was there: for the other half of a comparison, and for going back. */
+static struct tl_load_lights lights_of(struct tl_review *review, enum tl_load kind)
 {
-    struct tl_load_lights lights = {.count = 1, .of = {light_of(review, review->renderer, &review->wanted)}};
-    if (is_scene)
-        lights.of[0].exponents = 0;
-    if (review->wipe.renderer) {
-        const struct tl_settings other = tl_review_look_a(review, &review->wanted);
-        lights.of[lights.count++] = light_of(review, review->wipe.renderer, &other);
+    const tl_renderer *renderers[TL_LOADER_LIGHTS_MAX] = {review->renderer, review->wipe.renderer};
+    const struct tl_settings other = tl_review_look_a(review, &review->wanted);
+    struct tl_load_lights lights = {.count = review->wipe.renderer ? 2 : 1,
+                                    .of = {light_of(review, &review->wanted), light_of(review, &other)}};
+    for (int i = 0; i < lights.count; i++) {
+        struct tl_prepared_request *request = &lights.of[i];
+        if (kind != TL_LOAD_SCENE)
+            request->exponents = tl_renderer_exponents(renderers[i]);
+        if (kind == TL_LOAD_LOOK) {
+            request->environment = tl_session_frame(review->session).environment;
+            request->known = tl_prepared_copy(renderers[i]);
+            if (lights.count == 2)
+                request->exponents |= tl_renderer_exponents(renderers[1 - i]);
+        }
     }
     return lights;
 }
 
+static enum tl_load what_to_load(const struct tl_review *review)
+{
+    const struct tl_settings *present = tl_session_settings(review->session);
+    return tl_session_needs_scene(present, &review->wanted)   ? TL_LOAD_SCENE
+           : tl_session_needs_light(present, &review->wanted) ? TL_LOAD_LIGHT
+                                                              : TL_LOAD_LOOK;
+}
+
 static void start(struct tl_review *review)
 {
-    bool is_scene = tl_session_needs_scene(tl_session_settings(review->session), &review->wanted);
-    const struct tl_load_lights lights = lights_of(review, is_scene);
-    review->loader = tl_loader_start(is_scene ? TL_LOAD_SCENE : TL_LOAD_LIGHT, &review->wanted, &lights,
-                                     loader_threads(), tl_window_wake);
-    tl_info("view: loads %s", is_scene ? review->wanted.scene.garment : review->wanted.scene.environment);
+    enum tl_load kind = what_to_load(review);
+    const struct tl_load_lights lights = lights_of(review, kind);
+    review->loader =
+        tl_loader_start(kind, &review->wanted, review->session, &lights, loader_threads(), tl_window_wake);
+    const struct tl_scene_params *scene = &review->wanted.scene;
+    if (kind != TL_LOAD_LOOK)
+        tl_info("view: loads %s", kind == TL_LOAD_SCENE ? scene->garment : scene->environment);
 }
 
 /* Whether what is being made is still what is wanted. */
 static bool is_outdated(const struct tl_review *review)
 {
     const struct tl_settings *made = tl_loader_settings(review->loader);
-    return tl_session_needs_scene(made, &review->wanted) || tl_session_needs_light(made, &review->wanted);
+    return tl_session_needs_scene(made, &review->wanted) || tl_session_needs_light(made, &review->wanted) ||
+           (tl_loader_kind(review->loader) == TL_LOAD_LOOK && tl_session_needs_look(made, &review->wanted));
 }
 
 /* Hands the light that was made ready to the renderers. */
@@ -88,12 +128,17 @@ static void take_lights(struct tl_review *review, struct tl_loaded *loaded)
 static void finish(struct tl_review *review)
 {
     enum tl_load kind = tl_loader_kind(review->loader);
+    const struct tl_settings made_of = *tl_loader_settings(review->loader);
     const char *environment = review->wanted.scene.environment;
     struct tl_loaded loaded;
     tl_error error;
     if (!tl_loader_take(&review->loader, &loaded, &error)) {
-        tl_session_keep_scene(tl_session_settings(review->session), &review->wanted);
+        stay(review, &review->wanted);
         tl_review_complain(review, &error);
+    } else if (kind == TL_LOAD_LOOK) {
+        tl_session_keep_look(review->session, &made_of, &loaded.looks);
+        take_lights(review, &loaded);
+        review->made_ready = made_of;
     } else if (kind == TL_LOAD_SCENE) {
         tl_session_replace(review->session, &loaded.session);
         take_lights(review, &loaded);
@@ -122,7 +167,7 @@ bool tl_review_stop_loading(struct tl_review *review)
     if (!review->loader)
         return false;
     tl_loader_cancel(&review->loader);
-    tl_session_keep_scene(tl_session_settings(review->session), &review->wanted);
+    stay(review, &review->wanted);
     review->changed = true;
     tl_review_say(review, "loading was stopped: the scene stays as it was");
     return true;
@@ -140,8 +185,8 @@ static void listen_while_waiting(struct tl_review *review)
 bool tl_review_load_first(struct tl_review *review, tl_error *error)
 {
     const double tick_s = 0.1;
-    const struct tl_load_lights lights = lights_of(review, true);
-    review->loader = tl_loader_start(TL_LOAD_SCENE, &review->wanted, &lights, 0, tl_window_wake);
+    const struct tl_load_lights lights = lights_of(review, TL_LOAD_SCENE);
+    review->loader = tl_loader_start(TL_LOAD_SCENE, &review->wanted, NULL, &lights, 0, tl_window_wake);
     while (!tl_loader_is_done(review->loader)) {
         tl_window_wait(review->window, tick_s);
         listen_while_waiting(review);

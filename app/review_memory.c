@@ -14,6 +14,7 @@
 #define IDLE_IN_MOTION ((size_t)96 << 20)
 #define IDLE_AT_REST   ((size_t)32 << 20)
 #define LOOK_EVERY_S   1.0
+#define TELL_EVERY_S   10.0
 
 size_t tl_review_resident_bytes(void)
 {
@@ -32,12 +33,27 @@ static bool is_awaited(const struct tl_review *review)
            !tl_review_is_at_rest(review);
 }
 
+static size_t used_bytes(void)
+{
+    const struct mallinfo2 heap = mallinfo2();
+    return heap.uordblks + heap.hblkhd;
+}
+
 /* Resident, but not in use: idle pages, beside the program itself and what drivers map. */
 static size_t unused_bytes(void)
 {
-    const struct mallinfo2 heap = mallinfo2();
-    size_t resident = tl_review_resident_bytes(), used = heap.uordblks + heap.hblkhd;
+    size_t resident = tl_review_resident_bytes(), used = used_bytes();
     return resident > used ? resident - used : 0;
+}
+
+/* What is in use tells a leak from pages that lie idle. */
+static void tell(struct tl_review_memory *memory, double now_s)
+{
+    if (now_s - memory->told_s < TELL_EVERY_S)
+        return;
+    memory->told_s = now_s;
+    tl_debug("view: memory: %zu MB in use, %zu MB resident", used_bytes() >> 20,
+             tl_review_resident_bytes() >> 20);
 }
 
 void tl_review_give_back(struct tl_review *review)
@@ -47,6 +63,7 @@ void tl_review_give_back(struct tl_review *review)
     if (now_s - memory->looked_s < LOOK_EVERY_S)
         return;
     memory->looked_s = now_s;
+    tell(memory, now_s);
     size_t unused = unused_bytes(), idle_max = is_awaited(review) ? IDLE_IN_MOTION : IDLE_AT_REST;
     if (memory->least_unused == 0 || unused < memory->least_unused)
         memory->least_unused = unused;

@@ -202,12 +202,16 @@ static struct tl_panel_progress progress_of(const struct tl_review *review, char
     if (!review->loader)
         return (struct tl_panel_progress){0};
     const struct tl_scene_params *scene = &tl_loader_settings(review->loader)->scene;
-    bool is_light = tl_loader_kind(review->loader) == TL_LOAD_LIGHT;
-    const char *name = is_light                              ? scene->environment
+    enum tl_load kind = tl_loader_kind(review->loader);
+    const char *name = kind == TL_LOAD_LIGHT                 ? scene->environment
+                       : kind == TL_LOAD_LOOK                ? scene->fabric
                        : strcmp(scene->garment, "none") == 0 ? scene->avatar
                                                              : scene->garment;
     const char *slash = strrchr(name, '/');
     struct tl_load_progress progress = tl_loader_progress(review->loader);
+    const double unseen_s = 0.3; /* most looks are there sooner: nothing flickers */
+    if (kind == TL_LOAD_LOOK && progress.seconds < unseen_s)
+        return (struct tl_panel_progress){0};
     bool is_known = progress.what[0] != '\0';
     snprintf(text, size, "Loading %.100s%s%s", slash ? slash + 1 : name, is_known ? ": " : "", progress.what);
     return (struct tl_panel_progress){.what = text,

@@ -1,6 +1,7 @@
 /* Two looks side by side in the review window: A, on the left, as the settings were when the comparison
  * began; B, on the right, as they are. Camera, light and cloth are the same: only what decides how cloth
  * looks differs, and how well it is drawn. */
+#include "app/looks.h"
 #include "app/review.h"
 #include "config/log.h"
 #include "config/memory.h"
@@ -62,25 +63,8 @@ int tl_review_wipe_column(const struct tl_review *review, int width)
 
 struct tl_settings tl_review_look_a(const struct tl_review *review, const struct tl_settings *settings)
 {
-    const struct tl_settings *look = &review->wipe.look;
     struct tl_settings result = *settings;
-    memcpy(result.scene.fabric, look->scene.fabric, sizeof result.scene.fabric);
-    memcpy(result.scene.overlay_fabric, look->scene.overlay_fabric, sizeof result.scene.overlay_fabric);
-    memcpy(result.scene.preset, look->scene.preset, sizeof result.scene.preset);
-    if (strcmp(look->scene.garment, settings->scene.garment) == 0) { /* else it has other colourways */
-        memcpy(result.scene.colourway, look->scene.colourway, sizeof result.scene.colourway);
-        memcpy(result.scene.colourways, look->scene.colourways, sizeof result.scene.colourways);
-        result.colourways = look->colourways;
-    }
-    result.weave = look->weave;
-    result.material = look->material;
-    result.overlay = look->overlay;
-    result.overlay_weave = look->overlay_weave;
-    result.light = look->light;
-    result.detail = look->detail;
-    result.maps = look->maps;
-    result.shading = look->shading;
-    result.image.supersample = look->image.supersample;
+    tl_looks_take(&review->wipe.look, &result);
     return result;
 }
 

@@ -1,7 +1,6 @@
 #include "app/session.h"
 
 #include "app/camera.h"
-#include "app/looks.h"
 #include "app/moving.h"
 #include "app/moving_light.h"
 #include "app/playback.h"
@@ -51,12 +50,12 @@ struct tl_session {
     struct tl_looks looks;
     uint64_t look_revision; /* of meshes and materials; the renderer sees another one as new */
     uint64_t looks_made;    /* the highest revision so far */
-    struct {                /* the look before, for comparisons that go to and fro */
+    struct tl_spare_look {
         bool is_kept;
         struct tl_looks looks;
         uint64_t revision;
         struct tl_settings made_of;
-    } spare;
+    } spares[2]; /* the last one first: the look before, for comparisons that go to and fro, and the next */
 
     int frame;
     struct tl_box framed; /* what the camera frames: all there is at frame 0 */
@@ -273,8 +272,8 @@ static bool plays_motion(const tl_session *session)
     return strcmp(session->settings.scene.motion, "none") != 0;
 }
 
-static bool make_looks(const tl_session *session, const struct tl_settings *settings, struct tl_looks *out,
-                       tl_error *error)
+bool tl_session_make_look(const tl_session *session, const struct tl_settings *settings, struct tl_looks *out,
+                          tl_error *error)
 {
     return tl_looks_make(settings, session->garment ? &session->garment->model : NULL,
                          session->avatar ? &session->avatar->model : NULL, out, error);
@@ -288,7 +287,7 @@ static bool load_all(tl_session *session, tl_error *error)
         return false;
     if (!session->avatar && !session->garment)
         return tl_fail(error, TL_USAGE, "scene: neither a garment nor an avatar: name at least one");
-    if (!make_looks(session, &session->settings, &session->looks, error))
+    if (!tl_session_make_look(session, &session->settings, &session->looks, error))
         return false;
     session->look_revision = ++session->looks_made;
     if (session->avatar)
@@ -337,7 +336,8 @@ void tl_session_destroy(tl_session **handle)
     tl_strains_destroy(&session->strain.rest);
     free(session->strain.of_vertices);
     tl_looks_release(&session->looks);
-    tl_looks_release(&session->spare.looks);
+    for (size_t i = 0; i < TL_COUNT(session->spares); i++)
+        tl_looks_release(&session->spares[i].looks);
     free(session);
     *handle = NULL;
 }
@@ -424,6 +424,13 @@ bool tl_session_needs_light(const struct tl_settings *old, const struct tl_setti
     return !same_text(old->scene.environment, new->scene.environment);
 }
 
+bool tl_session_needs_look(const struct tl_settings *old, const struct tl_settings *new)
+{
+    struct tl_settings same = *new;
+    tl_looks_take(old, &same);
+    return !tl_settings_equal(&same, new);
+}
+
 void tl_session_keep_scene(const struct tl_settings *kept, struct tl_settings *settings)
 {
     if (!same_text(settings->scene.garment, kept->scene.garment)) { /* its colourways are its own */
@@ -494,25 +501,44 @@ static bool change_in_place(tl_session *session, const struct tl_settings *setti
            tl_cloth_set(session->cloth, &settings->fabric, &settings->cloth, error);
 }
 
-/* The present look becomes the spare one. */
-static void set_aside_look(tl_session *session)
+static struct tl_spare_look *find_spare(tl_session *session, const struct tl_settings *settings)
 {
-    tl_looks_release(&session->spare.looks);
-    session->spare.is_kept = true;
-    session->spare.looks = session->looks;
-    session->spare.revision = session->look_revision;
-    session->spare.made_of = session->settings;
+    for (size_t i = 0; i < TL_COUNT(session->spares); i++)
+        if (session->spares[i].is_kept && tl_looks_are_same(&session->spares[i].made_of, settings))
+            return &session->spares[i];
+    return NULL;
+}
+
+/* In the place of the oldest one. */
+static void add_spare(tl_session *session, const struct tl_settings *made_of, const struct tl_looks *looks,
+                      uint64_t revision)
+{
+    struct tl_spare_look *spares = session->spares;
+    const size_t last = TL_COUNT(session->spares) - 1;
+    tl_looks_release(&spares[last].looks);
+    memmove(spares + 1, spares, last * sizeof *spares);
+    spares[0] = (struct tl_spare_look){true, *looks, revision, *made_of};
 }
 
 /* Takes up the look that was set aside, in exchange for the present one. */
-static void exchange_looks(tl_session *session)
+static void exchange_looks(tl_session *session, struct tl_spare_look *spare)
 {
-    struct tl_looks looks = session->spare.looks;
-    uint64_t revision = session->spare.revision;
-    session->spare.looks = (struct tl_looks){0};
-    set_aside_look(session);
-    session->looks = looks;
-    session->look_revision = revision;
+    const struct tl_spare_look taken = *spare;
+    spare->looks = (struct tl_looks){0};
+    memmove(session->spares + 1, session->spares, (size_t)(spare - session->spares) * sizeof *spare);
+    session->spares[0] =
+        (struct tl_spare_look){true, session->looks, session->look_revision, session->settings};
+    session->looks = taken.looks;
+    session->look_revision = taken.revision;
+}
+
+void tl_session_keep_look(tl_session *session, const struct tl_settings *made_of, struct tl_looks *made)
+{
+    if (tl_looks_are_same(&session->settings, made_of) || find_spare(session, made_of))
+        tl_looks_release(made);
+    else
+        add_spare(session, made_of, made, ++session->looks_made);
+    *made = (struct tl_looks){0};
 }
 
 bool tl_session_apply(tl_session *session, const struct tl_settings *settings, tl_error *error)
@@ -521,17 +547,17 @@ bool tl_session_apply(tl_session *session, const struct tl_settings *settings, t
         return tl_session_restart(session, settings, error);
     struct tl_looks looks = {0};
     bool new_look = !tl_looks_are_same(&session->settings, settings);
-    bool was_seen = session->spare.is_kept && tl_looks_are_same(&session->spare.made_of, settings);
-    if (new_look && !was_seen && !make_looks(session, settings, &looks, error))
+    struct tl_spare_look *spare = find_spare(session, settings);
+    if (new_look && !spare && !tl_session_make_look(session, settings, &looks, error))
         return false;
     if (!change_in_place(session, settings, error)) {
         tl_looks_release(&looks);
         return false;
     }
-    if (new_look && was_seen) {
-        exchange_looks(session);
+    if (new_look && spare) {
+        exchange_looks(session, spare);
     } else if (new_look) {
-        set_aside_look(session);
+        add_spare(session, &session->settings, &session->looks, session->look_revision);
         session->looks = looks;
         session->look_revision = ++session->looks_made;
     }
@@ -600,6 +626,21 @@ tl_frame tl_session_frame(tl_session *session)
         .lamp_count = TL_COUNT(session->lamps),
         .time_s = session->frame / session->settings.cloth.frame_rate,
     };
+}
+
+tl_frame tl_session_frame_in(const tl_session *session, const struct tl_looks *looks, tl_surface surfaces[2])
+{
+    size_t count = 0;
+    if (session->avatar)
+        surfaces[count++] = tl_moving_surface(&session->body, "avatar", &looks->avatar);
+    if (session->garment)
+        surfaces[count++] = tl_moving_surface(&session->dress, "garment", &looks->garment);
+    return (tl_frame){.surfaces = surfaces, .surface_count = count};
+}
+
+bool tl_session_light_plays(const tl_session *session)
+{
+    return session->light.sequence.count > 0;
 }
 
 /* Moeller & Trumbore 1997; both sides count. */

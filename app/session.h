@@ -3,6 +3,7 @@
 #ifndef TOILE_APP_SESSION_H
 #define TOILE_APP_SESSION_H
 
+#include "app/looks.h"
 #include "app/moving_light.h"
 #include "app/settings.h"
 #include "cloth/cloth.h"
@@ -23,22 +24,33 @@ int tl_session_frame_number(const tl_session *session);
 bool tl_session_reset(tl_session *session, tl_error *error);
 
 /* Takes over changed settings: reloads or re-weaves only what differs. On failure the session is as it was.
- * To and fro between two looks costs nothing: the last one is kept. */
+ * To and fro between two looks costs nothing: the last ones are kept. */
 bool tl_session_apply(tl_session *session, const struct tl_settings *settings, tl_error *error);
-/* The same, but all is loaded and draped anew: as another fabric would fall, which only moves the cloth on when
- * it is applied. A new session in a renderer's sight begins like this, not with tl_session_create. */
+/* The same, but all is loaded and draped anew: as another fabric would fall, which only moves the cloth on
+ * when it is applied. A new session in a renderer's sight begins like this, not with tl_session_create. */
 bool tl_session_restart(tl_session *session, const struct tl_settings *settings, tl_error *error);
 const struct tl_settings *tl_session_settings(const tl_session *session);
 
 /* For those who make a scene beside the one that is shown (app/loader.h). True when from `old` to `new` the
- * scene has to be made anew; or another environment be read. Pure. */
+ * scene has to be made anew; or another environment be read; or cloth look different, or be drawn in another
+ * way. Pure. */
 bool tl_session_needs_scene(const struct tl_settings *old, const struct tl_settings *new);
 bool tl_session_needs_light(const struct tl_settings *old, const struct tl_settings *new);
-/* Sets the options that decide these two to those of `kept`. Pure. */
+bool tl_session_needs_look(const struct tl_settings *old, const struct tl_settings *new);
+/* Sets the options that decide the first two to those of `kept`; tl_looks_take does so with the third. Pure.
+ */
 void tl_session_keep_scene(const struct tl_settings *kept, struct tl_settings *settings);
 /* Becomes what was made beside it; *made is nulled. */
 void tl_session_replace(tl_session *session, tl_session **made);
 void tl_session_replace_light(tl_session *session, struct tl_moving_light *made, const char *name);
+/* The scene in another look: on any thread, while the session keeps its scene. */
+bool tl_session_make_look(const tl_session *session, const struct tl_settings *settings, struct tl_looks *out,
+                          tl_error *error);
+/* A frame of the scene at rest in a look, of which only what follows from materials means anything. */
+tl_frame tl_session_frame_in(const tl_session *session, const struct tl_looks *looks, tl_surface surfaces[2]);
+/* To apply these settings then costs little. *made is emptied. */
+void tl_session_keep_look(tl_session *session, const struct tl_settings *made_of, struct tl_looks *made);
+bool tl_session_light_plays(const tl_session *session); /* its environment is a sequence's */
 /* The colourways there are, for scene.colourway beside "": those of the scene's section, then the variants of
  * the garment's and the avatar's files. Valid until the next call that changes the session. To change to one:
  * tl_settings_apply_colourway, then tl_session_apply, which makes new materials and leaves the cloth as it

@@ -38,17 +38,52 @@ static bool wants_lights(const struct tl_light_params *light)
            light->method != TL_METHOD_UNSHADOWED && light->method != TL_METHOD_MAPS;
 }
 
-static void add_lights(tl_prepared *prepared, const struct tl_prepared_request *request, int region_count)
+static void add_lights(tl_prepared *prepared, uint32_t exponents, int region_count)
 {
-    struct tl_render_settings settings = request->settings;
-    settings.light.regions = region_count;
-    const struct tl_light_params light = tl_frame_usable(&settings).light;
+    struct tl_light_params light = prepared->light;
+    light.regions = region_count;
     struct tl_regions *regions = &prepared->lights[prepared->count].regions;
     struct tl_region_lights *lights = &prepared->lights[prepared->count].lights;
     tl_frame_cut_regions(&prepared->cube, &light, regions);
     tl_region_lights_begin(lights, regions, tl_frame_region_weight(&light));
-    tl_region_lights_add(lights, &prepared->lobes, request->exponents);
-    prepared->lights[prepared->count++].count = light.regions;
+    tl_region_lights_add(lights, &prepared->lobes, exponents);
+    prepared->lights[prepared->count++].count = region_count;
+}
+
+static void release_lights(tl_prepared *prepared, int i)
+{
+    tl_regions_release(&prepared->lights[i].regions);
+    tl_region_lights_release(&prepared->lights[i].lights);
+}
+
+static bool is_requested(const struct tl_prepared_request *request, int region_count)
+{
+    for (int i = 0; i < TL_PREPARED_COUNTS_MAX; i++)
+        if (request->region_counts[i] == region_count)
+            return true;
+    return false;
+}
+
+/* Of what is known: lights that nobody asks for would only take their place. */
+static void keep_requested(tl_prepared *prepared, const struct tl_prepared_request *request)
+{
+    int kept = 0;
+    for (int i = 0; i < prepared->count; i++)
+        if (is_requested(request, prepared->lights[i].count))
+            prepared->lights[kept++] = prepared->lights[i];
+        else
+            release_lights(prepared, i);
+    prepared->count = kept;
+}
+
+static void need_lights(tl_prepared *prepared, uint32_t exponents, int region_count)
+{
+    for (int i = 0; i < prepared->count; i++)
+        if (prepared->lights[i].count == region_count) {
+            tl_region_lights_add(&prepared->lights[i].lights, &prepared->lobes, exponents);
+            return;
+        }
+    add_lights(prepared, exponents, region_count);
 }
 
 /* One exponent at a time, so that nobody waits long for a loader to stop. */
@@ -61,21 +96,54 @@ static void add_lobes(tl_prepared *prepared, uint32_t exponents, struct tl_progr
     }
 }
 
-tl_prepared *tl_prepared_make(const struct tl_prepared_request *request)
+static bool is_same_cube(const struct tl_light_params *a, const struct tl_light_params *b)
 {
-    tl_prepared *prepared = TL_NEW(tl_prepared);
+    return a->pem_size == b->pem_size && a->sun == b->sun;
+}
+
+static tl_prepared *begin(struct tl_prepared_request *request, const struct tl_light_params *light)
+{
+    tl_prepared *prepared = request->known;
+    request->known = NULL;
+    if (prepared && is_same_cube(&prepared->light, light)) {
+        bool same_lights = prepared->light.cut == light->cut &&
+                           tl_frame_region_weight(&prepared->light) == tl_frame_region_weight(light);
+        keep_requested(prepared, same_lights ? request : &(const struct tl_prepared_request){0});
+        prepared->light = *light;
+        return prepared;
+    }
+    tl_prepared_destroy(&prepared);
+    prepared = TL_NEW(tl_prepared);
+    prepared->light = *light;
+    prepared->cube = tl_cube_from_environment(request->environment, light->pem_size);
+    if (light->sun)
+        tl_suns_take(&prepared->cube, request->environment, &prepared->suns);
+    return prepared;
+}
+
+/* As many as the renderer will cut. */
+static void make_usable(struct tl_prepared_request *request)
+{
+    struct tl_render_settings settings = request->settings;
+    for (int i = 0; i < TL_PREPARED_COUNTS_MAX; i++)
+        if (request->region_counts[i] > 0) {
+            settings.light.regions = request->region_counts[i];
+            request->region_counts[i] = tl_frame_usable(&settings).light.regions;
+        }
+}
+
+tl_prepared *tl_prepared_make(struct tl_prepared_request *request)
+{
+    make_usable(request);
     const struct tl_render_settings used = tl_frame_usable(&request->settings);
     const int lobe_count = __builtin_popcount(request->exponents), total = 1 + 2 * lobe_count;
     struct tl_progress progress = tl_progress_begin("prefiltering the light");
-    prepared->light = used.light;
-    prepared->cube = tl_cube_from_environment(request->environment, used.light.pem_size);
-    if (used.light.sun)
-        tl_suns_take(&prepared->cube, request->environment, &prepared->suns);
+    tl_prepared *prepared = begin(request, &used.light);
     if (wants_lights(&used.light))
         add_lobes(prepared, request->exponents, &progress, total);
     for (int i = 0; wants_lights(&used.light) && i < TL_PREPARED_COUNTS_MAX && !tl_interrupted(); i++) {
         if (request->region_counts[i] > 0)
-            add_lights(prepared, request, request->region_counts[i]);
+            need_lights(prepared, request->exponents, request->region_counts[i]);
         tl_progress_update(&progress, 1 + lobe_count * (1 + (i + 1.0) / TL_PREPARED_COUNTS_MAX), total);
     }
     tl_progress_end(&progress);
@@ -116,27 +184,40 @@ void tl_prepared_destroy(tl_prepared **prepared)
         return;
     tl_cube_release(&(*prepared)->cube);
     tl_lobes_release(&(*prepared)->lobes);
-    for (int i = 0; i < (*prepared)->count; i++) {
-        tl_regions_release(&(*prepared)->lights[i].regions);
-        tl_region_lights_release(&(*prepared)->lights[i].lights);
-    }
+    for (int i = 0; i < (*prepared)->count; i++)
+        release_lights(*prepared, i);
     free(*prepared);
     *prepared = NULL;
+}
+
+static void add(tl_prepared *prepared, tl_renderer *renderer)
+{
+    tl_lobes_take(&renderer->lobes, &prepared->lobes);
+    for (int i = prepared->count - 1; i >= 0;
+         i--) { /* the first ones matter most: no other takes their place */
+        prepared->light.regions = prepared->lights[i].count;
+        tl_frame_keep_lights(renderer, &prepared->light, &prepared->lights[i].regions,
+                             &prepared->lights[i].lights);
+    }
+}
+
+static bool is_of_this_frame(const tl_prepared *prepared, const tl_renderer *renderer)
+{
+    return prepared->environment_revision == renderer->frame.environment_revision &&
+           is_same_cube(&prepared->light, &renderer->settings.light);
 }
 
 void tl_renderer_take_prepared(tl_renderer *renderer, tl_prepared **prepared, uint64_t environment_revision)
 {
     tl_prepared_destroy(&renderer->prepared);
+    (*prepared)->environment_revision = environment_revision;
+    if (renderer->cube.size > 0 && is_of_this_frame(*prepared, renderer)) {
+        add(*prepared, renderer);
+        tl_prepared_destroy(prepared);
+        return;
+    }
     renderer->prepared = *prepared;
-    renderer->prepared->environment_revision = environment_revision;
     *prepared = NULL;
-}
-
-static bool is_of_this_frame(const tl_prepared *prepared, const tl_renderer *renderer)
-{
-    const struct tl_light_params *light = &renderer->settings.light;
-    return prepared->environment_revision == renderer->frame.environment_revision &&
-           prepared->light.pem_size == light->pem_size && prepared->light.sun == light->sun;
 }
 
 static void use(tl_prepared *prepared, tl_renderer *renderer)
@@ -144,12 +225,8 @@ static void use(tl_prepared *prepared, tl_renderer *renderer)
     renderer->cube = prepared->cube;
     prepared->cube = (tl_cube){0};
     renderer->suns = prepared->suns;
-    tl_lobes_take(&renderer->lobes, &prepared->lobes);
-    for (int i = 0; i < prepared->count; i++) {
-        prepared->light.regions = prepared->lights[i].count;
-        tl_frame_keep_lights(renderer, &prepared->light, &prepared->lights[i].regions,
-                             &prepared->lights[i].lights);
-    }
+    renderer->lights = NULL; /* those of the cube before */
+    add(prepared, renderer);
 }
 
 bool tl_frame_use_prepared(tl_renderer *renderer)

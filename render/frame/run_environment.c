@@ -134,24 +134,33 @@ bool tl_frame_has_lights(const tl_renderer *renderer, const struct tl_light_para
     return kept && tl_region_lights_have(&kept->lights, renderer->exponents);
 }
 
-/* In the place of those that were used longest ago. */
-static struct tl_kept_lights *replace_oldest(tl_renderer *renderer, const struct tl_light_params *light)
+/* Not those that light the image. */
+static struct tl_kept_lights *find_oldest(tl_renderer *renderer)
 {
-    struct tl_kept_lights *oldest = &renderer->kept[0];
-    for (int i = 1; i < TL_LIGHTS_KEPT; i++)
-        if (renderer->kept[i].used < oldest->used)
-            oldest = &renderer->kept[i];
-    tl_regions_release(&oldest->cut_regions);
-    tl_region_lights_release(&oldest->lights);
-    *oldest = kept_lights(renderer, light);
-    oldest->used = ++renderer->kept_uses;
+    struct tl_kept_lights *oldest = NULL;
+    for (int i = 0; i < TL_LIGHTS_KEPT; i++) {
+        struct tl_kept_lights *kept = &renderer->kept[i];
+        if (&kept->lights != renderer->lights && (!oldest || kept->used < oldest->used))
+            oldest = kept;
+    }
     return oldest;
+}
+
+/* In the place of the same ones, or of those that were used longest ago. */
+static struct tl_kept_lights *replace_lights(tl_renderer *renderer, const struct tl_light_params *light)
+{
+    struct tl_kept_lights *same = find_lights(renderer, light), *kept = same ? same : find_oldest(renderer);
+    tl_regions_release(&kept->cut_regions);
+    tl_region_lights_release(&kept->lights);
+    *kept = kept_lights(renderer, light);
+    kept->used = ++renderer->kept_uses;
+    return kept;
 }
 
 static struct tl_kept_lights *begin_lights(tl_renderer *renderer, const struct tl_light_params *light,
                                            const struct tl_regions *regions)
 {
-    struct tl_kept_lights *kept = replace_oldest(renderer, light);
+    struct tl_kept_lights *kept = replace_lights(renderer, light);
     kept->cut_regions = tl_regions_copy(regions);
     tl_region_lights_begin(&kept->lights, regions, kept->weight);
     return kept;
@@ -160,7 +169,7 @@ static struct tl_kept_lights *begin_lights(tl_renderer *renderer, const struct t
 void tl_frame_keep_lights(tl_renderer *renderer, const struct tl_light_params *light,
                           struct tl_regions *regions, struct tl_region_lights *lights)
 {
-    struct tl_kept_lights *kept = replace_oldest(renderer, light);
+    struct tl_kept_lights *kept = replace_lights(renderer, light);
     kept->cut_regions = *regions;
     kept->lights = *lights;
     *regions = (struct tl_regions){0};

@@ -11,16 +11,22 @@
 
 /* A frame may be over by 1.1 once in a hundred. The share of the budget that is planned with is led there:
  * down a step with each such frame, and up by so little with each other that they balance at one in two
- * hundred. */
-#define OVER        1.1
-#define OVER_RATE   0.005
-#define SHARE_STEP  0.03
-#define SHARE_MIN   0.75
-#define SHARE_FIRST 0.9
-#define SHARE_MAX   0.96
-#define PANIC_STEP  1.12
-#define PANIC_MAX   1.6
-#define PANIC_DECAY 0.9
+ * hundred.
+ *
+ * It begins where the budget's own twelve hundredths and 6 ms are left for what cannot be foreseen: in 15
+ * flights of 600 frames at 33, 50 and 100 ms, two cores, one frame in a hundred took 5 to 10, 7 to 9 and 13
+ * to 20 ms more than predicted. The 6 ms are others' work, whatever the budget: a trace of the scheduler
+ * showed a kernel thread that looks for idle memory hold one of the two cores for 25 to 33 ms every 5 s. */
+#define OVER         1.1
+#define OVER_RATE    0.005
+#define UNSEEN_SHARE 0.12
+#define UNSEEN_MS    6.0
+#define SHARE_STEP   0.03
+#define SHARE_MIN    0.75
+#define SHARE_MAX    0.96
+#define PANIC_STEP   1.12
+#define PANIC_MAX    1.6
+#define PANIC_DECAY  0.9
 
 /* The next combination, counting with the last knob first; false after the last one. */
 static bool next_levels(const struct tl_budget *budget, uint8_t *levels)
@@ -64,15 +70,17 @@ bool tl_budget_best(const struct tl_budget *budget, double limit_ms, double firs
     return best.fits;
 }
 
-double tl_governor_limit(const struct tl_governor *governor, double budget_ms)
-{
-    return budget_ms * governor->share / governor->panic;
-}
-
 static void begin(struct tl_governor *governor, const struct tl_budget *budget)
 {
-    *governor = (struct tl_governor){
-        .knob_count = budget->knob_count, .patience = PATIENCE_MIN, .share = SHARE_FIRST, .panic = 1};
+    *governor = (struct tl_governor){.knob_count = budget->knob_count, .patience = PATIENCE_MIN, .panic = 1};
+}
+
+static void begin_budget(struct tl_governor *governor, double budget_ms)
+{
+    if (governor->budget_ms == budget_ms)
+        return;
+    governor->budget_ms = budget_ms;
+    governor->share = fmin(fmax(OVER - UNSEEN_SHARE - UNSEEN_MS / budget_ms, SHARE_MIN), SHARE_MAX);
 }
 
 /* What the scene no longer asks for has one level only. */
@@ -107,8 +115,9 @@ enum tl_governed tl_governor_choose(struct tl_governor *governor, const struct t
     bool is_first = governor->knob_count != budget->knob_count;
     if (is_first)
         begin(governor, budget);
+    begin_budget(governor, budget_ms);
     bool within = keep_within(governor, budget);
-    double limit_ms = tl_governor_limit(governor, budget_ms);
+    double limit_ms = budget_ms * governor->share / governor->panic;
     governor->settled++;
     double cost = budget->cost(budget->context, governor->levels);
     if (is_first || !within || cost > limit_ms) {

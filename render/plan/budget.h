@@ -34,19 +34,17 @@ bool tl_budget_best(const struct tl_budget *budget, double limit_ms, double firs
 
 struct tl_governor {
     uint8_t levels[TL_BUDGET_KNOBS_MAX];
-    int knob_count; /* that they were chosen for; 0: nothing was chosen yet */
-    int settled;    /* frames since the last change */
-    int patience;   /* frames to wait before the next step up */
-    bool is_trial;  /* the last change was one up */
-    bool was_over;  /* the last frame was: one may be, a second says that the costs are wrong */
-    double share;   /* of the budget that is planned with */
-    double panic;   /* factor under the budget after frames that were over it; 1: calm */
+    int knob_count;   /* that they were chosen for; 0: nothing was chosen yet */
+    int settled;      /* frames since the last change */
+    int patience;     /* frames to wait before the next step up */
+    bool is_trial;    /* the last change was one up */
+    bool was_over;    /* the last frame was: one may be, a second says that the costs are wrong */
+    double budget_ms; /* that the share was begun for */
+    double share;     /* of the budget that is planned with: the rest is for what cannot be foreseen */
+    double panic;     /* factor under the budget after frames that were over it; 1: calm */
 };
 
 enum tl_governed { TL_GOVERNED_KEPT, TL_GOVERNED_DOWN, TL_GOVERNED_UP };
-
-/* The part of the budget that may be planned with: what is left of it is for what cannot be foreseen. */
-double tl_governor_limit(const struct tl_governor *governor, double budget_ms);
 
 /* Chooses governor->levels of the next frame. */
 enum tl_governed tl_governor_choose(struct tl_governor *governor, const struct tl_budget *budget,

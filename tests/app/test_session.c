@@ -103,6 +103,60 @@ static void colourways_change_looks_only(void **state)
     tl_session_destroy(&session);
 }
 
+static uint64_t look_of(tl_session *session, const struct tl_settings *settings)
+{
+    tl_error error = {0};
+    assert_ok(tl_session_apply(session, settings, &error), error);
+    return tl_session_frame(session).surfaces[1].topology_revision;
+}
+
+/* A look that was made beside the session is the one that it would have made, and three go round without
+ * being made again; a fourth takes the place of the one that was seen longest ago. */
+static void looks_are_made_beside_the_session(void **state)
+{
+    (void)state;
+    tl_session *session = quick_session(NULL);
+    struct tl_settings looks[4];
+    for (int i = 0; i < 4; i++) {
+        looks[i] = *tl_session_settings(session);
+        looks[i].material.glossiness = 0.2f * (float)i;
+        assert_true(i == 0 || tl_session_needs_look(&looks[0], &looks[i]));
+    }
+    uint64_t first = look_of(session, &looks[0]), second = look_of(session, &looks[1]);
+
+    struct tl_looks made;
+    tl_surface surfaces[2];
+    tl_error error = {0};
+    assert_ok(tl_session_make_look(session, &looks[2], &made, &error), error);
+    tl_frame frame = tl_session_frame_in(session, &made, surfaces);
+    assert_int_equal(frame.surface_count, 2);
+    assert_true(frame.surfaces[1].materials[0].glossiness == looks[2].material.glossiness);
+    assert_true(look_of(session, &looks[1]) == second); /* until it is applied nothing shows it */
+    tl_session_keep_look(session, &looks[2], &made);
+    assert_int_equal(made.image_count + made.weave_count + made.name_count, 0);
+    uint64_t third = look_of(session, &looks[2]);
+    assert_true(third > second);
+    assert_true(tl_session_frame(session).surfaces[1].materials[0].glossiness ==
+                looks[2].material.glossiness);
+    assert_true(look_of(session, &looks[0]) == first);
+    assert_true(look_of(session, &looks[1]) == second);
+    assert_true(look_of(session, &looks[2]) == third);
+
+    /* What the session has already is not taken twice. */
+    assert_ok(tl_session_make_look(session, &looks[1], &made, &error), error);
+    tl_session_keep_look(session, &looks[1], &made);
+    assert_true(look_of(session, &looks[1]) == second);
+    look_of(session, &looks[3]);
+    assert_true(look_of(session, &looks[1]) == second);
+    assert_true(look_of(session, &looks[2]) == third);
+    assert_true(look_of(session, &looks[0]) > third);
+
+    struct tl_settings taken = looks[3];
+    tl_looks_take(&looks[0], &taken);
+    assert_false(tl_session_needs_look(&looks[0], &taken));
+    tl_session_destroy(&session);
+}
+
 static void a_failure_keeps_what_was(void **state)
 {
     (void)state;
@@ -199,6 +253,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(new_scenes_and_fabrics_are_taken_over),
         cmocka_unit_test(colourways_change_looks_only),
+        cmocka_unit_test(looks_are_made_beside_the_session),
         cmocka_unit_test(a_failure_keeps_what_was),
         cmocka_unit_test(frames_replay_to_the_bit),
         cmocka_unit_test(picking_finds_the_front),

@@ -22,7 +22,7 @@ $TOILE render --preset draft --set cloth.edge_m=0.05 --size 256x128 --quiet -o l
 fabric
 scene dress light.exr
 : >log
-$TOILE view scene.yaml --budget 50 --screenshots shots 2>log &
+$TOILE view scene.yaml --budget 50 --screenshots shots --verbose 2>log &
 viewer=$!
 said "view: ready"
 window=$(xdotool search --pid "$viewer" | tail -n 1)
@@ -70,6 +70,11 @@ for _ in $(seq 300); do kill -0 "$viewer" 2>/dev/null || break; xdotool key q; s
 ! kill -0 "$viewer" 2>/dev/null || fail "it hangs: it does not close within a minute"
 closed
 grep -e "images in motion" -e "images at rest" -e "closed after" log
+slow=$(grep -c "slow image.*in motion" log || true)
+echo "slow images in motion: $slow; the slowest, and what took them:"
+grep -A3 "slow image.*in motion" log | grep -e "slow image" -e "view:   " | sed 's/.*debug: view: *//' |
+    awk '/slow image/ { if (line) print line; line = ""; ms = $0; sub(/.*motion: /, "", ms); sub(/ .*/, "", ms); line = ms " ms " $0; next }
+        { line = line "; " $0 } END { print line }' | sort -rn | head -n 8
 # Memory plays by some 100 MB as scenes, levels and comparisons come and go and idle pages are given back; the least of
 # each minute plays less, and what is never freed lifts it all the same. Least squares over the second half: what a start
 # allocates once is no growth. What is certain of the slope may be 1 MB a minute at most: a review of a working day then

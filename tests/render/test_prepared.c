@@ -100,11 +100,11 @@ static bool has_run(const tl_renderer *renderer, const char *job)
 
 static tl_prepared *prepare(const struct scene *scene, int environment)
 {
-    const struct tl_prepared_request request = {.environment = &scene->environments[environment],
-                                                .settings = scene->settings,
-                                                .region_counts = {scene->settings.light.regions, 24},
-                                                .exponents =
-                                                    tl_prepared_exponents(&scene->frame, &scene->settings)};
+    struct tl_prepared_request request = {.environment = &scene->environments[environment],
+                                          .settings = scene->settings,
+                                          .region_counts = {scene->settings.light.regions, 24},
+                                          .exponents =
+                                              tl_prepared_exponents(&scene->frame, &scene->settings)};
     return tl_prepared_make(&request);
 }
 
@@ -173,6 +173,48 @@ static void unfit_light_is_not_used(void **state)
     scene_close(&scene);
 }
 
+/* What new materials lack is added to what is known, and nothing of it is made again. */
+static void known_light_is_added_to(void **state)
+{
+    struct test_device *device = *state;
+    tl_renderer *renderer = new_renderer(device);
+    struct scene scene;
+    scene_open(&scene);
+    set_glossiness(&scene, 0.2f);
+    expect_as_new(device, renderer, &scene);
+    set_glossiness(&scene, 0.9f);
+    struct tl_render_settings coarse = scene.settings;
+    coarse.light.regions = 24;
+    assert_false(tl_renderer_has_regions(renderer, &coarse));
+    struct tl_prepared_request request = {.environment = &scene.environments[0],
+                                          .known = tl_prepared_copy(renderer),
+                                          .settings = scene.settings,
+                                          .region_counts = {scene.settings.light.regions, 24},
+                                          .exponents = tl_prepared_exponents(&scene.frame, &scene.settings) |
+                                                       tl_renderer_exponents(renderer)};
+    tl_prepared *prepared = tl_prepared_make(&request);
+    assert_null(request.known);
+    tl_renderer_take_prepared(renderer, &prepared, scene.frame.environment_revision);
+    assert_null(prepared);
+    assert_true(tl_renderer_has_regions(renderer, &coarse));
+    size_t known = tl_renderer_memory(renderer).pems;
+    tl_image image = test_draw(renderer, &scene.frame, &scene.settings);
+    tl_image_release(&image);
+    assert_false(has_run(renderer, "cube"));
+    assert_true(has_run(renderer, "lights"));
+    assert_int_equal(tl_renderer_memory(renderer).pems, known);
+    expect_as_new(device, renderer, &scene);
+
+    /* Of another cube nothing is known. */
+    request.known = tl_prepared_copy(renderer);
+    request.settings.light.pem_size = scene.settings.light.pem_size = 16;
+    prepared = tl_prepared_make(&request);
+    tl_renderer_take_prepared(renderer, &prepared, scene.frame.environment_revision);
+    expect_as_new(device, renderer, &scene);
+    tl_renderer_destroy(&renderer);
+    scene_close(&scene);
+}
+
 static void light_grows_with_the_materials(void **state)
 {
     const float glossiness[] = {0.2f, 0.9f, 0.5f, 0.9f};
@@ -205,6 +247,7 @@ int main(void)
         cmocka_unit_test(prepared_light_is_that_of_the_renderer),
         cmocka_unit_test(a_copy_serves_another_renderer),
         cmocka_unit_test(unfit_light_is_not_used),
+        cmocka_unit_test(known_light_is_added_to),
         cmocka_unit_test(light_grows_with_the_materials),
     };
     return cmocka_run_group_tests(tests, test_device_open, test_device_close);
