@@ -279,16 +279,8 @@ TL_CLONES static void solve_run(const struct tl_preview_membrane *membranes, siz
         put_back(&before, k, &out, places);
 }
 
-TL_CLONES static void widen(const vec3d *x, struct tl_range range, double *places)
-{
-    for (size_t i = range.from; i < range.to; i++) {
-        places[4 * i] = x[i].x;
-        places[4 * i + 1] = x[i].y;
-        places[4 * i + 2] = x[i].z;
-    }
-}
-
-TL_CLONES static void narrow(const double *places, struct tl_range range, vec3d *x)
+/* Out of the pulls' `places`. */
+TL_CLONES static void take_places(const double *places, struct tl_range range, vec3d *x)
 {
     for (size_t i = range.from; i < range.to; i++)
         x[i] = (vec3d){places[4 * i], places[4 * i + 1], places[4 * i + 2]};
@@ -299,7 +291,7 @@ static void solve_membranes(const struct tl_energy *energy, const struct tl_watc
 {
     double *places = energy->pulls.places;
     struct tl_range mine = tl_my_part(energy->pulls.vertex_count, TL_PULLS_BLOCK);
-    widen(x, mine, places);
+    tl_pulls_place(&energy->pulls, x, mine);
 #pragma omp barrier
 
     size_t from = 0;
@@ -311,7 +303,7 @@ static void solve_membranes(const struct tl_energy *energy, const struct tl_watc
         from = end;
 #pragma omp barrier
     }
-    narrow(places, mine, x);
+    take_places(places, mine, x);
 #pragma omp barrier
 }
 
