@@ -168,12 +168,22 @@ bool tl_loader_take(tl_loader **handle, struct tl_loaded *out, tl_error *error)
     return made;
 }
 
+void tl_loader_stop(tl_loader *loader)
+{
+    atomic_store(&loader->stops, true);
+}
+
+bool tl_loader_is_stopped(const tl_loader *loader)
+{
+    return atomic_load(&loader->stops);
+}
+
 void tl_loader_cancel(tl_loader **handle)
 {
     tl_loader *loader = *handle;
     if (!loader)
         return;
-    atomic_store(&loader->stops, true);
+    tl_loader_stop(loader);
     join(loader);
     tl_loaded_release(&loader->loaded);
     for (int i = 0; i < loader->lights.count; i++)

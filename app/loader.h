@@ -49,7 +49,10 @@ struct tl_load_progress tl_loader_progress(tl_loader *loader);
 
 /* Ends a loader that is done: hands over what it has made, or fails as the making did. */
 bool tl_loader_take(tl_loader **handle, struct tl_loaded *out, tl_error *error);
-/* Asks it to stop, waits until it has, and forgets what it made; null is fine. */
+/* Asks it to stop: it is done soon, and then fit for nothing but to be cancelled. */
+void tl_loader_stop(tl_loader *loader);
+bool tl_loader_is_stopped(const tl_loader *loader);
+/* Stops it, waits until it is done, and forgets what it made; null is fine. */
 void tl_loader_cancel(tl_loader **handle);
 
 #endif

@@ -42,6 +42,7 @@ static bool run(int argc, char **argv, tl_error *error)
  * is there at once; given back, its pages are faulted in and zeroed anew, which takes a frame's time. */
 static void keep_freed_memory(void)
 {
+    mallopt(M_ARENA_MAX, 1); /* what one thread frees, as a loader's, is there for all */
     const int largest_kept = 32 << 20, trimmed_beyond = 256 << 20; /* bytes; 32 MiB is what glibc allows */
     mallopt(M_MMAP_THRESHOLD, largest_kept);
     mallopt(M_TRIM_THRESHOLD, trimmed_beyond);

@@ -149,24 +149,30 @@ static void finish(struct tl_review *review)
         take_lights(review, &loaded);
     }
     tl_loaded_release(&loaded);
-    review->changed = true;
 }
 
+/* A loader that is stopped takes as long as its present step: nobody waits for that, and the next one begins
+ * when it is done. */
 void tl_review_load(struct tl_review *review)
 {
     if (review->loader && is_outdated(review))
-        tl_loader_cancel(&review->loader);
-    if (review->loader && tl_loader_is_done(review->loader))
-        finish(review);
-    else if (!review->loader && review->changed && !review->editing && is_slow(review, &review->wanted))
+        tl_loader_stop(review->loader);
+    if (review->loader && tl_loader_is_done(review->loader)) {
+        if (tl_loader_is_stopped(review->loader))
+            tl_loader_cancel(&review->loader);
+        else
+            finish(review);
+        review->changed = true;
+    }
+    if (!review->loader && review->changed && !review->editing && is_slow(review, &review->wanted))
         start(review);
 }
 
 bool tl_review_stop_loading(struct tl_review *review)
 {
-    if (!review->loader)
-        return false;
-    tl_loader_cancel(&review->loader);
+    if (!review->loader || !is_slow(review, &review->wanted))
+        return false; /* nothing, or nothing that anybody waits for */
+    tl_loader_stop(review->loader);
     stay(review, &review->wanted);
     review->changed = true;
     tl_review_say(review, "loading was stopped: the scene stays as it was");

@@ -199,7 +199,7 @@ static void describe_status(const struct tl_review *review, char *status, size_t
 
 static struct tl_panel_progress progress_of(const struct tl_review *review, char *text, size_t size)
 {
-    if (!review->loader)
+    if (!review->loader || tl_loader_is_stopped(review->loader))
         return (struct tl_panel_progress){0};
     const struct tl_scene_params *scene = &tl_loader_settings(review->loader)->scene;
     enum tl_load kind = tl_loader_kind(review->loader);
