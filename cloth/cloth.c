@@ -462,15 +462,21 @@ static double usual_strain(const tl_cloth *cloth)
     return sqrt(squares / (3.0 * (double)cloth->topology.triangle_count));
 }
 
-static double deepest(const tl_cloth *cloth, const tl_collider *collider)
+/* Behind the surface that is nearest, and within what it surrounds. */
+static double depth_at(const tl_collider *collider, const double point[3], double least)
 {
     const double reach_m = 0.1;
+    struct tl_contact contact;
+    bool behind = tl_collider_query(collider, point, reach_m, &contact) && -contact.distance_m > least;
+    return behind && tl_collider_winding(collider, point) > 0.5 ? -contact.distance_m : least;
+}
+
+static double deepest(const tl_cloth *cloth, const tl_collider *collider)
+{
     double worst = 0;
     for (size_t i = 0; i < cloth->particles.count; i++) {
-        struct tl_contact contact;
         const double point[3] = {cloth->particles.x[i].x, cloth->particles.x[i].y, cloth->particles.x[i].z};
-        if (tl_collider_query(collider, point, reach_m, &contact))
-            worst = fmax(worst, -contact.distance_m);
+        worst = depth_at(collider, point, worst);
         if (tl_collider_has_ground(collider))
             worst = fmax(worst, -point[1]);
     }

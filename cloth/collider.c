@@ -203,6 +203,26 @@ bool tl_collider_query(const tl_collider *collider, const double point[3], doubl
     return tl_collider_query_at(collider, point, 1, reach_m, out);
 }
 
+/* tan(half the angle) = a.(b x c) / (|a||b||c| + (a.b)|c| + (b.c)|a| + (c.a)|b|). */
+static double solid_angle(vec3d a, vec3d b, vec3d c)
+{
+    double la = vec3d_norm(a), lb = vec3d_norm(b), lc = vec3d_norm(c);
+    return 2 * atan2(vec3d_dot(a, vec3d_cross(b, c)),
+                     la * lb * lc + vec3d_dot(a, b) * lc + vec3d_dot(b, c) * la + vec3d_dot(c, a) * lb);
+}
+
+double tl_collider_winding(const tl_collider *collider, const double point[3])
+{
+    const vec3d p = {point[0], point[1], point[2]};
+    double sum = 0;
+    for (size_t i = 0; i < collider->triangle_count; i++) {
+        vec3d t[3];
+        triangle_at(collider, i, 1, t);
+        sum += solid_angle(vec3d_sub(t[0], p), vec3d_sub(t[1], p), vec3d_sub(t[2], p));
+    }
+    return sum / (4 * M_PI);
+}
+
 void tl_collider_path(const tl_collider *collider, uint32_t triangle, const double barycentric[3],
                       double previous[3], double current[3])
 {

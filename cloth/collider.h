@@ -35,6 +35,12 @@ bool tl_collider_query(const tl_collider *collider, const double point[3], doubl
 bool tl_collider_query_at(const tl_collider *collider, const double point[3], double phase, double reach_m,
                           struct tl_contact *out);
 
+/* How often the current surface winds around a point: 1 inside, 0 outside, whatever folds are nearest. A pose
+ * that pushes the surface through itself leaves creases that are inside out; who sees the back of one from
+ * the open has a negative distance and is not inside. Solid angles of all triangles (van Oosterom & Strackee
+ * 1983): for few points. */
+double tl_collider_winding(const tl_collider *collider, const double point[3]);
+
 /* A point of a triangle at both ends of the motion. */
 void tl_collider_path(const tl_collider *collider, uint32_t triangle, const double barycentric[3],
                       double previous[3], double current[3]);

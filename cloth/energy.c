@@ -326,13 +326,13 @@ static double factor_of(double gradient, double stiffness, double h)
 static void set_preview(const struct tl_membrane *m, const struct tl_cloth_fabric *fabric, const double *w,
                         double h, struct tl_preview_membrane *out)
 {
-    memcpy(out->vertices, m->vertices, sizeof out->vertices);
     memcpy(out->c, &m->c[1], sizeof out->c);
     memcpy(out->d, &m->d[1], sizeof out->d);
     for (int lane = 0; lane < TL_BATCH; lane++) {
         double cc = 0, cd = 0, dd = 0;
         for (int i = 0; i < 3; i++) {
             double mobility = out->w[i][lane] = w[m->vertices[i][lane]];
+            out->from[i][lane] = 4 * m->vertices[i][lane];
             double c = m->c[i][lane], d = m->d[i][lane];
             cc += mobility * c * c;
             cd += mobility * c * d;

@@ -47,7 +47,7 @@ struct tl_preview_membrane {
     double cc[TL_BATCH], cd[TL_BATCH], dd[TL_BATCH]; /* sums of w c_i c_i, ...: fixed while masses are */
     double weft[TL_BATCH], warp[TL_BATCH];           /* -1 / (w |grad|^2 + 1 / (k A h^2)) */
     double shear[TL_BATCH];                          /* 1 / (k A h^2) */
-    uint32_t vertices[3][TL_BATCH];
+    uint32_t from[3][TL_BATCH];                      /* the vertices' first numbers in the pulls' `places` */
 };
 
 /* Curvatures: L_uu, L_vv, sqrt(2) L_uv = sum of rows over the stencil's vertices. */

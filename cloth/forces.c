@@ -19,6 +19,11 @@ TL_CLONES static void copy_places(const vec3d *x, struct tl_range range, double 
     }
 }
 
+void tl_pulls_place(const struct tl_pulls *pulls, const vec3d *x, struct tl_range range)
+{
+    copy_places(x, range, pulls->places);
+}
+
 TL_CLONES static void square_lengths(const vec3d *x, const uint32_t (*edges)[2], struct tl_range range,
                                      double *squared)
 {
@@ -247,7 +252,7 @@ static double evaluate(const struct tl_energy *energy, const struct tl_cloth_fab
 #pragma omp parallel if (pulls->vertex_count >= TL_PARALLEL_VERTICES)
     {
         unsigned denormals = tl_denormals_off();
-        copy_places(x, tl_my_part(pulls->vertex_count, TL_PULLS_BLOCK), pulls->places);
+        tl_pulls_place(pulls, x, tl_my_part(pulls->vertex_count, TL_PULLS_BLOCK));
         square_lengths(x, (const uint32_t(*)[2])pulls->edges, tl_my_part(pulls->edge_count, TL_BATCH),
                        pulls->squared);
 #pragma omp barrier
@@ -285,7 +290,7 @@ void tl_energy_bend(const struct tl_energy *energy, const vec3d *x, vec3d *force
     {
         unsigned denormals = tl_denormals_off();
         struct tl_range mine = tl_my_part(pulls->vertex_count, TL_PULLS_BLOCK);
-        copy_places(x, mine, pulls->places);
+        tl_pulls_place(pulls, x, mine);
 #pragma omp barrier
         add_bending(pulls, mine, forces, then);
         tl_denormals_restore(denormals);

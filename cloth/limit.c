@@ -141,7 +141,8 @@ static bool draw_back(struct tl_limits *limits, const struct tl_pulls *pulls,
     return true;
 }
 
-/* Through the list, or back through it; whether anything moved. */
+/* Through the list, or back through it; whether anything moved. What was found short enough is looked at
+ * again only once one of its ends has moved. */
 static bool sweep(struct tl_limits *limits, const struct tl_pulls *pulls, bool back,
                   struct tl_particles *particles)
 {
@@ -153,7 +154,10 @@ static bool sweep(struct tl_limits *limits, const struct tl_pulls *pulls, bool b
             continue;
         for (size_t k = 0; k < WORD; k++) {
             size_t e = first + (back ? WORD - 1 - k : k);
-            if (limits->due[e] && is_long(limits, &limits->edges[e], particles->x))
+            if (!limits->due[e])
+                continue;
+            limits->due[e] = false;
+            if (is_long(limits, &limits->edges[e], particles->x))
                 any = draw_back(limits, pulls, &limits->edges[e], particles) || any;
         }
     }

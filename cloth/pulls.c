@@ -296,7 +296,7 @@ struct tl_pulls tl_pulls_build(const struct tl_topology *topology, const struct 
 
     size_t blocks = (pulls.vertex_count + TL_PULLS_BLOCK - 1) / TL_PULLS_BLOCK;
     pulls.edge_bending = TL_NEW_ARRAY(double, pulls.edge_count);
-    pulls.places = tl_alloc_lines(4 * pulls.vertex_count, sizeof *pulls.places);
+    pulls.places = tl_alloc_lines(4 * (pulls.vertex_count + 1), sizeof *pulls.places);
     pulls.squared = TL_NEW_ARRAY(double, pulls.edge_count);
     pulls.shares = TL_NEW_ARRAY(double, pulls.metric_count * 3 * TL_BATCH + 1);
     pulls.along_edges = TL_NEW_ARRAY(double, pulls.edge_count);

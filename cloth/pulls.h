@@ -13,7 +13,9 @@
 #ifndef TOILE_CLOTH_PULLS_H
 #define TOILE_CLOTH_PULLS_H
 
+#include "cloth/threads.h"
 #include "cloth/topology.h"
+#include "cloth/vec3d.h"
 #include "config/memory.h"
 
 #include <stddef.h>
@@ -69,7 +71,7 @@ struct tl_pulls {
     struct tl_four_pulls *fours;
 
     /* Scratch. */
-    double *places;  /* [vertex_count][4] m */
+    double *places;  /* [vertex_count + 1][4] m, the last one for the empty lanes of batches */
     double *squared; /* [edge_count] m^2 */
     double *shares;  /* [metric_count][3][TL_BATCH] N/m, then a 0 for edges with fewer than two triangles */
     double *along_edges;        /* [edge_count] N/m, with bending */
@@ -83,6 +85,9 @@ void tl_pulls_release(struct tl_pulls *pulls);
 
 /* Takes over the stiffness against bending of L_uu, L_vv and sqrt(2) L_uv, N m. */
 void tl_pulls_set(struct tl_pulls *pulls, const struct tl_energy *energy, const double stiffness[3]);
+
+/* Copies a part of the vertices' places into the scratch. */
+void tl_pulls_place(const struct tl_pulls *pulls, const vec3d *x, struct tl_range range);
 
 /* Vertices whose energies are added up before those of all blocks are. */
 #define TL_PULLS_BLOCK 64

@@ -3,6 +3,8 @@
 #include "cloth/threads.h"
 #include "config/simd.h"
 
+#include <string.h>
+
 /* Shorter than this a vector has no direction to push along. */
 #define NO_LENGTH 1e-12
 
@@ -45,22 +47,65 @@ TL_INLINE void move(struct places *places, int lane, vec3d by, double share)
     put(places, lane, vec3d_muladd(at(places, lane), by, share));
 }
 
+/* Batches of a run that are solved side by side. */
+#define GROUP 8
+
+/* The corners of a group's membranes, as numbers side by side. */
+struct corners {
+    double x[GROUP][3][TL_BATCH], y[GROUP][3][TL_BATCH], z[GROUP][3][TL_BATCH];
+};
+
+/* The same as they lie in memory: of each x, y, z and what fills a wide register up. */
+struct rows {
+    _Alignas(TL_CACHE_LINE) double of[GROUP][3][TL_BATCH][4];
+};
+
+TL_INLINE void turn_in(const struct rows *rows, size_t count, struct corners *corners)
+{
+    const double(*from)[4] = rows->of[0][0];
+    double *x = corners->x[0][0], *y = corners->y[0][0], *z = corners->z[0][0];
+    for (size_t i = 0; i < count * 3 * TL_BATCH; i++) {
+        x[i] = from[i][0];
+        y[i] = from[i][1];
+        z[i] = from[i][2];
+    }
+}
+
+/* The filling is z again: a loop that writes all four is wide. */
+TL_INLINE void turn_out(const struct corners *corners, size_t count, struct rows *rows)
+{
+    double(*to)[4] = rows->of[0][0];
+    const double *x = corners->x[0][0], *y = corners->y[0][0], *z = corners->z[0][0];
+    for (size_t i = 0; i < count * 3 * TL_BATCH; i++) {
+        to[i][0] = x[i];
+        to[i][1] = y[i];
+        to[i][2] = z[i];
+        to[i][3] = z[i];
+    }
+}
+
+TL_INLINE vec3d corner_at(const struct corners *corners, size_t k, int i, int lane)
+{
+    return (vec3d){corners->x[k][i][lane], corners->y[k][i][lane], corners->z[k][i][lane]};
+}
+
 /* One membrane of each lane on its way. Both stretches and the shear are solved one after the other, on F
  * alone, and the vertices move once: a push p on row c moves vertex i by w_i c_i p, and so F_u by cc p and
  * F_v by cd p. All pushes lie in the plane of the first F_u and F_v, u and v: only their shares of these two
  * change, and scalar products follow from the first three. In stages: what one stage of a batch waits for,
  * roots and divisions, the same stage of the next batches need not. */
 struct membrane_work {
-    struct places x[3], u, v;
+    struct places u, v;
     double uu[TL_BATCH], vv[TL_BATCH], uv[TL_BATCH];
     double c_u[TL_BATCH], c_v[TL_BATCH]; /* the whole push on row c: c_u u + c_v v */
     double d_u[TL_BATCH], d_v[TL_BATCH];
 };
 
-TL_INLINE void measure(const struct tl_preview_membrane *m, int lane, struct membrane_work *work)
+TL_INLINE void measure(const struct tl_preview_membrane *m, const struct corners *corners, size_t k, int lane,
+                       struct membrane_work *work)
 {
-    vec3d origin = at(&work->x[0], lane), side = vec3d_sub(at(&work->x[1], lane), origin);
-    vec3d other = vec3d_sub(at(&work->x[2], lane), origin);
+    vec3d origin = corner_at(corners, k, 0, lane), side = vec3d_sub(corner_at(corners, k, 1, lane), origin);
+    vec3d other = vec3d_sub(corner_at(corners, k, 2, lane), origin);
     vec3d u = vec3d_muladd(vec3d_scale(side, m->c[0][lane]), other, m->c[1][lane]);
     vec3d v = vec3d_muladd(vec3d_scale(side, m->d[0][lane]), other, m->d[1][lane]);
     put(&work->u, lane, u);
@@ -135,7 +180,8 @@ TL_INLINE void solve(const struct tl_preview_membrane *m, int lane, struct membr
     work->d_v[lane] = warp + (across * f.u_v - along_d * f.v_v);
 }
 
-TL_INLINE void move_corners(const struct tl_preview_membrane *m, int lane, struct membrane_work *work)
+TL_INLINE void move_corners(const struct tl_preview_membrane *m, const struct membrane_work *work, int lane,
+                            size_t k, struct corners *corners)
 {
     vec3d u = at(&work->u, lane), v = at(&work->v, lane);
     double along_u[3], along_v[3];
@@ -148,13 +194,13 @@ TL_INLINE void move_corners(const struct tl_preview_membrane *m, int lane, struc
     along_v[0] = -(along_v[1] + along_v[2]);
     for (int i = 0; i < 3; i++) {
         double w = m->w[i][lane];
-        vec3d moved = vec3d_muladd(at(&work->x[i], lane), u, w * along_u[i]);
-        put(&work->x[i], lane, vec3d_muladd(moved, v, w * along_v[i]));
+        vec3d moved = vec3d_muladd(corner_at(corners, k, i, lane), u, w * along_u[i]);
+        moved = vec3d_muladd(moved, v, w * along_v[i]);
+        corners->x[k][i][lane] = moved.x;
+        corners->y[k][i][lane] = moved.y;
+        corners->z[k][i][lane] = moved.z;
     }
 }
-
-/* Batches of a run that are solved side by side. */
-#define GROUP 8
 
 /* Whether the metric's larger eigenvalue exceeds `most`. */
 TL_INLINE bool stretches(const struct membrane_work *work, int lane, double most)
@@ -163,53 +209,102 @@ TL_INLINE bool stretches(const struct membrane_work *work, int lane, double most
     return (spare_u < 0) | (spare_v < 0) | (spare_u * spare_v < uv * uv);
 }
 
-TL_INLINE void solve_group(const struct tl_preview_membrane *m, size_t count, double most, vec3d *x,
-                           bool (*seen)[TL_BATCH])
+/* Batches of a run from `first` on, GROUP of them or what is left. */
+struct group {
+    const struct tl_preview_membrane *membranes;
+    size_t count;
+};
+
+TL_INLINE struct group group_at(const struct tl_preview_membrane *membranes, size_t count, size_t first)
 {
-    struct membrane_work work[GROUP];
-    for (size_t k = 0; k < count; k++) {
-        for (size_t line = 0; line < sizeof *m; line += TL_CACHE_LINE)
-            __builtin_prefetch((const char *)&m[k + GROUP] + line);
-        for (int i = 0; i < 3; i++)
-            load(x, m[k].vertices[i], &work[k].x[i]);
-    }
-    for (size_t k = 0; k < count; k++)
-        for (int lane = 0; lane < TL_BATCH; lane++)
-            measure(&m[k], lane, &work[k]);
-    for (size_t k = 0; k < count && seen; k++)
-        for (int lane = 0; lane < TL_BATCH; lane++)
-            seen[k][lane] = stretches(&work[k], lane, most);
-    for (size_t k = 0; k < count; k++)
-        for (int lane = 0; lane < TL_BATCH; lane++)
-            solve(&m[k], lane, &work[k]);
-    for (size_t k = 0; k < count; k++)
-        for (int lane = 0; lane < TL_BATCH; lane++)
-            move_corners(&m[k], lane, &work[k]);
-    for (size_t k = 0; k < count; k++)
-        for (int i = 0; i < 3; i++)
-            store(&work[k].x[i], m[k].vertices[i], x);
+    size_t left = first < count ? count - first : 0;
+    return (struct group){membranes + first, left < GROUP ? left : GROUP};
 }
 
-TL_CLONES static void solve_run(const struct tl_preview_membrane *membranes, size_t count, double most,
-                                vec3d *x, bool (*seen)[TL_BATCH])
+TL_INLINE void fetch(const struct group *group, size_t k, const double *places, struct rows *rows)
 {
-    for (size_t first = 0; first < count; first += GROUP)
-        solve_group(membranes + first, count - first < GROUP ? count - first : GROUP, most, x,
-                    seen ? seen + first : NULL);
+    if (k >= group->count)
+        return;
+    for (size_t line = 0; line < sizeof *group->membranes; line += TL_CACHE_LINE)
+        __builtin_prefetch((const char *)&group->membranes[k + GROUP] + line);
+    for (int i = 0; i < 3; i++)
+        for (int lane = 0; lane < TL_BATCH; lane++)
+            memcpy(rows->of[k][i][lane], &places[group->membranes[k].from[i][lane]],
+                   sizeof rows->of[k][i][lane]);
+}
+
+TL_INLINE void put_back(const struct group *group, size_t k, const struct rows *rows, double *places)
+{
+    for (int i = 0; i < 3 && k < group->count; i++)
+        for (int lane = 0; lane < TL_BATCH; lane++)
+            memcpy(&places[group->membranes[k].from[i][lane]], rows->of[k][i][lane],
+                   sizeof rows->of[k][i][lane]);
+}
+
+/* While a group waits for roots and divisions, the one before it is put back and the next one fetched: those
+ * of a run share no vertex. */
+TL_CLONES static void solve_run(const struct tl_preview_membrane *membranes, size_t count, double most,
+                                double *places, bool (*seen)[TL_BATCH])
+{
+    struct membrane_work work[GROUP];
+    struct corners corners;
+    struct rows in, out;
+    struct group now = group_at(membranes, count, 0), before = {0};
+    for (size_t k = 0; k < now.count; k++)
+        fetch(&now, k, places, &in);
+    for (size_t first = 0; first < count; first += GROUP) {
+        const struct tl_preview_membrane *m = now.membranes;
+        struct group next = group_at(membranes, count, first + GROUP);
+        turn_in(&in, now.count, &corners);
+        for (size_t k = 0; k < now.count; k++)
+            for (int lane = 0; lane < TL_BATCH; lane++)
+                measure(&m[k], &corners, k, lane, &work[k]);
+        for (size_t k = 0; k < now.count && seen; k++)
+            for (int lane = 0; lane < TL_BATCH; lane++)
+                seen[first + k][lane] = stretches(&work[k], lane, most);
+        for (size_t k = 0; k < GROUP; k++) {
+            for (int lane = 0; lane < TL_BATCH && k < now.count; lane++)
+                solve(&m[k], lane, &work[k]);
+            put_back(&before, k, &out, places);
+            fetch(&next, k, places, &in);
+        }
+        for (size_t k = 0; k < now.count; k++)
+            for (int lane = 0; lane < TL_BATCH; lane++)
+                move_corners(&m[k], &work[k], lane, k, &corners);
+        turn_out(&corners, now.count, &out);
+        before = now;
+        now = next;
+    }
+    for (size_t k = 0; k < before.count; k++)
+        put_back(&before, k, &out, places);
+}
+
+/* Out of the pulls' `places`. */
+TL_CLONES static void take_places(const double *places, struct tl_range range, vec3d *x)
+{
+    for (size_t i = range.from; i < range.to; i++)
+        x[i] = (vec3d){places[4 * i], places[4 * i + 1], places[4 * i + 2]};
 }
 
 /* On the threads of a team: the batches of a run in any order, the runs one after the other. */
 static void solve_membranes(const struct tl_energy *energy, const struct tl_watch *watch, vec3d *x)
 {
+    double *places = energy->pulls.places;
+    struct tl_range mine = tl_my_part(energy->pulls.vertex_count, TL_PULLS_BLOCK);
+    tl_pulls_place(&energy->pulls, x, mine);
+#pragma omp barrier
+
     size_t from = 0;
     for (size_t run = 0; run < energy->membrane_run_count; run++) {
         size_t end = energy->membrane_run_ends[run];
         struct tl_range part = tl_my_part(end - from, 1);
-        solve_run(energy->previewed + from + part.from, part.to - part.from, watch ? watch->most : 0, x,
+        solve_run(energy->previewed + from + part.from, part.to - part.from, watch ? watch->most : 0, places,
                   watch ? watch->seen + from + part.from : NULL);
         from = end;
 #pragma omp barrier
     }
+    take_places(places, mine, x);
+#pragma omp barrier
 }
 
 /* The three components of the curvature: vectors, linear in the positions. */

@@ -62,12 +62,12 @@ TL_CLONES static void solve_membranes(const struct tl_preview_membrane *membrane
         vec3d corners[3][TL_BATCH];
         for (int i = 0; i < 3; i++)
             for (int lane = 0; lane < TL_BATCH; lane++)
-                corners[i][lane] = x[m->vertices[i][lane]];
+                corners[i][lane] = x[m->from[i][lane] / 4];
         for (int lane = 0; lane < TL_BATCH; lane++)
             solve_membrane(m, lane, corners);
         for (int i = 0; i < 3; i++)
             for (int lane = 0; lane < TL_BATCH; lane++)
-                x[m->vertices[i][lane]] = corners[i][lane];
+                x[m->from[i][lane] / 4] = corners[i][lane];
     }
 }
 

@@ -70,6 +70,51 @@ static void test_sphere_inside_and_out(void **state)
     tl_mesh_release(&mesh);
 }
 
+/* 1 inside and 0 outside, near faces, edges and corners too; solid angles add up to rounding. */
+static void test_winding(void **state)
+{
+    (void)state;
+    tl_error error = {0};
+    tl_mesh mesh = body_box((vec3s){{0, 0, 0}}, (vec3s){{0.5f, 0.25f, 0.125f}}, 0);
+    const vec3d half = {0.5, 0.25, 0.125};
+    tl_collider *collider = tl_collider_create(&mesh, false, &error);
+    assert_non_null(collider);
+    for (uint32_t i = 1; i <= 4000; i++) {
+        const double p[3] = {2 * halton(i, 2) - 1, 2 * halton(i, 3) - 1, 2 * halton(i, 5) - 1};
+        assert_near(tl_collider_winding(collider, p), box_distance((vec3d){p[0], p[1], p[2]}, half) < 0,
+                    1e-12);
+    }
+    const double within = 0.125 - 1e-9, beyond = 0.125 + 1e-9;
+    assert_near(tl_collider_winding(collider, (const double[3]){0.3, 0.1, within}), 1, 1e-6);
+    assert_near(tl_collider_winding(collider, (const double[3]){0.3, 0.1, beyond}), 0, 1e-6);
+    tl_collider_destroy(&collider);
+    tl_mesh_release(&mesh);
+}
+
+/* A box whose top is pushed 0.2 m below its bottom is inside out: who floats above the bottom sees its back,
+ * at a negative distance, and is outside; between the two it is wound around the other way. */
+static void test_inside_out_is_not_inside(void **state)
+{
+    (void)state;
+    tl_error error = {0};
+    tl_mesh mesh = body_box((vec3s){{0, 0, 0}}, (vec3s){{0.5f, 0.25f, 0.5f}}, 0);
+    tl_collider *collider = tl_collider_create(&mesh, false, &error);
+    vec3s folded[8];
+    for (int i = 0; i < 8; i++) {
+        folded[i] = mesh.positions[i];
+        folded[i].y = i & 2 ? -0.45f : -0.25f;
+    }
+    tl_collider_move(collider, folded);
+    const double above[3] = {0.1, -0.2, 0.1}, between[3] = {0.1, -0.35, 0.1};
+    struct tl_contact contact;
+    assert_true(tl_collider_query(collider, above, 1, &contact));
+    assert_near(contact.distance_m, -0.05, 1e-7);
+    assert_near(tl_collider_winding(collider, above), 0, 1e-12);
+    assert_near(tl_collider_winding(collider, between), -1, 1e-12);
+    tl_collider_destroy(&collider);
+    tl_mesh_release(&mesh);
+}
+
 static void test_reach_and_nothing(void **state)
 {
     (void)state;
@@ -139,6 +184,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_box),
         cmocka_unit_test(test_sphere_inside_and_out),
+        cmocka_unit_test(test_winding),
+        cmocka_unit_test(test_inside_out_is_not_inside),
         cmocka_unit_test(test_reach_and_nothing),
         cmocka_unit_test(test_moving),
         cmocka_unit_test(test_bad_vertices_are_refused),
