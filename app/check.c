@@ -47,8 +47,7 @@ const struct tl_invariant tl_invariants[] = {
     {"visibility.regions",
      "VIS of a region is what rays see of it, on average over the sampled points: difference from their mean "
      "beyond three of their deviations from one direction of the region to the next, times the region's "
-     "light "
-     "up to the mean",
+     "light up to the mean",
      0.15,
      "what is kept is a few frames old and lies at vertices: at most 0.10 in 7300 cases in dress, review, a "
      "T-shirt's motion and a walk, by 24 to 384 regions",
@@ -76,8 +75,8 @@ const struct tl_invariant tl_invariants[] = {
      "as furnace.albedo", true, tl_measure_furnace_shadowed},
     {"cloth.strain", "no edge is longer or shorter than cloth can be: largest strain", BY_SETTINGS,
      "half, or twice what the solver is told to keep; when put on 1, and later a quarter more than then; "
-     "what "
-     "a budget hurries, 1; what a hand holds, three times what it yields at (TL_HAND_STRAIN); what a moving "
+     "what a budget hurries, 1; what a hand holds, three times what it yields at (TL_HAND_STRAIN); what a "
+     "moving "
      "wearer drags, until it slips (TL_SNAG_STRAIN), and what it has caught, until it is refused "
      "(TL_CLOTH_MOST_STRAIN)",
      false, tl_measure_strain},

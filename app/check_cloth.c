@@ -14,8 +14,7 @@
 
 /* A hand yields before it strains the edges that it holds by TL_HAND_STRAIN; the next ones may take as much
  * again (tests/cloth/test_hand.c: 0.96), and what the wearer holds back half as much more (trousers about a
- * leg: 1.21).
- */
+ * leg: 1.21). */
 #define HELD_STRAIN (3 * TL_HAND_STRAIN)
 
 /* With the fewest substeps that a budget leaves: eight of a frame, instead of sixty, leave the dress's worst

@@ -283,9 +283,7 @@ static void reload_shaders(tl_renderer *renderer)
     if (!tl_shadow_maps_reload(renderer->maps, &error) || !tl_gbuffer_reload(&renderer->gbuffer, &error) ||
         !tl_gbuffer_reload(&renderer->sheets.behind, &error) ||
         !tl_lighting_reload(&renderer->lighting, &error) || !tl_envmap_reload(&renderer->envmap, &error) ||
-        !tl_capture_reload(&renderer->capture, &error) ||
-        !tl_program_reload(&renderer->present.resolve, &error) ||
-        !tl_program_reload(&renderer->present.show, &error))
+        !tl_capture_reload(&renderer->capture, &error) || !tl_present_reload(&renderer->present, &error))
         tl_warn("%s", error.message);
     forget(renderer);
 }

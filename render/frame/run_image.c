@@ -111,7 +111,7 @@ bool tl_run_resolve(void *context, int level, tl_error *error)
 bool tl_run_show(void *context, int level, tl_error *error)
 {
     tl_renderer *renderer = context;
-    (void)level, (void)error;
+    (void)level;
     const struct tl_show_request request = {.view = renderer->view,
                                             .environment_yaw = renderer->frame.environment_yaw,
                                             .params = &renderer->settings.image,
@@ -120,6 +120,5 @@ bool tl_run_show(void *context, int level, tl_error *error)
                                             .first_column = renderer->show_first,
                                             .end_column = renderer->show_end,
                                             .height = renderer->show_height};
-    tl_present_show(&renderer->present, renderer->gpu, &request);
-    return true;
+    return tl_present_show(&renderer->present, renderer->gpu, &request, error);
 }

@@ -10,23 +10,34 @@
 #include <stdlib.h>
 
 /* Uniform locations of show.frag. */
-enum { EXPOSURE, BACKGROUND, ENVIRONMENT_TURN, VIEW, LATLONG = 6, BLURRED_SCALE, AS_IT_IS };
+enum { EXPOSURE, ENVIRONMENT_TURN, VIEW, BLURRED_SCALE = 5 };
 
 bool tl_present_create(struct tl_present *present, tl_gpu *gpu, tl_error *error)
 {
     return tl_program_create(gpu, tl_embedded_shaders, "fullscreen.vert", "resolve.frag", &present->resolve,
-                             error) &&
-           tl_program_create(gpu, tl_embedded_shaders, "fullscreen.vert", "show.frag", &present->show, error);
+                             error);
 }
 
 void tl_present_release(struct tl_present *present)
 {
     tl_program_destroy(&present->resolve);
-    tl_program_destroy(&present->show);
+    for (int shown = 0; shown < TL_SHOWN_COUNT; shown++)
+        for (int same_size = 0; same_size < 2; same_size++)
+            tl_program_destroy(&present->shows[shown][same_size]);
     tl_target_destroy(&present->image);
     tl_target_destroy(&present->shown);
     tl_texture_destroy(&present->backdrop);
     tl_texture_destroy(&present->blurred);
+}
+
+bool tl_present_reload(struct tl_present *present, tl_error *error)
+{
+    bool fine = tl_program_reload(&present->resolve, error);
+    for (int shown = 0; shown < TL_SHOWN_COUNT; shown++)
+        for (int same_size = 0; same_size < 2; same_size++)
+            if (present->shows[shown][same_size].id)
+                fine = fine && tl_program_reload(&present->shows[shown][same_size], error);
+    return fine;
 }
 
 static void allocate(struct tl_present *present, tl_gpu *gpu, int width, int height)
@@ -125,29 +136,69 @@ bool tl_present_set_backdrop(struct tl_present *present, tl_gpu *gpu, const tl_e
     return true;
 }
 
-void tl_present_show(const struct tl_present *present, tl_gpu *gpu, const struct tl_show_request *request)
+static enum tl_shown shown_of(const struct tl_present *present, const struct tl_image_params *params)
 {
-    bool latlong = present->backdrop.target == GL_TEXTURE_2D;
+    if (params->view != TL_VIEW_LIGHT)
+        return TL_SHOWN_AS_IT_IS;
+    if (params->background == TL_BACKGROUND_GREY)
+        return TL_SHOWN_ON_GREY;
+    if (params->background == TL_BACKGROUND_BLURRED)
+        return TL_SHOWN_ON_BLURRED;
+    return present->backdrop.target == GL_TEXTURE_2D ? TL_SHOWN_ON_LATLONG : TL_SHOWN_ON_CUBE;
+}
+
+static const tl_program *program_of(struct tl_present *present, tl_gpu *gpu, enum tl_shown shown,
+                                    bool same_size, tl_error *error)
+{
+    static const char *const defines[TL_SHOWN_COUNT][2] = {
+        [TL_SHOWN_ON_GREY] = {"#define ON_GREY\n", "#define ON_GREY\n#define SAME_SIZE\n"},
+        [TL_SHOWN_ON_BLURRED] = {"#define ON_BLURRED\n", "#define ON_BLURRED\n#define SAME_SIZE\n"},
+        [TL_SHOWN_ON_LATLONG] = {"#define ON_LATLONG\n", "#define ON_LATLONG\n#define SAME_SIZE\n"},
+        [TL_SHOWN_ON_CUBE] = {"#define ON_CUBE\n", "#define ON_CUBE\n#define SAME_SIZE\n"},
+        [TL_SHOWN_AS_IT_IS] = {"#define AS_IT_IS\n", "#define AS_IT_IS\n#define SAME_SIZE\n"},
+    };
+    tl_program *program = &present->shows[shown][same_size];
+    if (!program->id && !tl_program_create_variant(gpu, tl_embedded_shaders, "fullscreen.vert", "show.frag",
+                                                   defines[shown][same_size], program, error))
+        return NULL;
+    return program;
+}
+
+static void set_uniforms(const struct tl_present *present, const struct tl_show_request *request,
+                         enum tl_shown shown)
+{
     const struct tl_view *view = &request->view;
     const vec3s columns[3] = {view->right, view->up, view->forward};
+    if (shown == TL_SHOWN_AS_IT_IS)
+        return;
+    glUniform1f(EXPOSURE, exp2f(request->params->exposure_ev));
+    if (shown == TL_SHOWN_ON_GREY)
+        return;
+    glUniform2f(ENVIRONMENT_TURN, cosf(request->environment_yaw), sinf(request->environment_yaw));
+    glUniformMatrix3fv(VIEW, 1, GL_FALSE, columns[0].raw);
+    if (shown == TL_SHOWN_ON_BLURRED)
+        glUniform1f(BLURRED_SCALE, present->blurred_scale);
+}
+
+bool tl_present_show(struct tl_present *present, tl_gpu *gpu, const struct tl_show_request *request,
+                     tl_error *error)
+{
+    enum tl_shown shown = shown_of(present, request->params);
+    bool same_size = request->width == present->image.width && request->height == present->image.height;
+    const tl_program *program = program_of(present, gpu, shown, same_size, error);
+    if (!program)
+        return false;
     glBindFramebuffer(GL_FRAMEBUFFER, request->framebuffer);
     glViewport(0, 0, request->width, request->height);
     glEnable(GL_SCISSOR_TEST);
     glScissor(request->first_column, 0, request->end_column - request->first_column, request->height);
-    glUseProgram(present->show.id);
-    glUniform1f(EXPOSURE, exp2f(request->params->exposure_ev));
-    glUniform1i(BACKGROUND, request->params->background);
-    glUniform2f(ENVIRONMENT_TURN, cosf(request->environment_yaw), sinf(request->environment_yaw));
-    glUniformMatrix3fv(VIEW, 1, GL_FALSE, columns[0].raw);
-    glUniform1i(LATLONG, latlong);
-    glUniform1f(BLURRED_SCALE, present->blurred_scale);
-    glUniform1i(AS_IT_IS, request->params->view != TL_VIEW_LIGHT);
+    glUseProgram(program->id);
+    set_uniforms(present, request, shown);
     glBindTextureUnit(0, present->image.colours[0].id);
-    glBindTextureUnit(latlong ? 1 : 2, present->backdrop.id);
-    glBindTextureUnit(latlong ? 2 : 1, 0);
-    glBindTextureUnit(3, present->blurred.id);
+    glBindTextureUnit(1, shown == TL_SHOWN_ON_BLURRED ? present->blurred.id : present->backdrop.id);
     tl_gpu_draw_fullscreen(gpu);
     glDisable(GL_SCISSOR_TEST);
+    return true;
 }
 
 size_t tl_present_bytes(const struct tl_present *present)

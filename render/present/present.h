@@ -7,12 +7,23 @@
 #include "render/gpu/gpu.h"
 #include "render/pem/pems.h"
 
+/* What is behind the figure; or colours that stand for numbers, as they are. */
+enum tl_shown {
+    TL_SHOWN_ON_GREY,
+    TL_SHOWN_ON_BLURRED,
+    TL_SHOWN_ON_LATLONG,
+    TL_SHOWN_ON_CUBE,
+    TL_SHOWN_AS_IT_IS,
+    TL_SHOWN_COUNT
+};
+
 struct tl_present {
-    tl_program resolve, show;
-    tl_target image;     /* RGBA32F: linear, premultiplied, coverage in alpha */
-    tl_target shown;     /* RGBA8, for images; windows have their own */
-    tl_texture backdrop; /* the environment in its own layout */
-    tl_texture blurred;  /* the whole cube, filtered */
+    tl_program resolve;
+    tl_program shows[TL_SHOWN_COUNT][2]; /* made when first used; the second where sizes are the same */
+    tl_target image;                     /* RGBA32F: linear, premultiplied, coverage in alpha */
+    tl_target shown;                     /* RGBA8, for images; windows have their own */
+    tl_texture backdrop;                 /* the environment in its own layout */
+    tl_texture blurred;                  /* the whole cube, filtered */
     float blurred_scale;
 };
 
@@ -20,13 +31,14 @@ struct tl_show_request {
     struct tl_view view;
     float environment_yaw; /* rad */
     const struct tl_image_params *params;
-    unsigned framebuffer; /* GL name */
-    int width, height;    /* pixels */
+    unsigned framebuffer;         /* GL name */
+    int width, height;            /* pixels */
     int first_column, end_column; /* what of it is drawn: [first, end) */
 };
 
 bool tl_present_create(struct tl_present *present, tl_gpu *gpu, tl_error *error);
 void tl_present_release(struct tl_present *present);
+bool tl_present_reload(struct tl_present *present, tl_error *error); /* its shaders */
 
 /* Sizes in pixels. A whole number of samples a pixel side: their box filter; else render/present/resample.h,
  * on the CPU, where it takes a third of the time that software GL would. */
@@ -39,7 +51,8 @@ void tl_present_set_image(struct tl_present *present, tl_gpu *gpu, const tl_imag
 /* Makes the backdrop from the environment. False when the environment is larger than GL can hold. */
 bool tl_present_set_backdrop(struct tl_present *present, tl_gpu *gpu, const tl_environment *environment,
                              const tl_cube *cube, int filter, tl_error *error);
-void tl_present_show(const struct tl_present *present, tl_gpu *gpu, const struct tl_show_request *request);
+bool tl_present_show(struct tl_present *present, tl_gpu *gpu, const struct tl_show_request *request,
+                     tl_error *error);
 
 size_t tl_present_bytes(const struct tl_present *present); /* targets; without the backdrop */
 
