@@ -58,8 +58,7 @@ static void prepare(tl_loader *loader)
         struct tl_prepared_request *request = &loader->lights.of[i];
         if (!request->environment)
             request->environment = frame.environment;
-        if (loader->kind != TL_LOAD_LOOK || i == 0)
-            request->exponents |= tl_prepared_exponents(&frame, &request->settings);
+        request->exponents |= tl_prepared_exponents(&frame, &request->settings);
         loader->loaded.prepared[i] = tl_prepared_make(request);
     }
 }

@@ -22,8 +22,8 @@ struct tl_load_progress {
 #define TL_LOADER_LIGHTS_MAX 2 /* renderers: two looks may be compared */
 
 /* What light is made ready for, by renderer. Its environment is the one that is loaded, unless a request
- * names another. The exponents of what is loaded are added to the request's; those of a look, for the first
- * renderer only. What is `known` is the loader's from the start. */
+ * names another; the exponents of what is loaded are added to the request's. What is `known` is the loader's
+ * from the start. */
 struct tl_load_lights {
     int count;
     struct tl_prepared_request of[TL_LOADER_LIGHTS_MAX];

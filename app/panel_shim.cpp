@@ -3,6 +3,7 @@ extern "C" {
 #include "app/panel_rows_shim.h"
 }
 #include "app/panel_overlay_shim.h"
+#include "app/panel_text_shim.h"
 
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
@@ -297,6 +298,7 @@ struct tl_panel_result tl_panel_build(tl_panel *panel, const struct tl_panel_inp
     ImGui_ImplGlfw_NewFrame();
     hold_keys(*panel, true);
     ImGui::NewFrame();
+    tl_panel_forget_text();
     if (input->width > 0)
         draw_panel(*panel, *input, result);
     tl_panel_overlay_draw(*input);

@@ -66,8 +66,8 @@ static struct tl_prepared_request light_of(const struct tl_review *review, const
     return request;
 }
 
-/* Another scene needs its own light, another environment that of the looks there are; another look, beside
- * its own, what was there: for the other half of a comparison, and for going back. */
+/* Another scene needs its own light, another environment that of the looks there are; another look, which is
+ * B's, beside its own what B's renderer had: for going back. */
 static struct tl_load_lights lights_of(struct tl_review *review, enum tl_load kind)
 {
     const tl_renderer *renderers[TL_LOADER_LIGHTS_MAX] = {review->renderer, review->wipe.renderer};
@@ -75,18 +75,13 @@ static struct tl_load_lights lights_of(struct tl_review *review, enum tl_load ki
     if (kind == TL_LOAD_LIGHT && needs_look(review, &drawn)) /* which comes after the light */
         tl_looks_take(tl_session_settings(review->session), &drawn);
     const struct tl_settings other = tl_review_look_a(review, &drawn);
-    struct tl_load_lights lights = {.count = review->wipe.renderer ? 2 : 1,
+    struct tl_load_lights lights = {.count = review->wipe.renderer && kind != TL_LOAD_LOOK ? 2 : 1,
                                     .of = {light_of(review, &drawn), light_of(review, &other)}};
-    for (int i = 0; i < lights.count; i++) {
-        struct tl_prepared_request *request = &lights.of[i];
-        if (kind != TL_LOAD_SCENE)
-            request->exponents = tl_renderer_exponents(renderers[i]);
-        if (kind == TL_LOAD_LOOK) {
-            request->environment = tl_session_frame(review->session).environment;
-            request->known = tl_prepared_copy(renderers[i]);
-            if (lights.count == 2)
-                request->exponents |= tl_renderer_exponents(renderers[1 - i]);
-        }
+    for (int i = 0; i < lights.count && kind != TL_LOAD_SCENE; i++)
+        lights.of[i].exponents = tl_renderer_exponents(renderers[i]);
+    if (kind == TL_LOAD_LOOK) {
+        lights.of[0].environment = tl_session_frame(review->session).environment;
+        lights.of[0].known = tl_prepared_copy(review->renderer);
     }
     return lights;
 }

@@ -45,6 +45,10 @@ void tl_review_exchange(struct tl_review *review)
     struct tl_settings b = review->wanted;
     review->wanted = tl_review_look_a(review, &b);
     review->wipe.look = b;
+    tl_renderer *renderer_b = review->renderer; /* each look keeps what was made for it */
+    review->renderer = review->wipe.renderer;
+    review->wipe.renderer = renderer_b;
+    review->made_ready = review->wanted;
     review->changed = true;
     tl_review_say(review, "A and B exchanged");
 }

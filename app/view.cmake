@@ -8,6 +8,7 @@ target_sources(toile_app PRIVATE
   panel_overlay_shim.cpp
   panel_rows_shim.cpp
   panel_shim.cpp
+  panel_text_shim.cpp
   review_act.c
   review_draw.c
   review_edit.c
