@@ -158,7 +158,8 @@ void tl_frame_list_surfaces(tl_renderer *renderer);
 #define TL_LIGHTS_KEPT TL_PREPARED_COUNTS_MAX
 bool tl_frame_has_lights(const tl_renderer *renderer, const struct tl_light_params *light);
 void tl_frame_prepare_lights(tl_renderer *renderer, const struct tl_light_params *light);
-/* Regions of the present cube and their lights that were made elsewhere; both are emptied. */
+/* Regions of the present cube and their lights that were made elsewhere: what of both is not there yet is
+ * taken. */
 void tl_frame_keep_lights(tl_renderer *renderer, const struct tl_light_params *light,
                           struct tl_regions *regions, struct tl_region_lights *lights);
 

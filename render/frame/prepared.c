@@ -14,7 +14,7 @@ struct tl_prepared {
     struct tl_suns suns;
     struct tl_lobes lobes;
     int count;
-    struct {
+    struct tl_prepared_lights {
         int count;
         struct tl_regions regions;
         struct tl_region_lights lights;
@@ -68,11 +68,14 @@ static bool is_requested(const struct tl_prepared_request *request, int region_c
 static void keep_requested(tl_prepared *prepared, const struct tl_prepared_request *request)
 {
     int kept = 0;
-    for (int i = 0; i < prepared->count; i++)
-        if (is_requested(request, prepared->lights[i].count))
-            prepared->lights[kept++] = prepared->lights[i];
-        else
+    for (int i = 0; i < prepared->count; i++) {
+        const struct tl_prepared_lights lights = prepared->lights[i];
+        if (!is_requested(request, lights.count))
             release_lights(prepared, i);
+        prepared->lights[i] = (struct tl_prepared_lights){0}; /* whoever fills it finds it empty */
+        if (is_requested(request, lights.count))
+            prepared->lights[kept++] = lights;
+    }
     prepared->count = kept;
 }
 

@@ -146,10 +146,10 @@ static struct tl_kept_lights *find_oldest(tl_renderer *renderer)
     return oldest;
 }
 
-/* In the place of the same ones, or of those that were used longest ago. */
-static struct tl_kept_lights *replace_lights(tl_renderer *renderer, const struct tl_light_params *light)
+/* In the place of those that were used longest ago. */
+static struct tl_kept_lights *replace_oldest(tl_renderer *renderer, const struct tl_light_params *light)
 {
-    struct tl_kept_lights *same = find_lights(renderer, light), *kept = same ? same : find_oldest(renderer);
+    struct tl_kept_lights *kept = find_oldest(renderer);
     tl_regions_release(&kept->cut_regions);
     tl_region_lights_release(&kept->lights);
     *kept = kept_lights(renderer, light);
@@ -160,7 +160,7 @@ static struct tl_kept_lights *replace_lights(tl_renderer *renderer, const struct
 static struct tl_kept_lights *begin_lights(tl_renderer *renderer, const struct tl_light_params *light,
                                            const struct tl_regions *regions)
 {
-    struct tl_kept_lights *kept = replace_lights(renderer, light);
+    struct tl_kept_lights *kept = replace_oldest(renderer, light);
     kept->cut_regions = tl_regions_copy(regions);
     tl_region_lights_begin(&kept->lights, regions, kept->weight);
     return kept;
@@ -169,7 +169,13 @@ static struct tl_kept_lights *begin_lights(tl_renderer *renderer, const struct t
 void tl_frame_keep_lights(tl_renderer *renderer, const struct tl_light_params *light,
                           struct tl_regions *regions, struct tl_region_lights *lights)
 {
-    struct tl_kept_lights *kept = replace_lights(renderer, light);
+    struct tl_kept_lights *same = find_lights(renderer, light);
+    if (same) { /* which may have gains that are newer than these */
+        tl_lobes_take(&same->lights.gain, &lights->gain);
+        tl_lobes_take(&same->lights.diffuse_gain, &lights->diffuse_gain);
+        return;
+    }
+    struct tl_kept_lights *kept = replace_oldest(renderer, light);
     kept->cut_regions = *regions;
     kept->lights = *lights;
     *regions = (struct tl_regions){0};

@@ -205,6 +205,23 @@ static void known_light_is_added_to(void **state)
     assert_int_equal(tl_renderer_memory(renderer).pems, known);
     expect_as_new(device, renderer, &scene);
 
+    /* Of what is known only some regions are asked for, and others are not known. */
+    for (int regions = 12; regions <= 36; regions += 12) {
+        scene.settings.light.regions = regions;
+        expect_as_new(device, renderer, &scene);
+    }
+    request.known = tl_prepared_copy(renderer);
+    request.settings = scene.settings;
+    request.region_counts[0] = 24;
+    request.region_counts[1] = 60;
+    prepared = tl_prepared_make(&request);
+    tl_renderer_take_prepared(renderer, &prepared, scene.frame.environment_revision);
+    for (int regions = 60; regions >= 24; regions -= 36) {
+        scene.settings.light.regions = regions;
+        assert_true(tl_renderer_has_regions(renderer, &scene.settings));
+        expect_as_new(device, renderer, &scene);
+    }
+
     /* Of another cube nothing is known. */
     request.known = tl_prepared_copy(renderer);
     request.settings.light.pem_size = scene.settings.light.pem_size = 16;
