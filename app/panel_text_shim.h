@@ -7,8 +7,9 @@ extern "C" {
 #endif
 
 /* After ImGui::NewFrame, every frame. A field that is entered again goes on with its old steps of undo,
- * though its text has changed since: up to 1.87 undoing them writes outside of the text (ocornut/imgui issue
- * 4947). This forgets them as soon as the field is left. */
+ * though its text has changed since: in 1.86 undoing them writes outside of the text (test panel_text;
+ * reports of its kind are ocornut/imgui issues 3008 and 4947). This forgets them as soon as the field is
+ * left. */
 void tl_panel_forget_text(void);
 
 #ifdef __cplusplus

@@ -11,10 +11,10 @@
  * share no vertex, by colours: the result depends neither on the number of threads nor on how wide the
  * processor is.
  *
- * Cost: 26 to 28 ns a particle and substep on one core of 3.7 GHz with registers of 512 bits (10,000
- * vertices, two triangles each; 98 ns as plain loops of four lanes), of which membranes 15, bending as a
- * force 8; up to 6 more for the strain limit while much of the cloth is near it; 25 more when bending is a
- * constraint.
+ * Cost: 26 to 28 ns a particle and substep away from the strain limit on one core of 3.7 GHz with registers
+ * of 512 bits (10,000 vertices, two triangles each; 98 ns as plain loops of four lanes), of which membranes
+ * 15, bending as a force 8; up to 6 more for the strain limit while much of the cloth is near it; 25 more
+ * when bending is a constraint.
  */
 #ifndef TOILE_CLOTH_XPBD_H
 #define TOILE_CLOTH_XPBD_H

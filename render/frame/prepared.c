@@ -202,8 +202,8 @@ void tl_prepared_destroy(tl_prepared **prepared)
 static void add(tl_prepared *prepared, tl_renderer *renderer)
 {
     tl_lobes_take(&renderer->lobes, &prepared->lobes);
-    for (int i = prepared->count - 1; i >= 0;
-         i--) { /* the first ones matter most: no other takes their place */
+    /* The first ones matter most: they come last, so that no other takes their place. */
+    for (int i = prepared->count - 1; i >= 0; i--) {
         prepared->light.regions = prepared->lights[i].count;
         tl_frame_keep_lights(renderer, &prepared->light, &prepared->lights[i].regions,
                              &prepared->lights[i].lights);

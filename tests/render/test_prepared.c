@@ -98,13 +98,17 @@ static bool has_run(const tl_renderer *renderer, const char *job)
     return false;
 }
 
+static struct tl_prepared_request request_of(const struct scene *scene, int environment)
+{
+    return (struct tl_prepared_request){.environment = &scene->environments[environment],
+                                        .settings = scene->settings,
+                                        .region_counts = {scene->settings.light.regions, 24},
+                                        .exponents = tl_prepared_exponents(&scene->frame, &scene->settings)};
+}
+
 static tl_prepared *prepare(const struct scene *scene, int environment)
 {
-    struct tl_prepared_request request = {.environment = &scene->environments[environment],
-                                          .settings = scene->settings,
-                                          .region_counts = {scene->settings.light.regions, 24},
-                                          .exponents =
-                                              tl_prepared_exponents(&scene->frame, &scene->settings)};
+    struct tl_prepared_request request = request_of(scene, environment);
     return tl_prepared_make(&request);
 }
 
@@ -186,12 +190,9 @@ static void known_light_is_added_to(void **state)
     struct tl_render_settings coarse = scene.settings;
     coarse.light.regions = 24;
     assert_false(tl_renderer_has_regions(renderer, &coarse));
-    struct tl_prepared_request request = {.environment = &scene.environments[0],
-                                          .known = tl_prepared_copy(renderer),
-                                          .settings = scene.settings,
-                                          .region_counts = {scene.settings.light.regions, 24},
-                                          .exponents = tl_prepared_exponents(&scene.frame, &scene.settings) |
-                                                       tl_renderer_exponents(renderer)};
+    struct tl_prepared_request request = request_of(&scene, 0);
+    request.known = tl_prepared_copy(renderer);
+    request.exponents |= tl_renderer_exponents(renderer);
     tl_prepared *prepared = tl_prepared_make(&request);
     assert_null(request.known);
     tl_renderer_take_prepared(renderer, &prepared, scene.frame.environment_revision);
