@@ -33,6 +33,7 @@ add_library(toile_light STATIC
   env/sun.c
   envmap/pictures.c
   frame/view.c
+  gpu/map_texture.c
   light/region_lights.c
   light/samples.c
   local/lamp.c
@@ -59,7 +60,6 @@ add_library(toile_light STATIC
   reference/reference.c
   reference/sky.c
   reference/spot.c
-  reference/texture.c
   surfaces/ground.c
   trace/cutout.c
   trace/trace.c

@@ -59,8 +59,7 @@ static tl_texture upload_heights(tl_gpu *gpu, const tl_image *image)
 {
     tl_texture texture = tl_texture_create(gpu, GL_TEXTURE_2D, GL_R32F, image->width, image->height, 1,
                                            tl_texture_full_levels(image->width, image->height));
-    glTextureSubImage2D(texture.id, 0, 0, 0, image->width, image->height, GL_RED, GL_FLOAT, image->texels);
-    glGenerateTextureMipmap(texture.id);
+    tl_texture_fill(&texture, 0, image, false);
     return texture;
 }
 
@@ -74,8 +73,7 @@ static tl_texture upload_moments(tl_gpu *gpu, const tl_image *normals)
     GLenum format = width <= FLOAT_MOMENTS_SIDE && height <= FLOAT_MOMENTS_SIDE ? GL_RGBA32F : GL_RGBA16F;
     tl_texture texture = tl_texture_create(gpu, GL_TEXTURE_2D, format, width, height, 1,
                                            tl_texture_full_levels(width, height));
-    glTextureSubImage2D(texture.id, 0, 0, 0, width, height, GL_RGBA, GL_FLOAT, moments.texels);
-    glGenerateTextureMipmap(texture.id);
+    tl_texture_fill(&texture, 0, &moments, false);
     tl_image_release(&moments);
     return texture;
 }
@@ -126,11 +124,9 @@ static tl_texture upload_horizons(tl_gpu *gpu, const struct tl_detail_heights *h
         baked.heights = &small;
         struct tl_horizon_maps maps = tl_bake_horizons(&baked, angle_count);
         for (int i = 0; i < layers; i++)
-            glTextureSubImage3D(texture.id, 0, 0, 0, side * layers + i, small.width, small.height, 1, GL_RGBA,
-                                GL_UNSIGNED_BYTE, maps.images[i].texels);
+            tl_texture_fill(&texture, side * layers + i, &maps.images[i], false);
         tl_horizon_maps_release(&maps);
     }
-    glGenerateTextureMipmap(texture.id);
     tl_image_release(&small);
     return texture;
 }

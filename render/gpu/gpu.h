@@ -5,6 +5,7 @@
 #ifndef TOILE_RENDER_GPU_GPU_H
 #define TOILE_RENDER_GPU_GPU_H
 
+#include "assets/image.h"
 #include "config/embedded.h"
 #include "config/error.h"
 
@@ -41,6 +42,9 @@ void tl_texture_destroy(tl_texture *texture);
 size_t tl_texture_bytes(const tl_texture *texture);
 /* Levels of a full mip chain down to one texel. */
 int tl_texture_full_levels(int width, int height);
+/* Fills a layer of a two-dimensional texture of the image's size, all levels: those below the first are the
+ * CPU's averages (map_texture.h). `colour`: bytes are sRGB unless the image says linear. */
+void tl_texture_fill(const tl_texture *texture, int layer, const tl_image *image, bool colour);
 
 /* What a pass draws into: up to six 2D colour textures of one size, and a 32-bit float depth texture. */
 #define TL_TARGET_COLOURS_MAX 6

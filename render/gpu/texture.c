@@ -1,6 +1,7 @@
 #include "render/gpu/context.h"
 
 #include "config/memory.h"
+#include "render/gpu/map_texture.h"
 
 #include <assert.h>
 
@@ -75,6 +76,44 @@ void tl_texture_destroy(tl_texture *texture)
         glDeleteTextures(1, &texture->id);
     }
     *texture = (tl_texture){0};
+}
+
+static void fill_level(const tl_texture *texture, int level, int layer, unsigned type, int channels,
+                       const void *texels)
+{
+    static const GLenum formats[] = {GL_RED, GL_RG, GL_RGB, GL_RGBA};
+    GLenum format = formats[channels - 1];
+    int width = level_side(texture->width, level), height = level_side(texture->height, level);
+    if (texture->target == GL_TEXTURE_2D)
+        glTextureSubImage2D(texture->id, level, 0, 0, width, height, format, type, texels);
+    else
+        glTextureSubImage3D(texture->id, level, 0, 0, layer, width, height, 1, format, type, texels);
+}
+
+/* GL takes texels of an sRGB format as encoded; alpha is never. */
+static void encode(float *texels, size_t count, int channels)
+{
+    for (size_t i = 0; i < count; i++)
+        for (int c = 0; c < channels && c < 3; c++)
+            texels[i * (size_t)channels + (size_t)c] =
+                tl_srgb_from_linear(texels[i * (size_t)channels + (size_t)c]);
+}
+
+/* Not by glGenerateTextureMipmap: software GL compiles shaders of its own for each format first, a tenth to a
+ * third of a second. */
+void tl_texture_fill(const tl_texture *texture, int layer, const tl_image *image, bool colour)
+{
+    assert(image->width == texture->width && image->height == texture->height);
+    struct tl_map_texture levels = tl_map_texture_make(image, colour);
+    fill_level(texture, 0, layer, image->type == TL_IMAGE_F32 ? GL_FLOAT : GL_UNSIGNED_BYTE, image->channels,
+               image->texels);
+    for (int level = 1; level < texture->levels; level++) {
+        if (texture->format == GL_SRGB8_ALPHA8)
+            encode(levels.levels[level], (size_t)levels.widths[level] * (size_t)levels.heights[level],
+                   image->channels);
+        fill_level(texture, level, layer, GL_FLOAT, image->channels, levels.levels[level]);
+    }
+    tl_map_texture_release(&levels);
 }
 
 tl_target tl_target_create(tl_gpu *gpu, int width, int height, const unsigned *formats, int colour_count,

@@ -4,7 +4,7 @@
 #define TOILE_RENDER_REFERENCE_DETAIL_H
 
 #include "render/detail/detail.h"
-#include "render/reference/texture.h"
+#include "render/gpu/map_texture.h"
 
 struct tl_reference_detail {
     struct tl_detail_params params;

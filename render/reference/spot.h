@@ -7,11 +7,11 @@
 
 #include "render/brdf/brdf.h"
 #include "render/frame/view.h"
+#include "render/gpu/map_texture.h"
 #include "render/local/lamp.h"
 #include "render/reference/detail.h"
 #include "render/reference/reference.h"
 #include "render/reference/sky.h"
-#include "render/reference/texture.h"
 #include "render/surfaces/ground.h"
 #include "render/trace/trace.h"
 

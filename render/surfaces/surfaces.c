@@ -85,37 +85,53 @@ void tl_surfaces_destroy(tl_surfaces **surfaces)
     *surfaces = NULL;
 }
 
-struct texel_format {
-    GLenum stored, given, type;
-};
-
-static struct texel_format format_of(const tl_image *image, bool colour)
+static GLenum format_of(const tl_image *image, bool colour)
 {
-    static const GLenum given[] = {GL_RED, GL_RG, GL_RGB, GL_RGBA};
     static const GLenum bytes[] = {GL_R8, GL_RG8, GL_RGBA8, GL_RGBA8};
     static const GLenum floats[] = {GL_R32F, GL_RG32F, GL_RGBA32F, GL_RGBA32F};
     int c = image->channels - 1;
     if (image->type == TL_IMAGE_F32)
-        return (struct texel_format){floats[c], given[c], GL_FLOAT};
+        return floats[c];
     /* sRGB exists with four channels only; grey colour images are spread by the swizzle below. */
-    bool encoded = colour && !image->linear;
-    return (struct texel_format){encoded ? GL_SRGB8_ALPHA8 : bytes[c], given[c], GL_UNSIGNED_BYTE};
+    return colour && !image->linear ? GL_SRGB8_ALPHA8 : bytes[c];
 }
 
+/* Trilinear only: anisotropic filtering makes the G-buffer of a woven dress twenty times slower on software
+ * GL, and an image must not depend on which GL drew it. */
 static tl_texture upload(tl_gpu *gpu, const tl_image *image, bool colour)
 {
-    struct texel_format format = format_of(image, colour);
-    tl_texture texture = tl_texture_create(gpu, GL_TEXTURE_2D, format.stored, image->width, image->height, 1,
-                                           tl_texture_full_levels(image->width, image->height));
-    glTextureSubImage2D(texture.id, 0, 0, 0, image->width, image->height, format.given, format.type,
-                        image->texels);
-    glGenerateTextureMipmap(texture.id);
-    if (colour && image->channels <= 2) {
-        const GLint grey[] = {GL_RED, GL_RED, GL_RED, image->channels == 2 ? GL_GREEN : GL_ONE};
+    tl_texture texture =
+        tl_texture_create(gpu, GL_TEXTURE_2D, format_of(image, colour), image->width, image->height, 1,
+                          tl_texture_full_levels(image->width, image->height));
+    tl_texture_fill(&texture, 0, image, colour);
+    if (colour && image->channels == 1) {
+        const GLint grey[] = {GL_RED, GL_RED, GL_RED, GL_ONE};
         glTextureParameteriv(texture.id, GL_TEXTURE_SWIZZLE_RGBA, grey);
     }
-    /* Trilinear only: anisotropic filtering makes the G-buffer of a woven dress twenty times slower on
-     * software GL, and an image must not depend on which GL drew it. */
+    return texture;
+}
+
+/* Grey beside alpha with four channels: of sRGB texels only the fourth is not decoded. */
+static tl_image spread_grey(const tl_image *image)
+{
+    tl_image spread = tl_image_create(image->width, image->height, 4, TL_IMAGE_U8);
+    spread.linear = image->linear;
+    const uint8_t *from = tl_image_bytes(image);
+    uint8_t *to = tl_image_bytes(&spread);
+    for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++) {
+        to[4 * i] = to[4 * i + 1] = to[4 * i + 2] = from[2 * i];
+        to[4 * i + 3] = from[2 * i + 1];
+    }
+    return spread;
+}
+
+static tl_texture upload_map(tl_gpu *gpu, const tl_image *image, bool colour)
+{
+    if (!colour || image->channels != 2 || image->type != TL_IMAGE_U8)
+        return upload(gpu, image, colour);
+    tl_image spread = spread_grey(image);
+    tl_texture texture = upload(gpu, &spread, colour);
+    tl_image_release(&spread);
     return texture;
 }
 
@@ -132,7 +148,7 @@ static bool add_image(tl_gpu *gpu, struct item *item, const char *surface, const
         return tl_fail(error, TL_INPUT, "%s: a map of %d x %d texels is larger than GL holds: scale it to %d",
                        surface, image->width, image->height, limit);
     item->textures = tl_resize(item->textures, item->texture_count + 1, sizeof *item->textures);
-    item->textures[item->texture_count++] = (struct uploaded){image, colour, upload(gpu, image, colour)};
+    item->textures[item->texture_count++] = (struct uploaded){image, colour, upload_map(gpu, image, colour)};
     return true;
 }
 

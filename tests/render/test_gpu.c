@@ -9,6 +9,7 @@
 #include "testing.h"
 
 #include <fcntl.h>
+#include <math.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -150,12 +151,50 @@ static void test_shaders_from_disk(void **state)
     unsetenv("TOILE_SHADER_DIR");
 }
 
+static int encoded(float value, int channel)
+{
+    return (int)lroundf(255 * (channel < 3 ? tl_srgb_from_linear(value) : value));
+}
+
+/* Of 5 x 3 texels, whose sides do not halve: a column of the next level covers two and a half of them, its
+ * one row all three. Light is averaged, not its bytes, and alpha as it is. */
+static void test_levels_are_means_of_light(void **state)
+{
+    tl_image image = tl_image_create(5, 3, 4, TL_IMAGE_U8);
+    for (int i = 0; i < 5 * 3 * 4; i++)
+        tl_image_bytes(&image)[i] = (uint8_t)(i * 37 % 256);
+    tl_texture texture = tl_texture_create(*state, GL_TEXTURE_2D, GL_SRGB8_ALPHA8, 5, 3, 1, 3);
+    tl_texture_fill(&texture, 0, &image, true);
+    float means[2][4] = {{0}};
+    for (int i = 0; i < 5 * 3; i++)
+        for (int c = 0; c < 4; c++) {
+            float byte = (float)tl_image_bytes(&image)[4 * i + c] / 255;
+            float value = c < 3 ? tl_srgb_to_linear(byte) : byte;
+            float left = i % 5 < 2 ? 1 : i % 5 == 2 ? 0.5f : 0;
+            means[0][c] += left * value / 7.5f;
+            means[1][c] += (1 - left) * value / 7.5f;
+        }
+    uint8_t given[5 * 3 * 4], half[2 * 4], last[4];
+    glGetTextureImage(texture.id, 0, GL_RGBA, GL_UNSIGNED_BYTE, sizeof given, given);
+    assert_memory_equal(given, image.texels, sizeof given);
+    glGetTextureImage(texture.id, 1, GL_RGBA, GL_UNSIGNED_BYTE, sizeof half, half);
+    glGetTextureImage(texture.id, 2, GL_RGBA, GL_UNSIGNED_BYTE, sizeof last, last);
+    for (int c = 0; c < 4; c++) {
+        float both = (means[0][c] + means[1][c]) / 2;
+        for (int x = 0; x < 2; x++)
+            assert_in_range(half[4 * x + c] - encoded(means[x][c], c) + 1, 0, 2);
+        assert_in_range(last[c] - encoded(both, c) + 1, 0, 2);
+    }
+    tl_texture_destroy(&texture);
+    tl_image_release(&image);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_headless_context),  cmocka_unit_test(test_messages_are_counted),
         cmocka_unit_test(test_texture_bytes),     cmocka_unit_test(test_includes_keep_lines),
-        cmocka_unit_test(test_shaders_from_disk),
+        cmocka_unit_test(test_shaders_from_disk), cmocka_unit_test(test_levels_are_means_of_light),
     };
     return cmocka_run_group_tests(tests, open_gpu, close_gpu);
 }

@@ -54,7 +54,7 @@ static tl_image bumps(int side)
 }
 
 struct maps {
-    tl_image colour, colour_alpha, data, normal;
+    tl_image colour, colour_alpha, grey_alpha, data, normal;
     tl_weave weave;
 };
 
@@ -62,6 +62,7 @@ static struct maps maps_make(void)
 {
     struct maps maps = {.colour = pattern(32, 24, 3, false),
                         .colour_alpha = pattern(64, 64, 4, false),
+                        .grey_alpha = pattern(8, 8, 2, false),
                         .data = pattern(16, 16, 1, true),
                         .normal = bumps(32),
                         .weave = {.size_m = {0.2f, 0.25f},
@@ -81,6 +82,7 @@ static void maps_free(struct maps *maps)
 {
     tl_image_release(&maps->colour);
     tl_image_release(&maps->colour_alpha);
+    tl_image_release(&maps->grey_alpha);
     tl_image_release(&maps->data);
     tl_image_release(&maps->normal);
     tl_weave_release(&maps->weave);
@@ -169,19 +171,17 @@ static void check(const struct tally *tally)
 }
 
 /* A ball and a sheet, one seen from the inside, before a square full of holes, all on the ground. */
-static void test_spots_are_the_gbuffers(void **state)
+static void compare_all(struct test_device *device, const struct maps *maps, const tl_image *holes)
 {
-    struct test_device *device = *state;
     tl_error error = {0};
-    struct maps maps = maps_make();
     tl_environment environment = test_environment(16, 8, grey);
     struct test_shape shapes[3] = {test_sphere((vec3s){{0.45f, 0.4f, 0.2f}}, 0.4f, 48),
                                    test_sheet(0.9f, 0.5f, 0.1f, 1, 32),
                                    test_square((vec3s){{-0.5f, 0.5f, 0}}, (vec3s){{0.8f, 0, 0.6f}},
                                                (vec3s){{-0.6f, 0, 0.8f}}, 0.45f, 4)};
-    use_maps(&shapes[0].material, &maps);
-    use_maps(&shapes[1].material, &maps);
-    shapes[2].material.diffuse_map.image = &maps.colour_alpha;
+    use_maps(&shapes[0].material, maps);
+    use_maps(&shapes[1].material, maps);
+    shapes[2].material.diffuse_map.image = holes;
     shapes[2].material.alpha_cutoff = 0.5f;
     tl_surface surfaces[3];
     for (int i = 0; i < 3; i++) {
@@ -223,6 +223,13 @@ static void test_spots_are_the_gbuffers(void **state)
     for (int i = 0; i < 3; i++)
         test_shape_release(&shapes[i]);
     tl_environment_release(&environment);
+}
+
+static void test_spots_are_the_gbuffers(void **state)
+{
+    struct maps maps = maps_make();
+    compare_all(*state, &maps, &maps.colour_alpha);
+    compare_all(*state, &maps, &maps.grey_alpha); /* its alpha is no colour either */
     maps_free(&maps);
 }
 

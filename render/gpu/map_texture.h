@@ -1,7 +1,8 @@
-/* Maps of a material on the CPU: mip levels by exact area averages in linear float, trilinear fetches at the
- * level that GL defines [OpenGL 4.5, 8.14]. Borrows the image. Threads: pure once made. */
-#ifndef TOILE_RENDER_REFERENCE_TEXTURE_H
-#define TOILE_RENDER_REFERENCE_TEXTURE_H
+/* Maps of a material on the CPU: mip levels by exact area averages in linear float, as GL is given them too,
+ * and trilinear fetches at the level that GL defines [OpenGL 4.5, 8.14]. Borrows the image. Threads: pure
+ * once made. */
+#ifndef TOILE_RENDER_GPU_MAP_TEXTURE_H
+#define TOILE_RENDER_GPU_MAP_TEXTURE_H
 
 #include "assets/image.h"
 

@@ -1,4 +1,4 @@
-#include "render/reference/texture.h"
+#include "render/gpu/map_texture.h"
 
 #include "config/memory.h"
 
@@ -37,30 +37,41 @@ static struct span span_of(int index, int fine, int coarse)
     return span;
 }
 
-static float mean_over(const struct tl_map_texture *texture, int level, const struct span *x,
-                       const struct span *y, int channel)
+/* A row of a level, weighted, to `sums` [width][channels]. */
+static void add_row(const struct tl_map_texture *texture, int level, int y, float share, float *sums)
 {
-    float sum = 0;
-    for (int j = 0; j < y->count; j++)
-        for (int i = 0; i < x->count; i++)
-            sum +=
-                x->shares[i] * y->shares[j] * value_at(texture, level, x->first + i, y->first + j, channel);
-    return sum;
+    int channels = texture->image->channels;
+    for (int x = 0; x < texture->widths[level]; x++)
+        for (int c = 0; c < channels; c++)
+            sums[x * channels + c] += share * value_at(texture, level, x, y, c);
+}
+
+/* `fine` [widths[level - 1]][channels] is the mean of the rows that this row lies over. */
+static void average_row(const struct tl_map_texture *texture, int level, const float *fine, float *to)
+{
+    int channels = texture->image->channels;
+    for (int column = 0; column < texture->widths[level]; column++) {
+        struct span x = span_of(column, texture->widths[level - 1], texture->widths[level]);
+        for (int i = 0; i < x.count; i++)
+            for (int c = 0; c < channels; c++)
+                to[column * channels + c] += x.shares[i] * fine[(x.first + i) * channels + c];
+    }
 }
 
 static void average_level(struct tl_map_texture *texture, int level)
 {
-    int width = texture->widths[level], height = texture->heights[level], channels = texture->image->channels;
-    float *to = TL_NEW_ARRAY(float, (size_t)width *(size_t)height *(size_t)channels);
-#pragma omp parallel for
+    size_t channels = (size_t)texture->image->channels, width = (size_t)texture->widths[level] * channels;
+    size_t fine_width = (size_t)texture->widths[level - 1] * channels;
+    int height = texture->heights[level];
+    float *to = TL_NEW_ARRAY(float, width *(size_t)height);
+#pragma omp parallel for if (height > 64)
     for (int row = 0; row < height; row++) {
         struct span y = span_of(row, texture->heights[level - 1], height);
-        for (int column = 0; column < width; column++) {
-            struct span x = span_of(column, texture->widths[level - 1], width);
-            size_t texel = (size_t)row * (size_t)width + (size_t)column;
-            for (int c = 0; c < channels; c++)
-                to[texel * (size_t)channels + (size_t)c] = mean_over(texture, level - 1, &x, &y, c);
-        }
+        float *fine = TL_NEW_ARRAY(float, fine_width);
+        for (int j = 0; j < y.count; j++)
+            add_row(texture, level - 1, y.first + j, y.shares[j], fine);
+        average_row(texture, level, fine, &to[width * (size_t)row]);
+        free(fine);
     }
     texture->levels[level] = to;
 }
