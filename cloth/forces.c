@@ -130,13 +130,14 @@ static double add_rare(const struct tl_energy *energy, double stiffness)
     return sum;
 }
 
-TL_INLINE void add_pull(const double *from, const double *to, double strength, struct tl_wide_force *sum)
+/* Away from the other end, and subtracted: one instruction takes a register and memory, not the reverse. */
+TL_INLINE void add_pull(const double *at, const double *other, double strength, struct tl_wide_force *sum)
 {
-    double x = to[0] - from[0], y = to[1] - from[1], z = to[2] - from[2], unused = to[3] - from[3];
-    sum->x += strength * x;
-    sum->y += strength * y;
-    sum->z += strength * z;
-    sum->unused += strength * unused;
+    double x = at[0] - other[0], y = at[1] - other[1], z = at[2] - other[2], unused = at[3] - other[3];
+    sum->x -= strength * x;
+    sum->y -= strength * y;
+    sum->z -= strength * z;
+    sum->unused -= strength * unused;
 }
 
 TL_INLINE void add_others(const struct tl_pulls *pulls, size_t vertex, struct tl_wide_force *sum)

@@ -64,19 +64,20 @@ struct tl_prediction tl_prediction_make(const vec3d *forces, double gravity, dou
 }
 
 TL_INLINE void predict_some(struct tl_particles *particles, size_t first, size_t count,
-                            const struct tl_prediction *to, bool pushed, bool moving)
+                            const struct tl_prediction *to, const double falls[3 * TL_SOME], bool pushed,
+                            bool moving)
 {
     const double h = to->h, per_h = 1 / h, keep = to->keep;
-    struct tl_some some;
-    tl_some_spread(&particles->w[first], count, to->fall, &some);
+    double weights[3 * TL_SOME];
+    tl_some_weights(&particles->w[first], count, weights);
     double *restrict x = &particles->x[first].x, *restrict previous = &particles->previous[first].x;
     const double *restrict v = &particles->v[first].x;
     const double *restrict forces = pushed ? &to->forces[first].x : v;
     for (size_t k = 0; k < 3 * count; k++) {
         double speed = moving ? (x[k] - previous[k]) * per_h : v[k];
-        speed = some.weights[k] > 0 ? speed * keep - some.falls[k] : 0;
+        speed = weights[k] > 0 ? speed * keep - falls[k] : 0;
         if (pushed)
-            speed += forces[k] * (some.weights[k] * h);
+            speed += forces[k] * (weights[k] * h);
         previous[k] = x[k];
         x[k] += speed * h;
     }
@@ -85,11 +86,13 @@ TL_INLINE void predict_some(struct tl_particles *particles, size_t first, size_t
 TL_CLONES static void predict(struct tl_particles *particles, struct tl_range part, const void *how)
 {
     const struct tl_prediction to = *(const struct tl_prediction *)how;
+    double falls[3 * TL_SOME];
+    tl_some_falls(to.fall, falls);
     size_t i = part.from;
     for (; i + TL_SOME <= part.to && to.forces && to.moving; i += TL_SOME) /* the usual ones */
-        predict_some(particles, i, TL_SOME, &to, true, true);
+        predict_some(particles, i, TL_SOME, &to, falls, true, true);
     for (; i < part.to; i++)
-        predict_some(particles, i, 1, &to, to.forces, to.moving);
+        predict_some(particles, i, 1, &to, falls, to.forces, to.moving);
 }
 
 struct tl_move tl_particles_prediction(struct tl_particles *particles, const struct tl_prediction *prediction)

@@ -24,16 +24,19 @@ void tl_particles_release(struct tl_particles *particles);
 
 /* Particles that are moved at once as plain numbers, x, y, z after x, y, z: what these need beside them. */
 #define TL_SOME 8
-struct tl_some {
-    double weights[3 * TL_SOME]; /* 1/kg */
-    double falls[3 * TL_SOME];   /* `fall` for each y, else 0 */
-};
-TL_INLINE void tl_some_spread(const double *inverse_masses, size_t count, double fall, struct tl_some *some)
+TL_INLINE void tl_some_weights(const double *inverse_masses, size_t count, double weights[3 * TL_SOME])
 {
-    for (size_t i = 0; i < count; i++) {
-        some->weights[3 * i] = some->weights[3 * i + 1] = some->weights[3 * i + 2] = inverse_masses[i];
-        some->falls[3 * i] = some->falls[3 * i + 2] = 0;
-        some->falls[3 * i + 1] = fall;
+    for (size_t i = 0; i < count; i++)
+        weights[3 * i] = weights[3 * i + 1] = weights[3 * i + 2] = inverse_masses[i];
+}
+
+/* `fall` for each y, else 0. The same for all: made once, as what was just written by ones is slow to read by
+ * eights. */
+TL_INLINE void tl_some_falls(double fall, double falls[3 * TL_SOME])
+{
+    for (size_t i = 0; i < TL_SOME; i++) {
+        falls[3 * i] = falls[3 * i + 2] = 0;
+        falls[3 * i + 1] = fall;
     }
 }
 
