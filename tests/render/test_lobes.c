@@ -102,8 +102,9 @@ static void an_even_sky_stays_even(void **state)
 }
 
 /* What falls from one small lamp on a surface that turns away from it: cos w / pi, with a crease at the
- * horizon. Straight lines between texels, 2 sqrt(6) / side apart at most, err there by a quarter of that,
- * 1.5 % of the brightest; the lamp is a texel of 0.4 degrees, and interpolated lobes are sharpened by 0.1 %.
+ * horizon. Straight lines between texels, 2 sqrt(6) / side apart at most, err there by a quarter of
+ * that, 1.53 % of the brightest for 80 texels; and lobes that will be interpolated are sharpened, which
+ * raises them by 0.2 %.
  */
 static void a_lamp_sets_where_its_horizon_is(void **state)
 {
@@ -128,7 +129,7 @@ static void a_lamp_sets_where_its_horizon_is(void **state)
         tl_cube_release(&cube);
     }
     printf("a lamp's light at s = 1: off by %.4f of the brightest\n", worst);
-    assert_true(worst <= 0.0165);
+    assert_true(worst <= 0.0173);
 }
 
 /* Over a border of the unfolded octahedron nothing jumps: directions on both sides of each of its edges, and
