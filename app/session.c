@@ -6,6 +6,7 @@
 #include "app/playback.h"
 #include "assets/avatar.h"
 #include "assets/fit.h"
+#include "assets/refine.h"
 #include "assets/specimen.h"
 #include "cloth/strain.h"
 #include "config/interrupt.h"
@@ -115,13 +116,62 @@ static bool load_avatar(tl_session *session, tl_error *error)
                    clip, model->clips[0].name);
 }
 
+static bool plays_motion(const tl_session *session)
+{
+    return strcmp(session->settings.scene.motion, "none") != 0;
+}
+
+/* A mesh of long edges cannot fold. What is played back has the vertices of its file. */
+static bool refine_garment(const tl_session *session, tl_garment *garment, tl_error *error)
+{
+    float most_m = session->settings.cloth.longest_edge_m;
+    const tl_mesh *mesh = &garment->model.mesh;
+    size_t triangles = mesh->index_count / 3;
+    float longest_m = tl_mesh_longest_edge(mesh);
+    if (plays_motion(session) || !(most_m > 0) || !(longest_m > most_m))
+        return true;
+    if (!tl_garment_refine(garment, most_m, error))
+        return false;
+    tl_info("%s: edges of up to %.3g m cannot fold: %zu triangles were split into %zu with none above %g m; "
+            "cloth.longest_edge_m=0 leaves them as they are",
+            garment->model.name, (double)longest_m, triangles, mesh->index_count / 3, (double)most_m);
+    return true;
+}
+
+/* What nobody wears is not placed by anybody: below the ground it would be hidden, and pushed out of it. */
+static void lift_garment(const tl_session *session, tl_garment *garment)
+{
+    tl_mesh *mesh = &garment->model.mesh;
+    float lowest_m = tl_box_of(mesh->positions, mesh->vertex_count).lower.y;
+    if (session->avatar || !session->settings.image.ground || plays_motion(session) || !(lowest_m < 0))
+        return;
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        mesh->positions[i].y -= lowest_m;
+    tl_info("%s: reached %.2g m below the ground: lifted onto it; image.ground=false leaves it where it was",
+            garment->model.name, (double)-lowest_m);
+}
+
+/* From a file. */
+static bool read_garment(const tl_session *session, tl_garment *out, tl_error *error)
+{
+    const struct tl_scene_params *scene = &session->settings.scene;
+    if (!tl_garment_load_in(scene->garment, (enum tl_units)scene->units, out, error))
+        return false;
+    tell_units(&out->model, "--units");
+    lift_garment(session, out);
+    if (refine_garment(session, out, error))
+        return true;
+    tl_garment_release(out);
+    return false;
+}
+
 static bool make_garment(tl_session *session, tl_garment *out, tl_error *error)
 {
     const char *name = session->settings.scene.garment, *wearer = session->settings.scene.avatar;
     if (tl_specimen_make(name, session->settings.cloth.edge_m, out))
         return true;
     if (!is_built_in_garment(name))
-        return tl_garment_load_in(name, (enum tl_units)session->settings.scene.units, out, error);
+        return read_garment(session, out, error);
     if (!tl_garment_cut(name, session->settings.cloth.edge_m, out, error))
         return false;
     bool own_body = session->avatar && strcmp(wearer, "form") != 0;
@@ -138,7 +188,6 @@ static bool load_garment(tl_session *session, tl_error *error)
         return true;
     if (!make_garment(session, &made, error))
         return false;
-    tell_units(&made.model, "--units");
     session->garment = TL_NEW(tl_garment);
     *session->garment = made;
     return true;
@@ -265,11 +314,6 @@ static void frame_everything(tl_session *session)
         box.upper = glms_vec3_maxv(box.upper, part.upper);
     }
     session->framed = box;
-}
-
-static bool plays_motion(const tl_session *session)
-{
-    return strcmp(session->settings.scene.motion, "none") != 0;
 }
 
 bool tl_session_make_look(const tl_session *session, const struct tl_settings *settings, struct tl_looks *out,
@@ -419,7 +463,7 @@ bool tl_session_needs_scene(const struct tl_settings *old, const struct tl_setti
            !same_text(old->scene.motion, new->scene.motion) || old->scene.units != new->scene.units ||
            old->scene.avatar_units != new->scene.avatar_units ||
            old->scene.motion_rate != new->scene.motion_rate || old->cloth.edge_m != new->cloth.edge_m ||
-           old->image.ground != new->image.ground;
+           old->cloth.longest_edge_m != new->cloth.longest_edge_m || old->image.ground != new->image.ground;
 }
 
 bool tl_session_needs_light(const struct tl_settings *old, const struct tl_settings *new)
@@ -450,6 +494,7 @@ void tl_session_keep_scene(const struct tl_settings *kept, struct tl_settings *s
     settings->scene.avatar_units = kept->scene.avatar_units;
     settings->scene.motion_rate = kept->scene.motion_rate;
     settings->cloth.edge_m = kept->cloth.edge_m;
+    settings->cloth.longest_edge_m = kept->cloth.longest_edge_m;
     settings->image.ground = kept->image.ground;
 }
 

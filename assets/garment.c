@@ -9,11 +9,13 @@ bool tl_garment_load(const char *path, tl_garment *out, tl_error *error)
     return tl_garment_load_in(path, TL_UNITS_AUTO, out, error);
 }
 
-static void take_pins(tl_garment *garment)
+void tl_garment_take_pins(tl_garment *garment)
 {
     const tl_model *model = &garment->model;
     if (!model->pins)
         return;
+    free(garment->pins);
+    garment->pin_count = 0;
     garment->pins = TL_NEW_ARRAY(uint32_t, model->mesh.vertex_count);
     for (uint32_t i = 0; i < model->mesh.vertex_count; i++)
         if (model->pins[i] > 0.5f)
@@ -25,7 +27,7 @@ bool tl_garment_load_in(const char *path, enum tl_units units, tl_garment *out, 
     *out = (tl_garment){0};
     if (!tl_model_load_in(path, units, &out->model, error))
         return false;
-    take_pins(out);
+    tl_garment_take_pins(out);
     return true;
 }
 

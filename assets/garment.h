@@ -29,6 +29,8 @@ typedef struct tl_garment {
 bool tl_garment_load(const char *path, tl_garment *out, tl_error *error);
 bool tl_garment_load_in(const char *path, enum tl_units units, tl_garment *out, tl_error *error);
 void tl_garment_release(tl_garment *garment);
+/* Lists the vertices that model.pins holds, if the file has any. */
+void tl_garment_take_pins(tl_garment *garment);
 
 /* Built-in garments, cut as flat panels around the built-in dress form (assets/form.h): "dress", "skirt", and
  * "layers": the dress behind a curtain, whose material is named TL_GARMENT_OVERLAY. Their other materials are

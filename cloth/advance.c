@@ -343,14 +343,18 @@ static bool check_state(const tl_cloth *cloth, tl_error *error)
     return true;
 }
 
+/* What is deeper in the ground is being lifted out of it, and no rounding. */
+#define BURIED_M 1e-6
+
 /* What may put energy into it. */
 static bool is_driven(const tl_cloth *cloth, const tl_collider *collider)
 {
     const float *wind = cloth->params.wind;
     bool pushed = cloth->contacts.caught_count > 0 || cloth->collider_revision != cloth->contacts.revision ||
                   (collider && tl_collider_travel(collider) > 0);
+    bool ground = collider && tl_collider_has_ground(collider);
     for (size_t i = 0; i < cloth->particles.count && collider && !pushed; i++)
-        pushed = cloth->contacts.allowed[i] > 0;
+        pushed = cloth->contacts.allowed[i] > 0 || (ground && cloth->particles.x[i].y < -BURIED_M);
     return pushed || cloth->grabbed || cloth->sewing.pair_count > 0 || cloth->params.self_repulsion ||
            wind[0] != 0 || wind[1] != 0 || wind[2] != 0;
 }

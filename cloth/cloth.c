@@ -296,6 +296,7 @@ void tl_cloth_destroy(tl_cloth **cloth)
     release_state(*cloth);
     free((*cloth)->start_x);
     free((*cloth)->start_v);
+    free((*cloth)->start_pinched);
     free(*cloth);
     *cloth = NULL;
 }
@@ -324,6 +325,8 @@ static void forget_past(tl_cloth *cloth)
     tl_implicit_destroy(&cloth->implicit);
     tl_contacts_release(&cloth->contacts);
     cloth->contacts = tl_contacts_create(&cloth->topology, cloth->rest);
+    for (size_t i = 0; i < cloth->topology.render_count; i++)
+        cloth->contacts.pinched[cloth->topology.weld[i]] |= cloth->start_pinched[i];
     tl_layers_forget(&cloth->layers);
 }
 
@@ -333,9 +336,11 @@ void tl_cloth_mark_start(tl_cloth *cloth)
     size_t count = cloth->topology.render_count;
     cloth->start_x = tl_resize(cloth->start_x, count, sizeof *cloth->start_x);
     cloth->start_v = tl_resize(cloth->start_v, count, sizeof *cloth->start_v);
+    cloth->start_pinched = tl_resize(cloth->start_pinched, count, sizeof *cloth->start_pinched);
     for (size_t i = 0; i < count; i++) {
         cloth->start_x[i] = cloth->particles.x[cloth->topology.weld[i]];
         cloth->start_v[i] = cloth->particles.v[cloth->topology.weld[i]];
+        cloth->start_pinched[i] = tl_contacts_is_pinched(&cloth->contacts, cloth->topology.weld[i]);
     }
     cloth->time_s = 0;
     cloth->left_alone = false;

@@ -59,6 +59,7 @@ struct tl_cloth_params {
     double settle_s;     /* longest simulated time spent settling before the first frame */
     double settle_speed; /* m/s: settled when the fastest vertex is slower than this */
     float edge_m;        /* wanted edge length of built-in garments */
+    float longest_edge_m; /* of garments from files, whose longer ones are halved; 0: as they are */
 };
 extern const struct tl_option_table tl_cloth_options;
 

@@ -28,6 +28,7 @@ struct tl_contacts tl_contacts_create(const struct tl_topology *topology, const 
     contacts.probes = tl_probes_create(topology, rest, COARSE_M, &contacts.probe_count);
     contacts.allowed = TL_NEW_ARRAY(double, contacts.particle_count);
     contacts.caught = TL_NEW_ARRAY(bool, contacts.particle_count);
+    contacts.pinched = TL_NEW_ARRAY(bool, contacts.particle_count);
     contacts.slipped = TL_NEW_ARRAY(bool, contacts.particle_count);
     for (size_t i = 0; i < contacts.particle_count; i++)
         contacts.allowed[i] = HUGE_VAL;
@@ -44,6 +45,7 @@ void tl_contacts_release(struct tl_contacts *contacts)
     free(contacts->probes);
     free(contacts->allowed);
     free(contacts->caught);
+    free(contacts->pinched);
     free(contacts->slipped);
     *contacts = (struct tl_contacts){0};
 }
@@ -133,7 +135,11 @@ void tl_contacts_begin(struct tl_contacts *contacts, const tl_collider *collider
     contacts->collider = collider;
     contacts->revision = revision;
     contacts->caught_count = 0;
-    memset(contacts->caught, 0, contacts->particle_count * sizeof(bool));
+    bool moves = collider && tl_collider_travel(collider) > 0;
+    for (size_t i = 0; i < contacts->particle_count; i++) {
+        contacts->pinched[i] = contacts->caught[i] || (contacts->pinched[i] && !moves);
+        contacts->caught[i] = false;
+    }
     for (size_t i = 0; i < cache_count(contacts) && !same; i++) {
         struct tl_contact_cache *cache = &contacts->caches[i];
         cache->asked_phase = HUGE_VAL;
@@ -188,8 +194,8 @@ static bool put_back(struct tl_contacts *contacts, size_t i, double thickness, d
         double distance = distance_to(cache, x, phase);
         if (distance >= deepest)
             return tries > 0;
-        particles->x[i] =
-            vec3d_muladd(x, cache->normal, (deepest < 0 ? deepest : share * thickness) - distance);
+        particles->x[i] = vec3d_muladd(x, cache->normal,
+                                       (deepest < 0 ? deepest + ROUNDING_M : share * thickness) - distance);
         particles->v[i] = vec3d_muladd(v, cache->normal, fmax(-vec3d_dot(v, cache->normal), 0));
         share /= 2;
     }
@@ -208,7 +214,8 @@ static void enforce_one(struct tl_contacts *contacts, size_t i, const struct tl_
     cache->near = cache->near && !slipped; /* it may be anywhere */
     if (lost && !cache->near)
         ask(contacts->collider, step->thickness_m, step->phase, particles->x[i], cache);
-    if (!cache->near || !(travel > 0 || lost || contacts->allowed[i] > 0))
+    bool asks = travel > 0 || lost || contacts->allowed[i] > 0 || contacts->pinched[i];
+    if (!cache->near || !asks)
         return;
     bool caught = put_back(contacts, i, step->thickness_m, step->phase, particles) || slipped;
     contacts->caught_count += caught && !contacts->caught[i];

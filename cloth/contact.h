@@ -26,6 +26,8 @@ struct tl_contacts {
     struct tl_probe *probes;
     struct tl_contact_cache *caches; /* [particle_count + probe_count] */
     bool *caught;                    /* [particle_count] in this frame, so far */
+    bool *pinched;   /* [particle_count] caught in the last frame, or in the last one that the collider moved
+                        in:   its plane alone says too little */
     double *allowed; /* [particle_count] m below the offset that a particle may still be: what it began with,
                         less what has been taken out; HUGE_VAL: never looked */
     bool *slipped;   /* [particle_count] moved by cloth/snag.h, which knows nothing of planes; cleared once
@@ -82,6 +84,12 @@ void tl_contacts_solve(struct tl_contacts *contacts, const struct tl_contact_par
  * half of RATTLE, Andersen 1983). */
 void tl_contacts_rub(const struct tl_contacts *contacts, const struct tl_contact_params *params,
                      struct tl_particles *particles);
+
+/* Whether a particle was caught lately: new contacts have to be told. */
+static inline bool tl_contacts_is_pinched(const struct tl_contacts *contacts, size_t particle)
+{
+    return contacts->caught[particle] || contacts->pinched[particle];
+}
 
 /* Once per step, at its end, with the step's own duration and phases: whatever the substeps' planes have
  * missed, no particle is deeper in the avatar than it was before, and none that was outside is inside. Where

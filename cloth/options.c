@@ -30,7 +30,7 @@ const struct tl_option_table tl_cloth_fabric_options = TL_OPTION_TABLE(
 #define TL_CLOTH_DEFAULTS                                                                                    \
     .solver = TL_CLOTH_PREVIEW, .strain_limit = 0.1, .dt = 1.0 / 60, .frame_rate = 30, .substeps = 30,       \
     .cg_iterations = 200, .cg_tolerance = 3e-2, .reference_substeps = 20000, .gravity = 9.81, .settle_s = 6, \
-    .settle_speed = 0.003, .edge_m = 0.02f
+    .settle_speed = 0.003, .edge_m = 0.02f, .longest_edge_m = 0.1f
 
 const char *const tl_cloth_solver_names[] = {"preview", "settle", "reference", NULL};
 
@@ -73,6 +73,10 @@ static const struct tl_option cloth_rows[] = {
                      "settled when the fastest vertex is slower than this: settles sooner"),
     TL_OPTION_FLOAT(struct tl_cloth_params, edge_m, 0.001f, 1, "m",
                     "length of an edge of the built-in garments: coarser, faster"),
+    TL_OPTION_FLOAT(
+        struct tl_cloth_params, longest_edge_m, 0, 1000, "m",
+        "a garment's file may have longer edges, but they are halved: without, it cannot fold; 0: "
+        "as the file has them"),
 };
 const struct tl_option_table tl_cloth_options = TL_OPTION_TABLE(
     "cloth", "how the cloth is solved", cloth_rows, struct tl_cloth_params, TL_CLOTH_DEFAULTS);

@@ -47,6 +47,7 @@ struct tl_cloth {
     double least_energy;        /* J, all kinds: what has been lost cannot come back */
     double usual_energy;        /* J, kinetic and elastic, when it was left alone */
     vec3d *start_x, *start_v;   /* [render vertex] what reset goes back to; NULL until a start is marked */
+    bool *start_pinched;        /* [render vertex] the same: struct tl_contacts */
 };
 
 /* How one frame is advanced. */

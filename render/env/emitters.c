@@ -11,7 +11,8 @@
  * ten thousand times that is a tenth of what is there. */
 #define LOBE_CUT 1e-4f
 
-/* Cells are at most this many lobe widths 1 / sqrt(s) wide. */
+/* Cells are at most this many lobe widths 1 / sqrt(s) wide; half as many where lobes end in a crease at their
+ * horizon (s = 1), across which no mean and variance stand for the lamps of a cell. */
 #define MERGE_WIDTH 0.25f
 
 /* Bits of x or of y in a code; the face stands above them. */
@@ -88,7 +89,8 @@ tl_emitter *tl_emitters_collect(const tl_cube *cube, const float *solid_angles, 
 
 static int merges_for(int cube_size, float exponent)
 {
-    float texel = (float)M_PI_2 / (float)cube_size, widest = MERGE_WIDTH / sqrtf(exponent);
+    float texel = (float)M_PI_2 / (float)cube_size,
+          widest = MERGE_WIDTH / (sqrtf(exponent) + 1 / sqrtf(exponent));
     int merges = 0;
     while (texel * (float)(2 << merges) <= widest)
         merges++;

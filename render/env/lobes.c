@@ -10,9 +10,12 @@
 #include <string.h>
 
 /* Texels along the side of a map: they follow the lobe's width, and the widest lobes, which end at a horizon
- * rather than fade, need some more. */
+ * rather than fade, need some more; most of all that of s = 1, which ends in a crease. Across it a straight
+ * line between texels errs by a quarter of their distance, which is 2 sqrt(6) / side in the middle of an
+ * octahedron's face: 1.5 % of what a lone lamp gives at its brightest (2.6 % without). */
 #define SIDE_PER_WIDTH  16
 #define SIDE_OF_HORIZON 32
+#define SIDE_OF_CREASE  32
 /* Sixteen lanes look at a square of the map. */
 #define TILE 4
 /* Samples along a side of a texel of the environment itself. */
@@ -121,12 +124,17 @@ static int whole_tiles(float side)
     return TILE * (int)ceilf(side / TILE);
 }
 
-static struct tl_lobe_map convolve(const tl_emitter *texels, int cube_size, float s)
+static int side_for(float s)
 {
     float width = 1 / sqrtf(s);
+    return whole_tiles(SIDE_PER_WIDTH / width + SIDE_OF_HORIZON * width + (s > 1 ? 0 : SIDE_OF_CREASE));
+}
+
+static struct tl_lobe_map convolve(const tl_emitter *texels, int cube_size, float s)
+{
     size_t count = 6 * (size_t)cube_size * (size_t)cube_size;
     struct tl_emitters emitters = tl_emitters_merge(texels, count, cube_size, s);
-    struct tl_lobe_map map = create_map(whole_tiles(SIDE_PER_WIDTH / width + SIDE_OF_HORIZON * width));
+    struct tl_lobe_map map = create_map(side_for(s));
     int tiles = map.side / TILE;
 #pragma omp parallel for schedule(dynamic, 4)
     for (int tile = 0; tile < tiles * tiles; tile++) {

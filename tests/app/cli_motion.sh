@@ -35,10 +35,20 @@ scene:
   avatar: none
   units: cm
 TEXT
-export="export --set cloth.settle_s=0 -o mm.glb"
+export="export --set cloth.settle_s=0 --set cloth.longest_edge_m=0 -o mm.glb"
 check "units are guessed and said" sh -c "$TOILE $export --garment mm.obj --avatar none 2>&1 | grep -q 'mm.obj: 812 units at its longest: taken as millimetres'"
 check "units are told" sh -c "[ -z \"\$($TOILE $export --garment mm.obj --avatar none --units mm 2>&1)\" ]"
 check "units in a scene file" sh -c "$TOILE $export scene.yaml && $TOILE info mm.glb | grep -A2 upper_m | grep -q '^ *4$'"
+
+printf 'v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n' >sheet.obj
+sheet="--garment sheet.obj --avatar none --units m --set cloth.settle_s=0"
+$TOILE export $sheet -o fine.obj 2>said.txt
+check "edges that cannot fold are split, and it is said" grep -Eq 'sheet.obj: edges of up to 2.83 m .* 2 triangles were split into [0-9]{4} ' said.txt
+check "so is what lies below the ground" grep -q 'sheet.obj: reached 1 m below the ground: lifted onto it' said.txt
+check "they are fine" awk '/^v / { lowest = $3 < lowest ? $3 : lowest } END { exit !(NR > 1000 && lowest > -0.001) }' fine.obj
+check "nothing is split or lifted where that is asked" sh -c "[ -z \"\$($TOILE export $sheet --set cloth.longest_edge_m=0 --set image.ground=false -o as_is.obj 2>&1)\" ] && [ \"\$(grep -c '^v ' as_is.obj)\" = 4 ]"
+$TOILE export $sheet --frames 0:2 --quiet -o sheet.pc2
+check "what was split is played on what was split" $TOILE render --garment fine.obj --motion sheet.pc2 --avatar none --preset draft --size 32x32 --quiet -o sheet.exr
 
 fast="--preset draft --size 96x96 --avatar none --set image.ground=false --quiet"
 $TOILE render $fast $played skirt.pc2 --frames 0:4 -o seen.exr
