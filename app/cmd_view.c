@@ -106,19 +106,24 @@ static bool is_minimised(const struct tl_review *review)
 /* What the window does between two looks at its events. */
 static bool live(struct tl_review *review, bool always_shows, tl_error *error)
 {
-    review->times.began_s = tl_clock_s();
-    review->times.cloth = 0;
+    review->times.began_s = review->times.lap_s = tl_clock_s();
+    review->times.cloth = review->times.longest_ms = 0;
     tl_review_watch(review);
+    tl_review_lap(review, "watching files");
     tl_review_load(review);
+    tl_review_lap(review, "what was loaded beside");
     tl_review_move(review);
     if (!tl_review_update_image(review, error))
         return false;
+    review->times.lap_s = tl_clock_s();
     tl_review_note_edit(review);
+    tl_review_lap(review, "undo");
     let_message_fade(review);
     if (review->redraws == 0 && !review->editing && !review->loader && !always_shows)
         return true;
     review->redraws -= review->redraws > 0;
     tl_review_build_panel(review);
+    tl_review_lap(review, "the panel");
     return tl_review_present(review, error);
 }
 

@@ -33,6 +33,17 @@ static bool show_image(struct tl_review *review, int width, int height, tl_error
            tl_renderer_show_columns(review->renderer, width, height, line, width, error);
 }
 
+void tl_review_lap(struct tl_review *review, const char *part)
+{
+    struct tl_review_times *times = &review->times;
+    double now_s = tl_clock_s(), ms = 1e3 * (now_s - times->lap_s);
+    times->lap_s = now_s;
+    if (ms <= times->longest_ms)
+        return;
+    times->longest = part;
+    times->longest_ms = ms;
+}
+
 /* What an image that one feels spent its time on, for whoever wants to know why. */
 static void tell_slow(const struct tl_review *review, double image_ms)
 {
@@ -43,6 +54,8 @@ static void tell_slow(const struct tl_review *review, double image_ms)
     tl_debug("view: slow image %d, %s: %.0f ms with the cloth's %.0f%s", review->drawn_count,
              review->is_paced ? "in motion" : "at rest", image_ms, review->times.cloth,
              review->wipe.renderer ? ", compared" : "");
+    if (review->times.longest_ms > 0.1 * image_ms)
+        tl_debug("view:   %s %.0f ms", review->times.longest, review->times.longest_ms);
     for (int i = 0; i < plan->count; i++)
         if (plan->rows[i].took_ms > 0.1 * image_ms)
             tl_debug("view:   %s %.0f ms: %s", plan->rows[i].name, plan->rows[i].took_ms,
@@ -73,7 +86,9 @@ bool tl_review_present(struct tl_review *review, tl_error *error)
     tl_review_size(review, &width, &height);
     if (!show_image(review, width, height, error))
         return false;
+    review->times.lap_s = tl_clock_s();
     tl_panel_draw(review->panel);
+    tl_review_lap(review, "drawing the panel");
     take_time(review);
     tl_window_show(review->window);
     review->shown_count++;
@@ -152,6 +167,7 @@ static bool draw_image(struct tl_review *review, const struct tl_settings *setti
                        tl_error *error)
 {
     struct tl_levels *levels = &review->pace_choice.levels;
+    review->times.lap_s = tl_clock_s();
     if (!is_paced)
         *levels = (struct tl_levels){{0}};
     struct tl_settings b = tl_levels_apply(levels, settings); /* the last frame's: the camera goes first */
@@ -162,6 +178,7 @@ static bool draw_image(struct tl_review *review, const struct tl_settings *setti
     b = tl_levels_apply(levels, settings);
     if (!tl_session_apply(review->session, &b, error))
         return false;
+    tl_review_lap(review, "settings and levels");
     if (is_step_due(review))
         step(review);
     double started_s = tl_clock_s();
