@@ -97,6 +97,16 @@ static double wind_speed(const float wind[3])
     return sqrt((double)(wind[0] * wind[0] + wind[1] * wind[1] + wind[2] * wind[2]));
 }
 
+/* What lets go of a strain e runs off at e sqrt(k / areal density), as behind a wave along a rod. Steps of
+ * the other solvers take such waves away; the reference solver keeps their energy. */
+static double spring_speed(const struct tl_settings *settings, double strain)
+{
+    const struct tl_cloth_fabric *fabric = &settings->fabric;
+    double stiffness = fmax(fabric->stretch_warp, fabric->stretch_weft);
+    return settings->cloth.solver == TL_CLOTH_REFERENCE ? strain * sqrt(stiffness / fabric->areal_density)
+                                                        : 0;
+}
+
 struct tl_checked_cloth tl_watch_look(struct tl_watch *watch, const tl_frame *frame, bool is_held,
                                       bool is_changed)
 {
@@ -117,7 +127,8 @@ struct tl_checked_cloth tl_watch_look(struct tl_watch *watch, const tl_frame *fr
     watch->was_held = watch->was_held || is_held;
     cloth.drift_m = measure_drift(watch, frame, cloth.is_driven);
     cloth.allowed_speed =
-        WHIP * (falls + wearer_speed(watch, frame) + blows + (watch->was_held ? HAND_SPEED : 0));
+        WHIP * (falls + wearer_speed(watch, frame) + blows + (watch->was_held ? HAND_SPEED : 0)) +
+        spring_speed(watch->settings, report->max_strain);
     if (isnan(watch->first_strain))
         watch->first_strain = report->max_strain;
     double energy_j = report->kinetic_energy + report->elastic_energy + report->potential_energy;
