@@ -29,8 +29,8 @@ static const struct tl_choice choices[] = {
     {"review", "review", {NULL}},
     {"review by GL maps",
      "review",
-     {"light.visibility=depth", "light.prefilter=slices", "light.composition=difference",
-      "light.jitter=true", "light.refresh=0"}},
+     {"light.visibility=depth", "light.prefilter=slices", "light.composition=difference", "light.jitter=true",
+      "light.refresh=0"}},
     {"draft", "draft", {NULL}},
     {"final", "final", {NULL}},
 };

@@ -98,9 +98,8 @@ const struct tl_invariant tl_invariants[] = {
      "it",
      false, tl_measure_momentum},
     {"cloth.speed", "no particle is faster than fall, wearer, hand and wind make it: ratio", 1,
-     "three times their sum, for a whip's end; under the reference solver, which damps nothing, what its "
-     "strain "
-     "can become as well",
+     "three times their sum, for a whip's end; and with the reference solver, which damps nothing, what its "
+     "strain can become",
      false, tl_measure_speed},
     {"run.repeat", "the same frame again gives the same positions and pixels: differing frames", 0,
      "to the bit, at any number of threads", true, tl_measure_repeat},

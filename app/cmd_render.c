@@ -7,8 +7,8 @@
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
-#include "render/inspect/inspect.h"
 #include "render/inspect/aovs.h"
+#include "render/inspect/inspect.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -85,8 +85,8 @@ enum tl_review_drag { TL_DRAG_NONE, TL_DRAG_ORBIT, TL_DRAG_PAN, TL_DRAG_LIGHT, T
 struct tl_review_times {       /* ms, of the last frame that had them */
     double frame, cloth, draw; /* frame: all of it, to the swap of buffers */
     double began_s;            /* the frame at hand */
-    double lap_s;              /* when its last part ended; the longest part outside of drawing so far */
-    const char *longest;
+    double lap_s;              /* when its last part ended */
+    const char *longest;       /* of its parts so far, outside of drawing */
     double longest_ms;
 };
 
@@ -206,9 +206,9 @@ bool tl_review_update_image(struct tl_review *review, tl_error *error);
 bool tl_review_is_sharp(const struct tl_review *review);
 bool tl_review_draw_sharp(struct tl_review *review, tl_error *error);
 bool tl_review_is_at_rest(const struct tl_review *review);
-/* Puts the last image, and the panel as it was built, on the screen. */
-/* Ends a part of the frame at hand, for whoever wants to know what took long. */
+/* Ends a part of the frame at hand that is not drawing: --verbose tells the longest of a slow image. */
 void tl_review_lap(struct tl_review *review, const char *part);
+/* Puts the last image, and the panel as it was built, on the screen. */
 bool tl_review_present(struct tl_review *review, tl_error *error);
 
 /* ---- review_load.c */

@@ -46,8 +46,8 @@ struct tl_trade_axis {
 };
 
 extern const struct tl_trade_axis tl_trade_light; /* trade_light.c */
-extern const struct tl_trade_axis tl_trade_resolution, tl_trade_detail, tl_trade_shading,
-    tl_trade_overall, tl_trade_levels; /* trade_axes.c */
+extern const struct tl_trade_axis tl_trade_resolution, tl_trade_detail, tl_trade_shading, tl_trade_overall,
+    tl_trade_levels; /* trade_axes.c */
 
 struct tl_trade_row {
     const char *group, *name; /* literals */

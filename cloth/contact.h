@@ -26,8 +26,8 @@ struct tl_contacts {
     struct tl_probe *probes;
     struct tl_contact_cache *caches; /* [particle_count + probe_count] */
     bool *caught;                    /* [particle_count] in this frame, so far */
-    bool *pinched;   /* [particle_count] caught in the last frame, or in the last one that the collider moved
-                        in:   its plane alone says too little */
+    bool *pinched;                   /* [particle_count] caught in the last frame, or in the last one in which
+                                        the collider moved: one plane alone says too little of where it is */
     double *allowed; /* [particle_count] m below the offset that a particle may still be: what it began with,
                         less what has been taken out; HUGE_VAL: never looked */
     bool *slipped;   /* [particle_count] moved by cloth/snag.h, which knows nothing of planes; cleared once

@@ -406,7 +406,8 @@ TL_INLINE void go_up(const tl_factor *factor, const struct panel *panel, uint32_
     gather(rows + panel->own_count, panel->top_count, below + (size_t)width * panel->own_count, width,
            y + factor->top_first, sums);
     for (uint32_t k = width; k-- > 0;) {
-        const double *column = inner + (size_t)k * width - (size_t)k * (k + 1) / 2; /* of L between the columns */
+        const double *column =
+            inner + (size_t)k * width - (size_t)k * (k + 1) / 2; /* of L between the columns */
         for (uint32_t i = k + 1; i < width; i++)
             sums[k] = less(sums[k], sums[i], column[i - k - 1]);
         y[panel->column + k] = sums[k];

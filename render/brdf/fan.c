@@ -102,9 +102,9 @@ static void sample_normal(float from, float at[POINTS], float share[POINTS])
         share[i] *= mass / sum;
 }
 
-/* What of all light is reflected towards the viewer: the mean over all slopes. Those that turn away from the viewer
- * by more than half of what is left of a right angle send light from below the horizon, which cuts the mean off
- * sharply; beside that, two Gauss-Hermite points do. */
+/* What of all light is reflected towards the viewer: the mean over all slopes. Those that turn away from the
+ * viewer by more than half of what is left of a right angle send light from below the horizon, which cuts the
+ * mean off sharply; beside that, two Gauss-Hermite points do. */
 static vec3s albedo_of(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame,
                        const struct slopes *slopes, vec3s v)
 {

@@ -46,7 +46,7 @@ struct tl_envmap {
     size_t parts_bytes;
     int part_count;
     bool has_ground, has_layers; /* what the parts are */
-    tl_texture fresnel; /* F over the cosine, a row for each part */
+    tl_texture fresnel;          /* F over the cosine, a row for each part */
 };
 
 void tl_envmap_release(struct tl_envmap *envmap);

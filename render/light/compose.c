@@ -136,8 +136,7 @@ TL_INLINE struct sums sum_groups(struct block *block, size_t index, const struct
 }
 
 /* The loops over the regions are compiled once for each kind of sample. */
-TL_INLINE struct sums sum_kind(struct block *block, size_t index, const struct frame *frame,
-                               struct kind kind)
+TL_INLINE struct sums sum_kind(struct block *block, size_t index, const struct frame *frame, struct kind kind)
 {
     if (kind.bumped)
         return kind.glossy ? sum_groups(block, index, frame, (struct kind){true, true})

@@ -59,7 +59,9 @@ static void every_variant_has_a_name(void **state)
     (void)state;
     tl_model model;
     tl_error error;
-    assert_ok(load("[]", "[{\"name\":\"Red\"},{\"name\":\"\"},{\"name\":\"Red\"},{\"name\":7}]", &model, &error), error);
+    assert_ok(
+        load("[]", "[{\"name\":\"Red\"},{\"name\":\"\"},{\"name\":\"Red\"},{\"name\":7}]", &model, &error),
+        error);
     assert_int_equal(model.variant_count, 4);
     assert_string_equal(model.variants[0].name, "Red");
     assert_string_equal(model.variants[1].name, "variant 1");

@@ -156,7 +156,8 @@ static void test_refusals(void **state)
     (void)state;
     refuse("nowhere.yaml", NULL, "nowhere.yaml: no such file: check the path");
     refuse("drss", NULL,
-           "drss: no such scene: expected dress, skirt, review, gallery, composed, cusick, or a YAML file: did you mean dress?");
+           "drss: no such scene: expected dress, skirt, review, gallery, composed, cusick, or a YAML file: "
+           "did you mean dress?");
     refuse(NULL, "scene.fabric=satn",
            "--set: scene.fabric: satn is no name known here: expected none, cotton_plain, satin, "
            "denim, silk, wool, interlock_tee, rib_knit, ponte, swim_knit, fleece, "
@@ -169,11 +170,10 @@ static void test_refusals(void **state)
     refuse(NULL, "scene.fabric=no.yaml", "no.yaml: no such file: check the path");
     refuse(NULL, "light.regionz=6", "--set: light.regionz: no such option: did you mean light.regions?");
     write_text(FOLDER "/bad.yaml", "scene:\n  garment: dres\n");
-    refuse(
-        FOLDER "/bad.yaml", NULL,
-        FOLDER
-        "/bad.yaml:2: scene.garment: dres is no name known here: expected dress, skirt, layers, sheet, disc, sphere, torus, none or a file name "
-        "with its extension: did you mean dress?");
+    refuse(FOLDER "/bad.yaml", NULL,
+           FOLDER "/bad.yaml:2: scene.garment: dres is no name known here: expected dress, skirt, layers, "
+                  "sheet, disc, sphere, torus, none or a file name "
+                  "with its extension: did you mean dress?");
     /* A preset is about quality, a fabric about cloth: neither may reach into the scene. */
     write_text(FOLDER "/preset.yaml", "scene:\n  fabric: wool\n");
     refuse(NULL, "scene.preset=" FOLDER "/preset.yaml",

@@ -207,12 +207,9 @@ static void long_reasons_are_cut(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(plans_follow_the_table),
-        cmocka_unit_test(stale_results_are_made_again),
-        cmocka_unit_test(levels_are_the_most_exact),
-        cmocka_unit_test(predictions_are_of_what_runs),
-        cmocka_unit_test(tables_out_of_order_are_refused),
-        cmocka_unit_test(long_reasons_are_cut),
+        cmocka_unit_test(plans_follow_the_table),          cmocka_unit_test(stale_results_are_made_again),
+        cmocka_unit_test(levels_are_the_most_exact),       cmocka_unit_test(predictions_are_of_what_runs),
+        cmocka_unit_test(tables_out_of_order_are_refused), cmocka_unit_test(long_reasons_are_cut),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
