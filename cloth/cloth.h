@@ -57,7 +57,7 @@ struct tl_cloth_params {
     float wind[3];       /* m/s; air at rest presses on nothing: then only fabric.damping slows the cloth */
     double gust;         /* 0 to 1, of the wind's speed */
     double settle_s;     /* longest simulated time spent settling before the first frame */
-    double settle_speed; /* m/s: settled when the fastest vertex is slower than this */
+    double settle_speed; /* m/s: settled when no vertex goes further in a frame */
     float edge_m;        /* wanted edge length of built-in garments */
     float longest_edge_m; /* of garments from files, whose longer ones are halved; 0: as they are */
 };

@@ -70,7 +70,7 @@ static const struct tl_option cloth_rows[] = {
     TL_OPTION_DOUBLE(struct tl_cloth_params, settle_s, 0, 600, "s",
                      "longest simulated time for coming to rest before the first frame"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, settle_speed, 0, 10, "m/s",
-                     "settled when the fastest vertex is slower than this: settles sooner"),
+                     "settled when no vertex is faster than this over a frame: settles sooner"),
     TL_OPTION_FLOAT(struct tl_cloth_params, edge_m, 0.001f, 1, "m",
                     "length of an edge of the built-in garments: coarser, faster"),
     TL_OPTION_FLOAT(
