@@ -90,6 +90,7 @@ static struct tl_contact_params contact_params(const tl_cloth *cloth, const stru
                                           tl_sewing_pulls(&cloth->sewing) ? 0 : cloth->fabric.friction,
                                       .thickness_m = cloth->fabric.thickness_m,
                                       .push_out_speed = TL_PUSH_OUT_SPEED,
+                                      .least_slip = substep->least_slip,
                                       .phase_before = substep->phase_before,
                                       .phase = substep->phase,
                                       .h = substep->h};
@@ -253,6 +254,7 @@ static void run_step(tl_cloth *cloth, const tl_collider *collider, const struct 
                                            .gravity = gravity,
                                            .drag = fmax(advance->drag, cloth->fabric.damping),
                                            .agreement = advance->agreement,
+                                           .least_slip = advance->least_slip,
                                            .phase_before = done / total,
                                            .phase = (done + 1) / total,
                                            .collider = collider,
@@ -458,6 +460,6 @@ bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct
 
 bool tl_cloth_step(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
 {
-    const struct tl_advance advance = {.clock = true, .agreement = 2};
+    const struct tl_advance advance = {.clock = true, .agreement = 2, .least_slip = TL_LEAST_SLIP};
     return tl_cloth_advance(cloth, collider, &advance, error);
 }

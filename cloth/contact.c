@@ -80,7 +80,7 @@ static vec3d ahead(const struct tl_contact_cache *cache, double thickness, doubl
     return length > slide / 2 ? vec3d_muladd(x, slid, LEAD * slide / length) : x;
 }
 
-static bool stale(const struct tl_contact_cache *cache, double travel, double phase, vec3d x)
+TL_INLINE bool stale(const struct tl_contact_cache *cache, double travel, double phase, vec3d x)
 {
     if (cache->asked_phase > 1)
         return true;
@@ -230,26 +230,6 @@ void tl_contacts_enforce(struct tl_contacts *contacts, const struct tl_contact_p
     memset(contacts->slipped, 0, contacts->particle_count * sizeof(bool));
 }
 
-vec3d tl_contact_push_out(vec3d x, vec3d before, vec3d surface, vec3d surface_before, vec3d normal,
-                          const struct tl_contact_params *params)
-{
-    double depth = params->thickness_m - vec3d_dot(vec3d_sub(x, surface), normal);
-    if (!(depth > 0))
-        return x;
-    double depth_before = fmax(params->thickness_m - vec3d_dot(vec3d_sub(before, surface_before), normal), 0);
-    double kept = fmax(depth_before - params->push_out_speed * params->h, 0);
-    double correction = depth - kept;
-    if (!(correction > 0))
-        return x;
-    x = vec3d_muladd(x, normal, correction);
-    vec3d slip = vec3d_sub(vec3d_sub(x, before), vec3d_sub(surface, surface_before));
-    slip = vec3d_muladd(slip, normal, -vec3d_dot(slip, normal));
-    double length = vec3d_norm(slip);
-    double pressed = fmax(depth - depth_before, 0); /* what load pushed in, without the old penetration */
-    double grip = params->friction * pressed;
-    return vec3d_muladd(x, slip, length > grip ? -grip / length : -1);
-}
-
 static vec3d push_off_ground(vec3d x, vec3d before, const struct tl_contact_params *params)
 {
     const vec3d up = {0, 1, 0}, origin = {0};
@@ -268,9 +248,10 @@ static struct surroundings look_around(const tl_collider *collider)
                                  collider ? tl_collider_travel(collider) : 0};
 }
 
-/* Where a point that is driven from `before` to `x` may go. */
-static vec3d keep_out(const struct surroundings *around, struct tl_contact_cache *cache, vec3d x,
-                      vec3d before, const struct tl_contact_params *params)
+/* Where a point that is driven from `before` to `x` may go. Inline, with all it calls as a rule: vectors that
+ * are handed over in memory made it take twice as long. */
+TL_INLINE vec3d keep_out(const struct surroundings *around, struct tl_contact_cache *cache, vec3d x,
+                         vec3d before, const struct tl_contact_params *params)
 {
     if (stale(cache, around->travel, params->phase, x))
         ask(around->collider, params->thickness_m, params->phase_before,

@@ -11,6 +11,7 @@
 #include "cloth/energy.h"
 #include "cloth/particles.h"
 #include "cloth/probe.h"
+#include "config/simd.h"
 
 struct tl_contact_cache {
     vec3d asked_at;     /* where the particle was when the collider was asked */
@@ -46,6 +47,7 @@ void tl_contacts_release(struct tl_contacts *contacts);
 struct tl_contact_params {
     double friction, thickness_m;
     double push_out_speed;      /* m/s: how fast penetration that was there before is taken out */
+    double least_slip;          /* m/s, of solvers that heed planes while they solve: slower is no slip */
     double phase_before, phase; /* of the collider's motion at the start and the end of the substep */
     double h;                   /* s */
 };
@@ -101,7 +103,24 @@ void tl_contacts_enforce(struct tl_contacts *contacts, const struct tl_contact_p
 /* Where a point goes that is driven from `before` to `x`: to the outer side of a plane through `surface`,
  * which was at `surface_before`, with Coulomb friction, which bounds the slip by mu times the normal
  * correction. */
-vec3d tl_contact_push_out(vec3d x, vec3d before, vec3d surface, vec3d surface_before, vec3d normal,
-                          const struct tl_contact_params *params);
+TL_INLINE vec3d tl_contact_push_out(vec3d x, vec3d before, vec3d surface, vec3d surface_before, vec3d normal,
+                                    const struct tl_contact_params *params)
+{
+    double depth = params->thickness_m - vec3d_dot(vec3d_sub(x, surface), normal);
+    if (!(depth > 0))
+        return x;
+    double depth_before = fmax(params->thickness_m - vec3d_dot(vec3d_sub(before, surface_before), normal), 0);
+    double kept = fmax(depth_before - params->push_out_speed * params->h, 0);
+    double correction = depth - kept;
+    if (!(correction > 0))
+        return x;
+    x = vec3d_muladd(x, normal, correction);
+    vec3d slip = vec3d_sub(vec3d_sub(x, before), vec3d_sub(surface, surface_before));
+    slip = vec3d_muladd(slip, normal, -vec3d_dot(slip, normal));
+    double length = vec3d_norm(slip);
+    double pressed = fmax(depth - depth_before, 0); /* what load pushed in, without the old penetration */
+    double grip = params->friction * pressed;
+    return vec3d_muladd(x, slip, length > grip ? -grip / length : -1);
+}
 
 #endif

@@ -2,10 +2,6 @@
 
 /* A particle nearer to its plane than this at the start is taken to touch it still. */
 #define TOUCHING_M 1e-4
-/* m/s: slower than this is not slipping. Worn cloth is held by hundreds of particles near their limit, which
- * take turns to stick and slip: at a tenth of this they never all stick, and a dress creeps for ever at some
- * mm/s. */
-#define LEAST_SLIP 1e-3
 
 /* How far a way passes the plane; negative: not at all. */
 static double trespass(const struct tl_contact_plane *plane, vec3d way)
@@ -15,7 +11,7 @@ static double trespass(const struct tl_contact_plane *plane, vec3d way)
 
 static void resist(struct tl_touch *touch, double slip, const struct tl_contact_params *params)
 {
-    touch->resistance = touch->grip / fmax(slip, LEAST_SLIP * params->h);
+    touch->resistance = touch->grip / fmax(slip, params->least_slip * params->h);
 }
 
 /* Slips are expected to grow or shrink as they did. */
@@ -87,7 +83,7 @@ static enum tl_touch_kind judge_touching(struct tl_touch *touch, const struct tl
     vec3d slip = vec3d_sub(step, touch->plane.motion);
     touch->slips[1] = vec3d_norm(vec3d_muladd(slip, normal, -vec3d_dot(slip, normal)));
     resist(touch, touch->slips[1], params);
-    return touch->slips[1] > LEAST_SLIP * params->h || !(params->friction > 0) ? TL_SLIPS : TL_STICKS;
+    return touch->slips[1] > params->least_slip * params->h || !(params->friction > 0) ? TL_SLIPS : TL_STICKS;
 }
 
 bool tl_touch_judge(struct tl_touch *touch, const struct tl_contact_params *params, vec3d step,

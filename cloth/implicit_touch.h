@@ -2,7 +2,7 @@
  *
  * A particle on a plane sticks (its step is given), or slips: its way along the normal is given, and friction
  * is a resistance mu N / |slip| against slipping, with the last pressure N and the slip that is expected, so
- * that it never pushes the particle on. Below LEAST_SLIP it sticks. What the reactions say of that is assumed
+ * that it never pushes the particle on. Below least_slip it sticks. What the reactions say of that is assumed
  * next: one that pulls lets go, one that rubs harder than mu N slips. Threads: pure. */
 #ifndef TOILE_CLOTH_IMPLICIT_TOUCH_H
 #define TOILE_CLOTH_IMPLICIT_TOUCH_H

@@ -29,8 +29,8 @@ const struct tl_option_table tl_cloth_fabric_options = TL_OPTION_TABLE(
 
 #define TL_CLOTH_DEFAULTS                                                                                    \
     .solver = TL_CLOTH_PREVIEW, .strain_limit = 0.1, .dt = 1.0 / 60, .frame_rate = 30, .substeps = 30,       \
-    .cg_iterations = 200, .cg_tolerance = 3e-2, .reference_substeps = 20000, .gravity = 9.81, .settle_s = 6, \
-    .settle_speed = 0.003, .edge_m = 0.02f, .longest_edge_m = 0.1f
+    .cg_iterations = 200, .cg_tolerance = 3e-2, .reference_substeps = 20000, .gravity = 9.81,                \
+    .settle_s = 10, .settle_speed = 0.003, .edge_m = 0.02f, .longest_edge_m = 0.1f
 
 const char *const tl_cloth_solver_names[] = {"preview", "settle", "reference", NULL};
 

@@ -45,7 +45,10 @@ bool tl_cloth_settle(tl_cloth *cloth, const tl_collider *collider, tl_error *err
     bool good = true;
     cloth->settled = false;
     while (good && !cloth->settled && hung_s < params->settle_s) {
-        const struct tl_advance advance = {.drag = phases[phase].drag, .agreement = AGREEMENT};
+        /* What slips more slowly than is rest is held. */
+        const struct tl_advance advance = {.drag = phases[phase].drag,
+                                           .agreement = AGREEMENT,
+                                           .least_slip = fmax(TL_LEAST_SLIP, params->settle_speed)};
         const struct tl_cloth_params now = phase_params(params, phase);
         tl_cloth_use(cloth, &now);
         good = tl_cloth_advance(cloth, collider, &advance, error);

@@ -52,10 +52,15 @@ struct tl_cloth {
 
 /* How one frame is advanced. */
 struct tl_advance {
-    double drag;      /* 1/s, in place of the fabric's damping when larger */
-    bool clock;       /* the animation's time passes */
-    double agreement; /* settle: what further rounds of contact may take, as a share of the first */
+    double drag;       /* 1/s, in place of the fabric's damping when larger */
+    bool clock;        /* the animation's time passes */
+    double agreement;  /* settle: what further rounds of contact may take, as a share of the first */
+    double least_slip; /* m/s: see struct tl_contact_params */
 };
+
+/* m/s. Worn cloth is held by hundreds of particles near their limit of friction, which take turns to stick
+ * and slip: at a tenth of this they never all stick, and a dress creeps for ever at some mm/s. */
+#define TL_LEAST_SLIP 1e-3
 
 /* One frame; restores the state and fails when the result is out of its envelope. */
 bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct tl_advance *advance,
@@ -65,8 +70,8 @@ bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct
 struct tl_substep {
     double h; /* s */
     double gravity, drag;
-    double agreement;           /* see struct tl_advance */
-    double phase_before, phase; /* of the collider's motion at its start and end */
+    double agreement, least_slip; /* see struct tl_advance */
+    double phase_before, phase;   /* of the collider's motion at its start and end */
     const tl_collider *collider;
     bool follows; /* another one, to whose end nothing was done; solvers may have begun with this one there */
     bool leads;   /* to another one that will follow so */
