@@ -12,6 +12,6 @@ if(TARGET X11::X11)
 endif()
 foreach(script IN ITEMS view_drive view_drop)
   add_test(NAME ${script} COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/${script}.sh)
-  set_tests_properties(${script} PROPERTIES LABELS cli TIMEOUT 900 SKIP_RETURN_CODE 77
+  set_tests_properties(${script} PROPERTIES LABELS cli TIMEOUT ${toile_script_timeout} SKIP_RETURN_CODE 77
     ENVIRONMENT "TOILE=$<TARGET_FILE:toile>;DROP=${drop_files}")
 endforeach()
