@@ -19,6 +19,8 @@ _Static_assert(WORD == TL_BATCH && sizeof(bool) == 1, "eight flags are read as 6
 void tl_limits_restart(struct tl_limits *limits, const vec3d *x)
 {
     limits->passed_s = 0;
+    limits->any_drawn = false;
+    memset(limits->drawn, 0, limits->count * sizeof(bool));
     for (size_t e = 0; e < limits->count; e++)
         limits->edges[e].began = vec3d_distance(x[limits->edges[e].ends[0]], x[limits->edges[e].ends[1]]);
 }
@@ -62,6 +64,7 @@ struct tl_limits tl_limits_create(const struct tl_topology *topology, const stru
         .edges = TL_NEW_ARRAY(struct tl_limited_edge, count),
         .due = TL_NEW_ARRAY(bool, words *WORD),
         .always = TL_NEW_ARRAY(bool, words *WORD),
+        .drawn = TL_NEW_ARRAY(bool, words *WORD),
         .sides = tl_alloc(energy->membrane_count, sizeof *limits.sides),
         .watch = {.most = (1 + NEAR * strain) * (1 + NEAR * strain),
                   .seen = tl_alloc(energy->membrane_count, sizeof *limits.watch.seen)}};
@@ -78,6 +81,7 @@ void tl_limits_release(struct tl_limits *limits)
     free(limits->edges);
     free(limits->due);
     free(limits->always);
+    free(limits->drawn);
     free(limits->sides);
     free(limits->watch.seen);
     *limits = (struct tl_limits){0};
@@ -91,11 +95,24 @@ static bool none(const bool flags[WORD])
     return bits == 0;
 }
 
+static void mark_drawn(struct tl_limits *limits)
+{
+    for (size_t first = 0; first < limits->count; first += WORD) {
+        if (none(&limits->drawn[first]))
+            continue;
+        for (size_t e = first; e < first + WORD; e++)
+            limits->due[e] = limits->due[e] || limits->drawn[e];
+        memset(&limits->drawn[first], 0, WORD * sizeof(bool));
+    }
+}
+
 /* Returns whether any edge is to be looked at. */
 static bool mark(struct tl_limits *limits, const struct tl_energy *energy)
 {
-    bool any = energy->link_count > 0;
+    bool any = energy->link_count > 0 || limits->any_drawn;
     memcpy(limits->due, limits->always, limits->count * sizeof(bool));
+    if (limits->any_drawn)
+        mark_drawn(limits);
     for (size_t i = 0; i < energy->membrane_count; i++) {
         const bool *seen = limits->watch.seen[i];
         if (none(seen))
@@ -138,6 +155,7 @@ static bool draw_back(struct tl_limits *limits, const struct tl_pulls *pulls,
     particles->x[b] = vec3d_muladd(particles->x[b], push, -particles->w[b]);
     mark_vertex(limits, pulls, a);
     mark_vertex(limits, pulls, b);
+    limits->drawn[edge - limits->edges] = true;
     return true;
 }
 
@@ -168,6 +186,7 @@ void tl_limits_solve(struct tl_limits *limits, const struct tl_energy *energy, d
                      struct tl_particles *particles)
 {
     limits->passed_s += h;
-    if (mark(limits, energy) && sweep(limits, &energy->pulls, false, particles))
+    limits->any_drawn = mark(limits, energy) && sweep(limits, &energy->pulls, false, particles);
+    if (limits->any_drawn)
         (void)sweep(limits, &energy->pulls, true, particles);
 }

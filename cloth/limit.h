@@ -3,8 +3,10 @@
  * constraints in a mass-spring model to describe rigid cloth behavior"). It is not in the energy: the other
  * solvers know none, and a fabric that truly stretches further needs it off.
  *
- * Only edges of triangles that came near the limit in this substep are looked at: a substep moves cloth
- * by far less than what is left then, and what it moves further is seen in the next. Threads: pure. */
+ * Only edges of triangles that came near the limit in this substep are looked at, and those that were drawn
+ * back in the last one: a substep moves cloth by far less than what is left then, and what it moves further
+ * is seen in the next; but what stiff neighbours pull too far again and again must be drawn back every time,
+ * or it hums. Threads: pure. */
 #ifndef TOILE_CLOTH_LIMIT_H
 #define TOILE_CLOTH_LIMIT_H
 
@@ -22,8 +24,10 @@ struct tl_limited_edge {
 struct tl_limits {
     double strain; /* 0: no limit */
     size_t count;
-    struct tl_limited_edge *edges;  /* [count] as in the topology */
-    bool *due, *always;             /* [count] it is looked at: now; in any case */
+    struct tl_limited_edge *edges; /* [count] as in the topology */
+    bool *due, *always;            /* [count] it is looked at: now; in any case */
+    bool *drawn;                   /* [count] it was drawn back in the last substep */
+    bool any_drawn;
     uint32_t (*sides)[3][TL_BATCH]; /* [membrane_count] edges of each batch of membranes */
     struct tl_watch watch;          /* for tl_xpbd_solve */
     double passed_s;
