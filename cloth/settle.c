@@ -25,7 +25,7 @@ static struct tl_cloth_params phase_params(const struct tl_cloth_params *chosen,
     return params;
 }
 
-/* m/s, over the frame that ended: a needle that hums between substeps, to and fro by a tenth of a millimetre,
+/* m/s, over the frame that ended: a vertex that hums between substeps, to and fro by a tenth of a millimetre,
  * has a speed and goes nowhere. */
 static double fastest_way(const tl_cloth *cloth)
 {

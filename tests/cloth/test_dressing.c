@@ -191,9 +191,6 @@ static void test_fine_rests(void **state)
     struct dressed d = {.avatar = tl_avatar_form()};
     assert_ok(tl_garment_cut("dress", 0.0107f, &d.garment, &error), error);
     dress(&d);
-    struct tl_cloth_params params = d.cloth->params;
-    params.settle_s = 9;
-    assert_ok(tl_cloth_set(d.cloth, &d.cloth->fabric, &params, &error), error);
     assert_ok(tl_cloth_settle(d.cloth, d.collider, &error), error);
     assert_true(d.cloth->settled);
     for (int frame = 0; frame < 10; frame++)
