@@ -253,7 +253,8 @@ static bool play(struct run *run, tl_error *error)
     begin(run);
     for (int number = 0; done && number < run->params->frames; number++) {
         choose(run, number);
-        done = move_on(run, number, error) && check_frame(run, number, error) && tell(run, number + 1, error);
+        done = move_on(run, number, error) && check_frame(run, number, error);
+        done = tell(run, run->played, error) && done;
         if (done && run->hashes[number] == 0)
             break; /* what is not finite does not mend itself */
     }
@@ -273,10 +274,9 @@ static bool play_again(struct run *run, int count, tl_error *error)
         tl_image image = {0};
         const struct tl_settings levelled = settings_of(run, number);
         const struct tl_render_settings settings = tl_settings_render(&levelled);
-        if (number > 0 && !advance(run, number, error))
-            return false;
+        done = number == 0 || advance(run, number, error);
         tl_frame frame = frame_of(run, number);
-        done = draw_with(&run->stage->renderer, run, &frame, &settings, &image, error);
+        done = done && draw_with(&run->stage->renderer, run, &frame, &settings, &image, error);
         if (done) {
             struct tl_verdicts *verdicts = &run->outcome->verdicts;
             const struct tl_checked checked = {.number = number,
@@ -288,9 +288,10 @@ static bool play_again(struct run *run, int count, tl_error *error)
                                                .first_hash = run->hashes[number],
                                                .places_hash = tl_check_hash(&frame, NULL),
                                                .first_places_hash = run->places[number]};
-            done = note(run, &checked, error) && tell(run, run->params->frames + number + 1, error);
+            done = note(run, &checked, error);
             verdicts->frames--; /* it has been counted */
         }
+        done = tell(run, run->params->frames + number + 1, error) && done;
         tl_image_release(&image);
     }
     return done;

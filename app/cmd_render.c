@@ -92,11 +92,6 @@ static bool render_frames(struct tl_stage *stage, const struct tl_arguments *arg
     bool done = true;
     /* Frames before the first are simulated only: the cloth's state is the sum of all steps. */
     for (int frame = 0; done && frame <= last; frame++) {
-        if (tl_interrupted()) {
-            done = tl_fail(error, TL_INTERRUPTED, "render: stopped at frame %d: frames before it are kept",
-                           frame);
-            break;
-        }
         if (frame > 0)
             done = tl_session_advance(stage->session, error);
         if (done && frame >= first) {
@@ -106,6 +101,9 @@ static bool render_frames(struct tl_stage *stage, const struct tl_arguments *arg
                 save_frame(stage, path, error);
             free(path);
         }
+        if (tl_interrupted())
+            done =
+                tl_fail(error, TL_INTERRUPTED, "render: stopped at frame %d: what was drawn is kept", frame);
         tl_progress_update(&progress, frame + 1, last + 1);
     }
     tl_progress_end(&progress);

@@ -240,7 +240,7 @@ bool tl_fly(struct tl_stage *stage, const struct tl_fly_options *options, struct
     bool done = begin_motion(stage, out, &pilot.motion, error);
     for (int number = 0; done && number < options->frames; number++) {
         done = fly_on(&pilot, number, error);
-        if (done && tl_interrupted())
+        if (tl_interrupted())
             done =
                 tl_fail(error, TL_INTERRUPTED, "fly: stopped at frame %d: frames before it are kept", number);
         tl_progress_update(&progress, number + 1, options->frames);
@@ -302,7 +302,7 @@ bool tl_fly_judge(struct tl_stage *stage, struct tl_flight *flight, tl_error *er
                (number == 0 || tl_motion_advance(&motion, number, error));
         if (done && flight->kept[judged].frame == number)
             done = judge(&oracle, stage->session, &flight->kept[judged++], frame, error);
-        if (done && tl_interrupted())
+        if (tl_interrupted())
             done = tl_fail(error, TL_INTERRUPTED, "fly: stopped while frame %d was ray traced", number);
         tl_progress_update(&progress, judged, flight->kept_count);
     }

@@ -261,7 +261,7 @@ static bool hang_all(struct drawing *drawing, bool quick, const char *only, stru
             out->count += done;
             if (!done)
                 free(hung->image);
-            if (done && tl_interrupted())
+            if (tl_interrupted())
                 done = tl_fail(error, TL_INTERRUPTED, "stopped after %zu of %zu pictures", out->count, total);
             tl_progress_update(&progress, (int)out->count, (int)total);
         }

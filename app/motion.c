@@ -155,7 +155,7 @@ tl_film *tl_film_record(tl_session *session, int count, tl_error *error)
         film->cloth_cpu_ms[number] = tl_stopwatch_read(&watch).cpu_ms;
         if (done)
             take_shot(film, number);
-        if (done && tl_interrupted())
+        if (tl_interrupted())
             done = tl_fail(error, TL_INTERRUPTED, "stopped while the motion was recorded");
         tl_progress_update(&progress, number, count);
     }

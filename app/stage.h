@@ -25,7 +25,7 @@ void tl_stage_release(struct tl_stage *stage);
 /* Draws the session's current frame. */
 bool tl_stage_draw(struct tl_stage *stage, tl_error *error);
 /* The same as a still image: with light.jitter it is drawn light.rounds times, which the renderer averages.
- * Ctrl-C ends the averaging, not the image. */
+ * Ctrl-C ends the averaging, not the image: who keeps it asks tl_interrupted. */
 bool tl_stage_draw_still(struct tl_stage *stage, tl_error *error);
 
 #endif

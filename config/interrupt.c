@@ -3,11 +3,12 @@
 #include <limits.h>
 #include <signal.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #define GUARDS 16
 
-static volatile sig_atomic_t signals_seen;
+static atomic_llong first_ns; /* when the first signal came; 0: none has */
 static _Thread_local const atomic_bool *thread_flag;
 /* Fixed storage, so that the handler needs nothing but unlink and _exit, which are async-signal-safe. */
 static char guarded[GUARDS][PATH_MAX];
@@ -15,7 +16,11 @@ static char guarded[GUARDS][PATH_MAX];
 static void on_signal(int number)
 {
     (void)number;
-    if (++signals_seen < 2)
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    long long now_ns = now.tv_sec * 1000000000LL + now.tv_nsec, seen_ns = 0;
+    if (atomic_compare_exchange_strong(&first_ns, &seen_ns, now_ns) ||
+        now_ns - seen_ns < TL_INTERRUPT_TWICE_MS * 1000000LL)
         return;
     for (int i = 0; i < GUARDS; i++)
         if (guarded[i][0])
@@ -33,7 +38,7 @@ void tl_interrupt_install(void)
 
 bool tl_interrupted(void)
 {
-    return signals_seen > 0 || (thread_flag && atomic_load(thread_flag));
+    return atomic_load(&first_ns) != 0 || (thread_flag && atomic_load(thread_flag));
 }
 
 void tl_interrupt_by(const atomic_bool *flag)

@@ -1,11 +1,15 @@
-/* Ctrl-C: the first SIGINT or SIGTERM sets a flag that long loops ask for; a second one removes the temporary
- * files of open tl_writers and ends the program with status 130. A thread can be given a flag of its own, so
- * that one piece of work stops where the whole program would. */
+/* Ctrl-C: the first SIGINT or SIGTERM sets a flag that long loops ask for; one that comes
+ * TL_INTERRUPT_TWICE_MS later or more removes the temporary files of open tl_writers and ends the program
+ * with status 130. (What comes sooner is the same request: timeout and some job runners signal a process and
+ * then its group, this process again.) A thread can be given a flag of its own, so that one piece of work
+ * stops where the whole program would. */
 #ifndef TOILE_CONFIG_INTERRUPT_H
 #define TOILE_CONFIG_INTERRUPT_H
 
 #include <stdatomic.h>
 #include <stdbool.h>
+
+#define TL_INTERRUPT_TWICE_MS 300
 
 void tl_interrupt_install(void);
 bool tl_interrupted(void);

@@ -35,6 +35,23 @@ refuse() { # NAME PATTERN ARGUMENTS...
     fi
 }
 
+# Ctrl-C once toile ARGUMENTS has told of its work what matches, however slow the machine: leaves what it wrote in `said`
+# and `told`, and its status in $status. Twice at once, as `timeout` does it.
+interrupt() { # PATTERN ARGUMENTS...
+    local pattern=$1 job
+    shift
+    : >told
+    $TOILE "$@" >said 2>told &
+    job=$!
+    until grep -q "$pattern" told; do
+        kill -0 $job 2>/dev/null || { fail "ended before it told of $pattern: $(cat told)"; break; }
+        sleep 0.1
+    done
+    kill -INT $job && kill -INT $job || true
+    status=0
+    wait $job || status=$?
+}
+
 # The page is well-formed, has plots, and holds nothing that is fetched, run, or no number.
 check_report() { # FILE PLOTS
     check "$1 is well formed, whole and alone" python3 - "$1" "$2" <<'PYTHON'

@@ -87,11 +87,6 @@ else
 fi
 
 # Ctrl-C: exit status 130, and what was flown is there.
-$TOILE fly $small --frames 100000 -o stopped >/dev/null 2>&1 & fly=$!
-until [ -d stopped ] || ! kill -0 $fly; do sleep 0.2; done
-sleep 4
-kill -INT $fly
-status=0
-wait $fly || status=$?
+interrupt "flying:" fly ${small% --quiet} --frames 100000 -o stopped
 check "interrupted: status 130" test $status -eq 130
 check "interrupted: what was flown is kept" test "$(wc -l <stopped/frames.csv)" -ge 2 -a -s stopped/report.html -a -s stopped/summary.json

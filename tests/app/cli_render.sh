@@ -18,6 +18,10 @@ check "compare equal images" sh -c "$TOILE compare one.exr two.exr --json | grep
 check "compare different images" sh -c "! $TOILE compare later.exr two.exr --json | grep -q '\"rel_rmse\":[[:space:]]*0,'"
 
 $TOILE render $fast -o plain.exr --set light.rounds=1
+
+interrupt "averaging:" render -o average.exr --size 640x480 --set cloth.edge_m=0.05 --set light.rounds=256
+check "Ctrl-C keeps the picture as far as it was averaged, and says so: status 130" sh -c "[ $status = 130 ] &&
+    grep -q 'render: stopped at frame 0' told && $TOILE compare average.exr average.exr >/dev/null"
 $TOILE render $fast -o layers.exr --set light.rounds=1 --aov
 check "layers leave the image as it is" sh -c "$TOILE compare plain.exr layers.exr --json | grep -q '\"max_abs\":[[:space:]]*0[,}[:space:]]'"
 check "layers are there" test "$(stat -c %s layers.exr)" -gt "$(stat -c %s plain.exr)"

@@ -50,13 +50,6 @@ else
 fi
 
 # Ctrl-C once the first choice of settings is measured: exit status 130, and what was measured is there.
-$TOILE trade --axis light --size 32x32 --set cloth.edge_m=0.06 --set reference.replicates=2 -o stopped 2>progress & trade=$!
-until grep -q "measuring the trade" progress; do
-    kill -0 $trade 2>/dev/null || { cat progress; echo "FAILED trade ended early"; exit 1; }
-    sleep 1
-done
-kill -INT $trade
-status=0
-wait $trade || status=$?
+interrupt "measuring the trade" trade --axis light --size 32x32 --set cloth.edge_m=0.06 --set reference.replicates=2 -o stopped
 check "interrupted: status 130" test $status -eq 130
 check "interrupted: what was measured is kept" test "$(wc -l <stopped/trade.csv)" -ge 2 -a -s stopped/report.html

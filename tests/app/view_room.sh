@@ -26,15 +26,16 @@ open_display() {
     exec 3>number
     Xvfb -displayfd 3 -screen 0 1280x800x24 -nolisten tcp >/dev/null 2>&1 &
     display=$!
-    for _ in $(seq 100); do [ -s number ] && break; sleep 0.1; done
+    for _ in $(seq 600); do [ -s number ] && break; sleep 0.1; done
     [ -s number ] || { echo "skipped: Xvfb does not start here"; exit 77; }
     export DISPLAY=:$(cat number)
     unset WAYLAND_DISPLAY
 }
 
-# said TEXT [TIMES]: waits until the log holds the text so many times.
+# said TEXT [TIMES]: waits until the log holds the text so many times. Five minutes are not a bound on what it takes, but
+# on how long a window that hangs is waited for, beside any load.
 said() {
-    for _ in $(seq 600); do
+    for _ in $(seq 3000); do
         [ "$(grep -c -e "$1" log)" -ge "${2:-1}" ] && { echo "ok     $1"; return; }
         kill -0 "$viewer" 2>/dev/null || fail "the window closed before it said: $1"
         sleep 0.1
