@@ -10,6 +10,10 @@
 
 #define EDGE_MINIMUM_M 0.003f /* 130,000 vertices in the dress */
 #define EDGE_MAXIMUM_M 0.08f
+#define EDGE_FIRST_M   0.02f /* what is finer begins as a cut of edges twice as long lies */
+
+#define REACH_M 4.0 /* the first cut is eased from neck to hem and back; finer ones only between its points  \
+                     */
 
 static struct tl_cut_plan (*const plans[])(void) = {tl_cut_plan_dress, tl_cut_plan_skirt, tl_cut_plan_layers};
 const char *const tl_garment_names[] = {"dress", "skirt", "layers", NULL};
@@ -220,31 +224,41 @@ static struct tl_fit_edge *fit_edges(const tl_garment *garment, const uint32_t *
     return edges;
 }
 
-/* Places the pieces with their seams closed: sewn vertices start in one place, the mean of where their pieces
- * put them. */
-static void place(const struct cutting *cutting, tl_garment *garment)
+/* Where each piece puts its vertices. */
+static void hold(const struct cutting *cutting, double (*held)[3])
 {
-    const struct tl_cut_plan *plan = cutting->plan;
+    for (size_t p = 0; p < cutting->plan->piece_count; p++) {
+        const struct tl_cut_piece *piece = &cutting->plan->pieces[p];
+        for (size_t i = 0; i < cutting->panels[p].point_count; i++)
+            piece->place(piece->context, cutting->panels[p].points[i], held[cutting->first_vertex[p] + i]);
+    }
+}
+
+/* Places the pieces with their seams closed: sewn vertices start in one place, the mean of where their pieces
+ * put them, or where they lie on a cut of coarser edges (0: there is none). */
+static void place(const struct cutting *cutting, const tl_garment *coarse, double coarse_edge_m,
+                  tl_garment *garment)
+{
+    const bool carries = coarse_edge_m > 0;
     size_t count = garment->model.mesh.vertex_count;
+    double(*held)[3] = tl_alloc(count, sizeof *held);
+    hold(cutting, held);
+    if (carries)
+        tl_cut_carry(coarse, coarse_edge_m, garment, held);
     uint32_t *body = TL_NEW_ARRAY(uint32_t, count);
     size_t bodies = join_seams(garment, body);
     double(*position)[3] = tl_alloc(bodies, sizeof *position);
     int *members = TL_NEW_ARRAY(int, bodies);
     bool *fixed = TL_NEW_ARRAY(bool, bodies);
-    for (size_t p = 0; p < plan->piece_count; p++) {
-        for (size_t i = 0; i < cutting->panels[p].point_count; i++) {
-            double point[3];
-            uint32_t b = body[cutting->first_vertex[p] + i];
-            plan->pieces[p].place(plan->pieces[p].context, cutting->panels[p].points[i], point);
-            members[b]++;
-            for (int k = 0; k < 3; k++)
-                position[b][k] += (point[k] - position[b][k]) / members[b];
-        }
+    for (size_t v = 0; v < count; v++) {
+        members[body[v]]++;
+        for (int k = 0; k < 3; k++)
+            position[body[v]][k] += (held[v][k] - position[body[v]][k]) / members[body[v]];
     }
     for (size_t i = 0; i < garment->pin_count; i++)
         fixed[body[garment->pins[i]]] = true;
     struct tl_fit_edge *edges = fit_edges(garment, body);
-    tl_cut_fit(position, bodies, fixed, edges, garment->model.mesh.index_count);
+    tl_cut_fit(position, bodies, fixed, edges, garment->model.mesh.index_count, carries ? 0 : REACH_M);
     for (size_t v = 0; v < count; v++) {
         const double *at = position[body[v]];
         garment->model.mesh.positions[v] = (vec3s){{(float)at[0], (float)at[1], (float)at[2]}};
@@ -254,6 +268,7 @@ static void place(const struct cutting *cutting, tl_garment *garment)
     free(members);
     free(position);
     free(body);
+    free(held);
 }
 
 /* Area-weighted, smooth across seams. */
@@ -274,6 +289,28 @@ static void fill_normals(tl_garment *garment)
         mesh->normals[v] = glms_vec3_normalize(sums[body[v]]);
     free(sums);
     free(body);
+}
+
+static void cut(struct tl_cut_plan (*make_plan)(void), const char *name, float edge_m, tl_garment *out)
+{
+    const float coarse_edge_m = edge_m < EDGE_FIRST_M ? 2 * edge_m : 0;
+    tl_garment coarse = {0};
+    if (coarse_edge_m > 0)
+        cut(make_plan, name, coarse_edge_m, &coarse);
+    struct tl_cut_plan plan = make_plan();
+    struct cutting cutting = {.plan = &plan};
+    choose_segments(&plan, (double)edge_m);
+    cut_pieces(&cutting, (double)edge_m);
+    *out = (tl_garment){.model = {.name = tl_copy_string(name)}};
+    lay_out(&cutting, out);
+    sew(&cutting, out);
+    pin(&cutting, out);
+    place(&cutting, &coarse, (double)coarse_edge_m, out);
+    fill_normals(out);
+    for (size_t p = 0; p < plan.piece_count; p++)
+        tl_panel_release(&cutting.panels[p]);
+    free(plan.placement);
+    tl_garment_release(&coarse);
 }
 
 static bool fail_unknown(const char *name, tl_error *error)
@@ -300,18 +337,6 @@ bool tl_garment_cut(const char *name, float edge_m, tl_garment *out, tl_error *e
         return tl_fail(error, TL_USAGE, "garment \"%s\": an edge of %g m: choose one from %g to %g m", name,
                        (double)edge_m, (double)EDGE_MINIMUM_M, (double)EDGE_MAXIMUM_M);
 
-    struct tl_cut_plan plan = plans[chosen]();
-    struct cutting cutting = {.plan = &plan};
-    choose_segments(&plan, (double)edge_m);
-    cut_pieces(&cutting, (double)edge_m);
-    *out = (tl_garment){.model = {.name = tl_copy_string(name)}};
-    lay_out(&cutting, out);
-    sew(&cutting, out);
-    pin(&cutting, out);
-    place(&cutting, out);
-    fill_normals(out);
-    for (size_t p = 0; p < plan.piece_count; p++)
-        tl_panel_release(&cutting.panels[p]);
-    free(plan.placement);
+    cut(plans[chosen], name, edge_m, out);
     return true;
 }

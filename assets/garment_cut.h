@@ -3,12 +3,12 @@
  * garment_cut_skirt.c); garment_cut.c turns a plan into a tl_garment.
  *
  * A piece is symmetric about x = 0: `half` runs counter-clockwise along its right side from the bottom's
- * middle to the top's middle. In the whole outline, curve i < half_count is half[i] and curve 2 half_count -
- * 1
- * - i is its mirror image. Metres; x along the weft, y along the warp. */
+ * middle to the top's middle. In the whole outline, curve i < half_count is half[i] and curve
+ * 2 half_count - 1 - i is its mirror image. Metres; x along the weft, y along the warp. */
 #ifndef TOILE_ASSETS_GARMENT_CUT_H
 #define TOILE_ASSETS_GARMENT_CUT_H
 
+#include "assets/garment.h"
 #include "assets/panel.h"
 #include "assets/wrap.h"
 
@@ -65,12 +65,18 @@ static inline size_t tl_cut_mirror(const struct tl_cut_piece *piece, size_t i)
 }
 
 /* Eases a start shape: edges towards their rest lengths, vertices out of the dress form, `fixed` ones stay.
- * Not a simulation: no mass, no gravity; it takes the strain out of the first guess. */
+ * Not a simulation: no mass, no gravity; it takes the strain out of the first guess. `reach_m`: how far
+ * corrections travel, one edge a pass; there are a hundred passes in any case. */
 struct tl_fit_edge {
     uint32_t a, b;
     double length; /* metres, at rest */
 };
 void tl_cut_fit(double (*positions)[3], size_t count, const bool *fixed, const struct tl_fit_edge *edges,
-                size_t edge_count);
+                size_t edge_count, double reach_m);
+
+/* Moves the vertices of a garment to where they lie on a coarser cut of the same plan, of edges of about
+ * edge_m: linear over its triangles, and a little past its outline. Pins, and what is further off it, stay.
+ */
+void tl_cut_carry(const tl_garment *coarse, double edge_m, const tl_garment *garment, double (*positions)[3]);
 
 #endif

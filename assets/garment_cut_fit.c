@@ -5,7 +5,6 @@
 #include <math.h>
 
 enum { LEAST_PASSES = 100, PASSES_PER_PUSH = 4 };
-#define REACH_M         4.0   /* how far corrections travel: one edge a pass */
 #define SHORT_STIFFNESS 0.15  /* cloth resists stretch, but slack may stay: it would only buckle */
 #define CLEARANCE_M     0.006 /* kept between the cloth and the form */
 
@@ -39,12 +38,12 @@ static void push_out(double p[3])
 }
 
 void tl_cut_fit(double (*positions)[3], size_t count, const bool *fixed, const struct tl_fit_edge *edges,
-                size_t edge_count)
+                size_t edge_count, double reach_m)
 {
     double total = 0;
     for (size_t e = 0; e < edge_count; e++)
         total += edges[e].length;
-    const int passes = (int)fmax(REACH_M * (double)edge_count / total, LEAST_PASSES);
+    const int passes = (int)fmax(reach_m * (double)edge_count / total, LEAST_PASSES);
     for (int pass = 0; pass < passes; pass++) {
         for (size_t e = 0; e < edge_count; e++)
             pull(positions[edges[e].a], positions[edges[e].b], fixed[edges[e].a], fixed[edges[e].b],

@@ -73,15 +73,16 @@ static bool is_inside(const struct tl_point *outline, size_t count, struct tl_po
 
 static double distance_to_outline(const struct tl_point *outline, size_t count, struct tl_point p)
 {
-    double nearest = INFINITY;
+    double nearest = INFINITY; /* squared */
     for (size_t i = 0; i < count; i++) {
         struct tl_point a = outline[i], b = outline[(i + 1) % count];
         double dx = b.x - a.x, dy = b.y - a.y;
         double t = ((p.x - a.x) * dx + (p.y - a.y) * dy) / (dx * dx + dy * dy);
         t = fmin(fmax(t, 0), 1);
-        nearest = fmin(nearest, hypot(a.x + t * dx - p.x, a.y + t * dy - p.y));
+        double away_x = a.x + t * dx - p.x, away_y = a.y + t * dy - p.y;
+        nearest = fmin(nearest, away_x * away_x + away_y * away_y);
     }
-    return nearest;
+    return sqrt(nearest);
 }
 
 /* A fixed pseudo-random value in [-1/2, 1/2) (the finaliser of MurmurHash3). */

@@ -254,6 +254,9 @@ static void test_start(void **state)
 {
     (void)state;
     for_each_cut(check_start);
+    tl_garment fine = cut("dress", 0.009f); /* begins as one that begins as another */
+    check_start(&fine, "dress", 0.009f);
+    drop(&fine);
 }
 
 /* The dress hangs from its shoulders, so nothing holds it; the skirt's whole waist does: as many pins as the
