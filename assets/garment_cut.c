@@ -12,8 +12,9 @@
 #define EDGE_MAXIMUM_M 0.08f
 #define EDGE_FIRST_M   0.02f /* what is finer begins as a cut of edges twice as long lies */
 
-#define REACH_M 4.0 /* the first cut is eased from neck to hem and back; finer ones only between its points  \
-                     */
+#define REACH_M                                                                                              \
+    4.0 /* the first cut is eased from neck to hem and back; finer ones only between its points              \
+         */
 
 static struct tl_cut_plan (*const plans[])(void) = {tl_cut_plan_dress, tl_cut_plan_skirt, tl_cut_plan_layers};
 const char *const tl_garment_names[] = {"dress", "skirt", "layers", NULL};
