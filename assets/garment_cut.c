@@ -12,9 +12,7 @@
 #define EDGE_MAXIMUM_M 0.08f
 #define EDGE_FIRST_M   0.02f /* what is finer begins as a cut of edges twice as long lies */
 
-#define REACH_M                                                                                              \
-    4.0 /* the first cut is eased from neck to hem and back; finer ones only between its points              \
-         */
+#define REACH_M 4.0 /* the first cut is eased from neck to hem and back, finer ones between its points */
 
 static struct tl_cut_plan (*const plans[])(void) = {tl_cut_plan_dress, tl_cut_plan_skirt, tl_cut_plan_layers};
 const char *const tl_garment_names[] = {"dress", "skirt", "layers", NULL};
@@ -82,6 +80,7 @@ static uint32_t outline_vertex(const struct cutting *cutting, size_t piece_index
     size_t point = n;
     for (size_t c = 0; c < curve; c++)
         point += curve_segments(cutting, piece_index, c);
+    assert(cutting->panels[piece_index].outline_count > 0);
     point %= cutting->panels[piece_index].outline_count;
     return (uint32_t)(cutting->first_vertex[piece_index] + point);
 }
