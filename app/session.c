@@ -227,6 +227,22 @@ static bool pose_in(tl_session *session, tl_error *error)
     return done;
 }
 
+/* More than any garment here that fits is, by root mean square: 0.6 to 2.1 %. Preview passes over the edges
+ * once a substep, so what is finer hangs longer, up to the strain limit: the dress by 0.9 % at 2 cm, 1.8 at
+ * 1.07, 3.2 at 0.7; there 1.3 with 60 substeps and 0.7 with 120. Other solvers settle from there, and what
+ * friction holds stays as long: the dress at 1.07 cm by 2.0 % under `settle`, with 100 substeps by 0.75. */
+#define STRETCHED 0.03
+
+static void tell_stretch(const tl_session *session)
+{
+    const struct tl_cloth_params *params = &session->settings.cloth;
+    double strain = tl_cloth_measure(session->cloth, NULL).usual_strain;
+    if (params->settle_s > 0 && strain > STRETCHED)
+        tl_info("the cloth is stretched by %.0f %%: it is tight, or cloth.substeps=%d are too few for edges "
+                "so fine",
+                100 * strain, params->substeps);
+}
+
 static bool drape(tl_session *session, tl_error *error)
 {
     const struct tl_settings *settings = &session->settings;
@@ -237,6 +253,7 @@ static bool drape(tl_session *session, tl_error *error)
     session->cloth = tl_cloth_create(session->garment, &settings->fabric, &settings->cloth, error);
     if (!session->cloth || !tl_cloth_settle(session->cloth, session->collider, error))
         return false;
+    tell_stretch(session);
     if (session->avatar && session->clip >= 0 && !pose_in(session, error))
         return false;
     tl_cloth_mark_start(session->cloth);

@@ -74,9 +74,9 @@ struct tl_fit_edge {
 void tl_cut_fit(double (*positions)[3], size_t count, const bool *fixed, const struct tl_fit_edge *edges,
                 size_t edge_count, double reach_m);
 
-/* Moves the vertices of a garment to where they lie on a coarser cut of the same plan, of edges of about
- * edge_m: linear over its triangles, and a little past its outline. Pins, and what is further off it, stay.
- */
+/* Moves positions [vertex of `garment`], metres, to where its pattern lies on a coarser cut of the same plan,
+ * of edges of about edge_m: linear over triangles, and a little past the outline. Pins stay, and what is
+ * further off. */
 void tl_cut_carry(const tl_garment *coarse, double edge_m, const tl_garment *garment, double (*positions)[3]);
 
 #endif

@@ -36,22 +36,6 @@ static double fastest_way(const tl_cloth *cloth)
     return farthest * cloth->params.frame_rate;
 }
 
-/* More than any garment here that fits is, by root mean square: 0.6 to 2.1 %. Preview passes over the edges
- * once a substep, so what is finer hangs longer, up to the strain limit: the dress by 0.9 % at 2 cm, 1.8 at
- * 1.07, 3.2 at 0.7; there 1.3 with 60 substeps and 0.7 with 120. Other solvers begin from there, and what
- * friction holds stays as long: the dress at 1.07 cm by 2.0 % under `settle`, with 100 substeps by 0.75. */
-#define STRETCHED 0.03
-
-static void tell_stretch(const tl_cloth *cloth)
-{
-    double strain = tl_cloth_measure(cloth, NULL).usual_strain;
-    if (strain > STRETCHED)
-        tl_info(
-            "the cloth is stretched by %.0f %%: it is tight, or its edges are fine for so few substeps: with "
-            "cloth.substeps beyond %d it hangs less long",
-            100 * strain, cloth->params.substeps);
-}
-
 bool tl_cloth_settle(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
 {
     const struct tl_cloth_params chosen = cloth->params, *params = &chosen;
@@ -83,8 +67,6 @@ bool tl_cloth_settle(tl_cloth *cloth, const tl_collider *collider, tl_error *err
     if (good && !cloth->settled && params->settle_s > 0)
         tl_info("the cloth still moves at %.3f m/s after settling for %g s: give it more with cloth.settle_s",
                 fastest_way(cloth), params->settle_s);
-    if (good)
-        tell_stretch(cloth);
     memset(cloth->particles.v, 0, cloth->particles.count * sizeof(vec3d));
     return good;
 }
