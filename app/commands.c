@@ -1,6 +1,6 @@
 #include "app/commands.h"
 
-#include "app/settings.h"
+#include "app/scene/settings.h"
 #include "config/memory.h"
 #include "config/words.h"
 

@@ -3,7 +3,7 @@
 #ifndef TOILE_APP_COMMANDS_H
 #define TOILE_APP_COMMANDS_H
 
-#include "app/arguments.h"
+#include "app/cli/arguments.h"
 
 struct tl_command {
     const char *name;

@@ -1,7 +1,7 @@
 #include "assets/environment.h"
 
-#include "assets/exr.h"
-#include "assets/radiance.h"
+#include "assets/image/exr.h"
+#include "assets/image/radiance.h"
 #include "config/file.h"
 #include "config/memory.h"
 

@@ -8,7 +8,7 @@
 #ifndef TOILE_ASSETS_ENVIRONMENT_H
 #define TOILE_ASSETS_ENVIRONMENT_H
 
-#include "assets/image.h"
+#include "assets/base/image.h"
 
 enum tl_env_layout { TL_ENV_LATLONG, TL_ENV_CUBE };
 
@@ -24,8 +24,8 @@ typedef struct tl_environment {
 bool tl_environment_load(const char *path, tl_environment *out, tl_error *error);
 void tl_environment_release(tl_environment *environment);
 
-/* Built-in lights that need no file (assets/studio.c): soft boxes and one strong small lamp in a grey room,
- * 512 x 256 lat-long. */
+/* Built-in lights that need no file (assets/builtin/studio.c): soft boxes and one strong small lamp in a grey
+ * room, 512 x 256 lat-long. */
 tl_environment tl_environment_studio(void);
 
 /* The same radiance from everywhere; the furnace. */

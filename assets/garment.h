@@ -21,7 +21,7 @@ typedef struct tl_garment {
     struct tl_seam_pair *seams;
     size_t pin_count;
     uint32_t *pins; /* render vertices held where they start (on the avatar, they follow its nearest point) */
-    bool solid;     /* no cloth: it keeps its shape (assets/specimen.h) */
+    bool solid;     /* no cloth: it keeps its shape (assets/builtin/specimen.h) */
 } tl_garment;
 
 /* A glTF or OBJ file as a garment, with its model's pins; its units as in tl_model_load and tl_model_load_in.
@@ -32,10 +32,10 @@ void tl_garment_release(tl_garment *garment);
 /* Lists the vertices that model.pins holds, if the file has any. */
 void tl_garment_take_pins(tl_garment *garment);
 
-/* Built-in garments, cut as flat panels around the built-in dress form (assets/form.h): "dress", "skirt", and
- * "layers": the dress behind a curtain, whose material is named TL_GARMENT_OVERLAY. Their other materials are
- * "bodice" and "skirt".
- * `edge_m` is the wanted length of an edge. False when the name is unknown (the message lists the names). */
+/* Built-in garments, cut as flat panels around the built-in dress form (assets/builtin/form.h): "dress",
+ * "skirt", and "layers": the dress behind a curtain, whose material is named TL_GARMENT_OVERLAY. Their other
+ * materials are "bodice" and "skirt". `edge_m` is the wanted length of an edge. False when the name is
+ * unknown (the message lists the names). */
 bool tl_garment_cut(const char *name, float edge_m, tl_garment *out, tl_error *error);
 #define TL_GARMENT_OVERLAY "overlay"
 extern const char *const tl_garment_names[]; /* NULL-terminated */

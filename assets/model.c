@@ -1,8 +1,8 @@
 #include "assets/model.h"
 
-#include "assets/model_read.h"
-#include "assets/rig.h"
-#include "assets/wavefront.h"
+#include "assets/base/model_read.h"
+#include "assets/gltf/rig.h"
+#include "assets/obj/wavefront.h"
 #include "config/file.h"
 #include "config/memory.h"
 

@@ -13,10 +13,10 @@
 #ifndef TOILE_ASSETS_MODEL_H
 #define TOILE_ASSETS_MODEL_H
 
-#include "assets/material.h"
-#include "assets/mesh.h"
-#include "assets/surface.h"
-#include "assets/units.h"
+#include "assets/base/material.h"
+#include "assets/base/mesh.h"
+#include "assets/base/surface.h"
+#include "assets/base/units.h"
 
 typedef struct tl_rig tl_rig; /* nodes, skins, per-vertex weights, clips */
 
@@ -58,8 +58,8 @@ typedef struct tl_model {
     char **approximated; /* "KHR_materials_sheen: ...": each once */
 } tl_model;
 
-/* .gltf, .glb or .obj, in units as assets/units.h has it. Refuses indices out of range, NaN positions, files
- * without triangles, sizes that lie. */
+/* .gltf, .glb or .obj, in units as assets/base/units.h has it. Refuses indices out of range, NaN positions,
+ * files without triangles, sizes that lie. */
 bool tl_model_load(const char *path, tl_model *out, tl_error *error);
 /* The same in units that someone tells; AUTO: as above. */
 bool tl_model_load_in(const char *path, enum tl_units units, tl_model *out, tl_error *error);

@@ -2,7 +2,7 @@
 #ifndef TOILE_ASSETS_MODEL_EXPORT_H
 #define TOILE_ASSETS_MODEL_EXPORT_H
 
-#include "assets/surface.h"
+#include "assets/base/surface.h"
 #include "config/error.h"
 
 /* What an F0 is multiplied by when a GGX lobe of these widths is shown by Ward's (model_extensions.c). */

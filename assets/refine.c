@@ -1,6 +1,6 @@
 #include "assets/refine.h"
 
-#include "assets/rig.h"
+#include "assets/gltf/rig.h"
 #include "config/memory.h"
 
 #include <math.h>

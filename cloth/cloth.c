@@ -1,8 +1,8 @@
 #include "cloth/cloth.h"
 
-#include "cloth/frames.h"
+#include "cloth/solvers/xpbd.h"
 #include "cloth/state.h"
-#include "cloth/xpbd.h"
+#include "cloth/tangents/frames.h"
 #include "config/memory.h"
 
 #include <stdlib.h>

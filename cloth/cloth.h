@@ -10,7 +10,7 @@
 #define TOILE_CLOTH_CLOTH_H
 
 #include "assets/garment.h"
-#include "cloth/collider.h"
+#include "cloth/contact/collider.h"
 #include "config/options.h"
 
 typedef struct tl_cloth tl_cloth;
@@ -35,8 +35,8 @@ extern const struct tl_option_table tl_cloth_fabric_options;
 /* What is strained beyond this is no longer cloth: refused. */
 #define TL_CLOTH_MOST_STRAIN 10
 
-/* How it is solved. Table "cloth". preview: cloth/xpbd.h; settle: cloth/implicit.h; reference:
- * cloth/verlet.h. */
+/* How it is solved. Table "cloth". preview: cloth/solvers/xpbd.h; settle: cloth/solvers/implicit/implicit.h;
+ * reference: cloth/solvers/verlet.h. */
 enum tl_cloth_solver { TL_CLOTH_PREVIEW, TL_CLOTH_SETTLE, TL_CLOTH_REFERENCE, TL_CLOTH_SOLVER_COUNT };
 extern const char *const tl_cloth_solver_names[]; /* NULL-terminated */
 enum tl_pin_colour { TL_PIN_NO_COLOUR, TL_PIN_RED, TL_PIN_GREEN, TL_PIN_BLUE };

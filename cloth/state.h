@@ -3,13 +3,13 @@
 #define TOILE_CLOTH_STATE_H
 
 #include "cloth/cloth.h"
-#include "cloth/contact.h"
-#include "cloth/implicit.h"
-#include "cloth/layers.h"
-#include "cloth/limit.h"
-#include "cloth/pins.h"
-#include "cloth/repulsion.h"
-#include "cloth/sew.h"
+#include "cloth/contact/contact.h"
+#include "cloth/contact/layers.h"
+#include "cloth/contact/repulsion.h"
+#include "cloth/drive/pins.h"
+#include "cloth/drive/sew.h"
+#include "cloth/solvers/implicit/implicit.h"
+#include "cloth/solvers/limit.h"
 
 struct tl_cloth {
     const tl_garment *garment;

@@ -5,8 +5,8 @@
 #ifndef TOILE_RENDER_RENDERER_H
 #define TOILE_RENDER_RENDERER_H
 
+#include "assets/base/surface.h"
 #include "assets/environment.h"
-#include "assets/surface.h"
 #include "config/options.h"
 #include "render/detail/options.h"
 #include "render/gpu/gpu.h"

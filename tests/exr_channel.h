@@ -3,7 +3,7 @@
 #define TOILE_TESTS_EXR_CHANNEL_H
 
 #include "config/memory.h"
-#include "testing.h"
+#include "tests/testing.h"
 
 #include <openexr.h>
 

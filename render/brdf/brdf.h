@@ -32,7 +32,7 @@
 #ifndef TOILE_RENDER_BRDF_BRDF_H
 #define TOILE_RENDER_BRDF_BRDF_H
 
-#include "assets/material.h"
+#include "assets/base/material.h"
 
 /* A surface's frame: unit, at right angles; `tangent` along u (weft), turned already by gloss.rotation. */
 struct tl_brdf_frame {

@@ -11,7 +11,7 @@
  * Gauss-Hermite quadrature: light that is the same from everywhere is kept. What of a lobe lies below the
  * horizon is made up for by what lies above.
  *
- * Errors: tests/render/test_fan.c prints them. Pure; threads: any. */
+ * Errors: tests/render/brdf/test_fan.c prints them. Pure; threads: any. */
 #ifndef TOILE_RENDER_BRDF_FAN_H
 #define TOILE_RENDER_BRDF_FAN_H
 

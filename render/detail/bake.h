@@ -4,7 +4,7 @@
 #ifndef TOILE_RENDER_DETAIL_BAKE_H
 #define TOILE_RENDER_DETAIL_BAKE_H
 
-#include "assets/mesh.h"
+#include "assets/base/mesh.h"
 #include "render/detail/field.h"
 
 /* F32 x1 in metres from a picture's first channel: `base_m` + value * `scale_m`; a byte's value is its share

@@ -2,7 +2,7 @@
 #ifndef TOILE_RENDER_DETAIL_DETAIL_H
 #define TOILE_RENDER_DETAIL_DETAIL_H
 
-#include "assets/material.h"
+#include "assets/base/material.h"
 #include "render/detail/field.h"
 #include "render/detail/options.h"
 

@@ -7,7 +7,7 @@
 #ifndef TOILE_RENDER_DETAIL_FIELD_H
 #define TOILE_RENDER_DETAIL_FIELD_H
 
-#include "assets/image.h"
+#include "assets/base/image.h"
 
 #include <cglm/struct.h>
 

@@ -3,7 +3,7 @@
 #ifndef TOILE_RENDER_DETAIL_MAPS_H
 #define TOILE_RENDER_DETAIL_MAPS_H
 
-#include "assets/surface.h"
+#include "assets/base/surface.h"
 #include "render/detail/options.h"
 #include "render/gpu/gpu.h"
 

@@ -3,7 +3,7 @@
 #ifndef TOILE_RENDER_ENV_CONVERT_H
 #define TOILE_RENDER_ENV_CONVERT_H
 
-#include "assets/image.h"
+#include "assets/base/image.h"
 #include "render/env/layout.h"
 
 /* The size at which `to` holds about as many texels as `from` does; cube 1 : lat-long 2 : paraboloid 2 :

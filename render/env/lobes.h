@@ -9,7 +9,7 @@
 #include "render/env/cube.h"
 
 /* Exponents 1 to 1024 in steps whose ratio is TL_EXPONENT_RATIO; beyond them the environment itself. The
- * ratio is justified by tests/render/test_slices.c. */
+ * ratio is justified by tests/render/pem/test_slices.c. */
 #define TL_EXPONENT_COUNT 31
 #define TL_EXPONENT_RATIO 1.25992105f
 

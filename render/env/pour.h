@@ -4,7 +4,7 @@
 #ifndef TOILE_RENDER_ENV_POUR_H
 #define TOILE_RENDER_ENV_POUR_H
 
-#include "assets/image.h"
+#include "assets/base/image.h"
 
 /* What a source texel gives to a cube texel. */
 struct tl_pour_share {

@@ -5,7 +5,7 @@
 #ifndef TOILE_RENDER_GPU_GPU_H
 #define TOILE_RENDER_GPU_GPU_H
 
-#include "assets/image.h"
+#include "assets/base/image.h"
 #include "config/embedded.h"
 #include "config/error.h"
 

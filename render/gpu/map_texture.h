@@ -4,7 +4,7 @@
 #ifndef TOILE_RENDER_GPU_MAP_TEXTURE_H
 #define TOILE_RENDER_GPU_MAP_TEXTURE_H
 
-#include "assets/image.h"
+#include "assets/base/image.h"
 
 #include <cglm/struct.h>
 

@@ -8,7 +8,7 @@
 #ifndef TOILE_RENDER_LIGHT_CULL_H
 #define TOILE_RENDER_LIGHT_CULL_H
 
-#include "assets/surface.h"
+#include "assets/base/surface.h"
 
 struct tl_cull_request {
     const tl_surface *const *surfaces;

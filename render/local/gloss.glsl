@@ -1,5 +1,5 @@
 // The reflectance models of render/brdf/brdf.h, evaluated directly. MODEL, FACETS, MASKING and FRESNEL are numbers of
-// assets/material.h's enums.
+// assets/base/material.h's enums.
 #include "lamp.glsl"
 #include "power.glsl"
 #include "tables.glsl"

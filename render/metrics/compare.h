@@ -6,7 +6,7 @@
 #ifndef TOILE_RENDER_METRICS_COMPARE_H
 #define TOILE_RENDER_METRICS_COMPARE_H
 
-#include "assets/image.h"
+#include "assets/base/image.h"
 
 struct tl_comparison {
     size_t covered;    /* pixels compared */

@@ -4,7 +4,7 @@
 #ifndef TOILE_RENDER_SURFACES_GROUND_H
 #define TOILE_RENDER_SURFACES_GROUND_H
 
-#include "assets/surface.h"
+#include "assets/base/surface.h"
 
 /* What casts shadows: the sphere that the shadow maps are fitted to. Metres. */
 struct tl_casters {

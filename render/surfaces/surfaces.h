@@ -5,7 +5,7 @@
 #ifndef TOILE_RENDER_SURFACES_SURFACES_H
 #define TOILE_RENDER_SURFACES_SURFACES_H
 
-#include "assets/surface.h"
+#include "assets/base/surface.h"
 #include "render/detail/maps.h"
 #include "render/gpu/gpu.h"
 

@@ -3,7 +3,7 @@
 #ifndef TOILE_RENDER_TRACE_CUTOUT_H
 #define TOILE_RENDER_TRACE_CUTOUT_H
 
-#include "assets/material.h"
+#include "assets/base/material.h"
 
 /* Whether there is a hole at mesh coordinates `uv`: alpha, bilinear at full size, below the cutoff. */
 bool tl_cutout_at(const tl_material *material, vec2s uv);

@@ -8,7 +8,7 @@
 #ifndef TOILE_RENDER_TRACE_TRACE_H
 #define TOILE_RENDER_TRACE_TRACE_H
 
-#include "assets/surface.h"
+#include "assets/base/surface.h"
 
 typedef struct tl_trace tl_trace;
 

@@ -3,7 +3,7 @@
 #ifndef TOILE_RENDER_VISIBILITY_FIT_H
 #define TOILE_RENDER_VISIBILITY_FIT_H
 
-#include "assets/surface.h"
+#include "assets/base/surface.h"
 
 /* Free texels around what is seen, so that neither a blurred silhouette nor a look-up from outside touches
  * it. */

@@ -3,9 +3,9 @@
 #ifndef TOILE_TESTS_QUICK_SESSION_H
 #define TOILE_TESTS_QUICK_SESSION_H
 
-#include "testing.h"
+#include "tests/testing.h"
 
-#include "app/session.h"
+#include "app/scene/session.h"
 #include "config/memory.h"
 
 /* `scene`: NULL is the built-in one. */

@@ -6,7 +6,7 @@
 #include "config/error.h"
 #include "config/memory.h"
 
-#include "testing.h"
+#include "tests/testing.h"
 
 #include <string.h>
 #include <sys/resource.h>

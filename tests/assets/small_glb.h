@@ -4,10 +4,10 @@
 #ifndef TOILE_TESTS_SMALL_GLB_H
 #define TOILE_TESTS_SMALL_GLB_H
 
-#include "assets/image.h"
+#include "assets/base/image.h"
 
-#include "hostile.h"
-#include "testing.h"
+#include "tests/assets/hostile.h"
+#include "tests/testing.h"
 
 #include <string.h>
 

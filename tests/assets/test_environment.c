@@ -2,7 +2,7 @@
 
 #include "config/memory.h"
 
-#include "testing.h"
+#include "tests/testing.h"
 
 #include <string.h>
 

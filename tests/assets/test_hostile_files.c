@@ -1,12 +1,12 @@
+#include "assets/base/image.h"
 #include "assets/environment.h"
-#include "assets/exr.h"
-#include "assets/image.h"
+#include "assets/image/exr.h"
 #include "assets/model.h"
 #include "config/memory.h"
 
-#include "hostile.h"
-#include "small_glb.h"
-#include "testing.h"
+#include "tests/assets/hostile.h"
+#include "tests/assets/small_glb.h"
+#include "tests/testing.h"
 
 #include <ftw.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 /* Broken OBJ files, MTL files and point caches. */
 #include "assets/model.h"
-#include "assets/point_cache.h"
+#include "assets/motion/point_cache.h"
 
-#include "hostile.h"
+#include "tests/assets/hostile.h"
 
 /* ---- Loading all there is of a file ---- */
 

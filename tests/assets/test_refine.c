@@ -2,7 +2,7 @@
 #include "assets/refine.h"
 
 #include "config/memory.h"
-#include "testing.h"
+#include "tests/testing.h"
 
 #include <math.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 #ifndef TOILE_TESTS_CLOTH_BODIES_H
 #define TOILE_TESTS_CLOTH_BODIES_H
 
-#include "assets/mesh.h"
+#include "assets/base/mesh.h"
 #include "config/memory.h"
 
 #include <math.h>

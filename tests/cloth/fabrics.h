@@ -2,8 +2,8 @@
 #ifndef TOILE_TESTS_CLOTH_FABRICS_H
 #define TOILE_TESTS_CLOTH_FABRICS_H
 
-#include "app/settings.h"
-#include "testing.h"
+#include "app/scene/settings.h"
+#include "tests/testing.h"
 
 #include <string.h>
 

@@ -3,7 +3,7 @@
 #ifndef TOILE_TESTS_CLOTH_SHEETS_H
 #define TOILE_TESTS_CLOTH_SHEETS_H
 
-#include "assets/panel.h"
+#include "assets/builtin/panel.h"
 #include "cloth/cloth.h"
 #include "config/memory.h"
 

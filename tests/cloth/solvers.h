@@ -3,8 +3,8 @@
 #define TOILE_TESTS_CLOTH_SOLVERS_H
 
 #include "cloth/state.h"
-#include "sheets.h"
-#include "testing.h"
+#include "tests/cloth/sheets.h"
+#include "tests/testing.h"
 
 /* What a solver does with one linear spring. */
 enum step_rule { RULE_IMPLICIT_EULER, RULE_VERLET };

@@ -1,12 +1,12 @@
 /* The same bits every time and at any number of threads, under every solver: an FNV-1a hash of all positions,
  * frame by frame. The hashes that test_threads prints are those of a Debug build, too. */
-#include "bodies.h"
-#include "cloth/frames.h"
-#include "cloth/implicit_matrix.h"
+#include "cloth/mesh/threads.h"
+#include "cloth/solvers/implicit/implicit_matrix.h"
 #include "cloth/state.h"
-#include "cloth/threads.h"
-#include "sheets.h"
-#include "testing.h"
+#include "cloth/tangents/frames.h"
+#include "tests/cloth/bodies.h"
+#include "tests/cloth/sheets.h"
+#include "tests/testing.h"
 
 #include "config/hash.h"
 #include "config/log.h"

@@ -6,10 +6,10 @@
  * Steven 1991 for plain cotton; the usual class of denim) are of other samples than those our numbers were
  * measured on, and real cloth has several stable drapes, so they bind the mean over seeds only. The number of
  * folds is told, not checked. With names of fabrics as arguments: tells their drape. */
-#include "assets/specimen.h"
+#include "assets/builtin/specimen.h"
 #include "config/log.h"
-#include "fabrics.h"
-#include "solvers.h"
+#include "tests/cloth/fabrics.h"
+#include "tests/cloth/solvers.h"
 
 #define RADIUS 0.15
 #define PLATE  0.09

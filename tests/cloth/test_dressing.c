@@ -2,8 +2,8 @@
  * through. The bounds are what a viewer would notice, not what the solver happens to reach. */
 #include "assets/avatar.h"
 #include "cloth/state.h"
-#include "sheets.h"
-#include "testing.h"
+#include "tests/cloth/sheets.h"
+#include "tests/testing.h"
 
 #include "config/log.h"
 

@@ -1,7 +1,7 @@
 /* Coming to rest: settled drapes of solvers against one another, and cloth that rests is at rest. */
-#include "bodies.h"
-#include "sheets.h"
-#include "solvers.h"
+#include "tests/cloth/bodies.h"
+#include "tests/cloth/sheets.h"
+#include "tests/cloth/solvers.h"
 
 #include "config/log.h"
 

@@ -1,8 +1,8 @@
 /* The extremes: every run ends finite, or fails with TL_UNSTABLE and leaves the last good state. */
-#include "bodies.h"
 #include "cloth/state.h"
-#include "sheets.h"
-#include "testing.h"
+#include "tests/cloth/bodies.h"
+#include "tests/cloth/sheets.h"
+#include "tests/testing.h"
 
 #include "config/log.h"
 

@@ -1,9 +1,9 @@
 /* The fabrics that ship: each reads, names a source for its numbers, and is cloth: within the ranges that
  * garment fabrics are measured in (KES: Kawabata 1980; FAST: De Boos and Tester 1994), widened to take
  * coatings and swimwear. */
-#include "testing.h"
+#include "tests/testing.h"
 
-#include "app/settings.h"
+#include "app/scene/settings.h"
 #include "config/embedded.h"
 
 #include <string.h>

@@ -1,6 +1,6 @@
 /* Files are read whole or refused in one line; written whole or not at all; nothing half-made stays behind.
  */
-#include "testing.h"
+#include "tests/testing.h"
 
 #include "config/embedded.h"
 #include "config/file.h"

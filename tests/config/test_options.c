@@ -1,10 +1,10 @@
 /* One option at a time: what is taken, what is refused and in which words; text and back. */
-#include "testing.h"
+#include "tests/testing.h"
 
 #include "config/memory.h"
 #include "config/options.h"
 #include "config/words.h"
-#include "sample_tables.h"
+#include "tests/config/sample_tables.h"
 
 #include <locale.h>
 #include <string.h>

@@ -1,11 +1,11 @@
 /* Whole documents: what is read, what is refused and in which words, print and read back, and random damage.
  */
-#include "testing.h"
+#include "tests/testing.h"
 
 #include "config/file.h"
 #include "config/memory.h"
 #include "config/options.h"
-#include "sample_tables.h"
+#include "tests/config/sample_tables.h"
 
 #include <string.h>
 

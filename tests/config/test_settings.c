@@ -1,9 +1,9 @@
 /* The layers: defaults < preset < fabric < scene file < --set; what ships with the program reads well. */
-#include "testing.h"
+#include "tests/testing.h"
 
-#include "app/settings.h"
+#include "app/scene/settings.h"
+#include "assets/builtin/specimen.h"
 #include "assets/garment.h"
-#include "assets/specimen.h"
 #include "config/embedded.h"
 #include "config/file.h"
 #include "config/memory.h"

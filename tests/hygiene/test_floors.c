@@ -1,6 +1,6 @@
 /* The house rules that a machine can see, over every source file of the five floors: includes point down
  * only, C++ stays in shims, no file is two rooms. */
-#include "testing.h"
+#include "tests/testing.h"
 
 #include "config/file.h"
 #include "config/memory.h"
@@ -138,23 +138,23 @@ static void test_rules(void **state)
         bool good;
     } cases[] = {
         {"config/options.c", "#include \"config/file.h\"", true},
-        {"config/options.c", "#include \"assets/mesh.h\"", false},
-        {"assets/mesh.c", "#include \"config/error.h\"", true},
-        {"assets/mesh.c", "#include \"cloth/cloth.h\"", false},
-        {"cloth/xpbd.c", "#include \"assets/garment.h\"", true},
-        {"cloth/xpbd.c", "#include \"render/renderer.h\"", false},
-        {"render/frame/frame.c", "#include \"assets/surface.h\"", true},
+        {"config/options.c", "#include \"assets/base/mesh.h\"", false},
+        {"assets/base/mesh.c", "#include \"config/error.h\"", true},
+        {"assets/base/mesh.c", "#include \"cloth/cloth.h\"", false},
+        {"cloth/solvers/xpbd.c", "#include \"assets/garment.h\"", true},
+        {"cloth/solvers/xpbd.c", "#include \"render/renderer.h\"", false},
+        {"render/frame/frame.c", "#include \"assets/base/surface.h\"", true},
         {"render/frame/frame.c", "  #  include \"cloth/cloth.h\"", false},
-        {"render/frame/frame.c", "#include \"app/session.h\"", false},
-        {"app/session.c", "#include \"render/renderer.h\"", true},
-        {"app/session.c", "#include \"session.h\"", false},
-        {"app/session.c", "#include \"application/session.h\"", false},
-        {"app/session.c", "#include \"tests/testing.h\"", false},
-        {"app/session.c", "#include <math.h>", true},
-        {"app/session.c", "#include <vector>", false},
-        {"app/session.c", "#include <imgui/imgui.h>", false},
+        {"render/frame/frame.c", "#include \"app/scene/session.h\"", false},
+        {"app/scene/session.c", "#include \"render/renderer.h\"", true},
+        {"app/scene/session.c", "#include \"session.h\"", false},
+        {"app/scene/session.c", "#include \"application/session.h\"", false},
+        {"app/scene/session.c", "#include \"tests/testing.h\"", false},
+        {"app/scene/session.c", "#include <math.h>", true},
+        {"app/scene/session.c", "#include <vector>", false},
+        {"app/scene/session.c", "#include <imgui/imgui.h>", false},
         {"assets/gltf_shim.h", "#include <tiny_gltf.h>", false},
-        {"assets/gltf_shim.cpp", "#include <tiny_gltf.h>", true},
+        {"assets/gltf/gltf_shim.cpp", "#include <tiny_gltf.h>", true},
         {"cloth/topology_shim.cpp", "#include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>", true},
         {"cloth/topology_shim.cpp", "#include \"render/gpu/gpu.h\"", false},
         {"app/main.c", "#include HEADER", false},

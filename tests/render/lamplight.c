@@ -1,10 +1,10 @@
-#include "lamplight.h"
+#include "tests/render/lamplight.h"
 
 #include "render/brdf/brdf.h"
 #include "render/frame/view.h"
 #include "render/reference/spot.h"
 
-#include "testing.h"
+#include "tests/testing.h"
 
 static vec3s black(vec3s d)
 {

@@ -2,7 +2,7 @@
 #ifndef TOILE_TESTS_RENDER_LAMPLIGHT_H
 #define TOILE_TESTS_RENDER_LAMPLIGHT_H
 
-#include "shapes.h"
+#include "tests/render/shapes.h"
 
 #define LAMPLIT_SHAPES_MAX 3
 

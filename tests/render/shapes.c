@@ -1,8 +1,8 @@
-#include "shapes.h"
+#include "tests/render/shapes.h"
 
 #include "config/memory.h"
 
-#include "testing.h"
+#include "tests/testing.h"
 
 void test_shape_release(struct test_shape *shape)
 {

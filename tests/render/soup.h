@@ -3,7 +3,7 @@
 #ifndef TOILE_TESTS_RENDER_SOUP_H
 #define TOILE_TESTS_RENDER_SOUP_H
 
-#include "assets/surface.h"
+#include "assets/base/surface.h"
 #include "config/memory.h"
 
 #include <math.h>

@@ -2,12 +2,12 @@
  * bits, so a pixel may differ by a 500th of its value (at least of 1), and one in 200, at the edges of
  * shapes and shadows, by more. A golden that is missing, or that differs, writes what was drawn beside the
  * test's executable and fails; look at it, and copy it over the golden when it is right. */
-#include "shapes.h"
+#include "tests/render/shapes.h"
 
-#include "assets/exr.h"
+#include "assets/image/exr.h"
 #include "config/memory.h"
 
-#include "testing.h"
+#include "tests/testing.h"
 
 #define PIXEL_TOLERANCE  (1 / 500.0)
 #define FAILING_FRACTION (1 / 200.0)

@@ -1,12 +1,12 @@
 /* The ways to put light together, against exact lobes on the CPU and closed forms on simple scenes. */
-#include "shapes.h"
+#include "tests/render/shapes.h"
 
 #include "render/env/lobes.h"
 #include "render/light/terms.h"
 #include "render/pem/lobe.h"
 #include "render/pem/regions.h"
 
-#include "testing.h"
+#include "tests/testing.h"
 
 /* A soft light overhead, coloured across, none from elsewhere: surfaces that look up see all of it. */
 static vec3s overhead(vec3s d)

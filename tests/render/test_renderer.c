@@ -1,10 +1,10 @@
 /* The renderer as a whole: what runs again and what does not, memory, refusals, extremes. */
-#include "shapes.h"
+#include "tests/render/shapes.h"
 
 #include "config/memory.h"
 #include "render/surfaces/ground.h"
 
-#include "testing.h"
+#include "tests/testing.h"
 
 #include <string.h>
 

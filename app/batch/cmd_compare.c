@@ -1,0 +1,79 @@
+/* toile compare: how different two images are. */
+#include "app/cli/json.h"
+#include "app/commands.h"
+#include "assets/image/exr.h"
+#include "config/file.h"
+#include "render/metrics/compare.h"
+
+#include <stdio.h>
+
+/* EXR as it is; PNG and JPEG as display-referred light in [0, 1]. */
+static bool load_linear(const char *path, tl_image *out, tl_error *error)
+{
+    if (!tl_file_check(path, error))
+        return false;
+    enum tl_exr_envmap envmap;
+    if (tl_path_has_extension(path, "exr"))
+        return tl_exr_load(path, out, &envmap, error);
+    tl_image encoded;
+    if (!tl_image_load(path, &encoded, error))
+        return false;
+    *out = tl_image_create(encoded.width, encoded.height, encoded.channels, TL_IMAGE_F32);
+    size_t texels = (size_t)encoded.width * (size_t)encoded.height;
+    int channels = encoded.channels, colours = channels < 3 ? 1 : 3;
+    for (size_t i = 0; i < texels; i++)
+        for (int c = 0; c < channels; c++) {
+            size_t at = i * (size_t)channels + (size_t)c;
+            float value = (float)tl_image_bytes(&encoded)[at] / 255.0f;
+            tl_image_floats(out)[at] = c < colours ? tl_srgb_to_linear(value) : value;
+        }
+    tl_image_release(&encoded);
+    return true;
+}
+
+static void print_comparison(const struct tl_comparison *result, int width)
+{
+    printf("covered pixels   %zu\n", result->covered);
+    printf("relative RMSE    %.6g\n", result->rel_rmse);
+    printf("mean FLIP        %.6g  (%s, covered pixels)\n", result->flip_mean, result->hdr ? "HDR" : "LDR");
+    printf("frame FLIP       %.6g\n", result->flip_frame);
+    printf("largest          %.6g\n", result->max_abs);
+    printf("worst pixel      %d, %d: %.3g %% of the square error\n", (int)result->worst % width,
+           (int)result->worst / width, 100 * result->worst_share);
+    if (result->hdr)
+        printf("exposures        %.3g to %.3g stops\n", result->exposure_start, result->exposure_stop);
+}
+
+static void print_comparison_json(const struct tl_comparison *result, int width)
+{
+    cJSON *object = cJSON_CreateObject();
+    cJSON_AddNumberToObject(object, "covered", (double)result->covered);
+    cJSON_AddNumberToObject(object, "rel_rmse", result->rel_rmse);
+    cJSON_AddNumberToObject(object, "flip_mean", result->flip_mean);
+    cJSON_AddNumberToObject(object, "flip_frame", result->flip_frame);
+    cJSON_AddNumberToObject(object, "max_abs", result->max_abs);
+    int worst = (int)result->worst, worst_row = worst / width;
+    cJSON_AddNumberToObject(object, "worst_x", worst % width);
+    cJSON_AddNumberToObject(object, "worst_y", worst_row);
+    cJSON_AddNumberToObject(object, "worst_share", result->worst_share);
+    cJSON_AddBoolToObject(object, "hdr", result->hdr);
+    tl_json_print(object);
+}
+
+bool tl_command_compare(const struct tl_arguments *arguments, tl_error *error)
+{
+    if (arguments->positional_count != 2)
+        return tl_fail(error, TL_USAGE, "compare: expected two images: toile compare TESTED REFERENCE");
+    tl_image tested = {0}, reference = {0};
+    struct tl_comparison result;
+    bool done = load_linear(arguments->positionals[0], &tested, error) &&
+                load_linear(arguments->positionals[1], &reference, error) &&
+                tl_image_compare(&tested, &reference, arguments->hdr, 0, &result, error);
+    if (done && arguments->json)
+        print_comparison_json(&result, tested.width);
+    else if (done)
+        print_comparison(&result, tested.width);
+    tl_image_release(&tested);
+    tl_image_release(&reference);
+    return done;
+}

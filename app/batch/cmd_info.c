@@ -1,0 +1,327 @@
+/* toile info: what a file holds and how it will be read; or what is built in. */
+#include "app/cli/json.h"
+#include "app/commands.h"
+#include "app/scene/settings.h"
+#include "assets/builtin/specimen.h"
+#include "assets/environment.h"
+#include "assets/model.h"
+#include "assets/motion/point_cache.h"
+#include "cloth/cloth.h"
+#include "config/file.h"
+#include "config/memory.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Both outputs come from one object: --json prints it, otherwise its members become lines. */
+static void print_value(const cJSON *value, int indent)
+{
+    const cJSON *child;
+    if (cJSON_IsString(value))
+        printf("%s\n", value->valuestring);
+    else if (cJSON_IsBool(value))
+        printf("%s\n", cJSON_IsTrue(value) ? "yes" : "no");
+    else if (cJSON_IsNumber(value))
+        printf("%.7g\n", value->valuedouble);
+    else if (!value->child)
+        printf("none\n");
+    else {
+        printf("\n");
+        cJSON_ArrayForEach(child, value)
+        {
+            printf("%*s", indent + 2, "");
+            if (child->string)
+                printf("%-*s ", 20 - indent, child->string);
+            print_value(child, indent + 2);
+        }
+    }
+}
+
+static void print_object(cJSON *object, bool json)
+{
+    if (json) {
+        tl_json_print(object);
+        return;
+    }
+    const cJSON *child;
+    cJSON_ArrayForEach(child, object)
+    {
+        printf("%-20s ", child->string);
+        print_value(child, 0);
+    }
+    cJSON_Delete(object);
+}
+
+static cJSON *describe_vector(vec3s vector)
+{
+    return cJSON_CreateFloatArray(vector.raw, 3);
+}
+
+/* What most materials have not, where this one has it. */
+static void describe_layers(cJSON *object, const tl_material *material)
+{
+    const struct tl_gloss *gloss = &material->gloss;
+    if (gloss->model == TL_REFLECT_WARD) {
+        cJSON_AddStringToObject(object, "model", "ward");
+        cJSON_AddNumberToObject(object, "width_weft", (double)gloss->width_weft);
+        cJSON_AddNumberToObject(object, "width_warp", (double)gloss->width_warp);
+        cJSON_AddNumberToObject(object, "rotation_deg", (double)gloss->rotation * 180 / M_PI);
+    }
+    if (material->coat > 0) {
+        cJSON_AddNumberToObject(object, "coat", (double)material->coat);
+        cJSON_AddNumberToObject(object, "coat_glossiness", (double)material->coat_glossiness);
+    }
+    if (material->transmission.x + material->transmission.y + material->transmission.z > 0)
+        cJSON_AddItemToObject(object, "transmission", describe_vector(material->transmission));
+    if (material->openness > 0)
+        cJSON_AddNumberToObject(object, "openness", (double)material->openness);
+}
+
+static cJSON *describe_material(const tl_material *material)
+{
+    cJSON *object = cJSON_CreateObject();
+    cJSON_AddStringToObject(object, "name", material->name);
+    cJSON_AddNumberToObject(object, "glossiness", (double)material->glossiness);
+    describe_layers(object, material);
+    cJSON_AddBoolToObject(object, "double_sided", material->double_sided);
+    cJSON_AddNumberToObject(object, "alpha_cutoff", (double)material->alpha_cutoff);
+    const struct {
+        const char *name;
+        const tl_image *image;
+    } maps[] = {{"diffuse_map", material->diffuse_map.image},
+                {"normal_map", material->normal_map.image},
+                {"gloss_map", material->gloss_map.image},
+                {"specular_map", material->specular_map.image},
+                {"occlusion_map", material->occlusion_map.image}};
+    for (size_t i = 0; i < sizeof maps / sizeof maps[0]; i++) {
+        if (!maps[i].image)
+            continue;
+        char size[32];
+        snprintf(size, sizeof size, "%d x %d", maps[i].image->width, maps[i].image->height);
+        cJSON_AddStringToObject(object, maps[i].name, size);
+    }
+    return object;
+}
+
+static void describe_units(cJSON *object, const tl_model *model)
+{
+    cJSON_AddStringToObject(object, "units", tl_units_names[model->units.units]);
+    char *lines[] = {tl_units_describe(model->name, &model->units, "--units"),
+                     tl_units_describe_up(model->name, &model->units)};
+    const char *const keys[] = {"units_note", "up_note"};
+    for (size_t i = 0; i < TL_COUNT(lines); i++) {
+        if (lines[i])
+            cJSON_AddStringToObject(object, keys[i], lines[i]);
+        free(lines[i]);
+    }
+}
+
+static void describe_notes(cJSON *object, const char *key, char *const *notes, size_t count)
+{
+    cJSON *array = cJSON_AddArrayToObject(object, key);
+    for (size_t i = 0; i < count; i++)
+        cJSON_AddItemToArray(array, cJSON_CreateString(notes[i]));
+}
+
+static bool varies(const tl_model *model, size_t part)
+{
+    for (size_t i = 0; i < model->variant_count; i++)
+        if (model->variants[i].materials[part] != model->mesh.parts[part].material)
+            return true;
+    return false;
+}
+
+/* Colourways of the file's own: what each makes the parts of that differ between them. */
+static void describe_variants(cJSON *object, const tl_model *model)
+{
+    cJSON *variants = cJSON_AddObjectToObject(object, "colourways");
+    for (size_t i = 0; i < model->variant_count; i++) {
+        const struct tl_variant *variant = &model->variants[i];
+        cJSON *names = cJSON_AddArrayToObject(variants, variant->name);
+        for (size_t p = 0; p < model->mesh.part_count; p++)
+            if (varies(model, p))
+                cJSON_AddItemToArray(names, cJSON_CreateString(model->materials[variant->materials[p]].name));
+    }
+}
+
+/* Vertices that the file itself holds as cloth, and those that cloth.pin_colour would. */
+static void describe_pins(cJSON *object, const tl_model *model)
+{
+    size_t pinned = 0, painted[3] = {0};
+    for (size_t i = 0; i < model->mesh.vertex_count; i++) {
+        pinned += model->pins && model->pins[i] > 0.5f;
+        for (int channel = 0; model->colours && channel < 3; channel++)
+            painted[channel] += tl_model_is_painted(model, i, channel);
+    }
+    cJSON_AddNumberToObject(object, "pins", (double)pinned);
+    if (!model->colours)
+        return;
+    cJSON *colours = cJSON_AddObjectToObject(object, "painted_vertices");
+    for (int channel = 0; channel < 3; channel++)
+        cJSON_AddNumberToObject(colours, tl_pin_colour_names[TL_PIN_RED + channel], (double)painted[channel]);
+}
+
+static cJSON *describe_model(const tl_model *model)
+{
+    cJSON *object = cJSON_CreateObject();
+    struct tl_box box = tl_box_of(model->mesh.positions, model->mesh.vertex_count);
+    cJSON_AddStringToObject(object, "kind", "model");
+    cJSON_AddStringToObject(object, "name", model->name);
+    cJSON_AddNumberToObject(object, "vertices", (double)model->mesh.vertex_count);
+    cJSON_AddNumberToObject(object, "triangles", (double)model->mesh.index_count / 3);
+    cJSON_AddNumberToObject(object, "points", (double)tl_model_point_count(model));
+    cJSON_AddNumberToObject(object, "parts", (double)model->mesh.part_count);
+    describe_pins(object, model);
+    describe_units(object, model);
+    cJSON_AddItemToObject(object, "lower_m", describe_vector(box.lower));
+    cJSON_AddItemToObject(object, "upper_m", describe_vector(box.upper));
+    cJSON *materials = cJSON_AddArrayToObject(object, "materials");
+    for (size_t i = 0; i < model->material_count; i++)
+        cJSON_AddItemToArray(materials, describe_material(&model->materials[i]));
+    describe_variants(object, model);
+    cJSON *clips = cJSON_AddArrayToObject(object, "clips");
+    for (size_t i = 0; i < model->clip_count; i++) {
+        cJSON *clip = cJSON_CreateObject();
+        cJSON_AddStringToObject(clip, "name", model->clips[i].name);
+        cJSON_AddNumberToObject(clip, "duration_s", model->clips[i].duration_s);
+        cJSON_AddItemToArray(clips, clip);
+    }
+    describe_notes(object, "approximated", model->approximated, model->approximated_count);
+    describe_notes(object, "ignored", model->ignored, model->ignored_count);
+    return object;
+}
+
+/* In the file's own units: only the garment that it moves can say what they are. */
+static cJSON *describe_motion(const char *path, const struct tl_point_cache_facts *facts)
+{
+    cJSON *object = cJSON_CreateObject();
+    const char *slash = strrchr(path, '/');
+    cJSON_AddStringToObject(object, "kind", "motion");
+    cJSON_AddStringToObject(object, "name", slash ? slash + 1 : path);
+    cJSON_AddStringToObject(object, "format", facts->format);
+    cJSON_AddNumberToObject(object, "points", (double)facts->point_count);
+    cJSON_AddNumberToObject(object, "samples", (double)facts->sample_count);
+    cJSON_AddNumberToObject(object, facts->in_seconds ? "first_s" : "first_frame", facts->first);
+    cJSON_AddNumberToObject(object, facts->in_seconds ? "last_s" : "last_frame", facts->last);
+    const char *per = facts->in_seconds ? "second" : "frame";
+    bool even = facts->step > 0 || facts->sample_count == 1;
+    cJSON_AddNumberToObject(object, "rate", facts->step > 0 ? 1 / facts->step : 0);
+    cJSON_AddStringToObject(object, "rate_per", even ? per : "samples are not evenly spaced");
+    cJSON_AddItemToObject(object, "lower", describe_vector(facts->box.lower));
+    cJSON_AddItemToObject(object, "upper", describe_vector(facts->box.upper));
+    return object;
+}
+
+static cJSON *describe_environment(const tl_environment *environment)
+{
+    cJSON *object = cJSON_CreateObject();
+    cJSON_AddStringToObject(object, "kind", "environment");
+    cJSON_AddStringToObject(object, "name", environment->name);
+    cJSON_AddStringToObject(object, "layout", environment->layout == TL_ENV_CUBE ? "cube" : "lat-long");
+    cJSON_AddNumberToObject(object, "width", environment->image.width);
+    cJSON_AddNumberToObject(object, "height", environment->image.height);
+    cJSON_AddNumberToObject(object, "peak", (double)environment->peak);
+    cJSON_AddNumberToObject(object, "negative_cleaned", (double)environment->negative_count);
+    cJSON_AddNumberToObject(object, "nan_cleaned", (double)environment->nan_count);
+    cJSON_AddNumberToObject(object, "inf_cleaned", (double)environment->inf_count);
+    return object;
+}
+
+static void add_colourways(cJSON *object, const char *key, const struct tl_settings *settings)
+{
+    cJSON *names = cJSON_AddArrayToObject(object, key);
+    for (size_t i = 0; i < settings->colourways.name_count; i++)
+        cJSON_AddItemToArray(names, cJSON_CreateString(settings->colourways.names[i]));
+}
+
+/* What it names, built-in colourways included. */
+static cJSON *describe_scene(const char *path, tl_error *error)
+{
+    struct tl_settings settings;
+    if (!tl_settings_load(&settings, &(struct tl_settings_source){.scene_file = path}, error))
+        return NULL;
+    const struct tl_scene_params *scene = &settings.scene;
+    const char *const rows[][2] = {{"kind", "scene"},
+                                   {"name", path},
+                                   {"garment", scene->garment},
+                                   {"avatar", scene->avatar},
+                                   {"environment", scene->environment},
+                                   {"fabric", scene->fabric},
+                                   {"preset", scene->preset}};
+    cJSON *object = cJSON_CreateObject();
+    for (size_t i = 0; i < TL_COUNT(rows); i++)
+        cJSON_AddStringToObject(object, rows[i][0], rows[i][1]);
+    add_colourways(object, "colourways", &settings);
+    return object;
+}
+
+static void list_embedded(cJSON *object, const char *key, const struct tl_embedded *list)
+{
+    cJSON *names = cJSON_AddArrayToObject(object, key);
+    for (const struct tl_embedded *entry = list; entry->name; entry++) {
+        char name[64];
+        snprintf(name, sizeof name, "%.*s", (int)strcspn(entry->name, "."), entry->name);
+        cJSON_AddItemToArray(names, cJSON_CreateString(name));
+    }
+}
+
+static cJSON *describe_built_in(const char *what)
+{
+    cJSON *object = cJSON_CreateObject();
+    if (strcmp(what, "fabrics") == 0)
+        list_embedded(object, what, tl_embedded_fabrics);
+    else if (strcmp(what, "presets") == 0)
+        list_embedded(object, what, tl_embedded_presets);
+    else {
+        cJSON *names = cJSON_AddArrayToObject(object, what);
+        for (const char *const *name = tl_garment_names; *name; name++)
+            cJSON_AddItemToArray(names, cJSON_CreateString(*name));
+        for (const char *const *name = tl_specimen_names; *name; name++)
+            cJSON_AddItemToArray(names, cJSON_CreateString(*name));
+    }
+    return object;
+}
+
+bool tl_command_info(const struct tl_arguments *arguments, tl_error *error)
+{
+    if (arguments->positional_count != 1)
+        return tl_fail(error, TL_USAGE, "info: expected one file: toile info FILE");
+    const char *path = arguments->positionals[0];
+    cJSON *object = NULL;
+    if (strcmp(path, "fabrics") == 0 || strcmp(path, "presets") == 0 || strcmp(path, "garments") == 0) {
+        object = describe_built_in(path);
+    } else if (tl_point_cache_is_file(path)) {
+        tl_point_cache *cache = tl_point_cache_open(path, 1, error);
+        if (!cache)
+            return false;
+        object = describe_motion(path, tl_point_cache_facts(cache));
+        tl_point_cache_destroy(&cache);
+    } else if (!tl_file_check(path, error)) {
+        return false;
+    } else if (tl_model_is_file(path)) {
+        tl_model model;
+        if (!tl_model_load(path, &model, error))
+            return false;
+        object = describe_model(&model);
+        tl_model_release(&model);
+    } else if (tl_path_has_extension(path, "yaml") || tl_path_has_extension(path, "yml")) {
+        object = describe_scene(path, error);
+        if (!object)
+            return false;
+    } else if (tl_path_has_extension(path, "exr") || tl_path_has_extension(path, "hdr")) {
+        tl_environment environment;
+        if (!tl_environment_load(path, &environment, error))
+            return false;
+        object = describe_environment(&environment);
+        tl_environment_release(&environment);
+    } else {
+        return tl_fail(
+            error, TL_INPUT,
+            "%s: unknown kind of file: expected .glb, .gltf, .obj, .pc2, .mdd, .exr, .hdr or a scene's .yaml",
+            path);
+    }
+    print_object(object, arguments->json);
+    return true;
+}

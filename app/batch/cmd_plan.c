@@ -1,0 +1,295 @@
+/* toile plan: what would run for a frame, and why. */
+#include "app/budget/governor.h"
+#include "app/cli/json.h"
+#include "app/commands.h"
+#include "app/measure/cost.h"
+#include "app/scene/headless.h"
+#include "render/gpu/clocks.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static void print_plan(const tl_plan *plan)
+{
+    printf("%-12s %-6s %5s %10s  %s\n", "job", "action", "level", "ms", "reason");
+    for (int i = 0; i < plan->count; i++) {
+        const struct tl_plan_row *row = &plan->rows[i];
+        char cost[16] = "-";
+        if (isfinite(row->predicted_ms))
+            snprintf(cost, sizeof cost, "%.2f", row->predicted_ms);
+        printf("%-12s %-6s %5d %10s  %s\n", row->name, tl_job_action_names[row->action], row->level, cost,
+               row->reason);
+    }
+}
+
+static void print_memory(const tl_renderer *renderer)
+{
+    const double mebibyte = 1024.0 * 1024.0;
+    struct tl_resource_memory rows[TL_RESOURCES_MAX];
+    size_t count = tl_renderer_resources(renderer, rows);
+    printf("\n%-26s %10s\n", "memory of", "MiB");
+    for (size_t i = 0; i < count; i++)
+        printf("%-26s %10.2f\n", rows[i].name, (double)rows[i].bytes / mebibyte);
+    printf("%-26s %10.2f\n", "total", (double)tl_renderer_memory(renderer).total / mebibyte);
+}
+
+/* ---- The budget ---- */
+
+/* What a budget would choose for the frame, and what the next better level of each knob would change. */
+struct budgeted {
+    double budget_ms; /* 0: none was given */
+    struct tl_pace_choice choice;
+    struct tl_pace_step steps[TL_KNOB_COUNT];
+};
+
+static void print_budget(const struct budgeted *budgeted)
+{
+    const struct tl_pace_choice *choice = &budgeted->choice;
+    printf("\nlevels for %g ms: ", budgeted->budget_ms);
+    if (isfinite(choice->predicted_ms))
+        printf("predicted %.1f ms, cloth and drawing, ", choice->predicted_ms);
+    else
+        printf("nothing was measured yet (--frame N draws the frames before N), ");
+    printf("%.2g %% of error\n%-8s %6s %8s  %s\n", 100 * choice->error, "knob", "level", "setting",
+           "one level better");
+    for (int k = 0; k < TL_KNOB_COUNT; k++) {
+        const struct tl_pace_step *step = &budgeted->steps[k];
+        printf("%-8s %2d of %d %8.4g  ", tl_knob_names[k], step->level, step->level_count - 1, step->value);
+        if (step->level > 0)
+            printf("%+.1f ms, %+.2g of FLIP\n", step->ms, -step->error);
+        else
+            printf("%s\n", step->level_count > 1 ? "as asked for" : "not of this scene");
+    }
+}
+
+static cJSON *number_or_null(double value)
+{
+    return isfinite(value) ? cJSON_CreateNumber(value) : cJSON_CreateNull();
+}
+
+static void add_budget(cJSON *object, const struct budgeted *budgeted)
+{
+    cJSON *budget = cJSON_AddObjectToObject(object, "budget");
+    cJSON_AddNumberToObject(budget, "budget_ms", budgeted->budget_ms);
+    cJSON_AddItemToObject(budget, "predicted_ms", number_or_null(budgeted->choice.predicted_ms));
+    cJSON_AddNumberToObject(budget, "error", budgeted->choice.error);
+    cJSON *knobs = cJSON_AddArrayToObject(budget, "knobs");
+    for (int k = 0; k < TL_KNOB_COUNT; k++) {
+        const struct tl_pace_step *step = &budgeted->steps[k];
+        cJSON *knob = cJSON_CreateObject();
+        cJSON_AddStringToObject(knob, "name", tl_knob_names[k]);
+        cJSON_AddNumberToObject(knob, "level", step->level);
+        cJSON_AddNumberToObject(knob, "levels", step->level_count);
+        cJSON_AddNumberToObject(knob, "value", step->value);
+        cJSON_AddItemToObject(knob, "next_ms", number_or_null(step->ms));
+        cJSON_AddItemToObject(knob, "next_error", number_or_null(-step->error));
+        cJSON_AddItemToArray(knobs, knob);
+    }
+}
+
+/* ---- The cloth ---- */
+
+static int substeps_per_frame(const struct tl_settings *settings, const struct tl_cloth_report *report)
+{
+    return (int)lround(1 / (settings->cloth.frame_rate * report->substep_s));
+}
+
+/* What the cloth is kept from passing through, and at what cost. */
+static void describe_self_repulsion(const struct tl_settings *settings, const struct tl_cloth_report *cloth,
+                                    char *out, size_t size)
+{
+    const char *price = "up to twice the time for the cloth";
+    if (settings->cloth.self_repulsion)
+        snprintf(out, size, "on: %zu piece%s in %zu layer%s, and folds, keep their distance: %s",
+                 cloth->piece_count, cloth->piece_count == 1 ? "" : "s", cloth->layer_count,
+                 cloth->layer_count == 1 ? "" : "s", price);
+    else if (cloth->piece_count > 1)
+        snprintf(out, size,
+                 "off: the garment's %zu pieces, and folds, pass through one another; "
+                 "cloth.self_repulsion true keeps them apart for %s",
+                 cloth->piece_count, price);
+    else
+        snprintf(out, size, "off: folds pass through one another");
+}
+
+static void print_cloth(const struct tl_settings *settings, const struct tl_cloth_report *report)
+{
+    char self_repulsion[256];
+    describe_self_repulsion(settings, report, self_repulsion, sizeof self_repulsion);
+    printf("cloth: %zu vertices, critical step %.3g ms, %s %d substeps of %.3g ms a frame\n"
+           "cloth against itself: %s\n",
+           report->vertex_count, 1000 * report->critical_step_s,
+           tl_cloth_solver_names[settings->cloth.solver], substeps_per_frame(settings, report),
+           1000 * report->substep_s, self_repulsion);
+    if (report->caught_count + report->unconverged_steps + report->shortened_steps > 0)
+        printf("cloth's doubts: %zu vertices caught between parts of the avatar, %zu steps cut short before "
+               "they "
+               "converged, %zu shortened because they would have gained energy\n",
+               report->caught_count, report->unconverged_steps, report->shortened_steps);
+}
+
+static void add_cloth(cJSON *object, const struct tl_settings *settings, const struct tl_cloth_report *report)
+{
+    char self_repulsion[256];
+    describe_self_repulsion(settings, report, self_repulsion, sizeof self_repulsion);
+    cJSON *cloth = cJSON_AddObjectToObject(object, "cloth");
+    cJSON_AddNumberToObject(cloth, "vertices", (double)report->vertex_count);
+    cJSON_AddItemToObject(cloth, "critical_step_s",
+                          isfinite(report->critical_step_s) ? cJSON_CreateNumber(report->critical_step_s)
+                                                            : cJSON_CreateNull());
+    cJSON_AddStringToObject(cloth, "solver", tl_cloth_solver_names[settings->cloth.solver]);
+    cJSON_AddNumberToObject(cloth, "substeps", substeps_per_frame(settings, report));
+    cJSON_AddNumberToObject(cloth, "substep_s", report->substep_s);
+    cJSON_AddStringToObject(cloth, "self_repulsion", self_repulsion);
+    cJSON_AddNumberToObject(cloth, "caught", (double)report->caught_count);
+    cJSON_AddNumberToObject(cloth, "unconverged_steps", (double)report->unconverged_steps);
+    cJSON_AddNumberToObject(cloth, "shortened_steps", (double)report->shortened_steps);
+}
+
+/* ---- The whole ---- */
+
+static void add_jobs(cJSON *object, const tl_plan *plan, const tl_plan *drawn)
+{
+    cJSON *jobs = cJSON_AddArrayToObject(object, "jobs");
+    for (int i = 0; i < plan->count; i++) {
+        const struct tl_plan_row *row = &plan->rows[i];
+        cJSON *job = cJSON_CreateObject();
+        cJSON_AddStringToObject(job, "name", row->name);
+        cJSON_AddNumberToObject(job, "level", row->level);
+        cJSON_AddStringToObject(job, "action", tl_job_action_names[row->action]);
+        cJSON_AddStringToObject(job, "reason", row->reason);
+        cJSON_AddItemToObject(job, "predicted_ms", number_or_null(row->predicted_ms));
+        cJSON_AddNumberToObject(job, "work_ms", drawn->rows[i].work_ms);
+        cJSON_AddItemToArray(jobs, job);
+    }
+}
+
+static void add_memory(cJSON *object, const tl_renderer *renderer)
+{
+    const struct tl_render_memory memory = tl_renderer_memory(renderer);
+    cJSON *bytes = cJSON_AddObjectToObject(object, "memory_bytes");
+    cJSON_AddNumberToObject(bytes, "pems", (double)memory.pems);
+    cJSON_AddNumberToObject(bytes, "maps", (double)memory.maps);
+    cJSON_AddNumberToObject(bytes, "rays", (double)memory.rays);
+    cJSON_AddNumberToObject(bytes, "sheets", (double)memory.sheets);
+    cJSON_AddNumberToObject(bytes, "targets", (double)memory.targets);
+    cJSON_AddNumberToObject(bytes, "surfaces", (double)memory.surfaces);
+    cJSON_AddNumberToObject(bytes, "other", (double)memory.other);
+    cJSON_AddNumberToObject(bytes, "total", (double)memory.total);
+    struct tl_resource_memory rows[TL_RESOURCES_MAX];
+    size_t count = tl_renderer_resources(renderer, rows);
+    cJSON *resources = cJSON_AddObjectToObject(object, "resource_bytes");
+    for (size_t i = 0; i < count; i++)
+        cJSON_AddNumberToObject(resources, rows[i].name, (double)rows[i].bytes);
+}
+
+static void print_clocks(const struct tl_gpu_clocks *clocks)
+{
+    printf("clock: the CPU's around finished work; GL's timer says %.3g ms of %.3g: %s\n", clocks->timer_ms,
+           clocks->cpu_ms, clocks->timer_is_trusted ? "it could be trusted too" : "not to be trusted");
+}
+
+static void add_clocks(cJSON *object, const struct tl_gpu_clocks *clocks)
+{
+    cJSON *clock = cJSON_AddObjectToObject(object, "clock");
+    cJSON_AddNumberToObject(clock, "cpu_ms", clocks->cpu_ms);
+    cJSON_AddNumberToObject(clock, "timer_ms", clocks->timer_ms);
+    cJSON_AddBoolToObject(clock, "timer_is_trusted", clocks->timer_is_trusted);
+}
+
+static void tell(const struct tl_stage *stage, const tl_plan *plan, const struct budgeted *budgeted,
+                 const struct tl_gpu_clocks *clocks, bool json)
+{
+    struct tl_cloth_report report = tl_session_report(stage->session);
+    if (json) {
+        cJSON *object = cJSON_CreateObject();
+        add_jobs(object, plan, tl_renderer_last_plan(stage->renderer));
+        add_memory(object, stage->renderer);
+        if (budgeted->budget_ms > 0)
+            add_budget(object, budgeted);
+        add_clocks(object, clocks);
+        if (report.vertex_count > 0)
+            add_cloth(object, &stage->settings, &report);
+        tl_json_print(object);
+        return;
+    }
+    print_plan(plan);
+    print_memory(stage->renderer);
+    if (budgeted->budget_ms > 0)
+        print_budget(budgeted);
+    print_clocks(clocks);
+    if (report.vertex_count > 0)
+        print_cloth(&stage->settings, &report);
+}
+
+/* A frame as fly has it: chosen, simulated, drawn, and learned from. */
+static bool draw_paced(struct tl_stage *stage, tl_pace *pace, tl_error *error)
+{
+    const struct tl_settings full = stage->settings;
+    struct tl_stopwatch watch = tl_stopwatch_start();
+    const tl_frame frame = tl_session_frame(stage->session);
+    struct tl_pace_choice choice = tl_pace_choose(pace, stage->renderer, &frame, &full);
+    stage->settings = tl_levels_apply(&choice.levels, &full);
+    bool done = tl_session_apply(stage->session, &stage->settings, error);
+    struct tl_stopwatch cloth = tl_stopwatch_start();
+    done = done && tl_session_advance(stage->session, error);
+    double cloth_ms = tl_stopwatch_read(&cloth).wall_ms;
+    done = done && tl_stage_draw(stage, error);
+    if (done)
+        tl_pace_learn(pace, tl_renderer_last_plan(stage->renderer), cloth_ms,
+                      tl_stopwatch_read(&watch).wall_ms);
+    stage->settings = full;
+    return done;
+}
+
+/* Draws the frames before `number` within the budget and chooses the levels of `number`. The session is left
+ * at the frame before it. */
+static bool choose_levels(struct tl_stage *stage, int number, struct budgeted *out, tl_error *error)
+{
+    const int learned_from = 30; /* frames */
+    tl_pace *pace = tl_pace_create(out->budget_ms);
+    const struct tl_settings full = stage->settings;
+    int first = number - 1 > learned_from ? number - 1 - learned_from : 0;
+    bool done = tl_session_go_to(stage->session, first, error);
+    while (done && tl_session_frame_number(stage->session) < number - 1)
+        done = draw_paced(stage, pace, error);
+    if (done) {
+        const tl_frame frame = tl_session_frame(stage->session);
+        out->choice = tl_pace_choose(pace, stage->renderer, &frame, &full);
+        tl_pace_steps(pace, stage->renderer, &frame, &full, out->steps);
+        stage->settings = tl_levels_apply(&out->choice.levels, &full);
+        done = tl_session_apply(stage->session, &stage->settings, error);
+    }
+    tl_pace_destroy(&pace);
+    return done;
+}
+
+/* The plan of frame N is that of an animation at N: the frame before it is drawn, so that what it leaves
+ * behind is reused and costs are known. Frame 0 is the first frame, where all is new. */
+bool tl_command_plan(const struct tl_arguments *arguments, tl_error *error)
+{
+    struct tl_stage stage;
+    struct budgeted budgeted = {.budget_ms = arguments->budget_ms};
+    if (!tl_stage_create(&stage, arguments, error))
+        return false;
+    bool done = true;
+    int frame = arguments->first_frame;
+    if (budgeted.budget_ms > 0)
+        done = choose_levels(&stage, frame, &budgeted, error);
+    if (done && frame > 0)
+        done = tl_session_go_to(stage.session, frame - 1, error) && tl_stage_draw(&stage, error) &&
+               tl_session_advance(stage.session, error);
+    if (done) {
+        tl_frame next = tl_session_frame(stage.session);
+        const struct tl_render_settings settings = tl_settings_render(&stage.settings);
+        tl_plan plan;
+        tl_renderer_plan(stage.renderer, &next, &settings, &plan);
+        done = tl_stage_draw(&stage, error); /* memory is what the frame really holds */
+        struct tl_gpu_clocks clocks;
+        done = done && tl_gpu_compare_clocks(stage.gpu, &clocks, error);
+        if (done)
+            tell(&stage, &plan, &budgeted, &clocks, arguments->json);
+    }
+    tl_stage_release(&stage);
+    return done;
+}

@@ -1,0 +1,67 @@
+/* The command line, parsed once into plain data. Each command says which flags it takes; the rest is refused
+ * with the nearest flag that it knows. Strings are borrowed from argv. */
+#ifndef TOILE_APP_CLI_ARGUMENTS_H
+#define TOILE_APP_CLI_ARGUMENTS_H
+
+#include "config/error.h"
+
+#include <stddef.h>
+
+#define TL_POSITIONALS_MAX 64
+
+/* Which groups of flags a command takes. */
+enum tl_flag_set {
+    TL_FLAGS_SCENE = 1 << 0,    /* --garment to --set */
+    TL_FLAGS_OUTPUT = 1 << 1,   /* -o */
+    TL_FLAGS_FRAME = 1 << 2,    /* --frame N */
+    TL_FLAGS_FRAMES = 1 << 3,   /* --frames A:B */
+    TL_FLAGS_JSON = 1 << 4,     /* --json */
+    TL_FLAGS_METRIC = 1 << 5,   /* --ldr --hdr */
+    TL_FLAGS_WINDOW = 1 << 6,   /* --screenshots DIR --max-frames N --fresh */
+    TL_FLAGS_AXIS = 1 << 7,     /* --axis NAME */
+    TL_FLAGS_QUICK = 1 << 8,    /* --quick */
+    TL_FLAGS_FULL = 1 << 9,     /* --full */
+    TL_FLAGS_LAYOUT = 1 << 10,  /* --layout NAME --from NAME --size N */
+    TL_FLAGS_FABRIC = 1 << 11,  /* --repeat-mm MM --height-mm MM --clamp */
+    TL_FLAGS_CHECK = 1 << 12,   /* --frames N --every --furnace --still --keep */
+    TL_FLAGS_AOV = 1 << 13,     /* --aov */
+    TL_FLAGS_SHEET = 1 << 14,   /* lists of what a contact sheet shows, --same-drape */
+    TL_FLAGS_CAPTURE = 1 << 15, /* --capture, and those of the scene but the image's */
+    TL_FLAGS_FLY = 1 << 16,     /* --frames N --path --video --against --replay --oracle --hash */
+    TL_FLAGS_BUDGET = 1 << 17,  /* --budget MS */
+};
+
+struct tl_arguments {
+    const char *positionals[TL_POSITIONALS_MAX];
+    size_t positional_count;
+    char **assignments; /* "table.key=value", in order; owned */
+    size_t assignment_count;
+    /* NULL: not given */
+    const char *output, *keep;
+    const char *screenshots; /* folder for screenshots */
+    const char *axis;
+    const char *layout, *from;
+    const char *path, *video, *against, *replay;
+    struct { /* names with commas between them */
+        const char *garments, *fabrics, *colourways, *environments, *views;
+    } sheet;
+    /* 0: not given */
+    double budget_ms;
+    double repeat_mm, height_mm;
+    int first_frame, last_frame;
+    int frame_count, every, oracle_every;
+    int max_frames;
+    int map_size;
+    int hdr;           /* -1 by content, 0 --ldr, 1 --hdr */
+    bool frames_given; /* --frames rather than --frame */
+    bool json, quiet, verbose, help;
+    bool fresh, quick, full, clamp, capture, furnace, still, aovs, hash, same_drape;
+};
+
+bool tl_arguments_parse(int argc, char **argv, unsigned flags, struct tl_arguments *out, tl_error *error);
+void tl_arguments_release(struct tl_arguments *arguments);
+
+/* The flags of a set, one a line, for --help. */
+void tl_arguments_print_flags(unsigned flags);
+
+#endif

@@ -1,0 +1,116 @@
+/* The cloth within its envelope. What is worn keeps no momentum, for its wearer and the ground take it: there
+ * the energy is watched, which only something that works on the cloth may raise. */
+#include "app/lab/check/check_measures.h"
+#include "cloth/contact/caught.h"
+#include "cloth/drive/hand.h"
+
+#include <math.h>
+
+/* What no drape does to cloth that fits; and what putting on may do to the shortest edges of a garment that a
+ * file has inside of its wearer (MakeHuman's sports suit, up to 8 mm: 0.64). */
+#define DRAPED_STRAIN 0.5
+#define WORN_STRAIN   1.0
+#define LATER         1.25 /* than when it was put on */
+
+/* A hand yields before it strains the edges that it holds by TL_HAND_STRAIN; the next ones may take as much
+ * again (tests/cloth/drive/test_hand.c: 0.96), and what the wearer holds back half as much more (trousers
+ * about a leg: 1.21). */
+#define HELD_STRAIN (3 * TL_HAND_STRAIN)
+
+/* With the fewest substeps that a budget leaves: eight of a frame, instead of sixty, leave the dress's worst
+ * edge at 0.85 instead of 0.16. */
+#define HURRIED_STRAIN 1.0
+
+/* Of cloth as a whole: what `preview` is told to keep by default. */
+#define USUAL_STRAIN 0.1
+
+/* Metres: what single precision leaves of places on an avatar. */
+#define ROUNDED_M 1e-6
+
+static double energy_of(const struct tl_cloth_report *report)
+{
+    return report->kinetic_energy + report->elastic_energy + report->potential_energy;
+}
+
+/* A wearer that moves drags along what is between its parts: at the end of every step what is strained beyond
+ * TL_SNAG_STRAIN slips, so that by then nothing is (a skirt on a walking man comes to 1.43; that this is so
+ * of a few edges only, cloth.stretch sees to). What is caught between two surfaces is pushed out after that,
+ * and goes with an arm in the frame between. */
+static double strain_bound(const struct tl_checked_cloth *cloth)
+{
+    double draped = DRAPED_STRAIN;
+    if (cloth->report.caught_count > 0)
+        draped = TL_CLOTH_MOST_STRAIN;
+    else if (cloth->is_held)
+        draped = HELD_STRAIN;
+    else if (cloth->is_dragged)
+        draped = TL_SNAG_STRAIN;
+    else if (cloth->is_hurried)
+        draped = HURRIED_STRAIN;
+    double kept = fmax(draped, 2 * cloth->strain_limit);
+    return isnan(cloth->first_strain) ? fmax(kept, WORN_STRAIN) : fmax(kept, LATER * cloth->first_strain);
+}
+
+void tl_measure_strain(const struct tl_checked *checked, struct tl_finding *finding)
+{
+    if (!checked->cloth)
+        return;
+    const struct tl_cloth_report *report = &checked->cloth->report;
+    finding->bound = strain_bound(checked->cloth);
+    /* The largest of numbers passes over what is none; a sum does not. */
+    tl_finding_add(finding, isfinite(energy_of(report)) ? report->max_strain : (double)NAN);
+    tl_finding_place(finding, "garment: %zu of %zu particles caught", report->caught_count,
+                     report->vertex_count);
+}
+
+/* Whatever a few edges have to bear where they are caught, most keep what the solver is told to keep. */
+void tl_measure_stretch(const struct tl_checked *checked, struct tl_finding *finding)
+{
+    const struct tl_checked_cloth *cloth = checked->cloth;
+    if (!cloth)
+        return;
+    finding->bound = fmax(USUAL_STRAIN, cloth->strain_limit);
+    tl_finding_add(finding, cloth->report.usual_strain);
+    tl_finding_place(finding, "garment: root mean square over %zu edges", cloth->report.edge_count);
+}
+
+void tl_measure_inside(const struct tl_checked *checked, struct tl_finding *finding)
+{
+    if (!checked->cloth)
+        return;
+    const struct tl_cloth_report *report = &checked->cloth->report;
+    tl_finding_add(finding, report->deepest_m);
+    tl_finding_place(finding, "garment: %zu of %zu particles caught", report->caught_count,
+                     report->vertex_count);
+}
+
+/* Of the energy that there was at the least, all of it may come back as motion and height. What is strained
+ * now would take its part, which is left out: `preview` leaves its constraints unbalanced and strains the
+ * more the harder gravity and swing pull, for which they do not pay. */
+void tl_measure_energy(const struct tl_checked *checked, struct tl_finding *finding)
+{
+    const struct tl_checked_cloth *cloth = checked->cloth;
+    if (!cloth || cloth->is_driven || isnan(cloth->least_energy_j) || !(cloth->weight_n > 0))
+        return;
+    finding->bound = fmax(cloth->kept_m, ROUNDED_M);
+    double energy_j = cloth->report.kinetic_energy + cloth->report.potential_energy;
+    double gain_m = (energy_j - cloth->least_energy_j) / cloth->weight_n;
+    tl_finding_add(finding, gain_m < 0 ? 0 : gain_m);
+    tl_finding_place(finding, "garment: %.4g J of motion and height after %.4g J of all", energy_j,
+                     cloth->least_energy_j);
+}
+
+void tl_measure_momentum(const struct tl_checked *checked, struct tl_finding *finding)
+{
+    if (checked->cloth && !isnan(checked->cloth->drift_m))
+        tl_finding_add(finding, checked->cloth->drift_m);
+}
+
+void tl_measure_speed(const struct tl_checked *checked, struct tl_finding *finding)
+{
+    const struct tl_checked_cloth *cloth = checked->cloth;
+    if (!cloth)
+        return;
+    tl_finding_add(finding, cloth->report.max_speed / cloth->allowed_speed);
+    tl_finding_place(finding, "garment: %.3g m/s of %.3g", cloth->report.max_speed, cloth->allowed_speed);
+}

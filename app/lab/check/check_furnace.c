@@ -1,0 +1,76 @@
+/* White light from everywhere: what is not shadowed sends back its albedo, whatever its shape. */
+#include "app/lab/check/check_measures.h"
+#include "config/memory.h"
+#include "render/frame/frame.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* What each pixel should be: the mean albedo of its samples. A pixel that shows more than two lobes is not
+ * asked, for its albedo is no sum of colours. */
+struct albedo {
+    float colour[3];
+    bool is_known;
+};
+
+static bool is_two_lobes(const tl_material *material)
+{
+    return !tl_material_is_faceted(material) && !(material->coat > 0) && !tl_material_shows_more(material);
+}
+
+static void add_sample(const tl_renderer *renderer, const tl_sample *sample, struct albedo *albedo)
+{
+    int lobe = renderer->settings.light.lobe, side = renderer->settings.image.supersample;
+    vec3s colour = lobe == TL_LOBE_SINGLE
+                       ? glms_vec3_lerp(sample->diffuse, sample->specular, sample->glossiness)
+                       : glms_vec3_add(sample->diffuse, sample->specular);
+    if (!is_two_lobes(tl_triangle_material(&renderer->ranges, sample->triangle & ~TL_SAMPLE_BACK)))
+        albedo->is_known = false;
+    for (int c = 0; c < 3; c++)
+        albedo->colour[c] += sample->cover * colour.raw[c] / (float)(side * side);
+}
+
+/* From the G-buffer, whichever back-end drew it. New array. */
+static struct albedo *find_albedos(const tl_renderer *renderer, int width, int height)
+{
+    struct albedo *albedos = TL_NEW_ARRAY(struct albedo, (size_t)width * (size_t)height);
+    struct tl_samples samples = {0};
+    for (int i = 0; i < width * height; i++)
+        albedos[i].is_known = true;
+    tl_samples_read(&renderer->gbuffer, &renderer->ranges, renderer->view.eye, &samples);
+    int side = renderer->settings.image.supersample;
+    for (size_t i = 0; i < samples.primary_count; i++) {
+        int x = (int)samples.items[i].texel % samples.width / side;
+        int y = height - 1 - (int)samples.items[i].texel / samples.width / side;
+        add_sample(renderer, &samples.items[i], &albedos[y * width + x]);
+    }
+    tl_samples_release(&samples);
+    return albedos;
+}
+
+void tl_measure_furnace(const struct tl_checked *checked, struct tl_finding *finding)
+{
+    if (!checked->white)
+        return;
+    const tl_image *image = checked->white_image;
+    struct albedo *albedos = find_albedos(checked->white, image->width, image->height);
+    for (int i = 0; i < image->width * image->height; i++)
+        for (int c = 0; albedos[i].is_known && c < 3; c++) {
+            double off = fabs((double)tl_image_floats(image)[4 * i + c] - (double)albedos[i].colour[c]);
+            if (tl_finding_add(finding, off))
+                tl_finding_pixel(finding, i % image->width, i / image->width);
+        }
+    free(albedos);
+}
+
+void tl_measure_furnace_shadowed(const struct tl_checked *checked, struct tl_finding *finding)
+{
+    if (!checked->white || !checked->white_shadowed)
+        return;
+    const tl_image *open = checked->white_image, *shadowed = checked->white_shadowed;
+    for (int i = 0; i < 4 * open->width * open->height; i++) {
+        double gain = (double)tl_image_floats(shadowed)[i] - (double)tl_image_floats(open)[i];
+        if (i % 4 != 3 && tl_finding_add(finding, gain < 0 ? 0 : gain))
+            tl_finding_pixel(finding, i / 4 % open->width, i / 4 / open->width);
+    }
+}

@@ -1,0 +1,124 @@
+/* Pixels, and pictures beside pictures. */
+#include "app/lab/check/check_measures.h"
+#include "config/hash.h"
+
+#include <math.h>
+#include <string.h>
+
+static size_t pixel_count(const tl_image *image)
+{
+    return (size_t)image->width * (size_t)image->height;
+}
+
+static void place_pixel(struct tl_finding *finding, const tl_image *image, size_t pixel)
+{
+    size_t width = (size_t)image->width;
+    tl_finding_pixel(finding, (int)(pixel % width), (int)(pixel / width));
+}
+
+void tl_measure_pixels(const struct tl_checked *checked, struct tl_finding *finding)
+{
+    size_t bad = 0, first = 0;
+    const float *values = tl_image_floats(checked->image);
+    for (size_t i = 0; i < 4 * pixel_count(checked->image); i++)
+        if (!isfinite(values[i]) && bad++ == 0)
+            first = i / 4;
+    tl_finding_add(finding, (double)bad);
+    if (bad > 0)
+        place_pixel(finding, checked->image, first);
+}
+
+void tl_measure_coverage(const struct tl_checked *checked, struct tl_finding *finding)
+{
+    const float *values = tl_image_floats(checked->image);
+    for (size_t i = 0; i < pixel_count(checked->image); i++) {
+        double alpha = (double)values[4 * i + 3];
+        if (tl_finding_add(finding, alpha < 0 ? -alpha : alpha > 1 ? alpha - 1 : 0 * alpha))
+            place_pixel(finding, checked->image, i);
+    }
+}
+
+void tl_measure_negative(const struct tl_checked *checked, struct tl_finding *finding)
+{
+    const float *values = tl_image_floats(checked->image);
+    for (size_t i = 0; i < 4 * pixel_count(checked->image); i++)
+        if (i % 4 != 3 && tl_finding_add(finding, values[i] < 0 ? -(double)values[i] : 0))
+            place_pixel(finding, checked->image, i / 4);
+}
+
+/* sqrt(mean (a - b)^2) / mean b over the covered pixels and their channels, as render/metrics/compare.h has
+ * it but without what FLIP costs; and the worst pixel. */
+static double relative_error(const tl_image *a, const tl_image *b, size_t *worst)
+{
+    double squares = 0, sum = 0, largest = -1;
+    size_t count = 0;
+    for (size_t i = 0; i < pixel_count(a); i++) {
+        const float *x = tl_image_floats(a) + 4 * i, *y = tl_image_floats(b) + 4 * i;
+        if (!(x[3] > 0 || y[3] > 0))
+            continue;
+        double square = 0;
+        for (int c = 0; c < 3; c++) {
+            square += ((double)x[c] - (double)y[c]) * ((double)x[c] - (double)y[c]);
+            sum += (double)y[c];
+        }
+        squares += square;
+        count += 3;
+        if (square > largest) {
+            largest = square;
+            *worst = i;
+        }
+    }
+    if (count == 0 || squares == 0) // NOLINT: to the bit
+        return 0;
+    return sqrt(squares / (double)count) / (sum / (double)count);
+}
+
+/* Two pictures by rays differ by the error of both: `toile bench light` has 3 to 4.5 % for review in motion,
+ * of which each picture has its own part; small pictures and fewer regions widen that. Maps are drawn anew
+ * whenever anything moves, so the picture is the same but for the rounds that a resting picture has averaged.
+ */
+static double fresh_bound(const struct tl_light_params *light)
+{
+    const double by_rays = 0.12, by_jitter = 0.12, same = 1e-6;
+    return light->visibility == TL_VISIBILITY_RAYS ? by_rays : light->jitter ? by_jitter : same;
+}
+
+void tl_measure_fresh(const struct tl_checked *checked, struct tl_finding *finding)
+{
+    size_t worst = 0;
+    if (!checked->fresh)
+        return;
+    finding->bound = fresh_bound(&checked->settings->light);
+    tl_finding_add(finding, relative_error(checked->image, checked->fresh, &worst));
+    place_pixel(finding, checked->image, worst);
+}
+
+uint64_t tl_check_hash(const tl_frame *frame, const tl_image *image)
+{
+    uint64_t hash = TL_HASH_START;
+    for (size_t s = 0; s < frame->surface_count; s++)
+        hash = tl_hash(hash, frame->surfaces[s].positions, frame->surfaces[s].vertex_count * sizeof(vec3s));
+    return image ? tl_hash(hash, image->texels, pixel_count(image) * 4 * sizeof(float)) : hash;
+}
+
+void tl_measure_repeat(const struct tl_checked *checked, struct tl_finding *finding)
+{
+    if (!checked->first_hash)
+        return;
+    tl_finding_add(finding, checked->hash == checked->first_hash ? 0 : 1);
+    tl_finding_place(finding, "%s",
+                     checked->places_hash != checked->first_places_hash ? "in positions"
+                     : checked->hash != checked->first_hash             ? "in pixels only"
+                                                                        : "");
+}
+
+/* A budget that no plan can keep is nobody's fault. */
+void tl_measure_budget(const struct tl_checked *checked, struct tl_finding *finding)
+{
+    if (!(checked->budget_ms > 0) || !isfinite(checked->predicted_ms))
+        return;
+    double could_ms = fmax(checked->budget_ms, fmin(checked->least_ms, checked->predicted_ms));
+    tl_finding_add(finding, checked->predicted_ms / could_ms);
+    tl_finding_place(finding, "predicted %.1f ms of %.1f, the cheapest plan %.1f", checked->predicted_ms,
+                     checked->budget_ms, checked->least_ms);
+}

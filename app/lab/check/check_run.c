@@ -1,0 +1,340 @@
+#include "app/lab/check/check_run.h"
+
+#include "app/budget/governor.h"
+#include "app/lab/check/check_monitor.h"
+#include "app/measure/cost.h"
+#include "app/measure/motion.h"
+#include "config/hash.h"
+#include "config/interrupt.h"
+#include "config/log.h"
+#include "config/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Renderers beside the one that is looked at, made when they are first needed. */
+struct beside {
+    tl_renderer *white, *white_shadowed, *fresh;
+    tl_environment light;
+};
+
+struct run {
+    struct tl_stage *stage;
+    const struct tl_check_params *params;
+    struct tl_check_outcome *outcome;
+    struct tl_motion motion;
+    struct beside beside;
+    uint64_t *hashes, *places; /* [frames]: of all that is seen; of positions alone */
+    int played;                /* of them are there */
+    tl_pace *pace;             /* NULL: no budget */
+    struct tl_levels *levels;  /* [frames] */
+    struct tl_pace_choice choice;
+    double chosen_ms, moved_ms, drawn_ms; /* on the wall, of this frame: the choice, the cloth, the picture */
+    struct tl_watch watch;
+    struct tl_progress progress;
+    int steps; /* all that progress counts */
+};
+
+static bool is_swung(const struct run *run, int number)
+{
+    int frames = run->params->frames;
+    return run->motion.pulls && !run->params->still && number > frames / 10 && number <= frames * 2 / 3;
+}
+
+/* What frame `number` is drawn and simulated with. */
+static struct tl_settings settings_of(const struct run *run, int number)
+{
+    return tl_levels_apply(&run->levels[number], &run->stage->settings);
+}
+
+static bool advance(struct run *run, int number, tl_error *error)
+{
+    tl_session *session = run->stage->session;
+    const struct tl_settings settings = settings_of(run, number);
+    if (run->pace && !tl_session_apply(session, &settings, error))
+        return false;
+    if (is_swung(run, number))
+        return tl_motion_advance(&run->motion, number - run->params->frames / 10, error);
+    if (is_swung(run, number - 1))
+        tl_cloth_release(tl_session_cloth(session));
+    return tl_session_advance(session, error);
+}
+
+static tl_frame frame_of(const struct run *run, int number)
+{
+    tl_frame frame = tl_session_frame(run->stage->session);
+    frame.camera = tl_motion_camera(&frame.camera, number, run->stage->settings.cloth.frame_rate);
+    return frame;
+}
+
+static bool draw_with(tl_renderer **renderer, const struct run *run, const tl_frame *frame,
+                      const struct tl_render_settings *settings, tl_image *image, tl_error *error)
+{
+    if (!*renderer)
+        *renderer = tl_renderer_create(run->stage->gpu, error);
+    return *renderer && tl_renderer_draw(*renderer, frame, settings, error) &&
+           tl_renderer_read(*renderer, image, error);
+}
+
+/* ---- One frame ---- */
+
+static void release_images(tl_image *images, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        tl_image_release(&images[i]);
+}
+
+enum { DRAWN, FRESH, WHITE, WHITE_SHADOWED, IMAGES };
+
+/* Where an image is spread out from fewer samples than it has pixels, the samples themselves are looked at:
+ * a filter that sharpens says nothing of light. */
+static void show_samples(struct tl_image_params *image)
+{
+    int width, height;
+    if (image->scale >= 1)
+        return;
+    tl_image_samples(image, &width, &height);
+    image->width = width;
+    image->height = height;
+    image->supersample = 1;
+    image->scale = 1;
+}
+
+static bool draw_white(struct run *run, const tl_frame *frame, tl_image images[IMAGES],
+                       struct tl_checked *checked, tl_error *error)
+{
+    struct beside *beside = &run->beside;
+    struct tl_render_settings settings = *checked->settings;
+    tl_frame lit = *frame;
+    if (!beside->light.image.texels)
+        beside->light = tl_environment_constant(1, 1, 1);
+    lit.environment = &beside->light;
+    lit.environment_revision = 1;
+    lit.lamp_count = 0;
+    settings.image.view = TL_VIEW_LIGHT;
+    show_samples(&settings.image);
+    if (!draw_with(&beside->white_shadowed, run, &lit, &settings, &images[WHITE_SHADOWED], error))
+        return false;
+    settings.light.method = TL_METHOD_UNSHADOWED;
+    if (!draw_with(&beside->white, run, &lit, &settings, &images[WHITE], error))
+        return false;
+    checked->white = beside->white;
+    checked->white_image = &images[WHITE];
+    checked->white_shadowed = &images[WHITE_SHADOWED];
+    return true;
+}
+
+/* The picture that is looked at; the planner learns what it took. */
+static bool draw_frame(struct run *run, const tl_frame *frame, const struct tl_render_settings *settings,
+                       tl_image *image, tl_error *error)
+{
+    struct tl_stopwatch watch = tl_stopwatch_start();
+    if (!tl_renderer_draw(run->stage->renderer, frame, settings, error))
+        return false;
+    run->drawn_ms = tl_stopwatch_read(&watch).wall_ms;
+    if (run->pace)
+        tl_pace_learn(run->pace, tl_renderer_last_plan(run->stage->renderer), run->moved_ms,
+                      run->chosen_ms + run->moved_ms + run->drawn_ms);
+    return tl_renderer_read(run->stage->renderer, image, error);
+}
+
+/* Everything that the frame's checks look at. */
+static bool prepare(struct run *run, const tl_frame *frame, tl_image images[IMAGES],
+                    struct tl_checked *checked, tl_error *error)
+{
+    struct beside *beside = &run->beside;
+    if (!draw_frame(run, frame, checked->settings, &images[DRAWN], error))
+        return false;
+    checked->renderer = run->stage->renderer;
+    checked->image = &images[DRAWN];
+    checked->hash = tl_check_hash(frame, checked->image);
+    checked->places_hash = tl_check_hash(frame, NULL);
+    if (!checked->is_sampled)
+        return true;
+    if (beside->fresh && !tl_renderer_forget_scene(beside->fresh, error))
+        return false;
+    if (!draw_with(&beside->fresh, run, frame, checked->settings, &images[FRESH], error))
+        return false;
+    checked->fresh = &images[FRESH];
+    return !run->params->furnace || draw_white(run, frame, images, checked, error);
+}
+
+static bool is_finite(const tl_frame *frame)
+{
+    for (size_t s = 0; s < frame->surface_count; s++)
+        for (size_t i = 0; i < 3 * frame->surfaces[s].vertex_count; i++)
+            if (!isfinite(frame->surfaces[s].positions->raw[i]))
+                return false;
+    return true;
+}
+
+static bool note(struct run *run, const struct tl_checked *checked, tl_error *error)
+{
+    struct tl_finding found;
+    struct tl_check_outcome *outcome = run->outcome;
+    int broken = tl_check_frame(checked, &outcome->verdicts, &found);
+    if (broken < 0 || outcome->broken >= 0)
+        return true;
+    outcome->broken = broken;
+    outcome->broken_frame = checked->number;
+    outcome->found = found;
+    if (!run->params->keep)
+        return true;
+    outcome->is_kept = true;
+    return tl_check_keep(run->params->keep, run->stage, checked, &found, error);
+}
+
+/* Frame `number`, which the session is at. A frame that is not finite cannot be drawn; it is noted all the
+ * same. */
+static bool check_frame(struct run *run, int number, tl_error *error)
+{
+    tl_image images[IMAGES] = {0};
+    tl_frame frame = frame_of(run, number);
+    const struct tl_settings levelled = settings_of(run, number);
+    const struct tl_render_settings settings = tl_settings_render(&levelled);
+    struct tl_checked_cloth cloth;
+    struct tl_checked checked = {.number = number,
+                                 .frame = &frame,
+                                 .settings = &settings,
+                                 .is_sampled = number % run->params->every == 0,
+                                 .predicted_ms = run->choice.predicted_ms - run->choice.change_ms,
+                                 .budget_ms = run->params->budget_ms,
+                                 .least_ms = run->choice.least_ms,
+                                 .is_reduced = run->choice.error > 0};
+    if (tl_session_cloth(run->stage->session)) {
+        /* Other steps of the solver are another stiffness, too. */
+        cloth = tl_watch_look(&run->watch, &frame, is_swung(run, number), run->pace);
+        checked.cloth = &cloth;
+    }
+    bool done = !is_finite(&frame) || prepare(run, &frame, images, &checked, error);
+    done = done && note(run, &checked, error);
+    run->hashes[number] = checked.hash;
+    run->places[number] = checked.places_hash;
+    run->played = number + 1;
+    release_images(images, IMAGES);
+    return done;
+}
+
+static bool tell(struct run *run, int step, tl_error *error)
+{
+    tl_progress_update(&run->progress, step, run->steps);
+    return !tl_interrupted() ||
+           tl_fail(error, TL_INTERRUPTED, "check: stopped at frame %d of %d", step, run->steps);
+}
+
+static void begin(struct run *run)
+{
+    tl_motion_begin(&run->motion, run->stage->session);
+}
+
+static void choose(struct run *run, int number)
+{
+    if (!run->pace)
+        return;
+    struct tl_stopwatch watch = tl_stopwatch_start();
+    tl_frame frame = frame_of(run, number);
+    run->choice = tl_pace_choose(run->pace, run->stage->renderer, &frame, &run->stage->settings);
+    run->levels[number] = run->choice.levels;
+    run->chosen_ms = tl_stopwatch_read(&watch).wall_ms;
+}
+
+static bool move_on(struct run *run, int number, tl_error *error)
+{
+    struct tl_stopwatch watch = tl_stopwatch_start();
+    bool moved = number == 0 || advance(run, number, error);
+    run->moved_ms = tl_stopwatch_read(&watch).wall_ms;
+    return moved;
+}
+
+static bool play(struct run *run, tl_error *error)
+{
+    bool done = true;
+    begin(run);
+    for (int number = 0; done && number < run->params->frames; number++) {
+        choose(run, number);
+        done = move_on(run, number, error) && check_frame(run, number, error);
+        done = tell(run, run->played, error) && done;
+        if (done && run->hashes[number] == 0)
+            break; /* what is not finite does not mend itself */
+    }
+    return done;
+}
+
+/* The first frames once more, from the start, drawn by another renderer. */
+static bool play_again(struct run *run, int count, tl_error *error)
+{
+    if (!tl_session_apply(run->stage->session, &run->stage->settings, error) ||
+        !tl_session_reset(run->stage->session, error))
+        return false;
+    tl_renderer_destroy(&run->stage->renderer);
+    bool done = true;
+    begin(run);
+    for (int number = 0; done && number < count; number++) {
+        tl_image image = {0};
+        const struct tl_settings levelled = settings_of(run, number);
+        const struct tl_render_settings settings = tl_settings_render(&levelled);
+        done = number == 0 || advance(run, number, error);
+        tl_frame frame = frame_of(run, number);
+        done = done && draw_with(&run->stage->renderer, run, &frame, &settings, &image, error);
+        if (done) {
+            struct tl_verdicts *verdicts = &run->outcome->verdicts;
+            const struct tl_checked checked = {.number = number,
+                                               .frame = &frame,
+                                               .settings = &settings,
+                                               .renderer = run->stage->renderer,
+                                               .image = &image,
+                                               .hash = tl_check_hash(&frame, &image),
+                                               .first_hash = run->hashes[number],
+                                               .places_hash = tl_check_hash(&frame, NULL),
+                                               .first_places_hash = run->places[number]};
+            done = note(run, &checked, error);
+            verdicts->frames--; /* it has been counted */
+        }
+        done = tell(run, run->params->frames + number + 1, error) && done;
+        tl_image_release(&image);
+    }
+    return done;
+}
+
+static uint64_t hash_of(const struct run *run)
+{
+    return tl_hash(TL_HASH_START, run->hashes, (size_t)run->played * sizeof run->hashes[0]);
+}
+
+static void release(struct run *run)
+{
+    tl_renderer_destroy(&run->beside.white);
+    tl_renderer_destroy(&run->beside.white_shadowed);
+    tl_renderer_destroy(&run->beside.fresh);
+    tl_environment_release(&run->beside.light);
+    tl_pace_destroy(&run->pace);
+    free(run->levels);
+    free(run->hashes);
+    free(run->places);
+    tl_watch_release(&run->watch);
+}
+
+bool tl_check_play(struct tl_stage *stage, const struct tl_check_params *params, struct tl_check_outcome *out,
+                   tl_error *error)
+{
+    *out = (struct tl_check_outcome){.broken = -1};
+    struct run run = {.stage = stage,
+                      .params = params,
+                      .outcome = out,
+                      .hashes = TL_NEW_ARRAY(uint64_t, (size_t)params->frames),
+                      .places = TL_NEW_ARRAY(uint64_t, (size_t)params->frames),
+                      .pace = params->budget_ms > 0 ? tl_pace_create(params->budget_ms) : NULL,
+                      .levels = TL_NEW_ARRAY(struct tl_levels, (size_t)params->frames),
+                      .progress = tl_progress_begin("checking")};
+    int again = params->frames < 20 ? (params->frames + 1) / 2 : params->frames / 10;
+    run.steps = params->frames + again;
+    run.watch = tl_watch_begin(stage->session, &stage->settings);
+    bool done = play(&run, error);
+    if (done && run.played == params->frames)
+        done = play_again(&run, again, error);
+    out->hash = hash_of(&run);
+    tl_progress_end(&run.progress);
+    release(&run);
+    return done;
+}

@@ -1,0 +1,41 @@
+/* A checked run: a scene plays and every frame is held against the invariants.
+ *
+ * The camera walks round. A garment that nothing else moves stands still for a tenth of the frames, then a
+ * hand swings its hem, and in the last third it is let go and comes to rest. Then the first tenth is played
+ * again, by another renderer, and must be the same to the bit. Owns nothing of the stage. Threads: the one of
+ * the GL context. */
+#ifndef TOILE_APP_LAB_CHECK_CHECK_RUN_H
+#define TOILE_APP_LAB_CHECK_CHECK_RUN_H
+
+#include "app/lab/check/check.h"
+#include "app/scene/headless.h"
+
+struct tl_check_params {
+    int frames, every; /* how many; from one frame whose sampled checks are made to the next */
+    bool furnace;      /* those in white light too, where sampled checks are made */
+    bool still;        /* no hand */
+    double budget_ms;  /* 0: none; else the planner's, whose levels are kept and played again */
+    const char *keep;  /* folder for the first frame that breaks something; NULL: it is not kept */
+};
+
+struct tl_check_outcome {
+    struct tl_verdicts verdicts;
+    uint64_t hash; /* of all frames: positions and images */
+    int broken;    /* the invariant that broke first; -1: none */
+    int broken_frame;
+    struct tl_finding found; /* there */
+    bool is_kept;
+};
+
+/* False only where it cannot go on: bad input, no device, cloth that left its envelope, Ctrl-C. What was
+ * found until then stands in `out`. */
+bool tl_check_play(struct tl_stage *stage, const struct tl_check_params *params, struct tl_check_outcome *out,
+                   tl_error *error);
+
+/* What is kept of a frame (check_keep.c), each file that can be written: scene.yaml opens it as it stands;
+ * run.yaml holds the settings of the run; what the first names lies beside it. The picture as .exr, and as
+ * .png with the place marked. */
+bool tl_check_keep(const char *folder, struct tl_stage *stage, const struct tl_checked *checked,
+                   const struct tl_finding *broken, tl_error *error);
+
+#endif

@@ -1,0 +1,263 @@
+/* What is seen of the regions: the range of VIS and of what it is made of, and VIS against rays. */
+#include "app/lab/check/check_measures.h"
+#include "config/memory.h"
+#include "render/frame/frame.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Points that VIS is measured at, and directions of each region, the same for all of them: so the cache
+ * traces, a frame one direction for all that it visits. */
+enum { POINTS = 64, RAYS = 32, BUNDLE = 16 };
+
+/* A region counts when so many points face it, this far above their horizon. */
+enum { LEAST_POINTS = POINTS / 4 };
+#define FACES 0.2f
+
+/* Of chance: a value within a range lies within three of its standard deviations nearly always. */
+#define DEVIATIONS 3
+
+static bool has_facts(const struct tl_checked *checked, tl_bits facts)
+{
+    return (tl_frame_facts(checked->frame, checked->settings) & facts) == facts;
+}
+
+/* E[z]^2 - E[z^2], of E[z^2]; infinite where either is no number. */
+static double moments_deviation(const float *texel)
+{
+    const double nearest = 1e-2; /* depths near 0 are exact to single precision, their squares are not */
+    double mean = (double)texel[0], square = (double)texel[1];
+    if (!isfinite(mean) || !isfinite(square))
+        return INFINITY;
+    double off = (mean * mean - square) / fmax(square, nearest);
+    return off > 0 ? off : 0;
+}
+
+static double depth_deviation(const float *texel)
+{
+    double depth = (double)texel[0];
+    return !isfinite(depth) ? INFINITY : depth < 0 ? -depth : depth > 1 ? depth - 1 : 0;
+}
+
+void tl_measure_moments(const struct tl_checked *checked, struct tl_finding *finding)
+{
+    const tl_renderer *renderer = checked->renderer;
+    if (!has_facts(checked, TL_BIT(TL_SCENE_MAPS)))
+        return;
+    for (int i = 0; i < renderer->regions.count; i++) {
+        struct tl_shadow_texels map = tl_shadow_maps_read(renderer->maps, i);
+        size_t count = (size_t)map.size * (size_t)map.size, channels = (size_t)map.channels;
+        for (size_t t = 0; t < count; t++) {
+            const float *texel = map.texels + t * channels;
+            if (tl_finding_add(finding, channels == 2 ? moments_deviation(texel) : depth_deviation(texel)))
+                tl_finding_place(finding, "map of region %d, texel %zu, %zu", i, t % (size_t)map.size,
+                                 t / (size_t)map.size);
+        }
+        free(map.texels);
+    }
+}
+
+/* Values lie in [0, 1] as they are kept, so that weights decide: how far these can lead out of it. */
+static double taps_deviation(const struct tl_taps *taps, size_t point_count)
+{
+    double above = 0, below = 0;
+    for (int i = 0; i < TL_TAPS; i++) {
+        double weight = (double)taps->weight[i];
+        if (!isfinite(weight) || taps->point[i] >= point_count)
+            return INFINITY;
+        above += weight > 0 ? weight : 0;
+        below += weight < 0 ? -weight : 0;
+    }
+    return fmax(fabs(above - 1), below);
+}
+
+static double share_deviation(float share)
+{
+    return !isfinite(share) ? INFINITY : share < 0 ? -(double)share : share > 1 ? (double)share - 1 : 0;
+}
+
+static void place_sample(const tl_renderer *renderer, size_t index, struct tl_finding *finding)
+{
+    const struct tl_samples *samples = &renderer->samples;
+    uint32_t texel = samples->items[index].texel, width = (uint32_t)samples->width;
+    tl_finding_place(finding, "sample %u, %u", texel % width, (uint32_t)samples->height - 1 - texel / width);
+}
+
+static bool has_points(const struct tl_checked *checked)
+{
+    return has_facts(checked, TL_BIT(TL_SCENE_RAYS) | TL_BIT(TL_SCENE_SHADOWS));
+}
+
+void tl_measure_visibility(const struct tl_checked *checked, struct tl_finding *finding)
+{
+    if (!has_points(checked))
+        return;
+    const tl_renderer *renderer = checked->renderer;
+    const struct tl_taps *taps = tl_points_taps(renderer->points);
+    size_t points = tl_points_report(renderer->points).points;
+    for (size_t i = 0; i < renderer->samples.count; i++)
+        if (tl_finding_add(finding, taps_deviation(&taps[i], points)))
+            place_sample(renderer, i, finding);
+    for (int sun = 0; sun < renderer->suns.count; sun++) {
+        const float *seen = tl_points_sun(renderer->points, sun);
+        for (size_t i = 0; seen && i < renderer->samples.count; i++)
+            if (tl_finding_add(finding, share_deviation(seen[i])))
+                place_sample(renderer, i, finding);
+    }
+}
+
+/* The sums over points of what is claimed to be seen of a region, and of what is seen along each direction.
+ */
+struct tally {
+    int points;
+    double claimed, seen[RAYS];
+};
+
+struct witness {
+    const tl_renderer *renderer;
+    tl_trace *trace; /* of its own, so that an old one shows too */
+    const uint16_t *values;
+    const struct tl_taps *taps;
+    size_t stride;
+    vec3s directions[TL_REGIONS_MAX][RAYS]; /* world */
+    struct tally tallies[TL_REGIONS_MAX];
+};
+
+static double claimed_of(const struct witness *witness, size_t sample, int region)
+{
+    const struct tl_taps *taps = &witness->taps[sample];
+    double claimed = 0;
+    for (int i = 0; i < TL_TAPS; i++)
+        claimed += (double)taps->weight[i] *
+                   (double)witness->values[taps->point[i] * witness->stride + (size_t)region] /
+                   (double)TL_VISIBILITY_ONE;
+    return claimed;
+}
+
+/* Even over the region. */
+static vec3s region_direction(const tl_renderer *renderer, int region, int ray)
+{
+    const float step = 0.5698402909980532f; /* of the plastic number, as tl_region_seen_direction has it */
+    float u = ((float)ray + 0.5f) / RAYS, v = (float)ray * step;
+    vec3s direction = tl_region_direction(&renderer->regions, region, u, v - floorf(v));
+    return tl_turn_direction(direction, renderer->frame.environment_yaw);
+}
+
+/* Whether all of a region is well above a point's horizon: of what is not, VIS stands for what is above only.
+ */
+static bool faces(const struct tl_sample *sample, const vec3s directions[RAYS])
+{
+    for (int ray = 0; ray < RAYS; ray++)
+        if (glms_vec3_dot(directions[ray], sample->smooth) < FACES)
+            return false;
+    return true;
+}
+
+/* Adds what one point sees of one region. */
+static void ask(struct witness *witness, const tl_sample *sample, vec3s start, size_t index, int region)
+{
+    const tl_renderer *renderer = witness->renderer;
+    const struct tl_ground *ground = renderer->settings.image.ground ? &renderer->ground : NULL;
+    const vec3s *directions = witness->directions[region];
+    struct tally *tally = &witness->tallies[region];
+    if (!faces(sample, directions))
+        return;
+    tally->points++;
+    tally->claimed += claimed_of(witness, index, region);
+    for (int first = 0; first < RAYS; first += BUNDLE) {
+        struct tl_trace_bundle bundle = {.count = BUNDLE, .to_m = INFINITY};
+        float seen[BUNDLE];
+        for (int i = 0; i < BUNDLE; i++) {
+            vec3s direction = directions[first + i];
+            bundle.origin_x[i] = start.x, bundle.origin_y[i] = start.y, bundle.origin_z[i] = start.z;
+            bundle.direction_x[i] = direction.x, bundle.direction_y[i] = direction.y;
+            bundle.direction_z[i] = direction.z;
+        }
+        tl_trace_seen_bundle(witness->trace, &bundle, seen);
+        for (int i = 0; i < BUNDLE; i++)
+            tally->seen[first + i] +=
+                (double)(seen[i] * tl_ground_visibility(ground, start, directions[first + i]));
+    }
+}
+
+static void hear(struct witness *witness, int frame)
+{
+    const tl_renderer *renderer = witness->renderer;
+    size_t count = renderer->samples.primary_count;
+    float offset_m = tl_trace_offset(witness->trace);
+    for (int region = 0; region < renderer->regions.count; region++)
+        for (int ray = 0; ray < RAYS; ray++)
+            witness->directions[region][ray] = region_direction(renderer, region, ray);
+    for (size_t point = 0; point < POINTS && count > 0; point++) {
+        size_t index = (point * count / POINTS + (size_t)frame * 7919) % count;
+        const tl_sample *sample = &renderer->samples.items[index];
+        vec3s start = tl_sample_start(sample, &renderer->ranges, offset_m);
+        for (int region = 0; region < renderer->regions.count; region++)
+            ask(witness, sample, start, index, region);
+    }
+}
+
+/* The cache traces a region the more seldom the less light it has, so that its errors in the light are alike:
+ * a region counts as its light does, up to the mean. */
+static double weight_of(const struct tl_regions *regions, int region)
+{
+    double all = 0;
+    for (int i = 0; i < regions->count; i++)
+        all += (double)regions->items[i].importance;
+    double share = (double)regions->items[region].importance * regions->count;
+    return share < all ? share / all : 1;
+}
+
+/* Of what the points see along one direction or another. */
+static void spread_of(const struct tally *tally, double *mean, double *deviation)
+{
+    double sum = 0, squares = 0;
+    for (int ray = 0; ray < RAYS; ray++) {
+        double seen = tally->seen[ray] / tally->points;
+        sum += seen;
+        squares += seen * seen;
+    }
+    *mean = sum / RAYS;
+    *deviation = sqrt(fmax(squares / RAYS - *mean * *mean, 0));
+}
+
+/* What is kept was seen along one direction of the region in a frame, by all points or by each along its own:
+ * so far as chance goes it is off by no more than DEVIATIONS of what the rays see, the less the narrower the
+ * region. */
+static void add_tallies(const struct witness *witness, struct tl_finding *finding)
+{
+    const struct tl_regions *regions = &witness->renderer->regions;
+    for (int i = 0; i < regions->count; i++) {
+        const struct tally *tally = &witness->tallies[i];
+        double mean, deviation;
+        if (tally->points < LEAST_POINTS)
+            continue;
+        spread_of(tally, &mean, &deviation);
+        double claimed = tally->claimed / tally->points, off = fabs(claimed - mean) - DEVIATIONS * deviation;
+        if (tl_finding_add(finding, weight_of(regions, i) * (off < 0 ? 0 : off)))
+            tl_finding_place(finding, "region %d: VIS %.2f, rays %.2f, deviating by %.2f, of %d points", i,
+                             claimed, mean, deviation, tally->points);
+    }
+}
+
+void tl_measure_leaks(const struct tl_checked *checked, struct tl_finding *finding)
+{
+    tl_error error = {0};
+    if (!checked->is_sampled || !has_points(checked))
+        return;
+    struct witness *witness = TL_NEW(struct witness);
+    witness->renderer = checked->renderer;
+    witness->trace = tl_trace_create(&error);
+    witness->values = tl_points_values(checked->renderer->points, &witness->stride);
+    witness->taps = tl_points_taps(checked->renderer->points);
+    if (witness->trace &&
+        tl_trace_update(witness->trace, checked->frame->surfaces, checked->frame->surface_count, &error)) {
+        hear(witness, checked->number);
+        add_tallies(witness, finding);
+    } else {
+        tl_finding_add(finding, NAN);
+        tl_finding_place(finding, "%s", error.message);
+    }
+    tl_trace_destroy(&witness->trace);
+    free(witness);
+}

@@ -1,0 +1,312 @@
+#include "app/lab/flight/fly.h"
+
+#include "app/measure/measure.h"
+#include "config/hash.h"
+#include "config/interrupt.h"
+#include "config/log.h"
+#include "config/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define WARM_UP_S      1.0
+#define PICTURE_PIXELS 256 /* width of a thumbnail, about */
+
+struct pilot {
+    struct tl_stage *stage;
+    const struct tl_fly_options *options;
+    struct tl_flight *flight;
+    struct tl_motion motion;
+    tl_pace *pace; /* NULL: a replay */
+};
+
+/* At full quality. */
+static struct tl_settings settings_at(const struct tl_stage *stage, const struct tl_flight *flight,
+                                      int number)
+{
+    struct tl_path_key key = tl_path_at(&flight->path, number / flight->frame_rate);
+    struct tl_settings settings = stage->settings;
+    settings.camera = key.camera;
+    settings.scene.environment_yaw_deg = key.environment_yaw_deg;
+    return settings;
+}
+
+static bool begin_motion(struct tl_stage *stage, const struct tl_flight *flight, struct tl_motion *motion,
+                         tl_error *error)
+{
+    struct tl_settings settings = settings_at(stage, flight, 0);
+    if (!tl_session_apply(stage->session, &settings, error))
+        return false;
+    tl_motion_begin(motion, stage->session);
+    return true;
+}
+
+/* Never 0. */
+static uint64_t hash_of(const tl_image *image)
+{
+    size_t size = (size_t)image->width * (size_t)image->height * (size_t)image->channels * sizeof(float);
+    uint64_t hash = tl_hash(TL_HASH_START, image->texels, size);
+    return hash ? hash : 1;
+}
+
+/* Means of squares of pixels, in linear light. */
+static tl_image thumbnail_of(const tl_image *image)
+{
+    int side = image->width / PICTURE_PIXELS;
+    if (side < 1)
+        side = 1;
+    if (image->height < side)
+        side = image->height;
+    tl_image small = tl_image_create(image->width / side, image->height / side, 3, TL_IMAGE_U8);
+    const uint8_t *from = tl_image_bytes(image);
+    for (int y = 0; y < small.height; y++)
+        for (int x = 0; x < 3 * small.width; x++) {
+            float sum = 0;
+            for (int i = 0; i < side * side; i++) {
+                int column = x / 3 * side + i % side, row = y * side + i / side;
+                sum += tl_srgb_to_linear((float)from[3 * (row * image->width + column) + x % 3] / 255);
+            }
+            float mean = tl_srgb_from_linear(sum / (float)(side * side));
+            tl_image_bytes(&small)[y * 3 * small.width + x] = (uint8_t)lrintf(255 * mean);
+        }
+    return small;
+}
+
+/* The slowest frames' pictures are kept in order as the flight goes on. */
+static void keep_worst(struct tl_flight *flight, int number, const tl_image *shown)
+{
+    double total_ms = flight->frames[number].total_ms;
+    int place = flight->worst_count;
+    while (place > 0 && flight->frames[flight->worst[place - 1].frame].total_ms < total_ms)
+        place--;
+    if (place == TL_FLIGHT_WORST)
+        return;
+    if (flight->worst_count == TL_FLIGHT_WORST)
+        tl_image_release(&flight->worst[--flight->worst_count].image);
+    memmove(&flight->worst[place + 1], &flight->worst[place],
+            (size_t)(flight->worst_count - place) * sizeof *flight->worst);
+    flight->worst[place] = (struct tl_flight_picture){number, thumbnail_of(shown)};
+    flight->worst_count++;
+}
+
+static bool is_stop(const struct tl_flight *flight, int number)
+{
+    int next = flight->stop_count; /* in the middle of its part of the way */
+    return next < TL_FLIGHT_STOPS && number >= (2 * next + 1) * flight->planned / (2 * TL_FLIGHT_STOPS);
+}
+
+static bool is_among_worst(const struct tl_flight *flight, int number)
+{
+    if (number < flight->warm_up)
+        return false;
+    return flight->worst_count < TL_FLIGHT_WORST ||
+           flight->frames[number].total_ms >
+               flight->frames[flight->worst[TL_FLIGHT_WORST - 1].frame].total_ms;
+}
+
+static bool keep_shown(struct pilot *pilot, int number, tl_error *error)
+{
+    struct tl_flight *flight = pilot->flight;
+    bool stop = is_stop(flight, number), worst = is_among_worst(flight, number);
+    if (!stop && !worst && !pilot->options->video)
+        return true;
+    tl_image shown = {0};
+    bool kept = tl_renderer_show_image(pilot->stage->renderer, &shown, error);
+    if (kept && stop)
+        flight->stops[flight->stop_count++] = (struct tl_flight_picture){number, thumbnail_of(&shown)};
+    if (kept && worst)
+        keep_worst(flight, number, &shown);
+    if (kept && pilot->options->video)
+        kept = tl_video_add(pilot->options->video, &shown, error);
+    tl_image_release(&shown);
+    return kept;
+}
+
+static bool keep_linear(struct pilot *pilot, int number, tl_error *error)
+{
+    const struct tl_fly_options *options = pilot->options;
+    struct tl_flight *flight = pilot->flight;
+    bool judged = options->oracle_every > 0 && number % options->oracle_every == 0;
+    tl_image image = {0};
+    if (!options->hash && !judged)
+        return true;
+    if (!tl_renderer_read(pilot->stage->renderer, &image, error))
+        return false;
+    if (options->hash)
+        flight->frames[number].hash = hash_of(&image);
+    if (judged) {
+        flight->kept = tl_resize(flight->kept, (size_t)flight->kept_count + 1, sizeof *flight->kept);
+        flight->kept[flight->kept_count++] = (struct tl_flight_picture){number, image};
+    } else {
+        tl_image_release(&image);
+    }
+    return true;
+}
+
+static void record_jobs(struct tl_flight *flight, const tl_plan *plan, struct tl_flight_frame *frame)
+{
+    flight->job_count = plan->count;
+    for (int i = 0; i < plan->count; i++) {
+        snprintf(flight->job_names[i], sizeof flight->job_names[i], "%s", plan->rows[i].name);
+        frame->job_ms[i] = plan->rows[i].took_ms;
+    }
+}
+
+/* The camera goes first, so that the choice is made for where it will be. The cloth stays as it is: whenever
+ * its step changes it forgets its contacts. */
+static bool choose(struct pilot *pilot, const struct tl_settings *wanted, int number,
+                   struct tl_pace_choice *out, tl_error *error)
+{
+    struct tl_stage *stage = pilot->stage;
+    struct tl_settings looked_from = *wanted;
+    looked_from.cloth = tl_session_settings(stage->session)->cloth;
+    if (!tl_session_apply(stage->session, &looked_from, error))
+        return false;
+    const tl_frame coming = tl_session_frame(stage->session);
+    if (pilot->options->replay) {
+        const struct tl_flight_frame *recorded = &pilot->options->replay->frames[number];
+        *out = (struct tl_pace_choice){
+            .levels = recorded->levels, .predicted_ms = NAN, .error = recorded->error};
+    } else {
+        *out = tl_pace_choose(pilot->pace, stage->renderer, &coming, wanted);
+    }
+    return true;
+}
+
+/* What the clock runs for. */
+static bool fly_frame(struct pilot *pilot, int number, struct tl_flight_frame *frame, tl_error *error)
+{
+    struct tl_stage *stage = pilot->stage;
+    struct tl_pace_choice choice;
+    const struct tl_settings wanted = settings_at(stage, pilot->flight, number);
+    struct tl_stopwatch watch = tl_stopwatch_start();
+    if (!choose(pilot, &wanted, number, &choice, error))
+        return false;
+    const struct tl_settings settings = tl_levels_apply(&choice.levels, &wanted);
+    struct tl_stopwatch cloth_watch = tl_stopwatch_start();
+    if (!tl_session_apply(stage->session, &settings, error) ||
+        (number > 0 && !tl_motion_advance(&pilot->motion, number, error)))
+        return false;
+    frame->cloth_ms = tl_stopwatch_read(&cloth_watch).wall_ms;
+    const tl_frame shown = tl_session_frame(stage->session);
+    const struct tl_render_settings render = tl_settings_render(&settings);
+    if (!tl_renderer_draw(stage->renderer, &shown, &render, error))
+        return false;
+    frame->total_ms = tl_stopwatch_read(&watch).wall_ms; /* every job ends with a glFinish */
+    frame->levels = choice.levels;
+    frame->predicted_ms = choice.predicted_ms;
+    frame->error = choice.error;
+    return true;
+}
+
+static bool fly_on(struct pilot *pilot, int number, tl_error *error)
+{
+    struct tl_flight *flight = pilot->flight;
+    struct tl_flight_frame frame = {.flip_mean = NAN, .rel_rmse = NAN};
+    if (!fly_frame(pilot, number, &frame, error))
+        return false;
+    const tl_plan *plan = tl_renderer_last_plan(pilot->stage->renderer);
+    if (pilot->pace)
+        tl_pace_learn(pilot->pace, plan, frame.cloth_ms, frame.total_ms);
+    record_jobs(flight, plan, &frame);
+    frame.memory_bytes = tl_renderer_memory(pilot->stage->renderer).total;
+    flight->frames[number] = frame;
+    flight->count = number + 1;
+    return keep_linear(pilot, number, error) && keep_shown(pilot, number, error);
+}
+
+static int warm_up_frames(int planned, double frame_rate)
+{
+    int second = (int)lrint(WARM_UP_S * frame_rate);
+    return second < planned / 2 ? second : planned / 2;
+}
+
+bool tl_fly(struct tl_stage *stage, const struct tl_fly_options *options, struct tl_path *path,
+            struct tl_flight *out, tl_error *error)
+{
+    double frame_rate = stage->settings.cloth.frame_rate;
+    *out = (struct tl_flight){.budget_ms = options->budget_ms,
+                              .frame_rate = frame_rate,
+                              .planned = options->frames,
+                              .warm_up = warm_up_frames(options->frames, frame_rate),
+                              .frames = TL_NEW_ARRAY(struct tl_flight_frame, (size_t)options->frames),
+                              .path = *path};
+    *path = (struct tl_path){0};
+    struct pilot pilot = {.stage = stage, .options = options, .flight = out};
+    if (!options->replay)
+        pilot.pace = tl_pace_create(options->budget_ms);
+    struct tl_progress progress = tl_progress_begin("flying");
+    bool done = begin_motion(stage, out, &pilot.motion, error);
+    for (int number = 0; done && number < options->frames; number++) {
+        done = fly_on(&pilot, number, error);
+        if (tl_interrupted())
+            done =
+                tl_fail(error, TL_INTERRUPTED, "fly: stopped at frame %d: frames before it are kept", number);
+        tl_progress_update(&progress, number + 1, options->frames);
+    }
+    tl_progress_end(&progress);
+    tl_pace_destroy(&pilot.pace);
+    return done;
+}
+
+static void release_pictures(struct tl_flight_picture *pictures, int count)
+{
+    for (int i = 0; i < count; i++)
+        tl_image_release(&pictures[i].image);
+}
+
+void tl_flight_release(struct tl_flight *flight)
+{
+    release_pictures(flight->worst, flight->worst_count);
+    release_pictures(flight->stops, flight->stop_count);
+    release_pictures(flight->kept, flight->kept_count);
+    free(flight->kept);
+    free(flight->frames);
+    tl_path_release(&flight->path);
+    *flight = (struct tl_flight){0};
+}
+
+static bool judge(struct tl_contender *oracle, tl_session *session, const struct tl_flight_picture *picture,
+                  struct tl_flight_frame *frame, tl_error *error)
+{
+    struct tl_truth truth = {0};
+    struct tl_measured_error measured;
+    const tl_frame shown = tl_session_frame(session);
+    bool judged = tl_truth_draw(oracle, &shown, &truth, error) &&
+                  tl_truth_compare(&picture->image, &truth, &measured, error);
+    if (judged) {
+        frame->flip_mean = measured.flip_mean;
+        frame->rel_rmse = measured.rel_rmse;
+    }
+    tl_truth_release(&truth);
+    return judged;
+}
+
+bool tl_fly_judge(struct tl_stage *stage, struct tl_flight *flight, tl_error *error)
+{
+    struct tl_motion motion;
+    struct tl_contender oracle = {0};
+    const struct tl_choice choice = tl_choice_oracle();
+    /* A reset would not do: a cloth whose step has changed goes on otherwise than a fresh one. */
+    bool done = tl_session_restart(stage->session, &stage->settings, error) &&
+                begin_motion(stage, flight, &motion, error) &&
+                tl_contender_create(&oracle, stage->gpu, &choice, &stage->settings, error);
+    struct tl_progress progress = tl_progress_begin("ray tracing what was flown");
+    int judged = 0;
+    for (int number = 0; done && judged < flight->kept_count; number++) {
+        struct tl_flight_frame *frame = &flight->frames[number];
+        const struct tl_settings wanted = settings_at(stage, flight, number);
+        const struct tl_settings settings = tl_levels_apply(&frame->levels, &wanted);
+        done = tl_session_apply(stage->session, &settings, error) &&
+               (number == 0 || tl_motion_advance(&motion, number, error));
+        if (done && flight->kept[judged].frame == number)
+            done = judge(&oracle, stage->session, &flight->kept[judged++], frame, error);
+        if (tl_interrupted())
+            done = tl_fail(error, TL_INTERRUPTED, "fly: stopped while frame %d was ray traced", number);
+        tl_progress_update(&progress, judged, flight->kept_count);
+    }
+    tl_progress_end(&progress);
+    tl_contender_release(&oracle);
+    return done;
+}

@@ -1,0 +1,58 @@
+/* What a recorded flight comes to: percentiles, shares, medians, and one flight against another. Pure.
+ *
+ * Only frames after the warm-up count. Milliseconds. */
+#ifndef TOILE_APP_LAB_FLIGHT_FLY_FIGURES_H
+#define TOILE_APP_LAB_FLIGHT_FLY_FIGURES_H
+
+#include "app/lab/flight/fly.h"
+
+#define TL_FLIGHT_TOLERANCE 1.1 /* a frame within so many budgets keeps its time */
+
+struct tl_flight_figures {
+    int judged; /* frames after the warm-up */
+    double mean_ms, p50_ms, p95_ms, p99_ms, worst_ms;
+    double cloth_ms;         /* median */
+    double within;           /* share of frames that keep their time; NaN without a budget */
+    int over_budget;         /* frames above the budget itself */
+    double prediction_error; /* median of |predicted - measured| / measured; NaN: nothing was predicted */
+    double estimated_error;  /* mean of the frames' estimates; NaN: none */
+    size_t memory_bytes;     /* largest */
+    int oracle_frames;       /* those that were measured, warm-up or not */
+    double flip_mean, rel_rmse, flip_worst; /* over these: means, and the largest; NaN: none */
+};
+struct tl_flight_figures tl_flight_measure(const struct tl_flight *flight);
+
+/* The smallest value that at least `share` of the values do not exceed (nearest rank); NaN of none. */
+double tl_percentile(const double *values, size_t count, double share);
+
+/* What one job took in the frames in which it ran. */
+struct tl_flight_job {
+    double median_ms, total_ms; /* NaN and 0 when it never ran */
+    int ran;
+};
+struct tl_flight_job tl_flight_measure_job(const struct tl_flight *flight, int job);
+
+/* How much longer (above 1) something took than in an earlier flight along the same way: the ratio of medians
+ * over frames that both have, and the interval that holds it with 95 % by a bootstrap over the same pairs, in
+ * blocks of a second, because frames that follow each other are alike. It knows the noise inside of two runs,
+ * not that of a machine which was busier during one of them. */
+struct tl_flight_ratio {
+    char name[TL_JOB_NAME_BYTES]; /* "frame", "cloth" or a job's */
+    double this_ms, that_ms;
+    double ratio, low, high;
+    enum { TL_FLIGHT_ALIKE, TL_FLIGHT_FASTER, TL_FLIGHT_SLOWER } verdict;
+};
+#define TL_FLIGHT_RATIOS_MAX (TL_JOBS_MAX + 2)
+
+/* Of the whole frame, of the cloth, and of every job that ran in both, in this order; returns their number.
+ * A job counts as slower or faster when 1 lies outside of its interval and the difference of medians is at
+ * least TL_FLIGHT_NOTICED of the frame's. */
+int tl_flight_compare(const struct tl_flight *here, const struct tl_flight *there,
+                      struct tl_flight_ratio out[TL_FLIGHT_RATIOS_MAX]);
+#define TL_FLIGHT_NOTICED 0.01
+
+/* The ratio of medians of `count` pairs, and its interval; `block` pairs in a row are drawn together. */
+struct tl_flight_ratio tl_ratio_of_medians(const double *here, const double *there, size_t count,
+                                           size_t block);
+
+#endif

@@ -1,0 +1,25 @@
+/* A video file, made by the command `ffmpeg`, which is found when the program runs.
+ *
+ * While frames are taken nothing is encoded, so that it costs those who measure nothing but a copy: they wait
+ * in a file beside the video that has no name and vanishes with the program. H.264, 4:2:0, Rec. 709. Writes
+ * atomically, like tl_writer. Failure: TL_USAGE when there is no ffmpeg, TL_OUTPUT with ffmpeg's own words
+ * else. Threads: one at a time. */
+#ifndef TOILE_APP_LAB_FLIGHT_VIDEO_H
+#define TOILE_APP_LAB_FLIGHT_VIDEO_H
+
+#include "assets/base/image.h"
+
+typedef struct tl_video tl_video;
+
+/* Fails when ffmpeg is missing or `path` does not end in .mp4, .mkv or .mov. */
+bool tl_video_check(const char *path, tl_error *error);
+
+/* Of a path that was checked; fails when it cannot be written. */
+tl_video *tl_video_begin(const char *path, double frame_rate, tl_error *error);
+/* U8 RGB; all of the first one's size. */
+bool tl_video_add(tl_video *video, const tl_image *image, tl_error *error);
+/* Encodes what was added, shows progress, releases. With no image it makes no file. */
+bool tl_video_commit(tl_video **handle, tl_error *error);
+void tl_video_abandon(tl_video **handle); /* leaves no file; null is fine */
+
+#endif

@@ -1,0 +1,48 @@
+/* toile gallery: every technique with its error and its time, as pictures, a page and a table. */
+#include "app/commands.h"
+#include "app/lab/gallery/gallery.h"
+#include "app/report/folder.h"
+#include "config/file.h"
+
+static void write_csv(const void *gallery, FILE *out)
+{
+    tl_gallery_write_csv(gallery, out);
+}
+
+static void write_html(const void *gallery, FILE *out)
+{
+    tl_gallery_write_html(gallery, out);
+}
+
+static bool write_all(const char *folder, const struct tl_gallery *gallery, tl_error *error)
+{
+    for (size_t i = 0; i < gallery->count; i++) {
+        const struct tl_hung *hung = &gallery->items[i];
+        if (!tl_folder_put(folder, hung->image, hung->png, hung->png_size, error))
+            return false;
+    }
+    return tl_folder_print(folder, "gallery.csv", gallery, write_csv, error) &&
+           tl_folder_print(folder, "gallery.html", gallery, write_html, error);
+}
+
+/* Interrupted, what hangs is worth as much as before. */
+bool tl_command_gallery(const struct tl_arguments *arguments, tl_error *error)
+{
+    if (!arguments->output)
+        return tl_fail(error, TL_USAGE, "gallery: no folder named: add -o FOLDER");
+    if (arguments->positional_count > 1)
+        return tl_fail(error, TL_USAGE, "gallery: %s: one wall at a time, or none for all",
+                       arguments->positionals[1]);
+    const char *only = arguments->positional_count ? arguments->positionals[0] : NULL;
+    if (!tl_gallery_has(only, error) || !tl_folder_make(arguments->output, error))
+        return false;
+    struct tl_gallery gallery;
+    tl_error failure = {0};
+    bool done = tl_gallery_draw(arguments->quick, only, &gallery, error);
+    if (gallery.count && !write_all(arguments->output, &gallery, &failure)) {
+        *error = failure;
+        done = false;
+    }
+    tl_gallery_release(&gallery);
+    return done;
+}

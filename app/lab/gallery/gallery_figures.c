@@ -1,0 +1,237 @@
+#include "app/lab/gallery/gallery_figures.h"
+
+#include "app/report/report.h"
+#include "config/memory.h"
+#include "render/brdf/normalise.h"
+#include "render/brdf/power.h"
+#include "render/brdf/table_error.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static struct tl_brdf brdf_of(int model, float glossiness)
+{
+    tl_material material = tl_material_default("figure");
+    material.gloss.model = model;
+    struct tl_brdf brdf = tl_brdf_of(&material, material.specular, glossiness);
+    if (model == TL_REFLECT_WARD)
+        brdf.gloss.width_warp *= 0.4f;
+    return brdf;
+}
+
+/* ---- A1, A3 to A5 ---- */
+
+static const char *const model_names[] = {"phong", "blinn_phong", "cosine_lobe", "torrance_sparrow",
+                                          "ward",  "banks"};
+static const int sizes[] = {16, 32, 64, 128, 256, 512};
+
+static void plot_sizes(int precision, const char *caption, FILE *out)
+{
+    struct tl_plot_point points[TL_COUNT(model_names)][TL_COUNT(sizes)];
+    struct tl_plot_series series[TL_COUNT(model_names)];
+    for (size_t model = 0; model < TL_COUNT(model_names); model++) {
+        struct tl_brdf brdf = brdf_of((int)model, 0.9f);
+        for (size_t i = 0; i < TL_COUNT(sizes); i++) {
+            struct tl_brdf_table_params params = {
+                .size = sizes[i], .precision = precision, .range = TL_RANGE_SCALED};
+            points[model][i] = (struct tl_plot_point){
+                sizes[i], 100 * tl_brdf_table_error(&brdf, &params).away, model_names[model], false};
+        }
+        series[model] = (struct tl_plot_series){
+            .name = model_names[model], .points = points[model], .count = TL_COUNT(sizes), .line = true};
+    }
+    tl_report_plot(
+        out, &(struct tl_plot){"texels a side", "relative RMSE, %", true, true, series, TL_COUNT(series)},
+        caption);
+}
+
+void tl_gallery_table_figures(FILE *out)
+{
+    plot_sizes(TL_PRECISION_FLOAT, "Tables in float against the formula, away from grazing, glossiness 0.9.",
+               out);
+    plot_sizes(TL_PRECISION_FIXED8, "The same in 8 bits: what is left are their steps, not their size.", out);
+}
+
+/* ---- A2 ---- */
+
+void tl_gallery_grazing_figures(FILE *out)
+{
+    static const struct {
+        const char *name;
+        int precision, range;
+    } ways[] = {{"8 bits, cut at 1", TL_PRECISION_FIXED8, TL_RANGE_CLAMPED},
+                {"8 bits, by a constant", TL_PRECISION_FIXED8, TL_RANGE_SCALED},
+                {"16 bits, by a constant", TL_PRECISION_FIXED16, TL_RANGE_SCALED}};
+    enum { ANGLES = 45 };
+    struct tl_plot_point points[TL_COUNT(ways)][ANGLES];
+    struct tl_plot_series series[TL_COUNT(ways)];
+    struct tl_brdf brdf = brdf_of(TL_REFLECT_TORRANCE_SPARROW, 0.9f);
+    for (size_t way = 0; way < TL_COUNT(ways); way++) {
+        struct tl_brdf_table_params params = {
+            .size = 512, .precision = ways[way].precision, .range = ways[way].range};
+        struct tl_brdf_tables tables = tl_brdf_tables_make(&brdf, &params);
+        for (int i = 0; i < ANGLES; i++) {
+            double degrees = 2.0 * i + 1;
+            double ratio = tl_brdf_table_ratio(&brdf, &tables, (float)cos(degrees * M_PI / 180));
+            points[way][i] = (struct tl_plot_point){degrees, ratio, ways[way].name, false};
+        }
+        tl_brdf_tables_release(&tables);
+        series[way] = (struct tl_plot_series){
+            .name = ways[way].name, .points = points[way], .count = ANGLES, .line = true};
+    }
+    tl_report_plot(
+        out,
+        &(struct tl_plot){"degrees of the viewer from the normal", "light shown over light due", false, false,
+                          series, TL_COUNT(series)},
+        "Torrance-Sparrow, glossiness 0.9, from 512 texels a side: cut at 1, the factor G / (pi cos b) "
+        "darkens from 71 degrees on, where 1 / (pi cos b) passes it; divided by its greatest value it does "
+        "not.");
+}
+
+/* ---- A3 ---- */
+
+/* Of the whole light, ambient and diffuse included, so that both ways are measured alike. */
+void tl_gallery_folded_figures(FILE *out)
+{
+    static const struct {
+        const char *name;
+        int model, precision;
+    } ways[] = {{"Phong, 8 bits", TL_REFLECT_PHONG, TL_PRECISION_FIXED8},
+                {"Blinn-Phong, 8 bits", TL_REFLECT_BLINN_PHONG, TL_PRECISION_FIXED8},
+                {"cosine lobe, 8 bits", TL_REFLECT_COSINE_LOBE, TL_PRECISION_FIXED8},
+                {"Phong, float", TL_REFLECT_PHONG, TL_PRECISION_FLOAT}};
+    struct tl_plot_point points[TL_COUNT(ways)][TL_COUNT(sizes)];
+    struct tl_plot_series series[TL_COUNT(ways)];
+    for (size_t way = 0; way < TL_COUNT(ways); way++) {
+        struct tl_brdf brdf = brdf_of(ways[way].model, 0.9f);
+        for (size_t i = 0; i < TL_COUNT(sizes); i++) {
+            struct tl_brdf_table_params params = {.size = sizes[i],
+                                                  .precision = ways[way].precision,
+                                                  .range = TL_RANGE_SCALED,
+                                                  .folded = true,
+                                                  .ambient = {{0.02f, 0.02f, 0.02f}},
+                                                  .diffuse = {{0.3f, 0.3f, 0.3f}}};
+            points[way][i] = (struct tl_plot_point){sizes[i], 100 * tl_brdf_table_error(&brdf, &params).away,
+                                                    ways[way].name, false};
+        }
+        series[way] = (struct tl_plot_series){
+            .name = ways[way].name, .points = points[way], .count = TL_COUNT(sizes), .line = true};
+    }
+    tl_report_plot(
+        out, &(struct tl_plot){"texels a side", "relative RMSE, %", true, true, series, TL_COUNT(series)},
+        "Ambient, diffuse and gloss folded into one table, one look-up for all three, against the formula. A "
+        "folded table holds one colour: cloth whose yarns and prints differ from texel to texel would need a "
+        "table for each, so the shaders keep the diffuse term beside the table, where it costs one product, "
+        "and "
+        "no option folds it.");
+}
+
+/* ---- A9 ---- */
+
+void tl_gallery_normalise_figures(FILE *out)
+{
+    static const int angles[] = {5, 10, 15, 20, 25, 30, 35, 40, 45, 60, 75, 90};
+    static const int methods[] = {TL_NORMALISE_NONE, TL_NORMALISE_CUBE8, TL_NORMALISE_CUBE16,
+                                  TL_NORMALISE_NEWTON, TL_NORMALISE_NEWTON_FIXED};
+    struct tl_plot_point points[TL_COUNT(methods)][TL_COUNT(angles)];
+    struct tl_plot_series series[TL_COUNT(methods)];
+    for (size_t m = 0; m < TL_COUNT(methods); m++) {
+        const char *name = tl_normalisation_names[methods[m]];
+        for (size_t i = 0; i < TL_COUNT(angles); i++) {
+            double error = tl_normalise_error(methods[m], angles[i] * M_PI / 180).vector;
+            points[m][i] = (struct tl_plot_point){angles[i], error, name, false};
+        }
+        series[m] = (struct tl_plot_series){
+            .name = name, .points = points[m], .count = TL_COUNT(angles), .line = true};
+    }
+    const double degree = M_PI / 180;
+    char caption[300];
+    snprintf(
+        caption, sizeof caption,
+        "Newton's one step beats the cube map of 8 bits up to %.0f degrees between vertices, and in 8 bits "
+        "and a sign, as register combiners have them, up to %.0f.",
+        tl_normalise_limit(TL_NORMALISE_NEWTON, TL_NORMALISE_CUBE8) / degree,
+        tl_normalise_limit(TL_NORMALISE_NEWTON_FIXED, TL_NORMALISE_CUBE8) / degree);
+    tl_report_plot(out,
+                   &(struct tl_plot){"degrees between the vectors at two vertices",
+                                     "rms distance from unit vectors", false, true, series, TL_COUNT(series)},
+                   caption);
+}
+
+/* ---- A10 ---- */
+
+static double shown_by(int method, int exponent, const uint8_t *table, double cosine)
+{
+    if (method == TL_POWER_FIXED8)
+        return (double)tl_power_fixed8((float)cosine, ilogb(exponent));
+    if (method == TL_POWER_TABLE)
+        return (double)tl_power_table_at(table, TL_POWER_TABLE_SIZE, (float)cosine);
+    return pow(cosine, exponent);
+}
+
+static void plot_highlight(int exponent, FILE *out)
+{
+    enum { STEPS = 300 };
+    uint8_t table[TL_POWER_TABLE_SIZE];
+    tl_power_table_make((float)exponent, TL_POWER_TABLE_SIZE, table);
+    double end = acos(pow(0.01, 1.0 / exponent));
+    struct tl_plot_point(*points)[STEPS] = tl_alloc(TL_POWER_COUNT, sizeof *points);
+    struct tl_plot_series series[TL_POWER_COUNT];
+    for (int method = 0; method < TL_POWER_COUNT; method++) {
+        for (int i = 0; i < STEPS; i++) {
+            double angle = end * i / (STEPS - 1);
+            points[method][i] =
+                (struct tl_plot_point){angle * 180 / M_PI, shown_by(method, exponent, table, cos(angle)),
+                                       tl_power_names[method], false};
+        }
+        series[method] = (struct tl_plot_series){.name = tl_power_names[method],
+                                                 .points = points[method],
+                                                 .count = STEPS,
+                                                 .line = method != TL_POWER_POW,
+                                                 .front = method == TL_POWER_POW};
+    }
+    struct tl_power_error fixed = tl_power_error(TL_POWER_FIXED8, exponent, TL_POWER_TABLE_SIZE);
+    struct tl_power_error lines = tl_power_error(TL_POWER_TABLE, exponent, TL_POWER_TABLE_SIZE);
+    char caption[300];
+    snprintf(caption, sizeof caption,
+             "A highlight of n = %d. In 8 bits and a sign it has %d levels, the widest step is %.3f; a table "
+             "of 256 "
+             "values errs by %.4f near 1, where the power is steepest, and shows no step.",
+             exponent, fixed.levels, fixed.band, lines.most_near_one);
+    tl_report_plot(out,
+                   &(struct tl_plot){"degrees from the highlight's middle", "shown", false, false, series,
+                                     TL_POWER_COUNT},
+                   caption);
+    free(points);
+}
+
+void tl_gallery_power_figures(FILE *out)
+{
+    plot_highlight(8, out);
+    plot_highlight(64, out);
+    plot_highlight(256, out);
+}
+
+/* ---- B6 ---- */
+
+void tl_gallery_fresnel_figures(FILE *out)
+{
+    static const float indices[] = {1.5f, 200};
+    static const char *const names[] = {"index 1.5", "index 200"};
+    enum { ANGLES = 91 };
+    struct tl_plot_point points[2][ANGLES];
+    struct tl_plot_series series[2];
+    for (int k = 0; k < 2; k++) {
+        for (int degrees = 0; degrees < ANGLES; degrees++) {
+            float cosine = (float)cos(degrees * M_PI / 180);
+            points[k][degrees] = (struct tl_plot_point){
+                degrees, (double)tl_fresnel_dielectric(indices[k], cosine), names[k], false};
+        }
+        series[k] =
+            (struct tl_plot_series){.name = names[k], .points = points[k], .count = ANGLES, .line = true};
+    }
+    tl_report_plot(
+        out, &(struct tl_plot){"degrees from the normal", "reflectance", false, false, series, 2},
+        "Fresnel's term for the two indices of the paper's figure 7: the first is a mirror at grazing "
+        "angles alone, the second nearly everywhere.");
+}

@@ -1,0 +1,15 @@
+/* Plots below the gallery's walls that show a technique by itself, without a picture around it. Each writes
+ * into an open page (app/report/report.h) what its pure measurement in render/brdf gives. */
+#ifndef TOILE_APP_LAB_GALLERY_GALLERY_FIGURES_H
+#define TOILE_APP_LAB_GALLERY_GALLERY_FIGURES_H
+
+#include <stdio.h>
+
+void tl_gallery_table_figures(FILE *out);     /* A1, A3 to A5: error of tables over size and precision */
+void tl_gallery_grazing_figures(FILE *out);   /* A2: what the singular factor's range darkens */
+void tl_gallery_folded_figures(FILE *out);    /* A3: what folding all terms into one table costs */
+void tl_gallery_normalise_figures(FILE *out); /* A9: five normalisations over the angle between vertices */
+void tl_gallery_power_figures(FILE *out);     /* A10: a highlight by each power, and their banding */
+void tl_gallery_fresnel_figures(FILE *out);   /* B6: the two indices of the paper's figure 7 */
+
+#endif

@@ -1,0 +1,49 @@
+/* Cloth that is measured rather than worn: a flat square, and a tube whose rest under its own weight is known
+ * in closed form. Metres. Free with tl_garment_release. Pure. */
+#ifndef TOILE_APP_LAB_STABILITY_CLOSED_FORM_H
+#define TOILE_APP_LAB_STABILITY_CLOSED_FORM_H
+
+#include "assets/garment.h"
+#include "cloth/cloth.h"
+
+enum tl_sheet_hold { TL_SHEET_FREE, TL_SHEET_EDGE, TL_SHEET_CORNERS };
+
+/* `side` x `side` vertices, 1 m square, the first row held by all or by its ends. It hangs from y = 0 in the
+ * plane z = 0 as in its pattern, or lies in y = 0. */
+tl_garment tl_sheet_make(int side, enum tl_sheet_hold hold, bool lies);
+
+/* A tube of `columns` cells around, hung by its rim at y = 0. Every vertex of a row is like its neighbours,
+ * so that it hangs by rows: row j sinks by sum over i <= j of height_i (weight below row i) / (k columns
+ * width), for any triangulation (CLOTH.md section 3, 3). Of `row_count` rows of cells the first half may be
+ * shorter than the others by `mass_ratio`; all cells' heights and widths differ by its root at most. */
+struct tl_tube {
+    int columns, row_count;
+    double height_m; /* of all rows, at rest */
+    double mass_ratio;
+};
+
+/* Rest height of a row of cells, and how much of the tube's area hangs on its upper end in that row. */
+double tl_tube_row_height(const struct tl_tube *tube, int row);
+double tl_tube_width(const struct tl_tube *tube); /* of a cell */
+
+/* How far vertices of row 0..row_count sink; `out` has row_count + 1. */
+void tl_tube_sink(const struct tl_tube *tube, const struct tl_cloth_fabric *fabric, double gravity,
+                  double *out);
+
+/* How far below its true rest `preview` holds the tube's lower end, at most, in substeps of h seconds: one
+ * sweep leaves every vertex of mass m moved by the pushes that come after those it was balanced by, h^2 T / m
+ * under the tension T of what hangs on it. (Cells whose diagonal is strained further than cloth may be are
+ * refused.) */
+double tl_tube_slack(const struct tl_tube *tube, const struct tl_cloth_fabric *fabric, double gravity,
+                     double h);
+
+/* Rows lowered by `sink` (or NULL: as in its pattern), vertices then moved by up to `scramble` of their own
+ * cell's sides, by a fixed hash. */
+tl_garment tl_tube_make(const struct tl_tube *tube, const double *sink, double scramble);
+
+/* One triangle of 1 m, hung by its upper edge, which ends a metre below: its lower corner carries a third of
+ * the weight and sinks by density * gravity / 3k metres. */
+double tl_triangle_sink(const struct tl_cloth_fabric *fabric, double gravity);
+tl_garment tl_triangle_make(double sink, double scramble);
+
+#endif

@@ -1,0 +1,75 @@
+/* toile stability: the extremes, cell by cell. Each is exact, bounded or refused; anything else is a failure.
+ */
+#include "app/cli/json.h"
+#include "app/cli/topic.h"
+#include "app/commands.h"
+#include "app/lab/stability/stability.h"
+
+#include <stdio.h>
+
+const char *const tl_outcome_names[TL_OUTCOME_COUNT] = {"exact", "bounded", "refused", "SILENT", "NaN"};
+
+cJSON *tl_stability_add(struct tl_stability *stability, const char *axis, enum tl_outcome outcome)
+{
+    cJSON *row = cJSON_CreateObject();
+    stability->counts[outcome]++;
+    cJSON_AddStringToObject(row, "axis", axis);
+    cJSON_AddStringToObject(row, "outcome", tl_outcome_names[outcome]);
+    cJSON_AddItemToArray(stability->rows, row);
+    return row;
+}
+
+int tl_stability_cells(const struct tl_stability *stability)
+{
+    int cells = 0;
+    for (int i = 0; i < TL_OUTCOME_COUNT; i++)
+        cells += stability->counts[i];
+    return cells;
+}
+
+static void print_json(struct tl_stability *stability)
+{
+    static const char *const keys[TL_OUTCOME_COUNT] = {"exact", "bounded", "refused", "silent", "nan"};
+    cJSON *object = cJSON_CreateObject();
+    cJSON_AddNumberToObject(object, "cells", tl_stability_cells(stability));
+    for (int i = 0; i < TL_OUTCOME_COUNT; i++)
+        cJSON_AddNumberToObject(object, keys[i], stability->counts[i]);
+    cJSON_AddItemToObject(object, "rows", stability->rows);
+    stability->rows = NULL;
+    tl_json_print(object);
+}
+
+static void print_counts(const struct tl_stability *stability)
+{
+    const int *counts = stability->counts;
+    printf("\n%d cells: %d exact, %d bounded, %d refused, %d silent, %d with NaN\n",
+           tl_stability_cells(stability), counts[TL_OUTCOME_EXACT], counts[TL_OUTCOME_BOUNDED],
+           counts[TL_OUTCOME_REFUSED], counts[TL_OUTCOME_SILENT], counts[TL_OUTCOME_NAN]);
+}
+
+bool tl_command_stability(const struct tl_arguments *arguments, tl_error *error)
+{
+    enum { LIGHT, CLOTH, DETAIL, SHADING };
+    static const char *const topics[] = {
+        [LIGHT] = "light", [CLOTH] = "cloth", [DETAIL] = "detail", [SHADING] = "shading", NULL};
+    struct tl_arguments scene;
+    int topic;
+    if (!tl_topic_take("stability", arguments, topics, true, &scene, &topic, error))
+        return false;
+    struct tl_stability stability = {.rows = cJSON_CreateArray()};
+    bool all = topic < 0;
+    bool done = (!(all || topic == CLOTH) || tl_stability_cloth(&scene, &stability, error)) &&
+                (!(all || topic == LIGHT) || tl_stability_light(&scene, &stability, error)) &&
+                (!(all || topic == DETAIL) || tl_stability_detail(&scene, &stability, error)) &&
+                (!(all || topic == SHADING) || tl_stability_shading(&scene, &stability, error));
+    if (done && arguments->json)
+        print_json(&stability);
+    else if (done)
+        print_counts(&stability);
+    cJSON_Delete(stability.rows);
+    int silent = stability.counts[TL_OUTCOME_SILENT], nan = stability.counts[TL_OUTCOME_NAN];
+    if (done && silent + nan > 0)
+        done = tl_fail(error, TL_UNSTABLE, "stability: %d cells silently out of their bounds, %d with NaN",
+                       silent, nan);
+    return done;
+}

@@ -1,0 +1,45 @@
+/* The extremes that touch light: small scenes, each with one thing in it that a renderer may stumble over,
+ * and what is promised of its image. Generated; metres, linear radiance.
+ *
+ * Ownership: a scene owns all that its frame points to. Threads: one scene at a time. */
+#ifndef TOILE_APP_LAB_STABILITY_EXTREMES_LIGHT_H
+#define TOILE_APP_LAB_STABILITY_EXTREMES_LIGHT_H
+
+#include "render/renderer.h"
+
+struct tl_extreme_scene {
+    size_t columns, rows; /* of the pleated curtain that comes first */
+    tl_mesh mesh;
+    tl_material material;
+    tl_surface surface;
+    tl_environment environment;
+    struct tl_camera camera;
+    bool ground;
+};
+
+/* Errors are relative RMSE against the oracle, by method: paper, review. TL_NO_WORSE promises little, but
+ * something: no worse than the same method without shadows. */
+enum { TL_EXTREME_PAPER, TL_EXTREME_REVIEW, TL_EXTREME_METHODS };
+#define TL_NO_WORSE (-1.0)
+
+struct tl_extreme {
+    const char *name;
+    const char *assignments[3];                     /* "light.key=value" */
+    void (*change)(struct tl_extreme_scene *scene); /* makes the ordinary scene extreme; NULL: leaves it */
+    double bounds[TL_EXTREME_METHODS];
+    const char *why; /* of the bound, or of the refusal */
+    bool refused;    /* a clear message is the promise */
+    bool from_file;  /* the environment comes from a file */
+};
+
+extern const struct tl_extreme tl_extremes[];
+extern const size_t tl_extreme_count;
+
+/* The ordinary scene, then the change. */
+bool tl_extreme_scene_make(const struct tl_extreme *extreme, struct tl_extreme_scene *out, tl_error *error);
+void tl_extreme_scene_release(struct tl_extreme_scene *scene);
+
+/* Valid while the scene is. Every scene made has a revision of its own. */
+tl_frame tl_extreme_frame(struct tl_extreme_scene *scene);
+
+#endif

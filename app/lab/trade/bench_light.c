@@ -1,0 +1,273 @@
+/* The presets' time and error in motion, side by side. */
+#include "app/cli/json.h"
+#include "app/lab/trade/bench.h"
+#include "app/measure/measure.h"
+#include "config/interrupt.h"
+#include "config/log.h"
+#include "config/memory.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define FRAMES_MAX 12 /* measured ones */
+#define TRUTHS_MAX 3
+#define REST_MAX   1024 /* frames at rest */
+
+struct schedule {
+    int warm;        /* frames of history before the first measured one; FRONTIER.md measured with 16 */
+    int measured;    /* at most FRAMES_MAX */
+    int truth_every; /* measured frames from one that is compared with the oracle to the next */
+};
+static const struct schedule full = {16, 12, 4}, quick = {2, 2, 2};
+
+/* The paper's single lobe is another material than the oracle's two, so that its error would tell more of the
+ * material than of light: it is compared with two lobes, and as it stands for information. */
+static const struct tl_choice choices[] = {
+    {"paper", "paper", {"light.regions=96", "light.lobe=dual"}},
+    {"paper, its single lobe", "paper", {"light.regions=96"}},
+    {"review", "review", {NULL}},
+    {"review by GL maps",
+     "review",
+     {"light.visibility=depth", "light.prefilter=slices", "light.composition=difference", "light.jitter=true",
+      "light.refresh=0"}},
+    {"draft", "draft", {NULL}},
+    {"final", "final", {NULL}},
+};
+enum { PAPER, PAPER_SINGLE, REVIEW, REVIEW_MAPS, DRAFT, FINAL, CHOICES };
+
+struct row {
+    struct tl_contender contender;
+    double cpu_ms[FRAMES_MAX], wall_ms[FRAMES_MAX];
+    struct tl_measured_error error[TRUTHS_MAX];
+    size_t memory_bytes;
+};
+
+/* The last frame again until nothing is left to average, and once more. */
+struct rest {
+    int frames;
+    double cpu_ms, done_cpu_ms; /* of a frame on the way (median), and of the one after */
+    struct tl_measured_error error;
+};
+
+struct bench {
+    struct rest rest; /* of review */
+    struct schedule schedule;
+    struct tl_stage stage;
+    tl_film *film;
+    struct tl_contender oracle;
+    struct row rows[CHOICES];
+};
+
+struct row_summary {
+    double cpu_ms, wall_ms, rel_rmse, flip_mean;
+    double worst_share; /* of a frame's square error: the most that one pixel holds */
+};
+
+static int truth_count(const struct bench *bench)
+{
+    return bench->schedule.measured / bench->schedule.truth_every;
+}
+
+static struct row_summary summarise(const struct bench *bench, int choice)
+{
+    const struct row *row = &bench->rows[choice];
+    size_t frames = (size_t)bench->schedule.measured;
+    struct row_summary summary = {.cpu_ms = tl_median(row->cpu_ms, frames),
+                                  .wall_ms = tl_median(row->wall_ms, frames)};
+    for (int i = 0, truths = truth_count(bench); i < truths; i++) {
+        summary.rel_rmse += row->error[i].rel_rmse / truths;
+        summary.flip_mean += row->error[i].flip_mean / truths;
+        summary.worst_share = fmax(summary.worst_share, row->error[i].worst_share);
+    }
+    return summary;
+}
+
+static double coverage(const struct bench *bench)
+{
+    const struct tl_image_params *image = &bench->stage.settings.image;
+    return (double)bench->rows[PAPER].error[0].covered / ((double)image->width * image->height);
+}
+
+static bool prepare(struct bench *bench, const struct tl_arguments *arguments, tl_error *error)
+{
+    struct tl_stage *stage = &bench->stage;
+    if (!tl_stage_create(stage, arguments, error))
+        return false;
+    bench->film = tl_film_record(stage->session, bench->schedule.warm + bench->schedule.measured, error);
+    if (!bench->film)
+        return false;
+    const struct tl_choice truth = tl_choice_oracle();
+    if (!tl_contender_create(&bench->oracle, stage->gpu, &truth, &stage->settings, error))
+        return false;
+    for (int i = 0; i < CHOICES; i++)
+        if (!tl_contender_create(&bench->rows[i].contender, stage->gpu, &choices[i], &stage->settings, error))
+            return false;
+    return true;
+}
+
+static void release(struct bench *bench)
+{
+    for (int i = 0; i < CHOICES; i++)
+        tl_contender_release(&bench->rows[i].contender);
+    tl_contender_release(&bench->oracle);
+    tl_film_destroy(&bench->film);
+    tl_stage_release(&bench->stage);
+}
+
+/* Before the first measured frame: what has no history needs only its caches filled. */
+static bool warm_up(struct bench *bench, int number, tl_error *error)
+{
+    struct tl_taken unused;
+    tl_frame frame = tl_film_frame(bench->film, number);
+    for (int i = 0; i < CHOICES; i++) {
+        struct tl_contender *contender = &bench->rows[i].contender;
+        if ((number == bench->schedule.warm - 1 || tl_contender_remembers(contender)) &&
+            !tl_contender_draw(contender, &frame, &unused, error))
+            return false;
+    }
+    return true;
+}
+
+static bool come_to_rest(struct bench *bench, const tl_frame *frame, const struct tl_truth *truth,
+                         tl_error *error)
+{
+    struct tl_contender *contender = &bench->rows[REVIEW].contender;
+    struct rest *rest = &bench->rest;
+    struct tl_taken taken;
+    double cpu_ms[REST_MAX];
+    while (rest->frames < REST_MAX && !tl_renderer_is_at_rest(contender->renderer)) {
+        if (!tl_contender_draw(contender, frame, &taken, error))
+            return false;
+        cpu_ms[rest->frames++] = taken.cpu_ms;
+    }
+    rest->cpu_ms = rest->frames ? tl_median(cpu_ms, (size_t)rest->frames) : 0;
+    if (!tl_contender_draw(contender, frame, &taken, error))
+        return false;
+    rest->done_cpu_ms = taken.cpu_ms;
+    return tl_contender_compare(contender, truth, &rest->error, error);
+}
+
+static bool compare_all(struct bench *bench, const tl_frame *frame, int at, tl_error *error)
+{
+    struct tl_truth truth = {0};
+    bool done = tl_truth_draw(&bench->oracle, frame, &truth, error);
+    for (int i = 0; done && i < CHOICES; i++)
+        done = tl_contender_compare(&bench->rows[i].contender, &truth, &bench->rows[i].error[at], error);
+    if (done && at == truth_count(bench) - 1)
+        done = come_to_rest(bench, frame, &truth, error);
+    tl_truth_release(&truth);
+    return done;
+}
+
+/* One frame by every contender in turn, so that what else the machine does meets them alike. */
+static bool measure(struct bench *bench, int number, tl_error *error)
+{
+    int at = number - bench->schedule.warm, every = bench->schedule.truth_every;
+    tl_frame frame = tl_film_frame(bench->film, number);
+    for (int i = 0; i < CHOICES; i++) {
+        struct tl_taken taken;
+        struct row *row = &bench->rows[i];
+        if (!tl_contender_draw(&row->contender, &frame, &taken, error))
+            return false;
+        row->cpu_ms[at] = taken.cpu_ms;
+        row->wall_ms[at] = taken.wall_ms;
+        row->memory_bytes = tl_renderer_memory(row->contender.renderer).total;
+    }
+    return at % every != every - 1 || compare_all(bench, &frame, at / every, error);
+}
+
+static bool run(struct bench *bench, tl_error *error)
+{
+    struct tl_progress progress = tl_progress_begin("measuring light");
+    int frames = bench->schedule.warm + bench->schedule.measured;
+    bool done = true;
+    for (int number = 0; done && number < frames; number++) {
+        done = number < bench->schedule.warm ? warm_up(bench, number, error) : measure(bench, number, error);
+        if (done && tl_interrupted())
+            done = tl_fail(error, TL_INTERRUPTED, "bench: stopped at frame %d of %d", number, frames);
+        tl_progress_update(&progress, number + 1, frames);
+    }
+    tl_progress_end(&progress);
+    return done;
+}
+
+static void print_table(const struct bench *bench)
+{
+    struct tl_film_report film = tl_film_report(bench->film);
+    const struct tl_image_params *image = &bench->stage.settings.image;
+    printf("%d x %d pixels, %.1f %% covered, %zu garment triangles, moving %.1f mm a frame on average;\n"
+           "medians of %d frames, process CPU time; errors are means of %d frames against the oracle, whose "
+           "standard error of %.2f %% is taken off; one pixel: the most of a frame's square error that its "
+           "worst "
+           "pixel holds, as where an outline's tie puts a highlight in or out\n\n",
+           image->width, image->height, 100 * coverage(bench), film.garment_triangles, 1e3 * film.mean_step_m,
+           bench->schedule.measured, truth_count(bench), 100 * bench->rows[PAPER].error[0].standard_error);
+    printf("%-24s %10s %10s %10s %10s %10s %10s\n", "", "CPU ms", "wall ms", "rel. RMSE", "one pixel",
+           "mean FLIP", "MiB");
+    for (int i = 0; i < CHOICES; i++) {
+        struct row_summary row = summarise(bench, i);
+        printf("%-24s %10.1f %10.1f %9.2f%% %9.0f%% %10.4f %10.1f\n", bench->rows[i].contender.name,
+               row.cpu_ms, row.wall_ms, 100 * row.rel_rmse, 100 * row.worst_share, row.flip_mean,
+               (double)bench->rows[i].memory_bytes / (1 << 20));
+    }
+    printf("%-24s %10.1f\n\n", "(the cloth's solver)", film.cloth_cpu_ms);
+    const struct rest *rest = &bench->rest;
+    printf("review at rest: %.1f ms of CPU a frame for %d frames, then %.1f; rel. RMSE %.2f %% (one pixel "
+           "holds %.0f %% of its square), mean FLIP %.4f\n",
+           rest->cpu_ms, rest->frames, rest->done_cpu_ms, 100 * rest->error.rel_rmse,
+           100 * rest->error.worst_share, rest->error.flip_mean);
+    struct row_summary paper = summarise(bench, PAPER), review = summarise(bench, REVIEW);
+    printf("paper takes %.1f times review's time; review has %.2f of paper's error (FLIP %.2f)\n",
+           paper.cpu_ms / review.cpu_ms, review.rel_rmse / paper.rel_rmse,
+           review.flip_mean / paper.flip_mean);
+}
+
+static void print_json(const struct bench *bench)
+{
+    struct tl_film_report film = tl_film_report(bench->film);
+    struct row_summary paper = summarise(bench, PAPER), review = summarise(bench, REVIEW);
+    cJSON *object = cJSON_CreateObject();
+    cJSON_AddNumberToObject(object, "time_ratio", paper.cpu_ms / review.cpu_ms);
+    cJSON_AddNumberToObject(object, "error_ratio", review.rel_rmse / paper.rel_rmse);
+    cJSON_AddNumberToObject(object, "flip_ratio", review.flip_mean / paper.flip_mean);
+    cJSON_AddNumberToObject(object, "coverage", coverage(bench));
+    cJSON_AddNumberToObject(object, "garment_triangles", (double)film.garment_triangles);
+    cJSON_AddNumberToObject(object, "mean_step_m", film.mean_step_m);
+    cJSON_AddNumberToObject(object, "cloth_cpu_ms", film.cloth_cpu_ms);
+    cJSON_AddNumberToObject(object, "standard_error", bench->rows[PAPER].error[0].standard_error);
+    cJSON *rest = cJSON_AddObjectToObject(object, "review_at_rest");
+    cJSON_AddNumberToObject(rest, "frames", bench->rest.frames);
+    cJSON_AddNumberToObject(rest, "cpu_ms", bench->rest.cpu_ms);
+    cJSON_AddNumberToObject(rest, "cpu_ms_done", bench->rest.done_cpu_ms);
+    cJSON_AddNumberToObject(rest, "rel_rmse", bench->rest.error.rel_rmse);
+    cJSON_AddNumberToObject(rest, "flip_mean", bench->rest.error.flip_mean);
+    cJSON *rows = cJSON_AddArrayToObject(object, "rows");
+    for (int i = 0; i < CHOICES; i++) {
+        struct row_summary summary = summarise(bench, i);
+        cJSON *row = cJSON_CreateObject();
+        cJSON_AddStringToObject(row, "name", bench->rows[i].contender.name);
+        cJSON_AddNumberToObject(row, "cpu_ms", summary.cpu_ms);
+        cJSON_AddNumberToObject(row, "wall_ms", summary.wall_ms);
+        cJSON_AddNumberToObject(row, "rel_rmse", summary.rel_rmse);
+        cJSON_AddNumberToObject(row, "worst_share", summary.worst_share);
+        cJSON_AddNumberToObject(row, "flip_mean", summary.flip_mean);
+        cJSON_AddNumberToObject(row, "memory_bytes", (double)bench->rows[i].memory_bytes);
+        cJSON_AddItemToArray(rows, row);
+    }
+    tl_json_print(object);
+}
+
+bool tl_bench_light(const struct tl_arguments *arguments, tl_error *error)
+{
+    struct bench *bench = TL_NEW(struct bench);
+    bench->schedule = arguments->quick ? quick : full;
+    bool done = prepare(bench, arguments, error) && run(bench, error);
+    if (done && arguments->json)
+        print_json(bench);
+    else if (done)
+        print_table(bench);
+    release(bench);
+    free(bench);
+    return done;
+}

@@ -1,0 +1,20 @@
+/* toile bench: ratios measured side by side in one run. */
+#include "app/cli/topic.h"
+#include "app/commands.h"
+#include "app/lab/trade/bench.h"
+
+bool tl_command_bench(const struct tl_arguments *arguments, tl_error *error)
+{
+    enum { LIGHT, CLOTH, SHADING };
+    static const char *const topics[] = {[LIGHT] = "light", [CLOTH] = "cloth", [SHADING] = "shading", NULL};
+    struct tl_arguments scene;
+    int topic;
+    if (!tl_topic_take("bench", arguments, topics, false, &scene, &topic, error))
+        return false;
+    if (topic == CLOTH)
+        return tl_bench_cloth(&scene, error);
+    if (topic == SHADING)
+        return tl_bench_shading(&scene, error);
+    tl_topic_default_scene(&scene, "review");
+    return tl_bench_light(&scene, error);
+}

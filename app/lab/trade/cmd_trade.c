@@ -1,0 +1,91 @@
+/* toile trade: error against time along an axis, as CSV and as a report. */
+#include "app/commands.h"
+#include "app/lab/trade/trade.h"
+#include "app/lab/trade/trade_cloth.h"
+#include "app/report/folder.h"
+#include "config/file.h"
+#include "config/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Interrupted, what was measured is worth as much as before: `done` says whether all was. */
+static bool write_both(const char *folder, const void *trade, void (*write_csv)(const void *, FILE *),
+                       void (*write_html)(const void *, FILE *), bool done, tl_error *error)
+{
+    tl_error failure = {0};
+    if (tl_folder_print(folder, "trade.csv", trade, write_csv, &failure) &&
+        tl_folder_print(folder, "report.html", trade, write_html, &failure))
+        return done;
+    *error = failure;
+    return false;
+}
+
+static void write_frames_csv(const void *trade, FILE *out)
+{
+    tl_trade_write_csv(trade, out);
+}
+
+static void write_frames_html(const void *trade, FILE *out)
+{
+    tl_trade_write_html(trade, out);
+}
+
+static bool trade_frames(const struct tl_trade_axis *axis, const struct tl_arguments *arguments,
+                         tl_error *error)
+{
+    struct tl_stage stage;
+    if (!tl_trade_stage(axis, arguments, &stage, error))
+        return false;
+    struct tl_trade trade;
+    bool done = tl_trade_measure(axis, &stage, arguments->quick, &trade, error);
+    if (trade.row_count)
+        done = write_both(arguments->output, &trade, write_frames_csv, write_frames_html, done, error);
+    tl_trade_release(&trade);
+    tl_stage_release(&stage);
+    return done;
+}
+
+static void write_cloth_csv(const void *trade, FILE *out)
+{
+    tl_trade_cloth_write_csv(trade, out);
+}
+
+static void write_cloth_html(const void *trade, FILE *out)
+{
+    tl_trade_cloth_write_html(trade, out);
+}
+
+static bool trade_cloth(const struct tl_arguments *arguments, tl_error *error)
+{
+    struct tl_trade_cloth trade;
+    bool done = tl_trade_cloth(arguments->quick, &trade, error);
+    if (trade.row_count)
+        done = write_both(arguments->output, &trade, write_cloth_csv, write_cloth_html, done, error);
+    tl_trade_cloth_release(&trade);
+    return done;
+}
+
+bool tl_command_trade(const struct tl_arguments *arguments, tl_error *error)
+{
+    static const struct tl_trade_axis *const axes[] = {&tl_trade_light,  &tl_trade_resolution,
+                                                       &tl_trade_detail, &tl_trade_shading,
+                                                       &tl_trade_levels, &tl_trade_overall};
+    const char *name = arguments->axis ? arguments->axis : "overall";
+    bool cloth = strcmp(name, "cloth") == 0;
+    const struct tl_trade_axis *axis = NULL;
+    for (size_t i = 0; i < TL_COUNT(axes); i++)
+        if (strcmp(axes[i]->name, name) == 0)
+            axis = axes[i];
+    if (!axis && !cloth)
+        return tl_fail(
+            error, TL_USAGE,
+            "--axis: \"%s\": expected overall, light, resolution, detail, shading, levels or cloth", name);
+    if (cloth && arguments->positional_count)
+        return tl_fail(error, TL_USAGE, "trade: %s: the axis cloth measures sheets of its own: name no scene",
+                       arguments->positionals[0]);
+    if (!arguments->output)
+        return tl_fail(error, TL_USAGE, "trade: no folder named: add -o FOLDER");
+    return tl_folder_make(arguments->output, error) &&
+           (cloth ? trade_cloth(arguments, error) : trade_frames(axis, arguments, error));
+}

@@ -1,0 +1,22 @@
+/* What a piece of work took: CPU time of all the program's threads (software GL's among them) and time on the
+ * wall; and medians. For show and for cost, never for results. */
+#ifndef TOILE_APP_MEASURE_COST_H
+#define TOILE_APP_MEASURE_COST_H
+
+#include <stddef.h>
+
+struct tl_taken {
+    double cpu_ms, wall_ms;
+};
+
+struct tl_stopwatch {
+    struct tl_taken started;
+};
+
+struct tl_stopwatch tl_stopwatch_start(void);
+struct tl_taken tl_stopwatch_read(const struct tl_stopwatch *watch); /* since the start */
+
+/* Of `count` values, in any order; the mean of the middle two for an even count; NaN of none. */
+double tl_median(const double *values, size_t count);
+
+#endif

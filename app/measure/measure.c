@@ -1,0 +1,97 @@
+#include "app/measure/measure.h"
+
+#include "config/memory.h"
+#include "render/metrics/compare.h"
+
+#include <math.h>
+
+bool tl_choice_apply(const struct tl_choice *choice, const struct tl_settings *scene, struct tl_settings *out,
+                     tl_error *error)
+{
+    *out = *scene;
+    if (choice->preset && !tl_settings_apply_preset(out, choice->preset, error))
+        return false;
+    out->image = scene->image; /* a preset is measured for its light */
+    return tl_settings_assign(out, choice->assignments, TL_COUNT(choice->assignments), error);
+}
+
+bool tl_contender_create(struct tl_contender *contender, tl_gpu *gpu, const struct tl_choice *choice,
+                         const struct tl_settings *scene, tl_error *error)
+{
+    *contender = (struct tl_contender){.name = choice->name};
+    struct tl_settings chosen;
+    if (!tl_choice_apply(choice, scene, &chosen, error))
+        return false;
+    contender->settings = tl_settings_render(&chosen);
+    contender->renderer = tl_renderer_create(gpu, error);
+    return contender->renderer != NULL;
+}
+
+void tl_contender_release(struct tl_contender *contender)
+{
+    tl_renderer_destroy(&contender->renderer);
+    *contender = (struct tl_contender){0};
+}
+
+bool tl_contender_remembers(const struct tl_contender *contender)
+{
+    const struct tl_light_params *light = &contender->settings.light;
+    return light->visibility == TL_VISIBILITY_RAYS || light->jitter;
+}
+
+bool tl_contender_draw(struct tl_contender *contender, const tl_frame *frame, struct tl_taken *taken,
+                       tl_error *error)
+{
+    struct tl_stopwatch watch = tl_stopwatch_start();
+    bool drawn = tl_renderer_draw(contender->renderer, frame, &contender->settings, error);
+    *taken = tl_stopwatch_read(&watch);
+    return drawn;
+}
+
+struct tl_choice tl_choice_oracle(void)
+{
+    return (struct tl_choice){.name = "reference",
+                              .assignments = {"light.method=reference", "light.lobe=dual"}};
+}
+
+bool tl_truth_draw(struct tl_contender *oracle, const tl_frame *frame, struct tl_truth *out, tl_error *error)
+{
+    struct tl_taken unused;
+    if (!tl_contender_draw(oracle, frame, &unused, error) ||
+        !tl_renderer_read(oracle->renderer, &out->image, error))
+        return false;
+    out->standard_error = tl_renderer_standard_error(oracle->renderer);
+    return true;
+}
+
+void tl_truth_release(struct tl_truth *truth)
+{
+    tl_image_release(&truth->image);
+    truth->standard_error = 0;
+}
+
+bool tl_truth_compare(const tl_image *image, const struct tl_truth *truth, struct tl_measured_error *out,
+                      tl_error *error)
+{
+    struct tl_comparison result;
+    if (!tl_image_compare(image, &truth->image, -1, 0, &result, error))
+        return false;
+    double square = result.rel_rmse * result.rel_rmse - truth->standard_error * truth->standard_error;
+    *out = (struct tl_measured_error){.rel_rmse = sqrt(fmax(square, 0)),
+                                      .standard_error = truth->standard_error,
+                                      .flip_mean = result.flip_mean,
+                                      .max_abs = result.max_abs,
+                                      .worst_share = result.worst_share,
+                                      .covered = result.covered};
+    return true;
+}
+
+bool tl_contender_compare(struct tl_contender *contender, const struct tl_truth *truth,
+                          struct tl_measured_error *out, tl_error *error)
+{
+    tl_image image = {0};
+    bool done =
+        tl_renderer_read(contender->renderer, &image, error) && tl_truth_compare(&image, truth, out, error);
+    tl_image_release(&image);
+    return done;
+}

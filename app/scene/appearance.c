@@ -1,0 +1,361 @@
+#include "app/scene/appearance.h"
+
+#include "app/scene/height_picture.h"
+#include "assets/garment.h"
+#include "config/memory.h"
+#include "config/words.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- Materials ---- */
+
+static struct tl_gloss gloss_of(const struct tl_material_params *swatch)
+{
+    return (struct tl_gloss){.model = swatch->model,
+                             .facets = swatch->facets,
+                             .masking = swatch->masking,
+                             .fresnel = swatch->fresnel,
+                             .index = swatch->index,
+                             .extinction = swatch->extinction,
+                             .width_weft = swatch->width_weft,
+                             .width_warp = swatch->width_warp,
+                             .rotation = glm_rad(swatch->rotation_deg)};
+}
+
+static struct tl_material_params params_of(const tl_material *material)
+{
+    const struct tl_gloss *gloss = &material->gloss;
+    struct tl_material_params params = {.use_file = true,
+                                        .glossiness = material->glossiness,
+                                        .model = gloss->model,
+                                        .facets = gloss->facets,
+                                        .masking = gloss->masking,
+                                        .fresnel = gloss->fresnel,
+                                        .index = gloss->index,
+                                        .extinction = gloss->extinction,
+                                        .width_weft = gloss->width_weft,
+                                        .width_warp = gloss->width_warp,
+                                        .rotation_deg = glm_deg(gloss->rotation),
+                                        .coat = material->coat,
+                                        .coat_glossiness = material->coat_glossiness,
+                                        .openness = material->openness};
+    memcpy(params.diffuse, material->diffuse.raw, sizeof params.diffuse);
+    memcpy(params.specular, material->specular.raw, sizeof params.specular);
+    memcpy(params.transmission, material->transmission.raw, sizeof params.transmission);
+    return params;
+}
+
+static void set_params(const struct tl_material_params *params, tl_material *material)
+{
+    memcpy(material->diffuse.raw, params->diffuse, sizeof material->diffuse.raw);
+    memcpy(material->specular.raw, params->specular, sizeof material->specular.raw);
+    memcpy(material->transmission.raw, params->transmission, sizeof material->transmission.raw);
+    material->glossiness = params->glossiness;
+    material->gloss = gloss_of(params);
+    material->coat = params->coat;
+    material->coat_glossiness = params->coat_glossiness;
+    material->openness = params->openness;
+}
+
+/* The yarns of a fabric, or NULL: they are shared by the materials that show them. */
+static bool find_weave(struct tl_looks *looks, const struct tl_weave_params *params, const tl_weave **out,
+                       tl_error *error)
+{
+    *out = NULL;
+    for (size_t i = 0; i < looks->weave_count && !*out; i++)
+        if (tl_options_equal(&tl_weave_options, &looks->weaves[i].params, params))
+            *out = looks->weaves[i].weave;
+    tl_weave made;
+    if (*out)
+        return true;
+    if (params->picture[0] && !tl_height_picture_weave(params, &made, error))
+        return false;
+    if (!params->picture[0] && !tl_weave_create(params, &made))
+        return true;
+    looks->weaves = tl_resize(looks->weaves, looks->weave_count + 1, sizeof *looks->weaves);
+    tl_weave *kept = TL_NEW(tl_weave);
+    *kept = made;
+    looks->weaves[looks->weave_count++] = (struct tl_woven){*params, kept};
+    *out = kept;
+    return true;
+}
+
+/* What is left of a print when it is dyed over: its holes. */
+static void forget_print(struct tl_looks *looks, tl_material *material)
+{
+    const tl_image *print = material->diffuse_map.image;
+    material->diffuse_map.image = NULL;
+    if (!print || !(material->alpha_cutoff > 0) || print->channels != 4)
+        return;
+    tl_image *plain = TL_NEW(tl_image);
+    *plain = tl_image_create(print->width, print->height, 4, TL_IMAGE_U8);
+    size_t texels = (size_t)print->width * (size_t)print->height;
+    memset(plain->texels, 255, 4 * texels);
+    for (size_t i = 0; i < texels; i++)
+        tl_image_bytes(plain)[4 * i + 3] = tl_image_bytes(print)[4 * i + 3];
+    looks->images = tl_resize(looks->images, looks->image_count + 1, sizeof(tl_image *));
+    material->diffuse_map.image = looks->images[looks->image_count++] = plain;
+}
+
+/* A fabric replaces how the surface reflects; a print or dye that the file brings stays. */
+static void set_fabric(const struct tl_material_params *fabric, const tl_weave *weave, tl_material *material)
+{
+    if (fabric->use_file)
+        return;
+    vec3s file_diffuse = material->diffuse;
+    set_params(fabric, material);
+    if (material->diffuse_map.image)
+        material->diffuse = file_diffuse;
+    material->gloss_map.image = NULL;
+    material->specular_map.image = NULL;
+    material->weave = weave;
+}
+
+static bool is_overlay(const struct tl_settings *settings, const tl_material *material)
+{
+    return strcmp(settings->scene.overlay_fabric, "none") != 0 &&
+           strcmp(material->name, TL_GARMENT_OVERLAY) == 0;
+}
+
+/* A material in the making: `params` and `weave` are the fabric's or, where `is_file`, the file's own. */
+struct making {
+    const tl_material *file;
+    struct tl_material_params params;
+    struct tl_weave_params weave;
+    bool is_file, is_changed, is_woven, is_dyed, is_plain;
+};
+
+static struct making begin(const struct tl_settings *settings, const tl_material *file)
+{
+    bool overlay = is_overlay(settings, file);
+    struct making making = {.file = file,
+                            .params = overlay ? settings->overlay : settings->material,
+                            .weave = overlay ? settings->overlay_weave : settings->weave};
+    making.is_file = making.params.use_file;
+    making.is_woven = !making.is_file;
+    if (making.is_file)
+        making.params = params_of(file);
+    return making;
+}
+
+static void change(const struct tl_swatch *swatch, struct making *making)
+{
+    tl_swatch_apply(swatch, &making->params, &making->weave);
+    making->is_changed = true;
+    making->is_woven = making->is_woven || tl_swatch_is_woven(swatch);
+    making->is_dyed = making->is_dyed || tl_swatch_is_dyed(swatch);
+    making->is_plain = making->is_plain || !swatch->print;
+    if (!swatch->has_fabric)
+        return;
+    making->is_file = making->params.use_file;
+    making->is_woven = !making->is_file;
+    if (making->is_file)
+        making->params = params_of(making->file);
+}
+
+static bool finish(struct tl_looks *looks, const struct making *making, tl_material *out, tl_error *error)
+{
+    tl_material made = *making->file;
+    const tl_weave *weave = NULL;
+    if (making->is_woven && !find_weave(looks, &making->weave, &weave, error))
+        return false;
+    if (!making->is_file)
+        set_fabric(&making->params, weave, &made);
+    else if (making->is_changed)
+        set_params(&making->params, &made);
+    if (making->is_woven)
+        made.weave = weave;
+    if (making->is_plain)
+        forget_print(looks, &made);
+    if (making->is_dyed || making->is_plain)
+        memcpy(made.diffuse.raw, making->params.diffuse, sizeof made.diffuse.raw);
+    *out = made;
+    return true;
+}
+
+static bool is_meant(const struct tl_swatch *swatch, const tl_material *material)
+{
+    return strcmp(swatch->material, TL_SWATCH_ALL) == 0 || strcmp(swatch->material, material->name) == 0;
+}
+
+static bool make_materials(const struct tl_settings *settings, const tl_model *model, struct tl_looks *looks,
+                           tl_error *error)
+{
+    const struct tl_colourways *colourways = &settings->colourways;
+    for (size_t i = 0; i < model->material_count; i++) {
+        struct making making = begin(settings, &model->materials[i]);
+        for (size_t k = 0; k < colourways->swatch_count; k++)
+            if (is_meant(&colourways->swatches[k], making.file))
+                change(&colourways->swatches[k], &making);
+        if (!finish(looks, &making, &looks->garment.materials[i], error))
+            return false;
+    }
+    return true;
+}
+
+/* ---- The colourway ---- */
+
+static void add_name(struct tl_looks *looks, const char *name)
+{
+    for (size_t i = 0; i < looks->name_count; i++)
+        if (strcmp(looks->names[i], name) == 0)
+            return;
+    looks->names = tl_resize(looks->names, looks->name_count + 1, sizeof(char *));
+    looks->names[looks->name_count++] = tl_copy_string(name);
+}
+
+static void gather_names(const struct tl_settings *settings, const tl_model *garment, const tl_model *avatar,
+                         struct tl_looks *looks)
+{
+    const tl_model *models[] = {garment, avatar};
+    for (size_t i = 0; i < settings->colourways.name_count; i++)
+        add_name(looks, settings->colourways.names[i]);
+    for (size_t m = 0; m < TL_COUNT(models); m++)
+        for (size_t i = 0; models[m] && i < models[m]->variant_count; i++)
+            add_name(looks, models[m]->variants[i].name);
+}
+
+static bool fail_name(const char *what, const char *name, const char *const *names, size_t count,
+                      tl_error *error)
+{
+    const char *near = tl_nearest_word(name, names, count);
+    char *list = tl_join_words(names, count, ", ", ", ");
+    if (near)
+        tl_fail(error, TL_USAGE, "%s: did you mean %s?", what, near);
+    else if (count)
+        tl_fail(error, TL_USAGE, "%s: there are %s", what, list);
+    else
+        tl_fail(error, TL_USAGE, "%s: there are none", what);
+    free(list);
+    return false;
+}
+
+static bool check_colourway(const struct tl_settings *settings, const struct tl_looks *looks, tl_error *error)
+{
+    const char *name = settings->scene.colourway;
+    for (size_t i = 0; i < looks->name_count; i++)
+        if (strcmp(looks->names[i], name) == 0)
+            return true;
+    if (name[0] == '\0')
+        return true;
+    char *what =
+        tl_format("scene.colourway: \"%s\": neither the scene nor a model has such a colourway", name);
+    fail_name(what, name, (const char *const *)looks->names, looks->name_count, error);
+    free(what);
+    return false;
+}
+
+static bool check_swatch(const struct tl_settings *settings, const struct tl_swatch *swatch,
+                         const tl_model *garment, tl_error *error)
+{
+    const char **names = TL_NEW_ARRAY(const char *, garment->material_count + 1);
+    bool known = false;
+    for (size_t i = 0; i < garment->material_count; i++) {
+        known = known || is_meant(swatch, &garment->materials[i]);
+        names[i] = garment->materials[i].name;
+    }
+    names[garment->material_count] = TL_SWATCH_ALL;
+    char *what = tl_format("%s:%d: colourways.%s.%s: the garment %s has no such material",
+                           tl_settings_colourways_source(settings), swatch->line, settings->scene.colourway,
+                           swatch->material, garment->name);
+    if (!known)
+        fail_name(what, swatch->material, names, garment->material_count + 1, error);
+    free(what);
+    free((void *)names);
+    return known;
+}
+
+/* The model's materials and parts, the latter as its variant has them if it has one of this name. */
+static void dress(const tl_model *model, const char *variant_name, struct tl_dressing *out)
+{
+    const tl_mesh *mesh = &model->mesh;
+    const struct tl_variant *variant = tl_model_find_variant(model, variant_name);
+    out->materials = TL_NEW_ARRAY(tl_material, model->material_count);
+    memcpy(out->materials, model->materials, model->material_count * sizeof *out->materials);
+    out->parts = TL_NEW_ARRAY(struct tl_mesh_part, mesh->part_count);
+    for (size_t p = 0; p < mesh->part_count; p++) {
+        out->parts[p] = mesh->parts[p];
+        if (variant)
+            out->parts[p].material = variant->materials[p];
+    }
+}
+
+bool tl_looks_make(const struct tl_settings *settings, const tl_model *garment, const tl_model *avatar,
+                   struct tl_looks *out, tl_error *error)
+{
+    *out = (struct tl_looks){0};
+    gather_names(settings, garment, avatar, out);
+    bool good = check_colourway(settings, out, error);
+    for (size_t i = 0; good && garment && i < settings->colourways.swatch_count; i++)
+        good = check_swatch(settings, &settings->colourways.swatches[i], garment, error);
+    if (!good) {
+        tl_looks_release(out);
+        return false;
+    }
+    if (avatar)
+        dress(avatar, settings->scene.colourway, &out->avatar);
+    if (garment) {
+        dress(garment, settings->scene.colourway, &out->garment);
+        if (!make_materials(settings, garment, out, error)) {
+            tl_looks_release(out);
+            return false;
+        }
+    }
+    return true;
+}
+
+void tl_looks_release(struct tl_looks *looks)
+{
+    for (size_t i = 0; i < looks->weave_count; i++) {
+        tl_weave_release(looks->weaves[i].weave);
+        free(looks->weaves[i].weave);
+    }
+    for (size_t i = 0; i < looks->image_count; i++) {
+        tl_image_release(looks->images[i]);
+        free(looks->images[i]);
+    }
+    for (size_t i = 0; i < looks->name_count; i++)
+        free(looks->names[i]);
+    struct tl_dressing *dressings[] = {&looks->garment, &looks->avatar};
+    for (size_t i = 0; i < TL_COUNT(dressings); i++) {
+        free(dressings[i]->materials);
+        free(dressings[i]->parts);
+    }
+    free(looks->weaves);
+    free((void *)looks->images);
+    free((void *)looks->names);
+    *looks = (struct tl_looks){0};
+}
+
+bool tl_looks_are_same(const struct tl_settings *a, const struct tl_settings *b)
+{
+    return tl_options_equal(&tl_weave_options, &a->weave, &b->weave) &&
+           tl_options_equal(&tl_material_options, &a->material, &b->material) &&
+           tl_options_equal(&tl_overlay_options, &a->overlay, &b->overlay) &&
+           strcmp(a->scene.overlay_fabric, b->scene.overlay_fabric) == 0 &&
+           strcmp(a->scene.colourway, b->scene.colourway) == 0 &&
+           tl_colourways_equal(&a->colourways, &b->colourways);
+}
+
+void tl_looks_take(const struct tl_settings *look, struct tl_settings *settings)
+{
+    struct tl_scene_params *scene = &settings->scene;
+    memcpy(scene->fabric, look->scene.fabric, sizeof scene->fabric);
+    memcpy(scene->overlay_fabric, look->scene.overlay_fabric, sizeof scene->overlay_fabric);
+    memcpy(scene->preset, look->scene.preset, sizeof scene->preset);
+    if (strcmp(look->scene.garment, scene->garment) == 0) { /* else it has other colourways */
+        memcpy(scene->colourway, look->scene.colourway, sizeof scene->colourway);
+        memcpy(scene->colourways, look->scene.colourways, sizeof scene->colourways);
+        settings->colourways = look->colourways;
+    }
+    settings->weave = look->weave;
+    settings->material = look->material;
+    settings->overlay = look->overlay;
+    settings->overlay_weave = look->overlay_weave;
+    settings->light = look->light;
+    settings->detail = look->detail;
+    settings->maps = look->maps;
+    settings->shading = look->shading;
+    settings->image.supersample = look->image.supersample;
+}

@@ -1,0 +1,16 @@
+/* The review camera: an orbit about a target. Pure. */
+#ifndef TOILE_APP_SCENE_CAMERA_H
+#define TOILE_APP_SCENE_CAMERA_H
+
+#include "app/scene/settings.h"
+
+/* Whether the camera says by itself where it is: a distance of 0 is the one that the scene needs, and a
+ * target of 0 0 0 the middle of what there is. */
+bool tl_camera_is_placed(const struct tl_camera_params *params);
+
+/* The camera of the frame. With distance_m = 0 the box (metres, world) fills the image of the given aspect
+ * (width / height) with a small margin, whatever the yaw; with a distance but no target the eye looks at the
+ * box's middle from there. */
+struct tl_camera tl_camera_frame(const struct tl_camera_params *params, struct tl_box box, float aspect);
+
+#endif

@@ -1,0 +1,71 @@
+#include "app/scene/height_picture.h"
+
+#include "assets/image/exr.h"
+#include "config/file.h"
+#include "render/detail/bake.h"
+
+#include <math.h>
+
+/* Larger than any GL here draws. */
+#define SIDE_MAX 8192
+
+bool tl_height_picture_load(const char *path, tl_image *out, tl_error *error)
+{
+    if (!tl_path_has_extension(path, "exr"))
+        return tl_image_load_values(path, out, error);
+    enum tl_exr_envmap unused;
+    if (!tl_exr_load(path, out, &unused, error))
+        return false;
+    size_t count = (size_t)out->width * (size_t)out->height * (size_t)out->channels;
+    for (size_t i = 0; i < count; i++)
+        if (!isfinite(tl_image_floats(out)[i])) {
+            tl_image_release(out);
+            return tl_fail(error, TL_INPUT,
+                           "%s: holds a value that is not finite: mend it in the program that made it", path);
+        }
+    return true;
+}
+
+/* In metres over the fabric's middle. */
+static tl_image heights_of(const tl_image *picture, float depth_m)
+{
+    tl_image heights = tl_bake_heights(picture, 0, 1);
+    float *values = tl_image_floats(&heights), low = INFINITY, high = -INFINITY;
+    size_t count = (size_t)heights.width * (size_t)heights.height;
+    for (size_t i = 0; i < count; i++) {
+        low = fminf(low, values[i]);
+        high = fmaxf(high, values[i]);
+    }
+    for (size_t i = 0; i < count; i++)
+        values[i] = high > low ? depth_m * ((values[i] - low) / (high - low) - 0.5f) : 0;
+    return heights;
+}
+
+bool tl_height_picture_weave(const struct tl_weave_params *params, tl_weave *out, tl_error *error)
+{
+    tl_image picture;
+    *out = (tl_weave){0};
+    if (!tl_height_picture_load(params->picture, &picture, error))
+        return false;
+    int width = picture.width, height = picture.height;
+    if (width > SIDE_MAX || height > SIDE_MAX) {
+        tl_image_release(&picture);
+        return tl_fail(error, TL_INPUT, "%s: %d x %d texels are too many for a weave: scale it to %d",
+                       params->picture, width, height, SIDE_MAX);
+    }
+    float width_m = 1e-3f * params->picture_mm;
+    *out = (tl_weave){.size_m = {width_m, width_m * (float)height / (float)width},
+                      .height = heights_of(&picture, 1e-3f * params->depth_mm),
+                      .gloss = tl_image_create(width, height, 1, TL_IMAGE_F32),
+                      .tint = tl_image_create(width, height, 3, TL_IMAGE_F32)};
+    for (size_t i = 0; i < 3 * (size_t)width * (size_t)height; i++)
+        tl_image_floats(&out->tint)[i] = 1;
+    struct tl_height_field field =
+        tl_height_field_make(&out->height, out->size_m[0], out->size_m[1], false, false);
+    tl_image slopes = tl_bake_slopes(&field), normals = tl_bake_normals(&slopes, 1);
+    out->normal = tl_bake_encoded(&normals);
+    tl_image_release(&picture);
+    tl_image_release(&slopes);
+    tl_image_release(&normals);
+    return true;
+}

@@ -1,0 +1,61 @@
+#include "app/scene/moving.h"
+
+#include "config/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void tl_moving_create(struct tl_moving *moving, const tl_model *model, const uint32_t *weld)
+{
+    size_t count = model->mesh.vertex_count;
+    *moving = (struct tl_moving){
+        .model = model,
+        .positions = TL_NEW_ARRAY(vec3s, count),
+        .normals = TL_NEW_ARRAY(vec3s, count),
+        .tangents = TL_NEW_ARRAY(vec4s, count),
+    };
+    if (weld) {
+        moving->frames = tl_frames_create(&model->mesh, weld);
+    } else {
+        uint32_t *by_position = TL_NEW_ARRAY(uint32_t, count);
+        tl_weld_positions(model->mesh.positions, count, by_position);
+        moving->frames = tl_frames_create(&model->mesh, by_position);
+        free(by_position);
+    }
+    tl_moving_restart(moving);
+}
+
+void tl_moving_restart(struct tl_moving *moving)
+{
+    const tl_mesh *mesh = &moving->model->mesh;
+    memcpy(moving->positions, mesh->positions, mesh->vertex_count * sizeof *moving->positions);
+    tl_frames_forget(moving->frames);
+    tl_moving_update(moving);
+}
+
+void tl_moving_release(struct tl_moving *moving)
+{
+    tl_frames_destroy(&moving->frames);
+    free(moving->positions);
+    free(moving->normals);
+    free(moving->tangents);
+    *moving = (struct tl_moving){0};
+}
+
+void tl_moving_update(struct tl_moving *moving)
+{
+    tl_frames_update(moving->frames, moving->positions, moving->normals, moving->tangents);
+    moving->motion_revision++;
+}
+
+tl_surface tl_moving_surface(const struct tl_moving *moving, const char *name,
+                             const struct tl_dressing *dressing)
+{
+    tl_surface surface = tl_surface_of_mesh(name, &moving->model->mesh, dressing->materials);
+    surface.positions = moving->positions;
+    surface.normals = moving->normals;
+    surface.tangents = moving->tangents;
+    surface.parts = dressing->parts;
+    surface.motion_revision = moving->motion_revision;
+    return surface;
+}

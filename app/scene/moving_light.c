@@ -1,0 +1,75 @@
+#include "app/scene/moving_light.h"
+
+#include "config/log.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Positions are quotients of rates: one that should be whole may lie just below. */
+#define ROUNDING 1e-6
+
+static int frame_at(const tl_environment_sequence *sequence, double position)
+{
+    return sequence->count > 0 ? (int)fmod(floor(position + ROUNDING), sequence->count) : 0;
+}
+
+void tl_environment_warn_of_cleaning(const tl_environment *environment)
+{
+    size_t cleaned = environment->negative_count + environment->nan_count + environment->inf_count;
+    if (cleaned)
+        tl_warn("%s: cleaned %zu negative, %zu NaN and %zu infinite values", environment->name,
+                environment->negative_count, environment->nan_count, environment->inf_count);
+}
+
+static bool load(struct tl_moving_light *light, const char *name, double position, tl_error *error)
+{
+    if (strcmp(name, "studio") == 0) {
+        light->environment = tl_environment_studio();
+        return true;
+    }
+    if (strcmp(name, "none") == 0 || strcmp(name, "white") == 0) {
+        float radiance = strcmp(name, "white") == 0 ? 1 : 0;
+        light->environment = tl_environment_constant(radiance, radiance, radiance);
+        return true;
+    }
+    if (!tl_environment_is_sequence(name))
+        return tl_environment_load(name, &light->environment, error);
+    if (!tl_environment_sequence_open(name, &light->sequence, error))
+        return false;
+    light->shown = frame_at(&light->sequence, position);
+    return tl_environment_sequence_load(&light->sequence, light->shown, &light->environment, error);
+}
+
+bool tl_moving_light_open(struct tl_moving_light *light, const char *name, double position, tl_error *error)
+{
+    struct tl_moving_light fresh = {.revision = light->revision + 1};
+    if (!load(&fresh, name, position, error)) {
+        tl_moving_light_release(&fresh);
+        return false;
+    }
+    tl_environment_warn_of_cleaning(&fresh.environment);
+    tl_moving_light_release(light);
+    *light = fresh;
+    return true;
+}
+
+bool tl_moving_light_follow(struct tl_moving_light *light, double position, tl_error *error)
+{
+    tl_environment fresh;
+    int due = frame_at(&light->sequence, position);
+    if (due == light->shown)
+        return true;
+    if (!tl_environment_sequence_load(&light->sequence, due, &fresh, error))
+        return false;
+    tl_environment_release(&light->environment);
+    light->environment = fresh;
+    light->shown = due;
+    light->revision++;
+    return true;
+}
+
+void tl_moving_light_release(struct tl_moving_light *light)
+{
+    tl_environment_release(&light->environment);
+    tl_environment_sequence_release(&light->sequence);
+}

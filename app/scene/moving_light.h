@@ -1,0 +1,26 @@
+/* The light of a session: an environment that stands still, or a sequence that plays round and round. A frame
+ * is read when it is due: one of 512 x 256 texels takes less than 10 ms. */
+#ifndef TOILE_APP_SCENE_MOVING_LIGHT_H
+#define TOILE_APP_SCENE_MOVING_LIGHT_H
+
+#include "assets/motion/environment_sequence.h"
+
+/* Owns what it holds; may be moved in memory. */
+struct tl_moving_light {
+    tl_environment environment;
+    uint64_t revision;                /* rises with every change of the environment */
+    tl_environment_sequence sequence; /* count 0: none */
+    int shown;                        /* frame of the sequence that `environment` is */
+};
+
+/* `name`: "studio", "white" (1 from everywhere: the furnace), "none" (black), a file or a pattern.
+ * `position`: in frames of the sequence, from its start. Replaces what the light held; on failure it is as it
+ * was. */
+bool tl_moving_light_open(struct tl_moving_light *light, const char *name, double position, tl_error *error);
+/* Shows the frame at `position`; does nothing where that is shown already. */
+bool tl_moving_light_follow(struct tl_moving_light *light, double position, tl_error *error);
+/* Says what the reader of an environment had to clean, if anything. */
+void tl_environment_warn_of_cleaning(const tl_environment *environment);
+void tl_moving_light_release(struct tl_moving_light *light);
+
+#endif

@@ -1,0 +1,773 @@
+#include "app/scene/session.h"
+
+#include "app/scene/camera.h"
+#include "app/scene/moving.h"
+#include "app/scene/moving_light.h"
+#include "app/scene/playback.h"
+#include "assets/avatar.h"
+#include "assets/builtin/fit.h"
+#include "assets/builtin/specimen.h"
+#include "assets/refine.h"
+#include "cloth/energy/strain.h"
+#include "config/interrupt.h"
+#include "config/log.h"
+#include "config/memory.h"
+#include "render/inspect/legend.h"
+
+#include <float.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A clip's first pose may be far from the rest pose that a garment was made for. The avatar walks there in
+ * this time, before frame 0, so that the cloth is carried along instead of torn. */
+#define POSE_IN_S 1.0
+
+struct tl_session {
+    struct tl_settings settings;
+
+    struct tl_moving_light light;
+
+    /* On the heap, because the cloth, the meshes that move and the materials point to them, and a session's
+     * contents move when it takes over another's. */
+    tl_avatar *avatar;   /* NULL: none */
+    tl_garment *garment; /* NULL: none */
+
+    int clip; /* -1: rest pose */
+    struct tl_moving body;
+
+    tl_cloth *cloth; /* NULL: no garment, or one that is played back */
+    tl_collider *collider;
+    tl_playback *playback; /* NULL: the garment is simulated */
+    struct tl_moving dress;
+
+    struct {
+        bool wanted;        /* whatever the image shows */
+        tl_strains *rest;   /* made when first asked for */
+        vec3s *of_vertices; /* of the garment */
+        uint64_t revision;  /* dress.motion_revision that they are of; 0: none */
+    } strain;
+
+    struct tl_looks looks;
+    uint64_t look_revision; /* of meshes and materials; the renderer sees another one as new */
+    uint64_t looks_made;    /* the highest revision so far */
+    struct tl_spare_look {
+        bool is_kept;
+        struct tl_looks looks;
+        uint64_t revision;
+        struct tl_settings made_of;
+    } spares[2]; /* the last one first: the look before, for comparisons that go to and fro, and the next */
+
+    int frame;
+    struct tl_box framed; /* what the camera frames: all there is at frame 0 */
+    tl_surface surfaces[2];
+    size_t surface_count;
+    struct tl_lamp lamps[2];
+};
+
+static bool is_built_in_garment(const char *name)
+{
+    for (const char *const *known = tl_garment_names; *known; known++)
+        if (strcmp(*known, name) == 0)
+            return true;
+    return false;
+}
+
+/* What was guessed is said aloud. */
+static void tell_units(const tl_model *model, const char *option)
+{
+    char *lines[] = {tl_units_describe(model->name, &model->units, option),
+                     tl_units_describe_up(model->name, &model->units)};
+    for (size_t i = 0; i < TL_COUNT(lines); i++) {
+        if (lines[i])
+            tl_info("%s", lines[i]);
+        free(lines[i]);
+    }
+}
+
+static bool load_avatar(tl_session *session, tl_error *error)
+{
+    const char *name = session->settings.scene.avatar;
+    tl_avatar loaded;
+    session->clip = -1;
+    if (strcmp(name, "none") == 0)
+        return true;
+    if (strcmp(name, "form") == 0)
+        loaded = tl_avatar_form();
+    else if (strcmp(name, "ball") == 0)
+        loaded = tl_specimen_ball();
+    else if (!tl_avatar_load_in(name, (enum tl_units)session->settings.scene.avatar_units, &loaded, error))
+        return false;
+    tell_units(&loaded.model, "scene.avatar_units");
+    session->avatar = TL_NEW(tl_avatar);
+    *session->avatar = loaded;
+    const char *clip = session->settings.scene.clip;
+    const tl_model *model = &session->avatar->model;
+    if (strcmp(clip, "none") == 0)
+        return true;
+    session->clip = tl_model_find_clip(model, clip);
+    if (session->clip >= 0 || clip[0] == '\0')
+        return true;
+    if (model->clip_count == 0)
+        return tl_fail(error, TL_INPUT, "%s: has no animation \"%s\", nor any other: leave scene.clip out",
+                       name, clip);
+    return tl_fail(error, TL_INPUT,
+                   "%s: has no animation \"%s\": its first is \"%s\", `toile info` lists them all", name,
+                   clip, model->clips[0].name);
+}
+
+static bool plays_motion(const tl_session *session)
+{
+    return strcmp(session->settings.scene.motion, "none") != 0;
+}
+
+/* A mesh of long edges cannot fold. What is played back has the vertices of its file. */
+static bool refine_garment(const tl_session *session, tl_garment *garment, tl_error *error)
+{
+    float most_m = session->settings.cloth.longest_edge_m;
+    const tl_mesh *mesh = &garment->model.mesh;
+    size_t triangles = mesh->index_count / 3;
+    float longest_m = tl_mesh_longest_edge(mesh);
+    if (plays_motion(session) || !(most_m > 0) || !(longest_m > most_m))
+        return true;
+    if (!tl_garment_refine(garment, most_m, error))
+        return false;
+    tl_info("%s: edges of up to %.3g m cannot fold: %zu triangles were split into %zu with none above %g m; "
+            "cloth.longest_edge_m=0 leaves them as they are",
+            garment->model.name, (double)longest_m, triangles, mesh->index_count / 3, (double)most_m);
+    return true;
+}
+
+/* What nobody wears is not placed by anybody: below the ground it would be hidden, and pushed out of it. */
+static void lift_garment(const tl_session *session, tl_garment *garment)
+{
+    tl_mesh *mesh = &garment->model.mesh;
+    float lowest_m = tl_box_of(mesh->positions, mesh->vertex_count).lower.y;
+    if (session->avatar || !session->settings.image.ground || plays_motion(session) || !(lowest_m < 0))
+        return;
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        mesh->positions[i].y -= lowest_m;
+    tl_info("%s: reached %.2g m below the ground: lifted onto it; image.ground=false leaves it where it was",
+            garment->model.name, (double)-lowest_m);
+}
+
+/* From a file. */
+static bool read_garment(const tl_session *session, tl_garment *out, tl_error *error)
+{
+    const struct tl_scene_params *scene = &session->settings.scene;
+    if (!tl_garment_load_in(scene->garment, (enum tl_units)scene->units, out, error))
+        return false;
+    tell_units(&out->model, "--units");
+    lift_garment(session, out);
+    if (refine_garment(session, out, error))
+        return true;
+    tl_garment_release(out);
+    return false;
+}
+
+static bool make_garment(tl_session *session, tl_garment *out, tl_error *error)
+{
+    const char *name = session->settings.scene.garment, *wearer = session->settings.scene.avatar;
+    if (tl_specimen_make(name, session->settings.cloth.edge_m, out))
+        return true;
+    if (!is_built_in_garment(name))
+        return read_garment(session, out, error);
+    if (!tl_garment_cut(name, session->settings.cloth.edge_m, out, error))
+        return false;
+    bool own_body = session->avatar && strcmp(wearer, "form") != 0;
+    if (!own_body || tl_garment_fit(out, wearer, &session->avatar->model.mesh, error))
+        return true;
+    tl_garment_release(out);
+    return false;
+}
+
+static bool load_garment(tl_session *session, tl_error *error)
+{
+    tl_garment made;
+    if (strcmp(session->settings.scene.garment, "none") == 0)
+        return true;
+    if (!make_garment(session, &made, error))
+        return false;
+    session->garment = TL_NEW(tl_garment);
+    *session->garment = made;
+    return true;
+}
+
+static void pose_avatar(tl_session *session, double time_s)
+{
+    tl_model_pose(&session->avatar->model, session->clip, time_s, session->body.positions);
+    tl_moving_update(&session->body);
+    if (session->collider)
+        tl_collider_move(session->collider, session->body.positions);
+}
+
+static void pull_cloth(tl_session *session)
+{
+    tl_cloth_positions(session->cloth, session->dress.positions);
+    tl_moving_update(&session->dress);
+}
+
+/* From the rest pose to the clip's first pose, vertex by vertex on straight lines. */
+static bool pose_in(tl_session *session, tl_error *error)
+{
+    size_t count = session->avatar->model.mesh.vertex_count;
+    const vec3s *rest = session->avatar->model.mesh.positions;
+    vec3s *first = TL_NEW_ARRAY(vec3s, count);
+    tl_model_pose(&session->avatar->model, session->clip, 0, first);
+    int steps = (int)(POSE_IN_S * session->settings.cloth.frame_rate) + 1;
+    bool done = true;
+    for (int step = 1; done && step <= steps && !tl_interrupted(); step++) {
+        float part = (float)step / (float)steps;
+        for (size_t i = 0; i < count; i++)
+            session->body.positions[i] = glms_vec3_lerp(rest[i], first[i], part);
+        tl_collider_move(session->collider, session->body.positions);
+        done = tl_cloth_step(session->cloth, session->collider, error);
+    }
+    free(first);
+    return done;
+}
+
+/* More than any garment here that fits is, by root mean square: 0.6 to 2.1 %. Preview passes over the edges
+ * once a substep, so what is finer hangs longer, up to the strain limit: the dress by 0.9 % at 2 cm, 1.8 at
+ * 1.07, 3.2 at 0.7; there 1.3 with 60 substeps and 0.7 with 120. Other solvers settle from there, and what
+ * friction holds stays as long: the dress at 1.07 cm by 2.0 % under `settle`, with 100 substeps by 0.75. */
+#define STRETCHED 0.03
+
+static void tell_stretch(const tl_session *session)
+{
+    const struct tl_cloth_params *params = &session->settings.cloth;
+    double strain = tl_cloth_measure(session->cloth, NULL).usual_strain;
+    if (params->settle_s > 0 && strain > STRETCHED)
+        tl_info("the cloth is stretched by %.0f %%: it is tight, or cloth.substeps=%d are too few for edges "
+                "so fine",
+                100 * strain, params->substeps);
+}
+
+static bool drape(tl_session *session, tl_error *error)
+{
+    const struct tl_settings *settings = &session->settings;
+    const tl_mesh *body = session->avatar ? &session->avatar->model.mesh : NULL;
+    session->collider = tl_collider_create(body, settings->image.ground, error);
+    if (!session->collider)
+        return false;
+    session->cloth = tl_cloth_create(session->garment, &settings->fabric, &settings->cloth, error);
+    if (!session->cloth || !tl_cloth_settle(session->cloth, session->collider, error))
+        return false;
+    tell_stretch(session);
+    if (session->avatar && session->clip >= 0 && !pose_in(session, error))
+        return false;
+    tl_cloth_mark_start(session->cloth);
+    tl_moving_create(&session->dress, &session->garment->model, tl_cloth_weld(session->cloth));
+    pull_cloth(session);
+    return true;
+}
+
+static bool begin_cloth(tl_session *session, tl_error *error)
+{
+    if (!session->garment->solid)
+        return drape(session, error);
+    tl_moving_create(&session->dress, &session->garment->model, NULL);
+    tl_moving_update(&session->dress);
+    return true;
+}
+
+static bool play_back(tl_session *session, int number, tl_error *error)
+{
+    if (!tl_playback_pose(session->playback, &session->settings, number, session->dress.positions, error))
+        return false;
+    tl_moving_update(&session->dress);
+    return true;
+}
+
+/* Other programs put the floor elsewhere. */
+static void tell_ground(const tl_session *session)
+{
+    const float noticed_m = 0.01f;
+    float lowest_m = tl_playback_lowest(session->playback);
+    if (session->settings.image.ground && lowest_m < -noticed_m)
+        tl_info("%s: reaches %.2g m below the ground, which hides it there: image.ground=false leaves it out",
+                session->settings.scene.motion, (double)-lowest_m);
+}
+
+/* The motion's first sample says what is sewn together: a garment that was cut as panels has closed its seams
+ * there. */
+static bool begin_playback(tl_session *session, tl_error *error)
+{
+    const tl_model *model = &session->garment->model;
+    session->playback = tl_playback_open(&session->settings, model, error);
+    if (!session->playback)
+        return false;
+    vec3s *first = TL_NEW_ARRAY(vec3s, model->mesh.vertex_count);
+    uint32_t *weld = TL_NEW_ARRAY(uint32_t, model->mesh.vertex_count);
+    bool posed = tl_playback_pose(session->playback, &session->settings, 0, first, error);
+    if (posed) {
+        tl_weld_positions(first, model->mesh.vertex_count, weld);
+        tl_moving_create(&session->dress, model, weld);
+        posed = play_back(session, 0, error);
+    }
+    free(weld);
+    free(first);
+    if (posed)
+        tell_ground(session);
+    return posed;
+}
+
+/* How far a sequence of environments has played at frame `number`, in its own frames. */
+static double light_position(const struct tl_settings *settings, int number)
+{
+    return number / settings->cloth.frame_rate * (double)settings->scene.environment_rate;
+}
+
+static void frame_everything(tl_session *session)
+{
+    struct tl_box box = {{{FLT_MAX, FLT_MAX, FLT_MAX}}, {{-FLT_MAX, -FLT_MAX, -FLT_MAX}}};
+    const struct tl_moving *shown[] = {session->avatar ? &session->body : NULL,
+                                       session->garment ? &session->dress : NULL};
+    for (size_t i = 0; i < TL_COUNT(shown); i++) {
+        if (!shown[i])
+            continue;
+        struct tl_box part = tl_box_of(shown[i]->positions, shown[i]->model->mesh.vertex_count);
+        box.lower = glms_vec3_minv(box.lower, part.lower);
+        box.upper = glms_vec3_maxv(box.upper, part.upper);
+    }
+    session->framed = box;
+}
+
+bool tl_session_make_look(const tl_session *session, const struct tl_settings *settings, struct tl_looks *out,
+                          tl_error *error)
+{
+    return tl_looks_make(settings, session->garment ? &session->garment->model : NULL,
+                         session->avatar ? &session->avatar->model : NULL, out, error);
+}
+
+static bool load_all(tl_session *session, tl_error *error)
+{
+    const char *environment = session->settings.scene.environment;
+    if (!tl_moving_light_open(&session->light, environment, 0, error) || !load_avatar(session, error) ||
+        !load_garment(session, error))
+        return false;
+    if (!session->avatar && !session->garment)
+        return tl_fail(error, TL_USAGE, "scene: neither a garment nor an avatar: name at least one");
+    if (!tl_session_make_look(session, &session->settings, &session->looks, error))
+        return false;
+    session->look_revision = ++session->looks_made;
+    if (session->avatar)
+        tl_moving_create(&session->body, &session->avatar->model, NULL);
+    if (session->garment) {
+        if (plays_motion(session) ? !begin_playback(session, error) : !begin_cloth(session, error))
+            return false;
+    } else if (plays_motion(session)) {
+        return tl_fail(error, TL_USAGE,
+                       "scene.motion: there is no garment that could move: add --garment FILE");
+    }
+    if (tl_interrupted())
+        return tl_fail(error, TL_INTERRUPTED, "stopped while the scene was made ready");
+    if (session->avatar)
+        pose_avatar(session, 0);
+    frame_everything(session);
+    return true;
+}
+
+tl_session *tl_session_create(const struct tl_settings *settings, tl_error *error)
+{
+    tl_session *session = TL_NEW(tl_session);
+    session->settings = *settings;
+    if (!load_all(session, error))
+        tl_session_destroy(&session);
+    return session;
+}
+
+void tl_session_destroy(tl_session **handle)
+{
+    tl_session *session = *handle;
+    if (!session)
+        return;
+    tl_moving_release(&session->dress);
+    tl_moving_release(&session->body);
+    tl_cloth_destroy(&session->cloth);
+    tl_collider_destroy(&session->collider);
+    tl_playback_close(&session->playback);
+    if (session->garment)
+        tl_garment_release(session->garment);
+    if (session->avatar)
+        tl_avatar_release(session->avatar);
+    free(session->garment);
+    free(session->avatar);
+    tl_moving_light_release(&session->light);
+    tl_strains_destroy(&session->strain.rest);
+    free(session->strain.of_vertices);
+    tl_looks_release(&session->looks);
+    for (size_t i = 0; i < TL_COUNT(session->spares); i++)
+        tl_looks_release(&session->spares[i].looks);
+    free(session);
+    *handle = NULL;
+}
+
+bool tl_session_advance(tl_session *session, tl_error *error)
+{
+    double time_s = (session->frame + 1) / session->settings.cloth.frame_rate;
+    double position = light_position(&session->settings, session->frame + 1);
+    if (!tl_moving_light_follow(&session->light, position, error))
+        return false;
+    if (session->clip >=
+        0) /* else it stands as it stood, and nothing that follows from it need be done again */
+        pose_avatar(session, time_s);
+    if (session->cloth) {
+        if (!tl_cloth_step(session->cloth, session->collider, error))
+            return false;
+        pull_cloth(session);
+    }
+    if (session->playback && !play_back(session, session->frame + 1, error))
+        return false;
+    session->frame++;
+    return true;
+}
+
+bool tl_session_reset(tl_session *session, tl_error *error)
+{
+    if (!tl_moving_light_follow(&session->light, 0, error))
+        return false;
+    if (session->garment)
+        tl_moving_restart(&session->dress);
+    if (session->playback && !play_back(session, 0, error))
+        return false;
+    session->frame = 0;
+    if (session->avatar) {
+        pose_avatar(session, 0);
+        tl_moving_restart(&session->body);
+        pose_avatar(session, 0); /* twice: the collider is at rest */
+    }
+    if (session->cloth) {
+        tl_cloth_reset(session->cloth);
+        pull_cloth(session);
+    }
+    return true;
+}
+
+bool tl_session_go_to(tl_session *session, int number, tl_error *error)
+{
+    if (number < session->frame && !tl_session_reset(session, error))
+        return false;
+    struct tl_progress progress = tl_progress_begin(session->playback ? "playing" : "simulating");
+    int first = session->frame;
+    bool done = true;
+    while (done && session->frame < number) {
+        if (tl_interrupted())
+            done = tl_fail(error, TL_INTERRUPTED, "stopped at frame %d", session->frame);
+        else
+            done = tl_session_advance(session, error);
+        tl_progress_update(&progress, session->frame - first, number - first);
+    }
+    tl_progress_end(&progress);
+    return done;
+}
+
+int tl_session_frame_number(const tl_session *session)
+{
+    return session->frame;
+}
+
+static bool same_text(const char *a, const char *b)
+{
+    return strcmp(a, b) == 0;
+}
+
+/* What cannot be changed in place: who wears what, and what is decided when the cloth is made. */
+bool tl_session_needs_scene(const struct tl_settings *old, const struct tl_settings *new)
+{
+    return !same_text(old->scene.garment, new->scene.garment) ||
+           !same_text(old->scene.avatar, new->scene.avatar) || !same_text(old->scene.clip, new->scene.clip) ||
+           !same_text(old->scene.motion, new->scene.motion) || old->scene.units != new->scene.units ||
+           old->scene.avatar_units != new->scene.avatar_units ||
+           old->scene.motion_rate != new->scene.motion_rate || old->cloth.edge_m != new->cloth.edge_m ||
+           old->cloth.longest_edge_m != new->cloth.longest_edge_m || old->image.ground != new->image.ground;
+}
+
+bool tl_session_needs_light(const struct tl_settings *old, const struct tl_settings *new)
+{
+    return !same_text(old->scene.environment, new->scene.environment);
+}
+
+bool tl_session_needs_look(const struct tl_settings *old, const struct tl_settings *new)
+{
+    struct tl_settings same = *new;
+    tl_looks_take(old, &same);
+    return !tl_settings_equal(&same, new);
+}
+
+void tl_session_keep_scene(const struct tl_settings *kept, struct tl_settings *settings)
+{
+    if (!same_text(settings->scene.garment, kept->scene.garment)) { /* its colourways are its own */
+        memcpy(settings->scene.colourway, kept->scene.colourway, sizeof settings->scene.colourway);
+        memcpy(settings->scene.colourways, kept->scene.colourways, sizeof settings->scene.colourways);
+        settings->colourways = kept->colourways;
+    }
+    memcpy(settings->scene.garment, kept->scene.garment, sizeof settings->scene.garment);
+    memcpy(settings->scene.avatar, kept->scene.avatar, sizeof settings->scene.avatar);
+    memcpy(settings->scene.clip, kept->scene.clip, sizeof settings->scene.clip);
+    memcpy(settings->scene.motion, kept->scene.motion, sizeof settings->scene.motion);
+    memcpy(settings->scene.environment, kept->scene.environment, sizeof settings->scene.environment);
+    settings->scene.units = kept->scene.units;
+    settings->scene.avatar_units = kept->scene.avatar_units;
+    settings->scene.motion_rate = kept->scene.motion_rate;
+    settings->cloth.edge_m = kept->cloth.edge_m;
+    settings->cloth.longest_edge_m = kept->cloth.longest_edge_m;
+    settings->image.ground = kept->image.ground;
+}
+
+/* Revisions go on rising, so that the renderer sees everything as new. */
+void tl_session_replace(tl_session *session, tl_session **made)
+{
+    tl_session *fresh = *made;
+    fresh->light.revision += session->light.revision;
+    fresh->looks_made += session->looks_made + 1;
+    fresh->look_revision = fresh->looks_made;
+    fresh->body.motion_revision += session->body.motion_revision;
+    fresh->dress.motion_revision += session->dress.motion_revision;
+    fresh->strain.wanted = session->strain.wanted;
+    tl_session swap = *session;
+    *session = *fresh;
+    *fresh = swap;
+    tl_session_destroy(made);
+}
+
+void tl_session_replace_light(tl_session *session, struct tl_moving_light *made, const char *name)
+{
+    made->revision += session->light.revision;
+    tl_moving_light_release(&session->light);
+    session->light = *made;
+    *made = (struct tl_moving_light){0};
+    snprintf(session->settings.scene.environment, sizeof session->settings.scene.environment, "%s", name);
+}
+
+bool tl_session_restart(tl_session *session, const struct tl_settings *settings, tl_error *error)
+{
+    tl_session *fresh = tl_session_create(settings, error);
+    if (!fresh)
+        return false;
+    tl_session_replace(session, &fresh);
+    return true;
+}
+
+/* Light and cloth. */
+static bool change_in_place(tl_session *session, const struct tl_settings *settings, tl_error *error)
+{
+    double position = light_position(settings, session->frame);
+    const char *environment = settings->scene.environment;
+    if (tl_session_needs_light(&session->settings, settings)
+            ? !tl_moving_light_open(&session->light, environment, position, error)
+            : !tl_moving_light_follow(&session->light, position, error))
+        return false;
+    /* Cloth that is set anew forgets what it touches: only what changes it may do that. */
+    const struct tl_settings *old = &session->settings;
+    bool same_cloth = tl_options_equal(&tl_cloth_fabric_options, &old->fabric, &settings->fabric) &&
+                      tl_options_equal(&tl_cloth_options, &old->cloth, &settings->cloth);
+    return !session->cloth || same_cloth ||
+           tl_cloth_set(session->cloth, &settings->fabric, &settings->cloth, error);
+}
+
+static struct tl_spare_look *find_spare(tl_session *session, const struct tl_settings *settings)
+{
+    for (size_t i = 0; i < TL_COUNT(session->spares); i++)
+        if (session->spares[i].is_kept && tl_looks_are_same(&session->spares[i].made_of, settings))
+            return &session->spares[i];
+    return NULL;
+}
+
+/* In the place of the oldest one. */
+static void add_spare(tl_session *session, const struct tl_settings *made_of, const struct tl_looks *looks,
+                      uint64_t revision)
+{
+    struct tl_spare_look *spares = session->spares;
+    const size_t last = TL_COUNT(session->spares) - 1;
+    tl_looks_release(&spares[last].looks);
+    memmove(spares + 1, spares, last * sizeof *spares);
+    spares[0] = (struct tl_spare_look){true, *looks, revision, *made_of};
+}
+
+/* Takes up the look that was set aside, in exchange for the present one. */
+static void exchange_looks(tl_session *session, struct tl_spare_look *spare)
+{
+    const struct tl_spare_look taken = *spare;
+    spare->looks = (struct tl_looks){0};
+    memmove(session->spares + 1, session->spares, (size_t)(spare - session->spares) * sizeof *spare);
+    session->spares[0] =
+        (struct tl_spare_look){true, session->looks, session->look_revision, session->settings};
+    session->looks = taken.looks;
+    session->look_revision = taken.revision;
+}
+
+void tl_session_keep_look(tl_session *session, const struct tl_settings *made_of, struct tl_looks *made)
+{
+    if (tl_looks_are_same(&session->settings, made_of) || find_spare(session, made_of))
+        tl_looks_release(made);
+    else
+        add_spare(session, made_of, made, ++session->looks_made);
+    *made = (struct tl_looks){0};
+}
+
+bool tl_session_apply(tl_session *session, const struct tl_settings *settings, tl_error *error)
+{
+    if (tl_session_needs_scene(&session->settings, settings))
+        return tl_session_restart(session, settings, error);
+    struct tl_looks looks = {0};
+    bool new_look = !tl_looks_are_same(&session->settings, settings);
+    struct tl_spare_look *spare = find_spare(session, settings);
+    if (new_look && !spare && !tl_session_make_look(session, settings, &looks, error))
+        return false;
+    if (!change_in_place(session, settings, error)) {
+        tl_looks_release(&looks);
+        return false;
+    }
+    if (new_look && spare) {
+        exchange_looks(session, spare);
+    } else if (new_look) {
+        add_spare(session, &session->settings, &session->looks, session->look_revision);
+        session->looks = looks;
+        session->look_revision = ++session->looks_made;
+    }
+    session->settings = *settings;
+    return true;
+}
+
+const struct tl_settings *tl_session_settings(const tl_session *session)
+{
+    return &session->settings;
+}
+
+/* Of cloth, when somebody looks at them. */
+static const vec3s *strains_of_garment(tl_session *session)
+{
+    bool shown = session->strain.wanted || tl_view_is_strain(session->settings.image.view);
+    if (!shown || session->garment->solid)
+        return NULL;
+    if (!session->strain.rest) {
+        session->strain.rest = tl_strains_create(session->garment);
+        session->strain.of_vertices = TL_NEW_ARRAY(vec3s, session->garment->model.mesh.vertex_count);
+    }
+    if (session->strain.revision != session->dress.motion_revision)
+        tl_strains_update(session->strain.rest, session->dress.positions, session->strain.of_vertices);
+    session->strain.revision = session->dress.motion_revision;
+    return session->strain.of_vertices;
+}
+
+void tl_session_want_strains(tl_session *session, bool wanted)
+{
+    session->strain.wanted = wanted;
+}
+
+size_t tl_session_colourways(const tl_session *session, const char *const **names)
+{
+    *names = (const char *const *)session->looks.names;
+    return session->looks.name_count;
+}
+
+tl_frame tl_session_frame(tl_session *session)
+{
+    session->surface_count = 0;
+    if (session->avatar)
+        session->surfaces[session->surface_count++] =
+            tl_moving_surface(&session->body, "avatar", &session->looks.avatar);
+    if (session->garment) {
+        tl_surface *garment = &session->surfaces[session->surface_count++];
+        *garment = tl_moving_surface(&session->dress, "garment", &session->looks.garment);
+        garment->strains = strains_of_garment(session);
+    }
+    for (size_t i = 0; i < session->surface_count; i++)
+        session->surfaces[i].topology_revision = session->look_revision;
+    const struct tl_image_params *image = &session->settings.image;
+    struct tl_camera camera = tl_camera_frame(&session->settings.camera, session->framed,
+                                              (float)image->width / (float)image->height);
+    session->lamps[0] = tl_lamp_make(&session->settings.lamp, camera.target);
+    session->lamps[1] = tl_lamp_make(&session->settings.fill, camera.target);
+    return (tl_frame){
+        .camera = camera,
+        .surfaces = session->surfaces,
+        .surface_count = session->surface_count,
+        .environment = &session->light.environment,
+        .environment_revision = session->light.revision,
+        .environment_yaw = glm_rad(session->settings.scene.environment_yaw_deg),
+        .lamps = session->lamps,
+        .lamp_count = TL_COUNT(session->lamps),
+        .time_s = session->frame / session->settings.cloth.frame_rate,
+    };
+}
+
+tl_frame tl_session_frame_in(const tl_session *session, const struct tl_looks *looks, tl_surface surfaces[2])
+{
+    size_t count = 0;
+    if (session->avatar)
+        surfaces[count++] = tl_moving_surface(&session->body, "avatar", &looks->avatar);
+    if (session->garment)
+        surfaces[count++] = tl_moving_surface(&session->dress, "garment", &looks->garment);
+    return (tl_frame){.surfaces = surfaces, .surface_count = count};
+}
+
+bool tl_session_light_plays(const tl_session *session)
+{
+    return session->light.sequence.count > 0;
+}
+
+/* Moeller & Trumbore 1997; both sides count. */
+static bool hit_triangle(vec3s origin, vec3s direction, const vec3s corners[3], float *distance_m,
+                         float weights[3])
+{
+    vec3s side = glms_vec3_sub(corners[1], corners[0]), other = glms_vec3_sub(corners[2], corners[0]);
+    vec3s p = glms_vec3_cross(direction, other);
+    float determinant = glms_vec3_dot(side, p);
+    if (determinant == 0)
+        return false;
+    vec3s to_origin = glms_vec3_sub(origin, corners[0]);
+    vec3s q = glms_vec3_cross(to_origin, side);
+    float u = glms_vec3_dot(to_origin, p) / determinant;
+    float v = glms_vec3_dot(direction, q) / determinant;
+    *distance_m = glms_vec3_dot(other, q) / determinant;
+    weights[0] = 1 - u - v;
+    weights[1] = u;
+    weights[2] = v;
+    return u >= 0 && v >= 0 && u + v <= 1 && *distance_m > 0;
+}
+
+bool tl_session_pick(const tl_session *session, vec3s origin, vec3s direction, uint32_t *vertex,
+                     float *distance_m)
+{
+    if (!session->garment)
+        return false;
+    const tl_mesh *mesh = &session->garment->model.mesh;
+    float nearest = FLT_MAX;
+    for (size_t i = 0; i + 2 < mesh->index_count; i += 3) {
+        const uint32_t *index = &mesh->indices[i];
+        const vec3s corners[3] = {session->dress.positions[index[0]], session->dress.positions[index[1]],
+                                  session->dress.positions[index[2]]};
+        float distance, weights[3];
+        if (!hit_triangle(origin, direction, corners, &distance, weights) || distance >= nearest)
+            continue;
+        nearest = distance;
+        int best = weights[1] > weights[0] ? 1 : 0;
+        *vertex = index[weights[2] > weights[best] ? 2 : best];
+    }
+    *distance_m = nearest;
+    return nearest < FLT_MAX;
+}
+
+bool tl_session_plays_clip(const tl_session *session)
+{
+    return session->clip >= 0;
+}
+
+const tl_model *tl_session_garment(const tl_session *session)
+{
+    return session->garment ? &session->garment->model : NULL;
+}
+
+tl_cloth *tl_session_cloth(tl_session *session)
+{
+    return session->cloth;
+}
+
+struct tl_cloth_report tl_session_report(const tl_session *session)
+{
+    if (!session->cloth)
+        return (struct tl_cloth_report){0};
+    return tl_cloth_measure(session->cloth, session->collider);
+}

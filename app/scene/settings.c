@@ -1,0 +1,433 @@
+#include "app/scene/settings.h"
+
+#include "assets/base/units.h"
+#include "assets/model.h"
+#include "config/embedded.h"
+#include "config/file.h"
+#include "config/log.h"
+#include "config/memory.h"
+#include "config/words.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* What assets/garment.h, assets/builtin/specimen.h, assets/avatar.h and assets/builtin/studio.h make without
+ * a file, and "none".
+ */
+static const char *const garment_names[] = {"dress",  "skirt", "layers", "sheet", "disc",
+                                            "sphere", "torus", "none",   NULL};
+static const char *const avatar_names[] = {"form", "ball", "none", NULL};
+static const char *const environment_names[] = {"studio", "white", "none", NULL};
+static const char *const motion_names[] = {"none", NULL};
+
+#define OWN "own"
+static const char *const colourways_names[] = {OWN, "dress", "skirt", "composed", NULL};
+
+#define TL_SCENE_DEFAULTS                                                                                    \
+    .garment = "dress", .avatar = "form", .motion = "none", .environment = "studio", .environment_rate = 30, \
+    .colourways = OWN, .preset = "review"
+
+static const struct tl_option scene_rows[] = {
+    TL_OPTION_NAME_OR_PATH(struct tl_scene_params, garment, garment_names,
+                           "what is worn: built in, or a glTF or OBJ file"),
+    TL_OPTION_ENUM(
+        struct tl_scene_params, units, tl_units_names,
+        "of the garment's file and its motion; auto: glTF is in metres, OBJ is guessed by its size"),
+    TL_OPTION_NAME_OR_PATH(
+        struct tl_scene_params, motion, motion_names,
+        "how the garment moves instead of being simulated: a .pc2 or .mdd point cache, or OBJ "
+        "files, frame.####.obj"),
+    TL_OPTION_FLOAT(struct tl_scene_params, motion_rate, 0, 100000, "1/s",
+                    "frames of the motion a second: faster; 0: what its file says, or one a frame"),
+    TL_OPTION_NAME_OR_PATH(struct tl_scene_params, avatar, avatar_names,
+                           "who wears it: built in, or a glTF or OBJ file"),
+    TL_OPTION_ENUM(struct tl_scene_params, avatar_units, tl_units_names, "of the avatar's file, as units"),
+    TL_OPTION_NAME_OR_PATH(struct tl_scene_params, environment, environment_names,
+                           "the light: built in (white: 1 from everywhere), an .exr or .hdr file, or a "
+                           "sequence of them, sky.####.exr: "
+                           "each # is a digit of the frame's number"),
+    TL_OPTION_NAME_OR_PATH(
+        struct tl_scene_params, fabric, tl_embedded_fabrics_names,
+        "sets the tables fabric, weave and material: built in, or a YAML file; left out: satin on built-in "
+        "garments, none on a garment file"),
+    TL_OPTION_NAME_OR_PATH(struct tl_scene_params, overlay_fabric, tl_embedded_fabrics_names,
+                           "sets the table overlay, and the weave, of a garment's second fabric; how it "
+                           "moves is scene.fabric's"),
+    TL_OPTION_STRING(struct tl_scene_params, colourway,
+                     "fabrics and colours that the scene or a glTF file (its variants) has under this name; "
+                     "empty: as they are"),
+    TL_OPTION_NAME_OR_PATH(
+        struct tl_scene_params, colourways, colourways_names,
+        "where colourways are from: this scene or, when it has none, its built-in garment (own); or "
+        "another scene, built in or a YAML file"),
+    TL_OPTION_NAME_OR_PATH(struct tl_scene_params, preset, tl_embedded_presets_names,
+                           "sets quality in the tables cloth, light and image: built in, or a YAML file"),
+    TL_OPTION_STRING(struct tl_scene_params, clip,
+                     "animation of the avatar; empty: its first; none: the rest pose"),
+    TL_OPTION_FLOAT(struct tl_scene_params, environment_yaw_deg, -3600, 3600, "degrees",
+                    "turns the environment about the vertical, counter-clockwise from above"),
+    TL_OPTION_FLOAT(struct tl_scene_params, environment_rate, 0, 1000, "1/s",
+                    "frames of a sequence of environments a second; 0 stays at its first"),
+};
+static const struct tl_option_table scene_table =
+    TL_OPTION_TABLE("scene", "what is shown", scene_rows, struct tl_scene_params, TL_SCENE_DEFAULTS);
+
+#define TL_CAMERA_DEFAULTS .yaw_deg = 25, .pitch_deg = 8, .distance_m = 0, .fov_deg = 30
+
+static const struct tl_option camera_rows[] = {
+    TL_OPTION_FLOAT(struct tl_camera_params, yaw_deg, -3600, 3600, "degrees",
+                    "where the eye is about the vertical: 0 looks from +Z, positive moves it towards +X"),
+    TL_OPTION_FLOAT(struct tl_camera_params, pitch_deg, -90, 90, "degrees", "positive looks down"),
+    TL_OPTION_FLOAT(struct tl_camera_params, distance_m, 0, 10000, "m",
+                    "from the target; 0 frames the avatar and the garment"),
+    TL_OPTION_VECTOR(struct tl_camera_params, target, -10000, 10000, "m",
+                     "what the eye looks at and turns about, once distance_m is given; 0 0 0: the middle of "
+                     "all there is"),
+    TL_OPTION_FLOAT(struct tl_camera_params, fov_deg, 1, 150, "degrees",
+                    "vertical field of view; larger looks wider"),
+};
+const struct tl_option_table tl_camera_options = TL_OPTION_TABLE(
+    "camera", "an orbit about a target", camera_rows, struct tl_camera_params, TL_CAMERA_DEFAULTS);
+
+/* The reference page's order. A preset sets CLOTH, LIGHT and IMAGE; a fabric FABRIC, WEAVE and MATERIAL. */
+enum {
+    SCENE,
+    CAMERA,
+    CLOTH,
+    FABRIC,
+    WEAVE,
+    MATERIAL,
+    OVERLAY,
+    LIGHT,
+    MAPS,
+    LAMP,
+    FILL,
+    SHADING,
+    DETAIL,
+    IMAGE,
+    REFERENCE
+};
+
+void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[TL_SETTINGS_TABLES])
+{
+    bindings[SCENE] = (struct tl_binding){&scene_table, &settings->scene};
+    bindings[CAMERA] = (struct tl_binding){&tl_camera_options, &settings->camera};
+    bindings[CLOTH] = (struct tl_binding){&tl_cloth_options, &settings->cloth};
+    bindings[FABRIC] = (struct tl_binding){&tl_cloth_fabric_options, &settings->fabric};
+    bindings[WEAVE] = (struct tl_binding){&tl_weave_options, &settings->weave};
+    bindings[MATERIAL] = (struct tl_binding){&tl_material_options, &settings->material};
+    bindings[OVERLAY] = (struct tl_binding){&tl_overlay_options, &settings->overlay};
+    bindings[LIGHT] = (struct tl_binding){&tl_light_options, &settings->light};
+    bindings[DETAIL] = (struct tl_binding){&tl_detail_options, &settings->detail};
+    bindings[MAPS] = (struct tl_binding){&tl_maps_options, &settings->maps};
+    bindings[LAMP] = (struct tl_binding){&tl_lamp_options, &settings->lamp};
+    bindings[FILL] = (struct tl_binding){&tl_fill_options, &settings->fill};
+    bindings[SHADING] = (struct tl_binding){&tl_shading_options, &settings->shading};
+    bindings[IMAGE] = (struct tl_binding){&tl_image_options, &settings->image};
+    bindings[REFERENCE] = (struct tl_binding){&tl_reference_options, &settings->reference};
+}
+
+struct tl_render_settings tl_settings_render(const struct tl_settings *settings)
+{
+    return (struct tl_render_settings){.light = settings->light,
+                                       .detail = settings->detail,
+                                       .maps = settings->maps,
+                                       .shading = settings->shading,
+                                       .image = settings->image,
+                                       .reference = settings->reference};
+}
+
+bool tl_settings_equal(const struct tl_settings *a, const struct tl_settings *b)
+{
+    struct tl_settings first = *a, second = *b; /* bindings can be written through, so they get copies */
+    struct tl_binding first_bindings[TL_SETTINGS_TABLES], second_bindings[TL_SETTINGS_TABLES];
+    tl_settings_bind(&first, first_bindings);
+    tl_settings_bind(&second, second_bindings);
+    for (size_t i = 0; i < TL_SETTINGS_TABLES; i++)
+        if (!tl_options_equal(first_bindings[i].table, first_bindings[i].params, second_bindings[i].params))
+            return false;
+    return tl_colourways_equal(&a->colourways, &b->colourways);
+}
+
+/* One kind of file that can be named or lie on disk. */
+struct layer {
+    const char *kind; /* for messages */
+    const struct tl_embedded *list;
+    const char *const *names;
+};
+static const struct layer preset_layer = {"preset", tl_embedded_presets, tl_embedded_presets_names};
+static const struct layer fabric_layer = {"fabric", tl_embedded_fabrics, tl_embedded_fabrics_names};
+static const struct layer scene_layer = {"scene", tl_embedded_scenes, tl_embedded_scenes_names};
+
+static bool fail_name(const struct layer *layer, const char *name, tl_error *error)
+{
+    size_t count = tl_count_words(layer->names);
+    char *list = tl_join_words(layer->names, count, ", ", ", ");
+    const char *near = tl_nearest_word(name, layer->names, count);
+    tl_fail(error, TL_USAGE, "%s: no such %s: expected %s, or a YAML file%s%s%s", name, layer->kind, list,
+            near ? ": did you mean " : "", near ? near : "", near ? "?" : "");
+    free(list);
+    return false;
+}
+
+/* `section`: of records that the file may have, or NULL. */
+static bool apply_with(const struct layer *layer, const char *name, const struct tl_binding *bindings,
+                       size_t count, const struct tl_record_section *section, tl_error *error)
+{
+    if (tl_option_is_file_name(name))
+        return tl_options_read_yaml_file_with(bindings, count, section, name, error);
+    char *file = tl_format("%s.yaml", name);
+    const struct tl_embedded *entry = tl_embedded_find(layer->list, file);
+    free(file);
+    if (!entry)
+        return fail_name(layer, name, error);
+    return tl_options_read_yaml_with(bindings, count, section, entry->name, entry->data, entry->size, error);
+}
+
+static bool apply(const struct layer *layer, const char *name, const struct tl_binding *bindings,
+                  size_t count, tl_error *error)
+{
+    return apply_with(layer, name, bindings, count, NULL, error);
+}
+
+static bool apply_preset(const struct tl_binding *all, const char *name, tl_error *error)
+{
+    const struct tl_binding bindings[] = {all[CLOTH], all[LIGHT], all[IMAGE]};
+    return apply(&preset_layer, name, bindings, TL_COUNT(bindings), error);
+}
+
+static bool apply_fabric(const struct tl_binding *all, const char *name, tl_error *error)
+{
+    const struct tl_binding bindings[] = {all[FABRIC], all[WEAVE], all[MATERIAL]};
+    return apply(&fabric_layer, name, bindings, TL_COUNT(bindings), error);
+}
+
+bool tl_settings_read_look(const char *fabric, struct tl_material_params *params,
+                           struct tl_weave_params *weave, tl_error *error)
+{
+    struct tl_cloth_fabric unused;
+    const struct tl_binding bindings[] = {
+        {&tl_cloth_fabric_options, &unused}, {&tl_weave_options, weave}, {&tl_material_options, params}};
+    tl_options_reset(bindings, TL_COUNT(bindings));
+    return apply(&fabric_layer, fabric, bindings, TL_COUNT(bindings), error);
+}
+
+bool tl_settings_assign(struct tl_settings *settings, const char *const *assignments, size_t most,
+                        tl_error *error)
+{
+    struct tl_binding bindings[TL_SETTINGS_TABLES];
+    tl_settings_bind(settings, bindings);
+    for (size_t i = 0; i < most && assignments[i]; i++)
+        if (!tl_options_set_assignment(bindings, TL_SETTINGS_TABLES, assignments[i], error))
+            return false;
+    return true;
+}
+
+/* A model in place of a scene is shown as it is: no garment to drape, its own materials. */
+static bool apply_model(const struct tl_binding *all, const char *path, tl_error *error)
+{
+    return tl_options_set(all, TL_SETTINGS_TABLES, "scene.avatar", path, "SCENE", NULL, error) &&
+           tl_options_set(all, TL_SETTINGS_TABLES, "scene.garment", "none", "SCENE", NULL, error) &&
+           tl_options_set(all, TL_SETTINGS_TABLES, "scene.fabric", "none", "SCENE", NULL, error);
+}
+
+static bool has_own_colourways(const struct tl_scene_params *scene)
+{
+    return strcmp(scene->colourways, OWN) == 0;
+}
+
+/* A scene's tables. A file's own colourways are meant unless it names others; those of a built-in scene
+ * belong to its garment. */
+static bool apply_scene(const struct tl_binding *all, const char *name, tl_error *error)
+{
+    struct tl_colourways found;
+    struct tl_colourways_reader reader;
+    tl_colourways_begin(&reader, "", &found);
+    const struct tl_record_section section = tl_colourways_section(&reader);
+    if (!apply_with(&scene_layer, name, all, TL_SETTINGS_TABLES, &section, error))
+        return false;
+    bool brings = found.name_count > 0 && tl_option_is_file_name(name);
+    return !brings || !has_own_colourways(all[SCENE].params) ||
+           tl_options_set(all, TL_SETTINGS_TABLES, "scene.colourways", name, "SCENE", NULL, error);
+}
+
+/* The two topmost layers. */
+static bool apply_source(const struct tl_binding *all, const struct tl_settings_source *source,
+                         tl_error *error)
+{
+    const char *scene = source->scene_file ? source->scene_file : "dress";
+    bool applied = tl_model_is_file(scene) ? apply_model(all, scene, error) : apply_scene(all, scene, error);
+    for (size_t i = 0; applied && i < source->assignment_count; i++)
+        applied = tl_options_set_assignment(all, TL_SETTINGS_TABLES, source->assignments[i], error);
+    return applied;
+}
+
+/* A garment file brings its own look; what is built in needs a fabric to have one. */
+static void choose_fabric(struct tl_scene_params *scene)
+{
+    if (scene->fabric[0] == '\0')
+        strcpy(scene->fabric, tl_option_is_file_name(scene->garment) ? "none" : "satin");
+    if (scene->overlay_fabric[0] == '\0')
+        strcpy(scene->overlay_fabric, "none");
+}
+
+/* The built-in scene that shows a built-in garment has its colourways too. */
+const char *tl_settings_colourways_source(const struct tl_settings *settings)
+{
+    static const char *const sources[][2] = {{"dress", "dress"}, {"skirt", "skirt"}, {"layers", "composed"}};
+    const struct tl_scene_params *scene = &settings->scene;
+    if (!has_own_colourways(scene))
+        return scene->colourways;
+    for (size_t i = 0; i < TL_COUNT(sources); i++)
+        if (strcmp(scene->garment, sources[i][0]) == 0)
+            return sources[i][1];
+    return "";
+}
+
+/* Of the scene only its section of colourways is wanted here. */
+static bool read_colourways(struct tl_settings *settings, tl_error *error)
+{
+    const char *source = tl_settings_colourways_source(settings);
+    struct tl_colourways_reader reader;
+    tl_colourways_begin(&reader, settings->scene.colourway, &settings->colourways);
+    const struct tl_record_section section = tl_colourways_section(&reader);
+    if (source[0] == '\0')
+        return true;
+    struct tl_settings *unused = TL_NEW(struct tl_settings);
+    struct tl_binding all[TL_SETTINGS_TABLES];
+    tl_settings_bind(unused, all);
+    bool read = apply_with(&scene_layer, source, all, TL_SETTINGS_TABLES, &section, error);
+    free(unused);
+    return read;
+}
+
+/* A model alone is what a motion moves, and what --units means. */
+static void choose_role(struct tl_scene_params *scene)
+{
+    bool moves = strcmp(scene->motion, "none") != 0 && strcmp(scene->garment, "none") == 0;
+    if (moves) {
+        strcpy(scene->garment, scene->avatar);
+        strcpy(scene->avatar, "none");
+    } else if (scene->avatar_units == TL_UNITS_AUTO) {
+        scene->avatar_units = scene->units;
+    }
+}
+
+/* Of what a material is beyond two lobes: what environment maps do not show, and what they do. */
+static bool is_more_than_maps_show(const struct tl_material_params *look)
+{
+    return look->model != TL_REFLECT_PHONG || look->openness > 0;
+}
+
+static bool is_layered(const struct tl_material_params *look)
+{
+    return look->coat > 0 || look->transmission[0] > 0 || look->transmission[1] > 0 ||
+           look->transmission[2] > 0;
+}
+
+/* What was asked for and will not be done is said. */
+static void tell_what_is_unused(const struct tl_settings *settings)
+{
+    const struct tl_light_params *light = &settings->light;
+    bool by_maps = light->method == TL_METHOD_MAPS;
+    bool layers = is_layered(&settings->material) || is_layered(&settings->overlay);
+    bool others = is_more_than_maps_show(&settings->material) || is_more_than_maps_show(&settings->overlay);
+    bool shows_all =
+        light->method == TL_METHOD_REFERENCE || (!by_maps && light->visibility == TL_VISIBILITY_RAYS);
+    if (by_maps && others)
+        tl_warn("material: model and openness are shown by light.visibility rays and by light.method "
+                "reference only: "
+                "environment maps show two lobes, a coat and light that comes through");
+    else if (!by_maps && !shows_all && (layers || others))
+        tl_warn(
+            "material: model, coat, transmission and openness are shown by light.visibility rays and by "
+            "light.method reference only: shadow maps know two plain lobes; light.method maps shows coat and "
+            "transmission, without shadows");
+    if (light->method == TL_METHOD_PEM && light->visibility == TL_VISIBILITY_RAYS &&
+        light->composition != TL_COMPOSE_RATIO)
+        tl_warn(
+            "light.composition: rays always compose by ratio; this option is for light.visibility vsm and "
+            "depth");
+}
+
+/* The topmost layers name the preset and the fabric that lie below them, so they are read twice: once to
+ * learn these names, and once more in their place. */
+bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *source, tl_error *error)
+{
+    struct tl_settings settings;
+    memset(&settings, 0, sizeof settings); /* padding too: equal settings are equal bytes */
+    struct tl_binding all[TL_SETTINGS_TABLES];
+    tl_settings_bind(&settings, all);
+    tl_options_reset(all, TL_SETTINGS_TABLES);
+    if (!apply_source(all, source, error))
+        return false;
+    struct tl_scene_params named = settings.scene;
+    choose_fabric(&named);
+    tl_options_reset(all, TL_SETTINGS_TABLES);
+    if (!apply_preset(all, named.preset, error) || !apply_fabric(all, named.fabric, error) ||
+        !tl_settings_read_look(named.overlay_fabric, &settings.overlay, &settings.overlay_weave, error) ||
+        !apply_source(all, source, error))
+        return false;
+    if (source->scene_file && tl_model_is_file(source->scene_file))
+        choose_role(&named);
+    settings.scene = named;
+    if (!read_colourways(&settings, error))
+        return false;
+    tell_what_is_unused(&settings);
+    *out = settings;
+    return true;
+}
+
+/* What the last fabric set and this one does not must not remain: the tables begin anew. */
+bool tl_settings_apply_fabric(struct tl_settings *settings, const char *name, tl_error *error)
+{
+    struct tl_settings changed = *settings;
+    struct tl_binding all[TL_SETTINGS_TABLES];
+    tl_settings_bind(&changed, all);
+    tl_options_reset(&all[FABRIC], 1);
+    tl_options_reset(&all[WEAVE], 1);
+    tl_options_reset(&all[MATERIAL], 1);
+    if (!tl_options_set(all, TL_SETTINGS_TABLES, "scene.fabric", name, "fabric", NULL, error) ||
+        !apply_fabric(all, name, error))
+        return false;
+    *settings = changed;
+    return true;
+}
+
+bool tl_settings_apply_colourway(struct tl_settings *settings, const char *name, tl_error *error)
+{
+    struct tl_settings changed = *settings;
+    struct tl_binding all[TL_SETTINGS_TABLES];
+    tl_settings_bind(&changed, all);
+    if (!tl_options_set(all, TL_SETTINGS_TABLES, "scene.colourway", name, "colourway", NULL, error) ||
+        !read_colourways(&changed, error))
+        return false;
+    *settings = changed;
+    return true;
+}
+
+/* Only light begins anew: cloth and image hold more than quality (the picture's size, say). */
+bool tl_settings_apply_preset(struct tl_settings *settings, const char *name, tl_error *error)
+{
+    struct tl_settings changed = *settings;
+    struct tl_binding all[TL_SETTINGS_TABLES];
+    tl_settings_bind(&changed, all);
+    tl_options_reset(&all[LIGHT], 1);
+    if (!tl_options_set(all, TL_SETTINGS_TABLES, "scene.preset", name, "preset", NULL, error) ||
+        !apply_preset(all, name, error))
+        return false;
+    *settings = changed;
+    return true;
+}
+
+bool tl_settings_apply_overlay(struct tl_settings *settings, const char *name, tl_error *error)
+{
+    struct tl_settings changed = *settings;
+    struct tl_binding all[TL_SETTINGS_TABLES];
+    tl_settings_bind(&changed, all);
+    if (!tl_options_set(all, TL_SETTINGS_TABLES, "scene.overlay_fabric", name, "fabric", NULL, error) ||
+        !tl_settings_read_look(name, &changed.overlay, &changed.overlay_weave, error))
+        return false;
+    *settings = changed;
+    return true;
+}

@@ -1,0 +1,96 @@
+/* Every params struct, one value; and the layers that fill it: defaults < preset < fabric < scene file <
+ * command line. */
+#ifndef TOILE_APP_SCENE_SETTINGS_H
+#define TOILE_APP_SCENE_SETTINGS_H
+
+#include "app/scene/colourway.h"
+#include "assets/builtin/weave.h"
+#include "cloth/cloth.h"
+#include "config/options.h"
+#include "render/local/lamp.h"
+#include "render/renderer.h"
+
+struct tl_scene_params {          /* table "scene": what to show; names of built-ins or paths */
+    char garment[TL_STRING_SIZE]; /* "dress", "skirt", "layers", a specimen, "none", or a glTF or OBJ file */
+    char avatar[TL_STRING_SIZE];  /* "form", "none", or a glTF or OBJ file */
+    int units, avatar_units;      /* enum tl_units: of their files */
+    char motion[TL_STRING_SIZE];  /* point cache that moves the garment, or "none": it is simulated */
+    float motion_rate;            /* frames of it a second; 0: as its file says */
+    char environment[TL_STRING_SIZE];    /* "studio", an .exr or .hdr file, or a pattern: sky.####.exr */
+    char fabric[TL_STRING_SIZE];         /* name of an embedded fabric, a YAML file, or "none" */
+    char overlay_fabric[TL_STRING_SIZE]; /* as fabric: of the garment's materials named overlay; "": as the
+                                            others */
+    char colourway[TL_STRING_SIZE]; /* name of one of the scene's or of a model's variants; "": as they are */
+    char colourways[TL_STRING_SIZE]; /* scene, built in or YAML, that has them; "own": the garment's */
+    char preset[TL_STRING_SIZE];     /* name of an embedded preset, or a YAML file */
+    char clip[TL_STRING_SIZE];       /* animation of the avatar; "": the first; "none": the rest pose */
+    float environment_yaw_deg;
+    float environment_rate; /* frames of a sequence a second */
+};
+
+struct tl_camera_params { /* table "camera": an orbit about a target */
+    float yaw_deg;        /* 0 looks from +Z; positive moves the eye towards +X */
+    float pitch_deg;      /* positive looks down */
+    float distance_m;     /* 0: frames what is there */
+    float target[3];      /* metres; used when distance_m > 0 */
+    float fov_deg;        /* vertical */
+};
+extern const struct tl_option_table tl_camera_options;
+
+struct tl_settings {
+    struct tl_scene_params scene;
+    struct tl_camera_params camera;
+    struct tl_cloth_params cloth;
+    struct tl_cloth_fabric fabric;
+    struct tl_weave_params weave;
+    struct tl_material_params material;
+    struct tl_material_params overlay;
+    struct tl_weave_params overlay_weave; /* follows from scene.overlay_fabric */
+    struct tl_colourways colourways;      /* follow from scene.colourway, .colourways and .garment */
+    struct tl_light_params light;
+    struct tl_detail_params detail;
+    struct tl_maps_params maps;
+    struct tl_lamp_params lamp, fill;
+    struct tl_shading_params shading;
+    struct tl_image_params image;
+    struct tl_reference_params reference;
+};
+
+#define TL_SETTINGS_TABLES 15
+/* The bindings of a settings value, in the order of the reference page. */
+void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[TL_SETTINGS_TABLES]);
+
+/* True when every option of every table agrees. */
+bool tl_settings_equal(const struct tl_settings *a, const struct tl_settings *b);
+
+/* What of it the renderer takes. */
+struct tl_render_settings tl_settings_render(const struct tl_settings *settings);
+
+/* What the command line says about settings. */
+struct tl_settings_source {
+    const char *scene_file;         /* YAML, .glb or .gltf, or NULL: the built-in scene */
+    const char *const *assignments; /* "table.key=value", later ones win */
+    size_t assignment_count;
+};
+bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *source, tl_error *error);
+
+/* Single options over settings already there: up to `most` of "table.key=value"; NULL ends them. */
+bool tl_settings_assign(struct tl_settings *settings, const char *const *assignments, size_t most,
+                        tl_error *error);
+
+/* Layers a named fabric, preset or colourway ("": none) over settings already there (the panel does this,
+ * also after scene.garment or scene.colourways changed). */
+bool tl_settings_apply_fabric(struct tl_settings *settings, const char *name, tl_error *error);
+bool tl_settings_apply_preset(struct tl_settings *settings, const char *name, tl_error *error);
+/* A named fabric as the look of the garment's second one. */
+bool tl_settings_apply_overlay(struct tl_settings *settings, const char *name, tl_error *error);
+bool tl_settings_apply_colourway(struct tl_settings *settings, const char *name, tl_error *error);
+
+/* The scene that the colourways are read from, "" for none. */
+const char *tl_settings_colourways_source(const struct tl_settings *settings);
+
+/* How a fabric looks. */
+bool tl_settings_read_look(const char *fabric, struct tl_material_params *params,
+                           struct tl_weave_params *weave, tl_error *error);
+
+#endif

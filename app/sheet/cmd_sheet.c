@@ -1,0 +1,340 @@
+/* toile sheet: a contact sheet, cell by cell, as a folder of pictures or as one image. */
+#include "app/commands.h"
+#include "app/report/folder.h"
+#include "app/report/report.h"
+#include "app/scene/camera.h"
+#include "app/scene/headless.h"
+#include "app/scene/orbit.h"
+#include "app/scene/session.h"
+#include "app/sheet/contact_plan.h"
+#include "app/sheet/contact_store.h"
+#include "config/file.h"
+#include "config/interrupt.h"
+#include "config/log.h"
+#include "config/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A sheet in the making. */
+struct work {
+    const struct tl_arguments *arguments;
+    struct tl_contact_plan plan;
+    tl_contact_store *store;
+    char *folder;
+    bool is_image;         /* OUT.png: the folder is only kept until the image is complete */
+    struct tl_stage stage; /* device and renderer from the first cell on; a session from row to row */
+    bool *refused;         /* [cells] */
+    size_t drawn, kept, refused_count;
+};
+
+static size_t cell_of(const struct work *work, size_t row, size_t column)
+{
+    return row * work->plan.column_count + column;
+}
+
+static bool is_done(const struct work *work, size_t row, size_t column)
+{
+    char *name = tl_contact_cell_name(&work->plan, row, column);
+    bool done = tl_contact_store_has(work->store, name, tl_contact_cell_hash(&work->plan, row, column));
+    free(name);
+    return done;
+}
+
+/* ---- Drawing ---- */
+
+/* What another fabric or colourway changes in place: looks. Cloth that moves otherwise drapes anew. */
+static bool can_take_over(const struct tl_settings *draped, const struct tl_settings *settings)
+{
+    return tl_options_equal(&tl_cloth_fabric_options, &draped->fabric, &settings->fabric) &&
+           tl_options_equal(&tl_cloth_options, &draped->cloth, &settings->cloth) &&
+           strcmp(draped->scene.garment, settings->scene.garment) == 0;
+}
+
+static bool begin_row(struct work *work, const struct tl_settings *settings, tl_error *error)
+{
+    struct tl_stage *stage = &work->stage;
+    if (stage->session && can_take_over(tl_session_settings(stage->session), settings))
+        return tl_session_apply(stage->session, settings, error);
+    bool draped = true;
+    if (stage->session)
+        draped = tl_session_restart(stage->session, settings, error);
+    else
+        draped = (stage->session = tl_session_create(settings, error)) != NULL;
+    return draped && tl_session_go_to(stage->session, work->arguments->first_frame, error);
+}
+
+/* The box of a garment where it hangs, as large as the cloth was before it fell, a little longer for its
+ * fall: so all fabrics are seen from the same distance. It is as deep as it is wide, for a turn. */
+static struct tl_box worn_box(const struct tl_box *before, const struct tl_box *worn)
+{
+    const float fall = 1.08f, corner = 0.70710678f; /* the camera looks for room for a corner */
+    vec3s size = glms_vec3_sub(before->upper, before->lower);
+    float half_m = 0.5f * fmaxf(size.x, size.z) * corner;
+    vec3s middle = glms_vec3_scale(glms_vec3_add(worn->lower, worn->upper), 0.5f);
+    return (struct tl_box){{{middle.x - half_m, worn->upper.y - fall * size.y, middle.z - half_m}},
+                           {{middle.x + half_m, worn->upper.y, middle.z + half_m}}};
+}
+
+/* Heads and feet are not cut off where they would nearly fit. */
+static void add_wearer(const tl_surface *wearer, struct tl_box *box)
+{
+    const float above = 0.3f, below = 0.15f; /* of the garment's height */
+    struct tl_box body = tl_box_of(wearer->positions, wearer->vertex_count);
+    float height_m = box->upper.y - box->lower.y;
+    float over_m = body.upper.y - box->upper.y, under_m = box->lower.y - body.lower.y;
+    if (over_m > 0 && over_m <= above * height_m)
+        box->upper.y = body.upper.y;
+    if (under_m > 0 && under_m <= below * height_m)
+        box->lower.y = body.lower.y;
+}
+
+/* A camera that the scene has not placed frames the garment, whoever wears it. */
+static void frame_garment(tl_session *session, struct tl_settings *settings)
+{
+    const tl_model *garment = tl_session_garment(session);
+    if (!garment || tl_camera_is_placed(&settings->camera))
+        return;
+    tl_frame frame = tl_session_frame(session);
+    const tl_surface *surface = &frame.surfaces[frame.surface_count - 1]; /* who wears it comes before it */
+    struct tl_box worn = tl_box_of(surface->positions, surface->vertex_count);
+    struct tl_box before = tl_box_of(garment->mesh.positions, garment->mesh.vertex_count);
+    if (!tl_session_cloth(session))
+        before = worn; /* a motion may begin as flat panels */
+    float aspect = (float)settings->image.width / (float)settings->image.height;
+    struct tl_box box = worn_box(&before, &worn);
+    if (frame.surface_count > 1)
+        add_wearer(&frame.surfaces[0], &box);
+    struct tl_camera camera = tl_camera_frame(&settings->camera, box, aspect);
+    tl_orbit_take(&settings->camera, &camera);
+}
+
+static bool draw_cell(struct work *work, size_t row, size_t column, tl_image *out, tl_error *error)
+{
+    struct tl_stage *stage = &work->stage;
+    if (!tl_contact_cell_settings(&work->plan, row, column, &stage->settings, error))
+        return false;
+    tl_renderer_forget(stage->renderer); /* a cell looks the same whichever were drawn before it */
+    if (work->plan.columns[column].view.camera == TL_CONTACT_ORBIT)
+        frame_garment(stage->session, &stage->settings);
+    return tl_session_apply(stage->session, &stage->settings, error) && tl_stage_draw_still(stage, error) &&
+           tl_renderer_show_image(stage->renderer, out, error);
+}
+
+static bool is_of_the_cell(const tl_error *error)
+{
+    return error->code == TL_USAGE || error->code == TL_INPUT || error->code == TL_UNSTABLE;
+}
+
+/* A cell that cannot be shown is told of and left empty; true when the others can go on. */
+static bool refuse(struct work *work, size_t row, size_t column, const tl_error *error)
+{
+    if (!is_of_the_cell(error))
+        return false;
+    work->refused[cell_of(work, row, column)] = true;
+    work->refused_count++;
+    return true;
+}
+
+static bool refuse_row(struct work *work, size_t row, const tl_error *error)
+{
+    tl_warn("sheet: %s: %s", work->plan.rows[row].slug, error->message);
+    for (size_t column = 0; column < work->plan.column_count; column++)
+        if (!is_done(work, row, column) && !refuse(work, row, column, error))
+            return false;
+    return is_of_the_cell(error);
+}
+
+static bool make_cell(struct work *work, size_t row, size_t column, tl_error *error)
+{
+    tl_image picture = {0};
+    char *name = tl_contact_cell_name(&work->plan, row, column);
+    bool made = draw_cell(work, row, column, &picture, error);
+    if (made && tl_interrupted()) /* the picture may be an average that was cut short */
+        made = tl_fail(error, TL_INTERRUPTED, "stopped");
+    if (made) {
+        uint64_t hash = tl_contact_cell_hash(&work->plan, row, column);
+        made = tl_contact_store_put(work->store, name, hash, &picture, error);
+        work->drawn += made;
+    } else if (refuse(work, row, column, error)) {
+        tl_warn("sheet: %s: %s", name, error->message);
+        made = true;
+    }
+    tl_image_release(&picture);
+    free(name);
+    return made;
+}
+
+static bool make_row(struct work *work, size_t row, struct tl_progress *progress, size_t wanted,
+                     tl_error *error)
+{
+    bool begun = false;
+    for (size_t column = 0; column < work->plan.column_count; column++) {
+        if (is_done(work, row, column)) {
+            work->kept++;
+            continue;
+        }
+        if (tl_interrupted())
+            return tl_fail(error, TL_INTERRUPTED, "stopped");
+        if (!begun && !begin_row(work, &work->plan.rows[row].settings, error))
+            return refuse_row(work, row, error);
+        begun = true;
+        if (!make_cell(work, row, column, error))
+            return false;
+        tl_progress_update(progress, (double)(work->drawn + work->refused_count), (double)wanted);
+    }
+    return true;
+}
+
+static size_t count_wanted(const struct work *work)
+{
+    size_t wanted = 0;
+    for (size_t row = 0; row < work->plan.row_count; row++)
+        for (size_t column = 0; column < work->plan.column_count; column++)
+            wanted += !is_done(work, row, column);
+    return wanted;
+}
+
+static bool make_cells(struct work *work, tl_error *error)
+{
+    size_t wanted = count_wanted(work);
+    if (wanted > 0) {
+        work->stage.gpu = tl_gpu_create_headless(error);
+        work->stage.renderer = work->stage.gpu ? tl_renderer_create(work->stage.gpu, error) : NULL;
+        if (!work->stage.renderer)
+            return false;
+    }
+    struct tl_progress progress = tl_progress_begin("drawing the sheet");
+    bool made = true;
+    for (size_t row = 0; made && row < work->plan.row_count; row++)
+        made = make_row(work, row, &progress, wanted, error);
+    tl_progress_end(&progress);
+    if (!made && error->code == TL_INTERRUPTED)
+        tl_fail(error, TL_INTERRUPTED,
+                "sheet: stopped with %zu of %zu cells done, in %s: the same command goes on from there",
+                work->kept + work->drawn, work->plan.row_count * work->plan.column_count, work->folder);
+    return made;
+}
+
+/* ---- One image ---- */
+
+static bool compose(const struct work *work, const char *path, tl_error *error)
+{
+    const struct tl_contact_grid *grid = &work->plan.grid;
+    tl_image sheet = tl_contact_draw(grid);
+    bool composed = true;
+    for (size_t i = 0; composed && i < grid->row_count * grid->column_count; i++) {
+        size_t row = i / grid->column_count, column = i % grid->column_count;
+        if (work->refused[i]) {
+            tl_contact_mark_empty(grid, row, column, &sheet);
+            continue;
+        }
+        char *name = tl_contact_cell_name(&work->plan, row, column);
+        char *cell = tl_format("%s/%s", work->folder, name);
+        tl_image picture = {0};
+        composed = tl_image_load(cell, &picture, error);
+        if (composed)
+            tl_contact_paste(grid, row, column, &picture, &sheet);
+        tl_image_release(&picture);
+        free(cell);
+        free(name);
+    }
+    composed = composed && tl_image_save_png(path, &sheet, error);
+    tl_image_release(&sheet);
+    return composed;
+}
+
+/* ---- A page ---- */
+
+static void print_row(const struct work *work, size_t row, FILE *out)
+{
+    const struct tl_contact_plan *plan = &work->plan;
+    char *heading = tl_format("%s%s%s", plan->rows[row].garment, plan->rows[row].name[0] ? ": " : "",
+                              plan->rows[row].name);
+    tl_report_heading(out, heading);
+    free(heading);
+    tl_report_pictures_begin(out);
+    for (size_t column = 0; column < plan->column_count; column++) {
+        if (work->refused[cell_of(work, row, column)])
+            continue;
+        char *name = tl_contact_cell_name(plan, row, column);
+        tl_report_picture_beside(out, name, plan->columns[column].view.name, plan->columns[column].group);
+        free(name);
+    }
+    tl_report_pictures_end(out);
+    if (work->refused[cell_of(work, row, 0)])
+        tl_report_paragraph(out, "Refused: the run said why.");
+}
+
+static void write_page(const void *what, FILE *out)
+{
+    const struct work *work = what;
+    tl_report_begin(out, work->plan.title, work->plan.note);
+    for (size_t row = 0; row < work->plan.row_count; row++)
+        print_row(work, row, out);
+    tl_report_end(out);
+}
+
+/* ---- The command ---- */
+
+static bool check_size(const struct tl_contact_plan *plan, const char *output, tl_error *error)
+{
+    int64_t width, height;
+    tl_contact_size(&plan->grid, &width, &height);
+    tl_error why;
+    if (tl_image_size_check("sheet", width, height, &why))
+        return true;
+    return tl_fail(
+        error, TL_USAGE,
+        "%s: would be %lld x %lld pixels, too many for one image: name a folder, or ask for a smaller "
+        "--size or fewer cells",
+        output, (long long)width, (long long)height);
+}
+
+static bool begin(struct work *work, tl_error *error)
+{
+    const char *output = work->arguments->output;
+    if (!output)
+        return tl_fail(error, TL_USAGE, "sheet: no output named: add -o OUT.png or -o FOLDER");
+    work->is_image = tl_path_has_extension(output, "png");
+    if (!work->is_image && (tl_path_has_extension(output, "exr") || tl_path_has_extension(output, "jpg")))
+        return tl_fail(error, TL_USAGE, "%s: a sheet is a .png or a folder: name one of them", output);
+    if (!tl_contact_plan_make(work->arguments, &work->plan, error) ||
+        (work->is_image && !check_size(&work->plan, output, error)))
+        return false;
+    work->refused = TL_NEW_ARRAY(bool, work->plan.row_count * work->plan.column_count);
+    work->folder = tl_format("%s%s", output, work->is_image ? ".cells" : "");
+    work->store = tl_contact_store_open(work->folder, error);
+    return work->store != NULL;
+}
+
+static bool finish(struct work *work, tl_error *error)
+{
+    const char *output = work->arguments->output;
+    if (!(work->is_image ? compose(work, output, error)
+                         : tl_folder_print(work->folder, "index.html", work, write_page, error)))
+        return false;
+    tl_info("sheet: %s: %zu cells drawn, %zu kept, %zu refused", output, work->drawn, work->kept,
+            work->refused_count);
+    if (work->refused_count > 0)
+        return tl_fail(error, TL_UNSTABLE,
+                       "sheet: %zu of %zu cells were refused: mend what is named above, the "
+                       "same command draws only them",
+                       work->refused_count, work->plan.row_count * work->plan.column_count);
+    if (work->is_image)
+        tl_contact_store_remove(&work->store);
+    return true;
+}
+
+bool tl_command_sheet(const struct tl_arguments *arguments, tl_error *error)
+{
+    struct work work = {.arguments = arguments};
+    bool done = begin(&work, error) && make_cells(&work, error) && finish(&work, error);
+    tl_stage_release(&work.stage);
+    tl_contact_store_close(&work.store);
+    tl_contact_plan_release(&work.plan);
+    free(work.folder);
+    free(work.refused);
+    return done;
+}

@@ -1,0 +1,280 @@
+/* toile view: the review window. Its life and its loop.
+ *
+ * A window in which nothing happens costs nothing: the loop sleeps. */
+#include "app/commands.h"
+#include "app/scene/headless.h"
+#include "app/view/review.h"
+#include "config/interrupt.h"
+#include "config/log.h"
+#include "config/memory.h"
+
+#include <epoxy/gl.h>
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MESSAGE_S 6.0 /* that a message stays; an error stays until it is answered */
+
+void tl_review_size(const struct tl_review *review, int *width, int *height)
+{
+    tl_window_size(review->window, width, height);
+    *width -= tl_review_panel_width(review);
+}
+
+static void set_message(struct tl_review *review, bool is_error, const char *text)
+{
+    snprintf(review->message, sizeof review->message, "%s", text);
+    review->message_is_error = is_error;
+    review->said_s = tl_clock_s();
+    review->redraws = review->redraws > 1 ? review->redraws : 1;
+}
+
+void tl_review_say(struct tl_review *review, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    char text[sizeof review->message];
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    set_message(review, false, text);
+    tl_info("view: %s", text);
+}
+
+void tl_review_complain(struct tl_review *review, const tl_error *error)
+{
+    set_message(review, true, error->message);
+    tl_warn("view: %s", error->message);
+    review->playing = false;
+}
+
+void tl_review_quiet(struct tl_review *review)
+{
+    set_message(review, false, "");
+}
+
+static void let_message_fade(struct tl_review *review)
+{
+    bool is_due = tl_clock_s() - review->said_s > MESSAGE_S;
+    if (review->message[0] && !review->message_is_error && is_due)
+        tl_review_quiet(review);
+}
+
+void tl_review_touch(struct tl_review *review)
+{
+    review->moved_s = tl_clock_s();
+}
+
+bool tl_review_is_moving(const struct tl_review *review)
+{
+    const double rest_s = 0.25;
+    return review->playing || tl_review_moves_itself(review) || review->drag != TL_DRAG_NONE ||
+           tl_clock_s() - review->moved_s < rest_s;
+}
+
+/* How long nothing needs to be done unless something happens. */
+static double patience_s(const struct tl_review *review)
+{
+    const double idle_s = 0.5;                    /* Ctrl-C and edited files are looked for */
+    const double settling_s = 0.05, tick_s = 0.1; /* tick: of progress that is shown */
+    const double screen_s = 1 / 60.0;             /* what moves by itself need not be drawn more often */
+    if (review->redraws > 0)
+        return 0;
+    if (tl_review_moves_itself(review) || review->path.records)
+        return fmax(0, review->shown_s + screen_s - tl_clock_s());
+    if (review->loader)
+        return review->playing ? 0 : tick_s;
+    if (review->changed || review->image_is_old)
+        return 0;
+    if (review->playing)
+        return fmax(0, review->next_step_s - tl_clock_s());
+    bool is_done = tl_review_is_sharp(review) && tl_review_is_at_rest(review);
+    if (!is_done)
+        return tl_review_is_moving(review) ? settling_s : 0;
+    return idle_s;
+}
+
+static bool is_minimised(const struct tl_review *review)
+{
+    int width, height;
+    tl_review_size(review, &width, &height);
+    return width < 1 || height < 1;
+}
+
+/* What the window does between two looks at its events. */
+static bool live(struct tl_review *review, bool always_shows, tl_error *error)
+{
+    review->times.began_s = review->times.lap_s = tl_clock_s();
+    review->times.cloth = review->times.longest_ms = 0;
+    tl_review_watch(review);
+    tl_review_lap(review, "watching files");
+    tl_review_load(review);
+    tl_review_lap(review, "what was loaded beside");
+    tl_review_move(review);
+    if (!tl_review_update_image(review, error))
+        return false;
+    review->times.lap_s = tl_clock_s();
+    tl_review_note_edit(review);
+    tl_review_lap(review, "undo");
+    let_message_fade(review);
+    if (review->redraws == 0 && !review->editing && !review->loader && !always_shows)
+        return true;
+    review->redraws -= review->redraws > 0;
+    tl_review_build_panel(review);
+    tl_review_lap(review, "the panel");
+    return tl_review_present(review, error);
+}
+
+static bool run(struct tl_review *review, int max_frames, tl_error *error)
+{
+    while (!review->closing && (max_frames == 0 || review->shown_count < max_frames)) {
+        if (tl_interrupted())
+            return tl_fail(error, TL_INTERRUPTED, "view: stopped");
+        tl_window_wait(review->window, max_frames > 0 ? 0 : patience_s(review));
+        tl_review_listen(review);
+        if (!is_minimised(review) && !live(review, max_frames > 0, error))
+            return false;
+        tl_review_give_back(review);
+    }
+    return true;
+}
+
+/* Every image of the default quality takes a software driver about a second. Unless quality was asked for, a
+ * review there begins with less of it. */
+static bool needs_draft(const struct tl_review *review)
+{
+    const struct tl_arguments *arguments = review->arguments;
+    if (arguments->positional_count > 0 || !strstr(tl_gpu_name(review->gpu), "llvmpipe"))
+        return false; /* a scene means what it says */
+    for (size_t i = 0; i < arguments->assignment_count; i++)
+        if (strncmp(arguments->assignments[i], "scene.preset", 12) == 0 ||
+            strncmp(arguments->assignments[i], "light.", 6) == 0)
+            return false;
+    return true;
+}
+
+static bool open_window(struct tl_review *review, tl_error *error)
+{
+    review->window = tl_window_create("toile: loading", review->params.width, review->params.height, error);
+    if (!review->window)
+        return false;
+    review->gpu = tl_gpu_create_current(error);
+    review->panel = review->gpu ? tl_panel_create(tl_window_handle(review->window),
+                                                  tl_window_scale(review->window), error)
+                                : NULL;
+    review->renderer = review->panel ? tl_renderer_create(review->gpu, error) : NULL;
+    return review->renderer != NULL;
+}
+
+/* What was remembered may lie on a disk that is gone: then the review begins as the first time. */
+static bool open_scene(struct tl_review *review, bool is_remembered, tl_error *error)
+{
+    struct tl_settings remembered = review->wanted;
+    if (tl_review_load_first(review, error))
+        return true;
+    if (review->closing || !is_remembered || tl_interrupted())
+        return false;
+    tl_warn("view: the last review cannot be shown again (%s): the built-in one is", error->message);
+    if (!tl_stage_settings(review->arguments, &review->wanted, error))
+        return false;
+    review->wanted.camera = remembered.camera;
+    return tl_review_load_first(review, error);
+}
+
+static bool open_review(struct tl_review *review, tl_error *error)
+{
+    const struct tl_arguments *arguments = review->arguments;
+    if (!tl_stage_settings(arguments, &review->wanted, error))
+        return false;
+    bool is_remembered = tl_review_remember(review);
+    if (arguments->budget_ms > 0)
+        review->params.budget_ms = (float)arguments->budget_ms;
+    if (!open_window(review, error))
+        return false;
+    bool is_draft = !is_remembered && needs_draft(review);
+    if (is_draft && !tl_settings_apply_preset(&review->wanted, "draft", error))
+        return false;
+    if (!open_scene(review, is_remembered, error))
+        return false;
+    review->history = tl_history_create(&review->wanted);
+    review->pace = tl_pace_create((double)review->params.budget_ms);
+    tl_review_know_environment(review, "studio");
+    tl_review_know_environment(review, review->wanted.scene.environment);
+    /* The first image must come off: there is nothing good to go back to yet. */
+    review->good = review->wanted;
+    review->changed = true;
+    if (!tl_review_draw_sharp(review, error))
+        return false;
+    tl_info("view: ready with %s; H lists keys and gestures", tl_gpu_name(review->gpu));
+    if (is_draft)
+        tl_review_say(review, "No graphics card: preset draft instead of review, to stay quick. H: keys");
+    else if (!is_remembered)
+        tl_review_say(review, "H lists keys and gestures");
+    return true;
+}
+
+static void close_review(struct tl_review *review)
+{
+    tl_review_keep(review);
+    tl_renderer_destroy(&review->wipe.renderer);
+    tl_renderer_destroy(&review->renderer);
+    tl_panel_destroy(&review->panel);
+    tl_gpu_destroy(&review->gpu);
+    tl_window_destroy(&review->window); /* gone at once, however long a loader takes to stop */
+    tl_loader_cancel(&review->loader);
+    tl_session_destroy(&review->session);
+    tl_history_destroy(&review->history);
+    tl_pace_destroy(&review->pace);
+    tl_review_path_release(&review->path);
+    for (size_t i = 0; i < review->environment_count; i++)
+        free(review->environments[i]);
+    free(review->environments);
+    while (review->dropped)
+        tl_review_forget_dropped(review);
+    free(review->waiting);
+    free(review->title);
+    free(review->scene_file);
+    free(review->views_file);
+    free(review->state_folder);
+}
+
+static void tell_times(const struct tl_frame_times *times, const char *when)
+{
+    tl_info("view: %zu images %s: p50 %.1f ms, p95 %.1f ms, p99 %.1f ms, worst %.1f ms", times->total, when,
+            tl_frame_times_quantile(times, 0.5), tl_frame_times_quantile(times, 0.95),
+            tl_frame_times_quantile(times, 0.99), times->worst_ms);
+}
+
+static void tell_end(const struct tl_review *review, size_t bytes_before)
+{
+    const double megabyte = 1 << 20;
+    tell_times(&review->frame_times, "in motion");
+    tell_times(&review->rest_times, "at rest");
+    tl_info("view: closed after %d images, %d shown, %zu GL messages, resident %.0f MB at start, %.0f MB "
+            "at end",
+            review->drawn_count, review->shown_count, tl_gpu_message_count(review->gpu),
+            (double)bytes_before / megabyte, (double)tl_review_resident_bytes() / megabyte);
+}
+
+bool tl_command_view(const struct tl_arguments *arguments, tl_error *error)
+{
+    struct tl_review *review = TL_NEW(struct tl_review);
+    review->arguments = arguments;
+    review->redraws = 1;
+    review->reported_frame = -1;
+    review->output_folder = arguments->screenshots ? arguments->screenshots : ".";
+    bool done = open_review(review, error);
+    if (done) {
+        size_t bytes_before = tl_review_resident_bytes();
+        done = run(review, arguments->max_frames, error);
+        tell_end(review, bytes_before);
+    } else if (review->closing) {
+        tl_info("view: closed while the scene was loaded");
+        done = true;
+    }
+    close_review(review);
+    free(review);
+    return done;
+}

@@ -1,0 +1,102 @@
+#include "app/view/memory/state.h"
+
+#include "config/file.h"
+#include "config/memory.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define TABLES (TL_SETTINGS_TABLES + 2)
+
+static const struct tl_option window_rows[] = {
+    TL_OPTION_INT(struct tl_window_params, width, 320, 16384, "pixels", "of the window when it opens"),
+    TL_OPTION_INT(struct tl_window_params, height, 240, 16384, "pixels", "of the window when it opens"),
+    TL_OPTION_BOOL(struct tl_window_params, panel, "the panel is there: Tab"),
+    TL_OPTION_FLOAT(struct tl_window_params, budget_ms, 0, 1000, "ms",
+                    "what a frame may take; a larger one buys quality; 0: as long as it takes"),
+    TL_OPTION_FLOAT(struct tl_window_params, turntable_deg_s, -360, 360, "degrees/s",
+                    "how quickly T turns the camera about the figure"),
+    TL_OPTION_FLOAT(struct tl_window_params, environment_turn_deg_s, -360, 360, "degrees/s",
+                    "how quickly Shift+T turns the environment"),
+};
+const struct tl_option_table tl_window_options =
+    TL_OPTION_TABLE("window", "the review window itself; remembered, and no part of a scene", window_rows,
+                    struct tl_window_params, .width = 1280, .height = 800, .panel = true, .budget_ms = 50,
+                    .turntable_deg_s = 30, .environment_turn_deg_s = 30);
+
+/* Whether a state file has settings in it, besides the window. */
+static const struct tl_option review_rows[] = {
+    TL_OPTION_BOOL(struct tl_left_review, has_settings, "the other tables are those of the built-in review"),
+};
+static const struct tl_option_table review_table = TL_OPTION_TABLE(
+    "review", "how the built-in review was left", review_rows, struct tl_left_review, .has_settings = false);
+
+char *tl_state_folder(void)
+{
+    const char *state = getenv("XDG_STATE_HOME"), *home = getenv("HOME");
+    if (state && state[0] == '/') /* the standard has relative ones ignored */
+        return tl_format("%s/toile", state);
+    return home && home[0] == '/' ? tl_format("%s/.local/state/toile", home) : NULL;
+}
+
+static size_t bind(struct tl_state *state, struct tl_binding bindings[TABLES])
+{
+    bindings[0] = (struct tl_binding){&tl_window_options, &state->window};
+    bindings[1] = (struct tl_binding){&review_table, &state->review};
+    if (!state->review.has_settings)
+        return 2;
+    tl_settings_bind(&state->settings, bindings + 2);
+    return TABLES;
+}
+
+/* The weave of the second fabric and the colourways stand in no table: they follow from names. */
+static bool follow_names(struct tl_settings *settings, tl_error *error)
+{
+    struct tl_material_params look = settings->overlay;
+    if (!tl_settings_apply_overlay(settings, settings->scene.overlay_fabric, error))
+        return false;
+    settings->overlay = look;
+    return tl_settings_apply_colourway(settings, settings->scene.colourway, error);
+}
+
+bool tl_state_load(const char *file, const struct tl_settings *defaults, struct tl_state *out,
+                   tl_error *error)
+{
+    struct tl_state read = {.review = {.has_settings = true},
+                            .settings = *defaults}; /* true: all tables are known */
+    struct tl_binding bindings[TABLES];
+    size_t count = bind(&read, bindings);
+    tl_options_reset(bindings, 2);
+    *out = read;
+    if (!tl_file_exists(file))
+        return true;
+    if (!tl_options_read_yaml_file(bindings, count, file, error) ||
+        (read.review.has_settings && !follow_names(&read.settings, error)))
+        return false;
+    *out = read;
+    return true;
+}
+
+bool tl_state_save(const char *file, const struct tl_state *state, tl_error *error)
+{
+    struct tl_state copy = *state; /* bindings can be written through */
+    struct tl_binding bindings[TABLES];
+    size_t count = bind(&copy, bindings);
+    tl_options_make_paths_absolute(bindings, count);
+    return tl_state_write(file, bindings, count, error);
+}
+
+bool tl_state_write(const char *file, const struct tl_binding *bindings, size_t count, tl_error *error)
+{
+    char *folder = tl_copy_string(file), *slash = strrchr(folder, '/');
+    if (slash)
+        *slash = '\0';
+    bool made = !slash || slash == folder || tl_folder_make(folder, error);
+    free(folder);
+    struct tl_writer writer;
+    if (!made || !tl_writer_begin(&writer, file, error))
+        return false;
+    tl_options_print_yaml(bindings, count, writer.stream);
+    return tl_writer_commit(&writer, error);
+}

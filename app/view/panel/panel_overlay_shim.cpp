@@ -1,0 +1,278 @@
+#include "app/view/panel/panel_overlay_shim.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace
+{
+
+const int overlay_flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoNav |
+                          ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_AlwaysAutoResize |
+                          ImGuiWindowFlags_NoSavedSettings;
+const ImU32 light = IM_COL32(235, 235, 235, 255), dim = IM_COL32(130, 130, 130, 255),
+            amber = IM_COL32(240, 180, 80, 255), shade = IM_COL32(0, 0, 0, 150);
+
+float view_width(const tl_panel_input &input)
+{
+    const ImGuiIO &io = ImGui::GetIO();
+    return io.DisplaySize.x - static_cast<float>(input.width) / io.DisplayFramebufferScale.x;
+}
+
+/* Room for a text that is new: ImGui finds the size of what a window holds one frame later, and until then it
+ * would be cut off. */
+void make_room(const char *text, float wrap = -1)
+{
+    ImGui::SetNextWindowContentSize(ImGui::CalcTextSize(text, nullptr, false, wrap));
+}
+
+bool begin_overlay(const char *name, const tl_panel_input &input, float x, float y)
+{
+    tl_panel_place_over_view(input, x, y);
+    ImGui::SetNextWindowBgAlpha(0.75f);
+    return ImGui::Begin(name, nullptr, overlay_flags);
+}
+
+void draw_message(const tl_panel_input &input)
+{
+    if (!input.message[0])
+        return;
+    const ImVec4 red(1.0f, 0.55f, 0.50f, 1.0f), plain(0.92f, 0.92f, 0.92f, 1.0f);
+    const float wrap = 0.8f * view_width(input);
+    make_room(input.message, wrap);
+    begin_overlay("message", input, 0, 1);
+    ImGui::PushStyleColor(ImGuiCol_Text, input.message_is_error ? red : plain);
+    ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + wrap);
+    ImGui::TextUnformatted(input.message);
+    ImGui::PopTextWrapPos();
+    ImGui::PopStyleColor();
+    ImGui::End();
+}
+
+void draw_status(const tl_panel_input &input)
+{
+    if (!input.status || !input.status[0])
+        return;
+    make_room(input.status);
+    begin_overlay("status", input, 0, 0);
+    ImGui::TextUnformatted(input.status);
+    ImGui::End();
+}
+
+void draw_progress(const tl_panel_input &input)
+{
+    if (!input.progress.what)
+        return;
+    begin_overlay("progress", input, 0.5f, 0.5f);
+    ImGui::TextUnformatted(input.progress.what);
+    const float width = 22 * ImGui::GetFontSize();
+    if (input.progress.share >= 0)
+        ImGui::ProgressBar(input.progress.share, ImVec2(width, 0));
+    ImGui::TextDisabled("%s", input.progress.hint);
+    ImGui::End();
+}
+
+void draw_label(const char *text, float x, float y, float aligned)
+{
+    const float margin = 5;
+    const ImVec2 size = ImGui::CalcTextSize(text);
+    const ImVec2 corner(x - aligned * size.x, y);
+    ImDrawList *list = ImGui::GetBackgroundDrawList();
+    list->AddRectFilled(ImVec2(corner.x - margin, corner.y - margin),
+                        ImVec2(corner.x + size.x + margin, corner.y + size.y + margin), shade, 3);
+    list->AddText(corner, light, text);
+}
+
+void draw_wipe(const tl_panel_input &input)
+{
+    const ImGuiIO &io = ImGui::GetIO();
+    if (input.wipe.column <= 0)
+        return;
+    const float x = static_cast<float>(input.wipe.column) / io.DisplayFramebufferScale.x;
+    const float height = io.DisplaySize.y, middle = 0.5f * height, handle = 7, gap = 14;
+    ImDrawList *list = ImGui::GetBackgroundDrawList();
+    list->PushClipRect(ImVec2(0, 0), ImVec2(view_width(input), height));
+    list->AddLine(ImVec2(x, 0), ImVec2(x, height), shade, 3);
+    list->AddLine(ImVec2(x, 0), ImVec2(x, height), light, 1);
+    list->AddCircleFilled(ImVec2(x, middle), handle, light);
+    draw_label(input.wipe.left, x - gap, gap, 1);
+    draw_label(input.wipe.right, x + gap, gap, 0);
+    list->PopClipRect();
+}
+
+ImU32 colour_of(const float srgb[3])
+{
+    return ImGui::ColorConvertFloat4ToU32(ImVec4(srgb[0], srgb[1], srgb[2], 1));
+}
+
+/* Colours lie between stops that need not be evenly apart. */
+void draw_scale(const tl_panel_legend &legend)
+{
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const float width = 18 * ImGui::GetFontSize(), height = ImGui::GetFontSize();
+    const float span = legend.high - legend.low;
+    ImDrawList *list = ImGui::GetWindowDrawList();
+    for (int i = 0; i + 1 < legend.stop_count && span > 0; i++) {
+        const float from = corner.x + width * (legend.stop_values[i] - legend.low) / span;
+        const float to = corner.x + width * (legend.stop_values[i + 1] - legend.low) / span;
+        const ImU32 left = colour_of(legend.stop_colours[i]), right = colour_of(legend.stop_colours[i + 1]);
+        list->AddRectFilledMultiColor(ImVec2(from, corner.y), ImVec2(to, corner.y + height), left, right,
+                                      right, left);
+    }
+    ImGui::Dummy(ImVec2(width, height));
+    for (int i = 0; i <= 4; i++) {
+        char text[32];
+        const float value = legend.low + 0.25f * static_cast<float>(i) * span;
+        snprintf(text, sizeof text, "%.3g%s%s", static_cast<double>(value), legend.unit[0] ? " " : "",
+                 legend.unit);
+        const float share = 0.25f * static_cast<float>(i), room = ImGui::CalcTextSize(text).x;
+        if (i > 0)
+            ImGui::SameLine();
+        ImGui::SetCursorScreenPos(ImVec2(corner.x + share * (width - room), ImGui::GetCursorScreenPos().y));
+        ImGui::TextUnformatted(text);
+    }
+}
+
+void draw_legend(const tl_panel_input &input)
+{
+    if (!input.legend)
+        return;
+    const tl_panel_legend &legend = *input.legend;
+    begin_overlay("legend", input, 1, 1);
+    ImGui::TextUnformatted(legend.title);
+    if (legend.stop_count > 1)
+        draw_scale(legend);
+    for (int i = 0; i < legend.entry_count; i++) {
+        const ImVec2 corner = ImGui::GetCursorScreenPos();
+        const float side = ImGui::GetFontSize();
+        ImGui::GetWindowDrawList()->AddRectFilled(corner, ImVec2(corner.x + side, corner.y + side),
+                                                  colour_of(legend.entry_colours[i]));
+        ImGui::Dummy(ImVec2(side, side));
+        ImGui::SameLine();
+        ImGui::TextUnformatted(legend.entry_labels[i]);
+    }
+    if (legend.note[0]) {
+        ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + 18 * ImGui::GetFontSize());
+        ImGui::TextDisabled("%s", legend.note);
+        ImGui::PopTextWrapPos();
+    }
+    ImGui::End();
+}
+
+/* Beside the pointer, on the side where there is room. */
+void draw_read_out(const tl_panel_input &input)
+{
+    if (!input.read_out || !input.read_out[0])
+        return;
+    const ImGuiIO &io = ImGui::GetIO();
+    const bool is_right = io.MousePos.x > 0.5f * view_width(input);
+    const bool is_low = io.MousePos.y > 0.5f * io.DisplaySize.y;
+    const float apart = 16;
+    ImGui::SetNextWindowPos(ImVec2(io.MousePos.x + (is_right ? -apart : apart), io.MousePos.y),
+                            ImGuiCond_Always, ImVec2(is_right ? 1.0f : 0.0f, is_low ? 1.0f : 0.0f));
+    ImGui::SetNextWindowBgAlpha(0.85f);
+    make_room(input.read_out);
+    ImGui::Begin("read out", nullptr, overlay_flags);
+    ImGui::TextUnformatted(input.read_out);
+    ImGui::End();
+}
+
+/* Half of the rows beside the other half, parted at a heading. */
+size_t middle_of(const tl_panel_line *help, size_t count)
+{
+    size_t middle = (count + 1) / 2;
+    while (middle < count && help[middle].cells[1][0])
+        middle++;
+    return middle;
+}
+
+void draw_help_rows(const char *name, const tl_panel_line *help, size_t count)
+{
+    if (!ImGui::BeginTable(name, 2, ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_NoHostExtendX))
+        return;
+    for (size_t i = 0; i < count; i++) {
+        const bool is_heading = !help[i].cells[1][0];
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        if (is_heading && i > 0)
+            ImGui::Spacing();
+        if (is_heading)
+            ImGui::TextDisabled("%s", help[i].cells[0]);
+        else
+            ImGui::TextUnformatted(help[i].cells[0]);
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(help[i].cells[1]);
+    }
+    ImGui::EndTable();
+}
+
+void draw_help(const tl_panel_input &input)
+{
+    if (input.help_count == 0)
+        return;
+    tl_panel_place_over_view(input, 0.5f, 0.5f);
+    ImGui::SetNextWindowBgAlpha(0.92f);
+    ImGui::Begin("help", nullptr, overlay_flags);
+    const size_t middle = middle_of(input.help, input.help_count);
+    ImGui::BeginGroup();
+    draw_help_rows("left", input.help, middle);
+    ImGui::EndGroup();
+    ImGui::SameLine(0, 2 * ImGui::GetFontSize());
+    ImGui::BeginGroup();
+    draw_help_rows("right", input.help + middle, input.help_count - middle);
+    ImGui::EndGroup();
+    ImGui::End();
+}
+
+} // namespace
+
+void tl_panel_place_over_view(const tl_panel_input &input, float x, float y)
+{
+    const float margin = 10;
+    const ImGuiIO &io = ImGui::GetIO();
+    const float place_x = margin + x * (view_width(input) - 2 * margin);
+    const float place_y = margin + y * (io.DisplaySize.y - 2 * margin);
+    ImGui::SetNextWindowPos(ImVec2(place_x, place_y), ImGuiCond_Always, ImVec2(x, y));
+}
+
+void tl_panel_overlay_draw(const tl_panel_input &input)
+{
+    draw_wipe(input);
+    draw_status(input);
+    draw_legend(input);
+    draw_message(input);
+    draw_progress(input);
+    draw_read_out(input);
+    draw_help(input);
+}
+
+void tl_panel_strip_draw(const tl_panel_strip &strip)
+{
+    const float height = 2.6f * ImGui::GetFontSize(), width = ImGui::GetContentRegionAvail().x;
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    float top_ms = 2 * strip.budget_ms;
+    for (size_t i = 0; i < strip.count && strip.budget_ms <= 0; i++)
+        top_ms = std::max(top_ms, strip.ms[i]);
+    ImDrawList *list = ImGui::GetWindowDrawList();
+    list->AddRectFilled(corner, ImVec2(corner.x + width, corner.y + height), IM_COL32(18, 18, 18, 255), 2);
+    const float step = width / 120.0f, right = corner.x + width, foot = corner.y + height;
+    for (size_t i = 0; i < strip.count && top_ms > 0; i++) {
+        const float x = right - static_cast<float>(strip.count - i) * step;
+        const float length = height * std::min(strip.ms[i] / top_ms, 1.0f);
+        const bool is_over = strip.budget_ms > 0 && strip.ms[i] > 1.1f * strip.budget_ms;
+        list->AddRectFilled(ImVec2(x, foot - length), ImVec2(x + 0.75f * step, foot), is_over ? amber : dim);
+    }
+    if (strip.budget_ms > 0) {
+        const float y = foot - 0.5f * height;
+        list->AddLine(ImVec2(corner.x, y), ImVec2(right, y), light, 1);
+    }
+    ImGui::Dummy(ImVec2(width, height));
+    /* Room for two lines, so that nothing below moves when there is one. */
+    const ImVec2 label = ImGui::GetCursorPos();
+    ImGui::PushTextWrapPos(label.x + width);
+    ImGui::TextDisabled("%s", strip.label);
+    ImGui::PopTextWrapPos();
+    ImGui::SetCursorPos(ImVec2(label.x, label.y + 2 * ImGui::GetTextLineHeight()));
+    ImGui::Dummy(ImVec2(0, 0));
+}

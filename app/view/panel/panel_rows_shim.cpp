@@ -1,0 +1,288 @@
+extern "C" {
+#include "app/view/panel/panel_rows_shim.h"
+#include "assets/base/image.h"
+}
+
+#include <imgui.h>
+
+#include <cfloat>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+namespace
+{
+
+const ImVec4 changed_colour(0.95f, 0.78f, 0.45f, 1.0f);
+
+char *field_of(const tl_binding &binding, const tl_option &row)
+{
+    return static_cast<char *>(binding.params) + row.offset;
+}
+
+const char *default_of(const tl_binding &binding, const tl_option &row)
+{
+    return static_cast<const char *>(binding.table->defaults) + row.offset;
+}
+
+bool is_text(const tl_option &row)
+{
+    return row.type == TL_STRING || row.type == TL_PATH;
+}
+
+double number_at(const tl_option &row, const char *field)
+{
+    if (row.type == TL_DOUBLE) {
+        double value;
+        memcpy(&value, field, sizeof value);
+        return value;
+    }
+    float value;
+    memcpy(&value, field, sizeof value);
+    return static_cast<double>(value);
+}
+
+void set_number(const tl_option &row, char *field, double value)
+{
+    if (row.type == TL_DOUBLE) {
+        memcpy(field, &value, sizeof value);
+        return;
+    }
+    const float narrow = static_cast<float>(value);
+    memcpy(field, &narrow, sizeof narrow);
+}
+
+/* A slider over several decades is of use only when its steps are ratios. */
+bool spans_decades(const tl_option &row, double usual)
+{
+    const double decades = 1000, headroom = 50;
+    if (row.minimum > 0)
+        return row.maximum / row.minimum >= decades;
+    return row.minimum == 0 && usual > 0 && row.maximum / usual > headroom;
+}
+
+double three_digits(double value)
+{
+    char text[32];
+    snprintf(text, sizeof text, "%.3g", value);
+    return strtod(text, nullptr);
+}
+
+bool edit_number(const tl_binding &binding, const tl_option &row)
+{
+    char format[64];
+    snprintf(format, sizeof format, "%%.6g %s", row.unit); /* six digits: what a float has for sure */
+    double value = number_at(row, field_of(binding, row)), before = value;
+    const double usual = number_at(row, default_of(binding, row));
+    const double wide = 1000; /* linear sliders wider than this are too coarse to aim with */
+    bool edited;
+    if (row.minimum < 0 && row.maximum - row.minimum > wide) {
+        const float speed = strcmp(row.unit, "degrees") == 0 ? 0.5f : 0.01f; /* per pixel */
+        edited = ImGui::DragScalar("##value", ImGuiDataType_Double, &value, speed, &row.minimum, &row.maximum,
+                                   format, ImGuiSliderFlags_AlwaysClamp);
+    } else {
+        int flags = ImGuiSliderFlags_AlwaysClamp;
+        if (spans_decades(row, usual))
+            flags |= ImGuiSliderFlags_Logarithmic;
+        edited = ImGui::SliderScalar("##value", ImGuiDataType_Double, &value, &row.minimum, &row.maximum,
+                                     format, flags);
+    }
+    if (!edited || !std::isfinite(value))
+        return false;
+    if (ImGui::IsMouseDown(0)) /* dragged, not typed */
+        value = three_digits(value);
+    value = std::fmin(std::fmax(value, row.minimum), row.maximum);
+    set_number(row, field_of(binding, row), value);
+    return value != before;
+}
+
+bool edit_integer(const tl_binding &binding, const tl_option &row)
+{
+    char format[64];
+    snprintf(format, sizeof format, "%%d %s", row.unit);
+    int value, usual;
+    memcpy(&value, field_of(binding, row), sizeof value);
+    memcpy(&usual, default_of(binding, row), sizeof usual);
+    int flags = ImGuiSliderFlags_AlwaysClamp;
+    if (spans_decades(row, usual))
+        flags |= ImGuiSliderFlags_Logarithmic;
+    if (!ImGui::SliderInt("##value", &value, static_cast<int>(row.minimum), static_cast<int>(row.maximum),
+                          format, flags))
+        return false;
+    memcpy(field_of(binding, row), &value, sizeof value);
+    return true;
+}
+
+bool edit_choice(const tl_binding &binding, const tl_option &row)
+{
+    int value, count = 0;
+    memcpy(&value, field_of(binding, row), sizeof value);
+    while (row.choices[count])
+        count++;
+    if (!ImGui::Combo("##value", &value, row.choices, count, count))
+        return false;
+    memcpy(field_of(binding, row), &value, sizeof value);
+    return true;
+}
+
+bool edit_switch(const tl_binding &binding, const tl_option &row)
+{
+    bool value;
+    memcpy(&value, field_of(binding, row), sizeof value);
+    if (!ImGui::Checkbox("##value", &value))
+        return false;
+    memcpy(field_of(binding, row), &value, sizeof value);
+    return true;
+}
+
+bool keep_three(const tl_binding &binding, const tl_option &row, float value[3])
+{
+    const float lowest = static_cast<float>(row.minimum), highest = static_cast<float>(row.maximum);
+    for (int i = 0; i < 3; i++) {
+        if (!std::isfinite(value[i]))
+            return false;
+        value[i] = std::fmin(std::fmax(value[i], lowest), highest);
+    }
+    memcpy(field_of(binding, row), value, 3 * sizeof *value);
+    return true;
+}
+
+/* Colours are linear in the table and are shown as a screen shows them. */
+bool edit_colour(const tl_binding &binding, const tl_option &row)
+{
+    float value[3];
+    memcpy(value, field_of(binding, row), sizeof value);
+    for (float &channel : value)
+        channel = tl_srgb_from_linear(channel);
+    if (!ImGui::ColorEdit3("##value", value, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_PickerHueWheel))
+        return false;
+    for (float &channel : value)
+        channel = tl_srgb_to_linear(channel);
+    return keep_three(binding, row, value);
+}
+
+bool edit_vector(const tl_binding &binding, const tl_option &row)
+{
+    float value[3];
+    memcpy(value, field_of(binding, row), sizeof value);
+    return ImGui::DragFloat3("##value", value, 0.01f, static_cast<float>(row.minimum),
+                             static_cast<float>(row.maximum), "%.3g", ImGuiSliderFlags_AlwaysClamp) &&
+           keep_three(binding, row, value);
+}
+
+bool edit_text(const tl_binding &binding, const tl_option &row)
+{
+    char *field = field_of(binding, row);
+    if (row.choices) /* room for the list's arrow beside the text */
+        ImGui::SetNextItemWidth(-ImGui::GetFrameHeight());
+    ImGui::InputText("##value", field, TL_STRING_SIZE);
+    bool edited = ImGui::IsItemDeactivatedAfterEdit(); /* half a path is no value yet */
+    if (!row.choices)
+        return edited;
+    ImGui::SameLine(0, 0);
+    if (!ImGui::BeginCombo("##choices", "", ImGuiComboFlags_NoPreview | ImGuiComboFlags_PopupAlignLeft))
+        return edited;
+    for (int i = 0; row.choices[i]; i++)
+        if (ImGui::Selectable(row.choices[i], strcmp(row.choices[i], field) == 0)) {
+            snprintf(field, TL_STRING_SIZE, "%s", row.choices[i]);
+            edited = true;
+        }
+    ImGui::EndCombo();
+    return edited;
+}
+
+bool edit(const tl_binding &binding, const tl_option &row)
+{
+    switch (row.type) {
+    case TL_BOOL:
+        return edit_switch(binding, row);
+    case TL_INT:
+        return edit_integer(binding, row);
+    case TL_FLOAT:
+    case TL_DOUBLE:
+        return edit_number(binding, row);
+    case TL_ENUM:
+        return edit_choice(binding, row);
+    case TL_COLOUR:
+        return edit_colour(binding, row);
+    case TL_VECTOR:
+        return edit_vector(binding, row);
+    case TL_STRING:
+    case TL_PATH:
+        break;
+    }
+    return edit_text(binding, row);
+}
+
+void explain(const tl_binding &binding, const tl_option &row)
+{
+    const tl_binding usual = {binding.table, const_cast<void *>(binding.table->defaults)};
+    char *text = tl_options_get_text(&usual, &row);
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(ImGui::GetFontSize() * 25.0f);
+    if (is_text(row) && field_of(binding, row)[0])
+        ImGui::TextUnformatted(field_of(binding, row)); /* paths are longer than their widget */
+    ImGui::TextUnformatted(row.help);
+    ImGui::TextDisabled("%s.%s", binding.table->name, row.name);
+    if (row.type == TL_INT || row.type == TL_FLOAT || row.type == TL_DOUBLE)
+        ImGui::TextDisabled("%g to %g %s, by default %s", row.minimum, row.maximum, row.unit, text);
+    else
+        ImGui::TextDisabled("by default %s", text[0] ? text : "empty");
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+    free(text);
+}
+
+} // namespace
+
+bool tl_panel_row_changed(const struct tl_binding *binding, const struct tl_option *row)
+{
+    return !tl_option_equal(row, field_of(*binding, *row), default_of(*binding, *row));
+}
+
+bool tl_panel_rows_begin(const char *id)
+{
+    if (!ImGui::BeginTable(id, 3, ImGuiTableFlags_None))
+        return false;
+    ImGui::TableSetupColumn("label", ImGuiTableColumnFlags_WidthStretch, 0.47f);
+    ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 0.53f);
+    ImGui::TableSetupColumn("reset", ImGuiTableColumnFlags_WidthFixed, ImGui::GetFrameHeight());
+    return true;
+}
+
+void tl_panel_rows_end(void)
+{
+    ImGui::EndTable();
+}
+
+bool tl_panel_row(const struct tl_binding *binding, const struct tl_option *row)
+{
+    const bool is_changed = tl_panel_row_changed(binding, row);
+    ImGui::PushID(binding->table->name);
+    ImGui::PushID(row->name);
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::AlignTextToFramePadding();
+    if (is_changed)
+        ImGui::TextColored(changed_colour, "%s", row->name);
+    else
+        ImGui::TextUnformatted(row->name);
+    bool explained = ImGui::IsItemHovered();
+    ImGui::TableNextColumn();
+    ImGui::SetNextItemWidth(-FLT_MIN);
+    bool edited = edit(*binding, *row);
+    explained = explained || (ImGui::IsItemHovered() && !ImGui::IsItemActive());
+    if (explained)
+        explain(*binding, *row);
+    ImGui::TableNextColumn();
+    if (is_changed && ImGui::ArrowButton("##reset", ImGuiDir_Left)) {
+        tl_options_copy(row, binding->table->defaults, binding->params);
+        edited = true;
+    }
+    if (is_changed && ImGui::IsItemHovered())
+        ImGui::SetTooltip("back to the default");
+    ImGui::PopID();
+    ImGui::PopID();
+    return edited;
+}

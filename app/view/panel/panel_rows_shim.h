@@ -1,0 +1,19 @@
+/* Widgets for the rows of an option table; part of the panel (app/view/panel/panel_shim.h), between its
+ * NewFrame and Render. */
+#ifndef TOILE_APP_VIEW_PANEL_PANEL_ROWS_SHIM_H
+#define TOILE_APP_VIEW_PANEL_PANEL_ROWS_SHIM_H
+
+#include "config/options.h"
+
+/* Label, widget and reset button of one option, as a row of the current three-column table. True when the
+ * value was changed; it stays within the row's range. */
+bool tl_panel_row(const struct tl_binding *binding, const struct tl_option *row);
+
+/* True when the option differs from its table's default. */
+bool tl_panel_row_changed(const struct tl_binding *binding, const struct tl_option *row);
+
+/* Opens and closes such a table. */
+bool tl_panel_rows_begin(const char *id);
+void tl_panel_rows_end(void);
+
+#endif

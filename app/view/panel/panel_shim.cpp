@@ -1,0 +1,318 @@
+extern "C" {
+#include "app/view/panel/panel_shim.h"
+#include "app/view/panel/panel_rows_shim.h"
+}
+#include "app/view/panel/panel_overlay_shim.h"
+#include "app/view/panel/panel_text_shim.h"
+
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+#include <cfloat>
+#include <cstdio>
+#include <cstring>
+#include <unistd.h>
+
+struct tl_panel {
+    bool has_platform, has_drawing; /* which backends are up */
+    bool uses_keys, takes_focus;    /* takes_focus: in the next frame */
+    int pressed[8];                 /* keys for the next frame */
+    int pressed_count;
+};
+
+namespace
+{
+
+const float font_size = 15.0f;
+
+/* A readable face when the system has one; ImGui's own small bitmap otherwise. */
+void choose_font(float scale)
+{
+    static const char *const files[] = {
+        "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
+        "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf",
+        "/usr/share/fonts/truetype/noto/NotoSans-Regular.ttf",
+    };
+    static const ImWchar glyphs[] = {0x20, 0xff, 0x2010, 0x2027, 0}; /* Latin-1, dashes and quotes */
+    ImGuiIO &io = ImGui::GetIO();
+    for (const char *file : files)
+        if (access(file, R_OK) == 0 && io.Fonts->AddFontFromFileTTF(file, font_size * scale, nullptr, glyphs))
+            return;
+    io.Fonts->AddFontDefault();
+    io.FontGlobalScale = scale;
+}
+
+/* Neutral greys: a coloured surround would colour the eye's judgement of the cloth. */
+void choose_style(float scale)
+{
+    ImGui::StyleColorsDark();
+    ImGuiStyle &style = ImGui::GetStyle();
+    const auto grey = [](float level, float alpha) { return ImVec4(level, level, level, alpha); };
+    style.Colors[ImGuiCol_WindowBg] = grey(0.13f, 1.0f);
+    style.Colors[ImGuiCol_PopupBg] = grey(0.10f, 0.97f);
+    style.Colors[ImGuiCol_Border] = grey(0.28f, 1.0f);
+    style.Colors[ImGuiCol_FrameBg] = grey(0.21f, 1.0f);
+    style.Colors[ImGuiCol_FrameBgHovered] = grey(0.27f, 1.0f);
+    style.Colors[ImGuiCol_FrameBgActive] = grey(0.31f, 1.0f);
+    style.Colors[ImGuiCol_TitleBgActive] = grey(0.18f, 1.0f);
+    style.Colors[ImGuiCol_Button] = grey(0.27f, 1.0f);
+    style.Colors[ImGuiCol_ButtonHovered] = grey(0.35f, 1.0f);
+    style.Colors[ImGuiCol_ButtonActive] = grey(0.42f, 1.0f);
+    style.Colors[ImGuiCol_Header] = grey(0.20f, 1.0f);
+    style.Colors[ImGuiCol_HeaderHovered] = grey(0.27f, 1.0f);
+    style.Colors[ImGuiCol_HeaderActive] = grey(0.31f, 1.0f);
+    style.Colors[ImGuiCol_SliderGrab] = grey(0.52f, 1.0f);
+    style.Colors[ImGuiCol_SliderGrabActive] = grey(0.70f, 1.0f);
+    style.Colors[ImGuiCol_CheckMark] = grey(0.85f, 1.0f);
+    style.Colors[ImGuiCol_Text] = grey(0.90f, 1.0f);
+    style.Colors[ImGuiCol_TextDisabled] = grey(0.58f, 1.0f);
+    style.Colors[ImGuiCol_ModalWindowDimBg] = grey(0.0f, 0.35f);
+    style.WindowRounding = 0;
+    style.FrameRounding = 3;
+    style.GrabRounding = 2;
+    style.ItemSpacing = ImVec2(6, 4);
+    style.CellPadding = ImVec2(3, 2);
+    style.WindowPadding = ImVec2(10, 8);
+    style.ScaleAllSizes(scale);
+}
+
+void tooltip_of_last_item(const char *help)
+{
+    if (help && help[0] && ImGui::IsItemHovered())
+        ImGui::SetTooltip("%s", help);
+}
+
+/* Side by side, onto the next line where the panel ends. */
+void draw_buttons(const tl_panel_button *buttons, size_t count, tl_panel_result &result)
+{
+    const ImGuiStyle &style = ImGui::GetStyle();
+    const float end = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+    for (size_t i = 0; i < count; i++) {
+        const float width = ImGui::CalcTextSize(buttons[i].label).x + 2 * style.FramePadding.x;
+        if (i > 0 && ImGui::GetItemRectMax().x + style.ItemSpacing.x + width <= end)
+            ImGui::SameLine();
+        if (ImGui::Button(buttons[i].label))
+            result.command = buttons[i].command;
+        tooltip_of_last_item(buttons[i].help);
+    }
+}
+
+/* "table.key" among the bindings. */
+bool draw_favourite(const tl_panel_input &input, const char *name)
+{
+    for (size_t i = 0; i < input.binding_count; i++) {
+        const tl_option_table &table = *input.bindings[i].table;
+        const size_t prefix = strlen(table.name);
+        if (strncmp(name, table.name, prefix) != 0 || name[prefix] != '.')
+            continue;
+        for (size_t row = 0; row < table.row_count; row++)
+            if (strcmp(name + prefix + 1, table.rows[row].name) == 0)
+                return tl_panel_row(&input.bindings[i], &table.rows[row]);
+    }
+    return false;
+}
+
+void draw_front(const tl_panel_input &input, tl_panel_result &result)
+{
+    if (!tl_panel_rows_begin("front"))
+        return;
+    ImGui::PushID("favourites");
+    for (size_t i = 0; i < input.favourite_count; i++)
+        result.changed |= draw_favourite(input, input.favourites[i]);
+    ImGui::PopID();
+    tl_panel_rows_end();
+}
+
+void draw_lines(const tl_panel_lines &group)
+{
+    const int flags = group.open ? ImGuiTreeNodeFlags_DefaultOpen : 0;
+    const bool is_open = ImGui::CollapsingHeader(group.title, flags);
+    tooltip_of_last_item(group.help);
+    if (!is_open || !ImGui::BeginTable(group.title, group.columns, ImGuiTableFlags_None))
+        return;
+    for (int column = 0; column < group.columns; column++)
+        ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch,
+                                column + 1 < group.columns ? 1.0f : 2.4f);
+    for (size_t i = 0; i < group.count; i++) {
+        ImGui::TableNextRow();
+        for (int column = 0; column < group.columns; column++) {
+            ImGui::TableNextColumn();
+            if (column == 0)
+                ImGui::TextDisabled("%s", group.lines[i].cells[column]);
+            else
+                ImGui::TextWrapped("%s", group.lines[i].cells[column]);
+        }
+    }
+    ImGui::EndTable();
+}
+
+void draw_table(const tl_binding &binding, tl_panel_result &result)
+{
+    const tl_option_table &table = *binding.table;
+    int changed_count = 0;
+    for (size_t i = 0; i < table.row_count; i++)
+        changed_count += tl_panel_row_changed(&binding, &table.rows[i]);
+    char label[128]; /* the part after ### is the identity, so a new count does not close the header */
+    if (changed_count > 0)
+        snprintf(label, sizeof label, "%s (%d changed)###%s", table.name, changed_count, table.name);
+    else
+        snprintf(label, sizeof label, "%s###%s", table.name, table.name);
+    const bool is_open = ImGui::CollapsingHeader(label);
+    tooltip_of_last_item(table.help);
+    if (!is_open || !tl_panel_rows_begin(table.name))
+        return;
+    for (size_t i = 0; i < table.row_count; i++)
+        result.changed |= tl_panel_row(&binding, &table.rows[i]);
+    tl_panel_rows_end();
+}
+
+void draw_panel(tl_panel &panel, const tl_panel_input &input, tl_panel_result &result)
+{
+    const ImVec2 ratio = ImGui::GetIO().DisplayFramebufferScale;
+    ImGui::SetNextWindowPos(
+        ImVec2(static_cast<float>(input.x) / ratio.x, static_cast<float>(input.y) / ratio.y));
+    ImGui::SetNextWindowSize(
+        ImVec2(static_cast<float>(input.width) / ratio.x, static_cast<float>(input.height) / ratio.y));
+    if (panel.takes_focus)
+        ImGui::SetNextWindowFocus();
+    panel.takes_focus = false;
+    ImGui::Begin("panel", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoBringToFrontOnFocus);
+    ImGui::PushAllowKeyboardFocus(false); /* Tab hides the panel; it must not begin to type into it */
+    ImGui::TextWrapped("%s", input.title);
+    draw_buttons(input.buttons, input.button_count, result);
+    tl_panel_strip_draw(input.strip);
+    ImGui::Separator();
+    draw_front(input, result);
+    ImGui::Separator();
+    for (size_t i = 0; i < input.measure_count; i++)
+        draw_lines(input.measures[i]);
+    ImGui::Separator();
+    ImGui::TextDisabled("All options");
+    for (size_t i = 0; i < input.binding_count; i++)
+        draw_table(input.bindings[i], result);
+    ImGui::PopAllowKeyboardFocus();
+    ImGui::End();
+}
+
+void draw_question(const tl_panel_input &input, tl_panel_result &result)
+{
+    if (!ImGui::IsPopupOpen("question"))
+        ImGui::OpenPopup("question");
+    tl_panel_place_over_view(input, 0.5f, 0.5f);
+    if (!ImGui::BeginPopupModal("question", nullptr,
+                                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_AlwaysAutoResize |
+                                    ImGuiWindowFlags_NoSavedSettings))
+        return;
+    ImGui::TextUnformatted(input.question);
+    const int before = result.command;
+    result.command = -1;
+    for (size_t i = 0; i < input.answer_count; i++) {
+        if (i > 0)
+            ImGui::SameLine();
+        char label[64];
+        snprintf(label, sizeof label, "%d  %s", static_cast<int>(i) + 1, input.answers[i].label);
+        if (ImGui::Button(label))
+            result.command = input.answers[i].command;
+        tooltip_of_last_item(input.answers[i].help);
+    }
+    if (result.command >= 0)
+        ImGui::CloseCurrentPopup();
+    else
+        result.command = before;
+    ImGui::EndPopup();
+}
+
+/* ImGui looks at what is held when a frame begins, and would miss a key that was let go before. */
+void hold_keys(const tl_panel &panel, bool held)
+{
+    for (int i = 0; i < panel.pressed_count; i++)
+        ImGui::GetIO().KeysDown[panel.pressed[i]] = held;
+}
+
+} // namespace
+
+struct tl_panel *tl_panel_create(struct GLFWwindow *window, float scale, tl_error *error)
+{
+    tl_panel *panel = new tl_panel{};
+    ImGui::CreateContext();
+    ImGui::GetIO().IniFilename = nullptr; /* a review leaves no file behind that nobody asked for */
+    choose_font(scale);
+    choose_style(scale);
+    panel->has_platform = ImGui_ImplGlfw_InitForOpenGL(window, true);
+    panel->has_drawing = panel->has_platform && ImGui_ImplOpenGL3_Init("#version 450 core");
+    if (!panel->has_drawing) {
+        tl_fail(error, TL_DEVICE, "the panel cannot be drawn with this OpenGL: update the graphics driver");
+        tl_panel_destroy(&panel);
+    }
+    return panel;
+}
+
+void tl_panel_destroy(tl_panel **panel)
+{
+    if (!*panel)
+        return;
+    if ((*panel)->has_drawing)
+        ImGui_ImplOpenGL3_Shutdown();
+    if ((*panel)->has_platform)
+        ImGui_ImplGlfw_Shutdown();
+    ImGui::DestroyContext();
+    delete *panel;
+    *panel = nullptr;
+}
+
+bool tl_panel_wants_pointer(const tl_panel *panel)
+{
+    (void)panel;
+    return ImGui::GetIO().WantCaptureMouse;
+}
+
+bool tl_panel_wants_keys(const tl_panel *panel)
+{
+    return panel->uses_keys || ImGui::GetIO().WantTextInput;
+}
+
+void tl_panel_press(tl_panel *panel, int key)
+{
+    const int room = sizeof panel->pressed / sizeof panel->pressed[0];
+    if (panel->pressed_count < room)
+        panel->pressed[panel->pressed_count++] = key;
+}
+
+void tl_panel_use_keys(tl_panel *panel, bool used)
+{
+    ImGuiIO &io = ImGui::GetIO();
+    panel->uses_keys = panel->takes_focus = used;
+    if (used)
+        io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+    else
+        io.ConfigFlags &= ~ImGuiConfigFlags_NavEnableKeyboard;
+}
+
+struct tl_panel_result tl_panel_build(tl_panel *panel, const struct tl_panel_input *input)
+{
+    tl_panel_result result = {false, false, -1};
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    hold_keys(*panel, true);
+    ImGui::NewFrame();
+    tl_panel_forget_text();
+    if (input->width > 0)
+        draw_panel(*panel, *input, result);
+    tl_panel_overlay_draw(*input);
+    if (input->question)
+        draw_question(*input, result);
+    result.editing = ImGui::IsAnyItemActive();
+    ImGui::Render();
+    hold_keys(*panel, false);
+    panel->pressed_count = 0;
+    return result;
+}
+
+void tl_panel_draw(tl_panel *panel)
+{
+    (void)panel;
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}

@@ -1,0 +1,273 @@
+/* When an image of the review window is drawn: when the session's state or the settings changed; within the
+ * budget while something moves, and as well as the settings ask as soon as it rests. */
+#include "app/view/review.h"
+#include "config/interrupt.h"
+#include "config/log.h"
+#include "config/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *base_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+static void update_title(struct tl_review *review)
+{
+    const struct tl_scene_params *scene = &review->good.scene;
+    char *title = tl_format("toile \u2014 %s, %s, %s", base_name(scene->garment), base_name(scene->fabric),
+                            base_name(scene->environment));
+    if (!review->title || strcmp(title, review->title) != 0)
+        tl_window_set_title(review->window, title);
+    free(review->title);
+    review->title = title;
+}
+
+static bool show_image(struct tl_review *review, int width, int height, tl_error *error)
+{
+    int line = tl_review_wipe_column(review, width);
+    return (line == 0 || tl_renderer_show_columns(review->wipe.renderer, width, height, 0, line, error)) &&
+           tl_renderer_show_columns(review->renderer, width, height, line, width, error);
+}
+
+void tl_review_lap(struct tl_review *review, const char *part)
+{
+    struct tl_review_times *times = &review->times;
+    double now_s = tl_clock_s(), ms = 1e3 * (now_s - times->lap_s);
+    times->lap_s = now_s;
+    if (ms <= times->longest_ms)
+        return;
+    times->longest = part;
+    times->longest_ms = ms;
+}
+
+/* What an image that one feels spent its time on, for whoever wants to know why. */
+static void tell_slow(const struct tl_review *review, double image_ms)
+{
+    const double slow_ms = 250;
+    if (image_ms < slow_ms)
+        return;
+    const tl_plan *plan = tl_renderer_last_plan(review->renderer);
+    tl_debug("view: slow image %d, %s: %.0f ms with the cloth's %.0f%s", review->drawn_count,
+             review->is_paced ? "in motion" : "at rest", image_ms, review->times.cloth,
+             review->wipe.renderer ? ", compared" : "");
+    if (review->times.longest_ms > 0.1 * image_ms)
+        tl_debug("view:   %s %.0f ms", review->times.longest, review->times.longest_ms);
+    for (int i = 0; i < plan->count; i++)
+        if (plan->rows[i].took_ms > 0.1 * image_ms)
+            tl_debug("view:   %s %.0f ms: %s", plan->rows[i].name, plan->rows[i].took_ms,
+                     plan->rows[i].reason);
+}
+
+/* Until here it is the program's time; the swap may wait for the screen. What nobody waits for is shown as
+ * well as it can be: its time says nothing about the budget. */
+static void take_time(struct tl_review *review)
+{
+    if (!review->is_new)
+        return;
+    double frame_ms = 1e3 * (tl_clock_s() - review->times.began_s);
+    review->is_new = false;
+    tell_slow(review, frame_ms);
+    if (!review->is_paced) {
+        tl_frame_times_add(&review->rest_times, frame_ms);
+        return;
+    }
+    review->times.frame = frame_ms;
+    tl_frame_times_add(&review->frame_times, frame_ms);
+    tl_pace_learn(review->pace, tl_renderer_last_plan(review->renderer), review->times.cloth, frame_ms);
+}
+
+bool tl_review_present(struct tl_review *review, tl_error *error)
+{
+    int width, height;
+    tl_review_size(review, &width, &height);
+    if (!show_image(review, width, height, error))
+        return false;
+    review->times.lap_s = tl_clock_s();
+    tl_panel_draw(review->panel);
+    tl_review_lap(review, "drawing the panel");
+    take_time(review);
+    tl_window_show(review->window);
+    review->shown_count++;
+    review->shown_s = tl_clock_s();
+    return true;
+}
+
+/* What makes the cloth or the light anew takes seconds: it waits until a slider is let go. */
+static bool is_slow_change(const struct tl_review *review)
+{
+    struct tl_settings quick = review->good;
+    quick.camera = review->wanted.camera;
+    quick.material = review->wanted.material;
+    quick.scene.environment_yaw_deg = review->wanted.scene.environment_yaw_deg;
+    quick.image.exposure_ev = review->wanted.image.exposure_ev;
+    quick.image.background = review->wanted.image.background;
+    quick.image.width = review->wanted.image.width;
+    quick.image.height = review->wanted.image.height;
+    return !tl_settings_equal(&quick, &review->wanted);
+}
+
+static void log_changes(const struct tl_scene_params *old, const struct tl_scene_params *new)
+{
+    const struct {
+        const char *what, *old, *new;
+    } names[] = {
+        {"garment", old->garment, new->garment}, {"avatar", old->avatar, new->avatar},
+        {"motion", old->motion, new->motion},    {"environment", old->environment, new->environment},
+        {"fabric", old->fabric, new->fabric},    {"preset", old->preset, new->preset},
+    };
+    for (size_t i = 0; i < TL_COUNT(names); i++)
+        if (strcmp(names[i].old, names[i].new) != 0)
+            tl_info("view: %s %s", names[i].what, names[i].new);
+}
+
+/* One simulated frame when it is due. A machine that is too slow plays slower, and skips nothing. */
+static bool is_step_due(const struct tl_review *review)
+{
+    return review->playing && tl_clock_s() >= review->next_step_s;
+}
+
+static void step(struct tl_review *review)
+{
+    double now_s = tl_clock_s();
+    tl_error error;
+    tl_review_move_hand(review);
+    if (!tl_session_advance(review->session, &error))
+        tl_review_complain(review, &error);
+    double frame_s = 1 / review->good.cloth.frame_rate;
+    review->next_step_s = fmax(review->next_step_s + frame_s, now_s);
+    review->times.cloth = 1e3 * (tl_clock_s() - now_s);
+}
+
+static bool draw_with(struct tl_review *review, tl_renderer *renderer, const struct tl_settings *settings,
+                      tl_error *error)
+{
+    if (!tl_session_apply(review->session, settings, error))
+        return false;
+    tl_frame frame = tl_session_frame(review->session);
+    const struct tl_render_settings render = tl_settings_render(settings);
+    return tl_renderer_draw(renderer, &frame, &render, error);
+}
+
+/* Both looks share the budget. */
+static void choose_levels(struct tl_review *review, const struct tl_settings *settings)
+{
+    double budget_ms = (double)review->params.budget_ms;
+    tl_pace_set_budget(review->pace, review->wipe.renderer ? budget_ms / 2 : budget_ms);
+    const tl_frame coming = tl_session_frame(review->session);
+    review->pace_choice = tl_pace_choose(review->pace, review->renderer, &coming, settings);
+}
+
+/* Brings the session to what can be followed, a frame further when that is due, and draws it; both looks
+ * where two are compared. */
+static bool draw_image(struct tl_review *review, const struct tl_settings *settings, bool is_paced,
+                       tl_error *error)
+{
+    struct tl_levels *levels = &review->pace_choice.levels;
+    review->times.lap_s = tl_clock_s();
+    if (!is_paced)
+        *levels = (struct tl_levels){{0}};
+    struct tl_settings b = tl_levels_apply(levels, settings); /* the last frame's: the camera goes first */
+    if (!tl_session_apply(review->session, &b, error))
+        return false;
+    if (is_paced)
+        choose_levels(review, settings);
+    b = tl_levels_apply(levels, settings);
+    if (!tl_session_apply(review->session, &b, error))
+        return false;
+    tl_review_lap(review, "settings and levels");
+    if (is_step_due(review))
+        step(review);
+    double started_s = tl_clock_s();
+    if (review->wipe.renderer) {
+        const struct tl_settings other = tl_review_look_a(review, settings),
+                                 a = tl_levels_apply(levels, &other);
+        if (!draw_with(review, review->wipe.renderer, &a, error))
+            return false;
+        review->times.began_s += tl_clock_s() - started_s; /* the pace learns of one look alone */
+    }
+    if (!draw_with(review, review->renderer, &b, error))
+        return false;
+    review->times.draw = 1e3 * (tl_clock_s() - started_s);
+    review->drawn_count++;
+    review->is_new = true;
+    review->is_paced = is_paced;
+    tl_debug("view: image %d, frame %d, %.1f ms", review->drawn_count,
+             tl_session_frame_number(review->session), review->times.draw);
+    return true;
+}
+
+static void take_as_good(struct tl_review *review, const struct tl_settings *drawn)
+{
+    if (review->title && tl_settings_equal(&review->good, drawn))
+        return;
+    log_changes(&review->good.scene, &drawn->scene);
+    review->good = *drawn;
+    if (review->message_is_error)
+        tl_review_quiet(review);
+    update_title(review);
+    tl_review_follow_views(review);
+}
+
+/* Draws what is wanted. What cannot be drawn is reported, and what was good is drawn instead; false only when
+ * that fails too. */
+static bool renew_image(struct tl_review *review, bool is_paced, tl_error *error)
+{
+    int width, height;
+    bool is_another = review->changed || review->image_is_old; /* not the same, refined */
+    tl_review_size(review, &width, &height);
+    review->wanted.image.width = width;
+    review->wanted.image.height = height;
+    struct tl_settings followed = tl_review_followed(review);
+    if (!draw_image(review, &followed, is_paced, error)) {
+        if (tl_interrupted())
+            return false;
+        tl_review_complain(review, error);
+        tl_renderer_destroy(&review->wipe.renderer);
+        review->good.image.width = width;
+        review->good.image.height = height;
+        review->wanted = review->good;
+        if (!draw_image(review, &review->good, is_paced, error))
+            return false;
+    } else {
+        take_as_good(review, &followed);
+    }
+    review->changed = review->image_is_old = false;
+    int settles =
+        is_paced || !is_another ? 1 : 2; /* the panel's texts take a second frame to find their size */
+    review->redraws = review->redraws > settles ? review->redraws : settles;
+    return true;
+}
+
+bool tl_review_is_sharp(const struct tl_review *review)
+{
+    for (int i = 0; i < TL_KNOB_COUNT; i++)
+        if (review->pace_choice.levels.of[i] > 0)
+            return false;
+    return true;
+}
+
+bool tl_review_draw_sharp(struct tl_review *review, tl_error *error)
+{
+    bool is_done = tl_review_is_sharp(review) && !review->changed && !review->image_is_old;
+    return is_done || renew_image(review, false, error);
+}
+
+bool tl_review_is_at_rest(const struct tl_review *review)
+{
+    return tl_renderer_is_at_rest(review->renderer) &&
+           (!review->wipe.renderer || tl_renderer_is_at_rest(review->wipe.renderer));
+}
+
+bool tl_review_update_image(struct tl_review *review, tl_error *error)
+{
+    bool waits = review->changed && review->editing && is_slow_change(review);
+    /* Jittered rounds are left to average; keys and the panel are answered first. */
+    bool is_refined = tl_review_is_at_rest(review) || review->redraws > 0;
+    bool improves = !tl_review_is_moving(review) && !(is_refined && tl_review_is_sharp(review));
+    bool is_due = review->changed || review->image_is_old || is_step_due(review) || improves;
+    return waits || !is_due || renew_image(review, tl_review_is_moving(review), error);
+}

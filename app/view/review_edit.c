@@ -1,0 +1,247 @@
+/* Edits of the review's settings: names and files that stand for many of them, and undo. */
+#include "app/view/review.h"
+#include "assets/motion/point_cache.h"
+#include "config/embedded.h"
+#include "config/file.h"
+#include "config/log.h"
+#include "config/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+bool tl_review_set(struct tl_review *review, const char *key, const char *text)
+{
+    struct tl_binding bindings[TL_SETTINGS_TABLES];
+    tl_settings_bind(&review->wanted, bindings);
+    tl_error error;
+    if (!tl_options_set(bindings, TL_SETTINGS_TABLES, key, text, "view", NULL, &error)) {
+        tl_review_complain(review, &error);
+        return false;
+    }
+    review->changed = true;
+    return true;
+}
+
+/* Takes over what a name or file stands for. */
+typedef bool apply_name(struct tl_settings *settings, const char *name, tl_error *error);
+
+static void apply_named(struct tl_review *review, apply_name *apply, const char *name)
+{
+    tl_error error;
+    char *copy = tl_copy_string(name); /* the name may lie within the settings that it changes */
+    if (apply(&review->wanted, copy, &error)) {
+        review->changed = true;
+    } else {
+        tl_review_complain(review, &error);
+        review->wanted = review->good;
+    }
+    free(copy);
+}
+
+void tl_review_layer(struct tl_review *review)
+{
+    const struct tl_scene_params *wanted = &review->wanted.scene, *good = &review->good.scene;
+    if (strcmp(wanted->fabric, good->fabric) != 0)
+        apply_named(review, tl_settings_apply_fabric, wanted->fabric);
+    if (strcmp(wanted->overlay_fabric, good->overlay_fabric) != 0)
+        apply_named(review, tl_settings_apply_overlay, wanted->overlay_fabric);
+    if (strcmp(wanted->preset, good->preset) != 0)
+        apply_named(review, tl_settings_apply_preset, wanted->preset);
+    if (strcmp(wanted->garment, good->garment) != 0)
+        apply_named(review, tl_settings_apply_colourway, ""); /* another one has others */
+    else if (strcmp(wanted->colourway, good->colourway) != 0 ||
+             strcmp(wanted->colourways, good->colourways) != 0)
+        apply_named(review, tl_settings_apply_colourway, wanted->colourway);
+}
+
+void tl_review_next_colourway(struct tl_review *review, int by)
+{
+    const char *const *names;
+    int count = (int)tl_session_colourways(review->session, &names), present = 0; /* 0: none, as cut */
+    if (review->loader && tl_loader_kind(review->loader) == TL_LOAD_SCENE) {
+        tl_review_say(review, "the scene is not there yet: its colourways come with it");
+        return;
+    }
+    if (count == 0) {
+        tl_review_say(review, "this garment has no colourways: a scene's section `colourways` gives it some");
+        return;
+    }
+    for (int i = 0; i < count; i++)
+        if (strcmp(names[i], review->wanted.scene.colourway) == 0)
+            present = i + 1;
+    int next = (present + by + count + 1) % (count + 1);
+    apply_named(review, tl_settings_apply_colourway, next > 0 ? names[next - 1] : "");
+    tl_review_say(review, next > 0 ? "colourway: %s" : "no colourway%s",
+                  next > 0 ? review->wanted.scene.colourway : "");
+}
+
+void tl_review_next_view(struct tl_review *review, int by)
+{
+    int *view = &review->wanted.image.view;
+    *view = (*view + by + TL_VIEW_COUNT) % TL_VIEW_COUNT;
+    review->changed = true;
+    tl_review_say(review, "shows %s", tl_image_view_names[*view]);
+}
+
+void tl_review_use_fabric(struct tl_review *review, const char *name)
+{
+    apply_named(review, tl_settings_apply_fabric, name);
+    tl_review_say(review, "fabric: %s", review->wanted.scene.fabric);
+}
+
+void tl_review_next_fabric(struct tl_review *review, int by)
+{
+    int count = 0, present = -1;
+    for (; tl_embedded_fabrics_names[count]; count++)
+        if (strcmp(tl_embedded_fabrics_names[count], review->wanted.scene.fabric) == 0)
+            present = count;
+    if (present < 0) /* a file's: the list begins */
+        present = by > 0 ? -1 : 0;
+    tl_review_use_fabric(review, tl_embedded_fabrics_names[(present + by + count) % count]);
+}
+
+void tl_review_use_scene(struct tl_review *review, const char *path)
+{
+    tl_error error;
+    struct tl_settings loaded;
+    if (!tl_settings_load(&loaded, &(struct tl_settings_source){.scene_file = path}, &error)) {
+        tl_review_complain(review, &error);
+        return;
+    }
+    free(review->scene_file);
+    review->scene_file = tl_copy_string(path);
+    review->wanted = loaded;
+    review->changed = true;
+    review->keeps_settings = false; /* what is remembered is the built-in review */
+    tl_review_know_environment(review, loaded.scene.environment);
+}
+
+void tl_review_know_environment(struct tl_review *review, const char *name)
+{
+    for (size_t i = 0; i < review->environment_count; i++)
+        if (strcmp(review->environments[i], name) == 0)
+            return;
+    size_t count = review->environment_count + 1;
+    review->environments = tl_resize(review->environments, count, sizeof *review->environments);
+    review->environments[review->environment_count++] = tl_copy_string(name);
+}
+
+void tl_review_next_environment(struct tl_review *review)
+{
+    size_t next = 0;
+    for (size_t i = 0; i < review->environment_count; i++)
+        if (strcmp(review->environments[i], review->wanted.scene.environment) == 0)
+            next = (i + 1) % review->environment_count;
+    if (review->environment_count < 2)
+        tl_review_say(review, "there is one environment only: drop an .exr or .hdr file here to add one");
+    else
+        tl_review_set(review, "scene.environment", review->environments[next]);
+}
+
+/* Files that are dropped together are asked about one after the other. */
+static void ask_about(struct tl_review *review, const char *path)
+{
+    if (!review->dropped) {
+        review->dropped = tl_copy_string(path);
+        return;
+    }
+    review->waiting = tl_resize(review->waiting, review->waiting_count + 1, sizeof *review->waiting);
+    review->waiting[review->waiting_count++] = tl_copy_string(path);
+}
+
+static char *take_dropped(struct tl_review *review)
+{
+    char *path = review->dropped;
+    review->dropped = NULL;
+    if (review->waiting_count > 0) {
+        review->dropped = review->waiting[0];
+        memmove(review->waiting, review->waiting + 1, --review->waiting_count * sizeof *review->waiting);
+    }
+    return path;
+}
+
+void tl_review_forget_dropped(struct tl_review *review)
+{
+    free(take_dropped(review));
+}
+
+void tl_review_use_dropped(struct tl_review *review, int command)
+{
+    char *path = take_dropped(review);
+    if (!path)
+        return;
+    switch (command) {
+    case TL_REVIEW_USE_GARMENT:
+        if (tl_review_set(review, "scene.garment", path))
+            tl_review_layer(review);
+        break;
+    case TL_REVIEW_USE_AVATAR:
+        tl_review_set(review, "scene.avatar", path);
+        break;
+    case TL_REVIEW_USE_SCENE:
+        tl_review_use_scene(review, path);
+        break;
+    case TL_REVIEW_USE_FABRIC:
+        apply_named(review, tl_settings_apply_fabric, path);
+        break;
+    case TL_REVIEW_USE_PRESET:
+        apply_named(review, tl_settings_apply_preset, path);
+        break;
+    default:
+        break;
+    }
+    free(path);
+}
+
+void tl_review_drop(struct tl_review *review, const char *path)
+{
+    if (tl_path_has_extension(path, "exr") || tl_path_has_extension(path, "hdr")) {
+        tl_review_know_environment(review, path);
+        tl_review_set(review, "scene.environment", path);
+    } else if (tl_point_cache_is_file(path)) {
+        tl_review_set(review, "scene.motion", path);
+    } else if (tl_model_is_file(path) || tl_path_has_extension(path, "yaml") ||
+               tl_path_has_extension(path, "yml")) {
+        ask_about(review, path);
+    } else {
+        tl_error error;
+        tl_fail(&error, TL_INPUT,
+                "%s: cannot be used here: drop a .glb, .gltf, .obj, .pc2, .mdd, .exr, .hdr or .yaml file",
+                path);
+        tl_review_complain(review, &error);
+    }
+}
+
+/* A slider's whole way, a drag and a run of one key are one edit each. */
+static bool is_within_gesture(const struct tl_review *review)
+{
+    const double gesture_s = 0.4;
+    return review->editing || review->drag != TL_DRAG_NONE || tl_review_moves_itself(review) ||
+           tl_clock_s() - review->moved_s < gesture_s;
+}
+
+void tl_review_note_edit(struct tl_review *review)
+{
+    if (!review->changed && !review->loader && !is_within_gesture(review))
+        tl_history_note(review->history, &review->good);
+}
+
+void tl_review_undo(struct tl_review *review, bool redo)
+{
+    /* What is wanted is an edit, though its gesture has just ended, or it is still made ready. */
+    if (!tl_review_moves_itself(review))
+        tl_history_note(review->history, &review->wanted);
+    const struct tl_settings *edit =
+        redo ? tl_history_redo(review->history) : tl_history_undo(review->history);
+    if (!edit) {
+        tl_review_say(review, redo ? "nothing to redo" : "nothing to undo");
+        return;
+    }
+    struct tl_settings before = review->wanted;
+    tl_history_restore(edit, &review->wanted);
+    review->changed = true;
+    char *text =
+        redo ? tl_history_describe(&before, &review->wanted) : tl_history_describe(&review->wanted, &before);
+    tl_review_say(review, redo ? "redone: %s" : "undone: %s", text);
+    free(text);
+}

@@ -1,0 +1,146 @@
+/* What the review window remembers from one time to the next, and files that may be edited meanwhile. */
+#include "app/cli/arguments.h"
+#include "app/view/review.h"
+#include "assets/model.h"
+#include "config/file.h"
+#include "config/log.h"
+#include "config/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static char *state_file(const struct tl_review *review)
+{
+    return tl_format("%s/review.yaml", review->state_folder);
+}
+
+bool tl_review_remember(struct tl_review *review)
+{
+    const struct tl_arguments *arguments = review->arguments;
+    const char *scene = arguments->positional_count > 0 ? arguments->positionals[0] : NULL;
+    review->params = *(const struct tl_window_params *)tl_window_options.defaults;
+    review->scene_file =
+        scene && tl_option_is_file_name(scene) && !tl_model_is_file(scene) ? tl_copy_string(scene) : NULL;
+    review->state_folder = arguments->fresh ? NULL : tl_state_folder();
+    if (!review->state_folder)
+        return false;
+    tl_error error;
+    struct tl_state state;
+    char *file = state_file(review);
+    if (!tl_state_load(file, &review->wanted, &state, &error))
+        tl_warn("view: %s: begins as the first time", error.message);
+    free(file);
+    review->params = state.window;
+    /* Who names a scene or an option means that one, not what was left lying here. */
+    review->keeps_settings = !scene && arguments->assignment_count == 0;
+    bool is_remembered = review->keeps_settings && state.review.has_settings;
+    if (is_remembered)
+        review->wanted = state.settings;
+    return is_remembered;
+}
+
+void tl_review_keep(struct tl_review *review)
+{
+    if (!review->state_folder || !review->session)
+        return;
+    tl_error error;
+    struct tl_settings defaults = review->good;
+    struct tl_state state;
+    char *file = state_file(review);
+    /* What is not this review's to say stays as it was written. */
+    if (!tl_state_load(file, &defaults, &state, &error))
+        state.review.has_settings = false;
+    if (review->keeps_settings) {
+        state.review.has_settings = true;
+        state.settings = review->good;
+    }
+    state.window = review->params;
+    tl_window_wished_size(review->window, &state.window.width, &state.window.height);
+    if (!tl_state_save(file, &state, &error))
+        tl_warn("view: %s: the next review begins as this one did", error.message);
+    free(file);
+}
+
+void tl_review_follow_views(struct tl_review *review)
+{
+    char *name = tl_saved_views_name(&review->good.scene);
+    const char *folder = review->state_folder ? review->state_folder : "";
+    char *file = tl_format("%s/views/%s", folder, name);
+    free(name);
+    if (review->views_file && strcmp(review->views_file, file) == 0) {
+        free(file);
+        return;
+    }
+    free(review->views_file);
+    review->views_file = file;
+    tl_error error;
+    if (!review->state_folder)
+        review->views = (struct tl_saved_views){0};
+    else if (!tl_saved_views_load(file, &review->views, &error))
+        tl_warn("view: %s: there are no saved views", error.message);
+}
+
+void tl_review_save_view(struct tl_review *review, int index)
+{
+    tl_error error;
+    tl_review_fix_camera(review);
+    review->views.of[index] = tl_saved_view_take(&review->wanted);
+    if (review->state_folder && !tl_saved_views_save(review->views_file, &review->views, &error))
+        tl_review_complain(review, &error);
+    else
+        tl_review_say(review, "view %d saved: %d comes back to it", index + 1, index + 1);
+}
+
+/* The file's settings, seen from where the eye is now. */
+static void reload_scene(struct tl_review *review)
+{
+    const struct tl_arguments *arguments = review->arguments;
+    bool is_first =
+        arguments->positional_count > 0 && strcmp(review->scene_file, arguments->positionals[0]) == 0;
+    const struct tl_settings_source source = {
+        .scene_file = review->scene_file,
+        .assignments = (const char *const *)arguments->assignments,
+        .assignment_count = is_first ? arguments->assignment_count : 0,
+    };
+    struct tl_settings loaded;
+    tl_error error;
+    if (!tl_settings_load(&loaded, &source, &error)) {
+        tl_review_complain(review, &error);
+        return;
+    }
+    loaded.camera = review->wanted.camera;
+    review->wanted = loaded;
+    review->changed = true;
+    tl_review_say(review, "edited: %s", review->scene_file);
+}
+
+static void reload_named(struct tl_review *review, const char *name,
+                         bool (*apply)(struct tl_settings *settings, const char *name, tl_error *error))
+{
+    if (!tl_option_is_file_name(name) || !tl_watch_has_changed(&review->watch, name))
+        return;
+    tl_error error;
+    char *copy = tl_copy_string(name); /* it lies within the settings that are changed */
+    if (apply(&review->wanted, copy, &error)) {
+        review->changed = true;
+        tl_review_say(review, "edited: %s", copy);
+    } else {
+        tl_review_complain(review, &error);
+    }
+    free(copy);
+}
+
+void tl_review_watch(struct tl_review *review)
+{
+    const double every_s = 0.5;
+    double now_s = tl_clock_s();
+    if (now_s - review->watched_s < every_s)
+        return;
+    review->watched_s = now_s;
+    const struct tl_scene_params *scene = &review->wanted.scene;
+    if (review->scene_file && tl_watch_has_changed(&review->watch, review->scene_file))
+        reload_scene(review);
+    reload_named(review, scene->fabric, tl_settings_apply_fabric);
+    reload_named(review, scene->overlay_fabric, tl_settings_apply_overlay);
+    reload_named(review, scene->preset, tl_settings_apply_preset);
+}

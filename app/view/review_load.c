@@ -1,0 +1,211 @@
+/* Scenes, environments and looks are made ready beside the review window. Until one is there the old one
+ * stays, with all that can be done to it; one that cannot be had changes nothing. */
+#include "app/view/review.h"
+#include "config/interrupt.h"
+#include "config/log.h"
+
+#include <omp.h>
+#include <string.h>
+
+/* A look has to be made ready unless the session has it, or it was just made. Light that plays is new with
+ * every frame: nothing can be made ready for it. The material follows a slider at once. */
+static bool needs_look(const struct tl_review *review, const struct tl_settings *settings)
+{
+    struct tl_settings present = *tl_session_settings(review->session);
+    if (review->editing)
+        present.material = settings->material;
+    return !tl_session_light_plays(review->session) && tl_session_needs_look(&present, settings) &&
+           tl_session_needs_look(&review->made_ready, settings);
+}
+
+static bool is_slow(const struct tl_review *review, const struct tl_settings *settings)
+{
+    const struct tl_settings *present = tl_session_settings(review->session);
+    return tl_session_needs_scene(present, settings) || tl_session_needs_light(present, settings) ||
+           needs_look(review, settings);
+}
+
+/* What of `settings` has to be made ready is left as it is. */
+static void stay(const struct tl_review *review, struct tl_settings *settings)
+{
+    const struct tl_settings *present = tl_session_settings(review->session);
+    tl_session_keep_scene(present, settings);
+    if (needs_look(review, settings))
+        tl_looks_take(present, settings);
+}
+
+struct tl_settings tl_review_followed(const struct tl_review *review)
+{
+    struct tl_settings followed = review->wanted;
+    if (is_slow(review, &followed))
+        stay(review, &followed);
+    return followed;
+}
+
+/* Leaves a core to the window. */
+static int loader_threads(void)
+{
+    int cores = omp_get_num_procs();
+    return cores > 1 ? cores - 1 : 1;
+}
+
+/* With the regions of every level that the pace may choose. */
+static struct tl_prepared_request light_of(const struct tl_review *review, const struct tl_settings *settings)
+{
+    struct tl_prepared_request request = {.settings = tl_settings_render(settings)};
+    request.region_counts[0] = settings->light.regions;
+    for (int level = 1; review->params.budget_ms > 0 && level < TL_PREPARED_COUNTS_MAX; level++) {
+        struct tl_levels levels = {.of[TL_KNOB_REGIONS] = (uint8_t)level};
+        if (!tl_levels_exist(&levels))
+            break;
+        int regions = tl_levels_apply(&levels, settings).light.regions;
+        request.region_counts[level] = regions < request.region_counts[level - 1] ? regions : 0;
+        if (request.region_counts[level] == 0)
+            break;
+    }
+    return request;
+}
+
+/* Another scene needs its own light, another environment that of the looks there are; another look, which is
+ * B's, beside its own what B's renderer had: for going back. */
+static struct tl_load_lights lights_of(struct tl_review *review, enum tl_load kind)
+{
+    const tl_renderer *renderers[TL_LOADER_LIGHTS_MAX] = {review->renderer, review->wipe.renderer};
+    struct tl_settings drawn = review->wanted;
+    if (kind == TL_LOAD_LIGHT && needs_look(review, &drawn)) /* which comes after the light */
+        tl_looks_take(tl_session_settings(review->session), &drawn);
+    const struct tl_settings other = tl_review_look_a(review, &drawn);
+    struct tl_load_lights lights = {.count = review->wipe.renderer && kind != TL_LOAD_LOOK ? 2 : 1,
+                                    .of = {light_of(review, &drawn), light_of(review, &other)}};
+    for (int i = 0; i < lights.count && kind != TL_LOAD_SCENE; i++)
+        lights.of[i].exponents = tl_renderer_exponents(renderers[i]);
+    if (kind == TL_LOAD_LOOK) {
+        lights.of[0].environment = tl_session_frame(review->session).environment;
+        lights.of[0].known = tl_prepared_copy(review->renderer);
+    }
+    return lights;
+}
+
+static enum tl_load what_to_load(const struct tl_review *review)
+{
+    const struct tl_settings *present = tl_session_settings(review->session);
+    return tl_session_needs_scene(present, &review->wanted)   ? TL_LOAD_SCENE
+           : tl_session_needs_light(present, &review->wanted) ? TL_LOAD_LIGHT
+                                                              : TL_LOAD_LOOK;
+}
+
+static void start(struct tl_review *review)
+{
+    enum tl_load kind = what_to_load(review);
+    const struct tl_load_lights lights = lights_of(review, kind);
+    review->loader =
+        tl_loader_start(kind, &review->wanted, review->session, &lights, loader_threads(), tl_window_wake);
+    const struct tl_scene_params *scene = &review->wanted.scene;
+    if (kind != TL_LOAD_LOOK)
+        tl_info("view: loads %s", kind == TL_LOAD_SCENE ? scene->garment : scene->environment);
+}
+
+/* Whether what is being made is still what is wanted. */
+static bool is_outdated(const struct tl_review *review)
+{
+    const struct tl_settings *made = tl_loader_settings(review->loader);
+    return tl_session_needs_scene(made, &review->wanted) || tl_session_needs_light(made, &review->wanted) ||
+           (tl_loader_kind(review->loader) == TL_LOAD_LOOK && tl_session_needs_look(made, &review->wanted));
+}
+
+/* Hands the light that was made ready to the renderers. */
+static void take_lights(struct tl_review *review, struct tl_loaded *loaded)
+{
+    uint64_t revision = tl_session_frame(review->session).environment_revision;
+    tl_renderer *renderers[TL_LOADER_LIGHTS_MAX] = {review->renderer, review->wipe.renderer};
+    for (int i = 0; i < TL_LOADER_LIGHTS_MAX; i++)
+        if (renderers[i] && loaded->prepared[i])
+            tl_renderer_take_prepared(renderers[i], &loaded->prepared[i], revision);
+}
+
+static void finish(struct tl_review *review)
+{
+    enum tl_load kind = tl_loader_kind(review->loader);
+    const struct tl_settings made_of = *tl_loader_settings(review->loader);
+    const char *environment = review->wanted.scene.environment;
+    struct tl_loaded loaded;
+    tl_error error;
+    if (!tl_loader_take(&review->loader, &loaded, &error)) {
+        stay(review, &review->wanted);
+        tl_review_complain(review, &error);
+    } else if (kind == TL_LOAD_LOOK) {
+        tl_session_keep_look(review->session, &made_of, &loaded.looks);
+        take_lights(review, &loaded);
+        review->made_ready = made_of;
+    } else if (kind == TL_LOAD_SCENE) {
+        tl_session_replace(review->session, &loaded.session);
+        take_lights(review, &loaded);
+        review->reported_frame = -1;
+        review->drag = TL_DRAG_NONE; /* what was held is gone */
+    } else {
+        tl_session_replace_light(review->session, &loaded.light, environment);
+        take_lights(review, &loaded);
+    }
+    tl_loaded_release(&loaded);
+}
+
+/* A loader that is stopped takes as long as its present step: nobody waits for that, and the next one begins
+ * when it is done. */
+void tl_review_load(struct tl_review *review)
+{
+    if (review->loader && is_outdated(review))
+        tl_loader_stop(review->loader);
+    if (review->loader && tl_loader_is_done(review->loader)) {
+        if (tl_loader_is_stopped(review->loader))
+            tl_loader_cancel(&review->loader);
+        else
+            finish(review);
+        review->changed = true;
+    }
+    if (!review->loader && review->changed && !review->editing && is_slow(review, &review->wanted))
+        start(review);
+}
+
+bool tl_review_stop_loading(struct tl_review *review)
+{
+    if (!review->loader || !is_slow(review, &review->wanted))
+        return false; /* nothing, or nothing that anybody waits for */
+    tl_loader_stop(review->loader);
+    stay(review, &review->wanted);
+    review->changed = true;
+    tl_review_say(review, "loading was stopped: the scene stays as it was");
+    return true;
+}
+
+static void listen_while_waiting(struct tl_review *review)
+{
+    struct tl_window_event event;
+    while (tl_window_next(review->window, &event)) {
+        review->closing |= event.type == TL_WINDOW_CLOSE || tl_window_is_escape(&event);
+        tl_window_event_release(&event);
+    }
+}
+
+bool tl_review_load_first(struct tl_review *review, tl_error *error)
+{
+    const double tick_s = 0.1;
+    const struct tl_load_lights lights = lights_of(review, TL_LOAD_SCENE);
+    review->loader = tl_loader_start(TL_LOAD_SCENE, &review->wanted, NULL, &lights, 0, tl_window_wake);
+    while (!tl_loader_is_done(review->loader)) {
+        tl_window_wait(review->window, tick_s);
+        listen_while_waiting(review);
+        if (review->closing)
+            return tl_fail(error, TL_INTERRUPTED, "view: closed");
+        if (tl_interrupted())
+            return tl_fail(error, TL_INTERRUPTED, "view: stopped");
+        tl_review_build_progress(review);
+    }
+    struct tl_loaded loaded;
+    if (!tl_loader_take(&review->loader, &loaded, error))
+        return false;
+    review->session = loaded.session;
+    loaded.session = NULL;
+    take_lights(review, &loaded);
+    tl_loaded_release(&loaded);
+    return true;
+}

@@ -1,0 +1,74 @@
+/* What the colours of the review's image mean, and what lies under the pointer. */
+#include "app/view/review.h"
+#include "config/memory.h"
+#include "render/inspect/inspect.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* The look that lies under the pointer. */
+static const tl_renderer *renderer_under(const struct tl_review *review, int width)
+{
+    bool is_left = (int)review->pointer_x < tl_review_wipe_column(review, width);
+    return is_left ? review->wipe.renderer : review->renderer;
+}
+
+static double percent(float share)
+{
+    return 100 * (double)share;
+}
+
+static void describe(const struct tl_inspection *found, char *text, size_t size)
+{
+    const double deg = 180 / M_PI, mm = 1000;
+    char strain[128] = "", seen[96] = "", place[96];
+    if (found->has_strain)
+        snprintf(strain, sizeof strain, "\nstrain: warp %+.1f %%, weft %+.1f %%, shear %+.1f\u00b0",
+                 percent(found->strain_warp), percent(found->strain_weft),
+                 deg * asin(fmin(fmax((double)found->shear, -1), 1)));
+    if (found->has_visibility)
+        snprintf(seen, sizeof seen, "\nsees %.0f %% of the light; most from region %d",
+                 percent(found->visibility), found->strongest_region);
+    snprintf(place, sizeof place, "\nat %.0f, %.0f, %.0f mm", mm * (double)found->position.x,
+             mm * (double)found->position.y, mm * (double)found->position.z);
+    snprintf(text, size, "%.60s, %.60s%s\nnormal %.2f %.2f %.2f, gloss %.2f, uv %.3f %.3f%s%s%s",
+             found->surface, found->material, found->back ? ", inner side" : "", (double)found->normal.x,
+             (double)found->normal.y, (double)found->normal.z, (double)found->glossiness, (double)found->uv.x,
+             (double)found->uv.y, place, strain, seen);
+}
+
+void tl_review_read_out(const struct tl_review *review, char *text, size_t size)
+{
+    int width, height;
+    struct tl_inspection found;
+    text[0] = '\0';
+    tl_review_size(review, &width, &height);
+    int x = (int)review->pointer_x, y = (int)review->pointer_y;
+    bool is_over = x >= 0 && y >= 0 && x < width && y < height;
+    if (review->reads_out && is_over && tl_renderer_inspect(renderer_under(review, width), x, y, &found))
+        describe(&found, text, size);
+}
+
+bool tl_review_legend(const struct tl_review *review, struct tl_panel_legend *out)
+{
+    struct tl_legend legend;
+    tl_renderer_legend(review->renderer, &legend);
+    if (legend.stop_count == 0 && legend.entry_count == 0)
+        return false;
+    *out = (struct tl_panel_legend){.low = legend.low, .high = legend.high};
+    snprintf(out->title, sizeof out->title, "%s", legend.title);
+    snprintf(out->unit, sizeof out->unit, "%s", legend.unit);
+    snprintf(out->note, sizeof out->note, "%s", legend.note);
+    for (int i = 0; i < legend.stop_count && i < TL_PANEL_LEGEND_STOPS; i++) {
+        out->stop_values[i] = legend.stops[i].value;
+        memcpy(out->stop_colours[i], legend.stops[i].colour.raw, sizeof out->stop_colours[i]);
+        out->stop_count++;
+    }
+    for (int i = 0; i < legend.entry_count && i < TL_PANEL_LEGEND_ENTRIES; i++) {
+        snprintf(out->entry_labels[i], sizeof out->entry_labels[i], "%s", legend.entries[i].label);
+        memcpy(out->entry_colours[i], legend.entries[i].colour.raw, sizeof out->entry_colours[i]);
+        out->entry_count++;
+    }
+    return true;
+}

@@ -1,0 +1,98 @@
+/* Two looks side by side in the review window: A, on the left, as the settings were when the comparison
+ * began; B, on the right, as they are. Camera, light and cloth are the same: only what decides how cloth
+ * looks differs, and how well it is drawn. */
+#include "app/scene/appearance.h"
+#include "app/view/review.h"
+#include "config/log.h"
+#include "config/memory.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void tl_review_compare(struct tl_review *review)
+{
+    struct tl_review_wipe *wipe = &review->wipe;
+    tl_error error;
+    if (wipe->renderer) {
+        tl_renderer_destroy(&wipe->renderer);
+        tl_review_say(review, "comparison ended");
+        review->redraws = 1;
+        return;
+    }
+    wipe->renderer = tl_renderer_create(review->gpu, &error);
+    if (!wipe->renderer) {
+        tl_review_complain(review, &error);
+        return;
+    }
+    tl_prepared *light = tl_prepared_copy(review->renderer); /* the same light */
+    if (light)
+        tl_renderer_take_prepared(wipe->renderer, &light,
+                                  tl_session_frame(review->session).environment_revision);
+    wipe->look = review->good;
+    wipe->place = 0.5f;
+    review->image_is_old = true;
+    tl_review_say(review, "compares: A, left, stays as it is now; change fabric, preset or options for B");
+}
+
+void tl_review_exchange(struct tl_review *review)
+{
+    if (!review->wipe.renderer) {
+        tl_review_say(review, "nothing is compared: W begins");
+        return;
+    }
+    struct tl_settings b = review->wanted;
+    review->wanted = tl_review_look_a(review, &b);
+    review->wipe.look = b;
+    tl_renderer *renderer_b = review->renderer; /* each look keeps what was made for it */
+    review->renderer = review->wipe.renderer;
+    review->wipe.renderer = renderer_b;
+    review->made_ready = review->wanted;
+    review->changed = true;
+    tl_review_say(review, "A and B exchanged");
+}
+
+void tl_review_move_wipe(struct tl_review *review, float place)
+{
+    const float margin = 0.02f; /* so that the line can be caught again */
+    review->wipe.place = fminf(fmaxf(place, margin), 1 - margin);
+    review->redraws = 2;
+}
+
+int tl_review_wipe_column(const struct tl_review *review, int width)
+{
+    return review->wipe.renderer ? (int)lrintf(review->wipe.place * (float)width) : 0;
+}
+
+struct tl_settings tl_review_look_a(const struct tl_review *review, const struct tl_settings *settings)
+{
+    struct tl_settings result = *settings;
+    tl_looks_take(&review->wipe.look, &result);
+    return result;
+}
+
+static const char *short_name(const char *name)
+{
+    const char *slash = strrchr(name, '/');
+    return slash ? slash + 1 : name;
+}
+
+static void label(char *out, size_t size, const char *side, const struct tl_scene_params *scene,
+                  const char *difference)
+{
+    bool has_colourway = scene->colourway[0] != '\0', differs = difference[0] != '\0';
+    snprintf(out, size, "%s  %.40s, %s%.40s%s%.30s%s%.120s%s", side, short_name(scene->fabric),
+             has_colourway ? "colourway " : "", scene->colourway, has_colourway ? ", " : "",
+             short_name(scene->preset), differs ? " (" : "", difference, differs ? ")" : "");
+}
+
+void tl_review_wipe_labels(const struct tl_review *review, char *a, char *b, size_t size)
+{
+    const struct tl_settings *live = &review->good;
+    struct tl_settings same = tl_review_look_a(review, live);
+    char *difference = tl_history_describe(&same, live);
+    label(a, size, "A", &same.scene, "");
+    label(b, size, "B", &live->scene, strcmp(difference, "nothing") == 0 ? "the same" : difference);
+    free(difference);
+}

@@ -1,0 +1,36 @@
+#include "app/view/window/file_watch.h"
+
+#include "config/hash.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+static uint64_t stamp_of(const char *path)
+{
+    struct stat status;
+    if (stat(path, &status) != 0)
+        return 0;
+    const uint64_t parts[] = {(uint64_t)status.st_mtim.tv_sec, (uint64_t)status.st_mtim.tv_nsec,
+                              (uint64_t)status.st_size, (uint64_t)status.st_ino};
+    uint64_t stamp = tl_hash(TL_HASH_START, parts, sizeof parts);
+    return stamp ? stamp : 1;
+}
+
+bool tl_watch_has_changed(struct tl_watch *watch, const char *path)
+{
+    uint64_t stamp = stamp_of(path);
+    for (size_t i = 0; i < TL_WATCHED; i++) {
+        struct tl_watched *file = &watch->files[i];
+        if (strcmp(file->path, path) != 0)
+            continue;
+        bool changed = stamp != file->stamp && stamp != 0; /* gone: its writer will be back */
+        if (stamp != 0)
+            file->stamp = stamp;
+        return changed;
+    }
+    struct tl_watched *file = &watch->files[watch->next++ % TL_WATCHED];
+    snprintf(file->path, sizeof file->path, "%s", path);
+    file->stamp = stamp;
+    return false;
+}

@@ -1,0 +1,257 @@
+#include "app/view/window/window.h"
+
+#include "config/log.h"
+#include "config/memory.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+struct tl_window {
+    GLFWwindow *handle;
+    double pointer_x, pointer_y;    /* screen coordinates, as of the event at hand */
+    struct tl_window_event *events; /* [first, count) are still to be handed out */
+    size_t first, count, capacity;
+};
+
+static char last_glfw_message[512]; /* GLFW reports before there is a window to remember it */
+
+static void remember_glfw_message(int code, const char *message)
+{
+    (void)code;
+    snprintf(last_glfw_message, sizeof last_glfw_message, "%s", message);
+    tl_debug("GLFW: %s", message);
+}
+
+static void queue(tl_window *window, struct tl_window_event event)
+{
+    if (window->count == window->capacity) {
+        window->capacity = window->capacity ? 2 * window->capacity : 64;
+        window->events = tl_resize(window->events, window->capacity, sizeof *window->events);
+    }
+    window->events[window->count++] = event;
+}
+
+/* The pointer in framebuffer pixels; GLFW counts in screen coordinates. Where it was at the event, not where
+ * it is: glfwGetCursorPos tells the latter, and a drag that waited behind a slow frame would shrink to a
+ * point. */
+static struct tl_window_event pointer_event(const tl_window *window, enum tl_window_event_type type)
+{
+    int width, height, pixels_x, pixels_y;
+    glfwGetWindowSize(window->handle, &width, &height);
+    glfwGetFramebufferSize(window->handle, &pixels_x, &pixels_y);
+    return (struct tl_window_event){
+        .type = type,
+        .x = width > 0 ? (float)(window->pointer_x * pixels_x / width) : 0,
+        .y = height > 0 ? (float)(window->pointer_y * pixels_y / height) : 0,
+    };
+}
+
+/* A letter is the key that prints it (A and Q change places on a French keyboard); the rest go by place. */
+static int key_of_layout(int key, int scancode)
+{
+    const char *name = glfwGetKeyName(key, scancode);
+    bool is_letter = name && isascii((unsigned char)name[0]) && isalpha((unsigned char)name[0]) && !name[1];
+    return is_letter ? toupper((unsigned char)name[0]) : key;
+}
+
+static void on_key(GLFWwindow *handle, int key, int scancode, int action, int modifiers)
+{
+    if (action == GLFW_RELEASE)
+        return;
+    queue(glfwGetWindowUserPointer(handle), (struct tl_window_event){.type = TL_WINDOW_KEY,
+                                                                     .key = key_of_layout(key, scancode),
+                                                                     .modifiers = modifiers,
+                                                                     .repeated = action == GLFW_REPEAT});
+}
+
+static void on_button(GLFWwindow *handle, int button, int action, int modifiers)
+{
+    tl_window *window = glfwGetWindowUserPointer(handle);
+    struct tl_window_event event =
+        pointer_event(window, action == GLFW_PRESS ? TL_WINDOW_PRESS : TL_WINDOW_RELEASE);
+    event.button = button;
+    event.modifiers = modifiers;
+    queue(window, event);
+}
+
+static void on_move(GLFWwindow *handle, double x, double y)
+{
+    tl_window *window = glfwGetWindowUserPointer(handle);
+    window->pointer_x = x;
+    window->pointer_y = y;
+    queue(window, pointer_event(window, TL_WINDOW_MOVE));
+}
+
+static void on_wheel(GLFWwindow *handle, double x, double y)
+{
+    (void)x;
+    tl_window *window = glfwGetWindowUserPointer(handle);
+    struct tl_window_event event = pointer_event(window, TL_WINDOW_WHEEL);
+    event.steps = (float)y;
+    queue(window, event);
+}
+
+static void on_drop(GLFWwindow *handle, int count, const char **paths)
+{
+    for (int i = 0; i < count; i++)
+        queue(glfwGetWindowUserPointer(handle),
+              (struct tl_window_event){.type = TL_WINDOW_DROP, .path = tl_copy_string(paths[i])});
+}
+
+static void on_refresh(GLFWwindow *handle)
+{
+    queue(glfwGetWindowUserPointer(handle), (struct tl_window_event){.type = TL_WINDOW_REDRAW});
+}
+
+static void on_resize(GLFWwindow *handle, int width, int height)
+{
+    (void)width;
+    (void)height;
+    on_refresh(handle);
+}
+
+static void on_close(GLFWwindow *handle)
+{
+    queue(glfwGetWindowUserPointer(handle), (struct tl_window_event){.type = TL_WINDOW_CLOSE});
+}
+
+static void listen_to(tl_window *window)
+{
+    glfwSetWindowUserPointer(window->handle, window);
+    glfwSetKeyCallback(window->handle, on_key);
+    glfwSetMouseButtonCallback(window->handle, on_button);
+    glfwSetCursorPosCallback(window->handle, on_move);
+    glfwSetScrollCallback(window->handle, on_wheel);
+    glfwSetDropCallback(window->handle, on_drop);
+    glfwSetWindowRefreshCallback(window->handle, on_refresh);
+    glfwSetFramebufferSizeCallback(window->handle, on_resize);
+    glfwSetWindowCloseCallback(window->handle, on_close);
+}
+
+static void ask_for_context(void)
+{
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, GLFW_TRUE);
+    glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+    glfwWindowHint(GLFW_DEPTH_BITS, 0); /* scenes are drawn into the renderer's own targets */
+    glfwWindowHint(GLFW_STENCIL_BITS, 0);
+}
+
+tl_window *tl_window_create(const char *title, int width, int height, tl_error *error)
+{
+    tl_window *window = TL_NEW(tl_window);
+    last_glfw_message[0] = '\0';
+    glfwSetErrorCallback(remember_glfw_message);
+    if (!glfwInit()) {
+        tl_fail(error, TL_DEVICE,
+                "no window can be opened (%s): run on a desktop or under Xvfb, or use `toile render`",
+                last_glfw_message);
+        goto failed;
+    }
+    ask_for_context();
+    window->handle = glfwCreateWindow(width, height, title, NULL, NULL);
+    if (!window->handle) {
+        tl_fail(error, TL_DEVICE,
+                "no window with OpenGL 4.5 (%s): update the graphics driver, or set "
+                "LIBGL_ALWAYS_SOFTWARE=1",
+                last_glfw_message);
+        goto failed;
+    }
+    glfwMakeContextCurrent(window->handle);
+    glfwSwapInterval(1);
+    listen_to(window);
+    return window;
+failed:
+    tl_window_destroy(&window);
+    return NULL;
+}
+
+void tl_window_destroy(tl_window **window)
+{
+    if (!*window)
+        return;
+    struct tl_window_event event;
+    while (tl_window_next(*window, &event))
+        tl_window_event_release(&event);
+    glfwTerminate();
+    free((*window)->events);
+    free(*window);
+    *window = NULL;
+}
+
+void tl_window_set_title(tl_window *window, const char *title)
+{
+    glfwSetWindowTitle(window->handle, title);
+}
+
+void tl_window_size(const tl_window *window, int *width, int *height)
+{
+    glfwGetFramebufferSize(window->handle, width, height);
+}
+
+void tl_window_wished_size(const tl_window *window, int *width, int *height)
+{
+    float x, y;
+    glfwGetWindowContentScale(window->handle, &x, &y);
+    glfwGetWindowSize(window->handle, width, height);
+    *width = (int)lrintf((float)*width / x);
+    *height = (int)lrintf((float)*height / y);
+}
+
+float tl_window_scale(const tl_window *window)
+{
+    float x, y;
+    glfwGetWindowContentScale(window->handle, &x, &y);
+    return y;
+}
+
+struct GLFWwindow *tl_window_handle(const tl_window *window)
+{
+    return window->handle;
+}
+
+void tl_window_wait(tl_window *window, double patience_s)
+{
+    if (window->first < window->count || patience_s <= 0)
+        glfwPollEvents();
+    else
+        glfwWaitEventsTimeout(patience_s);
+}
+
+void tl_window_wake(void)
+{
+    glfwPostEmptyEvent();
+}
+
+bool tl_window_is_escape(const struct tl_window_event *event)
+{
+    return event->type == TL_WINDOW_KEY && event->key == GLFW_KEY_ESCAPE;
+}
+
+bool tl_window_next(tl_window *window, struct tl_window_event *out)
+{
+    if (window->first == window->count) {
+        window->first = window->count = 0;
+        return false;
+    }
+    *out = window->events[window->first++];
+    return true;
+}
+
+void tl_window_event_release(struct tl_window_event *event)
+{
+    free(event->path);
+    *event = (struct tl_window_event){0};
+}
+
+void tl_window_show(tl_window *window)
+{
+    glfwSwapBuffers(window->handle);
+}

@@ -1,0 +1,108 @@
+/* What a surface does with light: two cosine lobes (the light model of the PEM method) and the maps that vary
+ * them.
+ *
+ *     c = light arriving * [ diffuse * K_1(n) + F * specular * K_s(r) ],   s = 1 / (1 - glossiness)
+ *
+ * Immutable. Maps belong to the owner of the material (tl_model, tl_weave). */
+#ifndef TOILE_ASSETS_BASE_MATERIAL_H
+#define TOILE_ASSETS_BASE_MATERIAL_H
+
+#include "assets/base/image.h"
+
+#include <cglm/struct.h>
+
+/* KHR_texture_transform: uv' = offset + R(rotation) * (scale * uv). Identity: scale 1, the rest 0. */
+struct tl_uv_transform {
+    float offset[2];
+    float scale[2];
+    float rotation; /* radians, counter-clockwise */
+};
+
+/* As the rows of a 2x3 matrix: u' = rows[0] u + rows[1] v + rows[2], v' = rows[3] u + rows[4] v + rows[5]. */
+void tl_uv_transform_rows(const struct tl_uv_transform *transform, float rows[6]);
+/* ... and applied. */
+vec2s tl_uv_transformed(const struct tl_uv_transform *transform, vec2s uv);
+
+struct tl_map {
+    const tl_image *image; /* NULL: none */
+    struct tl_uv_transform transform;
+    bool clamp_u, clamp_v; /* else repeat */
+};
+
+/* A woven fabric's repeat, in metres: tiles over the surface in metric UV (see tl_mesh_part.uv_metres). Made
+ * by assets/builtin/weave.h. All maps have the same size and are periodic. */
+typedef struct tl_weave {
+    float size_m[2]; /* metres per repeat along u (weft direction) and v (warp direction) */
+    tl_image normal; /* U8 x3, linear: tangent space, +Y up (0.5 + 0.5 n) */
+    tl_image height; /* F32 x1, metres */
+    tl_image gloss;  /* F32 x1: what is added to the material's glossiness; mean about 0 */
+    tl_image tint;   /* F32 x3: factor on the diffuse colour (yarn colours) */
+} tl_weave;
+
+/* How gloss is spread about the mirror direction: render/brdf has the formulas. PHONG is the PEM method's own
+ * lobe, K_s about r, and the only one whose widths follow glossiness alone. */
+enum tl_reflectance {
+    TL_REFLECT_PHONG,
+    TL_REFLECT_BLINN_PHONG,
+    TL_REFLECT_COSINE_LOBE,
+    TL_REFLECT_TORRANCE_SPARROW,
+    TL_REFLECT_WARD, /* anisotropic */
+    TL_REFLECT_BANKS /* of threads along the tangent */
+};
+enum tl_facets { TL_FACETS_GAUSSIAN, TL_FACETS_BECKMANN };
+enum tl_masking { TL_MASKING_SMITH, TL_MASKING_V_GROOVES };
+enum tl_fresnel { TL_FRESNEL_SCHLICK, TL_FRESNEL_DIELECTRIC, TL_FRESNEL_CONDUCTOR };
+
+struct tl_gloss {
+    int model;   /* enum tl_reflectance */
+    int facets;  /* enum tl_facets, of TORRANCE_SPARROW */
+    int masking; /* enum tl_masking, of TORRANCE_SPARROW */
+    int fresnel; /* enum tl_fresnel; SCHLICK: from `specular`; else from the index, and `specular` multiplies
+                  */
+    float index; /* of refraction, real part */
+    float extinction; /* ... its imaginary part, of CONDUCTOR */
+    float width_weft; /* root mean square slope of the facets along u; 0: from glossiness. PHONG, BLINN_PHONG
+                         and COSINE_LOBE have exponents instead */
+    float width_warp; /* ... along v: narrower than width_weft where threads that run along the warp shine */
+    float rotation;   /* rad, counter-clockwise seen from outside: turns weft and warp in the surface */
+};
+
+typedef struct tl_material {
+    char name[64];
+    vec3s diffuse;    /* linear albedo at g-independent K_1; [0, 1] */
+    vec3s specular;   /* F0: reflectance at normal incidence; [0, 1] */
+    float glossiness; /* g in [0, 1] */
+    struct tl_gloss gloss;
+    float coat;            /* share of the surface under a clear coat: Lo = F Lm + (1 - F) Lbase; [0, 1] */
+    float coat_glossiness; /* g of the coat's own lobe; its index is 1.5 */
+    vec3s transmission;    /* share of light scattered through to the other side, diffusely; [0, 1] */
+    float openness;        /* share of the surface that is holes between threads, straight through; [0, 1) */
+    float normal_scale;    /* factor on the normal map's x and y */
+    float occlusion_strength; /* [0, 1] */
+    float alpha_cutoff;       /* alpha test; 0: opaque */
+    bool double_sided;
+    struct tl_map diffuse_map;   /* sRGB colour, alpha in the fourth channel */
+    struct tl_map normal_map;    /* linear */
+    struct tl_map gloss_map;     /* U8 x1, linear: multiplies glossiness */
+    struct tl_map specular_map;  /* U8 x3, sRGB: multiplies specular */
+    struct tl_map occlusion_map; /* U8, linear, red */
+    struct tl_map height_map;    /* U8 x1, linear: 0 deepest, 1 the mesh's own surface */
+    float height_m;              /* metres from the deepest to the highest of height_map */
+    const tl_weave *weave;       /* detail, or NULL */
+} tl_material;
+
+/* Matt mid-grey, no maps. */
+tl_material tl_material_default(const char *name);
+
+/* Whether it is more than two cosine lobes about the normal and the mirror direction: facets, a coat, or
+ * light that comes through. */
+bool tl_material_is_layered(const tl_material *material);
+/* ... of which: whether light is scattered through it to the other side. */
+bool tl_material_transmits(const tl_material *material);
+
+/* Glossiness of the cosine lobe about the mirror direction that is nearest to a GGX lobe of glTF roughness r:
+ * alpha = r^2, Blinn-Phong exponent 2/alpha^2 - 2 (Walter 2007's match to Beckmann), Phong exponent a quarter
+ * of that, at least 1. r = 0 gives 1. */
+float tl_glossiness_from_roughness(float roughness);
+
+#endif

@@ -1,0 +1,30 @@
+/* The contract between whoever moves a mesh (cloth, an animated avatar) and the renderer: a borrowed view of
+ * one frame's geometry. Plain data, owned by nobody: the arrays must outlive the frame. */
+#ifndef TOILE_ASSETS_BASE_SURFACE_H
+#define TOILE_ASSETS_BASE_SURFACE_H
+
+#include "assets/base/material.h"
+#include "assets/base/mesh.h"
+
+typedef struct tl_surface {
+    const char *name; /* "garment", "avatar", "ground" */
+    size_t vertex_count;
+    const vec3s *positions; /* metres, world */
+    const vec3s *normals;   /* unit; towards the outside */
+    const vec4s *tangents;  /* unit xyz, handedness w: bitangent = w * cross(n, t) */
+    const vec2s *uvs;
+    const vec3s *strains; /* along the warp, along the weft (length over rest length, less 1), shear (cosine
+                             of the angle between them); NULL: not known, or nobody asked */
+    size_t index_count;
+    const uint32_t *indices;
+    size_t part_count;
+    const struct tl_mesh_part *parts;
+    const tl_material *materials;
+    uint64_t topology_revision; /* changes when anything but positions, normals and tangents does */
+    uint64_t motion_revision;   /* changes when positions do */
+} tl_surface;
+
+/* A mesh as it stands: its own parts, no strains, revisions 0. */
+tl_surface tl_surface_of_mesh(const char *name, const tl_mesh *mesh, const tl_material *materials);
+
+#endif

@@ -1,0 +1,84 @@
+#include "assets/base/units.h"
+
+#include "config/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+const char *const tl_units_names[] = {"auto", "m", "dm", "cm", "mm", "in", NULL};
+
+static const char *const plurals[] = {"metres",      "metres",      "decimetres",
+                                      "centimetres", "millimetres", "inches"};
+
+#define SHORTEST_M 0.25f
+#define LONGEST_M  2.5f
+#define ABSURD_M   25 /* what says that it is in metres is believed below */
+
+double tl_units_metres(enum tl_units units)
+{
+    static const double metres[] = {1, 1, 0.1, 0.01, 0.001, 0.0254};
+    return metres[units];
+}
+
+static void guess(struct tl_units_reading *reading)
+{
+    const float inch = (float)tl_units_metres(TL_UNITS_IN), decade = LONGEST_M / SHORTEST_M;
+    float length = reading->longest;
+    bool inches = length >= SHORTEST_M / inch && length < LONGEST_M / inch;
+    reading->guessed = true;
+    reading->fits = length >= SHORTEST_M && length < LONGEST_M * 1000;
+    if (length < LONGEST_M)
+        reading->units = TL_UNITS_M;
+    else if (length < LONGEST_M * decade)
+        reading->units = inches ? TL_UNITS_IN : TL_UNITS_DM;
+    else
+        reading->units = length < LONGEST_M * decade * decade ? TL_UNITS_CM : TL_UNITS_MM;
+    if (inches)
+        reading->other = reading->units == TL_UNITS_IN ? TL_UNITS_DM : TL_UNITS_IN;
+}
+
+/* Far longer along Z than along Y, and about Y = 0: a body's depth. Then either longest along Z, or standing
+ * on Z = 0. A wide skirt with Y up is as long along X, and centred along Z. */
+static bool looks_z_up(struct tl_box box)
+{
+    vec3s size = glms_vec3_sub(box.upper, box.lower), middle = glms_vec3_lerp(box.lower, box.upper, 0.5f);
+    bool shallow = size.z > 1.5f * size.y && fabsf(middle.y) < 0.25f * size.y;
+    return shallow && (size.z > 1.1f * size.x || box.lower.z > -0.05f * size.z);
+}
+
+struct tl_units_reading tl_units_read(struct tl_box box, enum tl_units wanted, bool is_metric)
+{
+    vec3s size = glms_vec3_sub(box.upper, box.lower);
+    struct tl_units_reading reading = {.units = wanted, .longest = glms_vec3_max(size), .fits = true};
+    reading.z_up = !is_metric && looks_z_up(box);
+    if (wanted != TL_UNITS_AUTO)
+        return reading;
+    if (is_metric && !(reading.longest >= ABSURD_M))
+        reading.units = TL_UNITS_M;
+    else
+        guess(&reading);
+    reading.absurd = is_metric && reading.guessed;
+    return reading;
+}
+
+char *tl_units_describe(const char *name, const struct tl_units_reading *reading, const char *option)
+{
+    if (!reading->guessed)
+        return NULL;
+    double length = (double)reading->longest;
+    const char *why = reading->absurd ? "absurd as metres: " : reading->fits ? "" : "no unit fits: ";
+    char *other =
+        reading->other ? tl_format(", though %s would do", plurals[reading->other]) : tl_copy_string("");
+    char *line =
+        tl_format("%s: %.4g units at its longest: %staken as %s (%.3g m)%s; %s tells otherwise", name, length,
+                  why, plurals[reading->units], length * tl_units_metres(reading->units), other, option);
+    free(other);
+    return line;
+}
+
+char *tl_units_describe_up(const char *name, const struct tl_units_reading *reading)
+{
+    return reading->z_up
+               ? tl_format("%s: stands along Z, but is read with Y up: turn it where it was made", name)
+               : NULL;
+}

@@ -1,0 +1,27 @@
+/* The shape of the built-in dress form, for those who mesh it and those who cut garments around it.
+ *
+ * The torso (with neck and shoulder stubs, without the stand) is the zero set of tl_form_distance, a smooth
+ * union of lofted superellipses. Metres, +Y up, facing +Z, mirror-symmetric in x. Threads: pure. */
+#ifndef TOILE_ASSETS_BUILTIN_FORM_H
+#define TOILE_ASSETS_BUILTIN_FORM_H
+
+#include <stdbool.h>
+
+/* Landmarks, metres above the floor. */
+#define TL_FORM_BOTTOM   0.70 /* lower edge of the torso */
+#define TL_FORM_HIP      0.85
+#define TL_FORM_WAIST    1.04
+#define TL_FORM_BUST     1.205
+#define TL_FORM_NECK_TOP 1.47
+
+/* Roughly the distance to the torso's surface, negative inside: exact in sign, right to some 20 % near it. */
+double tl_form_distance(const double point[3]);
+
+/* Where the horizontal ray from the axis at height y leaves the torso: metres from the axis. `angle` is
+ * around +Y from the back: x = -r sin(angle), z = -r cos(angle). 0 where there is no torso. */
+double tl_form_radius(double y, double angle);
+
+/* Length of the torso's horizontal section at height y, as a tape measure takes it: of its convex hull. */
+double tl_form_girth(double y);
+
+#endif

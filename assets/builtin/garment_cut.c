@@ -1,0 +1,342 @@
+#include "assets/builtin/garment_cut.h"
+
+#include "assets/garment.h"
+#include "config/memory.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define EDGE_MINIMUM_M 0.003f /* 130,000 vertices in the dress */
+#define EDGE_MAXIMUM_M 0.08f
+#define EDGE_FIRST_M   0.02f /* what is finer begins as a cut of edges twice as long lies */
+
+#define REACH_M 4.0 /* the first cut is eased from neck to hem and back, finer ones between its points */
+
+static struct tl_cut_plan (*const plans[])(void) = {tl_cut_plan_dress, tl_cut_plan_skirt, tl_cut_plan_layers};
+const char *const tl_garment_names[] = {"dress", "skirt", "layers", NULL};
+
+/* The pieces of a plan after cutting, and where their vertices begin in the garment. */
+struct cutting {
+    const struct tl_cut_plan *plan;
+    tl_panel panels[TL_CUT_MAX_PIECES];
+    size_t first_vertex[TL_CUT_MAX_PIECES + 1];
+};
+
+static struct tl_curve mirrored(const struct tl_curve *curve)
+{
+    struct tl_curve result = {.segments = curve->segments};
+    for (int i = 0; i < 4; i++)
+        result.control[i] = (struct tl_point){-curve->control[3 - i].x, curve->control[3 - i].y};
+    return result;
+}
+
+static struct tl_curve *half_curve(struct tl_cut_piece *piece, size_t curve)
+{
+    return &piece->half[curve < piece->half_count ? curve : tl_cut_mirror(piece, curve)];
+}
+
+/* Edges of about edge_m, and as many on both sides of each seam. */
+static void choose_segments(struct tl_cut_plan *plan, double edge_m)
+{
+    for (size_t p = 0; p < plan->piece_count; p++) {
+        for (size_t c = 0; c < plan->pieces[p].half_count; c++) {
+            struct tl_curve *curve = &plan->pieces[p].half[c];
+            curve->segments = (int)fmax(round(tl_curve_length(curve) / edge_m), 1);
+        }
+    }
+    for (size_t s = 0; s < plan->seam_count; s++) {
+        const struct tl_cut_seam *seam = &plan->seams[s];
+        struct tl_curve *a = half_curve(&plan->pieces[seam->piece_a], seam->curve_a);
+        struct tl_curve *b = half_curve(&plan->pieces[seam->piece_b], seam->curve_b);
+        a->segments = b->segments = a->segments > b->segments ? a->segments : b->segments;
+    }
+}
+
+static void cut_pieces(struct cutting *cutting, double edge_m)
+{
+    for (size_t p = 0; p < cutting->plan->piece_count; p++) {
+        const struct tl_cut_piece *piece = &cutting->plan->pieces[p];
+        struct tl_curve outline[2 * TL_CUT_MAX_HALF];
+        for (size_t c = 0; c < piece->half_count; c++) {
+            outline[c] = piece->half[c];
+            outline[tl_cut_mirror(piece, c)] = mirrored(&piece->half[c]);
+        }
+        cutting->panels[p] = tl_panel_cut(outline, 2 * piece->half_count, edge_m);
+        cutting->first_vertex[p + 1] = cutting->first_vertex[p] + cutting->panels[p].point_count;
+    }
+}
+
+static size_t curve_segments(const struct cutting *cutting, size_t piece_index, size_t curve)
+{
+    const struct tl_cut_piece *piece = &cutting->plan->pieces[piece_index];
+    return (size_t)piece->half[curve < piece->half_count ? curve : tl_cut_mirror(piece, curve)].segments;
+}
+
+/* The garment's vertex at division `n` of an outline's curve. */
+static uint32_t outline_vertex(const struct cutting *cutting, size_t piece_index, size_t curve, size_t n)
+{
+    size_t point = n;
+    for (size_t c = 0; c < curve; c++)
+        point += curve_segments(cutting, piece_index, c);
+    assert(cutting->panels[piece_index].outline_count > 0);
+    point %= cutting->panels[piece_index].outline_count;
+    return (uint32_t)(cutting->first_vertex[piece_index] + point);
+}
+
+/* A dart's legs share their point, which needs no stitch: fewer pairs may be used than counted. */
+static void sew(const struct cutting *cutting, tl_garment *garment)
+{
+    const struct tl_cut_plan *plan = cutting->plan;
+    size_t most = 0;
+    for (size_t s = 0; s < plan->seam_count; s++)
+        most += curve_segments(cutting, plan->seams[s].piece_a, plan->seams[s].curve_a) + 1;
+    garment->seams = TL_NEW_ARRAY(struct tl_seam_pair, most);
+    for (size_t s = 0; s < plan->seam_count; s++) {
+        const struct tl_cut_seam *seam = &plan->seams[s];
+        size_t segments = curve_segments(cutting, seam->piece_a, seam->curve_a);
+        for (size_t n = 0; n <= segments; n++) {
+            uint32_t a = outline_vertex(cutting, seam->piece_a, seam->curve_a, n);
+            uint32_t b = outline_vertex(cutting, seam->piece_b, seam->curve_b, segments - n);
+            if (a != b)
+                garment->seams[garment->seam_count++] = (struct tl_seam_pair){a, b};
+        }
+    }
+}
+
+static void pin(const struct cutting *cutting, tl_garment *garment)
+{
+    const struct tl_cut_plan *plan = cutting->plan;
+    bool *pinned = TL_NEW_ARRAY(bool, cutting->first_vertex[plan->piece_count]);
+    for (size_t i = 0; i < plan->pin_count; i++) {
+        size_t segments = curve_segments(cutting, plan->pins[i].piece, plan->pins[i].curve);
+        for (size_t n = 0; n <= segments; n++)
+            pinned[outline_vertex(cutting, plan->pins[i].piece, plan->pins[i].curve, n)] = true;
+    }
+    size_t vertex_count = cutting->first_vertex[plan->piece_count];
+    for (size_t v = 0; v < vertex_count; v++)
+        garment->pin_count += pinned[v];
+    garment->pins = TL_NEW_ARRAY(uint32_t, garment->pin_count);
+    size_t next = 0;
+    for (size_t v = 0; v < vertex_count; v++) {
+        if (pinned[v])
+            garment->pins[next++] = (uint32_t)v;
+    }
+    free(pinned);
+}
+
+static tl_material cut_material(const char *name)
+{
+    tl_material material = tl_material_default(name);
+    material.diffuse = (vec3s){{0.8f, 0.8f, 0.8f}};
+    material.double_sided = true;
+    return material;
+}
+
+/* One part a material, of the same number. */
+static void part_materials(const struct cutting *cutting, tl_model *model)
+{
+    const struct tl_cut_plan *plan = cutting->plan;
+    tl_mesh *mesh = &model->mesh;
+    uint32_t next = 0;
+    mesh->parts = TL_NEW_ARRAY(struct tl_mesh_part, plan->piece_count);
+    model->materials = TL_NEW_ARRAY(tl_material, plan->piece_count);
+    for (size_t p = 0; p < plan->piece_count; p++) {
+        const char *name = plan->pieces[p].material;
+        uint32_t index_count = 3 * (uint32_t)cutting->panels[p].triangle_count;
+        if (p == 0 || strcmp(name, plan->pieces[p - 1].material) != 0) {
+            model->materials[mesh->part_count] = cut_material(name);
+            mesh->parts[mesh->part_count] =
+                (struct tl_mesh_part){.first_index = next, .material = (int)mesh->part_count, .uv_metres = 1};
+            model->material_count = ++mesh->part_count;
+        }
+        mesh->parts[mesh->part_count - 1].index_count += index_count;
+        next += index_count;
+    }
+}
+
+/* Flat pattern, UVs and triangles of all pieces. */
+static void lay_out(const struct cutting *cutting, tl_garment *garment)
+{
+    const struct tl_cut_plan *plan = cutting->plan;
+    tl_mesh *mesh = &garment->model.mesh;
+    mesh->vertex_count = cutting->first_vertex[plan->piece_count];
+    for (size_t p = 0; p < plan->piece_count; p++)
+        mesh->index_count += 3 * cutting->panels[p].triangle_count;
+    mesh->positions = TL_NEW_ARRAY(vec3s, mesh->vertex_count);
+    mesh->normals = TL_NEW_ARRAY(vec3s, mesh->vertex_count);
+    mesh->uvs = TL_NEW_ARRAY(vec2s, mesh->vertex_count);
+    mesh->indices = TL_NEW_ARRAY(uint32_t, mesh->index_count);
+    garment->pattern = TL_NEW_ARRAY(vec2s, mesh->vertex_count);
+    size_t next = 0;
+    for (size_t p = 0; p < plan->piece_count; p++) {
+        const tl_panel *panel = &cutting->panels[p];
+        struct tl_point offset = plan->pieces[p].table_offset;
+        for (size_t i = 0; i < panel->point_count; i++) {
+            vec2s at = {{(float)(panel->points[i].x + offset.x), (float)(panel->points[i].y + offset.y)}};
+            garment->pattern[cutting->first_vertex[p] + i] = at;
+            mesh->uvs[cutting->first_vertex[p] + i] = (vec2s){{at.x, -at.y}};
+        }
+        for (size_t t = 0; t < panel->triangle_count; t++) {
+            for (int k = 0; k < 3; k++)
+                mesh->indices[next++] = (uint32_t)cutting->first_vertex[p] + panel->triangles[t][k];
+        }
+    }
+    part_materials(cutting, &garment->model);
+}
+
+/* body[v]: which of the sewn-together points vertex v belongs to; returns how many points there are. */
+static size_t join_seams(const tl_garment *garment, uint32_t *body)
+{
+    size_t count = garment->model.mesh.vertex_count;
+    for (size_t v = 0; v < count; v++)
+        body[v] = (uint32_t)v;
+    /* Chains of seams are short (four pieces meet in a corner), so repeated minima settle at once. */
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (size_t s = 0; s < garment->seam_count; s++) {
+            uint32_t *a = &body[garment->seams[s].a], *b = &body[garment->seams[s].b];
+            changed |= *a != *b;
+            *a = *b = *a < *b ? *a : *b;
+        }
+    }
+    size_t bodies = 0;
+    for (size_t v = 0; v < count; v++)
+        body[v] = body[v] == v ? (uint32_t)bodies++ : body[body[v]];
+    return bodies;
+}
+
+static double pattern_distance(const tl_garment *garment, uint32_t a, uint32_t b)
+{
+    return (double)glms_vec2_distance(garment->pattern[a], garment->pattern[b]);
+}
+
+/* Every triangle side: inner ones come twice, which only makes them count twice. */
+static struct tl_fit_edge *fit_edges(const tl_garment *garment, const uint32_t *body)
+{
+    const tl_mesh *mesh = &garment->model.mesh;
+    struct tl_fit_edge *edges = TL_NEW_ARRAY(struct tl_fit_edge, mesh->index_count);
+    for (size_t i = 0; i < mesh->index_count; i++) {
+        uint32_t a = mesh->indices[i], b = mesh->indices[i % 3 == 2 ? i - 2 : i + 1];
+        edges[i] = (struct tl_fit_edge){body[a], body[b], pattern_distance(garment, a, b)};
+    }
+    return edges;
+}
+
+/* Where each piece puts its vertices. */
+static void hold(const struct cutting *cutting, double (*held)[3])
+{
+    for (size_t p = 0; p < cutting->plan->piece_count; p++) {
+        const struct tl_cut_piece *piece = &cutting->plan->pieces[p];
+        for (size_t i = 0; i < cutting->panels[p].point_count; i++)
+            piece->place(piece->context, cutting->panels[p].points[i], held[cutting->first_vertex[p] + i]);
+    }
+}
+
+/* Places the pieces with their seams closed: sewn vertices start in one place, the mean of where their pieces
+ * put them, or where they lie on a cut of coarser edges (0: there is none). */
+static void place(const struct cutting *cutting, const tl_garment *coarse, double coarse_edge_m,
+                  tl_garment *garment)
+{
+    const bool carries = coarse_edge_m > 0;
+    size_t count = garment->model.mesh.vertex_count;
+    double(*held)[3] = tl_alloc(count, sizeof *held);
+    hold(cutting, held);
+    if (carries)
+        tl_cut_carry(coarse, coarse_edge_m, garment, held);
+    uint32_t *body = TL_NEW_ARRAY(uint32_t, count);
+    size_t bodies = join_seams(garment, body);
+    double(*position)[3] = tl_alloc(bodies, sizeof *position);
+    int *members = TL_NEW_ARRAY(int, bodies);
+    bool *fixed = TL_NEW_ARRAY(bool, bodies);
+    for (size_t v = 0; v < count; v++) {
+        members[body[v]]++;
+        for (int k = 0; k < 3; k++)
+            position[body[v]][k] += (held[v][k] - position[body[v]][k]) / members[body[v]];
+    }
+    for (size_t i = 0; i < garment->pin_count; i++)
+        fixed[body[garment->pins[i]]] = true;
+    struct tl_fit_edge *edges = fit_edges(garment, body);
+    tl_cut_fit(position, bodies, fixed, edges, garment->model.mesh.index_count, carries ? 0 : REACH_M);
+    for (size_t v = 0; v < count; v++) {
+        const double *at = position[body[v]];
+        garment->model.mesh.positions[v] = (vec3s){{(float)at[0], (float)at[1], (float)at[2]}};
+    }
+    free(edges);
+    free(fixed);
+    free(members);
+    free(position);
+    free(body);
+    free(held);
+}
+
+/* Area-weighted, smooth across seams. */
+static void fill_normals(tl_garment *garment)
+{
+    tl_mesh *mesh = &garment->model.mesh;
+    uint32_t *body = TL_NEW_ARRAY(uint32_t, mesh->vertex_count);
+    vec3s *sums = TL_NEW_ARRAY(vec3s, join_seams(garment, body));
+    for (size_t i = 0; i < mesh->index_count; i += 3) {
+        const uint32_t *v = &mesh->indices[i];
+        vec3s side = glms_vec3_sub(mesh->positions[v[1]], mesh->positions[v[0]]);
+        vec3s other = glms_vec3_sub(mesh->positions[v[2]], mesh->positions[v[0]]);
+        vec3s area = glms_vec3_cross(side, other);
+        for (int k = 0; k < 3; k++)
+            sums[body[v[k]]] = glms_vec3_add(sums[body[v[k]]], area);
+    }
+    for (size_t v = 0; v < mesh->vertex_count; v++)
+        mesh->normals[v] = glms_vec3_normalize(sums[body[v]]);
+    free(sums);
+    free(body);
+}
+
+static void cut(struct tl_cut_plan (*make_plan)(void), const char *name, float edge_m, tl_garment *out)
+{
+    const float coarse_edge_m = edge_m < EDGE_FIRST_M ? 2 * edge_m : 0;
+    tl_garment coarse = {0};
+    if (coarse_edge_m > 0)
+        cut(make_plan, name, coarse_edge_m, &coarse);
+    struct tl_cut_plan plan = make_plan();
+    struct cutting cutting = {.plan = &plan};
+    choose_segments(&plan, (double)edge_m);
+    cut_pieces(&cutting, (double)edge_m);
+    *out = (tl_garment){.model = {.name = tl_copy_string(name)}};
+    lay_out(&cutting, out);
+    sew(&cutting, out);
+    pin(&cutting, out);
+    place(&cutting, &coarse, (double)coarse_edge_m, out);
+    fill_normals(out);
+    for (size_t p = 0; p < plan.piece_count; p++)
+        tl_panel_release(&cutting.panels[p]);
+    free(plan.placement);
+    tl_garment_release(&coarse);
+}
+
+static bool fail_unknown(const char *name, tl_error *error)
+{
+    char names[256] = "";
+    for (size_t i = 0; i < TL_COUNT(plans); i++) {
+        size_t used = strlen(names);
+        snprintf(names + used, sizeof names - used, "%s%s", i ? ", " : "", tl_garment_names[i]);
+    }
+    return tl_fail(error, TL_USAGE,
+                   "garment \"%s\": no built-in garment has this name: choose one of %s, or name a "
+                   ".glb or .gltf file",
+                   name, names);
+}
+
+bool tl_garment_cut(const char *name, float edge_m, tl_garment *out, tl_error *error)
+{
+    size_t chosen = 0;
+    while (chosen < TL_COUNT(plans) && strcmp(name, tl_garment_names[chosen]) != 0)
+        chosen++;
+    if (chosen == TL_COUNT(plans))
+        return fail_unknown(name, error);
+    if (!(edge_m >= EDGE_MINIMUM_M && edge_m <= EDGE_MAXIMUM_M))
+        return tl_fail(error, TL_USAGE, "garment \"%s\": an edge of %g m: choose one from %g to %g m", name,
+                       (double)edge_m, (double)EDGE_MINIMUM_M, (double)EDGE_MAXIMUM_M);
+
+    cut(plans[chosen], name, edge_m, out);
+    return true;
+}

@@ -1,0 +1,194 @@
+#include "assets/builtin/panel.h"
+
+#include "assets/builtin/delaunay.h"
+#include "config/memory.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+
+enum { CURVE_SAMPLES = 128, SMOOTHING_PASSES = 8, SMOOTHING_ROUNDS = 2 };
+
+struct tl_curve tl_curve_line(struct tl_point from, struct tl_point to)
+{
+    struct tl_curve curve = {.control = {from, {0}, {0}, to}};
+    for (int i = 1; i < 3; i++)
+        curve.control[i] =
+            (struct tl_point){from.x + (to.x - from.x) * i / 3, from.y + (to.y - from.y) * i / 3};
+    return curve;
+}
+
+static struct tl_point curve_point(const struct tl_curve *curve, double t)
+{
+    const struct tl_point *c = curve->control;
+    double s = 1 - t, w[4] = {s * s * s, 3 * s * s * t, 3 * s * t * t, t * t * t};
+    return (struct tl_point){w[0] * c[0].x + w[1] * c[1].x + w[2] * c[2].x + w[3] * c[3].x,
+                             w[0] * c[0].y + w[1] * c[1].y + w[2] * c[2].y + w[3] * c[3].y};
+}
+
+/* length[i]: along the curve to parameter i / CURVE_SAMPLES. */
+static void measure_curve(const struct tl_curve *curve, double length[CURVE_SAMPLES + 1])
+{
+    struct tl_point last = curve->control[0];
+    length[0] = 0;
+    for (int i = 1; i <= CURVE_SAMPLES; i++) {
+        struct tl_point point = curve_point(curve, (double)i / CURVE_SAMPLES);
+        length[i] = length[i - 1] + hypot(point.x - last.x, point.y - last.y);
+        last = point;
+    }
+}
+
+double tl_curve_length(const struct tl_curve *curve)
+{
+    double length[CURVE_SAMPLES + 1];
+    measure_curve(curve, length);
+    return length[CURVE_SAMPLES];
+}
+
+/* The curve's start and its inner divisions; its end is the next curve's start. */
+static void divide_curve(const struct tl_curve *curve, struct tl_point *out)
+{
+    double length[CURVE_SAMPLES + 1];
+    measure_curve(curve, length);
+    for (int n = 0, i = 0; n < curve->segments; n++) {
+        double wanted = length[CURVE_SAMPLES] * n / curve->segments;
+        while (i < CURVE_SAMPLES - 1 && length[i + 1] < wanted)
+            i++;
+        out[n] = curve_point(curve, (i + (wanted - length[i]) / (length[i + 1] - length[i])) / CURVE_SAMPLES);
+    }
+}
+
+/* Crossings of a ray to +x with the closed outline. */
+static bool is_inside(const struct tl_point *outline, size_t count, struct tl_point p)
+{
+    bool inside = false;
+    for (size_t i = 0; i < count; i++) {
+        struct tl_point a = outline[i], b = outline[(i + 1) % count];
+        if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y))
+            inside = !inside;
+    }
+    return inside;
+}
+
+static double distance_to_outline(const struct tl_point *outline, size_t count, struct tl_point p)
+{
+    double nearest = INFINITY; /* squared */
+    for (size_t i = 0; i < count; i++) {
+        struct tl_point a = outline[i], b = outline[(i + 1) % count];
+        double dx = b.x - a.x, dy = b.y - a.y;
+        double t = ((p.x - a.x) * dx + (p.y - a.y) * dy) / (dx * dx + dy * dy);
+        t = fmin(fmax(t, 0), 1);
+        double away_x = a.x + t * dx - p.x, away_y = a.y + t * dy - p.y;
+        nearest = fmin(nearest, away_x * away_x + away_y * away_y);
+    }
+    return sqrt(nearest);
+}
+
+/* A fixed pseudo-random value in [-1/2, 1/2) (the finaliser of MurmurHash3). */
+static double jitter(uint32_t seed)
+{
+    seed = (seed ^ seed >> 16) * 0x85ebca6bu;
+    seed = (seed ^ seed >> 13) * 0xc2b2ae35u;
+    seed ^= seed >> 16;
+    return seed / 4294967296.0 - 0.5;
+}
+
+/* Hexagonal grid points inside the outline, off it by 0.6 edges: farther than the radius of any outline
+ * edge's diametral circle, so that every outline edge is a Delaunay edge. The jitter leaves the cloth no
+ * favoured diagonal. */
+static void fill_inside(tl_panel *panel, double edge_m)
+{
+    const double row_height = 0.5 * sqrt(3) * edge_m, clearance = 0.6 * edge_m, shake = 0.25 * edge_m;
+    struct tl_point lower = panel->points[0], upper = panel->points[0];
+    for (size_t i = 0; i < panel->outline_count; i++) {
+        lower = (struct tl_point){fmin(lower.x, panel->points[i].x), fmin(lower.y, panel->points[i].y)};
+        upper = (struct tl_point){fmax(upper.x, panel->points[i].x), fmax(upper.y, panel->points[i].y)};
+    }
+    int columns = (int)ceil((upper.x - lower.x) / edge_m) + 2;
+    int rows = (int)ceil((upper.y - lower.y) / row_height) + 1;
+    panel->points = tl_resize(panel->points, panel->outline_count + (size_t)columns * (size_t)rows,
+                              sizeof *panel->points);
+    for (int j = 0; j < rows; j++) {
+        for (int i = 0; i < columns; i++) {
+            uint32_t seed = (uint32_t)(j * columns + i) * 2;
+            struct tl_point p = {lower.x + (i - 0.5 * (j % 2)) * edge_m + shake * jitter(seed),
+                                 lower.y + j * row_height + shake * jitter(seed + 1)};
+            if (is_inside(panel->points, panel->outline_count, p) &&
+                distance_to_outline(panel->points, panel->outline_count, p) > clearance)
+                panel->points[panel->point_count++] = p;
+        }
+    }
+}
+
+static void triangulate(tl_panel *panel)
+{
+    free(panel->triangles);
+    size_t count = tl_delaunay(panel->points, panel->point_count, &panel->triangles), kept = 0;
+    for (size_t t = 0; t < count; t++) {
+        struct tl_point centre = {0, 0};
+        for (int k = 0; k < 3; k++) {
+            centre.x += panel->points[panel->triangles[t][k]].x / 3;
+            centre.y += panel->points[panel->triangles[t][k]].y / 3;
+        }
+        if (!is_inside(panel->points, panel->outline_count, centre))
+            continue;
+        for (int k = 0; k < 3; k++)
+            panel->triangles[kept][k] = panel->triangles[t][k];
+        kept++;
+    }
+    panel->triangle_count = kept;
+    /* Euler's count for a disc: anything else means that an outline edge was lost. */
+    assert(kept == 2 * panel->point_count - panel->outline_count - 2);
+}
+
+/* Moves inner points to the mean of their neighbours, which evens out the strip along the outline. */
+static void smooth(tl_panel *panel)
+{
+    struct tl_point *sum = TL_NEW_ARRAY(struct tl_point, panel->point_count);
+    double *weight = TL_NEW_ARRAY(double, panel->point_count);
+    for (int pass = 0; pass < SMOOTHING_PASSES; pass++) {
+        for (size_t i = 0; i < panel->point_count; i++) {
+            sum[i] = (struct tl_point){0, 0};
+            weight[i] = 0;
+        }
+        for (size_t t = 0; t < panel->triangle_count; t++) {
+            for (int k = 0; k < 6; k++) {
+                uint32_t a = panel->triangles[t][k / 2], b = panel->triangles[t][(k / 2 + 1 + k % 2) % 3];
+                sum[a].x += panel->points[b].x;
+                sum[a].y += panel->points[b].y;
+                weight[a]++;
+            }
+        }
+        for (size_t i = panel->outline_count; i < panel->point_count; i++)
+            panel->points[i] = (struct tl_point){sum[i].x / weight[i], sum[i].y / weight[i]};
+    }
+    free(sum);
+    free(weight);
+}
+
+tl_panel tl_panel_cut(const struct tl_curve *outline, size_t curve_count, double edge_m)
+{
+    tl_panel panel = {0};
+    for (size_t c = 0; c < curve_count; c++)
+        panel.outline_count += (size_t)outline[c].segments;
+    panel.points = TL_NEW_ARRAY(struct tl_point, panel.outline_count);
+    for (size_t c = 0; c < curve_count; c++) {
+        divide_curve(&outline[c], panel.points + panel.point_count);
+        panel.point_count += (size_t)outline[c].segments;
+    }
+    fill_inside(&panel, edge_m);
+    triangulate(&panel);
+    for (int round = 0; round < SMOOTHING_ROUNDS; round++) {
+        smooth(&panel);
+        triangulate(&panel);
+    }
+    return panel;
+}
+
+void tl_panel_release(tl_panel *panel)
+{
+    free(panel->points);
+    free(panel->triangles);
+    *panel = (tl_panel){0};
+}

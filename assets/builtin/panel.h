@@ -1,0 +1,37 @@
+/* One flat piece of a sewing pattern, cut along its outline and triangulated.
+ *
+ * An outline is a ring of cubic Bezier curves, counter-clockwise, in metres. Each curve becomes `segments`
+ * edges of equal length, so that two curves which are sewn together get the same number of points whatever
+ * their shapes. The inside is a Delaunay triangulation of a jittered hexagonal grid, smoothed. Threads: pure,
+ * no randomness but a fixed hash. */
+#ifndef TOILE_ASSETS_BUILTIN_PANEL_H
+#define TOILE_ASSETS_BUILTIN_PANEL_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+struct tl_point {
+    double x, y;
+};
+
+struct tl_curve {
+    struct tl_point control[4];
+    int segments;
+};
+
+typedef struct tl_panel {
+    size_t point_count;
+    struct tl_point *points; /* metres; the outline's come first, in its order */
+    size_t outline_count;
+    size_t triangle_count;
+    uint32_t (*triangles)[3]; /* counter-clockwise */
+} tl_panel;
+
+struct tl_curve tl_curve_line(struct tl_point from, struct tl_point to);
+double tl_curve_length(const struct tl_curve *curve);
+
+/* The point of curve c's n-th division is outline point (sum of the segments before c) + n. */
+tl_panel tl_panel_cut(const struct tl_curve *outline, size_t curve_count, double edge_m);
+void tl_panel_release(tl_panel *panel); /* frees and zeroes */
+
+#endif

@@ -1,0 +1,139 @@
+#include "assets/builtin/studio.h"
+
+#include "assets/environment.h"
+#include "config/memory.h"
+
+#include <math.h>
+
+enum {
+    STUDIO_WIDTH = 512,
+    STUDIO_HEIGHT = 256,
+    SUBSAMPLES = 6 /* a texel's side, so that edges are smooth */
+};
+
+/* The figure faces +Z and the camera's side. A white matt surface that faces the key light shows about 1:
+ * half of that from the key, a quarter from the lamp, the rest from the room and the other boxes. */
+const struct tl_studio_light tl_studio_lights[] = {
+    {"key", -42, 32, 0.46f, 0.54f, 0.06f, {{2.45f, 2.34f, 2.20f}}},
+    {"fill", 78, 12, 0.20f, 0.95f, 0.05f, {{0.86f, 0.93f, 1.02f}}},
+    {"rim", -128, 22, 0.13f, 0.85f, 0.04f, {{1.75f, 1.85f, 2.00f}}},
+    {"top", 0, 90, 0.30f, 0.26f, 0.06f, {{1.00f, 1.00f, 1.00f}}},
+    {"lamp", 34, 48, 0.0155f, 0.0155f, 0.002f, {{860, 820, 760}}},
+};
+const size_t tl_studio_light_count = TL_COUNT(tl_studio_lights);
+
+struct tl_studio_axes tl_studio_light_axes(const struct tl_studio_light *light)
+{
+    float azimuth = glm_rad(light->azimuth_deg), elevation = glm_rad(light->elevation_deg);
+    struct tl_studio_axes axes = {.right = {{cosf(azimuth), 0, -sinf(azimuth)}}};
+    axes.out = (vec3s){{sinf(azimuth) * cosf(elevation), sinf(elevation), cosf(azimuth) * cosf(elevation)}};
+    axes.up = glms_vec3_cross(axes.out, axes.right);
+    return axes;
+}
+
+static float smooth_step(float from, float to, float value)
+{
+    float t = glm_clamp((value - from) / (to - from), 0, 1);
+    return t * t * (3 - 2 * t);
+}
+
+float tl_studio_room(vec3s direction)
+{
+    const float floor_grey = 0.095f, wall = 0.165f, ceiling = 0.11f, glow = 0.17f, glow_exponent = 5;
+    float grey = floor_grey + (wall - floor_grey) * smooth_step(-0.55f, 0.25f, direction.y);
+    grey += (ceiling - wall) * smooth_step(0.15f, 0.95f, direction.y);
+    /* Behind the figure the wall is lit as a photographer lights it: a soft pool of light at chest height. */
+    const vec3s backdrop = {{0, 0.0995f, -0.9950f}};
+    return grey + glow * expf(glow_exponent * (glms_vec3_dot(direction, backdrop) - 1));
+}
+
+/* How much of the light is seen in a direction: 1 inside, 0 outside, a smooth step across the edge. */
+static float coverage(const struct tl_studio_light *light, const struct tl_studio_axes *axes, vec3s direction)
+{
+    float depth = glms_vec3_dot(direction, axes->out);
+    if (depth <= 0.1f)
+        return 0;
+    float across = fabsf(glms_vec3_dot(direction, axes->right)) / depth;
+    float along = fabsf(glms_vec3_dot(direction, axes->up)) / depth;
+    return (1 - smooth_step(light->half_width - light->edge, light->half_width + light->edge, across)) *
+           (1 - smooth_step(light->half_height - light->edge, light->half_height + light->edge, along));
+}
+
+static vec3s studio_radiance(vec3s direction, const struct tl_studio_axes *axes)
+{
+    float room = tl_studio_room(direction);
+    vec3s radiance = {{room, room, room}};
+    for (size_t i = 0; i < tl_studio_light_count; i++) {
+        float seen = coverage(&tl_studio_lights[i], &axes[i], direction);
+        radiance = glms_vec3_add(radiance, glms_vec3_scale(tl_studio_lights[i].radiance, seen));
+    }
+    return radiance;
+}
+
+/* The convention of environment.h, inverted: u in [0, 1) from the left edge, v in [0, 1] from the top. */
+static vec3s latlong_direction(float u, float v)
+{
+    float azimuth = 2 * (float)M_PI * (u - 0.5f), polar = (float)M_PI * v;
+    return (vec3s){{sinf(azimuth) * sinf(polar), cosf(polar), -cosf(azimuth) * sinf(polar)}};
+}
+
+static vec3s studio_texel(int x, int y, const struct tl_studio_axes *axes)
+{
+    vec3s sum = glms_vec3_zero();
+    for (int j = 0; j < SUBSAMPLES; j++) {
+        for (int i = 0; i < SUBSAMPLES; i++) {
+            float u = ((float)x + ((float)i + 0.5f) / SUBSAMPLES) / STUDIO_WIDTH;
+            float v = ((float)y + ((float)j + 0.5f) / SUBSAMPLES) / STUDIO_HEIGHT;
+            sum = glms_vec3_add(sum, studio_radiance(latlong_direction(u, v), axes));
+        }
+    }
+    return glms_vec3_scale(sum, 1.0f / (SUBSAMPLES * SUBSAMPLES));
+}
+
+static float peak_of(const tl_image *image)
+{
+    float peak = 0;
+    size_t count = (size_t)image->width * (size_t)image->height * (size_t)image->channels;
+    for (size_t i = 0; i < count; i++)
+        peak = fmaxf(peak, tl_image_floats(image)[i]);
+    return peak;
+}
+
+tl_environment tl_environment_studio(void)
+{
+    struct tl_studio_axes axes[TL_COUNT(tl_studio_lights)];
+    for (size_t i = 0; i < tl_studio_light_count; i++)
+        axes[i] = tl_studio_light_axes(&tl_studio_lights[i]);
+    tl_environment environment = {.name = tl_copy_string("studio"),
+                                  .layout = TL_ENV_LATLONG,
+                                  .image = tl_image_create(STUDIO_WIDTH, STUDIO_HEIGHT, 3, TL_IMAGE_F32)};
+    float *texels = tl_image_floats(&environment.image);
+#pragma omp parallel for schedule(static)
+    for (int y = 0; y < STUDIO_HEIGHT; y++) {
+        for (int x = 0; x < STUDIO_WIDTH; x++) {
+            vec3s texel = studio_texel(x, y, axes);
+            for (int c = 0; c < 3; c++)
+                texels[((size_t)y * STUDIO_WIDTH + (size_t)x) * 3 + (size_t)c] = texel.raw[c];
+        }
+    }
+    environment.peak = peak_of(&environment.image);
+    return environment;
+}
+
+/* Small, but of a shape that every consumer of lat-long maps takes. */
+enum { CONSTANT_WIDTH = 64, CONSTANT_HEIGHT = 32 };
+
+tl_environment tl_environment_constant(float red, float green, float blue)
+{
+    tl_environment environment = {.name = tl_copy_string("constant"),
+                                  .layout = TL_ENV_LATLONG,
+                                  .image = tl_image_create(CONSTANT_WIDTH, CONSTANT_HEIGHT, 3, TL_IMAGE_F32)};
+    float *texels = tl_image_floats(&environment.image);
+    for (size_t i = 0; i < (size_t)CONSTANT_WIDTH * CONSTANT_HEIGHT; i++) {
+        texels[3 * i] = red;
+        texels[3 * i + 1] = green;
+        texels[3 * i + 2] = blue;
+    }
+    environment.peak = peak_of(&environment.image);
+    return environment;
+}

@@ -1,0 +1,32 @@
+/* The built-in studio: a grey room and the lamps that hang in it, as data (environment.h has the picture).
+ *
+ * Each light is a rectangle far away, seen from the scene's middle; the picture is the room plus all lights.
+ * Threads: pure. */
+#ifndef TOILE_ASSETS_BUILTIN_STUDIO_H
+#define TOILE_ASSETS_BUILTIN_STUDIO_H
+
+#include <cglm/struct.h>
+
+#include <stddef.h>
+
+struct tl_studio_light {
+    const char *name;
+    float azimuth_deg, elevation_deg; /* of its middle: from +Z towards +X, and up */
+    float half_width, half_height;    /* at distance 1 from the scene: tangents of half its angles */
+    float edge;                       /* half-width of its soft edge, same unit */
+    vec3s radiance;
+};
+
+extern const struct tl_studio_light tl_studio_lights[];
+extern const size_t tl_studio_light_count;
+
+/* Axes of a light: out = towards its middle, right = level, up; a right-handed frame seen from outside. */
+struct tl_studio_axes {
+    vec3s out, right, up;
+};
+struct tl_studio_axes tl_studio_light_axes(const struct tl_studio_light *light);
+
+/* Radiance of the empty room from a unit direction: grey, so one value. */
+float tl_studio_room(vec3s direction);
+
+#endif

@@ -1,0 +1,40 @@
+/* Woven fabrics made from a drawing of their interlacing, at true millimetre scale: each yarn is a bent
+ * elliptic tube; height is the upper envelope, normals its analytic slope, gloss and tint follow the yarn on
+ * top. */
+#ifndef TOILE_ASSETS_BUILTIN_WEAVE_H
+#define TOILE_ASSETS_BUILTIN_WEAVE_H
+
+#include "assets/base/material.h"
+#include "config/options.h"
+
+/* The face of the cloth: twill is 3/1, its lines rising to the right (Z); satin is of five ends, counter 2;
+ * in both the warp floats on the face. */
+enum tl_weave_pattern { TL_WEAVE_NONE, TL_WEAVE_PLAIN, TL_WEAVE_TWILL, TL_WEAVE_SATIN };
+
+struct tl_weave_params {
+    int pattern;         /* enum tl_weave_pattern; NONE: the material's own maps only */
+    float warp_pitch_mm; /* distance between warp yarns */
+    float weft_pitch_mm; /* distance between weft yarns */
+    float crimp_mm;      /* height of a yarn's crest over the fabric's middle plane */
+    float warp_gloss;    /* added to material.glossiness on warp yarns */
+    float weft_gloss;    /* ... on weft yarns */
+    float warp_tint[3];  /* factor on material.diffuse on warp yarns, linear */
+    float weft_tint[3];
+    int texels_per_yarn; /* resolution of the maps */
+    /* A picture of heights instead of yarns (app/scene/height_picture.h reads it) */
+    char picture[TL_STRING_SIZE]; /* "": none */
+    float picture_mm;             /* its width on the cloth: of a repeat */
+    float depth_mm;               /* from its lowest to its highest */
+};
+/* A light cotton sheeting. */
+#define TL_WEAVE_DEFAULTS                                                                                    \
+    .pattern = TL_WEAVE_PLAIN, .warp_pitch_mm = 0.4f, .weft_pitch_mm = 0.4f, .crimp_mm = 0.1f,               \
+    .warp_tint = {1, 1, 1}, .weft_tint = {1, 1, 1}, .texels_per_yarn = 32, .picture_mm = 10,                 \
+    .depth_mm = 0.5f
+extern const struct tl_option_table tl_weave_options; /* "weave" */
+
+/* Maps of one repeat. pattern NONE gives false without an error: there is nothing to make. */
+bool tl_weave_create(const struct tl_weave_params *params, tl_weave *out);
+void tl_weave_release(tl_weave *weave);
+
+#endif

@@ -1,0 +1,184 @@
+/* A parsed glTF file as plain C: what assets/gltf/gltf_shim.cpp (tinygltf) hands to model.c, materials.c and
+ * rig.c. Private to assets.
+ *
+ * The shim copies, it does not judge: every index, offset and count below is the file's word, to be checked
+ * where it is used (gltf_read_* do that for accessors). -1: absent. Pointers live as long as the document. */
+#ifndef TOILE_ASSETS_GLTF_GLTF_H
+#define TOILE_ASSETS_GLTF_GLTF_H
+
+#include "assets/base/material.h"
+#include "config/error.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+struct gltf_buffer {
+    const uint8_t *data;
+    size_t size;
+};
+
+struct gltf_view {
+    int buffer;
+    size_t offset, size, stride; /* bytes; stride 0: tightly packed */
+};
+
+struct gltf_accessor {
+    int view; /* -1: zeros */
+    size_t offset, count;
+    int component_type; /* GL's: 5120 byte ... 5126 float */
+    int components;     /* 1 to 16 */
+    bool normalized;
+    size_t sparse_count; /* 0: not sparse */
+    int sparse_index_view, sparse_index_type, sparse_value_view;
+    size_t sparse_index_offset, sparse_value_offset;
+};
+
+enum gltf_attribute {
+    GLTF_POSITION,
+    GLTF_NORMAL,
+    GLTF_TANGENT,
+    GLTF_UV,
+    GLTF_JOINTS,
+    GLTF_WEIGHTS,
+    GLTF_COLOUR,
+    GLTF_PIN, /* "_PIN", in either case: which vertices hang from something */
+    GLTF_ATTRIBUTE_COUNT
+};
+
+/* KHR_materials_variants: the material that a primitive has in each of some variants. */
+struct gltf_mapping {
+    int material;
+    size_t first_variant, variant_count; /* in mapped_variants */
+};
+
+struct gltf_primitive {
+    int attributes[GLTF_ATTRIBUTE_COUNT]; /* accessors */
+    int indices, material, mode;
+    size_t first_mapping, mapping_count;
+    bool has_targets, has_second_uvs, has_second_joints, is_draco;
+};
+
+struct gltf_mesh {
+    size_t first_primitive, primitive_count;
+};
+
+struct gltf_node {
+    int mesh, skin;
+    const int *children;
+    size_t child_count;
+    bool has_matrix;
+    float matrix[16]; /* column-major */
+    float translation[3], rotation[4], scale[3];
+};
+
+struct gltf_skin {
+    const int *joints; /* nodes */
+    size_t joint_count;
+    int inverse_binds; /* accessor */
+};
+
+enum gltf_path { GLTF_TRANSLATION, GLTF_ROTATION, GLTF_SCALE, GLTF_OTHER_PATH };
+enum gltf_interpolation { GLTF_LINEAR, GLTF_STEP, GLTF_CUBIC_SPLINE };
+
+struct gltf_channel {
+    int node;
+    enum gltf_path path;
+    enum gltf_interpolation interpolation;
+    int times, values; /* accessors */
+};
+
+struct gltf_animation {
+    const char *name;
+    size_t first_channel, channel_count;
+};
+
+/* A material's use of a texture. */
+struct gltf_texture {
+    bool used;
+    int image; /* -1 where only an extension names one */
+    int uv_set;
+    struct tl_uv_transform transform;
+    bool clamp_u, clamp_v;
+};
+
+enum gltf_alpha { GLTF_OPAQUE, GLTF_MASK, GLTF_BLEND };
+
+/* KHR_materials_*, by their own names; the defaults are those of a material without the extension. */
+struct gltf_extensions {
+    float anisotropy_strength, anisotropy_rotation; /* rotation: rad */
+    float clearcoat, clearcoat_roughness;
+    float diffuse_transmission, diffuse_transmission_colour[3];
+    float ior;
+    float sheen_colour[3], sheen_roughness;
+    float specular, specular_colour[3];
+    float transmission;
+    struct gltf_texture anisotropy_map, clearcoat_map, clearcoat_roughness_map, clearcoat_normal_map,
+        diffuse_transmission_map, diffuse_transmission_colour_map, sheen_colour_map, sheen_roughness_map,
+        specular_map, specular_colour_map, transmission_map;
+};
+
+struct gltf_material {
+    const char *name;
+    float base_colour[4], metallic, roughness, normal_scale, occlusion_strength, alpha_cutoff;
+    enum gltf_alpha alpha;
+    bool double_sided, is_emissive;
+    struct gltf_texture base_colour_map, metallic_roughness_map, normal_map, occlusion_map;
+    struct gltf_extensions extensions;
+};
+
+struct gltf_image {
+    const uint8_t *data; /* NULL: in `view`, or could not be read */
+    size_t size;
+    int view;
+    const char *name; /* its uri or name, for messages */
+};
+
+typedef struct gltf_document {
+    const char *path; /* for messages; borrowed */
+    size_t buffer_count, view_count, accessor_count, primitive_count, mesh_count, node_count, skin_count,
+        channel_count, animation_count, material_count, image_count, root_count, used_count, required_count,
+        variant_count;
+    const struct gltf_buffer *buffers;
+    const struct gltf_view *views;
+    const struct gltf_accessor *accessors;
+    const struct gltf_primitive *primitives;
+    const struct gltf_mesh *meshes;
+    const struct gltf_node *nodes;
+    const struct gltf_skin *skins;
+    const struct gltf_channel *channels;
+    const struct gltf_animation *animations;
+    const struct gltf_material *materials;
+    const struct gltf_image *images;
+    const struct gltf_mapping *mappings;
+    const int *mapped_variants;
+    const char *const *variants; /* names; "": none given */
+    bool has_scene;
+    const int *roots;                          /* nodes of the scene */
+    const char *const *used, *const *required; /* extensions */
+    bool has_cameras, has_lights;
+    void *owner; /* the shim's */
+} gltf_document;
+
+/* Parses JSON and gathers its buffers and images; `binary` is the GLB's BIN chunk or NULL. The shim keeps
+ * nothing of `json` and `binary`. (gltf_shim.cpp; callers use gltf_open.) */
+bool gltf_parse(const char *path, const char *json, size_t json_size, const uint8_t *binary,
+                size_t binary_size, gltf_document *out, tl_error *error);
+
+/* Reads a .gltf or .glb whose container is sound. */
+bool gltf_open(const char *path, gltf_document *out, tl_error *error);
+void gltf_close(gltf_document *document);
+
+/* Bytes of a view within its buffer; false (with a message that names `what`) when they are not all there. */
+bool gltf_view_bytes(const gltf_document *document, int view, const char *what, const uint8_t **bytes,
+                     size_t *size, tl_error *error);
+
+/* Values of an accessor of `components` components as floats, normalised where it says so; free(*out).
+ * Refuses other shapes, more than `limit` elements, and values that are not finite unless `any_value`. */
+bool gltf_read_floats(const gltf_document *document, int accessor, const char *what, int components,
+                      size_t limit, bool any_value, float **out, size_t *count, tl_error *error);
+
+/* Unsigned integers (indices, joints); free(*out). */
+bool gltf_read_integers(const gltf_document *document, int accessor, const char *what, int components,
+                        size_t limit, uint32_t **out, size_t *count, tl_error *error);
+
+#endif

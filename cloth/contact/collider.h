@@ -1,0 +1,62 @@
+/* What cloth rests on: a closed triangle mesh that may move from frame to frame, and the ground plane y = 0.
+ *
+ * Closest points come from Embree's point queries on a BVH over the welded mesh, the side from the
+ * angle-weighted pseudo-normal of the closest feature (Baerentzen & Aanaes 2005). Metres, world. Ownership:
+ * owns its copies. Threads: queries may run on several threads, moves may not. */
+#ifndef TOILE_CLOTH_CONTACT_COLLIDER_H
+#define TOILE_CLOTH_CONTACT_COLLIDER_H
+
+#include "assets/base/mesh.h"
+#include "cloth/mesh/rigid.h"
+#include "config/error.h"
+
+typedef struct tl_collider tl_collider;
+
+/* `mesh` may be NULL: ground only. `ground` false: no plane. */
+tl_collider *tl_collider_create(const tl_mesh *mesh, bool ground, tl_error *error);
+void tl_collider_destroy(tl_collider **collider);
+
+/* New positions of the mesh's render vertices: the current pose becomes the previous one. Moving twice to the
+ * same positions brings it to rest. */
+void tl_collider_move(tl_collider *collider, const vec3s *positions);
+
+/* Signed distance of a point to the current mesh (negative inside) and the outward unit direction of its
+ * gradient; points farther than `reach_m` give false. The ground is not part of it. */
+struct tl_contact {
+    double distance_m;
+    double normal[3];
+    uint32_t triangle; /* of the mesh */
+    double barycentric[3];
+};
+bool tl_collider_query(const tl_collider *collider, const double point[3], double reach_m,
+                       struct tl_contact *out);
+
+/* The same while it moves: `phase` 0 is the previous pose, 1 the current one. */
+bool tl_collider_query_at(const tl_collider *collider, const double point[3], double phase, double reach_m,
+                          struct tl_contact *out);
+
+/* How often the current surface winds around a point: 1 inside, 0 outside, whatever folds are nearest. A pose
+ * that pushes the surface through itself leaves creases that are inside out; who sees the back of one from
+ * the open has a negative distance and is not inside. Solid angles of all triangles (van Oosterom & Strackee
+ * 1983): for few points. */
+double tl_collider_winding(const tl_collider *collider, const double point[3]);
+
+/* A point of a triangle at both ends of the motion. */
+void tl_collider_path(const tl_collider *collider, uint32_t triangle, const double barycentric[3],
+                      double previous[3], double current[3]);
+
+bool tl_collider_has_ground(const tl_collider *collider);
+
+/* Longest way of any vertex from the previous to the current pose. */
+double tl_collider_travel(const tl_collider *collider);
+
+/* A move in which a vertex goes farther than this, 15 m/s at 30 frames a second, is a jump: the rigid motion
+ * that comes nearest to it is taken out, by putting the previous pose at its end, and is told by
+ * tl_collider_jump for as long as the revision stays, so that what is worn can go along. */
+#define TL_COLLIDER_JUMP_M 0.5
+bool tl_collider_jump(const tl_collider *collider, struct tl_rigid *out);
+
+/* Rises with every move that changes something: answers to queries stay good while it is the same. */
+uint64_t tl_collider_revision(const tl_collider *collider);
+
+#endif

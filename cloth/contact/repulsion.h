@@ -1,0 +1,30 @@
+/* Cloth against itself, as far as a review of drape needs it: particles nearer than the thickness push each
+ * other apart, with Coulomb friction. Folds keep their distance; an edge may still pass between the particles
+ * of a coarse mesh. Pairs that are nearer than that from the start keep their start distance instead. The
+ * pairs come from a spatial hash (Teschner et al. 2003), once a step, in a fixed order. Metres. Threads:
+ * pure. */
+#ifndef TOILE_CLOTH_CONTACT_REPULSION_H
+#define TOILE_CLOTH_CONTACT_REPULSION_H
+
+#include "cloth/mesh/particles.h"
+
+struct tl_repulsion_pair {
+    uint32_t a, b;
+    double distance_m; /* kept */
+};
+
+struct tl_repulsion {
+    size_t pair_count, pair_capacity;
+    struct tl_repulsion_pair *pairs; /* good for one step */
+};
+void tl_repulsion_release(struct tl_repulsion *repulsion);
+
+/* Once per step, at its start. `start` [count] are the positions that the cloth is made in. */
+void tl_repulsion_renew(struct tl_repulsion *repulsion, size_t count, const vec3d *x, const vec3d *start,
+                        double thickness_m);
+
+/* Once per substep of h seconds. */
+void tl_repulsion_solve(const struct tl_repulsion *repulsion, double friction, double h,
+                        struct tl_particles *particles);
+
+#endif

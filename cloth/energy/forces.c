@@ -1,0 +1,310 @@
+/* The energy as a number, and its forces. */
+#include "cloth/energy/energy.h"
+#include "cloth/mesh/particles.h"
+#include "cloth/mesh/threads.h"
+#include "config/simd.h"
+
+#include <string.h>
+
+/* What is squeezed to less than this share of its rest length pushes no harder than at it. */
+#define LEAST_LENGTH 1e-6
+
+/* Places are read four numbers at a time. */
+TL_CLONES static void copy_places(const vec3d *x, struct tl_range range, double *places)
+{
+    for (size_t i = range.from; i < range.to; i++) {
+        places[4 * i] = x[i].x;
+        places[4 * i + 1] = x[i].y;
+        places[4 * i + 2] = x[i].z;
+    }
+}
+
+void tl_pulls_place(const struct tl_pulls *pulls, const vec3d *x, struct tl_range range)
+{
+    copy_places(x, range, pulls->places);
+}
+
+TL_CLONES static void square_lengths(const vec3d *x, const uint32_t (*edges)[2], struct tl_range range,
+                                     double *squared)
+{
+    for (size_t e = range.from; e < range.to; e++) {
+        vec3d apart = vec3d_sub(x[edges[e][1]], x[edges[e][0]]);
+        squared[e] = vec3d_dot(apart, apart);
+    }
+}
+
+/* Area times stiffness. */
+struct stretching {
+    double weft, warp, shear;
+};
+
+/* With m = (|F_u|^2, F_u.F_v, |F_v|^2) and the energy per area
+ *     e = k_weft/2 (sqrt(m_uu) - 1)^2 + k_warp/2 (sqrt(m_vv) - 1)^2 + k_shear/2 m_uv^2 / (m_uu m_vv):
+ * 2A de/d(l_k^2) for each edge k, and A e where it is wanted. */
+TL_INLINE void differentiate(const struct tl_metric *metric, const struct stretching *k,
+                             const double squared[3][TL_BATCH], double *restrict shares, double *energies)
+{
+    for (int lane = 0; lane < TL_BATCH; lane++) {
+        double c0 = metric->c[0][lane], c1 = metric->c[1][lane], c2 = -(c0 + c1);
+        double d0 = metric->d[0][lane], d1 = metric->d[1][lane], d2 = -(d0 + d1);
+        double l0 = squared[0][lane], l1 = squared[1][lane], l2 = squared[2][lane];
+        double uu0 = c1 * c2, uu1 = c2 * c0, uu2 = c0 * c1;
+        double vv0 = d1 * d2, vv1 = d2 * d0, vv2 = d0 * d1;
+        double uv0 = c1 * d2 + c2 * d1, uv1 = c2 * d0 + c0 * d2, uv2 = c0 * d1 + c1 * d0;
+        double uu = -(uu0 * l0 + uu1 * l1 + uu2 * l2);
+        double vv = -(vv0 * l0 + vv1 * l1 + vv2 * l2);
+        double uv = -0.5 * (uv0 * l0 + uv1 * l1 + uv2 * l2);
+        double length_u = sqrt(uu > LEAST_LENGTH * LEAST_LENGTH ? uu : LEAST_LENGTH * LEAST_LENGTH);
+        double length_v = sqrt(vv > LEAST_LENGTH * LEAST_LENGTH ? vv : LEAST_LENGTH * LEAST_LENGTH);
+        double both = 1 / (length_u * length_v), inverse_u = both * length_v, inverse_v = both * length_u;
+        double cosine = uv * both, slant = k->shear * cosine, by_uv = slant * both; /* de/dm_uv */
+        double turn = slant * cosine;
+        double by_uu = k->weft * (1 - inverse_u) - turn * (inverse_u * inverse_u); /* 2 de/dm_uu */
+        double by_vv = k->warp * (1 - inverse_v) - turn * (inverse_v * inverse_v);
+        double area = -metric->area[lane];
+        shares[lane] = area * (by_uu * uu0 + by_vv * vv0 + by_uv * uv0);
+        shares[TL_BATCH + lane] = area * (by_uu * uu1 + by_vv * vv1 + by_uv * uv1);
+        shares[2 * TL_BATCH + lane] = area * (by_uu * uu2 + by_vv * vv2 + by_uv * uv2);
+        if (energies) {
+            double weft = length_u - 1, warp = length_v - 1;
+            energies[lane] = -0.5 * area * (k->weft * weft * weft + k->warp * warp * warp + turn);
+        }
+    }
+}
+
+TL_INLINE void read_squared(const struct tl_pulls *pulls, const struct tl_metric *metric,
+                            double squared[3][TL_BATCH])
+{
+    for (int corner = 0; corner < 3; corner++)
+        for (int lane = 0; lane < TL_BATCH; lane++)
+            squared[corner][lane] = pulls->squared[metric->edges[corner][lane]];
+}
+
+TL_INLINE void differentiate_range(const struct tl_pulls *pulls, struct stretching k, struct tl_range range,
+                                   bool wants_energy)
+{
+    for (size_t i = range.from; i < range.to; i++) {
+        double squared[3][TL_BATCH], energies[TL_BATCH], sum = 0;
+        read_squared(pulls, &pulls->metrics[i], squared);
+        differentiate(&pulls->metrics[i], &k, (const double(*)[TL_BATCH])squared,
+                      &pulls->shares[i * 3 * TL_BATCH], wants_energy ? energies : NULL);
+        for (int lane = 0; lane < TL_BATCH && wants_energy; lane++)
+            sum += energies[lane];
+        if (wants_energy)
+            pulls->parts[i] = sum;
+    }
+}
+
+TL_CLONES static void differentiate_all(const struct tl_pulls *pulls, struct stretching k,
+                                        struct tl_range range)
+{
+    differentiate_range(pulls, k, range, false);
+}
+
+/* The triangles' energies beside. */
+TL_CLONES static void measure_all(const struct tl_pulls *pulls, struct stretching k, struct tl_range range)
+{
+    differentiate_range(pulls, k, range, true);
+}
+
+TL_CLONES static void add_shares(const struct tl_pulls *pulls, struct tl_range range)
+{
+    for (size_t e = range.from; e < range.to; e++)
+        pulls->along_edges[e] =
+            pulls->shares[pulls->slots[e][0]] + pulls->shares[pulls->slots[e][1]] + pulls->edge_bending[e];
+}
+
+/* What few edges have: more than two triangles, and links. Returns the links' energy. */
+static double add_rare(const struct tl_energy *energy, double stiffness)
+{
+    const struct tl_pulls *pulls = &energy->pulls;
+    double sum = 0;
+    for (size_t i = 0; i < pulls->excess_count; i++)
+        pulls->along_edges[pulls->excess[i][0]] += pulls->shares[pulls->excess[i][1]];
+    for (size_t i = 0; i < energy->link_count; i++) {
+        double rest = energy->links[i].rest, length = sqrt(pulls->squared[pulls->link_edges[i]]);
+        double share = length > LEAST_LENGTH * rest ? rest / length : 1 / LEAST_LENGTH;
+        pulls->along_edges[pulls->link_edges[i]] += stiffness * (1 - share);
+        sum += 0.5 * stiffness * (length - rest) * (length - rest);
+    }
+    return sum;
+}
+
+/* Away from the other end, and subtracted: one instruction takes a register and memory, not the reverse. */
+TL_INLINE void add_pull(const double *at, const double *other, double strength, struct tl_wide_force *sum)
+{
+    double x = at[0] - other[0], y = at[1] - other[1], z = at[2] - other[2], unused = at[3] - other[3];
+    sum->x -= strength * x;
+    sum->y -= strength * y;
+    sum->z -= strength * z;
+    sum->unused -= strength * unused;
+}
+
+TL_INLINE void add_others(const struct tl_pulls *pulls, size_t vertex, struct tl_wide_force *sum)
+{
+    const double *at = &pulls->places[4 * vertex];
+    for (uint32_t k = pulls->others_first[vertex]; k < pulls->others_first[vertex + 1]; k++)
+        add_pull(at, &pulls->places[4 * (size_t)pulls->others[k]], pulls->bending[k], sum);
+}
+
+/* `strengths` [edge_count]. */
+TL_INLINE void add_along(const struct tl_pulls *pulls, size_t vertex, const double *strengths,
+                         struct tl_wide_force *sum)
+{
+    const double *at = &pulls->places[4 * vertex];
+    for (uint32_t k = pulls->along_first[vertex]; k < pulls->along_first[vertex + 1]; k++) {
+        const struct tl_along *along = &pulls->along[k];
+        add_pull(at, &pulls->places[4 * (size_t)along->other], strengths[along->edge], sum);
+    }
+}
+
+/* All of bending, in two sums: what one adds the other need not wait for. */
+TL_INLINE struct tl_wide_force add_fours(const struct tl_pulls *pulls, size_t vertex)
+{
+    const double *places = pulls->places, *at = &places[4 * vertex];
+    const struct tl_four_pulls *end = &pulls->fours[pulls->fours_first[vertex + 1]];
+    struct tl_wide_force even = {0}, odd = {0};
+    for (const struct tl_four_pulls *four = &pulls->fours[pulls->fours_first[vertex]]; four < end; four++) {
+        add_pull(at, &places[four->from[0]], four->bending[0], &even);
+        add_pull(at, &places[four->from[1]], four->bending[1], &odd);
+        add_pull(at, &places[four->from[2]], four->bending[2], &even);
+        add_pull(at, &places[four->from[3]], four->bending[3], &odd);
+    }
+    return (struct tl_wide_force){even.x + odd.x, even.y + odd.y, even.z + odd.z, even.unused + odd.unused};
+}
+
+/* `strengths` [edge_count] of all that acts along edges; NULL: bending alone. */
+TL_INLINE void add_block(const struct tl_pulls *pulls, struct tl_range block, const double *strengths,
+                         vec3d *forces)
+{
+    for (size_t i = block.from; i < block.to; i++) {
+        struct tl_wide_force sum = {0};
+        if (strengths) {
+            add_along(pulls, i, strengths, &sum);
+            add_others(pulls, i, &sum);
+        } else {
+            sum = add_fours(pulls, i);
+        }
+        pulls->sums[i] = sum;
+    }
+    for (size_t i = block.from; i < block.to; i++)
+        forces[i] = (vec3d){pulls->sums[i].x, pulls->sums[i].y, pulls->sums[i].z};
+}
+
+static struct tl_range block_from(size_t from, struct tl_range range)
+{
+    size_t to = from + TL_PULLS_BLOCK;
+    return (struct tl_range){from, to < range.to ? to : range.to};
+}
+
+/* Each block's particles move as soon as their forces are known, while these are at hand. */
+TL_INLINE void add_range(const struct tl_pulls *pulls, const double *strengths, struct tl_range range,
+                         vec3d *forces, const struct tl_move *then)
+{
+    for (size_t from = range.from; from < range.to; from += TL_PULLS_BLOCK) {
+        struct tl_range block = block_from(from, range);
+        add_block(pulls, block, strengths, forces);
+        if (then)
+            then->move(then->particles, block, then->how);
+    }
+}
+
+TL_CLONES static void add_forces(const struct tl_pulls *pulls, struct tl_range range, vec3d *forces,
+                                 const struct tl_move *then)
+{
+    add_range(pulls, pulls->along_edges, range, forces, then);
+}
+
+TL_CLONES static void add_bending(const struct tl_pulls *pulls, struct tl_range range, vec3d *forces,
+                                  const struct tl_move *then)
+{
+    add_range(pulls, NULL, range, forces, then);
+}
+
+/* x.Kx/2 of a block of vertices. Forces add up to nothing, so that x may be measured from anywhere. */
+TL_CLONES static double bending_energy(const struct tl_pulls *pulls, struct tl_range range)
+{
+    double energy = 0;
+    const double *origin = pulls->places;
+    for (size_t i = range.from; i < range.to; i++) {
+        const double *at = &pulls->places[4 * i];
+        struct tl_wide_force sum = add_fours(pulls, i);
+        energy -=
+            0.5 * (sum.x * (at[0] - origin[0]) + sum.y * (at[1] - origin[1]) + sum.z * (at[2] - origin[2]));
+    }
+    return energy;
+}
+
+static void add_energies(const struct tl_pulls *pulls)
+{
+    struct tl_range mine = tl_my_part(pulls->vertex_count, TL_PULLS_BLOCK);
+    for (size_t from = mine.from; from < mine.to; from += TL_PULLS_BLOCK)
+        pulls->parts[pulls->metric_count + from / TL_PULLS_BLOCK] =
+            bending_energy(pulls, block_from(from, mine));
+}
+
+/* Returns the links' energy, and leaves the triangles' in pulls->parts, the bending's too if it is wanted. */
+static double evaluate(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric, const vec3d *x,
+                       bool wants_energy, vec3d *forces, const struct tl_move *then)
+{
+    const struct tl_pulls *pulls = &energy->pulls;
+    const struct stretching k = {fabric->stretch_weft, fabric->stretch_warp, fabric->shear};
+    double links = 0;
+#pragma omp parallel if (pulls->vertex_count >= TL_PARALLEL_VERTICES)
+    {
+        unsigned denormals = tl_denormals_off();
+        tl_pulls_place(pulls, x, tl_my_part(pulls->vertex_count, TL_PULLS_BLOCK));
+        square_lengths(x, (const uint32_t(*)[2])pulls->edges, tl_my_part(pulls->edge_count, TL_BATCH),
+                       pulls->squared);
+#pragma omp barrier
+        struct tl_range triangles = tl_my_part(pulls->metric_count, 1);
+        if (wants_energy)
+            measure_all(pulls, k, triangles);
+        else
+            differentiate_all(pulls, k, triangles);
+#pragma omp barrier
+        add_shares(pulls, tl_my_part(pulls->edge_count, TL_BATCH));
+        if (pulls->excess_count + energy->link_count > 0) {
+#pragma omp barrier
+#pragma omp single
+            links = add_rare(energy, fabric->stretch_warp);
+        }
+#pragma omp barrier
+        add_forces(pulls, tl_my_part(pulls->vertex_count, TL_PULLS_BLOCK), forces, then);
+        if (wants_energy)
+            add_energies(pulls);
+        tl_denormals_restore(denormals);
+    }
+    return links;
+}
+
+void tl_energy_pull(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric, const vec3d *x,
+                    vec3d *forces, const struct tl_move *then)
+{
+    evaluate(energy, fabric, x, false, forces, then);
+}
+
+void tl_energy_bend(const struct tl_energy *energy, const vec3d *x, vec3d *forces, const struct tl_move *then)
+{
+    const struct tl_pulls *pulls = &energy->pulls;
+#pragma omp parallel if (pulls->vertex_count >= TL_PARALLEL_VERTICES)
+    {
+        unsigned denormals = tl_denormals_off();
+        struct tl_range mine = tl_my_part(pulls->vertex_count, TL_PULLS_BLOCK);
+        tl_pulls_place(pulls, x, mine);
+#pragma omp barrier
+        add_bending(pulls, mine, forces, then);
+        tl_denormals_restore(denormals);
+    }
+}
+
+double tl_energy_forces(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
+                        size_t vertex_count, const vec3d *x, vec3d *forces)
+{
+    const struct tl_pulls *pulls = &energy->pulls;
+    size_t blocks = (vertex_count + TL_PULLS_BLOCK - 1) / TL_PULLS_BLOCK;
+    double total = evaluate(energy, fabric, x, true, forces, NULL);
+    for (size_t i = 0; i < pulls->metric_count + blocks; i++)
+        total += pulls->parts[i];
+    return total;
+}

@@ -1,0 +1,95 @@
+/* The energy's forces as pulls along pairs of vertices: fast, and opposite to the last bit.
+ *
+ * A membrane's energy depends on |F_u|^2, F_u.F_v and |F_v|^2 only, and these are linear in the squared
+ * lengths of the triangle's edges: F_u = sum c_i x_i with sum c_i = 0 gives |F_u|^2 = -sum_{i<j} c_i c_j |x_i
+ * - x_j|^2. So its forces are 2 dE/d(l^2) (x_j - x_i) along each edge. Bending is x.Kx/2 with a constant K
+ * whose rows add up to 0: its forces are -K_ij (x_j - x_i), over the pairs that share a stencil. Both act
+ * along the line between two vertices, with one number for the two: linear and angular momentum are kept but
+ * for the rounding of sums, whatever the numbers are.
+ *
+ * Passes: squared lengths by edge, derivatives by triangle, their sums by edge, forces by vertex. Each entry
+ * is written by one thread and summed in a fixed order: results do not depend on the number of threads.
+ * Threads: it has scratch space; one call at a time. */
+#ifndef TOILE_CLOTH_ENERGY_PULLS_H
+#define TOILE_CLOTH_ENERGY_PULLS_H
+
+#include "cloth/mesh/threads.h"
+#include "cloth/mesh/topology.h"
+#include "cloth/mesh/vec3d.h"
+#include "config/memory.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+struct tl_energy;
+
+/* Triangles as functions of their edges' squared lengths; edge i faces corner i. Empty lanes have area 0. */
+struct tl_metric {
+    _Alignas(
+        TL_CACHE_LINE) double c[2][TL_BATCH]; /* 1/m, the third is minus their sum: see struct tl_membrane */
+    double d[2][TL_BATCH];
+    double area[TL_BATCH];
+    uint32_t edges[3][TL_BATCH];
+};
+
+/* Four numbers, so that a wide register adds them at once; the last is 0. */
+struct tl_wide_force {
+    double x, y, z, unused;
+};
+
+/* One end's view of an edge. */
+struct tl_along {
+    uint32_t other, edge;
+};
+
+/* Pulls of bending alone on one vertex, as many as are in flight at once; what a vertex has too few of is
+ * made up with pulls of 0 from itself. */
+#define TL_PULLS_FOUR 4
+struct tl_four_pulls {
+    double bending[TL_PULLS_FOUR]; /* -K_ij, N/m */
+    uint32_t from[TL_PULLS_FOUR];  /* the other end's first number in `places` */
+};
+
+struct tl_pulls {
+    size_t vertex_count, edge_count, metric_count, excess_count;
+    uint32_t (*edges)[2]; /* as in the topology */
+    struct tl_metric *metrics;
+    uint32_t (*slots)[2];  /* [edge_count] the two entries of `shares` that make up an edge's pull */
+    uint32_t (*excess)[2]; /* [excess_count] edge, entry: third and further triangles at an edge */
+    uint32_t *link_edges;  /* [link_count] */
+    double *edge_bending;  /* [edge_count] -K_ij of its ends, N/m */
+
+    /* Rows by vertex: along[along_first[i]] and on are along edges, others[others_first[i]] and on are of
+     * bending alone. */
+    uint32_t *along_first, *others_first; /* [vertex_count + 1] */
+    struct tl_along *along;
+    uint32_t *others; /* the vertex at the other end */
+    double *bending;  /* [entries of others] -K_ij, N/m */
+
+    /* The same of bending alone, along edges or not: fours[fours_first[i]] and on. */
+    uint32_t *fours_first; /* [vertex_count + 1] */
+    struct tl_four_pulls *fours;
+
+    /* Scratch. */
+    double *places;  /* [vertex_count + 1][4] m, the last one for the empty lanes of batches */
+    double *squared; /* [edge_count] m^2 */
+    double *shares;  /* [metric_count][3][TL_BATCH] N/m, then a 0 for edges with fewer than two triangles */
+    double *along_edges;        /* [edge_count] N/m, with bending */
+    struct tl_wide_force *sums; /* [vertex_count] N */
+    double *parts;              /* [metric_count + blocks of vertices] J */
+};
+
+/* Of the membranes, bends and links in `energy`. */
+struct tl_pulls tl_pulls_build(const struct tl_topology *topology, const struct tl_energy *energy);
+void tl_pulls_release(struct tl_pulls *pulls);
+
+/* Takes over the stiffness against bending of L_uu, L_vv and sqrt(2) L_uv, N m. */
+void tl_pulls_set(struct tl_pulls *pulls, const struct tl_energy *energy, const double stiffness[3]);
+
+/* Copies a part of the vertices' places into the scratch. */
+void tl_pulls_place(const struct tl_pulls *pulls, const vec3d *x, struct tl_range range);
+
+/* Vertices whose energies are added up before those of all blocks are. */
+#define TL_PULLS_BLOCK 64
+
+#endif

@@ -1,0 +1,127 @@
+#include "cloth/mesh/particles.h"
+
+#include "cloth/mesh/threads.h"
+#include "config/memory.h"
+
+#include <stdlib.h>
+#ifdef __SSE2__
+#include <xmmintrin.h>
+#endif
+
+unsigned tl_denormals_off(void)
+{
+#ifdef __SSE2__
+    unsigned state = _mm_getcsr();
+    _mm_setcsr(state | 0x8040); /* FTZ | DAZ */
+    return state;
+#else
+    return 0;
+#endif
+}
+
+void tl_denormals_restore(unsigned state)
+{
+#ifdef __SSE2__
+    _mm_setcsr(state);
+#else
+    (void)state;
+#endif
+}
+
+struct tl_particles tl_particles_create(size_t count)
+{
+    return (struct tl_particles){.count = count,
+                                 .x = TL_NEW_ARRAY(vec3d, count + 1),
+                                 .previous = TL_NEW_ARRAY(vec3d, count + 1),
+                                 .v = TL_NEW_ARRAY(vec3d, count + 1),
+                                 .w = TL_NEW_ARRAY(double, count + 1),
+                                 .driven = TL_NEW_ARRAY(bool, count + 1)};
+}
+
+void tl_particles_release(struct tl_particles *particles)
+{
+    free(particles->x);
+    free(particles->previous);
+    free(particles->v);
+    free(particles->w);
+    free(particles->driven);
+    *particles = (struct tl_particles){0};
+}
+
+void tl_particles_move(const struct tl_move *move)
+{
+#pragma omp parallel if (move->particles->count >= TL_PARALLEL_VERTICES)
+    {
+        unsigned denormals = tl_denormals_off();
+        move->move(move->particles, tl_my_part(move->particles->count, 1), move->how);
+        tl_denormals_restore(denormals);
+    }
+}
+
+struct tl_prediction tl_prediction_make(const vec3d *forces, double gravity, double drag, double h)
+{
+    return (struct tl_prediction){.forces = forces, .fall = gravity * h, .keep = exp(-drag * h), .h = h};
+}
+
+TL_INLINE void predict_some(struct tl_particles *particles, size_t first, size_t count,
+                            const struct tl_prediction *to, const double falls[3 * TL_SOME], bool pushed,
+                            bool moving)
+{
+    const double h = to->h, per_h = 1 / h, keep = to->keep;
+    double weights[3 * TL_SOME];
+    tl_some_weights(&particles->w[first], count, weights);
+    double *restrict x = &particles->x[first].x, *restrict previous = &particles->previous[first].x;
+    const double *restrict v = &particles->v[first].x;
+    const double *restrict forces = pushed ? &to->forces[first].x : v;
+    for (size_t k = 0; k < 3 * count; k++) {
+        double speed = moving ? (x[k] - previous[k]) * per_h : v[k];
+        speed = weights[k] > 0 ? speed * keep - falls[k] : 0;
+        if (pushed)
+            speed += forces[k] * (weights[k] * h);
+        previous[k] = x[k];
+        x[k] += speed * h;
+    }
+}
+
+TL_CLONES static void predict(struct tl_particles *particles, struct tl_range part, const void *how)
+{
+    const struct tl_prediction to = *(const struct tl_prediction *)how;
+    double falls[3 * TL_SOME];
+    tl_some_falls(to.fall, falls);
+    size_t i = part.from;
+    for (; i + TL_SOME <= part.to && to.forces && to.moving; i += TL_SOME) /* the usual ones */
+        predict_some(particles, i, TL_SOME, &to, falls, true, true);
+    for (; i < part.to; i++)
+        predict_some(particles, i, 1, &to, falls, to.forces, to.moving);
+}
+
+struct tl_move tl_particles_prediction(struct tl_particles *particles, const struct tl_prediction *prediction)
+{
+    return (struct tl_move){predict, particles, prediction};
+}
+
+static void finish(struct tl_particles *particles, struct tl_range part, const void *how)
+{
+    double per_h = 1 / *(const double *)how;
+    for (size_t i = part.from; i < part.to; i++)
+        particles->v[i] = vec3d_scale(vec3d_sub(particles->x[i], particles->previous[i]), per_h);
+}
+
+void tl_particles_finish(struct tl_particles *particles, double h)
+{
+    tl_particles_move(&(const struct tl_move){finish, particles, &h});
+}
+
+void tl_particles_calm(struct tl_particles *particles, const uint32_t (*edges)[2], size_t edge_count,
+                       double share)
+{
+    for (size_t i = 0; i < edge_count; i++) {
+        uint32_t a = edges[i][0], b = edges[i][1];
+        double sum = particles->w[a] + particles->w[b];
+        if (!(sum > 0))
+            continue;
+        vec3d impulse = vec3d_scale(vec3d_sub(particles->v[b], particles->v[a]), share / sum);
+        particles->v[a] = vec3d_muladd(particles->v[a], impulse, particles->w[a]);
+        particles->v[b] = vec3d_muladd(particles->v[b], impulse, -particles->w[b]);
+    }
+}

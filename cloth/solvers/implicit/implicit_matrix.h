@@ -1,0 +1,64 @@
+/* The stiffness of the cloth for `settle`: -d forces / d positions, made positive semidefinite.
+ *
+ * Membranes and links give 3 x 3 blocks that follow the shape: of a stretch k/2 (|F| - 1)^2 with n = F/|F|
+ *     k [ n n^T + max(1 - 1/|F|, 0) (I - n n^T) ]
+ * (exact under tension; in compression, where the sheet would rather buckle, what would push is left out:
+ * Choi and Ko 2002, "Stable but Responsive Cloth"), of shear the Gauss-Newton part k g g^T. Bending is
+ * quadratic in the positions: one number a pair of vertices, the same for x, y and z, constant and exact.
+ *
+ * Rows are gathered, so the numbers do not depend on the threads. Units N/m. Ownership: plain struct that
+ * owns its arrays. Threads: uses all. */
+#ifndef TOILE_CLOTH_SOLVERS_IMPLICIT_IMPLICIT_MATRIX_H
+#define TOILE_CLOTH_SOLVERS_IMPLICIT_IMPLICIT_MATRIX_H
+
+#include "cloth/energy/energy.h"
+
+/* Fewer vertices are done before other threads have woken up. */
+#define TL_SERIAL 1000
+
+/* Compressed rows: those of vertex v are entries first[v] to first[v + 1] - 1, columns rising. */
+struct tl_rows {
+    uint32_t *first;   /* [vertex_count + 1] */
+    uint32_t *columns; /* [first[vertex_count]] */
+};
+
+/* Around which elements a vertex lies, and where their blocks go in its row. */
+struct tl_gather {
+    struct tl_fans fans; /* of element corners */
+    uint32_t *slots;     /* [fan item][corners of the element]: entry of the row */
+};
+
+struct tl_stiffness {
+    size_t vertex_count;
+    struct tl_rows blocks, bends;
+    struct tl_gather gather; /* of membranes, by lanes, then links */
+    double (*values)[9];     /* [blocks] row by row */
+    double *bend_values;     /* [bends] */
+    size_t element_count;    /* lanes of membranes, and links */
+    struct tl_piece *pieces; /* [element_count] of the current shape */
+};
+
+/* A pair of vertices held together beside the energy's own links: a seam that closes. */
+struct tl_springs {
+    size_t count;
+    const struct tl_link *links;
+    double stiffness; /* N/m, of each */
+};
+
+/* The pattern, and bending's numbers. */
+struct tl_stiffness tl_stiffness_build(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
+                                       const struct tl_springs *springs, size_t vertex_count);
+void tl_stiffness_release(struct tl_stiffness *stiffness);
+
+/* The blocks at positions x; springs as many as when it was built. */
+void tl_stiffness_assemble(struct tl_stiffness *stiffness, const struct tl_energy *energy,
+                           const struct tl_cloth_fabric *fabric, const struct tl_springs *springs,
+                           const vec3d *x);
+
+/* Adds scale n n^T to the block of two vertices of a triangle. */
+void tl_stiffness_add(struct tl_stiffness *stiffness, uint32_t row, uint32_t column, vec3d n, double scale);
+
+/* Row `vertex` of the product with p. */
+vec3d tl_stiffness_row(const struct tl_stiffness *stiffness, size_t vertex, const vec3d *p);
+
+#endif

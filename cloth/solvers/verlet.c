@@ -1,0 +1,81 @@
+#include "cloth/solvers/verlet.h"
+
+struct tl_verlet tl_verlet_make(const vec3d *forces, double gravity, double drag, double h)
+{
+    return (struct tl_verlet){forces, gravity, exp(-drag * h / 2), h};
+}
+
+/* v + h/2 a, one number of it. */
+TL_INLINE double pushed(double v, double force, double weight, double fall, double h)
+{
+    return v + force * (weight * h / 2) - fall;
+}
+
+/* Velocities are kept, not taken from the places: rounding of a place is 1e-16 m, over a step of 1e-5 s that
+ * is 1e-11 m/s each time. What moved nobody adds exactly 0. */
+TL_INLINE void advance(struct tl_particles *particles, size_t first, size_t count,
+                       const struct tl_verlet *substep, const double falls[3 * TL_SOME], bool kicks,
+                       bool drifts)
+{
+    const double h = substep->h, per_h = 1 / h, keep = substep->keep;
+    double weights[3 * TL_SOME];
+    tl_some_weights(&particles->w[first], count, weights);
+    double *restrict x = &particles->x[first].x, *restrict v = &particles->v[first].x;
+    double *restrict previous = &particles->previous[first].x;
+    const double *restrict forces = &substep->forces[first].x;
+    for (size_t k = 0; k < 3 * count; k++) {
+        double speed = v[k], weight = weights[k];
+        if (kicks) {
+            speed += (x[k] - (previous[k] + speed * h)) * per_h;
+            speed = weight > 0 ? pushed(speed, forces[k], weight, falls[k], h) * keep : speed;
+        }
+        if (drifts) {
+            speed = weight > 0 ? pushed(speed * keep, forces[k], weight, falls[k], h) : 0;
+            previous[k] = x[k];
+            x[k] += speed * h;
+        }
+        v[k] = speed;
+    }
+}
+
+TL_INLINE void advance_part(struct tl_particles *particles, struct tl_range part, const void *how, bool kicks,
+                            bool drifts)
+{
+    const struct tl_verlet substep = *(const struct tl_verlet *)how;
+    double falls[3 * TL_SOME];
+    tl_some_falls(substep.gravity * substep.h / 2, falls);
+    size_t i = part.from;
+    for (; i + TL_SOME <= part.to; i += TL_SOME)
+        advance(particles, i, TL_SOME, &substep, falls, kicks, drifts);
+    advance(particles, i, part.to - i, &substep, falls, kicks, drifts);
+}
+
+TL_CLONES static void drift(struct tl_particles *particles, struct tl_range part, const void *how)
+{
+    advance_part(particles, part, how, false, true);
+}
+
+TL_CLONES static void kick(struct tl_particles *particles, struct tl_range part, const void *how)
+{
+    advance_part(particles, part, how, true, false);
+}
+
+TL_CLONES static void leap(struct tl_particles *particles, struct tl_range part, const void *how)
+{
+    advance_part(particles, part, how, true, true);
+}
+
+void tl_verlet_drift(struct tl_particles *particles, const struct tl_verlet *substep)
+{
+    tl_particles_move(&(const struct tl_move){drift, particles, substep});
+}
+
+struct tl_move tl_verlet_kick(struct tl_particles *particles, const struct tl_verlet *substep)
+{
+    return (struct tl_move){kick, particles, substep};
+}
+
+struct tl_move tl_verlet_leap(struct tl_particles *particles, const struct tl_verlet *substep)
+{
+    return (struct tl_move){leap, particles, substep};
+}

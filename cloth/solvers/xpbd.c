@@ -1,0 +1,375 @@
+#include "cloth/solvers/xpbd.h"
+
+#include "cloth/mesh/threads.h"
+#include "config/simd.h"
+
+#include <string.h>
+
+/* Shorter than this a vector has no direction to push along. */
+#define NO_LENGTH 1e-12
+
+/* ---- Batches ---- */
+
+/* The places of one vertex of each element. */
+struct places {
+    double x[TL_BATCH], y[TL_BATCH], z[TL_BATCH];
+};
+
+TL_INLINE void load(const vec3d *x, const uint32_t *vertices, struct places *to)
+{
+    for (int lane = 0; lane < TL_BATCH; lane++) {
+        to->x[lane] = x[vertices[lane]].x;
+        to->y[lane] = x[vertices[lane]].y;
+        to->z[lane] = x[vertices[lane]].z;
+    }
+}
+
+TL_INLINE void store(const struct places *from, const uint32_t *vertices, vec3d *x)
+{
+    for (int lane = 0; lane < TL_BATCH; lane++)
+        x[vertices[lane]] = (vec3d){from->x[lane], from->y[lane], from->z[lane]};
+}
+
+TL_INLINE vec3d at(const struct places *places, int lane)
+{
+    return (vec3d){places->x[lane], places->y[lane], places->z[lane]};
+}
+
+TL_INLINE void put(struct places *places, int lane, vec3d v)
+{
+    places->x[lane] = v.x;
+    places->y[lane] = v.y;
+    places->z[lane] = v.z;
+}
+
+TL_INLINE void move(struct places *places, int lane, vec3d by, double share)
+{
+    put(places, lane, vec3d_muladd(at(places, lane), by, share));
+}
+
+/* Batches of a run that are solved side by side. */
+#define GROUP 8
+
+/* The corners of a group's membranes, as numbers side by side. */
+struct corners {
+    double x[GROUP][3][TL_BATCH], y[GROUP][3][TL_BATCH], z[GROUP][3][TL_BATCH];
+};
+
+/* The same as they lie in memory: of each x, y, z and what fills a wide register up. */
+struct rows {
+    _Alignas(TL_CACHE_LINE) double of[GROUP][3][TL_BATCH][4];
+};
+
+TL_INLINE void turn_in(const struct rows *rows, size_t count, struct corners *corners)
+{
+    const double(*from)[4] = rows->of[0][0];
+    double *x = corners->x[0][0], *y = corners->y[0][0], *z = corners->z[0][0];
+    for (size_t i = 0; i < count * 3 * TL_BATCH; i++) {
+        x[i] = from[i][0];
+        y[i] = from[i][1];
+        z[i] = from[i][2];
+    }
+}
+
+/* The filling is z again: a loop that writes all four is wide. */
+TL_INLINE void turn_out(const struct corners *corners, size_t count, struct rows *rows)
+{
+    double(*to)[4] = rows->of[0][0];
+    const double *x = corners->x[0][0], *y = corners->y[0][0], *z = corners->z[0][0];
+    for (size_t i = 0; i < count * 3 * TL_BATCH; i++) {
+        to[i][0] = x[i];
+        to[i][1] = y[i];
+        to[i][2] = z[i];
+        to[i][3] = z[i];
+    }
+}
+
+TL_INLINE vec3d corner_at(const struct corners *corners, size_t k, int i, int lane)
+{
+    return (vec3d){corners->x[k][i][lane], corners->y[k][i][lane], corners->z[k][i][lane]};
+}
+
+/* One membrane of each lane on its way. Both stretches and the shear are solved one after the other, on F
+ * alone, and the vertices move once: a push p on row c moves vertex i by w_i c_i p, and so F_u by cc p and
+ * F_v by cd p. All pushes lie in the plane of the first F_u and F_v, u and v: only their shares of these two
+ * change, and scalar products follow from the first three. In stages: what one stage of a batch waits for,
+ * roots and divisions, the same stage of the next batches need not. */
+struct membrane_work {
+    struct places u, v;
+    double uu[TL_BATCH], vv[TL_BATCH], uv[TL_BATCH];
+    double c_u[TL_BATCH], c_v[TL_BATCH]; /* the whole push on row c: c_u u + c_v v */
+    double d_u[TL_BATCH], d_v[TL_BATCH];
+};
+
+TL_INLINE void measure(const struct tl_preview_membrane *m, const struct corners *corners, size_t k, int lane,
+                       struct membrane_work *work)
+{
+    vec3d origin = corner_at(corners, k, 0, lane), side = vec3d_sub(corner_at(corners, k, 1, lane), origin);
+    vec3d other = vec3d_sub(corner_at(corners, k, 2, lane), origin);
+    vec3d u = vec3d_muladd(vec3d_scale(side, m->c[0][lane]), other, m->c[1][lane]);
+    vec3d v = vec3d_muladd(vec3d_scale(side, m->d[0][lane]), other, m->d[1][lane]);
+    put(&work->u, lane, u);
+    put(&work->v, lane, v);
+    work->uu[lane] = vec3d_dot(u, u);
+    work->vv[lane] = vec3d_dot(v, v);
+    work->uv[lane] = vec3d_dot(u, v);
+}
+
+/* F_u = u_u u + u_v v, F_v = v_u u + v_v v, and their scalar products. */
+struct deformation {
+    double u_u, u_v, v_u, v_v;
+    double a, b, g; /* |F_u|^2, |F_v|^2, F_u.F_v */
+};
+
+/* A stretch C = |F| - 1 pushes by factor C along F/|F|: in units of F. */
+TL_INLINE double stretch_push(double squared, double factor)
+{
+    return factor * (1 - 1 / sqrt(squared > NO_LENGTH * NO_LENGTH ? squared : NO_LENGTH * NO_LENGTH));
+}
+
+/* The push is `push` F_u; F_u becomes (1 + cc push) F_u, F_v gets cd push F_u more. */
+TL_INLINE double solve_weft(const struct tl_preview_membrane *m, int lane, struct deformation *f)
+{
+    double push = stretch_push(f->a, m->weft[lane]);
+    double scale = 1 + push * m->cc[lane], lean = push * m->cd[lane], met = f->g + lean * f->a;
+    f->v_u = lean;
+    f->b += lean * (f->g + met);
+    f->u_u = scale;
+    f->a *= scale * scale;
+    f->g = scale * met;
+    return push;
+}
+
+TL_INLINE double solve_warp(const struct tl_preview_membrane *m, int lane, struct deformation *f)
+{
+    double push = stretch_push(f->b, m->warp[lane]);
+    double scale = 1 + push * m->dd[lane], lean = push * m->cd[lane], met = f->g + lean * f->b;
+    f->u_u += lean * f->v_u;
+    f->u_v = lean;
+    f->a += lean * (f->g + met);
+    f->v_u *= scale;
+    f->v_v = scale;
+    f->b *= scale * scale;
+    f->g = scale * met;
+    return push;
+}
+
+/* C = g/sqrt(p), with p = a b, has the gradient
+ * c_i (v a - u g) / (a sqrt(p)) + d_i (u b - v g) / (b sqrt(p)), of weighted square
+ * (p - g^2) (cc b - 2 cd g + dd a) / p^2: its push needs no root, and one division. Of p, on row c F_v gets
+ * this share; F_u of row c gets -b g of it, F_v of row d -a g. */
+TL_INLINE double solve_shear(const struct tl_preview_membrane *m, int lane, const struct deformation *f)
+{
+    double p = f->a * f->b;
+    double square = (p - f->g * f->g) * (m->cc[lane] * f->b - 2 * m->cd[lane] * f->g + m->dd[lane] * f->a);
+    double sum = m->shear[lane] * p * p + square;
+    return sum > 0 ? -f->g / sum : 0;
+}
+
+TL_INLINE void solve(const struct tl_preview_membrane *m, int lane, struct membrane_work *work)
+{
+    struct deformation f = {
+        .u_u = 1, .v_v = 1, .a = work->uu[lane], .b = work->vv[lane], .g = work->uv[lane]};
+    double weft = solve_weft(m, lane, &f);
+    double lean = f.v_u; /* the warp's push is along v + lean u */
+    double warp = solve_warp(m, lane, &f), shear = solve_shear(m, lane, &f);
+    double across = shear * (f.a * f.b), along_c = shear * f.b * f.g, along_d = shear * f.a * f.g;
+    work->c_u[lane] = weft + (across * f.v_u - along_c * f.u_u);
+    work->c_v[lane] = across * f.v_v - along_c * f.u_v;
+    work->d_u[lane] = warp * lean + (across * f.u_u - along_d * f.v_u);
+    work->d_v[lane] = warp + (across * f.u_v - along_d * f.v_v);
+}
+
+TL_INLINE void move_corners(const struct tl_preview_membrane *m, const struct membrane_work *work, int lane,
+                            size_t k, struct corners *corners)
+{
+    vec3d u = at(&work->u, lane), v = at(&work->v, lane);
+    double along_u[3], along_v[3];
+    for (int i = 1; i < 3; i++) {
+        double c = m->c[i - 1][lane], d = m->d[i - 1][lane];
+        along_u[i] = c * work->c_u[lane] + d * work->d_u[lane];
+        along_v[i] = c * work->c_v[lane] + d * work->d_v[lane];
+    }
+    along_u[0] = -(along_u[1] + along_u[2]);
+    along_v[0] = -(along_v[1] + along_v[2]);
+    for (int i = 0; i < 3; i++) {
+        double w = m->w[i][lane];
+        vec3d moved = vec3d_muladd(corner_at(corners, k, i, lane), u, w * along_u[i]);
+        moved = vec3d_muladd(moved, v, w * along_v[i]);
+        corners->x[k][i][lane] = moved.x;
+        corners->y[k][i][lane] = moved.y;
+        corners->z[k][i][lane] = moved.z;
+    }
+}
+
+/* Whether the metric's larger eigenvalue exceeds `most`. */
+TL_INLINE bool stretches(const struct membrane_work *work, int lane, double most)
+{
+    double spare_u = most - work->uu[lane], spare_v = most - work->vv[lane], uv = work->uv[lane];
+    return (spare_u < 0) | (spare_v < 0) | (spare_u * spare_v < uv * uv);
+}
+
+/* Batches of a run from `first` on, GROUP of them or what is left. */
+struct group {
+    const struct tl_preview_membrane *membranes;
+    size_t count;
+};
+
+TL_INLINE struct group group_at(const struct tl_preview_membrane *membranes, size_t count, size_t first)
+{
+    size_t left = first < count ? count - first : 0;
+    return (struct group){membranes + first, left < GROUP ? left : GROUP};
+}
+
+TL_INLINE void fetch(const struct group *group, size_t k, const double *places, struct rows *rows)
+{
+    if (k >= group->count)
+        return;
+    for (size_t line = 0; line < sizeof *group->membranes; line += TL_CACHE_LINE)
+        __builtin_prefetch((const char *)&group->membranes[k + GROUP] + line);
+    for (int i = 0; i < 3; i++)
+        for (int lane = 0; lane < TL_BATCH; lane++)
+            memcpy(rows->of[k][i][lane], &places[group->membranes[k].from[i][lane]],
+                   sizeof rows->of[k][i][lane]);
+}
+
+TL_INLINE void put_back(const struct group *group, size_t k, const struct rows *rows, double *places)
+{
+    for (int i = 0; i < 3 && k < group->count; i++)
+        for (int lane = 0; lane < TL_BATCH; lane++)
+            memcpy(&places[group->membranes[k].from[i][lane]], rows->of[k][i][lane],
+                   sizeof rows->of[k][i][lane]);
+}
+
+/* While a group waits for roots and divisions, the one before it is put back and the next one fetched: those
+ * of a run share no vertex. */
+TL_CLONES static void solve_run(const struct tl_preview_membrane *membranes, size_t count, double most,
+                                double *places, bool (*seen)[TL_BATCH])
+{
+    struct membrane_work work[GROUP];
+    struct corners corners;
+    struct rows in, out;
+    struct group now = group_at(membranes, count, 0), before = {0};
+    for (size_t k = 0; k < now.count; k++)
+        fetch(&now, k, places, &in);
+    for (size_t first = 0; first < count; first += GROUP) {
+        const struct tl_preview_membrane *m = now.membranes;
+        struct group next = group_at(membranes, count, first + GROUP);
+        turn_in(&in, now.count, &corners);
+        for (size_t k = 0; k < now.count; k++)
+            for (int lane = 0; lane < TL_BATCH; lane++)
+                measure(&m[k], &corners, k, lane, &work[k]);
+        for (size_t k = 0; k < now.count && seen; k++)
+            for (int lane = 0; lane < TL_BATCH; lane++)
+                seen[first + k][lane] = stretches(&work[k], lane, most);
+        for (size_t k = 0; k < GROUP; k++) {
+            for (int lane = 0; lane < TL_BATCH && k < now.count; lane++)
+                solve(&m[k], lane, &work[k]);
+            put_back(&before, k, &out, places);
+            fetch(&next, k, places, &in);
+        }
+        for (size_t k = 0; k < now.count; k++)
+            for (int lane = 0; lane < TL_BATCH; lane++)
+                move_corners(&m[k], &work[k], lane, k, &corners);
+        turn_out(&corners, now.count, &out);
+        before = now;
+        now = next;
+    }
+    for (size_t k = 0; k < before.count; k++)
+        put_back(&before, k, &out, places);
+}
+
+/* Out of the pulls' `places`. */
+TL_CLONES static void take_places(const double *places, struct tl_range range, vec3d *x)
+{
+    for (size_t i = range.from; i < range.to; i++)
+        x[i] = (vec3d){places[4 * i], places[4 * i + 1], places[4 * i + 2]};
+}
+
+/* On the threads of a team: the batches of a run in any order, the runs one after the other. */
+static void solve_membranes(const struct tl_energy *energy, const struct tl_watch *watch, vec3d *x)
+{
+    double *places = energy->pulls.places;
+    struct tl_range mine = tl_my_part(energy->pulls.vertex_count, TL_PULLS_BLOCK);
+    tl_pulls_place(&energy->pulls, x, mine);
+#pragma omp barrier
+
+    size_t from = 0;
+    for (size_t run = 0; run < energy->membrane_run_count; run++) {
+        size_t end = energy->membrane_run_ends[run];
+        struct tl_range part = tl_my_part(end - from, 1);
+        solve_run(energy->previewed + from + part.from, part.to - part.from, watch ? watch->most : 0, places,
+                  watch ? watch->seen + from + part.from : NULL);
+        from = end;
+#pragma omp barrier
+    }
+    take_places(places, mine, x);
+#pragma omp barrier
+}
+
+/* The three components of the curvature: vectors, linear in the positions. */
+TL_INLINE void solve_curvature(const struct tl_bend *bend, int row, int lane,
+                               struct places x[TL_BEND_STENCIL])
+{
+    vec3d curvature = {0};
+    for (int i = 0; i < TL_BEND_STENCIL; i++)
+        curvature = vec3d_muladd(curvature, at(&x[i], lane), bend->rows[row][i][lane]);
+    vec3d push = vec3d_scale(curvature, bend->factors[row][lane]);
+    for (int i = 0; i < TL_BEND_STENCIL; i++)
+        move(&x[i], lane, push, bend->w[i][lane] * bend->rows[row][i][lane]);
+}
+
+TL_CLONES static void solve_bend_run(const struct tl_bend *bends, size_t count, vec3d *particles)
+{
+    for (const struct tl_bend *bend = bends; bend < bends + count; bend++) {
+        struct places x[TL_BEND_STENCIL];
+        for (int i = 0; i < TL_BEND_STENCIL; i++)
+            load(particles, bend->vertices[i], &x[i]);
+        for (int row = 0; row < 3; row++)
+            for (int lane = 0; lane < TL_BATCH; lane++)
+                solve_curvature(bend, row, lane, x);
+        for (int i = TL_BEND_STENCIL - 1; i >= 0; i--) /* the first last: it stands in for missing ones */
+            store(&x[i], bend->vertices[i], particles);
+    }
+}
+
+static void solve_bends(const struct tl_energy *energy, vec3d *x)
+{
+    size_t from = 0;
+    for (size_t run = 0; run < energy->bend_run_count; run++) {
+        size_t end = energy->bend_run_ends[run];
+        struct tl_range part = tl_my_part(end - from, 1);
+        solve_bend_run(energy->bends + from + part.from, part.to - part.from, x);
+        from = end;
+#pragma omp barrier
+    }
+}
+
+/* ---- Links and the whole ---- */
+
+void tl_xpbd_solve_link(const struct tl_link *link, struct tl_particles *particles)
+{
+    double wa = particles->w[link->a], wb = particles->w[link->b];
+    vec3d apart = vec3d_sub(particles->x[link->b], particles->x[link->a]);
+    double length = vec3d_norm(apart), sum = wa + wb + link->compliance;
+    if (length < NO_LENGTH || !(wa + wb > 0) || !isfinite(sum))
+        return;
+    vec3d push = vec3d_scale(apart, (length - link->rest) / (length * sum));
+    particles->x[link->a] = vec3d_muladd(particles->x[link->a], push, wa);
+    particles->x[link->b] = vec3d_muladd(particles->x[link->b], push, -wb);
+}
+
+void tl_xpbd_solve(const struct tl_energy *energy, struct tl_particles *particles,
+                   const struct tl_watch *watch)
+{
+#pragma omp parallel if (particles->count >= TL_PARALLEL_VERTICES)
+    {
+        unsigned denormals = tl_denormals_off();
+        solve_membranes(energy, watch, particles->x);
+        if (!energy->bends_as_force)
+            solve_bends(energy, particles->x);
+        tl_denormals_restore(denormals);
+    }
+    for (size_t i = 0; i < energy->link_count; i++)
+        tl_xpbd_solve_link(&energy->links[i], particles);
+}

@@ -1,0 +1,299 @@
+#include "app/budget/governor.h"
+
+#include "tests/testing.h"
+
+#include <string.h>
+
+/* The defaults and preset review, as the program starts. */
+static struct tl_settings full_settings(void)
+{
+    struct tl_settings settings;
+    tl_error error = {0};
+    const struct tl_settings_source source = {0};
+    assert_ok(tl_settings_load(&settings, &source, &error), error);
+    settings.detail.mode = TL_DETAIL_RELIEF;
+    return settings;
+}
+
+static struct tl_settings at(enum tl_knob knob, uint8_t level, const struct tl_settings *full)
+{
+    struct tl_levels levels = {{0}};
+    levels.of[knob] = level;
+    return tl_levels_apply(&levels, full);
+}
+
+static void level_0_is_what_was_asked_for(void **state)
+{
+    (void)state;
+    struct tl_settings full = full_settings(), same = at(TL_KNOB_SCALE, 0, &full);
+    assert_true(tl_settings_equal(&full, &same));
+}
+
+/* Each level changes its own setting, downwards, and no other. */
+static void levels_change_their_own_setting(void **state)
+{
+    (void)state;
+    struct tl_settings full = full_settings(), s;
+    full.light.regions = 192;
+    full.light.refresh = 24;
+    full.detail.steps = 32;
+    s = at(TL_KNOB_REFRESH, 2, &full);
+    assert_int_equal(s.light.refresh, 6);
+    s.light.refresh = full.light.refresh;
+    assert_true(tl_settings_equal(&full, &s));
+
+    const int regions[] = {192, 96, 48, 24};
+    for (uint8_t level = 0; level < 4; level++) {
+        s = at(TL_KNOB_REGIONS, level, &full);
+        assert_int_equal(s.light.regions, regions[level]);
+        assert_int_equal(s.light.refresh, 24);
+    }
+    s.light.regions = full.light.regions;
+    assert_true(tl_settings_equal(&full, &s));
+
+    s = at(TL_KNOB_RELIEF, 1, &full);
+    assert_int_equal(s.detail.steps, 16);
+    s.detail.steps = full.detail.steps;
+    assert_true(tl_settings_equal(&full, &s));
+
+    full.image.scale = 0.8f;
+    s = at(TL_KNOB_SCALE, 4, &full);
+    assert_near(s.image.scale, 0.4, 1e-6);
+    s.image.scale = full.image.scale;
+    assert_true(tl_settings_equal(&full, &s));
+
+    full.cloth.frame_rate = 30;
+    full.cloth.dt = 1.0 / 60;
+    full.cloth.substeps = 30;
+    s = at(TL_KNOB_CLOTH, 1, &full); /* one step a frame instead of two */
+    assert_near(s.cloth.dt, 1.0 / 30, 1e-12);
+    assert_int_equal(s.cloth.substeps, 30);
+    s = at(TL_KNOB_CLOTH, 2, &full); /* and half its substeps */
+    assert_near(s.cloth.dt, 1.0 / 30, 1e-12);
+    assert_int_equal(s.cloth.substeps, 15);
+}
+
+/* Small settings are not made larger, nor smaller than what still works. */
+static void levels_end_somewhere(void **state)
+{
+    (void)state;
+    struct tl_settings full = full_settings();
+    full.light.regions = 12;
+    full.light.refresh = 1;
+    full.detail.steps = 4;
+    full.image.scale = 0.12f;
+    for (int knob = 0; knob < TL_KNOB_COUNT; knob++) {
+        struct tl_settings s = at((enum tl_knob)knob, 2, &full);
+        assert_int_equal(s.light.regions, 12);
+        assert_int_equal(s.light.refresh, 1);
+        assert_int_equal(s.detail.steps, 4);
+        assert_true(s.image.scale >= 0.1f && s.image.scale <= 0.12f);
+    }
+    full.light.refresh = 0; /* all */
+    full.light.regions = 192;
+    assert_int_equal(at(TL_KNOB_REFRESH, 1, &full).light.refresh, 96);
+}
+
+/* Whatever the settings ask for, no level below is thought to be as good. */
+static void what_is_asked_for_errs_least(void **state)
+{
+    (void)state;
+    struct tl_settings full = full_settings();
+    const int regions[] = {384, 192, 96};
+    for (size_t i = 0; i < sizeof regions / sizeof *regions; i++)
+        for (int knob = 0; knob < TL_KNOB_COUNT; knob++) {
+            full.light.regions = regions[i];
+            full.light.refresh = 0;
+            const struct tl_level_scope scope = tl_level_scope_of(&full);
+            struct tl_levels levels = {{0}};
+            assert_near(tl_levels_error(&levels, &scope), 0, 0);
+            for (int level = 1; level < tl_levels_count((enum tl_knob)knob, &scope); level++) {
+                levels.of[knob] = (uint8_t)level;
+                assert_true(tl_levels_error(&levels, &scope) > 0);
+            }
+        }
+}
+
+/* ---- With a renderer, small enough to be quick ---- */
+
+struct device {
+    tl_gpu *gpu;
+    tl_renderer *renderer;
+    tl_environment environment;
+    tl_mesh mesh;
+    tl_surface surface;
+    tl_material material;
+};
+
+static vec3s corners[4] = {{{-1, 0, -1}}, {{1, 0, -1}}, {{1, 0, 1}}, {{-1, 0, 1}}}, normals[4];
+static vec4s tangents[4];
+static vec2s uvs[4] = {{{0, 0}}, {{1, 0}}, {{1, 1}}, {{0, 1}}};
+static uint32_t indices[6] = {0, 2, 1, 0, 3, 2};
+static struct tl_mesh_part part = {.index_count = 6};
+
+static tl_frame frame_of(struct device *device)
+{
+    for (int i = 0; i < 4; i++) {
+        normals[i] = (vec3s){{0, 1, 0}};
+        tangents[i] = (vec4s){{1, 0, 0, 1}};
+    }
+    device->material = (tl_material){.name = "matt", .diffuse = {{0.5f, 0.5f, 0.5f}}};
+    device->surface = (tl_surface){.name = "square",
+                                   .vertex_count = 4,
+                                   .positions = corners,
+                                   .normals = normals,
+                                   .tangents = tangents,
+                                   .uvs = uvs,
+                                   .index_count = 6,
+                                   .indices = indices,
+                                   .part_count = 1,
+                                   .parts = &part,
+                                   .materials = &device->material,
+                                   .topology_revision = 1};
+    return (tl_frame){
+        .camera = {.eye = {{0, 2, 3}}, .up = {{0, 1, 0}}, .fov_y = 0.7f, .near_m = 0.1f, .far_m = 20},
+        .surfaces = &device->surface,
+        .surface_count = 1,
+        .environment = &device->environment,
+        .environment_revision = 1};
+}
+
+static int open_device(void **state)
+{
+    static struct device device;
+    tl_error error = {0};
+    device.gpu = tl_gpu_create_headless(&error);
+    device.renderer = device.gpu ? tl_renderer_create(device.gpu, &error) : NULL;
+    device.environment = tl_environment_constant(1, 1, 1);
+    *state = &device;
+    return device.renderer ? 0 : -1;
+}
+
+static int close_device(void **state)
+{
+    struct device *device = *state;
+    tl_renderer_destroy(&device->renderer);
+    tl_environment_release(&device->environment);
+    tl_gpu_destroy(&device->gpu);
+    return 0;
+}
+
+static struct tl_settings small_settings(void)
+{
+    struct tl_settings settings = full_settings();
+    settings.image.width = settings.image.height = 48;
+    settings.image.supersample = 1;
+    settings.light.regions = 48;
+    settings.light.pem_size = 16;
+    return settings;
+}
+
+/* Always worth shedding; other regions take a cut, which a small image may not be worth. */
+static const enum tl_knob dear[2] = {TL_KNOB_REFRESH, TL_KNOB_SCALE};
+
+/* The first frame is whole; after it, as nothing was drawn, the table's costs decide. No budget gives
+ * everything, none at all the least. */
+static void budgets_are_kept_to(void **state)
+{
+    struct device *device = *state;
+    tl_renderer *fresh;
+    tl_error error = {0};
+    const struct tl_settings settings = small_settings();
+    tl_frame frame = frame_of(device);
+    fresh = tl_renderer_create(device->gpu, &error);
+    assert_non_null(fresh);
+    double before = INFINITY;
+    const double budgets[] = {1e-3, 5, 10, 20, 50, 200, 1e6};
+    for (size_t i = 0; i < sizeof budgets / sizeof *budgets; i++) {
+        tl_pace *pace = tl_pace_create(budgets[i]);
+        struct tl_pace_choice choice = tl_pace_choose(pace, fresh, &frame, &settings);
+        assert_true(isnan(choice.predicted_ms));
+        assert_near(choice.error, 0, 0);
+        tl_pace_learn(pace, tl_renderer_last_plan(fresh), 0, 0);
+        choice = tl_pace_choose(pace, fresh, &frame, &settings);
+        assert_true(choice.error <= before);
+        before = choice.error;
+        for (size_t k = 0; k < 2; k++) /* the others cost nothing here, that is known of */
+            assert_true(i > 0 || choice.levels.of[dear[k]] > 0);
+        tl_pace_destroy(&pace);
+    }
+    assert_near(before, 0, 0);
+    tl_pace *pace = tl_pace_create(0);
+    assert_near(tl_pace_choose(pace, fresh, &frame, &settings).error, 0, 0);
+    tl_pace_destroy(&pace);
+    tl_renderer_destroy(&fresh);
+}
+
+/* Draws as fly and the window do; what frames "took" is made up, and dearer than any budget. */
+static struct tl_pace_choice draw_frame(struct device *device, tl_pace *pace, const tl_frame *frame,
+                                        double total_ms)
+{
+    tl_error error = {0};
+    const struct tl_settings settings = small_settings();
+    struct tl_pace_choice choice = tl_pace_choose(pace, device->renderer, frame, &settings);
+    const struct tl_settings now = tl_levels_apply(&choice.levels, &settings);
+    const struct tl_render_settings drawn = tl_settings_render(&now);
+    assert_ok(tl_renderer_draw(device->renderer, frame, &drawn, &error), error);
+    tl_pace_learn(pace, tl_renderer_last_plan(device->renderer), 0.5, total_ms);
+    return choice;
+}
+
+/* In motion a budget that nothing fits sheds everything; three frames after the camera stopped the image is
+ * whole again; and a camera that moves on is seen before it is drawn. */
+static void rest_gives_everything_back(void **state)
+{
+    struct device *device = *state;
+    tl_pace *pace = tl_pace_create(1e-3);
+    tl_frame frame = frame_of(device);
+    struct tl_pace_choice choice;
+    for (int i = 0; i < 6; i++) {
+        frame.camera.eye.x += 0.01f;
+        choice = draw_frame(device, pace, &frame, 50);
+    }
+    assert_true(choice.levels.of[TL_KNOB_SCALE] > 0 && choice.levels.of[TL_KNOB_REFRESH] > 0);
+    assert_true(isfinite(choice.predicted_ms));
+    for (int i = 0; i < 5; i++)
+        choice = draw_frame(device, pace, &frame, 50);
+    assert_near(choice.error, 0, 0);
+    frame.camera.eye.x += 0.01f;
+    choice = draw_frame(device, pace, &frame, 50);
+    assert_true(choice.levels.of[TL_KNOB_SCALE] > 0);
+    tl_pace_destroy(&pace);
+}
+
+/* The last levels, one by one. */
+static void steps_tell_what_a_level_is_worth(void **state)
+{
+    struct device *device = *state;
+    const struct tl_settings settings = small_settings();
+    tl_pace *pace = tl_pace_create(1e-3);
+    tl_frame frame = frame_of(device);
+    for (int i = 0; i < 6; i++) {
+        frame.camera.eye.x += 0.01f;
+        draw_frame(device, pace, &frame, 50);
+    }
+    struct tl_pace_step steps[TL_KNOB_COUNT];
+    tl_pace_steps(pace, device->renderer, &frame, &settings, steps);
+    for (size_t k = 0; k < 2; k++)
+        assert_int_equal(steps[dear[k]].level, steps[dear[k]].level_count - 1);
+    for (int k = 0; k < TL_KNOB_COUNT; k++) {
+        assert_true(steps[k].level == 0 ? isnan(steps[k].error) : steps[k].error > 0);
+    }
+    assert_true(steps[TL_KNOB_SCALE].ms > 0);
+    assert_near(steps[TL_KNOB_REFRESH].value, 6, 0);
+    tl_pace_destroy(&pace);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(level_0_is_what_was_asked_for),
+        cmocka_unit_test(levels_change_their_own_setting),
+        cmocka_unit_test(levels_end_somewhere),
+        cmocka_unit_test(what_is_asked_for_errs_least),
+        cmocka_unit_test(budgets_are_kept_to),
+        cmocka_unit_test(rest_gives_everything_back),
+        cmocka_unit_test(steps_tell_what_a_level_is_worth),
+    };
+    return cmocka_run_group_tests(tests, open_device, close_device);
+}

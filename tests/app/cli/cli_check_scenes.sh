@@ -1,0 +1,25 @@
+#!/usr/bin/env bash
+# toile check over every scene and every preset of the repository, small and short: what a change breaks somewhere shows
+# here. The same, whole, is toile check SCENE.
+set -eu
+folder=$(cd "$(dirname "$0")/../../../config" && pwd)
+. "$(dirname "$0")/cli.sh"
+small="--size 64x64 --set light.regions=48 --set cloth.edge_m=0.06 --set cloth.settle_s=0.3 --quiet"
+
+sound() { # NAME ARGUMENTS...
+    local name=$1
+    shift
+    if $TOILE check "$@" $small >table.txt; then echo "ok     $name"; else cat table.txt; fail "$name"; fi
+}
+
+for scene in "$folder"/scenes/*.yaml; do
+    scene=$(basename "$scene" .yaml)
+    sound "scene $scene" "$scene" --frames 3 --every 3
+done
+for preset in "$folder"/presets/*.yaml; do
+    preset=$(basename "$preset" .yaml)
+    sound "preset $preset" gallery --preset "$preset" --frames 2 --every 2 --furnace
+done
+for solver in settle reference; do
+    sound "solver $solver" skirt --set cloth.solver=$solver --frames 3 --every 3
+done

@@ -1,0 +1,156 @@
+/* What cloth is measured on: the tube's closed form against the sums over its own triangles, cells whose
+ * outcome is known, the ruler's sag, and words on a picture. */
+#include "tests/testing.h"
+
+#include "app/lab/stability/envelope.h"
+#include "app/lab/trade/baseline.h"
+#include "app/report/canvas.h"
+#include "config/memory.h"
+
+#include <string.h>
+
+/* Weight of every vertex row (a third of each triangle's area at its corners) and each row of cells'
+ * stiffness k A / height^2, summed over the triangles; then sinks by rows. */
+static void sums_over_triangles_agree(void **state)
+{
+    (void)state;
+    const struct tl_tube tubes[] = {{3, 3, 1, 1}, {5, 19, 1, 1e3}, {7, 12, 0.01, 1e6}, {4, 8, 100, 10}};
+    const double gravity = 9.81;
+    struct tl_cloth_fabric fabric = *(const struct tl_cloth_fabric *)tl_cloth_fabric_options.defaults;
+    for (size_t t = 0; t < TL_COUNT(tubes); t++) {
+        const struct tl_tube *tube = &tubes[t];
+        tl_garment garment = tl_tube_make(tube, NULL, 0);
+        const tl_mesh *mesh = &garment.model.mesh;
+        double weights[32] = {0}, stiffness[32] = {0}, sinks[32], sink = 0, hanging = 0, length = 0;
+        for (size_t i = 0; i < mesh->index_count; i += 3) {
+            const uint32_t *corner = &mesh->indices[i];
+            int rows[3], upper = tube->row_count;
+            for (int k = 0; k < 3; k++) {
+                rows[k] = (int)corner[k] / (tube->columns + 1);
+                upper = rows[k] < upper ? rows[k] : upper;
+            }
+            double height = tl_tube_row_height(tube, upper), area = height * tl_tube_width(tube) / 2;
+            for (int k = 0; k < 3; k++)
+                weights[rows[k]] += area / 3 * fabric.areal_density * gravity;
+            stiffness[upper] += fabric.stretch_warp * area / (height * height);
+        }
+        tl_tube_sink(tube, &fabric, gravity, sinks);
+        assert_near(sinks[0], 0, 0);
+        for (int row = 1; row <= tube->row_count; row++)
+            hanging += weights[row];
+        for (int row = 0; row < tube->row_count; row++) {
+            sink += hanging / stiffness[row];
+            hanging -= weights[row + 1];
+            length += tl_tube_row_height(tube, row);
+            assert_near(sinks[row + 1] / sink, 1, 1e-9);
+        }
+        assert_near(length, tube->height_m, 1e-12 * tube->height_m);
+        assert_near(tl_tube_row_height(tube, tube->row_count - 1) / tl_tube_row_height(tube, 0),
+                    tube->mass_ratio, 1e-9 * tube->mass_ratio);
+        tl_garment_release(&garment);
+    }
+}
+
+/* The seam of a scrambled tube stays welded: both its columns are moved alike, by no more than is asked. */
+static void scrambles_stay_in_reach(void **state)
+{
+    (void)state;
+    const struct tl_tube tube = {5, 6, 1, 1};
+    const double share = 0.2;
+    tl_garment still = tl_tube_make(&tube, NULL, 0), moved = tl_tube_make(&tube, NULL, share);
+    double reach = share * fmin(tl_tube_width(&tube), tl_tube_row_height(&tube, 0)), farthest = 0;
+    for (int row = 0; row <= tube.row_count; row++) {
+        const vec3s *x = &moved.model.mesh.positions[(size_t)row * ((size_t)tube.columns + 1)];
+        assert_memory_equal(&x[0], &x[tube.columns], sizeof *x);
+        for (int column = 0; column <= tube.columns; column++) {
+            vec3s from = still.model.mesh.positions[row * (tube.columns + 1) + column];
+            double way = (double)glms_vec3_distance(from, x[column]);
+            assert_true(way <= sqrt(3) * reach * (1 + 1e-5));
+            assert_true(row > 0 || way == 0);
+            farthest = fmax(farthest, way);
+        }
+    }
+    assert_true(farthest > reach / 2);
+    tl_garment_release(&still);
+    tl_garment_release(&moved);
+}
+
+/* A tube of ordinary cloth is within what every solver promises; one that must stretch by more than the
+ * envelope is refused, and so is a step that the reference's budget does not allow. */
+static void known_cells(void **state)
+{
+    (void)state;
+    const struct tl_envelope_size size = {"12", 3, 3, true, true};
+    const struct {
+        int solver;
+        enum tl_outcome outcome;
+        double stiffness, dt, ratio, height_m;
+    } cells[] = {
+        {TL_CLOTH_REFERENCE, TL_OUTCOME_EXACT, 1e3, 1e-2, 1, 1},
+        {TL_CLOTH_SETTLE, TL_OUTCOME_EXACT, 1e3, 1e-2, 1, 1},
+        {TL_CLOTH_PREVIEW, TL_OUTCOME_BOUNDED, 1e9, 1e-1, 1, 1},
+        {TL_CLOTH_PREVIEW, TL_OUTCOME_REFUSED, 1e-2, 1e-2, 1, 100},
+        {TL_CLOTH_SETTLE, TL_OUTCOME_REFUSED, 1e-2, 1e-2, 1, 100},
+        {TL_CLOTH_REFERENCE, TL_OUTCOME_REFUSED, 1e-2, 1e-2, 1, 100},
+        {TL_CLOTH_REFERENCE, TL_OUTCOME_REFUSED, 1e9, 1e-1, 1e6, 1},
+    };
+    for (size_t i = 0; i < TL_COUNT(cells); i++) {
+        const struct tl_envelope_case tested = {&size,       cells[i].solver, cells[i].stiffness,
+                                                cells[i].dt, cells[i].ratio,  cells[i].height_m};
+        struct tl_envelope_cell cell = tl_envelope_run(&tested);
+        if (cell.outcome != cells[i].outcome)
+            print_error("cell %zu: %s\n", i, cell.error.message);
+        assert_int_equal(cell.outcome, cells[i].outcome);
+        assert_true((cell.outcome == TL_OUTCOME_REFUSED) == (cell.error.message[0] != '\0'));
+    }
+}
+
+/* Hung from rest it swings about its static stretch, density g / k at the top by twice that at most. */
+static void ruler_hangs(void **state)
+{
+    (void)state;
+    tl_ruler *ruler = tl_ruler_create(17);
+    double most = 0;
+    for (int i = 0; i < 2000; i++) {
+        tl_ruler_step(ruler);
+        most = fmax(most, tl_ruler_stretch(ruler) - 1);
+    }
+    const double still = 0.2 * 9.81 / 1000; /* springs across and along diagonals carry a part of it */
+    assert_true(most > 0.3 * still && most < 3 * still);
+    tl_ruler_destroy(&ruler);
+}
+
+static size_t count_colour(const tl_image *canvas, uint8_t red)
+{
+    size_t count = 0;
+    for (int i = 0; i < canvas->width * canvas->height; i++)
+        count += tl_image_bytes(canvas)[3 * (size_t)i] == red;
+    return count;
+}
+
+static void words_stay_on_the_picture(void **state)
+{
+    (void)state;
+    tl_image canvas = tl_canvas_create(60, 20, 0xffffff);
+    tl_canvas_box(&canvas, -5, -5, 7, 8, 0x100000);
+    assert_int_equal(count_colour(&canvas, 0x10), 2 * 3);
+    tl_canvas_text(&canvas, 40, 12, "far outside of the picture on the right", 0x200000);
+    size_t cut = count_colour(&canvas, 0x20);
+    tl_canvas_text(&canvas, 2, 3, "l", 0x300000);
+    size_t letter = count_colour(&canvas, 0x30);
+    assert_true(cut > 0 && cut < (size_t)20 * 8);
+    assert_true(letter > 0 && letter < (size_t)(tl_canvas_text_width("l") * TL_CANVAS_LETTER));
+    tl_image_release(&canvas);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(sums_over_triangles_agree),
+        cmocka_unit_test(scrambles_stay_in_reach),
+        cmocka_unit_test(known_cells),
+        cmocka_unit_test(ruler_hangs),
+        cmocka_unit_test(words_stay_on_the_picture),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

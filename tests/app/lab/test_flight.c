@@ -1,0 +1,142 @@
+/* A flight flown again at the same levels shows the same images, whatever the threads and from a session
+ * begun anew; and the oracle judges each image against its own frame. */
+#include "tests/testing.h"
+
+#include "app/lab/flight/fly.h"
+#include "app/scene/orbit.h"
+#include "config/memory.h"
+
+#include <omp.h>
+
+#define FRAMES 6
+
+static struct tl_stage open_stage(void)
+{
+    static const char *const assignments[] = {"cloth.edge_m=0.08",      "cloth.settle_s=0.3",
+                                              "image.width=48",         "image.height=64",
+                                              "reference.replicates=2", "scene.preset=draft"};
+    const struct tl_settings_source source = {.assignments = assignments,
+                                              .assignment_count = TL_COUNT(assignments)};
+    struct tl_settings settings;
+    struct tl_stage stage = {0};
+    tl_error error = {0};
+    assert_ok(tl_settings_load(&settings, &source, &error), error);
+    assert_ok(tl_stage_open(&stage, &settings, &error), error);
+    const tl_frame frame = tl_session_frame(stage.session);
+    tl_orbit_take(&stage.settings.camera, &frame.camera);
+    return stage;
+}
+
+/* A path that turns fast, so that each frame shows something else. */
+static struct tl_path make_path(const struct tl_settings *settings)
+{
+    struct tl_path path = {0};
+    struct tl_path_key key = {.camera = settings->camera};
+    tl_path_add(&path, &key);
+    key.time_s = FRAMES / 30.0;
+    key.camera.yaw_deg += 180;
+    key.environment_yaw_deg = 90;
+    tl_path_add(&path, &key);
+    return path;
+}
+
+/* Levels of every kind, among them the cloth's, which change what the frames after them show. */
+static struct tl_flight make_record(void)
+{
+    struct tl_flight record = {.frames = TL_NEW_ARRAY(struct tl_flight_frame, FRAMES), .count = FRAMES};
+    for (int i = 0; i < FRAMES; i++) {
+        record.frames[i].levels.of[TL_KNOB_CLOTH] = i >= 2 && i < 4;
+        record.frames[i].levels.of[TL_KNOB_REGIONS] = (uint8_t)(i % 2);
+        record.frames[i].levels.of[TL_KNOB_SCALE] = (uint8_t)(i / 2);
+    }
+    return record;
+}
+
+static struct tl_flight fly(struct tl_stage *stage, const struct tl_flight *record, int oracle_every)
+{
+    const struct tl_fly_options options = {
+        .frames = FRAMES, .hash = true, .oracle_every = oracle_every, .replay = record};
+    struct tl_path path = make_path(&stage->settings);
+    struct tl_flight flight;
+    tl_error error = {0};
+    assert_ok(tl_fly(stage, &options, &path, &flight, &error), error);
+    assert_int_equal(flight.count, FRAMES);
+    return flight;
+}
+
+static void assert_same_images(const struct tl_flight *a, const struct tl_flight *b)
+{
+    for (int i = 0; i < FRAMES; i++) {
+        assert_true(a->frames[i].hash != 0);
+        assert_true(a->frames[i].hash == b->frames[i].hash);
+        for (int k = 0; k < i; k++)
+            assert_true(a->frames[i].hash != a->frames[k].hash);
+    }
+}
+
+static void flown_again_it_shows_the_same(void **state)
+{
+    (void)state;
+    tl_error error = {0};
+    struct tl_flight record = make_record();
+    omp_set_num_threads(2);
+    struct tl_stage stage = open_stage();
+    struct tl_flight first = fly(&stage, &record, 0);
+
+    /* From a session begun anew, by a renderer that has not drawn: as the oracle finds them. */
+    assert_ok(tl_session_restart(stage.session, &stage.settings, &error), error);
+    tl_renderer_destroy(&stage.renderer);
+    stage.renderer = tl_renderer_create(stage.gpu, &error);
+    assert_ok(stage.renderer != NULL, error);
+    struct tl_flight again = fly(&stage, &record, 0);
+    assert_same_images(&first, &again);
+    tl_flight_release(&again);
+    tl_stage_release(&stage);
+
+    omp_set_num_threads(1);
+    stage = open_stage();
+    again = fly(&stage, &record, 0);
+    assert_same_images(&first, &again);
+    omp_set_num_threads(2);
+
+    tl_flight_release(&again);
+    tl_flight_release(&first);
+    tl_flight_release(&record);
+    tl_stage_release(&stage);
+}
+
+/* An image against another frame's truth is far off: at least three times as far. */
+static void the_oracle_judges_each_image_by_its_own_frame(void **state)
+{
+    (void)state;
+    tl_error error = {0};
+    struct tl_flight record = make_record();
+    struct tl_stage stage = open_stage();
+    struct tl_flight flight = fly(&stage, &record, 3);
+    assert_int_equal(flight.kept_count, 2);
+    assert_ok(tl_fly_judge(&stage, &flight, &error), error);
+    double right = flight.frames[0].rel_rmse + flight.frames[3].rel_rmse;
+    assert_true(isfinite(right) && right > 0);
+    assert_true(flight.frames[0].flip_mean > 0 && flight.frames[3].flip_mean < 1);
+    assert_true(isnan(flight.frames[1].flip_mean) && isnan(flight.frames[1].rel_rmse));
+
+    tl_image first = flight.kept[0].image;
+    flight.kept[0].image = flight.kept[1].image;
+    flight.kept[1].image = first;
+    assert_ok(tl_fly_judge(&stage, &flight, &error), error);
+    double wrong = flight.frames[0].rel_rmse + flight.frames[3].rel_rmse;
+    assert_true(wrong > 3 * right);
+
+    tl_flight_release(&flight);
+    tl_flight_release(&record);
+    tl_stage_release(&stage);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(flown_again_it_shows_the_same),
+        cmocka_unit_test(the_oracle_judges_each_image_by_its_own_frame),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,263 @@
+/* A session takes over changed settings, keeps its state when it cannot, and replays to the bit. */
+#include "tests/app/quick_session.h"
+
+#include "config/log.h"
+#include "config/memory.h"
+
+#include <string.h>
+
+/* Touches everything that a frame lends, so that a sanitizer sees what is no longer there. */
+static double sum_of_frame(tl_session *session)
+{
+    tl_frame frame = tl_session_frame(session);
+    double sum = tl_image_floats(&frame.environment->image)[0];
+    for (size_t s = 0; s < frame.surface_count; s++) {
+        const tl_surface *surface = &frame.surfaces[s];
+        for (size_t i = 0; i < surface->vertex_count; i++)
+            sum +=
+                surface->positions[i].y + surface->normals[i].x + surface->tangents[i].w + surface->uvs[i].x;
+        for (size_t p = 0; p < surface->part_count; p++) {
+            const tl_material *material = &surface->materials[surface->parts[p].material];
+            sum +=
+                material->glossiness + (material->weave ? tl_image_floats(&material->weave->height)[0] : 0);
+        }
+    }
+    return sum;
+}
+
+static void new_scenes_and_fabrics_are_taken_over(void **state)
+{
+    (void)state;
+    tl_session *session = quick_session(NULL);
+    struct tl_settings settings = *tl_session_settings(session);
+    tl_error error = {0};
+    uint64_t revision = tl_session_frame(session).surfaces[0].topology_revision;
+    assert_true(isfinite(sum_of_frame(session)));
+
+    strcpy(settings.scene.garment, "skirt");
+    assert_ok(tl_session_apply(session, &settings, &error), error);
+    assert_true(isfinite(sum_of_frame(session)));
+    assert_true(tl_session_frame(session).surfaces[0].topology_revision > revision);
+    assert_ok(tl_session_advance(session, &error), error);
+
+    assert_ok(tl_settings_apply_fabric(&settings, "denim", &error), error);
+    assert_ok(tl_session_apply(session, &settings, &error), error);
+    assert_near(tl_session_frame(session).surfaces[1].materials[0].glossiness, settings.material.glossiness,
+                0);
+    assert_true(isfinite(sum_of_frame(session)));
+
+    strcpy(settings.scene.garment, "none");
+    assert_ok(tl_session_apply(session, &settings, &error), error);
+    assert_int_equal(tl_session_frame(session).surface_count, 1);
+    assert_null(tl_session_cloth(session));
+    assert_true(isfinite(sum_of_frame(session)));
+    tl_session_destroy(&session);
+}
+
+/* Another colourway is other materials on the same cloth. */
+static void colourways_change_looks_only(void **state)
+{
+    (void)state;
+    tl_session *session = quick_session(NULL);
+    tl_error error = {0};
+    assert_ok(tl_session_go_to(session, 2, &error), error);
+    struct tl_settings settings = *tl_session_settings(session);
+    const char *const *names;
+    size_t count = tl_session_colourways(session, &names);
+    assert_true(count >= 2);
+    tl_surface dress = tl_session_frame(session).surfaces[1];
+    size_t bytes = dress.vertex_count * sizeof *dress.positions;
+    vec3s *before = malloc(bytes);
+    memcpy(before, dress.positions, bytes);
+    const tl_cloth *cloth = tl_session_cloth(session);
+    float blue = dress.materials[0].diffuse.z;
+
+    assert_ok(tl_settings_apply_colourway(&settings, names[0], &error), error);
+    assert_ok(tl_session_apply(session, &settings, &error), error);
+    tl_surface changed = tl_session_frame(session).surfaces[1];
+    assert_ptr_equal(tl_session_cloth(session), cloth);
+    assert_int_equal(tl_session_frame_number(session), 2);
+    assert_memory_equal(changed.positions, before, bytes);
+    assert_true(changed.motion_revision == dress.motion_revision);
+    assert_true(changed.topology_revision > dress.topology_revision);
+    assert_true(changed.materials[0].diffuse.z != blue);
+    assert_true(isfinite(sum_of_frame(session)));
+
+    /* The cloth goes on as it would have gone. */
+    assert_ok(tl_session_advance(session, &error), error);
+    memcpy(before, tl_session_frame(session).surfaces[1].positions, bytes);
+    assert_ok(tl_settings_apply_colourway(&settings, "", &error), error);
+    assert_ok(tl_session_apply(session, &settings, &error), error);
+    assert_true(tl_session_frame(session).surfaces[1].materials[0].diffuse.z == blue);
+    assert_ok(tl_session_go_to(session, 0, &error), error);
+    assert_ok(tl_session_go_to(session, 3, &error), error);
+    assert_memory_equal(tl_session_frame(session).surfaces[1].positions, before, bytes);
+
+    double sum = sum_of_frame(session);
+    assert_ok(tl_settings_apply_colourway(&settings, "Inc", &error), error); /* may be a file's */
+    assert_false(tl_session_apply(session, &settings, &error));
+    assert_non_null(strstr(error.message, "did you mean Ink?"));
+    assert_true(sum_of_frame(session) == sum);
+    assert_string_equal(tl_session_settings(session)->scene.colourway, "");
+    free(before);
+    tl_session_destroy(&session);
+}
+
+static uint64_t look_of(tl_session *session, const struct tl_settings *settings)
+{
+    tl_error error = {0};
+    assert_ok(tl_session_apply(session, settings, &error), error);
+    return tl_session_frame(session).surfaces[1].topology_revision;
+}
+
+/* A look that was made beside the session is the one that it would have made, and three go round without
+ * being made again; a fourth takes the place of the one that was seen longest ago. */
+static void looks_are_made_beside_the_session(void **state)
+{
+    (void)state;
+    tl_session *session = quick_session(NULL);
+    struct tl_settings looks[4];
+    for (int i = 0; i < 4; i++) {
+        looks[i] = *tl_session_settings(session);
+        looks[i].material.glossiness = 0.2f * (float)i;
+        assert_true(i == 0 || tl_session_needs_look(&looks[0], &looks[i]));
+    }
+    uint64_t first = look_of(session, &looks[0]), second = look_of(session, &looks[1]);
+
+    struct tl_looks made;
+    tl_surface surfaces[2];
+    tl_error error = {0};
+    assert_ok(tl_session_make_look(session, &looks[2], &made, &error), error);
+    tl_frame frame = tl_session_frame_in(session, &made, surfaces);
+    assert_int_equal(frame.surface_count, 2);
+    assert_true(frame.surfaces[1].materials[0].glossiness == looks[2].material.glossiness);
+    assert_true(look_of(session, &looks[1]) == second); /* until it is applied nothing shows it */
+    tl_session_keep_look(session, &looks[2], &made);
+    assert_int_equal(made.image_count + made.weave_count + made.name_count, 0);
+    uint64_t third = look_of(session, &looks[2]);
+    assert_true(third > second);
+    assert_true(tl_session_frame(session).surfaces[1].materials[0].glossiness ==
+                looks[2].material.glossiness);
+    assert_true(look_of(session, &looks[0]) == first);
+    assert_true(look_of(session, &looks[1]) == second);
+    assert_true(look_of(session, &looks[2]) == third);
+
+    /* What the session has already is not taken twice. */
+    assert_ok(tl_session_make_look(session, &looks[1], &made, &error), error);
+    tl_session_keep_look(session, &looks[1], &made);
+    assert_true(look_of(session, &looks[1]) == second);
+    look_of(session, &looks[3]);
+    assert_true(look_of(session, &looks[1]) == second);
+    assert_true(look_of(session, &looks[2]) == third);
+    assert_true(look_of(session, &looks[0]) > third);
+
+    struct tl_settings taken = looks[3];
+    tl_looks_take(&looks[0], &taken);
+    assert_false(tl_session_needs_look(&looks[0], &taken));
+    tl_session_destroy(&session);
+}
+
+static void a_failure_keeps_what_was(void **state)
+{
+    (void)state;
+    tl_session *session = quick_session(NULL);
+    struct tl_settings settings = *tl_session_settings(session);
+    double before = sum_of_frame(session);
+    tl_error error = {0};
+    strcpy(settings.scene.environment, "nowhere.exr");
+    assert_false(tl_session_apply(session, &settings, &error));
+    assert_non_null(strstr(error.message, "nowhere.exr"));
+    settings = *tl_session_settings(session);
+    strcpy(settings.scene.avatar, "nowhere.glb");
+    assert_false(tl_session_apply(session, &settings, &error));
+    assert_true(sum_of_frame(session) == before);
+    assert_string_equal(tl_session_settings(session)->scene.avatar, "form");
+    tl_session_destroy(&session);
+}
+
+static void frames_replay_to_the_bit(void **state)
+{
+    (void)state;
+    tl_session *session = quick_session(NULL);
+    tl_error error = {0};
+    double start = sum_of_frame(session);
+    assert_ok(tl_session_go_to(session, 5, &error), error);
+    double fifth = sum_of_frame(session);
+    assert_int_equal(tl_session_frame_number(session), 5);
+    assert_ok(tl_session_go_to(session, 0, &error), error);
+    assert_true(sum_of_frame(session) == start);
+    assert_ok(tl_session_go_to(session, 5, &error), error);
+    assert_true(sum_of_frame(session) == fifth);
+    tl_session_destroy(&session);
+}
+
+static void picking_finds_the_front(void **state)
+{
+    (void)state;
+    tl_session *session = quick_session(NULL);
+    uint32_t vertex;
+    float distance;
+    assert_true(tl_session_pick(session, (vec3s){{0, 1.1f, 3}}, (vec3s){{0, 0, -1}}, &vertex, &distance));
+    tl_frame frame = tl_session_frame(session);
+    assert_true(distance > 2.5f && distance < 3);
+    assert_true(frame.surfaces[1].positions[vertex].z > 0); /* the side that faces the ray */
+    assert_false(tl_session_pick(session, (vec3s){{0, 1.1f, 3}}, (vec3s){{0, 0, 1}}, &vertex, &distance));
+    tl_session_destroy(&session);
+}
+
+/* The garment's, which comes last. */
+static const vec3s *strains_shown(tl_session *session)
+{
+    tl_frame frame = tl_session_frame(session);
+    return frame.surfaces[frame.surface_count - 1].strains;
+}
+
+static void strains_are_told_when_they_are_looked_at(void **state)
+{
+    (void)state;
+    tl_session *session = quick_session(NULL);
+    struct tl_settings settings = *tl_session_settings(session);
+    tl_error error = {0};
+    assert_null(strains_shown(session));
+    tl_session_want_strains(session, true);
+    assert_non_null(strains_shown(session));
+    tl_session_want_strains(session, false);
+    settings.image.view = TL_VIEW_STRAIN_WARP;
+    assert_ok(tl_session_apply(session, &settings, &error), error);
+
+    /* Against the drape's own measure, of edges: across an equilateral triangle strain is up to 5/3 of the
+     * largest of its edges' (of squared lengths), across a panel's less regular ones somewhat more. */
+    size_t count = tl_session_frame(session).surfaces[1].vertex_count;
+    double largest = 0, most = tl_session_report(session).max_strain;
+    vec3s *first = TL_NEW_ARRAY(vec3s, count);
+    memcpy(first, strains_shown(session), count * sizeof *first);
+    for (size_t i = 0; i < count; i++)
+        largest = fmax(largest, (double)first[i].x);
+    assert_true(largest > 1e-4 && largest < 3 * most);
+
+    assert_ok(tl_session_advance(session, &error), error); /* they follow the cloth */
+    assert_true(memcmp(first, strains_shown(session), count * sizeof *first) != 0);
+    strcpy(settings.scene.garment, "skirt");
+    assert_ok(tl_session_apply(session, &settings, &error), error);
+    assert_non_null(strains_shown(session));
+    settings.image.view = TL_VIEW_NORMAL;
+    assert_ok(tl_session_apply(session, &settings, &error), error);
+    assert_null(strains_shown(session));
+    free(first);
+    tl_session_destroy(&session);
+}
+
+int main(void)
+{
+    tl_log_set_level(TL_LOG_WARN);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(new_scenes_and_fabrics_are_taken_over),
+        cmocka_unit_test(colourways_change_looks_only),
+        cmocka_unit_test(looks_are_made_beside_the_session),
+        cmocka_unit_test(a_failure_keeps_what_was),
+        cmocka_unit_test(frames_replay_to_the_bit),
+        cmocka_unit_test(picking_finds_the_front),
+        cmocka_unit_test(strains_are_told_when_they_are_looked_at),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

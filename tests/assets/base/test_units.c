@@ -1,0 +1,128 @@
+#include "assets/base/units.h"
+
+#include "tests/testing.h"
+
+#include <string.h>
+
+static struct tl_box box_of_size(float x, float y, float z)
+{
+    return (struct tl_box){{{-x / 2, 1, -z / 2}}, {{x / 2, 1 + y, z / 2}}};
+}
+
+static struct tl_units_reading read_tall(float tall)
+{
+    return tl_units_read(box_of_size(tall / 2, tall, tall / 4), TL_UNITS_AUTO, false);
+}
+
+/* The rows of the table in assets/base/units.h, and its borders from both sides. */
+static void sizes_tell_units(void **state)
+{
+    (void)state;
+    static const struct {
+        float longest;
+        enum tl_units units, other;
+        bool fits;
+    } rows[] = {
+        {0.01f, TL_UNITS_M, TL_UNITS_AUTO, false}, {0.249f, TL_UNITS_M, TL_UNITS_AUTO, false},
+        {0.251f, TL_UNITS_M, TL_UNITS_AUTO, true}, {1.7f, TL_UNITS_M, TL_UNITS_AUTO, true},
+        {2.49f, TL_UNITS_M, TL_UNITS_AUTO, true},  {2.51f, TL_UNITS_DM, TL_UNITS_AUTO, true},
+        {9.8f, TL_UNITS_DM, TL_UNITS_AUTO, true},  {9.9f, TL_UNITS_IN, TL_UNITS_DM, true},
+        {24.9f, TL_UNITS_IN, TL_UNITS_DM, true},   {25.1f, TL_UNITS_CM, TL_UNITS_IN, true},
+        {60, TL_UNITS_CM, TL_UNITS_IN, true},      {98.3f, TL_UNITS_CM, TL_UNITS_IN, true},
+        {98.5f, TL_UNITS_CM, TL_UNITS_AUTO, true}, {170, TL_UNITS_CM, TL_UNITS_AUTO, true},
+        {249, TL_UNITS_CM, TL_UNITS_AUTO, true},   {251, TL_UNITS_MM, TL_UNITS_AUTO, true},
+        {812, TL_UNITS_MM, TL_UNITS_AUTO, true},   {2490, TL_UNITS_MM, TL_UNITS_AUTO, true},
+        {2510, TL_UNITS_MM, TL_UNITS_AUTO, false}, {1e30f, TL_UNITS_MM, TL_UNITS_AUTO, false},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        struct tl_units_reading reading = read_tall(rows[i].longest);
+        if (reading.units != rows[i].units || reading.other != rows[i].other || reading.fits != rows[i].fits)
+            print_error("%g units: %s, %s, %d\n", (double)rows[i].longest, tl_units_names[reading.units],
+                        tl_units_names[reading.other], reading.fits);
+        assert_int_equal(reading.units, rows[i].units);
+        assert_int_equal(reading.other, rows[i].other);
+        assert_int_equal(reading.fits, rows[i].fits);
+        assert_true(reading.guessed);
+    }
+}
+
+/* Whatever is guessed as fitting is a garment's size once it is in metres; so is the other guess. */
+static void fitting_guesses_can_be_worn(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 1600; i++) {
+        struct tl_units_reading reading = read_tall(0.01f * powf(1.01f, (float)i)); /* to 8e4 */
+        double metres = (double)reading.longest * tl_units_metres(reading.units);
+        assert_int_equal(reading.fits, metres >= 0.25 && metres < 2.5);
+        if (reading.other != TL_UNITS_AUTO) {
+            double other_m = (double)reading.longest * tl_units_metres(reading.other);
+            assert_true(other_m >= 0.25 * (1 - 1e-6) && other_m < 2.5);
+        }
+    }
+}
+
+static void who_says_units_is_believed(void **state)
+{
+    (void)state;
+    struct tl_box tall = box_of_size(400, 812, 100), small = box_of_size(0.005f, 0.005f, 0.005f);
+    assert_int_equal(tl_units_read(tall, TL_UNITS_IN, false).units, TL_UNITS_IN);
+    assert_false(tl_units_read(tall, TL_UNITS_IN, false).guessed);
+    assert_int_equal(tl_units_read(small, TL_UNITS_AUTO, true).units, TL_UNITS_M); /* glTF, a swatch */
+    assert_int_equal(tl_units_read(box_of_size(10, 20, 10), TL_UNITS_AUTO, true).units, TL_UNITS_M);
+    assert_int_equal(tl_units_read(tall, TL_UNITS_AUTO, true).units, TL_UNITS_MM); /* glTF, but absurd */
+    assert_null(tl_units_describe("a.glb", &(struct tl_units_reading){.units = TL_UNITS_M}, ""));
+}
+
+static void the_guess_is_said(void **state)
+{
+    (void)state;
+    struct tl_units_reading reading = read_tall(812);
+    char *line = tl_units_describe("skirt.obj", &reading, "--units");
+    assert_string_equal(line, "skirt.obj: 812 units at its longest: taken as millimetres (0.812 m); --units "
+                              "tells otherwise");
+    free(line);
+    reading = read_tall(60);
+    line = tl_units_describe("skirt.obj", &reading, "--units");
+    assert_non_null(strstr(line, "centimetres (0.6 m), though inches would do"));
+    free(line);
+    reading = read_tall(0.1f);
+    line = tl_units_describe("skirt.obj", &reading, "--units");
+    assert_non_null(strstr(line, "no unit fits: taken as metres"));
+    free(line);
+    reading = tl_units_read(box_of_size(400, 812, 100), TL_UNITS_AUTO, true);
+    line = tl_units_describe("a.glb", &reading, "scene.avatar_units");
+    assert_string_equal(line,
+                        "a.glb: 812 units at its longest: absurd as metres: taken as millimetres (0.812 m); "
+                        "scene.avatar_units tells otherwise");
+    free(line);
+}
+
+/* A person who lies along Z with feet at z = 0, and with arms spread; panels about one whose waist is there;
+ * upright; a wide skirt; a garment in front of the origin. */
+static void lying_boxes_are_noticed(void **state)
+{
+    (void)state;
+    const struct tl_box lying = {{{-0.3f, -0.15f, 0}}, {{0.3f, 0.15f, 1.7f}}};
+    const struct tl_box spread = {{{-0.85f, -0.15f, 0}}, {{0.85f, 0.15f, 1.7f}}};
+    const struct tl_box panels = {{{-0.33f, -0.1f, -0.2f}}, {{0.32f, 0.2f, 0.58f}}};
+    const struct tl_box upright = {{{-0.3f, 0, -0.15f}}, {{0.3f, 1.7f, 0.15f}}};
+    const struct tl_box skirt = {{{-0.5f, 0.7f, -0.5f}}, {{0.5f, 1, 0.5f}}};
+    const struct tl_box before = {{{-0.3f, 1, 1}}, {{0.3f, 1.4f, 2}}};
+    assert_true(tl_units_read(lying, TL_UNITS_M, false).z_up);
+    assert_true(tl_units_read(spread, TL_UNITS_AUTO, false).z_up);
+    assert_true(tl_units_read(panels, TL_UNITS_AUTO, false).z_up);
+    assert_false(tl_units_read(lying, TL_UNITS_AUTO, true).z_up); /* glTF says which way is up */
+    assert_false(tl_units_read(upright, TL_UNITS_AUTO, false).z_up);
+    assert_false(tl_units_read(skirt, TL_UNITS_AUTO, false).z_up);
+    assert_false(tl_units_read(before, TL_UNITS_AUTO, false).z_up);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(sizes_tell_units),           cmocka_unit_test(fitting_guesses_can_be_worn),
+        cmocka_unit_test(who_says_units_is_believed), cmocka_unit_test(the_guess_is_said),
+        cmocka_unit_test(lying_boxes_are_noticed),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

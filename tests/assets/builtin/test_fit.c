@@ -1,0 +1,64 @@
+/* Girths against circles of known length. */
+#include "tests/testing.h"
+
+#include "assets/builtin/fit.h"
+#include "config/memory.h"
+
+#define SIDES 96
+
+/* Open tubes of height 1: radius and centre of each. */
+static tl_mesh tubes(const float (*circles)[3], size_t count)
+{
+    tl_mesh mesh = {.vertex_count = count * SIDES * 2, .index_count = count * SIDES * 6};
+    mesh.positions = TL_NEW_ARRAY(vec3s, mesh.vertex_count);
+    mesh.indices = TL_NEW_ARRAY(uint32_t, mesh.index_count);
+    uint32_t *index = mesh.indices;
+    for (size_t t = 0; t < count; t++)
+        for (uint32_t i = 0; i < SIDES; i++) {
+            float angle = 2 * (float)M_PI * (float)i / SIDES;
+            uint32_t base = (uint32_t)t * SIDES * 2, next = (i + 1) % SIDES;
+            for (uint32_t level = 0; level < 2; level++)
+                mesh.positions[base + 2 * i + level] =
+                    (vec3s){{circles[t][1] + circles[t][0] * cosf(angle), (float)level,
+                             circles[t][2] + circles[t][0] * sinf(angle)}};
+            const uint32_t quad[6] = {2 * i, 2 * i + 1, 2 * next, 2 * next, 2 * i + 1, 2 * next + 1};
+            for (int k = 0; k < 6; k++)
+                *index++ = base + quad[k];
+        }
+    return mesh;
+}
+
+static void girth_of_a_tube_is_its_circle(void **state)
+{
+    (void)state;
+    const float circles[][3] = {{0.15f, 0.1f, -0.2f}};
+    tl_mesh mesh = tubes(circles, 1);
+    struct tl_girth girth;
+    assert_true(tl_mesh_girth(&mesh, 0.4f, &girth));
+    assert_near(girth.length_m, 2 * SIDES * 0.15 * sin(M_PI / SIDES), 1e-5); /* the inscribed polygon */
+    assert_near(girth.centre.x, 0.1, 1e-5);
+    assert_near(girth.centre.y, -0.2, 1e-5);
+    assert_false(tl_mesh_girth(&mesh, 1.5f, &girth));
+    tl_mesh_release(&mesh);
+}
+
+static void an_arm_beside_the_trunk_is_not_measured(void **state)
+{
+    (void)state;
+    const float circles[][3] = {{0.05f, -0.3f, 0}, {0.15f, 0, 0}, {0.05f, 0.3f, 0}};
+    tl_mesh mesh = tubes(circles, 3);
+    struct tl_girth girth;
+    assert_true(tl_mesh_girth(&mesh, 0.5f, &girth));
+    assert_near(girth.length_m, 2 * SIDES * 0.15 * sin(M_PI / SIDES), 1e-5);
+    assert_near(girth.centre.x, 0, 1e-5);
+    tl_mesh_release(&mesh);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(girth_of_a_tube_is_its_circle),
+        cmocka_unit_test(an_arm_beside_the_trunk_is_not_measured),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,366 @@
+/* Built-in garments: closed forms of their patterns, seams that match, start shapes that are nearly flat
+ * cloth and clear of the form. Every check runs over coarse and fine cuts. */
+#include "tests/testing.h"
+
+#include "assets/builtin/form.h"
+#include "assets/garment.h"
+
+#include "config/memory.h"
+
+#include <string.h>
+
+static const float edges_m[] = {0.08f, 0.05f, 0.02f, 0.014f};
+
+static tl_garment cut(const char *name, float edge_m)
+{
+    tl_garment garment;
+    tl_error error = {0};
+    assert_ok(tl_garment_cut(name, edge_m, &garment, &error), error);
+    return garment;
+}
+
+static void drop(tl_garment *garment)
+{
+    free(garment->model.name);
+    free(garment->model.materials);
+    tl_mesh_release(&garment->model.mesh);
+    free(garment->pattern);
+    free(garment->seams);
+    free(garment->pins);
+}
+
+static double pattern_area(const tl_garment *garment)
+{
+    double area = 0;
+    const uint32_t *v = garment->model.mesh.indices;
+    for (size_t i = 0; i < garment->model.mesh.index_count; i += 3) {
+        vec2s a = garment->pattern[v[i]], b = garment->pattern[v[i + 1]], c = garment->pattern[v[i + 2]];
+        double twice = (double)(b.x - a.x) * (double)(c.y - a.y) - (double)(c.x - a.x) * (double)(b.y - a.y);
+        assert_true(twice > 0);
+        area += 0.5 * twice;
+    }
+    return area;
+}
+
+static void for_each_cut(void (*check)(const tl_garment *, const char *, float))
+{
+    for (size_t g = 0; tl_garment_names[g]; g++) {
+        for (size_t e = 0; e < TL_COUNT(edges_m); e++) {
+            tl_garment garment = cut(tl_garment_names[g], edges_m[e]);
+            check(&garment, tl_garment_names[g], edges_m[e]);
+            drop(&garment);
+        }
+    }
+}
+
+static int compare_floats(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+/* Corner angles in the pattern, degrees, sorted. */
+static float *corner_angles(const tl_garment *garment)
+{
+    const tl_mesh *mesh = &garment->model.mesh;
+    float *angles = TL_NEW_ARRAY(float, mesh->index_count);
+    for (size_t i = 0; i < mesh->index_count; i++) {
+        size_t first = i - i % 3;
+        vec2s a = garment->pattern[mesh->indices[i]];
+        vec2s u = glms_vec2_sub(garment->pattern[mesh->indices[first + (i + 1) % 3]], a);
+        vec2s v = glms_vec2_sub(garment->pattern[mesh->indices[first + (i + 2) % 3]], a);
+        angles[i] = glm_deg(atan2f(fabsf(glms_vec2_cross(u, v)), glms_vec2_dot(u, v)));
+    }
+    qsort(angles, mesh->index_count, sizeof *angles, compare_floats);
+    return angles;
+}
+
+/* No slivers: no angle below 18 degrees, 99 % above 30; edges of about the wanted length (a hexagonal grid's
+ * mean edge is its spacing; coarse cuts are mostly outline, whose edges are rounded to whole numbers). */
+static void check_quality(const tl_garment *garment, const char *name, float edge_m)
+{
+    const tl_mesh *mesh = &garment->model.mesh;
+    float *angles = corner_angles(garment);
+    double length = 0;
+    for (size_t i = 0; i < mesh->index_count; i++) {
+        uint32_t a = mesh->indices[i], b = mesh->indices[i % 3 == 2 ? i - 2 : i + 1];
+        length +=
+            (double)glms_vec2_distance(garment->pattern[a], garment->pattern[b]) / (double)mesh->index_count;
+    }
+    printf("%s at %g m: %zu vertices, smallest angle %.1f, 1 %% below %.1f, mean edge %.4f m\n", name,
+           (double)edge_m, mesh->vertex_count, (double)angles[0], (double)angles[mesh->index_count / 100],
+           length);
+    assert_true(angles[0] > 18);
+    assert_true(angles[mesh->index_count / 100] > 30);
+    assert_near(length / (double)edge_m, 1, 0.15);
+    free(angles);
+}
+
+static void test_quality(void **state)
+{
+    (void)state;
+    for_each_cut(check_quality);
+}
+
+/* The circle skirt is the ring between its waist and its hem, whose radii differ by 0.6 m: pi (2 r + 0.6)
+ * 0.6. Cut into edges of 2 cm, polygons are smaller than circles by 2/3 (pi / n)^2 < 0.1 %. */
+static void test_skirt_area(void **state)
+{
+    (void)state;
+    tl_garment skirt = cut("skirt", 0.02f);
+    double radius = (tl_form_girth(1.045) + 0.03) / (2 * M_PI);
+    double expected = M_PI * (2 * radius + 0.6) * 0.6;
+    assert_near(pattern_area(&skirt), expected, 0.002 * expected);
+    drop(&skirt);
+}
+
+/* A union-find over seams, to compare with what welding by position finds. */
+static uint32_t root_of(uint32_t *parent, uint32_t v)
+{
+    while (parent[v] != v)
+        v = parent[v] = parent[parent[v]];
+    return v;
+}
+
+static uint32_t *weld_by_seams(const tl_garment *garment)
+{
+    size_t count = garment->model.mesh.vertex_count;
+    uint32_t *parent = TL_NEW_ARRAY(uint32_t, count);
+    for (size_t v = 0; v < count; v++)
+        parent[v] = (uint32_t)v;
+    for (size_t s = 0; s < garment->seam_count; s++)
+        parent[root_of(parent, garment->seams[s].a)] = root_of(parent, garment->seams[s].b);
+    for (size_t v = 0; v < count; v++)
+        parent[v] = root_of(parent, (uint32_t)v);
+    return parent;
+}
+
+static int compare_positions(const void *a, const void *b)
+{
+    return memcmp(a, b, sizeof(vec3s));
+}
+
+/* Seams start closed, bitwise; vertices that are not sewn together never coincide; seam sides are equally
+ * long edge by edge, so that sewing does not gather. Only at the dress's waist a line meets an arc (as long,
+ * of radius 0.25 m), whose chords are shorter by (edge / radius)^2 / 24; the cubics' speed and the floats of
+ * the pattern are worth 0.1 %. */
+static void check_seams(const tl_garment *garment, const char *name, float edge_m)
+{
+    (void)name;
+    const tl_mesh *mesh = &garment->model.mesh;
+    for (size_t s = 0; s < garment->seam_count; s++) {
+        const struct tl_seam_pair *pair = &garment->seams[s];
+        assert_true(pair->a != pair->b);
+        assert_memory_equal(&mesh->positions[pair->a], &mesh->positions[pair->b], sizeof(vec3s));
+        if (s == 0)
+            continue;
+        double side_a = (double)glms_vec2_distance(garment->pattern[pair->a], garment->pattern[pair[-1].a]);
+        double side_b = (double)glms_vec2_distance(garment->pattern[pair->b], garment->pattern[pair[-1].b]);
+        bool same_seam = side_a < 2 * (double)edge_m && side_b < 2 * (double)edge_m;
+        if (same_seam)
+            assert_near(side_a, side_b, (0.001 + pow(side_a / 0.25, 2) / 24) * side_a);
+    }
+    uint32_t *weld = weld_by_seams(garment);
+    vec3s *sorted = TL_NEW_ARRAY(vec3s, mesh->vertex_count);
+    size_t classes = 0, distinct = 1;
+    for (size_t v = 0; v < mesh->vertex_count; v++) {
+        classes += weld[v] == v;
+        sorted[v] = mesh->positions[v];
+    }
+    qsort(sorted, mesh->vertex_count, sizeof *sorted, compare_positions);
+    for (size_t v = 1; v < mesh->vertex_count; v++)
+        distinct += compare_positions(&sorted[v], &sorted[v - 1]) != 0;
+    assert_int_equal(classes, distinct);
+    free(sorted);
+    free(weld);
+}
+
+static void test_seams(void **state)
+{
+    (void)state;
+    for_each_cut(check_seams);
+}
+
+static int compare_edges(const void *a, const void *b)
+{
+    uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
+    return (x > y) - (x < y);
+}
+
+/* Sewn, the garment is an oriented manifold with the openings it should have: V - E + F = 2 - openings. The
+ * dress: neck, two arms, hem; the skirt: waist and hem. Border edges add up to the openings' lengths. */
+static void check_topology(const tl_garment *garment, const char *name, float edge_m)
+{
+    (void)edge_m;
+    const tl_mesh *mesh = &garment->model.mesh;
+    uint32_t *weld = weld_by_seams(garment);
+    uint64_t *edges = TL_NEW_ARRAY(uint64_t, mesh->index_count);
+    for (size_t i = 0; i < mesh->index_count; i++) {
+        uint64_t a = weld[mesh->indices[i]], b = weld[mesh->indices[i % 3 == 2 ? i - 2 : i + 1]];
+        edges[i] = a << 32 | b;
+    }
+    qsort(edges, mesh->index_count, sizeof *edges, compare_edges);
+    size_t border = 0, vertices = 0;
+    for (size_t i = 0; i < mesh->index_count; i++) {
+        assert_true(i == 0 || edges[i] != edges[i - 1]);
+        uint64_t opposite = edges[i] << 32 | edges[i] >> 32;
+        border += !bsearch(&opposite, edges, mesh->index_count, sizeof *edges, compare_edges);
+    }
+    for (size_t v = 0; v < mesh->vertex_count; v++)
+        vertices += weld[v] == v;
+    long edge_count = (long)(mesh->index_count + border) / 2;
+    long openings = 2 - ((long)vertices - edge_count + (long)mesh->index_count / 3);
+    /* The layers have the dress's four and the curtain's one, and two are lost to there being two of them. */
+    assert_int_equal(openings, strcmp(name, "skirt") == 0 ? 2 : strcmp(name, "dress") == 0 ? 4 : 3);
+    free(edges);
+    free(weld);
+}
+
+static void test_topology(void **state)
+{
+    (void)state;
+    for_each_cut(check_topology);
+}
+
+/* The start is near enough to the flat pattern for a gentle settling: mean strain of edges below 2 %, none
+ * beyond 20 %, everything at least 4 mm off the form (5 mm of ease in the waistband, 6 mm elsewhere). The
+ * bounds are what a settling solver takes in its stride, not what the cut can do. */
+static void check_start(const tl_garment *garment, const char *name, float edge_m)
+{
+    const tl_mesh *mesh = &garment->model.mesh;
+    double mean = 0, largest = 0, nearest = 1;
+    for (size_t i = 0; i < mesh->index_count; i++) {
+        uint32_t a = mesh->indices[i], b = mesh->indices[i % 3 == 2 ? i - 2 : i + 1];
+        double rest = (double)glms_vec2_distance(garment->pattern[a], garment->pattern[b]);
+        double strain = fabs((double)glms_vec3_distance(mesh->positions[a], mesh->positions[b]) / rest - 1);
+        mean += strain / (double)mesh->index_count;
+        largest = fmax(largest, strain);
+    }
+    for (size_t v = 0; v < mesh->vertex_count; v++) {
+        vec3s p = mesh->positions[v];
+        double distance = tl_form_distance((double[3]){(double)p.x, (double)p.y, (double)p.z});
+        nearest = fmin(nearest, distance);
+        assert_near(glms_vec3_norm(mesh->normals[v]), 1, 1e-5);
+        assert_true((double)p.y > 0.35);
+    }
+    printf("%s at %g m: start strain mean %.4f, largest %.3f, nearest to the form %.4f m\n", name,
+           (double)edge_m, mean, largest, nearest);
+    assert_true(mean < 0.02);
+    assert_true(largest < 0.20);
+    assert_true(nearest > 0.004);
+}
+
+static void test_start(void **state)
+{
+    (void)state;
+    for_each_cut(check_start);
+    tl_garment fine = cut("dress", 0.009f); /* begins as one that begins as another */
+    check_start(&fine, "dress", 0.009f);
+    drop(&fine);
+}
+
+/* The dress hangs from its shoulders, so nothing holds it; the skirt's whole waist does: as many pins as the
+ * waist has points, in a ring at one height, half a centimetre to one off the form. */
+static void test_pins(void **state)
+{
+    (void)state;
+    tl_garment dress = cut("dress", 0.02f), skirt = cut("skirt", 0.02f);
+    assert_int_equal(dress.pin_count, 0);
+    assert_true(skirt.pin_count > 34);
+    for (size_t i = 0; i < skirt.pin_count; i++) {
+        vec3s p = skirt.model.mesh.positions[skirt.pins[i]];
+        assert_near(p.y, 1.045, 1e-4); /* the pattern's waist is round to 0.03 % of 0.12 m */
+        double distance = tl_form_distance((double[3]){(double)p.x, (double)p.y, (double)p.z});
+        assert_true(distance > 0.003 && distance < 0.010);
+    }
+    drop(&dress);
+    drop(&skirt);
+}
+
+/* Front pieces are in front, and seen from outside the triangles turn counter-clockwise: normals point away
+ * from the form's axis on average over the skirt's waist. */
+static void check_outside(const tl_garment *garment, const char *name, float edge_m)
+{
+    (void)name;
+    (void)edge_m;
+    const tl_mesh *mesh = &garment->model.mesh;
+    size_t outwards = 0;
+    for (size_t v = 0; v < mesh->vertex_count; v++)
+        outwards += mesh->positions[v].x * mesh->normals[v].x + mesh->positions[v].z * mesh->normals[v].z > 0;
+    assert_true(outwards > mesh->vertex_count * 9 / 10);
+    assert_true(mesh->positions[0].z > 0);
+}
+
+static void test_outside(void **state)
+{
+    (void)state;
+    for_each_cut(check_outside);
+}
+
+/* What the renderer needs: UVs (x, -y) of the pattern, parts in metres that follow one another, a two-sided
+ * material for each. */
+static void test_model(void **state)
+{
+    (void)state;
+    tl_garment dress = cut("dress", 0.03f);
+    const tl_model *model = &dress.model;
+    assert_string_equal(model->name, "dress");
+    assert_int_equal(model->material_count, 2);
+    assert_string_equal(model->materials[0].name, "bodice");
+    assert_string_equal(model->materials[1].name, "skirt");
+    assert_null(model->rig);
+    assert_int_equal(model->mesh.part_count, 2);
+    uint32_t next = 0;
+    for (size_t p = 0; p < model->mesh.part_count; p++) {
+        assert_true(model->materials[p].double_sided);
+        assert_int_equal(model->mesh.parts[p].material, p);
+        assert_int_equal(model->mesh.parts[p].first_index, next);
+        assert_true(model->mesh.parts[p].uv_metres == 1);
+        next += model->mesh.parts[p].index_count;
+    }
+    assert_int_equal(next, model->mesh.index_count);
+    for (size_t v = 0; v < model->mesh.vertex_count; v++)
+        assert_true(model->mesh.uvs[v].x == dress.pattern[v].x &&
+                    model->mesh.uvs[v].y == -dress.pattern[v].y);
+    drop(&dress);
+}
+
+/* The same call gives the same bytes. */
+static void test_deterministic(void **state)
+{
+    (void)state;
+    tl_garment a = cut("dress", 0.03f), b = cut("dress", 0.03f);
+    assert_int_equal(a.model.mesh.vertex_count, b.model.mesh.vertex_count);
+    assert_memory_equal(a.model.mesh.positions, b.model.mesh.positions,
+                        a.model.mesh.vertex_count * sizeof(vec3s));
+    drop(&a);
+    drop(&b);
+}
+
+static void test_refusals(void **state)
+{
+    (void)state;
+    tl_garment garment;
+    tl_error error = {0};
+    assert_false(tl_garment_cut("trousers", 0.02f, &garment, &error));
+    assert_int_equal(error.code, TL_USAGE);
+    assert_non_null(strstr(error.message, "trousers"));
+    assert_non_null(strstr(error.message, "dress, skirt"));
+    const float bad[] = {0.0029f, 0.081f, 0, -1, NAN, INFINITY};
+    for (size_t i = 0; i < TL_COUNT(bad); i++) {
+        assert_false(tl_garment_cut("dress", bad[i], &garment, &error));
+        assert_non_null(strstr(error.message, "0.003 to 0.08"));
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_quality),       cmocka_unit_test(test_skirt_area),
+        cmocka_unit_test(test_seams),         cmocka_unit_test(test_topology),
+        cmocka_unit_test(test_start),         cmocka_unit_test(test_pins),
+        cmocka_unit_test(test_outside),       cmocka_unit_test(test_model),
+        cmocka_unit_test(test_deterministic), cmocka_unit_test(test_refusals),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

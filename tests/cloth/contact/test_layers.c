@@ -1,0 +1,333 @@
+/* Layers: the order of pieces, a shirt that no belt shows through, folds that keep their distance. */
+#include "assets/avatar.h"
+#include "cloth/state.h"
+#include "tests/cloth/bodies.h"
+#include "tests/cloth/sheets.h"
+#include "tests/testing.h"
+
+#include "config/hash.h"
+#include "config/log.h"
+
+/* ---- Folds ---- */
+
+static double noise(uint32_t *state)
+{
+    *state = *state * 1664525u + 1013904223u;
+    return (*state >> 8) / 16777216.0;
+}
+
+/* The hash finds the pairs that comparing everyone with everyone finds, each once. */
+static void test_pairs(void **state)
+{
+    (void)state;
+    enum { COUNT = 2000 };
+    static vec3d x[COUNT], start[COUNT];
+    uint32_t seed = 7;
+    const double thickness = 0.004;
+    for (size_t i = 0; i < COUNT; i++) {
+        x[i] = (vec3d){0.1 * noise(&seed) - 0.05, 0.1 * noise(&seed) - 0.05, 0.03 * noise(&seed) - 1};
+        start[i] = (vec3d){(double)i, 0, 0};
+    }
+    start[1] = (vec3d){0.001, 0, 0};
+    x[1] = x[0];
+    struct tl_repulsion repulsion = {0};
+    tl_repulsion_renew(&repulsion, COUNT, x, start, thickness);
+    size_t expected = 0;
+    for (size_t i = 0; i < COUNT; i++)
+        for (size_t j = i + 1; j < COUNT; j++)
+            expected += vec3d_distance(x[i], x[j]) < 2 * thickness;
+    assert_true(expected > 1000);
+    assert_int_equal(repulsion.pair_count, expected);
+    for (size_t k = 0; k < repulsion.pair_count; k++) {
+        const struct tl_repulsion_pair *pair = &repulsion.pairs[k], *last = k > 0 ? pair - 1 : NULL;
+        assert_true(pair->a < pair->b);
+        assert_true(!last || last->a <= pair->a);
+        assert_true(vec3d_distance(x[pair->a], x[pair->b]) < 2 * thickness);
+        double kept = pair->a == 0 && pair->b == 1 ? 0.001 : thickness;
+        assert_near(pair->distance_m, kept, 1e-12);
+    }
+    tl_repulsion_release(&repulsion);
+}
+
+/* Two particles that meet stop at the thickness, keep their momentum, and lose slip by mu times the push. */
+static void test_pair_is_parted(void **state)
+{
+    (void)state;
+    const double thickness = 0.004, friction = 0.3;
+    struct tl_particles particles = tl_particles_create(2);
+    const vec3d start[2] = {{0}, {1, 0, 0}};
+    particles.w[0] = 1;
+    particles.w[1] = 3;
+    particles.previous[0] = particles.x[0] = (vec3d){0};
+    particles.previous[1] = (vec3d){0, 0.004, 0};
+    particles.x[1] = (vec3d){0.001, 0.003, 0}; /* came nearer by about 1 mm, and slipped by about 1 mm */
+    struct tl_repulsion repulsion = {0};
+    tl_repulsion_renew(&repulsion, 2, particles.x, start, thickness);
+    vec3d apart = particles.x[1];
+    double depth = thickness - vec3d_norm(apart);
+    vec3d normal = vec3d_scale(apart, 1 / vec3d_norm(apart));
+    vec3d way = vec3d_sub(apart, particles.previous[1]);
+    vec3d slip = vec3d_muladd(way, normal, -vec3d_dot(way, normal));
+    tl_repulsion_solve(&repulsion, friction, 1, &particles);
+    vec3d after = vec3d_sub(particles.x[1], particles.x[0]);
+    assert_near(vec3d_dot(after, normal), thickness, 1e-15);
+    vec3d moved = vec3d_sub(vec3d_sub(after, apart), vec3d_scale(normal, depth));
+    vec3d grip = vec3d_scale(slip, -friction * depth / vec3d_norm(slip));
+    assert_near(vec3d_distance(moved, grip), 0, 1e-15);
+    vec3d centre = vec3d_add(particles.x[0], vec3d_scale(particles.x[1], 1.0 / 3)); /* masses 1 and 1/3 */
+    assert_near(vec3d_distance(centre, vec3d_scale(apart, 1.0 / 3)), 0, 1e-15);
+    tl_repulsion_release(&repulsion);
+    tl_particles_release(&particles);
+}
+
+static vec3s upright(double u, double v)
+{
+    return (vec3s){{(float)(u - 0.03), (float)(v + 0.01), (float)(0.004 * sin(25 * v))}};
+}
+
+/* How many pairs of particles that are not near in the pattern are nearer than half the thickness. */
+static size_t count_touching(const tl_cloth *cloth, const tl_garment *garment)
+{
+    const double apart_m = 0.02;
+    size_t count = 0;
+    for (size_t i = 0; i < cloth->particles.count; i++)
+        for (size_t j = i + 1; j < cloth->particles.count; j++)
+            if ((double)glms_vec2_distance(garment->pattern[i], garment->pattern[j]) > apart_m)
+                count += vec3d_distance(cloth->particles.x[i], cloth->particles.x[j]) <
+                         cloth->fabric.thickness_m / 2;
+    return count;
+}
+
+/* A strip that comes down on its edge folds over itself in a heap. */
+static size_t heap_up(bool self_repulsion)
+{
+    tl_error error = {0};
+    const struct sheet_shape shape = {12, 80, 0.06, 0.4};
+    tl_garment garment = sheet_make(&shape, upright);
+    struct tl_cloth_fabric fabric = fabric_defaults();
+    struct tl_cloth_params params = params_defaults();
+    params.self_repulsion = self_repulsion;
+    tl_collider *ground = tl_collider_create(NULL, true, &error);
+    tl_cloth *cloth = tl_cloth_create(&garment, &fabric, &params, &error);
+    size_t touching = 0;
+    for (int frame = 0; frame < 60; frame++) {
+        assert_ok(tl_cloth_step(cloth, ground, &error), error);
+        touching += count_touching(cloth, &garment);
+    }
+    tl_cloth_destroy(&cloth);
+    tl_collider_destroy(&ground);
+    sheet_free(&garment);
+    return touching;
+}
+
+static void test_heap(void **state)
+{
+    (void)state;
+    size_t with = heap_up(true), without = heap_up(false);
+    printf("heap: in 60 frames %zu pairs nearer than half the thickness, without repulsion %zu\n", with,
+           without);
+    assert_true(without > 1000);
+    assert_true(with < without / 10); /* what is pressed from both sides comes nearer for a moment */
+}
+
+/* ---- Pieces ---- */
+
+/* A saddle cloth around the upper half of a sphere, `out` metres off it. */
+static double out_now;
+static vec3s around_sphere(double u, double v)
+{
+    double east = (u - 0.15) / 0.2, north = (0.15 - v) / 0.2, radius = 0.2 + out_now;
+    double length = sqrt(east * east + north * north + 1);
+    return (vec3s){
+        {(float)(radius * east / length), (float)(0.5 + radius / length), (float)(radius * north / length)}};
+}
+
+/* Two cloths over a sphere in one garment, `first` and `second` metres off it; the second turned inside out.
+ */
+static tl_garment two_cloths(const struct sheet_shape *shape, double first, double second)
+{
+    out_now = first;
+    tl_garment garment = sheet_make(shape, around_sphere);
+    out_now = second;
+    tl_garment other = sheet_make(shape, around_sphere);
+    tl_mesh *mesh = &garment.model.mesh;
+    size_t count = mesh->vertex_count;
+    mesh->positions = tl_resize(mesh->positions, 2 * count, sizeof(vec3s));
+    mesh->uvs = tl_resize(mesh->uvs, 2 * count, sizeof(vec2s));
+    mesh->indices = tl_resize(mesh->indices, 2 * mesh->index_count, sizeof(uint32_t));
+    memcpy(mesh->positions + count, other.model.mesh.positions, count * sizeof(vec3s));
+    memcpy(mesh->uvs + count, other.model.mesh.uvs, count * sizeof(vec2s));
+    for (size_t i = 0; i < mesh->index_count; i++)
+        mesh->indices[2 * mesh->index_count - 1 - i] = mesh->indices[i] + (uint32_t)count;
+    mesh->index_count *= 2;
+    mesh->vertex_count *= 2;
+    free(garment.pattern); /* its start shape is its rest shape */
+    garment.pattern = NULL;
+    sheet_free(&other);
+    return garment;
+}
+
+static double least_gap(const tl_cloth *cloth, size_t inner, size_t outer, size_t count)
+{
+    double least = HUGE_VAL;
+    for (size_t i = 0; i < count; i++) { /* the same vertex of both lies on the same ray from the centre */
+        const vec3d centre = {0, 0.5, 0};
+        least = fmin(least, vec3d_distance(cloth->particles.x[outer + i], centre) -
+                                vec3d_distance(cloth->particles.x[inner + i], centre));
+    }
+    return least;
+}
+
+/* Whichever comes first in the file, and however it is wound, the outer cloth is found and stays out;
+ * beginning 1 mm apart, they are parted. Both ride on a sphere that turns under them. */
+static void test_two_cloths(void **state)
+{
+    (void)state;
+    const struct sheet_shape shape = {15, 15, 0.3, 0.3};
+    for (int swapped = 0; swapped < 2; swapped++) {
+        tl_error error = {0};
+        tl_garment garment = two_cloths(&shape, swapped ? 0.005 : 0.004, swapped ? 0.004 : 0.005);
+        tl_mesh sphere = body_sphere((vec3s){{0, 0.5f, 0}}, 0.2, 32);
+        struct tl_cloth_fabric fabric = fabric_defaults();
+        struct tl_cloth_params params = params_defaults();
+        params.self_repulsion = true;
+        tl_collider *collider = tl_collider_create(&sphere, false, &error);
+        tl_cloth *cloth = tl_cloth_create(&garment, &fabric, &params, &error);
+        assert_non_null(cloth);
+        size_t count = garment.model.mesh.vertex_count / 2;
+        size_t inner = swapped ? count : 0, outer = count - inner;
+        for (int frame = 0; frame < 30; frame++)
+            assert_ok(tl_cloth_step(cloth, collider, &error), error);
+        struct tl_cloth_report report = tl_cloth_measure(cloth, collider);
+        assert_int_equal(report.piece_count, 2);
+        assert_int_equal(report.layer_count, 2);
+        assert_int_equal(cloth->layers.layer_of[inner], 0);
+        assert_int_equal(cloth->layers.layer_of[outer], 1);
+        assert_near(report.deepest_m, 0, 0);
+        double gap = least_gap(cloth, inner, outer, count);
+        printf("two cloths: least gap %.2f mm\n", 1e3 * gap);
+        assert_true(gap >
+                    0.5 * fabric.thickness_m); /* they slide on one another: no longer quite on one ray */
+        tl_cloth_destroy(&cloth);
+        tl_collider_destroy(&collider);
+        tl_mesh_release(&sphere);
+        sheet_free(&garment);
+    }
+}
+
+/* ---- A shirt over trousers ---- */
+
+/* The triangles of the piece that holds particle `member`. */
+static tl_collider *piece_collider(const tl_cloth *cloth, const uint32_t *pieces, uint32_t piece,
+                                   vec3s **positions)
+{
+    tl_error error = {0};
+    const struct tl_topology *topology = &cloth->topology;
+    *positions = TL_NEW_ARRAY(vec3s, cloth->particles.count);
+    tl_mesh mesh = {.vertex_count = cloth->particles.count,
+                    .positions = *positions,
+                    .indices = TL_NEW_ARRAY(uint32_t, 3 * topology->triangle_count)};
+    for (size_t i = 0; i < cloth->particles.count; i++)
+        mesh.positions[i] = vec3d_to_float(cloth->particles.x[i]);
+    for (size_t t = 0; t < topology->triangle_count; t++)
+        for (int corner = 0; pieces[topology->triangles[t][0]] == piece && corner < 3; corner++)
+            mesh.indices[mesh.index_count++] = topology->triangles[t][corner];
+    tl_collider *collider = tl_collider_create(&mesh, false, &error);
+    free(mesh.indices);
+    return collider;
+}
+
+/* How far the trousers stick out through the shirt: of 15 points of every triangle of the shirt, those
+ * nearest to the inside of a trouser triangle, rather than to its rim. */
+static double deepest_in_trousers(const tl_cloth *cloth)
+{
+    const double reach_m = 0.03;
+    uint32_t *pieces = TL_NEW_ARRAY(uint32_t, cloth->particles.count);
+    assert_int_equal(tl_layers_pieces(&cloth->topology, pieces), 2);
+    uint32_t shirt = 0; /* the first vertex of the file is the shirt's */
+    vec3s *positions;
+    tl_collider *trousers = piece_collider(cloth, pieces, 1, &positions);
+    double deepest = 0;
+    for (size_t t = 0; t < cloth->topology.triangle_count; t++) {
+        const uint32_t *v = cloth->topology.triangles[t];
+        for (int k = 0; pieces[v[0]] == shirt && k < 25; k++) {
+            int i = k / 5, j = k % 5;
+            if (i + j > 4)
+                continue;
+            vec3d p = vec3d_scale(cloth->particles.x[v[0]], i / 4.0);
+            p = vec3d_muladd(p, cloth->particles.x[v[1]], j / 4.0);
+            p = vec3d_muladd(p, cloth->particles.x[v[2]], (4 - i - j) / 4.0);
+            const double point[3] = {p.x, p.y, p.z};
+            struct tl_contact contact;
+            const double rim = 1e-3;
+            if (tl_collider_query(trousers, point, reach_m, &contact) && contact.barycentric[0] > rim &&
+                contact.barycentric[1] > rim && contact.barycentric[2] > rim)
+                deepest = fmax(deepest, -contact.distance_m);
+        }
+    }
+    tl_collider_destroy(&trousers);
+    free(positions);
+    free(pieces);
+    return deepest;
+}
+
+static uint64_t hash_positions(const tl_cloth *cloth)
+{
+    return tl_hash(TL_HASH_START, cloth->particles.x, cloth->particles.count * sizeof(vec3d));
+}
+
+static void test_shirt_over_trousers(void **state)
+{
+    (void)state;
+    tl_error error = {0};
+    tl_garment garment;
+    tl_avatar avatar;
+    assert_ok(tl_garment_load(test_data("garments/mh_male_casualsuit06.glb"), &garment, &error), error);
+    assert_ok(tl_avatar_load(test_data("avatars/mh_male_body.glb"), &avatar, &error), error);
+    double depths[2];
+    for (int on = 0; on < 2; on++) {
+        struct tl_cloth_fabric fabric = fabric_defaults();
+        struct tl_cloth_params params = params_defaults();
+        params.self_repulsion = on;
+        tl_collider *collider = tl_collider_create(&avatar.model.mesh, true, &error);
+        tl_cloth *cloth = tl_cloth_create(&garment, &fabric, &params, &error);
+        assert_ok(tl_cloth_settle(cloth, collider, &error), error);
+        struct tl_cloth_report report = tl_cloth_measure(cloth, collider);
+        depths[on] = deepest_in_trousers(cloth);
+        printf("shirt: trousers %.2f mm deep in it, strain %.2f\n", 1e3 * depths[on], report.max_strain);
+        assert_true(report.settled);
+        assert_true(report.max_strain < 1);
+        assert_near(report.deepest_m, 0, 0);
+        assert_int_equal(report.layer_count, on ? 2 : 0);
+        tl_cloth_mark_start(cloth);
+        uint64_t hashes[2];
+        for (int run = 0; on && run < 2; run++) {
+            for (int frame = 0; frame < 5; frame++)
+                assert_ok(tl_cloth_step(cloth, collider, &error), error);
+            hashes[run] = hash_positions(cloth);
+            assert_true(tl_cloth_max_speed(cloth) < 0.1);
+            tl_cloth_reset(cloth);
+        }
+        if (on)
+            assert_true(hashes[0] == hashes[1]);
+        tl_cloth_destroy(&cloth);
+        tl_collider_destroy(&collider);
+    }
+    assert_true(depths[0] > 5e-3); /* it shows without: see the picture from behind */
+    assert_true(depths[1] < 1e-3);
+    tl_garment_release(&garment);
+    tl_avatar_release(&avatar);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_pairs),
+        cmocka_unit_test(test_pair_is_parted),
+        cmocka_unit_test(test_heap),
+        cmocka_unit_test(test_two_cloths),
+        cmocka_unit_test(test_shirt_over_trousers),
+    };
+    tl_log_set_level(TL_LOG_WARN);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,246 @@
+/* No particle is inside the avatar after a frame: on a man who walks with his arms through his skirt, and on
+ * two bodies that twist, under every solver. TOILE_FRAMES=300 runs the full length: a minute and a half of
+ * CPU for the reference on the man, half of one for settle; the default is a second and a half, and less of
+ * what is slow. */
+#include "assets/avatar.h"
+#include "assets/builtin/fit.h"
+#include "cloth/state.h"
+#include "tests/cloth/sheets.h"
+#include "tests/testing.h"
+
+#include "config/log.h"
+
+#define FRAME_RATE 30.0
+#define POSE_IN    30 /* frames from the rest pose to the clip's first */
+
+/* By default a share of a second and a half. */
+static int frame_count(int share)
+{
+    const char *wanted = getenv("TOILE_FRAMES");
+    return wanted ? atoi(wanted) : 45 / share;
+}
+
+struct dressed {
+    tl_garment garment;
+    tl_avatar avatar;
+    tl_collider *collider;
+    tl_cloth *cloth;
+    vec3s *pose; /* [avatar vertex] */
+};
+
+static void dress(struct dressed *d)
+{
+    tl_error error = {0};
+    struct tl_cloth_fabric fabric = fabric_defaults();
+    struct tl_cloth_params params = params_defaults();
+    params.frame_rate = FRAME_RATE;
+    d->pose = TL_NEW_ARRAY(vec3s, d->avatar.model.mesh.vertex_count);
+    d->collider = tl_collider_create(&d->avatar.model.mesh, true, &error);
+    d->cloth = tl_cloth_create(&d->garment, &fabric, &params, &error);
+    assert_non_null(d->cloth);
+    assert_ok(tl_cloth_settle(d->cloth, d->collider, &error), error);
+}
+
+static void undress(struct dressed *d)
+{
+    tl_cloth_destroy(&d->cloth);
+    tl_collider_destroy(&d->collider);
+    tl_garment_release(&d->garment);
+    tl_avatar_release(&d->avatar);
+    free(d->pose);
+}
+
+/* The worst of a run. */
+struct worst {
+    double deepest, strain;
+    size_t caught, caught_frames;
+};
+
+/* Moves the avatar to d->pose within a frame. `tolerance`: rounding of the collider's float coordinates. */
+static void step(struct dressed *d, struct worst *worst)
+{
+    const double tolerance = 1e-6;
+    tl_error error = {0};
+    tl_collider_move(d->collider, d->pose);
+    assert_ok(tl_cloth_step(d->cloth, d->collider, &error), error);
+    struct tl_cloth_report report = tl_cloth_measure(d->cloth, d->collider);
+    worst->deepest = fmax(worst->deepest, report.deepest_m);
+    worst->strain = fmax(worst->strain, report.max_strain);
+    worst->caught = report.caught_count > worst->caught ? report.caught_count : worst->caught;
+    worst->caught_frames += report.caught_count > 0;
+    assert_near(report.deepest_m, 0, tolerance);
+    assert_true(report.max_strain < 5); /* half of where the solver gives up; what is caught slips at 1.5 */
+}
+
+static void tell(const char *name, int frames, const struct worst *worst)
+{
+    printf("%s: %d frames, deepest %.3g mm, strain %.2f, at most %zu vertices caught, in %zu frames\n", name,
+           frames, 1e3 * worst->deepest, worst->strain, worst->caught, worst->caught_frames);
+}
+
+static void dress_walker(struct dressed *d, float edge_m)
+{
+    tl_error error = {0};
+    assert_ok(tl_avatar_load(test_data("avatars/CesiumMan.glb"), &d->avatar, &error), error);
+    assert_ok(tl_garment_cut("skirt", edge_m, &d->garment, &error), error);
+    (void)tl_garment_fit(&d->garment, "CesiumMan", &d->avatar.model.mesh, &error); /* may warn of its waist */
+    dress(d);
+}
+
+/* Frame `frame` of the walk; the first ones lead to the clip's first pose, in straight lines. */
+static void walk(struct dressed *d, int frame)
+{
+    const tl_model *model = &d->avatar.model;
+    float part = fminf((float)frame / POSE_IN, 1);
+    tl_model_pose(model, 0, fmax(frame - POSE_IN, 0) / FRAME_RATE, d->pose);
+    for (size_t i = 0; part < 1 && i < model->mesh.vertex_count; i++)
+        d->pose[i] = glms_vec3_lerp(model->mesh.positions[i], d->pose[i], part);
+}
+
+static void test_walking(void **state)
+{
+    (void)state;
+    struct dressed d = {0};
+    struct worst worst = {0};
+    dress_walker(&d, params_defaults().edge_m);
+    int frames = POSE_IN + frame_count(1);
+    for (int frame = 0; frame < frames; frame++) {
+        walk(&d, frame);
+        step(&d, &worst);
+    }
+    tell("walking", frames, &worst);
+    double mean_height = 0;
+    for (size_t i = 0; i < d.cloth->particles.count; i++)
+        mean_height += d.cloth->particles.x[i].y / (double)d.cloth->particles.count;
+    assert_true(mean_height > 0.4); /* from 0.5 m: it is still worn */
+    undress(&d);
+}
+
+static void change_solver(struct dressed *d, int solver)
+{
+    tl_error error = {0};
+    struct tl_cloth_params params = d->cloth->params;
+    params.solver = solver;
+    assert_ok(tl_cloth_set(d->cloth, &d->cloth->fabric, &params, &error), error);
+}
+
+/* Another solver takes over where the arms are about to brush the skirt. A coarse one: the reference's step
+ * is short. */
+static void check_walking(int solver, int frames)
+{
+    struct dressed d = {0};
+    struct worst worst = {0};
+    const int first = POSE_IN + 14;
+    dress_walker(&d, 0.04f);
+    for (int frame = 0; frame < first; frame++) {
+        walk(&d, frame);
+        step(&d, &worst);
+    }
+    change_solver(&d, solver);
+    for (int frame = first; frame < first + frames; frame++) {
+        walk(&d, frame);
+        step(&d, &worst);
+    }
+    tell(tl_cloth_solver_names[solver], frames, &worst);
+    undress(&d);
+}
+
+static void test_walking_reference(void **state)
+{
+    (void)state;
+    check_walking(TL_CLOTH_REFERENCE, frame_count(9));
+}
+
+static void test_walking_settle(void **state)
+{
+    (void)state;
+    check_walking(TL_CLOTH_SETTLE, frame_count(2));
+}
+
+/* The shoulders turn against the feet, and the body sways to the side: every triangle moves and most bend. */
+static void twist(struct dressed *d, int frame)
+{
+    const tl_mesh *mesh = &d->avatar.model.mesh;
+    double swing = sin(2 * M_PI * frame / 60);
+    for (size_t i = 0; i < mesh->vertex_count; i++) {
+        vec3d p = vec3d_from(mesh->positions[i]);
+        double angle = 0.35 * p.y * swing, sway = 0.05 * p.y * p.y * swing;
+        d->pose[i] = vec3d_to_float(
+            (vec3d){cos(angle) * p.x + sin(angle) * p.z + sway, p.y, cos(angle) * p.z - sin(angle) * p.x});
+    }
+}
+
+static void check_twisting(const char *garment, const char *avatar, int solver, int frames)
+{
+    tl_error error = {0};
+    struct dressed d = {0};
+    struct worst worst = {0};
+    assert_ok(tl_avatar_load(test_data(avatar), &d.avatar, &error), error);
+    assert_ok(tl_garment_load(test_data(garment), &d.garment, &error), error);
+    dress(&d);
+    change_solver(&d, solver);
+    for (int frame = 1; frame <= frames; frame++) {
+        twist(&d, frame);
+        step(&d, &worst);
+    }
+    printf("%s: ", tl_cloth_solver_names[solver]);
+    tell(garment, frames, &worst);
+    undress(&d);
+}
+
+static const char man[] = "avatars/mh_male_body.glb", suit[] = "garments/mh_male_casualsuit06.glb";
+static const char woman[] = "avatars/mh_female_body.glb", sports[] = "garments/mh_female_sportsuit01.glb";
+
+static void test_twisting_man(void **state)
+{
+    (void)state;
+    check_twisting(suit, man, TL_CLOTH_PREVIEW, frame_count(1));
+}
+
+static void test_twisting_man_settle(void **state)
+{
+    (void)state;
+    check_twisting(suit, man, TL_CLOTH_SETTLE, frame_count(9));
+}
+
+static void test_twisting_man_reference(void **state)
+{
+    (void)state;
+    check_twisting(suit, man, TL_CLOTH_REFERENCE, frame_count(9));
+}
+
+static void test_twisting_woman(void **state)
+{
+    (void)state;
+    check_twisting(sports, woman, TL_CLOTH_PREVIEW, frame_count(1));
+}
+
+static void test_twisting_woman_settle(void **state)
+{
+    (void)state;
+    check_twisting(sports, woman, TL_CLOTH_SETTLE, frame_count(9));
+}
+
+static void test_twisting_woman_reference(void **state)
+{
+    (void)state;
+    check_twisting(sports, woman, TL_CLOTH_REFERENCE, frame_count(9));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_walking),
+        cmocka_unit_test(test_walking_settle),
+        cmocka_unit_test(test_walking_reference),
+        cmocka_unit_test(test_twisting_man),
+        cmocka_unit_test(test_twisting_man_settle),
+        cmocka_unit_test(test_twisting_man_reference),
+        cmocka_unit_test(test_twisting_woman),
+        cmocka_unit_test(test_twisting_woman_settle),
+        cmocka_unit_test(test_twisting_woman_reference),
+    };
+    tl_log_set_level(TL_LOG_WARN);
+    cmocka_set_test_filter(getenv("TOILE_TESTS")); /* NULL: all */
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,149 @@
+/* Seams: two panels on either side of a body are drawn together around it and become one cloth. */
+#include "cloth/state.h"
+#include "tests/cloth/bodies.h"
+#include "tests/cloth/sheets.h"
+#include "tests/testing.h"
+
+#include "config/log.h"
+
+#define COLUMNS 24
+#define ROWS    16
+static const struct sheet_shape panel = {COLUMNS, ROWS, 0.6, 0.4};
+
+/* Two panels in one mesh, `gap` metres apart, before and behind the origin, 0.3 to 0.7 m high; their sides
+ * and half of their tops are sewn. */
+static tl_garment two_panels(double gap)
+{
+    tl_garment front = sheet_make(&panel, NULL), back = sheet_make(&panel, NULL);
+    tl_mesh *mesh = &front.model.mesh;
+    const uint32_t count = (uint32_t)mesh->vertex_count;
+    mesh->positions = tl_resize(mesh->positions, (size_t)2 * count, sizeof(vec3s));
+    mesh->uvs = tl_resize(mesh->uvs, (size_t)2 * count, sizeof(vec2s));
+    mesh->indices = tl_resize(mesh->indices, 2 * mesh->index_count, sizeof(uint32_t));
+    front.pattern = tl_resize(front.pattern, (size_t)2 * count, sizeof(vec2s));
+    for (uint32_t i = 0; i < count; i++) {
+        vec3s p = mesh->positions[i];
+        mesh->positions[i] = (vec3s){{p.x - 0.3f, p.y + 0.3f, (float)(gap / 2)}};
+        mesh->positions[count + i] = (vec3s){{p.x - 0.3f, p.y + 0.3f, (float)(-gap / 2)}};
+        mesh->uvs[count + i] = mesh->uvs[i];
+        front.pattern[count + i] = front.pattern[i];
+    }
+    for (size_t i = 0; i < mesh->index_count; i++)
+        mesh->indices[mesh->index_count + i] = back.model.mesh.indices[i] + count;
+    mesh->index_count *= 2;
+    mesh->vertex_count *= 2;
+    sheet_free(&back);
+    for (int row = 0; row <= ROWS; row++) {
+        uint32_t left = sheet_vertex(&panel, 0, row), right = sheet_vertex(&panel, COLUMNS, row);
+        sheet_seam(&front, left, left + count);
+        sheet_seam(&front, right, right + count);
+    }
+    for (int column = 0; column <= COLUMNS; column++)
+        if (column < 8 || column > COLUMNS - 8) {
+            uint32_t top = sheet_vertex(&panel, column, ROWS);
+            sheet_seam(&front, top, top + count);
+        }
+    return front;
+}
+
+/* 30 cm of gap around a sphere as wide as it. */
+static void test_panels_close_around_a_body(void **state)
+{
+    (void)state;
+    tl_error error = {0};
+    tl_garment garment = two_panels(0.3);
+    tl_mesh sphere = body_sphere((vec3s){{0, 0.5f, 0}}, 0.13, 24);
+    struct tl_cloth_fabric fabric = fabric_defaults();
+    struct tl_cloth_params params = params_defaults();
+    tl_collider *collider = tl_collider_create(&sphere, true, &error);
+    tl_cloth *cloth = tl_cloth_create(&garment, &fabric, &params, &error);
+    assert_non_null(cloth);
+    struct tl_cloth_report before = tl_cloth_measure(cloth, collider);
+    assert_int_equal(before.open_seams, 2 * (ROWS + 1) + 2 * 8 - 2);
+    assert_int_equal(before.vertex_count, 2 * (COLUMNS + 1) * (ROWS + 1));
+    assert_ok(tl_cloth_settle(cloth, collider, &error), error);
+    struct tl_cloth_report after = tl_cloth_measure(cloth, collider);
+    assert_int_equal(after.open_seams, 0);
+    assert_int_equal(after.vertex_count, before.vertex_count - before.open_seams);
+    /* In one upper corner a triangle has all three corners on seams: its two layers become one. */
+    assert_int_equal(after.triangle_count, before.triangle_count - 1);
+    assert_near(after.deepest_m, 0, 0);
+    assert_true(after.max_strain < 0.2);
+    assert_near(after.time_s, 0, 0);
+    const uint32_t *weld = tl_cloth_weld(cloth);
+    for (size_t i = 0; i < garment.seam_count; i++)
+        assert_int_equal(weld[garment.seams[i].a], weld[garment.seams[i].b]);
+    tl_cloth_destroy(&cloth);
+    tl_collider_destroy(&collider);
+    tl_mesh_release(&sphere);
+    sheet_free(&garment);
+}
+
+/* What a wall holds apart stays two, linked; and nothing explodes. */
+static void test_held_apart(void **state)
+{
+    (void)state;
+    tl_error error = {0};
+    tl_garment garment = two_panels(0.1);
+    tl_mesh wall = body_box((vec3s){{0, 0.5f, 0}}, (vec3s){{2, 2, 0.02f}}, 0);
+    struct tl_cloth_fabric fabric = fabric_defaults();
+    struct tl_cloth_params params = params_defaults();
+    params.settle_s = 1;
+    tl_collider *collider = tl_collider_create(&wall, false, &error);
+    tl_cloth *cloth = tl_cloth_create(&garment, &fabric, &params, &error);
+    assert_ok(tl_cloth_settle(cloth, collider, &error), error);
+    struct tl_cloth_report report = tl_cloth_measure(cloth, collider);
+    assert_int_equal(report.open_seams, 2 * (ROWS + 1) + 2 * 8 - 2);
+    assert_true(report.max_strain < 0.5);
+    tl_cloth_destroy(&cloth);
+    tl_collider_destroy(&collider);
+    tl_mesh_release(&wall);
+    sheet_free(&garment);
+}
+
+/* Joining keeps mass, momentum and the centre of mass. */
+static void test_joining_keeps_momentum(void **state)
+{
+    (void)state;
+    tl_error error = {0};
+    tl_garment garment = two_panels(0.001);
+    struct tl_cloth_fabric fabric = fabric_defaults();
+    struct tl_cloth_params params = params_defaults();
+    tl_cloth *cloth = tl_cloth_create(&garment, &fabric, &params, &error);
+    size_t count = cloth->particles.count, half = count / 2;
+    uint32_t *joined = TL_NEW_ARRAY(uint32_t, count);
+    for (size_t i = 0; i < count; i++)
+        joined[i] = (uint32_t)(i % half);
+    vec3d sums[2][2] = {0}; /* momentum, mass times place; before, after */
+    double masses[2] = {0};
+    for (int after = 0; after < 2; after++) {
+        for (size_t i = 0; i < cloth->particles.count; i++) {
+            double mass = 1 / cloth->particles.w[i];
+            if (!after)
+                cloth->particles.v[i] = (vec3d){sin((double)i), cos(3 * (double)i), 1};
+            masses[after] += mass;
+            sums[after][0] = vec3d_muladd(sums[after][0], cloth->particles.v[i], mass);
+            sums[after][1] = vec3d_muladd(sums[after][1], cloth->particles.x[i], mass);
+        }
+        if (!after)
+            tl_cloth_join(cloth, joined, half);
+    }
+    /* Both panels are the same triangles: as one cloth they weigh half, and move and lie at the mean. */
+    assert_near(masses[1], masses[0] / 2, 1e-12);
+    for (int k = 0; k < 2; k++)
+        assert_near(vec3d_distance(vec3d_scale(sums[0][k], 0.5), sums[1][k]), 0, 1e-12);
+    free(joined);
+    tl_cloth_destroy(&cloth);
+    sheet_free(&garment);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_panels_close_around_a_body),
+        cmocka_unit_test(test_held_apart),
+        cmocka_unit_test(test_joining_keeps_momentum),
+    };
+    tl_log_set_level(TL_LOG_WARN);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

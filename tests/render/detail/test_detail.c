@@ -1,0 +1,252 @@
+/* Detail in the frame against its counterpart on the CPU and against the reference; and that what is not
+ * asked for is not there. A square whose colour is its u, in light of 1 from everywhere, shows where its maps
+ * are read. */
+#include "tests/render/shapes.h"
+
+#include "config/memory.h"
+#include "render/detail/cones.h"
+#include "render/detail/field.h"
+#include "render/metrics/compare.h"
+#include "render/reference/reference.h"
+
+#include "tests/testing.h"
+
+#include <string.h>
+
+#define SIZE  32
+#define DEPTH 0.02f /* m, of the height map on a square of 1 m */
+
+struct stage {
+    tl_image ramp, bumps;
+    struct test_shape shape;
+    tl_environment white;
+    tl_frame frame;
+    struct tl_render_settings settings;
+};
+
+static struct stage *stage_new(void)
+{
+    struct stage *stage = TL_NEW(struct stage);
+    stage->ramp = tl_image_create(256, 1, 3, TL_IMAGE_F32);
+    for (int i = 0; i < 3 * 256; i++) {
+        int column = i / 3;
+        tl_image_floats(&stage->ramp)[i] = i % 3 == 2 ? 1 : ((float)column + 0.5f) / 256;
+    }
+    stage->bumps = tl_image_create(64, 64, 1, TL_IMAGE_U8);
+    stage->bumps.linear = true;
+    for (int i = 0; i < 64 * 64; i++) {
+        int column = i % 64, row = i / 64;
+        float x = 2 * (float)M_PI * ((float)column + 0.5f) / 16,
+              y = 2 * (float)M_PI * ((float)row + 0.5f) / 16;
+        tl_image_bytes(&stage->bumps)[i] = (uint8_t)lrintf(127.5f + 60 * sinf(x) + 60 * cosf(y));
+    }
+    stage->shape = test_square((vec3s){{0, 0, 0}}, (vec3s){{1, 0, 0}}, (vec3s){{0, 0, 1}}, 0.5f, 2);
+    tl_material *material = &stage->shape.material;
+    material->diffuse = (vec3s){{1, 1, 1}};
+    material->specular = (vec3s){{0, 0, 0}};
+    material->diffuse_map.image = &stage->ramp;
+    material->diffuse_map.clamp_u = material->diffuse_map.clamp_v = true;
+    material->height_map.image = &stage->bumps;
+    material->height_m = DEPTH;
+    test_shape_refresh(&stage->shape);
+    stage->white = tl_environment_constant(1, 1, 1);
+    stage->frame = test_frame((vec3s){{1.2f, 0.5f, 1.3f}}, (vec3s){{0, 0, 0}}, 16, &stage->shape.surface, 1,
+                              &stage->white);
+    stage->settings = test_settings(SIZE, SIZE);
+    stage->settings.light.method = TL_METHOD_UNSHADOWED;
+    stage->settings.light.composition = TL_COMPOSE_DIFFERENCE;
+    stage->settings.image.supersample = 1;
+    return stage;
+}
+
+static void stage_free(struct stage *stage)
+{
+    tl_image_release(&stage->ramp);
+    tl_image_release(&stage->bumps);
+    test_shape_release(&stage->shape);
+    tl_environment_release(&stage->white);
+    free(stage);
+}
+
+/* Where a pixel's ray meets z = 0, and the direction back. */
+static vec3s pixel_point(const struct stage *stage, int x, int y, vec3s *view)
+{
+    const struct tl_camera *camera = &stage->frame.camera;
+    vec3s forward = glms_vec3_normalize(glms_vec3_sub(camera->target, camera->eye));
+    vec3s right = glms_vec3_normalize(glms_vec3_cross(forward, camera->up)),
+          up = glms_vec3_cross(right, forward);
+    float half = tanf(0.5f * camera->fov_y);
+    vec3s ray = glms_vec3_add(forward, glms_vec3_scale(right, half * (2 * ((float)x + 0.5f) / SIZE - 1)));
+    ray = glms_vec3_add(ray, glms_vec3_scale(up, half * (1 - 2 * ((float)y + 0.5f) / SIZE)));
+    *view = glms_vec3_normalize(glms_vec3_negate(ray));
+    return glms_vec3_add(camera->eye, glms_vec3_scale(ray, -camera->eye.z / ray.z));
+}
+
+static float expected_u(const struct tl_height_field *field, const struct tl_detail_params *detail, vec2s uv,
+                        vec3s view)
+{
+    if (detail->mode == TL_DETAIL_RELIEF)
+        return tl_field_relief(field, uv, view, detail->steps, detail->refine).uv.x;
+    return detail->mode < TL_DETAIL_PARALLAX
+               ? uv.x
+               : tl_field_parallax(field, uv, view, detail->mode == TL_DETAIL_PARALLAX_LIMITED).x;
+}
+
+/* The G-buffer keeps colours as halves: 0.0005 of 1. Bilinear weights of 8 bits are as coarse. */
+static void check_shift(struct test_device *device, struct stage *stage, const struct tl_height_field *field)
+{
+    bool behind = field->turned_over;
+    stage->frame.camera.eye.z = behind ? -1.3f : 1.3f;
+    for (int mode = TL_DETAIL_NORMAL; mode <= TL_DETAIL_RELIEF; mode++) {
+        stage->settings.detail.mode = mode;
+        tl_image image = test_draw(device->renderer, &stage->frame, &stage->settings);
+        double worst = 0, mean = 0;
+        for (int i = 0; i < SIZE * SIZE; i++) {
+            vec3s view, at = pixel_point(stage, i % SIZE, i / SIZE, &view);
+            view.z *= behind ? -1 : 1;
+            float u = expected_u(field, &stage->settings.detail, (vec2s){{at.x + 0.5f, 0.5f - at.y}}, view);
+            const float *pixel = test_pixel(&image, i % SIZE, i / SIZE);
+            double off = fabs((double)(pixel[0] / pixel[2] - u));
+            worst = fmax(worst, off);
+            mean += off / (SIZE * SIZE);
+        }
+        printf("%s, mode %d: u off by %.5f, at worst %.5f\n", behind ? "back" : "front", mode, mean, worst);
+        assert_true(mean < 1e-3);
+        assert_true(worst < 4e-3); /* a quarter of a texel of the height map */
+        tl_image_release(&image);
+    }
+}
+
+static void test_shift(void **state)
+{
+    struct stage *stage = stage_new();
+    tl_image heights = tl_image_create(64, 64, 1, TL_IMAGE_F32);
+    for (int i = 0; i < 64 * 64; i++)
+        tl_image_floats(&heights)[i] = DEPTH * ((float)tl_image_bytes(&stage->bumps)[i] / 255 - 1);
+    struct tl_height_field field = tl_height_field_make(&heights, 1, 1, false, false), back;
+    tl_image cones = tl_bake_cones(&field, 1);
+    field.cones = &cones;
+    back = tl_height_field_back(&field);
+    stage->shape.material.double_sided = true;
+    test_shape_refresh(&stage->shape);
+    check_shift(*state, stage, &field);
+    check_shift(*state, stage, &back);
+    tl_image_release(&cones);
+    tl_image_release(&heights);
+    stage_free(stage);
+}
+
+static void test_reference(void **state)
+{
+    struct test_device *device = *state;
+    struct stage *stage = stage_new();
+    tl_error error = {0};
+    stage->settings.reference.strata = 256;
+    for (int mode = TL_DETAIL_PARALLAX; mode <= TL_DETAIL_RELIEF; mode++) {
+        stage->settings.detail.mode = mode;
+        tl_image image = test_draw(device->renderer, &stage->frame, &stage->settings), truth;
+        struct tl_reference_report report;
+        struct tl_comparison comparison;
+        assert_ok(tl_reference_draw(&stage->frame, &stage->settings, NULL, &truth, &report, &error), error);
+        assert_ok(tl_image_compare(&image, &truth, 0, 0, &comparison, &error), error);
+        printf("mode %d: %.2f %% relative RMSE against the reference, standard error %.2f %%\n", mode,
+               100 * comparison.rel_rmse, 100 * report.standard_error);
+        assert_true(comparison.rel_rmse < 0.01 + 3 * report.standard_error);
+        tl_image_release(&image);
+        tl_image_release(&truth);
+    }
+    stage_free(stage);
+}
+
+static bool runs_detail(const tl_renderer *renderer)
+{
+    const tl_plan *plan = tl_renderer_last_plan(renderer);
+    for (int i = 0; i < plan->count; i++)
+        if (strcmp(plan->rows[i].name, "detail") == 0)
+            return plan->rows[i].action == TL_JOB_RUN;
+    return false;
+}
+
+static size_t bytes_with(struct test_device *device, struct stage *stage,
+                         const struct tl_detail_params *detail)
+{
+    stage->settings.detail = *detail;
+    tl_image image = test_draw(device->renderer, &stage->frame, &stage->settings);
+    tl_image_release(&image);
+    return tl_renderer_memory(device->renderer).surfaces;
+}
+
+/* Jobs and memory come with an option and go with it. */
+static void test_unused(void **state)
+{
+    struct test_device *device = *state;
+    struct stage *stage = stage_new();
+    tl_image normals = tl_image_create(64, 64, 3, TL_IMAGE_U8);
+    memset(normals.texels, 128, (size_t)3 * 64 * 64);
+    normals.linear = true;
+    stage->shape.material.normal_map.image = &normals; /* else the height map bends the light by itself */
+    test_shape_refresh(&stage->shape);
+    struct tl_detail_params none = stage->settings.detail, relief = none, horizon = none, lean = none;
+    relief.mode = TL_DETAIL_RELIEF;
+    horizon.shadow = TL_DETAIL_SHADOW_HORIZON;
+    lean.minify = TL_DETAIL_MINIFY_LEAN;
+    size_t bare = bytes_with(device, stage, &none);
+    assert_false(runs_detail(device->renderer));
+    const struct tl_detail_params *choices[] = {&relief, &horizon, &lean};
+    const size_t texel_bytes[] = {4 + 2, 2 * 16, 16}; /* heights and cones; sixteen bytes a side; moments */
+    for (size_t i = 0; i < TL_COUNT(choices); i++) {
+        size_t bytes = bytes_with(device, stage, choices[i]);
+        assert_true(runs_detail(device->renderer));
+        assert_near(bytes - bare, texel_bytes[i] * ((size_t)(64 * 64 * 4 - 1) / 3),
+                    0); /* with all smaller levels */
+        bytes_with(device, stage, choices[i]);
+        assert_false(runs_detail(device->renderer)); /* nothing has changed */
+        assert_int_equal(bytes_with(device, stage, &none), bare);
+        assert_false(runs_detail(device->renderer));
+    }
+    tl_image_release(&normals);
+    stage_free(stage);
+}
+
+/* Extremes of detail, each of which must give finite, bounded images: in light of 1 no more than 1. */
+static void test_extremes(void **state)
+{
+    struct test_device *device = *state;
+    struct stage *stage = stage_new();
+    tl_image one = tl_image_create(1, 1, 1, TL_IMAGE_U8);
+    const float scales[] = {0, 1, 100};
+    const int steps[] = {1, 256};
+    for (int mode = TL_DETAIL_NORMAL; mode <= TL_DETAIL_RELIEF; mode += 2)
+        for (int c = 0; c < 12; c++) {
+            stage->settings.detail.mode = mode;
+            stage->settings.detail.shadow = c % 3;
+            stage->settings.detail.minify = c % 3; /* with that shadow: three programs a mode */
+            stage->settings.detail.height_scale = scales[c % 3];
+            stage->settings.detail.steps = steps[c % 2];
+            stage->shape.material.glossiness = c % 2 ? 1.0f : 0.0f;
+            stage->shape.material.height_map.image = c % 5 == 4 ? &one : &stage->bumps;
+            stage->shape.material.height_map.clamp_u = c % 4 == 3;
+            stage->frame.camera.eye = c % 4 == 0   ? (vec3s){{0, 0.2f, -1}}
+                                      : c % 4 == 1 ? (vec3s){{2, 0.1f, 0.002f}}
+                                                   : (vec3s){{1.2f, 0.5f, 1.3f}};
+            for (size_t v = 0; v < stage->shape.mesh.vertex_count; v++) {
+                stage->shape.mesh.uvs[v].x *= c % 6 == 5 ? -1.0f : 1.0f;
+                stage->shape.mesh.tangents[v] =
+                    glms_vec4_scale(stage->shape.mesh.tangents[v], c == 11 ? 0.0f : 1.0f);
+            }
+            test_shape_refresh(&stage->shape);
+            tl_image image = test_draw(device->renderer, &stage->frame, &stage->settings);
+            for (int i = 0; i < 4 * SIZE * SIZE; i++)
+                assert_true(tl_image_floats(&image)[i] >= 0 && tl_image_floats(&image)[i] <= 1.01f);
+            tl_image_release(&image);
+        }
+    tl_image_release(&one);
+    stage_free(stage);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_shift), cmocka_unit_test(test_reference),
+                                       cmocka_unit_test(test_unused), cmocka_unit_test(test_extremes)};
+    return cmocka_run_group_tests(tests, test_device_open, test_device_close);
+}

@@ -1,0 +1,504 @@
+/* Environment mapping against numerical integration on the CPU, in every mode, composition and layout; the
+ * white furnace; what the plan runs and what it costs. */
+#include "tests/render/shapes.h"
+
+#include "render/env/layout.h"
+#include "render/frame/view.h"
+
+#include "tests/testing.h"
+
+#include <string.h>
+
+#define SIDE 12 /* pixels */
+
+/* Two coloured lights and a glow: smooth, so that a map's texels are no part of the question. */
+static vec3s lights(vec3s d)
+{
+    float first = fmaxf(glms_vec3_dot(d, glms_vec3_normalize((vec3s){{0.5f, 0.7f, 0.6f}})), 0);
+    float second = fmaxf(glms_vec3_dot(d, glms_vec3_normalize((vec3s){{-0.6f, 0.1f, -0.8f}})), 0);
+    float warm = 3 * powf(first, 6), cold = 2 * powf(second, 6);
+    return (vec3s){{0.2f + warm, 0.2f + 0.7f * warm + 0.6f * cold, 0.2f + cold + 0.2f * d.y}};
+}
+#define BRIGHTEST 3.2
+
+static vec3s white(vec3s d)
+{
+    (void)d;
+    return (vec3s){{1, 1, 1}};
+}
+
+/* K_s [DESIGN 3], integrated over the environment's texels. */
+static vec3s integrate(const tl_environment *environment, vec3s direction, double s)
+{
+    const tl_image *image = &environment->image;
+    const struct tl_sphere_map map = {TL_LAYOUT_LATLONG, image->width, image->height};
+    double sum[3] = {0, 0, 0};
+    for (int i = 0; i < image->width * image->height; i++) {
+        int x = i % image->width, y = i / image->width;
+        double cosine = (double)glms_vec3_dot(tl_layout_direction(&map, x + 0.5, y + 0.5), direction);
+        if (cosine <= 0)
+            continue;
+        double weight = (s + 1) / (2 * M_PI) * pow(cosine, s) * tl_layout_solid_angle(&map, x, y);
+        for (int c = 0; c < 3; c++)
+            sum[c] += weight * (double)tl_image_floats(image)[3 * i + c];
+    }
+    return (vec3s){{(float)sum[0], (float)sum[1], (float)sum[2]}};
+}
+
+/* A point of the unit sphere that a pixel's middle sees, from outside or from inside. */
+struct point {
+    vec3s normal; /* on the viewer's side */
+    vec3s viewer, mirror;
+    double cosine;
+};
+
+static bool find_point(const struct tl_view *view, int x, int y, bool inside, struct point *out)
+{
+    float across = 2 * ((float)x + 0.5f) / SIDE - 1, up = 1 - 2 * ((float)y + 0.5f) / SIDE;
+    vec3s ray = glms_vec3_add(
+        view->forward, glms_vec3_add(glms_vec3_scale(view->right, across), glms_vec3_scale(view->up, up)));
+    ray = glms_vec3_normalize(ray);
+    float along = -glms_vec3_dot(ray, view->eye), square = glms_vec3_norm2(view->eye) - along * along;
+    if (square >= 0.98f)
+        return false;
+    float half = sqrtf(1 - square);
+    vec3s hit = glms_vec3_add(view->eye, glms_vec3_scale(ray, inside ? along + half : along - half));
+    out->normal = inside ? glms_vec3_negate(hit) : hit;
+    out->viewer = glms_vec3_negate(ray);
+    out->cosine = (double)glms_vec3_dot(out->normal, out->viewer);
+    out->mirror = glms_vec3_sub(glms_vec3_scale(out->normal, 2 * (float)out->cosine), out->viewer);
+    return out->cosine > 0.2; /* nearer to the rim a pixel reaches far over the sphere */
+}
+
+/* Snell's law by angles. */
+static vec3s refracted(const struct point *point, double index, bool inside, bool *total)
+{
+    double sine = sqrt(1 - point->cosine * point->cosine) * (inside ? index : 1 / index);
+    *total = sine > 1;
+    if (*total)
+        return point->mirror;
+    vec3s along = glms_vec3_sub(glms_vec3_scale(point->normal, (float)point->cosine), point->viewer);
+    vec3s straight = glms_vec3_scale(point->normal, -(float)sqrt(1 - sine * sine));
+    return glms_vec3_add(straight, glms_vec3_scale(glms_vec3_normalize(along), (float)sine));
+}
+
+/* Born and Wolf, 1.5.2, by angles. */
+static double dielectric(double index, double cosine)
+{
+    double sine = sqrt(1 - cosine * cosine) / index, inner = sqrt(1 - sine * sine);
+    double across = (cosine - index * inner) / (cosine + index * inner);
+    double along = (index * cosine - inner) / (index * cosine + inner);
+    return 0.5 * (across * across + along * along);
+}
+
+#define INDEX 1.5
+static const vec3s kd = {{0.6f, 0.4f, 0.2f}};
+static const float glossiness = 0.9f; /* s = 10 */
+
+static vec3s over_light(const tl_environment *environment, int mode, const struct point *point)
+{
+    if (mode == TL_MAPS_MIRROR || mode == TL_MAPS_REFRACTION)
+        return lights(point->mirror);
+    return mode == TL_MAPS_DIFFUSE ? (vec3s){{0, 0, 0}} : integrate(environment, point->mirror, 10);
+}
+
+static vec3s under_light(const tl_environment *environment, int mode, const struct point *point, bool inside)
+{
+    bool total;
+    if (mode == TL_MAPS_REFRACTION)
+        return lights(refracted(point, INDEX, inside, &total));
+    if (mode == TL_MAPS_TRANSMISSION)
+        return glms_vec3_mul(kd, integrate(environment, glms_vec3_negate(point->viewer), 10));
+    return mode == TL_MAPS_GLOSSY ? (vec3s){{0, 0, 0}}
+                                  : glms_vec3_mul(kd, integrate(environment, point->normal, 1));
+}
+
+static vec3s expected_light(const tl_environment *environment, const struct tl_maps_params *maps,
+                            const struct point *point, bool inside)
+{
+    vec3s over = over_light(environment, maps->mode, point),
+          under = under_light(environment, maps->mode, point, inside);
+    float over_share = (float)dielectric(INDEX, point->cosine);
+    float under_share = maps->fresnel == TL_MAPS_FRESNEL_COAT ? 1 - over_share : 1;
+    if (maps->fresnel == TL_MAPS_FRESNEL_OFF) {
+        bool is_under = maps->mode == TL_MAPS_REFRACTION || maps->mode == TL_MAPS_TRANSMISSION;
+        over_share = is_under ? 0 : 1; /* specular is 1: so is Schlick's F */
+        under_share = maps->mode == TL_MAPS_MIRROR ? 0 : 1;
+    }
+    return glms_vec3_add(glms_vec3_scale(over, over_share), glms_vec3_scale(under, under_share));
+}
+
+/* One ball, looked at from outside or from within. */
+struct scene {
+    struct test_shape ball;
+    tl_environment environment;
+    struct tl_render_settings settings;
+    tl_frame frames[2];
+};
+
+static void scene_open(struct scene *scene, vec3s (*light)(vec3s))
+{
+    *scene = (struct scene){.ball = test_sphere((vec3s){{0, 0, 0}}, 1, 96),
+                            .environment = test_environment(128, 64, light),
+                            .settings = test_settings(SIDE, SIDE)};
+    scene->ball.material.diffuse = kd;
+    scene->ball.material.specular = (vec3s){{1, 1, 1}};
+    scene->ball.material.glossiness = glossiness;
+    scene->ball.material.gloss.fresnel = TL_FRESNEL_DIELECTRIC;
+    scene->ball.material.gloss.index = (float)INDEX;
+    test_shape_refresh(&scene->ball);
+    scene->settings.light.method = TL_METHOD_MAPS;
+    scene->settings.maps.size = 64;
+    scene->settings.maps.minify = false; /* one direction a pixel */
+    scene->frames[0] = test_frame((vec3s){{1.5f, 1, 3}}, (vec3s){{0, 0, 0}}, 35, &scene->ball.surface, 1,
+                                  &scene->environment);
+    scene->frames[1] = test_frame((vec3s){{0, 0.8f, 0}}, (vec3s){{0.5f, 0.3f, 0.5f}}, 90,
+                                  &scene->ball.surface, 1, &scene->environment);
+}
+
+static void scene_close(struct scene *scene)
+{
+    test_shape_release(&scene->ball);
+    tl_environment_release(&scene->environment);
+}
+
+/* The largest error of a picture. */
+static double compare(const struct scene *scene, tl_renderer *renderer, bool inside, int *counted,
+                      int *totals)
+{
+    tl_image image = test_draw(renderer, &scene->frames[inside], &scene->settings);
+    struct tl_view view = tl_view_make(&scene->frames[inside].camera, SIDE, SIDE);
+    double worst = 0;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        struct point point;
+        bool total;
+        if (!find_point(&view, i % SIDE, i / SIDE, inside, &point))
+            continue;
+        vec3s expected = expected_light(&scene->environment, &scene->settings.maps, &point, inside);
+        refracted(&point, INDEX, inside, &total);
+        ++*counted;
+        *totals += total;
+        for (int c = 0; c < 3; c++)
+            worst = fmax(worst, fabs((double)(test_pixel(&image, i % SIDE, i / SIDE)[c] - expected.raw[c])));
+    }
+    tl_image_release(&image);
+    return worst;
+}
+
+static const char *const modes[] = {"surface", "mirror", "refraction", "diffuse", "glossy", "transmission"};
+static const char *const fresnels[] = {"off", "additive", "coat"};
+
+/* Of the brightest light: 1 % for normals in halves (1e-3 rad times a slope of 6 in exponents), the blend of
+ * two exponents (0.6 %), and bilinear texels of 1/40 rad (their square times 36 / 8: 0.3 %). */
+#define TOLERANCE (0.01 * BRIGHTEST)
+
+static void modes_are_integrals(void **state)
+{
+    struct test_device *device = *state;
+    struct scene scene;
+    scene_open(&scene, lights);
+    for (int mode = 0; mode < 6; mode++)
+        for (int fresnel = 0; fresnel < 3; fresnel++) {
+            int counted = 0, totals = 0;
+            scene.settings.maps.mode = mode;
+            scene.settings.maps.fresnel = fresnel;
+            double worst = compare(&scene, device->renderer, false, &counted, &totals);
+            print_message("%s, Fresnel %s: %d pixels, off by %.2f %% of the brightest\n", modes[mode],
+                          fresnels[fresnel], counted, 100 * worst / BRIGHTEST);
+            assert_true(counted > 50);
+            assert_int_equal(totals, 0);
+            assert_true(worst < TOLERANCE);
+        }
+    scene_close(&scene);
+}
+
+/* From within, light refracts out of the ball where it can, and is totally reflected elsewhere. At the
+ * critical angle the direction's slope has no bound: a pixel there may be off by more. */
+static void backs_refract_outwards(void **state)
+{
+    struct test_device *device = *state;
+    struct scene scene;
+    int counted = 0, totals = 0, off = 0;
+    scene_open(&scene, lights);
+    scene.settings.maps.mode = TL_MAPS_REFRACTION;
+    tl_image image = test_draw(device->renderer, &scene.frames[1], &scene.settings);
+    struct tl_view view = tl_view_make(&scene.frames[1].camera, SIDE, SIDE);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        struct point point;
+        bool total;
+        if (!find_point(&view, i % SIDE, i / SIDE, true, &point))
+            continue;
+        vec3s direction = refracted(&point, INDEX, true, &total);
+        double sine = INDEX * sqrt(1 - point.cosine * point.cosine);
+        counted++;
+        totals += total;
+        const float *pixel = test_pixel(&image, i % SIDE, i / SIDE);
+        float distance = glms_vec3_distance((vec3s){{pixel[0], pixel[1], pixel[2]}}, lights(direction));
+        off += (double)distance > sqrt(3) * TOLERANCE && fabs(sine - 1) > 0.02;
+    }
+    print_message("%d pixels, %d of them totally reflected, %d off\n", counted, totals, off);
+    assert_true(totals > 20 && counted - totals > 20);
+    assert_int_equal(off, 0);
+    tl_image_release(&image);
+    scene_close(&scene);
+}
+
+static void layouts_are_integrals(void **state)
+{
+    struct test_device *device = *state;
+    struct scene scene;
+    scene_open(&scene, lights);
+    for (int layout = 0; layout <= TL_LAYOUT_COUNT; layout++) {
+        bool by_matrix = layout == TL_LAYOUT_COUNT;
+        const int some[] = {TL_MAPS_SURFACE, TL_MAPS_MIRROR, TL_MAPS_TRANSMISSION};
+        for (size_t i = 0; i < 3; i++) {
+            int counted = 0, totals = 0;
+            scene.settings.maps.mode = some[i];
+            scene.settings.maps.layout = by_matrix ? TL_LAYOUT_PARABOLOID : layout;
+            scene.settings.maps.look_up = by_matrix;
+            scene.settings.maps.size = layout == TL_LAYOUT_CUBE ? 64 : 128;
+            double worst = compare(&scene, device->renderer, false, &counted, &totals);
+            print_message("%s, %s: off by %.2f %% of the brightest\n",
+                          by_matrix ? "paraboloid by matrix" : tl_layout_names[layout], modes[some[i]],
+                          100 * worst / BRIGHTEST);
+            assert_true(worst < TOLERANCE);
+        }
+    }
+    scene_close(&scene);
+}
+
+/* In white light of 1 a lobe brings 1 whatever its exponent: what is left are the weights. Reflectances and
+ * colours are halves, 5e-4, and lobes are exact to 1e-3 (test_lobes.c). */
+static void white_furnace(void **state)
+{
+    struct test_device *device = *state;
+    struct scene scene;
+    scene_open(&scene, white);
+    double worst = 0;
+    scene.settings.maps.size = 32;
+    struct tl_view view = tl_view_make(&scene.frames[0].camera, SIDE, SIDE);
+    for (int layout = 0; layout < TL_LAYOUT_COUNT; layout++)
+        for (int mode = 0; mode < 6; mode++)
+            for (int fresnel = 0; fresnel < 3; fresnel++) {
+                scene.settings.maps.layout = layout;
+                scene.settings.maps.mode = mode;
+                scene.settings.maps.fresnel = fresnel;
+                tl_image image = test_draw(device->renderer, &scene.frames[0], &scene.settings);
+                for (int i = 0; i < SIDE * SIDE; i++) {
+                    struct point point;
+                    if (!find_point(&view, i % SIDE, i / SIDE, false, &point))
+                        continue;
+                    float over = mode == TL_MAPS_DIFFUSE ? 0 : 1, f = (float)dielectric(INDEX, point.cosine);
+                    for (int c = 0; c < 3; c++) {
+                        float under = mode == TL_MAPS_REFRACTION ? 1 : mode == TL_MAPS_GLOSSY ? 0 : kd.raw[c];
+                        float expected = f * over + (fresnel == TL_MAPS_FRESNEL_COAT ? 1 - f : 1) * under;
+                        if (fresnel == TL_MAPS_FRESNEL_OFF)
+                            expected = mode == TL_MAPS_MIRROR    ? 1
+                                       : mode == TL_MAPS_SURFACE ? 1 + under
+                                       : mode == TL_MAPS_GLOSSY  ? 1
+                                                                 : under;
+                        assert_near(test_pixel(&image, i % SIDE, i / SIDE)[c], expected, 3e-3);
+                        worst =
+                            fmax(worst, fabs((double)(test_pixel(&image, i % SIDE, i / SIDE)[c] - expected)));
+                        if (fresnel == TL_MAPS_FRESNEL_COAT) /* never more than what arrives */
+                            assert_true(test_pixel(&image, i % SIDE, i / SIDE)[c] < 1 + 2e-3f);
+                    }
+                }
+                tl_image_release(&image);
+            }
+    print_message("white furnace: off by %.1e\n", worst);
+    scene_close(&scene);
+}
+
+/* Of a material with a coat, and light that comes through: what the film leaves of the two lobes and of the
+ * diffuse light of the other side, and what it reflects. */
+static vec3s layered_light(const struct scene *scene, const struct point *point)
+{
+    const tl_environment *environment = &scene->environment;
+    const tl_material *material = &scene->ball.material;
+    float coat = material->coat * (float)dielectric(1.5, point->cosine);
+    vec3s through = integrate(environment, glms_vec3_negate(point->normal), 1);
+    vec3s under = glms_vec3_add(glms_vec3_mul(kd, integrate(environment, point->normal, 1)),
+                                glms_vec3_mul(material->transmission, through));
+    under = glms_vec3_add(under, integrate(environment, point->mirror, 10));
+    return glms_vec3_add(glms_vec3_scale(under, 1 - coat),
+                         glms_vec3_scale(integrate(environment, point->mirror, 20), coat));
+}
+
+static void layers_are_integrals(void **state)
+{
+    struct test_device *device = *state;
+    struct scene scene;
+    scene_open(&scene, lights);
+    scene.ball.material.coat = 0.8f;
+    scene.ball.material.coat_glossiness = 0.95f; /* s = 20 */
+    scene.ball.material.transmission = (vec3s){{0.3f, 0.2f, 0.1f}};
+    test_shape_refresh(&scene.ball);
+    tl_image image = test_draw(device->renderer, &scene.frames[0], &scene.settings);
+    struct tl_view view = tl_view_make(&scene.frames[0].camera, SIDE, SIDE);
+    double worst = 0;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        struct point point;
+        if (!find_point(&view, i % SIDE, i / SIDE, false, &point))
+            continue;
+        vec3s expected = layered_light(&scene, &point);
+        for (int c = 0; c < 3; c++)
+            worst = fmax(worst, fabs((double)(test_pixel(&image, i % SIDE, i / SIDE)[c] - expected.raw[c])));
+    }
+    print_message("coat and light from behind: off by %.2f %% of the brightest\n", 100 * worst / BRIGHTEST);
+    assert_true(worst < TOLERANCE);
+    tl_image_release(&image);
+    scene_close(&scene);
+}
+
+/* The unshadowed light of the other passes, which have exact lobes of their own: no more than texels differ.
+ */
+static void surfaces_are_lit_as_elsewhere(void **state)
+{
+    struct test_device *device = *state;
+    struct scene scene;
+    scene_open(&scene, lights);
+    scene.settings.maps.size = 128;
+    tl_image image = test_draw(device->renderer, &scene.frames[0], &scene.settings);
+    scene.settings.light.method = TL_METHOD_UNSHADOWED;
+    scene.settings.light.composition = TL_COMPOSE_RATIO;
+    scene.settings.light.pem_size = 128;
+    tl_image exact = test_draw(device->renderer, &scene.frames[0], &scene.settings);
+    for (size_t i = 0; i < (size_t)4 * SIDE * SIDE; i++)
+        assert_near(tl_image_floats(&image)[i], tl_image_floats(&exact)[i], 0.003 * BRIGHTEST);
+    tl_image_release(&image);
+    tl_image_release(&exact);
+    scene_close(&scene);
+}
+
+/* Bright and dark patches of some degrees. */
+static vec3s checks(vec3s d)
+{
+    int column = (int)floorf(atan2f(d.x, d.z) * 12), row = (int)floorf(asinf(d.y) * 12);
+    return (column + row) & 1 ? (vec3s){{1, 0.9f, 0.8f}} : (vec3s){{0.1f, 0.1f, 0.2f}};
+}
+
+/* Of the covered pixels: an outline is not a map's to smooth. */
+static double difference(const tl_image *a, const tl_image *truth)
+{
+    double squares = 0;
+    int counted = 0;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        const float *first = tl_image_floats(a) + 4 * (size_t)i,
+                    *second = tl_image_floats(truth) + 4 * (size_t)i;
+        if (second[3] < 1)
+            continue;
+        counted++;
+        for (int c = 0; c < 3; c++)
+            squares += pow((double)(first[c] - second[c]), 2) / 3;
+    }
+    return sqrt(squares / counted);
+}
+
+/* A small ball shows checks smaller than its pixels: mip levels against 256 samples a pixel. */
+static void levels_stand_for_samples(void **state)
+{
+    struct test_device *device = *state;
+    for (int layout = 0; layout < TL_LAYOUT_COUNT; layout++) {
+        struct scene scene;
+        scene_open(&scene, checks);
+        scene.settings.maps.layout = layout;
+        scene.settings.maps.mode = TL_MAPS_MIRROR;
+        tl_image sharp = test_draw(device->renderer, &scene.frames[0], &scene.settings);
+        scene.settings.maps.minify = true;
+        tl_image levels = test_draw(device->renderer, &scene.frames[0], &scene.settings);
+        scene.settings.maps.minify = false;
+        scene.settings.image.supersample = 16;
+        tl_image truth = test_draw(device->renderer, &scene.frames[0], &scene.settings);
+        double without = difference(&sharp, &truth), with = difference(&levels, &truth);
+        print_message("%s: RMS error of a small mirror %.3f, by levels %.3f\n", tl_layout_names[layout],
+                      without, with);
+        assert_true(with < 0.6 * without);
+        tl_image_release(&sharp);
+        tl_image_release(&levels);
+        tl_image_release(&truth);
+        scene_close(&scene);
+    }
+}
+
+static enum tl_job_action action_of(const tl_plan *plan, const char *name)
+{
+    for (int i = 0; i < plan->count; i++)
+        if (strcmp(plan->rows[i].name, name) == 0)
+            return plan->rows[i].action;
+    print_error("no job %s\n", name);
+    fail();
+    return TL_JOB_DROP;
+}
+
+static void draw(tl_renderer *renderer, struct scene *scene)
+{
+    tl_image image = test_draw(renderer, &scene->frames[0], &scene->settings);
+    tl_image_release(&image);
+}
+
+/* A sphere map follows the view when it turns, and only then; the others are made once. */
+static void sphere_maps_follow_the_view(void **state)
+{
+    struct test_device *device = *state;
+    for (int layout = 0; layout < TL_LAYOUT_COUNT; layout++) {
+        struct scene scene;
+        scene_open(&scene, lights);
+        struct tl_camera *camera = &scene.frames[0].camera;
+        *camera = (struct tl_camera){.eye = {{0, 0, 4}}, .up = {{0, 1, 0}}, .fov_y = 0.6f, 0.1f, 10};
+        scene.settings.maps.layout = layout;
+        scene.settings.maps.size = 16;
+        scene.settings.maps.mode = TL_MAPS_MIRROR;
+        draw(device->renderer, &scene);
+        camera->eye.x = camera->target.x = 0.25f; /* exact: the view's direction stays the same to the bit */
+        draw(device->renderer, &scene);
+        const tl_plan *plan = tl_renderer_last_plan(device->renderer);
+        assert_int_equal(action_of(plan, "envmap"), TL_JOB_REUSE);
+        assert_int_equal(action_of(plan, "look_up"), TL_JOB_RUN);
+        camera->target = (vec3s){{0, 0.2f, 0}};
+        draw(device->renderer, &scene);
+        bool follows = layout == TL_LAYOUT_SPHERE;
+        assert_int_equal(action_of(plan, "envmap"), follows ? TL_JOB_RUN : TL_JOB_REUSE);
+        assert_int_equal(action_of(plan, "envmap_lobes"), TL_JOB_REUSE);
+        scene_close(&scene);
+    }
+}
+
+/* A scene that does not ask for them pays nothing. */
+static void nobody_pays_who_does_not_ask(void **state)
+{
+    (void)state;
+    struct test_device *fresh;
+    assert_int_equal(test_device_open((void **)&fresh), 0);
+    struct scene scene;
+    scene_open(&scene, lights);
+    scene.settings.light.method = TL_METHOD_UNSHADOWED;
+    const char *const jobs[] = {"envmap_lobes", "capture", "envmap", "look_up"};
+    draw(fresh->renderer, &scene);
+    const tl_plan *plan = tl_renderer_last_plan(fresh->renderer);
+    struct tl_render_memory without = tl_renderer_memory(fresh->renderer);
+    for (size_t i = 0; i < 4; i++)
+        assert_int_equal(action_of(plan, jobs[i]), TL_JOB_DROP);
+    scene.settings.light.method = TL_METHOD_MAPS;
+    draw(fresh->renderer, &scene);
+    struct tl_render_memory with = tl_renderer_memory(fresh->renderer);
+    assert_int_equal(action_of(plan, "look_up"), TL_JOB_RUN);
+    assert_int_equal(action_of(plan, "capture"), TL_JOB_DROP);
+    assert_int_equal(action_of(plan, "regions"), TL_JOB_DROP);
+    /* at least 6 faces of 64 x 64 for the diffuse lobe, two glossy ones and the environment */
+    assert_true(with.pems - without.pems >= (size_t)4 * 6 * 64 * 64 * 16);
+    scene_close(&scene);
+    assert_int_equal(test_device_close((void **)&fresh), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(modes_are_integrals),          cmocka_unit_test(backs_refract_outwards),
+        cmocka_unit_test(layouts_are_integrals),        cmocka_unit_test(white_furnace),
+        cmocka_unit_test(layers_are_integrals),         cmocka_unit_test(surfaces_are_lit_as_elsewhere),
+        cmocka_unit_test(levels_stand_for_samples),     cmocka_unit_test(sphere_maps_follow_the_view),
+        cmocka_unit_test(nobody_pays_who_does_not_ask),
+    };
+    return cmocka_run_group_tests(tests, test_device_open, test_device_close);
+}

@@ -1,0 +1,259 @@
+/* Materials that are more than two cosine lobes, lit by rays: each against the oracle, which knows their true
+ * gloss; what a scene without them is spared; and their extremes. */
+#include "tests/render/shapes.h"
+
+#include "config/memory.h"
+#include "render/metrics/compare.h"
+
+#include "tests/testing.h"
+
+#include <string.h>
+
+#define WIDTH  48
+#define HEIGHT 36
+
+static vec3s daylight(vec3s d)
+{
+    bool window = fabsf(d.x) < 0.4f && d.y > 0.1f && d.y < 0.7f && d.z < 0;
+    float sky = 0.5f + 0.3f * d.y;
+    return window ? (vec3s){{6, 6, 5}} : (vec3s){{sky, sky, sky}};
+}
+
+static vec3s furnace(vec3s d)
+{
+    (void)d;
+    return (vec3s){{1, 1, 1}};
+}
+
+/* A sheet that hangs over a ball. */
+struct scene {
+    tl_environment environment;
+    struct test_shape sheet, ball;
+    tl_surface surfaces[2];
+    tl_frame frame;
+    struct tl_render_settings settings;
+};
+
+static void scene_open(struct scene *scene, vec3s (*radiance)(vec3s))
+{
+    *scene = (struct scene){.environment = test_environment(64, 32, radiance),
+                            .sheet = test_sheet(0.9f, 0.6f, 0.05f, 2, 24),
+                            .ball = test_sphere((vec3s){{0, 0.4f, 0}}, 0.35f, 32)};
+    scene->sheet.material.diffuse = (vec3s){{0.4f, 0.3f, 0.3f}};
+    scene->sheet.material.glossiness = 0.9f;
+    scene->sheet.material.specular = (vec3s){{0.2f, 0.2f, 0.2f}};
+    scene->ball.material.diffuse = (vec3s){{0.2f, 0.3f, 0.5f}};
+    scene->settings = test_settings(WIDTH, HEIGHT);
+    struct tl_light_params *light = &scene->settings.light;
+    light->lobe = TL_LOBE_DUAL;
+    light->cut = TL_CUT_SPHERE;
+    light->regions = 96;
+    light->visibility = TL_VISIBILITY_RAYS;
+    light->composition = TL_COMPOSE_RATIO;
+    light->sun = true;
+    light->jitter = true;
+    light->rounds = 8;
+    light->fan = 7;
+    scene->settings.image.supersample = 1;
+    scene->settings.reference.strata = 512;
+    scene->settings.reference.replicates = 4;
+}
+
+static tl_image draw(tl_renderer *renderer, struct scene *scene, int method)
+{
+    test_shape_refresh(&scene->sheet);
+    test_shape_refresh(&scene->ball);
+    scene->sheet.surface.topology_revision++;
+    scene->surfaces[0] = scene->sheet.surface;
+    scene->surfaces[1] = scene->ball.surface;
+    scene->frame = test_frame((vec3s){{0.6f, 1.4f, 1.8f}}, (vec3s){{0, 0.6f, 0}}, 40, scene->surfaces, 2,
+                              &scene->environment);
+    scene->frame.still = true;
+    scene->settings.light.method = method;
+    return test_draw(renderer, &scene->frame, &scene->settings);
+}
+
+static void scene_close(struct scene *scene)
+{
+    tl_environment_release(&scene->environment);
+    test_shape_release(&scene->sheet);
+    test_shape_release(&scene->ball);
+}
+
+struct feature {
+    const char *name;
+    int model;
+    float weft, warp, coat, transmission, openness;
+    double error; /* relative RMSE against the oracle at most: see test_against_the_oracle */
+};
+
+static const struct feature features[] = {
+    {.name = "two lobes", .error = 0.05},
+    {.name = "ward", .model = TL_REFLECT_WARD, .weft = 0.35f, .warp = 0.12f, .error = 0.05},
+    {.name = "ward, turned", .model = TL_REFLECT_WARD, .weft = 0.12f, .warp = 0.35f, .error = 0.05},
+    {.name = "torrance-sparrow", .model = TL_REFLECT_TORRANCE_SPARROW, .weft = 0.25f, .error = 0.05},
+    {.name = "blinn-phong", .model = TL_REFLECT_BLINN_PHONG, .error = 0.05},
+    {.name = "cosine lobe", .model = TL_REFLECT_COSINE_LOBE, .error = 0.05},
+    {.name = "banks", .model = TL_REFLECT_BANKS, .error = 0.05},
+    {.name = "coat", .coat = 1, .error = 0.05},
+    {.name = "transmission", .transmission = 0.5f, .error = 0.05},
+    {.name = "openness", .openness = 0.4f, .error = 0.05},
+    {.name = "all", TL_REFLECT_WARD, 0.35f, 0.12f, 1, 0.3f, 0.4f, 0.05},
+};
+
+static void set_feature(const struct feature *feature, tl_material *material)
+{
+    material->gloss.model = feature->model;
+    material->gloss.facets = TL_FACETS_BECKMANN;
+    material->gloss.width_weft = feature->weft;
+    material->gloss.width_warp = feature->warp;
+    material->coat = feature->coat;
+    material->coat_glossiness = 0.97f;
+    material->transmission = (vec3s){{feature->transmission, feature->transmission, feature->transmission}};
+    material->openness = feature->openness;
+}
+
+/* Images may err as much as the method does with two lobes (3 to 5 % when each pixel has one sample), though
+ * the sheet is seen at some 70 degrees from its normal, where the horizon cuts lobes in half and a fan errs
+ * most. The fan's own error is in test_fan. Alpha is what is covered and not looked through, and must agree
+ * but for the edges' pixels. */
+static void test_against_the_oracle(void **state)
+{
+    const struct test_device *device = *state;
+    for (size_t i = 0; i < TL_COUNT(features); i++) {
+        struct scene scene;
+        struct tl_comparison comparison;
+        tl_error error = {0};
+        scene_open(&scene, daylight);
+        set_feature(&features[i], &scene.sheet.material);
+        tl_image image = draw(device->renderer, &scene, TL_METHOD_PEM);
+        tl_image truth = draw(device->renderer, &scene, TL_METHOD_REFERENCE);
+        assert_ok(tl_image_compare(&image, &truth, -1, 0, &comparison, &error), error);
+        double alpha = 0;
+        for (int p = 0; p < WIDTH * HEIGHT; p++)
+            alpha += (double)fabsf(tl_image_floats(&image)[4 * p + 3] - tl_image_floats(&truth)[4 * p + 3]);
+        printf("%-18s error %.2f %%, of the oracle %.2f %%, alpha off by %.4f a pixel\n", features[i].name,
+               100 * comparison.rel_rmse, 100 * tl_renderer_standard_error(device->renderer),
+               alpha / (WIDTH * HEIGHT));
+        assert_true(comparison.rel_rmse < features[i].error);
+        assert_true(alpha / (WIDTH * HEIGHT) < 0.002);
+        tl_image_release(&image);
+        tl_image_release(&truth);
+        scene_close(&scene);
+    }
+}
+
+/* Under light of 1 from everywhere nothing sends back more than 1, and open cloth shows what is behind it. */
+static void test_furnace(void **state)
+{
+    const struct test_device *device = *state;
+    for (size_t i = 0; i < TL_COUNT(features); i++) {
+        struct scene scene;
+        scene_open(&scene, furnace);
+        set_feature(&features[i], &scene.sheet.material);
+        scene.sheet.material.diffuse = (vec3s){{0, 0, 0}};
+        scene.sheet.material.specular = (vec3s){{1, 1, 1}};
+        if (features[i].transmission > 0)
+            scene.sheet.material.specular = (vec3s){{0.5f, 0.5f, 0.5f}};
+        tl_image image = draw(device->renderer, &scene, TL_METHOD_PEM);
+        float greatest = 0;
+        for (int p = 0; p < 4 * WIDTH * HEIGHT; p++)
+            greatest = fmaxf(greatest, tl_image_floats(&image)[p]);
+        printf("%-18s sends back %.3f at most\n", features[i].name, (double)greatest);
+        assert_true(greatest < 1.1f); /* test_fan: up to 9 % too much towards some viewers */
+        tl_image_release(&image);
+        scene_close(&scene);
+    }
+}
+
+static bool runs(const tl_plan *plan, const char *name)
+{
+    for (int i = 0; i < plan->count; i++)
+        if (strcmp(plan->rows[i].name, name) == 0)
+            return plan->rows[i].action != TL_JOB_DROP;
+    fail_msg("no job %s", name);
+    return false;
+}
+
+/* A feature that is taken away takes its jobs and its memory with it. */
+static void test_only_what_the_scene_requires(void **state)
+{
+    const struct test_device *device = *state;
+    struct scene scene;
+    scene_open(&scene, daylight);
+    const struct feature plain = {.name = "plain"}, all = features[TL_COUNT(features) - 1];
+    tl_image image = draw(device->renderer, &scene, TL_METHOD_PEM);
+    struct tl_render_memory before = tl_renderer_memory(device->renderer);
+    assert_false(runs(tl_renderer_last_plan(device->renderer), "sheets"));
+    assert_int_equal(before.sheets, 0);
+    tl_image_release(&image);
+
+    set_feature(&all, &scene.sheet.material);
+    image = draw(device->renderer, &scene, TL_METHOD_PEM);
+    struct tl_render_memory with = tl_renderer_memory(device->renderer);
+    assert_true(runs(tl_renderer_last_plan(device->renderer), "sheets"));
+    assert_true(with.sheets > 0);
+    assert_int_equal(with.targets - before.targets, 8 * WIDTH * HEIGHT); /* the layer of tangents */
+    assert_true(with.pems > before.pems); /* exponents of the fan and the coat */
+    tl_image_release(&image);
+
+    set_feature(&plain, &scene.sheet.material);
+    image = draw(device->renderer, &scene, TL_METHOD_PEM);
+    struct tl_render_memory after = tl_renderer_memory(device->renderer);
+    assert_false(runs(tl_renderer_last_plan(device->renderer), "sheets"));
+    assert_int_equal(after.sheets, 0);
+    assert_int_equal(after.targets, before.targets);
+    tl_image_release(&image);
+    scene_close(&scene);
+}
+
+static void check_sane(const tl_image *image, const char *name)
+{
+    for (int p = 0; p < WIDTH * HEIGHT; p++) {
+        const float *pixel = tl_image_floats(image) + 4 * (size_t)p;
+        for (int c = 0; c < 4; c++)
+            if (!(pixel[c] >= 0 && pixel[c] < 1e4f))
+                fail_msg("%s: channel %d of pixel %d is %g", name, c, p, (double)pixel[c]);
+        assert_true(pixel[3] <= 1.0001f);
+    }
+}
+
+static void test_extremes(void **state)
+{
+    const struct test_device *device = *state;
+    static const struct feature extremes[] = {
+        {.name = "widths 1e-3", .model = TL_REFLECT_WARD, .weft = 1e-3f, .warp = 1e-3f},
+        {.name = "widths 1 and 1e-3", .model = TL_REFLECT_WARD, .weft = 1, .warp = 1e-3f},
+        {.name = "facets 1", .model = TL_REFLECT_TORRANCE_SPARROW, .weft = 1},
+        {.name = "open .99", .openness = 0.99f},
+        {.name = "all through", .transmission = 1},
+        {.name = "everything", TL_REFLECT_BANKS, 1e-3f, 1, 1, 1, 0.99f, 0},
+    };
+    const float glossinesses[] = {0, 0.5f, 1};
+    for (size_t i = 0; i < TL_COUNT(extremes); i++)
+        for (size_t g = 0; g < TL_COUNT(glossinesses); g++)
+            for (int m = 0; m < 3; m++) {
+                const int methods[] = {TL_METHOD_PEM, TL_METHOD_UNSHADOWED, TL_METHOD_REFERENCE};
+                struct scene scene;
+                scene_open(&scene, daylight);
+                set_feature(&extremes[i], &scene.sheet.material);
+                scene.sheet.material.glossiness = glossinesses[g];
+                scene.sheet.material.coat_glossiness = glossinesses[g];
+                scene.sheet.material.coat = 1;
+                scene.settings.light.rounds = 1;
+                scene.settings.reference.strata = 16;
+                scene.settings.reference.replicates = 1;
+                tl_image image = draw(device->renderer, &scene, methods[m]);
+                check_sane(&image, extremes[i].name);
+                tl_image_release(&image);
+                scene_close(&scene);
+            }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_against_the_oracle), cmocka_unit_test(test_furnace),
+        cmocka_unit_test(test_only_what_the_scene_requires), cmocka_unit_test(test_extremes)};
+    return cmocka_run_group_tests_name("layered", tests, test_device_open, test_device_close);
+}

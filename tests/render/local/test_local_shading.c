@@ -1,0 +1,429 @@
+/* Ways of shading under lamps that are not exact: each against the exact one, and against what the CPU says
+ * that this way must give. Rows A6, A8 to A12 of the technique set. */
+#include "tests/render/lamplight.h"
+
+#include "config/memory.h"
+#include "render/brdf/tables.h"
+#include "render/frame/view.h"
+#include "render/trace/trace.h"
+
+#include "tests/testing.h"
+
+static struct test_shape shiny_sphere(int segments, float glossiness)
+{
+    struct test_shape shape = test_sphere((vec3s){{0, 0, 0}}, 0.7f, segments);
+    shape.material.diffuse = (vec3s){{0.4f, 0.3f, 0.2f}};
+    shape.material.specular = (vec3s){{0.3f, 0.2f, 0.1f}};
+    shape.material.glossiness = glossiness;
+    shape.material.gloss.model = TL_REFLECT_BLINN_PHONG;
+    return shape;
+}
+
+static tl_image draw_exactly(const struct lamplit *scene, tl_renderer *renderer)
+{
+    struct lamplit exact = *scene;
+    exact.settings.shading = *(const struct tl_shading_params *)tl_shading_options.defaults;
+    exact.settings.shading.self_shadow = scene->settings.shading.self_shadow;
+    return lamplit_draw(&exact, renderer);
+}
+
+static double error_of(const struct lamplit *scene, tl_renderer *renderer, const tl_image *expected)
+{
+    return lamplit_error(scene, renderer, expected).rel_rmse;
+}
+
+/* A6. Where light and viewer are the same everywhere, cosines by one matrix, from vertices and of vectors at
+ * pixels are one thing: all are linear in the normal. The camera's 0.2 degrees are what is left: seen through
+ * a lobe of exponent 40 they change its value by up to 40 x 0.0017 x tan of its width, about a hundredth. */
+static void coordinates_agree_far_away(void **state)
+{
+    struct test_device *device = *state;
+    struct lamplit scene;
+    lamplit_open(&scene, shiny_sphere(24, 0.9f), 96, 96);
+    scene.frame.camera.eye = (vec3s){{0, 100, 500}};
+    scene.frame.camera.near_m = 400;
+    scene.frame.camera.far_m = 600;
+    scene.frame.camera.fov_y = 0.0035f;
+    for (int frequency = TL_FREQUENCY_FAST_PHONG; frequency <= TL_FREQUENCY_PHONG; frequency++) {
+        scene.settings.shading.frequency = frequency;
+        scene.settings.shading.coordinates = TL_COORDINATES_PIXEL;
+        tl_image pixel = lamplit_draw(&scene, device->renderer);
+        scene.settings.shading.coordinates = TL_COORDINATES_MATRIX;
+        double matrix = error_of(&scene, device->renderer, &pixel);
+        scene.settings.shading.coordinates = TL_COORDINATES_VERTEX;
+        double vertex = error_of(&scene, device->renderer, &pixel);
+        print_message("far, frequency %d: matrix %.2e, vertex %.2e\n", frequency, matrix, vertex);
+        assert_true(matrix < 1e-2);
+        if (frequency ==
+            TL_FREQUENCY_FAST_PHONG) /* interpolated cosines cannot be made those of unit vectors */
+            assert_true(vertex < 1e-2);
+        tl_image_release(&pixel);
+    }
+    lamplit_close(&scene);
+}
+
+/* ... and near by, under a near lamp, the matrix is far off while a local viewer at vertices is not. */
+static void coordinates_differ_close_by(void **state)
+{
+    struct test_device *device = *state;
+    struct lamplit scene;
+    lamplit_open(&scene, shiny_sphere(64, 0.75f), 96, 96);
+    scene.frame.camera.eye = (vec3s){{0, 0.2f, 1.1f}};
+    scene.frame.camera.fov_y = 1.4f;
+    scene.lamps[0] = lamp_at((vec3s){{-0.6f, 0.6f, 1}}, 1);
+    tl_image exact = draw_exactly(&scene, device->renderer);
+    double errors[3];
+    for (int coordinates = 0; coordinates < 3; coordinates++) {
+        scene.settings.shading.frequency = TL_FREQUENCY_FAST_PHONG;
+        scene.settings.shading.coordinates = coordinates;
+        errors[coordinates] = error_of(&scene, device->renderer, &exact);
+    }
+    print_message("close: matrix %.3f, vertex %.4f, pixel %.4f\n", errors[0], errors[1], errors[2]);
+    assert_true(errors[TL_COORDINATES_MATRIX] > 5 * errors[TL_COORDINATES_VERTEX]);
+    assert_true(errors[TL_COORDINATES_VERTEX] < 0.05);
+    assert_true(errors[TL_COORDINATES_PIXEL] < 0.05);
+    tl_image_release(&exact);
+    lamplit_close(&scene);
+}
+
+static double brightest(const tl_image *image)
+{
+    double peak = 0;
+    for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++)
+        peak = fmax(peak, (double)tl_image_floats(image)[4 * i]);
+    return peak;
+}
+
+/* A8. Against a sphere of 65,000 triangles, shaded exactly. A coarse one loses its highlight to Gouraud, and
+ * keeps it whole with unit vectors. Vectors left short between vertices do not save it: with a far light the
+ * cosine c is linear in between, and c^s is convex, so that (sum w c)^s <= sum w c^s, which is Gouraud's.
+ * Where the paper calls them much better [000, 3.1], the measure must be the eye's, on Mach bands. */
+static void gouraud_loses_the_highlight_first(void **state)
+{
+    enum { STEPS = 4 };
+    static const int segments[STEPS] = {12, 24, 48, 96};
+    struct test_device *device = *state;
+    double errors[STEPS][3], peaks[STEPS][3];
+    struct lamplit scene;
+    lamplit_open(&scene, shiny_sphere(128, 0.9f), 128, 128);
+    tl_image exact = draw_exactly(&scene, device->renderer);
+    lamplit_close(&scene);
+    for (int step = 0; step < STEPS; step++) {
+        lamplit_open(&scene, shiny_sphere(segments[step], 0.9f), 128, 128);
+        for (int frequency = 0; frequency < 3; frequency++) {
+            scene.settings.shading.frequency = frequency;
+            tl_image drawn = lamplit_draw(&scene, device->renderer);
+            errors[step][frequency] = lamplit_compare(&drawn, &exact).rel_rmse;
+            peaks[step][frequency] = brightest(&drawn) / brightest(&exact);
+            tl_image_release(&drawn);
+        }
+        print_message("%5d triangles: error %.3f %.3f %.3f, peak %.2f %.2f %.2f (gouraud, fast, phong)\n",
+                      4 * segments[step] * segments[step], errors[step][0], errors[step][1], errors[step][2],
+                      peaks[step][0], peaks[step][1], peaks[step][2]);
+        assert_true(errors[step][TL_FREQUENCY_GOURAUD] > 5 * errors[step][TL_FREQUENCY_PHONG]);
+        assert_true(peaks[step][TL_FREQUENCY_FAST_PHONG] < peaks[step][TL_FREQUENCY_GOURAUD] + 0.01);
+        for (int frequency = 0; step > 0 && frequency < 2; frequency++)
+            assert_true(errors[step][frequency] < 0.5 * errors[step - 1][frequency]);
+        lamplit_close(&scene);
+    }
+    assert_true(peaks[0][TL_FREQUENCY_GOURAUD] < 0.9);
+    assert_true(fabs(peaks[0][TL_FREQUENCY_PHONG] - 1) < 0.02);
+    tl_image_release(&exact);
+}
+
+/* What a pixel's ray meets, and its corners. */
+struct met {
+    bool is_hit;
+    vec3s n, l, v, h; /* interpolated from unit vectors at the corners */
+};
+
+static vec3s mixed(const vec3s corners[3], float u, float v)
+{
+    vec3s sum = glms_vec3_scale(corners[0], 1 - u - v);
+    return glms_vec3_add(glms_vec3_add(sum, glms_vec3_scale(corners[1], u)), glms_vec3_scale(corners[2], v));
+}
+
+static struct met meet(const struct lamplit *scene, const tl_trace *trace, const struct tl_view *view, int x,
+                       int y)
+{
+    const struct tl_image_params *image = &scene->settings.image;
+    float right = 2 * ((float)x + 0.5f) / (float)image->width - 1,
+          up = 1 - 2 * ((float)y + 0.5f) / (float)image->height;
+    vec3s along = glms_vec3_add(view->forward, glms_vec3_scale(view->right, right));
+    along = glms_vec3_normalize(glms_vec3_add(along, glms_vec3_scale(view->up, up)));
+    struct tl_trace_hit hit = tl_trace_nearest(trace, view->eye, along, 0.01f, 100);
+    struct met met = {.is_hit = hit.surface != TL_TRACE_NONE};
+    if (!met.is_hit)
+        return met;
+    vec3s n[3], l[3], v[3], h[3];
+    for (int i = 0; i < 3; i++) {
+        uint32_t corner = scene->surfaces[0].indices[3 * hit.triangle + (uint32_t)i];
+        n[i] = scene->surfaces[0].normals[corner];
+        l[i] = scene->lamps[0].direction;
+        v[i] = glms_vec3_normalize(glms_vec3_sub(view->eye, scene->surfaces[0].positions[corner]));
+        h[i] = glms_vec3_normalize(glms_vec3_add(l[i], v[i]));
+    }
+    met.n = mixed(n, hit.u, hit.v);
+    met.l = mixed(l, hit.u, hit.v);
+    met.v = mixed(v, hit.u, hit.v);
+    met.h = mixed(h, hit.u, hit.v);
+    return met;
+}
+
+static float raised(float cosine, float exponent, int power, const uint8_t *table)
+{
+    float bounded = fminf(fmaxf(cosine, 0), 1);
+    if (power == TL_POWER_FIXED8)
+        return tl_power_fixed8(bounded, (int)(log2f(exponent) + 0.5f));
+    return power == TL_POWER_TABLE ? tl_power_table_at(table, TL_POWER_TABLE_SIZE, bounded)
+                                   : powf(bounded, exponent);
+}
+
+/* A Blinn-Phong surface by render/brdf's own normalising and powers, in red. */
+static tl_image evaluate_reduced(const struct lamplit *scene)
+{
+    const struct tl_shading_params *shading = &scene->settings.shading;
+    const struct tl_image_params *image = &scene->settings.image;
+    const tl_material *material = &scene->shapes[0].material;
+    const struct tl_brdf brdf = tl_brdf_of(material, material->specular, material->glossiness);
+    float exponent = 4 * brdf.exponent;
+    struct tl_view view = tl_view_make(&scene->frame.camera, image->width, image->height);
+    bool wide = shading->normalisation == TL_NORMALISE_CUBE16;
+    struct tl_normal_cube cube = tl_normal_cube_make(TL_NORMALISE_CUBE_SIZE, wide ? 16 : 8);
+    uint8_t table[TL_POWER_TABLE_SIZE];
+    tl_power_table_make(exponent, TL_POWER_TABLE_SIZE, table);
+    tl_error error = {0};
+    tl_trace *trace = tl_trace_create(&error);
+    assert_ok(tl_trace_update(trace, scene->surfaces, 1, &error), error);
+    tl_image out = tl_image_create(image->width, image->height, 4, TL_IMAGE_F32);
+    for (int y = 0; y < image->height; y++)
+        for (int x = 0; x < image->width; x++) {
+            struct met met = meet(scene, trace, &view, x, y);
+            float *pixel = tl_image_floats(&out) + 4 * ((size_t)y * (size_t)image->width + (size_t)x);
+            pixel[3] = met.is_hit;
+            if (!met.is_hit)
+                continue;
+            float facing =
+                glms_vec3_dot(glms_vec3_normalize(met.n), tl_normalise(shading->normalisation, &cube, met.l));
+            vec3s n = tl_normalise(shading->normalisation, &cube, met.n);
+            vec3s l = tl_normalise(shading->normalisation, &cube, met.l);
+            vec3s v = tl_normalise(shading->normalisation, &cube, met.v);
+            vec3s h = tl_normalise(shading->normalisation, &cube, met.h);
+            float a = glms_vec3_dot(n, l), b = glms_vec3_dot(n, v), d = glms_vec3_dot(n, h);
+            float ramp = fminf(fmaxf(32 * facing, 0), 1);
+            vec3s f = tl_brdf_fresnel(&brdf, fminf(fmaxf(glms_vec3_dot(h, l), 0), 1));
+            float lobe = a > 0 && b > 0 && d > 0
+                             ? tl_brdf_lobe_scale(&brdf) * raised(d, exponent, shading->power, table)
+                             : 0;
+            for (int c = 0; c < 3; c++)
+                pixel[c] = ramp * scene->lamps[0].irradiance.raw[c] *
+                           (material->diffuse.raw[c] * fmaxf(a, 0) / (float)M_PI + f.raw[c] * lobe);
+        }
+    tl_trace_destroy(&trace);
+    tl_normal_cube_release(&cube);
+    return out;
+}
+
+/* A9. Each way gives what render/brdf says of it, and their order is the paper's: one Newton step is better
+ * than eight bits, sixteen bits are nearly exact. Eight bits are also how finely software GL blends texels of
+ * eight bits, so there two answers may lie a step of 1/255 of a vector apart: 4 s / 255 of the highlight. */
+static void normalises_as_the_cpu_does(void **state)
+{
+    struct test_device *device = *state;
+    struct lamplit scene;
+    double errors[5];
+    lamplit_open(&scene, shiny_sphere(12, 0.75f), 96, 96);
+    tl_image exact = draw_exactly(&scene, device->renderer);
+    for (int way = TL_NORMALISE_NONE; way <= TL_NORMALISE_NEWTON; way++) {
+        scene.settings.shading.normalisation = way;
+        tl_image expected = evaluate_reduced(&scene);
+        struct lamplit_difference off = lamplit_error(&scene, device->renderer, &expected);
+        tl_image_release(&expected);
+        errors[way] = error_of(&scene, device->renderer, &exact);
+        print_message("%-7s: off the CPU by %.1e (largest %.1e), off exact by %.4f\n",
+                      tl_normalisation_names[way], off.rel_rmse, off.largest, errors[way]);
+        bool is_coarse = way == TL_NORMALISE_CUBE8;
+        assert_true(off.rel_rmse < (is_coarse ? 2e-2 : 2e-4));
+    }
+    assert_true(errors[TL_NORMALISE_NONE] > 5 * errors[TL_NORMALISE_NEWTON]);
+    assert_true(errors[TL_NORMALISE_CUBE8] > errors[TL_NORMALISE_NEWTON]);
+    tl_image_release(&exact);
+    lamplit_close(&scene);
+}
+
+/* A10. */
+static void raises_as_the_cpu_does(void **state)
+{
+    static const float glossinesses[] = {0.5f, 0.75f, 0.9375f, 0.984375f}; /* exponents 8, 16, 64, 256 */
+    struct test_device *device = *state;
+    for (size_t g = 0; g < TL_COUNT(glossinesses); g++) {
+        struct lamplit scene;
+        double errors[TL_POWER_COUNT];
+        lamplit_open(&scene, shiny_sphere(48, glossinesses[g]), 96, 96);
+        tl_image exact = draw_exactly(&scene, device->renderer);
+        for (int power = TL_POWER_POW; power <= TL_POWER_TABLE; power++) {
+            /* Any way that begins with interpolated vectors: the CPU's own has no other. */
+            scene.settings.shading.normalisation = TL_NORMALISE_NEWTON;
+            scene.settings.shading.power = power;
+            tl_image expected = evaluate_reduced(&scene);
+            struct lamplit_difference off = lamplit_error(&scene, device->renderer, &expected);
+            tl_image_release(&expected);
+            scene.settings.shading.normalisation = TL_NORMALISE_EXACT;
+            errors[power] = error_of(&scene, device->renderer, &exact);
+            print_message("exponent %3.0f, %-6s: off the CPU by %.1e (largest %.1e), off exact by %.4f\n",
+                          4 / (1 - (double)glossinesses[g]), tl_power_names[power], off.rel_rmse, off.largest,
+                          errors[power]);
+            /* Software GL weighs texels of eight bits with eight bits: a level of the table's 255. */
+            assert_true(off.largest < (power == TL_POWER_TABLE ? 1.0 / 255 : 2e-4));
+        }
+        assert_true(errors[TL_POWER_POW] < 1e-6);
+        assert_true(errors[TL_POWER_FIXED8] > errors[TL_POWER_TABLE]);
+        tl_image_release(&exact);
+        lamplit_close(&scene);
+    }
+}
+
+/* A normal map of waves, as steep as 45 degrees. */
+static tl_image waves(void)
+{
+    enum { SIDE = 64 };
+    tl_image image = tl_image_create(SIDE, SIDE, 3, TL_IMAGE_U8);
+    image.linear = true;
+    uint8_t *texel = image.texels;
+    for (int y = 0; y < SIDE; y++)
+        for (int x = 0; x < SIDE; x++, texel += 3) {
+            float u = 2 * (float)M_PI * ((float)x + 0.5f) / SIDE,
+                  v = 2 * (float)M_PI * ((float)y + 0.5f) / SIDE;
+            vec3s n = glms_vec3_normalize((vec3s){{cosf(u), 0.5f * cosf(v), 1}});
+            for (int c = 0; c < 3; c++)
+                texel[c] = (uint8_t)lroundf(127.5f + 127.5f * n.raw[c]);
+        }
+    return image;
+}
+
+static void give_waves(struct lamplit *scene, const tl_image *image)
+{
+    tl_material *material = &scene->shapes[0].material;
+    material->normal_map.image = image;
+    material->normal_map.transform.scale[0] = material->normal_map.transform.scale[1] = 6;
+    lamplit_refresh(scene);
+}
+
+/* A11. Light taken into tangent space at vertices is off by what the frame turns within a triangle: half the
+ * turn, a quarter of the error, with bumps as without. */
+static void tangent_space_differs_with_the_frames_turn(void **state)
+{
+    struct test_device *device = *state;
+    tl_image bumps = waves();
+    for (int bumpy = 0; bumpy < 2; bumpy++) {
+        double before = 0;
+        for (int segments = 12; segments <= 48; segments *= 2) {
+            struct lamplit scene;
+            lamplit_open(&scene, shiny_sphere(segments, 0.7f), 128, 128);
+            scene.lamps[0] = lamp_at((vec3s){{-1, 1, 1.5f}}, 4);
+            if (bumpy)
+                give_waves(&scene, &bumps);
+            tl_image world = draw_exactly(&scene, device->renderer);
+            scene.settings.shading.space = TL_SPACE_TANGENT;
+            double error = error_of(&scene, device->renderer, &world);
+            print_message("%s, frames turn by %4.1f degrees: tangent space off by %.2e\n",
+                          bumpy ? "bumpy" : "plain", 180.0 / segments, error);
+            if (before > 0)
+                assert_true(error < before / 2.5);
+            before = error;
+            tl_image_release(&world);
+            lamplit_close(&scene);
+        }
+        assert_true(before < 0.02);
+    }
+    tl_image_release(&bumps);
+}
+
+/* A12. The waves' flanks face a light that the sphere itself hides from them. */
+static void no_light_on_what_faces_away(void **state)
+{
+    struct test_device *device = *state;
+    tl_image bumps = waves();
+    struct lamplit scene;
+    lamplit_open(&scene, shiny_sphere(32, 0.7f), 96, 96);
+    give_waves(&scene, &bumps);
+    scene.lamps[0] = lamp_towards((vec3s){{1, 0.1f, -0.15f}}, 3);
+    struct tl_view view = tl_view_make(&scene.frame.camera, 96, 96);
+    tl_error error = {0};
+    tl_trace *trace = tl_trace_create(&error);
+    assert_ok(tl_trace_update(trace, scene.surfaces, 1, &error), error);
+    for (int way = 0; way < 4; way++) {
+        scene.settings.shading.self_shadow = way & 1;
+        scene.settings.shading.space = way >> 1;
+        tl_image image = lamplit_draw(&scene, device->renderer);
+        int away = 0, towards = 0;
+        for (int y = 0; y < 96; y++)
+            for (int x = 0; x < 96; x++) {
+                struct met met = meet(&scene, trace, &view, x, y);
+                float facing = glms_vec3_dot(met.n, scene.lamps[0].direction);
+                away += met.is_hit && facing < -0.01f;
+                towards += test_pixel(&image, x, y)[0] > 0;
+                if (met.is_hit && facing < -0.01f && test_pixel(&image, x, y)[3] > 0)
+                    assert_true(test_pixel(&image, x, y)[0] == 0);
+            }
+        assert_true(away > 1000 && towards > 500);
+        tl_image_release(&image);
+    }
+    tl_trace_destroy(&trace);
+    tl_image_release(&bumps);
+    lamplit_close(&scene);
+}
+
+/* The largest change of any pixel from frame to frame, averaged over the frames of a lamp that goes round. */
+static double flicker(struct lamplit *scene, tl_renderer *renderer)
+{
+    enum { FRAMES = 12 };
+    double sum = 0;
+    tl_image before = {0};
+    for (int i = 0; i <= FRAMES; i++) {
+        float angle = 1.2f + 0.004f * (float)i;
+        scene->lamps[0] = lamp_towards((vec3s){{sinf(angle), 0.2f, cosf(angle)}}, 3);
+        tl_image image = lamplit_draw(scene, renderer);
+        double most = 0;
+        for (size_t k = 0; i > 0 && k < (size_t)image.width * (size_t)image.height * 4; k++)
+            most = fmax(most, fabs((double)tl_image_floats(&image)[k] - (double)tl_image_floats(&before)[k]));
+        sum += most;
+        if (i > 0)
+            tl_image_release(&before);
+        before = image;
+    }
+    tl_image_release(&before);
+    return sum / FRAMES;
+}
+
+static void a_ramp_flickers_less_than_a_step(void **state)
+{
+    struct test_device *device = *state;
+    tl_image bumps = waves();
+    struct lamplit scene;
+    lamplit_open(&scene, shiny_sphere(32, 0.5f), 96, 96);
+    give_waves(&scene, &bumps);
+    scene.settings.shading.self_shadow = TL_SELF_SHADOW_STEP;
+    double step = flicker(&scene, device->renderer);
+    scene.settings.shading.self_shadow = TL_SELF_SHADOW_RAMP;
+    double ramp = flicker(&scene, device->renderer);
+    print_message("frame to frame: step %.3f, ramp %.3f\n", step, ramp);
+    assert_true(ramp < 0.5 * step);
+    tl_image_release(&bumps);
+    lamplit_close(&scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(coordinates_agree_far_away),
+        cmocka_unit_test(coordinates_differ_close_by),
+        cmocka_unit_test(gouraud_loses_the_highlight_first),
+        cmocka_unit_test(normalises_as_the_cpu_does),
+        cmocka_unit_test(raises_as_the_cpu_does),
+        cmocka_unit_test(tangent_space_differs_with_the_frames_turn),
+        cmocka_unit_test(no_light_on_what_faces_away),
+        cmocka_unit_test(a_ramp_flickers_less_than_a_step),
+    };
+    return cmocka_run_group_tests(tests, test_device_open, test_device_close);
+}

@@ -1,0 +1,104 @@
+/* Directions drawn from an environment, in both layouts, with a yaw. */
+#include "config/memory.h"
+#include "render/reference/sky.h"
+
+#include "tests/testing.h"
+
+#define DRAWS 20000
+
+/* Sizes that are no powers of two; a bright texel on a dim slope. */
+static tl_environment environment_of(enum tl_env_layout layout)
+{
+    int width = layout == TL_ENV_CUBE ? 11 : 37, height = layout == TL_ENV_CUBE ? 66 : 19;
+    tl_environment environment = {.layout = layout, .image = tl_image_create(width, height, 3, TL_IMAGE_F32)};
+    for (int i = 0; i < width * height * 3; i++)
+        tl_image_floats(&environment.image)[i] = i / 3 == 200 ? 500.0f : (float)i / 1000;
+    return environment;
+}
+
+static const enum tl_env_layout layouts[] = {TL_ENV_LATLONG, TL_ENV_CUBE};
+
+/* The curve visits every texel once, and the shares of the draws end at 1. */
+static void test_curve(void **state)
+{
+    (void)state;
+    for (size_t l = 0; l < TL_COUNT(layouts); l++) {
+        tl_environment environment = environment_of(layouts[l]);
+        struct tl_sky sky;
+        tl_sky_make(&environment, 0, &sky);
+        int *visits = TL_NEW_ARRAY(int, sky.texel_count);
+        for (size_t i = 0; i < sky.texel_count; i++)
+            visits[sky.order[i]]++;
+        for (size_t i = 0; i < sky.texel_count; i++)
+            assert_int_equal(visits[i], 1);
+        assert_near(sky.before[sky.texel_count], 1, 0);
+        free(visits);
+        tl_sky_release(&sky);
+        tl_environment_release(&environment);
+    }
+}
+
+/* What is drawn is what is seen there: unit direction, radiance and density, but where rounding puts a
+ * direction over the border of its texel. */
+static void test_draw_and_look_agree(void **state)
+{
+    (void)state;
+    for (size_t l = 0; l < TL_COUNT(layouts); l++) {
+        tl_environment environment = environment_of(layouts[l]);
+        struct tl_sky sky;
+        int differ = 0;
+        tl_sky_make(&environment, 1.3f, &sky);
+        for (int i = 0; i < DRAWS; i++) {
+            struct tl_skylight drawn = tl_sky_draw(&sky, (i + 0.37) / DRAWS);
+            struct tl_skylight seen = tl_sky_look(&sky, drawn.direction);
+            assert_near(glms_vec3_norm(drawn.direction), 1, 1e-6);
+            differ += drawn.radiance.x != seen.radiance.x ||
+                      fabsf(drawn.density - seen.density) > 1e-5f * drawn.density;
+        }
+        assert_true(differ <= DRAWS / 1000);
+        tl_sky_release(&sky);
+        tl_environment_release(&environment);
+    }
+}
+
+/* Weighed by their densities, draws measure: the sphere is 4 pi sr, its mean direction 0, its second moments
+ * 4 pi / 3 each; and light, summed over draws, is what the texels hold. Draws are evenly spaced along the
+ * curve, which makes errors of the order of one draw's share for each texel's border: a thousandth. */
+static void test_measure(void **state)
+{
+    (void)state;
+    for (size_t l = 0; l < TL_COUNT(layouts); l++) {
+        tl_environment environment = environment_of(layouts[l]);
+        struct tl_sky sky;
+        tl_sky_make(&environment, -2.1f, &sky);
+        double area = 0, light = 0, first[3] = {0, 0, 0}, second[3] = {0, 0, 0};
+        for (int i = 0; i < DRAWS; i++) {
+            struct tl_skylight drawn = tl_sky_draw(&sky, (i + 0.5) / DRAWS);
+            double weight = 1 / ((double)drawn.density * DRAWS);
+            area += weight;
+            light += weight * (double)(drawn.radiance.x + drawn.radiance.y + drawn.radiance.z) / 3;
+            for (int c = 0; c < 3; c++) {
+                first[c] += weight * (double)drawn.direction.raw[c];
+                second[c] += weight * pow((double)drawn.direction.raw[c], 2);
+            }
+        }
+        assert_near(area / (4 * M_PI), 1, 1e-3);
+        assert_near(light / sky.brightness, 1, 1e-3);
+        for (int c = 0; c < 3; c++) {
+            assert_near(first[c] / (4 * M_PI), 0, 1e-3);
+            assert_near(second[c] * 3 / (4 * M_PI), 1, 3e-3);
+        }
+        tl_sky_release(&sky);
+        tl_environment_release(&environment);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_curve),
+        cmocka_unit_test(test_draw_and_look_agree),
+        cmocka_unit_test(test_measure),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
