@@ -1,6 +1,14 @@
 #include "app/commands.h"
 
+#include "app/batch/commands.h"
+#include "app/lab/check/commands.h"
+#include "app/lab/flight/commands.h"
+#include "app/lab/gallery/commands.h"
+#include "app/lab/stability/commands.h"
+#include "app/lab/trade/commands.h"
 #include "app/scene/settings.h"
+#include "app/sheet/commands.h"
+#include "app/view/commands.h"
 #include "config/memory.h"
 #include "config/words.h"
 

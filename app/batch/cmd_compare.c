@@ -1,6 +1,6 @@
 /* toile compare: how different two images are. */
+#include "app/batch/commands.h"
 #include "app/cli/json.h"
-#include "app/commands.h"
 #include "assets/image/exr.h"
 #include "config/file.h"
 #include "render/metrics/compare.h"

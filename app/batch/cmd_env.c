@@ -1,5 +1,5 @@
 /* toile env: an environment map from one layout into another, or what a scene's middle sees of it. */
-#include "app/commands.h"
+#include "app/batch/commands.h"
 #include "app/scene/headless.h"
 #include "app/scene/moving_light.h"
 #include "assets/image/exr.h"

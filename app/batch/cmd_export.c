@@ -1,5 +1,5 @@
 /* toile export: a frame as GLB or OBJ, or the motion of the garment as a PC2 or MDD point cache. */
-#include "app/commands.h"
+#include "app/batch/commands.h"
 #include "app/scene/headless.h"
 #include "app/scene/session.h"
 #include "assets/motion/point_cache.h"

@@ -1,6 +1,6 @@
 /* toile fabric: the maps that a height map gives: heights in metres, normals, offsets, moments, gloss,
  * horizons, cones. */
-#include "app/commands.h"
+#include "app/batch/commands.h"
 #include "app/scene/height_picture.h"
 #include "assets/image/exr.h"
 #include "config/file.h"

@@ -1,6 +1,6 @@
 /* toile info: what a file holds and how it will be read; or what is built in. */
+#include "app/batch/commands.h"
 #include "app/cli/json.h"
-#include "app/commands.h"
 #include "app/scene/settings.h"
 #include "assets/builtin/specimen.h"
 #include "assets/environment.h"

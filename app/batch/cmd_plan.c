@@ -1,7 +1,7 @@
 /* toile plan: what would run for a frame, and why. */
+#include "app/batch/commands.h"
 #include "app/budget/governor.h"
 #include "app/cli/json.h"
-#include "app/commands.h"
 #include "app/measure/cost.h"
 #include "app/scene/headless.h"
 #include "render/gpu/clocks.h"

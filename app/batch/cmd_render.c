@@ -1,5 +1,5 @@
 /* toile render: frames without a screen. */
-#include "app/commands.h"
+#include "app/batch/commands.h"
 #include "app/report/legend.h"
 #include "app/scene/headless.h"
 #include "assets/image/exr.h"

@@ -1,11 +1,11 @@
 /* toile sheet: a contact sheet, cell by cell, as a folder of pictures or as one image. */
-#include "app/commands.h"
 #include "app/report/folder.h"
 #include "app/report/report.h"
 #include "app/scene/camera.h"
 #include "app/scene/headless.h"
 #include "app/scene/orbit.h"
 #include "app/scene/session.h"
+#include "app/sheet/commands.h"
 #include "app/sheet/contact_plan.h"
 #include "app/sheet/contact_store.h"
 #include "config/file.h"

@@ -1,8 +1,8 @@
 /* toile view: the review window. Its life and its loop.
  *
  * A window in which nothing happens costs nothing: the loop sleeps. */
-#include "app/commands.h"
 #include "app/scene/headless.h"
+#include "app/view/commands.h"
 #include "app/view/review.h"
 #include "config/interrupt.h"
 #include "config/log.h"

@@ -1,7 +1,7 @@
 /* toile check: every frame of a scene against the table of invariants. */
 #include "app/cli/json.h"
-#include "app/commands.h"
 #include "app/lab/check/check_run.h"
+#include "app/lab/check/commands.h"
 #include "app/scene/headless.h"
 #include "config/file.h"
 

@@ -1,6 +1,6 @@
 /* toile fly: a recorded fly-through, and what it came to. */
 #include "app/cli/json.h"
-#include "app/commands.h"
+#include "app/lab/flight/commands.h"
 #include "app/lab/flight/fly_account.h"
 #include "app/report/folder.h"
 #include "app/scene/camera.h"

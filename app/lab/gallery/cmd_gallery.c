@@ -1,5 +1,5 @@
 /* toile gallery: every technique with its error and its time, as pictures, a page and a table. */
-#include "app/commands.h"
+#include "app/lab/gallery/commands.h"
 #include "app/lab/gallery/gallery.h"
 #include "app/report/folder.h"
 #include "config/file.h"

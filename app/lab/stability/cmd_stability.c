@@ -2,7 +2,7 @@
  */
 #include "app/cli/json.h"
 #include "app/cli/topic.h"
-#include "app/commands.h"
+#include "app/lab/stability/commands.h"
 #include "app/lab/stability/stability.h"
 
 #include <stdio.h>

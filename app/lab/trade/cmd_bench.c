@@ -1,7 +1,7 @@
 /* toile bench: ratios measured side by side in one run. */
 #include "app/cli/topic.h"
-#include "app/commands.h"
 #include "app/lab/trade/bench.h"
+#include "app/lab/trade/commands.h"
 
 bool tl_command_bench(const struct tl_arguments *arguments, tl_error *error)
 {

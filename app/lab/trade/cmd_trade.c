@@ -1,5 +1,5 @@
 /* toile trade: error against time along an axis, as CSV and as a report. */
-#include "app/commands.h"
+#include "app/lab/trade/commands.h"
 #include "app/lab/trade/trade.h"
 #include "app/lab/trade/trade_cloth.h"
 #include "app/report/folder.h"

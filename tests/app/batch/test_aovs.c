@@ -2,7 +2,7 @@
 #include "tests/exr_channel.h"
 #include "tests/testing.h"
 
-#include "app/commands.h"
+#include "app/batch/commands.h"
 #include "config/log.h"
 
 static void render(const char *output, const char *extra)

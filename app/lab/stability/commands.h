@@ -1,0 +1,9 @@
+/* Commands of this room: extreme inputs. app/cli/command.h says what a command is. */
+#ifndef TOILE_APP_LAB_STABILITY_COMMANDS_H
+#define TOILE_APP_LAB_STABILITY_COMMANDS_H
+
+#include "app/cli/arguments.h"
+
+bool tl_command_stability(const struct tl_arguments *arguments, tl_error *error);
+
+#endif
