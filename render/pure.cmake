@@ -2,8 +2,8 @@
 add_library(toile_light STATIC
   brdf/brdf.c
   brdf/coat.c
-  brdf/draw.c
-  brdf/fan.c
+  brdf/sample.c
+  brdf/lobe_fit.c
   brdf/fresnel.c
   brdf/normalise.c
   brdf/options.c
@@ -20,7 +20,7 @@ add_library(toile_light STATIC
   env/cube.c
   env/emitters.c
   env/layout.c
-  env/levels.c
+  env/mip_levels.c
   env/lobes.c
   inspect/legend.c
   inspect/paint.c
@@ -29,9 +29,9 @@ add_library(toile_light STATIC
   light/compose.c
   light/cull.c
   light/mirrors.c
-  env/pour.c
+  env/resample.c
   env/sun.c
-  envmap/pictures.c
+  envmap/prefiltered_map.c
   frame/view.c
   gpu/map_texture.c
   light/region_lights.c
@@ -59,7 +59,7 @@ add_library(toile_light STATIC
   reference/options.c
   reference/reference.c
   reference/sky.c
-  reference/spot.c
+  reference/shading_point.c
   surfaces/ground.c
   trace/cutout.c
   trace/trace.c

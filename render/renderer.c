@@ -108,7 +108,7 @@ void tl_renderer_destroy(tl_renderer **renderer)
     if (!*renderer)
         return;
     tl_prepared_destroy(&(*renderer)->prepared);
-    tl_pour_release(&(*renderer)->pour);
+    tl_resampling_release(&(*renderer)->pour);
     tl_cube_release(&(*renderer)->cube);
     tl_regions_release(&(*renderer)->regions);
     tl_pems_release(&(*renderer)->pems);
@@ -132,7 +132,7 @@ void tl_renderer_destroy(tl_renderer **renderer)
     tl_shadow_maps_destroy(&(*renderer)->maps);
     tl_gbuffer_release(&(*renderer)->gbuffer);
     tl_lighting_release(&(*renderer)->lighting);
-    tl_pour_release(&(*renderer)->surroundings.pour);
+    tl_resampling_release(&(*renderer)->surroundings.pour);
     tl_cube_release(&(*renderer)->surroundings.cube);
     tl_lobes_release(&(*renderer)->surroundings.lobes);
     tl_envmap_release(&(*renderer)->envmap);

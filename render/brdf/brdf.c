@@ -1,6 +1,6 @@
 #include "render/brdf/brdf.h"
 
-#include "render/brdf/lobes.h"
+#include "render/brdf/brdf_internal.h"
 #include "render/pem/lobe.h"
 
 #include <math.h>

@@ -72,9 +72,9 @@ float tl_fresnel_schlick(float f0, float cosine);
 
 /* A direction drawn for light in proportion to the gloss, or nearly so, from two uniform numbers in [0, 1);
  * its density by solid angle in *density (0: no direction, below the surface). And the density of any
- * direction. (render/brdf/draw.c) */
-vec3s tl_brdf_draw(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, float u1, float u2,
-                   float *density);
-float tl_brdf_density(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s l, vec3s v);
+ * direction. (render/brdf/sample.c) */
+vec3s tl_brdf_sample(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, float u1,
+                     float u2, float *density);
+float tl_brdf_pdf(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s l, vec3s v);
 
 #endif

@@ -23,7 +23,7 @@ static vec3s light_of(const struct tl_brdf *brdf, const struct tl_brdf_frame *fr
     int row = i / LIGHTS;
     float u1 = ((float)(i % LIGHTS) + 0.5f) / LIGHTS, shift = fmodf((float)viewer * 0.61803399f, 1);
     float u2 = fmodf(((float)row + 0.5f) / LIGHTS + shift, 1), density;
-    return i % 2 ? direction(u1, u2) : tl_brdf_draw(brdf, frame, v, u1, u2, &density);
+    return i % 2 ? direction(u1, u2) : tl_brdf_sample(brdf, frame, v, u1, u2, &density);
 }
 
 struct sums {

@@ -1,7 +1,7 @@
 #include "render/brdf/tables.h"
 
 #include "config/memory.h"
-#include "render/brdf/lobes.h"
+#include "render/brdf/brdf_internal.h"
 
 #include <assert.h>
 #include <math.h>

@@ -198,7 +198,7 @@ static bool find_outline(const struct conversion *conversion, const struct tl_la
         double x = middle_x + (i == 1 || i == 2 ? half_x : -half_x),
                y = middle_y + (i < 2 ? half_y : -half_y);
         struct point *corner = &outline->points[i];
-        if (!tl_layout_holds(target, x, y) ||
+        if (!tl_layout_contains(target, x, y) ||
             tl_layout_locate(source, tl_layout_direction(target, x, y), &corner->x, &corner->y) != *piece)
             return false;
         mean_x += corner->x / CORNERS;

@@ -1,7 +1,7 @@
 #include "render/env/cube.h"
 
 #include "config/memory.h"
-#include "render/env/pour.h"
+#include "render/env/resample.h"
 
 #include <assert.h>
 #include <math.h>
@@ -273,7 +273,7 @@ static void average_cube(const tl_cube *source, tl_cube *target)
     }
 }
 
-tl_cube tl_cube_from_environment_with(const tl_environment *environment, int size, struct tl_pour *kept)
+tl_cube tl_cube_from_environment_with(const tl_environment *environment, int size, struct tl_resampling *kept)
 {
     assert(environment->image.type == TL_IMAGE_F32 && environment->image.channels == 3);
     tl_cube target = tl_cube_create(size);
@@ -281,15 +281,15 @@ tl_cube tl_cube_from_environment_with(const tl_environment *environment, int siz
         tl_cube source = environment_as_cube(environment);
         average_cube(&source, &target);
     } else {
-        tl_pour_latlong(&environment->image, size, target.texels, kept);
+        tl_resample_latlong(&environment->image, size, target.texels, kept);
     }
     return target;
 }
 
 tl_cube tl_cube_from_environment(const tl_environment *environment, int size)
 {
-    struct tl_pour pour = {0};
+    struct tl_resampling pour = {0};
     tl_cube cube = tl_cube_from_environment_with(environment, size, &pour);
-    tl_pour_release(&pour);
+    tl_resampling_release(&pour);
     return cube;
 }

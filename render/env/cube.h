@@ -22,9 +22,10 @@ void tl_cube_release(tl_cube *cube);
  * bright texel keeps its energy within 1 %). */
 tl_cube tl_cube_from_environment(const tl_environment *environment, int size);
 /* The same, bit for bit, for one environment after the other: what depends on their size only is kept in
- * `kept` (zeroed at first; tl_pour_release), which makes the next some fifty times as fast. */
-struct tl_pour;
-tl_cube tl_cube_from_environment_with(const tl_environment *environment, int size, struct tl_pour *kept);
+ * `kept` (zeroed at first; tl_resampling_release), which makes the next some fifty times as fast. */
+struct tl_resampling;
+tl_cube tl_cube_from_environment_with(const tl_environment *environment, int size,
+                                      struct tl_resampling *kept);
 
 /* Direction (not normalised, largest component 1) of face coordinates s, t in [0, 1]; outside of that range
  * the plane of the face is continued. OpenGL 4.5, table 8.19 inverted. */

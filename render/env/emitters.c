@@ -205,7 +205,8 @@ void tl_emitters_release(struct tl_emitters *emitters)
     *emitters = (struct tl_emitters){0};
 }
 
-void tl_gaze_set(struct tl_gaze *gaze, const vec3s directions[TL_LANES], const float steps[TL_LANES], float s)
+void tl_lobe_packet_set(struct tl_lobe_packet *gaze, const vec3s directions[TL_LANES],
+                        const float steps[TL_LANES], float s)
 {
     vec3s sum = {{0, 0, 0}};
     for (size_t i = 0; i < TL_LANES; i++) {
@@ -222,7 +223,7 @@ void tl_gaze_set(struct tl_gaze *gaze, const vec3s directions[TL_LANES], const f
 }
 
 /* The angle within which a lobe must be looked at, from the middle of the gaze. */
-static float reach_of(const struct tl_gaze *gaze)
+static float reach_of(const struct tl_lobe_packet *gaze)
 {
     float least = gaze->exponent[0];
     for (int i = 1; i < TL_LANES; i++)
@@ -250,7 +251,7 @@ TL_INLINE uint32_t find_within(const struct tl_directions *directions, vec3s axi
     return (uint32_t)bits;
 }
 
-TL_INLINE void add_emitter(const struct tl_emitter_block *block, int k, const struct tl_gaze *gaze,
+TL_INLINE void add_emitter(const struct tl_emitter_block *block, int k, const struct tl_lobe_packet *gaze,
                            const float widening[TL_LANES], float sums[3][TL_LANES])
 {
     const struct tl_directions *directions = &gaze->directions;
@@ -264,11 +265,11 @@ TL_INLINE void add_emitter(const struct tl_emitter_block *block, int k, const st
     }
 }
 
-TL_CLONES void tl_emitters_gather(const struct tl_emitters *emitters, const struct tl_gaze *gaze,
-                                  float out[3][TL_LANES])
+TL_CLONES void tl_emitters_convolve(const struct tl_emitters *emitters, const struct tl_lobe_packet *gaze,
+                                    float out[3][TL_LANES])
 {
     float reach = reach_of(gaze), near = cosine_of(reach), near_block = cosine_of(reach + emitters->radius);
-    struct tl_gaze own = *gaze; /* nothing else points to it, so that it stays in registers */
+    struct tl_lobe_packet own = *gaze; /* nothing else points to it, so that it stays in registers */
     float widening[TL_LANES], sums[3][TL_LANES] = {{0}};
     for (int i = 0; i < TL_LANES; i++)
         widening[i] = (own.exponent[i] + 1) * (own.exponent[i] + 2);

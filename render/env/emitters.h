@@ -57,7 +57,7 @@ struct tl_emitters tl_emitters_merge(const tl_emitter *texels, size_t count, int
 void tl_emitters_release(struct tl_emitters *emitters);
 
 /* Sixteen neighbouring directions to look into, each with an exponent of its own. */
-struct tl_gaze {
+struct tl_lobe_packet {
     struct tl_directions directions; /* unit */
     float exponent[TL_LANES];
     vec3s axis;   /* unit: the middle of the sixteen */
@@ -66,11 +66,11 @@ struct tl_gaze {
 
 /* Sets all of it, with exponents such that a bilinear fetch of what is gathered has the first moment of K_s:
  * it widens lobes by what texels of the target, `steps` (rad, root mean square of both axes) apart, blur. */
-void tl_gaze_set(struct tl_gaze *gaze, const vec3s directions[TL_LANES], const float steps[TL_LANES],
-                 float s);
+void tl_lobe_packet_set(struct tl_lobe_packet *gaze, const vec3s directions[TL_LANES],
+                        const float steps[TL_LANES], float s);
 
 /* The sum over all emitters of power x K_exponent(direction, emitter), RGB. */
-void tl_emitters_gather(const struct tl_emitters *emitters, const struct tl_gaze *gaze,
-                        float out[3][TL_LANES]);
+void tl_emitters_convolve(const struct tl_emitters *emitters, const struct tl_lobe_packet *gaze,
+                          float out[3][TL_LANES]);
 
 #endif

@@ -206,7 +206,7 @@ static bool has_discs(enum tl_layout layout)
     return layout == TL_LAYOUT_SPHERE || layout == TL_LAYOUT_PARABOLOID;
 }
 
-bool tl_layout_holds(const struct tl_sphere_map *map, double x, double y)
+bool tl_layout_contains(const struct tl_sphere_map *map, double x, double y)
 {
     if (!has_discs(map->layout))
         return true;
@@ -274,7 +274,7 @@ static double disc_solid_angle(const struct tl_sphere_map *map, const struct tl_
 {
     double near_x, near_y, sum = 0;
     tl_layout_nearest(map, cell, &near_x, &near_y);
-    if (!tl_layout_holds(map, near_x, near_y))
+    if (!tl_layout_contains(map, near_x, near_y))
         return 0; /* rather than what rounding leaves of it */
     struct disc disc = disc_at(map, 0.5 * (cell->x0 + cell->x1));
     double corners[4][2];

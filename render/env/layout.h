@@ -59,7 +59,7 @@ size_t tl_layout_texel(const struct tl_sphere_map *map, vec3s direction);
 double tl_layout_density(const struct tl_sphere_map *map, double x, double y);
 
 /* True for the points that are part of the sphere. */
-bool tl_layout_holds(const struct tl_sphere_map *map, double x, double y);
+bool tl_layout_contains(const struct tl_sphere_map *map, double x, double y);
 
 /* A part of a texel. */
 struct tl_layout_cell {

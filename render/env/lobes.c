@@ -78,7 +78,7 @@ static float square_scale(vec3s p)
     return sum / 2;
 }
 
-static void look(int side, int left, int top, float s, struct tl_gaze *gaze)
+static void look(int side, int left, int top, float s, struct tl_lobe_packet *gaze)
 {
     float step = 2 / (float)side, steps[TL_LANES];
     vec3s directions[TL_LANES];
@@ -88,7 +88,7 @@ static void look(int side, int left, int top, float s, struct tl_gaze *gaze)
         directions[i] = glms_vec3_normalize(p);
         steps[i] = step * sqrtf(square_scale(p));
     }
-    tl_gaze_set(gaze, directions, steps, s);
+    tl_lobe_packet_set(gaze, directions, steps, s);
 }
 
 static float *texel_of(const struct tl_lobe_map *map, int x, int y)
@@ -138,11 +138,11 @@ static struct tl_lobe_map convolve(const tl_emitter *texels, int cube_size, floa
     int tiles = map.side / TILE;
 #pragma omp parallel for schedule(dynamic, 4)
     for (int tile = 0; tile < tiles * tiles; tile++) {
-        struct tl_gaze gaze;
+        struct tl_lobe_packet gaze;
         float colour[3][TL_LANES];
         int left = tile % tiles * TILE, top = tile / tiles * TILE;
         look(map.side, left, top, s, &gaze);
-        tl_emitters_gather(&emitters, &gaze, colour);
+        tl_emitters_convolve(&emitters, &gaze, colour);
         for (int i = 0; i < TL_LANES; i++)
             for (int c = 0; c < 3; c++)
                 texel_of(&map, left + i % TILE, top + i / TILE)[c] = colour[c][i];
@@ -207,8 +207,8 @@ void tl_lobes_make(struct tl_lobes *lobes, const tl_cube *cube, uint32_t needed)
     free(texels);
 }
 
-struct tl_lobes tl_lobes_changed(const struct tl_lobes *from, uint32_t which, tl_lobe_change *change,
-                                 const void *context)
+struct tl_lobes tl_lobes_map(const struct tl_lobes *from, uint32_t which, tl_lobe_map_function *change,
+                             const void *context)
 {
     struct tl_lobes lobes = {.made = from->made & which};
     for (int k = 0; k <= TL_EXPONENT_COUNT; k++) {
@@ -255,7 +255,7 @@ void tl_lobes_keep(struct tl_lobes *lobes, uint32_t which)
     lobes->made &= which;
 }
 
-void tl_lobes_take(struct tl_lobes *lobes, struct tl_lobes *more)
+void tl_lobes_merge(struct tl_lobes *lobes, struct tl_lobes *more)
 {
     for (size_t i = 0; i < TL_COUNT(lobes->maps); i++)
         if (lobes->maps[i].side == 0) {

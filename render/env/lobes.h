@@ -41,13 +41,13 @@ void tl_lobes_keep(struct tl_lobes *lobes, uint32_t which); /* releases the othe
 
 /* Maps laid out as those of `from` are, of the exponents in `which`: each texel is what `change` makes of it.
  * May be called from several threads at once. */
-typedef vec3s tl_lobe_change(vec3s direction, float exponent, vec3s light, const void *context);
-struct tl_lobes tl_lobes_changed(const struct tl_lobes *from, uint32_t which, tl_lobe_change *change,
-                                 const void *context);
+typedef vec3s tl_lobe_map_function(vec3s direction, float exponent, vec3s light, const void *context);
+struct tl_lobes tl_lobes_map(const struct tl_lobes *from, uint32_t which, tl_lobe_map_function *change,
+                             const void *context);
 
 struct tl_lobes tl_lobes_copy(const struct tl_lobes *lobes);
 /* Those of `more` that `lobes` does not have become its own; the rest goes. */
-void tl_lobes_take(struct tl_lobes *lobes, struct tl_lobes *more);
+void tl_lobes_merge(struct tl_lobes *lobes, struct tl_lobes *more);
 
 /* E(d, s); d unit, in the environment's frame. The exponents that s needs must have been made. */
 vec3s tl_lobes_fetch(const struct tl_lobes *lobes, vec3s direction, struct tl_exponent_blend blend);

@@ -387,7 +387,7 @@ static int next_peak(const struct search *search, const bool *tried)
     return most < SHARE_MIN * search->total ? -1 : best;
 }
 
-void tl_suns_take(tl_cube *cube, const tl_environment *environment, struct tl_suns *out)
+void tl_suns_extract(tl_cube *cube, const tl_environment *environment, struct tl_suns *out)
 {
     struct search search = search_begin(cube, environment);
     bool *tried = TL_NEW_ARRAY(bool, 6 * (size_t)cube->size * (size_t)cube->size);

@@ -28,6 +28,6 @@ struct tl_suns {
  * rays; what counts as such, and why, stands in sun.c. How much light it holds is the cube's; where within
  * the patch it comes from is read from `environment`, of which the cube was made and whose texels may be
  * finer. */
-void tl_suns_take(tl_cube *cube, const tl_environment *environment, struct tl_suns *out);
+void tl_suns_extract(tl_cube *cube, const tl_environment *environment, struct tl_suns *out);
 
 #endif

@@ -43,7 +43,7 @@ void tl_envmap_release(struct tl_envmap *envmap)
     free(envmap->variants);
     tl_texture_destroy(&envmap->maps);
     tl_texture_destroy(&envmap->fresnel);
-    tl_levels_release(&envmap->levels);
+    tl_mip_levels_release(&envmap->levels);
     if (envmap->parts_buffer)
         glDeleteBuffers(1, &envmap->parts_buffer);
     *envmap = (struct tl_envmap){0};
@@ -88,8 +88,8 @@ static void allocate(struct tl_envmap *envmap, tl_gpu *gpu, enum tl_layout layou
     const struct tl_sphere_map *map = &envmap->levels.maps[0];
     bool is_cube = layout == TL_LAYOUT_CUBE;
     if (envmap->levels.count == 0 || map->layout != layout || tl_layout_size(map) != size) {
-        tl_levels_release(&envmap->levels);
-        envmap->levels = tl_levels_create(layout, size);
+        tl_mip_levels_release(&envmap->levels);
+        envmap->levels = tl_mip_levels_create(layout, size);
     }
     int layers = layers_of(layout) * slot_count, width = layout == TL_LAYOUT_LATLONG ? 2 * size : size;
     if (envmap->layout == layout && envmap->maps.width == width && envmap->maps.layers == layers)
@@ -103,7 +103,7 @@ static void allocate(struct tl_envmap *envmap, tl_gpu *gpu, enum tl_layout layou
 }
 
 /* A cube's faces lie below one another in the picture, as layers do in a texture; discs lie side by side. */
-static void upload(const struct tl_envmap *envmap, const struct tl_picture *picture, int slot)
+static void upload(const struct tl_envmap *envmap, const struct tl_prefiltered_map *picture, int slot)
 {
     int layers = layers_of(envmap->layout), across = envmap->layout == TL_LAYOUT_PARABOLOID ? 2 : 1;
     int at_once = layers / across;
@@ -132,9 +132,10 @@ void tl_envmap_fill(struct tl_envmap *envmap, tl_gpu *gpu, const struct tl_maps_
         envmap->slots[exponent] = -1;
         if (!(lobes->made & 1u << exponent))
             continue;
-        struct tl_picture picture = tl_picture_pour(&envmap->levels, lobes, exponent, from_picture);
+        struct tl_prefiltered_map picture =
+            tl_prefiltered_map_make(&envmap->levels, lobes, exponent, from_picture);
         upload(envmap, &picture, slot);
-        tl_picture_release(&picture);
+        tl_prefiltered_map_release(&picture);
         envmap->slots[exponent] = slot++;
     }
 }
@@ -297,7 +298,7 @@ static void set_matrices(const mat3s *turn)
 }
 
 /* Root of the mean solid angle of a texel, rad. */
-static float texel_reach(const struct tl_levels *levels)
+static float texel_reach(const struct tl_mip_levels *levels)
 {
     const struct tl_sphere_map *map = &levels->maps[0];
     float discs = map->layout == TL_LAYOUT_SPHERE || map->layout == TL_LAYOUT_PARABOLOID ? GLM_PI_4f : 1;

@@ -23,7 +23,7 @@
 #ifndef TOILE_RENDER_ENVMAP_ENVMAP_H
 #define TOILE_RENDER_ENVMAP_ENVMAP_H
 
-#include "render/envmap/pictures.h"
+#include "render/envmap/prefiltered_map.h"
 #include "render/light/gbuffer.h"
 #include "render/light/samples.h"
 #include "render/renderer.h"
@@ -38,7 +38,7 @@ struct tl_envmap {
     struct tl_envmap_variant *variants; /* programs that were asked for so far */
     size_t variant_count;
     enum tl_layout layout; /* of what is in the texture */
-    struct tl_levels levels;
+    struct tl_mip_levels levels;
     tl_texture maps;                  /* layers by slot; faces and discs are layers too */
     int slots[TL_EXPONENT_COUNT + 1]; /* by exponent; -1: not there */
     mat3s turn;                       /* world -> picture */

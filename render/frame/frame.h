@@ -5,7 +5,7 @@
 
 #include "render/detail/maps.h"
 #include "render/env/lobes.h"
-#include "render/env/pour.h"
+#include "render/env/resample.h"
 #include "render/env/sun.h"
 #include "render/envmap/capture.h"
 #include "render/envmap/envmap.h"
@@ -182,8 +182,8 @@ struct tl_renderer {
     struct tl_suns suns; /* of its environment */
     struct tl_view view;
 
-    struct tl_pour pour; /* from environments of one size to the cube */
-    tl_cube cube;        /* without the suns */
+    struct tl_resampling pour; /* from environments of one size to the cube */
+    tl_cube cube;              /* without the suns */
     struct tl_regions regions;
     uint64_t regions_revision;
     struct tl_pems pems;
@@ -222,8 +222,8 @@ struct tl_renderer {
     float *light; /* [height][width][4] of samples, composed on the CPU */
     size_t light_bytes;
     struct tl_lighting lighting;
-    struct {                 /* what environment maps are made of: the whole light, suns and all */
-        struct tl_pour pour; /* ... to their size */
+    struct {                       /* what environment maps are made of: the whole light, suns and all */
+        struct tl_resampling pour; /* ... to their size */
         tl_cube cube;
         struct tl_lobes lobes;
     } surroundings;

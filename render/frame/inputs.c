@@ -1,6 +1,6 @@
 #include "config/hash.h"
 #include "config/memory.h"
-#include "render/brdf/fan.h"
+#include "render/brdf/lobe_fit.h"
 #include "render/detail/detail.h"
 #include "render/frame/frame.h"
 #include "render/inspect/job.h"
@@ -242,8 +242,8 @@ static uint32_t layered_exponents(const tl_material *material, float low, float 
     float least, greatest, unused;
     struct tl_brdf dull = tl_brdf_of(material, material->specular, low);
     struct tl_brdf shiny = tl_brdf_of(material, material->specular, high);
-    tl_fan_exponents(&dull, &least, &unused);
-    tl_fan_exponents(&shiny, &unused, &greatest);
+    tl_lobe_fit_exponents(&dull, &least, &unused);
+    tl_lobe_fit_exponents(&shiny, &unused, &greatest);
     return needed | exponents_between(least, greatest);
 }
 

@@ -120,7 +120,7 @@ static tl_prepared *begin(struct tl_prepared_request *request, const struct tl_l
     prepared->light = *light;
     prepared->cube = tl_cube_from_environment(request->environment, light->pem_size);
     if (light->sun)
-        tl_suns_take(&prepared->cube, request->environment, &prepared->suns);
+        tl_suns_extract(&prepared->cube, request->environment, &prepared->suns);
     return prepared;
 }
 
@@ -201,7 +201,7 @@ void tl_prepared_destroy(tl_prepared **prepared)
 
 static void add(tl_prepared *prepared, tl_renderer *renderer)
 {
-    tl_lobes_take(&renderer->lobes, &prepared->lobes);
+    tl_lobes_merge(&renderer->lobes, &prepared->lobes);
     /* The first ones matter most: they come last, so that no other takes their place. */
     for (int i = prepared->count - 1; i >= 0; i--) {
         prepared->light.regions = prepared->lights[i].count;

@@ -15,7 +15,7 @@ bool tl_run_cube(void *context, int level, tl_error *error)
                                                    renderer->settings.light.pem_size, &renderer->pour);
     renderer->suns = (struct tl_suns){0};
     if (renderer->settings.light.sun)
-        tl_suns_take(&renderer->cube, renderer->frame.environment, &renderer->suns);
+        tl_suns_extract(&renderer->cube, renderer->frame.environment, &renderer->suns);
     return true;
 }
 
@@ -171,8 +171,8 @@ void tl_frame_keep_lights(tl_renderer *renderer, const struct tl_light_params *l
 {
     struct tl_kept_lights *same = find_lights(renderer, light);
     if (same) { /* which may have gains that are newer than these */
-        tl_lobes_take(&same->lights.gain, &lights->gain);
-        tl_lobes_take(&same->lights.diffuse_gain, &lights->diffuse_gain);
+        tl_lobes_merge(&same->lights.gain, &lights->gain);
+        tl_lobes_merge(&same->lights.diffuse_gain, &lights->diffuse_gain);
         return;
     }
     struct tl_kept_lights *kept = replace_oldest(renderer, light);

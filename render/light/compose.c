@@ -2,7 +2,7 @@
 
 #include "config/memory.h"
 #include "render/brdf/coat.h"
-#include "render/brdf/fan.h"
+#include "render/brdf/lobe_fit.h"
 #include "render/pem/lobe.h"
 
 #include <math.h>
@@ -24,10 +24,10 @@ struct sums {
 };
 
 /* The lobes of a sample beyond the two: a fan, and a coat. Environment's frame. */
-#define LOBES_MAX (TL_FAN_MAX + 1)
+#define LOBES_MAX (TL_LOBE_FIT_MAX + 1)
 struct lobes {
     int count;
-    struct tl_fan_lobe items[LOBES_MAX];
+    struct tl_fitted_lobe items[LOBES_MAX];
     int facets; /* so many of them stand for `brdf`, which suns shine on themselves; the next one is the coat
                  */
     struct tl_brdf brdf;
@@ -301,7 +301,7 @@ static void add_fan(const struct block *block, const tl_sample *sample, const tl
     float side = sample->triangle & TL_SAMPLE_BACK ? -1.0f : 1.0f;
     lobes->frame = tl_brdf_frame_make(normal, tangent, stored.w, side * material->gloss.rotation);
     lobes->facets =
-        tl_fan_make(&lobes->brdf, &lobes->frame, lobes->viewer, request->params->fan, lobes->items);
+        tl_lobe_fit_make(&lobes->brdf, &lobes->frame, lobes->viewer, request->params->fan, lobes->items);
     for (int k = 0; k < lobes->facets; k++)
         lobes->items[k].weight = glms_vec3_scale(lobes->items[k].weight, lobes->base);
     lobes->count = lobes->facets;
@@ -315,9 +315,9 @@ static void add_coat(const struct block *block, const tl_sample *sample, const t
     vec3s mirror = glms_vec3_sub(glms_vec3_scale(n, 2 * viewed_by(lobes, n)), lobes->viewer);
     float share = 1 - lobes->base;
     lobes->items[lobes->count++] =
-        (struct tl_fan_lobe){.direction = glms_vec3_normalize(mirror),
-                             .exponent = tl_lobe_exponent(material->coat_glossiness),
-                             .weight = {{share, share, share}}};
+        (struct tl_fitted_lobe){.direction = glms_vec3_normalize(mirror),
+                                .exponent = tl_lobe_exponent(material->coat_glossiness),
+                                .weight = {{share, share, share}}};
 }
 
 /* The lobes of a sample that has more than two, and what is left of the two. */
@@ -403,11 +403,11 @@ static vec3s sun_on_lobes(const struct block *block, size_t index, const struct 
         const float *visibility = request->sun_visibility[i];
         vec3s gloss = {{0, 0, 0}};
         if (lobes->facets > 0)
-            gloss = glms_vec3_scale(
-                tl_fan_under_disc(&lobes->brdf, &lobes->frame, sun->direction, lobes->viewer, sun->radius),
-                lobes->base);
+            gloss = glms_vec3_scale(tl_brdf_gloss_under_disc(&lobes->brdf, &lobes->frame, sun->direction,
+                                                             lobes->viewer, sun->radius),
+                                    lobes->base);
         if (lobes->count > lobes->facets) {
-            const struct tl_fan_lobe *coat = &lobes->items[lobes->facets];
+            const struct tl_fitted_lobe *coat = &lobes->items[lobes->facets];
             float exponent = lobe_broadened_exponent(coat->exponent, sun->radius * GLM_SQRT1_2f);
             float lobe = lobe_cosine(exponent, glms_vec3_dot(sun->direction, coat->direction));
             gloss = glms_vec3_add(gloss, glms_vec3_scale(coat->weight, lobe));
@@ -438,7 +438,7 @@ TL_INLINE vec3s light_of_lobes(const struct block *block, size_t index, const st
     if (shadowed)
         see_lobes(block, index, lobes, smooth, arriving);
     for (int k = 0; k < lobes->count; k++) {
-        const struct tl_fan_lobe *lobe = &lobes->items[k];
+        const struct tl_fitted_lobe *lobe = &lobes->items[k];
         if (!shadowed)
             arriving[k] =
                 tl_lobes_fetch(block->request->lobes, lobe->direction, tl_exponent_blend(lobe->exponent));

@@ -9,9 +9,9 @@
  * sample's own horizon (FRONTIER, findings 1 and 2). Suns stand apart: power times lobe times their own
  * visibility. The other methods of enum tl_method are made of the same sums.
  *
- * A material whose gloss is not a lobe about r has a few lobes (render/brdf/fan.h), a coat has one more; each
- * is taken as the glossy one is, but that none has mirrors' rays: what they reflect of the scene is black.
- * Under suns facets are evaluated themselves. */
+ * A material whose gloss is not a lobe about r has a few lobes (render/brdf/lobe_fit.h), a coat has one more;
+ * each is taken as the glossy one is, but that none has mirrors' rays: what they reflect of the scene is
+ * black. Under suns facets are evaluated themselves. */
 #ifndef TOILE_RENDER_LIGHT_COMPOSE_H
 #define TOILE_RENDER_LIGHT_COMPOSE_H
 

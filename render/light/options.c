@@ -1,4 +1,4 @@
-#include "render/brdf/fan.h"
+#include "render/brdf/lobe_fit.h"
 #include "render/pem/chain.h"
 #include "render/pem/regions.h"
 #include "render/renderer.h"
@@ -54,7 +54,7 @@ static const struct tl_option light_rows[] = {
     TL_OPTION_FLOAT(light_params, repair_rest, 0, 1, "",
                     "rays: the same once nothing moves, when it is more: spread over frames at rest"),
     TL_OPTION_INT(
-        light_params, fan, 1, TL_FAN_MAX, "",
+        light_params, fan, 1, TL_LOBE_FIT_MAX, "",
         "rays: cosine lobes at most for a gloss that is not one itself; more follow it closer, slower"),
     TL_OPTION_BOOL(light_params, reflect_scene,
                    "near mirrors (exponent 200 and more) show the lit scene; off: black"),

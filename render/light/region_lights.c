@@ -37,7 +37,7 @@ static void fill_group(struct tl_region_group *group, const struct tl_region *re
     group->reach_sine = reach < GLM_PI_2f ? sinf(reach) : 2;
 }
 
-/* The sum that the exact light is divided by; see tl_lobe_change. */
+/* The sum that the exact light is divided by; see tl_lobe_map_function. */
 TL_CLONES static void sum_lobes(const struct tl_region_lights *lights, vec3s d, float s, bool diffuse,
                                 float sum[3])
 {
@@ -99,11 +99,10 @@ void tl_region_lights_add(struct tl_region_lights *lights, const struct tl_lobes
 {
     if (!lights->is_exact)
         return;
-    struct tl_lobes gain = tl_lobes_changed(lobes, exponents & ~lights->gain.made, gain_of, lights);
-    tl_lobes_take(&lights->gain, &gain);
-    struct tl_lobes diffuse =
-        tl_lobes_changed(lobes, 1u & ~lights->diffuse_gain.made, diffuse_gain_of, lights);
-    tl_lobes_take(&lights->diffuse_gain, &diffuse);
+    struct tl_lobes gain = tl_lobes_map(lobes, exponents & ~lights->gain.made, gain_of, lights);
+    tl_lobes_merge(&lights->gain, &gain);
+    struct tl_lobes diffuse = tl_lobes_map(lobes, 1u & ~lights->diffuse_gain.made, diffuse_gain_of, lights);
+    tl_lobes_merge(&lights->diffuse_gain, &diffuse);
 }
 
 bool tl_region_lights_have(const struct tl_region_lights *lights, uint32_t exponents)

@@ -13,7 +13,7 @@ static void look(const struct tl_lamp *lamp, const struct tl_trace *trace, const
 {
     bool is_point = lamp->kind == TL_LAMP_POINT;
     float offset_m = tl_trace_offset(trace);
-    struct tl_trace_bundle bundle = {.to_m = is_point ? 1 : INFINITY, .coherent = true};
+    struct tl_ray_packet bundle = {.to_m = is_point ? 1 : INFINITY, .coherent = true};
     uint32_t texels[BUNDLE];
     float shown[BUNDLE];
     for (int i = 0; i < count; i++) {
@@ -33,7 +33,7 @@ static void look(const struct tl_lamp *lamp, const struct tl_trace *trace, const
     if (bundle.count == 0)
         return;
     float seen[BUNDLE];
-    tl_trace_seen_bundle(trace, &bundle, seen);
+    tl_trace_transmittance_packet(trace, &bundle, seen);
     for (int k = 0; k < bundle.count; k++)
         out[texels[k]] = (uint8_t)lroundf(255 * shown[k] * seen[k]);
 }
@@ -49,9 +49,9 @@ void tl_lamp_rays(const struct tl_lamp *lamp, const struct tl_trace *trace, cons
              ranges, ground, out);
 }
 
-vec3s tl_lamp_arriving(const struct tl_lamp *lamp, const tl_trace *trace, const tl_sample *sample,
-                       const struct tl_triangle_ranges *ranges, const struct tl_ground *ground,
-                       vec3s *direction)
+vec3s tl_lamp_irradiance_at(const struct tl_lamp *lamp, const tl_trace *trace, const tl_sample *sample,
+                            const struct tl_triangle_ranges *ranges, const struct tl_ground *ground,
+                            vec3s *direction)
 {
     vec3s start = trace ? tl_sample_start(sample, ranges, tl_trace_offset(trace)) : sample->point;
     struct tl_lamplight light = tl_lamp_at(lamp, start, sample->smooth);
@@ -59,13 +59,13 @@ vec3s tl_lamp_arriving(const struct tl_lamp *lamp, const tl_trace *trace, const 
     *direction = light.direction;
     if (shown <= 0 || glms_vec3_dot(sample->smooth, light.direction) <= 0)
         return (vec3s){{0, 0, 0}};
-    struct tl_trace_bundle bundle = {.count = trace ? 1 : 0, .to_m = light.distance_m};
+    struct tl_ray_packet bundle = {.count = trace ? 1 : 0, .to_m = light.distance_m};
     bundle.origin_x[0] = start.x, bundle.origin_y[0] = start.y, bundle.origin_z[0] = start.z;
     bundle.direction_x[0] = light.direction.x;
     bundle.direction_y[0] = light.direction.y;
     bundle.direction_z[0] = light.direction.z;
     float seen[BUNDLE] = {1};
     if (trace)
-        tl_trace_seen_bundle(trace, &bundle, seen);
+        tl_trace_transmittance_packet(trace, &bundle, seen);
     return glms_vec3_scale(light.irradiance, shown * seen[0]);
 }

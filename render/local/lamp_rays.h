@@ -13,8 +13,8 @@ void tl_lamp_rays(const struct tl_lamp *lamp, const struct tl_trace *trace, cons
 
 /* The same for one sample, with its light: irradiance times what is seen of the lamp, and the direction
  * towards it. NULL for `trace`: nothing is in the way. */
-vec3s tl_lamp_arriving(const struct tl_lamp *lamp, const tl_trace *trace, const tl_sample *sample,
-                       const struct tl_triangle_ranges *ranges, const struct tl_ground *ground,
-                       vec3s *direction);
+vec3s tl_lamp_irradiance_at(const struct tl_lamp *lamp, const tl_trace *trace, const tl_sample *sample,
+                            const struct tl_triangle_ranges *ranges, const struct tl_ground *ground,
+                            vec3s *direction);
 
 #endif

@@ -69,8 +69,8 @@ static vec3s light_of_sample(const struct tl_lamp_samples_request *request, size
     vec3s sum = {{0, 0, 0}};
     for (size_t i = 0; i < request->lamp_count; i++) {
         vec3s l;
-        vec3s arriving = tl_lamp_arriving(&request->lamps[i], request->shadowed ? request->trace : NULL,
-                                          lit.sample, request->ranges, request->ground, &l);
+        vec3s arriving = tl_lamp_irradiance_at(&request->lamps[i], request->shadowed ? request->trace : NULL,
+                                               lit.sample, request->ranges, request->ground, &l);
         if (!(arriving.x > 0 || arriving.y > 0 || arriving.z > 0))
             continue;
         float matt = fmaxf(glms_vec3_dot(lit.sample->normal, l), 0) / (float)M_PI, coat = coat_of(&lit, l);

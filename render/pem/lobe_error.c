@@ -338,7 +338,7 @@ static double least_error(const struct tl_chain *chain, const struct tl_lobe_sou
     return least;
 }
 
-void tl_lobe_least_error(const struct tl_lobe_curves *curves, int method, double *mean, double *worst)
+void tl_lobe_min_error(const struct tl_lobe_curves *curves, int method, double *mean, double *worst)
 {
     assert(method < TL_LOBE_SLICES);
     size_t exponents = (size_t)curves->exponent_count, directions = (size_t)curves->direction_count;

@@ -59,7 +59,7 @@ void tl_lobe_curve(const struct tl_lobe_curves *curves, int method, struct tl_lo
 
 /* The same-volume error of a chain at the level that fits best, for each direction and exponent by itself:
  * what the filter could do if its calibration knew the direction. By exponent. */
-void tl_lobe_least_error(const struct tl_lobe_curves *curves, int method, double *mean, double *worst);
+void tl_lobe_min_error(const struct tl_lobe_curves *curves, int method, double *mean, double *worst);
 
 /* Figure 4: the lobe along the great circle through a texel in the middle of a face, at `count` angles from
  * -pi to pi: what is shown and K_s. */

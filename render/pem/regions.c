@@ -1,7 +1,7 @@
 #include "render/pem/regions.h"
 
 #include "config/memory.h"
-#include "render/pem/regions_build.h"
+#include "render/pem/regions_internal.h"
 
 #include <math.h>
 #include <stdlib.h>

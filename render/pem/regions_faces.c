@@ -1,5 +1,5 @@
 #include "config/memory.h"
-#include "render/pem/regions_build.h"
+#include "render/pem/regions_internal.h"
 
 #include <assert.h>
 #include <math.h>

@@ -154,10 +154,10 @@ static void convolve_tile(const struct tl_slices *slices, int exponent, int regi
         directions[i] = unproject(frame, x, y);
         steps[i] = step * sqrtf(square_scale(x, y));
     }
-    struct tl_gaze gaze;
+    struct tl_lobe_packet gaze;
     float colour[3][TL_LANES];
-    tl_gaze_set(&gaze, directions, steps, tl_exponent(exponent));
-    tl_emitters_gather(emitters, &gaze, colour);
+    tl_lobe_packet_set(&gaze, directions, steps, tl_exponent(exponent));
+    tl_emitters_convolve(emitters, &gaze, colour);
     for (int i = 0; i < TL_LANES; i++) {
         int x = left + i % TILE, y = top + i / TILE;
         bool black = in_ring(slices, exponent, region, x, y);

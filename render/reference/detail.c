@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-struct tl_moments {
+struct tl_moment_map {
     const tl_image *of;
     tl_image image;
     struct tl_map_texture texture;
@@ -20,11 +20,11 @@ const struct tl_map_texture *tl_reference_moments(struct tl_reference_detail *de
     for (size_t i = 0; i < detail->count; i++)
         if (detail->items[i]->of == normals)
             return &detail->items[i]->texture;
-    struct tl_moments *made = TL_NEW(struct tl_moments);
+    struct tl_moment_map *made = TL_NEW(struct tl_moment_map);
     made->of = normals;
     made->image = tl_bake_moments(normals);
     made->texture = tl_map_texture_make(&made->image, false);
-    detail->items = tl_resize(detail->items, detail->count + 1, sizeof(struct tl_moments *));
+    detail->items = tl_resize(detail->items, detail->count + 1, sizeof(struct tl_moment_map *));
     detail->items[detail->count++] = made;
     return &made->texture;
 }
@@ -40,31 +40,33 @@ void tl_reference_detail_release(struct tl_reference_detail *detail)
     *detail = (struct tl_reference_detail){0};
 }
 
-struct tl_bumps tl_bumps_of(vec3s normal)
+struct tl_bump_statistics tl_bump_statistics_of_normal(vec3s normal)
 {
-    return (struct tl_bumps){normal, {0, 0}, 1};
+    return (struct tl_bump_statistics){normal, {0, 0}, 1};
 }
 
-struct tl_bumps tl_bumps_averaged(vec4s moments, float scale)
+struct tl_bump_statistics tl_bump_statistics_of_moments(vec4s moments, float scale)
 {
     float z = sqrtf(fmaxf(1 - moments.z - moments.w, 0));
-    struct tl_bumps bumps = {.normal = {{scale * moments.x, scale * moments.y, z}},
-                             .spread = {scale * scale * fmaxf(moments.z - moments.x * moments.x, 0),
-                                        scale * scale * fmaxf(moments.w - moments.y * moments.y, 0)}};
+    struct tl_bump_statistics bumps = {
+        .normal = {{scale * moments.x, scale * moments.y, z}},
+        .spread = {scale * scale * fmaxf(moments.z - moments.x * moments.x, 0),
+                   scale * scale * fmaxf(moments.w - moments.y * moments.y, 0)}};
     bumps.length = sqrtf(fminf(fmaxf(1 - bumps.spread[0] - bumps.spread[1], 0.0025f), 1));
     return bumps;
 }
 
-struct tl_bumps tl_bumps_added(const struct tl_bumps *a, const struct tl_bumps *b)
+struct tl_bump_statistics tl_bump_statistics_add(const struct tl_bump_statistics *a,
+                                                 const struct tl_bump_statistics *b)
 {
     vec3s n = a->normal, m = b->normal;
-    return (struct tl_bumps){.normal = {{n.x * m.z + m.x * n.z, n.y * m.z + m.y * n.z, n.z * m.z}},
-                             .spread = {a->spread[0] + b->spread[0], a->spread[1] + b->spread[1]},
-                             .length = a->length * b->length};
+    return (struct tl_bump_statistics){.normal = {{n.x * m.z + m.x * n.z, n.y * m.z + m.y * n.z, n.z * m.z}},
+                                       .spread = {a->spread[0] + b->spread[0], a->spread[1] + b->spread[1]},
+                                       .length = a->length * b->length};
 }
 
-float tl_bumps_rough(const struct tl_detail_params *params, float rough, const struct tl_bumps *bumps,
-                     vec3s view)
+float tl_bump_statistics_roughness(const struct tl_detail_params *params, float rough,
+                                   const struct tl_bump_statistics *bumps, vec3s view)
 {
     if (params->minify == TL_DETAIL_MINIFY_NONE)
         return rough;

@@ -9,7 +9,7 @@
 struct tl_reference_detail {
     struct tl_detail_params params;
     size_t count;
-    struct tl_moments **items; /* moments of normal maps that several materials may share; owned */
+    struct tl_moment_map **items; /* moments of normal maps that several materials may share; owned */
 };
 void tl_reference_detail_release(struct tl_reference_detail *detail);
 
@@ -18,17 +18,18 @@ const struct tl_map_texture *tl_reference_moments(struct tl_reference_detail *de
                                                   const tl_image *normals);
 
 /* A tangent-space normal, the variances of its slopes, the length of the mean. */
-struct tl_bumps {
+struct tl_bump_statistics {
     vec3s normal;
     float spread[2], length;
 };
-struct tl_bumps tl_bumps_of(vec3s normal);
-struct tl_bumps tl_bumps_averaged(vec4s moments, float scale);
+struct tl_bump_statistics tl_bump_statistics_of_normal(vec3s normal);
+struct tl_bump_statistics tl_bump_statistics_of_moments(vec4s moments, float scale);
 /* Slopes added as the heights behind them would be. */
-struct tl_bumps tl_bumps_added(const struct tl_bumps *a, const struct tl_bumps *b);
+struct tl_bump_statistics tl_bump_statistics_add(const struct tl_bump_statistics *a,
+                                                 const struct tl_bump_statistics *b);
 /* 1 - g over averaged normals; `view` in tangent space. */
-float tl_bumps_rough(const struct tl_detail_params *params, float rough, const struct tl_bumps *bumps,
-                     vec3s view);
+float tl_bump_statistics_roughness(const struct tl_detail_params *params, float rough,
+                                   const struct tl_bump_statistics *bumps, vec3s view);
 
 /* How far detail moves the UV that is seen; `view` in the outside's tangent space, `side` -1 for a back. */
 vec2s tl_reference_shift(const struct tl_detail_params *params, const struct tl_detail_heights *heights,

@@ -13,7 +13,7 @@
 #define LOBE_END               40.0f               /* exp(-40) of a lobe's peak is nothing */
 #define GOLDEN                 0.61803398874989485 /* of a turn: leaves no gaps however many follow */
 
-void tl_spots_add(struct tl_spots *spots, const struct tl_spot *spot)
+void tl_shading_points_add(struct tl_shading_points *spots, const struct tl_shading_point *spot)
 {
     int i = spots->count++;
     for (int c = 0; c < 3; c++) {
@@ -35,13 +35,13 @@ void tl_spots_add(struct tl_spots *spots, const struct tl_spot *spot)
 
 /* The state of one call. */
 struct gathering {
-    const struct tl_gathering *asked;
+    const struct tl_gather_request *asked;
     const struct tl_reference_scene *scene;
-    const struct tl_spots *spots;
-    bool diffuse[TL_SPOTS], glossy[TL_SPOTS]; /* whether the spot has such a lobe at all */
-    double turn[TL_SPOTS];                    /* where about its axis a spot's first lobe sample lies */
+    const struct tl_shading_points *spots;
+    bool diffuse[TL_SHADING_POINTS], glossy[TL_SHADING_POINTS]; /* whether the spot has such a lobe at all */
+    double turn[TL_SHADING_POINTS]; /* where about its axis a spot's first lobe sample lies */
     struct tl_random random;
-    float (*light)[TL_SPOTS];
+    float (*light)[TL_SHADING_POINTS];
     size_t rays;
 };
 
@@ -53,21 +53,21 @@ static float lobe_value(float exponent, float off)
     return (exponent + 1) / (2 * (float)M_PI) * expf(exponent * log1pf(-off));
 }
 
-static float dot_of(const float v[3][TL_SPOTS], int i, vec3s w)
+static float dot_of(const float v[3][TL_SHADING_POINTS], int i, vec3s w)
 {
     return v[0][i] * w.x + v[1][i] * w.y + v[2][i] * w.z;
 }
 
-static vec3s point_of(const struct tl_spots *spots, int i)
+static vec3s point_of(const struct tl_shading_points *spots, int i)
 {
     return (vec3s){{spots->point[0][i], spots->point[1][i], spots->point[2][i]}};
 }
 
 /* Rays whose light is worth asking for, and how much of it each would bring its spot. */
 struct volley {
-    struct tl_trace_bundle bundle;
-    int spot[TL_SPOTS];
-    vec3s light[TL_SPOTS];
+    struct tl_ray_packet bundle;
+    int spot[TL_SHADING_POINTS];
+    vec3s light[TL_SHADING_POINTS];
 };
 
 /* Directions stay unset where there is no ray. */
@@ -110,8 +110,8 @@ static void fire(struct gathering *gathering, struct volley *volley)
 {
     if (volley->bundle.count == 0)
         return;
-    float seen[TL_SPOTS];
-    tl_trace_seen_bundle(gathering->scene->trace, &volley->bundle, seen);
+    float seen[TL_SHADING_POINTS];
+    tl_trace_transmittance_packet(gathering->scene->trace, &volley->bundle, seen);
     for (int i = 0; i < volley->bundle.count; i++)
         add_light(gathering, volley->spot[i], glms_vec3_scale(volley->light[i], seen[i]));
     gathering->rays += (size_t)volley->bundle.count;
@@ -122,7 +122,7 @@ static float kept_finite(float value)
     return value < FLT_MAX ? value : FLT_MAX;
 }
 
-static vec3s weigh(const struct tl_spots *spots, int i, vec3s radiance, float diffuse, float glossy)
+static vec3s weigh(const struct tl_shading_points *spots, int i, vec3s radiance, float diffuse, float glossy)
 {
     vec3s light;
     for (int c = 0; c < 3; c++)
@@ -138,12 +138,12 @@ static bool is_dark(vec3s light)
 
 /* Cosines of a direction with every spot's horizon and normal, and 1 - its cosine with the axis. */
 struct angles {
-    float horizon[TL_SPOTS], normal[TL_SPOTS], off_axis[TL_SPOTS];
+    float horizon[TL_SHADING_POINTS], normal[TL_SHADING_POINTS], off_axis[TL_SHADING_POINTS];
 };
 
-TL_CLONES static void measure_angles(const struct tl_spots *spots, vec3s w, struct angles *out)
+TL_CLONES static void measure_angles(const struct tl_shading_points *spots, vec3s w, struct angles *out)
 {
-    for (int i = 0; i < TL_SPOTS; i++) {
+    for (int i = 0; i < TL_SHADING_POINTS; i++) {
         out->horizon[i] =
             spots->horizon[0][i] * w.x + spots->horizon[1][i] * w.y + spots->horizon[2][i] * w.z;
         out->normal[i] = spots->normal[0][i] * w.x + spots->normal[1][i] * w.y + spots->normal[2][i] * w.z;
@@ -170,7 +170,7 @@ static vec3s finite_product(vec3s radiance, vec3s share)
 /* What coat and facets send back of a direction from the environment, of which there are `draws` per sr. */
 static vec3s layered_share(const struct gathering *gathering, int i, vec3s direction, float draws)
 {
-    const struct tl_spot_layers *layers = &gathering->spots->layers[i];
+    const struct tl_shading_layers *layers = &gathering->spots->layers[i];
     float count = (float)gathering->asked->lobe_samples;
     vec3s share = {{0, 0, 0}};
     if (layers->coat > 0) {
@@ -181,16 +181,16 @@ static vec3s layered_share(const struct gathering *gathering, int i, vec3s direc
     if (layers->faceted) {
         vec3s viewer = gathering->spots->viewer[i];
         vec3s gloss = tl_brdf_gloss(&layers->brdf, &layers->frame, direction, viewer);
-        float density = tl_brdf_density(&layers->brdf, &layers->frame, direction, viewer);
+        float density = tl_brdf_pdf(&layers->brdf, &layers->frame, direction, viewer);
         share = glms_vec3_add(share, glms_vec3_scale(gloss, layers->base / (draws + count * density)));
     }
     return share;
 }
 
 /* Light on the other side of sheets that let it through. */
-static void gather_behind(struct gathering *gathering, const struct tl_skylight *sky)
+static void gather_behind(struct gathering *gathering, const struct tl_sky_sample *sky)
 {
-    const struct tl_spots *spots = gathering->spots;
+    const struct tl_shading_points *spots = gathering->spots;
     float draws = (float)gathering->asked->strata * sky->density;
     struct volley volley;
     begin_volley(&volley, true);
@@ -207,9 +207,9 @@ static void gather_behind(struct gathering *gathering, const struct tl_skylight 
 }
 
 /* One direction from the environment, for all spots. */
-static void gather_stratum(struct gathering *gathering, const struct tl_skylight *sky)
+static void gather_stratum(struct gathering *gathering, const struct tl_sky_sample *sky)
 {
-    const struct tl_spots *spots = gathering->spots;
+    const struct tl_shading_points *spots = gathering->spots;
     float draws = (float)gathering->asked->strata * sky->density;
     struct volley volley;
     struct angles angles;
@@ -236,13 +236,13 @@ static void gather_stratum(struct gathering *gathering, const struct tl_skylight
     fire(gathering, &volley);
 }
 
-void tl_gather_directions(const struct tl_sky *sky, int count, int slot, int slots, struct tl_random shared,
-                          struct tl_random own, struct tl_skylight *out)
+void tl_gather_sample_sky(const struct tl_sky *sky, int count, int slot, int slots, struct tl_random shared,
+                          struct tl_random own, struct tl_sky_sample *out)
 {
     for (int i = 0; i < count; i++) {
         int turn = (int)(tl_random_unit(&shared) * slots);
         double within = ((slot + turn) % slots + tl_random_unit(&own)) / slots;
-        out[i] = tl_sky_draw(sky, (i + within) / count);
+        out[i] = tl_sky_sample_at(sky, (i + within) / count);
     }
 }
 
@@ -262,26 +262,26 @@ static vec3s draw_lobe(vec3s axis, float exponent, double height, double turn, f
 
 /* Reflections that met the scene, and whose they are. */
 struct reflections {
-    struct tl_spots spots;
-    int owner[TL_SPOTS];
-    float share[TL_SPOTS];
-    vec3s lamplight[TL_SPOTS];
+    struct tl_shading_points spots;
+    int owner[TL_SHADING_POINTS];
+    float share[TL_SHADING_POINTS];
+    vec3s lamplight[TL_SHADING_POINTS];
 };
 
 /* Where a mirror's ray ends: in the sky, in the scene, or, where the ground fades, in both. */
 static void reflect(struct gathering *gathering, int i, vec3s direction, vec3s sky_light,
                     struct reflections *reflections)
 {
-    const struct tl_ray ray = {
+    const struct tl_ray_differential ray = {
         .origin = point_of(gathering->spots, i), .direction = direction, .to_m = INFINITY};
-    struct tl_spot met = tl_spot_find(gathering->scene, &ray);
+    struct tl_shading_point met = tl_shading_point_find(gathering->scene, &ray);
     if (met.layered) /* behind an open sheet a mirror shows the sky */
         met.cover *= 1 - met.layers.openness;
     gathering->rays++;
     add_light(gathering, i, glms_vec3_scale(sky_light, 1 - met.cover));
     if (met.cover > 0) {
         int r = reflections->spots.count;
-        tl_spots_add(&reflections->spots, &met);
+        tl_shading_points_add(&reflections->spots, &met);
         reflections->owner[r] = i;
         reflections->share[r] = met.cover / (float)gathering->asked->lobe_samples;
         reflections->lamplight[r] = tl_reference_lamps(gathering->scene, &met, &gathering->rays);
@@ -292,15 +292,15 @@ static void light_reflections(struct gathering *gathering, const struct reflecti
 {
     if (reflections->spots.count == 0)
         return;
-    struct tl_skylight sky[REFLECTED_STRATA];
+    struct tl_sky_sample sky[REFLECTED_STRATA];
     struct tl_random random = tl_random_begin(gathering->random.state, 1);
-    tl_gather_directions(&gathering->scene->sky, REFLECTED_STRATA, 0, 1, random, gathering->random, sky);
-    const struct tl_gathering inner = {.scene = gathering->scene,
-                                       .strata = REFLECTED_STRATA,
-                                       .sky = sky,
-                                       .lobe_samples = REFLECTED_LOBE_SAMPLES,
-                                       .random = random};
-    float light[3][TL_SPOTS];
+    tl_gather_sample_sky(&gathering->scene->sky, REFLECTED_STRATA, 0, 1, random, gathering->random, sky);
+    const struct tl_gather_request inner = {.scene = gathering->scene,
+                                            .strata = REFLECTED_STRATA,
+                                            .sky = sky,
+                                            .lobe_samples = REFLECTED_LOBE_SAMPLES,
+                                            .random = random};
+    float light[3][TL_SHADING_POINTS];
     gathering->rays += tl_gather(&inner, &reflections->spots, light);
     for (int r = 0; r < reflections->spots.count; r++)
         for (int c = 0; c < 3; c++)
@@ -312,8 +312,8 @@ static void light_reflections(struct gathering *gathering, const struct reflecti
 /* One direction from each spot's lobe. */
 static void gather_lobes(struct gathering *gathering, int sample)
 {
-    const struct tl_spots *spots = gathering->spots;
-    const struct tl_gathering *asked = gathering->asked;
+    const struct tl_shading_points *spots = gathering->spots;
+    const struct tl_gather_request *asked = gathering->asked;
     struct volley volley;
     struct reflections reflections = {0};
     begin_volley(&volley, false);
@@ -327,7 +327,7 @@ static void gather_lobes(struct gathering *gathering, int sample)
         vec3s direction = draw_lobe(axis, spots->exponent[i], fmin(height, 1 - DBL_EPSILON), turn, &off);
         if (!(dot_of(spots->horizon, i, direction) > 0))
             continue;
-        struct tl_skylight sky = tl_sky_look(&gathering->scene->sky, direction);
+        struct tl_sky_sample sky = tl_sky_lookup(&gathering->scene->sky, direction);
         float lobe = lobe_value(spots->exponent[i], off);
         if (!(lobe > 0))
             continue;
@@ -354,11 +354,11 @@ static vec2s numbers_for(struct gathering *gathering, int i, int sample)
 /* One direction from each spot's coat ... */
 static void gather_coats(struct gathering *gathering, int sample)
 {
-    const struct tl_gathering *asked = gathering->asked;
+    const struct tl_gather_request *asked = gathering->asked;
     struct volley volley;
     begin_volley(&volley, false);
     for (int i = 0; i < gathering->spots->count; i++) {
-        const struct tl_spot_layers *layers = &gathering->spots->layers[i];
+        const struct tl_shading_layers *layers = &gathering->spots->layers[i];
         if (!gathering->spots->layered[i] || !(layers->coat > 0))
             continue;
         float off;
@@ -368,7 +368,7 @@ static void gather_coats(struct gathering *gathering, int sample)
         float lobe = lobe_value(layers->coat_exponent, off);
         if (!(dot_of(gathering->spots->horizon, i, direction) > 0) || !(lobe > 0))
             continue;
-        struct tl_skylight sky = tl_sky_look(&gathering->scene->sky, direction);
+        struct tl_sky_sample sky = tl_sky_lookup(&gathering->scene->sky, direction);
         float share =
             layers->coat * lobe / ((float)asked->strata * sky.density + (float)asked->lobe_samples * lobe);
         vec3s light = finite_product(sky.radiance, (vec3s){{share, share, share}});
@@ -381,20 +381,21 @@ static void gather_coats(struct gathering *gathering, int sample)
 /* ... and from its facets. */
 static void gather_facets(struct gathering *gathering, int sample)
 {
-    const struct tl_gathering *asked = gathering->asked;
+    const struct tl_gather_request *asked = gathering->asked;
     struct volley volley;
     begin_volley(&volley, false);
     for (int i = 0; i < gathering->spots->count; i++) {
-        const struct tl_spot_layers *layers = &gathering->spots->layers[i];
+        const struct tl_shading_layers *layers = &gathering->spots->layers[i];
         if (!gathering->spots->layered[i] || !layers->faceted)
             continue;
         float density;
         vec3s viewer = gathering->spots->viewer[i];
         vec2s numbers = numbers_for(gathering, i, sample);
-        vec3s direction = tl_brdf_draw(&layers->brdf, &layers->frame, viewer, numbers.x, numbers.y, &density);
+        vec3s direction =
+            tl_brdf_sample(&layers->brdf, &layers->frame, viewer, numbers.x, numbers.y, &density);
         if (!(density > 0) || !(dot_of(gathering->spots->horizon, i, direction) > 0))
             continue;
-        struct tl_skylight sky = tl_sky_look(&gathering->scene->sky, direction);
+        struct tl_sky_sample sky = tl_sky_lookup(&gathering->scene->sky, direction);
         vec3s gloss = tl_brdf_gloss(&layers->brdf, &layers->frame, direction, viewer);
         float draws = (float)asked->strata * sky.density + (float)asked->lobe_samples * density;
         vec3s light = finite_product(sky.radiance, glms_vec3_scale(gloss, layers->base / draws));
@@ -414,7 +415,8 @@ static void gather_layers(struct gathering *gathering)
     }
 }
 
-size_t tl_gather(const struct tl_gathering *asked, const struct tl_spots *spots, float light[3][TL_SPOTS])
+size_t tl_gather(const struct tl_gather_request *asked, const struct tl_shading_points *spots,
+                 float light[3][TL_SHADING_POINTS])
 {
     struct gathering gathering = {
         .asked = asked, .scene = asked->scene, .spots = spots, .random = asked->random, .light = light};

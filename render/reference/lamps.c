@@ -11,20 +11,20 @@ static float seen_from(const struct tl_reference_scene *scene, const struct tl_l
                        const struct tl_lamplight *light)
 {
     float shown = tl_lamp_ground_visibility(lamp, scene->ground, origin, light->direction), seen[16];
-    struct tl_trace_bundle bundle = {.count = 1, .to_m = light->distance_m};
+    struct tl_ray_packet bundle = {.count = 1, .to_m = light->distance_m};
     bundle.origin_x[0] = origin.x, bundle.origin_y[0] = origin.y, bundle.origin_z[0] = origin.z;
     bundle.direction_x[0] = light->direction.x;
     bundle.direction_y[0] = light->direction.y;
     bundle.direction_z[0] = light->direction.z;
-    tl_trace_seen_bundle(scene->trace, &bundle, seen);
+    tl_trace_transmittance_packet(scene->trace, &bundle, seen);
     return shown * seen[0];
 }
 
 /* kd/pi cos + f_r cos, under the coat and with it, of a spot that faces light from `l`. */
-static vec3s reflected(const struct tl_spot *spot, const struct tl_brdf *brdf,
+static vec3s reflected(const struct tl_shading_point *spot, const struct tl_brdf *brdf,
                        const struct tl_brdf_frame *frame, vec3s l)
 {
-    const struct tl_spot_layers *layers = &spot->layers;
+    const struct tl_shading_layers *layers = &spot->layers;
     float matt = fmaxf(glms_vec3_dot(spot->normal, l), 0) / (float)M_PI;
     vec3s gloss = tl_brdf_gloss(brdf, frame, l, spot->viewer);
     vec3s sent = glms_vec3_add(glms_vec3_scale(spot->albedo, matt), gloss);
@@ -36,7 +36,8 @@ static vec3s reflected(const struct tl_spot *spot, const struct tl_brdf *brdf,
     return glms_vec3_adds(glms_vec3_scale(sent, layers->base), coat);
 }
 
-vec3s tl_reference_lamps(const struct tl_reference_scene *scene, const struct tl_spot *spot, size_t *rays)
+vec3s tl_reference_lamps(const struct tl_reference_scene *scene, const struct tl_shading_point *spot,
+                         size_t *rays)
 {
     vec3s sum = {{0, 0, 0}};
     if (scene->lamp_count == 0)

@@ -3,9 +3,10 @@
 #ifndef TOILE_RENDER_REFERENCE_LAMPS_H
 #define TOILE_RENDER_REFERENCE_LAMPS_H
 
-#include "render/reference/spot.h"
+#include "render/reference/shading_point.h"
 
 /* Radiance towards spot.viewer; finite. Adds the number of rays to *rays. */
-vec3s tl_reference_lamps(const struct tl_reference_scene *scene, const struct tl_spot *spot, size_t *rays);
+vec3s tl_reference_lamps(const struct tl_reference_scene *scene, const struct tl_shading_point *spot,
+                         size_t *rays);
 
 #endif

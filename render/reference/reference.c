@@ -26,17 +26,17 @@ struct drawing {
     /* Of the current replicate: `groups` times a set of directions for each sample of a pixel. Tiles take
      * them in turn, because drawing them costs as much as tracing them. */
     int groups;
-    struct tl_skylight *directions; /* [groups][samples][strata] */
-    float *replicate;               /* [height][width][4], of the one that is being drawn */
-    double *sums;                   /* [height][width][4], over the replicates that are done */
-    double *squares;                /* [height][width][3] */
+    struct tl_sky_sample *directions; /* [groups][samples][strata] */
+    float *replicate;                 /* [height][width][4], of the one that is being drawn */
+    double *sums;                     /* [height][width][4], over the replicates that are done */
+    double *squares;                  /* [height][width][3] */
     size_t rays;
     struct tl_progress progress;
 };
 
 /* A ray of the camera on its way, and how much of it has got there. */
 struct sight {
-    struct tl_ray ray;
+    struct tl_ray_differential ray;
     size_t pixel;
     float share;
 };
@@ -44,15 +44,15 @@ struct sight {
 /* One sample of each of a tile's pixels. */
 struct sights {
     int count;
-    struct sight items[TL_SPOTS];
+    struct sight items[TL_SHADING_POINTS];
 };
 
 /* What they meet. */
 struct bundle {
-    struct tl_spots spots;
-    size_t pixel[TL_SPOTS];
-    float cover[TL_SPOTS];
-    vec3s lamplight[TL_SPOTS];
+    struct tl_shading_points spots;
+    size_t pixel[TL_SHADING_POINTS];
+    float cover[TL_SHADING_POINTS];
+    vec3s lamplight[TL_SHADING_POINTS];
     size_t rays; /* spent on it */
 };
 
@@ -83,14 +83,14 @@ static void find_spots(const struct drawing *drawing, bool last, struct sights *
     bundle->rays = 0;
     for (int i = 0; i < sights->count; i++) {
         struct sight sight = sights->items[i];
-        struct tl_spot spot = tl_spot_find(drawing->scene, &sight.ray);
+        struct tl_shading_point spot = tl_shading_point_find(drawing->scene, &sight.ray);
         if (!(spot.cover > 0))
             continue;
         float openness = spot.layered && !last ? spot.layers.openness : 0;
         bundle->pixel[bundle->spots.count] = sight.pixel;
         bundle->cover[bundle->spots.count] = sight.share * spot.cover * (1 - openness);
         bundle->lamplight[bundle->spots.count] = tl_reference_lamps(drawing->scene, &spot, &bundle->rays);
-        tl_spots_add(&bundle->spots, &spot);
+        tl_shading_points_add(&bundle->spots, &spot);
         sight.share *= openness;
         sight.ray.from_m = spot.distance_m + drawing->scene->offset_m;
         if (sight.share > 0)
@@ -99,7 +99,7 @@ static void find_spots(const struct drawing *drawing, bool last, struct sights *
     sights->count = through;
 }
 
-static struct tl_skylight *directions_of(const struct drawing *drawing, int group, int sample)
+static struct tl_sky_sample *directions_of(const struct drawing *drawing, int group, int sample)
 {
     int side = drawing->settings->image.supersample;
     size_t set = (size_t)group * (size_t)(side * side) + (size_t)sample;
@@ -107,7 +107,7 @@ static struct tl_skylight *directions_of(const struct drawing *drawing, int grou
 }
 
 /* Every so many tiles have one group each; then the order is shifted, so that columns do not share them. */
-static const struct tl_skylight *directions_for(const struct drawing *drawing, int tile, int sample)
+static const struct tl_sky_sample *directions_for(const struct drawing *drawing, int tile, int sample)
 {
     const int shift = 37;
     return directions_of(drawing, (tile + tile / drawing->groups * shift) % drawing->groups, sample);
@@ -121,7 +121,7 @@ static void draw_directions(const struct drawing *drawing, int replicate)
     for (int set = 0; set < drawing->groups * samples; set++) {
         int group = set / samples, sample = set % samples;
         uint64_t key = (uint64_t)(replicate + 1) << 32 | (uint32_t)group;
-        tl_gather_directions(&drawing->scene->sky, strata, sample, samples, tl_random_begin(~key, 0),
+        tl_gather_sample_sky(&drawing->scene->sky, strata, sample, samples, tl_random_begin(~key, 0),
                              tl_random_begin(~key, 1 + (uint64_t)sample),
                              directions_of(drawing, group, sample));
     }
@@ -133,7 +133,7 @@ static size_t draw_spots(const struct drawing *drawing, int replicate, int tile,
 {
     const struct tl_reference_params *params = &drawing->settings->reference;
     int side = drawing->settings->image.supersample, samples = side * side;
-    const struct tl_gathering gathering = {
+    const struct tl_gather_request gathering = {
         .scene = drawing->scene,
         .strata = params->strata,
         .sky = directions_for(drawing, tile, sample),
@@ -141,7 +141,7 @@ static size_t draw_spots(const struct drawing *drawing, int replicate, int tile,
         .reflect = drawing->scene->reflect,
         .random = tl_random_begin((uint64_t)replicate << 32 | (uint32_t)tile,
                                   (uint64_t)sample + (uint64_t)behind * (uint64_t)samples)};
-    float light[3][TL_SPOTS];
+    float light[3][TL_SHADING_POINTS];
     size_t rays = tl_gather(&gathering, &bundle->spots, light);
     for (int i = 0; i < bundle->spots.count; i++) {
         float *pixel = drawing->replicate + 4 * bundle->pixel[i], share = bundle->cover[i] / (float)samples;
@@ -250,7 +250,7 @@ static void allocate_directions(struct drawing *drawing)
     int64_t one = (int64_t)side * side * drawing->settings->reference.strata;
     int64_t groups = one > 0 ? DIRECTIONS_MAX / one : 1;
     drawing->groups = (int)(groups < 1 ? 1 : groups > GROUPS_MAX ? GROUPS_MAX : groups);
-    drawing->directions = TL_NEW_ARRAY(struct tl_skylight, (size_t)(drawing->groups * one));
+    drawing->directions = TL_NEW_ARRAY(struct tl_sky_sample, (size_t)(drawing->groups * one));
 }
 
 bool tl_reference_draw(const tl_frame *frame, const struct tl_render_settings *settings,

@@ -165,13 +165,13 @@ static double cube_density(const struct tl_sky *sky, size_t texel, vec3s on_face
     return density_of(sky, texel) * solid_angle_of(sky, texel) / area * square * sqrt(square);
 }
 
-static struct tl_skylight seen(const struct tl_sky *sky, size_t texel, vec3s world, double density)
+static struct tl_sky_sample seen(const struct tl_sky *sky, size_t texel, vec3s world, double density)
 {
     const float *rgb = texel_of(sky, texel);
-    return (struct tl_skylight){world, {{rgb[0], rgb[1], rgb[2]}}, (float)density};
+    return (struct tl_sky_sample){world, {{rgb[0], rgb[1], rgb[2]}}, (float)density};
 }
 
-static struct tl_skylight draw_cube(const struct tl_sky *sky, size_t texel, double x, double y)
+static struct tl_sky_sample draw_cube(const struct tl_sky *sky, size_t texel, double x, double y)
 {
     size_t size = (size_t)sky->environment->image.width;
     double s = ((double)(texel % size) + x) / (double)size;
@@ -180,7 +180,7 @@ static struct tl_skylight draw_cube(const struct tl_sky *sky, size_t texel, doub
     return seen(sky, texel, into_world(sky, glms_vec3_normalize(on_face)), cube_density(sky, texel, on_face));
 }
 
-static struct tl_skylight draw_latlong(const struct tl_sky *sky, size_t texel, double x, double y)
+static struct tl_sky_sample draw_latlong(const struct tl_sky *sky, size_t texel, double x, double y)
 {
     const tl_image *image = &sky->environment->image;
     size_t row = texel / (size_t)image->width;
@@ -203,7 +203,7 @@ static double every_second_bit(uint32_t bits)
     return (bits + 0.5) / 65536;
 }
 
-struct tl_skylight tl_sky_draw(const struct tl_sky *sky, double share)
+struct tl_sky_sample tl_sky_sample_at(const struct tl_sky *sky, double share)
 {
     size_t guide = (size_t)fmin(share * TL_SKY_GUIDES, TL_SKY_GUIDES - 1); /* shares may round to 1 */
     size_t low = sky->guide[guide], high = (size_t)sky->guide[guide + 1] + 1;
@@ -229,7 +229,7 @@ static size_t index_within(float share, int count)
     return (size_t)(index < 0 ? 0 : index >= count ? count - 1 : index);
 }
 
-struct tl_skylight tl_sky_look(const struct tl_sky *sky, vec3s direction)
+struct tl_sky_sample tl_sky_lookup(const struct tl_sky *sky, vec3s direction)
 {
     const tl_image *image = &sky->environment->image;
     vec3s d = from_world(sky, direction);

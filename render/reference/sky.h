@@ -22,7 +22,7 @@ struct tl_sky {
 #define TL_SKY_GUIDES 65536
 
 /* What is seen in a direction. */
-struct tl_skylight {
+struct tl_sky_sample {
     vec3s direction; /* unit */
     vec3s radiance;
     float density; /* of a draw over the whole curve, per sr */
@@ -32,7 +32,7 @@ void tl_sky_make(const tl_environment *environment, float yaw, struct tl_sky *ou
 void tl_sky_release(struct tl_sky *sky);
 
 /* The direction at `share` of the curve, [0, 1), which goes on inside the texels. */
-struct tl_skylight tl_sky_draw(const struct tl_sky *sky, double share);
-struct tl_skylight tl_sky_look(const struct tl_sky *sky, vec3s direction);
+struct tl_sky_sample tl_sky_sample_at(const struct tl_sky *sky, double share);
+struct tl_sky_sample tl_sky_lookup(const struct tl_sky *sky, vec3s direction);
 
 #endif

@@ -329,7 +329,7 @@ bool tl_trace_occluded(const tl_trace *trace, vec3s origin, vec3s direction, flo
 }
 
 /* Bits of the rays that are stopped. */
-static uint32_t ask_bundle(const tl_trace *trace, const struct tl_trace_bundle *bundle, float *through)
+static uint32_t ask_bundle(const tl_trace *trace, const struct tl_ray_packet *bundle, float *through)
 {
     struct question question = {.through = through};
     rtcInitIntersectContext(&question.context);
@@ -353,8 +353,8 @@ static uint32_t ask_bundle(const tl_trace *trace, const struct tl_trace_bundle *
             rays.org_x[i] + rays.org_y[i] + rays.org_z[i] + rays.dir_x[i] + rays.dir_y[i] + rays.dir_z[i];
         valid[i] = i < bundle->count && isfinite(sum) ? -1 : 0;
         if (!valid[i]) {
-            /* Where the processor has no vectors of 16 floats, Embree 3.13 traces the packet as a stream, which
-             * ignores `valid`: a ray is inactive there if it ends before it begins, and its numbers are
+            /* Where the processor has no vectors of 16 floats, Embree 3.13 traces the packet as a stream,
+             * which ignores `valid`: a ray is inactive there if it ends before it begins, and its numbers are
              * asserted to be finite all the same. */
             rays.org_x[i] = rays.org_y[i] = rays.org_z[i] = 0;
             rays.dir_x[i] = rays.dir_y[i] = rays.dir_z[i] = 1;
@@ -368,12 +368,12 @@ static uint32_t ask_bundle(const tl_trace *trace, const struct tl_trace_bundle *
     return stopped;
 }
 
-uint32_t tl_trace_occluded_bundle(const tl_trace *trace, const struct tl_trace_bundle *bundle)
+uint32_t tl_trace_occluded_packet(const tl_trace *trace, const struct tl_ray_packet *bundle)
 {
     return ask_bundle(trace, bundle, NULL);
 }
 
-void tl_trace_seen_bundle(const tl_trace *trace, const struct tl_trace_bundle *bundle, float seen[16])
+void tl_trace_transmittance_packet(const tl_trace *trace, const struct tl_ray_packet *bundle, float seen[16])
 {
     for (int i = 0; i < 16; i++)
         seen[i] = 1;

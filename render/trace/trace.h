@@ -34,7 +34,7 @@ bool tl_trace_occluded(const tl_trace *trace, vec3s origin, vec3s direction, flo
 
 /* Up to 16 rays at once. One direction and neighbouring origins (`coherent`) are several times as fast as
  * single rays. Bit i of the answer: ray i is stopped. */
-struct tl_trace_bundle {
+struct tl_ray_packet {
     int count; /* 1 to 16 */
     float origin_x[16], origin_y[16], origin_z[16];
     /* Unit; or all of any length, which from_m and to_m are then counted in. */
@@ -42,12 +42,12 @@ struct tl_trace_bundle {
     float from_m, to_m;
     bool coherent;
 };
-uint32_t tl_trace_occluded_bundle(const tl_trace *trace, const struct tl_trace_bundle *bundle);
+uint32_t tl_trace_occluded_packet(const tl_trace *trace, const struct tl_ray_packet *bundle);
 
 /* What each ray of the bundle is let through, in [0, 1]: every sheet of an open material leaves its openness
  * of it, at whatever angle it is crossed; what is not open stops it. (To the questions above an open sheet is
  * a sheet.) */
-void tl_trace_seen_bundle(const tl_trace *trace, const struct tl_trace_bundle *bundle, float seen[16]);
+void tl_trace_transmittance_packet(const tl_trace *trace, const struct tl_ray_packet *bundle, float seen[16]);
 
 /* A point of a triangle, moved out to where the smooth surface is that the triangle stands for: the weighted
  * mean of its projections on the tangent planes of the corners, where these lie outside [Hanika 2021,

@@ -34,7 +34,7 @@ static void mend_some(const struct tl_points_request *request, const uint16_t *c
                       const uint32_t *samples, int count)
 {
     float offset_m = tl_trace_offset(request->trace);
-    struct tl_trace_bundle up = {.count = count, .to_m = TL_COVER_OFFSETS * offset_m};
+    struct tl_ray_packet up = {.count = count, .to_m = TL_COVER_OFFSETS * offset_m};
     for (int i = 0; i < count; i++) {
         const tl_sample *sample = &request->samples->items[samples[i]];
         vec3s start = tl_sample_start(sample, request->ranges, offset_m);
@@ -43,7 +43,7 @@ static void mend_some(const struct tl_points_request *request, const uint16_t *c
         up.direction_y[i] = sample->smooth.y;
         up.direction_z[i] = sample->smooth.z;
     }
-    uint32_t stopped = tl_trace_occluded_bundle(request->trace, &up);
+    uint32_t stopped = tl_trace_occluded_packet(request->trace, &up);
     for (int i = 0; i < count; i++)
         keep_alike(covered, &taps[samples[i]], stopped >> i & 1);
 }

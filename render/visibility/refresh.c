@@ -46,7 +46,7 @@ static void set_lane(struct lanes *lanes, int i, vec3s origin, vec3s normal)
 }
 
 /* Adds member i's ray to a bundle. */
-static void push_ray(struct tl_trace_bundle *bundle, const struct lanes *lanes, int i, vec3s direction)
+static void push_ray(struct tl_ray_packet *bundle, const struct lanes *lanes, int i, vec3s direction)
 {
     int k = bundle->count++;
     bundle->origin_x[k] = lanes->x[i];
@@ -82,7 +82,7 @@ static void place_members(const struct tl_refresh *refresh, const struct tl_clus
                           struct lanes *lanes)
 {
     *lanes = (struct lanes){.members = cluster->members};
-    struct tl_trace_bundle up = {.to_m = TL_COVER_OFFSETS * refresh->offset_m, .coherent = true};
+    struct tl_ray_packet up = {.to_m = TL_COVER_OFFSETS * refresh->offset_m, .coherent = true};
     int lane_of[TL_CLUSTER];
     for (int i = 0; i < TL_CLUSTER; i++) {
         if (!(lanes->members >> i & 1))
@@ -98,7 +98,7 @@ static void place_members(const struct tl_refresh *refresh, const struct tl_clus
         lane_of[up.count] = i;
         push_ray(&up, lanes, i, normal);
     }
-    uint32_t near = tl_trace_occluded_bundle(refresh->request->trace, &up);
+    uint32_t near = tl_trace_occluded_packet(refresh->request->trace, &up);
     for (int k = 0; k < up.count; k++) {
         int i = lane_of[k];
         bool covered = near >> k & 1 && !lift(refresh, &cluster->sites[i], lanes, i);
@@ -224,7 +224,7 @@ static float weight_of(float cosine)
 static size_t look(const struct tl_refresh *refresh, const struct lanes *lanes, uint32_t lanes_wanted,
                    vec3s direction, struct glance *glance)
 {
-    struct tl_trace_bundle bundle = {.to_m = INFINITY, .coherent = true};
+    struct tl_ray_packet bundle = {.to_m = INFINITY, .coherent = true};
     int lane_of[TL_CLUSTER];
     float through_ground[TL_CLUSTER];
     for (int i = 0; i < TL_CLUSTER; i++) {
@@ -246,7 +246,7 @@ static size_t look(const struct tl_refresh *refresh, const struct lanes *lanes, 
     if (bundle.count == 0)
         return 0;
     float seen[TL_CLUSTER];
-    tl_trace_seen_bundle(refresh->request->trace, &bundle, seen);
+    tl_trace_transmittance_packet(refresh->request->trace, &bundle, seen);
     for (int k = 0; k < bundle.count; k++)
         glance->seen[lane_of[k]] += through_ground[k] * seen[k];
     return (size_t)bundle.count;

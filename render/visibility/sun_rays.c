@@ -43,7 +43,7 @@ static void reserve(struct tl_sun_rays *rays, const struct tl_points_request *re
 static size_t look(const struct tl_points_request *request, const struct tl_starts *starts,
                    const uint32_t samples[BUNDLE], int count, vec3s direction, float seen[BUNDLE])
 {
-    struct tl_trace_bundle bundle = {.to_m = INFINITY, .coherent = true};
+    struct tl_ray_packet bundle = {.to_m = INFINITY, .coherent = true};
     int place[BUNDLE];
     for (int i = 0; i < count; i++) {
         vec3s start = starts->points[samples[i]];
@@ -63,7 +63,7 @@ static size_t look(const struct tl_points_request *request, const struct tl_star
     if (bundle.count == 0)
         return 0;
     float through[BUNDLE];
-    tl_trace_seen_bundle(request->trace, &bundle, through);
+    tl_trace_transmittance_packet(request->trace, &bundle, through);
     for (int k = 0; k < bundle.count; k++)
         seen[place[k]] *= through[k];
     return (size_t)bundle.count;

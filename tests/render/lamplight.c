@@ -2,7 +2,7 @@
 
 #include "render/brdf/brdf.h"
 #include "render/frame/view.h"
-#include "render/reference/spot.h"
+#include "render/reference/shading_point.h"
 
 #include "tests/testing.h"
 
@@ -62,22 +62,22 @@ void lamplit_close(struct lamplit *scene)
     tl_environment_release(&scene->environment);
 }
 
-static struct tl_ray pixel_ray(const struct tl_view *view, int width, int height, int x, int y)
+static struct tl_ray_differential pixel_ray(const struct tl_view *view, int width, int height, int x, int y)
 {
     float right = 2 * ((float)x + 0.5f) / (float)width - 1, up = 1 - 2 * ((float)y + 0.5f) / (float)height;
     vec3s along = glms_vec3_add(view->forward, glms_vec3_scale(view->right, right));
     along = glms_vec3_add(along, glms_vec3_scale(view->up, up));
     float length = glms_vec3_norm(along);
-    return (struct tl_ray){.origin = view->eye,
-                           .direction = glms_vec3_divs(along, length),
-                           .from_m = view->near_m * length,
-                           .to_m = view->far_m * length,
-                           .across = glms_vec3_scale(view->right, 2 / ((float)width * length)),
-                           .down = glms_vec3_scale(view->up, -2 / ((float)height * length))};
+    return (struct tl_ray_differential){.origin = view->eye,
+                                        .direction = glms_vec3_divs(along, length),
+                                        .from_m = view->near_m * length,
+                                        .to_m = view->far_m * length,
+                                        .across = glms_vec3_scale(view->right, 2 / ((float)width * length)),
+                                        .down = glms_vec3_scale(view->up, -2 / ((float)height * length))};
 }
 
 /* `point` lies on the triangle; the spot's own is where rays start, on the smooth surface. */
-static vec3s light_of(const struct tl_spot *spot, vec3s point, const struct tl_lamp *lamp)
+static vec3s light_of(const struct tl_shading_point *spot, vec3s point, const struct tl_lamp *lamp)
 {
     const struct tl_brdf brdf = tl_brdf_of(spot->material, spot->f0, spot->glossiness);
     const struct tl_brdf_frame frame = tl_brdf_frame_make(spot->normal, spot->tangent, spot->handedness,
@@ -104,8 +104,8 @@ tl_image lamplit_evaluate(const struct lamplit *scene)
     tl_image out = tl_image_create(image->width, image->height, 4, TL_IMAGE_F32);
     for (int y = 0; y < image->height; y++)
         for (int x = 0; x < image->width; x++) {
-            struct tl_ray ray = pixel_ray(&view, image->width, image->height, x, y);
-            struct tl_spot spot = tl_spot_find(&traced, &ray);
+            struct tl_ray_differential ray = pixel_ray(&view, image->width, image->height, x, y);
+            struct tl_shading_point spot = tl_shading_point_find(&traced, &ray);
             struct tl_trace_hit hit =
                 tl_trace_nearest(traced.trace, ray.origin, ray.direction, ray.from_m, ray.to_m);
             vec3s point = glms_vec3_add(ray.origin, glms_vec3_scale(ray.direction, hit.distance_m));

@@ -10,12 +10,12 @@ foreach(name
     plan/cost
     env/cube
     env/emitters
-    brdf/fan
+    brdf/lobe_fit
     metrics/flip
     surfaces/ground
     env/layout
     inspect/legend
-    env/levels
+    env/mip_levels
     pem/lobe
     pem/lobe_error
     env/lobes

@@ -27,17 +27,17 @@ struct oracle {
 /* Samples of pixels on their way through sheets of open cloth. */
 struct sights {
     int count;
-    struct tl_ray rays[TL_SPOTS];
-    int pixels[TL_SPOTS]; /* index into the oracle's */
-    float shares[TL_SPOTS];
+    struct tl_ray_differential rays[TL_SHADING_POINTS];
+    int pixels[TL_SHADING_POINTS]; /* index into the oracle's */
+    float shares[TL_SHADING_POINTS];
 };
 
 /* What they meet; they become what goes on through it. */
 struct met {
-    struct tl_spots spots;
-    int pixels[TL_SPOTS];
-    float shares[TL_SPOTS];
-    vec3s lamplight[TL_SPOTS];
+    struct tl_shading_points spots;
+    int pixels[TL_SHADING_POINTS];
+    float shares[TL_SHADING_POINTS];
+    vec3s lamplight[TL_SHADING_POINTS];
 };
 
 static void meet(const struct oracle *oracle, bool last, struct sights *sights, struct met *met)
@@ -46,14 +46,14 @@ static void meet(const struct oracle *oracle, bool last, struct sights *sights, 
     size_t rays = 0;
     *met = (struct met){0};
     for (int i = 0; i < sights->count; i++) {
-        struct tl_spot spot = tl_spot_find(&oracle->scene, &sights->rays[i]);
+        struct tl_shading_point spot = tl_shading_point_find(&oracle->scene, &sights->rays[i]);
         if (!(spot.cover > 0))
             continue;
         float openness = spot.layered && !last ? spot.layers.openness : 0;
         met->pixels[met->spots.count] = sights->pixels[i];
         met->shares[met->spots.count] = sights->shares[i] * spot.cover * (1 - openness);
         met->lamplight[met->spots.count] = tl_reference_lamps(&oracle->scene, &spot, &rays);
-        tl_spots_add(&met->spots, &spot);
+        tl_shading_points_add(&met->spots, &spot);
         if (!(openness > 0))
             continue;
         sights->rays[through] = sights->rays[i];
@@ -67,17 +67,17 @@ static void meet(const struct oracle *oracle, bool last, struct sights *sights, 
 /* One replicate of the light of what was met. */
 static void light_up(struct oracle *oracle, const struct met *met, uint64_t key, int replicate)
 {
-    struct tl_skylight sky[STRATA];
+    struct tl_sky_sample sky[STRATA];
     uint64_t turn = (uint64_t)replicate + 1;
-    tl_gather_directions(&oracle->scene.sky, STRATA, 0, 1, tl_random_begin(key, turn),
+    tl_gather_sample_sky(&oracle->scene.sky, STRATA, 0, 1, tl_random_begin(key, turn),
                          tl_random_begin(~key, turn), sky);
-    const struct tl_gathering gathering = {.scene = &oracle->scene,
-                                           .strata = STRATA,
-                                           .sky = sky,
-                                           .lobe_samples = LOBE_SAMPLES,
-                                           .reflect = oracle->scene.reflect,
-                                           .random = tl_random_begin(key, turn << 32)};
-    float light[3][TL_SPOTS];
+    const struct tl_gather_request gathering = {.scene = &oracle->scene,
+                                                .strata = STRATA,
+                                                .sky = sky,
+                                                .lobe_samples = LOBE_SAMPLES,
+                                                .reflect = oracle->scene.reflect,
+                                                .random = tl_random_begin(key, turn << 32)};
+    float light[3][TL_SHADING_POINTS];
     double samples = oracle->side * oracle->side;
     tl_gather(&gathering, &met->spots, light);
     for (int i = 0; i < met->spots.count; i++)
@@ -99,12 +99,14 @@ static void follow(struct oracle *oracle, struct sights *sights, uint64_t key)
 /* Sixteen pixels' samples of one place at a time. */
 static void trace_pixels(struct oracle *oracle)
 {
-    int side = oracle->side, samples = side * side, groups = (oracle->count + TL_SPOTS - 1) / TL_SPOTS;
+    int side = oracle->side, samples = side * side,
+        groups = (oracle->count + TL_SHADING_POINTS - 1) / TL_SHADING_POINTS;
 #pragma omp parallel for schedule(dynamic)
     for (int group = 0; group < groups; group++)
         for (int sample = 0; sample < samples; sample++) {
             struct sights sights = {0};
-            for (int i = group * TL_SPOTS; i < oracle->count && sights.count < TL_SPOTS; i++) {
+            for (int i = group * TL_SHADING_POINTS; i < oracle->count && sights.count < TL_SHADING_POINTS;
+                 i++) {
                 int x = (int)(oracle->pixels[i] % (size_t)oracle->width);
                 int y = (int)(oracle->pixels[i] / (size_t)oracle->width);
                 sights.rays[sights.count] =

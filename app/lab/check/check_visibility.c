@@ -165,7 +165,7 @@ static void ask(struct witness *witness, const tl_sample *sample, vec3s start, s
     tally->points++;
     tally->claimed += claimed_of(witness, index, region);
     for (int first = 0; first < RAYS; first += BUNDLE) {
-        struct tl_trace_bundle bundle = {.count = BUNDLE, .to_m = INFINITY};
+        struct tl_ray_packet bundle = {.count = BUNDLE, .to_m = INFINITY};
         float seen[BUNDLE];
         for (int i = 0; i < BUNDLE; i++) {
             vec3s direction = directions[first + i];
@@ -173,7 +173,7 @@ static void ask(struct witness *witness, const tl_sample *sample, vec3s start, s
             bundle.direction_x[i] = direction.x, bundle.direction_y[i] = direction.y;
             bundle.direction_z[i] = direction.z;
         }
-        tl_trace_seen_bundle(witness->trace, &bundle, seen);
+        tl_trace_transmittance_packet(witness->trace, &bundle, seen);
         for (int i = 0; i < BUNDLE; i++)
             tally->seen[first + i] +=
                 (double)(seen[i] * tl_ground_visibility(ground, start, directions[first + i]));

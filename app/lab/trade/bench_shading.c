@@ -7,7 +7,7 @@
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
-#include "render/local/trial.h"
+#include "render/local/shading_bench.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -77,7 +77,7 @@ struct bench {
     tl_mesh mesh;
     tl_material material;
     tl_gpu *gpu;
-    struct tl_local_trial *trial;
+    struct tl_shading_bench *trial;
     uint64_t shown; /* surfaces so far */
     struct row rows[LOOKS][VARIANTS];
 };
@@ -150,8 +150,8 @@ static bool show(struct bench *bench, int look, enum tl_reflectance model, tl_er
         .eye = {{0, 0, 1}}, .up = {{0, 1, 0}}, .fov_y = 2 * atanf(0.5f), .near_m = 0.1f, .far_m = 10};
     const struct tl_lamp lamp = {
         .kind = TL_LAMP_POINT, .position = {{-0.5f, 0.5f, 0.8f}}, .irradiance = {{1, 1, 1}}};
-    return tl_local_trial_show(bench->trial, &surface, &camera, &lamp, bench->schedule.side,
-                               bench->schedule.side, error);
+    return tl_shading_bench_set_scene(bench->trial, &surface, &camera, &lamp, bench->schedule.side,
+                                      bench->schedule.side, error);
 }
 
 static bool set_shading(const struct variant *variant, struct tl_shading_params *shading, tl_error *error)
@@ -183,9 +183,9 @@ static double relative_rmse(const tl_image *drawn, const tl_image *exact)
 static bool draw_once(struct bench *bench, const struct tl_shading_params *shading, struct tl_taken *taken,
                       tl_error *error)
 {
-    tl_local_trial_clear(bench->trial);
+    tl_shading_bench_clear(bench->trial);
     struct tl_stopwatch watch = tl_stopwatch_start();
-    bool drawn = tl_local_trial_draw(bench->trial, shading, error);
+    bool drawn = tl_shading_bench_draw(bench->trial, shading, error);
     *taken = tl_stopwatch_read(&watch);
     return drawn;
 }
@@ -207,10 +207,10 @@ static bool measure_error(struct bench *bench, struct row *row, tl_error *error)
     struct tl_taken unused;
     if (!draw_once(bench, exact, &unused, error))
         return false;
-    tl_image want = tl_local_trial_read(bench->trial);
+    tl_image want = tl_shading_bench_read(bench->trial);
     bool drawn = draw_once(bench, &row->shading, &unused, error);
     if (drawn) {
-        tl_image image = tl_local_trial_read(bench->trial);
+        tl_image image = tl_shading_bench_read(bench->trial);
         row->rel_rmse = relative_rmse(&image, &want);
         tl_image_release(&image);
     }
@@ -244,14 +244,14 @@ static bool run(struct bench *bench, tl_error *error)
 {
     struct tl_progress progress = tl_progress_begin("measuring shading");
     int steps = LOOKS * (TL_REFLECT_BANKS + 1), done = 0;
-    bool fine = tl_local_trial_create(bench->trial, bench->gpu, error);
+    bool fine = tl_shading_bench_create(bench->trial, bench->gpu, error);
     for (int model = TL_REFLECT_PHONG; fine && model <= TL_REFLECT_BANKS; model++)
         for (int look = 0; fine && look < LOOKS; look++) {
             fine = measure_model(bench, look, (enum tl_reflectance)model, error);
             tl_progress_update(&progress, ++done, steps);
         }
     tl_progress_end(&progress);
-    tl_local_trial_release(bench->trial);
+    tl_shading_bench_release(bench->trial);
     return fine;
 }
 
@@ -323,7 +323,7 @@ bool tl_bench_shading(const struct tl_arguments *arguments, tl_error *error)
     bench->material = tl_material_default("bench");
     bench->material.specular = (vec3s){{0.3f, 0.3f, 0.3f}};
     bench->material.glossiness = 0.75f;
-    bench->trial = TL_NEW(struct tl_local_trial);
+    bench->trial = TL_NEW(struct tl_shading_bench);
     bench->gpu = tl_gpu_create_headless(error);
     bool done = bench->gpu && run(bench, error);
     if (done && arguments->json)

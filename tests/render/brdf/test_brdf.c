@@ -49,7 +49,7 @@ static double gloss_of(const struct tl_brdf *brdf, const struct tl_brdf_frame *f
 
 static double density_of(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s l, vec3s v)
 {
-    return (double)tl_brdf_density(brdf, frame, l, v);
+    return (double)tl_brdf_pdf(brdf, frame, l, v);
 }
 
 /* Over the cell [z0, z1] x [p0, p1] of the upper hemisphere by the midpoint rule; z: cosine, p: azimuth. */
@@ -307,9 +307,9 @@ static void check_draws(const struct tl_brdf *brdf, vec3s v)
     for (uint32_t i = 0; i < DRAWS; i++) {
         float u1 = (float)(hash(2 * i + 1) >> 8) / 0x1p24f, u2 = (float)(hash(2 * i + 2) >> 8) / 0x1p24f,
               density;
-        vec3s l = tl_brdf_draw(brdf, &frame, v, u1, u2, &density);
+        vec3s l = tl_brdf_sample(brdf, &frame, v, u1, u2, &density);
         assert_near(glms_vec3_norm(l), 1, 1e-5);
-        assert_near(density, tl_brdf_density(brdf, &frame, l, v), 0);
+        assert_near(density, tl_brdf_pdf(brdf, &frame, l, v), 0);
         double about = atan2((double)l.y, (double)l.x) / (2 * PI);
         int ring = (int)fmin((double)l.z * RINGS, RINGS - 1), sector = (int)((about + 1) * SECTORS) % SECTORS;
         if (density > 0)
@@ -362,7 +362,7 @@ static void draws_estimate_the_energy(void **state)
             for (int k = 0; k < 128 * 128; k++) {
                 int row = k / 128, column = k % 128;
                 float density, u1 = ((float)column + 0.5f) / 128, u2 = ((float)row + 0.5f) / 128;
-                vec3s l = tl_brdf_draw(&brdf, &frame, v, u1, u2, &density);
+                vec3s l = tl_brdf_sample(&brdf, &frame, v, u1, u2, &density);
                 double weight = density > 0 ? gloss_of(&brdf, &frame, l, v) / (double)density : 0;
                 sum += weight / (128 * 128);
                 heaviest = fmax(heaviest, weight);
@@ -470,11 +470,11 @@ static void nothing_is_ever_not_a_number(void **state)
         assert_true(isfinite(gloss.x) && isfinite(gloss.y) && isfinite(gloss.z) && gloss.x >= 0);
         if (l.z <= 0 || v.z <= 0)
             assert_true(gloss.x == 0);
-        float density = tl_brdf_density(&brdf, &frame, l, v);
+        float density = tl_brdf_pdf(&brdf, &frame, l, v);
         assert_true(isfinite(density) && density >= 0);
         const float numbers[] = {0, 0.5f, 0.99999994f};
         for (int k = 0; k < 9; k++) {
-            vec3s drawn = tl_brdf_draw(&brdf, &frame, v, numbers[k % 3], numbers[k / 3], &density);
+            vec3s drawn = tl_brdf_sample(&brdf, &frame, v, numbers[k % 3], numbers[k / 3], &density);
             assert_true(isfinite(drawn.x) && isfinite(drawn.y) && isfinite(drawn.z));
             assert_true(isfinite(density) && density >= 0);
         }

@@ -1,6 +1,6 @@
 #include "render/env/cube.h"
 
-#include "render/env/pour.h"
+#include "render/env/resample.h"
 
 #include "tests/testing.h"
 
@@ -288,7 +288,7 @@ static void threads_change_no_bit(void **state)
     release_environment(&environment);
 }
 
-static void expect_same_cube(const tl_environment *environment, int size, struct tl_pour *kept)
+static void expect_same_cube(const tl_environment *environment, int size, struct tl_resampling *kept)
 {
     tl_cube with = tl_cube_from_environment_with(environment, size, kept);
     tl_cube without = tl_cube_from_environment(environment, size);
@@ -301,7 +301,7 @@ static void expect_same_cube(const tl_environment *environment, int size, struct
 static void what_is_kept_changes_no_bit(void **state)
 {
     (void)state;
-    struct tl_pour kept = {0};
+    struct tl_resampling kept = {0};
     const struct {
         int width, height, size;
     } cases[] = {{64, 32, 16}, {64, 32, 16}, {64, 32, 8}, {32, 64, 8}, {2, 1, 8}, {64, 32, 16}};
@@ -315,7 +315,7 @@ static void what_is_kept_changes_no_bit(void **state)
         release_environment(&cube);
         release_environment(&latlong);
     }
-    tl_pour_release(&kept);
+    tl_resampling_release(&kept);
 }
 
 /* So large that it is poured in bands, of which nothing is kept: a constant stays constant, and what lies in
@@ -323,7 +323,7 @@ static void what_is_kept_changes_no_bit(void **state)
 static void large_images_are_poured_in_bands(void **state)
 {
     (void)state;
-    struct tl_pour kept = {0};
+    struct tl_resampling kept = {0};
     tl_environment large = make_environment(TL_ENV_LATLONG, 2048, 1024);
     float *colour = tl_image_floats(&large.image);
     for (int y = 0; y < 1024; y++) {

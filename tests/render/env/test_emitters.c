@@ -70,13 +70,13 @@ static void merged_light_is_that_of_all_texels(void **state)
         float s = exponents[e], steps[TL_LANES] = {0};
         struct tl_emitters emitters = tl_emitters_merge(texels, TEXELS, SIZE, s);
         double worst = 0, sum = 0;
-        struct tl_gaze gaze;
+        struct tl_lobe_packet gaze;
         vec3s directions[TL_LANES];
         float got[3][TL_LANES];
         for (int i = 0; i < TL_LANES; i++)
             directions[i] = direction_of(i, TL_LANES);
-        tl_gaze_set(&gaze, directions, steps, s);
-        tl_emitters_gather(&emitters, &gaze, got);
+        tl_lobe_packet_set(&gaze, directions, steps, s);
+        tl_emitters_convolve(&emitters, &gaze, got);
         for (int i = 0; i < TL_LANES; i++) {
             double expected[3];
             integrate(&cube, fine_angles, directions[i], s, expected);

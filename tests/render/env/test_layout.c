@@ -56,7 +56,7 @@ static void texels_return(void **state)
         struct tl_sphere_map map = map_of((enum tl_layout)layout, 37);
         for (int y = 0; y < map.height; y++)
             for (int x = 0; x < map.width; x++) {
-                if (!tl_layout_holds(&map, x + 0.5, y + 0.5))
+                if (!tl_layout_contains(&map, x + 0.5, y + 0.5))
                     continue;
                 double back_x, back_y;
                 vec3s direction = tl_layout_direction(&map, x + 0.5, y + 0.5);
@@ -148,7 +148,7 @@ static void solid_angle_of_a_texel(void **state)
             bool whole = true;
             for (int k = 0; k < 256; k++) {
                 double at_x = x + (k % 16 + 0.5) / 16, at_y = y + (k / 16 + 0.5) / 16;
-                if (tl_layout_holds(&map, at_x, at_y))
+                if (tl_layout_contains(&map, at_x, at_y))
                     sum += spanned(&map, at_x, at_y, 1 / 16.0);
                 else
                     whole = false;
@@ -169,8 +169,8 @@ static double spread(enum tl_layout layout)
         for (int x = 0; x < map.width; x++) {
             bool whole = true;
             for (int i = 0; i < 4; i++)
-                whole =
-                    whole && tl_layout_holds(&map, x + (i & 1 ? 0.999 : 0.001), y + (i & 2 ? 0.999 : 0.001));
+                whole = whole &&
+                        tl_layout_contains(&map, x + (i & 1 ? 0.999 : 0.001), y + (i & 2 ? 0.999 : 0.001));
             double solid_angle = tl_layout_solid_angle(&map, x, y);
             least = whole ? fmin(least, solid_angle) : least;
             most = whole ? fmax(most, solid_angle) : most;

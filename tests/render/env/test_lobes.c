@@ -35,7 +35,7 @@ static struct tl_exponent_blend node(int i)
 static void print_least_error(const struct tl_lobe_curves *curves, int method)
 {
     double mean[EXPONENTS], worst[EXPONENTS], sum = 0, most = 0;
-    tl_lobe_least_error(curves, method, mean, worst);
+    tl_lobe_min_error(curves, method, mean, worst);
     for (int i = 0; i < EXPONENTS; i++) {
         sum += mean[i] / EXPONENTS;
         most = fmax(most, worst[i]);

@@ -2,7 +2,7 @@
 #include "render/env/sun.h"
 
 #include "config/memory.h"
-#include "render/env/pour.h"
+#include "render/env/resample.h"
 
 #include "tests/testing.h"
 
@@ -90,7 +90,7 @@ static void sum_light(const tl_cube *cube, const struct tl_suns *suns, double su
 }
 
 /* Of the last size that was asked for: most of the time would go into making it anew. */
-static struct tl_pour pour;
+static struct tl_resampling pour;
 
 /* Takes the suns of a cube of `size`; no light may be lost but by the rounding of floats, and what is left
  * must be light. */
@@ -100,7 +100,7 @@ static struct tl_suns take(const tl_environment *environment, int size, tl_cube 
     struct tl_suns suns = {0};
     double before[3], after[3];
     sum_light(&cube, &suns, before);
-    tl_suns_take(&cube, environment, &suns);
+    tl_suns_extract(&cube, environment, &suns);
     sum_light(&cube, &suns, after);
     for (int c = 0; c < 3; c++)
         assert_near(after[c], before[c], 1e-6 * before[c]);
@@ -359,6 +359,6 @@ int main(void)
         cmocka_unit_test(real_environments),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    tl_pour_release(&pour);
+    tl_resampling_release(&pour);
     return failed;
 }

@@ -158,8 +158,9 @@ static void centres_show_their_texels(void **state)
         tl_envmap_fill(&device->envmap, device->gpu, &params, &lobes, &axes, &view);
         const struct tl_sphere_map *map = &device->envmap.levels.maps[0];
         mat3s to_world = glms_mat3_transpose(device->envmap.turn);
-        struct tl_picture picture = tl_picture_pour(&device->envmap.levels, &lobes, TL_EXPONENT_COUNT,
-                                                    glms_mat3_mul(glms_mat3_transpose(axes), to_world));
+        struct tl_prefiltered_map picture =
+            tl_prefiltered_map_make(&device->envmap.levels, &lobes, TL_EXPONENT_COUNT,
+                                    glms_mat3_mul(glms_mat3_transpose(axes), to_world));
         int count = map->width * map->height;
         vec3s *directions = TL_NEW_ARRAY(vec3s, (size_t)count), *seen = TL_NEW_ARRAY(vec3s, (size_t)count);
         for (int i = 0; i < count; i++) {
@@ -183,7 +184,7 @@ static void centres_show_their_texels(void **state)
                           way ? " by matrix" : "", worst);
             assert_true(worst < 1e-3); /* half a texel would be 0.5 */
         }
-        tl_picture_release(&picture);
+        tl_prefiltered_map_release(&picture);
         free(directions);
         free(seen);
     }

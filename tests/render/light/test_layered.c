@@ -115,8 +115,8 @@ static void set_feature(const struct feature *feature, tl_material *material)
 
 /* Images may err as much as the method does with two lobes (3 to 5 % when each pixel has one sample), though
  * the sheet is seen at some 70 degrees from its normal, where the horizon cuts lobes in half and a fan errs
- * most. The fan's own error is in test_fan. Alpha is what is covered and not looked through, and must agree
- * but for the edges' pixels. */
+ * most. The fan's own error is in test_lobe_fit. Alpha is what is covered and not looked through, and must
+ * agree but for the edges' pixels. */
 static void test_against_the_oracle(void **state)
 {
     const struct test_device *device = *state;
@@ -160,7 +160,7 @@ static void test_furnace(void **state)
         for (int p = 0; p < 4 * WIDTH * HEIGHT; p++)
             greatest = fmaxf(greatest, tl_image_floats(&image)[p]);
         printf("%-18s sends back %.3f at most\n", features[i].name, (double)greatest);
-        assert_true(greatest < 1.1f); /* test_fan: up to 9 % too much towards some viewers */
+        assert_true(greatest < 1.1f); /* test_lobe_fit: up to 9 % too much towards some viewers */
         tl_image_release(&image);
         scene_close(&scene);
     }

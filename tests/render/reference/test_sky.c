@@ -49,8 +49,8 @@ static void test_draw_and_look_agree(void **state)
         int differ = 0;
         tl_sky_make(&environment, 1.3f, &sky);
         for (int i = 0; i < DRAWS; i++) {
-            struct tl_skylight drawn = tl_sky_draw(&sky, (i + 0.37) / DRAWS);
-            struct tl_skylight seen = tl_sky_look(&sky, drawn.direction);
+            struct tl_sky_sample drawn = tl_sky_sample_at(&sky, (i + 0.37) / DRAWS);
+            struct tl_sky_sample seen = tl_sky_lookup(&sky, drawn.direction);
             assert_near(glms_vec3_norm(drawn.direction), 1, 1e-6);
             differ += drawn.radiance.x != seen.radiance.x ||
                       fabsf(drawn.density - seen.density) > 1e-5f * drawn.density;
@@ -73,7 +73,7 @@ static void test_measure(void **state)
         tl_sky_make(&environment, -2.1f, &sky);
         double area = 0, light = 0, first[3] = {0, 0, 0}, second[3] = {0, 0, 0};
         for (int i = 0; i < DRAWS; i++) {
-            struct tl_skylight drawn = tl_sky_draw(&sky, (i + 0.5) / DRAWS);
+            struct tl_sky_sample drawn = tl_sky_sample_at(&sky, (i + 0.5) / DRAWS);
             double weight = 1 / ((double)drawn.density * DRAWS);
             area += weight;
             light += weight * (double)(drawn.radiance.x + drawn.radiance.y + drawn.radiance.z) / 3;

@@ -155,8 +155,7 @@ static void bundles_answer_as_single_rays(void **state)
     uint64_t seed = 8;
     int stopped = 0;
     for (int k = 0; k < 400; k++) {
-        struct tl_trace_bundle bundle = {
-            .count = 1 + k % 16, .from_m = 0.01f, .to_m = 1.5f, .coherent = k % 2};
+        struct tl_ray_packet bundle = {.count = 1 + k % 16, .from_m = 0.01f, .to_m = 1.5f, .coherent = k % 2};
         vec3s one = soup_direction(&seed), near = soup_point(&seed, 1.5f);
         for (int i = 0; i < 16; i++) {
             vec3s origin = glms_vec3_add(near, soup_point(&seed, bundle.coherent ? 0.02f : 2));
@@ -165,7 +164,7 @@ static void bundles_answer_as_single_rays(void **state)
             bundle.direction_x[i] = direction.x, bundle.direction_y[i] = direction.y;
             bundle.direction_z[i] = direction.z;
         }
-        uint32_t answer = tl_trace_occluded_bundle(trace, &bundle);
+        uint32_t answer = tl_trace_occluded_packet(trace, &bundle);
         assert_int_equal(answer >> bundle.count, 0);
         for (int i = 0; i < bundle.count; i++) {
             vec3s origin = {{bundle.origin_x[i], bundle.origin_y[i], bundle.origin_z[i]}};
@@ -209,13 +208,13 @@ static void alpha_cuts_holes_where_it_says(void **state)
         assert_int_equal(hit.triangle, hole ? 0 : 1);
         assert_near(hit.distance_m, hole ? 6 : 1, 1e-5);
         assert_int_equal(tl_trace_occluded(trace, origin, down, 0, 2), !hole);
-        struct tl_trace_bundle bundle = {.count = 1,
-                                         .origin_x = {origin.x},
-                                         .origin_y = {origin.y},
-                                         .origin_z = {1},
-                                         .direction_z = {-1},
-                                         .to_m = 2};
-        assert_int_equal(tl_trace_occluded_bundle(trace, &bundle), !hole);
+        struct tl_ray_packet bundle = {.count = 1,
+                                       .origin_x = {origin.x},
+                                       .origin_y = {origin.y},
+                                       .origin_z = {1},
+                                       .direction_z = {-1},
+                                       .to_m = 2};
+        assert_int_equal(tl_trace_occluded_packet(trace, &bundle), !hole);
     }
     tl_trace_destroy(&trace);
     tl_image_release(&image);
@@ -268,9 +267,9 @@ static void degenerate_input_is_harmless(void **state)
     assert_false(tl_trace_occluded(trace, good, bad, 0, 1));
     assert_false(tl_trace_occluded(trace, good, zero, 0, 1));
     assert_int_equal(tl_trace_nearest(trace, far, good, 0, 1).surface, TL_TRACE_NONE);
-    struct tl_trace_bundle bundle = {
+    struct tl_ray_packet bundle = {
         .count = 2, .origin_x = {NAN, 0}, .direction_z = {1, NAN}, .to_m = INFINITY, .coherent = true};
-    assert_int_equal(tl_trace_occluded_bundle(trace, &bundle), 0);
+    assert_int_equal(tl_trace_occluded_packet(trace, &bundle), 0);
     tl_trace_destroy(&trace);
     soup_release(&soup);
 }
@@ -328,7 +327,7 @@ static void open_sheets_let_light_through(void **state)
     update(trace, surfaces, 3);
     /* Ray i starts before sheet i and goes on; the last two go the other way, from behind two sheets and from
      * none. */
-    struct tl_trace_bundle bundle = {.count = 5, .to_m = INFINITY};
+    struct tl_ray_packet bundle = {.count = 5, .to_m = INFINITY};
     const float from[5] = {-0.5f, 0.5f, 1.5f, 1.5f, -0.5f}, ahead[5] = {1, 1, 1, -1, -1};
     const float expected[5] = {0, 0, 0, 0.125f, 1};
     for (int i = 0; i < 5; i++) {
@@ -336,15 +335,15 @@ static void open_sheets_let_light_through(void **state)
         bundle.direction_z[i] = ahead[i];
     }
     float seen[16];
-    tl_trace_seen_bundle(trace, &bundle, seen);
+    tl_trace_transmittance_packet(trace, &bundle, seen);
     for (int i = 0; i < 5; i++)
         assert_near(seen[i], expected[i], 0);
-    assert_int_equal(tl_trace_occluded_bundle(trace, &bundle), 0xf);
+    assert_int_equal(tl_trace_occluded_packet(trace, &bundle), 0xf);
     assert_int_equal(tl_trace_nearest(trace, (vec3s){{0, 0, -0.5f}}, (vec3s){{0, 0, 1}}, 0, INFINITY).surface,
                      0);
     update(trace, surfaces, 2);
     bundle.count = 2;
-    tl_trace_seen_bundle(trace, &bundle, seen);
+    tl_trace_transmittance_packet(trace, &bundle, seen);
     assert_near(seen[0], 0.125, 0);
     assert_near(seen[1], 0.25, 0);
     tl_trace_destroy(&trace);

@@ -5,7 +5,7 @@
 #include "assets/builtin/weave.h"
 #include "config/memory.h"
 #include "render/frame/frame.h"
-#include "render/reference/spot.h"
+#include "render/reference/shading_point.h"
 
 #include "tests/testing.h"
 
@@ -114,19 +114,20 @@ static void read_layer(const struct tl_gbuffer *gbuffer, enum tl_gbuffer_layer l
     glGetTextureImage(gbuffer->target.colours[layer].id, 0, GL_RGBA, GL_FLOAT, HEIGHT * WIDTH * 16, out);
 }
 
-static struct tl_spot look(const struct tl_reference_scene *scene, const struct tl_view *view, int x, int y)
+static struct tl_shading_point look(const struct tl_reference_scene *scene, const struct tl_view *view, int x,
+                                    int y)
 {
     const float step_x = 2.0f / WIDTH, step_y = 2.0f / HEIGHT;
     vec3s along = glms_vec3_add(view->forward, glms_vec3_scale(view->right, ((float)x + 0.5f) * step_x - 1));
     along = glms_vec3_add(along, glms_vec3_scale(view->up, ((float)y + 0.5f) * step_y - 1));
     float length = glms_vec3_norm(along);
-    const struct tl_ray ray = {.origin = view->eye,
-                               .direction = glms_vec3_divs(along, length),
-                               .from_m = view->near_m * length,
-                               .to_m = view->far_m * length,
-                               .across = glms_vec3_scale(view->right, step_x / length),
-                               .down = glms_vec3_scale(view->up, step_y / length)};
-    return tl_spot_find(scene, &ray);
+    const struct tl_ray_differential ray = {.origin = view->eye,
+                                            .direction = glms_vec3_divs(along, length),
+                                            .from_m = view->near_m * length,
+                                            .to_m = view->far_m * length,
+                                            .across = glms_vec3_scale(view->right, step_x / length),
+                                            .down = glms_vec3_scale(view->up, step_y / length)};
+    return tl_shading_point_find(scene, &ray);
 }
 
 static float largest_difference(const float *a, const float *b)
@@ -139,7 +140,8 @@ struct tally {
     int samples, cover, point, normal, diffuse, specular, gloss;
 };
 
-static void compare(struct tally *tally, const struct tl_spot *spot, const struct layers *layers, int i)
+static void compare(struct tally *tally, const struct tl_shading_point *spot, const struct layers *layers,
+                    int i)
 {
     tally->samples++;
     if (fabsf(spot->cover - layers->point[i][3]) > 1e-4f) {
@@ -211,7 +213,7 @@ static void compare_all(struct test_device *device, const struct maps *maps, con
     struct tl_view view = tl_view_make(&frame.camera, WIDTH, HEIGHT);
     struct tally tally = {0};
     for (int i = 0; i < WIDTH * HEIGHT; i++) {
-        struct tl_spot spot = look(&scene, &view, i % WIDTH, i / WIDTH);
+        struct tl_shading_point spot = look(&scene, &view, i % WIDTH, i / WIDTH);
         compare(&tally, &spot, layers, i);
     }
     check(&tally);
@@ -225,7 +227,7 @@ static void compare_all(struct test_device *device, const struct maps *maps, con
     tl_environment_release(&environment);
 }
 
-static void test_spots_are_the_gbuffers(void **state)
+static void test_shading_points_match_the_gbuffer(void **state)
 {
     struct maps maps = maps_make();
     compare_all(*state, &maps, &maps.colour_alpha);
@@ -235,6 +237,6 @@ static void test_spots_are_the_gbuffers(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_spots_are_the_gbuffers)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_shading_points_match_the_gbuffer)};
     return cmocka_run_group_tests(tests, test_device_open, test_device_close);
 }

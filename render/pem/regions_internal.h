@@ -1,6 +1,6 @@
 /* What every way of cutting shares: from labels to the rest of a tl_regions. For the files of this folder. */
-#ifndef TOILE_RENDER_PEM_REGIONS_BUILD_H
-#define TOILE_RENDER_PEM_REGIONS_BUILD_H
+#ifndef TOILE_RENDER_PEM_REGIONS_INTERNAL_H
+#define TOILE_RENDER_PEM_REGIONS_INTERNAL_H
 
 #include "render/pem/regions.h"
 

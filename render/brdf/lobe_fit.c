@@ -1,11 +1,11 @@
-#include "render/brdf/fan.h"
+#include "render/brdf/lobe_fit.h"
 
-#include "render/brdf/lobes.h"
+#include "render/brdf/brdf_internal.h"
 
 #include <math.h>
 
 /* Standard deviations of two neighbours that still look like one: at 0.35 of their distance the mixture's L1
- * error is least over the models and viewers of test_fan.c. */
+ * error is least over the models and viewers of test_lobe_fit.c. */
 #define TOUCH 0.35f
 /* Towards a viewer that grazes, lobes grow ever narrower across the plane of incidence while the horizon cuts
  * them along it; their widths are those of this cosine at least. */
@@ -132,7 +132,7 @@ static float share_above(float cosine, float exponent)
     return 0.5f * (1 + erff(cosine * sqrtf((exponent + 1) / 2)));
 }
 
-static void scale_to(vec3s albedo, const struct tl_brdf_frame *frame, int count, struct tl_fan_lobe *lobes)
+static void scale_to(vec3s albedo, const struct tl_brdf_frame *frame, int count, struct tl_fitted_lobe *lobes)
 {
     vec3s sum = {{0, 0, 0}};
     for (int k = 0; k < count; k++) {
@@ -162,7 +162,7 @@ static int count_for(float broad, float narrow, int most)
 }
 
 static int fan_of_facets(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int most,
-                         struct tl_fan_lobe *lobes)
+                         struct tl_fitted_lobe *lobes)
 {
     struct slopes slopes = slopes_of(brdf);
     struct spread spread = spread_of(&slopes, local_of(frame, v));
@@ -175,9 +175,9 @@ static int fan_of_facets(const struct tl_brdf *brdf, const struct tl_brdf_frame 
         float x = (float)(k - count / 2) * step_of(count);
         vec2s slope = glms_vec2_scale(spread.slope, x * reach);
         vec3s value = value_of_slope(brdf, frame, &slopes, v, slope);
-        lobes[k] = (struct tl_fan_lobe){.direction = mirrored(facet_of(frame, slope), v),
-                                        .exponent = exponent_of(variance),
-                                        .weight = glms_vec3_scale(value, expf(-0.5f * x * x))};
+        lobes[k] = (struct tl_fitted_lobe){.direction = mirrored(facet_of(frame, slope), v),
+                                           .exponent = exponent_of(variance),
+                                           .weight = glms_vec3_scale(value, expf(-0.5f * x * x))};
     }
     scale_to(albedo_of(brdf, frame, &slopes, v), frame, count, lobes);
     return count;
@@ -203,11 +203,11 @@ static vec3s albedo_of_cosine_lobe(const struct tl_brdf *brdf, float facing)
 
 /* (r.l)^s times a cosine is nearly one lobe more, a little nearer to the normal. */
 static int fan_of_cosine_lobe(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v,
-                              struct tl_fan_lobe *lobes)
+                              struct tl_fitted_lobe *lobes)
 {
     float s = brdf->exponent, facing = fmaxf(glms_vec3_dot(frame->normal, v), 0);
     vec3s r = mirrored(frame->normal, v);
-    lobes[0] = (struct tl_fan_lobe){
+    lobes[0] = (struct tl_fitted_lobe){
         .direction = glms_vec3_normalize(glms_vec3_add(glms_vec3_scale(r, s), frame->normal)),
         .exponent = s + 1,
         .weight = {{1, 1, 1}}};
@@ -225,7 +225,7 @@ static float thread_variance(const struct tl_brdf *brdf, int count, float sine)
 /* A thread sends light into a cone about itself; across it the gloss is a power of a cosine, along it it goes
  * with the cosine to the normal, of which every lobe takes an equal share. */
 static int fan_of_threads(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int most,
-                          struct tl_fan_lobe *lobes)
+                          struct tl_fitted_lobe *lobes)
 {
     float s = brdf->exponent, along = -glms_vec3_dot(frame->tangent, v);
     float sine = sqrtf(fmaxf(1 - along * along, 0)), facing = fmaxf(glms_vec3_dot(frame->normal, v), 0);
@@ -239,23 +239,23 @@ static int fan_of_threads(const struct tl_brdf *brdf, const struct tl_brdf_frame
         vec3s d = glms_vec3_scale(frame->tangent, along);
         d = glms_vec3_add(d, glms_vec3_scale(frame->normal, sine * ahead));
         d = glms_vec3_add(d, glms_vec3_scale(frame->bitangent, sine * aside));
-        lobes[k] = (struct tl_fan_lobe){.direction = glms_vec3_normalize(d),
-                                        .exponent = exponent_of(thread_variance(brdf, most, sine)),
-                                        .weight = {{1, 1, 1}}};
+        lobes[k] = (struct tl_fitted_lobe){.direction = glms_vec3_normalize(d),
+                                           .exponent = exponent_of(thread_variance(brdf, most, sine)),
+                                           .weight = {{1, 1, 1}}};
     }
     scale_to(albedo, frame, most, lobes);
     return most;
 }
 
-int tl_fan_make(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int most,
-                struct tl_fan_lobe lobes[TL_FAN_MAX])
+int tl_lobe_fit_make(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int most,
+                     struct tl_fitted_lobe lobes[TL_LOBE_FIT_MAX])
 {
     if (!(glms_vec3_dot(frame->normal, v) > 0))
         return 0;
     switch (brdf->gloss.model) {
     case TL_REFLECT_PHONG:
-        lobes[0] = (struct tl_fan_lobe){mirrored(frame->normal, v), brdf->exponent,
-                                        tl_brdf_fresnel(brdf, glms_vec3_dot(frame->normal, v))};
+        lobes[0] = (struct tl_fitted_lobe){mirrored(frame->normal, v), brdf->exponent,
+                                           tl_brdf_fresnel(brdf, glms_vec3_dot(frame->normal, v))};
         return 1;
     case TL_REFLECT_COSINE_LOBE:
         return fan_of_cosine_lobe(brdf, frame, v, lobes);
@@ -266,7 +266,7 @@ int tl_fan_make(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, v
     }
 }
 
-void tl_fan_exponents(const struct tl_brdf *brdf, float *least, float *greatest)
+void tl_lobe_fit_exponents(const struct tl_brdf *brdf, float *least, float *greatest)
 {
     struct slopes slopes = slopes_of(brdf);
     float wide = fmaxf(slopes.weft, slopes.warp), thin = fminf(slopes.weft, slopes.warp);
@@ -286,8 +286,8 @@ void tl_fan_exponents(const struct tl_brdf *brdf, float *least, float *greatest)
     }
 }
 
-vec3s tl_fan_under_disc(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s l, vec3s v,
-                        float radius)
+vec3s tl_brdf_gloss_under_disc(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s l,
+                               vec3s v, float radius)
 {
     /* A disc's variance is radius^2 / 4 along each axis. A facet turns light by twice its own turn, so that
      * among the facets it is a sixteenth, and of m^2 it is twice that; of a lobe's 1 / (s + 1) it is a

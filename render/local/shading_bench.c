@@ -1,4 +1,4 @@
-#include "render/local/trial.h"
+#include "render/local/shading_bench.h"
 
 #include <epoxy/gl.h>
 
@@ -13,18 +13,18 @@ static void wait_for_gpu(void)
     glDeleteSync(fence);
 }
 
-bool tl_local_trial_create(struct tl_local_trial *out, tl_gpu *gpu, tl_error *error)
+bool tl_shading_bench_create(struct tl_shading_bench *out, tl_gpu *gpu, tl_error *error)
 {
-    *out = (struct tl_local_trial){.gpu = gpu, .surfaces = tl_surfaces_create(gpu)};
+    *out = (struct tl_shading_bench){.gpu = gpu, .surfaces = tl_surfaces_create(gpu)};
     if (tl_lighting_create(&out->lighting, gpu, error))
         return true;
-    tl_local_trial_release(out);
+    tl_shading_bench_release(out);
     return false;
 }
 
-bool tl_local_trial_show(struct tl_local_trial *trial, const tl_surface *surface,
-                         const struct tl_camera *camera, const struct tl_lamp *lamp, int width, int height,
-                         tl_error *error)
+bool tl_shading_bench_set_scene(struct tl_shading_bench *trial, const tl_surface *surface,
+                                const struct tl_camera *camera, const struct tl_lamp *lamp, int width,
+                                int height, tl_error *error)
 {
     trial->view = tl_view_make(camera, width, height);
     trial->lamp = *lamp;
@@ -44,7 +44,7 @@ bool tl_local_trial_show(struct tl_local_trial *trial, const tl_surface *surface
     return true;
 }
 
-void tl_local_trial_release(struct tl_local_trial *trial)
+void tl_shading_bench_release(struct tl_shading_bench *trial)
 {
     tl_local_release(&trial->local);
     tl_lighting_release(&trial->lighting);
@@ -52,15 +52,15 @@ void tl_local_trial_release(struct tl_local_trial *trial)
     tl_surfaces_destroy(&trial->surfaces);
 }
 
-void tl_local_trial_clear(struct tl_local_trial *trial)
+void tl_shading_bench_clear(struct tl_shading_bench *trial)
 {
     const float black[] = {0, 0, 0, 0};
     glClearNamedFramebufferfv(trial->lighting.target.id, GL_COLOR, 0, black);
     wait_for_gpu();
 }
 
-bool tl_local_trial_draw(struct tl_local_trial *trial, const struct tl_shading_params *params,
-                         tl_error *error)
+bool tl_shading_bench_draw(struct tl_shading_bench *trial, const struct tl_shading_params *params,
+                           tl_error *error)
 {
     const struct tl_local_request request = {.gbuffer = &trial->gbuffer,
                                              .light = &trial->lighting.target,
@@ -78,7 +78,7 @@ bool tl_local_trial_draw(struct tl_local_trial *trial, const struct tl_shading_p
     return drawn;
 }
 
-tl_image tl_local_trial_read(const struct tl_local_trial *trial)
+tl_image tl_shading_bench_read(const struct tl_shading_bench *trial)
 {
     const tl_target *target = &trial->lighting.target;
     tl_image image = tl_image_create(target->width, target->height, 4, TL_IMAGE_F32);

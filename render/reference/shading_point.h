@@ -2,8 +2,8 @@
  * G-buffer's shaders define it (render/light/gbuffer.frag) but without the G-buffer's rounding.
  *
  * World space, metres. Borrows the surfaces. Threads: pure once made. */
-#ifndef TOILE_RENDER_REFERENCE_SPOT_H
-#define TOILE_RENDER_REFERENCE_SPOT_H
+#ifndef TOILE_RENDER_REFERENCE_SHADING_POINT_H
+#define TOILE_RENDER_REFERENCE_SHADING_POINT_H
 
 #include "render/brdf/brdf.h"
 #include "render/frame/view.h"
@@ -15,14 +15,14 @@
 #include "render/surfaces/ground.h"
 #include "render/trace/trace.h"
 
-struct tl_look; /* a surface's materials, made ready */
+struct tl_surface_materials; /* a surface's materials, made ready */
 
 struct tl_reference_scene {
     const tl_surface *surfaces; /* the frame's; the ground is none of them */
     size_t surface_count;
     const struct tl_ground *ground; /* NULL: none */
     tl_trace *trace;
-    struct tl_look *looks; /* by surface; the ground's comes last */
+    struct tl_surface_materials *looks; /* by surface; the ground's comes last */
     size_t texture_count;
     struct tl_map_texture **textures;
     struct tl_sky sky;
@@ -39,7 +39,7 @@ bool tl_reference_scene_make(const tl_frame *frame, const struct tl_render_setti
                              const struct tl_ground *ground, struct tl_reference_scene *out, tl_error *error);
 void tl_reference_scene_release(struct tl_reference_scene *scene);
 
-struct tl_ray {
+struct tl_ray_differential {
     vec3s origin, direction; /* unit */
     float from_m, to_m;
     vec3s across, down; /* how `direction` changes from sample to sample; zero: maps at their finest level */
@@ -47,11 +47,11 @@ struct tl_ray {
 
 /* The camera's ray through the middle of sample (x, y) of columns x rows, counted from the upper left corner.
  */
-struct tl_ray tl_camera_ray(const struct tl_view *view, int columns, int rows, int x, int y);
+struct tl_ray_differential tl_camera_ray(const struct tl_view *view, int columns, int rows, int x, int y);
 
 /* What a material is beyond two lobes. Its lobes' colours below, the spot's own among them, are less what the
  * coat reflects already. */
-struct tl_spot_layers {
+struct tl_shading_layers {
     float openness;    /* share that is seen straight through */
     vec3s transmitted; /* kt: of the light on the other side, diffusely: K_1(-normal, w) */
     vec3s behind;      /* where rays to that light start */
@@ -65,11 +65,11 @@ struct tl_spot_layers {
 };
 
 /* One lobe, or two: c = integral of L V [diffuse K_1(normal, w) + glossy K_s(axis, w)] dw; and layers. */
-struct tl_spot {
+struct tl_shading_point {
     float cover;      /* share of what is seen there; 0: the ray meets nothing */
     float distance_m; /* along the ray */
     bool layered;     /* `layers` hold something */
-    struct tl_spot_layers layers;
+    struct tl_shading_layers layers;
     vec3s point;   /* where rays to the light start */
     vec3s horizon; /* normal of the plane above which light counts; unit, as all directions here */
     vec3s normal, axis;
@@ -85,6 +85,7 @@ struct tl_spot {
 };
 
 /* What the ray meets first. */
-struct tl_spot tl_spot_find(const struct tl_reference_scene *scene, const struct tl_ray *ray);
+struct tl_shading_point tl_shading_point_find(const struct tl_reference_scene *scene,
+                                              const struct tl_ray_differential *ray);
 
 #endif

@@ -1,5 +1,5 @@
 #include "render/brdf/brdf.h"
-#include "render/brdf/lobes.h"
+#include "render/brdf/brdf_internal.h"
 
 #include <math.h>
 
@@ -110,7 +110,7 @@ static float cone_density(const struct cone *cone, const struct tl_brdf_frame *f
     return by_angle * up / (2 * sine_squared);
 }
 
-float tl_brdf_density(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s l, vec3s v)
+float tl_brdf_pdf(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s l, vec3s v)
 {
     struct tl_brdf_angles at = tl_brdf_angles_of(frame, l, v);
     if (!(at.cos_a > 0 && at.cos_b > 0))
@@ -133,8 +133,8 @@ static vec3s draw_lobe(float exponent, vec3s axis, float u1, float u2)
     return from_frame(&around, sqrtf(fmaxf(-expm1f(2 * log_cosine), 0)), 0, expf(log_cosine));
 }
 
-vec3s tl_brdf_draw(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, float u1, float u2,
-                   float *density)
+vec3s tl_brdf_sample(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, float u1,
+                     float u2, float *density)
 {
     vec3s l;
     if (brdf->gloss.model == TL_REFLECT_BANKS) {
@@ -150,6 +150,6 @@ vec3s tl_brdf_draw(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame
         l = draw_lobe(brdf->exponent, tl_brdf_mirror(frame->normal, v), u1, u2);
     }
     l = glms_vec3_normalize(l);
-    *density = tl_brdf_density(brdf, frame, l, v);
+    *density = tl_brdf_pdf(brdf, frame, l, v);
     return l;
 }

@@ -1,4 +1,4 @@
-#include "render/env/levels.h"
+#include "render/env/mip_levels.h"
 
 #include "config/memory.h"
 
@@ -35,7 +35,7 @@ static void find_four(int finer_width, int x, int y, size_t four[4])
         four[i] = (size_t)(2 * y + (i >> 1)) * (size_t)finer_width + (size_t)(2 * x + (i & 1));
 }
 
-static double *summed_solid_angles(const struct tl_levels *levels, int level)
+static double *summed_solid_angles(const struct tl_mip_levels *levels, int level)
 {
     const struct tl_sphere_map *map = &levels->maps[level];
     double *solid_angles = TL_NEW_ARRAY(double, texel_count(map));
@@ -50,10 +50,10 @@ static double *summed_solid_angles(const struct tl_levels *levels, int level)
     return solid_angles;
 }
 
-struct tl_levels tl_levels_create(enum tl_layout layout, int size)
+struct tl_mip_levels tl_mip_levels_create(enum tl_layout layout, int size)
 {
-    assert(size > 0 && (size & (size - 1)) == 0 && size <= 1 << (TL_LEVELS_MAX - 1));
-    struct tl_levels levels = {.count = 0};
+    assert(size > 0 && (size & (size - 1)) == 0 && size <= 1 << (TL_MIP_LEVELS_MAX - 1));
+    struct tl_mip_levels levels = {.count = 0};
     for (; size > 0; size /= 2) {
         int level = levels.count++;
         levels.maps[level] = map_of(layout, size);
@@ -63,14 +63,14 @@ struct tl_levels tl_levels_create(enum tl_layout layout, int size)
     return levels;
 }
 
-void tl_levels_release(struct tl_levels *levels)
+void tl_mip_levels_release(struct tl_mip_levels *levels)
 {
     for (int level = 0; level < levels->count; level++)
         free(levels->solid_angles[level]);
-    *levels = (struct tl_levels){0};
+    *levels = (struct tl_mip_levels){0};
 }
 
-bool tl_levels_reads_first(const struct tl_sphere_map *map, int x, int y)
+bool tl_mip_levels_reads_first(const struct tl_sphere_map *map, int x, int y)
 {
     if (map->layout != TL_LAYOUT_PARABOLOID)
         return true;
@@ -92,7 +92,7 @@ static int find_shown(const struct tl_sphere_map *map, int x, int y, double *sho
 }
 
 /* Bilinear among the texels that cover some of the sphere. */
-static void show_neighbour(const struct tl_levels *levels, int level, int x, int y, float *texels)
+static void show_neighbour(const struct tl_mip_levels *levels, int level, int x, int y, float *texels)
 {
     const struct tl_sphere_map *map = &levels->maps[level];
     double place_x, place_y, weights = 0, sum[3] = {0, 0, 0};
@@ -114,7 +114,7 @@ static void show_neighbour(const struct tl_levels *levels, int level, int x, int
         texels[4 * ((size_t)y * (size_t)map->width + (size_t)x) + c] = (float)(sum[c] / weights);
 }
 
-static void fill_outside(const struct tl_levels *levels, int level, float *texels)
+static void fill_outside(const struct tl_mip_levels *levels, int level, float *texels)
 {
     const struct tl_sphere_map *map = &levels->maps[level];
     for (int y = 0; y < map->height; y++)
@@ -123,7 +123,7 @@ static void fill_outside(const struct tl_levels *levels, int level, float *texel
                 show_neighbour(levels, level, x, y, texels);
 }
 
-void tl_levels_halve(const struct tl_levels *levels, int level, const float *finer, float *coarser)
+void tl_mip_levels_reduce(const struct tl_mip_levels *levels, int level, const float *finer, float *coarser)
 {
     const struct tl_sphere_map *map = &levels->maps[level];
     const double *weights = levels->solid_angles[level - 1];
@@ -138,7 +138,7 @@ void tl_levels_halve(const struct tl_levels *levels, int level, const float *fin
                     sum[c] += weights[four[i]] * (double)finer[4 * four[i] + c];
             for (size_t c = 0; c < 3; c++)
                 coarser[4 * texel + c] = whole > 0 ? (float)(sum[c] / whole) : 0;
-            coarser[4 * texel + 3] = tl_levels_reads_first(map, x, y) ? 1 : 0;
+            coarser[4 * texel + 3] = tl_mip_levels_reads_first(map, x, y) ? 1 : 0;
         }
     fill_outside(levels, level, coarser);
 }

@@ -1,40 +1,40 @@
 /* Mip levels weighted by solid angle, and light poured into pictures, in every layout. */
-#include "render/env/levels.h"
+#include "render/env/mip_levels.h"
 
 #include "config/memory.h"
-#include "render/envmap/pictures.h"
+#include "render/envmap/prefiltered_map.h"
 
 #include "tests/testing.h"
 
 #include <omp.h>
 #include <string.h>
 
-static size_t count_of(const struct tl_levels *levels, int level)
+static size_t count_of(const struct tl_mip_levels *levels, int level)
 {
     return (size_t)levels->maps[level].width * (size_t)levels->maps[level].height;
 }
 
 /* Levels of the picture in texels[0]. */
-static void halve_all(const struct tl_levels *levels, float *texels[TL_LEVELS_MAX])
+static void halve_all(const struct tl_mip_levels *levels, float *texels[TL_MIP_LEVELS_MAX])
 {
     for (int level = 1; level < levels->count; level++)
-        tl_levels_halve(levels, level, texels[level - 1], texels[level]);
+        tl_mip_levels_reduce(levels, level, texels[level - 1], texels[level]);
 }
 
-static void create_texels(const struct tl_levels *levels, float *texels[TL_LEVELS_MAX])
+static void create_texels(const struct tl_mip_levels *levels, float *texels[TL_MIP_LEVELS_MAX])
 {
     for (int level = 0; level < levels->count; level++)
         texels[level] = TL_NEW_ARRAY(float, 4 * count_of(levels, level));
 }
 
-static void release_texels(const struct tl_levels *levels, float *texels[TL_LEVELS_MAX])
+static void release_texels(const struct tl_mip_levels *levels, float *texels[TL_MIP_LEVELS_MAX])
 {
     for (int level = 0; level < levels->count; level++)
         free(texels[level]);
 }
 
 /* Weighed by the exact solid angles of the level's own texels, not by the levels' sums. */
-static double power(const struct tl_levels *levels, int level, const float *texels, int channel)
+static double power(const struct tl_mip_levels *levels, int level, const float *texels, int channel)
 {
     const struct tl_sphere_map *map = &levels->maps[level];
     double sum = 0;
@@ -49,7 +49,7 @@ static void solid_angles_of_levels(void **state)
 {
     (void)state;
     for (int layout = 0; layout < TL_LAYOUT_COUNT; layout++) {
-        struct tl_levels levels = tl_levels_create((enum tl_layout)layout, 64);
+        struct tl_mip_levels levels = tl_mip_levels_create((enum tl_layout)layout, 64);
         assert_int_equal(levels.count, 7);
         for (int level = 0; level < levels.count; level++) {
             const struct tl_sphere_map *map = &levels.maps[level];
@@ -61,7 +61,7 @@ static void solid_angles_of_levels(void **state)
             }
             assert_near(sum, 4 * M_PI, 1e-9);
         }
-        tl_levels_release(&levels);
+        tl_mip_levels_release(&levels);
     }
 }
 
@@ -70,8 +70,8 @@ static void a_constant_stays_constant(void **state)
 {
     (void)state;
     for (int layout = 0; layout < TL_LAYOUT_COUNT; layout++) {
-        struct tl_levels levels = tl_levels_create((enum tl_layout)layout, 32);
-        float *texels[TL_LEVELS_MAX];
+        struct tl_mip_levels levels = tl_mip_levels_create((enum tl_layout)layout, 32);
+        float *texels[TL_MIP_LEVELS_MAX];
         create_texels(&levels, texels);
         for (size_t i = 0; i < 4 * count_of(&levels, 0); i++)
             texels[0][i] = 0.7f;
@@ -81,7 +81,7 @@ static void a_constant_stays_constant(void **state)
                 for (size_t c = 0; c < 3; c++)
                     assert_near(texels[level][4 * i + c], 0.7f, 2e-7);
         release_texels(&levels, texels);
-        tl_levels_release(&levels);
+        tl_mip_levels_release(&levels);
     }
 }
 
@@ -91,8 +91,8 @@ static void a_sun_anywhere_keeps_its_power(void **state)
 {
     (void)state;
     for (int layout = 0; layout < TL_LAYOUT_COUNT; layout++) {
-        struct tl_levels levels = tl_levels_create((enum tl_layout)layout, 8);
-        float *texels[TL_LEVELS_MAX];
+        struct tl_mip_levels levels = tl_mip_levels_create((enum tl_layout)layout, 8);
+        float *texels[TL_MIP_LEVELS_MAX];
         double worst = 0;
         create_texels(&levels, texels);
         for (size_t sun = 0; sun < count_of(&levels, 0); sun++) {
@@ -111,7 +111,7 @@ static void a_sun_anywhere_keeps_its_power(void **state)
         print_message("%s: a sun anywhere keeps its power within %.1g\n", tl_layout_names[layout], worst);
         assert_true(worst < 1e-5);
         release_texels(&levels, texels);
-        tl_levels_release(&levels);
+        tl_mip_levels_release(&levels);
     }
 }
 
@@ -120,7 +120,7 @@ static void a_sun_anywhere_keeps_its_power(void **state)
 static void paraboloids_weigh_as_equation_6(void **state)
 {
     (void)state;
-    struct tl_levels levels = tl_levels_create(TL_LAYOUT_PARABOLOID, 64);
+    struct tl_mip_levels levels = tl_mip_levels_create(TL_LAYOUT_PARABOLOID, 64);
     for (int y = 0; y < 64; y++)
         for (int x = 0; x < 128; x++) {
             double u = (x % 64 + 0.5) / 32 - 1, v = (y + 0.5) / 32 - 1, f = 0.5 - 0.5 * (u * u + v * v);
@@ -129,7 +129,7 @@ static void paraboloids_weigh_as_equation_6(void **state)
             double expected = 1 / 1024.0 / (u * u + v * v + f * f);
             assert_near(levels.solid_angles[0][128 * y + x], expected, 0.01 * expected);
         }
-    tl_levels_release(&levels);
+    tl_mip_levels_release(&levels);
 }
 
 /* What plain mip-mapping would make of a sun: the reason for the weights. */
@@ -137,7 +137,7 @@ static void plain_means_lose_light(void **state)
 {
     (void)state;
     for (int layout = 0; layout < TL_LAYOUT_COUNT; layout++) {
-        struct tl_levels levels = tl_levels_create((enum tl_layout)layout, 16);
+        struct tl_mip_levels levels = tl_mip_levels_create((enum tl_layout)layout, 16);
         double worst = 0;
         for (size_t i = 0; i < count_of(&levels, 1); i++) {
             size_t width = (size_t)levels.maps[0].width,
@@ -151,7 +151,7 @@ static void plain_means_lose_light(void **state)
         print_message("%s: a plain mean of four texels errs by up to %.1f %%\n", tl_layout_names[layout],
                       100 * worst);
         assert_true(layout == TL_LAYOUT_SPHERE || worst > 0.05); /* a ball's are equal but at its rim */
-        tl_levels_release(&levels);
+        tl_mip_levels_release(&levels);
     }
 }
 
@@ -190,10 +190,10 @@ static void pictures_show_what_lies_there(void **state)
     tl_lobes_make(&lobes, &cube, 1u << TL_EXPONENT_COUNT | 1u << 12);
     mat3s turn = some_turn();
     for (int layout = 0; layout < TL_LAYOUT_COUNT; layout++) {
-        struct tl_levels levels = tl_levels_create((enum tl_layout)layout, 32);
+        struct tl_mip_levels levels = tl_mip_levels_create((enum tl_layout)layout, 32);
         const struct tl_sphere_map *map = &levels.maps[0];
-        struct tl_picture mirror = tl_picture_pour(&levels, &lobes, TL_EXPONENT_COUNT, turn);
-        struct tl_picture glossy = tl_picture_pour(&levels, &lobes, 12, turn);
+        struct tl_prefiltered_map mirror = tl_prefiltered_map_make(&levels, &lobes, TL_EXPONENT_COUNT, turn);
+        struct tl_prefiltered_map glossy = tl_prefiltered_map_make(&levels, &lobes, 12, turn);
         for (int i = 0; i < map->width * map->height; i++) {
             int column = i % map->width, row = i / map->width;
             vec3s d = glms_mat3_mulv(turn, tl_layout_direction(map, column + 0.5, row + 0.5));
@@ -207,9 +207,9 @@ static void pictures_show_what_lies_there(void **state)
                 assert_near(glossy.texels[0][4 * i + c], lobe.raw[c], 1e-6);
             }
         }
-        tl_picture_release(&mirror);
-        tl_picture_release(&glossy);
-        tl_levels_release(&levels);
+        tl_prefiltered_map_release(&mirror);
+        tl_prefiltered_map_release(&glossy);
+        tl_mip_levels_release(&levels);
     }
     tl_lobes_release(&lobes);
     tl_cube_release(&cube);
@@ -233,24 +233,24 @@ static void power_poured(void **state)
     for (int i = 0; i < 2; i++)
         tl_lobes_make(&lobes[i], cubes[i], 1u << TL_EXPONENT_COUNT);
     for (int layout = 0; layout < TL_LAYOUT_COUNT; layout++) {
-        struct tl_levels levels =
-            tl_levels_create((enum tl_layout)layout, layout == TL_LAYOUT_CUBE ? 64 : 128);
+        struct tl_mip_levels levels =
+            tl_mip_levels_create((enum tl_layout)layout, layout == TL_LAYOUT_CUBE ? 64 : 128);
         double off[2];
         for (int i = 0; i < 2; i++) {
-            struct tl_picture picture =
-                tl_picture_pour(&levels, &lobes[i], TL_EXPONENT_COUNT, glms_mat3_identity());
+            struct tl_prefiltered_map picture =
+                tl_prefiltered_map_make(&levels, &lobes[i], TL_EXPONENT_COUNT, glms_mat3_identity());
             double expected = 0;
             for (int k = 0; k < 6 * 64 * 64; k++)
                 expected += (double)cubes[i]->texels[3 * (size_t)k] *
                             (double)tl_cube_solid_angle(64, k % 64, k / 64 % 64);
             off[i] = power(&levels, 0, picture.texels[0], 0) / expected - 1;
-            tl_picture_release(&picture);
+            tl_prefiltered_map_release(&picture);
         }
         print_message("%s: power poured, lamp %+.2f %%, one texel %+.1f %%\n", tl_layout_names[layout],
                       100 * off[0], 100 * off[1]);
         assert_true(fabs(off[0]) < 0.01);
         assert_true(fabs(off[1]) < 0.03);
-        tl_levels_release(&levels);
+        tl_mip_levels_release(&levels);
     }
     for (int i = 0; i < 2; i++)
         tl_lobes_release(&lobes[i]);
@@ -264,19 +264,21 @@ static void threads_change_no_bit(void **state)
     tl_cube cube = cube_of(16, smooth);
     struct tl_lobes lobes = {0};
     tl_lobes_make(&lobes, &cube, 1u << TL_EXPONENT_COUNT);
-    struct tl_levels levels = tl_levels_create(TL_LAYOUT_PARABOLOID, 32);
+    struct tl_mip_levels levels = tl_mip_levels_create(TL_LAYOUT_PARABOLOID, 32);
     int threads = omp_get_max_threads();
     omp_set_num_threads(1);
-    struct tl_picture alone = tl_picture_pour(&levels, &lobes, TL_EXPONENT_COUNT, some_turn());
+    struct tl_prefiltered_map alone =
+        tl_prefiltered_map_make(&levels, &lobes, TL_EXPONENT_COUNT, some_turn());
     omp_set_num_threads(3);
-    struct tl_picture together = tl_picture_pour(&levels, &lobes, TL_EXPONENT_COUNT, some_turn());
+    struct tl_prefiltered_map together =
+        tl_prefiltered_map_make(&levels, &lobes, TL_EXPONENT_COUNT, some_turn());
     omp_set_num_threads(threads);
     for (int level = 0; level < levels.count; level++)
         assert_memory_equal(alone.texels[level], together.texels[level],
                             4 * sizeof(float) * count_of(&levels, level));
-    tl_picture_release(&alone);
-    tl_picture_release(&together);
-    tl_levels_release(&levels);
+    tl_prefiltered_map_release(&alone);
+    tl_prefiltered_map_release(&together);
+    tl_mip_levels_release(&levels);
     tl_lobes_release(&lobes);
     tl_cube_release(&cube);
 }

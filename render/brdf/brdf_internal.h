@@ -1,6 +1,6 @@
 /* What the models and their draws share; inside render/brdf only. */
-#ifndef TOILE_RENDER_BRDF_LOBES_H
-#define TOILE_RENDER_BRDF_LOBES_H
+#ifndef TOILE_RENDER_BRDF_INTERNAL_H
+#define TOILE_RENDER_BRDF_INTERNAL_H
 
 #include "render/brdf/brdf.h"
 

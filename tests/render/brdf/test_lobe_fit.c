@@ -1,6 +1,6 @@
 /* Fans of lobes against the gloss that they stand for, by brute force over the hemisphere: how much of the
  * light is sent elsewhere (L1 over the gloss's own integral), and that none is lost. */
-#include "render/brdf/fan.h"
+#include "render/brdf/lobe_fit.h"
 
 #include "tests/testing.h"
 
@@ -61,7 +61,8 @@ struct sums {
     double gloss, fan, difference;
 };
 
-static struct sums integrate(const struct tl_brdf *brdf, vec3s v, const struct tl_fan_lobe *lobes, int count)
+static struct sums integrate(const struct tl_brdf *brdf, vec3s v, const struct tl_fitted_lobe *lobes,
+                             int count)
 {
     struct sums sums = {0};
     double part = 2 * M_PI / (ROWS * COLUMNS);
@@ -95,8 +96,8 @@ static void test_lobes_stand_for_the_gloss(void **state)
             for (size_t p = 0; p < TL_COUNT(polars); p++)
                 for (size_t a = 0; a < (p == 0 ? 1 : TL_COUNT(azimuths)); a++) {
                     vec3s v = from_angles(polars[p], azimuths[a]);
-                    struct tl_fan_lobe lobes[TL_FAN_MAX];
-                    int count = tl_fan_make(&brdf, &frame, v, 2 * n + 1, lobes);
+                    struct tl_fitted_lobe lobes[TL_LOBE_FIT_MAX];
+                    int count = tl_lobe_fit_make(&brdf, &frame, v, 2 * n + 1, lobes);
                     struct sums sums = integrate(&brdf, v, lobes, count);
                     sum += sums.difference / sums.gloss;
                     least = fmin(least, sums.fan / sums.gloss);

@@ -5,29 +5,29 @@
  *
  * Pictures here are RGBA, float; alpha is not the sphere's: it is 1 where a dual paraboloid's first disc is
  * to be read (op. cit., 4.1) and 0 elsewhere. */
-#ifndef TOILE_RENDER_ENV_LEVELS_H
-#define TOILE_RENDER_ENV_LEVELS_H
+#ifndef TOILE_RENDER_ENV_MIP_LEVELS_H
+#define TOILE_RENDER_ENV_MIP_LEVELS_H
 
 #include "render/env/layout.h"
 
-#define TL_LEVELS_MAX 14
+#define TL_MIP_LEVELS_MAX 14
 
-struct tl_levels {
-    struct tl_sphere_map maps[TL_LEVELS_MAX]; /* the first is the picture itself */
-    double *solid_angles[TL_LEVELS_MAX];      /* [height][width] of each, sr */
+struct tl_mip_levels {
+    struct tl_sphere_map maps[TL_MIP_LEVELS_MAX]; /* the first is the picture itself */
+    double *solid_angles[TL_MIP_LEVELS_MAX];      /* [height][width] of each, sr */
     int count;
 };
 
 /* `size` is a power of two, at most 2^13. The last level's discs, faces or rows have one texel. */
-struct tl_levels tl_levels_create(enum tl_layout layout, int size);
-void tl_levels_release(struct tl_levels *levels);
+struct tl_mip_levels tl_mip_levels_create(enum tl_layout layout, int size);
+void tl_mip_levels_release(struct tl_mip_levels *levels);
 
 /* Fills level - 1 -> level: [height][width][4]. Texels of the coarser level that lie off the sphere show what
  * a look-up beside them would find on it. */
-void tl_levels_halve(const struct tl_levels *levels, int level, const float *finer, float *coarser);
+void tl_mip_levels_reduce(const struct tl_mip_levels *levels, int level, const float *finer, float *coarser);
 
 /* Whether the centre of a texel of this picture lies so far inside of the first disc that the four texels of
  * a bilinear fetch there do, too; always true where there are no discs. */
-bool tl_levels_reads_first(const struct tl_sphere_map *map, int x, int y);
+bool tl_mip_levels_reads_first(const struct tl_sphere_map *map, int x, int y);
 
 #endif

@@ -1,4 +1,4 @@
-#include "render/reference/spot.h"
+#include "render/reference/shading_point.h"
 
 #include "config/memory.h"
 #include "render/brdf/coat.h"
@@ -26,7 +26,7 @@ struct look_material {
     struct tl_detail_heights heights;                         /* of its first part; empty: none */
 };
 
-struct tl_look {
+struct tl_surface_materials {
     size_t count;
     struct look_material *materials;
 };
@@ -72,14 +72,14 @@ static struct look_material make_material(struct tl_reference_scene *scene, cons
     return look;
 }
 
-static struct tl_look make_look(struct tl_reference_scene *scene, const tl_surface *surface)
+static struct tl_surface_materials make_look(struct tl_reference_scene *scene, const tl_surface *surface)
 {
     size_t count = 0;
     for (size_t p = 0; p < surface->part_count; p++) {
         size_t needed = (size_t)surface->parts[p].material + 1;
         count = needed > count ? needed : count;
     }
-    struct tl_look look = {count, TL_NEW_ARRAY(struct look_material, count)};
+    struct tl_surface_materials look = {count, TL_NEW_ARRAY(struct look_material, count)};
     for (size_t m = 0; m < count; m++)
         look.materials[m] = make_material(scene, &surface->materials[m]);
     const struct tl_detail_params *detail = &scene->detail.params;
@@ -103,7 +103,7 @@ bool tl_reference_scene_make(const tl_frame *frame, const struct tl_render_setti
                                        .terminator = settings->reference.terminator,
                                        .detail.params = settings->detail,
                                        .reflect = settings->light.reflect_scene};
-    out->looks = TL_NEW_ARRAY(struct tl_look, out->surface_count + 1);
+    out->looks = TL_NEW_ARRAY(struct tl_surface_materials, out->surface_count + 1);
     for (size_t i = 0; i < out->surface_count; i++)
         out->looks[i] = make_look(out, &frame->surfaces[i]);
     if (ground)
@@ -138,18 +138,18 @@ void tl_reference_scene_release(struct tl_reference_scene *scene)
     *scene = (struct tl_reference_scene){0};
 }
 
-struct tl_ray tl_camera_ray(const struct tl_view *view, int columns, int rows, int x, int y)
+struct tl_ray_differential tl_camera_ray(const struct tl_view *view, int columns, int rows, int x, int y)
 {
     float step_x = 2 / (float)columns, step_y = 2 / (float)rows;
     vec3s along = glms_vec3_add(view->forward, glms_vec3_scale(view->right, ((float)x + 0.5f) * step_x - 1));
     along = glms_vec3_add(along, glms_vec3_scale(view->up, 1 - ((float)y + 0.5f) * step_y));
     float length = glms_vec3_norm(along); /* metres of the ray for each metre of depth */
-    return (struct tl_ray){.origin = view->eye,
-                           .direction = glms_vec3_divs(along, length),
-                           .from_m = view->near_m * length,
-                           .to_m = view->far_m * length,
-                           .across = glms_vec3_scale(view->right, step_x / length),
-                           .down = glms_vec3_scale(view->up, -step_y / length)};
+    return (struct tl_ray_differential){.origin = view->eye,
+                                        .direction = glms_vec3_divs(along, length),
+                                        .from_m = view->near_m * length,
+                                        .to_m = view->far_m * length,
+                                        .across = glms_vec3_scale(view->right, step_x / length),
+                                        .down = glms_vec3_scale(view->up, -step_y / length)};
 }
 
 /* A point of a surface with all that its material is asked with. */
@@ -218,38 +218,38 @@ static vec3s decoded(vec4s texel)
     return (vec3s){{2 * texel.x - 1, 2 * texel.y - 1, 2 * texel.z - 1}};
 }
 
-static struct tl_bumps own_bumps(const struct place *place)
+static struct tl_bump_statistics own_bumps(const struct place *place)
 {
     float scale = place->material->normal_scale;
     if (!has_map(place, TL_MAP_NORMAL))
-        return tl_bumps_of((vec3s){{0, 0, 1}});
+        return tl_bump_statistics_of_normal((vec3s){{0, 0, 1}});
     if (place->look->own_moments) {
         const struct look_map *map = &place->look->maps[TL_MAP_NORMAL];
         struct tl_footprint at = through_rows(&place->footprint, map->rows);
-        return tl_bumps_averaged(
+        return tl_bump_statistics_of_moments(
             tl_map_texture_fetch(place->look->own_moments, &at, map->clamp_u, map->clamp_v), scale);
     }
     vec3s n = decoded(map_at(place, TL_MAP_NORMAL));
-    return tl_bumps_of((vec3s){{scale * n.x, scale * n.y, n.z}});
+    return tl_bump_statistics_of_normal((vec3s){{scale * n.x, scale * n.y, n.z}});
 }
 
-static struct tl_bumps weave_bumps(const struct place *place)
+static struct tl_bump_statistics weave_bumps(const struct place *place)
 {
     float scale = place->detail->height_scale;
     if (place->look->weave_moments)
-        return tl_bumps_averaged(weave_texel(place, place->look->weave_moments), scale);
+        return tl_bump_statistics_of_moments(weave_texel(place, place->look->weave_moments), scale);
     vec3s n = decoded(weave_at(place, TL_WEAVE_NORMAL));
-    return tl_bumps_of((vec3s){{scale * n.x, scale * n.y, n.z}});
+    return tl_bump_statistics_of_normal((vec3s){{scale * n.x, scale * n.y, n.z}});
 }
 
 /* In tangent space: the file's map and the weave. */
-static struct tl_bumps bumps_at(const struct place *place)
+static struct tl_bump_statistics bumps_at(const struct place *place)
 {
-    struct tl_bumps own = own_bumps(place);
+    struct tl_bump_statistics own = own_bumps(place);
     if (!place->woven)
         return own;
-    struct tl_bumps weave = weave_bumps(place);
-    return tl_bumps_added(&own, &weave);
+    struct tl_bump_statistics weave = weave_bumps(place);
+    return tl_bump_statistics_add(&own, &weave);
 }
 
 static bool has_bumps(const struct place *place)
@@ -322,7 +322,7 @@ static vec3s specular_of(vec3s f0, float n_dot_v)
 }
 
 /* A back is a surface of its own: with its normal the bitangent turns over, the tangent stays. */
-static void set_tangent(const struct place *place, vec3s n, struct tl_spot *spot)
+static void set_tangent(const struct place *place, vec3s n, struct tl_shading_point *spot)
 {
     vec3s t = {{place->tangent.x, place->tangent.y, place->tangent.z}};
     t = glms_vec3_sub(t, glms_vec3_scale(n, glms_vec3_dot(n, t)));
@@ -331,9 +331,9 @@ static void set_tangent(const struct place *place, vec3s n, struct tl_spot *spot
 }
 
 /* A coat levels the threads out: its mirror direction is the smooth surface's. */
-static void set_coat(const struct place *place, vec3s smooth, struct tl_spot *spot)
+static void set_coat(const struct place *place, vec3s smooth, struct tl_shading_point *spot)
 {
-    struct tl_spot_layers *layers = &spot->layers;
+    struct tl_shading_layers *layers = &spot->layers;
     vec3s n = glms_vec3_scale(smooth, place->side);
     float cosine = fmaxf(glms_vec3_dot(n, spot->viewer), 0);
     vec3s mirror = glms_vec3_sub(glms_vec3_scale(n, 2 * cosine), spot->viewer);
@@ -342,10 +342,10 @@ static void set_coat(const struct place *place, vec3s smooth, struct tl_spot *sp
     layers->coat_exponent = tl_lobe_exponent(place->material->coat_glossiness);
 }
 
-static void set_layers(const struct place *place, vec3s smooth, struct tl_spot *spot)
+static void set_layers(const struct place *place, vec3s smooth, struct tl_shading_point *spot)
 {
     const tl_material *material = place->material;
-    struct tl_spot_layers *layers = &spot->layers;
+    struct tl_shading_layers *layers = &spot->layers;
     spot->layered = true;
     layers->openness = material->openness;
     if (material->coat > 0)
@@ -364,14 +364,15 @@ static void set_layers(const struct place *place, vec3s smooth, struct tl_spot *
 }
 
 static void set_lobes(const struct place *place, const struct tl_reference_scene *scene, vec3s viewer,
-                      vec3s smooth, struct tl_spot *spot)
+                      vec3s smooth, struct tl_shading_point *spot)
 {
     vec3s n = glms_vec3_scale(smooth, place->side);
     float g = glossiness_of(place), open = 1;
     if (has_bumps(place)) {
-        struct tl_bumps bumps = bumps_at(place);
+        struct tl_bump_statistics bumps = bumps_at(place);
         n = glms_vec3_scale(bent_normal(place, bumps.normal, smooth), place->side);
-        g = 1 - tl_bumps_rough(place->detail, 1 - g, &bumps, into_tangent(place, smooth, viewer));
+        g = 1 -
+            tl_bump_statistics_roughness(place->detail, 1 - g, &bumps, into_tangent(place, smooth, viewer));
         open = detail_open(bumps.length);
     }
     float n_dot_v = glms_vec3_dot(n, viewer);
@@ -396,10 +397,10 @@ static void set_lobes(const struct place *place, const struct tl_reference_scene
         set_layers(place, smooth, spot);
 }
 
-static struct tl_spot spot_of(const struct place *place, const struct tl_reference_scene *scene,
-                              const struct tl_ray *ray, vec3s smooth_point)
+static struct tl_shading_point spot_of(const struct place *place, const struct tl_reference_scene *scene,
+                                       const struct tl_ray_differential *ray, vec3s smooth_point)
 {
-    struct tl_spot spot = {.cover = 1};
+    struct tl_shading_point spot = {.cover = 1};
     vec3s smooth = direction_or(place->normal, glms_vec3_scale(place->facet, place->side));
     set_lobes(place, scene, glms_vec3_negate(ray->direction), smooth, &spot);
     bool geometric = scene->terminator == TL_TERMINATOR_GEOMETRIC;
@@ -441,7 +442,7 @@ static const struct tl_mesh_part *part_of(const tl_surface *surface, uint32_t tr
 }
 
 /* How far the point where a ray meets a plane moves when the ray's direction changes by `change`. */
-static vec3s shift_on_plane(const struct tl_ray *ray, float distance, vec3s normal, vec3s change)
+static vec3s shift_on_plane(const struct tl_ray_differential *ray, float distance, vec3s normal, vec3s change)
 {
     float slope = glms_vec3_dot(normal, change) / glms_vec3_dot(normal, ray->direction);
     return glms_vec3_scale(glms_vec3_sub(change, glms_vec3_scale(ray->direction, slope)), distance);
@@ -460,7 +461,7 @@ static vec2s shift_of_uv(const struct corners *corners, vec3s move)
 }
 
 static struct tl_footprint footprint_of(const struct corners *corners, const float weights[3],
-                                        const struct tl_ray *ray, float distance, vec3s facet)
+                                        const struct tl_ray_differential *ray, float distance, vec3s facet)
 {
     struct tl_footprint footprint = {0};
     for (int i = 0; i < 3; i++)
@@ -498,8 +499,9 @@ static vec3s point_behind(const struct place *place, const struct tl_reference_s
     return glms_vec3_sub(point, glms_vec3_scale(place->facet, scene->offset_m));
 }
 
-static struct tl_spot surface_spot(const struct tl_reference_scene *scene, const struct tl_ray *ray,
-                                   const struct tl_trace_hit *hit)
+static struct tl_shading_point surface_spot(const struct tl_reference_scene *scene,
+                                            const struct tl_ray_differential *ray,
+                                            const struct tl_trace_hit *hit)
 {
     struct corners corners = corners_of(&scene->surfaces[hit->surface], hit->triangle);
     const float weights[3] = {1 - hit->u - hit->v, hit->u, hit->v};
@@ -521,7 +523,7 @@ static struct tl_spot surface_spot(const struct tl_reference_scene *scene, const
         place.footprint.uv, tl_reference_shift(place.detail, &place.look->heights, place.footprint.uv,
                                                place.uv_metres, view, place.side));
     vec3s smooth = tl_smooth_point(place.point, corners.positions, corners.normals, weights);
-    struct tl_spot spot = spot_of(&place, scene, ray, smooth);
+    struct tl_shading_point spot = spot_of(&place, scene, ray, smooth);
     spot.distance_m = hit->distance_m;
     spot.point = glms_vec3_add(spot.point, glms_vec3_scale(place.facet, scene->offset_m));
     if (spot.layered)
@@ -530,7 +532,7 @@ static struct tl_spot surface_spot(const struct tl_reference_scene *scene, const
 }
 
 /* How far along the ray the ground's plane is met; infinite when it is not. */
-static float distance_to_ground(const struct tl_reference_scene *scene, const struct tl_ray *ray)
+static float distance_to_ground(const struct tl_reference_scene *scene, const struct tl_ray_differential *ray)
 {
     if (!scene->ground || fabsf(ray->direction.y) < 1e-12f)
         return INFINITY;
@@ -538,8 +540,8 @@ static float distance_to_ground(const struct tl_reference_scene *scene, const st
     return distance > ray->from_m && distance < ray->to_m ? distance : INFINITY;
 }
 
-static struct tl_spot ground_spot(const struct tl_reference_scene *scene, const struct tl_ray *ray,
-                                  float distance)
+static struct tl_shading_point ground_spot(const struct tl_reference_scene *scene,
+                                           const struct tl_ray_differential *ray, float distance)
 {
     const struct tl_ground *ground = scene->ground;
     vec3s point = glms_vec3_add(ray->origin, glms_vec3_scale(ray->direction, distance));
@@ -557,21 +559,22 @@ static struct tl_spot ground_spot(const struct tl_reference_scene *scene, const 
         .tangent = {{1, 0, 0, 1}},
         .side = side,
     };
-    struct tl_spot spot = spot_of(&place, scene, ray, point);
+    struct tl_shading_point spot = spot_of(&place, scene, ray, point);
     spot.cover = cover;
     spot.distance_m = distance;
     return spot;
 }
 
-struct tl_spot tl_spot_find(const struct tl_reference_scene *scene, const struct tl_ray *ray)
+struct tl_shading_point tl_shading_point_find(const struct tl_reference_scene *scene,
+                                              const struct tl_ray_differential *ray)
 {
     struct tl_trace_hit hit =
         tl_trace_nearest(scene->trace, ray->origin, ray->direction, ray->from_m, ray->to_m);
     float to_ground = distance_to_ground(scene, ray);
     if (to_ground < (hit.surface == TL_TRACE_NONE ? INFINITY : hit.distance_m)) {
-        struct tl_spot spot = ground_spot(scene, ray, to_ground);
+        struct tl_shading_point spot = ground_spot(scene, ray, to_ground);
         if (spot.cover > 0)
             return spot;
     }
-    return hit.surface == TL_TRACE_NONE ? (struct tl_spot){0} : surface_spot(scene, ray, &hit);
+    return hit.surface == TL_TRACE_NONE ? (struct tl_shading_point){0} : surface_spot(scene, ray, &hit);
 }

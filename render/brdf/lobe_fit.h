@@ -11,30 +11,30 @@
  * Gauss-Hermite quadrature: light that is the same from everywhere is kept. What of a lobe lies below the
  * horizon is made up for by what lies above.
  *
- * Errors: tests/render/brdf/test_fan.c prints them. Pure; threads: any. */
-#ifndef TOILE_RENDER_BRDF_FAN_H
-#define TOILE_RENDER_BRDF_FAN_H
+ * Errors: tests/render/brdf/test_lobe_fit.c prints them. Pure; threads: any. */
+#ifndef TOILE_RENDER_BRDF_LOBE_FIT_H
+#define TOILE_RENDER_BRDF_LOBE_FIT_H
 
 #include "render/brdf/brdf.h"
 
-#define TL_FAN_MAX 7
+#define TL_LOBE_FIT_MAX 7
 
-struct tl_fan_lobe {
+struct tl_fitted_lobe {
     vec3s direction; /* unit, as the frame */
     float exponent;
     vec3s weight; /* by channel */
 };
 
-/* Up to `most` lobes, 1 to TL_FAN_MAX; returns how many. Fewer serve where the gloss is round. */
-int tl_fan_make(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int most,
-                struct tl_fan_lobe lobes[TL_FAN_MAX]);
+/* Up to `most` lobes, 1 to TL_LOBE_FIT_MAX; returns how many. Fewer serve where the gloss is round. */
+int tl_lobe_fit_make(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int most,
+                     struct tl_fitted_lobe lobes[TL_LOBE_FIT_MAX]);
 
 /* The least and the greatest exponent of any lobe, towards all viewers and however many there are. */
-void tl_fan_exponents(const struct tl_brdf *brdf, float *least, float *greatest);
+void tl_lobe_fit_exponents(const struct tl_brdf *brdf, float *least, float *greatest);
 
 /* Gloss under a source of light that is a disc of this radius (rad) about `l`: tl_brdf_gloss, its facets
  * spread by as much as the disc spreads its light. */
-vec3s tl_fan_under_disc(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s l, vec3s v,
-                        float radius);
+vec3s tl_brdf_gloss_under_disc(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s l,
+                               vec3s v, float radius);
 
 #endif

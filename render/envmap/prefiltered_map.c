@@ -1,4 +1,4 @@
-#include "render/envmap/pictures.h"
+#include "render/envmap/prefiltered_map.h"
 
 #include "config/memory.h"
 
@@ -24,11 +24,11 @@ static vec3s mean_over_texel(const struct tl_sphere_map *map, const struct tl_lo
     return glms_vec3_scale(sum, 1 / (float)(side * side));
 }
 
-struct tl_picture tl_picture_pour(const struct tl_levels *levels, const struct tl_lobes *lobes, int exponent,
-                                  mat3s turn)
+struct tl_prefiltered_map tl_prefiltered_map_make(const struct tl_mip_levels *levels,
+                                                  const struct tl_lobes *lobes, int exponent, mat3s turn)
 {
     const struct tl_sphere_map *map = &levels->maps[0];
-    struct tl_picture picture = {.level_count = levels->count};
+    struct tl_prefiltered_map picture = {.level_count = levels->count};
     assert(levels->count > 0);
     for (int level = 0; level < levels->count; level++)
         picture.texels[level] =
@@ -39,16 +39,16 @@ struct tl_picture tl_picture_pour(const struct tl_levels *levels, const struct t
             float *texel = picture.texels[0] + 4 * ((size_t)y * (size_t)map->width + (size_t)x);
             vec3s light = mean_over_texel(map, lobes, exponent, &turn, x, y);
             memcpy(texel, light.raw, sizeof light);
-            texel[3] = tl_levels_reads_first(map, x, y) ? 1 : 0;
+            texel[3] = tl_mip_levels_reads_first(map, x, y) ? 1 : 0;
         }
     for (int level = 1; level < levels->count; level++)
-        tl_levels_halve(levels, level, picture.texels[level - 1], picture.texels[level]);
+        tl_mip_levels_reduce(levels, level, picture.texels[level - 1], picture.texels[level]);
     return picture;
 }
 
-void tl_picture_release(struct tl_picture *picture)
+void tl_prefiltered_map_release(struct tl_prefiltered_map *picture)
 {
     for (int level = 0; level < picture->level_count; level++)
         free(picture->texels[level]);
-    *picture = (struct tl_picture){0};
+    *picture = (struct tl_prefiltered_map){0};
 }

@@ -1,4 +1,4 @@
-#include "render/env/pour.h"
+#include "render/env/resample.h"
 
 #include "config/memory.h"
 #include "render/env/cube.h"
@@ -204,7 +204,7 @@ static size_t target_count(int size)
 }
 
 /* Deals the drops out to their targets, in the order of the sources. */
-static void sort_drops(struct stream streams[BLOCKS], struct tl_pour *out)
+static void sort_drops(struct stream streams[BLOCKS], struct tl_resampling *out)
 {
     size_t targets = target_count(out->size), count = 0;
     uint32_t *next = TL_NEW_ARRAY(uint32_t, targets), place = 0;
@@ -214,7 +214,7 @@ static void sort_drops(struct stream streams[BLOCKS], struct tl_pour *out)
             next[streams[block].drops[i].target]++;
     }
     out->first = TL_NEW_ARRAY(uint32_t, targets + 1);
-    out->shares = TL_NEW_ARRAY(struct tl_pour_share, count);
+    out->shares = TL_NEW_ARRAY(struct tl_resampling_share, count);
     for (size_t i = 0; i < targets; i++) {
         out->first[i] = place;
         place += next[i];
@@ -225,16 +225,17 @@ static void sort_drops(struct stream streams[BLOCKS], struct tl_pour *out)
         for (size_t i = 0; i < streams[block].count; i++) {
             const struct drop *drop = &streams[block].drops[i];
             out->shares[next[drop->target]++] =
-                (struct tl_pour_share){drop->source, (float)drop->solid_angle};
+                (struct tl_resampling_share){drop->source, (float)drop->solid_angle};
         }
     }
     free(next);
 }
 
 /* The shares of rows [begin, end). */
-static struct tl_pour share_out(const struct grid *grid, int begin, int end)
+static struct tl_resampling share_out(const struct grid *grid, int begin, int end)
 {
-    struct tl_pour pour = {.width = grid->image->width, .height = grid->image->height, .size = grid->size};
+    struct tl_resampling pour = {
+        .width = grid->image->width, .height = grid->image->height, .size = grid->size};
     struct stream streams[BLOCKS] = {{0}};
     int64_t rows = end - begin;
 #pragma omp parallel for schedule(dynamic)
@@ -252,7 +253,7 @@ static struct tl_pour share_out(const struct grid *grid, int begin, int end)
 }
 
 /* Sums of colour x solid angle, and of solid angle, by target. */
-static void gather(const struct tl_pour *pour, const tl_image *image, double (*sums)[4])
+static void gather(const struct tl_resampling *pour, const tl_image *image, double (*sums)[4])
 {
     const float *colours = tl_image_floats(image);
 #pragma omp parallel for
@@ -267,11 +268,11 @@ static void gather(const struct tl_pour *pour, const tl_image *image, double (*s
     }
 }
 
-void tl_pour_release(struct tl_pour *pour)
+void tl_resampling_release(struct tl_resampling *pour)
 {
     free(pour->first);
     free(pour->shares);
-    *pour = (struct tl_pour){0};
+    *pour = (struct tl_resampling){0};
 }
 
 /* Band by band, because the shares of the largest images would not fit into memory. */
@@ -280,24 +281,24 @@ static void pour_bands(const tl_image *image, int size, int band_rows, double (*
     struct grid grid = grid_create(image, size);
     for (int begin = 0; begin < image->height; begin += band_rows) {
         int end = image->height - begin > band_rows ? begin + band_rows : image->height;
-        struct tl_pour pour = share_out(&grid, begin, end);
+        struct tl_resampling pour = share_out(&grid, begin, end);
         gather(&pour, image, sums);
-        tl_pour_release(&pour);
+        tl_resampling_release(&pour);
     }
     grid_release(&grid);
 }
 
-static void keep_shares(const tl_image *image, int size, struct tl_pour *kept)
+static void keep_shares(const tl_image *image, int size, struct tl_resampling *kept)
 {
     if (kept->width == image->width && kept->height == image->height && kept->size == size)
         return;
     struct grid grid = grid_create(image, size);
-    tl_pour_release(kept);
+    tl_resampling_release(kept);
     *kept = share_out(&grid, 0, image->height);
     grid_release(&grid);
 }
 
-void tl_pour_latlong(const tl_image *image, int size, float *texels, struct tl_pour *kept)
+void tl_resample_latlong(const tl_image *image, int size, float *texels, struct tl_resampling *kept)
 {
     size_t targets = target_count(size), band_rows = BAND_TEXELS / (size_t)image->width;
     double(*sums)[4] = tl_alloc(targets, sizeof *sums);
