@@ -106,7 +106,7 @@ struct shot {
 
 #define SURFACES_MAX 2
 
-struct tl_film {
+struct tl_recording {
     tl_session *session;
     int count;
     size_t surface_count;
@@ -122,100 +122,101 @@ static void *copy_array(const void *from, size_t count, size_t size)
     return to;
 }
 
-static void take_shot(tl_film *film, int number)
+static void take_shot(tl_recording *recording, int number)
 {
-    tl_frame frame = tl_session_frame(film->session);
-    film->surface_count = frame.surface_count;
+    tl_frame frame = tl_session_frame(recording->session);
+    recording->surface_count = frame.surface_count;
     for (size_t s = 0; s < frame.surface_count; s++) {
         const tl_surface *surface = &frame.surfaces[s];
-        film->shots[number][s] = (struct shot){
+        recording->shots[number][s] = (struct shot){
             .positions = copy_array(surface->positions, surface->vertex_count, sizeof(vec3s)),
             .normals = copy_array(surface->normals, surface->vertex_count, sizeof(vec3s)),
             .tangents = copy_array(surface->tangents, surface->vertex_count, sizeof(vec4s)),
             .motion_revision = surface->motion_revision,
         };
     }
-    film->count = number + 1;
+    recording->count = number + 1;
 }
 
-tl_film *tl_film_record(tl_session *session, int count, tl_error *error)
+tl_recording *tl_motion_record(tl_session *session, int count, tl_error *error)
 {
-    tl_film *film = TL_NEW(tl_film);
-    film->session = session;
-    film->shots = tl_alloc((size_t)count, sizeof *film->shots);
-    film->cloth_cpu_ms = TL_NEW_ARRAY(double, (size_t)count);
+    tl_recording *recording = TL_NEW(tl_recording);
+    recording->session = session;
+    recording->shots = tl_alloc((size_t)count, sizeof *recording->shots);
+    recording->cloth_cpu_ms = TL_NEW_ARRAY(double, (size_t)count);
     struct tl_progress progress = tl_progress_begin("recording the motion");
     struct tl_motion motion;
     tl_motion_begin(&motion, session);
-    take_shot(film, 0);
+    take_shot(recording, 0);
     bool done = true;
     for (int number = 1; done && number < count; number++) {
         struct tl_stopwatch watch = tl_stopwatch_start();
         done = tl_motion_advance(&motion, number, error);
-        film->cloth_cpu_ms[number] = tl_stopwatch_read(&watch).cpu_ms;
+        recording->cloth_cpu_ms[number] = tl_stopwatch_read(&watch).cpu_ms;
         if (done)
-            take_shot(film, number);
+            take_shot(recording, number);
         if (tl_interrupted())
             done = tl_fail(error, TL_INTERRUPTED, "stopped while the motion was recorded");
         tl_progress_update(&progress, number, count);
     }
     tl_progress_end(&progress);
     if (!done)
-        tl_film_destroy(&film);
-    return film;
+        tl_recording_destroy(&recording);
+    return recording;
 }
 
-void tl_film_destroy(tl_film **handle)
+void tl_recording_destroy(tl_recording **handle)
 {
-    tl_film *film = *handle;
-    if (!film)
+    tl_recording *recording = *handle;
+    if (!recording)
         return;
-    for (int i = 0; i < film->count; i++)
-        for (size_t s = 0; s < film->surface_count; s++) {
-            free(film->shots[i][s].positions);
-            free(film->shots[i][s].normals);
-            free(film->shots[i][s].tangents);
+    for (int i = 0; i < recording->count; i++)
+        for (size_t s = 0; s < recording->surface_count; s++) {
+            free(recording->shots[i][s].positions);
+            free(recording->shots[i][s].normals);
+            free(recording->shots[i][s].tangents);
         }
-    free(film->shots);
-    free(film->cloth_cpu_ms);
-    free(film);
+    free(recording->shots);
+    free(recording->cloth_cpu_ms);
+    free(recording);
     *handle = NULL;
 }
 
-tl_frame tl_film_frame(tl_film *film, int number)
+tl_frame tl_recording_frame(tl_recording *recording, int number)
 {
-    double frame_rate = tl_session_settings(film->session)->cloth.frame_rate;
-    tl_frame frame = tl_session_frame(film->session);
-    for (size_t s = 0; s < film->surface_count; s++) {
-        const struct shot *shot = &film->shots[number][s];
-        film->surfaces[s] = frame.surfaces[s];
-        film->surfaces[s].positions = shot->positions;
-        film->surfaces[s].normals = shot->normals;
-        film->surfaces[s].tangents = shot->tangents;
-        film->surfaces[s].motion_revision = shot->motion_revision;
+    double frame_rate = tl_session_settings(recording->session)->cloth.frame_rate;
+    tl_frame frame = tl_session_frame(recording->session);
+    for (size_t s = 0; s < recording->surface_count; s++) {
+        const struct shot *shot = &recording->shots[number][s];
+        recording->surfaces[s] = frame.surfaces[s];
+        recording->surfaces[s].positions = shot->positions;
+        recording->surfaces[s].normals = shot->normals;
+        recording->surfaces[s].tangents = shot->tangents;
+        recording->surfaces[s].motion_revision = shot->motion_revision;
     }
-    frame.surfaces = film->surfaces;
+    frame.surfaces = recording->surfaces;
     frame.camera = tl_motion_camera(&frame.camera, number, frame_rate);
     frame.time_s = number / frame_rate;
     return frame;
 }
 
-struct tl_film_report tl_film_report(const tl_film *film)
+struct tl_recording_report tl_recording_report(const tl_recording *recording)
 {
-    struct tl_film_report report = {.frames = film->count};
-    tl_frame frame = tl_session_frame(film->session);
-    report.cloth_cpu_ms = film->count > 1 ? tl_median(film->cloth_cpu_ms + 1, (size_t)film->count - 1) : 0;
+    struct tl_recording_report report = {.frames = recording->count};
+    tl_frame frame = tl_session_frame(recording->session);
+    report.cloth_cpu_ms =
+        recording->count > 1 ? tl_median(recording->cloth_cpu_ms + 1, (size_t)recording->count - 1) : 0;
     const tl_surface *garment = find_surface(&frame, "garment");
     if (!garment)
         return report;
     size_t s = (size_t)(garment - frame.surfaces);
     report.garment_triangles = garment->index_count / 3;
     double sum_m = 0;
-    for (int i = 1; i < film->count; i++)
+    for (int i = 1; i < recording->count; i++)
         for (size_t v = 0; v < garment->vertex_count; v++)
-            sum_m += (double)glms_vec3_distance(film->shots[i][s].positions[v],
-                                                film->shots[i - 1][s].positions[v]);
-    if (film->count > 1)
-        report.mean_step_m = sum_m / ((double)garment->vertex_count * (film->count - 1));
+            sum_m += (double)glms_vec3_distance(recording->shots[i][s].positions[v],
+                                                recording->shots[i - 1][s].positions[v]);
+    if (recording->count > 1)
+        report.mean_step_m = sum_m / ((double)garment->vertex_count * (recording->count - 1));
     return report;
 }

@@ -2,8 +2,9 @@
  * avatar's own clip plays. What it looks like frame by frame is recorded once and then shown to every method
  * alike.
  *
- * Metres, seconds. Ownership: a film keeps positions, normals and tangents; all else (indices, materials, the
- * environment) it borrows from the session at the moment a frame is asked for. Threads: one at a time. */
+ * Metres, seconds. Ownership: a recording keeps positions, normals and tangents; all else (indices,
+ * materials, the environment) it borrows from the session at the moment a frame is asked for. Threads: one at
+ * a time. */
 #ifndef TOILE_APP_MEASURE_MOTION_H
 #define TOILE_APP_MEASURE_MOTION_H
 
@@ -28,21 +29,21 @@ bool tl_motion_advance(struct tl_motion *motion, int number, tl_error *error);
 /* `camera` as it stands at a frame of the motion: turned about the vertical through its target. Pure. */
 struct tl_camera tl_motion_camera(const struct tl_camera *camera, int number, double frame_rate);
 
-typedef struct tl_film tl_film;
+typedef struct tl_recording tl_recording;
 
 /* Records frames 0 to count - 1; shows progress. */
-tl_film *tl_film_record(tl_session *session, int count, tl_error *error);
-void tl_film_destroy(tl_film **handle);
+tl_recording *tl_motion_record(tl_session *session, int count, tl_error *error);
+void tl_recording_destroy(tl_recording **handle);
 
-/* Frame `number`, valid until the next call for this film or one that changes its session. */
-tl_frame tl_film_frame(tl_film *film, int number);
+/* Frame `number`, valid until the next call for this recording or one that changes its session. */
+tl_frame tl_recording_frame(tl_recording *recording, int number);
 
-struct tl_film_report {
+struct tl_recording_report {
     int frames;
     size_t garment_triangles;
     double mean_step_m;  /* mean over the garment's vertices and the frames after the first */
     double cloth_cpu_ms; /* median of a frame's simulation, process CPU time */
 };
-struct tl_film_report tl_film_report(const tl_film *film);
+struct tl_recording_report tl_recording_report(const tl_recording *recording);
 
 #endif

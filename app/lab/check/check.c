@@ -1,13 +1,11 @@
 #include "app/lab/check/check.h"
 
 #include "app/lab/check/check_measures.h"
+#include "config/hash.h"
 #include "config/memory.h"
 
 #include <assert.h>
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <string.h>
 
 /* The bound depends on the settings: the function says it. */
 #define BY_SETTINGS NAN
@@ -111,39 +109,6 @@ const struct tl_invariant tl_invariants[] = {
 const size_t tl_invariant_count = TL_COUNT(tl_invariants);
 static_assert(TL_COUNT(tl_invariants) <= TL_INVARIANTS_MAX, "room for every verdict");
 
-bool tl_finding_add(struct tl_finding *finding, double worst)
-{
-    bool is_first = !finding->is_measured;
-    finding->is_measured = true;
-    /* A NaN is worse than anything, and stays. */
-    if (!is_first && (isnan(finding->worst) || worst <= finding->worst))
-        return false;
-    finding->worst = worst;
-    return true;
-}
-
-void tl_finding_place(struct tl_finding *finding, const char *format, ...)
-{
-    va_list values;
-    va_start(values, format);
-    vsnprintf(finding->place, sizeof finding->place, format, values);
-    va_end(values);
-}
-
-void tl_finding_pixel(struct tl_finding *finding, int x, int y)
-{
-    finding->x = x;
-    finding->y = y;
-    tl_finding_place(finding, "pixel %d, %d", x, y);
-}
-
-void tl_finding_vertex(struct tl_finding *finding, const tl_frame *frame, size_t surface, size_t vertex)
-{
-    finding->surface = (int)surface;
-    finding->vertex = vertex;
-    tl_finding_place(finding, "%s: vertex %zu", frame->surfaces[surface].name, vertex);
-}
-
 /* Of the bound, where there is one to be a part of. */
 static double severity(const struct tl_finding *finding)
 {
@@ -186,4 +151,14 @@ int tl_verdicts_failed(const struct tl_verdicts *verdicts)
     for (size_t i = 0; i < tl_invariant_count; i++)
         failed += verdicts->items[i].finding.is_measured && !verdicts->items[i].ok;
     return failed;
+}
+
+uint64_t tl_check_hash(const tl_frame *frame, const tl_image *image)
+{
+    uint64_t hash = TL_HASH_START;
+    for (size_t s = 0; s < frame->surface_count; s++)
+        hash = tl_hash(hash, frame->surfaces[s].positions, frame->surfaces[s].vertex_count * sizeof(vec3s));
+    return image ? tl_hash(hash, image->texels,
+                           (size_t)image->width * (size_t)image->height * 4 * sizeof(float))
+                 : hash;
 }

@@ -1,6 +1,5 @@
 /* Pixels, and pictures beside pictures. */
 #include "app/lab/check/check_measures.h"
-#include "config/hash.h"
 
 #include <math.h>
 #include <string.h>
@@ -91,14 +90,6 @@ void tl_measure_fresh(const struct tl_checked *checked, struct tl_finding *findi
     finding->bound = fresh_bound(&checked->settings->light);
     tl_finding_add(finding, relative_error(checked->image, checked->fresh, &worst));
     place_pixel(finding, checked->image, worst);
-}
-
-uint64_t tl_check_hash(const tl_frame *frame, const tl_image *image)
-{
-    uint64_t hash = TL_HASH_START;
-    for (size_t s = 0; s < frame->surface_count; s++)
-        hash = tl_hash(hash, frame->surfaces[s].positions, frame->surfaces[s].vertex_count * sizeof(vec3s));
-    return image ? tl_hash(hash, image->texels, pixel_count(image) * 4 * sizeof(float)) : hash;
 }
 
 void tl_measure_repeat(const struct tl_checked *checked, struct tl_finding *finding)

@@ -1,8 +1,7 @@
 /* The frame that broke something, with all that opens it again. */
-#include "app/lab/check/check_run.h"
+#include "app/lab/check/check_keep.h"
 #include "app/report/canvas.h"
 #include "app/report/folder.h"
-#include "app/scene/headless.h"
 #include "assets/image/exr.h"
 #include "assets/motion/point_cache.h"
 #include "config/file.h"

@@ -2,7 +2,8 @@
 #ifndef TOILE_APP_LAB_CHECK_CHECK_MEASURES_H
 #define TOILE_APP_LAB_CHECK_CHECK_MEASURES_H
 
-#include "app/lab/check/check.h"
+#include "app/lab/check/checked.h"
+#include "app/lab/check/finding.h"
 
 typedef void tl_measure(const struct tl_checked *checked, struct tl_finding *finding);
 

@@ -43,7 +43,7 @@ static double fall_speed(const tl_frame *frame, double gravity)
 }
 
 /* The fastest vertex of the wearer since the last frame, whose positions are then those of this one. */
-static double wearer_speed(struct tl_watch *watch, const tl_frame *frame)
+static double wearer_speed(struct tl_cloth_monitor *watch, const tl_frame *frame)
 {
     double farthest = 0;
     for (size_t s = 0; s < frame->surface_count; s++) {
@@ -60,7 +60,7 @@ static double wearer_speed(struct tl_watch *watch, const tl_frame *frame)
 }
 
 /* Where the garment's centre of mass is on the ground plan, each triangle weighed as it was cut. */
-static void find_centre(const struct tl_watch *watch, const tl_frame *frame, double centre[2])
+static void find_centre(const struct tl_cloth_monitor *watch, const tl_frame *frame, double centre[2])
 {
     const tl_mesh *cut = &tl_session_garment(watch->session)->mesh;
     const tl_surface *garment = &frame->surfaces[frame->surface_count - 1];
@@ -79,7 +79,7 @@ static void find_centre(const struct tl_watch *watch, const tl_frame *frame, dou
 }
 
 /* Metres, sideways since the first frame; NaN where anything holds, holds up or pushes it, or has done so. */
-static double measure_drift(struct tl_watch *watch, const tl_frame *frame, bool is_driven)
+static double measure_drift(struct tl_cloth_monitor *watch, const tl_frame *frame, bool is_driven)
 {
     const struct tl_settings *settings = watch->settings;
     bool is_free = frame->surface_count == 1 && !settings->image.ground && !(settings->cloth.pin_above_m > 0);
@@ -107,8 +107,8 @@ static double spring_speed(const struct tl_settings *settings, double strain)
                                                         : 0;
 }
 
-struct tl_checked_cloth tl_watch_look(struct tl_watch *watch, const tl_frame *frame, bool is_held,
-                                      bool is_changed)
+struct tl_checked_cloth tl_cloth_monitor_measure(struct tl_cloth_monitor *watch, const tl_frame *frame,
+                                                 bool is_held, bool is_changed)
 {
     const struct tl_cloth_params *params = &watch->settings->cloth;
     double blows = wind_speed(params->wind), falls = fall_speed(frame, params->gravity);
@@ -137,17 +137,17 @@ struct tl_checked_cloth tl_watch_look(struct tl_watch *watch, const tl_frame *fr
     return cloth;
 }
 
-struct tl_watch tl_watch_begin(tl_session *session, const struct tl_settings *settings)
+struct tl_cloth_monitor tl_cloth_monitor_begin(tl_session *session, const struct tl_settings *settings)
 {
-    return (struct tl_watch){.session = session,
-                             .settings = settings,
-                             .weight_n = weigh(session, settings),
-                             .least_energy_j = NAN,
-                             .first_strain = NAN,
-                             .centre = {NAN, NAN}};
+    return (struct tl_cloth_monitor){.session = session,
+                                     .settings = settings,
+                                     .weight_n = weigh(session, settings),
+                                     .least_energy_j = NAN,
+                                     .first_strain = NAN,
+                                     .centre = {NAN, NAN}};
 }
 
-void tl_watch_release(struct tl_watch *watch)
+void tl_cloth_monitor_release(struct tl_cloth_monitor *watch)
 {
     free(watch->wearer);
     watch->wearer = NULL;

@@ -6,9 +6,9 @@
 #ifndef TOILE_APP_LAB_CHECK_CHECK_MONITOR_H
 #define TOILE_APP_LAB_CHECK_CHECK_MONITOR_H
 
-#include "app/lab/check/check.h"
+#include "app/lab/check/checked.h"
 
-struct tl_watch {
+struct tl_cloth_monitor {
     tl_session *session;
     const struct tl_settings *settings;
     double weight_n; /* of the garment as it was cut */
@@ -19,12 +19,12 @@ struct tl_watch {
     vec3s *wearer;    /* positions one frame ago; NULL: none */
 };
 
-struct tl_watch tl_watch_begin(tl_session *session, const struct tl_settings *settings);
-void tl_watch_release(struct tl_watch *watch);
+struct tl_cloth_monitor tl_cloth_monitor_begin(tl_session *session, const struct tl_settings *settings);
+void tl_cloth_monitor_release(struct tl_cloth_monitor *watch);
 
 /* The cloth in a frame, one after the other; what `checked` holds of those before is of the frames so far.
  * `is_changed`: more than the hand works on it, so that its energy says nothing. */
-struct tl_checked_cloth tl_watch_look(struct tl_watch *watch, const tl_frame *frame, bool is_held,
-                                      bool is_changed);
+struct tl_checked_cloth tl_cloth_monitor_measure(struct tl_cloth_monitor *watch, const tl_frame *frame,
+                                                 bool is_held, bool is_changed);
 
 #endif

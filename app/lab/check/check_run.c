@@ -1,6 +1,7 @@
 #include "app/lab/check/check_run.h"
 
 #include "app/budget/governor.h"
+#include "app/lab/check/check_keep.h"
 #include "app/lab/check/check_monitor.h"
 #include "app/measure/cost.h"
 #include "app/measure/motion.h"
@@ -13,8 +14,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Renderers beside the one that is looked at, made when they are first needed. */
-struct beside {
+/* Auxiliary renderers for the furnace and reuse checks, created on first use. */
+struct auxiliary {
     tl_renderer *white, *white_shadowed, *fresh;
     tl_environment light;
 };
@@ -24,14 +25,14 @@ struct run {
     const struct tl_check_params *params;
     struct tl_check_outcome *outcome;
     struct tl_motion motion;
-    struct beside beside;
+    struct auxiliary auxiliary;
     uint64_t *hashes, *places; /* [frames]: of all that is seen; of positions alone */
     int played;                /* of them are there */
     tl_pace *pace;             /* NULL: no budget */
     struct tl_levels *levels;  /* [frames] */
     struct tl_pace_choice choice;
     double chosen_ms, moved_ms, drawn_ms; /* on the wall, of this frame: the choice, the cloth, the picture */
-    struct tl_watch watch;
+    struct tl_cloth_monitor watch;
     struct tl_progress progress;
     int steps; /* all that progress counts */
 };
@@ -104,22 +105,22 @@ static void show_samples(struct tl_image_params *image)
 static bool draw_white(struct run *run, const tl_frame *frame, tl_image images[IMAGES],
                        struct tl_checked *checked, tl_error *error)
 {
-    struct beside *beside = &run->beside;
+    struct auxiliary *auxiliary = &run->auxiliary;
     struct tl_render_settings settings = *checked->settings;
     tl_frame lit = *frame;
-    if (!beside->light.image.texels)
-        beside->light = tl_environment_constant(1, 1, 1);
-    lit.environment = &beside->light;
+    if (!auxiliary->light.image.texels)
+        auxiliary->light = tl_environment_constant(1, 1, 1);
+    lit.environment = &auxiliary->light;
     lit.environment_revision = 1;
     lit.lamp_count = 0;
     settings.image.view = TL_VIEW_LIGHT;
     show_samples(&settings.image);
-    if (!draw_with(&beside->white_shadowed, run, &lit, &settings, &images[WHITE_SHADOWED], error))
+    if (!draw_with(&auxiliary->white_shadowed, run, &lit, &settings, &images[WHITE_SHADOWED], error))
         return false;
     settings.light.method = TL_METHOD_UNSHADOWED;
-    if (!draw_with(&beside->white, run, &lit, &settings, &images[WHITE], error))
+    if (!draw_with(&auxiliary->white, run, &lit, &settings, &images[WHITE], error))
         return false;
-    checked->white = beside->white;
+    checked->white = auxiliary->white;
     checked->white_image = &images[WHITE];
     checked->white_shadowed = &images[WHITE_SHADOWED];
     return true;
@@ -143,7 +144,7 @@ static bool draw_frame(struct run *run, const tl_frame *frame, const struct tl_r
 static bool prepare(struct run *run, const tl_frame *frame, tl_image images[IMAGES],
                     struct tl_checked *checked, tl_error *error)
 {
-    struct beside *beside = &run->beside;
+    struct auxiliary *auxiliary = &run->auxiliary;
     if (!draw_frame(run, frame, checked->settings, &images[DRAWN], error))
         return false;
     checked->renderer = run->stage->renderer;
@@ -152,9 +153,9 @@ static bool prepare(struct run *run, const tl_frame *frame, tl_image images[IMAG
     checked->places_hash = tl_check_hash(frame, NULL);
     if (!checked->is_sampled)
         return true;
-    if (beside->fresh && !tl_renderer_forget_scene(beside->fresh, error))
+    if (auxiliary->fresh && !tl_renderer_forget_scene(auxiliary->fresh, error))
         return false;
-    if (!draw_with(&beside->fresh, run, frame, checked->settings, &images[FRESH], error))
+    if (!draw_with(&auxiliary->fresh, run, frame, checked->settings, &images[FRESH], error))
         return false;
     checked->fresh = &images[FRESH];
     return !run->params->furnace || draw_white(run, frame, images, checked, error);
@@ -204,7 +205,7 @@ static bool check_frame(struct run *run, int number, tl_error *error)
                                  .is_reduced = run->choice.error > 0};
     if (tl_session_cloth(run->stage->session)) {
         /* Other steps of the solver are another stiffness, too. */
-        cloth = tl_watch_look(&run->watch, &frame, is_swung(run, number), run->pace);
+        cloth = tl_cloth_monitor_measure(&run->watch, &frame, is_swung(run, number), run->pace);
         checked.cloth = &cloth;
     }
     bool done = !is_finite(&frame) || prepare(run, &frame, images, &checked, error);
@@ -304,15 +305,15 @@ static uint64_t hash_of(const struct run *run)
 
 static void release(struct run *run)
 {
-    tl_renderer_destroy(&run->beside.white);
-    tl_renderer_destroy(&run->beside.white_shadowed);
-    tl_renderer_destroy(&run->beside.fresh);
-    tl_environment_release(&run->beside.light);
+    tl_renderer_destroy(&run->auxiliary.white);
+    tl_renderer_destroy(&run->auxiliary.white_shadowed);
+    tl_renderer_destroy(&run->auxiliary.fresh);
+    tl_environment_release(&run->auxiliary.light);
     tl_pace_destroy(&run->pace);
     free(run->levels);
     free(run->hashes);
     free(run->places);
-    tl_watch_release(&run->watch);
+    tl_cloth_monitor_release(&run->watch);
 }
 
 bool tl_check_play(struct tl_stage *stage, const struct tl_check_params *params, struct tl_check_outcome *out,
@@ -329,7 +330,7 @@ bool tl_check_play(struct tl_stage *stage, const struct tl_check_params *params,
                       .progress = tl_progress_begin("checking")};
     int again = params->frames < 20 ? (params->frames + 1) / 2 : params->frames / 10;
     run.steps = params->frames + again;
-    run.watch = tl_watch_begin(stage->session, &stage->settings);
+    run.watch = tl_cloth_monitor_begin(stage->session, &stage->settings);
     bool done = play(&run, error);
     if (done && run.played == params->frames)
         done = play_again(&run, again, error);

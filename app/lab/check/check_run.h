@@ -32,10 +32,4 @@ struct tl_check_outcome {
 bool tl_check_play(struct tl_stage *stage, const struct tl_check_params *params, struct tl_check_outcome *out,
                    tl_error *error);
 
-/* What is kept of a frame (check_keep.c), each file that can be written: scene.yaml opens it as it stands;
- * run.yaml holds the settings of the run; what the first names lies beside it. The picture as .exr, and as
- * .png with the place marked. */
-bool tl_check_keep(const char *folder, struct tl_stage *stage, const struct tl_checked *checked,
-                   const struct tl_finding *broken, tl_error *error);
-
 #endif

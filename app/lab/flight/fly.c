@@ -13,7 +13,7 @@
 #define WARM_UP_S      1.0
 #define PICTURE_PIXELS 256 /* width of a thumbnail, about */
 
-struct pilot {
+struct recorder {
     struct tl_stage *stage;
     const struct tl_fly_options *options;
     struct tl_flight *flight;
@@ -105,33 +105,33 @@ static bool is_among_worst(const struct tl_flight *flight, int number)
                flight->frames[flight->worst[TL_FLIGHT_WORST - 1].frame].total_ms;
 }
 
-static bool keep_shown(struct pilot *pilot, int number, tl_error *error)
+static bool keep_shown(struct recorder *recorder, int number, tl_error *error)
 {
-    struct tl_flight *flight = pilot->flight;
+    struct tl_flight *flight = recorder->flight;
     bool stop = is_stop(flight, number), worst = is_among_worst(flight, number);
-    if (!stop && !worst && !pilot->options->video)
+    if (!stop && !worst && !recorder->options->video)
         return true;
     tl_image shown = {0};
-    bool kept = tl_renderer_show_image(pilot->stage->renderer, &shown, error);
+    bool kept = tl_renderer_show_image(recorder->stage->renderer, &shown, error);
     if (kept && stop)
         flight->stops[flight->stop_count++] = (struct tl_flight_picture){number, thumbnail_of(&shown)};
     if (kept && worst)
         keep_worst(flight, number, &shown);
-    if (kept && pilot->options->video)
-        kept = tl_video_add(pilot->options->video, &shown, error);
+    if (kept && recorder->options->video)
+        kept = tl_video_add(recorder->options->video, &shown, error);
     tl_image_release(&shown);
     return kept;
 }
 
-static bool keep_linear(struct pilot *pilot, int number, tl_error *error)
+static bool keep_linear(struct recorder *recorder, int number, tl_error *error)
 {
-    const struct tl_fly_options *options = pilot->options;
-    struct tl_flight *flight = pilot->flight;
+    const struct tl_fly_options *options = recorder->options;
+    struct tl_flight *flight = recorder->flight;
     bool judged = options->oracle_every > 0 && number % options->oracle_every == 0;
     tl_image image = {0};
     if (!options->hash && !judged)
         return true;
-    if (!tl_renderer_read(pilot->stage->renderer, &image, error))
+    if (!tl_renderer_read(recorder->stage->renderer, &image, error))
         return false;
     if (options->hash)
         flight->frames[number].hash = hash_of(&image);
@@ -155,38 +155,38 @@ static void record_jobs(struct tl_flight *flight, const tl_plan *plan, struct tl
 
 /* The camera goes first, so that the choice is made for where it will be. The cloth stays as it is: whenever
  * its step changes it forgets its contacts. */
-static bool choose(struct pilot *pilot, const struct tl_settings *wanted, int number,
+static bool choose(struct recorder *recorder, const struct tl_settings *wanted, int number,
                    struct tl_pace_choice *out, tl_error *error)
 {
-    struct tl_stage *stage = pilot->stage;
+    struct tl_stage *stage = recorder->stage;
     struct tl_settings looked_from = *wanted;
     looked_from.cloth = tl_session_settings(stage->session)->cloth;
     if (!tl_session_apply(stage->session, &looked_from, error))
         return false;
     const tl_frame coming = tl_session_frame(stage->session);
-    if (pilot->options->replay) {
-        const struct tl_flight_frame *recorded = &pilot->options->replay->frames[number];
+    if (recorder->options->replay) {
+        const struct tl_flight_frame *recorded = &recorder->options->replay->frames[number];
         *out = (struct tl_pace_choice){
             .levels = recorded->levels, .predicted_ms = NAN, .error = recorded->error};
     } else {
-        *out = tl_pace_choose(pilot->pace, stage->renderer, &coming, wanted);
+        *out = tl_pace_choose(recorder->pace, stage->renderer, &coming, wanted);
     }
     return true;
 }
 
 /* What the clock runs for. */
-static bool fly_frame(struct pilot *pilot, int number, struct tl_flight_frame *frame, tl_error *error)
+static bool draw_timed(struct recorder *recorder, int number, struct tl_flight_frame *frame, tl_error *error)
 {
-    struct tl_stage *stage = pilot->stage;
+    struct tl_stage *stage = recorder->stage;
     struct tl_pace_choice choice;
-    const struct tl_settings wanted = settings_at(stage, pilot->flight, number);
+    const struct tl_settings wanted = settings_at(stage, recorder->flight, number);
     struct tl_stopwatch watch = tl_stopwatch_start();
-    if (!choose(pilot, &wanted, number, &choice, error))
+    if (!choose(recorder, &wanted, number, &choice, error))
         return false;
     const struct tl_settings settings = tl_levels_apply(&choice.levels, &wanted);
     struct tl_stopwatch cloth_watch = tl_stopwatch_start();
     if (!tl_session_apply(stage->session, &settings, error) ||
-        (number > 0 && !tl_motion_advance(&pilot->motion, number, error)))
+        (number > 0 && !tl_motion_advance(&recorder->motion, number, error)))
         return false;
     frame->cloth_ms = tl_stopwatch_read(&cloth_watch).wall_ms;
     const tl_frame shown = tl_session_frame(stage->session);
@@ -200,20 +200,20 @@ static bool fly_frame(struct pilot *pilot, int number, struct tl_flight_frame *f
     return true;
 }
 
-static bool fly_on(struct pilot *pilot, int number, tl_error *error)
+static bool record_frame(struct recorder *recorder, int number, tl_error *error)
 {
-    struct tl_flight *flight = pilot->flight;
+    struct tl_flight *flight = recorder->flight;
     struct tl_flight_frame frame = {.flip_mean = NAN, .rel_rmse = NAN};
-    if (!fly_frame(pilot, number, &frame, error))
+    if (!draw_timed(recorder, number, &frame, error))
         return false;
-    const tl_plan *plan = tl_renderer_last_plan(pilot->stage->renderer);
-    if (pilot->pace)
-        tl_pace_learn(pilot->pace, plan, frame.cloth_ms, frame.total_ms);
+    const tl_plan *plan = tl_renderer_last_plan(recorder->stage->renderer);
+    if (recorder->pace)
+        tl_pace_learn(recorder->pace, plan, frame.cloth_ms, frame.total_ms);
     record_jobs(flight, plan, &frame);
-    frame.memory_bytes = tl_renderer_memory(pilot->stage->renderer).total;
+    frame.memory_bytes = tl_renderer_memory(recorder->stage->renderer).total;
     flight->frames[number] = frame;
     flight->count = number + 1;
-    return keep_linear(pilot, number, error) && keep_shown(pilot, number, error);
+    return keep_linear(recorder, number, error) && keep_shown(recorder, number, error);
 }
 
 static int warm_up_frames(int planned, double frame_rate)
@@ -233,20 +233,20 @@ bool tl_fly(struct tl_stage *stage, const struct tl_fly_options *options, struct
                               .frames = TL_NEW_ARRAY(struct tl_flight_frame, (size_t)options->frames),
                               .path = *path};
     *path = (struct tl_path){0};
-    struct pilot pilot = {.stage = stage, .options = options, .flight = out};
+    struct recorder recorder = {.stage = stage, .options = options, .flight = out};
     if (!options->replay)
-        pilot.pace = tl_pace_create(options->budget_ms);
+        recorder.pace = tl_pace_create(options->budget_ms);
     struct tl_progress progress = tl_progress_begin("flying");
-    bool done = begin_motion(stage, out, &pilot.motion, error);
+    bool done = begin_motion(stage, out, &recorder.motion, error);
     for (int number = 0; done && number < options->frames; number++) {
-        done = fly_on(&pilot, number, error);
+        done = record_frame(&recorder, number, error);
         if (tl_interrupted())
             done =
                 tl_fail(error, TL_INTERRUPTED, "fly: stopped at frame %d: frames before it are kept", number);
         tl_progress_update(&progress, number + 1, options->frames);
     }
     tl_progress_end(&progress);
-    tl_pace_destroy(&pilot.pace);
+    tl_pace_destroy(&recorder.pace);
     return done;
 }
 
@@ -267,31 +267,31 @@ void tl_flight_release(struct tl_flight *flight)
     *flight = (struct tl_flight){0};
 }
 
-static bool judge(struct tl_contender *oracle, tl_session *session, const struct tl_flight_picture *picture,
+static bool judge(struct tl_variant_run *oracle, tl_session *session, const struct tl_flight_picture *picture,
                   struct tl_flight_frame *frame, tl_error *error)
 {
-    struct tl_truth truth = {0};
+    struct tl_reference_frame truth = {0};
     struct tl_measured_error measured;
     const tl_frame shown = tl_session_frame(session);
-    bool judged = tl_truth_draw(oracle, &shown, &truth, error) &&
-                  tl_truth_compare(&picture->image, &truth, &measured, error);
+    bool judged = tl_reference_frame_draw(oracle, &shown, &truth, error) &&
+                  tl_reference_frame_compare(&picture->image, &truth, &measured, error);
     if (judged) {
         frame->flip_mean = measured.flip_mean;
         frame->rel_rmse = measured.rel_rmse;
     }
-    tl_truth_release(&truth);
+    tl_reference_frame_release(&truth);
     return judged;
 }
 
 bool tl_fly_judge(struct tl_stage *stage, struct tl_flight *flight, tl_error *error)
 {
     struct tl_motion motion;
-    struct tl_contender oracle = {0};
-    const struct tl_choice choice = tl_choice_oracle();
+    struct tl_variant_run oracle = {0};
+    const struct tl_setup choice = tl_reference_settings();
     /* A reset would not do: a cloth whose step has changed goes on otherwise than a fresh one. */
     bool done = tl_session_restart(stage->session, &stage->settings, error) &&
                 begin_motion(stage, flight, &motion, error) &&
-                tl_contender_create(&oracle, stage->gpu, &choice, &stage->settings, error);
+                tl_variant_run_create(&oracle, stage->gpu, &choice, &stage->settings, error);
     struct tl_progress progress = tl_progress_begin("ray tracing what was flown");
     int judged = 0;
     for (int number = 0; done && judged < flight->kept_count; number++) {
@@ -307,6 +307,6 @@ bool tl_fly_judge(struct tl_stage *stage, struct tl_flight *flight, tl_error *er
         tl_progress_update(&progress, judged, flight->kept_count);
     }
     tl_progress_end(&progress);
-    tl_contender_release(&oracle);
+    tl_variant_run_release(&oracle);
     return done;
 }

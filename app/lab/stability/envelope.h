@@ -1,19 +1,19 @@
 /* The cloth's envelope: stiffness x time step x mass ratio x size, for each solver.
  *
  * A cell is solved twice. A tube that hangs by its rim starts at rest under its own weight, which is known in
- * closed form (app/lab/stability/closed_form.h), and should stay there: it is exact when no vertex leaves its
- * place by more than a thousandth of what it would sink, or of a free fall in the time that passes, whichever
- * is less (and a millionth of the tube, for its float positions). Else it is bounded if none falls faster
- * than free, but for the way to where `preview` rests and as far beyond (tl_tube_slack: much on needles,
- * which weigh little). Then the same tube without weight starts with every vertex moved by a fifth of its
- * cells: its energy must not grow beyond TL_ENVELOPE_GROWTH times what it began with (of `preview`: its
- * motion's, and its strain's by the square). What a solver cannot do it must refuse, with a message and the
- * last good state. Times in CPU ms. */
+ * closed form (app/lab/experiments/closed_form.h), and should stay there: it is exact when no vertex leaves
+ * its place by more than a thousandth of what it would sink, or of a free fall in the time that passes,
+ * whichever is less (and a millionth of the tube, for its float positions). Else it is bounded if none falls
+ * faster than free, but for the way to where `preview` rests and as far beyond (tl_tube_slack: much on
+ * needles, which weigh little). Then the same tube without weight starts with every vertex moved by a fifth
+ * of its cells: its energy must not grow beyond TL_ENVELOPE_GROWTH times what it began with (of `preview`:
+ * its motion's, and its strain's by the square). What a solver cannot do it must refuse, with a message and
+ * the last good state. Times in CPU ms. */
 #ifndef TOILE_APP_LAB_STABILITY_ENVELOPE_H
 #define TOILE_APP_LAB_STABILITY_ENVELOPE_H
 
-#include "app/lab/stability/closed_form.h"
-#include "app/lab/stability/stability.h"
+#include "app/lab/experiments/closed_form.h"
+#include "app/lab/stability/outcome.h"
 
 /* Verlet keeps kinetic + elastic (1 - (omega h)^2 / 4) energy, not their sum, and takes up to 0.9 of the
  * critical step: the sum may swing by 1 / (1 - 0.9^2). */

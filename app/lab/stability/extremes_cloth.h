@@ -5,7 +5,8 @@
 #ifndef TOILE_APP_LAB_STABILITY_EXTREMES_CLOTH_H
 #define TOILE_APP_LAB_STABILITY_EXTREMES_CLOTH_H
 
-#include "app/lab/stability/stability.h"
+#include "app/lab/stability/outcome.h"
+#include "config/error.h"
 
 extern const size_t tl_cloth_extreme_count;
 

@@ -1,6 +1,7 @@
 /* The extremes of cloth: the envelope over stiffness, step, mass ratio and size, then single extremes. */
 #include "app/lab/stability/envelope_sweep.h"
 #include "app/lab/stability/extremes_cloth.h"
+#include "app/lab/stability/stability.h"
 #include "app/measure/cost.h"
 #include "config/file.h"
 #include "config/interrupt.h"

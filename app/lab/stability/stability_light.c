@@ -18,11 +18,11 @@
 #define EXACT_RMSE 0.001
 
 /* The paper's N = 96 at 128 texels shows nothing more here, and takes four times as long. */
-static const struct tl_choice choices[TL_EXTREME_METHODS] = {
+static const struct tl_setup choices[TL_EXTREME_METHODS] = {
     {"paper", "paper", {"light.lobe=dual", "light.regions=24", "light.pem_size=64"}},
     {"review", "review", {NULL}},
 };
-static const struct tl_choice unshadowed = {
+static const struct tl_setup unshadowed = {
     "unshadowed",
     "paper",
     {"light.lobe=dual", "light.regions=24", "light.pem_size=64", "light.method=unshadowed"}};
@@ -36,14 +36,14 @@ struct cell {
 struct suite {
     struct tl_settings settings;
     tl_gpu *gpu;
-    struct tl_contender methods[TL_EXTREME_METHODS], unshadowed, oracle;
+    struct tl_variant_run methods[TL_EXTREME_METHODS], unshadowed, oracle;
     size_t stride;      /* from one drawn extreme to the next */
     struct cell *cells; /* [tl_extreme_count][TL_EXTREME_METHODS] */
 };
 
 static bool prepare(struct suite *suite, const struct tl_arguments *arguments, tl_error *error)
 {
-    struct tl_choice truth = tl_choice_oracle();
+    struct tl_setup truth = tl_reference_settings();
     truth.assignments[2] = "reference.replicates=2"; /* 0.5 %: bounds are wide */
     if (!tl_stage_settings(arguments, &suite->settings, error))
         return false;
@@ -51,12 +51,12 @@ static bool prepare(struct suite *suite, const struct tl_arguments *arguments, t
     suite->settings.image.supersample = 1;
     suite->cells = TL_NEW_ARRAY(struct cell, tl_extreme_count * TL_EXTREME_METHODS);
     suite->gpu = tl_gpu_create_headless(error);
-    if (!suite->gpu || !tl_contender_create(&suite->oracle, suite->gpu, &truth, &suite->settings, error))
+    if (!suite->gpu || !tl_variant_run_create(&suite->oracle, suite->gpu, &truth, &suite->settings, error))
         return false;
-    if (!tl_contender_create(&suite->unshadowed, suite->gpu, &unshadowed, &suite->settings, error))
+    if (!tl_variant_run_create(&suite->unshadowed, suite->gpu, &unshadowed, &suite->settings, error))
         return false;
     for (int m = 0; m < TL_EXTREME_METHODS; m++)
-        if (!tl_contender_create(&suite->methods[m], suite->gpu, &choices[m], &suite->settings, error))
+        if (!tl_variant_run_create(&suite->methods[m], suite->gpu, &choices[m], &suite->settings, error))
             return false;
     return true;
 }
@@ -64,9 +64,9 @@ static bool prepare(struct suite *suite, const struct tl_arguments *arguments, t
 static void release(struct suite *suite)
 {
     for (int m = 0; m < TL_EXTREME_METHODS; m++)
-        tl_contender_release(&suite->methods[m]);
-    tl_contender_release(&suite->unshadowed);
-    tl_contender_release(&suite->oracle);
+        tl_variant_run_release(&suite->methods[m]);
+    tl_variant_run_release(&suite->unshadowed);
+    tl_variant_run_release(&suite->oracle);
     tl_gpu_destroy(&suite->gpu);
     free(suite->cells);
 }
@@ -101,19 +101,19 @@ static bool relative_error(const tl_image *tested, const tl_image *truth, double
     return done;
 }
 
-static bool picture(struct tl_contender *contender, const struct tl_extreme *extreme,
+static bool picture(struct tl_variant_run *variant, const struct tl_extreme *extreme,
                     struct tl_extreme_scene *scene, tl_image *out, tl_error *error)
 {
     struct tl_taken unused;
     tl_frame frame = tl_extreme_frame(scene);
-    struct tl_contender changed = *contender;
+    struct tl_variant_run changed = *variant;
     struct tl_binding light = {&tl_light_options, &changed.settings.light};
     changed.settings.image.ground = scene->ground;
     for (size_t i = 0; i < TL_COUNT(extreme->assignments) && extreme->assignments[i]; i++)
         if (!tl_options_set_assignment(&light, 1, extreme->assignments[i], error))
             return false;
-    return tl_contender_draw(&changed, &frame, &unused, error) &&
-           tl_renderer_read(contender->renderer, out, error);
+    return tl_variant_run_draw(&changed, &frame, &unused, error) &&
+           tl_renderer_read(variant->renderer, out, error);
 }
 
 static struct cell judge(const struct tl_extreme *extreme, const tl_image *image, const tl_image *truth,

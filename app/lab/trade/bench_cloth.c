@@ -1,7 +1,7 @@
-/* How fast cloth is solved: particles times substeps per second of CPU, beside the ruler's in the same run;
- * normals and tangents; and the built-in dress coming to rest. */
+/* How fast cloth is solved: particles times substeps per second of CPU, beside the baseline's in the same
+ * run; normals and tangents; and the built-in dress coming to rest. */
 #include "app/cli/json.h"
-#include "app/lab/stability/closed_form.h"
+#include "app/lab/experiments/closed_form.h"
 #include "app/lab/trade/baseline.h"
 #include "app/lab/trade/bench.h"
 #include "app/measure/cost.h"
@@ -20,7 +20,7 @@
 #define SIDES_MAX       3
 #define THREADS_MAX     2
 #define DRESSES_MAX     2
-#define RULER           TL_CLOTH_SOLVER_COUNT /* takes its turn after the solvers */
+#define BASELINE        TL_CLOTH_SOLVER_COUNT /* takes its turn after the solvers */
 #define CONTENDER_COUNT (TL_CLOTH_SOLVER_COUNT + 1)
 
 struct plan {
@@ -56,9 +56,9 @@ struct bench {
     size_t dress_count;
 };
 
-static const char *contender_name(int contender)
+static const char *contender_name(int variant)
 {
-    return contender == RULER ? "plain loop" : tl_cloth_solver_names[contender];
+    return variant == BASELINE ? "plain loop" : tl_cloth_solver_names[variant];
 }
 
 /* ---- Sheets ---- */
@@ -104,25 +104,26 @@ static bool run_cloth(tl_cloth *cloth, double turn_ms, struct rate *out, tl_erro
     return true;
 }
 
-static bool run_ruler(tl_ruler *ruler, int side, double turn_ms, struct rate *out, tl_error *error)
+static bool run_baseline(tl_baseline *baseline, int side, double turn_ms, struct rate *out, tl_error *error)
 {
     double steps = 0;
     struct tl_stopwatch watch = tl_stopwatch_start();
     struct tl_taken taken;
     do {
         for (int i = 0; i < FRAME_SUBSTEPS; i++)
-            tl_ruler_step(ruler);
+            tl_baseline_step(baseline);
         steps += FRAME_SUBSTEPS * (double)side * side;
         taken = tl_stopwatch_read(&watch);
     } while (taken.cpu_ms < turn_ms);
-    if (!(tl_ruler_stretch(ruler) < 2)) /* read, so that the loop cannot be left out */
-        return tl_fail(error, TL_UNSTABLE, "bench: the plain loop stretched by %g", tl_ruler_stretch(ruler));
+    if (!(tl_baseline_stretch(baseline) < 2)) /* read, so that the loop cannot be left out */
+        return tl_fail(error, TL_UNSTABLE, "bench: the plain loop stretched by %g",
+                       tl_baseline_stretch(baseline));
     out->cpu = fmax(out->cpu, 1e3 * steps / taken.cpu_ms);
     out->wall = fmax(out->wall, 1e3 * steps / taken.wall_ms);
     return true;
 }
 
-/* All contenders in turn, round after round, so that what else the machine does meets them alike. */
+/* All variants in turn, round after round, so that what else the machine does meets them alike. */
 static bool run_sheet(struct bench *bench, int size, int threads, tl_error *error)
 {
     int side = bench->plan.sides[size];
@@ -130,7 +131,7 @@ static bool run_sheet(struct bench *bench, int size, int threads, tl_error *erro
     struct rate *rates = bench->rates[size][threads - 1];
     tl_garment sheet = tl_sheet_make(side, TL_SHEET_EDGE, false);
     tl_cloth *cloths[TL_CLOTH_SOLVER_COUNT] = {0};
-    tl_ruler *ruler = tl_ruler_create(side);
+    tl_baseline *baseline = tl_baseline_create(side);
     bool done = true;
     omp_set_num_threads(threads);
     for (int s = 0; done && s < TL_CLOTH_SOLVER_COUNT; s++)
@@ -138,11 +139,11 @@ static bool run_sheet(struct bench *bench, int size, int threads, tl_error *erro
     for (int round = 0; done && round < ROUNDS; round++) {
         for (int s = 0; done && s < TL_CLOTH_SOLVER_COUNT; s++)
             done = run_cloth(cloths[s], turn_ms, &rates[s], error);
-        done = done && run_ruler(ruler, side, turn_ms, &rates[RULER], error);
+        done = done && run_baseline(baseline, side, turn_ms, &rates[BASELINE], error);
     }
     for (int s = 0; s < TL_CLOTH_SOLVER_COUNT; s++)
         tl_cloth_destroy(&cloths[s]);
-    tl_ruler_destroy(&ruler);
+    tl_baseline_destroy(&baseline);
     tl_garment_release(&sheet);
     return done;
 }
@@ -256,8 +257,8 @@ static void print_rates(const struct bench *bench)
             for (int c = 0; c < CONTENDER_COUNT; c++) {
                 const struct rate *rate = &bench->rates[i][t][c];
                 printf("%-10d %8d %-12s %8.2f %8.2f %14.2f\n", bench->plan.sides[i] * bench->plan.sides[i],
-                       t + 1, contender_name(c), 1e-6 * rate->cpu, rate->cpu / bench->rates[i][t][RULER].cpu,
-                       1e-6 * rate->wall);
+                       t + 1, contender_name(c), 1e-6 * rate->cpu,
+                       rate->cpu / bench->rates[i][t][BASELINE].cpu, 1e-6 * rate->wall);
             }
     printf("\nnormals and tangents on one core:\n");
     for (int i = 0; i < bench->plan.side_count; i++)
@@ -278,18 +279,18 @@ static void print_dresses(const struct bench *bench)
     }
 }
 
-static void add_runs(const struct bench *bench, int contender, cJSON *object)
+static void add_runs(const struct bench *bench, int variant, cJSON *object)
 {
     cJSON *runs = cJSON_AddArrayToObject(object, "runs");
     for (int i = 0; i < bench->plan.side_count; i++)
         for (int t = 0; t < bench->plan.thread_count; t++) {
-            const struct rate *rate = &bench->rates[i][t][contender];
+            const struct rate *rate = &bench->rates[i][t][variant];
             cJSON *run = cJSON_CreateObject();
             cJSON_AddNumberToObject(run, "particles", bench->plan.sides[i] * bench->plan.sides[i]);
             cJSON_AddNumberToObject(run, "threads", t + 1);
             cJSON_AddNumberToObject(run, "steps_per_s_core", rate->cpu);
             cJSON_AddNumberToObject(run, "steps_per_s_wall", rate->wall);
-            cJSON_AddNumberToObject(run, "ratio", rate->cpu / bench->rates[i][t][RULER].cpu);
+            cJSON_AddNumberToObject(run, "ratio", rate->cpu / bench->rates[i][t][BASELINE].cpu);
             cJSON_AddItemToArray(runs, run);
         }
 }
@@ -321,7 +322,7 @@ static void print_json(const struct bench *bench)
         cJSON *row = cJSON_CreateObject();
         cJSON_AddStringToObject(row, "name", contender_name(c));
         cJSON_AddNumberToObject(row, "steps_per_s_core", rate->cpu);
-        cJSON_AddNumberToObject(row, "ratio", rate->cpu / bench->rates[middle][0][RULER].cpu);
+        cJSON_AddNumberToObject(row, "ratio", rate->cpu / bench->rates[middle][0][BASELINE].cpu);
         add_runs(bench, c, row);
         cJSON_AddItemToArray(solvers, row);
     }

@@ -23,7 +23,7 @@ static const struct schedule full = {16, 12, 4}, quick = {2, 2, 2};
 
 /* The paper's single lobe is another material than the oracle's two, so that its error would tell more of the
  * material than of light: it is compared with two lobes, and as it stands for information. */
-static const struct tl_choice choices[] = {
+static const struct tl_setup choices[] = {
     {"paper", "paper", {"light.regions=96", "light.lobe=dual"}},
     {"paper, its single lobe", "paper", {"light.regions=96"}},
     {"review", "review", {NULL}},
@@ -37,7 +37,7 @@ static const struct tl_choice choices[] = {
 enum { PAPER, PAPER_SINGLE, REVIEW, REVIEW_MAPS, DRAFT, FINAL, CHOICES };
 
 struct row {
-    struct tl_contender contender;
+    struct tl_variant_run variant;
     double cpu_ms[FRAMES_MAX], wall_ms[FRAMES_MAX];
     struct tl_measured_error error[TRUTHS_MAX];
     size_t memory_bytes;
@@ -54,8 +54,8 @@ struct bench {
     struct rest rest; /* of review */
     struct schedule schedule;
     struct tl_stage stage;
-    tl_film *film;
-    struct tl_contender oracle;
+    tl_recording *recording;
+    struct tl_variant_run oracle;
     struct row rows[CHOICES];
 };
 
@@ -94,14 +94,15 @@ static bool prepare(struct bench *bench, const struct tl_arguments *arguments, t
     struct tl_stage *stage = &bench->stage;
     if (!tl_stage_create(stage, arguments, error))
         return false;
-    bench->film = tl_film_record(stage->session, bench->schedule.warm + bench->schedule.measured, error);
-    if (!bench->film)
+    bench->recording =
+        tl_motion_record(stage->session, bench->schedule.warm + bench->schedule.measured, error);
+    if (!bench->recording)
         return false;
-    const struct tl_choice truth = tl_choice_oracle();
-    if (!tl_contender_create(&bench->oracle, stage->gpu, &truth, &stage->settings, error))
+    const struct tl_setup truth = tl_reference_settings();
+    if (!tl_variant_run_create(&bench->oracle, stage->gpu, &truth, &stage->settings, error))
         return false;
     for (int i = 0; i < CHOICES; i++)
-        if (!tl_contender_create(&bench->rows[i].contender, stage->gpu, &choices[i], &stage->settings, error))
+        if (!tl_variant_run_create(&bench->rows[i].variant, stage->gpu, &choices[i], &stage->settings, error))
             return false;
     return true;
 }
@@ -109,9 +110,9 @@ static bool prepare(struct bench *bench, const struct tl_arguments *arguments, t
 static void release(struct bench *bench)
 {
     for (int i = 0; i < CHOICES; i++)
-        tl_contender_release(&bench->rows[i].contender);
-    tl_contender_release(&bench->oracle);
-    tl_film_destroy(&bench->film);
+        tl_variant_run_release(&bench->rows[i].variant);
+    tl_variant_run_release(&bench->oracle);
+    tl_recording_destroy(&bench->recording);
     tl_stage_release(&bench->stage);
 }
 
@@ -119,60 +120,60 @@ static void release(struct bench *bench)
 static bool warm_up(struct bench *bench, int number, tl_error *error)
 {
     struct tl_taken unused;
-    tl_frame frame = tl_film_frame(bench->film, number);
+    tl_frame frame = tl_recording_frame(bench->recording, number);
     for (int i = 0; i < CHOICES; i++) {
-        struct tl_contender *contender = &bench->rows[i].contender;
-        if ((number == bench->schedule.warm - 1 || tl_contender_remembers(contender)) &&
-            !tl_contender_draw(contender, &frame, &unused, error))
+        struct tl_variant_run *variant = &bench->rows[i].variant;
+        if ((number == bench->schedule.warm - 1 || tl_variant_run_has_history(variant)) &&
+            !tl_variant_run_draw(variant, &frame, &unused, error))
             return false;
     }
     return true;
 }
 
-static bool come_to_rest(struct bench *bench, const tl_frame *frame, const struct tl_truth *truth,
+static bool come_to_rest(struct bench *bench, const tl_frame *frame, const struct tl_reference_frame *truth,
                          tl_error *error)
 {
-    struct tl_contender *contender = &bench->rows[REVIEW].contender;
+    struct tl_variant_run *variant = &bench->rows[REVIEW].variant;
     struct rest *rest = &bench->rest;
     struct tl_taken taken;
     double cpu_ms[REST_MAX];
-    while (rest->frames < REST_MAX && !tl_renderer_is_at_rest(contender->renderer)) {
-        if (!tl_contender_draw(contender, frame, &taken, error))
+    while (rest->frames < REST_MAX && !tl_renderer_is_at_rest(variant->renderer)) {
+        if (!tl_variant_run_draw(variant, frame, &taken, error))
             return false;
         cpu_ms[rest->frames++] = taken.cpu_ms;
     }
     rest->cpu_ms = rest->frames ? tl_median(cpu_ms, (size_t)rest->frames) : 0;
-    if (!tl_contender_draw(contender, frame, &taken, error))
+    if (!tl_variant_run_draw(variant, frame, &taken, error))
         return false;
     rest->done_cpu_ms = taken.cpu_ms;
-    return tl_contender_compare(contender, truth, &rest->error, error);
+    return tl_variant_run_compare(variant, truth, &rest->error, error);
 }
 
 static bool compare_all(struct bench *bench, const tl_frame *frame, int at, tl_error *error)
 {
-    struct tl_truth truth = {0};
-    bool done = tl_truth_draw(&bench->oracle, frame, &truth, error);
+    struct tl_reference_frame truth = {0};
+    bool done = tl_reference_frame_draw(&bench->oracle, frame, &truth, error);
     for (int i = 0; done && i < CHOICES; i++)
-        done = tl_contender_compare(&bench->rows[i].contender, &truth, &bench->rows[i].error[at], error);
+        done = tl_variant_run_compare(&bench->rows[i].variant, &truth, &bench->rows[i].error[at], error);
     if (done && at == truth_count(bench) - 1)
         done = come_to_rest(bench, frame, &truth, error);
-    tl_truth_release(&truth);
+    tl_reference_frame_release(&truth);
     return done;
 }
 
-/* One frame by every contender in turn, so that what else the machine does meets them alike. */
+/* One frame by every variant in turn, so that what else the machine does meets them alike. */
 static bool measure(struct bench *bench, int number, tl_error *error)
 {
     int at = number - bench->schedule.warm, every = bench->schedule.truth_every;
-    tl_frame frame = tl_film_frame(bench->film, number);
+    tl_frame frame = tl_recording_frame(bench->recording, number);
     for (int i = 0; i < CHOICES; i++) {
         struct tl_taken taken;
         struct row *row = &bench->rows[i];
-        if (!tl_contender_draw(&row->contender, &frame, &taken, error))
+        if (!tl_variant_run_draw(&row->variant, &frame, &taken, error))
             return false;
         row->cpu_ms[at] = taken.cpu_ms;
         row->wall_ms[at] = taken.wall_ms;
-        row->memory_bytes = tl_renderer_memory(row->contender.renderer).total;
+        row->memory_bytes = tl_renderer_memory(row->variant.renderer).total;
     }
     return at % every != every - 1 || compare_all(bench, &frame, at / every, error);
 }
@@ -194,24 +195,25 @@ static bool run(struct bench *bench, tl_error *error)
 
 static void print_table(const struct bench *bench)
 {
-    struct tl_film_report film = tl_film_report(bench->film);
+    struct tl_recording_report recording = tl_recording_report(bench->recording);
     const struct tl_image_params *image = &bench->stage.settings.image;
     printf("%d x %d pixels, %.1f %% covered, %zu garment triangles, moving %.1f mm a frame on average;\n"
            "medians of %d frames, process CPU time; errors are means of %d frames against the oracle, whose "
            "standard error of %.2f %% is taken off; one pixel: the most of a frame's square error that its "
            "worst "
            "pixel holds, as where an outline's tie puts a highlight in or out\n\n",
-           image->width, image->height, 100 * coverage(bench), film.garment_triangles, 1e3 * film.mean_step_m,
-           bench->schedule.measured, truth_count(bench), 100 * bench->rows[PAPER].error[0].standard_error);
+           image->width, image->height, 100 * coverage(bench), recording.garment_triangles,
+           1e3 * recording.mean_step_m, bench->schedule.measured, truth_count(bench),
+           100 * bench->rows[PAPER].error[0].standard_error);
     printf("%-24s %10s %10s %10s %10s %10s %10s\n", "", "CPU ms", "wall ms", "rel. RMSE", "one pixel",
            "mean FLIP", "MiB");
     for (int i = 0; i < CHOICES; i++) {
         struct row_summary row = summarise(bench, i);
-        printf("%-24s %10.1f %10.1f %9.2f%% %9.0f%% %10.4f %10.1f\n", bench->rows[i].contender.name,
-               row.cpu_ms, row.wall_ms, 100 * row.rel_rmse, 100 * row.worst_share, row.flip_mean,
+        printf("%-24s %10.1f %10.1f %9.2f%% %9.0f%% %10.4f %10.1f\n", bench->rows[i].variant.name, row.cpu_ms,
+               row.wall_ms, 100 * row.rel_rmse, 100 * row.worst_share, row.flip_mean,
                (double)bench->rows[i].memory_bytes / (1 << 20));
     }
-    printf("%-24s %10.1f\n\n", "(the cloth's solver)", film.cloth_cpu_ms);
+    printf("%-24s %10.1f\n\n", "(the cloth's solver)", recording.cloth_cpu_ms);
     const struct rest *rest = &bench->rest;
     printf("review at rest: %.1f ms of CPU a frame for %d frames, then %.1f; rel. RMSE %.2f %% (one pixel "
            "holds %.0f %% of its square), mean FLIP %.4f\n",
@@ -225,16 +227,16 @@ static void print_table(const struct bench *bench)
 
 static void print_json(const struct bench *bench)
 {
-    struct tl_film_report film = tl_film_report(bench->film);
+    struct tl_recording_report recording = tl_recording_report(bench->recording);
     struct row_summary paper = summarise(bench, PAPER), review = summarise(bench, REVIEW);
     cJSON *object = cJSON_CreateObject();
     cJSON_AddNumberToObject(object, "time_ratio", paper.cpu_ms / review.cpu_ms);
     cJSON_AddNumberToObject(object, "error_ratio", review.rel_rmse / paper.rel_rmse);
     cJSON_AddNumberToObject(object, "flip_ratio", review.flip_mean / paper.flip_mean);
     cJSON_AddNumberToObject(object, "coverage", coverage(bench));
-    cJSON_AddNumberToObject(object, "garment_triangles", (double)film.garment_triangles);
-    cJSON_AddNumberToObject(object, "mean_step_m", film.mean_step_m);
-    cJSON_AddNumberToObject(object, "cloth_cpu_ms", film.cloth_cpu_ms);
+    cJSON_AddNumberToObject(object, "garment_triangles", (double)recording.garment_triangles);
+    cJSON_AddNumberToObject(object, "mean_step_m", recording.mean_step_m);
+    cJSON_AddNumberToObject(object, "cloth_cpu_ms", recording.cloth_cpu_ms);
     cJSON_AddNumberToObject(object, "standard_error", bench->rows[PAPER].error[0].standard_error);
     cJSON *rest = cJSON_AddObjectToObject(object, "review_at_rest");
     cJSON_AddNumberToObject(rest, "frames", bench->rest.frames);
@@ -246,7 +248,7 @@ static void print_json(const struct bench *bench)
     for (int i = 0; i < CHOICES; i++) {
         struct row_summary summary = summarise(bench, i);
         cJSON *row = cJSON_CreateObject();
-        cJSON_AddStringToObject(row, "name", bench->rows[i].contender.name);
+        cJSON_AddStringToObject(row, "name", bench->rows[i].variant.name);
         cJSON_AddNumberToObject(row, "cpu_ms", summary.cpu_ms);
         cJSON_AddNumberToObject(row, "wall_ms", summary.wall_ms);
         cJSON_AddNumberToObject(row, "rel_rmse", summary.rel_rmse);

@@ -1,4 +1,5 @@
-/* Commands of this room: error against time, and ratios of speed. app/cli/command.h says what a command is. */
+/* Commands of this room: error against time, and ratios of speed. app/cli/command.h says what a command is.
+ */
 #ifndef TOILE_APP_LAB_TRADE_COMMANDS_H
 #define TOILE_APP_LAB_TRADE_COMMANDS_H
 

@@ -19,10 +19,10 @@ struct run {
     struct tl_trade *trade;
     int warm, measured; /* frames before the first measured one, and those; the last is the one that rests */
     bool quick;
-    tl_film *film;
+    tl_recording *recording;
     tl_environment sky;
-    struct tl_contender oracle;
-    struct tl_truth
+    struct tl_variant_run oracle;
+    struct tl_reference_frame
         truths[2]; /* of the current look: the first and the last measured frame; empty until needed */
     int look;
 };
@@ -30,14 +30,14 @@ struct run {
 /* One that draws, and who chooses its levels. */
 struct entry {
     const struct tl_entrant *entrant;
-    struct tl_contender contender;
+    struct tl_variant_run variant;
     struct tl_settings settings; /* as chosen, before any level */
     tl_pace *pace;               /* NULL: as chosen */
 };
 
 static tl_frame frame_of(const struct run *run, int number)
 {
-    tl_frame frame = tl_film_frame(run->film, number);
+    tl_frame frame = tl_recording_frame(run->recording, number);
     if (run->axis->looks[run->look].sky) {
         frame.environment = &run->sky;
         frame.environment_revision = 0; /* sessions count from 1 */
@@ -50,12 +50,12 @@ static int last_frame(const struct run *run)
     return run->warm + run->measured - 1;
 }
 
-static bool keep_picture(struct run *run, struct tl_contender *contender, const char *name,
+static bool keep_picture(struct run *run, struct tl_variant_run *variant, const char *name,
                          const struct tl_measured_error *measured, tl_error *error)
 {
     struct tl_trade_picture picture = {.name = name, .look = run->look, .error = *measured};
     tl_image image = {0};
-    bool kept = tl_renderer_show_image(contender->renderer, &image, error) &&
+    bool kept = tl_renderer_show_image(variant->renderer, &image, error) &&
                 tl_image_encode_png(name, &image, &picture.png, &picture.size, error);
     tl_image_release(&image);
     if (!kept)
@@ -66,23 +66,23 @@ static bool keep_picture(struct run *run, struct tl_contender *contender, const 
     return true;
 }
 
-static bool need_truth(struct run *run, int number, const struct tl_truth **truth, tl_error *error)
+static bool need_truth(struct run *run, int number, const struct tl_reference_frame **truth, tl_error *error)
 {
     bool last = number == last_frame(run);
-    struct tl_truth *kept = &run->truths[last];
+    struct tl_reference_frame *kept = &run->truths[last];
     *truth = kept;
     if (kept->image.texels)
         return true;
     tl_frame frame = frame_of(run, number);
-    return tl_truth_draw(&run->oracle, &frame, kept, error) &&
+    return tl_reference_frame_draw(&run->oracle, &frame, kept, error) &&
            (!last || keep_picture(run, &run->oracle, "the truth", &(struct tl_measured_error){0}, error));
 }
 
-static bool compare(struct run *run, struct tl_contender *contender, int number,
+static bool compare(struct run *run, struct tl_variant_run *variant, int number,
                     struct tl_measured_error *out, tl_error *error)
 {
-    const struct tl_truth *truth;
-    return need_truth(run, number, &truth, error) && tl_contender_compare(contender, truth, out, error);
+    const struct tl_reference_frame *truth;
+    return need_truth(run, number, &truth, error) && tl_variant_run_compare(variant, truth, out, error);
 }
 
 static void add_row(struct run *run, const struct entry *entry, int draws, const double *cpu_ms,
@@ -97,10 +97,10 @@ static void add_row(struct run *run, const struct entry *entry, int draws, const
         .rest = draws > 1,
         .draws = draws,
         .budget_ms = entry->entrant->budget_ms,
-        .settings = entry->contender.settings,
+        .settings = entry->variant.settings,
         .taken = {tl_median(cpu_ms, (size_t)count), tl_median(wall_ms, (size_t)count)},
         .error = measured,
-        .memory = tl_renderer_memory(entry->contender.renderer),
+        .memory = tl_renderer_memory(entry->variant.renderer),
     };
 }
 
@@ -109,16 +109,16 @@ static bool draw(struct run *run, struct entry *entry, int number, struct tl_tak
 {
     if (tl_interrupted())
         return tl_fail(error, TL_INTERRUPTED, "trade: stopped: what was measured is written");
-    struct tl_contender *contender = &entry->contender;
+    struct tl_variant_run *variant = &entry->variant;
     tl_frame frame = frame_of(run, number);
     if (!entry->pace)
-        return tl_contender_draw(contender, &frame, taken, error);
-    struct tl_pace_choice choice = tl_pace_choose(entry->pace, contender->renderer, &frame, &entry->settings);
+        return tl_variant_run_draw(variant, &frame, taken, error);
+    struct tl_pace_choice choice = tl_pace_choose(entry->pace, variant->renderer, &frame, &entry->settings);
     struct tl_settings levelled = tl_levels_apply(&choice.levels, &entry->settings);
-    contender->settings = tl_settings_render(&levelled);
-    if (!tl_contender_draw(contender, &frame, taken, error))
+    variant->settings = tl_settings_render(&levelled);
+    if (!tl_variant_run_draw(variant, &frame, taken, error))
         return false;
-    tl_pace_learn(entry->pace, tl_renderer_last_plan(contender->renderer), 0, taken->wall_ms);
+    tl_pace_learn(entry->pace, tl_renderer_last_plan(variant->renderer), 0, taken->wall_ms);
     return true;
 }
 
@@ -131,8 +131,8 @@ static bool measure_motion(struct run *run, struct entry *entry, tl_error *error
     double cpu_ms[FRAMES_MAX], wall_ms[FRAMES_MAX];
     struct tl_taken taken = {0};
     struct tl_measured_error first = {0}, last;
-    struct tl_contender *contender = &entry->contender;
-    bool remembers = entry->pace || tl_contender_remembers(contender);
+    struct tl_variant_run *variant = &entry->variant;
+    bool remembers = entry->pace || tl_variant_run_has_history(variant);
     for (int number = remembers ? 0 : warm - 1; number < warm; number++)
         if (!draw(run, entry, number, &taken, error))
             return false;
@@ -141,10 +141,10 @@ static bool measure_motion(struct run *run, struct entry *entry, tl_error *error
             return false;
         cpu_ms[i] = taken.cpu_ms;
         wall_ms[i] = taken.wall_ms;
-        if (i == 0 && !compare(run, contender, warm, &first, error))
+        if (i == 0 && !compare(run, variant, warm, &first, error))
             return false;
     }
-    if (!compare(run, contender, warm + count - 1, &last, error))
+    if (!compare(run, variant, warm + count - 1, &last, error))
         return false;
     add_row(run, entry, 1, cpu_ms, wall_ms, count,
             (struct tl_measured_error){.rel_rmse = 0.5 * (first.rel_rmse + last.rel_rmse),
@@ -152,7 +152,7 @@ static bool measure_motion(struct run *run, struct entry *entry, tl_error *error
                                        .flip_mean = 0.5 * (first.flip_mean + last.flip_mean),
                                        .max_abs = fmax(first.max_abs, last.max_abs),
                                        .covered = last.covered});
-    return !entry->entrant->picture || keep_picture(run, contender, contender->name, &last, error);
+    return !entry->entrant->picture || keep_picture(run, variant, variant->name, &last, error);
 }
 
 /* The last frame again until nothing is left to average; a row whenever its draws have doubled, and at the
@@ -168,10 +168,10 @@ static bool measure_rest(struct run *run, struct entry *entry, tl_error *error)
         done = draw(run, entry, last_frame(run), &taken, error);
         cpu_ms[since] = taken.cpu_ms;
         wall_ms[since++] = taken.wall_ms;
-        at_rest = tl_renderer_is_at_rest(entry->contender.renderer);
+        at_rest = tl_renderer_is_at_rest(entry->variant.renderer);
         if (!done || ((drawn & (drawn - 1)) != 0 && drawn != draws && !at_rest))
             continue;
-        done = compare(run, &entry->contender, last_frame(run), &measured, error);
+        done = compare(run, &entry->variant, last_frame(run), &measured, error);
         if (done)
             add_row(run, entry, drawn, cpu_ms, wall_ms, since, measured);
         since = 0;
@@ -197,7 +197,7 @@ static bool repeat(struct run *run, const struct entry *entry)
     for (size_t i = 0; i < count && !entry->pace; i++) {
         struct tl_trade_row same = trade->rows[i];
         if (same.look != run->look || same.budget_ms > 0 ||
-            !same_settings(&same.settings, &entry->contender.settings))
+            !same_settings(&same.settings, &entry->variant.settings))
             continue;
         if (earlier && strcmp(earlier, same.name) != 0)
             continue; /* itself a repetition */
@@ -225,8 +225,8 @@ static bool enter(struct run *run, const struct tl_entrant *entrant, struct entr
     const struct tl_settings *scene = &run->stage->settings;
     *out = (struct entry){.entrant = entrant,
                           .pace = entrant->budget_ms > 0 ? tl_pace_create(entrant->budget_ms) : NULL};
-    return tl_choice_apply(&entrant->choice, scene, &out->settings, error) &&
-           tl_contender_create(&out->contender, run->stage->gpu, &entrant->choice, scene, error);
+    return tl_setup_apply(&entrant->choice, scene, &out->settings, error) &&
+           tl_variant_run_create(&out->variant, run->stage->gpu, &entrant->choice, scene, error);
 }
 
 /* An entrant that the renderer refuses is noted, and the others go on; only Ctrl-C and a failing truth end
@@ -239,7 +239,7 @@ static bool measure_entrant(struct run *run, const struct tl_entrant *entrant, t
     if (done && !repeat(run, &entry))
         done = measure_motion(run, &entry, &refusal) &&
                (!run->axis->rests || measure_rest(run, &entry, &refusal));
-    tl_contender_release(&entry.contender);
+    tl_variant_run_release(&entry.variant);
     tl_pace_destroy(&entry.pace);
     if (done)
         return true;
@@ -253,22 +253,22 @@ static bool measure_entrant(struct run *run, const struct tl_entrant *entrant, t
 
 static bool make_oracle(struct run *run, const struct tl_trade_look *look, tl_error *error)
 {
-    struct tl_choice truth = run->axis->truth;
+    struct tl_setup truth = run->axis->truth;
     size_t own = 0;
     while (own < TL_COUNT(truth.assignments) && truth.assignments[own])
         own++;
     for (size_t i = 0; i < TL_COUNT(look->truth) && look->truth[i] && own < TL_COUNT(truth.assignments); i++)
         truth.assignments[own++] = look->truth[i];
-    tl_contender_release(&run->oracle);
-    return tl_contender_create(&run->oracle, run->stage->gpu, &truth, &run->stage->settings, error);
+    tl_variant_run_release(&run->oracle);
+    return tl_variant_run_create(&run->oracle, run->stage->gpu, &truth, &run->stage->settings, error);
 }
 
 static bool begin_look(struct run *run, int number, tl_error *error)
 {
     const struct tl_trade_look *look = &run->axis->looks[number];
     run->look = number;
-    tl_truth_release(&run->truths[0]);
-    tl_truth_release(&run->truths[1]);
+    tl_reference_frame_release(&run->truths[0]);
+    tl_reference_frame_release(&run->truths[1]);
     run->stage->settings = run->scene;
     return tl_settings_assign(&run->stage->settings, look->scene, TL_COUNT(look->scene), error) &&
            tl_session_apply(run->stage->session, &run->stage->settings, error) &&
@@ -338,17 +338,17 @@ bool tl_trade_measure(const struct tl_trade_axis *axis, struct tl_stage *stage, 
                              .height = stage->settings.image.height,
                              .quick = quick,
                              .environment = tl_session_frame(stage->session).environment};
-    run.film = tl_film_record(stage->session, run.warm + run.measured, error);
-    bool done = run.film != NULL;
+    run.recording = tl_motion_record(stage->session, run.warm + run.measured, error);
+    bool done = run.recording != NULL;
     if (done) {
-        out->film = tl_film_report(run.film);
+        out->recording = tl_recording_report(run.recording);
         done = out->complete = measure_all(&run, error);
     }
-    tl_contender_release(&run.oracle);
-    tl_truth_release(&run.truths[0]);
-    tl_truth_release(&run.truths[1]);
+    tl_variant_run_release(&run.oracle);
+    tl_reference_frame_release(&run.truths[0]);
+    tl_reference_frame_release(&run.truths[1]);
     tl_environment_release(&run.sky);
-    tl_film_destroy(&run.film);
+    tl_recording_destroy(&run.recording);
     return done;
 }
 

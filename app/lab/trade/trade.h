@@ -21,7 +21,7 @@ struct tl_trade_look {
 
 struct tl_entrant {
     const char *group;
-    struct tl_choice choice;
+    struct tl_setup choice;
     bool quick;   /* takes part in a quick run */
     bool picture; /* is shown beside the truth */
     double
@@ -34,7 +34,7 @@ struct tl_trade_axis {
     const char *name, *title, *text;
     const char *scene;                      /* built-in, where none is named */
     const char *base[TL_TRADE_ASSIGNMENTS]; /* over the scene's settings */
-    struct tl_choice truth;
+    struct tl_setup truth;
     const struct tl_trade_look *looks;
     int look_count, quick_look;
     const struct tl_entrant *entrants;
@@ -81,7 +81,7 @@ struct tl_trade {
     bool complete; /* false: interrupted */
     bool quick;
     const tl_environment *environment; /* borrowed from the session */
-    struct tl_film_report film;
+    struct tl_recording_report recording;
     int width, height;
 };
 

@@ -1,6 +1,6 @@
 #include "app/lab/trade/trade_cloth.h"
 
-#include "app/lab/stability/closed_form.h"
+#include "app/lab/experiments/closed_form.h"
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"

@@ -194,7 +194,7 @@ static void print_sweeps(const struct tl_trade *trade, FILE *out)
                 "Error against map size, N = 96, glossiness 0.7, in motion.", out);
 }
 
-/* How the contenders that average get nearer to the truth while nothing moves. */
+/* How the variants that average get nearer to the truth while nothing moves. */
 static void print_rest(const struct tl_trade *trade, FILE *out)
 {
     struct lines lines = {0};

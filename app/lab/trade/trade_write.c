@@ -52,7 +52,7 @@ const struct tl_trade_row *tl_trade_next(const struct tl_trade *trade, const str
     return NULL;
 }
 
-/* A contender's row in another look, or where it came to rest (after the most draws). */
+/* A variant's row in another look, or where it came to rest (after the most draws). */
 static const struct tl_trade_row *sibling(const struct tl_trade *trade, const struct tl_trade_row *of,
                                           int look, bool rest)
 {
@@ -126,7 +126,7 @@ struct scatter {
     size_t front_count;
 };
 
-/* Error against time of all contenders in motion at one look. */
+/* Error against time of all variants in motion at one look. */
 static void make_scatter(const struct tl_trade *trade, int look, struct scatter *out)
 {
     *out = (struct scatter){.points = TL_NEW_ARRAY(struct tl_plot_point, trade->row_count),
@@ -253,8 +253,8 @@ void tl_trade_write_html(const struct tl_trade *trade, FILE *out)
     snprintf(subtitle, sizeof subtitle,
              "toile trade --axis %s: %d x %d pixels, %zu garment triangles that move %.1f mm a frame on "
              "average, environment %.120s%s",
-             trade->axis->name, trade->width, trade->height, trade->film.garment_triangles,
-             1e3 * trade->film.mean_step_m, trade->environment->name,
+             trade->axis->name, trade->width, trade->height, trade->recording.garment_triangles,
+             1e3 * trade->recording.mean_step_m, trade->environment->name,
              trade->complete ? "" : "; interrupted: what was measured until then");
     tl_report_begin(out, trade->axis->title, subtitle);
     print_scatters(trade, out);

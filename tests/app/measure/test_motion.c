@@ -1,4 +1,5 @@
-/* The motion that light is measured in: it moves, is the same every time, and a film shows what was there. */
+/* The motion that light is measured in: it moves, is the same every time, and a recording shows what was
+ * there. */
 #include "tests/testing.h"
 
 #include "app/measure/motion.h"
@@ -45,9 +46,9 @@ static void film_is_the_motion(void **state)
     (void)state;
     tl_error error = {0};
     tl_session *session = quick_session();
-    tl_film *film = tl_film_record(session, FRAMES, &error);
-    assert_ok(film != NULL, error);
-    struct tl_film_report report = tl_film_report(film);
+    tl_recording *recording = tl_motion_record(session, FRAMES, &error);
+    assert_ok(recording != NULL, error);
+    struct tl_recording_report report = tl_recording_report(recording);
     assert_int_equal(report.frames, FRAMES);
     assert_true(report.mean_step_m > 1e-4 && report.mean_step_m < 0.05);
 
@@ -59,7 +60,7 @@ static void film_is_the_motion(void **state)
     for (int number = 0; number < FRAMES; number++) {
         if (number > 0)
             assert_ok(tl_motion_advance(&motion, number, &error), error);
-        tl_frame live = tl_session_frame(session), shown = tl_film_frame(film, number);
+        tl_frame live = tl_session_frame(session), shown = tl_recording_frame(recording, number);
         assert_int_equal(shown.surface_count, live.surface_count);
         for (size_t s = 0; s < live.surface_count; s++)
             assert_memory_equal(shown.surfaces[s].positions, live.surfaces[s].positions,
@@ -68,7 +69,7 @@ static void film_is_the_motion(void **state)
         assert_true(revision != last_revision); /* else a renderer would show the frame before */
         last_revision = revision;
     }
-    tl_film_destroy(&film);
+    tl_recording_destroy(&recording);
     tl_session_destroy(&session);
 }
 

@@ -1,7 +1,6 @@
 /* XPBD, one substep at a time. What it shares with the other solvers: test_closed_forms.c,
  * test_conservation.c.
  */
-#include "app/lab/stability/envelope.h"
 #include "cloth/solvers/xpbd.h"
 #include "cloth/state.h"
 #include "tests/cloth/sheets.h"
@@ -71,26 +70,11 @@ static void test_shear_force(void **state)
     sheet_free(&garment);
 }
 
-/* A tube whose upper half is needles, thirty times as wide as high, under its own weight: one sweep alone
- * drove it 0.19 mm from its place within two milliseconds, ten times a free fall. The bound is the
- * envelope's. */
-static void test_needles(void **state)
-{
-    (void)state;
-    static const struct tl_envelope_size size = {"1000", 10, 99, true, false};
-    const struct tl_envelope_case tested = {&size, TL_CLOTH_PREVIEW, 1e4, 1e-5, 1e3, 1};
-    struct tl_envelope_cell cell = tl_envelope_run(&tested);
-    printf("needles: %s, strays by %.3g of what is exact %s\n", tl_outcome_names[cell.outcome], cell.strayed,
-           cell.error.message);
-    assert_true(cell.outcome == TL_OUTCOME_EXACT || cell.outcome == TL_OUTCOME_BOUNDED);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_one_spring_is_implicit_euler),
         cmocka_unit_test(test_shear_force),
-        cmocka_unit_test(test_needles),
     };
     tl_log_set_level(TL_LOG_WARN);
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,4 +1,4 @@
-#include "app/lab/stability/closed_form.h"
+#include "app/lab/experiments/closed_form.h"
 
 #include "config/memory.h"
 

@@ -1,7 +1,7 @@
 /* Cloth that is measured rather than worn: a flat square, and a tube whose rest under its own weight is known
  * in closed form. Metres. Free with tl_garment_release. Pure. */
-#ifndef TOILE_APP_LAB_STABILITY_CLOSED_FORM_H
-#define TOILE_APP_LAB_STABILITY_CLOSED_FORM_H
+#ifndef TOILE_APP_LAB_EXPERIMENTS_CLOSED_FORM_H
+#define TOILE_APP_LAB_EXPERIMENTS_CLOSED_FORM_H
 
 #include "assets/garment.h"
 #include "cloth/cloth.h"
