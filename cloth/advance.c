@@ -1,10 +1,13 @@
-/* Time: a frame is made of equal steps, a step of equal substeps. */
+#include "cloth/advance.h"
+
+#include "cloth/build.h"
 #include "cloth/contact/caught.h"
 #include "cloth/drive/hand.h"
 #include "cloth/drive/wind.h"
+#include "cloth/measure.h"
 #include "cloth/solvers/verlet.h"
 #include "cloth/solvers/xpbd.h"
-#include "cloth/state.h"
+#include "cloth/timestep.h"
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
@@ -19,36 +22,21 @@
 /* Friction of the weave against itself, in units of the fabric's damping. */
 #define INNER_DAMPING 10
 
-static int steps_per_frame(const struct tl_cloth_params *params)
-{
-    const double rounding = 1e-9;
-    return (int)fmax(ceil(1 / (params->frame_rate * params->dt) - rounding), 1);
-}
-
-static double step_seconds(const tl_cloth *cloth)
-{
-    return 1 / (cloth->params.frame_rate * steps_per_frame(&cloth->params));
-}
-
-/* In one step; HUGE_VAL when no step is short enough. */
-static double substeps_per_step(const tl_cloth *cloth)
-{
-    if (cloth->params.solver == TL_CLOTH_PREVIEW)
-        return cloth->params.substeps;
-    if (cloth->params.solver == TL_CLOTH_SETTLE)
-        return 1;
-    return fmax(ceil(step_seconds(cloth) / (TL_VERLET_SAFETY * cloth->critical_step)), 1);
-}
-
-double tl_cloth_substep(const tl_cloth *cloth)
-{
-    return step_seconds(cloth) / substeps_per_step(cloth);
-}
+/* One substep: what a solver is asked for. */
+struct tl_substep {
+    double h; /* s */
+    double gravity, drag;
+    double agreement, least_slip; /* see struct tl_advance */
+    double phase_before, phase;   /* of the collider's motion at its start and end */
+    const tl_collider *collider;
+    bool follows; /* another one, to whose end nothing was done; solvers may have begun with this one there */
+    bool leads;   /* to another one that will follow so */
+};
 
 /* Whether the chosen solver can take this fabric's step within its budget. */
 static bool check_budget(const tl_cloth *cloth, tl_error *error)
 {
-    double wanted = substeps_per_step(cloth) * steps_per_frame(&cloth->params);
+    double wanted = tl_cloth_substeps_per_step(cloth) * tl_cloth_steps_per_frame(&cloth->params);
     if (cloth->params.solver != TL_CLOTH_REFERENCE || wanted <= cloth->params.reference_substeps)
         return true;
     return tl_fail(error, TL_USAGE,
@@ -227,14 +215,14 @@ static void blow(tl_cloth *cloth, const struct tl_substep *substep)
 /* Crushed cloth is stiffer than at rest: more substeps, or none when that is beyond the budget. */
 static double substeps_now(tl_cloth *cloth)
 {
-    double substeps = substeps_per_step(cloth);
+    double substeps = tl_cloth_substeps_per_step(cloth);
     if (cloth->params.solver != TL_CLOTH_REFERENCE)
         return substeps;
     double now =
         TL_VERLET_SAFETY * tl_energy_critical_step(&cloth->energy, &cloth->fabric, cloth->particles.count,
                                                    cloth->particles.w, cloth->particles.x);
-    substeps = fmax(substeps, ceil(step_seconds(cloth) / now));
-    if (substeps * steps_per_frame(&cloth->params) <= cloth->params.reference_substeps)
+    substeps = fmax(substeps, ceil(tl_cloth_step_seconds(cloth) / now));
+    if (substeps * tl_cloth_steps_per_frame(&cloth->params) <= cloth->params.reference_substeps)
         return substeps;
     cloth->refused_step = now;
     return 0;
@@ -244,13 +232,13 @@ static void run_step(tl_cloth *cloth, const tl_collider *collider, const struct 
 {
     /* Weightless until the panels have met. */
     double gravity = tl_sewing_pulls(&cloth->sewing) ? 0 : cloth->params.gravity;
-    double substeps = substeps_now(cloth), total = steps_per_frame(&cloth->params) * substeps;
+    double substeps = substeps_now(cloth), total = tl_cloth_steps_per_frame(&cloth->params) * substeps;
     if (cloth->params.solver == TL_CLOTH_REFERENCE)
         find_forces(cloth, NULL);
     bool blown = is_blown(cloth);
     for (int64_t sub = 0; (double)sub < substeps; sub++) {
         double done = step * substeps + (double)sub;
-        const struct tl_substep substep = {.h = step_seconds(cloth) / substeps,
+        const struct tl_substep substep = {.h = tl_cloth_step_seconds(cloth) / substeps,
                                            .gravity = gravity,
                                            .drag = fmax(advance->drag, cloth->fabric.damping),
                                            .agreement = advance->agreement,
@@ -289,15 +277,15 @@ static void find_own_contacts(tl_cloth *cloth)
 
 static void run_steps(tl_cloth *cloth, const tl_collider *collider, const struct tl_advance *advance)
 {
-    int steps = steps_per_frame(&cloth->params);
+    int steps = tl_cloth_steps_per_frame(&cloth->params);
     cloth->refused_step = 0;
-    double calm = 1 - exp(-INNER_DAMPING * cloth->fabric.damping * step_seconds(cloth));
+    double calm = 1 - exp(-INNER_DAMPING * cloth->fabric.damping * tl_cloth_step_seconds(cloth));
     for (int step = 0; step < steps && !tl_interrupted() && !(cloth->refused_step > 0); step++) {
         const struct tl_contact_params contact = {.thickness_m = cloth->fabric.thickness_m,
                                                   .push_out_speed = TL_PUSH_OUT_SPEED,
                                                   .phase_before = (double)step / steps,
                                                   .phase = (step + 1.0) / steps,
-                                                  .h = step_seconds(cloth)};
+                                                  .h = tl_cloth_step_seconds(cloth)};
         tl_contacts_renew(&cloth->contacts, cloth->particles.x, cloth->fabric.thickness_m,
                           (double)step / steps);
         if (cloth->params.self_repulsion)

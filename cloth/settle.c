@@ -1,5 +1,6 @@
 /* Coming to rest before the first frame. */
-#include "cloth/state.h"
+#include "cloth/advance.h"
+#include "cloth/build.h"
 #include "config/log.h"
 #include "config/memory.h"
 

@@ -50,57 +50,11 @@ struct tl_cloth {
     bool *start_pinched;        /* [render vertex] the same: struct tl_contacts */
 };
 
-/* How one frame is advanced. */
-struct tl_advance {
-    double drag;       /* 1/s, in place of the fabric's damping when larger */
-    bool clock;        /* the animation's time passes */
-    double agreement;  /* settle: what further rounds of contact may take, as a share of the first */
-    double least_slip; /* m/s: see struct tl_contact_params */
-};
-
-/* m/s. Worn cloth is held by hundreds of particles near their limit of friction, which take turns to stick
- * and slip: at a tenth of this they never all stick, and a dress creeps for ever at some mm/s. */
-#define TL_LEAST_SLIP 1e-3
-
-/* One frame; restores the state and fails when the result is out of its envelope. */
-bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct tl_advance *advance,
-                      tl_error *error);
-
-/* One substep: what a solver is asked for. */
-struct tl_substep {
-    double h; /* s */
-    double gravity, drag;
-    double agreement, least_slip; /* see struct tl_advance */
-    double phase_before, phase;   /* of the collider's motion at its start and end */
-    const tl_collider *collider;
-    bool follows; /* another one, to whose end nothing was done; solvers may have begun with this one there */
-    bool leads;   /* to another one that will follow so */
-};
-
 /* Whether `preview` sweeps back as well: xpbd.h. A few slivers among sound triangles need not. */
 #define TL_MANY_NEEDLES 0.01
 static inline bool tl_cloth_sweeps_back(const tl_cloth *cloth)
 {
     return cloth->needle_share > TL_MANY_NEEDLES;
 }
-
-/* Seconds of one substep of the chosen solver, so that a frame is a whole number of equal ones. */
-double tl_cloth_substep(const tl_cloth *cloth);
-struct tl_springs tl_cloth_springs(const tl_cloth *cloth);
-struct tl_energies {
-    double kinetic, elastic, potential; /* J */
-    double mass;                        /* kg; of what is not held, as the others */
-};
-struct tl_energies tl_cloth_energies(const tl_cloth *cloth);
-double tl_cloth_max_speed(const tl_cloth *cloth);
-double tl_cloth_max_strain(const tl_cloth *cloth);
-
-/* Goes on with the solver and the steps of `params`, which are the cloth's own in all else. */
-void tl_cloth_use(tl_cloth *cloth, const struct tl_cloth_params *params);
-
-/* Replaces topology, energy and particles by those of a mesh in which physics vertex i has become
- * joined[i]: masses add up,
- * joined particles meet at their centre of mass, momentum is kept. */
-void tl_cloth_join(tl_cloth *cloth, const uint32_t *joined, size_t joined_count);
 
 #endif

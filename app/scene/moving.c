@@ -1,5 +1,6 @@
 #include "app/scene/moving.h"
 
+#include "cloth/mesh/topology.h"
 #include "config/memory.h"
 
 #include <stdlib.h>

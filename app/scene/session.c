@@ -9,6 +9,7 @@
 #include "assets/builtin/specimen.h"
 #include "assets/refine.h"
 #include "cloth/energy/strain.h"
+#include "cloth/mesh/topology.h"
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"

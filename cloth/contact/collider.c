@@ -2,7 +2,6 @@
 
 #include "cloth/mesh/topology.h"
 #include "cloth/mesh/vec3d.h"
-#include "cloth/tangents/frames.h"
 #include "config/memory.h"
 
 #include <embree3/rtcore.h>

@@ -9,7 +9,6 @@
 
 #include "cloth/contact/collider.h"
 #include "cloth/contact/probe.h"
-#include "cloth/energy/energy.h"
 #include "cloth/mesh/particles.h"
 #include "config/simd.h"
 

@@ -21,7 +21,7 @@
 #define TOILE_CLOTH_ENERGY_ENERGY_H
 
 #include "assets/garment.h"
-#include "cloth/cloth.h"
+#include "cloth/energy/fabric.h"
 #include "cloth/energy/pulls.h"
 #include "cloth/mesh/particles.h"
 #include "cloth/mesh/topology.h"

@@ -1,6 +1,5 @@
 #include "cloth/mesh/topology.h"
 
-#include "cloth/tangents/frames.h"
 #include "config/memory.h"
 
 #include <stdlib.h>

@@ -6,10 +6,16 @@
 #ifndef TOILE_CLOTH_MESH_TOPOLOGY_H
 #define TOILE_CLOTH_MESH_TOPOLOGY_H
 
+#include <cglm/struct.h>
+
 #include <stddef.h>
 #include <stdint.h>
 
 #define TL_NONE UINT32_MAX
+
+/* Physics vertex of every render vertex, by bitwise equal position (-0 equals 0); returns how many there are.
+ * Numbers rise in order of first appearance. */
+size_t tl_weld_positions(const vec3s *positions, size_t count, uint32_t *weld);
 
 struct tl_topology {
     size_t vertex_count;      /* welded vertices */

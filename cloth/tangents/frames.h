@@ -20,11 +20,7 @@
 
 typedef struct tl_frames tl_frames;
 
-/* Physics vertex of every render vertex, by bitwise equal position (-0 equals 0); returns how many there are.
- * Numbers rise in order of first appearance. */
-size_t tl_weld_positions(const vec3s *positions, size_t count, uint32_t *weld);
-
-/* `weld` as above or from tl_cloth_weld, to be made anew when that changes: vertex_count entries. Copies what
+/* `weld` from tl_weld_positions or tl_cloth_weld, to be made anew when that changes: vertex_count entries. Copies what
  * it needs. Takes about 1.5 us a vertex. */
 tl_frames *tl_frames_create(const tl_mesh *mesh, const uint32_t *weld);
 void tl_frames_destroy(tl_frames **frames);

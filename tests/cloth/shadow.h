@@ -7,6 +7,7 @@
 #ifndef TOILE_TESTS_CLOTH_SHADOW_H
 #define TOILE_TESTS_CLOTH_SHADOW_H
 
+#include "cloth/measure.h"
 #include "cloth/state.h"
 #include "config/memory.h"
 

@@ -7,6 +7,7 @@
  * measured on, and real cloth has several stable drapes, so they bind the mean over seeds only. The number of
  * folds is told, not checked. With names of fabrics as arguments: tells their drape. */
 #include "assets/builtin/specimen.h"
+#include "cloth/measure.h"
 #include "config/log.h"
 #include "tests/cloth/fabrics.h"
 #include "tests/cloth/solvers.h"

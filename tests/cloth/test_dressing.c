@@ -1,6 +1,7 @@
 /* Real garments on real bodies: they settle, hang, neither tear nor slide off nor tremble, and nothing shows
  * through. The bounds are what a viewer would notice, not what the solver happens to reach. */
 #include "assets/avatar.h"
+#include "cloth/measure.h"
 #include "cloth/state.h"
 #include "tests/cloth/sheets.h"
 #include "tests/testing.h"

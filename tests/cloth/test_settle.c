@@ -3,6 +3,8 @@
 #include "tests/cloth/sheets.h"
 #include "tests/cloth/solvers.h"
 
+#include "cloth/advance.h"
+#include "cloth/measure.h"
 #include "config/log.h"
 
 static vec3s lying(double u, double v)

@@ -1,4 +1,5 @@
 /* The extremes: every run ends finite, or fails with TL_UNSTABLE and leaves the last good state. */
+#include "cloth/measure.h"
 #include "cloth/state.h"
 #include "tests/cloth/bodies.h"
 #include "tests/cloth/sheets.h"

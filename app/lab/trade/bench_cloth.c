@@ -6,6 +6,7 @@
 #include "app/lab/trade/bench.h"
 #include "app/measure/cost.h"
 #include "assets/avatar.h"
+#include "cloth/mesh/topology.h"
 #include "cloth/tangents/frames.h"
 #include "config/interrupt.h"
 #include "config/log.h"

@@ -3,6 +3,7 @@
 
 #include "app/lab/check/check.h"
 #include "app/lab/stability/extremes_light.h"
+#include "cloth/mesh/topology.h"
 #include "cloth/state.h"
 #include "cloth/tangents/frames.h"
 #include "config/log.h"

@@ -1,4 +1,5 @@
 /* Contact: spheres that are draped, carried, and begun inside. Friction: test_friction.c. */
+#include "cloth/measure.h"
 #include "cloth/state.h"
 #include "tests/cloth/bodies.h"
 #include "tests/cloth/sheets.h"

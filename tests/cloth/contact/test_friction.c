@@ -2,6 +2,7 @@
 #include "tests/cloth/bodies.h"
 #include "tests/cloth/solvers.h"
 
+#include "cloth/measure.h"
 #include "config/log.h"
 
 static const double thickness_m = 0.003;

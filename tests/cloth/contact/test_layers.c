@@ -1,5 +1,6 @@
 /* Layers: the order of pieces, a shirt that no belt shows through, folds that keep their distance. */
 #include "assets/avatar.h"
+#include "cloth/measure.h"
 #include "cloth/state.h"
 #include "tests/cloth/bodies.h"
 #include "tests/cloth/sheets.h"

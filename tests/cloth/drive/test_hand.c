@@ -3,6 +3,7 @@
 #include "tests/cloth/solvers.h"
 
 #include "cloth/drive/hand.h"
+#include "cloth/measure.h"
 #include "config/log.h"
 
 #include <stdio.h>

@@ -1,4 +1,5 @@
 /* Seams: two panels on either side of a body are drawn together around it and become one cloth. */
+#include "cloth/build.h"
 #include "cloth/state.h"
 #include "tests/cloth/bodies.h"
 #include "tests/cloth/sheets.h"

@@ -1,5 +1,6 @@
 /* Wind against closed forms: the fall of a flat sheet, the pull on a held one; and a flag that flies. */
 #include "cloth/drive/wind.h"
+#include "cloth/measure.h"
 #include "cloth/state.h"
 #include "tests/cloth/sheets.h"
 #include "tests/testing.h"

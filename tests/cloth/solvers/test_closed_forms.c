@@ -6,6 +6,7 @@
  * stiffness is k A / d^2. */
 #include "tests/cloth/solvers.h"
 
+#include "cloth/timestep.h"
 #include "config/log.h"
 
 static const struct sheet_shape chain_shape = {1, 32, 1.0 / 32, 1};

@@ -5,6 +5,7 @@
  * refined. */
 #include "tests/cloth/solvers.h"
 
+#include "cloth/timestep.h"
 #include "config/log.h"
 
 /* ---- In the step ---- */

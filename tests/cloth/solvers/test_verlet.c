@@ -1,4 +1,5 @@
 /* The reference solver: what it keeps, how fast it converges, and the step beyond which it blows up. */
+#include "cloth/measure.h"
 #include "cloth/solvers/verlet.h"
 #include "cloth/state.h"
 #include "tests/cloth/fabrics.h"

@@ -3,6 +3,7 @@
  */
 #include "cloth/solvers/xpbd.h"
 #include "cloth/state.h"
+#include "cloth/timestep.h"
 #include "tests/cloth/sheets.h"
 #include "tests/testing.h"
 

@@ -1,6 +1,7 @@
 /* Normals and tangents against formulas, and against MikkTSpace written from its description
  * (mikk_oracle.h). */
 #include "assets/garment.h"
+#include "cloth/mesh/topology.h"
 #include "cloth/tangents/frames.h"
 #include "tests/cloth/bodies.h"
 #include "tests/cloth/sheets.h"

@@ -2,6 +2,7 @@
  * sheet as it moves [Heidrich and Seidel 1999, 5.2]: against rays through the mesh on the CPU. */
 #include "tests/render/shapes.h"
 
+#include "cloth/mesh/topology.h"
 #include "cloth/tangents/frames.h"
 #include "config/memory.h"
 #include "render/env/lobes.h"
