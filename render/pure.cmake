@@ -27,15 +27,15 @@ add_library(toile_light STATIC
   inspect/pick.c
   inspect/seen.c
   light/compose.c
-  light/cull.c
+  gbuffer/cull.c
   light/mirrors.c
   env/resample.c
   env/sun.c
   envmap/prefiltered_map.c
-  frame/view.c
+  scene/view.c
   gpu/map_texture.c
   light/region_lights.c
-  light/samples.c
+  gbuffer/samples.c
   local/lamp.c
   local/lamp_rays.c
   local/lamp_samples.c

@@ -3,8 +3,8 @@
 #include "config/log.h"
 #include "config/memory.h"
 #include "render/frame/work.h"
+#include "render/gpu/shaders.h"
 #include "render/inspect/job.h"
-#include "render/shaders.h"
 
 #include <epoxy/gl.h>
 
@@ -123,7 +123,7 @@ void tl_renderer_destroy(tl_renderer **renderer)
     tl_detail_maps_release(&(*renderer)->detail);
     tl_triangle_ranges_release(&(*renderer)->ranges);
     tl_samples_release(&(*renderer)->samples);
-    tl_sheets_release(&(*renderer)->sheets);
+    tl_transparency_release(&(*renderer)->transparency);
     tl_mirrors_release(&(*renderer)->mirrors);
     tl_trace_destroy(&(*renderer)->trace);
     tl_points_destroy(&(*renderer)->points);
@@ -281,7 +281,7 @@ static void reload_shaders(tl_renderer *renderer)
     tl_local_reload(&renderer->local);
     tl_error error = {0};
     if (!tl_shadow_maps_reload(renderer->maps, &error) || !tl_gbuffer_reload(&renderer->gbuffer, &error) ||
-        !tl_gbuffer_reload(&renderer->sheets.behind, &error) ||
+        !tl_gbuffer_reload(&renderer->transparency.behind, &error) ||
         !tl_lighting_reload(&renderer->lighting, &error) || !tl_envmap_reload(&renderer->envmap, &error) ||
         !tl_capture_reload(&renderer->capture, &error) || !tl_present_reload(&renderer->present, &error))
         tl_warn("%s", error.message);
@@ -326,9 +326,9 @@ static void let_go(tl_renderer *renderer, tl_bits facts)
         renderer->valid &=
             ~(TL_BIT(TL_MADE_LAMP_MAPS) | TL_BIT(TL_MADE_LAMP_RAYS) | TL_BIT(TL_MADE_LAMPLIGHT));
     }
-    if (!(facts & TL_BIT(TL_SCENE_SHEETS))) {
-        tl_sheets_release(&renderer->sheets);
-        renderer->valid &= ~TL_BIT(TL_MADE_SHEETS);
+    if (!(facts & TL_BIT(TL_SCENE_TRANSPARENCY))) {
+        tl_transparency_release(&renderer->transparency);
+        renderer->valid &= ~TL_BIT(TL_MADE_TRANSPARENCY);
     }
 }
 

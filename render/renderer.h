@@ -60,8 +60,8 @@ struct tl_light_params { /* table "light" */
 };
 extern const struct tl_option_table tl_light_options;
 /* So many sheets are looked through, where cloth is open; the next one is taken as closed. */
-#define TL_SHEETS_BEHIND   4
-#define TL_MIRROR_EXPONENT 199.0f /* a glossiness of 0.995, however it is rounded */
+#define TL_TRANSPARENCY_LAYERS 4
+#define TL_MIRROR_EXPONENT     199.0f /* a glossiness of 0.995, however it is rounded */
 
 /* How environment maps are looked up (render/envmap/envmap.h), and what is made of it. */
 enum tl_maps_look_up { TL_LOOK_UP_DIRECT, TL_LOOK_UP_MATRIX };
@@ -254,7 +254,7 @@ void tl_renderer_prepare_regions(tl_renderer *renderer, const struct tl_render_s
 /* Bytes by use, summed from what is allocated. */
 struct tl_render_memory {
     size_t pems, maps, rays;
-    size_t sheets; /* of what is seen through cloth */
+    size_t transparency; /* of what is seen through cloth */
     size_t targets, surfaces, other, total;
 };
 struct tl_render_memory tl_renderer_memory(const tl_renderer *renderer);

@@ -171,7 +171,7 @@ static void add_memory(cJSON *object, const tl_renderer *renderer)
     cJSON_AddNumberToObject(bytes, "pems", (double)memory.pems);
     cJSON_AddNumberToObject(bytes, "maps", (double)memory.maps);
     cJSON_AddNumberToObject(bytes, "rays", (double)memory.rays);
-    cJSON_AddNumberToObject(bytes, "sheets", (double)memory.sheets);
+    cJSON_AddNumberToObject(bytes, "sheets", (double)memory.transparency);
     cJSON_AddNumberToObject(bytes, "targets", (double)memory.targets);
     cJSON_AddNumberToObject(bytes, "surfaces", (double)memory.surfaces);
     cJSON_AddNumberToObject(bytes, "other", (double)memory.other);

@@ -2,7 +2,7 @@
 #ifndef TOILE_RENDER_DETAIL_TERMS_H
 #define TOILE_RENDER_DETAIL_TERMS_H
 
-#include "render/light/terms.h"
+#include "render/gpu/glsl.h"
 
 /* GLSL's names, while the file is read. */
 #define TERM  static inline

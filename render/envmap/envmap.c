@@ -2,7 +2,7 @@
 
 #include "config/memory.h"
 #include "render/brdf/brdf.h"
-#include "render/shaders.h"
+#include "render/gpu/shaders.h"
 
 #include <epoxy/gl.h>
 

@@ -24,8 +24,8 @@
 #define TOILE_RENDER_ENVMAP_ENVMAP_H
 
 #include "render/envmap/prefiltered_map.h"
-#include "render/light/gbuffer.h"
-#include "render/light/samples.h"
+#include "render/gbuffer/gbuffer.h"
+#include "render/gbuffer/samples.h"
 #include "render/renderer.h"
 
 /* Software drivers take both ways of every branch: what does not change within a picture is #defined. */

@@ -10,12 +10,12 @@
 #include "render/envmap/capture.h"
 #include "render/envmap/envmap.h"
 #include "render/frame/prepared.h"
-#include "render/light/gbuffer.h"
+#include "render/gbuffer/gbuffer.h"
+#include "render/gbuffer/samples.h"
 #include "render/light/light.h"
 #include "render/light/mirrors.h"
 #include "render/light/region_lights.h"
-#include "render/light/samples.h"
-#include "render/light/sheets.h"
+#include "render/light/transparency.h"
 #include "render/local/local.h"
 #include "render/present/present.h"
 #include "render/renderer.h"
@@ -66,8 +66,8 @@ enum tl_resource {
     TL_MADE_MAPS,
     TL_MADE_GBUFFER,
     TL_MADE_SAMPLES,
-    TL_MADE_SHEETS,  /* what is seen through cloth */
-    TL_MADE_MIRRORS, /* what near mirrors show */
+    TL_MADE_TRANSPARENCY, /* what is seen through cloth */
+    TL_MADE_MIRRORS,      /* what near mirrors show */
     TL_MADE_POINTS,
     TL_MADE_ENVMAP_LOBES,
     TL_MADE_CAPTURE,
@@ -85,18 +85,18 @@ enum tl_resource {
 
 /* Facts about the scene, by bit. */
 enum tl_scene_fact {
-    TL_SCENE_RASTER,  /* anything but the reference */
-    TL_SCENE_SHADOWS, /* somebody asks for visibility */
-    TL_SCENE_MAPS,    /* ... of shadow maps */
-    TL_SCENE_RAYS,    /* the back-end of rays says what is seen */
-    TL_SCENE_SHEETS,  /* ... and something is seen through, or is lit from behind */
-    TL_SCENE_MIRRORS, /* ... and something is so glossy that rays follow what it shows */
-    TL_SCENE_PASSES,  /* passes on the GPU do */
-    TL_SCENE_CHAINS,  /* ... and read filter chains */
-    TL_SCENE_SLICES,  /* ... and read exact slices of the regions */
-    TL_SCENE_EXACT,   /* exact light of the whole environment is read */
-    TL_SCENE_BLUR,    /* shadow maps are variance maps */
-    TL_SCENE_DETAIL,  /* a material's bumps need maps of their own */
+    TL_SCENE_RASTER,       /* anything but the reference */
+    TL_SCENE_SHADOWS,      /* somebody asks for visibility */
+    TL_SCENE_MAPS,         /* ... of shadow maps */
+    TL_SCENE_RAYS,         /* the back-end of rays says what is seen */
+    TL_SCENE_TRANSPARENCY, /* ... and something is seen through, or is lit from behind */
+    TL_SCENE_MIRRORS,      /* ... and something is so glossy that rays follow what it shows */
+    TL_SCENE_PASSES,       /* passes on the GPU do */
+    TL_SCENE_CHAINS,       /* ... and read filter chains */
+    TL_SCENE_SLICES,       /* ... and read exact slices of the regions */
+    TL_SCENE_EXACT,        /* exact light of the whole environment is read */
+    TL_SCENE_BLUR,         /* shadow maps are variance maps */
+    TL_SCENE_DETAIL,       /* a material's bumps need maps of their own */
     TL_SCENE_REFERENCE,
     TL_SCENE_ENVMAP,  /* environment maps light the image */
     TL_SCENE_CAPTURE, /* ... and show the scene */
@@ -215,7 +215,7 @@ struct tl_renderer {
     const tl_surface **drawn; /* what is drawn, with the ground last */
     struct tl_triangle_ranges ranges;
     struct tl_samples samples;
-    struct tl_sheets sheets;
+    struct tl_transparency transparency;
     struct tl_mirrors mirrors;
     tl_trace *trace;
     tl_points *points;

@@ -351,7 +351,7 @@ static tl_bits light_facts(const tl_frame *frame, const struct tl_render_setting
     if (rays || tl_light_needs_exact(light))
         facts |= TL_BIT(TL_SCENE_EXACT);
     if (rays && tl_frame_has(frame, tl_material_shows_more))
-        facts |= TL_BIT(TL_SCENE_SHEETS);
+        facts |= TL_BIT(TL_SCENE_TRANSPARENCY);
     if (rays && light->method == TL_METHOD_PEM && light->reflect_scene &&
         tl_mirror_ray_count(tl_lobe_exponent(greatest_glossiness(frame))) > 0)
         facts |= TL_BIT(TL_SCENE_MIRRORS);

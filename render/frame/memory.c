@@ -58,8 +58,8 @@ static size_t resource_bytes(const tl_renderer *renderer, enum tl_resource resou
         return tl_gbuffer_bytes(&renderer->gbuffer);
     case TL_MADE_SAMPLES:
         return samples_bytes(&renderer->samples);
-    case TL_MADE_SHEETS:
-        return tl_sheets_bytes(&renderer->sheets);
+    case TL_MADE_TRANSPARENCY:
+        return tl_transparency_bytes(&renderer->transparency);
     case TL_MADE_POINTS:
         return tl_points_bytes(renderer->points) + tl_trace_bytes(renderer->trace);
     case TL_MADE_ENVMAP_LOBES:
@@ -112,11 +112,11 @@ struct tl_render_memory tl_renderer_memory(const tl_renderer *renderer)
                        TL_MADE_ENVMAP, TL_MADE_CAPTURE),
         .maps = SUM_OF(TL_MADE_DEPTHS, TL_MADE_LAMP_MAPS),
         .rays = SUM_OF(TL_MADE_POINTS, TL_MADE_SAMPLES),
-        .sheets = SUM_OF(TL_MADE_SHEETS),
+        .transparency = SUM_OF(TL_MADE_TRANSPARENCY),
         .targets = SUM_OF(TL_MADE_GBUFFER, TL_MADE_LIGHT, TL_MADE_IMAGE),
         .surfaces = SUM_OF(TL_MADE_SURFACES, TL_MADE_DETAIL),
         .other = SUM_OF(TL_MADE_CUBE, TL_MADE_REGIONS, TL_MADE_LOBE, TL_MADE_LAMPLIGHT, TL_MADE_BACKDROP)};
-    memory.total = memory.pems + memory.maps + memory.rays + memory.sheets + memory.targets +
+    memory.total = memory.pems + memory.maps + memory.rays + memory.transparency + memory.targets +
                    memory.surfaces + memory.other;
     return memory;
 }

@@ -21,7 +21,7 @@ bool tl_run_maps(void *context, int level, tl_error *error);
 bool tl_run_blur(void *context, int level, tl_error *error);
 bool tl_run_gbuffer(void *context, int level, tl_error *error);
 bool tl_run_samples(void *context, int level, tl_error *error);
-bool tl_run_sheets(void *context, int level, tl_error *error);
+bool tl_run_transparency(void *context, int level, tl_error *error);
 bool tl_run_mirrors(void *context, int level, tl_error *error);
 
 /* run_light.c */

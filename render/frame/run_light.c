@@ -126,8 +126,8 @@ bool tl_run_compose(void *context, int level, tl_error *error)
                                          .eye = renderer->view.eye};
     if (tl_frame_has(&renderer->frame, tl_material_is_layered))
         request.ranges = &renderer->ranges;
-    if (tl_frame_facts(&renderer->frame, &renderer->settings) & TL_BIT(TL_SCENE_SHEETS))
-        request.shares = renderer->sheets.shares;
+    if (tl_frame_facts(&renderer->frame, &renderer->settings) & TL_BIT(TL_SCENE_TRANSPARENCY))
+        request.shares = renderer->transparency.shares;
     if (renderer->settings.light.method != TL_METHOD_UNSHADOWED) {
         request.values = tl_points_values(renderer->points, &request.stride);
         request.taps = tl_points_taps(renderer->points);

@@ -129,13 +129,13 @@ bool tl_run_samples(void *context, int level, tl_error *error)
     return true;
 }
 
-bool tl_run_sheets(void *context, int level, tl_error *error)
+bool tl_run_transparency(void *context, int level, tl_error *error)
 {
     tl_renderer *renderer = context;
     (void)level;
-    const struct tl_sheets_request request = {
+    const struct tl_transparency_request request = {
         .gbuffer = &renderer->gbuffer, .draw = gbuffer_request(renderer), .ranges = &renderer->ranges};
-    return tl_sheets_find(&renderer->sheets, renderer->gpu, &request, &renderer->samples, error);
+    return tl_transparency_find(&renderer->transparency, renderer->gpu, &request, &renderer->samples, error);
 }
 
 bool tl_run_mirrors(void *context, int level, tl_error *error)

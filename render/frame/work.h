@@ -33,6 +33,6 @@ struct tl_work tl_maps_work(const void *seen);   /* and blur */
 struct tl_work tl_resolve_work(const void *seen);
 struct tl_work tl_lamps_work(const void *seen);
 struct tl_work tl_lamp_maps_work(const void *seen);
-struct tl_work tl_sample_rays_work(const void *seen); /* sheets, mirrors, lamp_rays */
+struct tl_work tl_sample_rays_work(const void *seen); /* transparency, mirrors, lamp_rays */
 
 #endif

@@ -1,7 +1,7 @@
 #include "render/gpu/clocks.h"
 
 #include "config/log.h"
-#include "render/shaders.h"
+#include "render/gpu/shaders.h"
 
 #include <epoxy/gl.h>
 

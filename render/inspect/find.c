@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-#define TILE 4 /* texels a side, as samples are kept (light/samples.h) */
+#define TILE 4 /* texels a side, as samples are kept (gbuffer/samples.h) */
 
 /* Rises from each of the nearest samples to the next. */
 static uint64_t place_of(const struct tl_samples *samples, uint32_t texel)

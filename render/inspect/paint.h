@@ -2,9 +2,9 @@
 #ifndef TOILE_RENDER_INSPECT_PAINT_H
 #define TOILE_RENDER_INSPECT_PAINT_H
 
+#include "render/gbuffer/samples.h"
 #include "render/inspect/legend.h"
 #include "render/inspect/seen.h"
-#include "render/light/samples.h"
 
 struct tl_paint_request {
     const struct tl_legend *legend;

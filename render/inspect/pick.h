@@ -3,7 +3,7 @@
 #ifndef TOILE_RENDER_INSPECT_PICK_H
 #define TOILE_RENDER_INSPECT_PICK_H
 
-#include "render/light/samples.h"
+#include "render/gbuffer/samples.h"
 
 /* Metres; `direction` unit. Both sides of a triangle count. Fills triangle, weights, point and smooth of
  * `out`, and takes `normal` from the latter. False when it misses. */

@@ -450,7 +450,7 @@ TL_INLINE vec3s light_of_lobes(const struct block *block, size_t index, const st
 }
 
 /* The material of a sample that has more than two lobes, or NULL. Mirrors show the two, and so do the other
- * sides of sheets. */
+ * sides of the layers. */
 static const tl_material *rich_material(const struct tl_compose_request *request, size_t index)
 {
     const struct tl_samples *samples = request->samples;
@@ -537,7 +537,7 @@ TL_CLONES static void compose_block(const struct tl_compose_request *request, si
     }
 }
 
-/* Adds up what is seen through cloth, sheet by sheet, and leaves what none of them keeps to the background.
+/* Adds up what is seen through cloth, layer by layer, and leaves what none of them keeps to the background.
  */
 static void look_through(const struct tl_compose_request *request, const vec3s *behind, float *light)
 {

@@ -17,9 +17,9 @@
 
 #include "render/env/lobes.h"
 #include "render/env/sun.h"
+#include "render/gbuffer/samples.h"
 #include "render/light/mirrors.h"
 #include "render/light/region_lights.h"
-#include "render/light/samples.h"
 #include "render/visibility/points.h"
 
 struct tl_compose_request {
@@ -39,8 +39,8 @@ struct tl_compose_request {
     /* Where a material is more than two lobes; `ranges` NULL: none is. */
     const struct tl_triangle_ranges *ranges;
     vec3s eye;
-    const float *shares; /* by sample that the camera sees, in place of its cover (sheets.h); NULL: nothing is
-                            seen through */
+    const float *shares; /* by sample that the camera sees, in place of its cover (transparency.h); NULL:
+                            nothing is seen through */
 };
 
 /* Writes light[4 * texel], premultiplied by cover, of every sample of the camera, and how much of that cover

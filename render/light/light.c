@@ -1,7 +1,7 @@
 #include "render/light/light.h"
 
 #include "config/memory.h"
-#include "render/shaders.h"
+#include "render/gpu/shaders.h"
 
 #include <epoxy/gl.h>
 

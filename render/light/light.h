@@ -12,7 +12,7 @@
 
 #include "render/env/lobes.h"
 #include "render/env/sun.h"
-#include "render/light/gbuffer.h"
+#include "render/gbuffer/gbuffer.h"
 #include "render/pem/lobe.h"
 #include "render/pem/pems.h"
 #include "render/pem/slice_maps.h"

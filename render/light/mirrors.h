@@ -10,7 +10,7 @@
 #ifndef TOILE_RENDER_LIGHT_MIRRORS_H
 #define TOILE_RENDER_LIGHT_MIRRORS_H
 
-#include "render/light/samples.h"
+#include "render/gbuffer/samples.h"
 #include "render/trace/trace.h"
 
 #define TL_MIRROR_RAYS_MAX 8

@@ -2,18 +2,9 @@
 #ifndef TOILE_RENDER_LIGHT_TERMS_H
 #define TOILE_RENDER_LIGHT_TERMS_H
 
-#include <math.h>
+#include "render/gpu/glsl.h"
 
-/* GLSL's names, while the file is read. Comparisons rather than fmaxf, so that loops over them can be wide.
- */
-static inline float term_max(float a, float b)
-{
-    return a > b ? a : b;
-}
-static inline float term_clamp(float x, float low, float high)
-{
-    return x < low ? low : (x > high ? high : x);
-}
+/* GLSL's names, while the file is read. */
 #define TERM  static inline
 #define max   term_max
 #define clamp term_clamp

@@ -2,7 +2,7 @@
 #ifndef TOILE_RENDER_LOCAL_LAMP_RAYS_H
 #define TOILE_RENDER_LOCAL_LAMP_RAYS_H
 
-#include "render/light/samples.h"
+#include "render/gbuffer/samples.h"
 #include "render/local/lamp.h"
 #include "render/trace/trace.h"
 

@@ -1,5 +1,5 @@
 /* Lamplight of what the camera does not see at first: behind open cloth, on the other side of cloth that
- * scatters light through, and in near mirrors. These samples exist on the CPU only (light/sheets.h,
+ * scatters light through, and in near mirrors. These samples exist on the CPU only (light/transparency.h,
  * light/mirrors.h), so they are lit here, exactly, with a shadow ray each. Pure; OpenMP inside; results do
  * not depend on the number of threads. */
 #ifndef TOILE_RENDER_LOCAL_LAMP_SAMPLES_H

@@ -1,6 +1,6 @@
 #include "render/local/lamp_shadows.h"
 
-#include "render/shaders.h"
+#include "render/gpu/shaders.h"
 #include "render/visibility/maps.h"
 
 #include <epoxy/gl.h>

@@ -1,8 +1,8 @@
 #include "render/local/local.h"
 
 #include "config/memory.h"
+#include "render/gpu/shaders.h"
 #include "render/pem/lobe.h"
-#include "render/shaders.h"
 
 #include <epoxy/gl.h>
 

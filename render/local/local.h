@@ -11,7 +11,7 @@
 #ifndef TOILE_RENDER_LOCAL_LOCAL_H
 #define TOILE_RENDER_LOCAL_LOCAL_H
 
-#include "render/light/gbuffer.h"
+#include "render/gbuffer/gbuffer.h"
 #include "render/local/lamp.h"
 #include "render/local/lamp_shadows.h"
 #include "render/local/shading.h"

@@ -1,8 +1,8 @@
 #include "render/present/present.h"
 
 #include "config/memory.h"
+#include "render/gpu/shaders.h"
 #include "render/present/resample.h"
-#include "render/shaders.h"
 
 #include <epoxy/gl.h>
 

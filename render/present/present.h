@@ -3,9 +3,9 @@
 #ifndef TOILE_RENDER_PRESENT_PRESENT_H
 #define TOILE_RENDER_PRESENT_PRESENT_H
 
-#include "render/frame/view.h"
 #include "render/gpu/gpu.h"
 #include "render/pem/pems.h"
+#include "render/scene/view.h"
 
 /* What is behind the figure; or colours that stand for numbers, as they are. */
 enum tl_shown {

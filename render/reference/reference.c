@@ -3,9 +3,9 @@
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
-#include "render/frame/view.h"
 #include "render/reference/gather.h"
 #include "render/reference/lamps.h"
+#include "render/scene/view.h"
 
 #include <float.h>
 #include <math.h>
@@ -157,8 +157,8 @@ static size_t draw_sample(const struct drawing *drawing, int replicate, int tile
     struct sights sights = aim(drawing, tile, sample);
     struct bundle bundle = {0};
     size_t rays = TILE_PIXELS;
-    for (int behind = 0; behind <= TL_SHEETS_BEHIND && sights.count > 0; behind++) {
-        find_spots(drawing, behind == TL_SHEETS_BEHIND, &sights, &bundle);
+    for (int behind = 0; behind <= TL_TRANSPARENCY_LAYERS && sights.count > 0; behind++) {
+        find_spots(drawing, behind == TL_TRANSPARENCY_LAYERS, &sights, &bundle);
         if (bundle.spots.count > 0)
             rays += draw_spots(drawing, replicate, tile, sample, behind, &bundle);
     }

@@ -1,17 +1,17 @@
 /* What a ray of the oracle finds: a point of a surface or of the ground, and what it does with light, as the
- * G-buffer's shaders define it (render/light/gbuffer.frag) but without the G-buffer's rounding.
+ * G-buffer's shaders define it (render/gbuffer/gbuffer.frag) but without the G-buffer's rounding.
  *
  * World space, metres. Borrows the surfaces. Threads: pure once made. */
 #ifndef TOILE_RENDER_REFERENCE_SHADING_POINT_H
 #define TOILE_RENDER_REFERENCE_SHADING_POINT_H
 
 #include "render/brdf/brdf.h"
-#include "render/frame/view.h"
 #include "render/gpu/map_texture.h"
 #include "render/local/lamp.h"
 #include "render/reference/detail.h"
 #include "render/reference/reference.h"
 #include "render/reference/sky.h"
+#include "render/scene/view.h"
 #include "render/surfaces/ground.h"
 #include "render/trace/trace.h"
 

@@ -2,7 +2,7 @@
 
 #include "config/log.h"
 #include "config/memory.h"
-#include "render/shaders.h"
+#include "render/gpu/shaders.h"
 #include "render/visibility/map_order.h"
 
 #include <epoxy/gl.h>

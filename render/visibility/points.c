@@ -2,11 +2,11 @@
 
 #include "config/memory.h"
 #include "config/simd.h"
+#include "render/visibility/cache_probes.h"
+#include "render/visibility/cover_taps.h"
 #include "render/visibility/maps.h"
-#include "render/visibility/mend.h"
+#include "render/visibility/ray_origins.h"
 #include "render/visibility/repair.h"
-#include "render/visibility/sites.h"
-#include "render/visibility/starts.h"
 #include "render/visibility/sun_rays.h"
 
 #include <assert.h>
@@ -28,10 +28,10 @@ struct tl_points {
     uint32_t frame;            /* counts updates, from 1 */
     uint32_t motion;           /* counts moving frames, from 1 */
 
-    struct tl_sites sites;
-    uint32_t *seen;   /* [sites]: frame when last visible */
+    struct tl_cache_probes probes;
+    uint32_t *seen;   /* [probes]: frame when last visible */
     uint32_t *slots;  /* [clusters]: where its values are; NO_SLOT: nowhere yet */
-    uint32_t *active; /* [active_count]: clusters with visible sites */
+    uint32_t *active; /* [active_count]: clusters with visible probes */
     size_t active_count, visible_count;
 
     size_t slot_count, slot_capacity, stride;
@@ -50,7 +50,7 @@ struct tl_points {
      */
     bool have_begun, are_done, is_done;
 
-    struct tl_starts starts; /* made when suns or repair need them */
+    struct tl_ray_origins origins; /* made when suns or repair need them */
     struct tl_sun_rays suns;
     struct tl_repair repair; /* its points come after those of the slots */
 };
@@ -72,14 +72,14 @@ static void forget_values(tl_points *points)
     points->values = points->weights = points->rounds = points->covered = NULL;
     points->rested = points->traced = points->stamps = NULL;
     points->slot_count = points->slot_capacity = 0;
-    for (size_t i = 0; i < points->sites.cluster_count; i++)
+    for (size_t i = 0; i < points->probes.cluster_count; i++)
         points->slots[i] = NO_SLOT;
 }
 
-static void forget_sites(tl_points *points)
+static void forget_probes(tl_points *points)
 {
     forget_values(points);
-    tl_sites_release(&points->sites);
+    tl_cache_probes_release(&points->probes);
     free(points->seen);
     free(points->slots);
     free(points->active);
@@ -89,20 +89,20 @@ void tl_points_destroy(tl_points **points)
 {
     if (!*points)
         return;
-    forget_sites(*points);
+    forget_probes(*points);
     free((*points)->taps);
-    tl_starts_release(&(*points)->starts);
+    tl_ray_origins_release(&(*points)->origins);
     tl_sun_rays_release(&(*points)->suns);
     tl_repair_release(&(*points)->repair);
     free(*points);
     *points = NULL;
 }
 
-static void build_sites(tl_points *points, const struct tl_points_request *request)
+static void build_probes(tl_points *points, const struct tl_points_request *request)
 {
-    forget_sites(points);
-    tl_sites_build(request->ranges, &points->sites);
-    size_t count = points->sites.cluster_count;
+    forget_probes(points);
+    tl_cache_probes_build(request->ranges, &points->probes);
+    size_t count = points->probes.cluster_count;
     points->seen = TL_NEW_ARRAY(uint32_t, count * TL_CLUSTER);
     points->slots = TL_NEW_ARRAY(uint32_t, count);
     points->active = TL_NEW_ARRAY(uint32_t, count);
@@ -183,7 +183,7 @@ static void follow_changes(tl_points *points, const struct tl_points_request *re
 {
     points->carried = false;
     if (!points->known || points->shapes_revision != request->shapes_revision) {
-        build_sites(points, request);
+        build_probes(points, request);
         points->stride = stride_of(request->regions->count);
         points->carried = true;
     } else if (points->regions_revision != request->regions_revision || has_turned_far(points, request)) {
@@ -211,9 +211,9 @@ static void mark_sample(tl_points *points, const struct tl_points_request *reque
     bool back = sample->triangle & TL_SAMPLE_BACK;
     *taps = (struct tl_taps){0};
     for (int i = 0; i < 3; i++) {
-        taps->point[i] = tl_site_of(&points->sites, surface, corners[i], back);
+        taps->point[i] = tl_cache_probe_at(&points->probes, surface, corners[i], back);
         taps->weight[i] = sample->weights[i];
-        /* Threads may mark one site at once: they write the same. */
+        /* Threads may mark one probe at once: they write the same. */
         __atomic_store_n(&points->seen[taps->point[i]], points->frame, __ATOMIC_RELAXED);
     }
     taps->point[3] = taps->point[0];
@@ -269,7 +269,7 @@ static void activate_clusters(tl_points *points, size_t repair_count)
 {
     size_t slot_count = points->slot_count;
     points->active_count = points->visible_count = 0;
-    for (size_t c = 0; c < points->sites.cluster_count; c++) {
+    for (size_t c = 0; c < points->probes.cluster_count; c++) {
         uint32_t members = visible_members(points, c);
         if (!members)
             continue;
@@ -288,8 +288,8 @@ static void resolve_taps(tl_points *points)
 #pragma omp parallel for schedule(static)
     for (size_t i = 0; i < points->sample_count; i++)
         for (int t = 0; t < TL_TAPS; t++) {
-            uint32_t site = points->taps[i].point[t];
-            points->taps[i].point[t] = points->slots[site / TL_CLUSTER] * TL_CLUSTER + site % TL_CLUSTER;
+            uint32_t probe = points->taps[i].point[t];
+            points->taps[i].point[t] = points->slots[probe / TL_CLUSTER] * TL_CLUSTER + probe % TL_CLUSTER;
         }
 }
 
@@ -346,7 +346,7 @@ static bool begin_point(tl_points *points, size_t point)
 static struct tl_cluster open_cluster(tl_points *points, size_t number, const struct tl_refresh *refresh)
 {
     size_t slot = points->slots[number], first = slot * TL_CLUSTER;
-    struct tl_cluster cluster = {.sites = points->sites.items + number * TL_CLUSTER,
+    struct tl_cluster cluster = {.probes = points->probes.items + number * TL_CLUSTER,
                                  .members = visible_members(points, number),
                                  .values = points->values + first * points->stride,
                                  .weights = points->weights + first * points->stride,
@@ -427,7 +427,7 @@ static void repair_samples(tl_points *points, const struct tl_refresh *refresh)
     size_t first = points->slot_count * TL_CLUSTER, row = first * points->stride;
     if (repair->count > 0 && repair->rounds < refresh->request->params->rounds)
         points->ray_count +=
-            tl_repair_trace(repair, refresh, &points->starts, bundles_of_a_frame(points, refresh),
+            tl_repair_trace(repair, refresh, &points->origins, bundles_of_a_frame(points, refresh),
                             points->values + row, points->weights + row);
 }
 
@@ -448,18 +448,18 @@ static bool follow_samples(tl_points *points, const struct tl_points_request *re
     bool has_suns = request->suns && request->suns->count > 0;
     size_t repaired =
         request->moved && !request->whole_rounds ? repaired_in_motion(request) : repaired_at_rest(request);
-    uint64_t before = points->starts.samples;
-    points->starts.samples = 0;
+    uint64_t before = points->origins.samples;
+    points->origins.samples = 0;
     if (!has_suns && repaired == 0)
         return false;
-    tl_starts_make(request, &points->starts);
-    return !request->moved && !points->carried && points->starts.samples == before;
+    tl_ray_origins_make(request, &points->origins);
+    return !request->moved && !points->carried && points->origins.samples == before;
 }
 
 static void trace_suns(tl_points *points, const struct tl_points_request *request, bool again)
 {
     if (request->suns && request->suns->count > 0)
-        points->ray_count += tl_sun_rays_update(&points->suns, request, &points->starts, again);
+        points->ray_count += tl_sun_rays_update(&points->suns, request, &points->origins, again);
     else
         points->suns.count = 0;
 }
@@ -474,7 +474,7 @@ static void trace_in_turn(tl_points *points, const struct tl_refresh *refresh)
     points->ray_count = 0;
     if (refresh->whole_rounds || !samples_first)
         trace_clusters(points, refresh);
-    tl_taps_mend(refresh->request, points->covered, points->taps);
+    tl_taps_match_cover(refresh->request, points->covered, points->taps);
     trace_suns(points, refresh->request, again);
     choose_samples(points, refresh, again);
     if (refresh->whole_rounds || !again || samples_first || points->are_done)
@@ -584,13 +584,13 @@ size_t tl_points_visible(const tl_points *points)
 
 size_t tl_points_bytes(const tl_points *points)
 {
-    size_t sites = points->sites.cluster_count * TL_CLUSTER, slots = points->slot_capacity;
-    size_t vertices = points->sites.cluster_count > 0 ? sites : 0;
-    return sites * (sizeof(struct tl_site) + sizeof(uint32_t)) + vertices * sizeof(uint32_t) +
-           points->sites.cluster_count * 2 * sizeof(uint32_t) +
+    size_t probes = points->probes.cluster_count * TL_CLUSTER, slots = points->slot_capacity;
+    size_t vertices = points->probes.cluster_count > 0 ? probes : 0;
+    return probes * (sizeof(struct tl_cache_probe) + sizeof(uint32_t)) + vertices * sizeof(uint32_t) +
+           points->probes.cluster_count * 2 * sizeof(uint32_t) +
            slots * (sizeof(uint16_t) + sizeof(uint32_t)) +
            slots * TL_CLUSTER * (points->stride * 2 * sizeof(uint16_t) + sizeof(uint32_t)) +
            slots * points->stride * (sizeof(uint16_t) + sizeof(uint32_t)) +
-           points->sample_capacity * sizeof(struct tl_taps) + points->starts.capacity * sizeof(vec3s) +
+           points->sample_capacity * sizeof(struct tl_taps) + points->origins.capacity * sizeof(vec3s) +
            tl_sun_rays_bytes(&points->suns) + tl_repair_bytes(&points->repair);
 }

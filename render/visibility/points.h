@@ -10,7 +10,7 @@
 #define TOILE_RENDER_VISIBILITY_POINTS_H
 
 #include "render/env/sun.h"
-#include "render/light/samples.h"
+#include "render/gbuffer/samples.h"
 #include "render/pem/regions.h"
 #include "render/renderer.h"
 #include "render/trace/trace.h"

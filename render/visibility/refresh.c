@@ -61,13 +61,14 @@ static void push_ray(struct tl_ray_packet *bundle, const struct lanes *lanes, in
  * same other surface is seen both ways. (Under a dress a body sees the dress's back one way only, and a pleat
  * sees its own surface.)
  */
-static bool lift(const struct tl_refresh *refresh, const struct tl_site *site, struct lanes *lanes, int i)
+static bool lift(const struct tl_refresh *refresh, const struct tl_cache_probe *probe, struct lanes *lanes,
+                 int i)
 {
     const tl_trace *trace = refresh->request->trace;
     vec3s origin = lane_origin(lanes, i), normal = lane_normal(lanes, i);
     struct tl_trace_hit out =
         tl_trace_nearest(trace, origin, normal, 0, TL_COVER_OFFSETS * refresh->offset_m);
-    if (out.surface == TL_TRACE_NONE || !out.back || out.surface == site->surface)
+    if (out.surface == TL_TRACE_NONE || !out.back || out.surface == probe->surface)
         return false;
     vec3s below = glms_vec3_sub(origin, glms_vec3_scale(normal, 2 * refresh->offset_m));
     struct tl_trace_hit in = tl_trace_nearest(trace, below, glms_vec3_negate(normal), 0, INFINITY);
@@ -87,13 +88,13 @@ static void place_members(const struct tl_refresh *refresh, const struct tl_clus
     for (int i = 0; i < TL_CLUSTER; i++) {
         if (!(lanes->members >> i & 1))
             continue;
-        const struct tl_site *site = &cluster->sites[i];
-        const tl_surface *surface = refresh->request->ranges->surfaces[site->surface];
-        vec3s normal = surface->normals[site->vertex];
-        if (site->back)
+        const struct tl_cache_probe *probe = &cluster->probes[i];
+        const tl_surface *surface = refresh->request->ranges->surfaces[probe->surface];
+        vec3s normal = surface->normals[probe->vertex];
+        if (probe->back)
             normal = glms_vec3_negate(normal);
         vec3s origin =
-            glms_vec3_add(surface->positions[site->vertex], glms_vec3_scale(normal, refresh->offset_m));
+            glms_vec3_add(surface->positions[probe->vertex], glms_vec3_scale(normal, refresh->offset_m));
         set_lane(lanes, i, origin, normal);
         lane_of[up.count] = i;
         push_ray(&up, lanes, i, normal);
@@ -101,7 +102,7 @@ static void place_members(const struct tl_refresh *refresh, const struct tl_clus
     uint32_t near = tl_trace_occluded_packet(refresh->request->trace, &up);
     for (int k = 0; k < up.count; k++) {
         int i = lane_of[k];
-        bool covered = near >> k & 1 && !lift(refresh, &cluster->sites[i], lanes, i);
+        bool covered = near >> k & 1 && !lift(refresh, &cluster->probes[i], lanes, i);
         *cluster->covered = (uint16_t)((*cluster->covered & ~(1u << i)) | (uint32_t)covered << i);
     }
 }

@@ -3,8 +3,8 @@
 #ifndef TOILE_RENDER_VISIBILITY_REFRESH_H
 #define TOILE_RENDER_VISIBILITY_REFRESH_H
 
+#include "render/visibility/cache_probes.h"
 #include "render/visibility/points.h"
-#include "render/visibility/sites.h"
 
 /* What every cluster's rays share in one update. */
 struct tl_refresh {
@@ -28,14 +28,14 @@ struct tl_refresh {
 
 /* A cluster in use. */
 struct tl_cluster {
-    const struct tl_site *sites; /* TL_CLUSTER of them */
-    uint32_t members;            /* bit i: site i is visible */
-    uint32_t fresh;              /* bit i: ... and holds nothing of use yet: every region is traced */
-    uint16_t *values;            /* [TL_CLUSTER][stride] */
-    uint16_t *weights;           /* [TL_CLUSTER][stride]: at rest: of all directions in a mean; 0: none */
-    uint16_t *rounds;            /* [stride]: frames at rest in which a region was traced */
-    uint16_t *covered;           /* bit i: something lies close above site i; kept up to date */
-    uint32_t *stamps;            /* [stride]: frame when each region was last traced */
+    const struct tl_cache_probe *probes; /* TL_CLUSTER of them */
+    uint32_t members;                    /* bit i: probe i is visible */
+    uint32_t fresh;                      /* bit i: ... and holds nothing of use yet: every region is traced */
+    uint16_t *values;                    /* [TL_CLUSTER][stride] */
+    uint16_t *weights; /* [TL_CLUSTER][stride]: at rest: of all directions in a mean; 0: none */
+    uint16_t *rounds;  /* [stride]: frames at rest in which a region was traced */
+    uint16_t *covered; /* bit i: something lies close above probe i; kept up to date */
+    uint32_t *stamps;  /* [stride]: frame when each region was last traced */
 };
 
 /* Traces the regions that the cluster needs most, and all of them for fresh members: in motion what is seen

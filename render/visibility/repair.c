@@ -51,12 +51,12 @@ TL_INLINE float spread_of(const struct weights *weights, vec3s normal, const uin
 static float share_unknown(const float weights[TL_TAPS], const float corners[3])
 {
     float square = 0;
-    bool mended = false;
+    bool is_changed = false;
     for (int i = 0; i < 3; i++) {
         square += weights[i] * weights[i];
-        mended |= weights[i] != corners[i];
+        is_changed |= weights[i] != corners[i];
     }
-    return mended ? 1 : 1 - square;
+    return is_changed ? 1 : 1 - square;
 }
 
 /* Samples of one triangle follow one another, and share what their corners disagree about. */
@@ -139,20 +139,22 @@ void tl_repair_choose(struct tl_repair *repair, const struct tl_refresh *refresh
 }
 
 static size_t trace_bundle(const struct tl_repair *repair, const struct tl_refresh *refresh,
-                           const struct tl_starts *starts, size_t bundle, uint16_t *values, uint16_t *weights)
+                           const struct tl_ray_origins *origins, size_t bundle, uint16_t *values,
+                           uint16_t *weights)
 {
-    vec3s origins[TL_CLUSTER], normals[TL_CLUSTER];
+    vec3s starts[TL_CLUSTER], normals[TL_CLUSTER];
     size_t first = bundle * TL_CLUSTER, row = first * refresh->stride;
     int count = 0;
     for (size_t i = first; i < repair->count && count < TL_CLUSTER; i++, count++) {
-        origins[count] = starts->points[repair->samples[i]];
+        starts[count] = origins->points[repair->samples[i]];
         normals[count] = refresh->request->samples->items[repair->samples[i]].smooth;
     }
-    return tl_places_trace(refresh, origins, normals, count, values + row, weights + row);
+    return tl_places_trace(refresh, starts, normals, count, values + row, weights + row);
 }
 
 size_t tl_repair_trace(struct tl_repair *repair, const struct tl_refresh *refresh,
-                       const struct tl_starts *starts, size_t bundles, uint16_t *values, uint16_t *weights)
+                       const struct tl_ray_origins *origins, size_t bundles, uint16_t *values,
+                       uint16_t *weights)
 {
     size_t rays = 0, all = (repair->count + TL_CLUSTER - 1) / TL_CLUSTER, first = repair->next;
     size_t end = bundles < all - first ? first + bundles : all;
@@ -160,7 +162,7 @@ size_t tl_repair_trace(struct tl_repair *repair, const struct tl_refresh *refres
         memset(weights, 0, repair->count * refresh->stride * sizeof *weights);
 #pragma omp parallel for schedule(dynamic, 4) reduction(+ : rays)
     for (size_t bundle = first; bundle < end; bundle++)
-        rays += trace_bundle(repair, refresh, starts, bundle, values, weights);
+        rays += trace_bundle(repair, refresh, origins, bundle, values, weights);
     repair->next = end < all ? end : 0;
     repair->rounds += end == all;
     return rays;

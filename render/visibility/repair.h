@@ -5,8 +5,8 @@
 #ifndef TOILE_RENDER_VISIBILITY_REPAIR_H
 #define TOILE_RENDER_VISIBILITY_REPAIR_H
 
+#include "render/visibility/ray_origins.h"
 #include "render/visibility/refresh.h"
-#include "render/visibility/starts.h"
 
 struct tl_repair {
     size_t capacity, count;
@@ -26,7 +26,8 @@ void tl_repair_choose(struct tl_repair *repair, const struct tl_refresh *refresh
 /* Goes on with a round by up to `bundles` of TL_CLUSTER samples, into `values` and `weights`
  * [count][stride]. Returns the number of rays. */
 size_t tl_repair_trace(struct tl_repair *repair, const struct tl_refresh *refresh,
-                       const struct tl_starts *starts, size_t bundles, uint16_t *values, uint16_t *weights);
+                       const struct tl_ray_origins *origins, size_t bundles, uint16_t *values,
+                       uint16_t *weights);
 void tl_repair_release(struct tl_repair *repair);
 size_t tl_repair_bytes(const struct tl_repair *repair);
 

@@ -5,7 +5,7 @@
 #define TOILE_RENDER_VISIBILITY_SUN_RAYS_H
 
 #include "render/visibility/points.h"
-#include "render/visibility/starts.h"
+#include "render/visibility/ray_origins.h"
 
 struct tl_sun_rays {
     size_t capacity;             /* samples */
@@ -18,10 +18,10 @@ struct tl_sun_rays {
     uint32_t *doubtful; /* [samples]: those that disagree with a neighbour */
 };
 
-/* `starts` are of the request's samples; `again`: these and all else are as they were, so rounds go on.
+/* `origins` are of the request's samples; `again`: these and all else are as they were, so rounds go on.
  * Returns the number of rays. */
 size_t tl_sun_rays_update(struct tl_sun_rays *rays, const struct tl_points_request *request,
-                          const struct tl_starts *starts, bool again);
+                          const struct tl_ray_origins *origins, bool again);
 void tl_sun_rays_release(struct tl_sun_rays *rays);
 size_t tl_sun_rays_bytes(const struct tl_sun_rays *rays);
 

@@ -1,8 +1,8 @@
 #include "tests/render/lamplight.h"
 
 #include "render/brdf/brdf.h"
-#include "render/frame/view.h"
 #include "render/reference/shading_point.h"
+#include "render/scene/view.h"
 
 #include "tests/testing.h"
 

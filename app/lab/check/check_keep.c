@@ -7,7 +7,7 @@
 #include "config/file.h"
 #include "config/log.h"
 #include "config/memory.h"
-#include "render/frame/view.h"
+#include "render/scene/view.h"
 
 #include <math.h>
 #include <stdlib.h>

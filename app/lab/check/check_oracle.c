@@ -88,11 +88,11 @@ static void light_up(struct oracle *oracle, const struct met *met, uint64_t key,
 
 static void follow(struct oracle *oracle, struct sights *sights, uint64_t key)
 {
-    for (int behind = 0; behind <= TL_SHEETS_BEHIND && sights->count > 0; behind++) {
+    for (int behind = 0; behind <= TL_TRANSPARENCY_LAYERS && sights->count > 0; behind++) {
         struct met met;
-        meet(oracle, behind == TL_SHEETS_BEHIND, sights, &met);
+        meet(oracle, behind == TL_TRANSPARENCY_LAYERS, sights, &met);
         for (int replicate = 0; met.spots.count > 0 && replicate < REPLICATES; replicate++)
-            light_up(oracle, &met, key * (TL_SHEETS_BEHIND + 1) + (uint64_t)behind, replicate);
+            light_up(oracle, &met, key * (TL_TRANSPARENCY_LAYERS + 1) + (uint64_t)behind, replicate);
     }
 }
 

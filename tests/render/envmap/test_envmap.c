@@ -3,7 +3,7 @@
 #include "tests/render/shapes.h"
 
 #include "render/env/layout.h"
-#include "render/frame/view.h"
+#include "render/scene/view.h"
 
 #include "tests/testing.h"
 

@@ -6,8 +6,8 @@
 #include "cloth/tangents/frames.h"
 #include "config/memory.h"
 #include "render/env/lobes.h"
-#include "render/frame/view.h"
 #include "render/pem/lobe.h"
+#include "render/scene/view.h"
 
 #include "tests/testing.h"
 

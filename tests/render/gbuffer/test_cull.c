@@ -3,8 +3,8 @@
 #include "tests/render/shapes.h"
 
 #include "config/memory.h"
-#include "render/frame/view.h"
-#include "render/light/samples.h"
+#include "render/gbuffer/samples.h"
+#include "render/scene/view.h"
 
 #include "tests/testing.h"
 

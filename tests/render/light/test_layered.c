@@ -184,15 +184,15 @@ static void test_only_what_the_scene_requires(void **state)
     const struct feature plain = {.name = "plain"}, all = features[TL_COUNT(features) - 1];
     tl_image image = draw(device->renderer, &scene, TL_METHOD_PEM);
     struct tl_render_memory before = tl_renderer_memory(device->renderer);
-    assert_false(runs(tl_renderer_last_plan(device->renderer), "sheets"));
-    assert_int_equal(before.sheets, 0);
+    assert_false(runs(tl_renderer_last_plan(device->renderer), "transparency"));
+    assert_int_equal(before.transparency, 0);
     tl_image_release(&image);
 
     set_feature(&all, &scene.sheet.material);
     image = draw(device->renderer, &scene, TL_METHOD_PEM);
     struct tl_render_memory with = tl_renderer_memory(device->renderer);
-    assert_true(runs(tl_renderer_last_plan(device->renderer), "sheets"));
-    assert_true(with.sheets > 0);
+    assert_true(runs(tl_renderer_last_plan(device->renderer), "transparency"));
+    assert_true(with.transparency > 0);
     assert_int_equal(with.targets - before.targets, 8 * WIDTH * HEIGHT); /* the layer of tangents */
     assert_true(with.pems > before.pems); /* exponents of the fan and the coat */
     tl_image_release(&image);
@@ -200,8 +200,8 @@ static void test_only_what_the_scene_requires(void **state)
     set_feature(&plain, &scene.sheet.material);
     image = draw(device->renderer, &scene, TL_METHOD_PEM);
     struct tl_render_memory after = tl_renderer_memory(device->renderer);
-    assert_false(runs(tl_renderer_last_plan(device->renderer), "sheets"));
-    assert_int_equal(after.sheets, 0);
+    assert_false(runs(tl_renderer_last_plan(device->renderer), "transparency"));
+    assert_int_equal(after.transparency, 0);
     assert_int_equal(after.targets, before.targets);
     tl_image_release(&image);
     scene_close(&scene);

@@ -4,7 +4,7 @@
 
 #include "config/memory.h"
 #include "render/brdf/tables.h"
-#include "render/frame/view.h"
+#include "render/scene/view.h"
 #include "render/trace/trace.h"
 
 #include "tests/testing.h"

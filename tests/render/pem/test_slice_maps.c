@@ -1,9 +1,9 @@
 #include "render/pem/slice_maps.h"
 
+#include "render/gpu/shaders.h"
 #include "render/pem/chain.h"
 #include "render/pem/memory.h"
 #include "render/pem/pems.h"
-#include "render/shaders.h"
 
 #include "tests/testing.h"
 

@@ -1,10 +1,10 @@
 /* The G-buffer: for every sample the nearest surface's point, shading normal and material. */
-#ifndef TOILE_RENDER_LIGHT_GBUFFER_H
-#define TOILE_RENDER_LIGHT_GBUFFER_H
+#ifndef TOILE_RENDER_GBUFFER_GBUFFER_H
+#define TOILE_RENDER_GBUFFER_GBUFFER_H
 
 #include "render/detail/detail.h"
-#include "render/frame/view.h"
-#include "render/light/cull.h"
+#include "render/gbuffer/cull.h"
+#include "render/scene/view.h"
 #include "render/surfaces/ground.h"
 #include "render/surfaces/surfaces.h"
 

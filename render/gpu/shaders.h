@@ -1,6 +1,6 @@
 /* The shader files of every technique, embedded at build (render/CMakeLists.txt). */
-#ifndef TOILE_RENDER_SHADERS_H
-#define TOILE_RENDER_SHADERS_H
+#ifndef TOILE_RENDER_GPU_SHADERS_H
+#define TOILE_RENDER_GPU_SHADERS_H
 
 #include "config/embedded.h"
 

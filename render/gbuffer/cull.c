@@ -1,4 +1,4 @@
-#include "render/light/cull.h"
+#include "render/gbuffer/cull.h"
 
 #include "config/memory.h"
 #include "config/simd.h"

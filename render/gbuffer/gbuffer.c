@@ -1,6 +1,6 @@
-#include "render/light/gbuffer.h"
+#include "render/gbuffer/gbuffer.h"
 
-#include "render/shaders.h"
+#include "render/gpu/shaders.h"
 
 #include <epoxy/gl.h>
 

@@ -1,7 +1,7 @@
 /* A camera as the passes need it. Pure. Cameras that make no sense (eye on its target, up along the view,
  * near behind far) are mended to the nearest one that does, so that no matrix ever holds a NaN. */
-#ifndef TOILE_RENDER_FRAME_VIEW_H
-#define TOILE_RENDER_FRAME_VIEW_H
+#ifndef TOILE_RENDER_SCENE_VIEW_H
+#define TOILE_RENDER_SCENE_VIEW_H
 
 #include "render/renderer.h"
 

@@ -1,7 +1,7 @@
-#include "render/visibility/mend.h"
+#include "render/visibility/cover_taps.h"
 
+#include "render/visibility/ray_origins.h"
 #include "render/visibility/refresh.h"
-#include "render/visibility/starts.h"
 
 #define SAMPLE_BLOCK 1024 /* samples that a thread takes at a time */
 
@@ -29,9 +29,9 @@ static void keep_alike(const uint16_t *covered, struct tl_taps *taps, bool wante
         taps->weight[t] = is_covered(covered, taps->point[t]) == wanted ? (taps->weight[t] + 1e-6f) / sum : 0;
 }
 
-/* Tests whether samples are covered, up to a bundle of them, and mends their taps. */
-static void mend_some(const struct tl_points_request *request, const uint16_t *covered, struct tl_taps *taps,
-                      const uint32_t *samples, int count)
+/* Tests whether samples are covered, up to a bundle of them, and makes their taps match. */
+static void match_some(const struct tl_points_request *request, const uint16_t *covered, struct tl_taps *taps,
+                       const uint32_t *samples, int count)
 {
     float offset_m = tl_trace_offset(request->trace);
     struct tl_ray_packet up = {.count = count, .to_m = TL_COVER_OFFSETS * offset_m};
@@ -48,7 +48,8 @@ static void mend_some(const struct tl_points_request *request, const uint16_t *c
         keep_alike(covered, &taps[samples[i]], stopped >> i & 1);
 }
 
-void tl_taps_mend(const struct tl_points_request *request, const uint16_t *covered, struct tl_taps *taps)
+void tl_taps_match_cover(const struct tl_points_request *request, const uint16_t *covered,
+                         struct tl_taps *taps)
 {
 #pragma omp parallel for schedule(dynamic)
     for (size_t first = 0; first < request->samples->count; first += SAMPLE_BLOCK) {
@@ -59,11 +60,11 @@ void tl_taps_mend(const struct tl_points_request *request, const uint16_t *cover
             if (is_mixed(covered, &taps[i]))
                 mixed[count++] = (uint32_t)i;
             if (count == 16) {
-                mend_some(request, covered, taps, mixed, count);
+                match_some(request, covered, taps, mixed, count);
                 count = 0;
             }
         }
         if (count > 0)
-            mend_some(request, covered, taps, mixed, count);
+            match_some(request, covered, taps, mixed, count);
     }
 }

@@ -5,8 +5,8 @@
  * picture costs. What is left out here covers the middle of no sample, or is hidden at each one that it
  * covers, by more than any rasteriser's rounding: the picture stays the same to the bit. What is kept stays
  * in its order. Pure. */
-#ifndef TOILE_RENDER_LIGHT_CULL_H
-#define TOILE_RENDER_LIGHT_CULL_H
+#ifndef TOILE_RENDER_GBUFFER_CULL_H
+#define TOILE_RENDER_GBUFFER_CULL_H
 
 #include "assets/base/surface.h"
 

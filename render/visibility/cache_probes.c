@@ -1,4 +1,4 @@
-#include "render/visibility/sites.h"
+#include "render/visibility/cache_probes.h"
 
 #include "config/memory.h"
 
@@ -65,7 +65,7 @@ static bool are_one(const tl_surface *surface, uint32_t a, uint32_t b)
            glms_vec3_dot(surface->normals[a], surface->normals[b]) > SAME_NORMAL;
 }
 
-/* representative[v]: the vertex whose site stands for v. Equals are neighbours in the order but for others
+/* representative[v]: the vertex whose probe stands for v. Equals are neighbours in the order but for others
  * of the same key. */
 static uint32_t *find_representatives(const tl_surface *surface, const struct order *order)
 {
@@ -80,41 +80,42 @@ static uint32_t *find_representatives(const tl_surface *surface, const struct or
     return representative;
 }
 
-static void start_cluster(struct tl_sites *sites, size_t *capacity)
+static void start_cluster(struct tl_cache_probes *probes, size_t *capacity)
 {
-    if (sites->cluster_count == *capacity) {
+    if (probes->cluster_count == *capacity) {
         *capacity = 2 * *capacity + 64;
-        sites->items = tl_resize(sites->items, *capacity * TL_CLUSTER, sizeof *sites->items);
+        probes->items = tl_resize(probes->items, *capacity * TL_CLUSTER, sizeof *probes->items);
     }
     for (size_t lane = 0; lane < TL_CLUSTER; lane++)
-        sites->items[sites->cluster_count * TL_CLUSTER + lane] = (struct tl_site){.surface = TL_SITE_NONE};
-    sites->cluster_count++;
+        probes->items[probes->cluster_count * TL_CLUSTER + lane] =
+            (struct tl_cache_probe){.surface = TL_CACHE_PROBE_NONE};
+    probes->cluster_count++;
 }
 
-static void add_side(struct tl_sites *sites, size_t *capacity, const struct order *order, size_t count,
-                     const uint32_t *representative, struct tl_site site)
+static void add_side(struct tl_cache_probes *probes, size_t *capacity, const struct order *order,
+                     size_t count, const uint32_t *representative, struct tl_cache_probe probe)
 {
-    uint32_t *of_vertex = sites->of_vertex + 2 * (size_t)sites->first_vertex[site.surface] + site.back;
+    uint32_t *of_vertex = probes->of_vertex + 2 * (size_t)probes->first_vertex[probe.surface] + probe.back;
     size_t lane = TL_CLUSTER;
     for (size_t i = 0; i < count; i++) {
-        site.vertex = order[i].vertex;
-        if (representative[site.vertex] != site.vertex)
+        probe.vertex = order[i].vertex;
+        if (representative[probe.vertex] != probe.vertex)
             continue;
         if (lane == TL_CLUSTER) {
-            start_cluster(sites, capacity);
+            start_cluster(probes, capacity);
             lane = 0;
         }
-        size_t number = (sites->cluster_count - 1) * TL_CLUSTER + lane++;
-        sites->items[number] = site;
-        of_vertex[2 * (size_t)site.vertex] = (uint32_t)number;
+        size_t number = (probes->cluster_count - 1) * TL_CLUSTER + lane++;
+        probes->items[number] = probe;
+        of_vertex[2 * (size_t)probe.vertex] = (uint32_t)number;
     }
     for (size_t v = 0; v < count; v++)
         of_vertex[2 * v] = of_vertex[2 * (size_t)representative[v]];
 }
 
-void tl_sites_build(const struct tl_triangle_ranges *ranges, struct tl_sites *out)
+void tl_cache_probes_build(const struct tl_triangle_ranges *ranges, struct tl_cache_probes *out)
 {
-    tl_sites_release(out);
+    tl_cache_probes_release(out);
     out->first_vertex = TL_NEW_ARRAY(uint32_t, ranges->surface_count + 1);
     for (size_t s = 0; s < ranges->surface_count; s++)
         out->first_vertex[s + 1] = out->first_vertex[s] + (uint32_t)ranges->surfaces[s]->vertex_count;
@@ -127,16 +128,16 @@ void tl_sites_build(const struct tl_triangle_ranges *ranges, struct tl_sites *ou
         uint32_t *representative = find_representatives(surface, order);
         for (int back = 0; back < 2; back++)
             add_side(out, &capacity, order, surface->vertex_count, representative,
-                     (struct tl_site){.surface = (uint32_t)s, .back = back});
+                     (struct tl_cache_probe){.surface = (uint32_t)s, .back = back});
         free(order);
         free(representative);
     }
 }
 
-void tl_sites_release(struct tl_sites *sites)
+void tl_cache_probes_release(struct tl_cache_probes *probes)
 {
-    free(sites->items);
-    free(sites->first_vertex);
-    free(sites->of_vertex);
-    *sites = (struct tl_sites){0};
+    free(probes->items);
+    free(probes->first_vertex);
+    free(probes->of_vertex);
+    *probes = (struct tl_cache_probes){0};
 }

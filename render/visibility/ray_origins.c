@@ -1,4 +1,4 @@
-#include "render/visibility/starts.h"
+#include "render/visibility/ray_origins.h"
 
 #include "config/memory.h"
 
@@ -18,7 +18,7 @@ static uint64_t mix(uint64_t hash, vec3s point)
     return hash;
 }
 
-void tl_starts_make(const struct tl_points_request *request, struct tl_starts *out)
+void tl_ray_origins_make(const struct tl_points_request *request, struct tl_ray_origins *out)
 {
     size_t count = request->samples->count, block_count = (count + BLOCK - 1) / BLOCK;
     float offset_m = tl_trace_offset(request->trace);
@@ -43,8 +43,8 @@ void tl_starts_make(const struct tl_points_request *request, struct tl_starts *o
     free(hashes);
 }
 
-void tl_starts_release(struct tl_starts *starts)
+void tl_ray_origins_release(struct tl_ray_origins *origins)
 {
-    free(starts->points);
-    *starts = (struct tl_starts){0};
+    free(origins->points);
+    *origins = (struct tl_ray_origins){0};
 }

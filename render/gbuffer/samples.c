@@ -1,4 +1,4 @@
-#include "render/light/samples.h"
+#include "render/gbuffer/samples.h"
 
 #include "config/memory.h"
 #include "render/trace/trace.h"

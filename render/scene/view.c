@@ -1,4 +1,4 @@
-#include "render/frame/view.h"
+#include "render/scene/view.h"
 
 #include <math.h>
 

@@ -1,8 +1,8 @@
 /* The covered samples of a G-buffer, on the CPU. World space, metres. */
-#ifndef TOILE_RENDER_LIGHT_SAMPLES_H
-#define TOILE_RENDER_LIGHT_SAMPLES_H
+#ifndef TOILE_RENDER_GBUFFER_SAMPLES_H
+#define TOILE_RENDER_GBUFFER_SAMPLES_H
 
-#include "render/light/gbuffer.h"
+#include "render/gbuffer/gbuffer.h"
 
 /* `triangle` counts through all surfaces in their order; its top bit says that the back is seen. */
 #define TL_SAMPLE_BACK 0x80000000u
@@ -26,7 +26,7 @@ struct tl_samples {
     int width, height;    /* of the target */
     size_t primary_count; /* nearest to the camera, one a texel */
     /* After them, with the texels that they are seen in, come those behind open cloth, and the other sides of
-     * what scatters light through (sheets.h). What mirrors show is last. */
+     * what scatters light through (transparency.h). What mirrors show is last. */
     size_t behind_count, other_count;
     size_t count, capacity;
     tl_sample *items;
