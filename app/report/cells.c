@@ -8,13 +8,16 @@
 
 void tl_cells_add(struct tl_cells *cells, const char *format, ...)
 {
-    char text[160];
-    va_list arguments;
+    va_list arguments, again;
     va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
+    va_copy(again, arguments);
+    size_t size = (size_t)vsnprintf(NULL, 0, format, arguments) + 1;
+    char *text = tl_alloc(size, 1);
+    vsnprintf(text, size, format, again);
+    va_end(again);
     va_end(arguments);
     cells->texts = tl_resize(cells->texts, cells->count + 1, sizeof *cells->texts);
-    cells->texts[cells->count++] = tl_copy_string(text);
+    cells->texts[cells->count++] = text;
 }
 
 void tl_cells_print(struct tl_cells *cells, size_t columns, FILE *out)

@@ -1,56 +1,35 @@
 #include "app/report/legend.h"
 
 #include "app/report/canvas.h"
+#include "app/report/text.h"
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
-/* In dots, the smallest letters' pixels. */
+/* In dots. */
 enum {
     MARGIN = 5,
     PADDING = 5,
-    LETTER = 7,
-    LINE = 11,
+    TEXT_SIZE = 10,
+    LINE = 12,
     TEXT_WIDTH = 170,
     BAR_HEIGHT = 8,
+    TICK_HEIGHT = 2,
     TICKS = 5,
-    COLUMNS = 2
+    SWATCH = 7,
+    COLUMNS = 2,
+    COLUMN_WIDTH = TEXT_WIDTH / COLUMNS,
+    COLUMN_GAP = 4
 };
-enum { LINES_MAX = 8, LINE_SIZE = 64, LARGE_PICTURE = 800 };
+enum { LINES_MAX = 4, LARGE_PICTURE = 800 };
 #define PAPER 0x181818
 #define INK   0xf0f0f0
 
-/* Where it is drawn, and how large. */
+/* The picture, and the legend's unit of length. */
 struct sheet {
     tl_image *picture;
     int dot; /* pixels of a dot */
-    int line_count;
-    char lines[LINES_MAX][LINE_SIZE];
 };
-
-/* Words of `text` in lines of at most TEXT_WIDTH. */
-static void wrap(const char *text, struct sheet *sheet)
-{
-    char word[LINE_SIZE], *line = NULL;
-    int length;
-    for (const char *at = text; sscanf(at, "%63s%n", word, &length) == 1; at += length) {
-        size_t used = line ? strlen(line) : 0;
-        bool fits =
-            line && used + 1 + strlen(word) < LINE_SIZE &&
-            tl_canvas_words_width(1, line) + tl_canvas_words_width(1, " ") + tl_canvas_words_width(1, word) <=
-                TEXT_WIDTH;
-        if (!fits && sheet->line_count == LINES_MAX)
-            return;
-        if (fits) {
-            line[used] = ' ';
-            memcpy(line + used + 1, word, strlen(word) + 1);
-        } else {
-            line = sheet->lines[sheet->line_count++];
-            memcpy(line, word, strlen(word) + 1);
-        }
-    }
-}
 
 static uint32_t packed(vec3s colour)
 {
@@ -66,9 +45,14 @@ static void box(const struct sheet *sheet, int x, int y, int width, int height, 
     tl_canvas_box(sheet->picture, x * sheet->dot, y, width * sheet->dot, height * sheet->dot, colour);
 }
 
-static void words(const struct sheet *sheet, int x, int y, const char *text)
+/* Text at most `width` dots wide, in at most `lines` lines. */
+static struct tl_text_style style_of(const struct sheet *sheet, int width, int lines)
 {
-    tl_canvas_words(sheet->picture, x * sheet->dot, y, sheet->dot, text, INK);
+    return (struct tl_text_style){.size = TEXT_SIZE * sheet->dot,
+                                  .colour = INK,
+                                  .width = width * sheet->dot,
+                                  .lines = lines,
+                                  .leading = LINE * sheet->dot};
 }
 
 void tl_legend_number(const struct tl_legend *legend, float value, char out[16])
@@ -86,24 +70,31 @@ static void draw_scale(const struct sheet *sheet, const struct tl_legend *legend
         float value = legend->low + span * ((float)i + 0.5f) / TEXT_WIDTH;
         box(sheet, x + i, y, 1, BAR_HEIGHT, packed(tl_legend_colour(legend, value)));
     }
+    const struct tl_text_style style = style_of(sheet, TEXT_WIDTH, 1);
     for (int tick = 0; tick < TICKS; tick++) {
         char number[16];
         int at = tick * (TEXT_WIDTH - 1) / (TICKS - 1);
         tl_legend_number(legend, legend->low + span * (float)tick / (TICKS - 1), number);
-        int width = tl_canvas_words_width(1, number), left = at - width / 2;
-        left = left < 0 ? 0 : left + width > TEXT_WIDTH ? TEXT_WIDTH - width : left;
-        box(sheet, x + at, below, 1, 2, INK);
-        words(sheet, x + left, below + 3 * sheet->dot, number);
+        /* Centred below its tick, but within the bar's ends. */
+        int width = tl_text_measure(&style, number).width, last = style.width - width;
+        int left = at * sheet->dot - width / 2;
+        left = left < 0 ? 0 : left > last ? last : left;
+        box(sheet, x + at, below, 1, TICK_HEIGHT, INK);
+        tl_text_draw(sheet->picture, x * sheet->dot + left, below + (TICK_HEIGHT + 1) * sheet->dot, &style,
+                     number);
     }
 }
 
 static void draw_entries(const struct sheet *sheet, const struct tl_legend *legend, int y)
 {
     for (int i = 0; i < legend->entry_count; i++) {
-        int x = MARGIN + PADDING + i % COLUMNS * TEXT_WIDTH / COLUMNS,
-            row = y + i / COLUMNS * LINE * sheet->dot;
-        box(sheet, x, row, LETTER, LETTER, packed(legend->entries[i].colour));
-        words(sheet, x + LINE, row, legend->entries[i].label);
+        int column = i % COLUMNS, row = y + i / COLUMNS * LINE * sheet->dot;
+        int x = MARGIN + PADDING + column * COLUMN_WIDTH;
+        bool is_last_of_row = column + 1 == COLUMNS || i + 1 == legend->entry_count;
+        int room = (is_last_of_row ? TEXT_WIDTH - column * COLUMN_WIDTH : COLUMN_WIDTH - COLUMN_GAP) - LINE;
+        const struct tl_text_style style = style_of(sheet, room, 1);
+        box(sheet, x, row + sheet->dot, SWATCH, SWATCH, packed(legend->entries[i].colour));
+        tl_text_draw(sheet->picture, (x + LINE) * sheet->dot, row, &style, legend->entries[i].label);
     }
 }
 
@@ -111,21 +102,24 @@ bool tl_legend_draw(const struct tl_legend *legend, tl_image *picture)
 {
     if (legend->title[0] == '\0')
         return true;
+    const struct sheet sheet = {.picture = picture, .dot = picture->width < LARGE_PICTURE ? 1 : 2};
+    const struct tl_text_style style = style_of(&sheet, TEXT_WIDTH, LINES_MAX);
     char title[96];
-    struct sheet sheet = {.picture = picture, .dot = picture->width < LARGE_PICTURE ? 1 : 2};
     snprintf(title, sizeof title, "%s%s%s", legend->title, legend->unit[0] ? ", " : "", legend->unit);
-    wrap(title, &sheet);
-    wrap(legend->note, &sheet);
-    int rows = sheet.line_count + (legend->entry_count + COLUMNS - 1) / COLUMNS;
+    int title_rows = tl_text_measure(&style, title).lines;
+    int note_rows = legend->note[0] ? tl_text_measure(&style, legend->note).lines : 0;
+    int rows = title_rows + note_rows + (legend->entry_count + COLUMNS - 1) / COLUMNS;
     int scale = legend->stop_count > 0 ? BAR_HEIGHT + LINE + PADDING : 0;
     int width = 2 * PADDING + TEXT_WIDTH, height = 2 * PADDING + rows * LINE + scale;
     if ((width + 2 * MARGIN) * sheet.dot > picture->width || 2 * height * sheet.dot > picture->height)
         return false;
-    int y = picture->height - (MARGIN + height) * sheet.dot;
+    int x = (MARGIN + PADDING) * sheet.dot, y = picture->height - (MARGIN + height) * sheet.dot;
     box(&sheet, MARGIN, y, width, height, PAPER);
     y += PADDING * sheet.dot;
-    for (int i = 0; i < sheet.line_count; i++, y += LINE * sheet.dot)
-        words(&sheet, MARGIN + PADDING, y, sheet.lines[i]);
+    tl_text_draw(picture, x, y, &style, title);
+    y += title_rows * style.leading;
+    tl_text_draw(picture, x, y, &style, legend->note);
+    y += note_rows * style.leading;
     if (scale > 0)
         draw_scale(&sheet, legend, y);
     draw_entries(&sheet, legend, y + scale * sheet.dot);

@@ -1,6 +1,7 @@
 #include "app/sheet/contact_layout.h"
 
 #include "app/report/canvas.h"
+#include "app/report/text.h"
 #include "config/memory.h"
 
 #include <math.h>
@@ -11,7 +12,7 @@
 #define GUTTER      6
 #define GROUP_GAP   20
 #define LINE        24 /* of text, with the room below it */
-#define LABEL_MOST  260
+#define LABEL_MAX   260
 #define LABEL_GAP   14
 #define FLOW_ASPECT 1.5
 
@@ -60,46 +61,20 @@ static size_t cells_across(const struct tl_contact_grid *grid)
     return (grid->row_count + lines - 1) / lines;
 }
 
-/* What the font has: a '?' for each other character. New string. */
-static char *ascii_of(const char *text)
+/* Text in a width, which ends in an ellipsis where it is too long. */
+static struct tl_text_style style_of(int width, enum tl_text_align align, uint32_t colour)
 {
-    char *out = tl_copy_string(text);
-    size_t length = 0;
-    for (const char *from = text; *from; from++) {
-        unsigned char byte = (unsigned char)*from;
-        if (byte >= 0x80 && byte < 0xc0)
-            continue; /* the rest of a character */
-        out[length++] = byte >= ' ' && byte < 0x7f ? *from : '?';
-    }
-    out[length] = '\0';
-    return out;
-}
-
-/* As much of the text as fits, dots for the rest. New string. */
-static char *fitted(const char *text, int width)
-{
-    char *plain = ascii_of(text);
-    size_t length = strlen(plain);
-    if (tl_canvas_text_width(plain) <= width)
-        return plain;
-    char *cut = NULL;
-    do {
-        free(cut);
-        cut = tl_format("%.*s..", (int)--length, plain);
-    } while (length > 0 && tl_canvas_text_width(cut) > width);
-    free(plain);
-    return cut;
+    return (struct tl_text_style){.size = TL_CANVAS_LETTER, .colour = colour, .width = width, .align = align};
 }
 
 /* Of the column of row labels; 0 without one. */
 static int label_width(const struct tl_contact_grid *grid)
 {
     int widest = 0;
+    const struct tl_text_style style = style_of(LABEL_MAX, TL_TEXT_LEFT, INK);
     for (size_t i = 0; i < grid->row_count && !flows(grid); i++) {
-        char *text = fitted(grid->rows[i].name, LABEL_MOST);
-        int width = tl_canvas_text_width(text);
+        int width = tl_text_measure(&style, grid->rows[i].name).width;
         widest = width > widest ? width : widest;
-        free(text);
     }
     return widest ? widest + LABEL_GAP : 0;
 }
@@ -162,26 +137,21 @@ void tl_contact_size(const struct tl_contact_grid *grid, int64_t *width, int64_t
     if (flows(grid) && has_names(grid->rows, grid->row_count))
         *height += LINE;
     const char *lines[] = {grid->title, grid->note};
-    for (size_t i = 0; i < TL_COUNT(lines); i++) {
-        char *text = ascii_of(lines[i]);
-        right = greater(right, MARGIN + tl_canvas_text_width(text));
-        free(text);
-    }
+    for (size_t i = 0; i < TL_COUNT(lines); i++)
+        right = greater(right, MARGIN + tl_canvas_text_width(lines[i]));
     *width = right + MARGIN;
 }
 
 static void write_text(tl_image *sheet, int x, int y, const char *text, int width, uint32_t colour)
 {
-    char *shown = fitted(text, width);
-    tl_canvas_text(sheet, x, y, shown, colour);
-    free(shown);
+    const struct tl_text_style style = style_of(width, TL_TEXT_LEFT, colour);
+    tl_text_draw(sheet, x, y, &style, text);
 }
 
 static void write_centred(tl_image *sheet, int x, int y, const char *text, int width)
 {
-    char *shown = fitted(text, width);
-    tl_canvas_text(sheet, x + (width - tl_canvas_text_width(shown)) / 2, y, shown, INK);
-    free(shown);
+    const struct tl_text_style style = style_of(width, TL_TEXT_CENTRE, INK);
+    tl_text_draw(sheet, x, y, &style, text);
 }
 
 static void draw_heads(const struct tl_contact_grid *grid, tl_image *sheet)
@@ -215,10 +185,10 @@ static void draw_row_label(const struct tl_contact_grid *grid, size_t row, tl_im
         write_centred(sheet, x, y + grid->cell_height + 6, grid->rows[row].name, grid->cell_width);
         return;
     }
-    char *text = fitted(grid->rows[row].name, LABEL_MOST);
-    tl_canvas_text(sheet, x - LABEL_GAP - tl_canvas_text_width(text),
-                   y + (grid->cell_height - TL_CANVAS_LETTER) / 2, text, INK);
-    free(text);
+    if (!grid->rows[row].name[0])
+        return;
+    const struct tl_text_style style = style_of(x - LABEL_GAP - MARGIN, TL_TEXT_RIGHT, INK);
+    tl_text_draw(sheet, MARGIN, y + (grid->cell_height - TL_CANVAS_LETTER) / 2, &style, grid->rows[row].name);
 }
 
 tl_image tl_contact_draw(const struct tl_contact_grid *grid)

@@ -1,10 +1,9 @@
 /* What cloth is measured on: the tube's closed form against the sums over its own triangles, cells whose
- * outcome is known, the baseline's sag, and words on a picture. */
+ * outcome is known, and the baseline's sag. */
 #include "tests/testing.h"
 
 #include "app/lab/stability/envelope.h"
 #include "app/lab/trade/baseline.h"
-#include "app/report/canvas.h"
 #include "config/memory.h"
 
 #include <string.h>
@@ -120,29 +119,6 @@ static void baseline_hangs(void **state)
     tl_baseline_destroy(&baseline);
 }
 
-static size_t count_colour(const tl_image *canvas, uint8_t red)
-{
-    size_t count = 0;
-    for (int i = 0; i < canvas->width * canvas->height; i++)
-        count += tl_image_bytes(canvas)[3 * (size_t)i] == red;
-    return count;
-}
-
-static void words_stay_on_the_picture(void **state)
-{
-    (void)state;
-    tl_image canvas = tl_canvas_create(60, 20, 0xffffff);
-    tl_canvas_box(&canvas, -5, -5, 7, 8, 0x100000);
-    assert_int_equal(count_colour(&canvas, 0x10), 2 * 3);
-    tl_canvas_text(&canvas, 40, 12, "far outside of the picture on the right", 0x200000);
-    size_t cut = count_colour(&canvas, 0x20);
-    tl_canvas_text(&canvas, 2, 3, "l", 0x300000);
-    size_t letter = count_colour(&canvas, 0x30);
-    assert_true(cut > 0 && cut < (size_t)20 * 8);
-    assert_true(letter > 0 && letter < (size_t)(tl_canvas_text_width("l") * TL_CANVAS_LETTER));
-    tl_image_release(&canvas);
-}
-
 /* The upper half of this tube consists of needle triangles, thirty times as wide as high. A single sweep
  * moved it by 0.19 mm within two milliseconds under its own weight, ten times a free fall. The bound is the
  * envelope's. */
@@ -165,7 +141,6 @@ int main(void)
         cmocka_unit_test(known_cells),
         cmocka_unit_test(needles_stay_in_place),
         cmocka_unit_test(baseline_hangs),
-        cmocka_unit_test(words_stay_on_the_picture),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
