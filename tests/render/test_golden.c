@@ -2,7 +2,7 @@
  * bits, so a pixel may differ by a 500th of its value (at least of 1), and one in 200, at the edges of
  * shapes and shadows, by more. A golden that is missing, or that differs, writes what was drawn beside the
  * test's executable and fails; look at it, and copy it over the golden when it is right. */
-#include "tests/render/shapes.h"
+#include "tests/render/scenes.h"
 
 #include "assets/image/exr.h"
 #include "config/memory.h"
@@ -77,15 +77,6 @@ static void check_golden(const char *name, const tl_image *drawn)
 }
 
 /* A ball under a waved sheet on the ground, half a cloth of coarse weave behind them. */
-struct scene {
-    tl_environment environment;
-    struct test_shape shapes[3];
-    tl_surface surfaces[3];
-    tl_weave weave;
-    tl_frame frame;
-    struct tl_render_settings settings;
-};
-
 /* A plain weave drawn with sines, 8 texels a yarn. */
 static tl_weave coarse_weave(void)
 {
@@ -108,52 +99,35 @@ static tl_weave coarse_weave(void)
     return weave;
 }
 
-static void scene_open(struct scene *scene, bool has_sun)
+static void scene_open(struct test_scene *scene, bool has_sun)
 {
-    scene->environment = has_sun ? test_environment(256, 128, sunny_room) : test_environment(128, 64, room);
+    test_scene_open(scene, has_sun ? test_environment(256, 128, sunny_room) : test_environment(128, 64, room),
+                    (vec3s){{0.6f, 1.3f, 2.4f}}, (vec3s){{-0.1f, 0.5f, 0}}, 35, 96, 64);
     scene->weave = coarse_weave();
-    scene->shapes[0] = test_sphere((vec3s){{0.1f, 0.35f, 0}}, 0.35f, 24);
-    scene->shapes[1] = test_sheet(0.95f, 0.4f, 0.05f, 1.5f, 32);
-    scene->shapes[2] = test_square((vec3s){{-0.6f, 0.5f, -0.3f}}, (vec3s){{0.8f, 0, 0.6f}},
-                                   (vec3s){{-0.6f, 0, 0.8f}}, 0.4f, 4);
+    test_scene_add(scene, test_sphere((vec3s){{0.1f, 0.35f, 0}}, 0.35f, 24));
+    test_scene_add(scene, test_sheet(0.95f, 0.4f, 0.05f, 1.5f, 32));
+    test_scene_add(scene, test_square((vec3s){{-0.6f, 0.5f, -0.3f}}, (vec3s){{0.8f, 0, 0.6f}},
+                                      (vec3s){{-0.6f, 0, 0.8f}}, 0.4f, 4));
     scene->shapes[0].material.diffuse = (vec3s){{0.1f, 0.1f, 0.4f}};
     scene->shapes[0].material.specular = (vec3s){{0.5f, 0.5f, 0.5f}};
     scene->shapes[0].material.glossiness = 0.95f;
     scene->shapes[1].material.diffuse = (vec3s){{0.6f, 0.2f, 0.1f}};
     scene->shapes[1].material.glossiness = 0.6f;
     scene->shapes[2].material.weave = &scene->weave;
-    for (int i = 0; i < 3; i++) {
-        test_shape_refresh(&scene->shapes[i]);
-        scene->surfaces[i] = scene->shapes[i].surface;
-    }
-    scene->frame = test_frame((vec3s){{0.6f, 1.3f, 2.4f}}, (vec3s){{-0.1f, 0.5f, 0}}, 35, scene->surfaces, 3,
-                              &scene->environment);
-    scene->settings = test_settings(96, 64);
     scene->settings.light.map_size = 128;
     scene->settings.image.ground = true;
     scene->settings.image.supersample = 2;
 }
 
-static void scene_close(struct scene *scene)
-{
-    tl_environment_release(&scene->environment);
-    for (int i = 0; i < 3; i++)
-        test_shape_release(&scene->shapes[i]);
-    tl_image_release(&scene->weave.normal);
-    tl_image_release(&scene->weave.height);
-    tl_image_release(&scene->weave.gloss);
-    tl_image_release(&scene->weave.tint);
-}
-
 static void draw_and_check(struct test_device *device, const char *name, enum tl_method method,
                            enum tl_lobe lobe)
 {
-    struct scene scene;
+    struct test_scene scene;
     scene_open(&scene, false);
     scene.settings.light.method = (int)method;
     scene.settings.light.lobe = (int)lobe;
-    tl_image image = test_draw(device->renderer, &scene.frame, &scene.settings);
-    scene_close(&scene);
+    tl_image image = test_scene_draw(&scene, device->renderer);
+    test_scene_close(&scene);
     check_golden(name, &image);
     tl_image_release(&image);
 }
@@ -209,23 +183,22 @@ static void by_rays_with_mirrors(struct tl_light_params *light)
 static void draw_variant(struct test_device *device, const char *name, enum tl_method method,
                          void (*change)(struct tl_light_params *))
 {
-    struct scene scene;
+    struct test_scene scene;
     scene_open(&scene, change == with_sun || change == by_rays);
     if (change == by_rays_with_mirrors) {
         scene.shapes[0].material.glossiness = 1;
-        test_shape_refresh(&scene.shapes[0]);
-        scene.surfaces[0] = scene.shapes[0].surface;
+        test_scene_refresh(&scene);
     }
     scene.settings.light = best_maps(scene.settings.light);
     scene.settings.light.method = (int)method;
     if (change)
         change(&scene.settings.light);
-    tl_image image = test_draw(device->renderer, &scene.frame, &scene.settings);
+    tl_image image = test_scene_draw(&scene, device->renderer);
     while (!tl_renderer_is_at_rest(device->renderer)) {
         tl_image_release(&image);
-        image = test_draw(device->renderer, &scene.frame, &scene.settings);
+        image = test_scene_draw(&scene, device->renderer);
     }
-    scene_close(&scene);
+    test_scene_close(&scene);
     check_golden(name, &image);
     tl_image_release(&image);
 }

@@ -1,5 +1,5 @@
 /* The ways to put light together, against exact lobes on the CPU and closed forms on simple scenes. */
-#include "tests/render/shapes.h"
+#include "tests/render/scenes.h"
 
 #include "render/env/lobes.h"
 #include "render/light/terms.h"

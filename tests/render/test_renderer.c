@@ -1,5 +1,5 @@
 /* The renderer as a whole: what runs again and what does not, memory, refusals, extremes. */
-#include "tests/render/shapes.h"
+#include "tests/render/scenes.h"
 
 #include "config/memory.h"
 #include "render/surfaces/ground.h"
@@ -8,58 +8,22 @@
 
 #include <string.h>
 
-static vec3s daylight(vec3s d)
-{
-    bool sun = glms_vec3_dot(d, glms_vec3_normalize((vec3s){{0.3f, 0.8f, 0.5f}})) > 0.99f;
-    return sun ? (vec3s){{60, 55, 50}} : (vec3s){{0.4f, 0.5f, 0.6f + 0.3f * d.y}};
-}
-
-static vec3s black(vec3s d)
-{
-    (void)d;
-    return (vec3s){{0, 0, 0}};
-}
-
-/* One texel of 1e6 on black. */
+/* One texel of 1e6 on test_black. */
 static vec3s spark(vec3s d)
 {
     return glms_vec3_dot(d, glms_vec3_normalize((vec3s){{1, 2, 1}})) > 0.9995f ? (vec3s){{1e6f, 1e6f, 1e6f}}
                                                                                : (vec3s){{0, 0, 0}};
 }
 
-struct scene {
-    tl_environment environment;
-    struct test_shape shapes[2];
-    tl_surface surfaces[2];
-    tl_frame frame;
-    struct tl_render_settings settings;
-};
-
-static void scene_open(struct scene *scene, vec3s (*radiance)(vec3s))
+static void scene_open(struct test_scene *scene, test_radiance *radiance)
 {
-    scene->environment = test_environment(64, 32, radiance);
-    scene->shapes[0] = test_sphere((vec3s){{0, 0.5f, 0}}, 0.4f, 16);
-    scene->shapes[1] = test_sheet(1.1f, 0.5f, 0.06f, 2, 16);
-    for (int i = 0; i < 2; i++) {
+    test_scene_open_ball_and_sheet(scene, radiance);
+    for (int i = 0; i < 2; i++)
         scene->shapes[i].material.glossiness = 0.7f;
-        test_shape_refresh(&scene->shapes[i]);
-        scene->surfaces[i] = scene->shapes[i].surface;
-    }
-    scene->frame =
-        test_frame((vec3s){{1, 1.5f, 2}}, (vec3s){{0, 0.6f, 0}}, 40, scene->surfaces, 2, &scene->environment);
-    scene->settings = test_settings(48, 32);
     scene->settings.light.map_size = 32;
-    scene->settings.image.ground = true;
 }
 
-static void scene_close(struct scene *scene)
-{
-    tl_environment_release(&scene->environment);
-    test_shape_release(&scene->shapes[0]);
-    test_shape_release(&scene->shapes[1]);
-}
-
-static void draw(tl_renderer *renderer, const struct scene *scene)
+static void draw(tl_renderer *renderer, const struct test_scene *scene)
 {
     tl_error error = {0};
     assert_ok(tl_renderer_draw(renderer, &scene->frame, &scene->settings, &error), error);
@@ -78,7 +42,7 @@ static const char *jobs_run(const tl_plan *plan)
     return names;
 }
 
-static void expect_jobs(tl_renderer *renderer, const struct scene *scene, const char *names)
+static void expect_jobs(tl_renderer *renderer, const struct test_scene *scene, const char *names)
 {
     tl_plan foretold;
     tl_renderer_plan(renderer, &scene->frame, &scene->settings, &foretold);
@@ -94,8 +58,8 @@ static void test_only_what_changed(void **state)
     tl_error error = {0};
     tl_renderer *renderer = tl_renderer_create(device->gpu, &error);
     assert_non_null(renderer);
-    struct scene scene;
-    scene_open(&scene, daylight);
+    struct test_scene scene;
+    scene_open(&scene, test_daylight);
     expect_jobs(renderer, &scene, "cube regions lobe pems surfaces maps blur gbuffer light resolve");
     expect_jobs(renderer, &scene, "");
     scene.frame.camera.eye.x += 0.1f;
@@ -116,7 +80,7 @@ static void test_only_what_changed(void **state)
     expect_jobs(renderer, &scene, "maps blur light resolve");
     scene.frame.environment_revision++;
     expect_jobs(renderer, &scene, "cube regions pems maps blur light resolve");
-    scene_close(&scene);
+    test_scene_close(&scene);
     tl_renderer_destroy(&renderer);
 }
 
@@ -125,21 +89,21 @@ static void test_only_what_changed(void **state)
 static void test_maps_wait_and_catch_up(void **state)
 {
     struct test_device *device = *state;
-    struct scene scene;
+    struct test_scene scene;
     tl_error error = {0};
     const int kinds[] = {TL_VISIBILITY_VSM, TL_VISIBILITY_DEPTH};
     for (int k = 0; k < 2; k++) {
         tl_renderer *renderer = tl_renderer_create(device->gpu, &error);
         tl_renderer *fresh = tl_renderer_create(device->gpu, &error);
-        scene_open(&scene, daylight);
+        scene_open(&scene, test_daylight);
         scene.settings.light.visibility = kinds[k];
         scene.settings.light.refresh = 6;
         draw(renderer, &scene);
         assert_true(tl_renderer_is_at_rest(renderer));
         scene.frame.environment_yaw = 0.7f; /* every shadow falls elsewhere */
-        tl_image moving = test_draw(renderer, &scene.frame, &scene.settings);
+        tl_image moving = test_scene_draw(&scene, renderer);
         assert_false(tl_renderer_is_at_rest(renderer));
-        tl_image resting = test_draw(renderer, &scene.frame, &scene.settings);
+        tl_image resting = test_scene_draw(&scene, renderer);
         assert_true(tl_renderer_is_at_rest(renderer));
         tl_image anew = test_draw(fresh, &scene.frame, &scene.settings);
         size_t bytes = (size_t)anew.width * (size_t)anew.height * 4 * sizeof(float);
@@ -149,7 +113,7 @@ static void test_maps_wait_and_catch_up(void **state)
         tl_image_release(&moving);
         tl_image_release(&resting);
         tl_image_release(&anew);
-        scene_close(&scene);
+        test_scene_close(&scene);
         tl_renderer_destroy(&fresh);
         tl_renderer_destroy(&renderer);
     }
@@ -159,21 +123,21 @@ static void test_maps_wait_and_catch_up(void **state)
 static void test_reuse_changes_nothing(void **state)
 {
     struct test_device *device = *state;
-    struct scene scene;
+    struct test_scene scene;
     tl_error error = {0};
-    scene_open(&scene, daylight);
+    scene_open(&scene, test_daylight);
     draw(device->renderer, &scene);
     scene.frame.camera.eye.y += 0.2f;
     scene.frame.environment_yaw = 0.5f;
     scene.settings.light.lobe = TL_LOBE_SINGLE;
-    tl_image kept = test_draw(device->renderer, &scene.frame, &scene.settings);
+    tl_image kept = test_scene_draw(&scene, device->renderer);
     tl_renderer *fresh = tl_renderer_create(device->gpu, &error);
     tl_image anew = test_draw(fresh, &scene.frame, &scene.settings);
     assert_memory_equal(kept.texels, anew.texels, (size_t)48 * 32 * 4 * sizeof(float));
     tl_renderer_destroy(&fresh);
     tl_image_release(&kept);
     tl_image_release(&anew);
-    scene_close(&scene);
+    test_scene_close(&scene);
 }
 
 static size_t chain_texels(size_t side)
@@ -185,9 +149,9 @@ static size_t chain_texels(size_t side)
 static void test_memory(void **state)
 {
     struct test_device *device = *state;
-    struct scene scene;
+    struct test_scene scene;
     tl_error error = {0};
-    scene_open(&scene, daylight);
+    scene_open(&scene, test_daylight);
     size_t others = tl_gpu_texture_bytes(device->gpu); /* of the group's renderer */
     tl_renderer *renderer = tl_renderer_create(device->gpu, &error);
     scene.settings.image.supersample = 2;
@@ -214,10 +178,10 @@ static void test_memory(void **state)
     }
     tl_renderer_destroy(&renderer);
     assert_int_equal(tl_gpu_texture_bytes(device->gpu), others);
-    scene_close(&scene);
+    test_scene_close(&scene);
 }
 
-static void expect_refusal(tl_renderer *renderer, const struct scene *scene, const char *part)
+static void expect_refusal(tl_renderer *renderer, const struct test_scene *scene, const char *part)
 {
     tl_error error = {0};
     assert_false(tl_renderer_draw(renderer, &scene->frame, &scene->settings, &error));
@@ -231,8 +195,8 @@ static void expect_refusal(tl_renderer *renderer, const struct scene *scene, con
 static void test_too_large(void **state)
 {
     struct test_device *device = *state;
-    struct scene scene;
-    scene_open(&scene, daylight);
+    struct test_scene scene;
+    scene_open(&scene, test_daylight);
     const struct tl_render_settings fine = scene.settings;
     scene.settings.light.map_size = 4096;
     expect_refusal(device->renderer, &scene, "lower light.pems_per_pass");
@@ -248,15 +212,15 @@ static void test_too_large(void **state)
     expect_refusal(device->renderer, &scene, "make image.width");
     scene.settings = fine;
     draw(device->renderer, &scene);
-    scene_close(&scene);
+    test_scene_close(&scene);
 }
 
 static void test_not_finite(void **state)
 {
     struct test_device *device = *state;
-    struct scene scene;
+    struct test_scene scene;
     tl_error error = {0};
-    scene_open(&scene, daylight);
+    scene_open(&scene, test_daylight);
     vec3s kept = scene.shapes[1].mesh.positions[3];
     scene.shapes[1].mesh.positions[3].y = NAN;
     scene.surfaces[1].motion_revision++;
@@ -265,13 +229,13 @@ static void test_not_finite(void **state)
     assert_non_null(strstr(error.message, "vertex 3"));
     scene.shapes[1].mesh.positions[3] = kept;
     draw(device->renderer, &scene);
-    scene_close(&scene);
+    test_scene_close(&scene);
 }
 
 /* Draws, and demands that every channel is finite and not negative, and that coverage is a share. */
-static void expect_sane(tl_renderer *renderer, const struct scene *scene)
+static void expect_sane(tl_renderer *renderer, const struct test_scene *scene)
 {
-    tl_image image = test_draw(renderer, &scene->frame, &scene->settings);
+    tl_image image = test_scene_draw(scene, renderer);
     for (size_t i = 0; i < (size_t)image.width * (size_t)image.height * 4; i++) {
         float value = tl_image_floats(&image)[i];
         assert_true(isfinite(value) && value >= 0);
@@ -288,16 +252,16 @@ static void expect_sane(tl_renderer *renderer, const struct scene *scene)
 static void test_extreme_light(void **state)
 {
     struct test_device *device = *state;
-    vec3s (*const lights[])(vec3s) = {black, spark, daylight};
+    vec3s (*const lights[])(vec3s) = {test_black, spark, test_daylight};
     for (int i = 0; i < 3; i++)
         for (int g = 0; g <= 2; g++)
             for (int lobe = TL_LOBE_SINGLE; lobe <= TL_LOBE_DUAL; lobe++) {
-                struct scene scene;
+                struct test_scene scene;
                 scene_open(&scene, lights[i]);
                 scene.shapes[0].material.glossiness = 0.5f * (float)g;
                 scene.settings.light.lobe = lobe;
                 expect_sane(device->renderer, &scene);
-                scene_close(&scene);
+                test_scene_close(&scene);
             }
 }
 
@@ -310,8 +274,8 @@ static void test_extreme_settings(void **state)
     } cases[] = {{6, 4, 1, 1, 10},   {384, 16, 2, 64, 10}, {13, 5, 3, 12, 0},
                  {6, 512, 16, 1, 0}, {6, 8, 256, 6, 10},   {6, 8, 4096, 1, 0}};
     for (size_t i = 0; i < TL_COUNT(cases); i++) {
-        struct scene scene;
-        scene_open(&scene, daylight);
+        struct test_scene scene;
+        scene_open(&scene, test_daylight);
         scene.settings.light.regions = cases[i].regions;
         scene.settings.light.pem_size = cases[i].pem_size;
         scene.settings.light.map_size = cases[i].map_size;
@@ -320,7 +284,7 @@ static void test_extreme_settings(void **state)
         scene.settings.light.min_variance = 0;
         scene.settings.light.depth_bias_m = 0;
         expect_sane(device->renderer, &scene);
-        scene_close(&scene);
+        test_scene_close(&scene);
     }
 }
 
@@ -328,8 +292,8 @@ static void test_extreme_settings(void **state)
 static void test_extreme_shapes(void **state)
 {
     struct test_device *device = *state;
-    struct scene scene;
-    scene_open(&scene, daylight);
+    struct test_scene scene;
+    scene_open(&scene, test_daylight);
     struct test_shape *sheet = &scene.shapes[1];
     for (size_t i = 0; i < sheet->mesh.vertex_count; i++)
         sheet->mesh.normals[i] = (vec3s){{0, 0, 0}};
@@ -356,10 +320,10 @@ static void test_extreme_shapes(void **state)
     }
     scene.frame.surface_count = 0;
     expect_sane(device->renderer, &scene);
-    scene_close(&scene);
+    test_scene_close(&scene);
 }
 
-static void expect_camera_refusal(tl_renderer *renderer, const struct scene *scene)
+static void expect_camera_refusal(tl_renderer *renderer, const struct test_scene *scene)
 {
     tl_error error = {0};
     assert_false(tl_renderer_draw(renderer, &scene->frame, &scene->settings, &error));
@@ -371,8 +335,8 @@ static void expect_camera_refusal(tl_renderer *renderer, const struct scene *sce
 static void test_extreme_cameras(void **state)
 {
     struct test_device *device = *state;
-    struct scene scene;
-    scene_open(&scene, daylight);
+    struct test_scene scene;
+    scene_open(&scene, test_daylight);
     const struct tl_camera usual = scene.frame.camera;
     const vec3s eyes[] = {{{0, 0, 0}}, {{0.1f, 0.5f, 0}}, {{0.1f, 1.1f, 0}}, {{1, 0, 1}}};
     for (size_t i = 0; i < TL_COUNT(eyes); i++) {
@@ -393,7 +357,7 @@ static void test_extreme_cameras(void **state)
     scene.frame.camera = usual;
     scene.frame.camera.up = (vec3s){{0, 0, 0}};
     expect_camera_refusal(device->renderer, &scene);
-    scene_close(&scene);
+    test_scene_close(&scene);
 }
 
 /* Coverage of supersampled pixels is the share of samples: a square over the left half of an odd image covers
@@ -401,7 +365,7 @@ static void test_extreme_cameras(void **state)
 static void test_coverage(void **state)
 {
     struct test_device *device = *state;
-    tl_environment environment = test_environment(64, 32, daylight);
+    tl_environment environment = test_environment(64, 32, test_daylight);
     struct test_shape square = test_square((vec3s){{-1, 0, 0}}, (vec3s){{1, 0, 0}}, (vec3s){{0, 0, 1}}, 1, 1);
     test_shape_refresh(&square);
     tl_frame frame = test_frame((vec3s){{0, 0, 3}}, (vec3s){{0, 0, 0}}, 10, &square.surface, 1, &environment);
@@ -422,9 +386,9 @@ static void test_coverage(void **state)
 static void test_show(void **state)
 {
     struct test_device *device = *state;
-    struct scene scene;
+    struct test_scene scene;
     tl_error error = {0};
-    scene_open(&scene, daylight);
+    scene_open(&scene, test_daylight);
     scene.settings.image.background = TL_BACKGROUND_GREY;
     scene.settings.image.ground = false;
     scene.settings.image.exposure_ev = -20;
@@ -436,16 +400,16 @@ static void test_show(void **state)
     for (int c = 0; c < 3; c++)
         assert_in_range(corner[c], 104, 106);
     tl_image_release(&shown);
-    scene_close(&scene);
+    test_scene_close(&scene);
 }
 
 /* Another look in the same surfaces, as when two are compared, does not change the image that was drawn. */
 static void test_show_what_was_drawn(void **state)
 {
     struct test_device *device = *state;
-    struct scene scene;
+    struct test_scene scene;
     tl_error error = {0};
-    scene_open(&scene, daylight);
+    scene_open(&scene, test_daylight);
     scene.settings.light.visibility = TL_VISIBILITY_RAYS;
     scene.settings.light.composition = TL_COMPOSE_RATIO;
     tl_image shown, before, after;
@@ -462,7 +426,7 @@ static void test_show_what_was_drawn(void **state)
     tl_image_release(&shown);
     tl_image_release(&before);
     tl_image_release(&after);
-    scene_close(&scene);
+    test_scene_close(&scene);
 }
 
 static vec3s four_colours(vec3s d)
@@ -474,7 +438,8 @@ static vec3s four_colours(vec3s d)
     return d.z > 0 ? (vec3s){{0.5f, 0.5f, 0}} : (vec3s){{0, 0, 0.5f}};
 }
 
-static void expect_shown(struct test_device *device, const struct scene *scene, int red, int green, int blue)
+static void expect_shown(struct test_device *device, const struct test_scene *scene, int red, int green,
+                         int blue)
 {
     tl_error error = {0};
     tl_image shown;
@@ -492,7 +457,7 @@ static void expect_shown(struct test_device *device, const struct scene *scene, 
 static void test_background_direction(void **state)
 {
     struct test_device *device = *state;
-    struct scene scene;
+    struct test_scene scene;
     scene_open(&scene, four_colours);
     scene.frame.surface_count = 0;
     scene.settings.image.ground = false;
@@ -505,7 +470,7 @@ static void test_background_direction(void **state)
     scene.frame.environment_yaw = 0;
     scene.frame.camera.target = (vec3s){{-1, 1, 0}};
     expect_shown(device, &scene, 0, 188, 0);
-    scene_close(&scene);
+    test_scene_close(&scene);
 }
 
 int main(void)

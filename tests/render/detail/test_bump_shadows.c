@@ -2,7 +2,7 @@
  * shaders against a march in double through the same heights, front and back, under
  * low lamps. On a flat square of white cloth, light with shadows over light without is the mask. */
 #include "tests/render/height_oracle.h"
-#include "tests/render/lamplight.h"
+#include "tests/render/scenes.h"
 
 #include "assets/builtin/weave.h"
 #include "config/memory.h"
@@ -16,7 +16,7 @@
 #define DEPTH 0.016
 
 struct bench {
-    struct lamplit scene;
+    struct test_scene scene;
     tl_image ripples;
     tl_weave weave;
     struct tl_detail_heights heights; /* what the renderer makes of either */
@@ -32,7 +32,7 @@ static void bench_open(struct bench *bench, vec3s eye)
     square.material.diffuse = (vec3s){{1, 1, 1}};
     square.material.specular = (vec3s){{0, 0, 0}};
     square.material.double_sided = true;
-    lamplit_open(&bench->scene, square, SIDE, SIDE);
+    test_scene_open_lamplit(&bench->scene, square, SIDE, SIDE);
     bench->scene.frame.camera.eye = eye;
     bench->scene.frame.camera.target = (vec3s){{0, 0, 0}};
     bench->scene.frame.camera.fov_y = 2 * atanf(HALF / glms_vec3_norm(eye));
@@ -42,14 +42,14 @@ static void bench_open(struct bench *bench, vec3s eye)
 static void bench_refresh(struct bench *bench)
 {
     const struct test_shape *square = &bench->scene.shapes[0];
-    lamplit_refresh(&bench->scene);
+    test_scene_refresh(&bench->scene);
     assert_true(
         tl_detail_heights_make(&square->material, square->mesh.parts[0].uv_metres, 1, &bench->heights));
 }
 
 static void bench_close(struct bench *bench)
 {
-    lamplit_close(&bench->scene);
+    test_scene_close(&bench->scene);
     tl_detail_heights_release(&bench->heights);
     tl_image_release(&bench->ripples);
     tl_weave_release(&bench->weave);
@@ -172,8 +172,8 @@ static void draw_all(struct bench *bench, struct test_device *device, int shadow
     for (int i = 0; i < TURNS; i++) {
         vec3s light = lights[i];
         light.z *= bench->behind ? -1 : 1;
-        bench->scene.lamps[0] = lamp_towards(light, 3);
-        images[i] = lamplit_draw(&bench->scene, device->renderer);
+        bench->scene.lamps[0] = test_lamp_towards(light, 3);
+        images[i] = test_scene_draw(&bench->scene, device->renderer);
     }
 }
 

@@ -1,7 +1,7 @@
 /* Detail in the frame against its counterpart on the CPU and against the reference; and that what is not
  * asked for is not there. A square whose colour is its u, in light of 1 from everywhere, shows where its maps
  * are read. */
-#include "tests/render/shapes.h"
+#include "tests/render/scenes.h"
 
 #include "config/memory.h"
 #include "render/detail/cones.h"

@@ -1,6 +1,6 @@
 /* A weave that is seen from afar [TECHNIQUES C8]: its mean shade against that of the same view with samples
  * finer than its texels, octave by octave; and how much it shimmers while the camera backs away. */
-#include "tests/render/shapes.h"
+#include "tests/render/scenes.h"
 
 #include "assets/builtin/studio.h"
 #include "assets/builtin/weave.h"

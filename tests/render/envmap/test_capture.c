@@ -1,5 +1,5 @@
 /* The scene captured into a cube, against ray tracing: closed forms for a ball, and the reference. */
-#include "tests/render/shapes.h"
+#include "tests/render/scenes.h"
 
 #include "render/env/lobes.h"
 
@@ -21,34 +21,14 @@ static const vec3s kd = {{0.8f, 0.3f, 0.1f}};
 static const vec3s centre = {{0.5f, 0.3f, -2.5f}}; /* of the big ball, seen from the origin */
 #define RADIUS 1.5f
 
-/* A big matt ball, and a small mirror about the origin, from where the scene is captured. */
-struct scene {
-    struct test_shape shapes[2];
-    tl_surface surfaces[2];
-    tl_environment environment;
-    struct tl_render_settings settings;
-    tl_frame frame;
-};
-
-static void list_surfaces(struct scene *scene)
+static void scene_open(struct test_scene *scene)
 {
-    for (int i = 0; i < 2; i++) {
-        test_shape_refresh(&scene->shapes[i]);
-        scene->surfaces[i] = scene->shapes[i].surface;
-    }
-}
-
-static void scene_open(struct scene *scene)
-{
-    *scene = (struct scene){
-        .shapes = {test_sphere(centre, RADIUS, 96), test_sphere((vec3s){{0, 0, 0}}, 0.05f, 48)},
-        .environment = test_environment(128, 64, lights),
-        .settings = test_settings(8, 8)};
-    scene->shapes[0].material.diffuse = kd;
-    scene->shapes[0].material.specular = (vec3s){{0, 0, 0}};
-    list_surfaces(scene);
-    scene->frame =
-        test_frame((vec3s){{0, 0, 1}}, (vec3s){{0, 0, 0}}, 1, scene->surfaces, 2, &scene->environment);
+    test_scene_open(scene, test_environment(128, 64, lights), (vec3s){{0, 0, 1}}, (vec3s){{0, 0, 0}}, 1, 8,
+                    8);
+    tl_material *ball = test_scene_add(scene, test_sphere(centre, RADIUS, 96));
+    test_scene_add(scene, test_sphere((vec3s){{0, 0, 0}}, 0.05f, 48));
+    ball->diffuse = kd;
+    ball->specular = (vec3s){{0, 0, 0}};
     scene->settings.light.method = TL_METHOD_MAPS;
     scene->settings.maps.mode = TL_MAPS_MIRROR;
     scene->settings.maps.size = SIZE;
@@ -63,16 +43,9 @@ static void scene_open(struct scene *scene)
                      fmaxf(boxes[0].upper.raw[axis], boxes[1].upper.raw[axis]));
 }
 
-static void scene_close(struct scene *scene)
+static void draw(tl_renderer *renderer, struct test_scene *scene)
 {
-    for (int i = 0; i < 2; i++)
-        test_shape_release(&scene->shapes[i]);
-    tl_environment_release(&scene->environment);
-}
-
-static void draw(tl_renderer *renderer, struct scene *scene)
-{
-    tl_image image = test_draw(renderer, &scene->frame, &scene->settings);
+    tl_image image = test_scene_draw(scene, renderer);
     tl_image_release(&image);
 }
 
@@ -106,7 +79,7 @@ static vec3s seen(const struct truth *truth, vec3s direction)
 
 /* Rays from the origin, 8 x 8 a texel. Whole texels: normals in halves and bilinear look-ups. Texels that the
  * outline crosses hold four samples: off by an eighth of the contrast on average, half at most. */
-static void check_cube(tl_renderer *renderer, struct scene *scene, float yaw)
+static void check_cube(tl_renderer *renderer, struct test_scene *scene, float yaw)
 {
     enum { RAYS = 8 };
     tl_error error;
@@ -155,11 +128,11 @@ static void check_cube(tl_renderer *renderer, struct scene *scene, float yaw)
 static void a_ball_is_captured(void **state)
 {
     struct test_device *device = *state;
-    struct scene scene;
+    struct test_scene scene;
     scene_open(&scene);
     check_cube(device->renderer, &scene, 0);
     check_cube(device->renderer, &scene, 1.2f);
-    scene_close(&scene);
+    test_scene_close(&scene);
 }
 
 /* The reference looks along -Z, with +X on its right; the face has it on its left. The ball is convex and
@@ -168,7 +141,7 @@ static void a_ball_is_captured(void **state)
 static void the_reference_sees_the_same(void **state)
 {
     struct test_device *device = *state;
-    struct scene scene;
+    struct test_scene scene;
     tl_error error;
     tl_image cube;
     scene_open(&scene);
@@ -203,7 +176,7 @@ static void the_reference_sees_the_same(void **state)
     assert_true(sqrt(squares / sum) < 0.01 + 3 * noise);
     tl_image_release(&truth);
     tl_image_release(&cube);
-    scene_close(&scene);
+    test_scene_close(&scene);
 }
 
 /* The small mirror shows the big ball where it should: looking past the mirror's middle, at the normal
@@ -211,7 +184,7 @@ static void the_reference_sees_the_same(void **state)
 static void a_mirror_shows_the_scene(void **state)
 {
     struct test_device *device = *state;
-    struct scene scene;
+    struct test_scene scene;
     scene_open(&scene);
     tl_cube environment = tl_cube_from_environment(&scene.environment, 64);
     struct truth truth = {.yaw = 0};
@@ -223,20 +196,20 @@ static void a_mirror_shows_the_scene(void **state)
     scene.frame.camera.eye = glms_vec3_add(spot, to_eye);
     scene.frame.camera.target = spot;
     scene.frame.camera.fov_y = 0.001f;
-    tl_image image = test_draw(device->renderer, &scene.frame, &scene.settings);
+    tl_image image = test_scene_draw(&scene, device->renderer);
     vec3s expected = seen(&truth, to_ball);
     for (int c = 0; c < 3; c++)
         assert_near(test_pixel(&image, 4, 4)[c], expected.raw[c], 0.02 * BRIGHTEST);
     tl_image_release(&image);
     scene.settings.maps.capture_every = 0; /* the environment alone */
-    image = test_draw(device->renderer, &scene.frame, &scene.settings);
+    image = test_scene_draw(&scene, device->renderer);
     vec3s alone = lights(to_ball);
     for (int c = 0; c < 3; c++)
         assert_near(test_pixel(&image, 4, 4)[c], alone.raw[c], 0.02 * BRIGHTEST);
     tl_image_release(&image);
     tl_lobes_release(&truth.lobes);
     tl_cube_release(&environment);
-    scene_close(&scene);
+    test_scene_close(&scene);
 }
 
 static enum tl_job_action capture_action(const tl_renderer *renderer)
@@ -249,10 +222,10 @@ static enum tl_job_action capture_action(const tl_renderer *renderer)
     return TL_JOB_DROP;
 }
 
-static void move(struct scene *scene)
+static void move(struct test_scene *scene)
 {
     scene->shapes[0].mesh.positions[0].y += 0.001f;
-    list_surfaces(scene);
+    test_scene_refresh(scene);
 }
 
 /* Something moves in every frame: every third one is captured. At rest what is pending is captured, and then
@@ -260,7 +233,7 @@ static void move(struct scene *scene)
 static void every_few_frames(void **state)
 {
     struct test_device *device = *state;
-    struct scene scene;
+    struct test_scene scene;
     scene_open(&scene);
     scene.settings.maps.size = 8;
     scene.settings.maps.capture_every = 3;
@@ -282,7 +255,7 @@ static void every_few_frames(void **state)
         draw(device->renderer, &scene);
         assert_int_equal(capture_action(device->renderer), TL_JOB_RUN);
     }
-    scene_close(&scene);
+    test_scene_close(&scene);
 }
 
 static void nothing_captured_is_told(void **state)

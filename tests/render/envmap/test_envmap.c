@@ -1,6 +1,6 @@
 /* Environment mapping against numerical integration on the CPU, in every mode, composition and layout; the
- * white furnace; what the plan runs and what it costs. */
-#include "tests/render/shapes.h"
+ * test_white furnace; what the plan runs and what it costs. */
+#include "tests/render/scenes.h"
 
 #include "render/env/layout.h"
 #include "render/scene/view.h"
@@ -20,12 +20,6 @@ static vec3s lights(vec3s d)
     return (vec3s){{0.2f + warm, 0.2f + 0.7f * warm + 0.6f * cold, 0.2f + cold + 0.2f * d.y}};
 }
 #define BRIGHTEST 3.2
-
-static vec3s white(vec3s d)
-{
-    (void)d;
-    return (vec3s){{1, 1, 1}};
-}
 
 /* K_s [DESIGN 3], integrated over the environment's texels. */
 static vec3s integrate(const tl_environment *environment, vec3s direction, double s)
@@ -129,45 +123,36 @@ static vec3s expected_light(const tl_environment *environment, const struct tl_m
 }
 
 /* One ball, looked at from outside or from within. */
-struct scene {
-    struct test_shape ball;
-    tl_environment environment;
-    struct tl_render_settings settings;
-    tl_frame frames[2];
-};
-
-static void scene_open(struct scene *scene, vec3s (*light)(vec3s))
+static void scene_open(struct test_scene *scene, test_radiance *radiance)
 {
-    *scene = (struct scene){.ball = test_sphere((vec3s){{0, 0, 0}}, 1, 96),
-                            .environment = test_environment(128, 64, light),
-                            .settings = test_settings(SIDE, SIDE)};
-    scene->ball.material.diffuse = kd;
-    scene->ball.material.specular = (vec3s){{1, 1, 1}};
-    scene->ball.material.glossiness = glossiness;
-    scene->ball.material.gloss.fresnel = TL_FRESNEL_DIELECTRIC;
-    scene->ball.material.gloss.index = (float)INDEX;
-    test_shape_refresh(&scene->ball);
+    test_scene_open(scene, test_environment(128, 64, radiance), (vec3s){{1.5f, 1, 3}}, (vec3s){{0, 0, 0}}, 35,
+                    SIDE, SIDE);
+    tl_material *ball = test_scene_add(scene, test_sphere((vec3s){{0, 0, 0}}, 1, 96));
+    ball->diffuse = kd;
+    ball->specular = (vec3s){{1, 1, 1}};
+    ball->glossiness = glossiness;
+    ball->gloss.fresnel = TL_FRESNEL_DIELECTRIC;
+    ball->gloss.index = (float)INDEX;
     scene->settings.light.method = TL_METHOD_MAPS;
     scene->settings.maps.size = 64;
     scene->settings.maps.minify = false; /* one direction a pixel */
-    scene->frames[0] = test_frame((vec3s){{1.5f, 1, 3}}, (vec3s){{0, 0, 0}}, 35, &scene->ball.surface, 1,
-                                  &scene->environment);
-    scene->frames[1] = test_frame((vec3s){{0, 0.8f, 0}}, (vec3s){{0.5f, 0.3f, 0.5f}}, 90,
-                                  &scene->ball.surface, 1, &scene->environment);
 }
 
-static void scene_close(struct scene *scene)
+/* The scene's own frame, or one whose eye is inside the ball. */
+static tl_frame frame_of(const struct test_scene *scene, bool inside)
 {
-    test_shape_release(&scene->ball);
-    tl_environment_release(&scene->environment);
+    return inside ? test_frame((vec3s){{0, 0.8f, 0}}, (vec3s){{0.5f, 0.3f, 0.5f}}, 90, scene->surfaces, 1,
+                               &scene->environment)
+                  : scene->frame;
 }
 
 /* The largest error of a picture. */
-static double compare(const struct scene *scene, tl_renderer *renderer, bool inside, int *counted,
+static double compare(const struct test_scene *scene, tl_renderer *renderer, bool inside, int *counted,
                       int *totals)
 {
-    tl_image image = test_draw(renderer, &scene->frames[inside], &scene->settings);
-    struct tl_view view = tl_view_make(&scene->frames[inside].camera, SIDE, SIDE);
+    tl_frame frame = frame_of(scene, inside);
+    tl_image image = test_draw(renderer, &frame, &scene->settings);
+    struct tl_view view = tl_view_make(&frame.camera, SIDE, SIDE);
     double worst = 0;
     for (int i = 0; i < SIDE * SIDE; i++) {
         struct point point;
@@ -195,7 +180,7 @@ static const char *const fresnels[] = {"off", "additive", "coat"};
 static void modes_are_integrals(void **state)
 {
     struct test_device *device = *state;
-    struct scene scene;
+    struct test_scene scene;
     scene_open(&scene, lights);
     for (int mode = 0; mode < 6; mode++)
         for (int fresnel = 0; fresnel < 3; fresnel++) {
@@ -209,7 +194,7 @@ static void modes_are_integrals(void **state)
             assert_int_equal(totals, 0);
             assert_true(worst < TOLERANCE);
         }
-    scene_close(&scene);
+    test_scene_close(&scene);
 }
 
 /* From within, light refracts out of the ball where it can, and is totally reflected elsewhere. At the
@@ -217,12 +202,13 @@ static void modes_are_integrals(void **state)
 static void backs_refract_outwards(void **state)
 {
     struct test_device *device = *state;
-    struct scene scene;
+    struct test_scene scene;
     int counted = 0, totals = 0, off = 0;
     scene_open(&scene, lights);
     scene.settings.maps.mode = TL_MAPS_REFRACTION;
-    tl_image image = test_draw(device->renderer, &scene.frames[1], &scene.settings);
-    struct tl_view view = tl_view_make(&scene.frames[1].camera, SIDE, SIDE);
+    tl_frame frame = frame_of(&scene, true);
+    tl_image image = test_draw(device->renderer, &frame, &scene.settings);
+    struct tl_view view = tl_view_make(&frame.camera, SIDE, SIDE);
     for (int i = 0; i < SIDE * SIDE; i++) {
         struct point point;
         bool total;
@@ -240,13 +226,13 @@ static void backs_refract_outwards(void **state)
     assert_true(totals > 20 && counted - totals > 20);
     assert_int_equal(off, 0);
     tl_image_release(&image);
-    scene_close(&scene);
+    test_scene_close(&scene);
 }
 
 static void layouts_are_integrals(void **state)
 {
     struct test_device *device = *state;
-    struct scene scene;
+    struct test_scene scene;
     scene_open(&scene, lights);
     for (int layout = 0; layout <= TL_LAYOUT_COUNT; layout++) {
         bool by_matrix = layout == TL_LAYOUT_COUNT;
@@ -264,26 +250,26 @@ static void layouts_are_integrals(void **state)
             assert_true(worst < TOLERANCE);
         }
     }
-    scene_close(&scene);
+    test_scene_close(&scene);
 }
 
-/* In white light of 1 a lobe brings 1 whatever its exponent: what is left are the weights. Reflectances and
- * colours are halves, 5e-4, and lobes are exact to 1e-3 (test_lobes.c). */
+/* In test_white light of 1 a lobe brings 1 whatever its exponent: what is left are the weights. Reflectances
+ * and colours are halves, 5e-4, and lobes are exact to 1e-3 (test_lobes.c). */
 static void white_furnace(void **state)
 {
     struct test_device *device = *state;
-    struct scene scene;
-    scene_open(&scene, white);
+    struct test_scene scene;
+    scene_open(&scene, test_white);
     double worst = 0;
     scene.settings.maps.size = 32;
-    struct tl_view view = tl_view_make(&scene.frames[0].camera, SIDE, SIDE);
+    struct tl_view view = tl_view_make(&scene.frame.camera, SIDE, SIDE);
     for (int layout = 0; layout < TL_LAYOUT_COUNT; layout++)
         for (int mode = 0; mode < 6; mode++)
             for (int fresnel = 0; fresnel < 3; fresnel++) {
                 scene.settings.maps.layout = layout;
                 scene.settings.maps.mode = mode;
                 scene.settings.maps.fresnel = fresnel;
-                tl_image image = test_draw(device->renderer, &scene.frames[0], &scene.settings);
+                tl_image image = test_scene_draw(&scene, device->renderer);
                 for (int i = 0; i < SIDE * SIDE; i++) {
                     struct point point;
                     if (!find_point(&view, i % SIDE, i / SIDE, false, &point))
@@ -306,16 +292,16 @@ static void white_furnace(void **state)
                 }
                 tl_image_release(&image);
             }
-    print_message("white furnace: off by %.1e\n", worst);
-    scene_close(&scene);
+    print_message("test_white furnace: off by %.1e\n", worst);
+    test_scene_close(&scene);
 }
 
 /* Of a material with a coat, and light that comes through: what the film leaves of the two lobes and of the
  * diffuse light of the other side, and what it reflects. */
-static vec3s layered_light(const struct scene *scene, const struct point *point)
+static vec3s layered_light(const struct test_scene *scene, const struct point *point)
 {
     const tl_environment *environment = &scene->environment;
-    const tl_material *material = &scene->ball.material;
+    const tl_material *material = &scene->shapes[0].material;
     float coat = material->coat * (float)dielectric(1.5, point->cosine);
     vec3s through = integrate(environment, glms_vec3_negate(point->normal), 1);
     vec3s under = glms_vec3_add(glms_vec3_mul(kd, integrate(environment, point->normal, 1)),
@@ -328,14 +314,14 @@ static vec3s layered_light(const struct scene *scene, const struct point *point)
 static void layers_are_integrals(void **state)
 {
     struct test_device *device = *state;
-    struct scene scene;
+    struct test_scene scene;
     scene_open(&scene, lights);
-    scene.ball.material.coat = 0.8f;
-    scene.ball.material.coat_glossiness = 0.95f; /* s = 20 */
-    scene.ball.material.transmission = (vec3s){{0.3f, 0.2f, 0.1f}};
-    test_shape_refresh(&scene.ball);
-    tl_image image = test_draw(device->renderer, &scene.frames[0], &scene.settings);
-    struct tl_view view = tl_view_make(&scene.frames[0].camera, SIDE, SIDE);
+    scene.shapes[0].material.coat = 0.8f;
+    scene.shapes[0].material.coat_glossiness = 0.95f; /* s = 20 */
+    scene.shapes[0].material.transmission = (vec3s){{0.3f, 0.2f, 0.1f}};
+    test_scene_refresh(&scene);
+    tl_image image = test_scene_draw(&scene, device->renderer);
+    struct tl_view view = tl_view_make(&scene.frame.camera, SIDE, SIDE);
     double worst = 0;
     for (int i = 0; i < SIDE * SIDE; i++) {
         struct point point;
@@ -348,7 +334,7 @@ static void layers_are_integrals(void **state)
     print_message("coat and light from behind: off by %.2f %% of the brightest\n", 100 * worst / BRIGHTEST);
     assert_true(worst < TOLERANCE);
     tl_image_release(&image);
-    scene_close(&scene);
+    test_scene_close(&scene);
 }
 
 /* The unshadowed light of the other passes, which have exact lobes of their own: no more than texels differ.
@@ -356,19 +342,19 @@ static void layers_are_integrals(void **state)
 static void surfaces_are_lit_as_elsewhere(void **state)
 {
     struct test_device *device = *state;
-    struct scene scene;
+    struct test_scene scene;
     scene_open(&scene, lights);
     scene.settings.maps.size = 128;
-    tl_image image = test_draw(device->renderer, &scene.frames[0], &scene.settings);
+    tl_image image = test_scene_draw(&scene, device->renderer);
     scene.settings.light.method = TL_METHOD_UNSHADOWED;
     scene.settings.light.composition = TL_COMPOSE_RATIO;
     scene.settings.light.pem_size = 128;
-    tl_image exact = test_draw(device->renderer, &scene.frames[0], &scene.settings);
+    tl_image exact = test_scene_draw(&scene, device->renderer);
     for (size_t i = 0; i < (size_t)4 * SIDE * SIDE; i++)
         assert_near(tl_image_floats(&image)[i], tl_image_floats(&exact)[i], 0.003 * BRIGHTEST);
     tl_image_release(&image);
     tl_image_release(&exact);
-    scene_close(&scene);
+    test_scene_close(&scene);
 }
 
 /* Bright and dark patches of some degrees. */
@@ -400,16 +386,16 @@ static void levels_stand_for_samples(void **state)
 {
     struct test_device *device = *state;
     for (int layout = 0; layout < TL_LAYOUT_COUNT; layout++) {
-        struct scene scene;
+        struct test_scene scene;
         scene_open(&scene, checks);
         scene.settings.maps.layout = layout;
         scene.settings.maps.mode = TL_MAPS_MIRROR;
-        tl_image sharp = test_draw(device->renderer, &scene.frames[0], &scene.settings);
+        tl_image sharp = test_scene_draw(&scene, device->renderer);
         scene.settings.maps.minify = true;
-        tl_image levels = test_draw(device->renderer, &scene.frames[0], &scene.settings);
+        tl_image levels = test_scene_draw(&scene, device->renderer);
         scene.settings.maps.minify = false;
         scene.settings.image.supersample = 16;
-        tl_image truth = test_draw(device->renderer, &scene.frames[0], &scene.settings);
+        tl_image truth = test_scene_draw(&scene, device->renderer);
         double without = difference(&sharp, &truth), with = difference(&levels, &truth);
         print_message("%s: RMS error of a small mirror %.3f, by levels %.3f\n", tl_layout_names[layout],
                       without, with);
@@ -417,7 +403,7 @@ static void levels_stand_for_samples(void **state)
         tl_image_release(&sharp);
         tl_image_release(&levels);
         tl_image_release(&truth);
-        scene_close(&scene);
+        test_scene_close(&scene);
     }
 }
 
@@ -431,9 +417,9 @@ static enum tl_job_action action_of(const tl_plan *plan, const char *name)
     return TL_JOB_DROP;
 }
 
-static void draw(tl_renderer *renderer, struct scene *scene)
+static void draw(tl_renderer *renderer, struct test_scene *scene)
 {
-    tl_image image = test_draw(renderer, &scene->frames[0], &scene->settings);
+    tl_image image = test_scene_draw(scene, renderer);
     tl_image_release(&image);
 }
 
@@ -442,9 +428,9 @@ static void sphere_maps_follow_the_view(void **state)
 {
     struct test_device *device = *state;
     for (int layout = 0; layout < TL_LAYOUT_COUNT; layout++) {
-        struct scene scene;
+        struct test_scene scene;
         scene_open(&scene, lights);
-        struct tl_camera *camera = &scene.frames[0].camera;
+        struct tl_camera *camera = &scene.frame.camera;
         *camera = (struct tl_camera){.eye = {{0, 0, 4}}, .up = {{0, 1, 0}}, .fov_y = 0.6f, 0.1f, 10};
         scene.settings.maps.layout = layout;
         scene.settings.maps.size = 16;
@@ -460,7 +446,7 @@ static void sphere_maps_follow_the_view(void **state)
         bool follows = layout == TL_LAYOUT_SPHERE;
         assert_int_equal(action_of(plan, "envmap"), follows ? TL_JOB_RUN : TL_JOB_REUSE);
         assert_int_equal(action_of(plan, "envmap_lobes"), TL_JOB_REUSE);
-        scene_close(&scene);
+        test_scene_close(&scene);
     }
 }
 
@@ -470,7 +456,7 @@ static void nobody_pays_who_does_not_ask(void **state)
     (void)state;
     struct test_device *fresh;
     assert_int_equal(test_device_open((void **)&fresh), 0);
-    struct scene scene;
+    struct test_scene scene;
     scene_open(&scene, lights);
     scene.settings.light.method = TL_METHOD_UNSHADOWED;
     const char *const jobs[] = {"envmap_lobes", "capture", "envmap", "look_up"};
@@ -487,7 +473,7 @@ static void nobody_pays_who_does_not_ask(void **state)
     assert_int_equal(action_of(plan, "regions"), TL_JOB_DROP);
     /* at least 6 faces of 64 x 64 for the diffuse lobe, two glossy ones and the environment */
     assert_true(with.pems - without.pems >= (size_t)4 * 6 * 64 * 64 * 16);
-    scene_close(&scene);
+    test_scene_close(&scene);
     assert_int_equal(test_device_close((void **)&fresh), 0);
 }
 

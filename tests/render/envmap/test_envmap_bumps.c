@@ -1,6 +1,6 @@
 /* A normal map and an environment map together, per pixel, in world space, from tangent frames that follow a
  * sheet as it moves [Heidrich and Seidel 1999, 5.2]: against rays through the mesh on the CPU. */
-#include "tests/render/shapes.h"
+#include "tests/render/scenes.h"
 
 #include "cloth/mesh/topology.h"
 #include "cloth/tangents/frames.h"

@@ -2,17 +2,11 @@
  * images that a new renderer gives, bit for bit. */
 #include "render/frame/prepared.h"
 
-#include "tests/render/shapes.h"
+#include "tests/render/scenes.h"
 
 #include "tests/testing.h"
 
 #include <string.h>
-
-static vec3s daylight(vec3s d)
-{
-    bool sun = glms_vec3_dot(d, glms_vec3_normalize((vec3s){{0.3f, 0.8f, 0.5f}})) > 0.99f;
-    return sun ? (vec3s){{60, 55, 50}} : (vec3s){{0.4f, 0.5f, 0.6f + 0.3f * d.y}};
-}
 
 static vec3s evening(vec3s d)
 {
@@ -29,7 +23,7 @@ struct scene {
 /* Method, visibility and cut of preset review, in small. */
 static void scene_open(struct scene *scene)
 {
-    scene->environments[0] = test_environment(64, 32, daylight);
+    scene->environments[0] = test_environment(64, 32, test_daylight);
     scene->environments[1] = test_environment(64, 32, evening);
     scene->ball = test_sphere((vec3s){{0, 0.5f, 0}}, 0.4f, 24);
     test_shape_refresh(&scene->ball);

@@ -1,6 +1,6 @@
 /* Moving light: a renderer that has followed a sequence of environments draws what a new
  * renderer draws that knows that frame only. No region, PEM or map is left over from an earlier one. */
-#include "tests/render/shapes.h"
+#include "tests/render/scenes.h"
 
 #include "config/memory.h"
 
@@ -26,41 +26,17 @@ static vec3s sky(vec3s d)
     return (vec3s){{red + grey, 0.4f + grey, blue + grey}};
 }
 
-struct scene {
-    tl_environment environment;
-    struct test_shape shapes[2];
-    tl_surface surfaces[2];
-    tl_frame frame;
-    struct tl_render_settings settings;
-};
-
-static void scene_open(struct scene *scene)
+static void scene_open(struct test_scene *scene)
 {
     sky_frame = 0;
-    scene->environment = test_environment(64, 32, sky);
-    scene->shapes[0] = test_sphere((vec3s){{0, 0.5f, 0}}, 0.4f, 16);
-    scene->shapes[1] = test_sheet(1.1f, 0.5f, 0.06f, 2, 16);
-    for (int i = 0; i < 2; i++) {
-        scene->shapes[i].material.glossiness = i == 0 ? 0.95f : 0.3f;
-        test_shape_refresh(&scene->shapes[i]);
-        scene->surfaces[i] = scene->shapes[i].surface;
-    }
-    scene->frame =
-        test_frame((vec3s){{1, 1.5f, 2}}, (vec3s){{0, 0.6f, 0}}, 40, scene->surfaces, 2, &scene->environment);
-    scene->settings = test_settings(48, 32);
-    scene->settings.image.ground = true;
-}
-
-static void scene_close(struct scene *scene)
-{
-    tl_environment_release(&scene->environment);
-    test_shape_release(&scene->shapes[0]);
-    test_shape_release(&scene->shapes[1]);
+    test_scene_open_ball_and_sheet(scene, sky);
+    scene->shapes[0].material.glossiness = 0.95f;
+    scene->shapes[1].material.glossiness = 0.3f;
 }
 
 /* The next frame's environment in the place of the last, as a session does it; every fourth frame the shapes
  * move too, every seventh the environment is turned. */
-static void scene_step(struct scene *scene, int number)
+static void scene_step(struct test_scene *scene, int number)
 {
     sky_frame = number;
     tl_environment_release(&scene->environment);
@@ -75,14 +51,14 @@ static void scene_step(struct scene *scene, int number)
         scene->frame.environment_yaw += 0.3f;
 }
 
-static void expect_fresh(struct test_device *device, tl_renderer *renderer, const struct scene *scene,
+static void expect_fresh(struct test_device *device, tl_renderer *renderer, const struct test_scene *scene,
                          int number)
 {
     tl_error error = {0};
-    tl_image followed = test_draw(renderer, &scene->frame, &scene->settings);
+    tl_image followed = test_scene_draw(scene, renderer);
     tl_renderer *fresh = tl_renderer_create(device->gpu, &error);
     assert_non_null(fresh);
-    tl_image anew = test_draw(fresh, &scene->frame, &scene->settings);
+    tl_image anew = test_scene_draw(scene, fresh);
     size_t bytes = (size_t)followed.width * (size_t)followed.height * 4 * sizeof(float);
     if (memcmp(followed.texels, anew.texels, bytes) != 0)
         print_error("frame %d differs from that of a new renderer\n", number);
@@ -97,17 +73,17 @@ static void expect_fresh(struct test_device *device, tl_renderer *renderer, cons
 static void play(struct test_device *device, const struct tl_light_params *light, int every)
 {
     tl_error error = {0};
-    struct scene scene;
+    struct test_scene scene;
     scene_open(&scene);
     scene.settings.light = *light;
     tl_renderer *renderer = tl_renderer_create(device->gpu, &error);
     assert_non_null(renderer);
-    tl_image before = test_draw(renderer, &scene.frame, &scene.settings);
+    tl_image before = test_scene_draw(&scene, renderer);
     for (int number = 1; number < FRAMES; number++) {
         scene_step(&scene, number);
         if (number % every == 0 || number == FRAMES - 1)
             expect_fresh(device, renderer, &scene, number);
-        tl_image now = test_draw(renderer, &scene.frame, &scene.settings);
+        tl_image now = test_scene_draw(&scene, renderer);
         size_t bytes = (size_t)now.width * (size_t)now.height * 4 * sizeof(float);
         assert_memory_not_equal(now.texels, before.texels, bytes);
         tl_image_release(&before);
@@ -115,7 +91,7 @@ static void play(struct test_device *device, const struct tl_light_params *light
     }
     tl_image_release(&before);
     tl_renderer_destroy(&renderer);
-    scene_close(&scene);
+    test_scene_close(&scene);
 }
 
 static struct tl_light_params small_light(void)
@@ -165,14 +141,14 @@ static double distance(const tl_image *a, const tl_image *b)
 }
 
 /* What a renderer draws that has drawn `last` before; NULL: nothing. */
-static tl_image draw_after(struct test_device *device, const tl_frame *last, const struct scene *scene)
+static tl_image draw_after(struct test_device *device, const tl_frame *last, const struct test_scene *scene)
 {
     tl_error error = {0};
     tl_renderer *renderer = tl_renderer_create(device->gpu, &error);
     assert_non_null(renderer);
     if (last)
         assert_ok(tl_renderer_draw(renderer, last, &scene->settings, &error), error);
-    tl_image image = test_draw(renderer, &scene->frame, &scene->settings);
+    tl_image image = test_scene_draw(scene, renderer);
     tl_renderer_destroy(&renderer);
     return image;
 }
@@ -185,7 +161,7 @@ static void rays_follow(void **state)
 {
     struct test_device *device = *state;
     tl_error error = {0};
-    struct scene scene;
+    struct test_scene scene;
     scene_open(&scene);
     scene.settings.light = small_light();
     scene.settings.light.cut = TL_CUT_SPHERE;
@@ -197,11 +173,11 @@ static void rays_follow(void **state)
     scene.settings.light.refresh = 0;
     tl_renderer *renderer = tl_renderer_create(device->gpu, &error);
     assert_non_null(renderer);
-    tl_image before = test_draw(renderer, &scene.frame, &scene.settings);
+    tl_image before = test_scene_draw(&scene, renderer);
     double stale = 0, noise = 0, change = 0;
     for (int number = 8; number < FRAMES; number += 8) {
         scene_step(&scene, number);
-        tl_image followed = test_draw(renderer, &scene.frame, &scene.settings);
+        tl_image followed = test_scene_draw(&scene, renderer);
         tl_frame last = scene.frame;
         last.environment_revision--;
         tl_image anew = draw_after(device, NULL, &scene), again = draw_after(device, &last, &scene);
@@ -217,14 +193,14 @@ static void rays_follow(void **state)
     assert_true(stale < 1.25 * noise && noise < 0.25 * change);
     tl_image_release(&before);
     tl_renderer_destroy(&renderer);
-    scene_close(&scene);
+    test_scene_close(&scene);
 }
 
 /* The environment as it is seen behind belongs to the frame too. */
 static void the_background_follows(void **state)
 {
     struct test_device *device = *state;
-    struct scene scene;
+    struct test_scene scene;
     tl_error error = {0};
     scene_open(&scene);
     scene.frame.surface_count = 0;
@@ -248,7 +224,7 @@ static void the_background_follows(void **state)
         tl_image_release(&shown[1]);
     }
     tl_renderer_destroy(&renderer);
-    scene_close(&scene);
+    test_scene_close(&scene);
 }
 
 int main(void)

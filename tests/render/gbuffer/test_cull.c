@@ -1,6 +1,6 @@
 /* Triangles that a picture may show, against every triangle at every sample in double: what is seen is kept,
  * what surely is not is left out, and the GPU draws the same picture from what is kept. */
-#include "tests/render/shapes.h"
+#include "tests/render/scenes.h"
 
 #include "config/memory.h"
 #include "render/gbuffer/samples.h"

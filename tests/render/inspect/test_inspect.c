@@ -1,6 +1,6 @@
 /* Views in place of light: what they show is what the frame holds, light is as it was, and nothing runs that
  * they do not need. The read-out under a pixel, and the layers of an image. */
-#include "tests/render/shapes.h"
+#include "tests/render/scenes.h"
 
 #include "config/memory.h"
 #include "render/frame/frame.h"

@@ -1,6 +1,6 @@
 /* Materials that are more than two cosine lobes, lit by rays: each against the oracle, which knows their true
  * gloss; what a scene without them is spared; and their extremes. */
-#include "tests/render/shapes.h"
+#include "tests/render/scenes.h"
 
 #include "config/memory.h"
 #include "render/metrics/compare.h"
@@ -19,31 +19,18 @@ static vec3s daylight(vec3s d)
     return window ? (vec3s){{6, 6, 5}} : (vec3s){{sky, sky, sky}};
 }
 
-static vec3s furnace(vec3s d)
-{
-    (void)d;
-    return (vec3s){{1, 1, 1}};
-}
-
 /* A sheet that hangs over a ball. */
-struct scene {
-    tl_environment environment;
-    struct test_shape sheet, ball;
-    tl_surface surfaces[2];
-    tl_frame frame;
-    struct tl_render_settings settings;
-};
-
-static void scene_open(struct scene *scene, vec3s (*radiance)(vec3s))
+static void scene_open(struct test_scene *scene, test_radiance *radiance)
 {
-    *scene = (struct scene){.environment = test_environment(64, 32, radiance),
-                            .sheet = test_sheet(0.9f, 0.6f, 0.05f, 2, 24),
-                            .ball = test_sphere((vec3s){{0, 0.4f, 0}}, 0.35f, 32)};
-    scene->sheet.material.diffuse = (vec3s){{0.4f, 0.3f, 0.3f}};
-    scene->sheet.material.glossiness = 0.9f;
-    scene->sheet.material.specular = (vec3s){{0.2f, 0.2f, 0.2f}};
-    scene->ball.material.diffuse = (vec3s){{0.2f, 0.3f, 0.5f}};
-    scene->settings = test_settings(WIDTH, HEIGHT);
+    test_scene_open(scene, test_environment(64, 32, radiance), (vec3s){{0.6f, 1.4f, 1.8f}},
+                    (vec3s){{0, 0.6f, 0}}, 40, WIDTH, HEIGHT);
+    tl_material *sheet = test_scene_add(scene, test_sheet(0.9f, 0.6f, 0.05f, 2, 24));
+    tl_material *ball = test_scene_add(scene, test_sphere((vec3s){{0, 0.4f, 0}}, 0.35f, 32));
+    sheet->diffuse = (vec3s){{0.4f, 0.3f, 0.3f}};
+    sheet->glossiness = 0.9f;
+    sheet->specular = (vec3s){{0.2f, 0.2f, 0.2f}};
+    ball->diffuse = (vec3s){{0.2f, 0.3f, 0.5f}};
+    scene->frame.still = true;
     struct tl_light_params *light = &scene->settings.light;
     light->lobe = TL_LOBE_DUAL;
     light->cut = TL_CUT_SPHERE;
@@ -59,25 +46,11 @@ static void scene_open(struct scene *scene, vec3s (*radiance)(vec3s))
     scene->settings.reference.replicates = 4;
 }
 
-static tl_image draw(tl_renderer *renderer, struct scene *scene, int method)
+static tl_image draw(tl_renderer *renderer, struct test_scene *scene, int method)
 {
-    test_shape_refresh(&scene->sheet);
-    test_shape_refresh(&scene->ball);
-    scene->sheet.surface.topology_revision++;
-    scene->surfaces[0] = scene->sheet.surface;
-    scene->surfaces[1] = scene->ball.surface;
-    scene->frame = test_frame((vec3s){{0.6f, 1.4f, 1.8f}}, (vec3s){{0, 0.6f, 0}}, 40, scene->surfaces, 2,
-                              &scene->environment);
-    scene->frame.still = true;
+    test_scene_refresh(scene);
     scene->settings.light.method = method;
-    return test_draw(renderer, &scene->frame, &scene->settings);
-}
-
-static void scene_close(struct scene *scene)
-{
-    tl_environment_release(&scene->environment);
-    test_shape_release(&scene->sheet);
-    test_shape_release(&scene->ball);
+    return test_scene_draw(scene, renderer);
 }
 
 struct feature {
@@ -121,11 +94,11 @@ static void test_against_the_oracle(void **state)
 {
     const struct test_device *device = *state;
     for (size_t i = 0; i < TL_COUNT(features); i++) {
-        struct scene scene;
+        struct test_scene scene;
         struct tl_comparison comparison;
         tl_error error = {0};
         scene_open(&scene, daylight);
-        set_feature(&features[i], &scene.sheet.material);
+        set_feature(&features[i], &scene.shapes[0].material);
         tl_image image = draw(device->renderer, &scene, TL_METHOD_PEM);
         tl_image truth = draw(device->renderer, &scene, TL_METHOD_REFERENCE);
         assert_ok(tl_image_compare(&image, &truth, -1, 0, &comparison, &error), error);
@@ -139,7 +112,7 @@ static void test_against_the_oracle(void **state)
         assert_true(alpha / (WIDTH * HEIGHT) < 0.002);
         tl_image_release(&image);
         tl_image_release(&truth);
-        scene_close(&scene);
+        test_scene_close(&scene);
     }
 }
 
@@ -148,13 +121,13 @@ static void test_furnace(void **state)
 {
     const struct test_device *device = *state;
     for (size_t i = 0; i < TL_COUNT(features); i++) {
-        struct scene scene;
-        scene_open(&scene, furnace);
-        set_feature(&features[i], &scene.sheet.material);
-        scene.sheet.material.diffuse = (vec3s){{0, 0, 0}};
-        scene.sheet.material.specular = (vec3s){{1, 1, 1}};
+        struct test_scene scene;
+        scene_open(&scene, test_white);
+        set_feature(&features[i], &scene.shapes[0].material);
+        scene.shapes[0].material.diffuse = (vec3s){{0, 0, 0}};
+        scene.shapes[0].material.specular = (vec3s){{1, 1, 1}};
         if (features[i].transmission > 0)
-            scene.sheet.material.specular = (vec3s){{0.5f, 0.5f, 0.5f}};
+            scene.shapes[0].material.specular = (vec3s){{0.5f, 0.5f, 0.5f}};
         tl_image image = draw(device->renderer, &scene, TL_METHOD_PEM);
         float greatest = 0;
         for (int p = 0; p < 4 * WIDTH * HEIGHT; p++)
@@ -162,7 +135,7 @@ static void test_furnace(void **state)
         printf("%-18s sends back %.3f at most\n", features[i].name, (double)greatest);
         assert_true(greatest < 1.1f); /* test_lobe_fit: up to 9 % too much towards some viewers */
         tl_image_release(&image);
-        scene_close(&scene);
+        test_scene_close(&scene);
     }
 }
 
@@ -179,7 +152,7 @@ static bool runs(const tl_plan *plan, const char *name)
 static void test_only_what_the_scene_requires(void **state)
 {
     const struct test_device *device = *state;
-    struct scene scene;
+    struct test_scene scene;
     scene_open(&scene, daylight);
     const struct feature plain = {.name = "plain"}, all = features[TL_COUNT(features) - 1];
     tl_image image = draw(device->renderer, &scene, TL_METHOD_PEM);
@@ -188,7 +161,7 @@ static void test_only_what_the_scene_requires(void **state)
     assert_int_equal(before.transparency, 0);
     tl_image_release(&image);
 
-    set_feature(&all, &scene.sheet.material);
+    set_feature(&all, &scene.shapes[0].material);
     image = draw(device->renderer, &scene, TL_METHOD_PEM);
     struct tl_render_memory with = tl_renderer_memory(device->renderer);
     assert_true(runs(tl_renderer_last_plan(device->renderer), "transparency"));
@@ -197,14 +170,14 @@ static void test_only_what_the_scene_requires(void **state)
     assert_true(with.pems > before.pems); /* exponents of the fan and the coat */
     tl_image_release(&image);
 
-    set_feature(&plain, &scene.sheet.material);
+    set_feature(&plain, &scene.shapes[0].material);
     image = draw(device->renderer, &scene, TL_METHOD_PEM);
     struct tl_render_memory after = tl_renderer_memory(device->renderer);
     assert_false(runs(tl_renderer_last_plan(device->renderer), "transparency"));
     assert_int_equal(after.transparency, 0);
     assert_int_equal(after.targets, before.targets);
     tl_image_release(&image);
-    scene_close(&scene);
+    test_scene_close(&scene);
 }
 
 static void check_sane(const tl_image *image, const char *name)
@@ -234,19 +207,19 @@ static void test_extremes(void **state)
         for (size_t g = 0; g < TL_COUNT(glossinesses); g++)
             for (int m = 0; m < 3; m++) {
                 const int methods[] = {TL_METHOD_PEM, TL_METHOD_UNSHADOWED, TL_METHOD_REFERENCE};
-                struct scene scene;
+                struct test_scene scene;
                 scene_open(&scene, daylight);
-                set_feature(&extremes[i], &scene.sheet.material);
-                scene.sheet.material.glossiness = glossinesses[g];
-                scene.sheet.material.coat_glossiness = glossinesses[g];
-                scene.sheet.material.coat = 1;
+                set_feature(&extremes[i], &scene.shapes[0].material);
+                scene.shapes[0].material.glossiness = glossinesses[g];
+                scene.shapes[0].material.coat_glossiness = glossinesses[g];
+                scene.shapes[0].material.coat = 1;
                 scene.settings.light.rounds = 1;
                 scene.settings.reference.strata = 16;
                 scene.settings.reference.replicates = 1;
                 tl_image image = draw(device->renderer, &scene, methods[m]);
                 check_sane(&image, extremes[i].name);
                 tl_image_release(&image);
-                scene_close(&scene);
+                test_scene_close(&scene);
             }
 }
 

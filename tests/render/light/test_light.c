@@ -1,5 +1,5 @@
 /* The light passes against the CPU's chain look-up, closed forms, and equivalent scenes. */
-#include "tests/render/shapes.h"
+#include "tests/render/scenes.h"
 
 #include "config/memory.h"
 #include "render/pem/chain.h"

@@ -1,5 +1,5 @@
 /* What near mirrors show: a coloured wall in a mirror on the floor, the sky beside it. */
-#include "tests/render/shapes.h"
+#include "tests/render/scenes.h"
 
 #include "config/memory.h"
 #include "render/light/compose.h"

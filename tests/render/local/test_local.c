@@ -1,6 +1,6 @@
 /* Lamps: the exact way of shading against the CPU, shadows against the oracle, what a scene without lamps
  * pays, and extremes. */
-#include "tests/render/lamplight.h"
+#include "tests/render/scenes.h"
 
 #include "tests/testing.h"
 
@@ -23,10 +23,10 @@ static struct test_shape shiny_sphere(int segments)
 static void equals_the_cpu(void **state)
 {
     struct test_device *device = *state;
-    struct lamplit scene;
-    lamplit_open(&scene, shiny_sphere(24), 96, 96);
+    struct test_scene scene;
+    test_scene_open_lamplit(&scene, shiny_sphere(24), 96, 96);
     struct tl_gloss *gloss = &scene.shapes[0].material.gloss;
-    scene.lamps[1] = lamp_at((vec3s){{0.8f, 0.3f, 1.5f}}, 1);
+    scene.lamps[1] = test_lamp_at((vec3s){{0.8f, 0.3f, 1.5f}}, 1);
     scene.frame.lamp_count = 2;
     for (int model = TL_REFLECT_PHONG; model <= TL_REFLECT_BANKS; model++)
         for (int variant = 0; variant < 4; variant++) {
@@ -39,9 +39,9 @@ static void equals_the_cpu(void **state)
             gloss->width_weft = variant == 0 ? 0 : 0.3f;
             gloss->width_warp = variant == 0 ? 0 : 0.12f;
             gloss->rotation = 0.4f * (float)variant;
-            lamplit_refresh(&scene);
-            tl_image expected = lamplit_evaluate(&scene);
-            struct lamplit_difference off = lamplit_error(&scene, device->renderer, &expected);
+            test_scene_refresh(&scene);
+            tl_image expected = test_scene_evaluate(&scene);
+            struct test_difference off = test_scene_error(&scene, device->renderer, &expected);
             tl_image_release(&expected);
             print_message("%-17s %d: rel. RMSE %.2e, largest %.2e of the peak, %zu pixels\n", models[model],
                           variant, off.rel_rmse, off.largest, off.pixels);
@@ -49,28 +49,28 @@ static void equals_the_cpu(void **state)
             assert_true(off.rel_rmse < 2e-5);
             assert_true(off.largest < 2e-5);
         }
-    lamplit_close(&scene);
+    test_scene_close(&scene);
 }
 
 /* The back of a sheet is a surface of its own, whose threads run as they do on the front. */
 static void backs_equal_the_cpu(void **state)
 {
     struct test_device *device = *state;
-    struct lamplit scene;
+    struct test_scene scene;
     struct test_shape sheet = test_sheet(0, 0.8f, 0.1f, 2, 32);
     sheet.material.specular = (vec3s){{0.3f, 0.3f, 0.3f}};
     sheet.material.gloss = (struct tl_gloss){
         .model = TL_REFLECT_WARD, .width_weft = 0.4f, .width_warp = 0.1f, .rotation = 0.5f, .index = 1.5f};
-    lamplit_open(&scene, sheet, 96, 96);
+    test_scene_open_lamplit(&scene, sheet, 96, 96);
     scene.frame.camera.eye = (vec3s){{0.5f, -2, 1.5f}};
-    scene.lamps[0] = lamp_towards((vec3s){{-0.5f, -1, 0.5f}}, 3);
-    tl_image expected = lamplit_evaluate(&scene);
-    struct lamplit_difference off = lamplit_error(&scene, device->renderer, &expected);
+    scene.lamps[0] = test_lamp_towards((vec3s){{-0.5f, -1, 0.5f}}, 3);
+    tl_image expected = test_scene_evaluate(&scene);
+    struct test_difference off = test_scene_error(&scene, device->renderer, &expected);
     tl_image_release(&expected);
     print_message("backs: rel. RMSE %.2e of %zu pixels\n", off.rel_rmse, off.pixels);
     assert_true(off.pixels > 1000);
     assert_true(off.rel_rmse < 5e-5);
-    lamplit_close(&scene);
+    test_scene_close(&scene);
 }
 
 /* Against the ray traced oracle, with shadows of every back-end and a ground. Rays differ from it at edges of
@@ -79,33 +79,33 @@ static void backs_equal_the_cpu(void **state)
 static void shadows_equal_the_reference(void **state)
 {
     struct test_device *device = *state;
-    struct lamplit scene;
-    lamplit_open(&scene, shiny_sphere(32), 96, 96);
-    lamplit_add(&scene, test_sheet(-0.9f, 1.2f, 0.05f, 2, 48));
+    struct test_scene scene;
+    test_scene_open_lamplit(&scene, shiny_sphere(32), 96, 96);
+    test_scene_add(&scene, test_sheet(-0.9f, 1.2f, 0.05f, 2, 48));
     scene.frame.camera.eye = (vec3s){{0.3f, 1.5f, 3}};
     scene.settings.light.method = TL_METHOD_PEM;
     scene.settings.light.jitter = false;
     scene.settings.shading.self_shadow = TL_SELF_SHADOW_STEP;
-    const struct tl_lamp lamps[] = {lamp_towards((vec3s){{-0.6f, 0.9f, 0.4f}}, 3),
-                                    lamp_at((vec3s){{-2, 3, 1}}, 30),
-                                    lamp_at((vec3s){{0.9f, 0.5f, 0.6f}}, 2)};
+    const struct tl_lamp lamps[] = {test_lamp_towards((vec3s){{-0.6f, 0.9f, 0.4f}}, 3),
+                                    test_lamp_at((vec3s){{-2, 3, 1}}, 30),
+                                    test_lamp_at((vec3s){{0.9f, 0.5f, 0.6f}}, 2)};
     for (int kind = 0; kind < 3; kind++) {
         scene.lamps[0] = lamps[kind];
         scene.settings.light.method = TL_METHOD_REFERENCE;
         scene.settings.reference.replicates = 1;
         scene.settings.reference.strata = 1;
-        tl_image expected = lamplit_draw(&scene, device->renderer);
+        tl_image expected = test_scene_draw(&scene, device->renderer);
         scene.settings.light.method = TL_METHOD_PEM;
         static const char *const names[] = {"vsm", "depth", "rays"};
         for (int visibility = TL_VISIBILITY_DEPTH; visibility <= TL_VISIBILITY_RAYS; visibility++) {
             scene.settings.light.visibility = visibility;
-            struct lamplit_difference off = lamplit_error(&scene, device->renderer, &expected);
+            struct test_difference off = test_scene_error(&scene, device->renderer, &expected);
             print_message("lamp %d, %s: rel. RMSE %.4f\n", kind, names[visibility], off.rel_rmse);
             assert_true(off.rel_rmse < (visibility == TL_VISIBILITY_RAYS ? 0.04 : 0.08));
         }
         tl_image_release(&expected);
     }
-    lamplit_close(&scene);
+    test_scene_close(&scene);
 }
 
 /* Coats; holes and what is behind them; light through cloth; mirrors that show what is lit: all under a lamp,
@@ -114,8 +114,8 @@ static void layers_equal_the_reference(void **state)
 {
     struct test_device *device = *state;
     for (int kind = 0; kind < 3; kind++) {
-        struct lamplit scene;
-        lamplit_open(&scene, shiny_sphere(32), 96, 96);
+        struct test_scene scene;
+        test_scene_open_lamplit(&scene, shiny_sphere(32), 96, 96);
         tl_material *ball = &scene.shapes[0].material;
         if (kind == 0) { /* a coat over Ward */
             ball->gloss = (struct tl_gloss){
@@ -123,32 +123,33 @@ static void layers_equal_the_reference(void **state)
             ball->coat = 0.8f;
             ball->coat_glossiness = 0.97f;
         } else {
-            lamplit_add(&scene, test_square((vec3s){{0.2f, 0, kind == 1 ? 1.0f : -0.9f}}, (vec3s){{1, 0, 0}},
-                                            (vec3s){{0, 0, 1}}, kind == 1 ? 0.4f : 1.5f, 8));
+            test_scene_add(&scene,
+                           test_square((vec3s){{0.2f, 0, kind == 1 ? 1.0f : -0.9f}}, (vec3s){{1, 0, 0}},
+                                       (vec3s){{0, 0, 1}}, kind == 1 ? 0.4f : 1.5f, 8));
             tl_material *square = &scene.shapes[1].material;
             if (kind == 1) { /* voile before the sphere, lit from behind itself */
                 square->openness = 0.5f;
                 square->transmission = (vec3s){{0.4f, 0.3f, 0.2f}};
-                scene.lamps[1] = lamp_at((vec3s){{0.9f, 0.9f, 0.4f}}, 2);
+                scene.lamps[1] = test_lamp_at((vec3s){{0.9f, 0.9f, 0.4f}}, 2);
                 scene.frame.lamp_count = 2;
             } else { /* a mirror behind it */
                 square->specular = (vec3s){{0.9f, 0.9f, 0.9f}};
                 square->diffuse = (vec3s){{0, 0, 0}};
                 square->glossiness = 1;
                 ball->glossiness = 0.5f;
-                scene.lamps[0] = lamp_at((vec3s){{0.9f, 0.8f, -0.5f}}, 2);
+                scene.lamps[0] = test_lamp_at((vec3s){{0.9f, 0.8f, -0.5f}}, 2);
                 scene.frame.camera.eye.x = 1.5f;
             }
         }
-        lamplit_refresh(&scene);
+        test_scene_refresh(&scene);
         scene.settings.light.visibility = TL_VISIBILITY_RAYS;
         scene.settings.light.reflect_scene = true;
         scene.settings.shading.self_shadow = TL_SELF_SHADOW_STEP;
         scene.settings.light.method = TL_METHOD_REFERENCE;
         scene.settings.reference.replicates = scene.settings.reference.strata = 1;
-        tl_image expected = lamplit_draw(&scene, device->renderer);
+        tl_image expected = test_scene_draw(&scene, device->renderer);
         scene.settings.light.method = TL_METHOD_PEM;
-        struct lamplit_difference off = lamplit_error(&scene, device->renderer, &expected);
+        struct test_difference off = test_scene_error(&scene, device->renderer, &expected);
         static const char *const names[] = {"coat", "voile", "mirror"};
         print_message("%s: rel. RMSE %.4f, largest %.3f of the peak, %zu pixels\n", names[kind], off.rel_rmse,
                       off.largest, off.pixels);
@@ -156,10 +157,10 @@ static void layers_equal_the_reference(void **state)
         assert_true(off.rel_rmse < 0.05);
         if (kind == 2) { /* there is something to see in it */
             scene.settings.light.reflect_scene = false;
-            assert_true(lamplit_error(&scene, device->renderer, &expected).rel_rmse > 0.2);
+            assert_true(test_scene_error(&scene, device->renderer, &expected).rel_rmse > 0.2);
         }
         tl_image_release(&expected);
-        lamplit_close(&scene);
+        test_scene_close(&scene);
     }
 }
 
@@ -176,12 +177,12 @@ static const struct tl_plan_row *row_of(const tl_plan *plan, const char *name)
 static void costs_nothing_without_lamps(void **state)
 {
     struct test_device *device = *state;
-    struct lamplit scene;
-    lamplit_open(&scene, shiny_sphere(16), 32, 32);
+    struct test_scene scene;
+    test_scene_open_lamplit(&scene, shiny_sphere(16), 32, 32);
     scene.settings.light.method = TL_METHOD_PEM;
     scene.settings.light.visibility = TL_VISIBILITY_DEPTH;
     scene.frame.lamp_count = 0;
-    tl_image dark = lamplit_draw(&scene, device->renderer);
+    tl_image dark = test_scene_draw(&scene, device->renderer);
     size_t bytes = tl_renderer_memory(device->renderer).total,
            texture_bytes = tl_gpu_texture_bytes(device->gpu);
     const tl_plan *plan = tl_renderer_last_plan(device->renderer);
@@ -191,24 +192,24 @@ static void costs_nothing_without_lamps(void **state)
     assert_non_null(strstr(row_of(plan, "lamps")->reason, "no lamps"));
 
     scene.settings.shading.frequency = TL_FREQUENCY_GOURAUD; /* nobody is shaded by it */
-    tl_image again = lamplit_draw(&scene, device->renderer);
+    tl_image again = test_scene_draw(&scene, device->renderer);
     assert_int_equal(row_of(tl_renderer_last_plan(device->renderer), "light")->action, TL_JOB_REUSE);
     tl_image_release(&again);
 
     scene.frame.lamp_count = 1;
-    tl_image lit = lamplit_draw(&scene, device->renderer);
+    tl_image lit = test_scene_draw(&scene, device->renderer);
     assert_int_equal(row_of(tl_renderer_last_plan(device->renderer), "lamps")->action, TL_JOB_RUN);
     assert_true(tl_renderer_memory(device->renderer).total > bytes);
     tl_image_release(&lit);
 
     scene.lamps[0].irradiance = (vec3s){{0, 0, 0}}; /* a lamp that is out is none */
-    tl_image out = lamplit_draw(&scene, device->renderer);
+    tl_image out = test_scene_draw(&scene, device->renderer);
     assert_int_equal(tl_renderer_memory(device->renderer).total, bytes);
     assert_int_equal(tl_gpu_texture_bytes(device->gpu), texture_bytes);
     assert_memory_equal(out.texels, dark.texels, (size_t)32 * 32 * 4 * sizeof(float));
     tl_image_release(&out);
     tl_image_release(&dark);
-    lamplit_close(&scene);
+    test_scene_close(&scene);
 }
 
 static vec3s daylight(vec3s d)
@@ -220,8 +221,8 @@ static vec3s daylight(vec3s d)
 static void adds_once(void **state)
 {
     struct test_device *device = *state;
-    struct lamplit scene;
-    lamplit_open(&scene, shiny_sphere(16), 32, 32);
+    struct test_scene scene;
+    test_scene_open_lamplit(&scene, shiny_sphere(16), 32, 32);
     tl_environment_release(&scene.environment);
     scene.environment = test_environment(16, 8, daylight);
     scene.frame.environment_revision += 1000;
@@ -231,30 +232,30 @@ static void adds_once(void **state)
         scene.settings.light.jitter = true;
         scene.settings.light.rounds = 8;
         scene.frame.lamp_count = 0;
-        tl_image without = lamplit_draw(&scene, device->renderer);
+        tl_image without = test_scene_draw(&scene, device->renderer);
         for (int round = 0; round < 8; round++) {
             tl_image_release(&without);
-            without = lamplit_draw(&scene, device->renderer);
+            without = test_scene_draw(&scene, device->renderer);
         }
         scene.frame.lamp_count = 1;
-        tl_image with = lamplit_draw(&scene, device->renderer);
+        tl_image with = test_scene_draw(&scene, device->renderer);
         for (int round = 0; round < 8; round++) {
             scene.lamps[0].irradiance.y = round < 4 ? 9.0f : 2.7f; /* changed, and changed back */
             tl_image_release(&with);
-            with = lamplit_draw(&scene, device->renderer);
+            with = test_scene_draw(&scene, device->renderer);
         }
         for (int round = 0; round < 8; round++) {
             tl_image_release(&with);
-            with = lamplit_draw(&scene, device->renderer);
+            with = test_scene_draw(&scene, device->renderer);
         }
         /* All that is left of the lamp must be its own light, which the dark scene knows. */
-        struct lamplit dark = scene;
+        struct test_scene dark = scene;
         dark.environment = test_environment(8, 4, daylight);
         for (size_t i = 0; i < (size_t)8 * 4 * 3; i++)
             tl_image_floats(&dark.environment.image)[i] = 0;
         dark.frame.environment = &dark.environment;
         dark.frame.environment_revision += 1;
-        tl_image lamp = lamplit_draw(&dark, device->renderer);
+        tl_image lamp = test_scene_draw(&dark, device->renderer);
         double worst = 0;
         for (size_t i = 0; i < (size_t)32 * 32 * 4; i++)
             if (i % 4 < 3)
@@ -268,7 +269,7 @@ static void adds_once(void **state)
         tl_image_release(&with);
         tl_image_release(&without);
     }
-    lamplit_close(&scene);
+    test_scene_close(&scene);
 }
 
 /* A lamp in the surface, behind it, at zero distance, absurdly bright or nowhere: finite, and dark where dark
@@ -276,23 +277,23 @@ static void adds_once(void **state)
 static void bears_extremes(void **state)
 {
     struct test_device *device = *state;
-    struct lamplit scene;
-    lamplit_open(&scene, test_square((vec3s){{0, 0, 0}}, (vec3s){{1, 0, 0}}, (vec3s){{0, 0, 1}}, 1, 8), 33,
-                 33);
+    struct test_scene scene;
+    test_scene_open_lamplit(
+        &scene, test_square((vec3s){{0, 0, 0}}, (vec3s){{1, 0, 0}}, (vec3s){{0, 0, 1}}, 1, 8), 33, 33);
     scene.frame.camera.eye = (vec3s){{0, 0, 2.5f}};
     struct tl_material *material = &scene.shapes[0].material;
     const struct tl_lamp lamps[] = {
-        lamp_at((vec3s){{0, 0, 0}}, 1),
-        lamp_at((vec3s){{0, 0, -1e-6f}}, 1),
-        lamp_at((vec3s){{0, 0, 2.5f}}, 1),
-        lamp_at((vec3s){{0, 0, -1}}, 1),
-        lamp_towards((vec3s){{0, 0, -1}}, 1),
-        lamp_towards((vec3s){{1, 0, 0}}, 1),
-        lamp_at((vec3s){{1e18f, 0, 0}}, 1e6f),
-        lamp_towards((vec3s){{0, 0, 1}}, 1e6f),
+        test_lamp_at((vec3s){{0, 0, 0}}, 1),
+        test_lamp_at((vec3s){{0, 0, -1e-6f}}, 1),
+        test_lamp_at((vec3s){{0, 0, 2.5f}}, 1),
+        test_lamp_at((vec3s){{0, 0, -1}}, 1),
+        test_lamp_towards((vec3s){{0, 0, -1}}, 1),
+        test_lamp_towards((vec3s){{1, 0, 0}}, 1),
+        test_lamp_at((vec3s){{1e18f, 0, 0}}, 1e6f),
+        test_lamp_towards((vec3s){{0, 0, 1}}, 1e6f),
         {.kind = TL_LAMP_DIRECTIONAL, .irradiance = {{1, 1, 1}}},
-        lamp_at((vec3s){{NAN, 0, 0}}, 1),
-        lamp_towards((vec3s){{0, 0, 1}}, INFINITY),
+        test_lamp_at((vec3s){{NAN, 0, 0}}, 1),
+        test_lamp_towards((vec3s){{0, 0, 1}}, INFINITY),
     };
     const bool is_dark[] = {false, true, false, true, true, true, false, false, true, true, true};
     static const float glossinesses[] = {0, 0.5f, 1};
@@ -303,8 +304,8 @@ static void bears_extremes(void **state)
                 scene.settings.light.method = g == 1 && model == 0 ? TL_METHOD_PEM : TL_METHOD_UNSHADOWED;
                 material->gloss.model = model;
                 material->glossiness = glossinesses[g];
-                lamplit_refresh(&scene);
-                tl_image image = lamplit_draw(&scene, device->renderer);
+                test_scene_refresh(&scene);
+                tl_image image = test_scene_draw(&scene, device->renderer);
                 double sum = 0;
                 for (size_t k = 0; k < (size_t)33 * 33 * 4; k++) {
                     assert_true(isfinite(tl_image_floats(&image)[k]));
@@ -314,7 +315,7 @@ static void bears_extremes(void **state)
                     assert_true(sum == 0);
                 tl_image_release(&image);
             }
-    lamplit_close(&scene);
+    test_scene_close(&scene);
 }
 
 int main(void)

@@ -1,6 +1,6 @@
 /* Ways of shading under lamps that are not exact: each against the exact one, and against what the CPU says
  * that this way must give. Rows A6, A8 to A12 of the technique set. */
-#include "tests/render/lamplight.h"
+#include "tests/render/scenes.h"
 
 #include "config/memory.h"
 #include "render/brdf/tables.h"
@@ -19,17 +19,17 @@ static struct test_shape shiny_sphere(int segments, float glossiness)
     return shape;
 }
 
-static tl_image draw_exactly(const struct lamplit *scene, tl_renderer *renderer)
+static tl_image draw_exactly(const struct test_scene *scene, tl_renderer *renderer)
 {
-    struct lamplit exact = *scene;
+    struct test_scene exact = *scene;
     exact.settings.shading = *(const struct tl_shading_params *)tl_shading_options.defaults;
     exact.settings.shading.self_shadow = scene->settings.shading.self_shadow;
-    return lamplit_draw(&exact, renderer);
+    return test_scene_draw(&exact, renderer);
 }
 
-static double error_of(const struct lamplit *scene, tl_renderer *renderer, const tl_image *expected)
+static double error_of(const struct test_scene *scene, tl_renderer *renderer, const tl_image *expected)
 {
-    return lamplit_error(scene, renderer, expected).rel_rmse;
+    return test_scene_error(scene, renderer, expected).rel_rmse;
 }
 
 /* A6. Where light and viewer are the same everywhere, cosines by one matrix, from vertices and of vectors at
@@ -38,8 +38,8 @@ static double error_of(const struct lamplit *scene, tl_renderer *renderer, const
 static void coordinates_agree_far_away(void **state)
 {
     struct test_device *device = *state;
-    struct lamplit scene;
-    lamplit_open(&scene, shiny_sphere(24, 0.9f), 96, 96);
+    struct test_scene scene;
+    test_scene_open_lamplit(&scene, shiny_sphere(24, 0.9f), 96, 96);
     scene.frame.camera.eye = (vec3s){{0, 100, 500}};
     scene.frame.camera.near_m = 400;
     scene.frame.camera.far_m = 600;
@@ -47,7 +47,7 @@ static void coordinates_agree_far_away(void **state)
     for (int frequency = TL_FREQUENCY_FAST_PHONG; frequency <= TL_FREQUENCY_PHONG; frequency++) {
         scene.settings.shading.frequency = frequency;
         scene.settings.shading.coordinates = TL_COORDINATES_PIXEL;
-        tl_image pixel = lamplit_draw(&scene, device->renderer);
+        tl_image pixel = test_scene_draw(&scene, device->renderer);
         scene.settings.shading.coordinates = TL_COORDINATES_MATRIX;
         double matrix = error_of(&scene, device->renderer, &pixel);
         scene.settings.shading.coordinates = TL_COORDINATES_VERTEX;
@@ -59,18 +59,18 @@ static void coordinates_agree_far_away(void **state)
             assert_true(vertex < 1e-2);
         tl_image_release(&pixel);
     }
-    lamplit_close(&scene);
+    test_scene_close(&scene);
 }
 
 /* ... and near by, under a near lamp, the matrix is far off while a local viewer at vertices is not. */
 static void coordinates_differ_close_by(void **state)
 {
     struct test_device *device = *state;
-    struct lamplit scene;
-    lamplit_open(&scene, shiny_sphere(64, 0.75f), 96, 96);
+    struct test_scene scene;
+    test_scene_open_lamplit(&scene, shiny_sphere(64, 0.75f), 96, 96);
     scene.frame.camera.eye = (vec3s){{0, 0.2f, 1.1f}};
     scene.frame.camera.fov_y = 1.4f;
-    scene.lamps[0] = lamp_at((vec3s){{-0.6f, 0.6f, 1}}, 1);
+    scene.lamps[0] = test_lamp_at((vec3s){{-0.6f, 0.6f, 1}}, 1);
     tl_image exact = draw_exactly(&scene, device->renderer);
     double errors[3];
     for (int coordinates = 0; coordinates < 3; coordinates++) {
@@ -83,15 +83,7 @@ static void coordinates_differ_close_by(void **state)
     assert_true(errors[TL_COORDINATES_VERTEX] < 0.05);
     assert_true(errors[TL_COORDINATES_PIXEL] < 0.05);
     tl_image_release(&exact);
-    lamplit_close(&scene);
-}
-
-static double brightest(const tl_image *image)
-{
-    double peak = 0;
-    for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++)
-        peak = fmax(peak, (double)tl_image_floats(image)[4 * i]);
-    return peak;
+    test_scene_close(&scene);
 }
 
 /* A8. Against a sphere of 65,000 triangles, shaded exactly. A coarse one loses its highlight to Gouraud, and
@@ -104,17 +96,17 @@ static void gouraud_loses_the_highlight_first(void **state)
     static const int segments[STEPS] = {12, 24, 48, 96};
     struct test_device *device = *state;
     double errors[STEPS][3], peaks[STEPS][3];
-    struct lamplit scene;
-    lamplit_open(&scene, shiny_sphere(128, 0.9f), 128, 128);
+    struct test_scene scene;
+    test_scene_open_lamplit(&scene, shiny_sphere(128, 0.9f), 128, 128);
     tl_image exact = draw_exactly(&scene, device->renderer);
-    lamplit_close(&scene);
+    test_scene_close(&scene);
     for (int step = 0; step < STEPS; step++) {
-        lamplit_open(&scene, shiny_sphere(segments[step], 0.9f), 128, 128);
+        test_scene_open_lamplit(&scene, shiny_sphere(segments[step], 0.9f), 128, 128);
         for (int frequency = 0; frequency < 3; frequency++) {
             scene.settings.shading.frequency = frequency;
-            tl_image drawn = lamplit_draw(&scene, device->renderer);
-            errors[step][frequency] = lamplit_compare(&drawn, &exact).rel_rmse;
-            peaks[step][frequency] = brightest(&drawn) / brightest(&exact);
+            tl_image drawn = test_scene_draw(&scene, device->renderer);
+            errors[step][frequency] = test_compare(&drawn, &exact).rel_rmse;
+            peaks[step][frequency] = test_brightest(&drawn) / test_brightest(&exact);
             tl_image_release(&drawn);
         }
         print_message("%5d triangles: error %.3f %.3f %.3f, peak %.2f %.2f %.2f (gouraud, fast, phong)\n",
@@ -124,7 +116,7 @@ static void gouraud_loses_the_highlight_first(void **state)
         assert_true(peaks[step][TL_FREQUENCY_FAST_PHONG] < peaks[step][TL_FREQUENCY_GOURAUD] + 0.01);
         for (int frequency = 0; step > 0 && frequency < 2; frequency++)
             assert_true(errors[step][frequency] < 0.5 * errors[step - 1][frequency]);
-        lamplit_close(&scene);
+        test_scene_close(&scene);
     }
     assert_true(peaks[0][TL_FREQUENCY_GOURAUD] < 0.9);
     assert_true(fabs(peaks[0][TL_FREQUENCY_PHONG] - 1) < 0.02);
@@ -143,8 +135,8 @@ static vec3s mixed(const vec3s corners[3], float u, float v)
     return glms_vec3_add(glms_vec3_add(sum, glms_vec3_scale(corners[1], u)), glms_vec3_scale(corners[2], v));
 }
 
-static struct met meet(const struct lamplit *scene, const tl_trace *trace, const struct tl_view *view, int x,
-                       int y)
+static struct met meet(const struct test_scene *scene, const tl_trace *trace, const struct tl_view *view,
+                       int x, int y)
 {
     const struct tl_image_params *image = &scene->settings.image;
     float right = 2 * ((float)x + 0.5f) / (float)image->width - 1,
@@ -180,7 +172,7 @@ static float raised(float cosine, float exponent, int power, const uint8_t *tabl
 }
 
 /* A Blinn-Phong surface by render/brdf's own normalising and powers, in red. */
-static tl_image evaluate_reduced(const struct lamplit *scene)
+static tl_image evaluate_reduced(const struct test_scene *scene)
 {
     const struct tl_shading_params *shading = &scene->settings.shading;
     const struct tl_image_params *image = &scene->settings.image;
@@ -230,14 +222,14 @@ static tl_image evaluate_reduced(const struct lamplit *scene)
 static void normalises_as_the_cpu_does(void **state)
 {
     struct test_device *device = *state;
-    struct lamplit scene;
+    struct test_scene scene;
     double errors[5];
-    lamplit_open(&scene, shiny_sphere(12, 0.75f), 96, 96);
+    test_scene_open_lamplit(&scene, shiny_sphere(12, 0.75f), 96, 96);
     tl_image exact = draw_exactly(&scene, device->renderer);
     for (int way = TL_NORMALISE_NONE; way <= TL_NORMALISE_NEWTON; way++) {
         scene.settings.shading.normalisation = way;
         tl_image expected = evaluate_reduced(&scene);
-        struct lamplit_difference off = lamplit_error(&scene, device->renderer, &expected);
+        struct test_difference off = test_scene_error(&scene, device->renderer, &expected);
         tl_image_release(&expected);
         errors[way] = error_of(&scene, device->renderer, &exact);
         print_message("%-7s: off the CPU by %.1e (largest %.1e), off exact by %.4f\n",
@@ -248,7 +240,7 @@ static void normalises_as_the_cpu_does(void **state)
     assert_true(errors[TL_NORMALISE_NONE] > 5 * errors[TL_NORMALISE_NEWTON]);
     assert_true(errors[TL_NORMALISE_CUBE8] > errors[TL_NORMALISE_NEWTON]);
     tl_image_release(&exact);
-    lamplit_close(&scene);
+    test_scene_close(&scene);
 }
 
 /* A10. */
@@ -257,16 +249,16 @@ static void raises_as_the_cpu_does(void **state)
     static const float glossinesses[] = {0.5f, 0.75f, 0.9375f, 0.984375f}; /* exponents 8, 16, 64, 256 */
     struct test_device *device = *state;
     for (size_t g = 0; g < TL_COUNT(glossinesses); g++) {
-        struct lamplit scene;
+        struct test_scene scene;
         double errors[TL_POWER_COUNT];
-        lamplit_open(&scene, shiny_sphere(48, glossinesses[g]), 96, 96);
+        test_scene_open_lamplit(&scene, shiny_sphere(48, glossinesses[g]), 96, 96);
         tl_image exact = draw_exactly(&scene, device->renderer);
         for (int power = TL_POWER_POW; power <= TL_POWER_TABLE; power++) {
             /* Any way that begins with interpolated vectors: the CPU's own has no other. */
             scene.settings.shading.normalisation = TL_NORMALISE_NEWTON;
             scene.settings.shading.power = power;
             tl_image expected = evaluate_reduced(&scene);
-            struct lamplit_difference off = lamplit_error(&scene, device->renderer, &expected);
+            struct test_difference off = test_scene_error(&scene, device->renderer, &expected);
             tl_image_release(&expected);
             scene.settings.shading.normalisation = TL_NORMALISE_EXACT;
             errors[power] = error_of(&scene, device->renderer, &exact);
@@ -279,7 +271,7 @@ static void raises_as_the_cpu_does(void **state)
         assert_true(errors[TL_POWER_POW] < 1e-6);
         assert_true(errors[TL_POWER_FIXED8] > errors[TL_POWER_TABLE]);
         tl_image_release(&exact);
-        lamplit_close(&scene);
+        test_scene_close(&scene);
     }
 }
 
@@ -301,12 +293,12 @@ static tl_image waves(void)
     return image;
 }
 
-static void give_waves(struct lamplit *scene, const tl_image *image)
+static void give_waves(struct test_scene *scene, const tl_image *image)
 {
     tl_material *material = &scene->shapes[0].material;
     material->normal_map.image = image;
     material->normal_map.transform.scale[0] = material->normal_map.transform.scale[1] = 6;
-    lamplit_refresh(scene);
+    test_scene_refresh(scene);
 }
 
 /* A11. Light taken into tangent space at vertices is off by what the frame turns within a triangle: half the
@@ -318,9 +310,9 @@ static void tangent_space_differs_with_the_frames_turn(void **state)
     for (int bumpy = 0; bumpy < 2; bumpy++) {
         double before = 0;
         for (int segments = 12; segments <= 48; segments *= 2) {
-            struct lamplit scene;
-            lamplit_open(&scene, shiny_sphere(segments, 0.7f), 128, 128);
-            scene.lamps[0] = lamp_at((vec3s){{-1, 1, 1.5f}}, 4);
+            struct test_scene scene;
+            test_scene_open_lamplit(&scene, shiny_sphere(segments, 0.7f), 128, 128);
+            scene.lamps[0] = test_lamp_at((vec3s){{-1, 1, 1.5f}}, 4);
             if (bumpy)
                 give_waves(&scene, &bumps);
             tl_image world = draw_exactly(&scene, device->renderer);
@@ -332,7 +324,7 @@ static void tangent_space_differs_with_the_frames_turn(void **state)
                 assert_true(error < before / 2.5);
             before = error;
             tl_image_release(&world);
-            lamplit_close(&scene);
+            test_scene_close(&scene);
         }
         assert_true(before < 0.02);
     }
@@ -344,10 +336,10 @@ static void no_light_on_what_faces_away(void **state)
 {
     struct test_device *device = *state;
     tl_image bumps = waves();
-    struct lamplit scene;
-    lamplit_open(&scene, shiny_sphere(32, 0.7f), 96, 96);
+    struct test_scene scene;
+    test_scene_open_lamplit(&scene, shiny_sphere(32, 0.7f), 96, 96);
     give_waves(&scene, &bumps);
-    scene.lamps[0] = lamp_towards((vec3s){{1, 0.1f, -0.15f}}, 3);
+    scene.lamps[0] = test_lamp_towards((vec3s){{1, 0.1f, -0.15f}}, 3);
     struct tl_view view = tl_view_make(&scene.frame.camera, 96, 96);
     tl_error error = {0};
     tl_trace *trace = tl_trace_create(&error);
@@ -355,7 +347,7 @@ static void no_light_on_what_faces_away(void **state)
     for (int way = 0; way < 4; way++) {
         scene.settings.shading.self_shadow = way & 1;
         scene.settings.shading.space = way >> 1;
-        tl_image image = lamplit_draw(&scene, device->renderer);
+        tl_image image = test_scene_draw(&scene, device->renderer);
         int away = 0, towards = 0;
         for (int y = 0; y < 96; y++)
             for (int x = 0; x < 96; x++) {
@@ -371,19 +363,19 @@ static void no_light_on_what_faces_away(void **state)
     }
     tl_trace_destroy(&trace);
     tl_image_release(&bumps);
-    lamplit_close(&scene);
+    test_scene_close(&scene);
 }
 
 /* The largest change of any pixel from frame to frame, averaged over the frames of a lamp that goes round. */
-static double flicker(struct lamplit *scene, tl_renderer *renderer)
+static double flicker(struct test_scene *scene, tl_renderer *renderer)
 {
     enum { FRAMES = 12 };
     double sum = 0;
     tl_image before = {0};
     for (int i = 0; i <= FRAMES; i++) {
         float angle = 1.2f + 0.004f * (float)i;
-        scene->lamps[0] = lamp_towards((vec3s){{sinf(angle), 0.2f, cosf(angle)}}, 3);
-        tl_image image = lamplit_draw(scene, renderer);
+        scene->lamps[0] = test_lamp_towards((vec3s){{sinf(angle), 0.2f, cosf(angle)}}, 3);
+        tl_image image = test_scene_draw(scene, renderer);
         double most = 0;
         for (size_t k = 0; i > 0 && k < (size_t)image.width * (size_t)image.height * 4; k++)
             most = fmax(most, fabs((double)tl_image_floats(&image)[k] - (double)tl_image_floats(&before)[k]));
@@ -400,8 +392,8 @@ static void a_ramp_flickers_less_than_a_step(void **state)
 {
     struct test_device *device = *state;
     tl_image bumps = waves();
-    struct lamplit scene;
-    lamplit_open(&scene, shiny_sphere(32, 0.5f), 96, 96);
+    struct test_scene scene;
+    test_scene_open_lamplit(&scene, shiny_sphere(32, 0.5f), 96, 96);
     give_waves(&scene, &bumps);
     scene.settings.shading.self_shadow = TL_SELF_SHADOW_STEP;
     double step = flicker(&scene, device->renderer);
@@ -410,7 +402,7 @@ static void a_ramp_flickers_less_than_a_step(void **state)
     print_message("frame to frame: step %.3f, ramp %.3f\n", step, ramp);
     assert_true(ramp < 0.5 * step);
     tl_image_release(&bumps);
-    lamplit_close(&scene);
+    test_scene_close(&scene);
 }
 
 int main(void)

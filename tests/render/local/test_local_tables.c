@@ -1,6 +1,6 @@
 /* Gloss from tables on the GPU: against the formula, and against render/brdf's own look-up; one pass against
  * several. Rows A1 to A5 and A7. */
-#include "tests/render/lamplight.h"
+#include "tests/render/scenes.h"
 
 #include "render/brdf/tables.h"
 
@@ -25,11 +25,11 @@ static struct test_shape specimen(int model)
     return shape;
 }
 
-static void open_scene(struct lamplit *scene, int model)
+static void open_scene(struct test_scene *scene, int model)
 {
-    lamplit_open(scene, specimen(model), 96, 96);
+    test_scene_open_lamplit(scene, specimen(model), 96, 96);
     scene->frame.camera.eye = (vec3s){{0, 1.9f, 0.9f}};
-    scene->lamps[0] = lamp_towards((vec3s){{0.3f, 1, -0.5f}}, 3);
+    scene->lamps[0] = test_lamp_towards((vec3s){{0.3f, 1, -0.5f}}, 3);
 }
 
 /* The error asked for: half a percent at float and 512^2, matt light left out. */
@@ -38,16 +38,16 @@ static void tables_are_near_the_formula(void **state)
     struct test_device *device = *state;
     static const int sizes[] = {64, 256, 512};
     for (int model = TL_REFLECT_PHONG; model <= TL_REFLECT_BANKS; model++) {
-        struct lamplit scene;
+        struct test_scene scene;
         open_scene(&scene, model);
-        tl_image direct = lamplit_draw(&scene, device->renderer);
+        tl_image direct = test_scene_draw(&scene, device->renderer);
         double errors[3][3];
         scene.settings.shading.reflectance = TL_REFLECTANCE_TABLE;
         for (int precision = 0; precision < 3; precision++)
             for (int size = 0; size < 3; size++) {
                 scene.settings.shading.table_size = sizes[size];
                 scene.settings.shading.table_precision = precision;
-                errors[precision][size] = lamplit_error(&scene, device->renderer, &direct).rel_rmse;
+                errors[precision][size] = test_scene_error(&scene, device->renderer, &direct).rel_rmse;
             }
         print_message("%-17s 64, 256, 512 texels: 8 bits %.4f %.4f %.4f, 16 bits %.4f %.4f %.4f, float %.4f "
                       "%.4f %.4f\n",
@@ -58,13 +58,13 @@ static void tables_are_near_the_formula(void **state)
         assert_true(errors[TL_PRECISION_FLOAT][2] < 0.3 * errors[TL_PRECISION_FLOAT][0]);
         assert_true(errors[TL_PRECISION_FIXED8][2] > errors[TL_PRECISION_FLOAT][2]);
         tl_image_release(&direct);
-        lamplit_close(&scene);
+        test_scene_close(&scene);
     }
 }
 
 /* A level of 255 of the largest value that the product of a material's tables can have, for each pass: they
  * multiply numbers that are at most 1. */
-static double rounding(const struct lamplit *scene)
+static double rounding(const struct test_scene *scene)
 {
     const tl_material *material = &scene->shapes[0].material;
     const struct tl_brdf brdf = tl_brdf_of(material, material->specular, material->glossiness);
@@ -81,34 +81,25 @@ static double rounding(const struct lamplit *scene)
     return sum;
 }
 
-static double brightest(const tl_image *image)
-{
-    double peak = 0;
-    for (size_t i = 0; i < (size_t)image->width * (size_t)image->height * 4; i++)
-        if (i % 4 < 3)
-            peak = fmax(peak, (double)tl_image_floats(image)[i]);
-    return peak;
-}
-
 /* A7. Tables multiplied by blending are those multiplied in a shader, but for the target's precision: floats
  * to a few units of their last digit, eight bits to a level a pass. */
 static void passes_give_one_image(void **state)
 {
     struct test_device *device = *state;
     for (int model = TL_REFLECT_PHONG; model <= TL_REFLECT_BANKS; model++) {
-        struct lamplit scene;
+        struct test_scene scene;
         open_scene(&scene, model);
         struct tl_shading_params *shading = &scene.settings.shading;
         shading->reflectance = TL_REFLECTANCE_TABLE;
         shading->table_precision = TL_PRECISION_FIXED16;
-        tl_image one = lamplit_draw(&scene, device->renderer);
-        double level = rounding(&scene) / brightest(&one);
+        tl_image one = test_scene_draw(&scene, device->renderer);
+        double level = rounding(&scene) / test_brightest(&one);
         size_t bytes = tl_renderer_memory(device->renderer).other;
         for (int most = 1; most <= 2; most++)
             for (int target = 0; target < 2; target++) {
                 shading->max_textures_per_pass = most;
                 shading->pass_target = target;
-                struct lamplit_difference off = lamplit_error(&scene, device->renderer, &one);
+                struct test_difference off = test_scene_error(&scene, device->renderer, &one);
                 print_message("%-17s %d a pass, %s: rel. RMSE %.1e, largest %.1e of the peak (bound %.1e), "
                               "%td bytes more\n",
                               models[model], most, target ? "float" : "8 bits", off.rel_rmse, off.largest,
@@ -119,7 +110,7 @@ static void passes_give_one_image(void **state)
                     assert_true(off.rel_rmse > 1e-4); /* it was indeed drawn in passes */
             }
         tl_image_release(&one);
-        lamplit_close(&scene);
+        test_scene_close(&scene);
     }
 }
 
@@ -127,17 +118,17 @@ static void passes_give_one_image(void **state)
 static void clamped_tables_darken_grazing_views(void **state)
 {
     struct test_device *device = *state;
-    struct lamplit scene;
+    struct test_scene scene;
     open_scene(&scene, TL_REFLECT_TORRANCE_SPARROW);
     scene.frame.camera.eye = (vec3s){{0, 0.35f, 2.2f}};
-    scene.lamps[0] = lamp_towards((vec3s){{0, 0.3f, -1}}, 3);
-    tl_image direct = lamplit_draw(&scene, device->renderer);
+    scene.lamps[0] = test_lamp_towards((vec3s){{0, 0.3f, -1}}, 3);
+    tl_image direct = test_scene_draw(&scene, device->renderer);
     double sums[2] = {0, 0}, exact = 0;
     scene.settings.shading.reflectance = TL_REFLECTANCE_TABLE;
     scene.settings.shading.table_precision = TL_PRECISION_FIXED16;
     for (int range = 0; range < 2; range++) {
         scene.settings.shading.table_range = range;
-        tl_image image = lamplit_draw(&scene, device->renderer);
+        tl_image image = test_scene_draw(&scene, device->renderer);
         for (size_t i = 0; i < (size_t)96 * 96 * 4; i += 4) {
             sums[range] += (double)tl_image_floats(&image)[i];
             exact += range == 0 ? (double)tl_image_floats(&direct)[i] : 0;
@@ -148,33 +139,33 @@ static void clamped_tables_darken_grazing_views(void **state)
     assert_true(sums[TL_RANGE_CLAMPED] < 0.9 * exact);
     assert_true(fabs(sums[TL_RANGE_SCALED] / exact - 1) < 0.02);
     tl_image_release(&direct);
-    lamplit_close(&scene);
+    test_scene_close(&scene);
 }
 
 /* What no surface asks for any more goes. */
 static void tables_come_and_go(void **state)
 {
     struct test_device *device = *state;
-    struct lamplit scene;
+    struct test_scene scene;
     open_scene(&scene, TL_REFLECT_WARD);
-    tl_image first = lamplit_draw(&scene, device->renderer);
+    tl_image first = test_scene_draw(&scene, device->renderer);
     tl_image_release(&first);
     size_t bytes = tl_renderer_memory(device->renderer).other;
     scene.settings.shading.reflectance = TL_REFLECTANCE_TABLE;
     scene.settings.shading.table_size = 64;
     for (int i = 0; i < 3; i++) { /* a slider's way: one set of tables stays */
         scene.shapes[0].material.gloss.width_weft = 0.2f + 0.1f * (float)i;
-        lamplit_refresh(&scene);
-        tl_image image = lamplit_draw(&scene, device->renderer);
+        test_scene_refresh(&scene);
+        tl_image image = test_scene_draw(&scene, device->renderer);
         tl_image_release(&image);
         assert_true(tl_renderer_memory(device->renderer).other > bytes);
         assert_true(tl_renderer_memory(device->renderer).other <= bytes + (size_t)3 * 64 * 64 * 16);
     }
     scene.settings.shading.reflectance = TL_REFLECTANCE_DIRECT;
-    tl_image image = lamplit_draw(&scene, device->renderer);
+    tl_image image = test_scene_draw(&scene, device->renderer);
     tl_image_release(&image);
     assert_int_equal(tl_renderer_memory(device->renderer).other, bytes);
-    lamplit_close(&scene);
+    test_scene_close(&scene);
 }
 
 int main(void)

@@ -1,7 +1,7 @@
 /* The oracle against closed forms. Every answer must lie within 0.1 % of its formula, and three of its own
  * standard errors must be less than that, so that noise cannot hide a fault. What a formula does not know is
  * smaller: rays start 1e-5 of the scene's half diagonal off their surface, discs have 256 sides. */
-#include "tests/render/shapes.h"
+#include "tests/render/scenes.h"
 
 #include "config/interrupt.h"
 #include "config/memory.h"
@@ -21,70 +21,46 @@
 #define SIZE      16 /* pixels a side */
 #define TILES     16 /* of 4 x 4 pixels */
 
-struct scene {
-    tl_environment environment;
-    struct test_shape shapes[3];
-    tl_surface surfaces[4];
-    size_t count;
-    tl_frame frame;
-    struct tl_render_settings settings;
-    struct tl_ground ground;
-};
-
-static struct scene *scene_new(tl_environment environment, vec3s eye, vec3s target, float fov_deg)
+static struct test_scene *scene_new(tl_environment environment, vec3s eye, vec3s target, float fov_deg)
 {
-    struct scene *scene = TL_NEW(struct scene);
-    scene->environment = environment;
-    scene->frame = test_frame(eye, target, fov_deg, scene->surfaces, 0, &scene->environment);
+    struct test_scene *scene = TL_NEW(struct test_scene);
+    test_scene_open(scene, environment, eye, target, fov_deg, SIZE, SIZE);
     if (eye.x == target.x && eye.z == target.z)
         scene->frame.camera.up = (vec3s){{0, 0, -1}};
-    scene->settings = test_settings(SIZE, SIZE);
     scene->settings.image.supersample = 1;
     scene->settings.light.reflect_scene = false;
     scene->settings.reference.strata = 4096;
     return scene;
 }
 
-static tl_material *scene_add(struct scene *scene, struct test_shape shape)
+static tl_material *scene_add(struct test_scene *scene, struct test_shape shape)
 {
-    size_t i = scene->count++;
-    scene->shapes[i] = shape;
-    scene->shapes[i].material.diffuse = (vec3s){{0.5f, 0.5f, 0.5f}};
-    scene->shapes[i].material.specular = (vec3s){{0, 0, 0}};
-    return &scene->shapes[i].material;
+    tl_material *material = test_scene_add(scene, shape);
+    material->diffuse = (vec3s){{0.5f, 0.5f, 0.5f}};
+    material->specular = (vec3s){{0, 0, 0}};
+    return material;
 }
 
-static void scene_free(struct scene *scene)
+static void scene_free(struct test_scene *scene)
 {
-    for (size_t i = 0; i < scene->count; i++)
-        test_shape_release(&scene->shapes[i]);
-    tl_environment_release(&scene->environment);
+    test_scene_close(scene);
     free(scene);
 }
 
-/* Shapes may have been edited. */
-static void refresh(struct scene *scene)
-{
-    for (size_t i = 0; i < scene->count; i++) {
-        test_shape_refresh(&scene->shapes[i]);
-        scene->surfaces[i] = scene->shapes[i].surface;
-    }
-    scene->frame.surface_count = scene->count;
-}
-
-static tl_image draw(struct scene *scene, struct tl_reference_report *report)
+static tl_image draw(struct test_scene *scene, struct tl_reference_report *report)
 {
     tl_error error = {0};
     tl_image image;
-    refresh(scene);
-    bool ground = scene->settings.image.ground;
-    if (ground) {
+    struct tl_ground ground;
+    test_scene_refresh(scene);
+    bool has_ground = scene->settings.image.ground;
+    if (has_ground) {
         struct tl_casters casters;
-        assert_ok(tl_casters_measure(scene->surfaces, scene->count, &casters, &error), error);
-        tl_ground_make(&casters, &scene->ground);
+        assert_ok(tl_casters_measure(scene->surfaces, scene->shape_count, &casters, &error), error);
+        tl_ground_make(&casters, &ground);
     }
-    assert_ok(tl_reference_draw(&scene->frame, &scene->settings, ground ? &scene->ground : NULL, &image,
-                                report, &error),
+    assert_ok(tl_reference_draw(&scene->frame, &scene->settings, has_ground ? &ground : NULL, &image, report,
+                                &error),
               error);
     return image;
 }
@@ -95,7 +71,7 @@ struct estimate {
 
 /* Tiles err independently of each other. Within one, pixels share their directions, so at worst they err
  * alike: this is an upper bound. */
-static struct estimate estimate_of(struct scene *scene)
+static struct estimate estimate_of(struct test_scene *scene)
 {
     struct tl_reference_report report;
     tl_image image = draw(scene, &report);
@@ -111,7 +87,7 @@ static struct estimate estimate_of(struct scene *scene)
     return (struct estimate){mean, report.standard_error * mean / sqrt(TILES)};
 }
 
-static void check(struct scene *scene, double expected)
+static void check(struct test_scene *scene, double expected)
 {
     struct estimate estimate = estimate_of(scene);
     printf("expected %.6f, drawn %.6f, off by %+.4f %%, standard error %.4f %%\n", expected, estimate.mean,
@@ -121,7 +97,7 @@ static void check(struct scene *scene, double expected)
 }
 
 /* Where the middle of a pixel lies on a plane through `at`, seen by the scene's camera. */
-static vec3s pixel_point(const struct scene *scene, int x, int y, vec3s at, vec3s normal)
+static vec3s pixel_point(const struct test_scene *scene, int x, int y, vec3s at, vec3s normal)
 {
     const struct tl_camera *camera = &scene->frame.camera;
     vec3s forward = glms_vec3_normalize(glms_vec3_sub(camera->target, camera->eye));
@@ -143,7 +119,7 @@ static void test_furnace(void **state)
     const float glossinesses[] = {0, 0.3f, 0.7f, 0.95f, 0.995f, 1};
     for (int lobe = TL_LOBE_SINGLE; lobe <= TL_LOBE_DUAL; lobe++)
         for (size_t i = 0; i < TL_COUNT(glossinesses); i++) {
-            struct scene *scene =
+            struct test_scene *scene =
                 scene_new(tl_environment_constant(1, 1, 1), (vec3s){{0, 0, 2}}, origin, 0.5f);
             tl_material *material = scene_add(scene, test_square(origin, x_axis, z_axis, 0.5f, 1));
             material->specular = (vec3s){{0.25f, 0.25f, 0.25f}};
@@ -163,7 +139,7 @@ static void test_lobe_below_the_horizon(void **state)
     (void)state;
     for (int degrees = 20; degrees <= 80; degrees += 20) {
         float a = glm_rad((float)degrees), cosine = cosf(a);
-        struct scene *scene =
+        struct test_scene *scene =
             scene_new(tl_environment_constant(1, 1, 1), (vec3s){{2 * sinf(a), 0, 2 * cosine}}, origin, 0.2f);
         tl_material *material = scene_add(scene, test_square(origin, x_axis, z_axis, 0.5f, 1));
         material->diffuse = (vec3s){{0, 0, 0}};
@@ -179,7 +155,7 @@ static void test_geometric_terminator(void **state)
 {
     (void)state;
     const float a = glm_rad(40);
-    struct scene *scene = scene_new(tl_environment_constant(1, 1, 1), (vec3s){{0, 0, 2}}, origin, 0.5f);
+    struct test_scene *scene = scene_new(tl_environment_constant(1, 1, 1), (vec3s){{0, 0, 2}}, origin, 0.5f);
     scene_add(scene, test_square(origin, x_axis, z_axis, 0.5f, 1));
     for (size_t i = 0; i < scene->shapes[0].mesh.vertex_count; i++)
         scene->shapes[0].mesh.normals[i] = (vec3s){{sinf(a), 0, cosf(a)}};
@@ -210,7 +186,7 @@ static double disc_factor(double radius, double height, double a)
 /* On a plane of triangles, and on the ground, whose grey is 0.4. */
 static void check_under_disc(float radius, float height, float a, bool ground)
 {
-    struct scene *scene =
+    struct test_scene *scene =
         scene_new(tl_environment_constant(1, 1, 1), (vec3s){{a, 0.5f * height, 0}}, (vec3s){{a, 0, 0}}, 1);
     scene_add(scene, disc((vec3s){{0, height, 0}}, radius));
     if (!ground)
@@ -250,8 +226,8 @@ static void test_before_a_wall(void **state)
     const float heights[] = {0.25f, 1, 1.9f};
     for (size_t i = 0; i < TL_COUNT(heights); i++) {
         const float half = 2, distance = 0.5f, height = heights[i];
-        struct scene *scene = scene_new(tl_environment_constant(1, 1, 1), (vec3s){{distance, 0.5f, 0}},
-                                        (vec3s){{distance, 0, 0}}, 0.5f);
+        struct test_scene *scene = scene_new(tl_environment_constant(1, 1, 1), (vec3s){{distance, 0.5f, 0}},
+                                             (vec3s){{distance, 0, 0}}, 0.5f);
         scene_add(scene, test_square(origin, x_axis, y_axis, half, 1));
         scene_add(scene, test_square((vec3s){{0, height - half, 0}}, z_axis, x_axis, half, 1));
         scene->settings.reference.strata = 1 << 14;
@@ -296,7 +272,7 @@ static double texel_integral(vec3s axis, float exponent, float yaw)
     return ((double)exponent + 1) / (2 * M_PI) * sum / (steps * steps) * solid_angle;
 }
 
-static double one_texel_expected(const struct scene *scene, float glossiness, float yaw)
+static double one_texel_expected(const struct test_scene *scene, float glossiness, float yaw)
 {
     double expected = 0, f0 = 0.25;
     for (int p = 0; p < SIZE * SIZE; p++) {
@@ -322,7 +298,7 @@ static void test_one_texel(void **state)
         for (int c = 0; c < 3; c++)
             tl_image_floats(&environment.image)[3 * (ONE_ROW * ONE_WIDTH + ONE_COLUMN) + c] =
                 (float)ONE_LIGHT;
-        struct scene *scene = scene_new(environment, (vec3s){{0.4f, -0.5f, 2}}, origin, 0.2f);
+        struct test_scene *scene = scene_new(environment, (vec3s){{0.4f, -0.5f, 2}}, origin, 0.2f);
         tl_material *material = scene_add(scene, test_square(origin, x_axis, z_axis, 0.5f, 1));
         material->specular = (vec3s){{0.25f, 0.25f, 0.25f}};
         material->glossiness = glossinesses[i];
@@ -344,7 +320,7 @@ static struct estimate sun_in_mirror(float glossiness, int strata, int lobe_samp
 {
     vec3s sun = glms_vec3_normalize(sun_direction);
     vec3s eye = {{-2 * sun.x, -2 * sun.y + 0.03f, 2 * sun.z}}; /* the mirror shows what is beside the sun */
-    struct scene *scene = scene_new(test_environment(256, 128, sun_and_sky), eye, origin, 3);
+    struct test_scene *scene = scene_new(test_environment(256, 128, sun_and_sky), eye, origin, 3);
     tl_material *material = scene_add(scene, test_square(origin, x_axis, z_axis, 0.5f, 1));
     material->diffuse = (vec3s){{0, 0, 0}};
     material->specular = (vec3s){{1, 1, 1}};
@@ -382,7 +358,7 @@ static void test_reflected_scene(void **state)
     (void)state;
     const float radius = 0.25f, height = 0.5f;
     for (int reflect = 0; reflect < 2; reflect++) {
-        struct scene *scene =
+        struct test_scene *scene =
             scene_new(tl_environment_constant(1, 1, 1), (vec3s){{0, 0.25f, 0}}, origin, 0.5f);
         tl_material *mirror = scene_add(scene, disc(origin, radius));
         scene_add(scene, disc((vec3s){{0, height, 0}}, 1));
@@ -400,9 +376,9 @@ static void test_reflected_scene(void **state)
 }
 
 /* Spheres before a sheet in a sun, on the ground: something of everything. */
-static struct scene *mixed_scene(void)
+static struct test_scene *mixed_scene(void)
 {
-    struct scene *scene =
+    struct test_scene *scene =
         scene_new(test_environment(64, 32, sun_and_sky), (vec3s){{0.6f, 1.2f, 3}}, (vec3s){{0, 0.6f, 0}}, 45);
     tl_material *mirror = scene_add(scene, test_sphere((vec3s){{0.3f, 0.4f, 0.3f}}, 0.4f, 24));
     mirror->specular = (vec3s){{0.5f, 0.6f, 0.7f}};
@@ -422,7 +398,7 @@ static void test_threads_do_not_show(void **state)
     (void)state;
     struct tl_reference_report reports[2];
     tl_image images[2];
-    struct scene *scene = mixed_scene();
+    struct test_scene *scene = mixed_scene();
     int threads = omp_get_max_threads();
     for (int i = 0; i < 2; i++) {
         omp_set_num_threads(i == 0 ? 1 : 3);
@@ -443,7 +419,7 @@ static void test_threads_do_not_show(void **state)
 static void test_standard_error(void **state)
 {
     (void)state;
-    struct scene *scene = mixed_scene();
+    struct test_scene *scene = mixed_scene();
     scene->shapes[0].material.glossiness = 0.5f;
     scene->settings.image.width = scene->settings.image.height = 96;
     scene->settings.image.supersample = 1;
@@ -484,7 +460,7 @@ static void test_extreme_light(void **state)
     vec3s (*const lights[])(vec3s) = {blinding, darkness};
     for (size_t i = 0; i < TL_COUNT(lights); i++) {
         struct tl_reference_report report;
-        struct scene *scene = mixed_scene();
+        struct test_scene *scene = mixed_scene();
         tl_environment_release(&scene->environment);
         scene->environment = test_environment(64, 32, lights[i]);
         tl_image image = draw(scene, &report);
@@ -512,10 +488,10 @@ static void on_alarm(int number)
 
 static void draw_interrupted(struct handed_over *result, bool at_once)
 {
-    struct scene *scene = mixed_scene();
+    struct test_scene *scene = mixed_scene();
     tl_error error = {0};
     tl_image image;
-    refresh(scene);
+    test_scene_refresh(scene);
     scene->settings.reference.replicates = 1 << 16;
     tl_interrupt_install();
     if (at_once) {
@@ -556,7 +532,7 @@ static void test_interrupt_keeps_what_is_done(void **state)
     assert_true(some->drawn);
     assert_in_range(some->report.replicates, 1, (1 << 16) - 1);
 
-    struct scene *scene = mixed_scene();
+    struct test_scene *scene = mixed_scene();
     struct tl_reference_report report;
     scene->settings.image.ground = false;
     scene->settings.reference.replicates = some->report.replicates;

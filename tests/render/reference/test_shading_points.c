@@ -1,6 +1,6 @@
 /* What the oracle's camera rays find against what the rasteriser puts into the G-buffer: the same samples
  * covered, the same points, normals and materials. The two share no code but the shapes. */
-#include "tests/render/shapes.h"
+#include "tests/render/scenes.h"
 
 #include "assets/builtin/weave.h"
 #include "config/memory.h"

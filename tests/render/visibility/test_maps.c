@@ -1,7 +1,7 @@
 /* Variance shadow maps against hand-made cases, as the image shows them: light with shadows over light
  * without. One bright patch of sky makes one region that matters; with six regions each is a whole cube face
  * of 2 pi / 3 sr, so its cone has cos = 1 - 1/3 and tan = sqrt(5) / 2. */
-#include "tests/render/shapes.h"
+#include "tests/render/scenes.h"
 
 #include "render/visibility/maps.h"
 

@@ -3,7 +3,7 @@
 #include "config/memory.h"
 #include "render/visibility/maps.h"
 
-#include "tests/render/shapes.h"
+#include "tests/render/scenes.h"
 #include "tests/testing.h"
 
 #include <omp.h>

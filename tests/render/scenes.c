@@ -1,6 +1,10 @@
-#include "tests/render/shapes.h"
+#include "tests/render/scenes.h"
 
+#include "assets/builtin/weave.h"
 #include "config/memory.h"
+#include "render/brdf/brdf.h"
+#include "render/scene/view.h"
+#include "render/reference/shading_point.h"
 
 #include "tests/testing.h"
 
@@ -102,7 +106,25 @@ struct test_shape test_sheet(float height, float half, float amplitude, float wa
 
 static uint64_t environment_count; /* the revision of the newest one: addresses are used again */
 
-tl_environment test_environment(int width, int height, vec3s (*radiance)(vec3s direction))
+vec3s test_black(vec3s direction)
+{
+    (void)direction;
+    return (vec3s){{0, 0, 0}};
+}
+
+vec3s test_white(vec3s direction)
+{
+    (void)direction;
+    return (vec3s){{1, 1, 1}};
+}
+
+vec3s test_daylight(vec3s direction)
+{
+    bool sun = glms_vec3_dot(direction, glms_vec3_normalize((vec3s){{0.3f, 0.8f, 0.5f}})) > 0.99f;
+    return sun ? (vec3s){{60, 55, 50}} : (vec3s){{0.4f, 0.5f, 0.6f + 0.3f * direction.y}};
+}
+
+tl_environment test_environment(int width, int height, test_radiance *radiance)
 {
     tl_environment environment = {.name = tl_copy_string("test"),
                                   .layout = TL_ENV_LATLONG,
@@ -171,6 +193,14 @@ const float *test_pixel(const tl_image *image, int x, int y)
     return tl_image_floats(image) + ((size_t)y * (size_t)image->width + (size_t)x) * (size_t)image->channels;
 }
 
+double test_brightest(const tl_image *image)
+{
+    double peak = 0;
+    for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++)
+        peak = fmax(peak, (double)tl_image_floats(image)[4 * i]);
+    return peak;
+}
+
 int test_device_open(void **state)
 {
     tl_error error = {0};
@@ -194,4 +224,163 @@ int test_device_close(void **state)
     if (messages || bytes)
         print_error("%zu GL messages, %zu bytes of textures left\n", messages, bytes);
     return messages || bytes ? -1 : 0;
+}
+
+void test_scene_open(struct test_scene *scene, tl_environment environment, vec3s eye, vec3s target,
+                     float fov_deg, int width, int height)
+{
+    *scene = (struct test_scene){.environment = environment, .settings = test_settings(width, height)};
+    scene->frame = test_frame(eye, target, fov_deg, scene->surfaces, 0, &scene->environment);
+    scene->frame.lamps = scene->lamps;
+}
+
+void test_scene_refresh(struct test_scene *scene)
+{
+    for (size_t i = 0; i < scene->shape_count; i++) {
+        test_shape_refresh(&scene->shapes[i]);
+        scene->surfaces[i] = scene->shapes[i].surface;
+    }
+    scene->frame.surface_count = scene->shape_count;
+}
+
+tl_material *test_scene_add(struct test_scene *scene, struct test_shape shape)
+{
+    assert_true(scene->shape_count < TEST_SHAPES_MAX);
+    struct test_shape *added = &scene->shapes[scene->shape_count++];
+    *added = shape;
+    test_scene_refresh(scene);
+    return &added->material;
+}
+
+void test_scene_close(struct test_scene *scene)
+{
+    for (size_t i = 0; i < scene->shape_count; i++)
+        test_shape_release(&scene->shapes[i]);
+    tl_weave_release(&scene->weave);
+    tl_environment_release(&scene->environment);
+}
+
+tl_image test_scene_draw(const struct test_scene *scene, tl_renderer *renderer)
+{
+    return test_draw(renderer, &scene->frame, &scene->settings);
+}
+
+void test_scene_open_ball_and_sheet(struct test_scene *scene, test_radiance *radiance)
+{
+    test_scene_open(scene, test_environment(64, 32, radiance), (vec3s){{1, 1.5f, 2}}, (vec3s){{0, 0.6f, 0}},
+                    40, 48, 32);
+    test_scene_add(scene, test_sphere((vec3s){{0, 0.5f, 0}}, 0.4f, 16));
+    test_scene_add(scene, test_sheet(1.1f, 0.5f, 0.06f, 2, 16));
+    scene->settings.image.ground = true;
+}
+
+struct tl_lamp test_lamp_towards(vec3s direction, float irradiance)
+{
+    return (struct tl_lamp){.kind = TL_LAMP_DIRECTIONAL,
+                            .direction = glms_vec3_normalize(direction),
+                            .irradiance = {{irradiance, 0.9f * irradiance, 0.8f * irradiance}}};
+}
+
+struct tl_lamp test_lamp_at(vec3s position, float irradiance)
+{
+    return (struct tl_lamp){.kind = TL_LAMP_POINT,
+                            .position = position,
+                            .irradiance = {{irradiance, 0.9f * irradiance, 0.8f * irradiance}}};
+}
+
+void test_scene_open_lamplit(struct test_scene *scene, struct test_shape shape, int width, int height)
+{
+    test_scene_open(scene, test_environment(8, 4, test_black), (vec3s){{0, 0.3f, 2.5f}}, (vec3s){{0, 0, 0}},
+                    40, width, height);
+    scene->settings.image.supersample = 1;
+    scene->settings.light.method = TL_METHOD_UNSHADOWED;
+    scene->lamps[0] = test_lamp_towards((vec3s){{-0.6f, 0.7f, 0.8f}}, 3);
+    scene->frame.lamp_count = 1;
+    test_scene_add(scene, shape);
+}
+
+/* `point` lies on the triangle; the spot's own is where rays start, on the smooth surface. */
+static vec3s light_of(const struct tl_shading_point *spot, vec3s point, const struct tl_lamp *lamp)
+{
+    const struct tl_brdf brdf = tl_brdf_of(spot->material, spot->f0, spot->glossiness);
+    const struct tl_brdf_frame frame = tl_brdf_frame_make(spot->normal, spot->tangent, spot->handedness,
+                                                          spot->side * spot->material->gloss.rotation);
+    bool is_point = lamp->kind == TL_LAMP_POINT;
+    vec3s way = is_point ? glms_vec3_sub(lamp->position, point) : lamp->direction;
+    float fall = is_point ? 1 / glms_vec3_norm2(way) : 1;
+    vec3s l = glms_vec3_normalize(way), gloss = tl_brdf_gloss(&brdf, &frame, l, spot->viewer), sent;
+    float cosine = fmaxf(glms_vec3_dot(spot->normal, l), 0);
+    float ramp = fminf(fmaxf(32 * glms_vec3_dot(spot->horizon, l), 0), 1);
+    for (int c = 0; c < 3; c++)
+        sent.raw[c] = ramp * fall * lamp->irradiance.raw[c] *
+                      (spot->albedo.raw[c] * cosine / (float)M_PI + gloss.raw[c]);
+    return sent;
+}
+
+tl_image test_scene_evaluate(const struct test_scene *scene)
+{
+    const struct tl_image_params *image = &scene->settings.image;
+    struct tl_reference_scene traced;
+    tl_error error = {0};
+    assert_ok(tl_reference_scene_make(&scene->frame, &scene->settings, NULL, &traced, &error), error);
+    struct tl_view view = tl_view_make(&scene->frame.camera, image->width, image->height);
+    tl_image out = tl_image_create(image->width, image->height, 4, TL_IMAGE_F32);
+    for (int y = 0; y < image->height; y++)
+        for (int x = 0; x < image->width; x++) {
+            struct tl_ray_differential ray = tl_camera_ray(&view, image->width, image->height, x, y);
+            struct tl_shading_point spot = tl_shading_point_find(&traced, &ray);
+            struct tl_trace_hit hit =
+                tl_trace_nearest(traced.trace, ray.origin, ray.direction, ray.from_m, ray.to_m);
+            vec3s point = glms_vec3_add(ray.origin, glms_vec3_scale(ray.direction, hit.distance_m));
+            float *pixel = tl_image_floats(&out) + 4 * ((size_t)y * (size_t)image->width + (size_t)x);
+            pixel[3] = spot.cover;
+            for (size_t i = 0; spot.cover > 0 && i < scene->frame.lamp_count; i++) {
+                vec3s light = light_of(&spot, point, &scene->frame.lamps[i]);
+                for (int c = 0; c < 3; c++)
+                    pixel[c] += light.raw[c];
+            }
+        }
+    tl_reference_scene_release(&traced);
+    return out;
+}
+
+static bool is_inside(const tl_image *image, int x, int y)
+{
+    for (int j = -1; j <= 1; j++)
+        for (int i = -1; i <= 1; i++)
+            if (test_pixel(image, x + i, y + j)[3] < 1)
+                return false;
+    return true;
+}
+
+struct test_difference test_compare(const tl_image *drawn, const tl_image *expected)
+{
+    double squares = 0, sum = 0, peak = 0, largest = 0;
+    size_t pixels = 0;
+    for (int y = 1; y + 1 < drawn->height; y++)
+        for (int x = 1; x + 1 < drawn->width; x++) {
+            if (!is_inside(drawn, x, y) || !is_inside(expected, x, y))
+                continue;
+            pixels++;
+            for (int c = 0; c < 3; c++) {
+                double is = (double)test_pixel(drawn, x, y)[c], want = (double)test_pixel(expected, x, y)[c];
+                if (!isfinite(is))
+                    fail_msg("pixel %d, %d is not finite", x, y);
+                squares += (is - want) * (is - want);
+                sum += want;
+                peak = fmax(peak, want);
+                largest = fmax(largest, fabs(is - want));
+            }
+        }
+    double count = 3 * (double)pixels;
+    return (struct test_difference){sqrt(squares / count) / (sum / count), largest / peak, pixels};
+}
+
+struct test_difference test_scene_error(const struct test_scene *scene, tl_renderer *renderer,
+                                        const tl_image *expected)
+{
+    tl_image drawn = test_scene_draw(scene, renderer);
+    struct test_difference difference = test_compare(&drawn, expected);
+    tl_image_release(&drawn);
+    return difference;
 }
