@@ -19,6 +19,8 @@ add_library(toile_light STATIC
   env/convert.c
   env/cube.c
   env/emitters.c
+  env/exponent.c
+  env/from_environment.c
   env/layout.c
   env/mip_levels.c
   env/lobes.c

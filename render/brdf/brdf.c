@@ -1,7 +1,7 @@
 #include "render/brdf/brdf.h"
 
 #include "render/brdf/brdf_internal.h"
-#include "render/pem/lobe.h"
+#include "render/env/exponent.h"
 
 #include <math.h>
 

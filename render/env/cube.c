@@ -1,7 +1,6 @@
 #include "render/env/cube.h"
 
 #include "config/memory.h"
-#include "render/env/resample.h"
 
 #include <assert.h>
 #include <math.h>
@@ -72,7 +71,7 @@ static double corner_solid_angle(double u, double v)
     return atan2(u * v, sqrt(u * u + v * v + 1));
 }
 
-static double rectangle_solid_angle(double s0, double t0, double s1, double t1)
+double tl_cube_rectangle_solid_angle(double s0, double t0, double s1, double t1)
 {
     double u0 = 2 * s0 - 1, v0 = 2 * t0 - 1, u1 = 2 * s1 - 1, v1 = 2 * t1 - 1;
     return corner_solid_angle(u1, v1) - corner_solid_angle(u0, v1) - corner_solid_angle(u1, v0) +
@@ -88,7 +87,7 @@ vec3s tl_turn_direction(vec3s direction, float yaw)
 float tl_cube_solid_angle(int size, int x, int y)
 {
     double step = 1.0 / size;
-    return (float)rectangle_solid_angle(x * step, y * step, (x + 1) * step, (y + 1) * step);
+    return (float)tl_cube_rectangle_solid_angle(x * step, y * step, (x + 1) * step, (y + 1) * step);
 }
 
 void tl_cube_solid_angles(int size, float *out)
@@ -181,115 +180,4 @@ vec3s tl_cube_sample(const tl_cube *cube, vec3s direction)
 {
     struct tl_cube_taps taps = tl_cube_taps(cube->size, direction);
     return tl_cube_fetch(cube, &taps);
-}
-
-/* An environment in cube layout is a tl_cube already; this only looks at it as one. */
-static tl_cube environment_as_cube(const tl_environment *environment)
-{
-    assert(environment->image.height == 6 * environment->image.width);
-    return (tl_cube){.size = environment->image.width, .texels = tl_image_floats(&environment->image)};
-}
-
-static vec3s sample_latlong(const tl_image *image, vec3s direction)
-{
-    float length = glms_vec3_norm(direction);
-    float y = length > 0 ? direction.y / length : 0;
-    float u = 0.5f + atan2f(direction.x, -direction.z) / (float)(2 * M_PI);
-    float v = acosf(fminf(fmaxf(y, -1), 1)) / (float)M_PI;
-    float fx = u * (float)image->width - 0.5f, fy = v * (float)image->height - 0.5f;
-    int x = (int)floorf(fx), row = (int)floorf(fy);
-    float wx = fx - (float)x, wy = fy - (float)row;
-
-    vec3s sum = {{0, 0, 0}};
-    for (int i = 0; i < 4; i++) {
-        int column = (x + (i & 1) + image->width) % image->width;
-        int line = clamp_index(row + (i >> 1), image->height);
-        float weight = ((i & 1) ? wx : 1 - wx) * ((i >> 1) ? wy : 1 - wy);
-        const float *texel =
-            tl_image_floats(image) + 3 * ((size_t)line * (size_t)image->width + (size_t)column);
-        for (int c = 0; c < 3; c++)
-            sum.raw[c] += weight * texel[c];
-    }
-    return sum;
-}
-
-vec3s tl_environment_sample(const tl_environment *environment, vec3s direction)
-{
-    assert(environment->image.type == TL_IMAGE_F32 && environment->image.channels == 3);
-    if (environment->layout == TL_ENV_CUBE) {
-        tl_cube cube = environment_as_cube(environment);
-        return tl_cube_sample(&cube, direction);
-    }
-    return sample_latlong(&environment->image, direction);
-}
-
-vec3s tl_environment_texel(const tl_environment *environment, vec3s direction)
-{
-    const tl_image *image = &environment->image;
-    int column, row;
-    if (environment->layout == TL_ENV_CUBE) {
-        int face;
-        float s, t;
-        tl_cube_locate(direction, &face, &s, &t);
-        column = clamp_index((int)(s * (float)image->width), image->width);
-        row = face * image->width + clamp_index((int)(t * (float)image->width), image->width);
-    } else {
-        float u = 0.5f + atan2f(direction.x, -direction.z) / (float)(2 * M_PI);
-        float v = acosf(fminf(fmaxf(direction.y, -1), 1)) / (float)M_PI;
-        column = clamp_index((int)(u * (float)image->width), image->width);
-        row = clamp_index((int)(v * (float)image->height), image->height);
-    }
-    const float *texel = tl_image_floats(image) + 3 * ((size_t)row * (size_t)image->width + (size_t)column);
-    return (vec3s){{texel[0], texel[1], texel[2]}};
-}
-
-/* Cube to cube: texels of both are rectangles of the same plane, so overlaps are exact. */
-static void average_cube(const tl_cube *source, tl_cube *target)
-{
-    double ratio = (double)source->size / target->size, step = 1.0 / source->size;
-#pragma omp parallel for
-    for (int line = 0; line < 6 * target->size; line++) {
-        int face = line / target->size;
-        double top = (line % target->size) * ratio, bottom = top + ratio;
-        for (int x = 0; x < target->size; x++) {
-            double left = x * ratio, right = left + ratio, weights = 0, sum[3] = {0, 0, 0};
-            for (int j = (int)top; j < source->size && j < bottom; j++) {
-                for (int i = (int)left; i < source->size && i < right; i++) {
-                    double weight =
-                        rectangle_solid_angle(fmax(left, i) * step, fmax(top, j) * step,
-                                              fmin(right, i + 1) * step, fmin(bottom, j + 1) * step);
-                    const float *texel =
-                        source->texels +
-                        3 * ((size_t)(face * source->size + j) * (size_t)source->size + (size_t)i);
-                    weights += weight;
-                    for (int c = 0; c < 3; c++)
-                        sum[c] += weight * texel[c];
-                }
-            }
-            for (int c = 0; c < 3; c++)
-                target->texels[3 * ((size_t)line * (size_t)target->size + (size_t)x) + (size_t)c] =
-                    (float)(sum[c] / weights);
-        }
-    }
-}
-
-tl_cube tl_cube_from_environment_with(const tl_environment *environment, int size, struct tl_resampling *kept)
-{
-    assert(environment->image.type == TL_IMAGE_F32 && environment->image.channels == 3);
-    tl_cube target = tl_cube_create(size);
-    if (environment->layout == TL_ENV_CUBE) {
-        tl_cube source = environment_as_cube(environment);
-        average_cube(&source, &target);
-    } else {
-        tl_resample_latlong(&environment->image, size, target.texels, kept);
-    }
-    return target;
-}
-
-tl_cube tl_cube_from_environment(const tl_environment *environment, int size)
-{
-    struct tl_resampling pour = {0};
-    tl_cube cube = tl_cube_from_environment_with(environment, size, &pour);
-    tl_resampling_release(&pour);
-    return cube;
 }

@@ -5,8 +5,6 @@
 #ifndef TOILE_RENDER_ENV_CUBE_H
 #define TOILE_RENDER_ENV_CUBE_H
 
-#include "assets/environment.h"
-
 #include <cglm/struct.h>
 
 typedef struct tl_cube {
@@ -17,15 +15,6 @@ typedef struct tl_cube {
 tl_cube tl_cube_create(int size); /* black */
 tl_cube tl_cube_copy(const tl_cube *cube);
 void tl_cube_release(tl_cube *cube);
-
-/* Area average of the environment over every texel (supersampled so that no source texel is missed: a single
- * bright texel keeps its energy within 1 %). */
-tl_cube tl_cube_from_environment(const tl_environment *environment, int size);
-/* The same, bit for bit, for one environment after the other: what depends on their size only is kept in
- * `kept` (zeroed at first; tl_resampling_release), which makes the next some fifty times as fast. */
-struct tl_resampling;
-tl_cube tl_cube_from_environment_with(const tl_environment *environment, int size,
-                                      struct tl_resampling *kept);
 
 /* Direction (not normalised, largest component 1) of face coordinates s, t in [0, 1]; outside of that range
  * the plane of the face is continued. OpenGL 4.5, table 8.19 inverted. */
@@ -44,7 +33,10 @@ int tl_cube_texel_across(int size, int face, int x, int y);
  * counter-clockwise from above; -yaw takes it back. */
 vec3s tl_turn_direction(vec3s direction, float yaw);
 
-/* Exact solid angle of texel (x, y), steradians. */
+/* Exact solid angle (sr) of the rectangle [s0, s1] x [t0, t1] of any face: the sum of its corners' signed
+ * atan2(u v, sqrt(u^2 + v^2 + 1)), (u, v) being the point of the face's plane at distance 1. */
+double tl_cube_rectangle_solid_angle(double s0, double t0, double s1, double t1);
+/* Exact solid angle (sr) of texel (x, y) of any face. */
 float tl_cube_solid_angle(int size, int x, int y);
 /* ... of all texels of a face, which are the same on each: [size][size]. To the last bit that of the texel's
  * mirror image in the first eighth of the face. */
@@ -62,12 +54,5 @@ vec3s tl_cube_fetch(const tl_cube *cube, const struct tl_cube_taps *taps);
 /* Seamless bilinear fetch, as GL with GL_TEXTURE_CUBE_MAP_SEAMLESS (corners: mean of the three texels that
  * exist). */
 vec3s tl_cube_sample(const tl_cube *cube, vec3s direction);
-
-/* The environment's own texel in a unit direction: its radiance, as the oracle defines it, is constant over
- * each. */
-vec3s tl_environment_texel(const tl_environment *environment, vec3s direction);
-
-/* Bilinear fetch of the environment itself in its own layout. */
-vec3s tl_environment_sample(const tl_environment *environment, vec3s direction);
 
 #endif

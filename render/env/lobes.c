@@ -2,7 +2,7 @@
 
 #include "config/memory.h"
 #include "render/env/emitters.h"
-#include "render/pem/lobe.h"
+#include "render/env/exponent.h"
 
 #include <assert.h>
 #include <math.h>

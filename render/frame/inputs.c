@@ -2,9 +2,9 @@
 #include "config/memory.h"
 #include "render/brdf/lobe_fit.h"
 #include "render/detail/detail.h"
+#include "render/env/exponent.h"
 #include "render/frame/frame.h"
 #include "render/inspect/job.h"
-#include "render/pem/lobe.h"
 
 #include <math.h>
 

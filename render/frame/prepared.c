@@ -3,6 +3,7 @@
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
+#include "render/env/from_environment.h"
 #include "render/frame/frame.h"
 
 #include <stdlib.h>

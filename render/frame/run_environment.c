@@ -1,4 +1,5 @@
 /* Jobs that make light of the environment. */
+#include "render/env/from_environment.h"
 #include "render/frame/run.h"
 
 bool tl_run_cube(void *context, int level, tl_error *error)

@@ -2,6 +2,7 @@
 #include "render/frame/run.h"
 
 #include "config/log.h"
+#include "render/env/from_environment.h"
 #include "render/reference/reference.h"
 
 bool tl_run_envmap_lobes(void *context, int level, tl_error *error)

@@ -3,7 +3,8 @@
 #include "config/memory.h"
 #include "render/brdf/coat.h"
 #include "render/brdf/lobe_fit.h"
-#include "render/pem/lobe.h"
+#include "render/env/exponent.h"
+#include "render/env/from_environment.h"
 
 #include <math.h>
 #include <stdlib.h>

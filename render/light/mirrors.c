@@ -1,7 +1,7 @@
 #include "render/light/mirrors.h"
 
 #include "config/memory.h"
-#include "render/pem/lobe.h"
+#include "render/env/exponent.h"
 #include "render/renderer.h"
 
 #include <math.h>

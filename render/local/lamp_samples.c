@@ -3,7 +3,7 @@
 #include "config/memory.h"
 #include "render/brdf/brdf.h"
 #include "render/brdf/coat.h"
-#include "render/pem/lobe.h"
+#include "render/env/exponent.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 #include "render/local/local.h"
 
 #include "config/memory.h"
+#include "render/env/exponent.h"
 #include "render/gpu/shaders.h"
-#include "render/pem/lobe.h"
 
 #include <epoxy/gl.h>
 

@@ -1,21 +1,11 @@
 #include "render/pem/lobe.h"
+#include "render/env/exponent.h"
 
 #include "config/memory.h"
 
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
-
-float tl_lobe_exponent(float glossiness)
-{
-    float matt = 1 - fminf(fmaxf(glossiness, 0), 1);
-    return matt > 1e-6f ? 1 / matt : 1e6f;
-}
-
-float tl_lobe_cosine(float exponent, float cosine)
-{
-    return cosine > 0 ? (exponent + 1) / (float)(2 * M_PI) * powf(cosine, exponent) : 0;
-}
 
 /* Integral of each texel's hat, the function that a bilinear fetch makes of a single white texel: the volume
  * of a level is the sum of its texels times these. By the midpoint rule on a grid that halves every hat. */

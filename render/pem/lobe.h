@@ -14,12 +14,6 @@ struct tl_lobe_table {
                                    0 at 1 */
 };
 
-/* s = 1 / (1 - g), clamped to [1, 1e6]. */
-float tl_lobe_exponent(float glossiness);
-
-/* K_s(d, w) = (s + 1) / 2 pi * max(0, d . w)^s */
-float tl_lobe_cosine(float exponent, float cosine);
-
 void tl_lobe_calibrate(int size, enum tl_chain_filter filter, struct tl_lobe_table *out);
 
 #endif

@@ -1,7 +1,7 @@
 #include "render/reference/lamps.h"
 
 #include "render/brdf/brdf.h"
-#include "render/pem/lobe.h"
+#include "render/env/exponent.h"
 
 #include <float.h>
 #include <math.h>

@@ -3,7 +3,7 @@
 #include "config/memory.h"
 #include "render/brdf/coat.h"
 #include "render/detail/detail_terms.h"
-#include "render/pem/lobe.h"
+#include "render/env/exponent.h"
 #include "render/surfaces/surfaces.h"
 
 #include <math.h>

@@ -1,9 +1,10 @@
 /* The ways to put light together, against exact lobes on the CPU and closed forms on simple scenes. */
 #include "tests/render/scenes.h"
 
+#include "render/env/exponent.h"
+#include "render/env/from_environment.h"
 #include "render/env/lobes.h"
 #include "render/light/terms.h"
-#include "render/pem/lobe.h"
 #include "render/pem/regions.h"
 
 #include "tests/testing.h"

@@ -3,6 +3,7 @@
 #include "app/report/cells.h"
 #include "app/report/report.h"
 #include "config/memory.h"
+#include "render/env/from_environment.h"
 #include "render/pem/chain.h"
 #include "render/pem/lobe_error.h"
 #include "render/pem/memory.h"

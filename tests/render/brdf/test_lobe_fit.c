@@ -5,7 +5,7 @@
 #include "tests/testing.h"
 
 #include "config/memory.h"
-#include "render/pem/lobe.h"
+#include "render/env/exponent.h"
 
 #include <math.h>
 

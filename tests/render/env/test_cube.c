@@ -1,5 +1,6 @@
 #include "render/env/cube.h"
 
+#include "render/env/from_environment.h"
 #include "render/env/resample.h"
 
 #include "tests/testing.h"

@@ -1,6 +1,6 @@
 #include "render/env/emitters.h"
 
-#include "render/pem/lobe.h"
+#include "render/env/exponent.h"
 
 #include "tests/testing.h"
 

@@ -2,6 +2,7 @@
 #include "render/env/sun.h"
 
 #include "config/memory.h"
+#include "render/env/from_environment.h"
 #include "render/env/resample.h"
 
 #include "tests/testing.h"

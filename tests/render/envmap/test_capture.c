@@ -1,6 +1,7 @@
 /* The scene captured into a cube, against ray tracing: closed forms for a ball, and the reference. */
 #include "tests/render/scenes.h"
 
+#include "render/env/from_environment.h"
 #include "render/env/lobes.h"
 
 #include "tests/testing.h"

@@ -5,8 +5,9 @@
 #include "cloth/mesh/topology.h"
 #include "cloth/tangents/frames.h"
 #include "config/memory.h"
+#include "render/env/exponent.h"
+#include "render/env/from_environment.h"
 #include "render/env/lobes.h"
-#include "render/pem/lobe.h"
 #include "render/scene/view.h"
 
 #include "tests/testing.h"

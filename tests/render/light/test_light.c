@@ -2,6 +2,7 @@
 #include "tests/render/scenes.h"
 
 #include "config/memory.h"
+#include "render/env/from_environment.h"
 #include "render/pem/chain.h"
 #include "render/pem/lobe.h"
 

@@ -2,6 +2,7 @@
 #include "tests/render/scenes.h"
 
 #include "config/memory.h"
+#include "render/env/from_environment.h"
 #include "render/light/compose.h"
 
 #include "tests/testing.h"

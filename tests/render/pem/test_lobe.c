@@ -1,3 +1,4 @@
+#include "render/env/exponent.h"
 #include "render/pem/lobe.h"
 
 #include "tests/testing.h"

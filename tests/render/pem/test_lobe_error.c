@@ -1,7 +1,7 @@
 #include "render/pem/lobe_error.h"
 
+#include "render/env/exponent.h"
 #include "render/env/lobes.h"
-#include "render/pem/lobe.h"
 
 #include "tests/testing.h"
 

@@ -1,5 +1,6 @@
 /* The cut of the whole sphere: a partition, a tree, no slice through a light; and directions drawn from it.
  */
+#include "render/env/from_environment.h"
 #include "render/pem/regions.h"
 
 #include "assets/environment.h"

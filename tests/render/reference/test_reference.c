@@ -5,7 +5,7 @@
 
 #include "config/interrupt.h"
 #include "config/memory.h"
-#include "render/pem/lobe.h"
+#include "render/env/exponent.h"
 #include "render/reference/reference.h"
 
 #include "tests/testing.h"
