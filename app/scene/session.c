@@ -334,11 +334,25 @@ static void frame_everything(tl_session *session)
     session->framed = box;
 }
 
-bool tl_session_make_look(const tl_session *session, const struct tl_settings *settings, struct tl_looks *out,
-                          tl_error *error)
+struct tl_session_models tl_session_models(const tl_session *session)
 {
-    return tl_looks_make(settings, session->garment ? &session->garment->model : NULL,
-                         session->avatar ? &session->avatar->model : NULL, out, error);
+    return (struct tl_session_models){
+        .garment = session->garment ? &session->garment->model : NULL,
+        .avatar = session->avatar ? &session->avatar->model : NULL,
+    };
+}
+
+bool tl_session_make_look(const struct tl_session_models *models, const struct tl_settings *settings,
+                          struct tl_looks *out, tl_error *error)
+{
+    return tl_looks_make(settings, models->garment, models->avatar, out, error);
+}
+
+static bool make_look(const tl_session *session, const struct tl_settings *settings, struct tl_looks *out,
+                      tl_error *error)
+{
+    const struct tl_session_models models = tl_session_models(session);
+    return tl_session_make_look(&models, settings, out, error);
 }
 
 static bool load_all(tl_session *session, tl_error *error)
@@ -349,7 +363,7 @@ static bool load_all(tl_session *session, tl_error *error)
         return false;
     if (!session->avatar && !session->garment)
         return tl_fail(error, TL_USAGE, "scene: neither a garment nor an avatar: name at least one");
-    if (!tl_session_make_look(session, &session->settings, &session->looks, error))
+    if (!make_look(session, &session->settings, &session->looks, error))
         return false;
     session->look_revision = ++session->looks_made;
     if (session->avatar)
@@ -614,7 +628,7 @@ bool tl_session_apply(tl_session *session, const struct tl_settings *settings, t
     struct tl_looks looks = {0};
     bool new_look = !tl_looks_are_same(&session->settings, settings);
     struct tl_spare_look *spare = find_spare(session, settings);
-    if (new_look && !spare && !tl_session_make_look(session, settings, &looks, error))
+    if (new_look && !spare && !make_look(session, settings, &looks, error))
         return false;
     if (!change_in_place(session, settings, error)) {
         tl_looks_release(&looks);
@@ -694,13 +708,21 @@ tl_frame tl_session_frame(tl_session *session)
     };
 }
 
-tl_frame tl_session_frame_in(const tl_session *session, const struct tl_looks *looks, tl_surface surfaces[2])
+static tl_surface surface_at_rest(const tl_model *model, const char *name, const struct tl_dressing *dressing)
+{
+    tl_surface surface = tl_surface_of_mesh(name, &model->mesh, dressing->materials);
+    surface.parts = dressing->parts;
+    return surface;
+}
+
+tl_frame tl_session_frame_in(const struct tl_session_models *models, const struct tl_looks *looks,
+                             tl_surface surfaces[2])
 {
     size_t count = 0;
-    if (session->avatar)
-        surfaces[count++] = tl_moving_surface(&session->body, "avatar", &looks->avatar);
-    if (session->garment)
-        surfaces[count++] = tl_moving_surface(&session->dress, "garment", &looks->garment);
+    if (models->avatar)
+        surfaces[count++] = surface_at_rest(models->avatar, "avatar", &looks->avatar);
+    if (models->garment)
+        surfaces[count++] = surface_at_rest(models->garment, "garment", &looks->garment);
     return (tl_frame){.surfaces = surfaces, .surface_count = count};
 }
 

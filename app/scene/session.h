@@ -43,11 +43,20 @@ void tl_session_keep_scene(const struct tl_settings *kept, struct tl_settings *s
 /* Becomes what was made beside it; *made is nulled. */
 void tl_session_replace(tl_session *session, tl_session **made);
 void tl_session_replace_light(tl_session *session, struct tl_moving_light *made, const char *name);
-/* The scene in another look: on any thread, while the session keeps its scene. */
-bool tl_session_make_look(const tl_session *session, const struct tl_settings *settings, struct tl_looks *out,
-                          tl_error *error);
-/* A frame of the scene at rest in a look, of which only what follows from materials means anything. */
-tl_frame tl_session_frame_in(const tl_session *session, const struct tl_looks *looks, tl_surface surfaces[2]);
+/* The models of a session's scene: all that another look of it is made from. Nothing writes to them while the
+ * session keeps its scene, so that another thread may read them while the session plays. Borrowed: they are
+ * freed with the scene. NULL: the scene has none. */
+struct tl_session_models {
+    const tl_model *garment, *avatar;
+};
+struct tl_session_models tl_session_models(const tl_session *session);
+/* The models in another look; on any thread. */
+bool tl_session_make_look(const struct tl_session_models *models, const struct tl_settings *settings,
+                          struct tl_looks *out, tl_error *error);
+/* A frame of the models at rest in a look, in which only what depends on materials is meaningful; on any
+ * thread. Borrows all three. */
+tl_frame tl_session_frame_in(const struct tl_session_models *models, const struct tl_looks *looks,
+                             tl_surface surfaces[2]);
 /* To apply these settings then costs little. *made is emptied. */
 void tl_session_keep_look(tl_session *session, const struct tl_settings *made_of, struct tl_looks *made);
 bool tl_session_light_plays(const tl_session *session); /* its environment is a sequence's */

@@ -98,8 +98,9 @@ static void start(struct tl_review *review)
 {
     enum tl_load kind = what_to_load(review);
     const struct tl_load_lights lights = lights_of(review, kind);
+    const struct tl_session_models models = tl_session_models(review->session);
     review->loader =
-        tl_loader_start(kind, &review->wanted, review->session, &lights, loader_threads(), tl_window_wake);
+        tl_loader_start(kind, &review->wanted, &models, &lights, loader_threads(), tl_window_wake);
     const struct tl_scene_params *scene = &review->wanted.scene;
     if (kind != TL_LOAD_LOOK)
         tl_info("view: loads %s", kind == TL_LOAD_SCENE ? scene->garment : scene->environment);

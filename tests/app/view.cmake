@@ -1,6 +1,7 @@
 # The review window: its camera's moves, and the real window under a virtual display; files are dropped on it by a
 # small program of X11's, whose headers come with GL's.
 toile_test(scene/orbit unit toile_app)
+toile_test(view/loader unit toile_app)
 toile_test(view/history unit toile_app)
 toile_test(view/frame_times unit toile_app)
 toile_test(view/state unit toile_app)

@@ -15,7 +15,7 @@ struct tl_loader {
     bool runs; /* the thread has to be joined */
     enum tl_load kind;
     struct tl_settings settings;
-    const tl_session *session;
+    struct tl_session_models models;
     struct tl_load_lights lights;
     double began_s;
     int threads;
@@ -46,7 +46,7 @@ static tl_frame frame_of(tl_loader *loader, tl_surface surfaces[2])
         return tl_session_frame(loaded->session);
     tl_frame frame = {.environment = &loaded->light.environment};
     if (loader->kind == TL_LOAD_LOOK)
-        frame = tl_session_frame_in(loader->session, &loaded->looks, surfaces);
+        frame = tl_session_frame_in(&loader->models, &loaded->looks, surfaces);
     return frame;
 }
 
@@ -74,7 +74,7 @@ static bool load(tl_loader *loader)
     case TL_LOAD_LIGHT:
         return tl_moving_light_open(&loaded->light, settings->scene.environment, 0, &loader->error);
     case TL_LOAD_LOOK:
-        return tl_session_make_look(loader->session, settings, &loaded->looks, &loader->error);
+        return tl_session_make_look(&loader->models, settings, &loaded->looks, &loader->error);
     }
     return false;
 }
@@ -94,13 +94,15 @@ static void *make(void *argument)
     return NULL;
 }
 
-tl_loader *tl_loader_start(enum tl_load kind, const struct tl_settings *settings, const tl_session *session,
-                           const struct tl_load_lights *lights, int threads, void (*wake)(void))
+tl_loader *tl_loader_start(enum tl_load kind, const struct tl_settings *settings,
+                           const struct tl_session_models *models, const struct tl_load_lights *lights,
+                           int threads, void (*wake)(void))
 {
     tl_loader *loader = TL_NEW(tl_loader);
     loader->kind = kind;
     loader->settings = *settings;
-    loader->session = session;
+    if (models)
+        loader->models = *models;
     loader->began_s = tl_clock_s();
     loader->lights = *lights;
     loader->threads = threads;

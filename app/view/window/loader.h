@@ -38,10 +38,13 @@ struct tl_loaded {
 };
 void tl_loaded_release(struct tl_loaded *loaded);
 
-/* `session`: whose scene gets a look; it stays as it is until the loader has ended. `wake` is called, on the
- * loader's thread, when it has finished. `threads`: that its loops may use, 0: all. */
-tl_loader *tl_loader_start(enum tl_load kind, const struct tl_settings *settings, const tl_session *session,
-                           const struct tl_load_lights *lights, int threads, void (*wake)(void));
+/* Everything that the thread reads is copied here or immutable. `models`: those of the scene that gets
+ * another look; copied, and alive until the loader has ended; NULL for the other kinds. `lights`: copied; the
+ * environments that its requests name stay as they are until the loader has ended. `wake` is called, on the
+ * loader's thread, when it has finished. `threads`: the number that its loops may use, 0: all. */
+tl_loader *tl_loader_start(enum tl_load kind, const struct tl_settings *settings,
+                           const struct tl_session_models *models, const struct tl_load_lights *lights,
+                           int threads, void (*wake)(void));
 enum tl_load tl_loader_kind(const tl_loader *loader);
 const struct tl_settings *tl_loader_settings(const tl_loader *loader); /* that it was started with */
 bool tl_loader_is_done(const tl_loader *loader);

@@ -127,8 +127,9 @@ static void looks_are_made_beside_the_session(void **state)
     struct tl_looks made;
     tl_surface surfaces[2];
     tl_error error = {0};
-    assert_ok(tl_session_make_look(session, &looks[2], &made, &error), error);
-    tl_frame frame = tl_session_frame_in(session, &made, surfaces);
+    const struct tl_session_models models = tl_session_models(session);
+    assert_ok(tl_session_make_look(&models, &looks[2], &made, &error), error);
+    tl_frame frame = tl_session_frame_in(&models, &made, surfaces);
     assert_int_equal(frame.surface_count, 2);
     assert_true(frame.surfaces[1].materials[0].glossiness == looks[2].material.glossiness);
     assert_true(look_of(session, &looks[1]) == second); /* until it is applied nothing shows it */
@@ -143,7 +144,7 @@ static void looks_are_made_beside_the_session(void **state)
     assert_true(look_of(session, &looks[2]) == third);
 
     /* What the session has already is not taken twice. */
-    assert_ok(tl_session_make_look(session, &looks[1], &made, &error), error);
+    assert_ok(tl_session_make_look(&models, &looks[1], &made, &error), error);
     tl_session_keep_look(session, &looks[1], &made);
     assert_true(look_of(session, &looks[1]) == second);
     look_of(session, &looks[3]);
