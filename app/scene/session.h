@@ -31,7 +31,7 @@ bool tl_session_apply(tl_session *session, const struct tl_settings *settings, t
 bool tl_session_restart(tl_session *session, const struct tl_settings *settings, tl_error *error);
 const struct tl_settings *tl_session_settings(const tl_session *session);
 
-/* For those who make a scene beside the one that is shown (app/view/window/loader.h). True when from `old` to
+/* For those who make a scene beside the one that is shown (app/view/review/loader.h). True when from `old` to
  * `new` the scene has to be made anew; or another environment be read; or cloth look different, or be drawn
  * in another way. Pure. */
 bool tl_session_needs_scene(const struct tl_settings *old, const struct tl_settings *new);

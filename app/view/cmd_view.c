@@ -3,79 +3,25 @@
  * A window in which nothing happens costs nothing: the loop sleeps. */
 #include "app/scene/headless.h"
 #include "app/view/commands.h"
-#include "app/view/review.h"
+#include "app/view/review/review_draw.h"
+#include "app/view/review/review_edit.h"
+#include "app/view/review/review_keep.h"
+#include "app/view/review/review_load.h"
+#include "app/view/review/review_memory.h"
+#include "app/view/review/review_move.h"
+#include "app/view/review_begin.h"
+#include "app/view/review_input.h"
+#include "app/view/review_panel.h"
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
 
-#include <epoxy/gl.h>
-
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define MESSAGE_S 6.0 /* that a message stays; an error stays until it is answered */
-
-void tl_review_size(const struct tl_review *review, int *width, int *height)
-{
-    tl_window_size(review->window, width, height);
-    *width -= tl_review_panel_width(review);
-}
-
-static void set_message(struct tl_review *review, bool is_error, const char *text)
-{
-    snprintf(review->message, sizeof review->message, "%s", text);
-    review->message_is_error = is_error;
-    review->said_s = tl_clock_s();
-    review->redraws = review->redraws > 1 ? review->redraws : 1;
-}
-
-void tl_review_say(struct tl_review *review, const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    char text[sizeof review->message];
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    set_message(review, false, text);
-    tl_info("view: %s", text);
-}
-
-void tl_review_complain(struct tl_review *review, const tl_error *error)
-{
-    set_message(review, true, error->message);
-    tl_warn("view: %s", error->message);
-    review->playing = false;
-}
-
-void tl_review_quiet(struct tl_review *review)
-{
-    set_message(review, false, "");
-}
-
-static void let_message_fade(struct tl_review *review)
-{
-    bool is_due = tl_clock_s() - review->said_s > MESSAGE_S;
-    if (review->message[0] && !review->message_is_error && is_due)
-        tl_review_quiet(review);
-}
-
-void tl_review_touch(struct tl_review *review)
-{
-    review->moved_s = tl_clock_s();
-}
-
-bool tl_review_is_moving(const struct tl_review *review)
-{
-    const double rest_s = 0.25;
-    return review->playing || tl_review_moves_itself(review) || review->drag != TL_DRAG_NONE ||
-           tl_clock_s() - review->moved_s < rest_s;
-}
-
 /* How long nothing needs to be done unless something happens. */
-static double patience_s(const struct tl_review *review)
+static double event_timeout_s(const struct tl_review *review)
 {
     const double idle_s = 0.5;                    /* Ctrl-C and edited files are looked for */
     const double settling_s = 0.05, tick_s = 0.1; /* tick: of progress that is shown */
@@ -104,11 +50,11 @@ static bool is_minimised(const struct tl_review *review)
 }
 
 /* What the window does between two looks at its events. */
-static bool live(struct tl_review *review, bool always_shows, tl_error *error)
+static bool run_one_frame(struct tl_review *review, bool always_shows, tl_error *error)
 {
     review->times.began_s = review->times.lap_s = tl_clock_s();
     review->times.cloth = review->times.longest_ms = 0;
-    tl_review_watch(review);
+    tl_review_reload_edited(review);
     tl_review_lap(review, "watching files");
     tl_review_load(review);
     tl_review_lap(review, "what was loaded beside");
@@ -118,7 +64,7 @@ static bool live(struct tl_review *review, bool always_shows, tl_error *error)
     review->times.lap_s = tl_clock_s();
     tl_review_note_edit(review);
     tl_review_lap(review, "undo");
-    let_message_fade(review);
+    tl_review_expire_message(review);
     if (review->redraws == 0 && !review->editing && !review->loader && !always_shows)
         return true;
     review->redraws -= review->redraws > 0;
@@ -132,11 +78,11 @@ static bool run(struct tl_review *review, int max_frames, tl_error *error)
     while (!review->closing && (max_frames == 0 || review->shown_count < max_frames)) {
         if (tl_interrupted())
             return tl_fail(error, TL_INTERRUPTED, "view: stopped");
-        tl_window_wait(review->window, max_frames > 0 ? 0 : patience_s(review));
-        tl_review_listen(review);
-        if (!is_minimised(review) && !live(review, max_frames > 0, error))
+        tl_window_wait(review->window, max_frames > 0 ? 0 : event_timeout_s(review));
+        tl_review_handle_events(review);
+        if (!is_minimised(review) && !run_one_frame(review, max_frames > 0, error))
             return false;
-        tl_review_give_back(review);
+        tl_review_trim_memory(review);
     }
     return true;
 }
@@ -188,7 +134,7 @@ static bool open_review(struct tl_review *review, tl_error *error)
     const struct tl_arguments *arguments = review->arguments;
     if (!tl_stage_settings(arguments, &review->wanted, error))
         return false;
-    bool is_remembered = tl_review_remember(review);
+    bool is_remembered = tl_review_restore_state(review);
     if (arguments->budget_ms > 0)
         review->params.budget_ms = (float)arguments->budget_ms;
     if (!open_window(review, error))
@@ -200,8 +146,8 @@ static bool open_review(struct tl_review *review, tl_error *error)
         return false;
     review->history = tl_history_create(&review->wanted);
     review->pace = tl_pace_create((double)review->params.budget_ms);
-    tl_review_know_environment(review, "studio");
-    tl_review_know_environment(review, review->wanted.scene.environment);
+    tl_review_add_environment(review, "studio");
+    tl_review_add_environment(review, review->wanted.scene.environment);
     /* The first image must come off: there is nothing good to go back to yet. */
     review->good = review->wanted;
     review->changed = true;
@@ -209,15 +155,16 @@ static bool open_review(struct tl_review *review, tl_error *error)
         return false;
     tl_info("view: ready with %s; H lists keys and gestures", tl_gpu_name(review->gpu));
     if (is_draft)
-        tl_review_say(review, "No graphics card: preset draft instead of review, to stay quick. H: keys");
+        tl_review_report(review,
+                         "No graphics card: preset draft instead of review, to keep_present quick. H: keys");
     else if (!is_remembered)
-        tl_review_say(review, "H lists keys and gestures");
+        tl_review_report(review, "H lists keys and gestures");
     return true;
 }
 
 static void close_review(struct tl_review *review)
 {
-    tl_review_keep(review);
+    tl_review_save_state(review);
     tl_renderer_destroy(&review->wipe.renderer);
     tl_renderer_destroy(&review->renderer);
     tl_panel_destroy(&review->panel);
@@ -232,7 +179,7 @@ static void close_review(struct tl_review *review)
         free(review->environments[i]);
     free(review->environments);
     while (review->dropped)
-        tl_review_forget_dropped(review);
+        tl_review_cancel_question(review);
     free(review->waiting);
     free(review->title);
     free(review->scene_file);
@@ -240,18 +187,18 @@ static void close_review(struct tl_review *review)
     free(review->state_folder);
 }
 
-static void tell_times(const struct tl_frame_times *times, const char *when)
+static void log_times(const struct tl_frame_times *times, const char *when)
 {
     tl_info("view: %zu images %s: p50 %.1f ms, p95 %.1f ms, p99 %.1f ms, worst %.1f ms", times->total, when,
             tl_frame_times_quantile(times, 0.5), tl_frame_times_quantile(times, 0.95),
             tl_frame_times_quantile(times, 0.99), times->worst_ms);
 }
 
-static void tell_end(const struct tl_review *review, size_t bytes_before)
+static void log_end(const struct tl_review *review, size_t bytes_before)
 {
     const double megabyte = 1 << 20;
-    tell_times(&review->frame_times, "in motion");
-    tell_times(&review->rest_times, "at rest");
+    log_times(&review->frame_times, "in motion");
+    log_times(&review->rest_times, "at rest");
     tl_info("view: closed after %d images, %d shown, %zu GL messages, resident %.0f MB at start, %.0f MB "
             "at end",
             review->drawn_count, review->shown_count, tl_gpu_message_count(review->gpu),
@@ -269,7 +216,7 @@ bool tl_command_view(const struct tl_arguments *arguments, tl_error *error)
     if (done) {
         size_t bytes_before = tl_review_resident_bytes();
         done = run(review, arguments->max_frames, error);
-        tell_end(review, bytes_before);
+        log_end(review, bytes_before);
     } else if (review->closing) {
         tl_info("view: closed while the scene was loaded");
         done = true;

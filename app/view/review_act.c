@@ -1,6 +1,13 @@
-/* What the commands of the review window do. */
+#include "app/view/review_act.h"
+
 #include "app/scene/orbit.h"
-#include "app/view/review.h"
+#include "app/view/review/review_draw.h"
+#include "app/view/review/review_edit.h"
+#include "app/view/review/review_hand.h"
+#include "app/view/review/review_keep.h"
+#include "app/view/review/review_load.h"
+#include "app/view/review/review_move.h"
+#include "app/view/review/review_wipe.h"
 #include "assets/image/exr.h"
 #include "config/embedded.h"
 #include "config/file.h"
@@ -11,104 +18,109 @@
 #include <string.h>
 
 #define ENVIRONMENT_STEP_DEG 15.0f
+#define CAMERA_STEP_DEG      5.0f
 #define WIPE_STEP            0.05f
 
-static void play(struct tl_review *review)
+void tl_act_play(struct tl_review *review, int argument)
 {
-    review->playing = !review->playing;
-    review->next_step_s = tl_clock_s();
-    tl_info("view: %s at frame %d", review->playing ? "plays" : "paused",
-            tl_session_frame_number(review->session));
+    (void)argument;
+    tl_review_set_playing(review, !review->playing);
 }
 
-static void step(struct tl_review *review)
+void tl_act_step(struct tl_review *review, int argument)
 {
+    (void)argument;
     tl_error error;
     review->playing = false;
     if (!tl_session_advance(review->session, &error))
-        tl_review_complain(review, &error);
+        tl_review_report_error(review, &error);
     review->image_is_old = true;
     tl_info("view: frame %d", tl_session_frame_number(review->session));
 }
 
-static void reset(struct tl_review *review)
+void tl_act_reset(struct tl_review *review, int argument)
 {
+    (void)argument;
     tl_error error;
     if (!tl_session_reset(review->session, &error))
-        tl_review_complain(review, &error);
+        tl_review_report_error(review, &error);
     review->image_is_old = true;
     tl_info("view: reset");
 }
 
-static void pin(struct tl_review *review)
+void tl_act_pin(struct tl_review *review, int argument)
 {
+    (void)argument;
     tl_cloth *cloth = tl_session_cloth(review->session);
     if (!cloth) {
-        tl_review_say(review, "the garment is not simulated: there is nothing to pin");
+        tl_review_report(review, "the garment is not simulated: there is nothing to pin");
     } else if (review->drag == TL_DRAG_CLOTH) {
-        tl_cloth_release(cloth);
+        tl_review_hand_release(review);
         tl_cloth_pin(cloth, review->grab_vertex);
-        review->drag = TL_DRAG_NONE;
-        tl_review_say(review, "pinned: P takes the pins out again");
+        tl_review_report(review, "pinned; P takes the pins out again");
     } else {
         size_t count = tl_cloth_unpin(cloth);
         if (count > 0)
-            tl_review_say(review, "%zu %s taken out", count, count == 1 ? "pin" : "pins");
+            tl_review_report(review, "%zu %s taken out", count, count == 1 ? "pin" : "pins");
         else
-            tl_review_say(review, "no pins: pull on the cloth with Ctrl + drag and press P to set one");
+            tl_review_report(review, "no pins: pull on the cloth with Ctrl + drag and press P to set one");
     }
 }
 
-static void turn_environment(struct tl_review *review, float by_deg)
+void tl_act_turn_environment(struct tl_review *review, int argument)
 {
     float *yaw_deg = &review->wanted.scene.environment_yaw_deg;
-    *yaw_deg = tl_orbit_wrap_deg(*yaw_deg + by_deg);
+    *yaw_deg = tl_orbit_wrap_deg(*yaw_deg + (float)argument * ENVIRONMENT_STEP_DEG);
     review->changed = true;
-    tl_review_touch(review);
+    tl_review_note_motion(review);
     tl_info("view: environment at %g degrees", (double)*yaw_deg);
 }
 
-/* In view heights, as a drag. */
-static void turn_camera(struct tl_review *review, float dx, float dy)
+void tl_act_turn_camera(struct tl_review *review, int argument)
 {
+    const float turn = CAMERA_STEP_DEG / TL_ORBIT_DEG_PER_HEIGHT; /* view heights, as a drag of this length */
+    float dx = argument == TL_ACT_LEFT ? -turn : argument == TL_ACT_RIGHT ? turn : 0;
+    float dy = argument == TL_ACT_UP ? -turn : argument == TL_ACT_DOWN ? turn : 0;
     tl_review_stop_moving(review);
     tl_orbit_turn(&review->wanted.camera, dx, dy);
     review->changed = true;
-    tl_review_touch(review);
+    tl_review_note_motion(review);
 }
 
-static void zoom(struct tl_review *review, float steps)
+void tl_act_zoom(struct tl_review *review, int argument)
 {
     tl_review_stop_moving(review);
     tl_review_fix_camera(review);
-    tl_orbit_zoom(&review->wanted.camera, steps, 0, 0);
+    tl_orbit_zoom(&review->wanted.camera, (float)argument, 0, 0);
     review->changed = true;
-    tl_review_touch(review);
+    tl_review_note_motion(review);
 }
 
-static void frame_all(struct tl_review *review)
+void tl_act_frame_all(struct tl_review *review, int argument)
 {
+    (void)argument;
     tl_review_stop_moving(review);
     review->wanted.camera.distance_m = 0;
     review->changed = true;
 }
 
-static void change_budget(struct tl_review *review, int by)
+void tl_act_budget(struct tl_review *review, int argument)
 {
     static const float ladder_ms[] = {16, 25, 33, 50, 75, 100, 150, 200, 400, 0}; /* 0: none */
     const int last = TL_COUNT(ladder_ms) - 1;
     int at = 0;
     while (at < last && (review->params.budget_ms <= 0 || ladder_ms[at] < review->params.budget_ms))
         at++;
-    at = at + by < 0 ? 0 : at + by > last ? last : at + by;
+    at += argument;
+    at = at < 0 ? 0 : at > last ? last : at;
     review->params.budget_ms = ladder_ms[at];
     if (ladder_ms[at] > 0)
-        tl_review_say(review, "budget: %g ms for a frame", (double)ladder_ms[at]);
+        tl_review_report(review, "budget: %g ms for a frame", (double)ladder_ms[at]);
     else
-        tl_review_say(review, "budget: none, a frame takes what it takes");
+        tl_review_report(review, "budget: none, a frame may take as long as it needs");
 }
 
-/* The first name in the folder that is not taken. New string. */
+/* The first unused name in the folder. New string. */
 static char *free_name(const struct tl_review *review, const char *extension)
 {
     for (int number = 1;; number++) {
@@ -126,7 +138,7 @@ static bool save_linear(struct tl_review *review, const char *path, tl_image *im
            tl_exr_save(path, &(struct tl_exr_layer){.channel_names = channels, .image = image}, 1, error);
 }
 
-/* As it is shown, both looks where two are compared. */
+/* The image as the window shows it: the columns left of the line come from appearance A. */
 static bool save_shown(struct tl_review *review, const char *path, tl_image *image, tl_error *error)
 {
     if (!tl_renderer_show_image(review->renderer, image, error))
@@ -143,37 +155,40 @@ static bool save_shown(struct tl_review *review, const char *path, tl_image *ima
     return tl_image_save_png(path, image, error);
 }
 
-static void screenshot(struct tl_review *review, bool linear)
+void tl_act_screenshot(struct tl_review *review, int argument)
 {
     tl_error error;
     tl_image image = {0};
+    bool linear = argument != 0;
     char *path = free_name(review, linear ? "exr" : "png");
     bool saved = tl_folder_make(review->output_folder, &error) && tl_review_draw_sharp(review, &error) &&
                  (linear ? save_linear : save_shown)(review, path, &image, &error);
     if (saved)
-        tl_review_say(review, "screenshot saved: %s", path);
+        tl_review_report(review, "screenshot saved: %s", path);
     else
-        tl_review_complain(review, &error);
+        tl_review_report_error(review, &error);
     tl_image_release(&image);
     free(path);
 }
 
-static void use_options(struct tl_review *review)
+void tl_act_options(struct tl_review *review, int argument)
 {
+    (void)argument;
     if (!review->params.panel) {
         review->params.panel = true;
         review->changed = true;
     }
     tl_panel_use_keys(review->panel, true);
     review->redraws = 3;
-    tl_review_say(review, "arrows choose, Enter or Space edits, Esc ends");
+    tl_review_report(review, "arrows choose, Enter or Space edits, Esc ends");
 }
 
-/* One thing at a time: what lies on top first. */
-static void back(struct tl_review *review)
+/* Closes one thing at a time, the topmost first. */
+void tl_act_back(struct tl_review *review, int argument)
 {
+    (void)argument;
     if (review->dropped)
-        tl_review_forget_dropped(review);
+        tl_review_cancel_question(review);
     else if (tl_panel_wants_keys(review->panel))
         tl_panel_use_keys(review->panel, false);
     else if (review->help_shown)
@@ -181,7 +196,7 @@ static void back(struct tl_review *review)
     else if (tl_review_stop_loading(review))
         return;
     else if (review->message_is_error && review->message[0])
-        tl_review_quiet(review);
+        tl_review_clear_message(review);
     else if (tl_review_moves_itself(review)) {
         tl_review_stop_moving(review);
         review->motion = (struct tl_review_motion){0};
@@ -191,166 +206,133 @@ static void back(struct tl_review *review)
         review->closing = true;
 }
 
-static bool act_on_range(struct tl_review *review, int command)
+void tl_act_turntable(struct tl_review *review, int argument)
 {
-    if (command >= TL_REVIEW_FABRIC) {
-        int index = command - TL_REVIEW_FABRIC, count = 0;
-        while (count < index && tl_embedded_fabrics_names[count])
-            count++;
-        if (tl_embedded_fabrics_names[count])
-            tl_review_use_fabric(review, tl_embedded_fabrics_names[count]);
-    } else if (command >= TL_REVIEW_SAVE_VIEW) {
-        tl_review_save_view(review, command - TL_REVIEW_SAVE_VIEW);
-    } else if (command >= TL_REVIEW_VIEW) {
-        tl_review_go_to_view(review, command - TL_REVIEW_VIEW);
-    }
-    return command >= TL_REVIEW_VIEW;
+    (void)argument;
+    tl_review_toggle(review, &review->motion.turntable, "turntable");
 }
 
-void tl_review_act(struct tl_review *review, int command)
+void tl_act_view(struct tl_review *review, int argument)
 {
-    const float turn = 5 / TL_ORBIT_DEG_PER_HEIGHT;
-    if (act_on_range(review, command))
-        return;
-    switch ((enum tl_review_command)command) {
-    case TL_REVIEW_PLAY:
-        play(review);
-        break;
-    case TL_REVIEW_STEP:
-        step(review);
-        break;
-    case TL_REVIEW_RESET:
-        reset(review);
-        break;
-    case TL_REVIEW_PIN:
-        pin(review);
-        break;
-    case TL_REVIEW_FRAME_ALL:
-        frame_all(review);
-        break;
-    case TL_REVIEW_TURN_CAMERA_LEFT:
-        turn_camera(review, -turn, 0);
-        break;
-    case TL_REVIEW_TURN_CAMERA_RIGHT:
-        turn_camera(review, turn, 0);
-        break;
-    case TL_REVIEW_TURN_CAMERA_UP:
-        turn_camera(review, 0, -turn);
-        break;
-    case TL_REVIEW_TURN_CAMERA_DOWN:
-        turn_camera(review, 0, turn);
-        break;
-    case TL_REVIEW_NEARER:
-        zoom(review, 1);
-        break;
-    case TL_REVIEW_FARTHER:
-        zoom(review, -1);
-        break;
-    case TL_REVIEW_TURNTABLE:
-        tl_review_turn(review, &review->motion.turntable, "turntable");
-        break;
-    case TL_REVIEW_NEXT_ENVIRONMENT:
-        tl_review_next_environment(review);
-        break;
-    case TL_REVIEW_TURN_LEFT:
-        turn_environment(review, ENVIRONMENT_STEP_DEG);
-        break;
-    case TL_REVIEW_TURN_RIGHT:
-        turn_environment(review, -ENVIRONMENT_STEP_DEG);
-        break;
-    case TL_REVIEW_TURN_ENVIRONMENT:
-        tl_review_turn(review, &review->motion.environment, "the environment");
-        break;
-    case TL_REVIEW_NEXT_FABRIC:
-        tl_review_next_fabric(review, 1);
-        break;
-    case TL_REVIEW_PREVIOUS_FABRIC:
-        tl_review_next_fabric(review, -1);
-        break;
-    case TL_REVIEW_NEXT_COLOURWAY:
-        tl_review_next_colourway(review, 1);
-        break;
-    case TL_REVIEW_PREVIOUS_COLOURWAY:
-        tl_review_next_colourway(review, -1);
-        break;
-    case TL_REVIEW_NEXT_VIEW:
-        tl_review_next_view(review, 1);
-        break;
-    case TL_REVIEW_PREVIOUS_VIEW:
-        tl_review_next_view(review, -1);
-        break;
-    case TL_REVIEW_PLAIN_VIEW:
-        tl_review_next_view(review, TL_VIEW_LIGHT - review->wanted.image.view);
-        break;
-    case TL_REVIEW_READ_OUT:
-        review->reads_out = !review->reads_out;
-        tl_review_say(review, review->reads_out ? "reads out what lies under the pointer" : "no read-out");
-        break;
-    case TL_REVIEW_COMPARE:
-        tl_review_compare(review);
-        break;
-    case TL_REVIEW_EXCHANGE:
-        tl_review_exchange(review);
-        break;
-    case TL_REVIEW_WIPE_LEFT:
-        tl_review_move_wipe(review, review->wipe.place - WIPE_STEP);
-        break;
-    case TL_REVIEW_WIPE_RIGHT:
-        tl_review_move_wipe(review, review->wipe.place + WIPE_STEP);
-        break;
-    case TL_REVIEW_PATH_KEY:
-        tl_review_path_add(review);
-        break;
-    case TL_REVIEW_PATH_RECORD:
-        tl_review_path_record(review);
-        break;
-    case TL_REVIEW_PATH_PLAY:
-        tl_review_path_play(review);
-        break;
-    case TL_REVIEW_UNDO:
-        tl_review_undo(review, false);
-        break;
-    case TL_REVIEW_REDO:
-        tl_review_undo(review, true);
-        break;
-    case TL_REVIEW_BUDGET_LESS:
-        change_budget(review, -1);
-        break;
-    case TL_REVIEW_BUDGET_MORE:
-        change_budget(review, 1);
-        break;
-    case TL_REVIEW_SCREENSHOT:
-        screenshot(review, false);
-        break;
-    case TL_REVIEW_SCREENSHOT_LINEAR:
-        screenshot(review, true);
-        break;
-    case TL_REVIEW_PANEL:
-        review->params.panel = !review->params.panel;
-        review->changed = true; /* the picture's size */
-        break;
-    case TL_REVIEW_OPTIONS:
-        use_options(review);
-        break;
-    case TL_REVIEW_HELP:
-        review->help_shown = !review->help_shown;
-        break;
-    case TL_REVIEW_BACK:
-        back(review);
-        break;
-    case TL_REVIEW_QUIT:
-        review->closing = true;
-        break;
-    case TL_REVIEW_USE_GARMENT:
-    case TL_REVIEW_USE_AVATAR:
-    case TL_REVIEW_USE_SCENE:
-    case TL_REVIEW_USE_FABRIC:
-    case TL_REVIEW_USE_PRESET:
-    case TL_REVIEW_USE_NOTHING:
-    case TL_REVIEW_VIEW:
-    case TL_REVIEW_SAVE_VIEW:
-    case TL_REVIEW_FABRIC:
-        tl_review_use_dropped(review, command);
-        break;
-    }
+    tl_review_go_to_view(review, argument);
+}
+
+void tl_act_save_view(struct tl_review *review, int argument)
+{
+    tl_review_save_view(review, argument);
+}
+
+void tl_act_path_key(struct tl_review *review, int argument)
+{
+    (void)argument;
+    tl_review_path_add(review);
+}
+
+void tl_act_path_record(struct tl_review *review, int argument)
+{
+    (void)argument;
+    tl_review_path_record(review);
+}
+
+void tl_act_path_play(struct tl_review *review, int argument)
+{
+    (void)argument;
+    tl_review_path_play(review);
+}
+
+void tl_act_next_environment(struct tl_review *review, int argument)
+{
+    (void)argument;
+    tl_review_next_environment(review);
+}
+
+void tl_act_environment_turntable(struct tl_review *review, int argument)
+{
+    (void)argument;
+    tl_review_toggle(review, &review->motion.environment, "the environment");
+}
+
+void tl_act_next_fabric(struct tl_review *review, int argument)
+{
+    tl_review_next_fabric(review, argument);
+}
+
+void tl_act_fabric(struct tl_review *review, int argument)
+{
+    int count = 0;
+    while (count < argument && tl_embedded_fabrics_names[count])
+        count++;
+    if (tl_embedded_fabrics_names[count])
+        tl_review_use_fabric(review, tl_embedded_fabrics_names[count]);
+}
+
+void tl_act_next_colourway(struct tl_review *review, int argument)
+{
+    tl_review_next_colourway(review, argument);
+}
+
+void tl_act_compare(struct tl_review *review, int argument)
+{
+    (void)argument;
+    tl_review_compare(review);
+}
+
+void tl_act_swap(struct tl_review *review, int argument)
+{
+    (void)argument;
+    tl_review_swap(review);
+}
+
+void tl_act_move_wipe(struct tl_review *review, int argument)
+{
+    tl_review_move_wipe(review, review->wipe.place + (float)argument * WIPE_STEP);
+}
+
+void tl_act_next_view(struct tl_review *review, int argument)
+{
+    tl_review_next_view(review, argument);
+}
+
+void tl_act_light_view(struct tl_review *review, int argument)
+{
+    (void)argument;
+    tl_review_next_view(review, TL_VIEW_LIGHT - review->wanted.image.view);
+}
+
+void tl_act_read_out(struct tl_review *review, int argument)
+{
+    (void)argument;
+    review->reads_out = !review->reads_out;
+    tl_review_report(review, review->reads_out ? "prints the values under the pointer" : "prints no values");
+}
+
+void tl_act_undo(struct tl_review *review, int argument)
+{
+    (void)argument;
+    tl_review_undo(review, false);
+}
+
+void tl_act_redo(struct tl_review *review, int argument)
+{
+    (void)argument;
+    tl_review_undo(review, true);
+}
+
+void tl_act_panel(struct tl_review *review, int argument)
+{
+    (void)argument;
+    review->params.panel = !review->params.panel;
+    review->changed = true; /* the view has another size */
+}
+
+void tl_act_help(struct tl_review *review, int argument)
+{
+    (void)argument;
+    review->help_shown = !review->help_shown;
+}
+
+void tl_act_quit(struct tl_review *review, int argument)
+{
+    (void)argument;
+    review->closing = true;
 }

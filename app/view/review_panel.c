@@ -1,9 +1,14 @@
-/* What the panel of the review window shows: options, measures, the plan. */
-#include "app/view/review.h"
+#include "app/view/review_panel.h"
+
+#include "app/view/review/review_draw.h"
+#include "app/view/review/review_edit.h"
+#include "app/view/review/review_load.h"
+#include "app/view/review/review_memory.h"
+#include "app/view/review/review_read.h"
+#include "app/view/review/review_wipe.h"
+#include "app/view/review_commands.h"
 #include "config/log.h"
 #include "config/memory.h"
-
-#include <epoxy/gl.h>
 
 #include <math.h>
 #include <stdarg.h>
@@ -11,7 +16,7 @@
 #include <string.h>
 
 #define MEASURES_MAX 12
-#define HELP_MAX     64
+#define HELP_MAX     96
 
 static const char *const favourites[] = {
     "scene.garment",
@@ -29,28 +34,6 @@ static const char *const favourites[] = {
     "image.exposure_ev",
     "image.background",
 };
-
-static const struct tl_panel_button model_answers[] = {
-    {"Garment", "worn by the avatar", TL_REVIEW_USE_GARMENT},
-    {"Avatar", "wears the garment", TL_REVIEW_USE_AVATAR},
-    {"Cancel", "", TL_REVIEW_USE_NOTHING},
-};
-
-static const struct tl_panel_button text_answers[] = {
-    {"Scene", "replaces all options", TL_REVIEW_USE_SCENE},
-    {"Fabric", "replaces fabric, weave and material", TL_REVIEW_USE_FABRIC},
-    {"Preset", "replaces the quality of light, image and cloth", TL_REVIEW_USE_PRESET},
-    {"Cancel", "", TL_REVIEW_USE_NOTHING},
-};
-
-int tl_review_panel_width(const struct tl_review *review)
-{
-    const float wished = 380;
-    int width, height;
-    tl_window_size(review->window, &width, &height);
-    int panel = (int)(wished * tl_window_scale(review->window));
-    return !review->params.panel ? 0 : panel < width / 2 ? panel : width / 2;
-}
 
 static double megabytes(size_t bytes)
 {
@@ -72,13 +55,13 @@ static void add_line(struct tl_panel_line *lines, size_t *count, const char *lab
     va_end(arguments);
 }
 
-/* Measuring the cloth costs a query a vertex: not for every frame. */
+/* Measuring the cloth costs one closest-point query a vertex: while it plays, twice a second is enough. */
 static const struct tl_cloth_report *cloth_report(struct tl_review *review)
 {
-    const double patience_s = 0.5;
+    const double interval_s = 0.5;
     int frame = tl_session_frame_number(review->session);
     double now_s = tl_clock_s();
-    if (frame != review->reported_frame && (!review->playing || now_s - review->reported_s > patience_s)) {
+    if (frame != review->reported_frame && (!review->playing || now_s - review->reported_s > interval_s)) {
         review->report = tl_session_report(review->session);
         review->reported_frame = frame;
         review->reported_s = now_s;
@@ -113,7 +96,8 @@ static size_t list_measures(struct tl_review *review, struct tl_panel_line *line
     add_line(lines, &count, "surfaces", "%zu triangles, %zu vertices", triangles, vertices);
     if (tl_session_cloth(review->session)) {
         const struct tl_cloth_report *report = cloth_report(review);
-        add_line(lines, &count, "sheet", "%zu vertices, %zu edges", report->vertex_count, report->edge_count);
+        add_line(lines, &count, "cloth mesh", "%zu vertices, %zu edges", report->vertex_count,
+                 report->edge_count);
         add_line(lines, &count, "substep", "%.3g ms; critical %.3g ms", 1000 * report->substep_s,
                  1000 * report->critical_step_s);
         add_line(lines, &count, "strain", "%.1f %% at most", 100 * report->max_strain);
@@ -145,24 +129,26 @@ static size_t list_plan(struct tl_review *review, struct tl_panel_line *lines)
     return (size_t)plan->count;
 }
 
-const struct tl_panel_button *tl_review_answers(const struct tl_review *review, size_t *count)
-{
-    if (!review->dropped)
-        return NULL;
-    bool is_model = tl_model_is_file(review->dropped);
-    *count = is_model ? TL_COUNT(model_answers) : TL_COUNT(text_answers);
-    return is_model ? model_answers : text_answers;
-}
+struct question {
+    char text[TL_STRING_SIZE];
+    struct tl_panel_button answers[TL_REVIEW_ANSWERS_MAX];
+    size_t answer_count;
+};
 
-static void ask_about_dropped(const struct tl_review *review, char *question, size_t size,
-                              struct tl_panel_input *input)
+/* What a dropped file is to be used as, when that is asked. */
+static void set_question(const struct tl_review *review, struct question *question,
+                         struct tl_panel_input *input)
 {
-    input->answers = tl_review_answers(review, &input->answer_count);
-    if (!input->answers)
+    const struct tl_review_answer *answers = tl_review_answers(review, &question->answer_count);
+    if (!answers)
         return;
+    for (size_t i = 0; i < question->answer_count; i++)
+        question->answers[i] = (struct tl_panel_button){answers[i].label, answers[i].help};
     const char *slash = strrchr(review->dropped, '/');
-    snprintf(question, size, "%s: use it as", slash ? slash + 1 : review->dropped);
-    input->question = question;
+    snprintf(question->text, sizeof question->text, "%s: use it as", slash ? slash + 1 : review->dropped);
+    input->question = question->text;
+    input->answers = question->answers;
+    input->answer_count = question->answer_count;
 }
 
 static char *append(char *end, const char *stop, const char *format, ...)
@@ -177,7 +163,7 @@ static char *append(char *end, const char *stop, const char *format, ...)
     return length < stop - end ? end + length : end;
 }
 
-/* What goes on by itself, and how it is ended. */
+/* Motion without input, and the key that ends it. */
 static void describe_status(const struct tl_review *review, char *status, size_t size)
 {
     const struct tl_review_path *path = &review->path;
@@ -197,60 +183,25 @@ static void describe_status(const struct tl_review *review, char *status, size_t
         append(end, stop, "keys go to the panel (Esc ends)");
 }
 
-static struct tl_panel_progress progress_of(const struct tl_review *review, char *text, size_t size)
-{
-    if (!review->loader || tl_loader_is_stopped(review->loader))
-        return (struct tl_panel_progress){0};
-    const struct tl_scene_params *scene = &tl_loader_settings(review->loader)->scene;
-    enum tl_load kind = tl_loader_kind(review->loader);
-    const char *name = kind == TL_LOAD_LIGHT                 ? scene->environment
-                       : kind == TL_LOAD_LOOK                ? scene->fabric
-                       : strcmp(scene->garment, "none") == 0 ? scene->avatar
-                                                             : scene->garment;
-    const char *slash = strrchr(name, '/');
-    struct tl_load_progress progress = tl_loader_progress(review->loader);
-    const double unseen_s = 0.3; /* most looks are there sooner: nothing flickers */
-    if (kind == TL_LOAD_LOOK && progress.seconds < unseen_s)
-        return (struct tl_panel_progress){0};
-    bool is_known = progress.what[0] != '\0';
-    snprintf(text, size, "Loading %.100s%s%s", slash ? slash + 1 : name, is_known ? ": " : "", progress.what);
-    return (struct tl_panel_progress){.what = text,
-                                      .share = is_known ? (float)progress.share : -1,
-                                      .hint = review->session ? "Esc stops it" : "Esc leaves"};
-}
-
-void tl_review_build_progress(struct tl_review *review)
-{
-    char text[256];
-    int width, height;
-    tl_window_size(review->window, &width, &height);
-    const struct tl_panel_input input = {
-        .message = "", .status = "", .progress = progress_of(review, text, sizeof text), .height = height};
-    const float surround = 0.13f; /* the panel's grey */
-    glViewport(0, 0, width, height);
-    glClearColor(surround, surround, surround, 1);
-    glClear(GL_COLOR_BUFFER_BIT);
-    tl_panel_build(review->panel, &input);
-    tl_panel_draw(review->panel);
-    tl_window_show(review->window);
-}
-
-/* The window's own options, which stand among the scene's, change no picture. */
-static void take_result(struct tl_review *review, const struct tl_panel_result *result,
-                        const struct tl_settings *before)
+/* The window's own options, listed among the scene's, change no image: `before` and `wanted` are then equal.
+ */
+static void apply_result(struct tl_review *review, const struct tl_panel_result *result,
+                         const struct tl_settings *before, const struct tl_review_buttons *buttons)
 {
     review->editing = result->editing;
     if (result->changed && !tl_settings_equal(before, &review->wanted)) {
-        tl_review_layer(review);
-        tl_review_know_environment(review, review->wanted.scene.environment);
-        tl_review_touch(review);
+        tl_review_apply_names(review);
+        tl_review_add_environment(review, review->wanted.scene.environment);
+        tl_review_note_motion(review);
         review->changed = true;
     }
-    if (result->command >= 0)
-        tl_review_act(review, result->command);
+    if (result->answer >= 0)
+        tl_review_answer(review, (size_t)result->answer);
+    else if (result->button >= 0)
+        buttons->commands[result->button]->act(review, buttons->commands[result->button]->keys[0].argument);
 }
 
-/* Percent, of those that the settings ask for. */
+/* Percent of the settings' samples that are drawn at the present levels. */
 static double share_of_samples(const struct tl_review *review)
 {
     const struct tl_settings drawn = tl_levels_apply(&review->pace_choice.levels, &review->good);
@@ -291,20 +242,7 @@ static struct tl_panel_strip strip_of(const struct tl_review *review, float *tim
 
 void tl_review_build_panel(struct tl_review *review)
 {
-    const struct tl_panel_button buttons[] = {
-        {review->playing ? "Pause" : "Play", "Space", TL_REVIEW_PLAY},
-        {"Step", "one frame on: .", TL_REVIEW_STEP},
-        {"Reset", "back to the settled start: R", TL_REVIEW_RESET},
-        {"Frame", "frame the whole figure: F", TL_REVIEW_FRAME_ALL},
-        {"Next light", "next environment: E", TL_REVIEW_NEXT_ENVIRONMENT},
-        {"Colours", "next colourway: C", TL_REVIEW_NEXT_COLOURWAY},
-        {"Inspect", "normals, UVs, visibility, strain: V; B: light again", TL_REVIEW_NEXT_VIEW},
-        {"Compare", "splits the view: the look of now beside the next one: W", TL_REVIEW_COMPARE},
-        {"Turn", "turntable: T", TL_REVIEW_TURNTABLE},
-        {"Undo", "the last edit: Ctrl+Z", TL_REVIEW_UNDO},
-        {"Picture", "screenshot: S, or Shift+S for a linear EXR", TL_REVIEW_SCREENSHOT},
-        {"Keys", "keys and gestures: H", TL_REVIEW_HELP},
-    };
+    struct tl_review_buttons buttons;
     struct tl_panel_line measures[MEASURES_MAX], plan[TL_JOBS_MAX], help[HELP_MAX];
     const struct tl_panel_lines groups[] = {
         {.title = "Measures",
@@ -313,7 +251,7 @@ void tl_review_build_panel(struct tl_review *review)
          .columns = 2,
          .open = true},
         {.title = "Plan",
-         .help = "what the last image needed: job, action, usual time, reason",
+         .help = "jobs of the last image: job, action, predicted time, reason",
          .lines = plan,
          .count = list_plan(review, plan),
          .columns = 4},
@@ -323,10 +261,12 @@ void tl_review_build_panel(struct tl_review *review)
     bindings[TL_SETTINGS_TABLES] = (struct tl_binding){&tl_window_options, &review->params};
     int width, height;
     tl_review_size(review, &width, &height);
-    char question[TL_STRING_SIZE], status[256], progress[256], left[256] = "", right[256] = "", label[256];
+    struct question question;
+    char status[256], progress[256], left[256] = "", right[256] = "", label[256];
     float times[TL_FRAME_TIMES_SHOWN];
     char read_out[512];
     struct tl_panel_legend legend;
+    tl_review_list_buttons(review, &buttons);
     tl_review_read_out(review, read_out, sizeof read_out);
     if (review->wipe.renderer)
         tl_review_wipe_labels(review, left, right, sizeof left);
@@ -340,9 +280,9 @@ void tl_review_build_panel(struct tl_review *review)
         .wipe = {tl_review_wipe_column(review, width), left, right},
         .legend = tl_review_legend(review, &legend) ? &legend : NULL,
         .read_out = read_out,
-        .progress = progress_of(review, progress, sizeof progress),
-        .buttons = buttons,
-        .button_count = TL_COUNT(buttons),
+        .progress = tl_review_progress(review, progress, sizeof progress),
+        .buttons = buttons.of,
+        .button_count = buttons.count,
         .favourites = favourites,
         .favourite_count = TL_COUNT(favourites),
         .measures = groups,
@@ -355,10 +295,10 @@ void tl_review_build_panel(struct tl_review *review)
         .width = tl_review_panel_width(review),
         .height = height,
     };
-    ask_about_dropped(review, question, sizeof question, &input);
+    set_question(review, &question, &input);
     struct tl_settings before = review->wanted;
     bool had_panel = review->params.panel;
     struct tl_panel_result result = tl_panel_build(review->panel, &input);
-    take_result(review, &result, &before);
-    review->changed |= review->params.panel != had_panel; /* the picture's size */
+    apply_result(review, &result, &before, &buttons);
+    review->changed |= review->params.panel != had_panel; /* the view has another size */
 }

@@ -2,6 +2,7 @@
 # small program of X11's, whose headers come with GL's.
 toile_test(scene/orbit unit toile_app)
 toile_test(view/loader unit toile_app)
+toile_test(view/review_commands unit toile_app)
 toile_test(view/history unit toile_app)
 toile_test(view/frame_times unit toile_app)
 toile_test(view/state unit toile_app)

@@ -93,7 +93,7 @@ void draw_buttons(const tl_panel_button *buttons, size_t count, tl_panel_result 
         if (i > 0 && ImGui::GetItemRectMax().x + style.ItemSpacing.x + width <= end)
             ImGui::SameLine();
         if (ImGui::Button(buttons[i].label))
-            result.command = buttons[i].command;
+            result.button = static_cast<int>(i);
         tooltip_of_last_item(buttons[i].help);
     }
 }
@@ -207,21 +207,17 @@ void draw_question(const tl_panel_input &input, tl_panel_result &result)
                                     ImGuiWindowFlags_NoSavedSettings))
         return;
     ImGui::TextUnformatted(input.question);
-    const int before = result.command;
-    result.command = -1;
     for (size_t i = 0; i < input.answer_count; i++) {
         if (i > 0)
             ImGui::SameLine();
         char label[64];
         snprintf(label, sizeof label, "%d  %s", static_cast<int>(i) + 1, input.answers[i].label);
         if (ImGui::Button(label))
-            result.command = input.answers[i].command;
+            result.answer = static_cast<int>(i);
         tooltip_of_last_item(input.answers[i].help);
     }
-    if (result.command >= 0)
+    if (result.answer >= 0)
         ImGui::CloseCurrentPopup();
-    else
-        result.command = before;
     ImGui::EndPopup();
 }
 
@@ -293,7 +289,7 @@ void tl_panel_use_keys(tl_panel *panel, bool used)
 
 struct tl_panel_result tl_panel_build(tl_panel *panel, const struct tl_panel_input *input)
 {
-    tl_panel_result result = {false, false, -1};
+    tl_panel_result result = {false, false, -1, -1};
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     hold_keys(*panel, true);

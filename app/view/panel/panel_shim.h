@@ -12,10 +12,8 @@
 typedef struct tl_panel tl_panel;
 struct GLFWwindow;
 
-/* A button stands for a number of the caller's choosing. */
 struct tl_panel_button {
     const char *label, *help;
-    int command;
 };
 
 struct tl_panel_line { /* one row of measures: cells[0] is its label */
@@ -30,7 +28,7 @@ struct tl_panel_lines {
     bool open; /* at first */
 };
 
-/* The last frames' times as bars, the oldest first, and the line that they are to stay below. */
+/* The last frames' times as bars, the oldest first, and the line that they are to keep_present below. */
 struct tl_panel_strip {
     const float *ms;
     size_t count;
@@ -94,7 +92,8 @@ struct tl_panel_input {
 struct tl_panel_result {
     bool changed; /* an option was edited */
     bool editing; /* a widget is held or typed in: more is to come */
-    int command;  /* of a button, -1 for none */
+    int button;   /* index of the one that was pressed, -1 for none */
+    int answer;   /* index of the one that was chosen, -1 for none */
 };
 
 /* Chains itself after the window's own callbacks. */

@@ -17,11 +17,11 @@ static uint64_t stamp_of(const char *path)
     return stamp ? stamp : 1;
 }
 
-bool tl_watch_has_changed(struct tl_watch *watch, const char *path)
+bool tl_file_has_changed(struct tl_file_watch *watch, const char *path)
 {
     uint64_t stamp = stamp_of(path);
-    for (size_t i = 0; i < TL_WATCHED; i++) {
-        struct tl_watched *file = &watch->files[i];
+    for (size_t i = 0; i < TL_WATCHED_MAX; i++) {
+        struct tl_watched_file *file = &watch->files[i];
         if (strcmp(file->path, path) != 0)
             continue;
         bool changed = stamp != file->stamp && stamp != 0; /* gone: its writer will be back */
@@ -29,7 +29,7 @@ bool tl_watch_has_changed(struct tl_watch *watch, const char *path)
             file->stamp = stamp;
         return changed;
     }
-    struct tl_watched *file = &watch->files[watch->next++ % TL_WATCHED];
+    struct tl_watched_file *file = &watch->files[watch->next++ % TL_WATCHED_MAX];
     snprintf(file->path, sizeof file->path, "%s", path);
     file->stamp = stamp;
     return false;

@@ -196,7 +196,7 @@ void tl_window_size(const tl_window *window, int *width, int *height)
     glfwGetFramebufferSize(window->handle, width, height);
 }
 
-void tl_window_wished_size(const tl_window *window, int *width, int *height)
+void tl_window_unscaled_size(const tl_window *window, int *width, int *height)
 {
     float x, y;
     glfwGetWindowContentScale(window->handle, &x, &y);
@@ -217,12 +217,12 @@ struct GLFWwindow *tl_window_handle(const tl_window *window)
     return window->handle;
 }
 
-void tl_window_wait(tl_window *window, double patience_s)
+void tl_window_wait(tl_window *window, double event_timeout_s)
 {
-    if (window->first < window->count || patience_s <= 0)
+    if (window->first < window->count || event_timeout_s <= 0)
         glfwPollEvents();
     else
-        glfwWaitEventsTimeout(patience_s);
+        glfwWaitEventsTimeout(event_timeout_s);
 }
 
 void tl_window_wake(void)

@@ -40,13 +40,13 @@ void tl_window_destroy(tl_window **window);
 
 void tl_window_set_title(tl_window *window, const char *title);
 void tl_window_size(const tl_window *window, int *width, int *height); /* 0 x 0 while minimised */
-void tl_window_wished_size(const tl_window *window, int *width,
-                           int *height);                      /* that tl_window_create takes */
+void tl_window_unscaled_size(const tl_window *window, int *width,
+                             int *height);                    /* that tl_window_create takes */
 float tl_window_scale(const tl_window *window);               /* 1 on a plain screen, 2 on a HiDPI one */
 struct GLFWwindow *tl_window_handle(const tl_window *window); /* for the panel */
 
-/* Waits until something happens, at most `patience_s`; 0 only collects what has happened. */
-void tl_window_wait(tl_window *window, double patience_s);
+/* Waits until something happens, at most `event_timeout_s`; 0 only collects what has happened. */
+void tl_window_wait(tl_window *window, double event_timeout_s);
 void tl_window_wake(void); /* ends a wait; any thread */
 /* False when no event is left. */
 bool tl_window_next(tl_window *window, struct tl_window_event *out);

@@ -1,5 +1,5 @@
-/* Edits of the review's settings: names and files that stand for many of them, and undo. */
-#include "app/view/review.h"
+#include "app/view/review/review_edit.h"
+
 #include "assets/motion/point_cache.h"
 #include "config/embedded.h"
 #include "config/file.h"
@@ -15,30 +15,30 @@ bool tl_review_set(struct tl_review *review, const char *key, const char *text)
     tl_settings_bind(&review->wanted, bindings);
     tl_error error;
     if (!tl_options_set(bindings, TL_SETTINGS_TABLES, key, text, "view", NULL, &error)) {
-        tl_review_complain(review, &error);
+        tl_review_report_error(review, &error);
         return false;
     }
     review->changed = true;
     return true;
 }
 
-/* Takes over what a name or file stands for. */
+/* Sets the options that a name or a file stands for. */
 typedef bool apply_name(struct tl_settings *settings, const char *name, tl_error *error);
 
 static void apply_named(struct tl_review *review, apply_name *apply, const char *name)
 {
     tl_error error;
-    char *copy = tl_copy_string(name); /* the name may lie within the settings that it changes */
+    char *copy = tl_copy_string(name); /* `name` may point into the settings that are changed */
     if (apply(&review->wanted, copy, &error)) {
         review->changed = true;
     } else {
-        tl_review_complain(review, &error);
+        tl_review_report_error(review, &error);
         review->wanted = review->good;
     }
     free(copy);
 }
 
-void tl_review_layer(struct tl_review *review)
+void tl_review_apply_names(struct tl_review *review)
 {
     const struct tl_scene_params *wanted = &review->wanted.scene, *good = &review->good.scene;
     if (strcmp(wanted->fabric, good->fabric) != 0)
@@ -48,7 +48,7 @@ void tl_review_layer(struct tl_review *review)
     if (strcmp(wanted->preset, good->preset) != 0)
         apply_named(review, tl_settings_apply_preset, wanted->preset);
     if (strcmp(wanted->garment, good->garment) != 0)
-        apply_named(review, tl_settings_apply_colourway, ""); /* another one has others */
+        apply_named(review, tl_settings_apply_colourway, ""); /* colourways belong to one garment */
     else if (strcmp(wanted->colourway, good->colourway) != 0 ||
              strcmp(wanted->colourways, good->colourways) != 0)
         apply_named(review, tl_settings_apply_colourway, wanted->colourway);
@@ -59,11 +59,12 @@ void tl_review_next_colourway(struct tl_review *review, int by)
     const char *const *names;
     int count = (int)tl_session_colourways(review->session, &names), present = 0; /* 0: none, as cut */
     if (review->loader && tl_loader_kind(review->loader) == TL_LOAD_SCENE) {
-        tl_review_say(review, "the scene is not there yet: its colourways come with it");
+        tl_review_report(review, "the scene is still loading: its colourways come with it");
         return;
     }
     if (count == 0) {
-        tl_review_say(review, "this garment has no colourways: a scene's section `colourways` gives it some");
+        tl_review_report(review,
+                         "this garment has no colourways: a scene's section `colourways` gives it some");
         return;
     }
     for (int i = 0; i < count; i++)
@@ -71,8 +72,8 @@ void tl_review_next_colourway(struct tl_review *review, int by)
             present = i + 1;
     int next = (present + by + count + 1) % (count + 1);
     apply_named(review, tl_settings_apply_colourway, next > 0 ? names[next - 1] : "");
-    tl_review_say(review, next > 0 ? "colourway: %s" : "no colourway%s",
-                  next > 0 ? review->wanted.scene.colourway : "");
+    tl_review_report(review, next > 0 ? "colourway: %s" : "no colourway%s",
+                     next > 0 ? review->wanted.scene.colourway : "");
 }
 
 void tl_review_next_view(struct tl_review *review, int by)
@@ -80,13 +81,13 @@ void tl_review_next_view(struct tl_review *review, int by)
     int *view = &review->wanted.image.view;
     *view = (*view + by + TL_VIEW_COUNT) % TL_VIEW_COUNT;
     review->changed = true;
-    tl_review_say(review, "shows %s", tl_image_view_names[*view]);
+    tl_review_report(review, "shows %s", tl_image_view_names[*view]);
 }
 
 void tl_review_use_fabric(struct tl_review *review, const char *name)
 {
     apply_named(review, tl_settings_apply_fabric, name);
-    tl_review_say(review, "fabric: %s", review->wanted.scene.fabric);
+    tl_review_report(review, "fabric: %s", review->wanted.scene.fabric);
 }
 
 void tl_review_next_fabric(struct tl_review *review, int by)
@@ -95,7 +96,7 @@ void tl_review_next_fabric(struct tl_review *review, int by)
     for (; tl_embedded_fabrics_names[count]; count++)
         if (strcmp(tl_embedded_fabrics_names[count], review->wanted.scene.fabric) == 0)
             present = count;
-    if (present < 0) /* a file's: the list begins */
+    if (present < 0) /* the fabric comes from a file: start at the list's end that is nearer */
         present = by > 0 ? -1 : 0;
     tl_review_use_fabric(review, tl_embedded_fabrics_names[(present + by + count) % count]);
 }
@@ -105,18 +106,18 @@ void tl_review_use_scene(struct tl_review *review, const char *path)
     tl_error error;
     struct tl_settings loaded;
     if (!tl_settings_load(&loaded, &(struct tl_settings_source){.scene_file = path}, &error)) {
-        tl_review_complain(review, &error);
+        tl_review_report_error(review, &error);
         return;
     }
     free(review->scene_file);
     review->scene_file = tl_copy_string(path);
     review->wanted = loaded;
     review->changed = true;
-    review->keeps_settings = false; /* what is remembered is the built-in review */
-    tl_review_know_environment(review, loaded.scene.environment);
+    review->keeps_settings = false; /* only the built-in review's settings are kept between runs */
+    tl_review_add_environment(review, loaded.scene.environment);
 }
 
-void tl_review_know_environment(struct tl_review *review, const char *name)
+void tl_review_add_environment(struct tl_review *review, const char *name)
 {
     for (size_t i = 0; i < review->environment_count; i++)
         if (strcmp(review->environments[i], name) == 0)
@@ -133,12 +134,13 @@ void tl_review_next_environment(struct tl_review *review)
         if (strcmp(review->environments[i], review->wanted.scene.environment) == 0)
             next = (i + 1) % review->environment_count;
     if (review->environment_count < 2)
-        tl_review_say(review, "there is one environment only: drop an .exr or .hdr file here to add one");
+        tl_review_report(review,
+                         "there is only one environment: drop an .exr or .hdr file here to add another");
     else
         tl_review_set(review, "scene.environment", review->environments[next]);
 }
 
-/* Files that are dropped together are asked about one after the other. */
+/* Asks about files that are dropped together one after the other. */
 static void ask_about(struct tl_review *review, const char *path)
 {
     if (!review->dropped) {
@@ -160,43 +162,71 @@ static char *take_dropped(struct tl_review *review)
     return path;
 }
 
-void tl_review_forget_dropped(struct tl_review *review)
+void tl_review_cancel_question(struct tl_review *review)
 {
     free(take_dropped(review));
 }
 
-void tl_review_use_dropped(struct tl_review *review, int command)
+static void use_as_garment(struct tl_review *review, const char *path)
 {
-    char *path = take_dropped(review);
-    if (!path)
+    if (tl_review_set(review, "scene.garment", path))
+        tl_review_apply_names(review);
+}
+
+static void use_as_avatar(struct tl_review *review, const char *path)
+{
+    tl_review_set(review, "scene.avatar", path);
+}
+
+static void use_as_fabric(struct tl_review *review, const char *path)
+{
+    apply_named(review, tl_settings_apply_fabric, path);
+}
+
+static void use_as_preset(struct tl_review *review, const char *path)
+{
+    apply_named(review, tl_settings_apply_preset, path);
+}
+
+static const struct tl_review_answer model_answers[] = {
+    {"Garment", "worn by the avatar", use_as_garment},
+    {"Avatar", "wears the garment", use_as_avatar},
+    {"Cancel", "", NULL},
+};
+
+static const struct tl_review_answer text_answers[] = {
+    {"Scene", "replaces all options", tl_review_use_scene},
+    {"Fabric", "replaces fabric, weave and material", use_as_fabric},
+    {"Preset", "replaces the quality of light, image and cloth", use_as_preset},
+    {"Cancel", "", NULL},
+};
+
+const struct tl_review_answer *tl_review_answers(const struct tl_review *review, size_t *count)
+{
+    *count = 0;
+    if (!review->dropped)
+        return NULL;
+    bool is_model = tl_model_is_file(review->dropped);
+    *count = is_model ? TL_COUNT(model_answers) : TL_COUNT(text_answers);
+    return is_model ? model_answers : text_answers;
+}
+
+void tl_review_answer(struct tl_review *review, size_t index)
+{
+    size_t count;
+    const struct tl_review_answer *answers = tl_review_answers(review, &count);
+    if (index >= count)
         return;
-    switch (command) {
-    case TL_REVIEW_USE_GARMENT:
-        if (tl_review_set(review, "scene.garment", path))
-            tl_review_layer(review);
-        break;
-    case TL_REVIEW_USE_AVATAR:
-        tl_review_set(review, "scene.avatar", path);
-        break;
-    case TL_REVIEW_USE_SCENE:
-        tl_review_use_scene(review, path);
-        break;
-    case TL_REVIEW_USE_FABRIC:
-        apply_named(review, tl_settings_apply_fabric, path);
-        break;
-    case TL_REVIEW_USE_PRESET:
-        apply_named(review, tl_settings_apply_preset, path);
-        break;
-    default:
-        break;
-    }
+    char *path = take_dropped(review);
+    if (answers[index].use)
+        answers[index].use(review, path);
     free(path);
 }
 
-void tl_review_drop(struct tl_review *review, const char *path)
+void tl_review_open_dropped(struct tl_review *review, const char *path)
 {
     if (tl_path_has_extension(path, "exr") || tl_path_has_extension(path, "hdr")) {
-        tl_review_know_environment(review, path);
+        tl_review_add_environment(review, path);
         tl_review_set(review, "scene.environment", path);
     } else if (tl_point_cache_is_file(path)) {
         tl_review_set(review, "scene.motion", path);
@@ -208,11 +238,11 @@ void tl_review_drop(struct tl_review *review, const char *path)
         tl_fail(&error, TL_INPUT,
                 "%s: cannot be used here: drop a .glb, .gltf, .obj, .pc2, .mdd, .exr, .hdr or .yaml file",
                 path);
-        tl_review_complain(review, &error);
+        tl_review_report_error(review, &error);
     }
 }
 
-/* A slider's whole way, a drag and a run of one key are one edit each. */
+/* One gesture is one edit: a slider's whole movement, a drag, or a key that is held or pressed repeatedly. */
 static bool is_within_gesture(const struct tl_review *review)
 {
     const double gesture_s = 0.4;
@@ -228,13 +258,14 @@ void tl_review_note_edit(struct tl_review *review)
 
 void tl_review_undo(struct tl_review *review, bool redo)
 {
-    /* What is wanted is an edit, though its gesture has just ended, or it is still made ready. */
+    /* `wanted` may hold an edit that has not been noted: its gesture has just ended, or it is still loading.
+     */
     if (!tl_review_moves_itself(review))
         tl_history_note(review->history, &review->wanted);
     const struct tl_settings *edit =
         redo ? tl_history_redo(review->history) : tl_history_undo(review->history);
     if (!edit) {
-        tl_review_say(review, redo ? "nothing to redo" : "nothing to undo");
+        tl_review_report(review, redo ? "nothing to redo" : "nothing to undo");
         return;
     }
     struct tl_settings before = review->wanted;
@@ -242,6 +273,6 @@ void tl_review_undo(struct tl_review *review, bool redo)
     review->changed = true;
     char *text =
         redo ? tl_history_describe(&before, &review->wanted) : tl_history_describe(&review->wanted, &before);
-    tl_review_say(review, redo ? "redone: %s" : "undone: %s", text);
+    tl_review_report(review, redo ? "redone: %s" : "undone: %s", text);
     free(text);
 }

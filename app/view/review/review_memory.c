@@ -1,7 +1,6 @@
-/* How much memory the review window holds. What frames free stays in the heap for those to come (main.c), but
- * the heap falls into ever more pieces between which little fits, above all when scenes, levels and
- * comparisons come and go. Its free pages go back to the system when many of them lie idle. */
-#include "app/view/review.h"
+#include "app/view/review/review_memory.h"
+
+#include "app/view/review/review_draw.h"
 #include "config/log.h"
 
 #include <malloc.h>
@@ -13,8 +12,8 @@
  * all that pays. */
 #define IDLE_IN_MOTION ((size_t)96 << 20)
 #define IDLE_AT_REST   ((size_t)32 << 20)
-#define LOOK_EVERY_S   1.0
-#define TELL_EVERY_S   10.0
+#define CHECK_EVERY_S  1.0
+#define LOG_EVERY_S    10.0
 
 size_t tl_review_resident_bytes(void)
 {
@@ -49,28 +48,28 @@ static size_t unused_bytes(void)
 /* What is in use tells a leak from pages that lie idle. */
 static void tell(struct tl_review_memory *memory, double now_s)
 {
-    if (now_s - memory->told_s < TELL_EVERY_S)
+    if (now_s - memory->logged_s < LOG_EVERY_S)
         return;
-    memory->told_s = now_s;
+    memory->logged_s = now_s;
     tl_debug("view: memory: %zu MB in use, %zu MB resident", used_bytes() >> 20,
              tl_review_resident_bytes() >> 20);
 }
 
-void tl_review_give_back(struct tl_review *review)
+void tl_review_trim_memory(struct tl_review *review)
 {
     struct tl_review_memory *memory = &review->memory;
     double now_s = tl_clock_s();
-    if (now_s - memory->looked_s < LOOK_EVERY_S)
+    if (now_s - memory->checked_s < CHECK_EVERY_S)
         return;
-    memory->looked_s = now_s;
+    memory->checked_s = now_s;
     tell(memory, now_s);
     size_t unused = unused_bytes(), idle_max = is_awaited(review) ? IDLE_IN_MOTION : IDLE_AT_REST;
-    if (memory->least_unused == 0 || unused < memory->least_unused)
-        memory->least_unused = unused;
-    if (unused - memory->least_unused < idle_max)
+    if (memory->min_unused == 0 || unused < memory->min_unused)
+        memory->min_unused = unused;
+    if (unused - memory->min_unused < idle_max)
         return;
     malloc_trim(0);
-    memory->least_unused = unused_bytes();
+    memory->min_unused = unused_bytes();
     tl_debug("view: memory: %zu MB of %zu MB unused given back in %.0f ms",
-             (unused - memory->least_unused) >> 20, unused >> 20, 1e3 * (tl_clock_s() - now_s));
+             (unused - memory->min_unused) >> 20, unused >> 20, 1e3 * (tl_clock_s() - now_s));
 }

@@ -1,9 +1,7 @@
-/* What moves by itself in the review window: the turntable, the environment, glides to saved views, and
- * camera paths that are recorded or played. By the clock: a slow machine shows fewer steps of the same way.
- */
+#include "app/view/review/review_move.h"
+
 #include "app/scene/camera.h"
 #include "app/scene/orbit.h"
-#include "app/view/review.h"
 #include "config/file.h"
 #include "config/log.h"
 #include "config/memory.h"
@@ -22,12 +20,6 @@ void tl_review_fix_camera(struct tl_review *review)
         tl_orbit_take(&review->wanted.camera, &camera);
 }
 
-bool tl_review_moves_itself(const struct tl_review *review)
-{
-    const struct tl_review_motion *motion = &review->motion;
-    return motion->turntable || motion->environment || motion->glides || review->path.plays;
-}
-
 void tl_review_stop_moving(struct tl_review *review)
 {
     if (review->path.plays)
@@ -35,12 +27,12 @@ void tl_review_stop_moving(struct tl_review *review)
     review->motion.glides = review->path.plays = false;
 }
 
-void tl_review_turn(struct tl_review *review, bool *which, const char *what)
+void tl_review_toggle(struct tl_review *review, bool *which, const char *what)
 {
     if (!tl_review_moves_itself(review))
         review->motion.moved_s = tl_clock_s();
     *which = !*which;
-    tl_review_say(review, "%s %s", what, *which ? "turns" : "stands");
+    tl_review_report(review, "%s %s", what, *which ? "turns" : "stands");
 }
 
 void tl_review_go_to_view(struct tl_review *review, int index)
@@ -48,7 +40,7 @@ void tl_review_go_to_view(struct tl_review *review, int index)
     const struct tl_saved_view *view = &review->views.of[index];
     struct tl_review_motion *motion = &review->motion;
     if (!view->saved) {
-        tl_review_say(review, "view %d is empty: Shift+%d saves this one", index + 1, index + 1);
+        tl_review_report(review, "view %d is empty: Shift+%d saves this one", index + 1, index + 1);
         return;
     }
     tl_review_stop_moving(review);
@@ -57,7 +49,7 @@ void tl_review_go_to_view(struct tl_review *review, int index)
     motion->to = *view;
     motion->glides = true;
     motion->glide_began_s = tl_clock_s();
-    tl_review_say(review, "view %d", index + 1);
+    tl_review_report(review, "view %d", index + 1);
 }
 
 static void glide(struct tl_review *review, double now_s)
@@ -78,7 +70,7 @@ static void follow_path(struct tl_review *review, double now_s)
     review->wanted.scene.environment_yaw_deg = tl_orbit_wrap_deg(key.environment_yaw_deg);
     if (time_s >= tl_path_length_s(&review->path.path)) {
         review->path.plays = false;
-        tl_review_say(review, "path played");
+        tl_review_report(review, "path played");
     }
 }
 
@@ -117,7 +109,7 @@ static bool save_path(struct tl_review *review)
     bool saved = tl_folder_make(review->output_folder, &error) &&
                  tl_path_save(review->path.file, &review->path.path, &error);
     if (!saved)
-        tl_review_complain(review, &error);
+        tl_review_report_error(review, &error);
     return saved;
 }
 
@@ -126,7 +118,7 @@ void tl_review_path_add(struct tl_review *review)
     struct tl_review_path *recorded = &review->path;
     tl_review_stop_moving(review);
     if (recorded->records) {
-        tl_review_say(review, "keys come by themselves while a path is recorded: Shift+K ends it");
+        tl_review_report(review, "keys come by themselves while a path is recorded: Shift+K ends it");
         return;
     }
     if (!recorded->file)
@@ -134,7 +126,7 @@ void tl_review_path_add(struct tl_review *review)
     double time_s = recorded->path.count > 0 ? tl_path_length_s(&recorded->path) + KEY_APART_S : 0;
     add_key(review, time_s);
     if (save_path(review))
-        tl_review_say(review, "key %zu, at %g s, of %s", recorded->path.count, time_s, recorded->file);
+        tl_review_report(review, "key %zu, at %g s, of %s", recorded->path.count, time_s, recorded->file);
 }
 
 static void record(struct tl_review *review, double now_s)
@@ -155,15 +147,15 @@ void tl_review_path_record(struct tl_review *review)
         recorded->began_s = now_s;
         recorded->key_due_s = now_s + RECORD_EVERY_S;
         add_key(review, 0);
-        tl_review_say(review, "records the camera's path: Shift+K ends and saves it");
+        tl_review_report(review, "records the camera's path: Shift+K ends and saves it");
         return;
     }
     recorded->records = false;
     if (now_s - recorded->began_s > tl_path_length_s(&recorded->path))
         add_key(review, now_s - recorded->began_s);
     if (save_path(review))
-        tl_review_say(review, "path of %.1f s saved: %s; L plays it", tl_path_length_s(&recorded->path),
-                      recorded->file);
+        tl_review_report(review, "path of %.1f s saved: %s; L plays it", tl_path_length_s(&recorded->path),
+                         recorded->file);
 }
 
 void tl_review_path_play(struct tl_review *review)
@@ -172,13 +164,13 @@ void tl_review_path_play(struct tl_review *review)
     if (path->plays) {
         tl_review_stop_moving(review);
     } else if (path->records || path->path.count < 2) {
-        tl_review_say(review, path->records ? "end the recording first: Shift+K"
-                                            : "there is no path yet: K adds a key, Shift+K records");
+        tl_review_report(review, path->records ? "end the recording first: Shift+K"
+                                               : "there is no path yet: K adds a key, Shift+K records");
     } else {
         tl_review_stop_moving(review);
         path->plays = true;
         path->began_s = tl_clock_s();
-        tl_review_say(review, "plays the path, %.1f s", tl_path_length_s(&path->path));
+        tl_review_report(review, "plays the path, %.1f s", tl_path_length_s(&path->path));
     }
 }
 

@@ -1,6 +1,7 @@
-/* What the review window remembers from one time to the next, and files that may be edited meanwhile. */
+#include "app/view/review/review_keep.h"
+
 #include "app/cli/arguments.h"
-#include "app/view/review.h"
+#include "app/view/review/review_move.h"
 #include "assets/model.h"
 #include "config/file.h"
 #include "config/log.h"
@@ -14,7 +15,7 @@ static char *state_file(const struct tl_review *review)
     return tl_format("%s/review.yaml", review->state_folder);
 }
 
-bool tl_review_remember(struct tl_review *review)
+bool tl_review_restore_state(struct tl_review *review)
 {
     const struct tl_arguments *arguments = review->arguments;
     const char *scene = arguments->positional_count > 0 ? arguments->positionals[0] : NULL;
@@ -39,7 +40,7 @@ bool tl_review_remember(struct tl_review *review)
     return is_remembered;
 }
 
-void tl_review_keep(struct tl_review *review)
+void tl_review_save_state(struct tl_review *review)
 {
     if (!review->state_folder || !review->session)
         return;
@@ -55,13 +56,13 @@ void tl_review_keep(struct tl_review *review)
         state.settings = review->good;
     }
     state.window = review->params;
-    tl_window_wished_size(review->window, &state.window.width, &state.window.height);
+    tl_window_unscaled_size(review->window, &state.window.width, &state.window.height);
     if (!tl_state_save(file, &state, &error))
         tl_warn("view: %s: the next review begins as this one did", error.message);
     free(file);
 }
 
-void tl_review_follow_views(struct tl_review *review)
+void tl_review_load_views(struct tl_review *review)
 {
     char *name = tl_saved_views_name(&review->good.scene);
     const char *folder = review->state_folder ? review->state_folder : "";
@@ -86,9 +87,9 @@ void tl_review_save_view(struct tl_review *review, int index)
     tl_review_fix_camera(review);
     review->views.of[index] = tl_saved_view_take(&review->wanted);
     if (review->state_folder && !tl_saved_views_save(review->views_file, &review->views, &error))
-        tl_review_complain(review, &error);
+        tl_review_report_error(review, &error);
     else
-        tl_review_say(review, "view %d saved: %d comes back to it", index + 1, index + 1);
+        tl_review_report(review, "view %d saved: %d comes back to it", index + 1, index + 1);
 }
 
 /* The file's settings, seen from where the eye is now. */
@@ -105,32 +106,32 @@ static void reload_scene(struct tl_review *review)
     struct tl_settings loaded;
     tl_error error;
     if (!tl_settings_load(&loaded, &source, &error)) {
-        tl_review_complain(review, &error);
+        tl_review_report_error(review, &error);
         return;
     }
     loaded.camera = review->wanted.camera;
     review->wanted = loaded;
     review->changed = true;
-    tl_review_say(review, "edited: %s", review->scene_file);
+    tl_review_report(review, "edited: %s", review->scene_file);
 }
 
 static void reload_named(struct tl_review *review, const char *name,
                          bool (*apply)(struct tl_settings *settings, const char *name, tl_error *error))
 {
-    if (!tl_option_is_file_name(name) || !tl_watch_has_changed(&review->watch, name))
+    if (!tl_option_is_file_name(name) || !tl_file_has_changed(&review->watch, name))
         return;
     tl_error error;
     char *copy = tl_copy_string(name); /* it lies within the settings that are changed */
     if (apply(&review->wanted, copy, &error)) {
         review->changed = true;
-        tl_review_say(review, "edited: %s", copy);
+        tl_review_report(review, "edited: %s", copy);
     } else {
-        tl_review_complain(review, &error);
+        tl_review_report_error(review, &error);
     }
     free(copy);
 }
 
-void tl_review_watch(struct tl_review *review)
+void tl_review_reload_edited(struct tl_review *review)
 {
     const double every_s = 0.5;
     double now_s = tl_clock_s();
@@ -138,7 +139,7 @@ void tl_review_watch(struct tl_review *review)
         return;
     review->watched_s = now_s;
     const struct tl_scene_params *scene = &review->wanted.scene;
-    if (review->scene_file && tl_watch_has_changed(&review->watch, review->scene_file))
+    if (review->scene_file && tl_file_has_changed(&review->watch, review->scene_file))
         reload_scene(review);
     reload_named(review, scene->fabric, tl_settings_apply_fabric);
     reload_named(review, scene->overlay_fabric, tl_settings_apply_overlay);

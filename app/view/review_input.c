@@ -1,6 +1,11 @@
-/* Pointer and gestures of the review window. */
+#include "app/view/review_input.h"
+
 #include "app/scene/orbit.h"
-#include "app/view/review.h"
+#include "app/view/review/review_edit.h"
+#include "app/view/review/review_hand.h"
+#include "app/view/review/review_move.h"
+#include "app/view/review/review_wipe.h"
+#include "app/view/review_commands.h"
 #include "config/log.h"
 
 #define GLFW_INCLUDE_NONE
@@ -8,82 +13,11 @@
 
 #include <math.h>
 
-static struct tl_ray ray_under(const struct tl_review *review, const struct tl_camera *camera, float x,
-                               float y)
-{
-    int width, height;
-    tl_review_size(review, &width, &height);
-    return tl_orbit_ray(camera, x, y, (float)width, (float)height);
-}
-
-static float depth_of(const struct tl_camera *camera, vec3s point)
-{
-    vec3s forward = glms_vec3_normalize(glms_vec3_sub(camera->target, camera->eye));
-    return glms_vec3_dot(glms_vec3_sub(point, camera->eye), forward);
-}
-
-/* The garment's point under the pointer. */
-static bool pick(const struct tl_review *review, const struct tl_camera *camera, float x, float y,
-                 uint32_t *vertex, vec3s *point)
-{
-    struct tl_ray ray = ray_under(review, camera, x, y);
-    float distance_m;
-    if (!tl_session_pick(review->session, ray.origin, ray.direction, vertex, &distance_m))
-        return false;
-    *point = glms_vec3_muladds(ray.direction, distance_m, ray.origin);
-    return true;
-}
-
-/* The pointer in the plane in which the cloth is pulled. */
-static vec3s pull_target(const struct tl_review *review, const struct tl_camera *camera, float x, float y)
-{
-    struct tl_ray ray = ray_under(review, camera, x, y);
-    float depth_per_m = depth_of(camera, glms_vec3_add(camera->eye, ray.direction));
-    return glms_vec3_muladds(ray.direction, review->grab_depth_m / depth_per_m, ray.origin);
-}
-
-/* Where images come slowly the pointer runs away from the simulated time, and a hand that followed at once
- * would tear the cloth along at many metres a second. */
-void tl_review_move_hand(struct tl_review *review)
-{
-    const float quickest_m_s = 1.5f;
-    tl_cloth *cloth = tl_session_cloth(review->session);
-    if (review->drag != TL_DRAG_CLOTH || !cloth)
-        return;
-    float reach_m = quickest_m_s / (float)review->good.cloth.frame_rate;
-    vec3s way = glms_vec3_sub(review->grab_target, review->grab_at);
-    float length_m = glms_vec3_norm(way);
-    float share = length_m > reach_m ? reach_m / length_m : 1;
-    review->grab_at = glms_vec3_muladds(way, share, review->grab_at);
-    tl_cloth_grab(cloth, review->grab_vertex, review->grab_at);
-}
-
-static void begin_pull(struct tl_review *review, float x, float y)
-{
-    struct tl_camera camera = tl_session_frame(review->session).camera;
-    vec3s point;
-    if (!pick(review, &camera, x, y, &review->grab_vertex, &point)) {
-        tl_review_say(review, "nothing to pull here: hold Ctrl and drag on the garment");
-        return;
-    }
-    if (!tl_session_cloth(review->session)) {
-        tl_review_say(review, "the garment is played back, not simulated: it cannot be pulled on");
-        return;
-    }
-    review->drag = TL_DRAG_CLOTH;
-    review->grab_depth_m = depth_of(&camera, point);
-    review->grab_target = review->grab_at = point;
-    if (!review->playing)
-        tl_review_act(review, TL_REVIEW_PLAY); /* cloth that stands still cannot follow */
-    tl_info("view: pulls on vertex %u", (unsigned)review->grab_vertex);
-}
-
 static void focus(struct tl_review *review, float x, float y)
 {
-    struct tl_camera camera = tl_session_frame(review->session).camera;
     uint32_t vertex;
     vec3s point;
-    if (!pick(review, &camera, x, y, &vertex, &point))
+    if (!tl_review_pick(review, x, y, &vertex, &point))
         return;
     tl_review_fix_camera(review);
     tl_orbit_focus(&review->wanted.camera, point);
@@ -93,18 +27,19 @@ static void focus(struct tl_review *review, float x, float y)
 
 static bool is_double_click(struct tl_review *review, const struct tl_window_event *event)
 {
-    const double patience_s = 0.35;
-    const float slack = 5; /* pixels */
+    const double pause_max_s = 0.35;
+    const float distance_max = 5; /* pixels */
     double now_s = tl_clock_s();
-    bool is_second = now_s - review->pressed_s < patience_s && fabsf(event->x - review->pressed_x) < slack &&
-                     fabsf(event->y - review->pressed_y) < slack;
+    bool is_second = now_s - review->pressed_s < pause_max_s &&
+                     fabsf(event->x - review->pressed_x) < distance_max &&
+                     fabsf(event->y - review->pressed_y) < distance_max;
     review->pressed_s = is_second ? 0 : now_s;
     review->pressed_x = event->x;
     review->pressed_y = event->y;
     return is_second;
 }
 
-/* The line between two looks, caught within a few pixels. */
+/* The line between two appearances can be caught within a few pixels. */
 static bool is_on_wipe(const struct tl_review *review, float x, int width)
 {
     const float reach = 8 * tl_window_scale(review->window);
@@ -127,7 +62,7 @@ static void on_press(struct tl_review *review, const struct tl_window_event *eve
     else if (is_on_wipe(review, event->x, width))
         review->drag = TL_DRAG_WIPE;
     else if (event->modifiers & GLFW_MOD_CONTROL)
-        begin_pull(review, event->x, event->y);
+        tl_review_hand_begin(review, event->x, event->y);
     else if (event->modifiers & GLFW_MOD_SHIFT)
         review->drag = TL_DRAG_LIGHT;
     else if (is_double_click(review, event))
@@ -140,10 +75,7 @@ static void on_release(struct tl_review *review, const struct tl_window_event *e
 {
     if (review->drag == TL_DRAG_NONE || event->button != review->drag_button)
         return;
-    tl_cloth *cloth = tl_session_cloth(review->session);
-    if (review->drag == TL_DRAG_CLOTH && cloth)
-        tl_cloth_release(cloth);
-    review->drag = TL_DRAG_NONE;
+    tl_review_hand_release(review);
 }
 
 static void on_move(struct tl_review *review, const struct tl_window_event *event)
@@ -171,14 +103,12 @@ static void on_move(struct tl_review *review, const struct tl_window_event *even
     case TL_DRAG_WIPE:
         tl_review_move_wipe(review, event->x / (float)width);
         return;
-    case TL_DRAG_CLOTH: {
-        struct tl_camera camera = tl_session_frame(review->session).camera;
-        review->grab_target = pull_target(review, &camera, event->x, event->y);
+    case TL_DRAG_CLOTH:
+        tl_review_hand_aim(review, event->x, event->y);
         return;
     }
-    }
     review->changed = true;
-    tl_review_touch(review);
+    tl_review_note_motion(review);
 }
 
 static void on_wheel(struct tl_review *review, const struct tl_window_event *event)
@@ -193,14 +123,43 @@ static void on_wheel(struct tl_review *review, const struct tl_window_event *eve
     float y = (event->y - 0.5f * (float)height) / (float)height;
     tl_orbit_zoom(&review->wanted.camera, event->steps, x, y);
     review->changed = true;
-    tl_review_touch(review);
+    tl_review_note_motion(review);
+}
+
+/* A question of the panel takes all keys but Esc: its answers are numbered from 1. */
+static bool answer(struct tl_review *review, const struct tl_window_event *event)
+{
+    size_t count;
+    if (!tl_review_answers(review, &count) || event->key == GLFW_KEY_ESCAPE)
+        return false;
+    if (event->key >= GLFW_KEY_1 && event->key <= GLFW_KEY_9)
+        tl_review_answer(review, (size_t)(event->key - GLFW_KEY_1));
+    return true;
+}
+
+static void on_key(struct tl_review *review, const struct tl_window_event *event)
+{
+    if (tl_panel_wants_keys(review->panel) && event->key != GLFW_KEY_ESCAPE) {
+        if (event->key > 0 && event->key <= GLFW_KEY_LAST)
+            tl_panel_press(review->panel, event->key);
+        return;
+    }
+    if (answer(review, event))
+        return;
+    int modifiers = event->modifiers & (GLFW_MOD_SHIFT | GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER),
+        argument;
+    if (review->drag == TL_DRAG_CLOTH) /* Ctrl is held to pull */
+        modifiers &= ~GLFW_MOD_CONTROL;
+    const struct tl_review_command *command = tl_review_command_of_key(event->key, modifiers, &argument);
+    if (command && (!event->repeated || command->repeats))
+        command->act(review, argument);
 }
 
 static void handle(struct tl_review *review, const struct tl_window_event *event)
 {
     switch (event->type) {
     case TL_WINDOW_KEY:
-        tl_review_on_key(review, event);
+        on_key(review, event);
         break;
     case TL_WINDOW_PRESS:
         on_press(review, event);
@@ -215,7 +174,7 @@ static void handle(struct tl_review *review, const struct tl_window_event *event
         on_wheel(review, event);
         break;
     case TL_WINDOW_DROP:
-        tl_review_drop(review, event->path);
+        tl_review_open_dropped(review, event->path);
         break;
     case TL_WINDOW_REDRAW: {
         int width, height;
@@ -229,13 +188,13 @@ static void handle(struct tl_review *review, const struct tl_window_event *event
     }
 }
 
-void tl_review_listen(struct tl_review *review)
+void tl_review_handle_events(struct tl_review *review)
 {
-    const int panel_settles = 3; /* ImGui answers to an event within so many frames */
+    const int panel_frames = 3; /* ImGui reacts to an event within this many frames */
     struct tl_window_event event;
     while (tl_window_next(review->window, &event)) {
         handle(review, &event);
         tl_window_event_release(&event);
-        review->redraws = panel_settles;
+        review->redraws = panel_frames;
     }
 }

@@ -1,6 +1,6 @@
-/* Scenes, environments and looks are made ready beside the review window. Until one is there the old one
- * stays, with all that can be done to it; one that cannot be had changes nothing. */
-#include "app/view/review.h"
+#include "app/view/review/review_load.h"
+
+#include "app/view/review/review_wipe.h"
 #include "config/interrupt.h"
 #include "config/log.h"
 
@@ -15,7 +15,7 @@ static bool needs_look(const struct tl_review *review, const struct tl_settings 
     if (review->editing)
         present.material = settings->material;
     return !tl_session_light_plays(review->session) && tl_session_needs_look(&present, settings) &&
-           tl_session_needs_look(&review->made_ready, settings);
+           tl_session_needs_look(&review->loaded_appearance, settings);
 }
 
 static bool is_slow(const struct tl_review *review, const struct tl_settings *settings)
@@ -26,7 +26,7 @@ static bool is_slow(const struct tl_review *review, const struct tl_settings *se
 }
 
 /* What of `settings` has to be made ready is left as it is. */
-static void stay(const struct tl_review *review, struct tl_settings *settings)
+static void keep_present(const struct tl_review *review, struct tl_settings *settings)
 {
     const struct tl_settings *present = tl_session_settings(review->session);
     tl_session_keep_scene(present, settings);
@@ -34,11 +34,11 @@ static void stay(const struct tl_review *review, struct tl_settings *settings)
         tl_looks_take(present, settings);
 }
 
-struct tl_settings tl_review_followed(const struct tl_review *review)
+struct tl_settings tl_review_drawable_settings(const struct tl_review *review)
 {
     struct tl_settings followed = review->wanted;
     if (is_slow(review, &followed))
-        stay(review, &followed);
+        keep_present(review, &followed);
     return followed;
 }
 
@@ -74,7 +74,7 @@ static struct tl_load_lights lights_of(struct tl_review *review, enum tl_load ki
     struct tl_settings drawn = review->wanted;
     if (kind == TL_LOAD_LIGHT && needs_look(review, &drawn)) /* which comes after the light */
         tl_looks_take(tl_session_settings(review->session), &drawn);
-    const struct tl_settings other = tl_review_look_a(review, &drawn);
+    const struct tl_settings other = tl_review_settings_a(review, &drawn);
     struct tl_load_lights lights = {.count = review->wipe.renderer && kind != TL_LOAD_LOOK ? 2 : 1,
                                     .of = {light_of(review, &drawn), light_of(review, &other)}};
     for (int i = 0; i < lights.count && kind != TL_LOAD_SCENE; i++)
@@ -132,12 +132,12 @@ static void finish(struct tl_review *review)
     struct tl_loaded loaded;
     tl_error error;
     if (!tl_loader_take(&review->loader, &loaded, &error)) {
-        stay(review, &review->wanted);
-        tl_review_complain(review, &error);
+        keep_present(review, &review->wanted);
+        tl_review_report_error(review, &error);
     } else if (kind == TL_LOAD_LOOK) {
         tl_session_keep_look(review->session, &made_of, &loaded.looks);
         take_lights(review, &loaded);
-        review->made_ready = made_of;
+        review->loaded_appearance = made_of;
     } else if (kind == TL_LOAD_SCENE) {
         tl_session_replace(review->session, &loaded.session);
         take_lights(review, &loaded);
@@ -172,35 +172,42 @@ bool tl_review_stop_loading(struct tl_review *review)
     if (!review->loader || !is_slow(review, &review->wanted))
         return false; /* nothing, or nothing that anybody waits for */
     tl_loader_stop(review->loader);
-    stay(review, &review->wanted);
+    keep_present(review, &review->wanted);
     review->changed = true;
-    tl_review_say(review, "loading was stopped: the scene stays as it was");
+    tl_review_report(review, "loading was stopped: the scene stays as it was");
     return true;
 }
 
-static void listen_while_waiting(struct tl_review *review)
+struct tl_panel_progress tl_review_progress(const struct tl_review *review, char *text, size_t size)
 {
-    struct tl_window_event event;
-    while (tl_window_next(review->window, &event)) {
-        review->closing |= event.type == TL_WINDOW_CLOSE || tl_window_is_escape(&event);
-        tl_window_event_release(&event);
-    }
+    if (!review->loader || tl_loader_is_stopped(review->loader))
+        return (struct tl_panel_progress){0};
+    const struct tl_scene_params *scene = &tl_loader_settings(review->loader)->scene;
+    enum tl_load kind = tl_loader_kind(review->loader);
+    const char *name = kind == TL_LOAD_LIGHT                 ? scene->environment
+                       : kind == TL_LOAD_LOOK                ? scene->fabric
+                       : strcmp(scene->garment, "none") == 0 ? scene->avatar
+                                                             : scene->garment;
+    const char *slash = strrchr(name, '/');
+    struct tl_load_progress progress = tl_loader_progress(review->loader);
+    const double unseen_s = 0.3; /* most looks are there sooner: nothing flickers */
+    if (kind == TL_LOAD_LOOK && progress.seconds < unseen_s)
+        return (struct tl_panel_progress){0};
+    bool is_known = progress.what[0] != '\0';
+    snprintf(text, size, "Loading %.100s%s%s", slash ? slash + 1 : name, is_known ? ": " : "", progress.what);
+    return (struct tl_panel_progress){.what = text,
+                                      .share = is_known ? (float)progress.share : -1,
+                                      .hint = review->session ? "Esc stops it" : "Esc leaves"};
 }
 
-bool tl_review_load_first(struct tl_review *review, tl_error *error)
+void tl_review_start_first(struct tl_review *review)
 {
-    const double tick_s = 0.1;
     const struct tl_load_lights lights = lights_of(review, TL_LOAD_SCENE);
     review->loader = tl_loader_start(TL_LOAD_SCENE, &review->wanted, NULL, &lights, 0, tl_window_wake);
-    while (!tl_loader_is_done(review->loader)) {
-        tl_window_wait(review->window, tick_s);
-        listen_while_waiting(review);
-        if (review->closing)
-            return tl_fail(error, TL_INTERRUPTED, "view: closed");
-        if (tl_interrupted())
-            return tl_fail(error, TL_INTERRUPTED, "view: stopped");
-        tl_review_build_progress(review);
-    }
+}
+
+bool tl_review_finish_first(struct tl_review *review, tl_error *error)
+{
     struct tl_loaded loaded;
     if (!tl_loader_take(&review->loader, &loaded, error))
         return false;

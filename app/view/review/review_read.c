@@ -1,5 +1,6 @@
-/* What the colours of the review's image mean, and what lies under the pointer. */
-#include "app/view/review.h"
+#include "app/view/review/review_read.h"
+
+#include "app/view/review/review_wipe.h"
 #include "config/memory.h"
 #include "render/inspect/inspect.h"
 

@@ -1,6 +1,9 @@
-/* When an image of the review window is drawn: when the session's state or the settings changed; within the
- * budget while something moves, and as well as the settings ask as soon as it rests. */
-#include "app/view/review.h"
+#include "app/view/review/review_draw.h"
+
+#include "app/view/review/review_hand.h"
+#include "app/view/review/review_keep.h"
+#include "app/view/review/review_load.h"
+#include "app/view/review/review_wipe.h"
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
@@ -45,7 +48,7 @@ void tl_review_lap(struct tl_review *review, const char *part)
 }
 
 /* What an image that one feels spent its time on, for whoever wants to know why. */
-static void tell_slow(const struct tl_review *review, double image_ms)
+static void log_slow_image(const struct tl_review *review, double image_ms)
 {
     const double slow_ms = 250;
     if (image_ms < slow_ms)
@@ -64,13 +67,13 @@ static void tell_slow(const struct tl_review *review, double image_ms)
 
 /* Until here it is the program's time; the swap may wait for the screen. What nobody waits for is shown as
  * well as it can be: its time says nothing about the budget. */
-static void take_time(struct tl_review *review)
+static void record_time(struct tl_review *review)
 {
     if (!review->is_new)
         return;
     double frame_ms = 1e3 * (tl_clock_s() - review->times.began_s);
     review->is_new = false;
-    tell_slow(review, frame_ms);
+    log_slow_image(review, frame_ms);
     if (!review->is_paced) {
         tl_frame_times_add(&review->rest_times, frame_ms);
         return;
@@ -89,7 +92,7 @@ bool tl_review_present(struct tl_review *review, tl_error *error)
     review->times.lap_s = tl_clock_s();
     tl_panel_draw(review->panel);
     tl_review_lap(review, "drawing the panel");
-    take_time(review);
+    record_time(review);
     tl_window_show(review->window);
     review->shown_count++;
     review->shown_s = tl_clock_s();
@@ -134,9 +137,9 @@ static void step(struct tl_review *review)
 {
     double now_s = tl_clock_s();
     tl_error error;
-    tl_review_move_hand(review);
+    tl_review_hand_step(review);
     if (!tl_session_advance(review->session, &error))
-        tl_review_complain(review, &error);
+        tl_review_report_error(review, &error);
     double frame_s = 1 / review->good.cloth.frame_rate;
     review->next_step_s = fmax(review->next_step_s + frame_s, now_s);
     review->times.cloth = 1e3 * (tl_clock_s() - now_s);
@@ -183,7 +186,7 @@ static bool draw_image(struct tl_review *review, const struct tl_settings *setti
         step(review);
     double started_s = tl_clock_s();
     if (review->wipe.renderer) {
-        const struct tl_settings other = tl_review_look_a(review, settings),
+        const struct tl_settings other = tl_review_settings_a(review, settings),
                                  a = tl_levels_apply(levels, &other);
         if (!draw_with(review, review->wipe.renderer, &a, error))
             return false;
@@ -200,32 +203,32 @@ static bool draw_image(struct tl_review *review, const struct tl_settings *setti
     return true;
 }
 
-static void take_as_good(struct tl_review *review, const struct tl_settings *drawn)
+static void accept_settings(struct tl_review *review, const struct tl_settings *drawn)
 {
     if (review->title && tl_settings_equal(&review->good, drawn))
         return;
     log_changes(&review->good.scene, &drawn->scene);
     review->good = *drawn;
     if (review->message_is_error)
-        tl_review_quiet(review);
+        tl_review_clear_message(review);
     update_title(review);
-    tl_review_follow_views(review);
+    tl_review_load_views(review);
 }
 
 /* Draws what is wanted. What cannot be drawn is reported, and what was good is drawn instead; false only when
  * that fails too. */
-static bool renew_image(struct tl_review *review, bool is_paced, tl_error *error)
+static bool redraw(struct tl_review *review, bool is_paced, tl_error *error)
 {
     int width, height;
     bool is_another = review->changed || review->image_is_old; /* not the same, refined */
     tl_review_size(review, &width, &height);
     review->wanted.image.width = width;
     review->wanted.image.height = height;
-    struct tl_settings followed = tl_review_followed(review);
+    struct tl_settings followed = tl_review_drawable_settings(review);
     if (!draw_image(review, &followed, is_paced, error)) {
         if (tl_interrupted())
             return false;
-        tl_review_complain(review, error);
+        tl_review_report_error(review, error);
         tl_renderer_destroy(&review->wipe.renderer);
         review->good.image.width = width;
         review->good.image.height = height;
@@ -233,7 +236,7 @@ static bool renew_image(struct tl_review *review, bool is_paced, tl_error *error
         if (!draw_image(review, &review->good, is_paced, error))
             return false;
     } else {
-        take_as_good(review, &followed);
+        accept_settings(review, &followed);
     }
     review->changed = review->image_is_old = false;
     int settles =
@@ -253,7 +256,7 @@ bool tl_review_is_sharp(const struct tl_review *review)
 bool tl_review_draw_sharp(struct tl_review *review, tl_error *error)
 {
     bool is_done = tl_review_is_sharp(review) && !review->changed && !review->image_is_old;
-    return is_done || renew_image(review, false, error);
+    return is_done || redraw(review, false, error);
 }
 
 bool tl_review_is_at_rest(const struct tl_review *review)
@@ -269,5 +272,5 @@ bool tl_review_update_image(struct tl_review *review, tl_error *error)
     bool is_refined = tl_review_is_at_rest(review) || review->redraws > 0;
     bool improves = !tl_review_is_moving(review) && !(is_refined && tl_review_is_sharp(review));
     bool is_due = review->changed || review->image_is_old || is_step_due(review) || improves;
-    return waits || !is_due || renew_image(review, tl_review_is_moving(review), error);
+    return waits || !is_due || redraw(review, tl_review_is_moving(review), error);
 }

@@ -1,8 +1,6 @@
-/* Two looks side by side in the review window: A, on the left, as the settings were when the comparison
- * began; B, on the right, as they are. Camera, light and cloth are the same: only what decides how cloth
- * looks differs, and how well it is drawn. */
+#include "app/view/review/review_wipe.h"
+
 #include "app/scene/appearance.h"
-#include "app/view/review.h"
 #include "config/log.h"
 #include "config/memory.h"
 
@@ -17,13 +15,13 @@ void tl_review_compare(struct tl_review *review)
     tl_error error;
     if (wipe->renderer) {
         tl_renderer_destroy(&wipe->renderer);
-        tl_review_say(review, "comparison ended");
+        tl_review_report(review, "comparison ended");
         review->redraws = 1;
         return;
     }
     wipe->renderer = tl_renderer_create(review->gpu, &error);
     if (!wipe->renderer) {
-        tl_review_complain(review, &error);
+        tl_review_report_error(review, &error);
         return;
     }
     tl_prepared *light = tl_prepared_copy(review->renderer); /* the same light */
@@ -33,24 +31,24 @@ void tl_review_compare(struct tl_review *review)
     wipe->look = review->good;
     wipe->place = 0.5f;
     review->image_is_old = true;
-    tl_review_say(review, "compares: A, left, stays as it is now; change fabric, preset or options for B");
+    tl_review_report(review, "compares: A, left, stays as it is now; change fabric, preset or options for B");
 }
 
-void tl_review_exchange(struct tl_review *review)
+void tl_review_swap(struct tl_review *review)
 {
     if (!review->wipe.renderer) {
-        tl_review_say(review, "nothing is compared: W begins");
+        tl_review_report(review, "nothing is compared: W begins");
         return;
     }
     struct tl_settings b = review->wanted;
-    review->wanted = tl_review_look_a(review, &b);
+    review->wanted = tl_review_settings_a(review, &b);
     review->wipe.look = b;
     tl_renderer *renderer_b = review->renderer; /* each look keeps what was made for it */
     review->renderer = review->wipe.renderer;
     review->wipe.renderer = renderer_b;
-    review->made_ready = review->wanted;
+    review->loaded_appearance = review->wanted;
     review->changed = true;
-    tl_review_say(review, "A and B exchanged");
+    tl_review_report(review, "A and B exchanged");
 }
 
 void tl_review_move_wipe(struct tl_review *review, float place)
@@ -65,7 +63,7 @@ int tl_review_wipe_column(const struct tl_review *review, int width)
     return review->wipe.renderer ? (int)lrintf(review->wipe.place * (float)width) : 0;
 }
 
-struct tl_settings tl_review_look_a(const struct tl_review *review, const struct tl_settings *settings)
+struct tl_settings tl_review_settings_a(const struct tl_review *review, const struct tl_settings *settings)
 {
     struct tl_settings result = *settings;
     tl_looks_take(&review->wipe.look, &result);
@@ -89,10 +87,10 @@ static void label(char *out, size_t size, const char *side, const struct tl_scen
 
 void tl_review_wipe_labels(const struct tl_review *review, char *a, char *b, size_t size)
 {
-    const struct tl_settings *live = &review->good;
-    struct tl_settings same = tl_review_look_a(review, live);
-    char *difference = tl_history_describe(&same, live);
+    const struct tl_settings *run_one_frame = &review->good;
+    struct tl_settings same = tl_review_settings_a(review, run_one_frame);
+    char *difference = tl_history_describe(&same, run_one_frame);
     label(a, size, "A", &same.scene, "");
-    label(b, size, "B", &live->scene, strcmp(difference, "nothing") == 0 ? "the same" : difference);
+    label(b, size, "B", &run_one_frame->scene, strcmp(difference, "nothing") == 0 ? "the same" : difference);
     free(difference);
 }

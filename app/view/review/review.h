@@ -1,0 +1,161 @@
+/* The review window's state, and what all of its parts need: messages, the size of the view, whether
+ * something moves.
+ *
+ * The parts of this room change the state; each owns the fields that its header names. The rooms above turn
+ * input into calls of the parts (app/view/review_commands.h, review_input.h) and show the state
+ * (review_panel.h).
+ *
+ *     review_edit    edits of the settings: names, dropped files, undo
+ *     review_load    scenes, environments and appearances, loaded on a worker thread (loader)
+ *     review_draw    when an image is drawn, and how it gets on the screen
+ *     review_move    turntable, glides to saved views, camera paths
+ *     review_hand    the pointer's point on the garment, and the hand that pulls it
+ *     review_wipe    two appearances side by side
+ *     review_read    the legend of the image's colours, and the values under the pointer
+ *     review_keep    state that is kept between runs; files that are reloaded when they are edited
+ *     review_memory  the process's memory
+ *
+ * Threads: the window's only. Lifetime: cmd_view.c creates and closes it. */
+#ifndef TOILE_APP_VIEW_REVIEW_REVIEW_H
+#define TOILE_APP_VIEW_REVIEW_REVIEW_H
+
+#include "app/budget/governor.h"
+#include "app/scene/path.h"
+#include "app/scene/session.h"
+#include "app/view/memory/history.h"
+#include "app/view/memory/saved_views.h"
+#include "app/view/memory/state.h"
+#include "app/view/panel/panel_shim.h"
+#include "app/view/review/loader.h"
+#include "app/view/window/file_watch.h"
+#include "app/view/window/frame_times.h"
+#include "app/view/window/window.h"
+
+enum tl_review_drag { TL_DRAG_NONE, TL_DRAG_ORBIT, TL_DRAG_PAN, TL_DRAG_LIGHT, TL_DRAG_CLOTH, TL_DRAG_WIPE };
+
+struct tl_review_times {       /* ms, of the last frame that had them */
+    double frame, cloth, draw; /* frame: all of it, to the swap of buffers */
+    double began_s;            /* the frame at hand */
+    double lap_s;              /* when its last part ended */
+    const char *longest;       /* of its parts so far, outside of drawing */
+    double longest_ms;
+};
+
+/* What moves without being pushed. */
+struct tl_review_motion {
+    bool turntable, environment;
+    double moved_s; /* when it moved last */
+    bool glides;    /* to a saved view */
+    struct tl_saved_view from, to;
+    double glide_began_s;
+};
+
+struct tl_review_path {
+    struct tl_path path; /* count 0: none yet */
+    char *file;          /* that it is written to; NULL: none yet */
+    bool records, plays;
+    double began_s;
+    double key_due_s; /* recording: when the next key is taken */
+};
+
+/* Look A, on the left, is what the settings were; look B, on the right, is what they are. */
+struct tl_review_wipe {
+    tl_renderer *renderer; /* of look A; NULL: nothing is compared */
+    struct tl_settings look;
+    float place; /* of the line between, as a share of the view's width */
+};
+
+struct tl_review_memory {
+    size_t min_unused; /* bytes, since some were given back last */
+    double checked_s, logged_s;
+};
+
+struct tl_review {
+    tl_window *window;
+    tl_gpu *gpu;
+    tl_panel *panel;
+    tl_renderer *renderer;
+    tl_session *session;
+    tl_loader *loader;                    /* NULL: nothing is being made ready */
+    struct tl_settings loaded_appearance; /* the last look that was */
+
+    struct tl_settings wanted; /* edited by keys, pointer and panel; the session follows */
+    struct tl_settings good;   /* the last that could be loaded and drawn; where a failure goes back to */
+    bool changed;              /* wanted has been edited */
+    bool editing;              /* a widget of the panel is held: more edits will come */
+    bool image_is_old;         /* the image does not show the session's state */
+    int redraws;    /* presentations due though the image is not old: the panel follows the pointer */
+    double moved_s; /* when the camera, the light or a slider moved last */
+    double shown_s; /* when something was presented last */
+    tl_pace *pace;
+    struct tl_pace_choice pace_choice; /* of the last image */
+    bool is_paced, is_new;             /* the last image: drawn at these levels; not shown yet */
+    tl_history *history;
+
+    bool playing, closing, help_shown, reads_out;
+    double next_step_s; /* when playing: the next simulated frame is due */
+    struct tl_review_motion motion;
+    struct tl_review_path path;
+    struct tl_review_wipe wipe;
+
+    enum tl_review_drag drag;
+    int drag_button;
+    float pointer_x, pointer_y; /* pixels */
+    double pressed_s;           /* last press, for double clicks */
+    float pressed_x, pressed_y;
+    float grab_depth_m; /* of the plane, parallel to the image, in which the cloth is pulled */
+    uint32_t grab_vertex;
+    vec3s grab_target, grab_at; /* metres: where the pointer is, and where the hand has got to */
+
+    char *title;
+    char message[1200]; /* "": none is shown */
+    bool message_is_error;
+    double message_s;
+    char *dropped;  /* the file that the panel asks about, or NULL */
+    char **waiting; /* those that it will ask about next */
+    size_t waiting_count;
+    char **environments; /* those that E cycles through */
+    size_t environment_count;
+    const char *output_folder; /* of screenshots and camera paths */
+
+    struct tl_window_params params;
+    char *state_folder; /* NULL: nothing is remembered */
+    bool keeps_settings;
+    char *views_file; /* of what is shown; NULL as above */
+    struct tl_saved_views views;
+    char *scene_file;                     /* YAML that the settings came from, or NULL */
+    const struct tl_arguments *arguments; /* borrowed */
+    struct tl_file_watch watch;
+    double watched_s;
+
+    struct tl_review_memory memory;
+    struct tl_review_times times;
+    struct tl_frame_times frame_times, rest_times; /* while something moves; else */
+    struct tl_cloth_report report;
+    int reported_frame;
+    double reported_s;
+    int drawn_count, shown_count;
+};
+
+/* The view's size: the window without the panel. Pixels. */
+void tl_review_size(const struct tl_review *review, int *width, int *height);
+int tl_review_panel_width(const struct tl_review *review); /* pixels; 0 when hidden */
+
+/* Shows a message over the view for some seconds, and logs it. */
+void tl_review_report(struct tl_review *review, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+/* Shows an error until it is dismissed, logs it as a warning, and pauses. */
+void tl_review_report_error(struct tl_review *review, const tl_error *error);
+void tl_review_clear_message(struct tl_review *review);
+/* Clears a message, but no error, that has been shown for long enough. */
+void tl_review_expire_message(struct tl_review *review);
+
+/* Starts or pauses the simulation or the playback, from now on. */
+void tl_review_set_playing(struct tl_review *review, bool plays);
+
+/* Notes that the camera, the light or a slider has just moved: coarse images are allowed for a moment. */
+void tl_review_note_motion(struct tl_review *review);
+bool tl_review_is_moving(const struct tl_review *review);    /* coarse images are allowed */
+bool tl_review_moves_itself(const struct tl_review *review); /* turntable, environment, glide or path */
+
+#endif

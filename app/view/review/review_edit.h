@@ -1,0 +1,43 @@
+/* Edits of the settings by names and files that stand for many options; undo. Owns the queue of dropped files
+ * and the list of environments. Whatever fails is reported, and `wanted` goes back to `good`. */
+#ifndef TOILE_APP_VIEW_REVIEW_REVIEW_EDIT_H
+#define TOILE_APP_VIEW_REVIEW_REVIEW_EDIT_H
+
+#include "app/view/review/review.h"
+
+/* Sets one option as if it had been typed. False when the text is refused, which is reported. */
+bool tl_review_set(struct tl_review *review, const char *key, const char *text);
+/* After wanted.scene's fabric, overlay, preset, garment or colourway were edited: applies what these names
+ * stand for. */
+void tl_review_apply_names(struct tl_review *review);
+void tl_review_use_fabric(struct tl_review *review, const char *name);
+void tl_review_use_scene(struct tl_review *review, const char *path); /* a YAML file: replaces all options */
+
+/* The next (by 1) or previous (by -1) one, round and round. */
+void tl_review_next_fabric(struct tl_review *review, int by);
+void tl_review_next_colourway(struct tl_review *review, int by);
+void tl_review_next_view(struct tl_review *review, int by); /* image.view */
+
+/* A file was dropped on the window: uses it at once, asks what it is to be used as, or refuses it. */
+void tl_review_open_dropped(struct tl_review *review, const char *path);
+/* What the file that is asked about may be used as; NULL and 0 when no question is open. Static. */
+struct tl_review_answer {
+    const char *label, *help;
+    void (*use)(struct tl_review *review, const char *path); /* NULL: the file is not used */
+};
+#define TL_REVIEW_ANSWERS_MAX 4
+const struct tl_review_answer *tl_review_answers(const struct tl_review *review, size_t *count);
+/* Answers the open question by an index of the answers; the next file in the queue is asked about. */
+void tl_review_answer(struct tl_review *review, size_t index);
+/* Drops the open question and its file. */
+void tl_review_cancel_question(struct tl_review *review);
+
+/* The environments that E cycles through: adds one, and goes to the next. */
+void tl_review_add_environment(struct tl_review *review, const char *name);
+void tl_review_next_environment(struct tl_review *review);
+
+/* Notes the present settings for undo once a gesture has ended; called every frame. */
+void tl_review_note_edit(struct tl_review *review);
+void tl_review_undo(struct tl_review *review, bool redo);
+
+#endif

@@ -1,0 +1,21 @@
+/* State that is kept between runs (app/view/memory/state.h), and files that are reloaded when they have been
+ * edited. Owns the saved views and the watched files. */
+#ifndef TOILE_APP_VIEW_REVIEW_REVIEW_KEEP_H
+#define TOILE_APP_VIEW_REVIEW_REVIEW_KEEP_H
+
+#include "app/view/review/review.h"
+
+/* Restores the window's options and, when the command line names neither a scene nor an option, the settings.
+ * True when `wanted` was replaced. A file that cannot be read is reported as a warning. */
+bool tl_review_restore_state(struct tl_review *review);
+/* Saves them; a failure is a warning. */
+void tl_review_save_state(struct tl_review *review);
+
+void tl_review_save_view(struct tl_review *review, int index);
+/* After another scene was loaded: loads its saved views. */
+void tl_review_load_views(struct tl_review *review);
+
+/* Reloads the scene, fabric and preset files that have been edited; looks for them twice a second. */
+void tl_review_reload_edited(struct tl_review *review);
+
+#endif

@@ -1,0 +1,28 @@
+/* Motion without input: turntable, environment, glides to saved views, recorded and played camera paths. It
+ * follows the clock, so that a slow machine shows fewer steps of the same motion. Owns `motion` and `path`.
+ */
+#ifndef TOILE_APP_VIEW_REVIEW_REVIEW_MOVE_H
+#define TOILE_APP_VIEW_REVIEW_REVIEW_MOVE_H
+
+#include "app/view/review/review.h"
+
+/* Sets camera and light in `wanted` for the present time, and records a key when one is due; called every
+ * frame. */
+void tl_review_move(struct tl_review *review);
+/* Ends glides and played paths, because the user takes over. */
+void tl_review_stop_moving(struct tl_review *review);
+/* Gives an automatically framed camera the distance and target that it has now: panning and zooming start
+ * from them. */
+void tl_review_fix_camera(struct tl_review *review);
+/* Glides to the saved view of this index, or reports that there is none. */
+void tl_review_go_to_view(struct tl_review *review, int index);
+/* Starts or stops one of `motion`'s turntables; `name` is for the report. */
+void tl_review_toggle(struct tl_review *review, bool *turntable, const char *name);
+
+/* The camera path: adds a key by hand; starts or ends recording; starts or stops playing. */
+void tl_review_path_add(struct tl_review *review);
+void tl_review_path_record(struct tl_review *review);
+void tl_review_path_play(struct tl_review *review);
+void tl_review_path_release(struct tl_review_path *path); /* frees and zeroes */
+
+#endif

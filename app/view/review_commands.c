@@ -1,0 +1,206 @@
+#include "app/view/review_commands.h"
+
+#include "config/memory.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <stdio.h>
+#include <string.h>
+
+#define SHIFT GLFW_MOD_SHIFT
+#define CTRL  GLFW_MOD_CONTROL
+
+/* One key; another argument for it; the digits 1 to 9. */
+#define KEY(name)                                                                                            \
+    {                                                                                                        \
+        GLFW_KEY_##name, 0, 1, 0                                                                             \
+    }
+#define WITH(modifiers, name)                                                                                \
+    {                                                                                                        \
+        GLFW_KEY_##name, modifiers, 1, 0                                                                     \
+    }
+#define TO(name, argument)                                                                                   \
+    {                                                                                                        \
+        GLFW_KEY_##name, 0, 1, argument                                                                      \
+    }
+#define WITH_TO(modifiers, name, argument)                                                                   \
+    {                                                                                                        \
+        GLFW_KEY_##name, modifiers, 1, argument                                                              \
+    }
+#define DIGITS(modifiers)                                                                                    \
+    {                                                                                                        \
+        GLFW_KEY_1, modifiers, 9, 0                                                                          \
+    }
+
+const char *const tl_review_section_names[TL_SECTION_COUNT] = {
+    [TL_SECTION_CLOTH] = "Cloth",   [TL_SECTION_CAMERA] = "Camera",   [TL_SECTION_LIGHT] = "Light",
+    [TL_SECTION_FABRIC] = "Fabric", [TL_SECTION_COMPARE] = "Compare", [TL_SECTION_INSPECT] = "Inspect",
+    [TL_SECTION_WINDOW] = "Window",
+};
+
+static bool is_playing(const struct tl_review *review)
+{
+    return review->playing;
+}
+
+/* clang-format off */
+const struct tl_review_command tl_review_commands[] = {
+    {TL_SECTION_CLOTH, "play or pause", tl_act_play, .keys = {KEY(SPACE)},
+     .button = "Play", .button_on = "Pause", .is_on = is_playing},
+    {TL_SECTION_CLOTH, "one frame further", tl_act_step, .keys = {KEY(PERIOD)}, .repeats = true, .button = "Step"},
+    {TL_SECTION_CLOTH, "back to the settled start", tl_act_reset, .keys = {KEY(R)}, .button = "Reset"},
+    {TL_SECTION_CLOTH, "while pulling: pin the cloth there; else: take the pins out", tl_act_pin, .keys = {KEY(P)}},
+
+    {TL_SECTION_CAMERA, "turn about the figure", tl_act_turn_camera,
+     .keys = {TO(LEFT, TL_ACT_LEFT), TO(RIGHT, TL_ACT_RIGHT), TO(UP, TL_ACT_UP), TO(DOWN, TL_ACT_DOWN)}, .repeats = true},
+    {TL_SECTION_CAMERA, "nearer, farther", tl_act_zoom, .keys = {TO(PAGE_UP, 1), TO(PAGE_DOWN, -1)}, .repeats = true},
+    {TL_SECTION_CAMERA, "frame the whole figure", tl_act_frame_all, .keys = {KEY(F)}, .button = "Frame"},
+    {TL_SECTION_CAMERA, "turntable", tl_act_turntable, .keys = {KEY(T)}, .button = "Turn"},
+    {TL_SECTION_CAMERA, "go to a saved view", tl_act_view, .keys = {DIGITS(0)}},
+    {TL_SECTION_CAMERA, "save this view: camera and light", tl_act_save_view, .keys = {DIGITS(SHIFT)}},
+    {TL_SECTION_CAMERA, "add a key to the camera path, 2 s after the last", tl_act_path_key, .keys = {KEY(K)}},
+    {TL_SECTION_CAMERA, "record a camera path; again: save it", tl_act_path_record, .keys = {WITH(SHIFT, K)}},
+    {TL_SECTION_CAMERA, "play the camera path", tl_act_path_play, .keys = {KEY(L)}},
+
+    {TL_SECTION_LIGHT, "next environment", tl_act_next_environment, .keys = {KEY(E)}, .button = "Next light"},
+    {TL_SECTION_LIGHT, "turn the environment by 15\u00b0", tl_act_turn_environment,
+     .keys = {TO(LEFT_BRACKET, 1), TO(RIGHT_BRACKET, -1)}, .repeats = true},
+    {TL_SECTION_LIGHT, "turn the environment continuously", tl_act_environment_turntable, .keys = {WITH(SHIFT, T)}},
+
+    {TL_SECTION_FABRIC, "next, previous fabric", tl_act_next_fabric, .keys = {TO(G, 1), WITH_TO(SHIFT, G, -1)}},
+    {TL_SECTION_FABRIC, "a fabric, in the order of the panel's list", tl_act_fabric, .keys = {DIGITS(CTRL)}},
+    {TL_SECTION_FABRIC, "next, previous colourway", tl_act_next_colourway, .keys = {TO(C, 1), WITH_TO(SHIFT, C, -1)},
+     .button = "Colours"},
+
+    {TL_SECTION_COMPARE, "split the view: A keeps its present appearance", tl_act_compare, .keys = {KEY(W)},
+     .button = "Compare"},
+    {TL_SECTION_COMPARE, "exchange A and B", tl_act_swap, .keys = {KEY(X)}},
+    {TL_SECTION_COMPARE, "move the line between them", tl_act_move_wipe, .keys = {TO(COMMA, -1), TO(SLASH, 1)},
+     .repeats = true},
+
+    {TL_SECTION_INSPECT, "show normals, UVs, visibility, strain ...", tl_act_next_view,
+     .keys = {TO(V, 1), WITH_TO(SHIFT, V, -1)}, .button = "Inspect"},
+    {TL_SECTION_INSPECT, "show light again", tl_act_light_view, .keys = {KEY(B)}},
+    {TL_SECTION_INSPECT, "print the values under the pointer", tl_act_read_out, .keys = {KEY(I)}},
+
+    {TL_SECTION_WINDOW, "undo the last edit", tl_act_undo, .keys = {WITH(CTRL, Z)}, .repeats = true, .button = "Undo"},
+    {TL_SECTION_WINDOW, "redo", tl_act_redo, .keys = {WITH(CTRL | SHIFT, Z), WITH(CTRL, Y)}, .repeats = true},
+    {TL_SECTION_WINDOW, "less, more time for a frame", tl_act_budget, .keys = {TO(MINUS, -1), TO(EQUAL, 1)}},
+    {TL_SECTION_WINDOW, "screenshot as PNG", tl_act_screenshot, .keys = {TO(S, 0), TO(F12, 0)}, .button = "Picture"},
+    {TL_SECTION_WINDOW, "screenshot as linear EXR", tl_act_screenshot, .keys = {WITH_TO(SHIFT, S, 1)}},
+    {TL_SECTION_WINDOW, "use the panel by keys; Esc ends", tl_act_options, .keys = {KEY(O)}},
+    {TL_SECTION_WINDOW, "hide or show the panel", tl_act_panel, .keys = {KEY(TAB)}},
+    {TL_SECTION_WINDOW, "list keys and gestures", tl_act_help, .keys = {KEY(H), KEY(F1)}, .button = "Keys"},
+    {TL_SECTION_WINDOW, "stop or close what is open, or quit", tl_act_back, .keys = {KEY(ESCAPE)}},
+    {TL_SECTION_WINDOW, "quit", tl_act_quit, .keys = {KEY(Q)}},
+};
+const size_t tl_review_command_count = TL_COUNT(tl_review_commands);
+
+const struct tl_review_gesture tl_review_gestures[] = {
+    {TL_SECTION_CLOTH, "Ctrl + drag", "pull the cloth"},
+    {TL_SECTION_CAMERA, "drag", "turn about the figure"},
+    {TL_SECTION_CAMERA, "right drag", "move the figure"},
+    {TL_SECTION_CAMERA, "wheel", "nearer, farther"},
+    {TL_SECTION_CAMERA, "double click", "turn about that point, from nearby"},
+    {TL_SECTION_LIGHT, "Shift + drag", "turn the environment"},
+    {TL_SECTION_COMPARE, "drag the line", "move it"},
+    {TL_SECTION_WINDOW, "drop a file", ".glb .gltf .obj: model; .pc2 .mdd: motion;"},
+    {TL_SECTION_WINDOW, "", ".exr .hdr: light; .yaml: scene, fabric, preset"},
+};
+const size_t tl_review_gesture_count = TL_COUNT(tl_review_gestures);
+/* clang-format on */
+
+const struct tl_review_command *tl_review_command_of_key(int key, int modifiers, int *argument)
+{
+    for (size_t i = 0; i < tl_review_command_count; i++)
+        for (int k = 0; k < TL_REVIEW_KEYS_MAX; k++) {
+            const struct tl_review_key *row = &tl_review_commands[i].keys[k];
+            if (modifiers != row->modifiers || key < row->key || key >= row->key + row->count)
+                continue;
+            *argument = row->argument + key - row->key;
+            return &tl_review_commands[i];
+        }
+    return NULL;
+}
+
+/* GLFW numbers keys that print a character by that character, as ASCII. */
+static void name_key(int key, char *text, size_t size)
+{
+    static const struct {
+        int key;
+        const char *name;
+    } named[] = {
+        {GLFW_KEY_SPACE, "Space"},    {GLFW_KEY_LEFT, "Left"}, {GLFW_KEY_RIGHT, "Right"},
+        {GLFW_KEY_UP, "Up"},          {GLFW_KEY_DOWN, "Down"}, {GLFW_KEY_PAGE_UP, "PgUp"},
+        {GLFW_KEY_PAGE_DOWN, "PgDn"}, {GLFW_KEY_TAB, "Tab"},   {GLFW_KEY_ESCAPE, "Esc"},
+        {GLFW_KEY_F1, "F1"},          {GLFW_KEY_F12, "F12"},
+    };
+    for (size_t i = 0; i < TL_COUNT(named); i++)
+        if (named[i].key == key) {
+            snprintf(text, size, "%s", named[i].name);
+            return;
+        }
+    snprintf(text, size, "%c", key);
+}
+
+void tl_review_key_names(const struct tl_review_command *command, char *text, size_t size)
+{
+    text[0] = '\0';
+    for (int k = 0; k < TL_REVIEW_KEYS_MAX && command->keys[k].count > 0; k++) {
+        const struct tl_review_key *row = &command->keys[k];
+        char first[16], last[16];
+        name_key(row->key, first, sizeof first);
+        name_key(row->key + row->count - 1, last, sizeof last);
+        size_t length = strlen(text);
+        snprintf(text + length, size - length, "%s%s%s%s%s%s", k > 0 ? ", " : "",
+                 row->modifiers & CTRL ? "Ctrl+" : "", row->modifiers & SHIFT ? "Shift+" : "", first,
+                 row->count > 1 ? " to " : "", row->count > 1 ? last : "");
+    }
+}
+
+static size_t add_line(struct tl_panel_line *lines, size_t count, size_t capacity, const char *left,
+                       const char *right)
+{
+    if (count == capacity)
+        return count;
+    snprintf(lines[count].cells[0], sizeof lines[count].cells[0], "%s", left);
+    snprintf(lines[count].cells[1], sizeof lines[count].cells[1], "%s", right);
+    return count + 1;
+}
+
+size_t tl_review_help(struct tl_panel_line *lines, size_t capacity)
+{
+    size_t count = 0;
+    for (int section = 0; section < TL_SECTION_COUNT; section++) {
+        count = add_line(lines, count, capacity, tl_review_section_names[section], "");
+        for (size_t i = 0; i < tl_review_command_count; i++) {
+            char keys[sizeof lines->cells[0]];
+            tl_review_key_names(&tl_review_commands[i], keys, sizeof keys);
+            if ((int)tl_review_commands[i].section == section)
+                count = add_line(lines, count, capacity, keys, tl_review_commands[i].help);
+        }
+        for (size_t i = 0; i < tl_review_gesture_count; i++)
+            if ((int)tl_review_gestures[i].section == section)
+                count = add_line(lines, count, capacity, tl_review_gestures[i].gesture,
+                                 tl_review_gestures[i].help);
+    }
+    return count;
+}
+
+void tl_review_list_buttons(const struct tl_review *review, struct tl_review_buttons *out)
+{
+    out->count = 0;
+    for (size_t i = 0; i < tl_review_command_count && out->count < TL_REVIEW_BUTTONS_MAX; i++) {
+        const struct tl_review_command *command = &tl_review_commands[i];
+        if (!command->button)
+            continue;
+        bool is_on = review && command->is_on && command->is_on(review);
+        char keys[64];
+        tl_review_key_names(command, keys, sizeof keys);
+        snprintf(out->help[out->count], sizeof out->help[0], "%s: %s", command->help, keys);
+        out->of[out->count] =
+            (struct tl_panel_button){is_on ? command->button_on : command->button, out->help[out->count]};
+        out->commands[out->count++] = command;
+    }
+}
