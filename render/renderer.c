@@ -16,19 +16,6 @@
 #define BYTES_MAX         ((uint64_t)4 << 30) /* all together */
 #define TEXTURE_BYTES_MAX ((uint64_t)1 << 30) /* one texture */
 
-struct tl_render_settings tl_frame_usable(const struct tl_render_settings *settings)
-{
-    struct tl_render_settings used = *settings;
-    if (used.light.cut == TL_CUT_FACES)
-        used.light.regions = used.light.regions / 6 * 6;
-    while (used.light.pem_size & (used.light.pem_size - 1))
-        used.light.pem_size &= used.light.pem_size - 1;
-    while (used.maps.size & (used.maps.size - 1))
-        used.maps.size &= used.maps.size - 1;
-    tl_inspect_settle(&used);
-    return used;
-}
-
 static uint64_t sample_count(const struct tl_image_params *image)
 {
     int width, height;

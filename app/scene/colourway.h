@@ -20,6 +20,7 @@
 
 #include "assets/builtin/weave.h"
 #include "config/options.h"
+#include "render/brdf/options.h"
 #include "render/renderer.h"
 
 #define TL_COLOURWAYS_MAX 64

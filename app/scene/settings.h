@@ -7,6 +7,7 @@
 #include "assets/builtin/weave.h"
 #include "cloth/cloth.h"
 #include "config/options.h"
+#include "render/brdf/options.h"
 #include "render/local/lamp.h"
 #include "render/renderer.h"
 

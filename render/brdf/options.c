@@ -1,4 +1,4 @@
-#include "render/renderer.h"
+#include "render/brdf/options.h"
 
 static const char *const model_names[] = {"phong", "blinn_phong", "cosine_lobe", "torrance_sparrow",
                                           "ward",  "banks",       NULL};

@@ -23,10 +23,11 @@
 #ifndef TOILE_RENDER_ENVMAP_ENVMAP_H
 #define TOILE_RENDER_ENVMAP_ENVMAP_H
 
+#include "render/envmap/options.h"
 #include "render/envmap/prefiltered_map.h"
 #include "render/gbuffer/gbuffer.h"
 #include "render/gbuffer/samples.h"
-#include "render/renderer.h"
+#include "render/scene/view.h"
 
 /* Software drivers take both ways of every branch: what does not change within a picture is #defined. */
 struct tl_envmap_variant {

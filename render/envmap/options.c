@@ -1,5 +1,6 @@
+#include "render/envmap/options.h"
+
 #include "render/env/layout.h"
-#include "render/renderer.h"
 
 static const char *const look_up_names[] = {"direct", "matrix", NULL};
 static const char *const mode_names[] = {"surface", "mirror",       "refraction", "diffuse",

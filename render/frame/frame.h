@@ -10,6 +10,7 @@
 #include "render/envmap/capture.h"
 #include "render/envmap/envmap.h"
 #include "render/frame/prepared.h"
+#include "render/frame/settings.h"
 #include "render/gbuffer/gbuffer.h"
 #include "render/gbuffer/samples.h"
 #include "render/light/light.h"
@@ -129,9 +130,6 @@ struct tl_rest {
     bool is_captured;  /* ... and it is the one that is there */
 };
 
-/* Whether rounds at rest change the image. */
-bool tl_light_averages(const struct tl_light_params *light);
-
 /* One number for each input of the frame: an input has changed when its number has. `rest` becomes that of
  * this frame. */
 void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *settings,
@@ -165,9 +163,6 @@ void tl_frame_keep_lights(tl_renderer *renderer, const struct tl_light_params *l
 
 void tl_frame_cut_regions(const tl_cube *cube, const struct tl_light_params *light, struct tl_regions *out);
 enum tl_region_weight tl_frame_region_weight(const struct tl_light_params *light);
-
-/* Settings as the algorithm can use them: regions in sixes, sizes in powers of two. */
-struct tl_render_settings tl_frame_usable(const struct tl_render_settings *settings);
 
 /* In place of cube, suns, lobes and lights: those made ready for this frame's environment; false when there
  * are none. */

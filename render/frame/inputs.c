@@ -136,12 +136,6 @@ static void count_capture(const tl_frame *frame, const struct tl_render_settings
     rest->is_captured = scene == rest->captured;
 }
 
-bool tl_light_averages(const struct tl_light_params *light)
-{
-    return light->jitter && light->method != TL_METHOD_REFERENCE && light->method != TL_METHOD_UNSHADOWED &&
-           light->method != TL_METHOD_MAPS;
-}
-
 static void count_rest(const struct tl_light_params *light, const uint64_t before[TL_INPUT_COUNT],
                        const uint64_t signatures[TL_INPUT_COUNT], struct tl_rest *rest)
 {

@@ -170,7 +170,7 @@ static bool has_cube(const tl_renderer *renderer)
     return renderer->valid & TL_BIT(TL_MADE_CUBE);
 }
 
-tl_prepared *tl_prepared_copy(const tl_renderer *renderer)
+tl_prepared *tl_renderer_copy_prepared(const tl_renderer *renderer)
 {
     if (!has_cube(renderer))
         return NULL;

@@ -5,7 +5,7 @@
 #ifndef TOILE_RENDER_FRAME_PREPARED_H
 #define TOILE_RENDER_FRAME_PREPARED_H
 
-#include "render/renderer.h"
+#include "render/frame/settings.h"
 
 #define TL_PREPARED_COUNTS_MAX 4 /* as many as a renderer keeps */
 
@@ -13,8 +13,8 @@ typedef struct tl_prepared tl_prepared;
 
 struct tl_prepared_request {
     const tl_environment *environment; /* borrowed while it is made */
-    tl_prepared *known; /* of the same environment, from tl_prepared_copy, and taken: what it has is not made
-                           again; NULL: nothing */
+    tl_prepared *known; /* of the same environment, from tl_renderer_copy_prepared, and taken: what it has is
+                           not made again; NULL: nothing */
     struct tl_render_settings settings;
     int region_counts[TL_PREPARED_COUNTS_MAX]; /* light.regions of the frames to come; what is 0 is left out
                                                 */
@@ -24,17 +24,8 @@ struct tl_prepared_request {
 /* Of the lobes that the frame's materials need, as bits of render/env/lobes.h. */
 uint32_t tl_prepared_exponents(const tl_frame *frame, const struct tl_render_settings *settings);
 
-uint32_t tl_renderer_exponents(const tl_renderer *renderer); /* of the last frame; 0 before */
-
 /* Shows progress. One that is interrupted holds less. */
 tl_prepared *tl_prepared_make(struct tl_prepared_request *request);
-/* What this renderer has made of its environment, for another one or to be added to; NULL when it has made
- * nothing. */
-tl_prepared *tl_prepared_copy(const tl_renderer *renderer);
 void tl_prepared_destroy(tl_prepared **prepared); /* null is fine */
-
-/* More light of the same cube is taken at once. Else it is for the next draw, which uses it if its
- * environment has this revision and its settings are those that it was made for. Nulls it. */
-void tl_renderer_take_prepared(tl_renderer *renderer, tl_prepared **prepared, uint64_t environment_revision);
 
 #endif

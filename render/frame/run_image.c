@@ -88,8 +88,9 @@ bool tl_run_reference(void *context, int level, tl_error *error)
     (void)level;
     tl_image image;
     struct tl_reference_report report;
-    if (!tl_reference_draw(&renderer->frame, &renderer->settings, tl_frame_ground(renderer), &image, &report,
-                           error))
+    const struct tl_reference_request request =
+        tl_frame_reference_request(&renderer->frame, &renderer->settings, tl_frame_ground(renderer));
+    if (!tl_reference_draw(&request, &image, &report, error))
         return false;
     tl_info("reference: %d replicates, %.3g million rays, standard error %.2g %%", report.replicates,
             1e-6 * (double)report.rays, 100 * report.standard_error);

@@ -50,6 +50,7 @@ bool tl_run_points(void *context, int level, tl_error *error)
     (void)level;
     if (!tl_frame_follow_motion(renderer, error))
         return false;
+    const struct tl_ray_params params = tl_light_ray_params(&renderer->settings.light);
     struct tl_points_request request = {.trace = renderer->trace,
                                         .ranges = &renderer->ranges,
                                         .samples = &renderer->samples,
@@ -59,7 +60,7 @@ bool tl_run_points(void *context, int level, tl_error *error)
                                         .shapes_revision = renderer->signatures[TL_INPUT_SHAPES],
                                         .ground = tl_frame_ground(renderer),
                                         .environment_yaw = renderer->frame.environment_yaw,
-                                        .params = &renderer->settings.light,
+                                        .params = &params,
                                         .moved = renderer->rest.scene == 0,
                                         .whole_rounds = renderer->frame.still};
     update_points(renderer, &request);

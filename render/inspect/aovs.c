@@ -1,6 +1,7 @@
 #include "render/inspect/aovs.h"
 
 #include "render/inspect/find.h"
+#include "render/renderer.h"
 
 #include <string.h>
 

@@ -2,7 +2,7 @@
 #ifndef TOILE_RENDER_INSPECT_AOVS_H
 #define TOILE_RENDER_INSPECT_AOVS_H
 
-#include "render/renderer.h"
+#include "assets/base/image.h"
 
 #define TL_AOVS_MAX 6
 
@@ -18,10 +18,6 @@ struct tl_aovs {
     struct tl_aov items[TL_AOVS_MAX];
 };
 
-/* Of the image drawn last, whose frame must have asked for layers and still be there. Each pixel has the
- * values of the one sample nearest to its middle: normals and places of different surfaces have no mean.
- * `out` is to be released. */
-bool tl_renderer_read_aovs(const tl_renderer *renderer, struct tl_aovs *out, tl_error *error);
 void tl_aovs_release(struct tl_aovs *aovs);
 
 #endif

@@ -2,6 +2,7 @@
 
 #include "render/inspect/paint.h"
 #include "render/inspect/pick.h"
+#include "render/renderer.h"
 
 #include <string.h>
 

@@ -2,14 +2,7 @@
 
 #include "render/inspect/job.h"
 #include "render/inspect/paint.h"
-
-void tl_inspect_settle(struct tl_render_settings *settings)
-{
-    if (settings->image.view == TL_VIEW_LIGHT)
-        return;
-    settings->light.method = TL_METHOD_PEM;
-    settings->light.visibility = TL_VISIBILITY_RAYS;
-}
+#include "render/renderer.h"
 
 tl_bits tl_inspect_facts(int view)
 {

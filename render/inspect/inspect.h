@@ -34,11 +34,4 @@ struct tl_inspection {
     float shear;                    /* cosine of the angle between warp and weft; 0: at right angles */
 };
 
-/* What lies under pixel (x, y) of the image drawn last, counted from its upper left corner. False where
- * nothing is, or no image. Cheap: a search among the samples, or a ray where they were not kept. */
-bool tl_renderer_inspect(const tl_renderer *renderer, int x, int y, struct tl_inspection *out);
-
-/* The legend of the image drawn last; empty for TL_VIEW_LIGHT. */
-void tl_renderer_legend(const tl_renderer *renderer, struct tl_legend *out);
-
 #endif

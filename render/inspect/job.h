@@ -4,8 +4,6 @@
 
 #include "render/frame/frame.h"
 
-/* Views show what rays see, whatever lights the image. */
-void tl_inspect_settle(struct tl_render_settings *settings);
 /* Facts of a frame whose view is not light, but for those of its materials. */
 tl_bits tl_inspect_facts(int view);
 /* Whether rounds at rest change what is shown. */

@@ -7,7 +7,7 @@
 #define TOILE_RENDER_INSPECT_LEGEND_H
 
 #include "render/pem/regions.h"
-#include "render/renderer.h"
+#include "render/present/options.h"
 
 #define TL_LEGEND_STOPS   33
 #define TL_LEGEND_ENTRIES 8

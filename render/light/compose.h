@@ -19,6 +19,7 @@
 #include "render/env/sun.h"
 #include "render/gbuffer/samples.h"
 #include "render/light/mirrors.h"
+#include "render/light/options.h"
 #include "render/light/region_lights.h"
 #include "render/visibility/points.h"
 

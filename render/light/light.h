@@ -13,6 +13,7 @@
 #include "render/env/lobes.h"
 #include "render/env/sun.h"
 #include "render/gbuffer/gbuffer.h"
+#include "render/light/options.h"
 #include "render/pem/lobe.h"
 #include "render/pem/pems.h"
 #include "render/pem/slice_maps.h"

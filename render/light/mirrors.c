@@ -2,7 +2,7 @@
 
 #include "config/memory.h"
 #include "render/env/exponent.h"
-#include "render/renderer.h"
+#include "render/light/options.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,8 @@
+#include "render/light/options.h"
+
 #include "render/brdf/lobe_fit.h"
 #include "render/pem/chain.h"
 #include "render/pem/regions.h"
-#include "render/renderer.h"
 
 static const char *const method_names[] = {"pem",        "lights",    "ao",   "ao_colour",
                                            "unshadowed", "reference", "maps", NULL};
@@ -75,3 +76,19 @@ const struct tl_option_table tl_light_options = TL_OPTION_TABLE(
     .method = TL_METHOD_PEM, .lobe = TL_LOBE_DUAL, .regions = 96, .pem_size = 128,
     .filter = TL_CHAIN_SQRT_COSINE, .pems_per_pass = 12, .rounds = 1, .rays = 1, .fan = 5, .map_size = 256,
     .blur_m = 0.05f, .depth_bias_m = 0.004f, .min_variance = 1e-6f, .bleed_reduction = 0.1f);
+
+struct tl_ray_params tl_light_ray_params(const struct tl_light_params *light)
+{
+    return (struct tl_ray_params){.rays = light->rays,
+                                  .refresh = light->refresh,
+                                  .rounds = light->rounds,
+                                  .repair = light->repair,
+                                  .repair_rest = light->repair_rest,
+                                  .weighs_solid_angle = light->method == TL_METHOD_AO};
+}
+
+bool tl_light_averages(const struct tl_light_params *light)
+{
+    return light->jitter && light->method != TL_METHOD_REFERENCE && light->method != TL_METHOD_UNSHADOWED &&
+           light->method != TL_METHOD_MAPS;
+}

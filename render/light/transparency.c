@@ -2,7 +2,7 @@
 
 #include "config/memory.h"
 #include "render/brdf/coat.h"
-#include "render/renderer.h"
+#include "render/light/options.h"
 
 #include <epoxy/gl.h>
 

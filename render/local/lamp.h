@@ -3,7 +3,8 @@
 #ifndef TOILE_RENDER_LOCAL_LAMP_H
 #define TOILE_RENDER_LOCAL_LAMP_H
 
-#include "render/renderer.h"
+#include "render/light/options.h"
+#include "render/scene/frame.h"
 
 struct tl_ground;
 

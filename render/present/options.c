@@ -1,5 +1,6 @@
+#include "render/present/options.h"
+
 #include "render/pem/regions.h"
-#include "render/renderer.h"
 
 #include <math.h>
 

@@ -3,8 +3,10 @@
 #ifndef TOILE_RENDER_PRESENT_PRESENT_H
 #define TOILE_RENDER_PRESENT_PRESENT_H
 
+#include "assets/environment.h"
 #include "render/gpu/gpu.h"
 #include "render/pem/pems.h"
+#include "render/present/options.h"
 #include "render/scene/view.h"
 
 /* What is behind the figure; or colours that stand for numbers, as they are. */

@@ -19,7 +19,7 @@ enum { TILE = 4, TILE_PIXELS = TILE * TILE };
 
 struct drawing {
     const struct tl_reference_scene *scene;
-    const struct tl_render_settings *settings;
+    const struct tl_reference_request *request;
     struct tl_view view;
     int width, height; /* pixels */
     int tiles_x, tiles_y;
@@ -58,7 +58,7 @@ struct bundle {
 
 static struct sights aim(const struct drawing *drawing, int tile, int sample)
 {
-    int side = drawing->settings->image.supersample;
+    int side = drawing->request->supersample;
     int left = tile % drawing->tiles_x * TILE, top = tile / drawing->tiles_x * TILE;
     struct sights sights = {0};
     for (int i = 0; i < TILE_PIXELS; i++) {
@@ -101,9 +101,9 @@ static void find_spots(const struct drawing *drawing, bool last, struct sights *
 
 static struct tl_sky_sample *directions_of(const struct drawing *drawing, int group, int sample)
 {
-    int side = drawing->settings->image.supersample;
+    int side = drawing->request->supersample;
     size_t set = (size_t)group * (size_t)(side * side) + (size_t)sample;
-    return drawing->directions + set * (size_t)drawing->settings->reference.strata;
+    return drawing->directions + set * (size_t)drawing->request->params->strata;
 }
 
 /* Every so many tiles have one group each; then the order is shifted, so that columns do not share them. */
@@ -115,8 +115,8 @@ static const struct tl_sky_sample *directions_for(const struct drawing *drawing,
 
 static void draw_directions(const struct drawing *drawing, int replicate)
 {
-    int side = drawing->settings->image.supersample, samples = side * side;
-    int strata = drawing->settings->reference.strata;
+    int side = drawing->request->supersample, samples = side * side;
+    int strata = drawing->request->params->strata;
 #pragma omp parallel for schedule(dynamic)
     for (int set = 0; set < drawing->groups * samples; set++) {
         int group = set / samples, sample = set % samples;
@@ -131,8 +131,8 @@ static void draw_directions(const struct drawing *drawing, int replicate)
 static size_t draw_spots(const struct drawing *drawing, int replicate, int tile, int sample, int behind,
                          const struct bundle *bundle)
 {
-    const struct tl_reference_params *params = &drawing->settings->reference;
-    int side = drawing->settings->image.supersample, samples = side * side;
+    const struct tl_reference_params *params = drawing->request->params;
+    int side = drawing->request->supersample, samples = side * side;
     const struct tl_gather_request gathering = {
         .scene = drawing->scene,
         .strata = params->strata,
@@ -169,7 +169,7 @@ static size_t draw_sample(const struct drawing *drawing, int replicate, int tile
 static bool draw_replicate(struct drawing *drawing, int replicate)
 {
     int tiles = drawing->tiles_x * drawing->tiles_y, done = 0;
-    int samples = drawing->settings->image.supersample * drawing->settings->image.supersample;
+    int samples = drawing->request->supersample * drawing->request->supersample;
     size_t rays = 0;
     for (size_t i = 0; i < 4 * (size_t)drawing->width * (size_t)drawing->height; i++)
         drawing->replicate[i] = 0;
@@ -182,7 +182,7 @@ static bool draw_replicate(struct drawing *drawing, int replicate)
             rays += draw_sample(drawing, replicate, tile, sample);
 #pragma omp critical
         tl_progress_update(&drawing->progress, (double)replicate * tiles + ++done,
-                           (double)drawing->settings->reference.replicates * tiles);
+                           (double)drawing->request->params->replicates * tiles);
     }
     drawing->rays += rays;
     return !tl_interrupted();
@@ -236,7 +236,7 @@ static int draw_replicates(struct drawing *drawing)
 {
     int done = 0;
     drawing->progress = tl_progress_begin("tracing the reference");
-    while (done < drawing->settings->reference.replicates && draw_replicate(drawing, done)) {
+    while (done < drawing->request->params->replicates && draw_replicate(drawing, done)) {
         keep_replicate(drawing);
         done++;
     }
@@ -246,25 +246,24 @@ static int draw_replicates(struct drawing *drawing)
 
 static void allocate_directions(struct drawing *drawing)
 {
-    int side = drawing->settings->image.supersample;
-    int64_t one = (int64_t)side * side * drawing->settings->reference.strata;
+    int side = drawing->request->supersample;
+    int64_t one = (int64_t)side * side * drawing->request->params->strata;
     int64_t groups = one > 0 ? DIRECTIONS_MAX / one : 1;
     drawing->groups = (int)(groups < 1 ? 1 : groups > GROUPS_MAX ? GROUPS_MAX : groups);
     drawing->directions = TL_NEW_ARRAY(struct tl_sky_sample, (size_t)(drawing->groups * one));
 }
 
-bool tl_reference_draw(const tl_frame *frame, const struct tl_render_settings *settings,
-                       const struct tl_ground *ground, tl_image *out, struct tl_reference_report *report,
-                       tl_error *error)
+bool tl_reference_draw(const struct tl_reference_request *request, tl_image *out,
+                       struct tl_reference_report *report, tl_error *error)
 {
     struct tl_reference_scene scene;
-    if (!tl_reference_scene_make(frame, settings, ground, &scene, error))
+    if (!tl_reference_scene_make(request, &scene, error))
         return false;
-    int width = settings->image.width, height = settings->image.height;
+    int width = request->width, height = request->height;
     size_t pixels = (size_t)width * (size_t)height;
     struct drawing drawing = {.scene = &scene,
-                              .settings = settings,
-                              .view = tl_view_make(&frame->camera, width, height),
+                              .request = request,
+                              .view = tl_view_make(&request->frame->camera, width, height),
                               .width = width,
                               .height = height,
                               .tiles_x = (width + TILE - 1) / TILE,

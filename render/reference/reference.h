@@ -10,11 +10,21 @@
 #ifndef TOILE_RENDER_REFERENCE_REFERENCE_H
 #define TOILE_RENDER_REFERENCE_REFERENCE_H
 
-#include "config/options.h"
-#include "render/renderer.h"
+#include "render/detail/options.h"
+#include "render/reference/options.h"
+#include "render/scene/frame.h"
 #include "render/surfaces/ground.h"
 
-enum tl_terminator { TL_TERMINATOR_SMOOTH, TL_TERMINATOR_GEOMETRIC };
+struct tl_reference_request {
+    const tl_frame *frame;
+    const struct tl_ground *ground; /* not among the frame's surfaces; NULL: none */
+    const struct tl_reference_params *params;
+    const struct tl_detail_params *detail;
+    int lobe;           /* enum tl_lobe (render/light/options.h) */
+    bool reflect_scene; /* near mirrors see the lit scene; false: black */
+    int width, height;  /* pixels */
+    int supersample;    /* samples a pixel side */
+};
 
 struct tl_reference_report {
     int replicates; /* done */
@@ -23,10 +33,9 @@ struct tl_reference_report {
     size_t rays;
 };
 
-/* `ground` is not among the frame's surfaces; NULL: there is none. Image as tl_renderer_read gives it. False,
+/* Image as tl_renderer_read gives it. False,
  * with TL_INTERRUPTED, only when nothing was finished. */
-bool tl_reference_draw(const tl_frame *frame, const struct tl_render_settings *settings,
-                       const struct tl_ground *ground, tl_image *out, struct tl_reference_report *report,
-                       tl_error *error);
+bool tl_reference_draw(const struct tl_reference_request *request, tl_image *out,
+                       struct tl_reference_report *report, tl_error *error);
 
 #endif

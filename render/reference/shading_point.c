@@ -93,16 +93,18 @@ static struct tl_surface_materials make_look(struct tl_reference_scene *scene, c
     return look;
 }
 
-bool tl_reference_scene_make(const tl_frame *frame, const struct tl_render_settings *settings,
-                             const struct tl_ground *ground, struct tl_reference_scene *out, tl_error *error)
+bool tl_reference_scene_make(const struct tl_reference_request *request, struct tl_reference_scene *out,
+                             tl_error *error)
 {
+    const tl_frame *frame = request->frame;
+    const struct tl_ground *ground = request->ground;
     *out = (struct tl_reference_scene){.surfaces = frame->surfaces,
                                        .surface_count = frame->surface_count,
                                        .ground = ground,
-                                       .lobe = settings->light.lobe,
-                                       .terminator = settings->reference.terminator,
-                                       .detail.params = settings->detail,
-                                       .reflect = settings->light.reflect_scene};
+                                       .lobe = request->lobe,
+                                       .terminator = request->params->terminator,
+                                       .detail.params = *request->detail,
+                                       .reflect = request->reflect_scene};
     out->looks = TL_NEW_ARRAY(struct tl_surface_materials, out->surface_count + 1);
     for (size_t i = 0; i < out->surface_count; i++)
         out->looks[i] = make_look(out, &frame->surfaces[i]);

@@ -35,8 +35,9 @@ struct tl_reference_scene {
     bool reflect;   /* near mirrors see the lit scene */
 };
 
-bool tl_reference_scene_make(const tl_frame *frame, const struct tl_render_settings *settings,
-                             const struct tl_ground *ground, struct tl_reference_scene *out, tl_error *error);
+/* All of the request but the image's size. */
+bool tl_reference_scene_make(const struct tl_reference_request *request, struct tl_reference_scene *out,
+                             tl_error *error);
 void tl_reference_scene_release(struct tl_reference_scene *scene);
 
 struct tl_ray_differential {

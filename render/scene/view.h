@@ -3,7 +3,7 @@
 #ifndef TOILE_RENDER_SCENE_VIEW_H
 #define TOILE_RENDER_SCENE_VIEW_H
 
-#include "render/renderer.h"
+#include "render/scene/camera.h"
 
 struct tl_view {
     mat4s view_projection;

@@ -17,10 +17,10 @@
 
 #include "render/env/sun.h"
 #include "render/pem/regions.h"
-#include "render/renderer.h"
 #include "render/surfaces/ground.h"
 #include "render/surfaces/surfaces.h"
 #include "render/visibility/fit.h"
+#include "render/visibility/options.h"
 
 #define TL_BLUR_RADIUS_MAX    64   /* texels; a wider Gaussian is cut to it, with a warning */
 #define TL_BLUR_SIGMA_MIN     0.3f /* texels; a narrower one would change the third digit only */

@@ -504,7 +504,7 @@ static void trace_all(tl_points *points, const struct tl_points_request *request
     for (int i = 0; i < request->regions->count; i++) {
         const struct tl_region *region = &request->regions->items[i];
         centres[i] = tl_turn_direction(region->direction, request->environment_yaw);
-        importances[i] = request->params->method == TL_METHOD_AO ? region->solid_angle : region->importance;
+        importances[i] = request->params->weighs_solid_angle ? region->solid_angle : region->importance;
     }
     const struct tl_refresh refresh = {.request = request,
                                        .stride = points->stride,

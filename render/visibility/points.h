@@ -12,8 +12,9 @@
 #include "render/env/sun.h"
 #include "render/gbuffer/samples.h"
 #include "render/pem/regions.h"
-#include "render/renderer.h"
+#include "render/surfaces/ground.h"
 #include "render/trace/trace.h"
+#include "render/visibility/options.h"
 
 #define TL_TAPS 4
 
@@ -34,9 +35,9 @@ struct tl_points_request {
     uint64_t
         regions_revision;     /* changes when the regions do: values are carried over to the nearest region */
     uint64_t shapes_revision; /* changes when vertex numbers do: everything is forgotten */
-    const struct tl_ground *ground;       /* NULL: none */
-    float environment_yaw;                /* rad */
-    const struct tl_light_params *params; /* refresh, rays, rounds, repair */
+    const struct tl_ground *ground; /* NULL: none */
+    float environment_yaw;          /* rad */
+    const struct tl_ray_params *params;
     bool moved; /* surfaces, environment or yaw differ from the last frame: values are replaced, not averaged
                  */
     bool whole_rounds; /* every frame traces all regions, however long that takes */

@@ -322,7 +322,9 @@ tl_image test_scene_evaluate(const struct test_scene *scene)
     const struct tl_image_params *image = &scene->settings.image;
     struct tl_reference_scene traced;
     tl_error error = {0};
-    assert_ok(tl_reference_scene_make(&scene->frame, &scene->settings, NULL, &traced, &error), error);
+    const struct tl_reference_request request =
+        tl_frame_reference_request(&scene->frame, &scene->settings, NULL);
+    assert_ok(tl_reference_scene_make(&request, &traced, &error), error);
     struct tl_view view = tl_view_make(&scene->frame.camera, image->width, image->height);
     tl_image out = tl_image_create(image->width, image->height, 4, TL_IMAGE_F32);
     for (int y = 0; y < image->height; y++)

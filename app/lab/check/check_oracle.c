@@ -230,7 +230,9 @@ static void consult(struct oracle *oracle, struct tl_finding *finding)
     const struct tl_checked *checked = oracle->checked;
     const struct tl_ground *ground = checked->settings->image.ground ? &checked->renderer->ground : NULL;
     tl_error error = {0};
-    if (tl_reference_scene_make(checked->frame, checked->settings, ground, &oracle->scene, &error)) {
+    const struct tl_reference_request request =
+        tl_frame_reference_request(checked->frame, checked->settings, ground);
+    if (tl_reference_scene_make(&request, &oracle->scene, &error)) {
         trace_pixels(oracle);
         compare_pixels(oracle, finding);
         tl_reference_scene_release(&oracle->scene);

@@ -7,7 +7,7 @@
 #define TOILE_APP_VIEW_WINDOW_LOADER_H
 
 #include "app/scene/session.h"
-#include "render/frame/prepared.h"
+#include "render/renderer.h"
 
 typedef struct tl_loader tl_loader;
 

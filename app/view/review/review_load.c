@@ -81,7 +81,7 @@ static struct tl_load_lights lights_of(struct tl_review *review, enum tl_load ki
         lights.of[i].exponents = tl_renderer_exponents(renderers[i]);
     if (kind == TL_LOAD_LOOK) {
         lights.of[0].environment = tl_session_frame(review->session).environment;
-        lights.of[0].known = tl_prepared_copy(review->renderer);
+        lights.of[0].known = tl_renderer_copy_prepared(review->renderer);
     }
     return lights;
 }

@@ -24,7 +24,7 @@ void tl_review_compare(struct tl_review *review)
         tl_review_report_error(review, &error);
         return;
     }
-    tl_prepared *light = tl_prepared_copy(review->renderer); /* the same light */
+    tl_prepared *light = tl_renderer_copy_prepared(review->renderer); /* the same light */
     if (light)
         tl_renderer_take_prepared(wipe->renderer, &light,
                                   tl_session_frame(review->session).environment_revision);

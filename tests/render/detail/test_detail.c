@@ -147,7 +147,9 @@ static void test_reference(void **state)
         tl_image image = test_draw(device->renderer, &stage->frame, &stage->settings), truth;
         struct tl_reference_report report;
         struct tl_comparison comparison;
-        assert_ok(tl_reference_draw(&stage->frame, &stage->settings, NULL, &truth, &report, &error), error);
+        const struct tl_reference_request request =
+            tl_frame_reference_request(&stage->frame, &stage->settings, NULL);
+        assert_ok(tl_reference_draw(&request, &truth, &report, &error), error);
         assert_ok(tl_image_compare(&image, &truth, 0, 0, &comparison, &error), error);
         printf("mode %d: %.2f %% relative RMSE against the reference, standard error %.2f %%\n", mode,
                100 * comparison.rel_rmse, 100 * report.standard_error);

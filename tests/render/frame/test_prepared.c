@@ -1,6 +1,6 @@
 /* Light made ready beside a renderer, and light that grows as materials ask for more of it: both give the
  * images that a new renderer gives, bit for bit. */
-#include "render/frame/prepared.h"
+#include "render/renderer.h"
 
 #include "tests/render/scenes.h"
 
@@ -143,9 +143,9 @@ static void a_copy_serves_another_renderer(void **state)
     struct scene scene;
     scene_open(&scene);
     set_glossiness(&scene, 0.8f);
-    assert_null(tl_prepared_copy(renderer));
+    assert_null(tl_renderer_copy_prepared(renderer));
     expect_as_new(device, renderer, &scene);
-    tl_prepared *copy = tl_prepared_copy(renderer);
+    tl_prepared *copy = tl_renderer_copy_prepared(renderer);
     tl_renderer_take_prepared(other, &copy, scene.frame.environment_revision);
     expect_as_new(device, other, &scene);
     expect_as_new(device, renderer, &scene); /* which still has its own */
@@ -185,7 +185,7 @@ static void known_light_is_added_to(void **state)
     coarse.light.regions = 24;
     assert_false(tl_renderer_has_regions(renderer, &coarse));
     struct tl_prepared_request request = request_of(&scene, 0);
-    request.known = tl_prepared_copy(renderer);
+    request.known = tl_renderer_copy_prepared(renderer);
     request.exponents |= tl_renderer_exponents(renderer);
     tl_prepared *prepared = tl_prepared_make(&request);
     assert_null(request.known);
@@ -205,7 +205,7 @@ static void known_light_is_added_to(void **state)
         scene.settings.light.regions = regions;
         expect_as_new(device, renderer, &scene);
     }
-    request.known = tl_prepared_copy(renderer);
+    request.known = tl_renderer_copy_prepared(renderer);
     request.settings = scene.settings;
     request.region_counts[0] = 24;
     request.region_counts[1] = 60;
@@ -218,7 +218,7 @@ static void known_light_is_added_to(void **state)
     }
 
     /* Of another cube nothing is known. */
-    request.known = tl_prepared_copy(renderer);
+    request.known = tl_renderer_copy_prepared(renderer);
     request.settings.light.pem_size = scene.settings.light.pem_size = 16;
     prepared = tl_prepared_make(&request);
     tl_renderer_take_prepared(renderer, &prepared, scene.frame.environment_revision);

@@ -59,9 +59,9 @@ static tl_image draw(struct test_scene *scene, struct tl_reference_report *repor
         assert_ok(tl_casters_measure(scene->surfaces, scene->shape_count, &casters, &error), error);
         tl_ground_make(&casters, &ground);
     }
-    assert_ok(tl_reference_draw(&scene->frame, &scene->settings, has_ground ? &ground : NULL, &image, report,
-                                &error),
-              error);
+    const struct tl_reference_request request =
+        tl_frame_reference_request(&scene->frame, &scene->settings, has_ground ? &ground : NULL);
+    assert_ok(tl_reference_draw(&request, &image, report, &error), error);
     return image;
 }
 
@@ -500,7 +500,9 @@ static void draw_interrupted(struct handed_over *result, bool at_once)
         signal(SIGALRM, on_alarm);
         setitimer(ITIMER_REAL, &(struct itimerval){.it_value.tv_usec = 500000}, NULL);
     }
-    result->drawn = tl_reference_draw(&scene->frame, &scene->settings, NULL, &image, &result->report, &error);
+    const struct tl_reference_request request =
+        tl_frame_reference_request(&scene->frame, &scene->settings, NULL);
+    result->drawn = tl_reference_draw(&request, &image, &result->report, &error);
     result->code = error.code;
     if (result->drawn)
         memcpy(result->image, image.texels, sizeof result->image);

@@ -209,7 +209,8 @@ static void compare_all(struct test_device *device, const struct maps *maps, con
     struct tl_ground *ground = TL_NEW(struct tl_ground);
     tl_ground_make(&casters, ground);
     struct tl_reference_scene scene;
-    assert_ok(tl_reference_scene_make(&frame, &settings, ground, &scene, &error), error);
+    const struct tl_reference_request request = tl_frame_reference_request(&frame, &settings, ground);
+    assert_ok(tl_reference_scene_make(&request, &scene, &error), error);
     struct tl_view view = tl_view_make(&frame.camera, WIDTH, HEIGHT);
     struct tally tally = {0};
     for (int i = 0; i < WIDTH * HEIGHT; i++) {

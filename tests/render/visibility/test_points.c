@@ -23,7 +23,7 @@ struct stage {
     struct tl_samples samples;
     tl_trace *trace;
     tl_points *points;
-    struct tl_light_params params;
+    struct tl_ray_params params;
     struct tl_points_request request;
 };
 
@@ -117,7 +117,7 @@ static void use_regions(struct stage *stage, int count)
 static void stage_open(struct stage *stage, int region_count)
 {
     tl_error error = {0};
-    *stage = (struct stage){.params = *(const struct tl_light_params *)tl_light_options.defaults,
+    *stage = (struct stage){.params = {.rays = 1, .rounds = 4096},
                             .cube = make_cube(smooth_sky),
                             .trace = tl_trace_create(&error),
                             .points = tl_points_create()};
@@ -133,10 +133,6 @@ static void stage_open(struct stage *stage, int region_count)
     stage->all[1] = &stage->shapes[1];
     stage->all[2] = &stage->ground.surface;
     move_sheet(stage, 0);
-    stage->params.rays = 1;
-    stage->params.refresh = 0;
-    stage->params.repair = 0;
-    stage->params.rounds = 4096;
     stage->samples.primary_count = stage->samples.count;
     stage->request = (struct tl_points_request){.trace = stage->trace,
                                                 .ranges = &stage->ranges,

@@ -1,0 +1,23 @@
+/* Tables "material" and "overlay": a garment's appearance. */
+#ifndef TOILE_RENDER_BRDF_OPTIONS_H
+#define TOILE_RENDER_BRDF_OPTIONS_H
+
+#include "config/options.h"
+
+struct tl_material_params { /* table "material": from the fabric or by hand */
+    bool use_file;          /* keep the garment file's own materials where it has them */
+    float diffuse[3];
+    float specular[3];
+    float glossiness;
+    int model, facets, masking, fresnel; /* as struct tl_gloss */
+    float index, extinction;
+    float width_weft, width_warp, rotation_deg;
+    float coat, coat_glossiness;
+    float transmission[3];
+    float openness;
+};
+extern const struct tl_option_table tl_material_options;
+extern const struct tl_option_table
+    tl_overlay_options; /* table "overlay": the same, of a garment's second fabric */
+
+#endif

@@ -1,0 +1,34 @@
+/* Table "maps": classic environment mapping (envmap.h). */
+#ifndef TOILE_RENDER_ENVMAP_OPTIONS_H
+#define TOILE_RENDER_ENVMAP_OPTIONS_H
+
+#include "config/options.h"
+
+/* How environment maps are looked up (render/envmap/envmap.h), and what is made of it. */
+enum tl_maps_look_up { TL_LOOK_UP_DIRECT, TL_LOOK_UP_MATRIX };
+enum tl_maps_mode {
+    TL_MAPS_SURFACE,
+    TL_MAPS_MIRROR,
+    TL_MAPS_REFRACTION,
+    TL_MAPS_DIFFUSE,
+    TL_MAPS_GLOSSY,
+    TL_MAPS_TRANSMISSION
+};
+/* off: the reflectance of the G-buffer. Else F of a table over the cosine: Lo = F Lm + Ld, or F Lm + (1 - F)
+ * Ld [Heidrich and Seidel 1999, 4.4]. */
+enum tl_maps_fresnel { TL_MAPS_FRESNEL_OFF, TL_MAPS_FRESNEL_ADDITIVE, TL_MAPS_FRESNEL_COAT };
+struct tl_maps_params {  /* table "maps", of TL_METHOD_MAPS */
+    int layout;          /* enum tl_layout (render/env/layout.h) */
+    int size;            /* texels, a power of two: side of a cube's face, height of the others */
+    int look_up;         /* enum tl_maps_look_up, of paraboloids */
+    int mode;            /* enum tl_maps_mode */
+    int fresnel;         /* enum tl_maps_fresnel */
+    bool minify;         /* mirrors read mip levels */
+    int capture_every;   /* frames from one capture of the scene to the next; 0: the environment alone */
+    float capture_at[3]; /* metres, from the middle of what casts shadows */
+};
+extern const struct tl_option_table tl_maps_options;
+#define TL_MAPS_SIZE_MIN 4
+#define TL_MAPS_SIZE_MAX 512
+
+#endif

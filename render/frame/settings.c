@@ -1,0 +1,32 @@
+#include "render/frame/settings.h"
+
+struct tl_render_settings tl_frame_usable(const struct tl_render_settings *settings)
+{
+    struct tl_render_settings used = *settings;
+    if (used.light.cut == TL_CUT_FACES)
+        used.light.regions = used.light.regions / 6 * 6;
+    while (used.light.pem_size & (used.light.pem_size - 1))
+        used.light.pem_size &= used.light.pem_size - 1;
+    while (used.maps.size & (used.maps.size - 1))
+        used.maps.size &= used.maps.size - 1;
+    if (used.image.view != TL_VIEW_LIGHT) {
+        used.light.method = TL_METHOD_PEM;
+        used.light.visibility = TL_VISIBILITY_RAYS;
+    }
+    return used;
+}
+
+struct tl_reference_request tl_frame_reference_request(const tl_frame *frame,
+                                                       const struct tl_render_settings *settings,
+                                                       const struct tl_ground *ground)
+{
+    return (struct tl_reference_request){.frame = frame,
+                                         .ground = ground,
+                                         .params = &settings->reference,
+                                         .detail = &settings->detail,
+                                         .lobe = settings->light.lobe,
+                                         .reflect_scene = settings->light.reflect_scene,
+                                         .width = settings->image.width,
+                                         .height = settings->image.height,
+                                         .supersample = settings->image.supersample};
+}

@@ -1,0 +1,31 @@
+/* The options of a frame, table by table, as its jobs use them. */
+#ifndef TOILE_RENDER_FRAME_SETTINGS_H
+#define TOILE_RENDER_FRAME_SETTINGS_H
+
+#include "render/detail/options.h"
+#include "render/envmap/options.h"
+#include "render/light/options.h"
+#include "render/local/shading.h"
+#include "render/present/options.h"
+#include "render/reference/options.h"
+#include "render/reference/reference.h"
+
+struct tl_render_settings {
+    struct tl_light_params light;
+    struct tl_detail_params detail;
+    struct tl_maps_params maps;
+    struct tl_shading_params shading; /* under lamps */
+    struct tl_image_params image;
+    struct tl_reference_params reference;
+};
+
+/* As the jobs use them: regions in sixes, sizes in powers of two; views other than light show what rays find.
+ */
+struct tl_render_settings tl_frame_usable(const struct tl_render_settings *settings);
+
+/* The reference's part of these settings. All three are borrowed. */
+struct tl_reference_request tl_frame_reference_request(const tl_frame *frame,
+                                                       const struct tl_render_settings *settings,
+                                                       const struct tl_ground *ground);
+
+#endif

@@ -1,0 +1,60 @@
+/* Table "light": how the environment lights and shadows the scene. */
+#ifndef TOILE_RENDER_LIGHT_OPTIONS_H
+#define TOILE_RENDER_LIGHT_OPTIONS_H
+
+#include "config/options.h"
+#include "render/visibility/options.h"
+
+enum tl_method {
+    TL_METHOD_PEM,    /* the environment's regions, shadowed one by one */
+    TL_METHOD_LIGHTS, /* the regions as directional lights: no prefiltered maps [002, figure 6 and section 7]
+                       */
+    TL_METHOD_AO,     /* unshadowed light times ambient occlusion */
+    TL_METHOD_AO_COLOUR,  /* ... times the occlusion of the diffuse light, by channel */
+    TL_METHOD_UNSHADOWED, /* visibility is 1 everywhere */
+    TL_METHOD_REFERENCE,  /* ray traced: render/reference */
+    TL_METHOD_MAPS        /* classic environment mapping, unshadowed: render/envmap */
+};
+enum tl_lobe { TL_LOBE_SINGLE, TL_LOBE_DUAL };
+enum tl_cut { TL_CUT_FACES, TL_CUT_SPHERE };
+enum tl_prefilter { TL_PREFILTER_CHAIN, TL_PREFILTER_SLICES };
+/* sum: VIS_i P_i [002, eq. 5]. difference: E - (1 - VIS_i) P_i. ratio: E x sum VIS_i w_i / sum w_i, w_i being
+ * P_i or what stands for it. E is the exact unshadowed light. */
+enum tl_composition { TL_COMPOSE_SUM, TL_COMPOSE_DIFFERENCE, TL_COMPOSE_RATIO };
+struct tl_light_params { /* table "light" */
+    int method;          /* enum tl_method */
+    int lobe;            /* enum tl_lobe */
+    int cut;             /* enum tl_cut */
+    int regions;         /* N; cut of the faces: rounded down to a multiple of six */
+    bool sun;            /* suns leave the regions and get shadows of their own */
+    int prefilter;       /* enum tl_prefilter, of the map back-ends; rays use exact lobes */
+    int pem_size;        /* texels per face side, a power of two */
+    int filter;          /* enum tl_chain_filter */
+    int pems_per_pass;   /* 12 in the paper; 1 to 64 */
+    int visibility;      /* enum tl_visibility: the back-end */
+    int composition;     /* enum tl_composition; rays: ratio only */
+    bool jitter;         /* directions vary inside their regions from frame to frame */
+    int rounds;          /* at rest, so many jittered frames are averaged */
+    int refresh;         /* rays: regions traced anew for each point and moving frame; 0: all */
+    int rays;            /* rays: directions a region and refresh */
+    float repair;        /* rays: share of the samples, the least certain, that get rays of their own */
+    float repair_rest;   /* ... once nothing moves, when it is more */
+    int fan;             /* rays: cosine lobes at most that stand for a gloss of facets */
+    bool reflect_scene; /* near mirrors (s >= TL_MIRROR_EXPONENT) see the lit scene; false: black, as [002] */
+    int map_size;       /* texels, side of a shadow map */
+    float blur_m;       /* metres: the Gaussian's sigma is blur_m x tan(cone) */
+    float depth_bias_m; /* metres */
+    float min_variance; /* m^2, floor of the VSM variance */
+    float bleed_reduction; /* [0, 1): Chebyshev values below it become 0 */
+};
+extern const struct tl_option_table tl_light_options;
+/* So many sheets are looked through, where cloth is open; the next one is taken as closed. */
+#define TL_TRANSPARENCY_LAYERS 4
+#define TL_MIRROR_EXPONENT     199.0f /* a glossiness of 0.995, however it is rounded */
+
+/* The options of the back-end of rays among these. */
+struct tl_ray_params tl_light_ray_params(const struct tl_light_params *light);
+/* Whether rounds at rest change the image. */
+bool tl_light_averages(const struct tl_light_params *light);
+
+#endif

@@ -1,0 +1,25 @@
+/* What is drawn: the surfaces, the environment, the lamps and the camera of one frame. */
+#ifndef TOILE_RENDER_SCENE_FRAME_H
+#define TOILE_RENDER_SCENE_FRAME_H
+
+#include "assets/base/surface.h"
+#include "assets/environment.h"
+#include "render/scene/camera.h"
+#include "render/scene/lamp.h"
+
+/* Read-only inputs of one frame. */
+typedef struct tl_frame {
+    struct tl_camera camera;
+    const tl_surface *surfaces;
+    size_t surface_count;
+    const tl_environment *environment;
+    uint64_t environment_revision; /* changes when the environment does */
+    float environment_yaw;         /* rad: the environment turned about +Y, counter-clockwise from above */
+    const struct tl_lamp *lamps;
+    size_t lamp_count; /* at most TL_LAMPS_MAX */
+    double time_s;
+    bool aovs;  /* what render/inspect/aovs.h reads is kept */
+    bool still; /* drawn until it rests: every round is taken whole, however long that takes */
+} tl_frame;
+
+#endif
