@@ -50,7 +50,7 @@ const struct tl_review_command tl_review_commands[] = {
      .button = "Play", .button_on = "Pause", .is_on = is_playing},
     {TL_SECTION_CLOTH, "one frame further", tl_act_step, .keys = {KEY(PERIOD)}, .repeats = true, .button = "Step"},
     {TL_SECTION_CLOTH, "back to the settled start", tl_act_reset, .keys = {KEY(R)}, .button = "Reset"},
-    {TL_SECTION_CLOTH, "while pulling: pin the cloth there; else: take the pins out", tl_act_pin, .keys = {KEY(P)}},
+    {TL_SECTION_CLOTH, "pin what is pulled; else remove all pins", tl_act_pin, .keys = {KEY(P)}},
 
     {TL_SECTION_CAMERA, "turn about the figure", tl_act_turn_camera,
      .keys = {TO(LEFT, TL_ACT_LEFT), TO(RIGHT, TL_ACT_RIGHT), TO(UP, TL_ACT_UP), TO(DOWN, TL_ACT_DOWN)}, .repeats = true},
@@ -59,7 +59,7 @@ const struct tl_review_command tl_review_commands[] = {
     {TL_SECTION_CAMERA, "turntable", tl_act_turntable, .keys = {KEY(T)}, .button = "Turn"},
     {TL_SECTION_CAMERA, "go to a saved view", tl_act_view, .keys = {DIGITS(0)}},
     {TL_SECTION_CAMERA, "save this view: camera and light", tl_act_save_view, .keys = {DIGITS(SHIFT)}},
-    {TL_SECTION_CAMERA, "add a key to the camera path, 2 s after the last", tl_act_path_key, .keys = {KEY(K)}},
+    {TL_SECTION_CAMERA, "add a key to the camera path: 2 s on", tl_act_path_key, .keys = {KEY(K)}},
     {TL_SECTION_CAMERA, "record a camera path; again: save it", tl_act_path_record, .keys = {WITH(SHIFT, K)}},
     {TL_SECTION_CAMERA, "play the camera path", tl_act_path_play, .keys = {KEY(L)}},
 
@@ -73,7 +73,7 @@ const struct tl_review_command tl_review_commands[] = {
     {TL_SECTION_FABRIC, "next, previous colourway", tl_act_next_colourway, .keys = {TO(C, 1), WITH_TO(SHIFT, C, -1)},
      .button = "Colours"},
 
-    {TL_SECTION_COMPARE, "split the view: A keeps its present appearance", tl_act_compare, .keys = {KEY(W)},
+    {TL_SECTION_COMPARE, "split the view; A stays as it looks now", tl_act_compare, .keys = {KEY(W)},
      .button = "Compare"},
     {TL_SECTION_COMPARE, "exchange A and B", tl_act_swap, .keys = {KEY(X)}},
     {TL_SECTION_COMPARE, "move the line between them", tl_act_move_wipe, .keys = {TO(COMMA, -1), TO(SLASH, 1)},
@@ -102,7 +102,7 @@ const struct tl_review_gesture tl_review_gestures[] = {
     {TL_SECTION_CAMERA, "drag", "turn about the figure"},
     {TL_SECTION_CAMERA, "right drag", "move the figure"},
     {TL_SECTION_CAMERA, "wheel", "nearer, farther"},
-    {TL_SECTION_CAMERA, "double click", "turn about that point, from nearby"},
+    {TL_SECTION_CAMERA, "double click", "look closely at that point"},
     {TL_SECTION_LIGHT, "Shift + drag", "turn the environment"},
     {TL_SECTION_COMPARE, "drag the line", "move it"},
     {TL_SECTION_WINDOW, "drop a file", ".glb .gltf .obj: model; .pc2 .mdd: motion;"},
@@ -153,7 +153,7 @@ void tl_review_key_names(const struct tl_review_command *command, char *text, si
         name_key(row->key, first, sizeof first);
         name_key(row->key + row->count - 1, last, sizeof last);
         size_t length = strlen(text);
-        snprintf(text + length, size - length, "%s%s%s%s%s%s", k > 0 ? ", " : "",
+        snprintf(text + length, size - length, "%s%s%s%s%s%s", k > 0 ? "  " : "",
                  row->modifiers & CTRL ? "Ctrl+" : "", row->modifiers & SHIFT ? "Shift+" : "", first,
                  row->count > 1 ? " to " : "", row->count > 1 ? last : "");
     }

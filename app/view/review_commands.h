@@ -53,7 +53,7 @@ extern const size_t tl_review_gesture_count;
 /* The command of a key and the action's argument; NULL when the key has none. */
 const struct tl_review_command *tl_review_command_of_key(int key, int modifiers, int *argument);
 
-/* A command's keys as text: "Ctrl+Shift+Z, Ctrl+Y", "1 to 9". */
+/* A command's keys as text: "Ctrl+Shift+Z  Ctrl+Y", "1 to 9". */
 void tl_review_key_names(const struct tl_review_command *command, char *text, size_t size);
 
 /* Rows "keys, help" below the headings of their sections, which have no second cell. Returns their number. */

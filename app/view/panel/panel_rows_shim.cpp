@@ -241,6 +241,11 @@ bool tl_panel_row_changed(const struct tl_binding *binding, const struct tl_opti
     return !tl_option_equal(row, field_of(*binding, *row), default_of(*binding, *row));
 }
 
+const char *tl_panel_row_text(const struct tl_binding *binding, const struct tl_option *row)
+{
+    return is_text(*row) ? field_of(*binding, *row) : nullptr;
+}
+
 bool tl_panel_rows_begin(const char *id)
 {
     if (!ImGui::BeginTable(id, 3, ImGuiTableFlags_None))

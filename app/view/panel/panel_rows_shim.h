@@ -12,6 +12,9 @@ bool tl_panel_row(const struct tl_binding *binding, const struct tl_option *row)
 /* True when the option differs from its table's default. */
 bool tl_panel_row_changed(const struct tl_binding *binding, const struct tl_option *row);
 
+/* The value of a text option; NULL for the other types. Borrowed from the params. */
+const char *tl_panel_row_text(const struct tl_binding *binding, const struct tl_option *row);
+
 /* Opens and closes such a table. */
 bool tl_panel_rows_begin(const char *id);
 void tl_panel_rows_end(void);

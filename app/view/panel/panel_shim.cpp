@@ -2,6 +2,7 @@ extern "C" {
 #include "app/view/panel/panel_shim.h"
 #include "app/view/panel/panel_rows_shim.h"
 }
+#include "app/view/panel/panel_font_shim.h"
 #include "app/view/panel/panel_overlay_shim.h"
 #include "app/view/panel/panel_text_shim.h"
 
@@ -12,9 +13,10 @@ extern "C" {
 #include <cfloat>
 #include <cstdio>
 #include <cstring>
-#include <unistd.h>
+#include <initializer_list>
 
 struct tl_panel {
+    tl_panel_fonts *fonts;
     bool has_platform, has_drawing; /* which backends are up */
     bool uses_keys, takes_focus;    /* takes_focus: in the next frame */
     int pressed[8];                 /* keys for the next frame */
@@ -25,23 +27,6 @@ namespace
 {
 
 const float font_size = 15.0f;
-
-/* A readable face when the system has one; ImGui's own small bitmap otherwise. */
-void choose_font(float scale)
-{
-    static const char *const files[] = {
-        "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
-        "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf",
-        "/usr/share/fonts/truetype/noto/NotoSans-Regular.ttf",
-    };
-    static const ImWchar glyphs[] = {0x20, 0xff, 0x2010, 0x2027, 0}; /* Latin-1, dashes and quotes */
-    ImGuiIO &io = ImGui::GetIO();
-    for (const char *file : files)
-        if (access(file, R_OK) == 0 && io.Fonts->AddFontFromFileTTF(file, font_size * scale, nullptr, glyphs))
-            return;
-    io.Fonts->AddFontDefault();
-    io.FontGlobalScale = scale;
-}
 
 /* Neutral greys: a coloured surround would colour the eye's judgement of the cloth. */
 void choose_style(float scale)
@@ -221,6 +206,30 @@ void draw_question(const tl_panel_input &input, tl_panel_result &result)
     ImGui::EndPopup();
 }
 
+void note_lines(tl_panel_fonts *fonts, const tl_panel_line *lines, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        for (const auto &cell : lines[i].cells)
+            tl_panel_fonts_note(fonts, cell);
+}
+
+/* Every text that may hold a name: a file's, a material's, a part's. Labels and help of options are ASCII. */
+void note_texts(tl_panel_fonts *fonts, const tl_panel_input &input)
+{
+    for (const char *text : {input.title, input.message, input.status, input.strip.label, input.wipe.left,
+                             input.wipe.right, input.progress.what, input.read_out, input.question})
+        tl_panel_fonts_note(fonts, text);
+    for (size_t i = 0; i < input.measure_count; i++)
+        note_lines(fonts, input.measures[i].lines, input.measures[i].count);
+    note_lines(fonts, input.help, input.help_count);
+    for (int i = 0; input.legend && i < input.legend->entry_count; i++)
+        tl_panel_fonts_note(fonts, input.legend->entry_labels[i]);
+    for (size_t i = 0; i < input.binding_count; i++)
+        for (size_t row = 0; row < input.bindings[i].table->row_count; row++)
+            tl_panel_fonts_note(fonts,
+                                tl_panel_row_text(&input.bindings[i], &input.bindings[i].table->rows[row]));
+}
+
 /* ImGui looks at what is held when a frame begins, and would miss a key that was let go before. */
 void hold_keys(const tl_panel &panel, bool held)
 {
@@ -235,7 +244,7 @@ struct tl_panel *tl_panel_create(struct GLFWwindow *window, float scale, tl_erro
     tl_panel *panel = new tl_panel{};
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr; /* a review leaves no file behind that nobody asked for */
-    choose_font(scale);
+    panel->fonts = tl_panel_fonts_create(font_size * scale, scale);
     choose_style(scale);
     panel->has_platform = ImGui_ImplGlfw_InitForOpenGL(window, true);
     panel->has_drawing = panel->has_platform && ImGui_ImplOpenGL3_Init("#version 450 core");
@@ -254,6 +263,7 @@ void tl_panel_destroy(tl_panel **panel)
         ImGui_ImplOpenGL3_Shutdown();
     if ((*panel)->has_platform)
         ImGui_ImplGlfw_Shutdown();
+    tl_panel_fonts_destroy(&(*panel)->fonts);
     ImGui::DestroyContext();
     delete *panel;
     *panel = nullptr;
@@ -291,6 +301,11 @@ struct tl_panel_result tl_panel_build(tl_panel *panel, const struct tl_panel_inp
 {
     tl_panel_result result = {false, false, -1, -1};
     ImGui_ImplOpenGL3_NewFrame();
+    note_texts(panel->fonts, *input);
+    if (tl_panel_fonts_update(panel->fonts)) {
+        ImGui_ImplOpenGL3_DestroyFontsTexture();
+        ImGui_ImplOpenGL3_CreateFontsTexture();
+    }
     ImGui_ImplGlfw_NewFrame();
     hold_keys(*panel, true);
     ImGui::NewFrame();

@@ -92,11 +92,11 @@ static void keys_are_named_as_they_are_printed_on_them(void **state)
         tl_review_action *act;
         const char *names;
     } expected[] = {
-        {tl_act_play, "Space"},         {tl_act_turn_camera, "Left, Right, Up, Down"},
-        {tl_act_zoom, "PgUp, PgDn"},    {tl_act_view, "1 to 9"},
-        {tl_act_fabric, "Ctrl+1 to 9"}, {tl_act_next_fabric, "G, Shift+G"},
-        {tl_act_help, "H, F1"},         {tl_act_redo, "Ctrl+Shift+Z, Ctrl+Y"},
-        {tl_act_panel, "Tab"},          {tl_act_turn_environment, "[, ]"},
+        {tl_act_play, "Space"},         {tl_act_turn_camera, "Left  Right  Up  Down"},
+        {tl_act_zoom, "PgUp  PgDn"},    {tl_act_view, "1 to 9"},
+        {tl_act_fabric, "Ctrl+1 to 9"}, {tl_act_next_fabric, "G  Shift+G"},
+        {tl_act_help, "H  F1"},         {tl_act_redo, "Ctrl+Shift+Z  Ctrl+Y"},
+        {tl_act_panel, "Tab"},          {tl_act_turn_environment, "[  ]"},
     };
     char text[64];
     for (size_t i = 0; i < TL_COUNT(expected); i++) {
