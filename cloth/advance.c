@@ -26,11 +26,12 @@
 struct tl_substep {
     double h; /* s */
     double gravity, drag;
-    double agreement, least_slip; /* see struct tl_advance */
-    double phase_before, phase;   /* of the collider's motion at its start and end */
+    double contact_budget, min_slip_speed; /* see struct tl_advance_params */
+    double phase_before, phase;            /* of the collider's motion at its start and end */
     const tl_collider *collider;
-    bool follows; /* another one, to whose end nothing was done; solvers may have begun with this one there */
-    bool leads;   /* to another one that will follow so */
+    bool continues_previous; /* another one, to whose end nothing was done; solvers may have begun with this
+                                one there */
+    bool continues_next;     /* to another one that will follow so */
 };
 
 /* Whether the chosen solver can take this fabric's step within its budget. */
@@ -51,8 +52,8 @@ static bool check_budget(const tl_cloth *cloth, tl_error *error)
  * knows. */
 static vec3d hand_at(const tl_cloth *cloth, double phase)
 {
-    vec3d way = vec3d_sub(cloth->grab_target, cloth->grab_from);
-    return vec3d_muladd(cloth->grab_from, way, phase);
+    vec3d step = vec3d_sub(cloth->grab_target, cloth->grab_from);
+    return vec3d_muladd(cloth->grab_from, step, phase);
 }
 
 static void pull_grabbed(tl_cloth *cloth, const struct tl_substep *substep)
@@ -62,23 +63,23 @@ static void pull_grabbed(tl_cloth *cloth, const struct tl_substep *substep)
         return;
     uint32_t i = cloth->topology.weld[cloth->grabbed_vertex];
     double w = cloth->particles.w[i];
-    vec3d way = vec3d_sub(hand_at(cloth, substep->phase), cloth->particles.x[i]);
-    double length = vec3d_norm(way);
+    vec3d step = vec3d_sub(hand_at(cloth, substep->phase), cloth->particles.x[i]);
+    double length = vec3d_norm(step);
     if (!(w > 0) || !(length > 0))
         return;
     double impulse = fmin(length / (w + 1 / (GRAB_STIFFNESS * h * h)), GRAB_FORCE * h * h);
-    way = vec3d_scale(way, w * impulse / length);
-    double share = tl_hand_share(&cloth->limits, &cloth->energy.pulls, &cloth->particles, i, way);
-    cloth->particles.x[i] = vec3d_muladd(cloth->particles.x[i], way, share);
+    step = vec3d_scale(step, w * impulse / length);
+    double share = tl_hand_share(&cloth->limits, &cloth->energy.pairs, &cloth->particles, i, step);
+    cloth->particles.x[i] = vec3d_muladd(cloth->particles.x[i], step, share);
 }
 
 static struct tl_contact_params contact_params(const tl_cloth *cloth, const struct tl_substep *substep)
 {
     return (struct tl_contact_params){.friction =
-                                          tl_sewing_pulls(&cloth->sewing) ? 0 : cloth->fabric.friction,
+                                          tl_seams_are_closing(&cloth->seams) ? 0 : cloth->fabric.friction,
                                       .thickness_m = cloth->fabric.thickness_m,
                                       .push_out_speed = TL_PUSH_OUT_SPEED,
-                                      .least_slip = substep->least_slip,
+                                      .min_slip_speed = substep->min_slip_speed,
                                       .phase_before = substep->phase_before,
                                       .phase = substep->phase,
                                       .h = substep->h};
@@ -95,52 +96,52 @@ static void keep_apart(tl_cloth *cloth, const struct tl_contact_params *contact)
 }
 
 /* What the energy does not know of: seams, the hand, the avatar. Moves positions. */
-static void constrain(tl_cloth *cloth, const struct tl_substep *substep)
+static void apply_constraints(tl_cloth *cloth, const struct tl_substep *substep)
 {
     const struct tl_contact_params contact = contact_params(cloth, substep);
-    if (cloth->sewing.pair_count > 0)
-        tl_sewing_solve(&cloth->sewing, &cloth->particles, substep->h);
+    if (cloth->seams.pair_count > 0)
+        tl_seams_solve(&cloth->seams, &cloth->particles, substep->h);
     pull_grabbed(cloth, substep);
     keep_apart(cloth, &contact);
 }
 
 static void advance_preview(tl_cloth *cloth, const struct tl_substep *substep)
 {
-    bool bends = cloth->energy.bends_as_force;
+    bool bends = cloth->energy.bending_is_force;
     struct tl_prediction prediction =
         tl_prediction_make(bends ? cloth->forces : NULL, substep->gravity, substep->drag, substep->h);
-    prediction.moving = substep->follows;
-    const struct tl_move predict = tl_particles_prediction(&cloth->particles, &prediction);
+    prediction.velocity_from_positions = substep->continues_previous;
+    const struct tl_particle_kernel predict = tl_prediction_kernel(&cloth->particles, &prediction);
     if (bends)
-        tl_energy_bend(&cloth->energy, cloth->particles.x, cloth->forces, &predict);
+        tl_energy_bending_forces(&cloth->energy, cloth->particles.x, cloth->forces, &predict);
     else
-        tl_particles_move(&predict);
+        tl_particles_run(&predict);
     tl_pins_place(cloth->pins, cloth->pin_count, substep->collider, substep->phase, &cloth->particles);
     bool limited = cloth->params.strain_limit > 0;
     tl_xpbd_solve(&cloth->energy, &cloth->particles, limited ? &cloth->limits.watch : NULL);
-    if (tl_cloth_sweeps_back(cloth))
-        tl_xpbd_solve_back(&cloth->energy, &cloth->particles);
+    if (tl_cloth_uses_symmetric_sweep(cloth))
+        tl_xpbd_solve_backward(&cloth->energy, &cloth->particles);
     if (limited)
-        tl_limits_solve(&cloth->limits, &cloth->energy, substep->h, &cloth->particles);
-    constrain(cloth, substep);
-    if (!substep->leads)
+        tl_strain_limits_solve(&cloth->limits, &cloth->energy, substep->h, &cloth->particles);
+    apply_constraints(cloth, substep);
+    if (!substep->continues_next)
         tl_particles_finish(&cloth->particles, substep->h);
 }
 
 /* Seams that close pull as stiff springs: they must close against what the fabric resists. */
 struct tl_springs tl_cloth_springs(const tl_cloth *cloth)
 {
-    const double firmer = 10, least = 1000;
-    return (struct tl_springs){.count = cloth->sewing.pair_count,
-                               .links = cloth->sewing.links,
-                               .stiffness = fmax(firmer * cloth->fabric.stretch_warp, least)};
+    const double firmer = 10, min = 1000;
+    return (struct tl_springs){.count = cloth->seams.pair_count,
+                               .links = cloth->seams.links,
+                               .stiffness = fmax(firmer * cloth->fabric.stretch_warp, min)};
 }
 
 static void advance_settle(tl_cloth *cloth, const struct tl_substep *substep)
 {
     struct tl_particles *particles = &cloth->particles;
-    if (cloth->sewing.pair_count > 0)
-        tl_sewing_shrink(&cloth->sewing, substep->h);
+    if (cloth->seams.pair_count > 0)
+        tl_seams_shrink(&cloth->seams, substep->h);
     const struct tl_springs springs = tl_cloth_springs(cloth);
     const struct tl_implicit_problem problem = {
         .energy = &cloth->energy,
@@ -149,15 +150,15 @@ static void advance_settle(tl_cloth *cloth, const struct tl_substep *substep)
         .hand = {.particle = cloth->grabbed ? cloth->topology.weld[cloth->grabbed_vertex] : TL_NONE,
                  .target = hand_at(cloth, substep->phase),
                  .stiffness = GRAB_STIFFNESS,
-                 .most_force = GRAB_FORCE},
+                 .max_force = GRAB_FORCE},
         .contacts = &cloth->contacts,
         .contact = contact_params(cloth, substep),
         .gravity = substep->gravity,
         .drag = substep->drag,
         .h = substep->h,
-        .agreement = substep->agreement,
+        .contact_budget = substep->contact_budget,
         .tolerance = cloth->params.cg_tolerance,
-        .most_iterations = cloth->params.cg_iterations};
+        .max_iterations = cloth->params.cg_iterations};
     if (!cloth->implicit)
         cloth->implicit = tl_implicit_create(&problem, particles);
     memcpy(particles->previous, particles->x, particles->count * sizeof *particles->x);
@@ -167,9 +168,9 @@ static void advance_settle(tl_cloth *cloth, const struct tl_substep *substep)
     tl_particles_finish(particles, substep->h);
 }
 
-static void find_forces(tl_cloth *cloth, const struct tl_move *then)
+static void compute_forces(tl_cloth *cloth, const struct tl_particle_kernel *then)
 {
-    tl_energy_pull(&cloth->energy, &cloth->fabric, cloth->particles.x, cloth->forces, then);
+    tl_energy_forces(&cloth->energy, &cloth->fabric, cloth->particles.x, cloth->forces, then);
 }
 
 /* Between substeps velocities may point into the avatar by h/2 of what presses there: the next one's first
@@ -179,26 +180,26 @@ static void advance_reference(tl_cloth *cloth, const struct tl_substep *substep,
     struct tl_particles *particles = &cloth->particles;
     const struct tl_verlet verlet =
         tl_verlet_make(cloth->forces, substep->gravity, substep->drag, substep->h);
-    if (!substep->follows)
+    if (!substep->continues_previous)
         tl_verlet_drift(particles, &verlet);
     tl_pins_place(cloth->pins, cloth->pin_count, substep->collider, substep->phase, particles);
-    constrain(cloth, substep);
-    const struct tl_move then =
-        substep->leads ? tl_verlet_leap(particles, &verlet) : tl_verlet_kick(particles, &verlet);
-    find_forces(cloth, &then);
+    apply_constraints(cloth, substep);
+    const struct tl_particle_kernel then =
+        substep->continues_next ? tl_verlet_leap(particles, &verlet) : tl_verlet_kick(particles, &verlet);
+    compute_forces(cloth, &then);
     const struct tl_contact_params contact = contact_params(cloth, substep);
     if (last)
-        tl_contacts_rub(&cloth->contacts, &contact, particles);
+        tl_contacts_solve_velocities(&cloth->contacts, &contact, particles);
 }
 
-static bool is_blown(const tl_cloth *cloth)
+static bool wind_blows(const tl_cloth *cloth)
 {
     const float *velocity = cloth->params.wind;
-    return (velocity[0] != 0 || velocity[1] != 0 || velocity[2] != 0) && !tl_sewing_pulls(&cloth->sewing);
+    return (velocity[0] != 0 || velocity[1] != 0 || velocity[2] != 0) && !tl_seams_are_closing(&cloth->seams);
 }
 
 /* Before a substep of any solver. */
-static void blow(tl_cloth *cloth, const struct tl_substep *substep)
+static void apply_wind(tl_cloth *cloth, const struct tl_substep *substep)
 {
     const float *velocity = cloth->params.wind;
     const struct tl_wind wind = {.velocity = {(double)velocity[0], (double)velocity[1], (double)velocity[2]},
@@ -228,28 +229,29 @@ static double substeps_now(tl_cloth *cloth)
     return 0;
 }
 
-static void run_step(tl_cloth *cloth, const tl_collider *collider, const struct tl_advance *advance, int step)
+static void run_step(tl_cloth *cloth, const tl_collider *collider, const struct tl_advance_params *advance,
+                     int step)
 {
     /* Weightless until the panels have met. */
-    double gravity = tl_sewing_pulls(&cloth->sewing) ? 0 : cloth->params.gravity;
+    double gravity = tl_seams_are_closing(&cloth->seams) ? 0 : cloth->params.gravity;
     double substeps = substeps_now(cloth), total = tl_cloth_steps_per_frame(&cloth->params) * substeps;
     if (cloth->params.solver == TL_CLOTH_REFERENCE)
-        find_forces(cloth, NULL);
-    bool blown = is_blown(cloth);
+        compute_forces(cloth, NULL);
+    bool blown = wind_blows(cloth);
     for (int64_t sub = 0; (double)sub < substeps; sub++) {
         double done = step * substeps + (double)sub;
         const struct tl_substep substep = {.h = tl_cloth_step_seconds(cloth) / substeps,
                                            .gravity = gravity,
                                            .drag = fmax(advance->drag, cloth->fabric.damping),
-                                           .agreement = advance->agreement,
-                                           .least_slip = advance->least_slip,
+                                           .contact_budget = advance->contact_budget,
+                                           .min_slip_speed = advance->min_slip_speed,
                                            .phase_before = done / total,
                                            .phase = (done + 1) / total,
                                            .collider = collider,
-                                           .follows = sub > 0 && !blown,
-                                           .leads = (double)(sub + 1) < substeps && !blown};
+                                           .continues_previous = sub > 0 && !blown,
+                                           .continues_next = (double)(sub + 1) < substeps && !blown};
         if (blown)
-            blow(cloth, &substep);
+            apply_wind(cloth, &substep);
         if (cloth->params.solver == TL_CLOTH_REFERENCE)
             advance_reference(cloth, &substep, (double)(sub + 1) == substeps);
         else if (cloth->params.solver == TL_CLOTH_SETTLE)
@@ -260,50 +262,50 @@ static void run_step(tl_cloth *cloth, const tl_collider *collider, const struct 
 }
 
 /* Only what moves catches: a soft cloth may hang from a body at rest at any length. */
-static void slip_free(tl_cloth *cloth, const tl_collider *collider)
+static void release_caught(tl_cloth *cloth, const tl_collider *collider)
 {
     if (collider && tl_collider_travel(collider) > 0)
-        tl_snag_release(&cloth->topology, (const vec2s(*)[3])cloth->rest, cloth->shortest_edge,
-                        &cloth->particles, cloth->contacts.slipped);
+        tl_caught_release(&cloth->topology, (const vec2s(*)[3])cloth->rest, cloth->shortest_edge,
+                          &cloth->particles, cloth->contacts.slipped);
 }
 
 static void find_own_contacts(tl_cloth *cloth)
 {
     const struct tl_particles *particles = &cloth->particles;
-    tl_layers_renew(&cloth->layers, &cloth->topology, particles->x);
-    tl_repulsion_renew(&cloth->repulsion, particles->count, particles->x, cloth->made_at,
-                       cloth->fabric.thickness_m);
+    tl_layers_update(&cloth->layers, &cloth->topology, particles->x);
+    tl_repulsion_update(&cloth->repulsion, particles->count, particles->x, cloth->made_at,
+                        cloth->fabric.thickness_m);
 }
 
-static void run_steps(tl_cloth *cloth, const tl_collider *collider, const struct tl_advance *advance)
+static void run_steps(tl_cloth *cloth, const tl_collider *collider, const struct tl_advance_params *advance)
 {
     int steps = tl_cloth_steps_per_frame(&cloth->params);
     cloth->refused_step = 0;
-    double calm = 1 - exp(-INNER_DAMPING * cloth->fabric.damping * tl_cloth_step_seconds(cloth));
+    double damping = 1 - exp(-INNER_DAMPING * cloth->fabric.damping * tl_cloth_step_seconds(cloth));
     for (int step = 0; step < steps && !tl_interrupted() && !(cloth->refused_step > 0); step++) {
         const struct tl_contact_params contact = {.thickness_m = cloth->fabric.thickness_m,
                                                   .push_out_speed = TL_PUSH_OUT_SPEED,
                                                   .phase_before = (double)step / steps,
                                                   .phase = (step + 1.0) / steps,
                                                   .h = tl_cloth_step_seconds(cloth)};
-        tl_contacts_renew(&cloth->contacts, cloth->particles.x, cloth->fabric.thickness_m,
-                          (double)step / steps);
+        tl_contacts_update(&cloth->contacts, cloth->particles.x, cloth->fabric.thickness_m,
+                           (double)step / steps);
         if (cloth->params.self_repulsion)
             find_own_contacts(cloth);
         run_step(cloth, collider, advance, step);
-        slip_free(cloth, collider);
+        release_caught(cloth, collider);
         tl_contacts_enforce(&cloth->contacts, &contact, &cloth->particles);
-        tl_particles_calm(&cloth->particles, (const uint32_t(*)[2])cloth->topology.edges,
-                          cloth->topology.edge_count, calm);
+        tl_particles_damp(&cloth->particles, (const uint32_t(*)[2])cloth->topology.edges,
+                          cloth->topology.edge_count, damping);
     }
 }
 
 static void close_seams(tl_cloth *cloth)
 {
-    if (cloth->sewing.pair_count == 0)
+    if (cloth->seams.pair_count == 0)
         return;
     uint32_t *joined = TL_NEW_ARRAY(uint32_t, cloth->particles.count);
-    size_t count = tl_sewing_close(&cloth->sewing, &cloth->particles, joined);
+    size_t count = tl_seams_close(&cloth->seams, &cloth->particles, joined);
     if (count < cloth->particles.count)
         tl_cloth_join(cloth, joined, count);
     free(joined);
@@ -325,7 +327,7 @@ static bool check_state(const tl_cloth *cloth, tl_error *error)
                 "make cloth.dt smaller or cloth.substeps larger",
                 i, cloth->time_s);
     double strain = tl_cloth_max_strain(cloth);
-    if (strain > TL_CLOTH_MOST_STRAIN)
+    if (strain > TL_CLOTH_MAX_STRAIN)
         return tl_fail(error, TL_UNSTABLE,
                        "cloth: stretched by %.0f times at %.3f s; the last good frame is kept: make cloth.dt "
                        "smaller, cloth.substeps larger or the fabric stiffer",
@@ -344,8 +346,8 @@ static bool is_driven(const tl_cloth *cloth, const tl_collider *collider)
                   (collider && tl_collider_travel(collider) > 0);
     bool ground = collider && tl_collider_has_ground(collider);
     for (size_t i = 0; i < cloth->particles.count && collider && !pushed; i++)
-        pushed = cloth->contacts.allowed[i] > 0 || (ground && cloth->particles.x[i].y < -BURIED_M);
-    return pushed || cloth->grabbed || cloth->sewing.pair_count > 0 || cloth->params.self_repulsion ||
+        pushed = cloth->contacts.allowed_depth[i] > 0 || (ground && cloth->particles.x[i].y < -BURIED_M);
+    return pushed || cloth->grabbed || cloth->seams.pair_count > 0 || cloth->params.self_repulsion ||
            wind[0] != 0 || wind[1] != 0 || wind[2] != 0;
 }
 
@@ -366,12 +368,12 @@ static bool check_energy(tl_cloth *cloth, const tl_collider *collider, tl_error 
     double total = energies.kinetic + energies.elastic + energies.potential;
     if (!cloth->left_alone) {
         cloth->left_alone = true;
-        cloth->least_energy = total;
-        cloth->usual_energy = energies.kinetic + energies.elastic;
+        cloth->min_energy = total;
+        cloth->start_energy = energies.kinetic + energies.elastic;
     }
-    double gain = energies.kinetic + energies.potential - cloth->least_energy;
-    cloth->least_energy = fmin(cloth->least_energy, total);
-    if (gain <= cloth->usual_energy + lift * energies.mass)
+    double gain = energies.kinetic + energies.potential - cloth->min_energy;
+    cloth->min_energy = fmin(cloth->min_energy, total);
+    if (gain <= cloth->start_energy + lift * energies.mass)
         return true;
     return tl_fail(
         error, TL_UNSTABLE,
@@ -404,13 +406,13 @@ static void follow_jump(tl_cloth *cloth, const tl_collider *collider)
 /* Not before the panels have met: until then each is a piece of its own. */
 static bool decide_layers(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
 {
-    if (!cloth->params.self_repulsion || cloth->layers.decided || tl_sewing_pulls(&cloth->sewing))
+    if (!cloth->params.self_repulsion || cloth->layers.ordered || tl_seams_are_closing(&cloth->seams))
         return true;
     return tl_layers_decide(&cloth->layers, &cloth->topology, (const vec2s(*)[3])cloth->rest, collider,
                             cloth->particles.x, error);
 }
 
-bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct tl_advance *advance,
+bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct tl_advance_params *advance,
                       tl_error *error)
 {
     if (!check_budget(cloth, error) || !decide_layers(cloth, collider, error))
@@ -448,6 +450,7 @@ bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct
 
 bool tl_cloth_step(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
 {
-    const struct tl_advance advance = {.clock = true, .agreement = 2, .least_slip = TL_LEAST_SLIP};
+    const struct tl_advance_params advance = {
+        .clock = true, .contact_budget = 2, .min_slip_speed = TL_MIN_SLIP_SPEED};
     return tl_cloth_advance(cloth, collider, &advance, error);
 }

@@ -5,19 +5,19 @@
 #include "cloth/state.h"
 
 /* How one frame is advanced. */
-struct tl_advance {
-    double drag;       /* 1/s, in place of the fabric's damping when larger */
-    bool clock;        /* the animation's time passes */
-    double agreement;  /* settle: what further rounds of contact may take, as a share of the first */
-    double least_slip; /* m/s: see struct tl_contact_params */
+struct tl_advance_params {
+    double drag;           /* 1/s, in place of the fabric's damping when larger */
+    bool clock;            /* the animation's time passes */
+    double contact_budget; /* settle: what further rounds of contact may take, as a share of the first */
+    double min_slip_speed; /* m/s: see struct tl_contact_params */
 };
 
 /* m/s. Worn cloth is held by hundreds of particles near their limit of friction, which take turns to stick
  * and slip: at a tenth of this they never all stick, and a dress creeps for ever at some mm/s. */
-#define TL_LEAST_SLIP 1e-3
+#define TL_MIN_SLIP_SPEED 1e-3
 
 /* One frame; restores the state and fails when the result is out of its envelope. */
-bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct tl_advance *advance,
+bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct tl_advance_params *advance,
                       tl_error *error);
 
 /* The open seams as springs for `settle`. */

@@ -18,9 +18,9 @@ static void set_inverse_masses(tl_cloth *cloth)
             used[cloth->topology.triangles[t][i]] = true;
     for (size_t i = 0; i < count; i++)
         total += cloth->energy.masses[i];
-    double least = TL_CLOTH_LEAST_MASS * total / (double)count;
+    double min = TL_CLOTH_MIN_MASS * total / (double)count;
     for (size_t i = 0; i < count; i++) {
-        double mass = fmax(cloth->energy.masses[i], least) * cloth->fabric.areal_density;
+        double mass = fmax(cloth->energy.masses[i], min) * cloth->fabric.areal_density;
         w[i] = used[i] && mass > 0 ? 1 / mass : 0;
     }
     for (size_t i = 0; i < cloth->pin_count; i++)
@@ -30,10 +30,11 @@ static void set_inverse_masses(tl_cloth *cloth)
 
 static void set_energy(tl_cloth *cloth)
 {
-    bool back = tl_cloth_sweeps_back(cloth);
-    tl_energy_set(&cloth->energy, &cloth->fabric, cloth->particles.w,
-                  tl_xpbd_step(tl_cloth_substep(cloth), back));
-    cloth->energy.bends_as_force = cloth->energy.bends_as_force && !back; /* measured with the whole step */
+    bool symmetric = tl_cloth_uses_symmetric_sweep(cloth);
+    tl_energy_set_preview(&cloth->energy, &cloth->fabric, cloth->particles.w,
+                          tl_xpbd_step(tl_cloth_substep(cloth), symmetric));
+    cloth->energy.bending_is_force =
+        cloth->energy.bending_is_force && !symmetric; /* measured with the whole step */
 }
 
 void tl_cloth_set_constants(tl_cloth *cloth)
@@ -47,14 +48,15 @@ void tl_cloth_set_constants(tl_cloth *cloth)
     set_energy(cloth);
     tl_contacts_release(&cloth->contacts); /* its planes know the thickness */
     cloth->contacts = tl_contacts_create(&cloth->topology, cloth->rest);
-    tl_limits_release(&cloth->limits);
-    cloth->limits = tl_limits_create(&cloth->topology, &cloth->energy, (const vec2s(*)[3])cloth->rest,
-                                     cloth->shortest_edge, cloth->params.strain_limit, cloth->particles.x);
+    tl_strain_limits_release(&cloth->limits);
+    cloth->limits =
+        tl_strain_limits_create(&cloth->topology, &cloth->energy, (const vec2s(*)[3])cloth->rest,
+                                cloth->shortest_edge, cloth->params.strain_limit, cloth->particles.x);
     tl_layers_forget(&cloth->layers);
     cloth->left_alone = false;
 }
 
-void tl_cloth_use(tl_cloth *cloth, const struct tl_cloth_params *params)
+void tl_cloth_use_solver(tl_cloth *cloth, const struct tl_cloth_params *params)
 {
     const struct tl_cloth_params *now = &cloth->params;
     if (now->solver == params->solver && now->dt == params->dt && now->frame_rate == params->frame_rate)
@@ -142,7 +144,7 @@ void tl_cloth_build_state(tl_cloth *cloth)
     cloth->particles = tl_particles_create(count);
     for (size_t i = 0; i < mesh->vertex_count; i++)
         cloth->particles.x[weld[i]] = vec3d_from(mesh->positions[i]);
-    cloth->sewing = tl_sewing_create(garment->seams, garment->seam_count, weld, cloth->particles.x);
+    cloth->seams = tl_seams_create(garment->seams, garment->seam_count, weld, cloth->particles.x);
     free(weld);
     tl_cloth_make_pins(cloth);
     tl_cloth_set_constants(cloth);
@@ -156,8 +158,8 @@ void tl_cloth_release_state(tl_cloth *cloth)
     tl_contacts_release(&cloth->contacts);
     tl_layers_release(&cloth->layers);
     tl_repulsion_release(&cloth->repulsion);
-    tl_limits_release(&cloth->limits);
-    tl_sewing_release(&cloth->sewing);
+    tl_strain_limits_release(&cloth->limits);
+    tl_seams_release(&cloth->seams);
     tl_implicit_destroy(&cloth->implicit);
     free(cloth->rest);
     free(cloth->made_at);

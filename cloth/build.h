@@ -23,7 +23,7 @@ void tl_cloth_make_pins(tl_cloth *cloth);
 void tl_cloth_add_pin(tl_cloth *cloth, uint32_t particle, bool by_hand);
 
 /* Switches to the solver and the time step of `params`, which must equal the cloth's own in all else. */
-void tl_cloth_use(tl_cloth *cloth, const struct tl_cloth_params *params);
+void tl_cloth_use_solver(tl_cloth *cloth, const struct tl_cloth_params *params);
 
 /* Replaces topology, energy and particles by those of a mesh in which physics vertex i has become joined[i]:
  * masses add up, joined particles meet at their centre of mass, momentum is kept. */

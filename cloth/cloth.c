@@ -117,7 +117,7 @@ bool tl_cloth_set(tl_cloth *cloth, const struct tl_cloth_fabric *fabric, const s
  * `settle` what stuck and slipped; and so would the time since the limits began. */
 static void forget_past(tl_cloth *cloth)
 {
-    tl_limits_restart(&cloth->limits, cloth->particles.x);
+    tl_strain_limits_restart(&cloth->limits, cloth->particles.x);
     tl_implicit_destroy(&cloth->implicit);
     tl_contacts_release(&cloth->contacts);
     cloth->contacts = tl_contacts_create(&cloth->topology, cloth->rest);

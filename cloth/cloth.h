@@ -17,9 +17,9 @@
 typedef struct tl_cloth tl_cloth;
 
 /* No particle weighs less than this share of their mean: one iteration would not move the others. */
-#define TL_CLOTH_LEAST_MASS 1e-4
+#define TL_CLOTH_MIN_MASS 1e-4
 /* What is strained beyond this is no longer cloth: refused. */
-#define TL_CLOTH_MOST_STRAIN 10
+#define TL_CLOTH_MAX_STRAIN 10
 
 /* How it is solved. Table "cloth". preview: cloth/solvers/xpbd.h; settle: cloth/solvers/implicit/implicit.h;
  * reference: cloth/solvers/verlet.h. */
@@ -60,7 +60,7 @@ struct tl_cloth_report {
     double max_speed;         /* m/s */
     double max_strain;        /* largest |length / rest length - 1| over edges that are not seams; of one
                                  below a quarter of the usual length that is the share it is of */
-    double usual_strain;      /* root mean square of the same over the triangles' sides */
+    double rms_strain;        /* root mean square of the same over the triangles' sides */
     double kinetic_energy;    /* J */
     double elastic_energy;    /* J */
     double potential_energy;  /* J, in gravity, of what is not held; 0 at y = 0 */
@@ -89,7 +89,7 @@ void tl_cloth_reset(tl_cloth *cloth);
 
 /* Draws seams together, resolves starting penetration and lets the cloth come to rest against the collider,
  * at rest itself, with strong damping. Shows progress; stops early on tl_interrupted. The clock stays at 0.
- * TL_UNSTABLE when the state left its envelope (non-finite or strain beyond TL_CLOTH_MOST_STRAIN): the last
+ * TL_UNSTABLE when the state left its envelope (non-finite or strain beyond TL_CLOTH_MAX_STRAIN): the last
  * good state is kept.
  */
 bool tl_cloth_settle(tl_cloth *cloth, const tl_collider *collider, tl_error *error);
@@ -109,8 +109,9 @@ void tl_cloth_pin(tl_cloth *cloth, uint32_t render_vertex);
 /* Lets go of all that tl_cloth_pin holds. Returns how many. */
 size_t tl_cloth_unpin(tl_cloth *cloth);
 
-/* Current positions of all render vertices, and the physics vertex of each (for tl_frames). The latter
- * changes when seams close: during settling, or in a step when there was none or something held them apart.
+/* Current positions of all render vertices, and the physics vertex of each (for tl_tangent_frames). The
+ * latter changes when seams close: during settling, or in a step when there was none or something held them
+ * apart.
  */
 void tl_cloth_positions(const tl_cloth *cloth, vec3s *out);
 const uint32_t *tl_cloth_weld(const tl_cloth *cloth);

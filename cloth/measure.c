@@ -21,7 +21,7 @@ double tl_cloth_max_speed(const tl_cloth *cloth)
 
 double tl_cloth_max_strain(const tl_cloth *cloth)
 {
-    double worst = 0, most = 1, least = 1; /* of the squared ratio of lengths: beyond is worse */
+    double worst = 0, max = 1, min = 1; /* of the squared ratio of lengths: beyond is worse */
     double shortest = cloth->shortest_edge * cloth->shortest_edge;
     double resolved = RESOLVED_EDGES * cloth->shortest_edge;
     const vec3d *x = cloth->particles.x;
@@ -32,18 +32,18 @@ double tl_cloth_max_strain(const tl_cloth *cloth)
             vec3d now = vec3d_sub(x[t[(i + 1) % 3]], x[t[i]]);
             double rest = (double)side.x * (double)side.x + (double)side.y * (double)side.y;
             double length = vec3d_dot(now, now);
-            if (!(rest > shortest) || (length <= most * rest && length >= least * rest))
+            if (!(rest > shortest) || (length <= max * rest && length >= min * rest))
                 continue;
             worst = fmax(worst, fabs(sqrt(length) - sqrt(rest)) / fmax(sqrt(rest), resolved));
-            most = (1 + worst) * (1 + worst);
-            least = worst < 1 ? (1 - worst) * (1 - worst) : 0;
+            max = (1 + worst) * (1 + worst);
+            min = worst < 1 ? (1 - worst) * (1 - worst) : 0;
         }
     }
     return worst;
 }
 
 /* Over the sides of all triangles, by the same measure. */
-static double usual_strain(const tl_cloth *cloth)
+static double rms_strain(const tl_cloth *cloth)
 {
     double resolved = RESOLVED_EDGES * cloth->shortest_edge, squares = 0;
     const vec3d *x = cloth->particles.x;
@@ -58,15 +58,15 @@ static double usual_strain(const tl_cloth *cloth)
 }
 
 /* Behind the surface that is nearest, and within what it surrounds. */
-static double depth_at(const tl_collider *collider, const double point[3], double least)
+static double depth_at(const tl_collider *collider, const double point[3], double min)
 {
     const double reach_m = 0.1;
     struct tl_contact contact;
-    bool behind = tl_collider_query(collider, point, reach_m, &contact) && -contact.distance_m > least;
-    return behind && tl_collider_winding(collider, point) > 0.5 ? -contact.distance_m : least;
+    bool behind = tl_collider_query(collider, point, reach_m, &contact) && -contact.distance_m > min;
+    return behind && tl_collider_winding(collider, point) > 0.5 ? -contact.distance_m : min;
 }
 
-static double deepest(const tl_cloth *cloth, const tl_collider *collider)
+static double max_depth(const tl_cloth *cloth, const tl_collider *collider)
 {
     double worst = 0;
     for (size_t i = 0; i < cloth->particles.count; i++) {
@@ -82,8 +82,8 @@ struct tl_energies tl_cloth_energies(const tl_cloth *cloth)
 {
     struct tl_energies energies = {0};
     vec3d *forces = TL_NEW_ARRAY(vec3d, cloth->particles.count);
-    energies.elastic =
-        tl_energy_forces(&cloth->energy, &cloth->fabric, cloth->particles.count, cloth->particles.x, forces);
+    energies.elastic = tl_energy_evaluate(&cloth->energy, &cloth->fabric, cloth->particles.count,
+                                          cloth->particles.x, forces);
     free(forces);
     for (size_t i = 0; i < cloth->particles.count; i++) {
         vec3d x = cloth->particles.x[i], v = cloth->particles.v[i];
@@ -101,11 +101,11 @@ struct tl_cloth_report tl_cloth_measure(const tl_cloth *cloth, const tl_collider
                                      .edge_count = cloth->topology.edge_count,
                                      .triangle_count = cloth->topology.triangle_count,
                                      .layer_count = cloth->layers.layer_count,
-                                     .open_seams = cloth->sewing.pair_count,
+                                     .open_seams = cloth->seams.pair_count,
                                      .time_s = cloth->time_s,
                                      .max_speed = tl_cloth_max_speed(cloth),
                                      .max_strain = tl_cloth_max_strain(cloth),
-                                     .usual_strain = usual_strain(cloth),
+                                     .rms_strain = rms_strain(cloth),
                                      .critical_step_s = cloth->critical_step,
                                      .substep_s = tl_cloth_substep(cloth),
                                      .unconverged_steps = cloth->tally.unconverged,
@@ -120,6 +120,6 @@ struct tl_cloth_report tl_cloth_measure(const tl_cloth *cloth, const tl_collider
     report.piece_count = tl_layers_pieces(&cloth->topology, pieces);
     free(pieces);
     if (collider)
-        report.deepest_m = deepest(cloth, collider);
+        report.deepest_m = max_depth(cloth, collider);
     return report;
 }

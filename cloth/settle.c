@@ -10,15 +10,15 @@
  * period; but what creeps slowly in it would still swing free in air, so the second one must be calm too. A
  * cloth that starts at rest has no speed either: each gets its least time to begin to move. */
 static const struct phase {
-    double drag, least_s;
+    double drag, min_s;
 } phases[] = {{5, 0.25}, {1, 0.5}};
 
 /* On its way to rest a cloth's contact changes with every step; when it is near, solves are so short that all
  * rounds of contact are run through anyway. */
-#define AGREEMENT 0.25
+#define CONTACT_BUDGET 0.25
 
 /* `preview` brings the cloth near to its rest for a fraction of what others take; the chosen one ends it. */
-static struct tl_cloth_params phase_params(const struct tl_cloth_params *chosen, size_t phase)
+static struct tl_cloth_params params_of_phase(const struct tl_cloth_params *chosen, size_t phase)
 {
     struct tl_cloth_params params = *chosen;
     if (phase + 1 < TL_COUNT(phases))
@@ -28,7 +28,7 @@ static struct tl_cloth_params phase_params(const struct tl_cloth_params *chosen,
 
 /* m/s, over the frame that ended: a vertex that hums between substeps, to and fro by a tenth of a millimetre,
  * has a speed and goes nowhere. */
-static double fastest_way(const tl_cloth *cloth)
+static double max_displacement_speed(const tl_cloth *cloth)
 {
     double farthest = 0;
     for (size_t i = 0; i < cloth->particles.count; i++)
@@ -41,33 +41,34 @@ bool tl_cloth_settle(tl_cloth *cloth, const tl_collider *collider, tl_error *err
 {
     const struct tl_cloth_params chosen = cloth->params, *params = &chosen;
     struct tl_progress progress = tl_progress_begin("settling the cloth");
-    double frame_s = 1 / params->frame_rate, hung_s = 0, phase_s = 0;
+    double frame_s = 1 / params->frame_rate, settled_s = 0, phase_s = 0;
     size_t phase = 0;
     bool good = true;
     cloth->settled = false;
-    while (good && !cloth->settled && hung_s < params->settle_s) {
+    while (good && !cloth->settled && settled_s < params->settle_s) {
         /* What slips more slowly than is rest is held. */
-        const struct tl_advance advance = {.drag = phases[phase].drag,
-                                           .agreement = AGREEMENT,
-                                           .least_slip = fmax(TL_LEAST_SLIP, params->settle_speed)};
-        const struct tl_cloth_params now = phase_params(params, phase);
-        tl_cloth_use(cloth, &now);
+        const struct tl_advance_params advance = {.drag = phases[phase].drag,
+                                                  .contact_budget = CONTACT_BUDGET,
+                                                  .min_slip_speed =
+                                                      fmax(TL_MIN_SLIP_SPEED, params->settle_speed)};
+        const struct tl_cloth_params now = params_of_phase(params, phase);
+        tl_cloth_use_solver(cloth, &now);
         good = tl_cloth_advance(cloth, collider, &advance, error);
-        double passed_s = tl_sewing_pulls(&cloth->sewing) ? 0 : frame_s;
-        hung_s += passed_s;
-        phase_s += passed_s;
-        bool calm = phase_s > phases[phase].least_s && fastest_way(cloth) < params->settle_speed;
-        if (calm) {
+        double elapsed_s = tl_seams_are_closing(&cloth->seams) ? 0 : frame_s;
+        settled_s += elapsed_s;
+        phase_s += elapsed_s;
+        bool at_rest = phase_s > phases[phase].min_s && max_displacement_speed(cloth) < params->settle_speed;
+        if (at_rest) {
             phase_s = 0;
             cloth->settled = good && ++phase == TL_COUNT(phases);
         }
-        tl_progress_update(&progress, hung_s, params->settle_s);
+        tl_progress_update(&progress, settled_s, params->settle_s);
     }
     tl_progress_end(&progress);
-    tl_cloth_use(cloth, params);
+    tl_cloth_use_solver(cloth, params);
     if (good && !cloth->settled && params->settle_s > 0)
         tl_info("the cloth still moves at %.3f m/s after settling for %g s: give it more with cloth.settle_s",
-                fastest_way(cloth), params->settle_s);
+                max_displacement_speed(cloth), params->settle_s);
     memset(cloth->particles.v, 0, cloth->particles.count * sizeof(vec3d));
     return good;
 }

@@ -7,9 +7,9 @@
 #include "cloth/contact/layers.h"
 #include "cloth/contact/repulsion.h"
 #include "cloth/drive/pins.h"
-#include "cloth/drive/sew.h"
+#include "cloth/drive/seams.h"
 #include "cloth/solvers/implicit/implicit.h"
-#include "cloth/solvers/limit.h"
+#include "cloth/solvers/strain_limit.h"
 
 struct tl_cloth {
     const tl_garment *garment;
@@ -28,11 +28,11 @@ struct tl_cloth {
     vec3d *good_x, *good_v; /* [particles.count] at the frame's start: what a failure goes back to */
     tl_implicit *implicit;  /* settle only */
     struct tl_implicit_tally tally;
-    struct tl_limits limits; /* preview */
+    struct tl_strain_limits limits; /* preview */
     struct tl_contacts contacts;
     struct tl_layers layers;       /* with params.self_repulsion */
     struct tl_repulsion repulsion; /* the same */
-    struct tl_sewing sewing;
+    struct tl_seams seams;
     size_t pin_count;
     struct tl_pin *pins;
     bool grabbed;
@@ -43,18 +43,18 @@ struct tl_cloth {
     bool settled;
     double needle_share;        /* of its triangles */
     uint64_t collider_revision; /* of the last frame that was driven */
-    bool left_alone;            /* nothing has driven it since least_energy began */
-    double least_energy;        /* J, all kinds: what has been lost cannot come back */
-    double usual_energy;        /* J, kinetic and elastic, when it was left alone */
+    bool left_alone;            /* nothing has driven it since min_energy began */
+    double min_energy;          /* J, all kinds: what has been lost cannot come back */
+    double start_energy;        /* J, kinetic and elastic, when it was left alone */
     vec3d *start_x, *start_v;   /* [render vertex] what reset goes back to; NULL until a start is marked */
     bool *start_pinched;        /* [render vertex] the same: struct tl_contacts */
 };
 
 /* Whether `preview` sweeps back as well: xpbd.h. A few slivers among sound triangles need not. */
-#define TL_MANY_NEEDLES 0.01
-static inline bool tl_cloth_sweeps_back(const tl_cloth *cloth)
+#define TL_SYMMETRIC_NEEDLE_SHARE 0.01
+static inline bool tl_cloth_uses_symmetric_sweep(const tl_cloth *cloth)
 {
-    return cloth->needle_share > TL_MANY_NEEDLES;
+    return cloth->needle_share > TL_SYMMETRIC_NEEDLE_SHARE;
 }
 
 #endif

@@ -16,11 +16,11 @@ void tl_moving_create(struct tl_moving *moving, const tl_model *model, const uin
         .tangents = TL_NEW_ARRAY(vec4s, count),
     };
     if (weld) {
-        moving->frames = tl_frames_create(&model->mesh, weld);
+        moving->frames = tl_tangent_frames_create(&model->mesh, weld);
     } else {
         uint32_t *by_position = TL_NEW_ARRAY(uint32_t, count);
         tl_weld_positions(model->mesh.positions, count, by_position);
-        moving->frames = tl_frames_create(&model->mesh, by_position);
+        moving->frames = tl_tangent_frames_create(&model->mesh, by_position);
         free(by_position);
     }
     tl_moving_restart(moving);
@@ -30,13 +30,13 @@ void tl_moving_restart(struct tl_moving *moving)
 {
     const tl_mesh *mesh = &moving->model->mesh;
     memcpy(moving->positions, mesh->positions, mesh->vertex_count * sizeof *moving->positions);
-    tl_frames_forget(moving->frames);
+    tl_tangent_frames_reset(moving->frames);
     tl_moving_update(moving);
 }
 
 void tl_moving_release(struct tl_moving *moving)
 {
-    tl_frames_destroy(&moving->frames);
+    tl_tangent_frames_destroy(&moving->frames);
     free(moving->positions);
     free(moving->normals);
     free(moving->tangents);
@@ -45,7 +45,7 @@ void tl_moving_release(struct tl_moving *moving)
 
 void tl_moving_update(struct tl_moving *moving)
 {
-    tl_frames_update(moving->frames, moving->positions, moving->normals, moving->tangents);
+    tl_tangent_frames_update(moving->frames, moving->positions, moving->normals, moving->tangents);
     moving->motion_revision++;
 }
 

@@ -3,18 +3,18 @@
 #define TOILE_APP_SCENE_MOVING_H
 
 #include "assets/model.h"
-#include "cloth/tangents/frames.h"
+#include "cloth/tangents/tangent_frames.h"
 
 struct tl_moving {
     const tl_model *model; /* borrowed */
     vec3s *positions;      /* [vertex_count], metres; written by the caller before tl_moving_update */
     vec3s *normals;
     vec4s *tangents;
-    tl_frames *frames;
+    tl_tangent_frames *frames;
     uint64_t motion_revision;
 };
 
-/* `weld` as in tl_frames_create, or NULL to weld by position. Starts in the model's rest pose. */
+/* `weld` as in tl_tangent_frames_create, or NULL to weld by position. Starts in the model's rest pose. */
 void tl_moving_create(struct tl_moving *moving, const tl_model *model, const uint32_t *weld);
 void tl_moving_release(struct tl_moving *moving);
 

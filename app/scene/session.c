@@ -237,7 +237,7 @@ static bool pose_in(tl_session *session, tl_error *error)
 static void tell_stretch(const tl_session *session)
 {
     const struct tl_cloth_params *params = &session->settings.cloth;
-    double strain = tl_cloth_measure(session->cloth, NULL).usual_strain;
+    double strain = tl_cloth_measure(session->cloth, NULL).rms_strain;
     if (params->settle_s > 0 && strain > STRETCHED)
         tl_info("the cloth is stretched by %.0f %%: it is tight, or cloth.substeps=%d are too few for edges "
                 "so fine",

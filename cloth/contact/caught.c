@@ -1,6 +1,6 @@
 #include "cloth/contact/caught.h"
 
-#define CAUGHT_STRETCH (1 + TL_SNAG_STRAIN)
+#define CAUGHT_STRETCH (1 + TL_CAUGHT_STRAIN)
 /* What it slips back to. Sweeps carry that along a chain of edges. */
 #define SLIPPED_STRETCH 1.5
 #define SWEEPS          8
@@ -40,8 +40,8 @@ static bool sweep(const struct tl_topology *topology, const vec2s (*rest)[3], do
     return any;
 }
 
-void tl_snag_release(const struct tl_topology *topology, const vec2s (*rest)[3], double shortest,
-                     struct tl_particles *particles, bool *slipped)
+void tl_caught_release(const struct tl_topology *topology, const vec2s (*rest)[3], double shortest,
+                       struct tl_particles *particles, bool *slipped)
 {
     bool caught = sweep(topology, rest, shortest, CAUGHT_STRETCH, particles, slipped);
     for (int i = 0; caught && i < SWEEPS; i++)

@@ -12,11 +12,11 @@
 #include <cglm/struct.h>
 
 /* Strained beyond this an edge is caught: no fabric is worn like that. */
-#define TL_SNAG_STRAIN 1.5
+#define TL_CAUGHT_STRAIN 1.5
 
 /* Flags in `slipped` [particles->count] those that did, and stops them; leaves other flags as they are.
  * `rest` gives the flat rest shape of every triangle; edges shorter than `shortest` metres are let be. */
-void tl_snag_release(const struct tl_topology *topology, const vec2s (*rest)[3], double shortest,
-                     struct tl_particles *particles, bool *slipped);
+void tl_caught_release(const struct tl_topology *topology, const vec2s (*rest)[3], double shortest,
+                       struct tl_particles *particles, bool *slipped);
 
 #endif

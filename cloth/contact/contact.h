@@ -8,28 +8,28 @@
 #define TOILE_CLOTH_CONTACT_CONTACT_H
 
 #include "cloth/contact/collider.h"
-#include "cloth/contact/probe.h"
+#include "cloth/contact/sample.h"
 #include "cloth/mesh/particles.h"
 #include "config/simd.h"
 
 struct tl_contact_cache {
-    vec3d asked_at;     /* where the particle was when the collider was asked */
+    vec3d query_point;  /* where the particle was when the collider was asked */
     vec3d anchor[2];    /* nearest point, at the frame's start and end */
     vec3d normal;       /* outward */
-    double asked_phase; /* 0 to 1 within the frame; above 1: never asked */
+    double query_phase; /* 0 to 1 within the frame; above 1: never asked */
     double clearance;   /* m the particle may move against the anchor before asking again */
     bool near;          /* an anchor was found */
 };
 
 struct tl_contacts {
-    size_t particle_count, probe_count;
-    struct tl_probe *probes;
-    struct tl_contact_cache *caches; /* [particle_count + probe_count] */
+    size_t particle_count, sample_count;
+    struct tl_contact_sample *samples;
+    struct tl_contact_cache *caches; /* [particle_count + sample_count] */
     bool *caught;                    /* [particle_count] in this frame, so far */
     bool *pinched;                   /* [particle_count] caught in the last frame, or in the last one in which
                                         the collider moved: one plane alone says too little of where it is */
-    double *allowed; /* [particle_count] m below the offset that a particle may still be: what it began with,
-                        less what has been taken out; HUGE_VAL: never looked */
+    double *allowed_depth; /* [particle_count] m below the offset that a particle may still be: what it began
+                        with, less what has been taken out; HUGE_VAL: never looked */
     bool *slipped; /* [particle_count] moved by cloth/contact/caught.h, which knows nothing of planes; cleared
                       once heeded */
     size_t caught_count; /* of those */
@@ -46,7 +46,7 @@ void tl_contacts_release(struct tl_contacts *contacts);
 struct tl_contact_params {
     double friction, thickness_m;
     double push_out_speed;      /* m/s: how fast penetration that was there before is taken out */
-    double least_slip;          /* m/s, of solvers that heed planes while they solve: slower is no slip */
+    double min_slip_speed;      /* m/s, of solvers that heed planes while they solve: slower is no slip */
     double phase_before, phase; /* of the collider's motion at the start and the end of the substep */
     double h;                   /* s */
 };
@@ -59,14 +59,14 @@ void tl_contacts_forget(struct tl_contacts *contacts);
 
 /* Once per step, at its start: asks for all who were never asked, and for the near ones when the collider
  * moves, because its planes turn. On all threads. */
-void tl_contacts_renew(struct tl_contacts *contacts, const vec3d *x, double thickness_m, double phase);
+void tl_contacts_update(struct tl_contacts *contacts, const vec3d *x, double thickness_m, double phase);
 
 /* A plane that a particle may not pass during a substep, for a solver that heeds it while it solves: its way
  * d (m) obeys d.normal >= least. */
 struct tl_contact_plane {
-    vec3d normal; /* outward, unit */
-    vec3d motion; /* m, of the surface during the substep */
-    double least; /* m; starting penetration is taken out at a limited speed */
+    vec3d normal;           /* outward, unit */
+    vec3d motion;           /* m, of the surface during the substep */
+    double min_normal_step; /* m; starting penetration is taken out at a limited speed */
 };
 #define TL_CONTACT_PLANES 2 /* the avatar's and the ground's */
 
@@ -83,8 +83,8 @@ void tl_contacts_solve(struct tl_contacts *contacts, const struct tl_contact_par
 /* After a substep that has moved particles by tl_contacts_solve and then pushed on, as half a kick of Verlet
  * does: no particle or probe that touches goes on into what it touches, whose impulse rubs too (the second
  * half of RATTLE, Andersen 1983). */
-void tl_contacts_rub(const struct tl_contacts *contacts, const struct tl_contact_params *params,
-                     struct tl_particles *particles);
+void tl_contacts_solve_velocities(const struct tl_contacts *contacts, const struct tl_contact_params *params,
+                                  struct tl_particles *particles);
 
 /* Whether a particle was caught lately: new contacts have to be told. */
 static inline bool tl_contacts_is_pinched(const struct tl_contacts *contacts, size_t particle)
@@ -117,9 +117,9 @@ TL_INLINE vec3d tl_contact_push_out(vec3d x, vec3d before, vec3d surface, vec3d 
     vec3d slip = vec3d_sub(vec3d_sub(x, before), vec3d_sub(surface, surface_before));
     slip = vec3d_muladd(slip, normal, -vec3d_dot(slip, normal));
     double length = vec3d_norm(slip);
-    double pressed = fmax(depth - depth_before, 0); /* what load pushed in, without the old penetration */
-    double grip = params->friction * pressed;
-    return vec3d_muladd(x, slip, length > grip ? -grip / length : -1);
+    double pressed_in = fmax(depth - depth_before, 0); /* what load pushed in, without the old penetration */
+    double max_friction = params->friction * pressed_in;
+    return vec3d_muladd(x, slip, length > max_friction ? -max_friction / length : -1);
 }
 
 #endif

@@ -51,8 +51,8 @@ static void find_facings(struct tl_layers *layers, const struct tl_topology *top
 {
     for (size_t t = 0; t < topology->triangle_count; t++) {
         const uint32_t *v = topology->triangles[t];
-        const struct tl_probe centre = {{v[0], v[1], v[2]}, {1.0 / 3, 1.0 / 3, 1.0 / 3}};
-        vec3d at = tl_probe_point(&centre, x);
+        const struct tl_contact_sample centre = {{v[0], v[1], v[2]}, {1.0 / 3, 1.0 / 3, 1.0 / 3}};
+        vec3d at = tl_contact_sample_position(&centre, x);
         const double point[3] = {at.x, at.y, at.z};
         struct tl_contact contact;
         layers->facing[t] = 1;
@@ -136,10 +136,10 @@ static bool is_open(const struct tl_layers *layers, const struct tl_topology *to
 
 /* What is nearest to a point on a layer, and how far out of it the point is. Nothing beside an edge. */
 static bool find_surface(const struct tl_layers *layers, const struct tl_topology *topology,
-                         const struct tl_layer *layer, const vec3d *x, struct tl_layer_touch *touch,
+                         const struct tl_layer *layer, const vec3d *x, struct tl_layer_contact *contact_pair,
                          double *distance)
 {
-    vec3d at = tl_probe_point(&touch->point, x);
+    vec3d at = tl_contact_sample_position(&contact_pair->point, x);
     const double point[3] = {at.x, at.y, at.z};
     struct tl_contact contact;
     if (!tl_collider_query(layer->surface, point, REACH_M, &contact))
@@ -151,9 +151,9 @@ static bool find_surface(const struct tl_layers *layers, const struct tl_topolog
     if (side == 0 || is_open(layers, topology, triangle, contact.barycentric) ||
         vec3d_dot(normal, face_normal(v, x)) < FACING_COSINE)
         return false;
-    memcpy(touch->surface.vertices, v, sizeof touch->surface.vertices);
-    memcpy(touch->surface.weights, contact.barycentric, sizeof touch->surface.weights);
-    touch->normal = vec3d_scale(normal, side);
+    memcpy(contact_pair->surface.vertices, v, sizeof contact_pair->surface.vertices);
+    memcpy(contact_pair->surface.weights, contact.barycentric, sizeof contact_pair->surface.weights);
+    contact_pair->normal = vec3d_scale(normal, side);
     *distance = side * contact.distance_m;
     return true;
 }
@@ -167,8 +167,8 @@ static double measure_outside(const struct tl_layers *layers, const struct tl_to
     double sum = 0, distance;
     for (size_t i = 0; i < piece->particle_count; i++) {
         uint32_t v = piece->particles[i];
-        struct tl_layer_touch touch = {.point = {{v, v, v}, {1, 0, 0}}};
-        if (find_surface(layers, topology, other, x, &touch, &distance))
+        struct tl_layer_contact contact_pair = {.point = {{v, v, v}, {1, 0, 0}}};
+        if (find_surface(layers, topology, other, x, &contact_pair, &distance))
             sum += distance;
     }
     return sum;
@@ -176,8 +176,9 @@ static double measure_outside(const struct tl_layers *layers, const struct tl_to
 
 /* A piece lies on the layer above the highest that it is out of. Pieces that are each out of the next in a
  * ring have no order; the number of rounds bounds what they make of it. Returns the number of layers. */
-static size_t stack(const struct tl_layers *layers, const struct tl_topology *topology,
-                    const struct tl_layer *pieces, size_t piece_count, const vec3d *x, uint32_t *layer_of)
+static size_t assign_layers(const struct tl_layers *layers, const struct tl_topology *topology,
+                            const struct tl_layer *pieces, size_t piece_count, const vec3d *x,
+                            uint32_t *layer_of)
 {
     double *outside = TL_NEW_ARRAY(double, piece_count *piece_count);
     for (size_t a = 0; a < piece_count; a++)
@@ -206,7 +207,7 @@ static bool order_pieces(struct tl_layers *layers, const struct tl_topology *top
     for (size_t p = 0; built && p < piece_count; p++)
         built = build_layer(&surfaces[p], topology, pieces, (uint32_t)p, x, error);
     if (built)
-        layers->layer_count = stack(layers, topology, surfaces, piece_count, x, layer_of_piece);
+        layers->layer_count = assign_layers(layers, topology, surfaces, piece_count, x, layer_of_piece);
     for (size_t i = 0; i < topology->vertex_count; i++)
         layers->layer_of[i] = layer_of_piece[pieces[i]];
     for (size_t p = 0; p < piece_count; p++)
@@ -226,8 +227,8 @@ void tl_layers_release(struct tl_layers *layers)
     free(layers->layer_of);
     free(layers->on_open_edge);
     free(layers->facing);
-    free(layers->probes);
-    free(layers->touches);
+    free(layers->samples);
+    free(layers->contacts);
     *layers = (struct tl_layers){0};
 }
 
@@ -235,14 +236,14 @@ void tl_layers_release(struct tl_layers *layers)
 static void make_probes(struct tl_layers *layers, const struct tl_topology *topology, const vec2s (*rest)[3])
 {
     size_t between;
-    struct tl_probe *probes = tl_probes_create(topology, rest, COARSE_M, &between);
+    struct tl_contact_sample *samples = tl_contact_samples_create(topology, rest, COARSE_M, &between);
     size_t count = topology->vertex_count;
-    layers->probes = TL_NEW_ARRAY(struct tl_probe, count + between);
+    layers->samples = TL_NEW_ARRAY(struct tl_contact_sample, count + between);
     for (uint32_t i = 0; i < count; i++)
-        layers->probes[i] = (struct tl_probe){{i, i, i}, {1, 0, 0}};
-    memcpy(layers->probes + count, probes, between * sizeof *probes);
-    layers->probe_count = count + between;
-    free(probes);
+        layers->samples[i] = (struct tl_contact_sample){{i, i, i}, {1, 0, 0}};
+    memcpy(layers->samples + count, samples, between * sizeof *samples);
+    layers->sample_count = count + between;
+    free(samples);
 }
 
 bool tl_layers_decide(struct tl_layers *layers, const struct tl_topology *topology, const vec2s (*rest)[3],
@@ -250,7 +251,7 @@ bool tl_layers_decide(struct tl_layers *layers, const struct tl_topology *topolo
 {
     size_t count = topology->vertex_count;
     uint32_t *pieces = TL_NEW_ARRAY(uint32_t, count);
-    *layers = (struct tl_layers){.decided = true,
+    *layers = (struct tl_layers){.ordered = true,
                                  .layer_of = TL_NEW_ARRAY(uint32_t, count),
                                  .on_open_edge = TL_NEW_ARRAY(bool, count),
                                  .facing = TL_NEW_ARRAY(signed char, topology->triangle_count)};
@@ -264,8 +265,8 @@ bool tl_layers_decide(struct tl_layers *layers, const struct tl_topology *topolo
     if (done && layers->layer_count > 1) {
         layers->layers = TL_NEW_ARRAY(struct tl_layer, layers->layer_count);
         make_probes(layers, topology, rest);
-        layers->touches =
-            TL_NEW_ARRAY(struct tl_layer_touch, layers->probe_count * (layers->layer_count - 1));
+        layers->contacts =
+            TL_NEW_ARRAY(struct tl_layer_contact, layers->sample_count * (layers->layer_count - 1));
     }
     for (size_t i = 0; done && layers->layers && i < layers->layer_count; i++)
         done = build_layer(&layers->layers[i], topology, layers->layer_of, (uint32_t)i, x, error);
@@ -294,36 +295,36 @@ static bool within(const struct tl_box *box, vec3d x)
            x.y < upper.y + REACH_M && x.z > lower.z - REACH_M && x.z < upper.z + REACH_M;
 }
 
-static void find_touches(struct tl_layers *layers, const struct tl_topology *topology,
-                         uint32_t below_or_above, const vec3d *x)
+static void find_contacts(struct tl_layers *layers, const struct tl_topology *topology,
+                          uint32_t below_or_above, const vec3d *x)
 {
     const struct tl_layer *other = &layers->layers[below_or_above];
     struct tl_box box = tl_box_of(other->positions, other->particle_count);
-    for (size_t i = 0; i < layers->probe_count; i++) {
-        const struct tl_probe *probe = &layers->probes[i];
-        uint32_t own = layers->layer_of[probe->vertices[0]];
-        struct tl_layer_touch touch = {.point = *probe};
+    for (size_t i = 0; i < layers->sample_count; i++) {
+        const struct tl_contact_sample *sample = &layers->samples[i];
+        uint32_t own = layers->layer_of[sample->vertices[0]];
+        struct tl_layer_contact contact_pair = {.point = *sample};
         double distance;
-        if (own == below_or_above || !within(&box, tl_probe_point(probe, x)) ||
-            !find_surface(layers, topology, other, x, &touch, &distance))
+        if (own == below_or_above || !within(&box, tl_contact_sample_position(sample, x)) ||
+            !find_surface(layers, topology, other, x, &contact_pair, &distance))
             continue;
         if (own < below_or_above)
-            touch.normal = vec3d_scale(touch.normal, -1);
-        layers->touches[layers->touch_count++] = touch;
+            contact_pair.normal = vec3d_scale(contact_pair.normal, -1);
+        layers->contacts[layers->contact_count++] = contact_pair;
     }
 }
 
 void tl_layers_forget(struct tl_layers *layers)
 {
-    layers->looked = false;
+    layers->searched = false;
 }
 
-void tl_layers_renew(struct tl_layers *layers, const struct tl_topology *topology, const vec3d *x)
+void tl_layers_update(struct tl_layers *layers, const struct tl_topology *topology, const vec3d *x)
 {
     bool any = false;
     for (size_t i = 0; layers->layers && i < layers->layer_count; i++) {
         struct tl_layer *layer = &layers->layers[i];
-        if (layers->looked && !has_moved(layer, x))
+        if (layers->searched && !has_moved(layer, x))
             continue;
         copy_positions(layer, x);
         tl_collider_move(layer->surface, layer->positions);
@@ -331,10 +332,10 @@ void tl_layers_renew(struct tl_layers *layers, const struct tl_topology *topolog
     }
     if (!any)
         return;
-    layers->looked = true;
-    layers->touch_count = 0;
+    layers->searched = true;
+    layers->contact_count = 0;
     for (uint32_t i = 0; i < layers->layer_count; i++)
-        find_touches(layers, topology, i, x);
+        find_contacts(layers, topology, i, x);
 }
 
 void tl_layers_solve(const struct tl_layers *layers, const struct tl_contact_params *params,
@@ -342,19 +343,21 @@ void tl_layers_solve(const struct tl_layers *layers, const struct tl_contact_par
 {
     struct tl_contact_params own = *params;
     own.push_out_speed = PUSH_OUT_SPEED;
-    for (size_t i = 0; i < layers->touch_count; i++) {
-        const struct tl_layer_touch *touch = &layers->touches[i];
-        double inverse = tl_probe_inverse_mass(&touch->point, particles->w) +
-                         tl_probe_inverse_mass(&touch->surface, particles->w);
-        vec3d x = tl_probe_point(&touch->point, particles->x);
-        vec3d before = tl_probe_point(&touch->point, particles->previous);
-        vec3d surface = tl_probe_point(&touch->surface, particles->x);
-        vec3d surface_before = tl_probe_point(&touch->surface, particles->previous);
-        vec3d to = tl_contact_push_out(x, before, surface, surface_before, touch->normal, &own);
+    for (size_t i = 0; i < layers->contact_count; i++) {
+        const struct tl_layer_contact *contact_pair = &layers->contacts[i];
+        double inverse = tl_contact_sample_inverse_mass(&contact_pair->point, particles->w) +
+                         tl_contact_sample_inverse_mass(&contact_pair->surface, particles->w);
+        vec3d x = tl_contact_sample_position(&contact_pair->point, particles->x);
+        vec3d before = tl_contact_sample_position(&contact_pair->point, particles->previous);
+        vec3d surface = tl_contact_sample_position(&contact_pair->surface, particles->x);
+        vec3d surface_before = tl_contact_sample_position(&contact_pair->surface, particles->previous);
+        vec3d to = tl_contact_push_out(x, before, surface, surface_before, contact_pair->normal, &own);
         vec3d push = vec3d_sub(to, x);
         if (!(inverse > 0) || !(vec3d_dot(push, push) > 0))
             continue;
-        tl_probe_push(&touch->point, vec3d_scale(push, 1 / inverse), particles->w, particles->x);
-        tl_probe_push(&touch->surface, vec3d_scale(push, -1 / inverse), particles->w, particles->x);
+        tl_contact_sample_push(&contact_pair->point, vec3d_scale(push, 1 / inverse), particles->w,
+                               particles->x);
+        tl_contact_sample_push(&contact_pair->surface, vec3d_scale(push, -1 / inverse), particles->w,
+                               particles->x);
     }
 }

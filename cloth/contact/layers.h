@@ -17,8 +17,8 @@
 #define TL_PIECES_MAX 64
 
 /* A point of one layer and the nearest point of a triangle of another. */
-struct tl_layer_touch {
-    struct tl_probe point, surface;
+struct tl_layer_contact {
+    struct tl_contact_sample point, surface;
     vec3d normal; /* from the surface to the point's own side */
 };
 
@@ -31,17 +31,17 @@ struct tl_layer {
 };
 
 struct tl_layers {
-    bool decided;
-    bool looked;         /* touches are those of the last step */
+    bool ordered;
+    bool searched;       /* touches are those of the last step */
     size_t layer_count;  /* 0 or 1: nothing to keep apart */
     uint32_t *layer_of;  /* [particle] 0 is innermost */
     bool *on_open_edge;  /* [particle] */
     signed char *facing; /* [triangle] 1: outwards as wound, -1: inwards, 0: neither */
-    size_t probe_count;  /* of all layers, vertices included */
-    struct tl_probe *probes;
+    size_t sample_count; /* of all layers, vertices included */
+    struct tl_contact_sample *samples;
     struct tl_layer *layers; /* [layer_count] */
-    size_t touch_count;
-    struct tl_layer_touch *touches; /* good for one step */
+    size_t contact_count;
+    struct tl_layer_contact *contacts; /* good for one step */
 };
 void tl_layers_release(struct tl_layers *layers);
 
@@ -56,7 +56,7 @@ bool tl_layers_decide(struct tl_layers *layers, const struct tl_topology *topolo
                       const tl_collider *avatar, const vec3d *x, tl_error *error);
 
 /* Once per step, at its start: looks for what touches. */
-void tl_layers_renew(struct tl_layers *layers, const struct tl_topology *topology, const vec3d *x);
+void tl_layers_update(struct tl_layers *layers, const struct tl_topology *topology, const vec3d *x);
 
 /* Once per substep, before the avatar's contacts. */
 void tl_layers_solve(const struct tl_layers *layers, const struct tl_contact_params *params,

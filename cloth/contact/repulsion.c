@@ -6,7 +6,7 @@
 
 /* Pairs are looked for within this many thicknesses: what comes nearer by more than the rest in one step is
  * met one step later. */
-#define REACH 2.0
+#define REACH_THICKNESSES 2.0
 /* m/s: what is too near already is parted at this speed. */
 #define PUSH_APART_SPEED 1.0
 /* Where numbers of cells still fit; nothing that far away is near anything. */
@@ -95,13 +95,13 @@ static void find_pairs(struct tl_repulsion *repulsion, const struct grid *grid, 
     }
 }
 
-void tl_repulsion_renew(struct tl_repulsion *repulsion, size_t count, const vec3d *x, const vec3d *start,
-                        double thickness_m)
+void tl_repulsion_update(struct tl_repulsion *repulsion, size_t count, const vec3d *x, const vec3d *start,
+                         double thickness_m)
 {
     repulsion->pair_count = 0;
     if (!(thickness_m > 0))
         return;
-    struct grid grid = make_grid(count, x, REACH * thickness_m);
+    struct grid grid = make_grid(count, x, REACH_THICKNESSES * thickness_m);
     for (size_t i = 0; i < count; i++) {
         struct cell cell = cell_of(&grid, i);
         for (int n = 0; n < 27; n++) {
@@ -115,7 +115,7 @@ void tl_repulsion_renew(struct tl_repulsion *repulsion, size_t count, const vec3
 
 /* Apart to the kept distance, what was nearer before at a limited speed; of the slip in this substep friction
  * takes no more than its share of that. */
-static void solve_pair(const struct tl_repulsion_pair *pair, double friction, double most_m,
+static void solve_pair(const struct tl_repulsion_pair *pair, double friction, double max_push_m,
                        struct tl_particles *particles)
 {
     double wa = particles->w[pair->a], wb = particles->w[pair->b];
@@ -123,14 +123,15 @@ static void solve_pair(const struct tl_repulsion_pair *pair, double friction, do
     vec3d apart = vec3d_sub(*b, *a);
     vec3d before = vec3d_sub(particles->previous[pair->b], particles->previous[pair->a]);
     double nearer = vec3d_norm(before) - vec3d_norm(apart);
-    double depth = fmin(pair->distance_m - vec3d_norm(apart), fmax(nearer, 0) + most_m);
+    double depth = fmin(pair->distance_m - vec3d_norm(apart), fmax(nearer, 0) + max_push_m);
     if (!(depth > 0) || !(wa + wb > 0))
         return;
     vec3d normal = vec3d_unit_or(apart, (vec3d){0, 1, 0});
     vec3d slip = vec3d_sub(apart, before);
     slip = vec3d_muladd(slip, normal, -vec3d_dot(slip, normal));
-    double length = vec3d_norm(slip), grip = friction * depth;
-    vec3d push = vec3d_muladd(vec3d_scale(normal, depth), slip, length > grip ? -grip / length : -1);
+    double length = vec3d_norm(slip), max_friction = friction * depth;
+    vec3d push =
+        vec3d_muladd(vec3d_scale(normal, depth), slip, length > max_friction ? -max_friction / length : -1);
     push = vec3d_scale(push, 1 / (wa + wb));
     *a = vec3d_muladd(*a, push, -wa);
     *b = vec3d_muladd(*b, push, wb);

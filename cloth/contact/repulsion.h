@@ -20,8 +20,8 @@ struct tl_repulsion {
 void tl_repulsion_release(struct tl_repulsion *repulsion);
 
 /* Once per step, at its start. `start` [count] are the positions that the cloth is made in. */
-void tl_repulsion_renew(struct tl_repulsion *repulsion, size_t count, const vec3d *x, const vec3d *start,
-                        double thickness_m);
+void tl_repulsion_update(struct tl_repulsion *repulsion, size_t count, const vec3d *x, const vec3d *start,
+                         double thickness_m);
 
 /* Once per substep of h seconds. */
 void tl_repulsion_solve(const struct tl_repulsion *repulsion, double friction, double h,

@@ -3,15 +3,15 @@
 #ifndef TOILE_CLOTH_DRIVE_HAND_H
 #define TOILE_CLOTH_DRIVE_HAND_H
 
-#include "cloth/energy/pulls.h"
+#include "cloth/energy/pair_forces.h"
 #include "cloth/mesh/particles.h"
-#include "cloth/solvers/limit.h"
+#include "cloth/solvers/strain_limit.h"
 
 /* What cloth draped on a body does not reach, and a pull should not look like. */
 #define TL_HAND_STRAIN 0.5
 
 /* The share of `way` that particle i may be moved by, 0 to 1. */
-double tl_hand_share(const struct tl_limits *limits, const struct tl_pulls *pulls,
-                     const struct tl_particles *particles, uint32_t i, vec3d way);
+double tl_hand_share(const struct tl_strain_limits *limits, const struct tl_pair_forces *pairs,
+                     const struct tl_particles *particles, uint32_t i, vec3d step);
 
 #endif

@@ -4,7 +4,7 @@
 
 /* Of the speed against the air no more than this is taken out in one step, however long: a light cloth in a
  * storm would else be thrown back. */
-#define TAKEN_AT_MOST 0.5
+#define MAX_SPEED_LOSS 0.5
 
 vec3d tl_wind_at(const struct tl_wind *wind, vec3d point)
 {
@@ -32,9 +32,9 @@ void tl_wind_forces(const struct tl_wind *wind, const struct tl_topology *topolo
         vec3d speed = vec3d_scale(vec3d_add(vec3d_add(v[i[0]], v[i[1]]), v[i[2]]), 1.0 / 3);
         vec3d normal = vec3d_unit_or(area, (vec3d){0});
         double against = vec3d_dot(normal, vec3d_sub(tl_wind_at(wind, middle), speed));
-        double taken = per_speed * fabs(against) * h,
-               most = taken > TAKEN_AT_MOST ? TAKEN_AT_MOST / taken : 1;
-        double pressure = 0.5 * TL_AIR_DENSITY * fabs(against) * against * most;
+        double speed_loss = per_speed * fabs(against) * h,
+               reduction = speed_loss > MAX_SPEED_LOSS ? MAX_SPEED_LOSS / speed_loss : 1;
+        double pressure = 0.5 * TL_AIR_DENSITY * fabs(against) * against * reduction;
         for (int corner = 0; corner < 3;
              corner++) /* half the cross product is the area, a third of it each */
             forces[i[corner]] = vec3d_muladd(forces[i[corner]], area, pressure / 6);

@@ -281,7 +281,7 @@ struct tl_energy tl_energy_build(const struct tl_topology *topology, const vec2s
     }
     build_membranes(&energy, topology, flats, triangles, membrane_count);
     build_bends(&energy, topology, flats);
-    energy.pulls = tl_pulls_build(topology, &energy);
+    energy.pairs = tl_pair_forces_build(topology, &energy);
     free(triangles);
     free(flats);
     return energy;
@@ -296,7 +296,7 @@ void tl_energy_release(struct tl_energy *energy)
     free(energy->bends);
     free(energy->links);
     free(energy->masses);
-    tl_pulls_release(&energy->pulls);
+    tl_pair_forces_release(&energy->pairs);
     *energy = (struct tl_energy){0};
 }
 
@@ -313,7 +313,7 @@ void tl_energy_set_fabric(struct tl_energy *energy, const struct tl_cloth_fabric
 {
     double stiffness[3];
     tl_bend_stiffness(fabric, stiffness);
-    tl_pulls_set(&energy->pulls, energy, stiffness);
+    tl_pair_forces_set(&energy->pairs, energy, stiffness);
 }
 
 /* -1 / (gradient + 1/(stiffness h^2)), 0 where nothing can move or resist. */
@@ -364,28 +364,28 @@ static void set_bend(struct tl_bend *bend, const struct tl_cloth_fabric *fabric,
 }
 
 /* Gershgorin's bound on omega^2 of bending. */
-static double fastest_bending(const struct tl_pulls *pulls, const double *w)
+static double fastest_bending(const struct tl_pair_forces *pairs, const double *w)
 {
     double fastest = 0;
-    for (size_t i = 0; i < pulls->vertex_count; i++) {
+    for (size_t i = 0; i < pairs->vertex_count; i++) {
         double sum = 0;
-        for (uint32_t k = pulls->along_first[i]; k < pulls->along_first[i + 1]; k++)
-            sum += fabs(pulls->edge_bending[pulls->along[k].edge]);
-        for (uint32_t k = pulls->others_first[i]; k < pulls->others_first[i + 1]; k++)
-            sum += fabs(pulls->bending[k]);
+        for (uint32_t k = pairs->incident_first[i]; k < pairs->incident_first[i + 1]; k++)
+            sum += fabs(pairs->edge_bending[pairs->incident[k].edge]);
+        for (uint32_t k = pairs->others_first[i]; k < pairs->others_first[i + 1]; k++)
+            sum += fabs(pairs->bending[k]);
         fastest = fmax(fastest, 2 * sum * w[i]);
     }
     return fastest;
 }
 
-void tl_energy_set(struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
-                   const double *inverse_masses, double h)
+void tl_energy_set_preview(struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
+                           const double *inverse_masses, double h)
 {
     for (size_t i = 0; i < energy->membrane_count; i++)
         set_preview(&energy->membranes[i], fabric, inverse_masses, h, &energy->previewed[i]);
     for (size_t i = 0; i < energy->bend_count; i++)
         set_bend(&energy->bends[i], fabric, inverse_masses, h);
-    energy->bends_as_force = h * sqrt(fastest_bending(&energy->pulls, inverse_masses)) <= FORCE_LIMIT;
+    energy->bending_is_force = h * sqrt(fastest_bending(&energy->pairs, inverse_masses)) <= FORCE_LIMIT;
     for (size_t i = 0; i < energy->link_count; i++)
         energy->links[i].compliance = 1 / (fabric->stretch_warp * h * h);
 }

@@ -22,7 +22,7 @@
 
 #include "assets/garment.h"
 #include "cloth/energy/fabric.h"
-#include "cloth/energy/pulls.h"
+#include "cloth/energy/pair_forces.h"
 #include "cloth/mesh/particles.h"
 #include "cloth/mesh/topology.h"
 #include "cloth/mesh/vec3d.h"
@@ -77,8 +77,8 @@ struct tl_energy {
     struct tl_bend *bends;
     struct tl_link *links;
     double *masses; /* [vertex_count] kg per areal density: a third of the area around */
-    struct tl_pulls pulls;
-    bool bends_as_force; /* preview's substep is short enough for bending as an explicit force: xpbd.h */
+    struct tl_pair_forces pairs;
+    bool bending_is_force; /* preview's substep is short enough for bending as an explicit force: xpbd.h */
 };
 
 /* `rest` gives every physics triangle's flat rest shape. */
@@ -89,23 +89,23 @@ void tl_energy_release(struct tl_energy *energy);
 void tl_energy_set_fabric(struct tl_energy *energy, const struct tl_cloth_fabric *fabric);
 
 /* Sets what `preview` needs: material, substep `h` seconds and inverse masses [vertex_count + 1]. */
-void tl_energy_set(struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
-                   const double *inverse_masses, double h);
+void tl_energy_set_preview(struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
+                           const double *inverse_masses, double h);
 
 /* The elastic energy (J) at positions `x` [vertex_count]; writes its forces -dE/dx (N) to `forces`
  * [vertex_count]. A link's energy is k/2 (length - rest)^2 with the warp's stretch stiffness. The fabric is
  * the one that was set. Threads: one call at a time for one energy. */
-double tl_energy_forces(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
-                        size_t vertex_count, const vec3d *x, vec3d *forces);
+double tl_energy_evaluate(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
+                          size_t vertex_count, const vec3d *x, vec3d *forces);
 
 /* The forces alone, the same to the last bit, sooner. `then`, if not NULL, moves the particles on, a block at
  * a time, with their forces in `forces`; it may move `x`. */
-void tl_energy_pull(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric, const vec3d *x,
-                    vec3d *forces, const struct tl_move *then);
+void tl_energy_forces(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric, const vec3d *x,
+                      vec3d *forces, const struct tl_particle_kernel *then);
 
 /* The same of bending alone. */
-void tl_energy_bend(const struct tl_energy *energy, const vec3d *x, vec3d *forces,
-                    const struct tl_move *then);
+void tl_energy_bending_forces(const struct tl_energy *energy, const vec3d *x, vec3d *forces,
+                              const struct tl_particle_kernel *then);
 
 /* Stiffness against L_uu, L_vv and sqrt(2) L_uv, N m. */
 void tl_bend_stiffness(const struct tl_cloth_fabric *fabric, double out[3]);

@@ -7,21 +7,21 @@
 #include <string.h>
 
 /* What is squeezed to less than this share of its rest length pushes no harder than at it. */
-#define LEAST_LENGTH 1e-6
+#define MIN_LENGTH 1e-6
 
 /* Places are read four numbers at a time. */
-TL_CLONES static void copy_places(const vec3d *x, struct tl_range range, double *places)
+TL_CLONES static void copy_positions(const vec3d *x, struct tl_range range, double *positions)
 {
     for (size_t i = range.from; i < range.to; i++) {
-        places[4 * i] = x[i].x;
-        places[4 * i + 1] = x[i].y;
-        places[4 * i + 2] = x[i].z;
+        positions[4 * i] = x[i].x;
+        positions[4 * i + 1] = x[i].y;
+        positions[4 * i + 2] = x[i].z;
     }
 }
 
-void tl_pulls_place(const struct tl_pulls *pulls, const vec3d *x, struct tl_range range)
+void tl_pair_forces_load_positions(const struct tl_pair_forces *pairs, const vec3d *x, struct tl_range range)
 {
-    copy_places(x, range, pulls->places);
+    copy_positions(x, range, pairs->positions);
 }
 
 TL_CLONES static void square_lengths(const vec3d *x, const uint32_t (*edges)[2], struct tl_range range,
@@ -54,8 +54,8 @@ TL_INLINE void differentiate(const struct tl_metric *metric, const struct stretc
         double uu = -(uu0 * l0 + uu1 * l1 + uu2 * l2);
         double vv = -(vv0 * l0 + vv1 * l1 + vv2 * l2);
         double uv = -0.5 * (uv0 * l0 + uv1 * l1 + uv2 * l2);
-        double length_u = sqrt(uu > LEAST_LENGTH * LEAST_LENGTH ? uu : LEAST_LENGTH * LEAST_LENGTH);
-        double length_v = sqrt(vv > LEAST_LENGTH * LEAST_LENGTH ? vv : LEAST_LENGTH * LEAST_LENGTH);
+        double length_u = sqrt(uu > MIN_LENGTH * MIN_LENGTH ? uu : MIN_LENGTH * MIN_LENGTH);
+        double length_v = sqrt(vv > MIN_LENGTH * MIN_LENGTH ? vv : MIN_LENGTH * MIN_LENGTH);
         double both = 1 / (length_u * length_v), inverse_u = both * length_v, inverse_v = both * length_u;
         double cosine = uv * both, slant = k->shear * cosine, by_uv = slant * both; /* de/dm_uv */
         double turn = slant * cosine;
@@ -72,59 +72,60 @@ TL_INLINE void differentiate(const struct tl_metric *metric, const struct stretc
     }
 }
 
-TL_INLINE void read_squared(const struct tl_pulls *pulls, const struct tl_metric *metric,
+TL_INLINE void read_squared(const struct tl_pair_forces *pairs, const struct tl_metric *metric,
                             double squared[3][TL_BATCH])
 {
     for (int corner = 0; corner < 3; corner++)
         for (int lane = 0; lane < TL_BATCH; lane++)
-            squared[corner][lane] = pulls->squared[metric->edges[corner][lane]];
+            squared[corner][lane] = pairs->squared[metric->edges[corner][lane]];
 }
 
-TL_INLINE void differentiate_range(const struct tl_pulls *pulls, struct stretching k, struct tl_range range,
-                                   bool wants_energy)
+TL_INLINE void differentiate_range(const struct tl_pair_forces *pairs, struct stretching k,
+                                   struct tl_range range, bool wants_energy)
 {
     for (size_t i = range.from; i < range.to; i++) {
         double squared[3][TL_BATCH], energies[TL_BATCH], sum = 0;
-        read_squared(pulls, &pulls->metrics[i], squared);
-        differentiate(&pulls->metrics[i], &k, (const double(*)[TL_BATCH])squared,
-                      &pulls->shares[i * 3 * TL_BATCH], wants_energy ? energies : NULL);
+        read_squared(pairs, &pairs->metrics[i], squared);
+        differentiate(&pairs->metrics[i], &k, (const double(*)[TL_BATCH])squared,
+                      &pairs->shares[i * 3 * TL_BATCH], wants_energy ? energies : NULL);
         for (int lane = 0; lane < TL_BATCH && wants_energy; lane++)
             sum += energies[lane];
         if (wants_energy)
-            pulls->parts[i] = sum;
+            pairs->parts[i] = sum;
     }
 }
 
-TL_CLONES static void differentiate_all(const struct tl_pulls *pulls, struct stretching k,
+TL_CLONES static void differentiate_all(const struct tl_pair_forces *pairs, struct stretching k,
                                         struct tl_range range)
 {
-    differentiate_range(pulls, k, range, false);
+    differentiate_range(pairs, k, range, false);
 }
 
 /* The triangles' energies beside. */
-TL_CLONES static void measure_all(const struct tl_pulls *pulls, struct stretching k, struct tl_range range)
+TL_CLONES static void measure_all(const struct tl_pair_forces *pairs, struct stretching k,
+                                  struct tl_range range)
 {
-    differentiate_range(pulls, k, range, true);
+    differentiate_range(pairs, k, range, true);
 }
 
-TL_CLONES static void add_shares(const struct tl_pulls *pulls, struct tl_range range)
+TL_CLONES static void add_shares(const struct tl_pair_forces *pairs, struct tl_range range)
 {
     for (size_t e = range.from; e < range.to; e++)
-        pulls->along_edges[e] =
-            pulls->shares[pulls->slots[e][0]] + pulls->shares[pulls->slots[e][1]] + pulls->edge_bending[e];
+        pairs->edge_strengths[e] =
+            pairs->shares[pairs->slots[e][0]] + pairs->shares[pairs->slots[e][1]] + pairs->edge_bending[e];
 }
 
 /* What few edges have: more than two triangles, and links. Returns the links' energy. */
 static double add_rare(const struct tl_energy *energy, double stiffness)
 {
-    const struct tl_pulls *pulls = &energy->pulls;
+    const struct tl_pair_forces *pairs = &energy->pairs;
     double sum = 0;
-    for (size_t i = 0; i < pulls->excess_count; i++)
-        pulls->along_edges[pulls->excess[i][0]] += pulls->shares[pulls->excess[i][1]];
+    for (size_t i = 0; i < pairs->excess_count; i++)
+        pairs->edge_strengths[pairs->excess[i][0]] += pairs->shares[pairs->excess[i][1]];
     for (size_t i = 0; i < energy->link_count; i++) {
-        double rest = energy->links[i].rest, length = sqrt(pulls->squared[pulls->link_edges[i]]);
-        double share = length > LEAST_LENGTH * rest ? rest / length : 1 / LEAST_LENGTH;
-        pulls->along_edges[pulls->link_edges[i]] += stiffness * (1 - share);
+        double rest = energy->links[i].rest, length = sqrt(pairs->squared[pairs->link_edges[i]]);
+        double share = length > MIN_LENGTH * rest ? rest / length : 1 / MIN_LENGTH;
+        pairs->edge_strengths[pairs->link_edges[i]] += stiffness * (1 - share);
         sum += 0.5 * stiffness * (length - rest) * (length - rest);
     }
     return sum;
@@ -140,171 +141,172 @@ TL_INLINE void add_pull(const double *at, const double *other, double strength, 
     sum->unused -= strength * unused;
 }
 
-TL_INLINE void add_others(const struct tl_pulls *pulls, size_t vertex, struct tl_wide_force *sum)
+TL_INLINE void add_others(const struct tl_pair_forces *pairs, size_t vertex, struct tl_wide_force *sum)
 {
-    const double *at = &pulls->places[4 * vertex];
-    for (uint32_t k = pulls->others_first[vertex]; k < pulls->others_first[vertex + 1]; k++)
-        add_pull(at, &pulls->places[4 * (size_t)pulls->others[k]], pulls->bending[k], sum);
+    const double *at = &pairs->positions[4 * vertex];
+    for (uint32_t k = pairs->others_first[vertex]; k < pairs->others_first[vertex + 1]; k++)
+        add_pull(at, &pairs->positions[4 * (size_t)pairs->others[k]], pairs->bending[k], sum);
 }
 
 /* `strengths` [edge_count]. */
-TL_INLINE void add_along(const struct tl_pulls *pulls, size_t vertex, const double *strengths,
+TL_INLINE void add_along(const struct tl_pair_forces *pairs, size_t vertex, const double *strengths,
                          struct tl_wide_force *sum)
 {
-    const double *at = &pulls->places[4 * vertex];
-    for (uint32_t k = pulls->along_first[vertex]; k < pulls->along_first[vertex + 1]; k++) {
-        const struct tl_along *along = &pulls->along[k];
-        add_pull(at, &pulls->places[4 * (size_t)along->other], strengths[along->edge], sum);
+    const double *at = &pairs->positions[4 * vertex];
+    for (uint32_t k = pairs->incident_first[vertex]; k < pairs->incident_first[vertex + 1]; k++) {
+        const struct tl_incident_edge *incident = &pairs->incident[k];
+        add_pull(at, &pairs->positions[4 * (size_t)incident->other], strengths[incident->edge], sum);
     }
 }
 
 /* All of bending, in two sums: what one adds the other need not wait for. */
-TL_INLINE struct tl_wide_force add_fours(const struct tl_pulls *pulls, size_t vertex)
+TL_INLINE struct tl_wide_force add_packs(const struct tl_pair_forces *pairs, size_t vertex)
 {
-    const double *places = pulls->places, *at = &places[4 * vertex];
-    const struct tl_four_pulls *end = &pulls->fours[pulls->fours_first[vertex + 1]];
+    const double *positions = pairs->positions, *at = &positions[4 * vertex];
+    const struct tl_pair_pack *end = &pairs->packs[pairs->packs_first[vertex + 1]];
     struct tl_wide_force even = {0}, odd = {0};
-    for (const struct tl_four_pulls *four = &pulls->fours[pulls->fours_first[vertex]]; four < end; four++) {
-        add_pull(at, &places[four->from[0]], four->bending[0], &even);
-        add_pull(at, &places[four->from[1]], four->bending[1], &odd);
-        add_pull(at, &places[four->from[2]], four->bending[2], &even);
-        add_pull(at, &places[four->from[3]], four->bending[3], &odd);
+    for (const struct tl_pair_pack *pack = &pairs->packs[pairs->packs_first[vertex]]; pack < end; pack++) {
+        add_pull(at, &positions[pack->from[0]], pack->bending[0], &even);
+        add_pull(at, &positions[pack->from[1]], pack->bending[1], &odd);
+        add_pull(at, &positions[pack->from[2]], pack->bending[2], &even);
+        add_pull(at, &positions[pack->from[3]], pack->bending[3], &odd);
     }
     return (struct tl_wide_force){even.x + odd.x, even.y + odd.y, even.z + odd.z, even.unused + odd.unused};
 }
 
 /* `strengths` [edge_count] of all that acts along edges; NULL: bending alone. */
-TL_INLINE void add_block(const struct tl_pulls *pulls, struct tl_range block, const double *strengths,
+TL_INLINE void add_block(const struct tl_pair_forces *pairs, struct tl_range block, const double *strengths,
                          vec3d *forces)
 {
     for (size_t i = block.from; i < block.to; i++) {
         struct tl_wide_force sum = {0};
         if (strengths) {
-            add_along(pulls, i, strengths, &sum);
-            add_others(pulls, i, &sum);
+            add_along(pairs, i, strengths, &sum);
+            add_others(pairs, i, &sum);
         } else {
-            sum = add_fours(pulls, i);
+            sum = add_packs(pairs, i);
         }
-        pulls->sums[i] = sum;
+        pairs->sums[i] = sum;
     }
     for (size_t i = block.from; i < block.to; i++)
-        forces[i] = (vec3d){pulls->sums[i].x, pulls->sums[i].y, pulls->sums[i].z};
+        forces[i] = (vec3d){pairs->sums[i].x, pairs->sums[i].y, pairs->sums[i].z};
 }
 
 static struct tl_range block_from(size_t from, struct tl_range range)
 {
-    size_t to = from + TL_PULLS_BLOCK;
+    size_t to = from + TL_PAIR_BLOCK;
     return (struct tl_range){from, to < range.to ? to : range.to};
 }
 
 /* Each block's particles move as soon as their forces are known, while these are at hand. */
-TL_INLINE void add_range(const struct tl_pulls *pulls, const double *strengths, struct tl_range range,
-                         vec3d *forces, const struct tl_move *then)
+TL_INLINE void add_range(const struct tl_pair_forces *pairs, const double *strengths, struct tl_range range,
+                         vec3d *forces, const struct tl_particle_kernel *then)
 {
-    for (size_t from = range.from; from < range.to; from += TL_PULLS_BLOCK) {
+    for (size_t from = range.from; from < range.to; from += TL_PAIR_BLOCK) {
         struct tl_range block = block_from(from, range);
-        add_block(pulls, block, strengths, forces);
+        add_block(pairs, block, strengths, forces);
         if (then)
-            then->move(then->particles, block, then->how);
+            then->move(then->particles, block, then->params);
     }
 }
 
-TL_CLONES static void add_forces(const struct tl_pulls *pulls, struct tl_range range, vec3d *forces,
-                                 const struct tl_move *then)
+TL_CLONES static void add_forces(const struct tl_pair_forces *pairs, struct tl_range range, vec3d *forces,
+                                 const struct tl_particle_kernel *then)
 {
-    add_range(pulls, pulls->along_edges, range, forces, then);
+    add_range(pairs, pairs->edge_strengths, range, forces, then);
 }
 
-TL_CLONES static void add_bending(const struct tl_pulls *pulls, struct tl_range range, vec3d *forces,
-                                  const struct tl_move *then)
+TL_CLONES static void add_bending(const struct tl_pair_forces *pairs, struct tl_range range, vec3d *forces,
+                                  const struct tl_particle_kernel *then)
 {
-    add_range(pulls, NULL, range, forces, then);
+    add_range(pairs, NULL, range, forces, then);
 }
 
 /* x.Kx/2 of a block of vertices. Forces add up to nothing, so that x may be measured from anywhere. */
-TL_CLONES static double bending_energy(const struct tl_pulls *pulls, struct tl_range range)
+TL_CLONES static double bending_energy(const struct tl_pair_forces *pairs, struct tl_range range)
 {
     double energy = 0;
-    const double *origin = pulls->places;
+    const double *origin = pairs->positions;
     for (size_t i = range.from; i < range.to; i++) {
-        const double *at = &pulls->places[4 * i];
-        struct tl_wide_force sum = add_fours(pulls, i);
+        const double *at = &pairs->positions[4 * i];
+        struct tl_wide_force sum = add_packs(pairs, i);
         energy -=
             0.5 * (sum.x * (at[0] - origin[0]) + sum.y * (at[1] - origin[1]) + sum.z * (at[2] - origin[2]));
     }
     return energy;
 }
 
-static void add_energies(const struct tl_pulls *pulls)
+static void add_energies(const struct tl_pair_forces *pairs)
 {
-    struct tl_range mine = tl_my_part(pulls->vertex_count, TL_PULLS_BLOCK);
-    for (size_t from = mine.from; from < mine.to; from += TL_PULLS_BLOCK)
-        pulls->parts[pulls->metric_count + from / TL_PULLS_BLOCK] =
-            bending_energy(pulls, block_from(from, mine));
+    struct tl_range mine = tl_thread_range(pairs->vertex_count, TL_PAIR_BLOCK);
+    for (size_t from = mine.from; from < mine.to; from += TL_PAIR_BLOCK)
+        pairs->parts[pairs->metric_count + from / TL_PAIR_BLOCK] =
+            bending_energy(pairs, block_from(from, mine));
 }
 
 /* Returns the links' energy, and leaves the triangles' in pulls->parts, the bending's too if it is wanted. */
 static double evaluate(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric, const vec3d *x,
-                       bool wants_energy, vec3d *forces, const struct tl_move *then)
+                       bool wants_energy, vec3d *forces, const struct tl_particle_kernel *then)
 {
-    const struct tl_pulls *pulls = &energy->pulls;
+    const struct tl_pair_forces *pairs = &energy->pairs;
     const struct stretching k = {fabric->stretch_weft, fabric->stretch_warp, fabric->shear};
     double links = 0;
-#pragma omp parallel if (pulls->vertex_count >= TL_PARALLEL_VERTICES)
+#pragma omp parallel if (pairs->vertex_count >= TL_PARALLEL_VERTICES)
     {
         unsigned denormals = tl_denormals_off();
-        tl_pulls_place(pulls, x, tl_my_part(pulls->vertex_count, TL_PULLS_BLOCK));
-        square_lengths(x, (const uint32_t(*)[2])pulls->edges, tl_my_part(pulls->edge_count, TL_BATCH),
-                       pulls->squared);
+        tl_pair_forces_load_positions(pairs, x, tl_thread_range(pairs->vertex_count, TL_PAIR_BLOCK));
+        square_lengths(x, (const uint32_t(*)[2])pairs->edges, tl_thread_range(pairs->edge_count, TL_BATCH),
+                       pairs->squared);
 #pragma omp barrier
-        struct tl_range triangles = tl_my_part(pulls->metric_count, 1);
+        struct tl_range triangles = tl_thread_range(pairs->metric_count, 1);
         if (wants_energy)
-            measure_all(pulls, k, triangles);
+            measure_all(pairs, k, triangles);
         else
-            differentiate_all(pulls, k, triangles);
+            differentiate_all(pairs, k, triangles);
 #pragma omp barrier
-        add_shares(pulls, tl_my_part(pulls->edge_count, TL_BATCH));
-        if (pulls->excess_count + energy->link_count > 0) {
+        add_shares(pairs, tl_thread_range(pairs->edge_count, TL_BATCH));
+        if (pairs->excess_count + energy->link_count > 0) {
 #pragma omp barrier
 #pragma omp single
             links = add_rare(energy, fabric->stretch_warp);
         }
 #pragma omp barrier
-        add_forces(pulls, tl_my_part(pulls->vertex_count, TL_PULLS_BLOCK), forces, then);
+        add_forces(pairs, tl_thread_range(pairs->vertex_count, TL_PAIR_BLOCK), forces, then);
         if (wants_energy)
-            add_energies(pulls);
+            add_energies(pairs);
         tl_denormals_restore(denormals);
     }
     return links;
 }
 
-void tl_energy_pull(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric, const vec3d *x,
-                    vec3d *forces, const struct tl_move *then)
+void tl_energy_forces(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric, const vec3d *x,
+                      vec3d *forces, const struct tl_particle_kernel *then)
 {
     evaluate(energy, fabric, x, false, forces, then);
 }
 
-void tl_energy_bend(const struct tl_energy *energy, const vec3d *x, vec3d *forces, const struct tl_move *then)
+void tl_energy_bending_forces(const struct tl_energy *energy, const vec3d *x, vec3d *forces,
+                              const struct tl_particle_kernel *then)
 {
-    const struct tl_pulls *pulls = &energy->pulls;
-#pragma omp parallel if (pulls->vertex_count >= TL_PARALLEL_VERTICES)
+    const struct tl_pair_forces *pairs = &energy->pairs;
+#pragma omp parallel if (pairs->vertex_count >= TL_PARALLEL_VERTICES)
     {
         unsigned denormals = tl_denormals_off();
-        struct tl_range mine = tl_my_part(pulls->vertex_count, TL_PULLS_BLOCK);
-        tl_pulls_place(pulls, x, mine);
+        struct tl_range mine = tl_thread_range(pairs->vertex_count, TL_PAIR_BLOCK);
+        tl_pair_forces_load_positions(pairs, x, mine);
 #pragma omp barrier
-        add_bending(pulls, mine, forces, then);
+        add_bending(pairs, mine, forces, then);
         tl_denormals_restore(denormals);
     }
 }
 
-double tl_energy_forces(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
-                        size_t vertex_count, const vec3d *x, vec3d *forces)
+double tl_energy_evaluate(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
+                          size_t vertex_count, const vec3d *x, vec3d *forces)
 {
-    const struct tl_pulls *pulls = &energy->pulls;
-    size_t blocks = (vertex_count + TL_PULLS_BLOCK - 1) / TL_PULLS_BLOCK;
+    const struct tl_pair_forces *pairs = &energy->pairs;
+    size_t blocks = (vertex_count + TL_PAIR_BLOCK - 1) / TL_PAIR_BLOCK;
     double total = evaluate(energy, fabric, x, true, forces, NULL);
-    for (size_t i = 0; i < pulls->metric_count + blocks; i++)
-        total += pulls->parts[i];
+    for (size_t i = 0; i < pairs->metric_count + blocks; i++)
+        total += pairs->parts[i];
     return total;
 }

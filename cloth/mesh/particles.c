@@ -48,34 +48,36 @@ void tl_particles_release(struct tl_particles *particles)
     *particles = (struct tl_particles){0};
 }
 
-void tl_particles_move(const struct tl_move *move)
+void tl_particles_run(const struct tl_particle_kernel *move)
 {
 #pragma omp parallel if (move->particles->count >= TL_PARALLEL_VERTICES)
     {
         unsigned denormals = tl_denormals_off();
-        move->move(move->particles, tl_my_part(move->particles->count, 1), move->how);
+        move->move(move->particles, tl_thread_range(move->particles->count, 1), move->params);
         tl_denormals_restore(denormals);
     }
 }
 
 struct tl_prediction tl_prediction_make(const vec3d *forces, double gravity, double drag, double h)
 {
-    return (struct tl_prediction){.forces = forces, .fall = gravity * h, .keep = exp(-drag * h), .h = h};
+    return (struct tl_prediction){
+        .forces = forces, .gravity_step = gravity * h, .damping_factor = exp(-drag * h), .h = h};
 }
 
-TL_INLINE void predict_some(struct tl_particles *particles, size_t first, size_t count,
-                            const struct tl_prediction *to, const double falls[3 * TL_SOME], bool pushed,
-                            bool moving)
+TL_INLINE void predict_group(struct tl_particles *particles, size_t first, size_t count,
+                             const struct tl_prediction *to,
+                             const double gravity_steps[3 * TL_PARTICLE_GROUP], bool pushed,
+                             bool velocity_from_positions)
 {
-    const double h = to->h, per_h = 1 / h, keep = to->keep;
-    double weights[3 * TL_SOME];
-    tl_some_weights(&particles->w[first], count, weights);
+    const double h = to->h, per_h = 1 / h, damping_factor = to->damping_factor;
+    double weights[3 * TL_PARTICLE_GROUP];
+    tl_group_weights(&particles->w[first], count, weights);
     double *restrict x = &particles->x[first].x, *restrict previous = &particles->previous[first].x;
     const double *restrict v = &particles->v[first].x;
     const double *restrict forces = pushed ? &to->forces[first].x : v;
     for (size_t k = 0; k < 3 * count; k++) {
-        double speed = moving ? (x[k] - previous[k]) * per_h : v[k];
-        speed = weights[k] > 0 ? speed * keep - falls[k] : 0;
+        double speed = velocity_from_positions ? (x[k] - previous[k]) * per_h : v[k];
+        speed = weights[k] > 0 ? speed * damping_factor - gravity_steps[k] : 0;
         if (pushed)
             speed += forces[k] * (weights[k] * h);
         previous[k] = x[k];
@@ -83,36 +85,38 @@ TL_INLINE void predict_some(struct tl_particles *particles, size_t first, size_t
     }
 }
 
-TL_CLONES static void predict(struct tl_particles *particles, struct tl_range part, const void *how)
+TL_CLONES static void predict(struct tl_particles *particles, struct tl_range part, const void *params)
 {
-    const struct tl_prediction to = *(const struct tl_prediction *)how;
-    double falls[3 * TL_SOME];
-    tl_some_falls(to.fall, falls);
+    const struct tl_prediction to = *(const struct tl_prediction *)params;
+    double gravity_steps[3 * TL_PARTICLE_GROUP];
+    tl_group_gravity(to.gravity_step, gravity_steps);
     size_t i = part.from;
-    for (; i + TL_SOME <= part.to && to.forces && to.moving; i += TL_SOME) /* the usual ones */
-        predict_some(particles, i, TL_SOME, &to, falls, true, true);
+    for (; i + TL_PARTICLE_GROUP <= part.to && to.forces && to.velocity_from_positions;
+         i += TL_PARTICLE_GROUP) /* the usual ones */
+        predict_group(particles, i, TL_PARTICLE_GROUP, &to, gravity_steps, true, true);
     for (; i < part.to; i++)
-        predict_some(particles, i, 1, &to, falls, to.forces, to.moving);
+        predict_group(particles, i, 1, &to, gravity_steps, to.forces, to.velocity_from_positions);
 }
 
-struct tl_move tl_particles_prediction(struct tl_particles *particles, const struct tl_prediction *prediction)
+struct tl_particle_kernel tl_prediction_kernel(struct tl_particles *particles,
+                                               const struct tl_prediction *prediction)
 {
-    return (struct tl_move){predict, particles, prediction};
+    return (struct tl_particle_kernel){predict, particles, prediction};
 }
 
-static void finish(struct tl_particles *particles, struct tl_range part, const void *how)
+static void finish(struct tl_particles *particles, struct tl_range part, const void *params)
 {
-    double per_h = 1 / *(const double *)how;
+    double per_h = 1 / *(const double *)params;
     for (size_t i = part.from; i < part.to; i++)
         particles->v[i] = vec3d_scale(vec3d_sub(particles->x[i], particles->previous[i]), per_h);
 }
 
 void tl_particles_finish(struct tl_particles *particles, double h)
 {
-    tl_particles_move(&(const struct tl_move){finish, particles, &h});
+    tl_particles_run(&(const struct tl_particle_kernel){finish, particles, &h});
 }
 
-void tl_particles_calm(struct tl_particles *particles, const uint32_t (*edges)[2], size_t edge_count,
+void tl_particles_damp(struct tl_particles *particles, const uint32_t (*edges)[2], size_t edge_count,
                        double share)
 {
     for (size_t i = 0; i < edge_count; i++) {

@@ -23,8 +23,9 @@ struct tl_particles tl_particles_create(size_t count);
 void tl_particles_release(struct tl_particles *particles);
 
 /* Particles that are moved at once as plain numbers, x, y, z after x, y, z: what these need beside them. */
-#define TL_SOME 8
-TL_INLINE void tl_some_weights(const double *inverse_masses, size_t count, double weights[3 * TL_SOME])
+#define TL_PARTICLE_GROUP 8
+TL_INLINE void tl_group_weights(const double *inverse_masses, size_t count,
+                                double weights[3 * TL_PARTICLE_GROUP])
 {
     for (size_t i = 0; i < count; i++)
         weights[3 * i] = weights[3 * i + 1] = weights[3 * i + 2] = inverse_masses[i];
@@ -32,22 +33,22 @@ TL_INLINE void tl_some_weights(const double *inverse_masses, size_t count, doubl
 
 /* `fall` for each y, else 0. The same for all: made once, as what was just written by ones is slow to read by
  * eights. */
-TL_INLINE void tl_some_falls(double fall, double falls[3 * TL_SOME])
+TL_INLINE void tl_group_gravity(double gravity_step, double gravity_steps[3 * TL_PARTICLE_GROUP])
 {
-    for (size_t i = 0; i < TL_SOME; i++) {
-        falls[3 * i] = falls[3 * i + 2] = 0;
-        falls[3 * i + 1] = fall;
+    for (size_t i = 0; i < TL_PARTICLE_GROUP; i++) {
+        gravity_steps[3 * i] = gravity_steps[3 * i + 2] = 0;
+        gravity_steps[3 * i + 1] = gravity_step;
     }
 }
 
 /* What is done to some of the particles, each by itself. */
-struct tl_move {
-    void (*move)(struct tl_particles *particles, struct tl_range part, const void *how);
+struct tl_particle_kernel {
+    void (*move)(struct tl_particles *particles, struct tl_range part, const void *params);
     struct tl_particles *particles;
-    const void *how;
+    const void *params;
 };
 /* On all threads, each for its own part of the particles, denormals off. */
-void tl_particles_move(const struct tl_move *move);
+void tl_particles_run(const struct tl_particle_kernel *move);
 
 /* previous <- x, x <- x + h (v exp(-drag h) + h (g + w f)), with `forces` f in N, or none when NULL. What is
  * at rest feels its whole weight, whatever the drag. `v` is left to tl_particles_finish; where that was left
@@ -55,19 +56,19 @@ void tl_particles_move(const struct tl_move *move);
  * borrows the prediction. */
 struct tl_prediction {
     const vec3d *forces;
-    double fall, keep, h; /* m/s, share of v that the drag leaves, s */
-    bool moving;
+    double gravity_step, damping_factor, h; /* m/s, share of v that the drag leaves, s */
+    bool velocity_from_positions;
 };
 struct tl_prediction tl_prediction_make(const vec3d *forces, double gravity, double drag, double h);
-struct tl_move tl_particles_prediction(struct tl_particles *particles,
-                                       const struct tl_prediction *prediction);
+struct tl_particle_kernel tl_prediction_kernel(struct tl_particles *particles,
+                                               const struct tl_prediction *prediction);
 
 /* v <- (x - previous) / h. */
 void tl_particles_finish(struct tl_particles *particles, double h);
 
 /* Takes the share `share` of the relative velocity out of every edge, one after the other: the inner friction
  * of the weave, which ends the small quarrels between contact and elastic forces. Keeps the momentum. */
-void tl_particles_calm(struct tl_particles *particles, const uint32_t (*edges)[2], size_t edge_count,
+void tl_particles_damp(struct tl_particles *particles, const uint32_t (*edges)[2], size_t edge_count,
                        double share);
 
 /* Denormals cost up to 150 times a normal operation and mean nothing here: flushed to zero while the solver

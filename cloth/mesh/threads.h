@@ -15,7 +15,7 @@ struct tl_range {
 };
 
 /* The calling thread's part of `count`, in whole multiples of `unit`. */
-static inline struct tl_range tl_my_part(size_t count, size_t unit)
+static inline struct tl_range tl_thread_range(size_t count, size_t unit)
 {
     size_t units = (count + unit - 1) / unit;
     size_t thread = (size_t)omp_get_thread_num(), threads = (size_t)omp_get_num_threads();

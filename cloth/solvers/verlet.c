@@ -6,20 +6,20 @@ struct tl_verlet tl_verlet_make(const vec3d *forces, double gravity, double drag
 }
 
 /* v + h/2 a, one number of it. */
-TL_INLINE double pushed(double v, double force, double weight, double fall, double h)
+TL_INLINE double pushed(double v, double force, double weight, double gravity_step, double h)
 {
-    return v + force * (weight * h / 2) - fall;
+    return v + force * (weight * h / 2) - gravity_step;
 }
 
 /* Velocities are kept, not taken from the places: rounding of a place is 1e-16 m, over a step of 1e-5 s that
  * is 1e-11 m/s each time. What moved nobody adds exactly 0. */
 TL_INLINE void advance(struct tl_particles *particles, size_t first, size_t count,
-                       const struct tl_verlet *substep, const double falls[3 * TL_SOME], bool kicks,
-                       bool drifts)
+                       const struct tl_verlet *substep, const double gravity_steps[3 * TL_PARTICLE_GROUP],
+                       bool kicks, bool drifts)
 {
-    const double h = substep->h, per_h = 1 / h, keep = substep->keep;
-    double weights[3 * TL_SOME];
-    tl_some_weights(&particles->w[first], count, weights);
+    const double h = substep->h, per_h = 1 / h, damping_factor = substep->damping_factor;
+    double weights[3 * TL_PARTICLE_GROUP];
+    tl_group_weights(&particles->w[first], count, weights);
     double *restrict x = &particles->x[first].x, *restrict v = &particles->v[first].x;
     double *restrict previous = &particles->previous[first].x;
     const double *restrict forces = &substep->forces[first].x;
@@ -27,10 +27,11 @@ TL_INLINE void advance(struct tl_particles *particles, size_t first, size_t coun
         double speed = v[k], weight = weights[k];
         if (kicks) {
             speed += (x[k] - (previous[k] + speed * h)) * per_h;
-            speed = weight > 0 ? pushed(speed, forces[k], weight, falls[k], h) * keep : speed;
+            speed =
+                weight > 0 ? pushed(speed, forces[k], weight, gravity_steps[k], h) * damping_factor : speed;
         }
         if (drifts) {
-            speed = weight > 0 ? pushed(speed * keep, forces[k], weight, falls[k], h) : 0;
+            speed = weight > 0 ? pushed(speed * damping_factor, forces[k], weight, gravity_steps[k], h) : 0;
             previous[k] = x[k];
             x[k] += speed * h;
         }
@@ -38,44 +39,44 @@ TL_INLINE void advance(struct tl_particles *particles, size_t first, size_t coun
     }
 }
 
-TL_INLINE void advance_part(struct tl_particles *particles, struct tl_range part, const void *how, bool kicks,
-                            bool drifts)
+TL_INLINE void advance_part(struct tl_particles *particles, struct tl_range part, const void *params,
+                            bool kicks, bool drifts)
 {
-    const struct tl_verlet substep = *(const struct tl_verlet *)how;
-    double falls[3 * TL_SOME];
-    tl_some_falls(substep.gravity * substep.h / 2, falls);
+    const struct tl_verlet substep = *(const struct tl_verlet *)params;
+    double gravity_steps[3 * TL_PARTICLE_GROUP];
+    tl_group_gravity(substep.gravity * substep.h / 2, gravity_steps);
     size_t i = part.from;
-    for (; i + TL_SOME <= part.to; i += TL_SOME)
-        advance(particles, i, TL_SOME, &substep, falls, kicks, drifts);
-    advance(particles, i, part.to - i, &substep, falls, kicks, drifts);
+    for (; i + TL_PARTICLE_GROUP <= part.to; i += TL_PARTICLE_GROUP)
+        advance(particles, i, TL_PARTICLE_GROUP, &substep, gravity_steps, kicks, drifts);
+    advance(particles, i, part.to - i, &substep, gravity_steps, kicks, drifts);
 }
 
-TL_CLONES static void drift(struct tl_particles *particles, struct tl_range part, const void *how)
+TL_CLONES static void drift(struct tl_particles *particles, struct tl_range part, const void *params)
 {
-    advance_part(particles, part, how, false, true);
+    advance_part(particles, part, params, false, true);
 }
 
-TL_CLONES static void kick(struct tl_particles *particles, struct tl_range part, const void *how)
+TL_CLONES static void kick(struct tl_particles *particles, struct tl_range part, const void *params)
 {
-    advance_part(particles, part, how, true, false);
+    advance_part(particles, part, params, true, false);
 }
 
-TL_CLONES static void leap(struct tl_particles *particles, struct tl_range part, const void *how)
+TL_CLONES static void leap(struct tl_particles *particles, struct tl_range part, const void *params)
 {
-    advance_part(particles, part, how, true, true);
+    advance_part(particles, part, params, true, true);
 }
 
 void tl_verlet_drift(struct tl_particles *particles, const struct tl_verlet *substep)
 {
-    tl_particles_move(&(const struct tl_move){drift, particles, substep});
+    tl_particles_run(&(const struct tl_particle_kernel){drift, particles, substep});
 }
 
-struct tl_move tl_verlet_kick(struct tl_particles *particles, const struct tl_verlet *substep)
+struct tl_particle_kernel tl_verlet_kick(struct tl_particles *particles, const struct tl_verlet *substep)
 {
-    return (struct tl_move){kick, particles, substep};
+    return (struct tl_particle_kernel){kick, particles, substep};
 }
 
-struct tl_move tl_verlet_leap(struct tl_particles *particles, const struct tl_verlet *substep)
+struct tl_particle_kernel tl_verlet_leap(struct tl_particles *particles, const struct tl_verlet *substep)
 {
-    return (struct tl_move){leap, particles, substep};
+    return (struct tl_particle_kernel){leap, particles, substep};
 }

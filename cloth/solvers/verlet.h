@@ -19,7 +19,7 @@
 /* One substep of h seconds with `forces` (N), which the moves below borrow. */
 struct tl_verlet {
     const vec3d *forces;
-    double gravity, keep, h; /* m/s^2, share of v that half the substep's drag leaves, s */
+    double gravity, damping_factor, h; /* m/s^2, share of v that half the substep's drag leaves, s */
 };
 struct tl_verlet tl_verlet_make(const vec3d *forces, double gravity, double drag, double h);
 
@@ -28,10 +28,10 @@ struct tl_verlet tl_verlet_make(const vec3d *forces, double gravity, double drag
 void tl_verlet_drift(struct tl_particles *particles, const struct tl_verlet *substep);
 
 /* What constraints moved x by, over h, is added to v; then v <- (v + h/2 a) exp(-drag h/2), with the forces
- * at the new x: what tl_energy_pull can do as it goes. */
-struct tl_move tl_verlet_kick(struct tl_particles *particles, const struct tl_verlet *substep);
+ * at the new x: what tl_energy_forces can do as it goes. */
+struct tl_particle_kernel tl_verlet_kick(struct tl_particles *particles, const struct tl_verlet *substep);
 
 /* The kick, and the drift of the next substep at once. */
-struct tl_move tl_verlet_leap(struct tl_particles *particles, const struct tl_verlet *substep);
+struct tl_particle_kernel tl_verlet_leap(struct tl_particles *particles, const struct tl_verlet *substep);
 
 #endif

@@ -11,11 +11,11 @@
 /* ---- Batches ---- */
 
 /* The places of one vertex of each element. */
-struct places {
+struct positions {
     double x[TL_BATCH], y[TL_BATCH], z[TL_BATCH];
 };
 
-TL_INLINE void load(const vec3d *x, const uint32_t *vertices, struct places *to)
+TL_INLINE void load(const vec3d *x, const uint32_t *vertices, struct positions *to)
 {
     for (int lane = 0; lane < TL_BATCH; lane++) {
         to->x[lane] = x[vertices[lane]].x;
@@ -24,27 +24,27 @@ TL_INLINE void load(const vec3d *x, const uint32_t *vertices, struct places *to)
     }
 }
 
-TL_INLINE void store(const struct places *from, const uint32_t *vertices, vec3d *x)
+TL_INLINE void store(const struct positions *from, const uint32_t *vertices, vec3d *x)
 {
     for (int lane = 0; lane < TL_BATCH; lane++)
         x[vertices[lane]] = (vec3d){from->x[lane], from->y[lane], from->z[lane]};
 }
 
-TL_INLINE vec3d at(const struct places *places, int lane)
+TL_INLINE vec3d at(const struct positions *positions, int lane)
 {
-    return (vec3d){places->x[lane], places->y[lane], places->z[lane]};
+    return (vec3d){positions->x[lane], positions->y[lane], positions->z[lane]};
 }
 
-TL_INLINE void put(struct places *places, int lane, vec3d v)
+TL_INLINE void put(struct positions *positions, int lane, vec3d v)
 {
-    places->x[lane] = v.x;
-    places->y[lane] = v.y;
-    places->z[lane] = v.z;
+    positions->x[lane] = v.x;
+    positions->y[lane] = v.y;
+    positions->z[lane] = v.z;
 }
 
-TL_INLINE void move(struct places *places, int lane, vec3d by, double share)
+TL_INLINE void move(struct positions *positions, int lane, vec3d by, double share)
 {
-    put(places, lane, vec3d_muladd(at(places, lane), by, share));
+    put(positions, lane, vec3d_muladd(at(positions, lane), by, share));
 }
 
 /* Batches of a run that are solved side by side. */
@@ -60,7 +60,7 @@ struct rows {
     _Alignas(TL_CACHE_LINE) double of[GROUP][3][TL_BATCH][4];
 };
 
-TL_INLINE void turn_in(const struct rows *rows, size_t count, struct corners *corners)
+TL_INLINE void deinterleave(const struct rows *rows, size_t count, struct corners *corners)
 {
     const double(*from)[4] = rows->of[0][0];
     double *x = corners->x[0][0], *y = corners->y[0][0], *z = corners->z[0][0];
@@ -72,7 +72,7 @@ TL_INLINE void turn_in(const struct rows *rows, size_t count, struct corners *co
 }
 
 /* The filling is z again: a loop that writes all four is wide. */
-TL_INLINE void turn_out(const struct corners *corners, size_t count, struct rows *rows)
+TL_INLINE void interleave(const struct corners *corners, size_t count, struct rows *rows)
 {
     double(*to)[4] = rows->of[0][0];
     const double *x = corners->x[0][0], *y = corners->y[0][0], *z = corners->z[0][0];
@@ -95,7 +95,7 @@ TL_INLINE vec3d corner_at(const struct corners *corners, size_t k, int i, int la
  * change, and scalar products follow from the first three. In stages: what one stage of a batch waits for,
  * roots and divisions, the same stage of the next batches need not. */
 struct membrane_work {
-    struct places u, v;
+    struct positions u, v;
     double uu[TL_BATCH], vv[TL_BATCH], uv[TL_BATCH];
     double c_u[TL_BATCH], c_v[TL_BATCH]; /* the whole push on row c: c_u u + c_v v */
     double d_u[TL_BATCH], d_v[TL_BATCH];
@@ -203,9 +203,9 @@ TL_INLINE void move_corners(const struct tl_preview_membrane *m, const struct me
 }
 
 /* Whether the metric's larger eigenvalue exceeds `most`. */
-TL_INLINE bool stretches(const struct membrane_work *work, int lane, double most)
+TL_INLINE bool stretches(const struct membrane_work *work, int lane, double max)
 {
-    double spare_u = most - work->uu[lane], spare_v = most - work->vv[lane], uv = work->uv[lane];
+    double spare_u = max - work->uu[lane], spare_v = max - work->vv[lane], uv = work->uv[lane];
     return (spare_u < 0) | (spare_v < 0) | (spare_u * spare_v < uv * uv);
 }
 
@@ -221,7 +221,7 @@ TL_INLINE struct group group_at(const struct tl_preview_membrane *membranes, siz
     return (struct group){membranes + first, left < GROUP ? left : GROUP};
 }
 
-TL_INLINE void fetch(const struct group *group, size_t k, const double *places, struct rows *rows)
+TL_INLINE void gather(const struct group *group, size_t k, const double *positions, struct rows *rows)
 {
     if (k >= group->count)
         return;
@@ -229,87 +229,87 @@ TL_INLINE void fetch(const struct group *group, size_t k, const double *places, 
         __builtin_prefetch((const char *)&group->membranes[k + GROUP] + line);
     for (int i = 0; i < 3; i++)
         for (int lane = 0; lane < TL_BATCH; lane++)
-            memcpy(rows->of[k][i][lane], &places[group->membranes[k].from[i][lane]],
+            memcpy(rows->of[k][i][lane], &positions[group->membranes[k].from[i][lane]],
                    sizeof rows->of[k][i][lane]);
 }
 
-TL_INLINE void put_back(const struct group *group, size_t k, const struct rows *rows, double *places)
+TL_INLINE void scatter(const struct group *group, size_t k, const struct rows *rows, double *positions)
 {
     for (int i = 0; i < 3 && k < group->count; i++)
         for (int lane = 0; lane < TL_BATCH; lane++)
-            memcpy(&places[group->membranes[k].from[i][lane]], rows->of[k][i][lane],
+            memcpy(&positions[group->membranes[k].from[i][lane]], rows->of[k][i][lane],
                    sizeof rows->of[k][i][lane]);
 }
 
 /* While a group waits for roots and divisions, the one before it is put back and the next one fetched: those
  * of a run share no vertex. */
-TL_CLONES static void solve_run(const struct tl_preview_membrane *membranes, size_t count, double most,
-                                double *places, bool (*seen)[TL_BATCH])
+TL_CLONES static void solve_run(const struct tl_preview_membrane *membranes, size_t count, double max,
+                                double *positions, bool (*seen)[TL_BATCH])
 {
     struct membrane_work work[GROUP];
     struct corners corners;
     struct rows in, out;
     struct group now = group_at(membranes, count, 0), before = {0};
     for (size_t k = 0; k < now.count; k++)
-        fetch(&now, k, places, &in);
+        gather(&now, k, positions, &in);
     for (size_t first = 0; first < count; first += GROUP) {
         const struct tl_preview_membrane *m = now.membranes;
         struct group next = group_at(membranes, count, first + GROUP);
-        turn_in(&in, now.count, &corners);
+        deinterleave(&in, now.count, &corners);
         for (size_t k = 0; k < now.count; k++)
             for (int lane = 0; lane < TL_BATCH; lane++)
                 measure(&m[k], &corners, k, lane, &work[k]);
         for (size_t k = 0; k < now.count && seen; k++)
             for (int lane = 0; lane < TL_BATCH; lane++)
-                seen[first + k][lane] = stretches(&work[k], lane, most);
+                seen[first + k][lane] = stretches(&work[k], lane, max);
         for (size_t k = 0; k < GROUP; k++) {
             for (int lane = 0; lane < TL_BATCH && k < now.count; lane++)
                 solve(&m[k], lane, &work[k]);
-            put_back(&before, k, &out, places);
-            fetch(&next, k, places, &in);
+            scatter(&before, k, &out, positions);
+            gather(&next, k, positions, &in);
         }
         for (size_t k = 0; k < now.count; k++)
             for (int lane = 0; lane < TL_BATCH; lane++)
                 move_corners(&m[k], &work[k], lane, k, &corners);
-        turn_out(&corners, now.count, &out);
+        interleave(&corners, now.count, &out);
         before = now;
         now = next;
     }
     for (size_t k = 0; k < before.count; k++)
-        put_back(&before, k, &out, places);
+        scatter(&before, k, &out, positions);
 }
 
 /* Out of the pulls' `places`. */
-TL_CLONES static void take_places(const double *places, struct tl_range range, vec3d *x)
+TL_CLONES static void read_positions(const double *positions, struct tl_range range, vec3d *x)
 {
     for (size_t i = range.from; i < range.to; i++)
-        x[i] = (vec3d){places[4 * i], places[4 * i + 1], places[4 * i + 2]};
+        x[i] = (vec3d){positions[4 * i], positions[4 * i + 1], positions[4 * i + 2]};
 }
 
 /* On the threads of a team: the batches of a run in any order, the runs one after the other. */
-static void solve_membranes(const struct tl_energy *energy, const struct tl_watch *watch, vec3d *x)
+static void solve_membranes(const struct tl_energy *energy, const struct tl_stretch_watch *watch, vec3d *x)
 {
-    double *places = energy->pulls.places;
-    struct tl_range mine = tl_my_part(energy->pulls.vertex_count, TL_PULLS_BLOCK);
-    tl_pulls_place(&energy->pulls, x, mine);
+    double *positions = energy->pairs.positions;
+    struct tl_range mine = tl_thread_range(energy->pairs.vertex_count, TL_PAIR_BLOCK);
+    tl_pair_forces_load_positions(&energy->pairs, x, mine);
 #pragma omp barrier
 
     size_t from = 0;
     for (size_t run = 0; run < energy->membrane_run_count; run++) {
         size_t end = energy->membrane_run_ends[run];
-        struct tl_range part = tl_my_part(end - from, 1);
-        solve_run(energy->previewed + from + part.from, part.to - part.from, watch ? watch->most : 0, places,
-                  watch ? watch->seen + from + part.from : NULL);
+        struct tl_range part = tl_thread_range(end - from, 1);
+        solve_run(energy->previewed + from + part.from, part.to - part.from, watch ? watch->max : 0,
+                  positions, watch ? watch->seen + from + part.from : NULL);
         from = end;
 #pragma omp barrier
     }
-    take_places(places, mine, x);
+    read_positions(positions, mine, x);
 #pragma omp barrier
 }
 
 /* The three components of the curvature: vectors, linear in the positions. */
 TL_INLINE void solve_curvature(const struct tl_bend *bend, int row, int lane,
-                               struct places x[TL_BEND_STENCIL])
+                               struct positions x[TL_BEND_STENCIL])
 {
     vec3d curvature = {0};
     for (int i = 0; i < TL_BEND_STENCIL; i++)
@@ -322,7 +322,7 @@ TL_INLINE void solve_curvature(const struct tl_bend *bend, int row, int lane,
 TL_CLONES static void solve_bend_run(const struct tl_bend *bends, size_t count, vec3d *particles)
 {
     for (const struct tl_bend *bend = bends; bend < bends + count; bend++) {
-        struct places x[TL_BEND_STENCIL];
+        struct positions x[TL_BEND_STENCIL];
         for (int i = 0; i < TL_BEND_STENCIL; i++)
             load(particles, bend->vertices[i], &x[i]);
         for (int row = 0; row < 3; row++)
@@ -338,7 +338,7 @@ static void solve_bends(const struct tl_energy *energy, vec3d *x)
     size_t from = 0;
     for (size_t run = 0; run < energy->bend_run_count; run++) {
         size_t end = energy->bend_run_ends[run];
-        struct tl_range part = tl_my_part(end - from, 1);
+        struct tl_range part = tl_thread_range(end - from, 1);
         solve_bend_run(energy->bends + from + part.from, part.to - part.from, x);
         from = end;
 #pragma omp barrier
@@ -360,13 +360,13 @@ void tl_xpbd_solve_link(const struct tl_link *link, struct tl_particles *particl
 }
 
 void tl_xpbd_solve(const struct tl_energy *energy, struct tl_particles *particles,
-                   const struct tl_watch *watch)
+                   const struct tl_stretch_watch *watch)
 {
 #pragma omp parallel if (particles->count >= TL_PARALLEL_VERTICES)
     {
         unsigned denormals = tl_denormals_off();
         solve_membranes(energy, watch, particles->x);
-        if (!energy->bends_as_force)
+        if (!energy->bending_is_force)
             solve_bends(energy, particles->x);
         tl_denormals_restore(denormals);
     }

@@ -24,23 +24,23 @@
 
 /* Which membranes were found stretched so that F turns something into more than sqrt(most) times its length.
  */
-struct tl_watch {
-    double most;
+struct tl_stretch_watch {
+    double max;
     bool (*seen)[TL_BATCH]; /* [membrane_count] batches */
 };
 
 /* Every membrane, bend and link once; `watch` may be NULL. */
 void tl_xpbd_solve(const struct tl_energy *energy, struct tl_particles *particles,
-                   const struct tl_watch *watch);
+                   const struct tl_stretch_watch *watch);
 /* The same in the opposite order, and at five times the cost: see tl_xpbd_step. */
-void tl_xpbd_solve_back(const struct tl_energy *energy, struct tl_particles *particles);
+void tl_xpbd_solve_backward(const struct tl_energy *energy, struct tl_particles *particles);
 
 /* Solving a constraint is the nearest point in the metric of the masses, a symmetric map in the linear case
  * with eigenvalues in (0, 1]. One sweep is a product of such maps A, which is not symmetric: complex
  * eigenvalues a of A make the substep's z^2 - 2 a z + a = 0 leave the unit circle, and on meshes of needles,
  * where stretch and shear share no directions, that was seen to grow. Forth and back again is A A^T,
  * symmetric: |z|^2 = a <= 1, stable at any step. Each constraint is then solved twice, so with half its
- * stiffness: the step (s) that tl_energy_set is to be given. */
+ * stiffness: the step (s) that tl_energy_set_preview is to be given. */
 static inline double tl_xpbd_step(double h, bool back)
 {
     return back ? h / M_SQRT2 : h;

@@ -45,7 +45,7 @@ static inline double shadow_slope(const tl_cloth *cloth)
     struct tl_energies energies = tl_cloth_energies(cloth);
     const struct tl_particles *p = &cloth->particles;
     vec3d *forces = TL_NEW_ARRAY(vec3d, p->count);
-    tl_energy_forces(&cloth->energy, &cloth->fabric, p->count, p->x, forces);
+    tl_energy_evaluate(&cloth->energy, &cloth->fabric, p->count, p->x, forces);
     double slope = 2 * energies.elastic + energies.potential; /* gravity's is linear: 2 U - U */
     for (size_t i = 0; i < p->count; i++)
         slope += p->w[i] > 0 ? vec3d_dot(p->x[i], forces[i]) : 0;
@@ -130,7 +130,7 @@ static inline double shadow_second_order(const tl_cloth *cloth, double h)
         forces[k] = TL_NEW_ARRAY(vec3d, p->count);
         for (size_t i = 0; i < p->count; i++)
             x[i] = vec3d_muladd(p->x[i], p->v[i], p->w[i] > 0 ? (k - 1) * seconds : 0);
-        tl_energy_forces(&cloth->energy, &cloth->fabric, p->count, x, forces[k]);
+        tl_energy_evaluate(&cloth->energy, &cloth->fabric, p->count, x, forces[k]);
     }
     for (size_t i = 0; i < p->count; i++) {
         vec3d force = forces[1][i];

@@ -1,9 +1,9 @@
 /* The same bits every time and at any number of threads, under every solver: an FNV-1a hash of all positions,
  * frame by frame. The hashes that test_threads prints are those of a Debug build, too. */
 #include "cloth/mesh/threads.h"
-#include "cloth/solvers/implicit/implicit_matrix.h"
+#include "cloth/solvers/implicit/stiffness.h"
 #include "cloth/state.h"
-#include "cloth/tangents/frames.h"
+#include "cloth/tangents/tangent_frames.h"
 #include "tests/cloth/bodies.h"
 #include "tests/cloth/sheets.h"
 #include "tests/testing.h"
@@ -25,7 +25,7 @@ struct run {
     tl_mesh sphere;
     tl_collider *collider;
     tl_cloth *cloth;
-    tl_frames *frames;
+    tl_tangent_frames *frames;
 };
 
 static void begin_at(struct run *run, int solver, int cells, vec3s (*place)(double u, double v))
@@ -41,7 +41,7 @@ static void begin_at(struct run *run, int solver, int cells, vec3s (*place)(doub
     run->collider = tl_collider_create(&run->sphere, true, &error);
     run->cloth = tl_cloth_create(&run->garment, &fabric, &params, &error);
     assert_non_null(run->cloth);
-    run->frames = tl_frames_create(&run->garment.model.mesh, tl_cloth_weld(run->cloth));
+    run->frames = tl_tangent_frames_create(&run->garment.model.mesh, tl_cloth_weld(run->cloth));
 }
 
 static void begin(struct run *run, int solver, int cells)
@@ -64,7 +64,7 @@ static void play(struct run *run, int frames, uint64_t *hashes)
         tl_collider_move(run->collider, body);
         assert_ok(tl_cloth_step(run->cloth, run->collider, &error), error);
         tl_cloth_positions(run->cloth, positions);
-        tl_frames_update(run->frames, positions, normals, tangents);
+        tl_tangent_frames_update(run->frames, positions, normals, tangents);
         hashes[frame] = tl_hash(TL_HASH_START, positions, count * sizeof *positions);
         hashes[frame] = tl_hash(hashes[frame], normals, count * sizeof *normals);
         hashes[frame] = tl_hash(hashes[frame], tangents, count * sizeof *tangents);
@@ -77,7 +77,7 @@ static void play(struct run *run, int frames, uint64_t *hashes)
 
 static void end(struct run *run)
 {
-    tl_frames_destroy(&run->frames);
+    tl_tangent_frames_destroy(&run->frames);
     tl_cloth_destroy(&run->cloth);
     tl_collider_destroy(&run->collider);
     tl_mesh_release(&run->sphere);
@@ -92,7 +92,7 @@ static void test_threads(void **state)
     for (int solver = 0; solver < TL_CLOTH_SOLVER_COUNT; solver++) {
         const int cells = solver == TL_CLOTH_SETTLE ? 72 : 174;
         assert_true((cells + 1) * (cells + 1) >
-                    (solver == TL_CLOTH_SETTLE ? TL_SERIAL : TL_PARALLEL_VERTICES));
+                    (solver == TL_CLOTH_SETTLE ? TL_PARALLEL_ROWS : TL_PARALLEL_VERTICES));
         uint64_t hashes[TL_COUNT(counts)][FRAMES] = {0};
         for (size_t i = 0; i < TL_COUNT(counts); i++) {
             struct run run;
@@ -183,7 +183,7 @@ static void test_stretched_start(void **state)
     for (int i = 0; i < 2; i++)
         tl_collider_move(run.collider, run.sphere.positions);
     tl_cloth_reset(run.cloth);
-    tl_frames_forget(run.frames);
+    tl_tangent_frames_reset(run.frames);
     play(&run, FRAMES, again);
     assert_memory_equal(first, again, sizeof again);
     end(&run);

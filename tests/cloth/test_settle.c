@@ -64,7 +64,7 @@ static tl_cloth *hang(const tl_garment *garment, int solver, double stop_speed)
     params.cg_tolerance = 1e-3;
     params.cg_iterations = 1000;
     tl_cloth *cloth = cloth_make(garment, &fabric, &params);
-    const struct tl_advance advance = {.drag = 4, .agreement = 1};
+    const struct tl_advance_params advance = {.drag = 4, .contact_budget = 1};
     for (int frame = 0; frame < 900; frame++) {
         assert_ok(tl_cloth_advance(cloth, NULL, &advance, &error), error);
         if (frame > 30 && tl_cloth_max_speed(cloth) < stop_speed)

@@ -75,8 +75,8 @@ const struct tl_invariant tl_invariants[] = {
      "half, or twice what the solver is told to keep; when put on 1, and later a quarter more than then; "
      "what a budget hurries, 1; what a hand holds, three times what it yields at (TL_HAND_STRAIN); what a "
      "moving "
-     "wearer drags, until it slips (TL_SNAG_STRAIN), and what it has caught, until it is refused "
-     "(TL_CLOTH_MOST_STRAIN)",
+     "wearer drags, until it slips (TL_CAUGHT_STRAIN), and what it has caught, until it is refused "
+     "(TL_CLOTH_MAX_STRAIN)",
      false, tl_measure_strain},
     {"cloth.stretch",
      "the weave as a whole is neither stretched nor crushed: root mean square of the edges' strains",

@@ -33,18 +33,18 @@ static double energy_of(const struct tl_cloth_report *report)
 }
 
 /* A wearer that moves drags along what is between its parts: at the end of every step what is strained beyond
- * TL_SNAG_STRAIN slips, so that by then nothing is (a skirt on a walking man comes to 1.43; that this is so
+ * TL_CAUGHT_STRAIN slips, so that by then nothing is (a skirt on a walking man comes to 1.43; that this is so
  * of a few edges only, cloth.stretch sees to). What is caught between two surfaces is pushed out after that,
  * and goes with an arm in the frame between. */
 static double strain_bound(const struct tl_checked_cloth *cloth)
 {
     double draped = DRAPED_STRAIN;
     if (cloth->report.caught_count > 0)
-        draped = TL_CLOTH_MOST_STRAIN;
+        draped = TL_CLOTH_MAX_STRAIN;
     else if (cloth->is_held)
         draped = HELD_STRAIN;
     else if (cloth->is_dragged)
-        draped = TL_SNAG_STRAIN;
+        draped = TL_CAUGHT_STRAIN;
     else if (cloth->is_hurried)
         draped = HURRIED_STRAIN;
     double kept = fmax(draped, 2 * cloth->strain_limit);
@@ -70,7 +70,7 @@ void tl_measure_stretch(const struct tl_checked *checked, struct tl_finding *fin
     if (!cloth)
         return;
     finding->bound = fmax(USUAL_STRAIN, cloth->strain_limit);
-    tl_finding_add(finding, cloth->report.usual_strain);
+    tl_finding_add(finding, cloth->report.rms_strain);
     tl_finding_place(finding, "garment: root mean square over %zu edges", cloth->report.edge_count);
 }
 

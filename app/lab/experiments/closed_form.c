@@ -94,10 +94,10 @@ double tl_tube_slack(const struct tl_tube *tube, const struct tl_cloth_fabric *f
     for (int row = 1; row <= tube->row_count; row++) {
         double above = tl_tube_row_height(tube, row - 1) / 2;
         double under = row < tube->row_count ? tl_tube_row_height(tube, row) / 2 : 0;
-        double area = fmax(width * (above + under), TL_CLOTH_LEAST_MASS * mean);
+        double area = fmax(width * (above + under), TL_CLOTH_MIN_MASS * mean);
         double tension = fabric->areal_density * fabs(gravity) * width * (below - above);
         slack += fmin(h * h * tension / (fabric->areal_density * area),
-                      TL_CLOTH_MOST_STRAIN * hypot(width, 2 * above));
+                      TL_CLOTH_MAX_STRAIN * hypot(width, 2 * above));
         below -= 2 * above;
     }
     return slack;

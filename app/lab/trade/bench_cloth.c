@@ -7,7 +7,7 @@
 #include "app/measure/cost.h"
 #include "assets/avatar.h"
 #include "cloth/mesh/topology.h"
-#include "cloth/tangents/frames.h"
+#include "cloth/tangents/tangent_frames.h"
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
@@ -157,18 +157,18 @@ static void run_frames(struct bench *bench, int size)
     vec3s *normals = TL_NEW_ARRAY(vec3s, mesh->vertex_count);
     vec4s *tangents = TL_NEW_ARRAY(vec4s, mesh->vertex_count);
     tl_weld_positions(mesh->positions, mesh->vertex_count, weld);
-    tl_frames *frames = tl_frames_create(mesh, weld);
+    tl_tangent_frames *frames = tl_tangent_frames_create(mesh, weld);
     double best = INFINITY, spent = 0;
     omp_set_num_threads(1);
     while (spent < ROUNDS * bench->plan.turn_ms) {
         struct tl_stopwatch watch = tl_stopwatch_start();
-        tl_frames_update(frames, mesh->positions, normals, tangents);
+        tl_tangent_frames_update(frames, mesh->positions, normals, tangents);
         double taken = tl_stopwatch_read(&watch).cpu_ms;
         best = fmin(best, taken);
         spent += taken;
     }
     bench->frames_ms[size] = best;
-    tl_frames_destroy(&frames);
+    tl_tangent_frames_destroy(&frames);
     free(weld);
     free(normals);
     free(tangents);

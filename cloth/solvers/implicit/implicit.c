@@ -9,7 +9,7 @@
 #define ROUNDS 8
 /* Iterations that all further rounds may take in any case: in motion contact changes with every step anyway;
  * at rest, when solves are short, it must agree. */
-#define AGREEMENT_LEAST 30
+#define MIN_CONTACT_ITERATIONS 30
 /* Times that a step is linearised, and then halved, while it would gain energy. */
 #define LINEARISED 4
 #define HALVINGS   6
@@ -18,17 +18,17 @@ struct tl_implicit {
     size_t count;
     struct tl_stiffness stiffness;
     tl_factor *factor;
-    struct tl_solve_space space;
-    struct tl_filter *filters;
-    struct tl_touch *touches;
-    struct tl_press *presses;   /* [the contacts' probe_count] */
-    double *inertia, *resisted; /* N/m: mu, and with the friction of what slips */
-    vec3d *push;                /* N: inertia and gravity */
-    vec3d *load, *resisted_load;
-    vec3d *elastic; /* N */
-    vec3d *given;   /* m, the filtered parts of the step */
-    vec3d *step;    /* m */
-    vec3d *at;      /* m, positions where the forces are linearised, and of a trial */
+    struct tl_conjugate_gradient_space space;
+    struct tl_motion_filter *filters;
+    struct tl_contact_constraint *constraints;
+    struct tl_penalty_contact *penalties;    /* [the contacts' sample_count] */
+    double *inertia, *inertia_with_friction; /* N/m: mu, and with the friction of what slips */
+    vec3d *inertial_load;                    /* N: inertia and gravity */
+    vec3d *load, *load_with_friction;
+    vec3d *elastic;    /* N */
+    vec3d *prescribed; /* m, the filtered parts of the step */
+    vec3d *step;       /* m */
+    vec3d *at;         /* m, positions where the forces are linearised, and of a trial */
 };
 
 tl_implicit *tl_implicit_create(const struct tl_implicit_problem *problem,
@@ -40,17 +40,17 @@ tl_implicit *tl_implicit_create(const struct tl_implicit_problem *problem,
     implicit->stiffness = tl_stiffness_build(problem->energy, problem->fabric, &problem->springs, count);
     implicit->factor = tl_factor_create(problem->energy, problem->fabric, &problem->springs,
                                         &implicit->stiffness, particles->w, problem->h);
-    implicit->space = tl_solve_space_create(count);
-    implicit->filters = TL_NEW_ARRAY(struct tl_filter, count);
-    implicit->touches = TL_NEW_ARRAY(struct tl_touch, count);
-    implicit->presses = TL_NEW_ARRAY(struct tl_press, problem->contacts->probe_count);
+    implicit->space = tl_conjugate_gradient_space_create(count);
+    implicit->filters = TL_NEW_ARRAY(struct tl_motion_filter, count);
+    implicit->constraints = TL_NEW_ARRAY(struct tl_contact_constraint, count);
+    implicit->penalties = TL_NEW_ARRAY(struct tl_penalty_contact, problem->contacts->sample_count);
     implicit->inertia = TL_NEW_ARRAY(double, count);
-    implicit->resisted = TL_NEW_ARRAY(double, count);
-    implicit->push = TL_NEW_ARRAY(vec3d, count);
+    implicit->inertia_with_friction = TL_NEW_ARRAY(double, count);
+    implicit->inertial_load = TL_NEW_ARRAY(vec3d, count);
     implicit->load = TL_NEW_ARRAY(vec3d, count);
-    implicit->resisted_load = TL_NEW_ARRAY(vec3d, count);
+    implicit->load_with_friction = TL_NEW_ARRAY(vec3d, count);
     implicit->elastic = TL_NEW_ARRAY(vec3d, count);
-    implicit->given = TL_NEW_ARRAY(vec3d, count);
+    implicit->prescribed = TL_NEW_ARRAY(vec3d, count);
     implicit->step = TL_NEW_ARRAY(vec3d, count);
     implicit->at = TL_NEW_ARRAY(vec3d, count);
     return implicit;
@@ -63,10 +63,19 @@ void tl_implicit_destroy(tl_implicit **handle)
         return;
     tl_stiffness_release(&implicit->stiffness);
     tl_factor_destroy(&implicit->factor);
-    tl_solve_space_release(&implicit->space);
-    void *const arrays[] = {implicit->presses,  implicit->filters, implicit->touches, implicit->inertia,
-                            implicit->resisted, implicit->push,    implicit->load,    implicit->resisted_load,
-                            implicit->elastic,  implicit->given,   implicit->step,    implicit->at};
+    tl_conjugate_gradient_space_release(&implicit->space);
+    void *const arrays[] = {implicit->penalties,
+                            implicit->filters,
+                            implicit->constraints,
+                            implicit->inertia,
+                            implicit->inertia_with_friction,
+                            implicit->inertial_load,
+                            implicit->load,
+                            implicit->load_with_friction,
+                            implicit->elastic,
+                            implicit->prescribed,
+                            implicit->step,
+                            implicit->at};
     for (size_t i = 0; i < TL_COUNT(arrays); i++)
         free(arrays[i]);
     free(implicit);
@@ -79,11 +88,11 @@ static double add_hand(const struct tl_hand *hand, const vec3d *x, vec3d *forces
 {
     if (hand->particle == TL_NONE)
         return 0;
-    vec3d way = vec3d_sub(hand->target, x[hand->particle]);
-    double length = vec3d_norm(way), k = hand->stiffness, most = hand->most_force;
-    double force = fmin(k * length, most);
-    forces[hand->particle] = vec3d_muladd(forces[hand->particle], vec3d_unit_or(way, (vec3d){0}), force);
-    return force < most ? 0.5 * k * length * length : most * length - 0.5 * most * most / k;
+    vec3d inertial = vec3d_sub(hand->target, x[hand->particle]);
+    double length = vec3d_norm(inertial), k = hand->stiffness, max = hand->max_force;
+    double force = fmin(k * length, max);
+    forces[hand->particle] = vec3d_muladd(forces[hand->particle], vec3d_unit_or(inertial, (vec3d){0}), force);
+    return force < max ? 0.5 * k * length * length : max * length - 0.5 * max * max / k;
 }
 
 /* k/2 (length - rest)^2. */
@@ -101,7 +110,7 @@ static double add_spring(const struct tl_link *link, double stiffness, const vec
 static double elastic_energy(const struct tl_implicit_problem *problem, size_t count, const vec3d *x,
                              vec3d *forces)
 {
-    double energy = tl_energy_forces(problem->energy, problem->fabric, count, x, forces);
+    double energy = tl_energy_evaluate(problem->energy, problem->fabric, count, x, forces);
     for (size_t i = 0; i < problem->springs.count; i++)
         energy += add_spring(&problem->springs.links[i], problem->springs.stiffness, x, forces);
     return energy + add_hand(&problem->hand, x, forces);
@@ -132,11 +141,11 @@ static double energy_at(tl_implicit *implicit, const struct tl_implicit_problem 
 
 /* ---- The linear system ---- */
 
-static vec3d inertial_way(const struct tl_implicit_problem *problem, vec3d v)
+static vec3d inertial_step(const struct tl_implicit_problem *problem, vec3d v)
 {
-    vec3d way = vec3d_scale(v, problem->h);
-    way.y -= problem->gravity * problem->h * problem->h;
-    return vec3d_scale(way, 1 / (1 + problem->drag * problem->h));
+    vec3d inertial = vec3d_scale(v, problem->h);
+    inertial.y -= problem->gravity * problem->h * problem->h;
+    return vec3d_scale(inertial, 1 / (1 + problem->drag * problem->h));
 }
 
 static double inertia_of(const struct tl_implicit_problem *problem, double inverse_mass)
@@ -150,20 +159,20 @@ static void begin(tl_implicit *implicit, const struct tl_implicit_problem *probl
 {
     for (size_t i = 0; i < implicit->count; i++) {
         double w = particles->w[i];
-        vec3d way = w > 0 ? inertial_way(problem, particles->v[i]) : (vec3d){0};
+        vec3d inertial = w > 0 ? inertial_step(problem, particles->v[i]) : (vec3d){0};
         implicit->inertia[i] = inertia_of(problem, w);
-        implicit->push[i] = vec3d_scale(way, implicit->inertia[i]);
-        implicit->step[i] = way;
+        implicit->inertial_load[i] = vec3d_scale(inertial, implicit->inertia[i]);
+        implicit->step[i] = inertial;
         implicit->at[i] = particles->previous[i];
-        implicit->touches[i].near = false;
+        implicit->constraints[i].has_plane = false;
         if (w > 0)
-            tl_touch_begin(&implicit->touches[i], problem->contacts, &problem->contact, i,
-                           particles->previous[i], way);
+            tl_contact_constraint_begin(&implicit->constraints[i], problem->contacts, &problem->contact, i,
+                                        particles->previous[i], inertial);
     }
 }
 
 /* Adds the hand's stiffness, of its two the lesser: across what it pulls. */
-static void linearise_pull(tl_implicit *implicit, const struct tl_implicit_problem *problem,
+static void linearise_hand(tl_implicit *implicit, const struct tl_implicit_problem *problem,
                            const struct tl_particles *particles)
 {
     const struct tl_hand *hand = &problem->hand;
@@ -171,12 +180,12 @@ static void linearise_pull(tl_implicit *implicit, const struct tl_implicit_probl
     if (i == TL_NONE || !(particles->w[i] > 0))
         return;
     double length = vec3d_distance(hand->target, implicit->at[i]);
-    double stiffness = fmin(hand->stiffness, hand->most_force / length);
+    double stiffness = fmin(hand->stiffness, hand->max_force / length);
     implicit->inertia[i] = inertia_of(problem, particles->w[i]) + stiffness;
-    implicit->load[i] = vec3d_muladd(implicit->load[i], implicit->given[i], stiffness);
+    implicit->load[i] = vec3d_muladd(implicit->load[i], implicit->prescribed[i], stiffness);
 }
 
-static double stiffest(const struct tl_cloth_fabric *fabric)
+static double max_stiffness(const struct tl_cloth_fabric *fabric)
 {
     return fmax(fmax(fabric->stretch_weft, fabric->stretch_warp), fabric->shear);
 }
@@ -188,61 +197,62 @@ static void linearise(tl_implicit *implicit, const struct tl_implicit_problem *p
     tl_stiffness_assemble(&implicit->stiffness, problem->energy, problem->fabric, &problem->springs,
                           implicit->at);
     for (size_t i = 0; i < implicit->count; i++)
-        implicit->given[i] = vec3d_sub(implicit->at[i], particles->previous[i]);
-#pragma omp parallel for schedule(static) if (implicit->count > TL_SERIAL)
+        implicit->prescribed[i] = vec3d_sub(implicit->at[i], particles->previous[i]);
+#pragma omp parallel for schedule(static) if (implicit->count > TL_PARALLEL_ROWS)
     for (size_t i = 0; i < implicit->count; i++) {
-        vec3d carried = tl_stiffness_row(&implicit->stiffness, i, implicit->given);
-        implicit->load[i] = vec3d_add(vec3d_add(implicit->push[i], implicit->elastic[i]), carried);
+        vec3d carried = tl_stiffness_row(&implicit->stiffness, i, implicit->prescribed);
+        implicit->load[i] = vec3d_add(vec3d_add(implicit->inertial_load[i], implicit->elastic[i]), carried);
     }
-    linearise_pull(implicit, problem, particles);
-    tl_presses_add(implicit->presses, problem->contacts, &implicit->stiffness, implicit->load);
+    linearise_hand(implicit, problem, particles);
+    tl_penalty_contacts_add(implicit->penalties, problem->contacts, &implicit->stiffness, implicit->load);
 }
 
 /* What each particle may do, what of its step is given, and what friction resists. */
-static void apply_touches(tl_implicit *implicit, const struct tl_particles *particles)
+static void apply_constraints(tl_implicit *implicit, const struct tl_particles *particles)
 {
     for (size_t i = 0; i < implicit->count; i++) {
-        const struct tl_touch *touch = &implicit->touches[i];
-        struct tl_filter *filter = &implicit->filters[i];
-        *filter = tl_touch_filter(touch, &implicit->given[i]);
+        const struct tl_contact_constraint *constraint = &implicit->constraints[i];
+        struct tl_motion_filter *filter = &implicit->filters[i];
+        *filter = tl_contact_constraint_filter(constraint, &implicit->prescribed[i]);
         if (!(particles->w[i] > 0)) {
-            filter->freedom = TL_MOVES_NOT;
-            implicit->given[i] = vec3d_sub(particles->x[i], particles->previous[i]);
+            filter->allowed = TL_DOF_NONE;
+            implicit->prescribed[i] = vec3d_sub(particles->x[i], particles->previous[i]);
         }
-        double resistance = filter->freedom == TL_MOVES_ACROSS ? touch->resistance : 0;
-        implicit->resisted[i] = implicit->inertia[i] + resistance;
-        implicit->resisted_load[i] = vec3d_muladd(implicit->load[i], touch->plane.motion, resistance);
+        double resistance = filter->allowed == TL_DOF_TANGENTIAL ? constraint->resistance : 0;
+        implicit->inertia_with_friction[i] = implicit->inertia[i] + resistance;
+        implicit->load_with_friction[i] =
+            vec3d_muladd(implicit->load[i], constraint->plane.motion, resistance);
     }
 }
 
 /* Keeps what the step does where it is free, and gives the rest. */
-static void impose_given(tl_implicit *implicit)
+static void impose_prescribed(tl_implicit *implicit)
 {
     for (size_t i = 0; i < implicit->count; i++) {
-        const struct tl_filter *filter = &implicit->filters[i];
-        vec3d missing = vec3d_sub(implicit->given[i], implicit->step[i]);
-        if (filter->freedom == TL_MOVES_NOT)
-            implicit->step[i] = implicit->given[i];
-        else if (filter->freedom == TL_MOVES_ACROSS)
+        const struct tl_motion_filter *filter = &implicit->filters[i];
+        vec3d missing = vec3d_sub(implicit->prescribed[i], implicit->step[i]);
+        if (filter->allowed == TL_DOF_NONE)
+            implicit->step[i] = implicit->prescribed[i];
+        else if (filter->allowed == TL_DOF_TANGENTIAL)
             implicit->step[i] =
                 vec3d_muladd(implicit->step[i], filter->direction, vec3d_dot(missing, filter->direction));
     }
 }
 
 /* Whether every particle does what was assumed. */
-static bool judge_touches(tl_implicit *implicit, const struct tl_implicit_problem *problem,
-                          const struct tl_system *system)
+static bool update_constraints(tl_implicit *implicit, const struct tl_implicit_problem *problem,
+                               const struct tl_linear_system *system)
 {
-    struct tl_system without_friction = *system;
+    struct tl_linear_system without_friction = *system;
     without_friction.inertia = implicit->inertia;
     without_friction.load = implicit->load;
     bool agreed = true;
-#pragma omp parallel for schedule(static) reduction(&& : agreed) if (implicit->count > TL_SERIAL)
+#pragma omp parallel for schedule(static) reduction(&& : agreed) if (implicit->count > TL_PARALLEL_ROWS)
     for (size_t i = 0; i < implicit->count; i++)
-        if (implicit->touches[i].near) {
-            vec3d reaction = tl_solve_reaction(&without_friction, i, implicit->step);
-            bool same = tl_touch_judge(&implicit->touches[i], &problem->contact, implicit->step[i], reaction,
-                                       implicit->inertia[i]);
+        if (implicit->constraints[i].has_plane) {
+            vec3d reaction = tl_reaction_at(&without_friction, i, implicit->step);
+            bool same = tl_contact_constraint_update(&implicit->constraints[i], &problem->contact,
+                                                     implicit->step[i], reaction, implicit->inertia[i]);
             agreed = agreed && same;
         }
     return agreed;
@@ -257,7 +267,7 @@ static double residual_floor(const tl_implicit *implicit, const struct tl_implic
     for (size_t i = 0; i < implicit->count; i++)
         inertia += implicit->inertia[i];
     return inertia * (still_m * still_m + rounding_m * rounding_m) +
-           (double)implicit->count * stiffest(problem->fabric) * rounding_m * rounding_m;
+           (double)implicit->count * max_stiffness(problem->fabric) * rounding_m * rounding_m;
 }
 
 /* What only falls and flies keeps its momentum to rounding, however little is solved: elastic forces add up
@@ -267,12 +277,12 @@ static void keep_momentum(tl_implicit *implicit, const struct tl_implicit_proble
     vec3d missing = {0};
     double inertia = 0;
     bool free = problem->hand.particle == TL_NONE;
-    for (size_t i = 0; i < problem->contacts->probe_count && free; i++)
-        free = !implicit->presses[i].presses;
+    for (size_t i = 0; i < problem->contacts->sample_count && free; i++)
+        free = !implicit->penalties[i].active;
     for (size_t i = 0; i < implicit->count && free; i++) {
-        free = implicit->filters[i].freedom == TL_MOVES_FREELY;
-        missing =
-            vec3d_add(missing, vec3d_muladd(implicit->push[i], implicit->step[i], -implicit->inertia[i]));
+        free = implicit->filters[i].allowed == TL_DOF_ALL;
+        missing = vec3d_add(
+            missing, vec3d_muladd(implicit->inertial_load[i], implicit->step[i], -implicit->inertia[i]));
         inertia += implicit->inertia[i];
     }
     for (size_t i = 0; i < implicit->count && free; i++)
@@ -281,42 +291,43 @@ static void keep_momentum(tl_implicit *implicit, const struct tl_implicit_proble
 
 /* Solves until contact agrees; adds to `total`. */
 static void solve(tl_implicit *implicit, const struct tl_implicit_problem *problem,
-                  const struct tl_particles *particles, struct tl_solve_result *total)
+                  const struct tl_particles *particles, struct tl_conjugate_gradient_result *total)
 {
-    struct tl_system system = {.stiffness = &implicit->stiffness,
-                               .factor = implicit->factor,
-                               .inertia = implicit->resisted,
-                               .load = implicit->resisted_load,
-                               .filters = implicit->filters,
-                               .tolerance = problem->tolerance,
-                               .floor = residual_floor(implicit, problem)};
+    struct tl_linear_system system = {.stiffness = &implicit->stiffness,
+                                      .factor = implicit->factor,
+                                      .inertia = implicit->inertia_with_friction,
+                                      .load = implicit->load_with_friction,
+                                      .filters = implicit->filters,
+                                      .tolerance = problem->tolerance,
+                                      .floor = residual_floor(implicit, problem)};
     bool agreed = false;
-    int left = problem->most_iterations;
+    int left = problem->max_iterations;
     for (int round = 0; round < ROUNDS && !agreed && left > 0; round++) {
-        apply_touches(implicit, particles);
-        impose_given(implicit);
-        system.most_iterations = left;
-        struct tl_solve_result result = tl_solve(&system, &implicit->space, implicit->given, implicit->step);
+        apply_constraints(implicit, particles);
+        impose_prescribed(implicit);
+        system.max_iterations = left;
+        struct tl_conjugate_gradient_result result =
+            tl_conjugate_gradient_solve(&system, &implicit->space, implicit->prescribed, implicit->step);
         system.floor = result.goal; /* later rounds need no more than the first */
-        left = round == 0 ? (int)(problem->agreement * result.iterations) + AGREEMENT_LEAST
+        left = round == 0 ? (int)(problem->contact_budget * result.iterations) + MIN_CONTACT_ITERATIONS
                           : left - result.iterations;
         total->iterations += result.iterations;
         total->converged = total->converged && (result.converged || round > 0);
-        bool touches_agree = judge_touches(implicit, problem, &system);
-        agreed = tl_presses_judge(implicit->presses, problem->contacts, implicit->step, &implicit->stiffness,
-                                  implicit->load) &&
-                 touches_agree;
+        bool constraints_agree = update_constraints(implicit, problem, &system);
+        agreed = tl_penalty_contacts_update(implicit->penalties, problem->contacts, implicit->step,
+                                            &implicit->stiffness, implicit->load) &&
+                 constraints_agree;
     }
 }
 
 /* ---- A step ---- */
 
 /* at = previous + given + share (step - given). */
-static void place(tl_implicit *implicit, const struct tl_particles *particles, double share)
+static void set_trial(tl_implicit *implicit, const struct tl_particles *particles, double share)
 {
     for (size_t i = 0; i < implicit->count; i++)
         implicit->at[i] =
-            vec3d_add(particles->previous[i], vec3d_mix(implicit->given[i], implicit->step[i], share));
+            vec3d_add(particles->previous[i], vec3d_mix(implicit->prescribed[i], implicit->step[i], share));
 }
 
 /* The energy that a step may end with: what pins and contacts move does work of its own, so that their move
@@ -324,43 +335,44 @@ static void place(tl_implicit *implicit, const struct tl_particles *particles, d
 static double allowed_energy(tl_implicit *implicit, const struct tl_implicit_problem *problem,
                              const struct tl_particles *particles, double before)
 {
-    place(implicit, particles, 0);
+    set_trial(implicit, particles, 0);
     return fmax(before, energy_at(implicit, problem, particles, implicit->at));
 }
 
 /* Halves the step until it gains no energy; at last only what is given is left of it. */
 static void shorten(tl_implicit *implicit, const struct tl_implicit_problem *problem,
-                    const struct tl_particles *particles, double most)
+                    const struct tl_particles *particles, double max)
 {
     double share = 0.5;
     for (int halving = 1; halving < HALVINGS; halving++, share /= 2) {
-        place(implicit, particles, share);
-        if (energy_at(implicit, problem, particles, implicit->at) <= most)
+        set_trial(implicit, particles, share);
+        if (energy_at(implicit, problem, particles, implicit->at) <= max)
             return;
     }
-    place(implicit, particles, 0);
+    set_trial(implicit, particles, 0);
 }
 
 /* Linearises until no energy is gained; returns whether it had to be shortened. */
 static bool find_step(tl_implicit *implicit, const struct tl_implicit_problem *problem,
-                      const struct tl_particles *particles, double before, struct tl_solve_result *total)
+                      const struct tl_particles *particles, double before,
+                      struct tl_conjugate_gradient_result *total)
 {
-    double most = before;
+    double max = before;
     for (int times = 1;; times++) {
         linearise(implicit, problem, particles);
         solve(implicit, problem, particles, total);
         keep_momentum(implicit, problem);
-        place(implicit, particles, 1);
+        set_trial(implicit, particles, 1);
         double after = energy_at(implicit, problem, particles, implicit->at);
-        if (after > most && times == 1) {
-            most = allowed_energy(implicit, problem, particles, before);
-            place(implicit, particles, 1);
+        if (after > max && times == 1) {
+            max = allowed_energy(implicit, problem, particles, before);
+            set_trial(implicit, particles, 1);
             after = energy_at(implicit, problem, particles, implicit->at); /* and the forces there */
         }
-        if (after <= most)
+        if (after <= max)
             return false;
         if (times == LINEARISED) {
-            shorten(implicit, problem, particles, most);
+            shorten(implicit, problem, particles, max);
             return true;
         }
     }
@@ -370,10 +382,10 @@ void tl_implicit_step(tl_implicit *implicit, const struct tl_implicit_problem *p
                       struct tl_particles *particles, struct tl_implicit_tally *tally)
 {
     const double rounding = 1e-9;
-    struct tl_solve_result total = {.converged = true};
+    struct tl_conjugate_gradient_result total = {.converged = true};
     begin(implicit, problem, particles);
-    tl_presses_begin(implicit->presses, problem->contacts, &problem->contact, particles->previous,
-                     implicit->inertia, stiffest(problem->fabric));
+    tl_penalty_contacts_begin(implicit->penalties, problem->contacts, &problem->contact, particles->previous,
+                              implicit->inertia, max_stiffness(problem->fabric));
     double before =
         elastic_energy(problem, implicit->count, implicit->at, implicit->elastic) + kinetic_energy(particles);
     bool shortened = find_step(implicit, problem, particles, before * (1 + rounding), &total);

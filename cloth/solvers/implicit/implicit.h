@@ -1,12 +1,12 @@
 /* `settle`: backward Euler with one linearised step (Baraff and Witkin 1998, "Large Steps in Cloth
  * Simulation"): (mu + K) d = mu (y - x) + f(x),   mu = m (1 + drag h) / h^2,   y = x + (h v + h^2 g) / (1 +
- * drag h) by conjugate gradients (cloth/solvers/implicit/implicit_solve.h). What it comes to rest at does not
- * depend on the step: it is the exact equilibrium. Any stiffness and step stay finite.
+ * drag h) by conjugate gradients (cloth/solvers/implicit/conjugate_gradient.h). What it comes to rest at does
+ * not depend on the step: it is the exact equilibrium. Any stiffness and step stay finite.
  *
  * Its price: motion is damped by the step, the more the quicker it is, so a swing dies sooner than it should;
  * of first order in h.
  *
- * Contact (cloth/solvers/implicit/implicit_touch.h, cloth/solvers/implicit/implicit_press.h): planes are
+ * Contact (cloth/solvers/implicit/contact_constraint.h, cloth/solvers/implicit/penalty_contact.h): planes are
  * heeded while solving.
  *
  * Guard: where kinetic, elastic and gravity's energy together would rise, the step is linearised again at its
@@ -14,15 +14,15 @@
 #ifndef TOILE_CLOTH_SOLVERS_IMPLICIT_IMPLICIT_H
 #define TOILE_CLOTH_SOLVERS_IMPLICIT_IMPLICIT_H
 
-#include "cloth/solvers/implicit/implicit_press.h"
-#include "cloth/solvers/implicit/implicit_solve.h"
-#include "cloth/solvers/implicit/implicit_touch.h"
+#include "cloth/solvers/implicit/conjugate_gradient.h"
+#include "cloth/solvers/implicit/contact_constraint.h"
+#include "cloth/solvers/implicit/penalty_contact.h"
 
 /* The hand: a spring to a target with a bounded force. */
 struct tl_hand {
     uint32_t particle; /* TL_NONE: none */
     vec3d target;
-    double stiffness, most_force; /* N/m, N */
+    double stiffness, max_force; /* N/m, N */
 };
 
 /* One substep. */
@@ -34,9 +34,10 @@ struct tl_implicit_problem {
     struct tl_contacts *contacts;
     struct tl_contact_params contact;
     double gravity, drag, h;
-    double agreement; /* what further rounds of contact may take, as a share of the first; and a few more */
-    double tolerance; /* of conjugate gradients */
-    int most_iterations;
+    double
+        contact_budget; /* what further rounds of contact may take, as a share of the first; and a few more */
+    double tolerance;   /* of conjugate gradients */
+    int max_iterations;
 };
 
 /* What steps took. */

@@ -5,7 +5,7 @@
 #include "app/lab/stability/extremes_light.h"
 #include "cloth/mesh/topology.h"
 #include "cloth/state.h"
-#include "cloth/tangents/frames.h"
+#include "cloth/tangents/tangent_frames.h"
 #include "config/log.h"
 #include "config/memory.h"
 #include "render/frame/frame.h"
@@ -21,7 +21,7 @@ enum { WIDTH = 96, HEIGHT = 72 };
 struct stand {
     tl_gpu *gpu;
     struct tl_extreme_scene scene;
-    tl_frames *frames;
+    tl_tangent_frames *frames;
     struct tl_render_settings settings;
     tl_renderer *renderer, *fresh, *white, *white_shadowed;
     tl_environment even;
@@ -82,9 +82,9 @@ static struct stand *stand_up(const char *const *assignments, size_t count)
     tl_mesh *mesh = &stand->scene.mesh;
     uint32_t *weld = TL_NEW_ARRAY(uint32_t, mesh->vertex_count);
     tl_weld_positions(mesh->positions, mesh->vertex_count, weld);
-    stand->frames = tl_frames_create(mesh, weld);
+    stand->frames = tl_tangent_frames_create(mesh, weld);
     free(weld);
-    tl_frames_update(stand->frames, mesh->positions, mesh->normals, mesh->tangents);
+    tl_tangent_frames_update(stand->frames, mesh->positions, mesh->normals, mesh->tangents);
     stand->settings = settings_of(assignments, count);
     stand->frame = tl_extreme_frame(&stand->scene);
     draw(stand, &stand->renderer, &stand->frame, &stand->settings, &stand->image);
@@ -113,7 +113,7 @@ static void take_down(struct stand **handle)
     tl_renderer_destroy(&stand->white);
     tl_renderer_destroy(&stand->white_shadowed);
     tl_environment_release(&stand->even);
-    tl_frames_destroy(&stand->frames);
+    tl_tangent_frames_destroy(&stand->frames);
     tl_extreme_scene_release(&stand->scene);
     tl_gpu_destroy(&stand->gpu);
     free(stand);
@@ -490,7 +490,7 @@ static void move_curtain(struct stand *stand)
     for (size_t v = 0; v < mesh->vertex_count; v++)
         if (mesh->positions[v].y > 0.01f)
             mesh->positions[v].z += 0.15f * (1 - mesh->positions[v].y);
-    tl_frames_update(stand->frames, mesh->positions, mesh->normals, mesh->tangents);
+    tl_tangent_frames_update(stand->frames, mesh->positions, mesh->normals, mesh->tangents);
 }
 
 /* The back-end's bound is what tells stale from fresh. */

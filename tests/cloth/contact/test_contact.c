@@ -138,7 +138,7 @@ static double end_step(tl_cloth *cloth, const tl_collider *collider, size_t part
     struct tl_contacts *contacts = &cloth->contacts;
     cloth->particles.x[particle].y = 0.001;
     tl_contacts_begin(contacts, collider);
-    tl_contacts_renew(contacts, cloth->particles.x, thickness_m, 0);
+    tl_contacts_update(contacts, cloth->particles.x, thickness_m, 0);
     cloth->particles.x[particle].y = above_m;
     tl_contacts_enforce(contacts, &step, &cloth->particles);
     return cloth->particles.x[particle].y;

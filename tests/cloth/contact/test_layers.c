@@ -32,7 +32,7 @@ static void test_pairs(void **state)
     start[1] = (vec3d){0.001, 0, 0};
     x[1] = x[0];
     struct tl_repulsion repulsion = {0};
-    tl_repulsion_renew(&repulsion, COUNT, x, start, thickness);
+    tl_repulsion_update(&repulsion, COUNT, x, start, thickness);
     size_t expected = 0;
     for (size_t i = 0; i < COUNT; i++)
         for (size_t j = i + 1; j < COUNT; j++)
@@ -63,7 +63,7 @@ static void test_pair_is_parted(void **state)
     particles.previous[1] = (vec3d){0, 0.004, 0};
     particles.x[1] = (vec3d){0.001, 0.003, 0}; /* came nearer by about 1 mm, and slipped by about 1 mm */
     struct tl_repulsion repulsion = {0};
-    tl_repulsion_renew(&repulsion, 2, particles.x, start, thickness);
+    tl_repulsion_update(&repulsion, 2, particles.x, start, thickness);
     vec3d apart = particles.x[1];
     double depth = thickness - vec3d_norm(apart);
     vec3d normal = vec3d_scale(apart, 1 / vec3d_norm(apart));

@@ -97,7 +97,7 @@ static struct tl_cloth_fabric fabric_of(enum term term)
 
 static double forces_of(const tl_cloth *cloth, const vec3d *x, vec3d *out)
 {
-    return tl_energy_forces(&cloth->energy, &cloth->fabric, cloth->particles.count, x, out);
+    return tl_energy_evaluate(&cloth->energy, &cloth->fabric, cloth->particles.count, x, out);
 }
 
 /* Stretched, sheared, bent and turned, then every vertex moved by up to `by` metres. */
@@ -329,7 +329,7 @@ static void test_plain_loops_agree(void **state)
     vec3d *fast = TL_NEW_ARRAY(vec3d, count), *alone = TL_NEW_ARRAY(vec3d, count);
     vec3d *plain = TL_NEW_ARRAY(vec3d, count + 1);
     forces_of(cloth, cloth->particles.x, fast);
-    tl_energy_pull(&cloth->energy, &cloth->fabric, cloth->particles.x, alone, NULL);
+    tl_energy_forces(&cloth->energy, &cloth->fabric, cloth->particles.x, alone, NULL);
     plain_forces(cloth, plain);
     assert_memory_equal(fast, alone, count * sizeof *fast);
     double worst = 0;
@@ -359,7 +359,7 @@ static vec3d *places_after_frame(int threads, int solver, double bend, size_t *c
     fabric.bend_weft = fabric.bend_warp = bend;
     params.solver = solver;
     assert_ok(tl_cloth_set(cloth, &fabric, &params, &error), error);
-    assert_true(cloth->energy.bends_as_force == (bend < 1));
+    assert_true(cloth->energy.bending_is_force == (bend < 1));
     int before = omp_get_max_threads();
     omp_set_num_threads(threads);
     assert_ok(tl_cloth_step(cloth, NULL, &error), error);

@@ -1,6 +1,6 @@
 /* Welding and connectivity, on meshes small enough to check by hand. */
 #include "cloth/mesh/topology.h"
-#include "cloth/tangents/frames.h"
+#include "cloth/tangents/tangent_frames.h"
 #include "tests/testing.h"
 
 static void test_weld_is_bitwise_but_for_zero(void **state)

@@ -332,8 +332,8 @@ static struct frame_error measure_frame(tl_cloth *cloth, const tl_garment *garme
     double pull = shear * side * s * sqrt(2 * (1 + s)), power = 0;
     double longer = side * (sqrt(2 * (1 + sin(gamma + turn))) - sqrt(2 * (1 + sin(gamma - turn))));
     vec3d *forces = TL_NEW_ARRAY(vec3d, cloth->particles.count);
-    double energy =
-        tl_energy_forces(&cloth->energy, &cloth->fabric, cloth->particles.count, cloth->particles.x, forces);
+    double energy = tl_energy_evaluate(&cloth->energy, &cloth->fabric, cloth->particles.count,
+                                       cloth->particles.x, forces);
     for (size_t i = 0; i < cloth->pin_count; i++) {
         uint32_t p = cloth->pins[i].particle;
         double u = (double)garment->pattern[p].x, v = (double)garment->pattern[p].y;

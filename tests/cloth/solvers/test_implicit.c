@@ -55,10 +55,10 @@ static void test_matrix_is_derivative(void **state)
         p[i] = (vec3d){noise(&seed), noise(&seed), noise(&seed)};
     for (size_t i = 0; i < count; i++)
         x[i] = vec3d_muladd(cloth->particles.x[i], p[i], e);
-    tl_energy_forces(&cloth->energy, &fabric, count, x, plus);
+    tl_energy_evaluate(&cloth->energy, &fabric, count, x, plus);
     for (size_t i = 0; i < count; i++)
         x[i] = vec3d_muladd(cloth->particles.x[i], p[i], -e);
-    tl_energy_forces(&cloth->energy, &fabric, count, x, minus);
+    tl_energy_evaluate(&cloth->energy, &fabric, count, x, minus);
     double worst = 0, largest = 0;
     for (size_t i = 0; i < count; i++) {
         vec3d slope = vec3d_scale(vec3d_sub(minus[i], plus[i]), 0.5 / e);

@@ -256,11 +256,11 @@ static void run(tl_cloth *cloth, double gravity, double h, int steps)
 {
     for (int i = 0; i < steps; i++) {
         struct tl_particles *p = &cloth->particles;
-        tl_energy_forces(&cloth->energy, &cloth->fabric, p->count, p->x, cloth->forces);
+        tl_energy_evaluate(&cloth->energy, &cloth->fabric, p->count, p->x, cloth->forces);
         const struct tl_verlet substep = tl_verlet_make(cloth->forces, gravity, cloth->fabric.damping, h);
         tl_verlet_drift(p, &substep);
-        const struct tl_move kick = tl_verlet_kick(p, &substep);
-        tl_energy_pull(&cloth->energy, &cloth->fabric, p->x, cloth->forces, &kick);
+        const struct tl_particle_kernel kick = tl_verlet_kick(p, &substep);
+        tl_energy_forces(&cloth->energy, &cloth->fabric, p->x, cloth->forces, &kick);
     }
 }
 

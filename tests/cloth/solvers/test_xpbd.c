@@ -12,8 +12,8 @@
 static void predict(struct tl_particles *particles, double h)
 {
     const struct tl_prediction prediction = tl_prediction_make(NULL, 0, 0, h);
-    const struct tl_move move = tl_particles_prediction(particles, &prediction);
-    tl_particles_move(&move);
+    const struct tl_particle_kernel move = tl_prediction_kernel(particles, &prediction);
+    tl_particles_run(&move);
 }
 
 /* One spring, one substep at a time, is implicit Euler: v' = (v - h k/m e) / (1 + h^2 k/m). */

@@ -3,7 +3,7 @@
 #include "tests/render/scenes.h"
 
 #include "cloth/mesh/topology.h"
-#include "cloth/tangents/frames.h"
+#include "cloth/tangents/tangent_frames.h"
 #include "config/memory.h"
 #include "render/env/exponent.h"
 #include "render/env/from_environment.h"
@@ -26,7 +26,7 @@ static vec3s lights(vec3s d)
 
 struct scene {
     struct test_shape sheet;
-    tl_frames *frames;
+    tl_tangent_frames *frames;
     tl_image bumps; /* U8 x3 */
     tl_environment environment;
     struct tl_render_settings settings;
@@ -57,7 +57,7 @@ static void scene_open(struct scene *scene)
         .settings = test_settings(SIDE, SIDE)};
     uint32_t *weld = TL_NEW_ARRAY(uint32_t, scene->sheet.mesh.vertex_count);
     tl_weld_positions(scene->sheet.mesh.positions, scene->sheet.mesh.vertex_count, weld);
-    scene->frames = tl_frames_create(&scene->sheet.mesh, weld);
+    scene->frames = tl_tangent_frames_create(&scene->sheet.mesh, weld);
     free(weld);
     tl_material *material = &scene->sheet.material;
     material->diffuse = (vec3s){{0.6f, 0.4f, 0.2f}};
@@ -72,7 +72,7 @@ static void scene_open(struct scene *scene)
 
 static void scene_close(struct scene *scene)
 {
-    tl_frames_destroy(&scene->frames);
+    tl_tangent_frames_destroy(&scene->frames);
     test_shape_release(&scene->sheet);
     tl_image_release(&scene->bumps);
     tl_environment_release(&scene->environment);
@@ -89,7 +89,7 @@ static void deform(struct scene *scene, float moment, bool with_frames)
         mesh->positions[i] = glms_vec3_rotate(p, 0.8f * moment, (vec3s){{0, 1, 0}});
     }
     if (with_frames)
-        tl_frames_update(scene->frames, mesh->positions, mesh->normals, mesh->tangents);
+        tl_tangent_frames_update(scene->frames, mesh->positions, mesh->normals, mesh->tangents);
     test_shape_refresh(&scene->sheet);
     scene->frame = test_frame((vec3s){{0.6f, 2.6f, 1.6f}}, (vec3s){{0, 0, 0}}, 32, &scene->sheet.surface, 1,
                               &scene->environment);

@@ -1,4 +1,4 @@
-#include "cloth/tangents/frames_groups.h"
+#include "cloth/tangents/tangent_groups.h"
 
 #include "cloth/mesh/topology.h"
 #include "config/memory.h"
@@ -105,7 +105,7 @@ static void find_backs(const tl_mesh *mesh, const struct tl_topology *topology, 
 }
 
 /* One normal for each welded vertex, and another where it has a back; numbered as they are first met. */
-static void number_normals(struct tl_frame_groups *groups, const tl_mesh *mesh, const uint32_t *weld)
+static void number_normals(struct tl_tangent_groups *groups, const tl_mesh *mesh, const uint32_t *weld)
 {
     size_t welded = 0;
     for (size_t i = 0; i < groups->render_count; i++)
@@ -126,7 +126,7 @@ static void number_normals(struct tl_frame_groups *groups, const tl_mesh *mesh, 
     tl_topology_release(&topology);
 }
 
-static void list_corners(struct tl_frame_groups *groups, const tl_mesh *mesh)
+static void list_corners(struct tl_tangent_groups *groups, const tl_mesh *mesh)
 {
     groups->vertices = TL_NEW_ARRAY(uint32_t, mesh->index_count);
     groups->normals = TL_NEW_ARRAY(uint32_t, mesh->index_count);
@@ -170,7 +170,7 @@ static uint32_t float_bits(float value)
 }
 
 /* MikkTSpace's vertex of every corner. Free it. */
-static uint32_t *weld_corners(const struct tl_frame_groups *groups, const vec2s *uvs)
+static uint32_t *weld_corners(const struct tl_tangent_groups *groups, const vec2s *uvs)
 {
     struct mikk_key *keys = TL_NEW_ARRAY(struct mikk_key, groups->render_count);
     for (size_t i = 0; i < groups->render_count; i++)
@@ -202,7 +202,7 @@ static double uv_area(const vec2s *uvs, const uint32_t *corners)
 }
 
 /* Mikkelsen's vOs: sign(area) (t31.v d1 - t21.v d2), here without its length, which projection discards. */
-static void find_gradients(struct tl_frame_groups *groups, const vec2s *uvs)
+static void find_gradients(struct tl_tangent_groups *groups, const vec2s *uvs)
 {
     groups->gradients = tl_alloc(groups->corner_count / 3, sizeof *groups->gradients);
     for (size_t t = 0; t < groups->corner_count / 3; t++) {
@@ -218,14 +218,14 @@ static void find_gradients(struct tl_frame_groups *groups, const vec2s *uvs)
     }
 }
 
-static bool has_tangent(const struct tl_frame_groups *groups, size_t triangle)
+static bool has_tangent(const struct tl_tangent_groups *groups, size_t triangle)
 {
     return groups->gradients[triangle][0] != 0 || groups->gradients[triangle][1] != 0;
 }
 
 /* Puts a corner into a group, unless it is in one or its triangle has the other handedness. A triangle
  * without UV area has that of the first group that reaches it. */
-static bool claim(struct tl_frame_groups *groups, float *signs, uint32_t corner, uint32_t group)
+static bool claim(struct tl_tangent_groups *groups, float *signs, uint32_t corner, uint32_t group)
 {
     float *sign = &signs[corner / 3];
     if (groups->groups[corner] != TL_NONE || (*sign != 0 && *sign != groups->group_signs[group]))
@@ -237,7 +237,7 @@ static bool claim(struct tl_frame_groups *groups, float *signs, uint32_t corner,
 
 /* MikkTSpace's groups: corners around one of its vertices, over edges between triangles of one UV handedness.
  * `signs` has each triangle's, 0 where it has no UV area. */
-static void group_corners(struct tl_frame_groups *groups, float *signs, const uint32_t *twins)
+static void group_corners(struct tl_tangent_groups *groups, float *signs, const uint32_t *twins)
 {
     memset(groups->groups, 0xff, groups->corner_count * sizeof *groups->groups);
     for (uint32_t c = 0; c < groups->corner_count; c++) {
@@ -255,7 +255,7 @@ static void group_corners(struct tl_frame_groups *groups, float *signs, const ui
 
 /* A render vertex may be a corner of several groups, as MikkTSpace would split it: it takes the one that most
  * of its own corners are in, the first of equals. */
-static void choose_groups(struct tl_frame_groups *groups)
+static void choose_groups(struct tl_tangent_groups *groups)
 {
     uint32_t *votes = TL_NEW_ARRAY(uint32_t, groups->group_count); /* of one render vertex at a time */
     struct tl_fans fans = tl_fans_build(groups->vertices, groups->corner_count, groups->render_count);
@@ -278,7 +278,7 @@ static void choose_groups(struct tl_frame_groups *groups)
     free(votes);
 }
 
-static void build_groups(struct tl_frame_groups *groups, const vec2s *uvs)
+static void build_groups(struct tl_tangent_groups *groups, const vec2s *uvs)
 {
     uint32_t *welded = weld_corners(groups, uvs);
     uint32_t *twins = tl_twins_build(welded, groups->corner_count);
@@ -295,9 +295,9 @@ static void build_groups(struct tl_frame_groups *groups, const vec2s *uvs)
     free(signs);
 }
 
-struct tl_frame_groups tl_frame_groups_build(const tl_mesh *mesh, const uint32_t *weld)
+struct tl_tangent_groups tl_tangent_groups_build(const tl_mesh *mesh, const uint32_t *weld)
 {
-    struct tl_frame_groups groups = {.render_count = mesh->vertex_count};
+    struct tl_tangent_groups groups = {.render_count = mesh->vertex_count};
     groups.normal_of = TL_NEW_ARRAY(uint32_t, groups.render_count);
     groups.group_of = TL_NEW_ARRAY(uint32_t, groups.render_count);
     number_normals(&groups, mesh, weld);
@@ -310,7 +310,7 @@ struct tl_frame_groups tl_frame_groups_build(const tl_mesh *mesh, const uint32_t
     return groups;
 }
 
-void tl_frame_groups_release(struct tl_frame_groups *groups)
+void tl_tangent_groups_release(struct tl_tangent_groups *groups)
 {
     free(groups->vertices);
     free(groups->normals);
@@ -319,5 +319,5 @@ void tl_frame_groups_release(struct tl_frame_groups *groups)
     free(groups->groups);
     free(groups->group_signs);
     free(groups->group_of);
-    *groups = (struct tl_frame_groups){0};
+    *groups = (struct tl_tangent_groups){0};
 }

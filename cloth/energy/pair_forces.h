@@ -10,8 +10,8 @@
  * Passes: squared lengths by edge, derivatives by triangle, their sums by edge, forces by vertex. Each entry
  * is written by one thread and summed in a fixed order: results do not depend on the number of threads.
  * Threads: it has scratch space; one call at a time. */
-#ifndef TOILE_CLOTH_ENERGY_PULLS_H
-#define TOILE_CLOTH_ENERGY_PULLS_H
+#ifndef TOILE_CLOTH_ENERGY_PAIR_FORCES_H
+#define TOILE_CLOTH_ENERGY_PAIR_FORCES_H
 
 #include "cloth/mesh/threads.h"
 #include "cloth/mesh/topology.h"
@@ -38,19 +38,19 @@ struct tl_wide_force {
 };
 
 /* One end's view of an edge. */
-struct tl_along {
+struct tl_incident_edge {
     uint32_t other, edge;
 };
 
 /* Pulls of bending alone on one vertex, as many as are in flight at once; what a vertex has too few of is
  * made up with pulls of 0 from itself. */
-#define TL_PULLS_FOUR 4
-struct tl_four_pulls {
-    double bending[TL_PULLS_FOUR]; /* -K_ij, N/m */
-    uint32_t from[TL_PULLS_FOUR];  /* the other end's first number in `places` */
+#define TL_PAIR_PACK 4
+struct tl_pair_pack {
+    double bending[TL_PAIR_PACK]; /* -K_ij, N/m */
+    uint32_t from[TL_PAIR_PACK];  /* the other end's first number in `places` */
 };
 
-struct tl_pulls {
+struct tl_pair_forces {
     size_t vertex_count, edge_count, metric_count, excess_count;
     uint32_t (*edges)[2]; /* as in the topology */
     struct tl_metric *metrics;
@@ -59,37 +59,39 @@ struct tl_pulls {
     uint32_t *link_edges;  /* [link_count] */
     double *edge_bending;  /* [edge_count] -K_ij of its ends, N/m */
 
-    /* Rows by vertex: along[along_first[i]] and on are along edges, others[others_first[i]] and on are of
+    /* Rows by vertex: along[incident_first[i]] and on are along edges, others[others_first[i]] and on are of
      * bending alone. */
-    uint32_t *along_first, *others_first; /* [vertex_count + 1] */
-    struct tl_along *along;
+    uint32_t *incident_first, *others_first; /* [vertex_count + 1] */
+    struct tl_incident_edge *incident;
     uint32_t *others; /* the vertex at the other end */
     double *bending;  /* [entries of others] -K_ij, N/m */
 
-    /* The same of bending alone, along edges or not: fours[fours_first[i]] and on. */
-    uint32_t *fours_first; /* [vertex_count + 1] */
-    struct tl_four_pulls *fours;
+    /* The same of bending alone, along edges or not: fours[packs_first[i]] and on. */
+    uint32_t *packs_first; /* [vertex_count + 1] */
+    struct tl_pair_pack *packs;
 
     /* Scratch. */
-    double *places;  /* [vertex_count + 1][4] m, the last one for the empty lanes of batches */
-    double *squared; /* [edge_count] m^2 */
-    double *shares;  /* [metric_count][3][TL_BATCH] N/m, then a 0 for edges with fewer than two triangles */
-    double *along_edges;        /* [edge_count] N/m, with bending */
+    double *positions; /* [vertex_count + 1][4] m, the last one for the empty lanes of batches */
+    double *squared;   /* [edge_count] m^2 */
+    double *shares;    /* [metric_count][3][TL_BATCH] N/m, then a 0 for edges with fewer than two triangles */
+    double *edge_strengths;     /* [edge_count] N/m, with bending */
     struct tl_wide_force *sums; /* [vertex_count] N */
     double *parts;              /* [metric_count + blocks of vertices] J */
 };
 
 /* Of the membranes, bends and links in `energy`. */
-struct tl_pulls tl_pulls_build(const struct tl_topology *topology, const struct tl_energy *energy);
-void tl_pulls_release(struct tl_pulls *pulls);
+struct tl_pair_forces tl_pair_forces_build(const struct tl_topology *topology,
+                                           const struct tl_energy *energy);
+void tl_pair_forces_release(struct tl_pair_forces *pairs);
 
 /* Takes over the stiffness against bending of L_uu, L_vv and sqrt(2) L_uv, N m. */
-void tl_pulls_set(struct tl_pulls *pulls, const struct tl_energy *energy, const double stiffness[3]);
+void tl_pair_forces_set(struct tl_pair_forces *pairs, const struct tl_energy *energy,
+                        const double stiffness[3]);
 
 /* Copies a part of the vertices' places into the scratch. */
-void tl_pulls_place(const struct tl_pulls *pulls, const vec3d *x, struct tl_range range);
+void tl_pair_forces_load_positions(const struct tl_pair_forces *pairs, const vec3d *x, struct tl_range range);
 
 /* Vertices whose energies are added up before those of all blocks are. */
-#define TL_PULLS_BLOCK 64
+#define TL_PAIR_BLOCK 64
 
 #endif

@@ -89,13 +89,13 @@ static void solve_bend(const struct tl_bend *bend, int lane, vec3d *x)
 static struct tl_range part_of_run(const size_t *ends, size_t run)
 {
     size_t from = run > 0 ? ends[run - 1] : 0;
-    struct tl_range part = tl_my_part(ends[run] - from, 1);
+    struct tl_range part = tl_thread_range(ends[run] - from, 1);
     return (struct tl_range){from + part.from, from + part.to};
 }
 
 static void solve_on_team(const struct tl_energy *energy, vec3d *x)
 {
-    for (size_t run = energy->bend_run_count; run-- > 0 && !energy->bends_as_force;) {
+    for (size_t run = energy->bend_run_count; run-- > 0 && !energy->bending_is_force;) {
         struct tl_range part = part_of_run(energy->bend_run_ends, run);
         for (size_t i = part.from * TL_BATCH; i < part.to * TL_BATCH; i++)
             solve_bend(&energy->bends[i / TL_BATCH], (int)(i % TL_BATCH), x);
@@ -107,7 +107,7 @@ static void solve_on_team(const struct tl_energy *energy, vec3d *x)
     }
 }
 
-void tl_xpbd_solve_back(const struct tl_energy *energy, struct tl_particles *particles)
+void tl_xpbd_solve_backward(const struct tl_energy *energy, struct tl_particles *particles)
 {
     for (size_t i = energy->link_count; i-- > 0;)
         tl_xpbd_solve_link(&energy->links[i], particles);

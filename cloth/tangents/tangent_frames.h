@@ -13,23 +13,24 @@
  * equals. w follows the meshes' v, which runs down: the bitangent points to smaller v, up in a normal map.
  * Triangles without UV area add nothing, but groups spread over them. Threads: one update at a time per
  * object, in parallel inside; results are the same at any thread count. */
-#ifndef TOILE_CLOTH_TANGENTS_FRAMES_H
-#define TOILE_CLOTH_TANGENTS_FRAMES_H
+#ifndef TOILE_CLOTH_TANGENTS_TANGENT_FRAMES_H
+#define TOILE_CLOTH_TANGENTS_TANGENT_FRAMES_H
 
 #include "assets/base/mesh.h"
 
-typedef struct tl_frames tl_frames;
+typedef struct tl_tangent_frames tl_tangent_frames;
 
-/* `weld` from tl_weld_positions or tl_cloth_weld, to be made anew when that changes: vertex_count entries. Copies what
- * it needs. Takes about 1.5 us a vertex. */
-tl_frames *tl_frames_create(const tl_mesh *mesh, const uint32_t *weld);
-void tl_frames_destroy(tl_frames **frames);
+/* `weld` from tl_weld_positions or tl_cloth_weld, to be made anew when that changes: vertex_count entries.
+ * Copies what it needs. Takes about 1.5 us a vertex. */
+tl_tangent_frames *tl_tangent_frames_create(const tl_mesh *mesh, const uint32_t *weld);
+void tl_tangent_frames_destroy(tl_tangent_frames **frames);
 
 /* vertex_count of each. Vertices that are welded are where the first of them is. Takes about 20 ns a vertex
  * on one core. */
-void tl_frames_update(tl_frames *frames, const vec3s *positions, vec3s *normals, vec4s *tangents);
+void tl_tangent_frames_update(tl_tangent_frames *frames, const vec3s *positions, vec3s *normals,
+                              vec4s *tangents);
 
-/* Nothing is kept of updates so far: the next ones are what they would be after tl_frames_create. */
-void tl_frames_forget(tl_frames *frames);
+/* Nothing is kept of updates so far: the next ones are what they would be after tl_tangent_frames_create. */
+void tl_tangent_frames_reset(tl_tangent_frames *frames);
 
 #endif

@@ -5,40 +5,40 @@
  * each spoke is read once for two triangles. Where a fan is in several pieces, and past its end, the spoke is
  * the vertex itself: a triangle without area, which adds nothing. A vertex with several groups has an item
  * that sums its normal and the first group's tangent, and items that borrow that normal for the others. */
-#ifndef TOILE_CLOTH_TANGENTS_FRAMES_LAY_H
-#define TOILE_CLOTH_TANGENTS_FRAMES_LAY_H
+#ifndef TOILE_CLOTH_TANGENTS_TANGENT_LAYOUT_H
+#define TOILE_CLOTH_TANGENTS_TANGENT_LAYOUT_H
 
-#include "cloth/tangents/frames.h"
-#include "cloth/tangents/frames_groups.h"
+#include "cloth/tangents/tangent_frames.h"
+#include "cloth/tangents/tangent_groups.h"
 #include "config/simd.h"
 
-struct tl_frame_block {
+struct tl_tangent_block {
     uint32_t first_row;      /* of `rows`: the vertices themselves, then spoke_count rows of spokes */
     uint32_t first_gradient; /* of `gradients`: spoke_count - 1 rows */
     uint32_t spoke_count;
     uint32_t first_output; /* of `outputs`; the next block's is their end */
 };
 
-struct tl_frame_output {
+struct tl_tangent_output {
     uint32_t vertex, lane;
 };
 
 /* Kept between updates: what a vertex has whose triangles have no direction. */
-struct tl_frame_state {
+struct tl_tangent_state {
     float normal[3][TL_LANES], tangent[3][TL_LANES];
     float sign[TL_LANES];
 };
 
-struct tl_frames {
+struct tl_tangent_frames {
     size_t block_count, borrower_count; /* the borrowers come last */
-    struct tl_frame_block *blocks;      /* [block_count + 1] */
+    struct tl_tangent_block *blocks;    /* [block_count + 1] */
     uint32_t (*rows)[TL_LANES];         /* render vertices */
     float (*gradients)[2][TL_LANES];    /* tangent = spoke * [0] + next spoke * [1] */
-    struct tl_frame_output *outputs;    /* render vertices of each block */
+    struct tl_tangent_output *outputs;  /* render vertices of each block */
     uint32_t (*lenders)[TL_LANES];      /* [borrower_count] items, TL_LANES in a block */
-    struct tl_frame_state *states;      /* [block_count] */
+    struct tl_tangent_state *states;    /* [block_count] */
 };
 
-void tl_frames_lay(tl_frames *frames, const struct tl_frame_groups *groups);
+void tl_tangent_frames_lay_out(tl_tangent_frames *frames, const struct tl_tangent_groups *groups);
 
 #endif

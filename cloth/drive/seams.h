@@ -3,13 +3,13 @@
  * Pulling before welding lets panels wrap around what is between them, contact keeping them outside; merging
  * at once would put the middle of a 30 cm gap inside the avatar. Gravity waits while seams close. Pairs that
  * something holds apart stay links. Threads: pure. */
-#ifndef TOILE_CLOTH_DRIVE_SEW_H
-#define TOILE_CLOTH_DRIVE_SEW_H
+#ifndef TOILE_CLOTH_DRIVE_SEAMS_H
+#define TOILE_CLOTH_DRIVE_SEAMS_H
 
 #include "cloth/energy/energy.h"
 #include "cloth/mesh/particles.h"
 
-struct tl_sewing {
+struct tl_seams {
     size_t pair_count;     /* open pairs */
     struct tl_link *links; /* [pair_count]; rest shrinks to 0 */
     double *gaps;          /* [pair_count] m, at the start */
@@ -17,22 +17,22 @@ struct tl_sewing {
 };
 
 /* Pairs of different physics vertices, each once. */
-struct tl_sewing tl_sewing_create(const struct tl_seam_pair *pairs, size_t pair_count, const uint32_t *weld,
-                                  const vec3d *x);
-void tl_sewing_release(struct tl_sewing *sewing);
+struct tl_seams tl_seams_create(const struct tl_seam_pair *pairs, size_t pair_count, const uint32_t *weld,
+                                const vec3d *x);
+void tl_seams_release(struct tl_seams *seams);
 
 /* Seams are still being drawn together. */
-bool tl_sewing_pulls(const struct tl_sewing *sewing);
+bool tl_seams_are_closing(const struct tl_seams *seams);
 
 /* Time passes: the links shrink. */
-void tl_sewing_shrink(struct tl_sewing *sewing, double h);
+void tl_seams_shrink(struct tl_seams *seams, double h);
 
 /* The same, and draws the sides together. */
-void tl_sewing_solve(struct tl_sewing *sewing, struct tl_particles *particles, double h);
+void tl_seams_solve(struct tl_seams *seams, struct tl_particles *particles, double h);
 
 /* Joins closed pairs: fills `joined` [particles->count] with the new number of each vertex and returns how
  * many there are; the same count as before when nothing closed. Closed pairs are dropped, the rest
  * renumbered. */
-size_t tl_sewing_close(struct tl_sewing *sewing, const struct tl_particles *particles, uint32_t *joined);
+size_t tl_seams_close(struct tl_seams *seams, const struct tl_particles *particles, uint32_t *joined);
 
 #endif

@@ -2,12 +2,12 @@
  * which a tangent. Built once for each mesh; cloth/frames lays it out for streaming.
  *
  * A corner is 3 * triangle + 0, 1 or 2. Ownership: plain struct that owns its arrays. Threads: pure. */
-#ifndef TOILE_CLOTH_TANGENTS_FRAMES_GROUPS_H
-#define TOILE_CLOTH_TANGENTS_FRAMES_GROUPS_H
+#ifndef TOILE_CLOTH_TANGENTS_TANGENT_GROUPS_H
+#define TOILE_CLOTH_TANGENTS_TANGENT_GROUPS_H
 
 #include "assets/base/mesh.h"
 
-struct tl_frame_groups {
+struct tl_tangent_groups {
     size_t render_count, corner_count; /* of triangles whose corners are three different places */
     uint32_t *vertices;                /* [corner_count] render vertex */
     uint32_t *normals;                 /* [corner_count] its normal */
@@ -22,8 +22,8 @@ struct tl_frame_groups {
     uint32_t *group_of; /* [render_count] the group that a vertex shows, or TL_NONE */
 };
 
-struct tl_frame_groups tl_frame_groups_build(const tl_mesh *mesh, const uint32_t *weld);
-void tl_frame_groups_release(struct tl_frame_groups *groups);
+struct tl_tangent_groups tl_tangent_groups_build(const tl_mesh *mesh, const uint32_t *weld);
+void tl_tangent_groups_release(struct tl_tangent_groups *groups);
 
 /* For the half edge from each corner to the next: the one that runs the other way between the same two
  * `vertices` in another triangle, or TL_NONE. The k-th of one direction meets the k-th of the other. Free it.

@@ -8,16 +8,16 @@
  *
  * Rows are gathered, so the numbers do not depend on the threads. Units N/m. Ownership: plain struct that
  * owns its arrays. Threads: uses all. */
-#ifndef TOILE_CLOTH_SOLVERS_IMPLICIT_IMPLICIT_MATRIX_H
-#define TOILE_CLOTH_SOLVERS_IMPLICIT_IMPLICIT_MATRIX_H
+#ifndef TOILE_CLOTH_SOLVERS_IMPLICIT_STIFFNESS_H
+#define TOILE_CLOTH_SOLVERS_IMPLICIT_STIFFNESS_H
 
 #include "cloth/energy/energy.h"
 
 /* Fewer vertices are done before other threads have woken up. */
-#define TL_SERIAL 1000
+#define TL_PARALLEL_ROWS 1000
 
 /* Compressed rows: those of vertex v are entries first[v] to first[v + 1] - 1, columns rising. */
-struct tl_rows {
+struct tl_sparse_rows {
     uint32_t *first;   /* [vertex_count + 1] */
     uint32_t *columns; /* [first[vertex_count]] */
 };
@@ -30,12 +30,12 @@ struct tl_gather {
 
 struct tl_stiffness {
     size_t vertex_count;
-    struct tl_rows blocks, bends;
-    struct tl_gather gather; /* of membranes, by lanes, then links */
-    double (*values)[9];     /* [blocks] row by row */
-    double *bend_values;     /* [bends] */
-    size_t element_count;    /* lanes of membranes, and links */
-    struct tl_piece *pieces; /* [element_count] of the current shape */
+    struct tl_sparse_rows blocks, bends;
+    struct tl_gather gather;               /* of membranes, by lanes, then links */
+    double (*values)[9];                   /* [blocks] row by row */
+    double *bend_values;                   /* [bends] */
+    size_t element_count;                  /* lanes of membranes, and links */
+    struct tl_element_stiffness *elements; /* [element_count] of the current shape */
 };
 
 /* A pair of vertices held together beside the energy's own links: a seam that closes. */

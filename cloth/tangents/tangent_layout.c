@@ -1,4 +1,4 @@
-#include "cloth/tangents/frames_lay.h"
+#include "cloth/tangents/tangent_layout.h"
 
 #include "cloth/mesh/topology.h"
 #include "config/memory.h"
@@ -15,7 +15,7 @@ struct item {
 };
 
 struct layer {
-    const struct tl_frame_groups *groups;
+    const struct tl_tangent_groups *groups;
     uint32_t *twins;
     struct tl_fans normal_fans, group_fans;
     bool *waiting;        /* [corner_count] corners of the item in hand that are not laid yet */
@@ -30,7 +30,7 @@ struct layer {
 /* The item of every render vertex. A vertex in no group shows its normal's first tangent. */
 static void list_items(struct layer *layer)
 {
-    const struct tl_frame_groups *groups = layer->groups;
+    const struct tl_tangent_groups *groups = layer->groups;
     layer->items = TL_NEW_ARRAY(struct item, groups->normal_count + groups->group_count);
     layer->item_of = TL_NEW_ARRAY(uint32_t, groups->render_count);
     layer->first_user = TL_NEW_ARRAY(uint32_t, groups->normal_count);
@@ -57,7 +57,7 @@ static void list_items(struct layer *layer)
     free(item_of_group);
 }
 
-static struct tl_fans fan_groups(const struct tl_frame_groups *groups)
+static struct tl_fans fan_groups(const struct tl_tangent_groups *groups)
 {
     uint32_t *lists = TL_NEW_ARRAY(uint32_t, groups->corner_count);
     for (size_t c = 0; c < groups->corner_count; c++) /* one more list for corners without a group */
@@ -166,37 +166,37 @@ static size_t place_items(struct layer *layer, size_t begin, size_t end, size_t 
     return first_block + (count + LANES - 1) / LANES;
 }
 
-static void size_blocks(tl_frames *frames, const struct layer *layer)
+static void size_blocks(tl_tangent_frames *frames, const struct layer *layer)
 {
     for (size_t i = 0; i < layer->item_count; i++) {
-        struct tl_frame_block *block = &frames->blocks[layer->items[i].slot / LANES];
+        struct tl_tangent_block *block = &frames->blocks[layer->items[i].slot / LANES];
         if (layer->items[i].spoke_count > block->spoke_count)
             block->spoke_count = layer->items[i].spoke_count;
     }
     for (size_t b = 0; b < frames->block_count; b++) {
-        struct tl_frame_block *block = &frames->blocks[b];
+        struct tl_tangent_block *block = &frames->blocks[b];
         uint32_t corner_rows = block->spoke_count > 0 ? block->spoke_count - 1 : 0;
         block[1].first_row = block->first_row + 1 + block->spoke_count;
         block[1].first_gradient = block->first_gradient + corner_rows;
     }
-    const struct tl_frame_block *end = &frames->blocks[frames->block_count];
+    const struct tl_tangent_block *end = &frames->blocks[frames->block_count];
     frames->rows = tl_alloc(end->first_row, sizeof *frames->rows);
     frames->gradients = tl_alloc(end->first_gradient, sizeof *frames->gradients);
-    frames->states = TL_NEW_ARRAY(struct tl_frame_state, frames->block_count);
+    frames->states = TL_NEW_ARRAY(struct tl_tangent_state, frames->block_count);
 }
 
-static void fill_blocks(tl_frames *frames, struct layer *layer)
+static void fill_blocks(tl_tangent_frames *frames, struct layer *layer)
 {
     for (size_t i = 0; i < layer->item_count; i++) {
         const struct item *item = &layer->items[i];
         size_t lane = item->slot % LANES;
-        const struct tl_frame_block *block = &frames->blocks[item->slot / LANES];
+        const struct tl_tangent_block *block = &frames->blocks[item->slot / LANES];
         for (uint32_t k = 0; k <= block->spoke_count; k++)
             frames->rows[block->first_row + k][lane] = layer->first_user[item->normal];
         struct lane place = {frames->rows + block->first_row + 1, frames->gradients + block->first_gradient,
                              lane, 0};
         lay_fan(layer, i, &place);
-        struct tl_frame_state *state = &frames->states[item->slot / LANES];
+        struct tl_tangent_state *state = &frames->states[item->slot / LANES];
         state->normal[1][lane] = 1;
         state->sign[lane] = item->group == TL_NONE ? 1 : layer->groups->group_signs[item->group];
         if (i >= layer->groups->normal_count)
@@ -205,10 +205,10 @@ static void fill_blocks(tl_frames *frames, struct layer *layer)
     }
 }
 
-static void list_outputs(tl_frames *frames, const struct layer *layer)
+static void list_outputs(tl_tangent_frames *frames, const struct layer *layer)
 {
     size_t count = layer->groups->render_count;
-    frames->outputs = TL_NEW_ARRAY(struct tl_frame_output, count);
+    frames->outputs = TL_NEW_ARRAY(struct tl_tangent_output, count);
     for (size_t r = 0; r < count; r++)
         frames->blocks[layer->items[layer->item_of[r]].slot / LANES + 1].first_output++;
     for (size_t b = 0; b < frames->block_count; b++)
@@ -217,12 +217,12 @@ static void list_outputs(tl_frames *frames, const struct layer *layer)
     for (size_t r = 0; r < count; r++) {
         uint32_t slot = layer->items[layer->item_of[r]].slot, block = slot / LANES;
         frames->outputs[frames->blocks[block].first_output + next[block]++] =
-            (struct tl_frame_output){(uint32_t)r, slot % LANES};
+            (struct tl_tangent_output){(uint32_t)r, slot % LANES};
     }
     free(next);
 }
 
-void tl_frames_lay(tl_frames *frames, const struct tl_frame_groups *groups)
+void tl_tangent_frames_lay_out(tl_tangent_frames *frames, const struct tl_tangent_groups *groups)
 {
     struct layer layer = {
         .groups = groups,
@@ -240,7 +240,7 @@ void tl_frames_lay(tl_frames *frames, const struct tl_frame_groups *groups)
     size_t lending = place_items(&layer, 0, groups->normal_count, 0);
     frames->block_count = place_items(&layer, groups->normal_count, layer.item_count, lending);
     frames->borrower_count = frames->block_count - lending;
-    frames->blocks = TL_NEW_ARRAY(struct tl_frame_block, frames->block_count + 1);
+    frames->blocks = TL_NEW_ARRAY(struct tl_tangent_block, frames->block_count + 1);
     frames->lenders = tl_alloc(frames->borrower_count, sizeof *frames->lenders);
     size_blocks(frames, &layer);
     fill_blocks(frames, &layer);

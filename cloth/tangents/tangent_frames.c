@@ -1,6 +1,6 @@
-#include "cloth/tangents/frames.h"
+#include "cloth/tangents/tangent_frames.h"
 
-#include "cloth/tangents/frames_lay.h"
+#include "cloth/tangents/tangent_layout.h"
 #include "config/memory.h"
 
 #include <float.h>
@@ -10,18 +10,18 @@
 
 #define LANES TL_LANES
 
-tl_frames *tl_frames_create(const tl_mesh *mesh, const uint32_t *weld)
+tl_tangent_frames *tl_tangent_frames_create(const tl_mesh *mesh, const uint32_t *weld)
 {
-    tl_frames *frames = TL_NEW(tl_frames);
-    struct tl_frame_groups groups = tl_frame_groups_build(mesh, weld);
-    tl_frames_lay(frames, &groups);
-    tl_frame_groups_release(&groups);
+    tl_tangent_frames *frames = TL_NEW(tl_tangent_frames);
+    struct tl_tangent_groups groups = tl_tangent_groups_build(mesh, weld);
+    tl_tangent_frames_lay_out(frames, &groups);
+    tl_tangent_groups_release(&groups);
     return frames;
 }
 
-void tl_frames_destroy(tl_frames **frames)
+void tl_tangent_frames_destroy(tl_tangent_frames **frames)
 {
-    tl_frames *f = *frames;
+    tl_tangent_frames *f = *frames;
     if (!f)
         return;
     free(f->blocks);
@@ -46,9 +46,9 @@ struct fans {
     const vec3s *positions;
 };
 
-TL_INLINE struct fans fans_of(const tl_frames *frames, size_t block, const vec3s *positions)
+TL_INLINE struct fans fans_of(const tl_tangent_frames *frames, size_t block, const vec3s *positions)
 {
-    const struct tl_frame_block *b = &frames->blocks[block];
+    const struct tl_tangent_block *b = &frames->blocks[block];
     const uint32_t(*rows)[LANES] = (const uint32_t(*)[LANES])frames->rows + b->first_row;
     const float(*gradients)[2][LANES] = (const float(*)[2][LANES])frames->gradients + b->first_gradient;
     return (struct fans){rows, rows + 1, gradients, b->spoke_count, positions};
@@ -218,9 +218,9 @@ TL_INLINE void finish_tangents(const float sum[2][LANES], const struct planes *p
     }
 }
 
-TL_INLINE void write_outputs(const tl_frames *frames, size_t index, vec3s *normals, vec4s *tangents)
+TL_INLINE void write_outputs(const tl_tangent_frames *frames, size_t index, vec3s *normals, vec4s *tangents)
 {
-    const struct tl_frame_state *state = &frames->states[index];
+    const struct tl_tangent_state *state = &frames->states[index];
     for (uint32_t o = frames->blocks[index].first_output; o < frames->blocks[index + 1].first_output; o++) {
         uint32_t vertex = frames->outputs[o].vertex, i = frames->outputs[o].lane;
         normals[vertex] = (vec3s){{state->normal[0][i], state->normal[1][i], state->normal[2][i]}};
@@ -229,7 +229,8 @@ TL_INLINE void write_outputs(const tl_frames *frames, size_t index, vec3s *norma
     }
 }
 
-TL_INLINE void borrow_normals(const tl_frames *frames, const uint32_t lenders[LANES], float normal[3][LANES])
+TL_INLINE void borrow_normals(const tl_tangent_frames *frames, const uint32_t lenders[LANES],
+                              float normal[3][LANES])
 {
     for (int c = 0; c < 3; c++)
         for (int i = 0; i < LANES; i++)
@@ -238,7 +239,7 @@ TL_INLINE void borrow_normals(const tl_frames *frames, const uint32_t lenders[LA
 
 /* Asks for what a block reads in sequence while the one before it is being summed: large meshes would wait
  * for a third of the time. */
-TL_INLINE void prefetch_block(const tl_frames *frames, size_t index)
+TL_INLINE void prefetch_block(const tl_tangent_frames *frames, size_t index)
 {
     if (index >= frames->block_count)
         return;
@@ -258,11 +259,11 @@ TL_INLINE void prefetch_block(const tl_frames *frames, size_t index)
 }
 
 /* Fans of more than KEPT spokes are taken in pieces, each from the last spoke of the one before. */
-TL_CLONES static void update_block(tl_frames *frames, size_t index, const vec3s *positions, vec3s *normals,
-                                   vec4s *tangents)
+TL_CLONES static void update_block(tl_tangent_frames *frames, size_t index, const vec3s *positions,
+                                   vec3s *normals, vec4s *tangents)
 {
     struct fans fans = fans_of(frames, index, positions);
-    struct tl_frame_state *state = &frames->states[index];
+    struct tl_tangent_state *state = &frames->states[index];
     struct edges edges;
     size_t lending = frames->block_count - frames->borrower_count, count = 0;
     prefetch_block(frames, index + 1);
@@ -288,10 +289,10 @@ TL_CLONES static void update_block(tl_frames *frames, size_t index, const vec3s 
     write_outputs(frames, index, normals, tangents);
 }
 
-void tl_frames_forget(tl_frames *frames)
+void tl_tangent_frames_reset(tl_tangent_frames *frames)
 {
     for (size_t b = 0; b < frames->block_count; b++) {
-        struct tl_frame_state *state = &frames->states[b];
+        struct tl_tangent_state *state = &frames->states[b];
         memset(state->normal, 0, sizeof state->normal);
         memset(state->tangent, 0, sizeof state->tangent);
         for (size_t lane = 0; lane < LANES; lane++)
@@ -302,7 +303,8 @@ void tl_frames_forget(tl_frames *frames)
 #define WORTH_THREADS 256 /* blocks: fewer are done before another thread wakes */
 
 /* Borrowers last: their normals must be there. Blocks write what no other block reads or writes. */
-void tl_frames_update(tl_frames *frames, const vec3s *positions, vec3s *normals, vec4s *tangents)
+void tl_tangent_frames_update(tl_tangent_frames *frames, const vec3s *positions, vec3s *normals,
+                              vec4s *tangents)
 {
     size_t lending = frames->block_count - frames->borrower_count;
 #pragma omp parallel for schedule(static) if (lending > WORTH_THREADS)

@@ -9,10 +9,10 @@
  * does not depend on the threads either.
  *
  * Ownership: owns its factor. Threads: a solve uses all; one at a time. */
-#ifndef TOILE_CLOTH_SOLVERS_IMPLICIT_IMPLICIT_FACTOR_H
-#define TOILE_CLOTH_SOLVERS_IMPLICIT_IMPLICIT_FACTOR_H
+#ifndef TOILE_CLOTH_SOLVERS_IMPLICIT_FACTOR_H
+#define TOILE_CLOTH_SOLVERS_IMPLICIT_FACTOR_H
 
-#include "cloth/solvers/implicit/implicit_matrix.h"
+#include "cloth/solvers/implicit/stiffness.h"
 
 typedef struct tl_factor tl_factor;
 

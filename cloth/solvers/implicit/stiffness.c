@@ -1,4 +1,4 @@
-#include "cloth/solvers/implicit/implicit_matrix.h"
+#include "cloth/solvers/implicit/stiffness.h"
 
 #include "config/memory.h"
 
@@ -10,7 +10,7 @@
 #define CORNERS   3 /* of a membrane; a link repeats its second end */
 
 /* Second derivative by F_u, F_v: block (i, j) = c_i c_j uu + d_i d_j vv + c_i d_j uv + d_i c_j uv^T. */
-struct tl_piece {
+struct tl_element_stiffness {
     double c[CORNERS], d[CORNERS];
     double uu[9], vv[9], uv[9];
 };
@@ -41,7 +41,7 @@ static size_t list_row(const struct tl_fans *fans, const uint32_t *corners, size
     return kept;
 }
 
-static uint32_t find_entry(const struct tl_rows *rows, size_t vertex, uint32_t column)
+static uint32_t find_entry(const struct tl_sparse_rows *rows, size_t vertex, uint32_t column)
 {
     uint32_t low = rows->first[vertex], high = rows->first[vertex + 1];
     while (low + 1 < high) {
@@ -54,11 +54,11 @@ static uint32_t find_entry(const struct tl_rows *rows, size_t vertex, uint32_t c
     return low;
 }
 
-static struct tl_rows make_rows(const struct tl_fans *fans, const uint32_t *corners, size_t per_element,
-                                size_t corner_count, size_t vertex_count)
+static struct tl_sparse_rows make_rows(const struct tl_fans *fans, const uint32_t *corners,
+                                       size_t per_element, size_t corner_count, size_t vertex_count)
 {
     size_t most = vertex_count + per_element * corner_count, used = 0;
-    struct tl_rows rows = {TL_NEW_ARRAY(uint32_t, vertex_count + 1), TL_NEW_ARRAY(uint32_t, most)};
+    struct tl_sparse_rows rows = {TL_NEW_ARRAY(uint32_t, vertex_count + 1), TL_NEW_ARRAY(uint32_t, most)};
     for (size_t v = 0; v < vertex_count; v++) {
         used += list_row(fans, corners, per_element, v, rows.columns + used);
         rows.first[v + 1] = (uint32_t)used;
@@ -69,7 +69,7 @@ static struct tl_rows make_rows(const struct tl_fans *fans, const uint32_t *corn
 
 /* Elements of empty lanes lie around the vertex one past the last, which has no row. */
 static struct tl_gather make_gather(const uint32_t *corners, size_t per_element, size_t element_count,
-                                    size_t vertex_count, struct tl_rows *rows)
+                                    size_t vertex_count, struct tl_sparse_rows *rows)
 {
     size_t corner_count = element_count * per_element;
     struct tl_gather gather = {.fans = tl_fans_build(corners, corner_count, vertex_count + 1)};
@@ -156,12 +156,12 @@ struct tl_stiffness tl_stiffness_build(const struct tl_energy *energy, const str
         make_gather(corners, CORNERS, stiffness.element_count, vertex_count, &stiffness.blocks);
     free(corners);
     stiffness.values = tl_alloc(stiffness.blocks.first[vertex_count], sizeof *stiffness.values);
-    stiffness.pieces = TL_NEW_ARRAY(struct tl_piece, stiffness.element_count);
+    stiffness.elements = TL_NEW_ARRAY(struct tl_element_stiffness, stiffness.element_count);
     build_bends(&stiffness, energy, fabric);
     return stiffness;
 }
 
-static void release_rows(struct tl_rows *rows)
+static void release_rows(struct tl_sparse_rows *rows)
 {
     free(rows->first);
     free(rows->columns);
@@ -174,7 +174,7 @@ void tl_stiffness_release(struct tl_stiffness *stiffness)
     release_gather(&stiffness->gather);
     free(stiffness->values);
     free(stiffness->bend_values);
-    free(stiffness->pieces);
+    free(stiffness->elements);
     *stiffness = (struct tl_stiffness){0};
 }
 
@@ -205,7 +205,7 @@ static void add_stretch(double out[9], vec3d f, double stiffness, double rest)
         add_spring(out, f, stiffness, 1);
 }
 
-static void add_shear(struct tl_piece *piece, vec3d u, vec3d v, double stiffness)
+static void add_shear(struct tl_element_stiffness *element_stiffness, vec3d u, vec3d v, double stiffness)
 {
     double uu = vec3d_dot(u, u), vv = vec3d_dot(v, v);
     if (!(uu > NO_LENGTH * NO_LENGTH && vv > NO_LENGTH * NO_LENGTH))
@@ -213,44 +213,48 @@ static void add_shear(struct tl_piece *piece, vec3d u, vec3d v, double stiffness
     double both = 1 / sqrt(uu * vv), cosine = vec3d_dot(u, v) * both;
     vec3d along_u = vec3d_muladd(vec3d_scale(v, both), u, -cosine / uu);
     vec3d along_v = vec3d_muladd(vec3d_scale(u, both), v, -cosine / vv);
-    add_outer(piece->uu, along_u, along_u, stiffness);
-    add_outer(piece->vv, along_v, along_v, stiffness);
-    add_outer(piece->uv, along_u, along_v, stiffness);
+    add_outer(element_stiffness->uu, along_u, along_u, stiffness);
+    add_outer(element_stiffness->vv, along_v, along_v, stiffness);
+    add_outer(element_stiffness->uv, along_u, along_v, stiffness);
 }
 
-static struct tl_piece membrane_piece(const struct tl_membrane *m, size_t lane,
-                                      const struct tl_cloth_fabric *fabric, const vec3d *x)
+static struct tl_element_stiffness membrane_stiffness(const struct tl_membrane *m, size_t lane,
+                                                      const struct tl_cloth_fabric *fabric, const vec3d *x)
 {
-    struct tl_piece piece = {0};
+    struct tl_element_stiffness element_stiffness = {0};
     vec3d u = {0}, v = {0};
     double area = m->area[lane];
     for (int i = 0; i < CORNERS && area > 0; i++) {
-        piece.c[i] = m->c[i][lane];
-        piece.d[i] = m->d[i][lane];
-        u = vec3d_muladd(u, x[m->vertices[i][lane]], piece.c[i]);
-        v = vec3d_muladd(v, x[m->vertices[i][lane]], piece.d[i]);
+        element_stiffness.c[i] = m->c[i][lane];
+        element_stiffness.d[i] = m->d[i][lane];
+        u = vec3d_muladd(u, x[m->vertices[i][lane]], element_stiffness.c[i]);
+        v = vec3d_muladd(v, x[m->vertices[i][lane]], element_stiffness.d[i]);
     }
-    add_stretch(piece.uu, u, area * fabric->stretch_weft, 1);
-    add_stretch(piece.vv, v, area * fabric->stretch_warp, 1);
-    add_shear(&piece, u, v, area * fabric->shear);
-    return piece;
+    add_stretch(element_stiffness.uu, u, area * fabric->stretch_weft, 1);
+    add_stretch(element_stiffness.vv, v, area * fabric->stretch_warp, 1);
+    add_shear(&element_stiffness, u, v, area * fabric->shear);
+    return element_stiffness;
 }
 
-static struct tl_piece link_piece(const struct tl_link *link, double stiffness, const vec3d *x)
+static struct tl_element_stiffness link_stiffness(const struct tl_link *link, double stiffness,
+                                                  const vec3d *x)
 {
-    struct tl_piece piece = {.c = {-1, 1, 0}};
-    add_stretch(piece.uu, vec3d_sub(x[link->b], x[link->a]), stiffness, link->rest);
-    return piece;
+    struct tl_element_stiffness element_stiffness = {.c = {-1, 1, 0}};
+    add_stretch(element_stiffness.uu, vec3d_sub(x[link->b], x[link->a]), stiffness, link->rest);
+    return element_stiffness;
 }
 
-static void add_block(double out[9], const struct tl_piece *piece, size_t i, size_t j)
+static void add_block(double out[9], const struct tl_element_stiffness *element_stiffness, size_t i, size_t j)
 {
-    double cc = piece->c[i] * piece->c[j], dd = piece->d[i] * piece->d[j];
-    double cd = piece->c[i] * piece->d[j], dc = piece->d[i] * piece->c[j];
+    double cc = element_stiffness->c[i] * element_stiffness->c[j],
+           dd = element_stiffness->d[i] * element_stiffness->d[j];
+    double cd = element_stiffness->c[i] * element_stiffness->d[j],
+           dc = element_stiffness->d[i] * element_stiffness->c[j];
     for (int row = 0; row < 3; row++)
         for (int column = 0; column < 3; column++) {
             int k = 3 * row + column, turned = 3 * column + row;
-            out[k] += cc * piece->uu[k] + dd * piece->vv[k] + cd * piece->uv[k] + dc * piece->uv[turned];
+            out[k] += cc * element_stiffness->uu[k] + dd * element_stiffness->vv[k] +
+                      cd * element_stiffness->uv[k] + dc * element_stiffness->uv[turned];
         }
 }
 
@@ -263,7 +267,7 @@ static void gather_row(struct tl_stiffness *stiffness, size_t vertex)
         uint32_t element = gather->fans.items[item] / CORNERS, corner = gather->fans.items[item] % CORNERS;
         for (size_t k = 0; k < CORNERS; k++)
             add_block(stiffness->values[gather->slots[(size_t)item * CORNERS + k]],
-                      &stiffness->pieces[element], corner, k);
+                      &stiffness->elements[element], corner, k);
     }
 }
 
@@ -272,17 +276,17 @@ void tl_stiffness_assemble(struct tl_stiffness *stiffness, const struct tl_energ
                            const vec3d *x)
 {
     size_t lanes = energy->membrane_count * TL_BATCH, own = lanes + energy->link_count;
-#pragma omp parallel if (stiffness->vertex_count > TL_SERIAL)
+#pragma omp parallel if (stiffness->vertex_count > TL_PARALLEL_ROWS)
     {
 #pragma omp for schedule(static)
         for (size_t i = 0; i < stiffness->element_count; i++) {
             if (i < lanes)
-                stiffness->pieces[i] =
-                    membrane_piece(&energy->membranes[i / TL_BATCH], i % TL_BATCH, fabric, x);
+                stiffness->elements[i] =
+                    membrane_stiffness(&energy->membranes[i / TL_BATCH], i % TL_BATCH, fabric, x);
             else if (i < own)
-                stiffness->pieces[i] = link_piece(&energy->links[i - lanes], fabric->stretch_warp, x);
+                stiffness->elements[i] = link_stiffness(&energy->links[i - lanes], fabric->stretch_warp, x);
             else
-                stiffness->pieces[i] = link_piece(&springs->links[i - own], springs->stiffness, x);
+                stiffness->elements[i] = link_stiffness(&springs->links[i - own], springs->stiffness, x);
         }
 #pragma omp for schedule(static)
         for (size_t v = 0; v < stiffness->vertex_count; v++)

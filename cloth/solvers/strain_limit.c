@@ -1,4 +1,4 @@
-#include "cloth/solvers/limit.h"
+#include "cloth/solvers/strain_limit.h"
 
 #include "config/memory.h"
 
@@ -7,7 +7,7 @@
 
 /* What is beyond the limit at first is drawn back at this speed, a share of the rest length a second: at
  * once, it would become a speed that grows as the substep shrinks. */
-#define DRAW_BACK_SPEED 1.0
+#define CORRECTION_SPEED 1.0
 
 /* A triangle is near the limit when something in it is stretched by this share of it. */
 #define NEAR 0.75
@@ -16,17 +16,18 @@
 #define WORD 8
 _Static_assert(WORD == TL_BATCH && sizeof(bool) == 1, "eight flags are read as 64 bits");
 
-void tl_limits_restart(struct tl_limits *limits, const vec3d *x)
+void tl_strain_limits_restart(struct tl_strain_limits *limits, const vec3d *x)
 {
-    limits->passed_s = 0;
-    limits->any_drawn = false;
-    memset(limits->drawn, 0, limits->count * sizeof(bool));
+    limits->elapsed_s = 0;
+    limits->any_corrected = false;
+    memset(limits->corrected, 0, limits->count * sizeof(bool));
     for (size_t e = 0; e < limits->count; e++)
-        limits->edges[e].began = vec3d_distance(x[limits->edges[e].ends[0]], x[limits->edges[e].ends[1]]);
+        limits->edges[e].start_length =
+            vec3d_distance(x[limits->edges[e].ends[0]], x[limits->edges[e].ends[1]]);
 }
 
-static void list_edges(struct tl_limits *limits, const struct tl_topology *topology, const vec2s (*rest)[3],
-                       double shortest)
+static void list_edges(struct tl_strain_limits *limits, const struct tl_topology *topology,
+                       const vec2s (*rest)[3], double shortest)
 {
     for (size_t e = 0; e < topology->edge_count; e++)
         limits->edges[e] = (struct tl_limited_edge){.ends = {topology->edges[e][0], topology->edges[e][1]},
@@ -42,7 +43,7 @@ static void list_edges(struct tl_limits *limits, const struct tl_topology *topol
 }
 
 /* Empty lanes stay with edge 0, as they are never seen. */
-static void list_sides(struct tl_limits *limits, const struct tl_topology *topology,
+static void list_sides(struct tl_strain_limits *limits, const struct tl_topology *topology,
                        const struct tl_energy *energy)
 {
     for (size_t i = 0; i < energy->membrane_count * TL_BATCH; i++) {
@@ -54,37 +55,38 @@ static void list_sides(struct tl_limits *limits, const struct tl_topology *topol
     }
 }
 
-struct tl_limits tl_limits_create(const struct tl_topology *topology, const struct tl_energy *energy,
-                                  const vec2s (*rest)[3], double shortest, double strain, const vec3d *x)
+struct tl_strain_limits tl_strain_limits_create(const struct tl_topology *topology,
+                                                const struct tl_energy *energy, const vec2s (*rest)[3],
+                                                double shortest, double strain, const vec3d *x)
 {
     size_t count = topology->edge_count, words = (count + WORD - 1) / WORD;
-    struct tl_limits limits = {
+    struct tl_strain_limits limits = {
         .strain = strain,
         .count = count,
         .edges = TL_NEW_ARRAY(struct tl_limited_edge, count),
         .due = TL_NEW_ARRAY(bool, words *WORD),
         .always = TL_NEW_ARRAY(bool, words *WORD),
-        .drawn = TL_NEW_ARRAY(bool, words *WORD),
+        .corrected = TL_NEW_ARRAY(bool, words *WORD),
         .sides = tl_alloc(energy->membrane_count, sizeof *limits.sides),
-        .watch = {.most = (1 + NEAR * strain) * (1 + NEAR * strain),
+        .watch = {.max = (1 + NEAR * strain) * (1 + NEAR * strain),
                   .seen = tl_alloc(energy->membrane_count, sizeof *limits.watch.seen)}};
     list_edges(&limits, topology, rest, shortest);
-    tl_limits_restart(&limits, x);
+    tl_strain_limits_restart(&limits, x);
     list_sides(&limits, topology, energy);
     for (size_t i = 0; i < energy->link_count; i++) /* slivers have no membrane that could be watched */
-        limits.always[energy->pulls.link_edges[i]] = true;
+        limits.always[energy->pairs.link_edges[i]] = true;
     return limits;
 }
 
-void tl_limits_release(struct tl_limits *limits)
+void tl_strain_limits_release(struct tl_strain_limits *limits)
 {
     free(limits->edges);
     free(limits->due);
     free(limits->always);
-    free(limits->drawn);
+    free(limits->corrected);
     free(limits->sides);
     free(limits->watch.seen);
-    *limits = (struct tl_limits){0};
+    *limits = (struct tl_strain_limits){0};
 }
 
 /* Whether all of WORD flags are down: few are up. */
@@ -95,24 +97,24 @@ static bool none(const bool flags[WORD])
     return bits == 0;
 }
 
-static void mark_drawn(struct tl_limits *limits)
+static void mark_corrected(struct tl_strain_limits *limits)
 {
     for (size_t first = 0; first < limits->count; first += WORD) {
-        if (none(&limits->drawn[first]))
+        if (none(&limits->corrected[first]))
             continue;
         for (size_t e = first; e < first + WORD; e++)
-            limits->due[e] = limits->due[e] || limits->drawn[e];
-        memset(&limits->drawn[first], 0, WORD * sizeof(bool));
+            limits->due[e] = limits->due[e] || limits->corrected[e];
+        memset(&limits->corrected[first], 0, WORD * sizeof(bool));
     }
 }
 
 /* Returns whether any edge is to be looked at. */
-static bool mark(struct tl_limits *limits, const struct tl_energy *energy)
+static bool mark(struct tl_strain_limits *limits, const struct tl_energy *energy)
 {
-    bool any = energy->link_count > 0 || limits->any_drawn;
+    bool any = energy->link_count > 0 || limits->any_corrected;
     memcpy(limits->due, limits->always, limits->count * sizeof(bool));
-    if (limits->any_drawn)
-        mark_drawn(limits);
+    if (limits->any_corrected)
+        mark_corrected(limits);
     for (size_t i = 0; i < energy->membrane_count; i++) {
         const bool *seen = limits->watch.seen[i];
         if (none(seen))
@@ -126,42 +128,43 @@ static bool mark(struct tl_limits *limits, const struct tl_energy *energy)
 }
 
 /* All edges at a vertex. */
-static void mark_vertex(struct tl_limits *limits, const struct tl_pulls *pulls, uint32_t vertex)
+static void mark_vertex(struct tl_strain_limits *limits, const struct tl_pair_forces *pairs, uint32_t vertex)
 {
-    for (uint32_t k = pulls->along_first[vertex]; k < pulls->along_first[vertex + 1]; k++)
-        limits->due[pulls->along[k].edge] = true;
+    for (uint32_t k = pairs->incident_first[vertex]; k < pairs->incident_first[vertex + 1]; k++)
+        limits->due[pairs->incident[k].edge] = true;
 }
 
-TL_INLINE bool is_long(const struct tl_limits *limits, const struct tl_limited_edge *edge, const vec3d *x)
+TL_INLINE bool is_long(const struct tl_strain_limits *limits, const struct tl_limited_edge *edge,
+                       const vec3d *x)
 {
     vec3d apart = vec3d_sub(x[edge->ends[1]], x[edge->ends[0]]);
-    double most = (1 + limits->strain) * edge->rest;
-    return vec3d_dot(apart, apart) > most * most;
+    double max = (1 + limits->strain) * edge->rest;
+    return vec3d_dot(apart, apart) > max * max;
 }
 
 /* What draws one edge back may stretch its neighbours. Of an edge that is long; whether it moved. */
-static bool draw_back(struct tl_limits *limits, const struct tl_pulls *pulls,
-                      const struct tl_limited_edge *edge, struct tl_particles *particles)
+static bool correct_edge(struct tl_strain_limits *limits, const struct tl_pair_forces *pairs,
+                         const struct tl_limited_edge *edge, struct tl_particles *particles)
 {
     uint32_t a = edge->ends[0], b = edge->ends[1];
     vec3d apart = vec3d_sub(particles->x[b], particles->x[a]);
     double squared = vec3d_dot(apart, apart), sum = particles->w[a] + particles->w[b];
-    double most = fmax((1 + limits->strain) * edge->rest,
-                       edge->began - DRAW_BACK_SPEED * edge->rest * limits->passed_s);
-    if (!(squared > most * most) || !(sum > 0))
+    double max = fmax((1 + limits->strain) * edge->rest,
+                      edge->start_length - CORRECTION_SPEED * edge->rest * limits->elapsed_s);
+    if (!(squared > max * max) || !(sum > 0))
         return false;
-    vec3d push = vec3d_scale(apart, (1 - most / sqrt(squared)) / sum);
+    vec3d push = vec3d_scale(apart, (1 - max / sqrt(squared)) / sum);
     particles->x[a] = vec3d_muladd(particles->x[a], push, particles->w[a]);
     particles->x[b] = vec3d_muladd(particles->x[b], push, -particles->w[b]);
-    mark_vertex(limits, pulls, a);
-    mark_vertex(limits, pulls, b);
-    limits->drawn[edge - limits->edges] = true;
+    mark_vertex(limits, pairs, a);
+    mark_vertex(limits, pairs, b);
+    limits->corrected[edge - limits->edges] = true;
     return true;
 }
 
 /* Through the list, or back through it; whether anything moved. What was found short enough is looked at
  * again only once one of its ends has moved. */
-static bool sweep(struct tl_limits *limits, const struct tl_pulls *pulls, bool back,
+static bool sweep(struct tl_strain_limits *limits, const struct tl_pair_forces *pairs, bool back,
                   struct tl_particles *particles)
 {
     bool any = false;
@@ -176,17 +179,17 @@ static bool sweep(struct tl_limits *limits, const struct tl_pulls *pulls, bool b
                 continue;
             limits->due[e] = false;
             if (is_long(limits, &limits->edges[e], particles->x))
-                any = draw_back(limits, pulls, &limits->edges[e], particles) || any;
+                any = correct_edge(limits, pairs, &limits->edges[e], particles) || any;
         }
     }
     return any;
 }
 
-void tl_limits_solve(struct tl_limits *limits, const struct tl_energy *energy, double h,
-                     struct tl_particles *particles)
+void tl_strain_limits_solve(struct tl_strain_limits *limits, const struct tl_energy *energy, double h,
+                            struct tl_particles *particles)
 {
-    limits->passed_s += h;
-    limits->any_drawn = mark(limits, energy) && sweep(limits, &energy->pulls, false, particles);
-    if (limits->any_drawn)
-        (void)sweep(limits, &energy->pulls, true, particles);
+    limits->elapsed_s += h;
+    limits->any_corrected = mark(limits, energy) && sweep(limits, &energy->pairs, false, particles);
+    if (limits->any_corrected)
+        (void)sweep(limits, &energy->pairs, true, particles);
 }

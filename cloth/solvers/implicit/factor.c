@@ -1,4 +1,4 @@
-#include "cloth/solvers/implicit/implicit_factor.h"
+#include "cloth/solvers/implicit/factor.h"
 
 #include "config/memory.h"
 #include "config/simd.h"
@@ -9,13 +9,13 @@
 #include <string.h>
 
 /* Pivots below this share of the largest entry are rounding. */
-#define LEAST_PIVOT 1e-14
+#define MIN_PIVOT 1e-14
 /* Of more vertices the factor costs more than it saves, or does not fit into memory: the diagonal alone. */
-#define MOST_VERTICES 300000
+#define MAX_VERTICES 300000
 
 /* Neighbouring columns of L with the same rows below them: these are read, and their unknowns too, once for
  * all of them. Rows are the panel's part's own, then the top's, which are counted from its first. */
-#define WIDEST 4
+#define MAX_PANEL_WIDTH 4
 struct panel {
     uint32_t column, width; /* of the first; 1, 2 or 4 */
     uint32_t own_count, top_count;
@@ -111,9 +111,9 @@ static cholmod_sparse *sum_up(const struct tl_energy *energy, const struct tl_cl
 {
     const int lower = -1; /* CHOLMOD's word for it */
     size_t count = stiffness->vertex_count;
-    size_t most = (size_t)9 * TL_BATCH * energy->membrane_count + stiffness->bends.first[count] +
-                  3 * (energy->link_count + springs->count) + count;
-    sum->entries = cholmod_allocate_triplet(count, count, most, lower, CHOLMOD_REAL, common);
+    size_t capacity = (size_t)9 * TL_BATCH * energy->membrane_count + stiffness->bends.first[count] +
+                      3 * (energy->link_count + springs->count) + count;
+    sum->entries = cholmod_allocate_triplet(count, count, capacity, lower, CHOLMOD_REAL, common);
     if (!sum->entries)
         return NULL;
     add_membranes(sum, energy, fabric);
@@ -129,7 +129,7 @@ static cholmod_sparse *sum_up(const struct tl_energy *energy, const struct tl_cl
 /* L D L^T with D on L's diagonal; NULL: it does not fit into memory. */
 static cholmod_factor *factorise(cholmod_sparse *matrix, double largest, cholmod_common *common)
 {
-    common->dbound = LEAST_PIVOT * largest;
+    common->dbound = MIN_PIVOT * largest;
     cholmod_factor *factor = matrix ? cholmod_analyze(matrix, common) : NULL;
     bool good = factor && cholmod_factorize(matrix, factor, common);
     cholmod_free_sparse(&matrix, common);
@@ -164,7 +164,7 @@ static const int *rows_of(const struct layout *layout, size_t panel)
 }
 
 /* Whether the column after `column` has the same rows but for its own. */
-static bool goes_on(const cholmod_factor *from, size_t column)
+static bool continues_panel(const cholmod_factor *from, size_t column)
 {
     const int *first = from->p, *used = from->nz, *rows = from->i;
     size_t next = column + 1;
@@ -177,7 +177,7 @@ static void find_panels(struct layout *layout)
     size_t count = layout->from->n;
     for (size_t column = 0; column < count;) {
         uint32_t width = 1;
-        while (width < WIDEST && goes_on(layout->from, column + width - 1))
+        while (width < MAX_PANEL_WIDTH && continues_panel(layout->from, column + width - 1))
             width++;
         width = width == 3 ? 2 : width;
         for (uint32_t k = 0; k < width; k++)
@@ -272,7 +272,7 @@ static void fill_panels(tl_factor *factor, const struct layout *layout)
     }
 }
 
-static tl_factor *take_over(const cholmod_factor *from)
+static tl_factor *copy_factor(const cholmod_factor *from)
 {
     size_t count = from->n, entry_count = 0;
     const int *used = from->nz;
@@ -313,14 +313,14 @@ tl_factor *tl_factor_create(const struct tl_energy *energy, const struct tl_clot
     cholmod_start(&common);
     common.print = 0;                       /* stdout is for results */
     common.supernodal = CHOLMOD_SIMPLICIAL; /* no BLAS: its sums may depend on the threads */
-    for (int diagonal = stiffness->vertex_count > MOST_VERTICES; !whole && diagonal < 2; diagonal++) {
+    for (int diagonal = stiffness->vertex_count > MAX_VERTICES; !whole && diagonal < 2; diagonal++) {
         struct sum sum = {.inverse_masses = inverse_masses, .diagonal = diagonal};
         cholmod_sparse *matrix = sum_up(energy, fabric, springs, stiffness, h, &sum, &common);
         whole = factorise(matrix, sum.largest, &common);
     }
     if (!whole)
         abort(); /* out of memory for the diagonal, as in tl_alloc */
-    tl_factor *factor = take_over(whole);
+    tl_factor *factor = copy_factor(whole);
     cholmod_free_factor(&whole, &common);
     cholmod_finish(&common);
     return factor;
@@ -342,43 +342,43 @@ void tl_factor_destroy(tl_factor **factor)
 
 /* ---- Solving ---- */
 
-#define CACHE_LINE 64
-#define AHEAD      4 /* panels */
+#define CACHE_LINE        64
+#define PREFETCH_DISTANCE 4 /* panels */
 
 /* a - b s */
-TL_INLINE struct unknown less(struct unknown a, struct unknown b, double s)
+TL_INLINE struct unknown subtract_scaled(struct unknown a, struct unknown b, double s)
 {
     return (struct unknown){a.x - b.x * s, a.y - b.y * s, a.z - b.z * s, a.unused - b.unused * s};
 }
 
-TL_INLINE void take_from(const uint32_t *rows, uint32_t count, const double *values, uint32_t width,
-                         const struct unknown *known, struct unknown *to)
+TL_INLINE void subtract_products(const uint32_t *rows, uint32_t count, const double *values, uint32_t width,
+                                 const struct unknown *known, struct unknown *to)
 {
     for (uint32_t e = 0; e < count; e++, values += width) {
         struct unknown sum = to[rows[e]];
         for (uint32_t k = 0; k < width; k++)
-            sum = less(sum, known[k], values[k]);
+            sum = subtract_scaled(sum, known[k], values[k]);
         to[rows[e]] = sum;
     }
 }
 
 /* L y = r, for the unknowns of a panel and what they add to those below. */
-TL_INLINE void go_down(const tl_factor *factor, const struct panel *panel, uint32_t width, struct unknown *y,
-                       struct unknown *top)
+TL_INLINE void solve_panel_forward(const tl_factor *factor, const struct panel *panel, uint32_t width,
+                                   struct unknown *y, struct unknown *top)
 {
     const double *values = factor->values + panel->values + width;
     const uint32_t *rows = factor->rows + panel->rows;
-    struct unknown known[WIDEST];
+    struct unknown known[MAX_PANEL_WIDTH];
     for (uint32_t k = 0; k < width; k++)
         known[k] = y[panel->column + k];
     for (uint32_t k = 0; k < width; k++)
         for (uint32_t i = k + 1; i < width; i++)
-            known[i] = less(known[i], known[k], *values++);
+            known[i] = subtract_scaled(known[i], known[k], *values++);
     for (uint32_t k = 0; k < width; k++)
         y[panel->column + k] = known[k];
-    take_from(rows, panel->own_count, values, width, known, y);
-    take_from(rows + panel->own_count, panel->top_count, values + (size_t)width * panel->own_count, width,
-              known, top);
+    subtract_products(rows, panel->own_count, values, width, known, y);
+    subtract_products(rows + panel->own_count, panel->top_count, values + (size_t)width * panel->own_count,
+                      width, known, top);
 }
 
 TL_INLINE void gather(const uint32_t *rows, uint32_t count, const double *values, uint32_t width,
@@ -387,17 +387,18 @@ TL_INLINE void gather(const uint32_t *rows, uint32_t count, const double *values
     for (uint32_t e = 0; e < count; e++, values += width) {
         struct unknown known = from[rows[e]];
         for (uint32_t k = 0; k < width; k++)
-            sums[k] = less(sums[k], known, values[k]);
+            sums[k] = subtract_scaled(sums[k], known, values[k]);
     }
 }
 
 /* D L^T z = y. */
-TL_INLINE void go_up(const tl_factor *factor, const struct panel *panel, uint32_t width, struct unknown *y)
+TL_INLINE void solve_panel_backward(const tl_factor *factor, const struct panel *panel, uint32_t width,
+                                    struct unknown *y)
 {
     const double *values = factor->values + panel->values, *inner = values + width;
     const double *below = inner + (size_t)width * (width - 1) / 2;
     const uint32_t *rows = factor->rows + panel->rows;
-    struct unknown sums[WIDEST];
+    struct unknown sums[MAX_PANEL_WIDTH];
     for (uint32_t k = 0; k < width; k++) {
         struct unknown own = y[panel->column + k];
         sums[k] = (struct unknown){own.x * values[k], own.y * values[k], own.z * values[k], 0};
@@ -409,27 +410,28 @@ TL_INLINE void go_up(const tl_factor *factor, const struct panel *panel, uint32_
         const double *column =
             inner + (size_t)k * width - (size_t)k * (k + 1) / 2; /* of L between the columns */
         for (uint32_t i = k + 1; i < width; i++)
-            sums[k] = less(sums[k], sums[i], column[i - k - 1]);
+            sums[k] = subtract_scaled(sums[k], sums[i], column[i - k - 1]);
         y[panel->column + k] = sums[k];
     }
 }
 
 /* `top`: where what is taken from the top's unknowns goes. */
-TL_CLONES static void part_down(const tl_factor *factor, size_t part, struct unknown *y, struct unknown *top)
+TL_CLONES static void solve_part_forward(const tl_factor *factor, size_t part, struct unknown *y,
+                                         struct unknown *top)
 {
     for (size_t p = part > 0 ? factor->ends[part - 1] : 0; p < factor->ends[part]; p++) {
         const struct panel *panel = &factor->panels[p];
         if (panel->width == 4)
-            go_down(factor, panel, 4, y, top);
+            solve_panel_forward(factor, panel, 4, y, top);
         else if (panel->width == 2)
-            go_down(factor, panel, 2, y, top);
+            solve_panel_forward(factor, panel, 2, y, top);
         else
-            go_down(factor, panel, 1, y, top);
+            solve_panel_forward(factor, panel, 1, y, top);
     }
 }
 
 /* Panels are read last first, which no cache foresees. */
-TL_INLINE void foresee(const tl_factor *factor, const struct panel *panel)
+TL_INLINE void prefetch_panel(const tl_factor *factor, const struct panel *panel)
 {
     const char *values = (const char *)(factor->values + panel->values);
     const char *rows = (const char *)(factor->rows + panel->rows);
@@ -441,19 +443,19 @@ TL_INLINE void foresee(const tl_factor *factor, const struct panel *panel)
         __builtin_prefetch(rows + line);
 }
 
-TL_CLONES static void part_up(const tl_factor *factor, size_t part, struct unknown *y)
+TL_CLONES static void solve_part_backward(const tl_factor *factor, size_t part, struct unknown *y)
 {
     size_t first = part > 0 ? factor->ends[part - 1] : 0;
     for (size_t p = factor->ends[part]; p-- > first;) {
         const struct panel *panel = &factor->panels[p];
-        if (p >= first + AHEAD)
-            foresee(factor, panel - AHEAD);
+        if (p >= first + PREFETCH_DISTANCE)
+            prefetch_panel(factor, panel - PREFETCH_DISTANCE);
         if (panel->width == 4)
-            go_up(factor, panel, 4, y);
+            solve_panel_backward(factor, panel, 4, y);
         else if (panel->width == 2)
-            go_up(factor, panel, 2, y);
+            solve_panel_backward(factor, panel, 2, y);
         else
-            go_up(factor, panel, 1, y);
+            solve_panel_backward(factor, panel, 1, y);
     }
 }
 
@@ -463,9 +465,9 @@ static void solve_top(const tl_factor *factor)
     size_t top_count = factor->count - factor->top_first;
     for (size_t part = 0; part < PARTS; part++)
         for (size_t i = 0; i < top_count; i++)
-            top[i] = less(top[i], factor->tops[part * top_count + i], -1);
-    part_down(factor, PARTS, y, top);
-    part_up(factor, PARTS, y);
+            top[i] = subtract_scaled(top[i], factor->tops[part * top_count + i], -1);
+    solve_part_forward(factor, PARTS, y, top);
+    solve_part_backward(factor, PARTS, y);
 }
 
 /* The three right-hand sides at once: L is read once for all. */
@@ -473,7 +475,7 @@ void tl_factor_solve(tl_factor *factor, const vec3d *r, vec3d *z)
 {
     struct unknown *y = factor->work;
     size_t top_count = factor->count - factor->top_first;
-#pragma omp parallel if (factor->count > TL_SERIAL)
+#pragma omp parallel if (factor->count > TL_PARALLEL_ROWS)
     {
         unsigned denormals = tl_denormals_off();
 #pragma omp for schedule(static)
@@ -485,13 +487,13 @@ void tl_factor_solve(tl_factor *factor, const vec3d *r, vec3d *z)
         for (size_t part = 0; part < PARTS; part++) {
             struct unknown *top = factor->tops + part * top_count;
             memset(top, 0, top_count * sizeof *top);
-            part_down(factor, part, y, top);
+            solve_part_forward(factor, part, y, top);
         }
 #pragma omp single
         solve_top(factor);
 #pragma omp for schedule(dynamic)
         for (size_t part = 0; part < PARTS; part++)
-            part_up(factor, part, y);
+            solve_part_backward(factor, part, y);
 #pragma omp for schedule(static)
         for (size_t j = 0; j < factor->count; j++)
             z[factor->order[j]] = (vec3d){y[j].x, y[j].y, y[j].z};

@@ -2,7 +2,7 @@
  * (mikk_oracle.h). */
 #include "assets/garment.h"
 #include "cloth/mesh/topology.h"
-#include "cloth/tangents/frames.h"
+#include "cloth/tangents/tangent_frames.h"
 #include "tests/cloth/bodies.h"
 #include "tests/cloth/sheets.h"
 #include "tests/cloth/tangents/mikk_oracle.h"
@@ -197,11 +197,11 @@ static void print_errors(const char *name, const tl_mesh *mesh, const struct err
 static void check_deformations(const char *name, const tl_mesh *mesh, uint32_t seeds)
 {
     struct buffers b = make_buffers(mesh);
-    tl_frames *frames = tl_frames_create(mesh, b.weld);
+    tl_tangent_frames *frames = tl_tangent_frames_create(mesh, b.weld);
     struct errors errors = {0};
     for (uint32_t seed = 0; seed < seeds; seed++) {
         deform(mesh, b.weld, seed, seed % 2 == 0 ? 0.1 : 0.5, b.positions);
-        tl_frames_update(frames, b.positions, b.normals, b.tangents);
+        tl_tangent_frames_update(frames, b.positions, b.normals, b.tangents);
         assert_orthonormal(&b, mesh->vertex_count);
         compare(mesh, &b, &errors);
     }
@@ -210,7 +210,7 @@ static void check_deformations(const char *name, const tl_mesh *mesh, uint32_t s
     assert_true(errors.worst_tangent <= ALLOWED_DEG);
     assert_true(errors.normal_count > 0);
     assert_true(errors.undetermined <= errors.normal_count / 500);
-    tl_frames_destroy(&frames);
+    tl_tangent_frames_destroy(&frames);
     free_buffers(&b);
 }
 
@@ -300,8 +300,8 @@ static void test_cylinder(void **state)
     tl_garment garment = sheet_make(&shape, roll);
     const tl_mesh *mesh = &garment.model.mesh;
     struct buffers b = make_buffers(mesh);
-    tl_frames *frames = tl_frames_create(mesh, b.weld);
-    tl_frames_update(frames, b.positions, b.normals, b.tangents);
+    tl_tangent_frames *frames = tl_tangent_frames_create(mesh, b.weld);
+    tl_tangent_frames_update(frames, b.positions, b.normals, b.tangents);
     double cell_deg = TURN / 64 * 180 / M_PI;
     for (int row = 1; row < shape.rows; row++)
         for (int column = 1; column < shape.columns; column++) {
@@ -314,7 +314,7 @@ static void test_cylinder(void **state)
             vec3d bitangent = vec3d_cross(vec3d_from(b.normals[i]), tangent_at(&b, i));
             assert_true(bitangent.y > 0.999);
         }
-    tl_frames_destroy(&frames);
+    tl_tangent_frames_destroy(&frames);
     free_buffers(&b);
     sheet_free(&garment);
 }
@@ -333,27 +333,27 @@ static void test_degenerate_input_stays_finite(void **state)
         if (mesh->indices[i] == 48)
             mesh->indices[i] = 47;
     struct buffers b = make_buffers(mesh), first = make_buffers(mesh);
-    tl_frames *frames = tl_frames_create(mesh, b.weld);
-    tl_frames_update(frames, b.positions, b.normals, b.tangents);
+    tl_tangent_frames *frames = tl_tangent_frames_create(mesh, b.weld);
+    tl_tangent_frames_update(frames, b.positions, b.normals, b.tangents);
     memcpy(first.tangents, b.tangents, mesh->vertex_count * sizeof(vec4s));
     assert_orthonormal(&b, mesh->vertex_count);
     assert_near(b.normals[48].y, 1, 0); /* unused: +Y */
     memset(b.positions, 0, mesh->vertex_count * sizeof(vec3s));
-    tl_frames_update(frames, b.positions, b.normals, b.tangents);
+    tl_tangent_frames_update(frames, b.positions, b.normals, b.tangents);
     assert_orthonormal(&b, mesh->vertex_count);
     assert_near(b.normals[24].z, 1, 1e-6); /* kept from before */
 
     /* Bent over, the vertices without UVs keep tangents of their own; forgotten, they begin anew. */
     deform(mesh, b.weld, 1, 0.1, b.positions);
-    tl_frames_update(frames, b.positions, b.normals, b.tangents);
+    tl_tangent_frames_update(frames, b.positions, b.normals, b.tangents);
     memcpy(b.positions, mesh->positions, mesh->vertex_count * sizeof(vec3s));
-    tl_frames_update(frames, b.positions, b.normals, b.tangents);
+    tl_tangent_frames_update(frames, b.positions, b.normals, b.tangents);
     assert_memory_not_equal(first.tangents, b.tangents, mesh->vertex_count * sizeof(vec4s));
-    tl_frames_forget(frames);
-    tl_frames_update(frames, b.positions, b.normals, b.tangents);
+    tl_tangent_frames_reset(frames);
+    tl_tangent_frames_update(frames, b.positions, b.normals, b.tangents);
     assert_memory_equal(first.tangents, b.tangents, mesh->vertex_count * sizeof(vec4s));
     free_buffers(&first);
-    tl_frames_destroy(&frames);
+    tl_tangent_frames_destroy(&frames);
     free_buffers(&b);
     sheet_free(&garment);
 }
@@ -373,14 +373,14 @@ static void test_both_sides(void **state)
     const tl_mesh mesh = {
         .vertex_count = 6, .positions = positions, .uvs = uvs, .index_count = 6, .indices = indices};
     struct buffers b = make_buffers(&mesh);
-    tl_frames *frames = tl_frames_create(&mesh, b.weld);
-    tl_frames_update(frames, b.positions, b.normals, b.tangents);
+    tl_tangent_frames *frames = tl_tangent_frames_create(&mesh, b.weld);
+    tl_tangent_frames_update(frames, b.positions, b.normals, b.tangents);
     for (int i = 0; i < 6; i++) {
         assert_near(b.normals[i].z, i < 3 ? 1 : -1, 1e-6);
         assert_near(b.tangents[i].x, 1, 1e-6);
         assert_near(b.tangents[i].w, i < 3 ? 1 : -1, 0);
     }
-    tl_frames_destroy(&frames);
+    tl_tangent_frames_destroy(&frames);
     free_buffers(&b);
 }
 
@@ -438,14 +438,14 @@ static void test_positions_that_are_not_finite(void **state)
     tl_garment garment = mirrored_and_cut();
     const tl_mesh *mesh = &garment.model.mesh;
     struct buffers b = make_buffers(mesh), clean = make_buffers(mesh);
-    tl_frames *frames = tl_frames_create(mesh, b.weld);
+    tl_tangent_frames *frames = tl_tangent_frames_create(mesh, b.weld);
     deform(mesh, b.weld, 1, 0.1, b.positions);
-    tl_frames_update(frames, b.positions, clean.normals, clean.tangents);
+    tl_tangent_frames_update(frames, b.positions, clean.normals, clean.tangents);
     const uint32_t middle = 4 * 13 + 8; /* row and column of no cut and no mirror */
     for (size_t i = 0; i < TL_COUNT(bad); i++) {
         vec3s kept = b.positions[middle];
         b.positions[middle].y = bad[i];
-        tl_frames_update(frames, b.positions, b.normals, b.tangents);
+        tl_tangent_frames_update(frames, b.positions, b.normals, b.tangents);
         assert_orthonormal(&b, mesh->vertex_count);
         b.positions[middle] = kept;
         for (uint32_t v = 0; v < mesh->vertex_count; v++) {
@@ -454,11 +454,11 @@ static void test_positions_that_are_not_finite(void **state)
             if (far || kept_frame)
                 assert_memory_equal(&b.normals[v], &clean.normals[v], sizeof(vec3s));
         }
-        tl_frames_update(frames, b.positions, b.normals, b.tangents);
+        tl_tangent_frames_update(frames, b.positions, b.normals, b.tangents);
         assert_memory_equal(b.normals, clean.normals, mesh->vertex_count * sizeof(vec3s));
         assert_memory_equal(b.tangents, clean.tangents, mesh->vertex_count * sizeof(vec4s));
     }
-    tl_frames_destroy(&frames);
+    tl_tangent_frames_destroy(&frames);
     free_buffers(&b);
     free_buffers(&clean);
     sheet_free(&garment);
@@ -478,13 +478,13 @@ static void test_threads_do_not_matter(void **state)
     struct buffers b = make_buffers(mesh), one = make_buffers(mesh);
     int threads = omp_get_max_threads();
     for (int count = 1; count <= 3; count++) {
-        tl_frames *frames = tl_frames_create(mesh, b.weld);
+        tl_tangent_frames *frames = tl_tangent_frames_create(mesh, b.weld);
         struct buffers *to = count == 1 ? &one : &b;
         omp_set_num_threads(count);
-        tl_frames_update(frames, b.positions, to->normals, to->tangents);
+        tl_tangent_frames_update(frames, b.positions, to->normals, to->tangents);
         assert_memory_equal(to->normals, one.normals, mesh->vertex_count * sizeof(vec3s));
         assert_memory_equal(to->tangents, one.tangents, mesh->vertex_count * sizeof(vec4s));
-        tl_frames_destroy(&frames);
+        tl_tangent_frames_destroy(&frames);
     }
     omp_set_num_threads(threads);
     free_buffers(&b);
@@ -511,17 +511,17 @@ static void test_print_speed(void **state)
         tl_garment garment = sheet_make(&shape, wave);
         const tl_mesh *mesh = &garment.model.mesh;
         struct buffers b = make_buffers(mesh);
-        tl_frames *frames = tl_frames_create(mesh, b.weld);
+        tl_tangent_frames *frames = tl_tangent_frames_create(mesh, b.weld);
         double best = INFINITY;
         for (int k = 0; k < repeats[i]; k++) {
             double begin = thread_seconds();
-            tl_frames_update(frames, b.positions, b.normals, b.tangents);
+            tl_tangent_frames_update(frames, b.positions, b.normals, b.tangents);
             best = fmin(best, thread_seconds() - begin);
         }
         assert_orthonormal(&b, mesh->vertex_count);
         printf("%zu vertices: %.3f ms, %.1f ns a vertex\n", mesh->vertex_count, 1e3 * best,
                1e9 * best / (double)mesh->vertex_count);
-        tl_frames_destroy(&frames);
+        tl_tangent_frames_destroy(&frames);
         free_buffers(&b);
         sheet_free(&garment);
     }
