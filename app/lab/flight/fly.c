@@ -287,11 +287,10 @@ bool tl_fly_judge(struct tl_stage *stage, struct tl_flight *flight, tl_error *er
 {
     struct tl_motion motion;
     struct tl_variant_run oracle = {0};
-    const struct tl_setup choice = tl_reference_settings();
     /* A reset would not do: a cloth whose step has changed goes on otherwise than a fresh one. */
     bool done = tl_session_restart(stage->session, &stage->settings, error) &&
                 begin_motion(stage, flight, &motion, error) &&
-                tl_variant_run_create(&oracle, stage->gpu, &choice, &stage->settings, error);
+                tl_variant_run_create(&oracle, stage->gpu, &tl_setup_reference, &stage->settings, error);
     struct tl_progress progress = tl_progress_begin("ray tracing what was flown");
     int judged = 0;
     for (int number = 0; done && judged < flight->kept_count; number++) {

@@ -17,21 +17,21 @@ static void write_html(const void *gallery, FILE *out)
 static bool write_all(const char *folder, const struct tl_gallery *gallery, tl_error *error)
 {
     for (size_t i = 0; i < gallery->count; i++) {
-        const struct tl_hung *hung = &gallery->items[i];
-        if (!tl_folder_put(folder, hung->image, hung->png, hung->png_size, error))
+        const struct tl_gallery_entry *entry = &gallery->entries[i];
+        if (!tl_folder_put(folder, entry->image, entry->png, entry->png_size, error))
             return false;
     }
     return tl_folder_print(folder, "gallery.csv", gallery, write_csv, error) &&
            tl_folder_print(folder, "gallery.html", gallery, write_html, error);
 }
 
-/* Interrupted, what hangs is worth as much as before. */
+/* After Ctrl-C, what was drawn until then is written. */
 bool tl_command_gallery(const struct tl_arguments *arguments, tl_error *error)
 {
     if (!arguments->output)
         return tl_fail(error, TL_USAGE, "gallery: no folder named: add -o FOLDER");
     if (arguments->positional_count > 1)
-        return tl_fail(error, TL_USAGE, "gallery: %s: one wall at a time, or none for all",
+        return tl_fail(error, TL_USAGE, "gallery: %s: one section at a time, or none for all",
                        arguments->positionals[1]);
     const char *only = arguments->positional_count ? arguments->positionals[0] : NULL;
     if (!tl_gallery_has(only, error) || !tl_folder_make(arguments->output, error))

@@ -1,5 +1,6 @@
 #include "app/lab/gallery/gallery_figures.h"
 
+#include "app/lab/experiments/experiment.h"
 #include "app/report/report.h"
 #include "config/memory.h"
 #include "render/brdf/normalise.h"
@@ -8,6 +9,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static struct tl_brdf brdf_of(int model, float glossiness)
 {
@@ -21,24 +23,24 @@ static struct tl_brdf brdf_of(int model, float glossiness)
 
 /* ---- A1, A3 to A5 ---- */
 
-static const char *const model_names[] = {"phong", "blinn_phong", "cosine_lobe", "torrance_sparrow",
-                                          "ward",  "banks"};
+enum { MODELS = TL_REFLECT_BANKS + 1 };
 static const int sizes[] = {16, 32, 64, 128, 256, 512};
 
 static void plot_sizes(int precision, const char *caption, FILE *out)
 {
-    struct tl_plot_point points[TL_COUNT(model_names)][TL_COUNT(sizes)];
-    struct tl_plot_series series[TL_COUNT(model_names)];
-    for (size_t model = 0; model < TL_COUNT(model_names); model++) {
+    const char *const *names = tl_experiment_choices(&tl_material_options, "model");
+    struct tl_plot_point points[MODELS][TL_COUNT(sizes)];
+    struct tl_plot_series series[MODELS];
+    for (size_t model = 0; model < MODELS; model++) {
         struct tl_brdf brdf = brdf_of((int)model, 0.9f);
         for (size_t i = 0; i < TL_COUNT(sizes); i++) {
             struct tl_brdf_table_params params = {
                 .size = sizes[i], .precision = precision, .range = TL_RANGE_SCALED};
             points[model][i] = (struct tl_plot_point){
-                sizes[i], 100 * tl_brdf_table_error(&brdf, &params).away, model_names[model], false};
+                sizes[i], 100 * tl_brdf_table_error(&brdf, &params).away, names[model], false};
         }
         series[model] = (struct tl_plot_series){
-            .name = model_names[model], .points = points[model], .count = TL_COUNT(sizes), .line = true};
+            .name = names[model], .points = points[model], .count = TL_COUNT(sizes), .line = true};
     }
     tl_report_plot(
         out, &(struct tl_plot){"texels a side", "relative RMSE, %", true, true, series, TL_COUNT(series)},
@@ -59,25 +61,25 @@ void tl_gallery_grazing_figures(FILE *out)
     static const struct {
         const char *name;
         int precision, range;
-    } ways[] = {{"8 bits, cut at 1", TL_PRECISION_FIXED8, TL_RANGE_CLAMPED},
-                {"8 bits, by a constant", TL_PRECISION_FIXED8, TL_RANGE_SCALED},
-                {"16 bits, by a constant", TL_PRECISION_FIXED16, TL_RANGE_SCALED}};
+    } kinds[] = {{"8 bits, cut at 1", TL_PRECISION_FIXED8, TL_RANGE_CLAMPED},
+                 {"8 bits, by a constant", TL_PRECISION_FIXED8, TL_RANGE_SCALED},
+                 {"16 bits, by a constant", TL_PRECISION_FIXED16, TL_RANGE_SCALED}};
     enum { ANGLES = 45 };
-    struct tl_plot_point points[TL_COUNT(ways)][ANGLES];
-    struct tl_plot_series series[TL_COUNT(ways)];
+    struct tl_plot_point points[TL_COUNT(kinds)][ANGLES];
+    struct tl_plot_series series[TL_COUNT(kinds)];
     struct tl_brdf brdf = brdf_of(TL_REFLECT_TORRANCE_SPARROW, 0.9f);
-    for (size_t way = 0; way < TL_COUNT(ways); way++) {
+    for (size_t t = 0; t < TL_COUNT(kinds); t++) {
         struct tl_brdf_table_params params = {
-            .size = 512, .precision = ways[way].precision, .range = ways[way].range};
+            .size = 512, .precision = kinds[t].precision, .range = kinds[t].range};
         struct tl_brdf_tables tables = tl_brdf_tables_make(&brdf, &params);
         for (int i = 0; i < ANGLES; i++) {
             double degrees = 2.0 * i + 1;
             double ratio = tl_brdf_table_ratio(&brdf, &tables, (float)cos(degrees * M_PI / 180));
-            points[way][i] = (struct tl_plot_point){degrees, ratio, ways[way].name, false};
+            points[t][i] = (struct tl_plot_point){degrees, ratio, kinds[t].name, false};
         }
         tl_brdf_tables_release(&tables);
-        series[way] = (struct tl_plot_series){
-            .name = ways[way].name, .points = points[way], .count = ANGLES, .line = true};
+        series[t] = (struct tl_plot_series){
+            .name = kinds[t].name, .points = points[t], .count = ANGLES, .line = true};
     }
     tl_report_plot(
         out,
@@ -90,32 +92,32 @@ void tl_gallery_grazing_figures(FILE *out)
 
 /* ---- A3 ---- */
 
-/* Of the whole light, ambient and diffuse included, so that both ways are measured alike. */
+/* Measured over the whole light, ambient and diffuse included, so that both kinds of table compare alike. */
 void tl_gallery_folded_figures(FILE *out)
 {
     static const struct {
         const char *name;
         int model, precision;
-    } ways[] = {{"Phong, 8 bits", TL_REFLECT_PHONG, TL_PRECISION_FIXED8},
-                {"Blinn-Phong, 8 bits", TL_REFLECT_BLINN_PHONG, TL_PRECISION_FIXED8},
-                {"cosine lobe, 8 bits", TL_REFLECT_COSINE_LOBE, TL_PRECISION_FIXED8},
-                {"Phong, float", TL_REFLECT_PHONG, TL_PRECISION_FLOAT}};
-    struct tl_plot_point points[TL_COUNT(ways)][TL_COUNT(sizes)];
-    struct tl_plot_series series[TL_COUNT(ways)];
-    for (size_t way = 0; way < TL_COUNT(ways); way++) {
-        struct tl_brdf brdf = brdf_of(ways[way].model, 0.9f);
+    } kinds[] = {{"Phong, 8 bits", TL_REFLECT_PHONG, TL_PRECISION_FIXED8},
+                 {"Blinn-Phong, 8 bits", TL_REFLECT_BLINN_PHONG, TL_PRECISION_FIXED8},
+                 {"cosine lobe, 8 bits", TL_REFLECT_COSINE_LOBE, TL_PRECISION_FIXED8},
+                 {"Phong, float", TL_REFLECT_PHONG, TL_PRECISION_FLOAT}};
+    struct tl_plot_point points[TL_COUNT(kinds)][TL_COUNT(sizes)];
+    struct tl_plot_series series[TL_COUNT(kinds)];
+    for (size_t t = 0; t < TL_COUNT(kinds); t++) {
+        struct tl_brdf brdf = brdf_of(kinds[t].model, 0.9f);
         for (size_t i = 0; i < TL_COUNT(sizes); i++) {
             struct tl_brdf_table_params params = {.size = sizes[i],
-                                                  .precision = ways[way].precision,
+                                                  .precision = kinds[t].precision,
                                                   .range = TL_RANGE_SCALED,
                                                   .folded = true,
                                                   .ambient = {{0.02f, 0.02f, 0.02f}},
                                                   .diffuse = {{0.3f, 0.3f, 0.3f}}};
-            points[way][i] = (struct tl_plot_point){sizes[i], 100 * tl_brdf_table_error(&brdf, &params).away,
-                                                    ways[way].name, false};
+            points[t][i] = (struct tl_plot_point){sizes[i], 100 * tl_brdf_table_error(&brdf, &params).away,
+                                                  kinds[t].name, false};
         }
-        series[way] = (struct tl_plot_series){
-            .name = ways[way].name, .points = points[way], .count = TL_COUNT(sizes), .line = true};
+        series[t] = (struct tl_plot_series){
+            .name = kinds[t].name, .points = points[t], .count = TL_COUNT(sizes), .line = true};
     }
     tl_report_plot(
         out, &(struct tl_plot){"texels a side", "relative RMSE, %", true, true, series, TL_COUNT(series)},
@@ -234,4 +236,19 @@ void tl_gallery_fresnel_figures(FILE *out)
         out, &(struct tl_plot){"degrees from the normal", "reflectance", false, false, series, 2},
         "Fresnel's term for the two indices of the paper's figure 7: the first is a mirror at grazing "
         "angles alone, the second nearly everywhere.");
+}
+
+/* ---- Which section has which ---- */
+
+void tl_gallery_write_figures(const char *section, FILE *out)
+{
+    static const struct {
+        const char *section;
+        void (*write)(FILE *out);
+    } figures[] = {{"a1", tl_gallery_table_figures},  {"a2", tl_gallery_grazing_figures},
+                   {"a3", tl_gallery_folded_figures}, {"a9", tl_gallery_normalise_figures},
+                   {"a10", tl_gallery_power_figures}, {"b6", tl_gallery_fresnel_figures}};
+    for (size_t i = 0; i < TL_COUNT(figures); i++)
+        if (strcmp(figures[i].section, section) == 0)
+            figures[i].write(out);
 }

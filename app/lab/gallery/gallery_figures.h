@@ -1,9 +1,12 @@
-/* Plots below the gallery's walls that show a technique by itself, without a picture around it. Each writes
- * into an open page (app/report/report.h) what its pure measurement in render/brdf gives. */
+/* Plots below the gallery's sections. Each plots what a pure measurement of render/brdf gives for one
+ * technique, into an open page (app/report/report.h). */
 #ifndef TOILE_APP_LAB_GALLERY_GALLERY_FIGURES_H
 #define TOILE_APP_LAB_GALLERY_GALLERY_FIGURES_H
 
 #include <stdio.h>
+
+/* The plots of a section; nothing where it has none. */
+void tl_gallery_write_figures(const char *section, FILE *out);
 
 void tl_gallery_table_figures(FILE *out);     /* A1, A3 to A5: error of tables over size and precision */
 void tl_gallery_grazing_figures(FILE *out);   /* A2: what the singular factor's range darkens */

@@ -1,8 +1,8 @@
-/* The extremes of light, drawn by two methods and compared with the oracle. */
+/* The extremes of light, drawn by two methods and compared with the ray-traced reference. */
 #include "app/cli/topic.h"
+#include "app/lab/experiments/experiment.h"
 #include "app/lab/stability/extremes_light.h"
 #include "app/lab/stability/stability.h"
-#include "app/measure/measure.h"
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
@@ -11,21 +11,12 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define SIDE         64 /* pixels of the images */
 #define QUICK_STRIDE 6
-/* The oracle's own noise lies below it. */
+/* The noise of the reference lies below it. */
 #define EXACT_RMSE 0.001
-
-/* The paper's N = 96 at 128 texels shows nothing more here, and takes four times as long. */
-static const struct tl_setup choices[TL_EXTREME_METHODS] = {
-    {"paper", "paper", {"light.lobe=dual", "light.regions=24", "light.pem_size=64"}},
-    {"review", "review", {NULL}},
-};
-static const struct tl_setup unshadowed = {
-    "unshadowed",
-    "paper",
-    {"light.lobe=dual", "light.regions=24", "light.pem_size=64", "light.method=unshadowed"}};
 
 struct cell {
     enum tl_outcome outcome;
@@ -36,27 +27,42 @@ struct cell {
 struct suite {
     struct tl_settings settings;
     tl_gpu *gpu;
-    struct tl_variant_run methods[TL_EXTREME_METHODS], unshadowed, oracle;
+    struct tl_variant_run methods[TL_EXTREME_METHODS], unshadowed, reference;
     size_t stride;      /* from one drawn extreme to the next */
     struct cell *cells; /* [tl_extreme_count][TL_EXTREME_METHODS] */
 };
 
+static const char *const method_names[TL_EXTREME_METHODS] = {
+    [TL_EXTREME_PAPER] = "paper", [TL_EXTREME_REVIEW] = "review"};
+
+static const struct tl_technique *find_technique(const struct tl_experiment *experiment, const char *name)
+{
+    const struct tl_technique *technique = NULL;
+    while ((technique = tl_experiment_next(experiment, TL_OUTPUT_BOUNDS, technique)))
+        if (strcmp(technique->bound, name) == 0)
+            break;
+    return technique;
+}
+
 static bool prepare(struct suite *suite, const struct tl_arguments *arguments, tl_error *error)
 {
-    struct tl_setup truth = tl_reference_settings();
-    truth.assignments[2] = "reference.replicates=2"; /* 0.5 %: bounds are wide */
+    const struct tl_experiment *experiment = tl_experiment_find(TL_OUTPUT_BOUNDS, "light");
     if (!tl_stage_settings(arguments, &suite->settings, error))
         return false;
     suite->settings.image.width = suite->settings.image.height = SIDE;
     suite->settings.image.supersample = 1;
     suite->cells = TL_NEW_ARRAY(struct cell, tl_extreme_count * TL_EXTREME_METHODS);
     suite->gpu = tl_gpu_create_headless(error);
-    if (!suite->gpu || !tl_variant_run_create(&suite->oracle, suite->gpu, &truth, &suite->settings, error))
+    if (!suite->gpu || !tl_variant_run_create(&suite->reference, suite->gpu, &experiment->reference,
+                                              &suite->settings, error))
         return false;
-    if (!tl_variant_run_create(&suite->unshadowed, suite->gpu, &unshadowed, &suite->settings, error))
+    if (!tl_variant_run_create(&suite->unshadowed, suite->gpu,
+                               &find_technique(experiment, "unshadowed")->setup, &suite->settings, error))
         return false;
     for (int m = 0; m < TL_EXTREME_METHODS; m++)
-        if (!tl_variant_run_create(&suite->methods[m], suite->gpu, &choices[m], &suite->settings, error))
+        if (!tl_variant_run_create(&suite->methods[m], suite->gpu,
+                                   &find_technique(experiment, method_names[m])->setup, &suite->settings,
+                                   error))
             return false;
     return true;
 }
@@ -66,7 +72,7 @@ static void release(struct suite *suite)
     for (int m = 0; m < TL_EXTREME_METHODS; m++)
         tl_variant_run_release(&suite->methods[m]);
     tl_variant_run_release(&suite->unshadowed);
-    tl_variant_run_release(&suite->oracle);
+    tl_variant_run_release(&suite->reference);
     tl_gpu_destroy(&suite->gpu);
     free(suite->cells);
 }
@@ -167,7 +173,7 @@ static void run_extreme(struct suite *suite, size_t index)
     tl_error error = {0};
     tl_image truth = {0};
     bool made = tl_extreme_scene_make(extreme, &scene, &error) &&
-                (extreme->refused || picture(&suite->oracle, extreme, &scene, &truth, &error));
+                (extreme->refused || picture(&suite->reference, extreme, &scene, &truth, &error));
     for (int m = 0; m < TL_EXTREME_METHODS; m++) {
         tl_image image = {0};
         struct cell *cell = &suite->cells[index * TL_EXTREME_METHODS + (size_t)m];
@@ -203,7 +209,7 @@ static void print_table(const struct suite *suite)
     for (size_t i = 0; i < tl_extreme_count; i += suite->stride)
         for (int m = 0; m < TL_EXTREME_METHODS; m++) {
             const struct cell *cell = &suite->cells[i * TL_EXTREME_METHODS + (size_t)m];
-            printf("%-31s %-6s %-8s", m == 0 ? tl_extremes[i].name : "", choices[m].name,
+            printf("%-31s %-6s %-8s", m == 0 ? tl_extremes[i].name : "", method_names[m],
                    tl_outcome_names[cell->outcome]);
             if (isfinite(cell->rel_rmse) && !tl_extremes[i].refused)
                 printf(" %8.2f%% %7.0f%%  ", 100 * cell->rel_rmse, 100 * cell->bound);
@@ -225,7 +231,7 @@ static void add_cells(const struct suite *suite, struct tl_stability *out)
             const struct cell *cell = &suite->cells[i * TL_EXTREME_METHODS + (size_t)m];
             cJSON *row = tl_stability_add(out, "light", cell->outcome);
             cJSON_AddStringToObject(row, "extreme", tl_extremes[i].name);
-            cJSON_AddStringToObject(row, "method", choices[m].name);
+            cJSON_AddStringToObject(row, "method", method_names[m]);
             cJSON_AddItemToObject(row, "rel_rmse", number_or_null(cell->rel_rmse));
             cJSON_AddItemToObject(row, "bound", number_or_null(cell->bound));
             cJSON_AddStringToObject(row, "why",

@@ -1,6 +1,7 @@
 /* The extremes of shading: every reflectance model under lights and views that nobody should have, from the
  * dullest gloss to the sharpest. Below the surface no light is sent back at all; above it never more than the
  * peak of the model's formula (render/brdf/brdf.h) under a Fresnel term of 1. */
+#include "app/lab/experiments/experiment.h"
 #include "app/lab/stability/stability.h"
 #include "config/memory.h"
 #include "render/brdf/brdf.h"
@@ -10,8 +11,6 @@
 
 #define ROUNDING 1e-3 /* of a float's share of the peak */
 
-static const char *const model_names[] = {"phong", "blinn_phong", "cosine_lobe", "torrance_sparrow",
-                                          "ward",  "banks"};
 static const float glossinesses[] = {0, 0.5f, 0.99f, 0.999999f, 1};
 
 static const struct extreme {
@@ -43,7 +42,7 @@ static double peak_of(const struct tl_brdf *brdf, double a, double b)
     }
 }
 
-static void run_cell(const struct extreme *extreme, int model, float glossiness, bool tells,
+static void run_cell(const struct extreme *extreme, int model, const char *name, float glossiness, bool tells,
                      struct tl_stability *out)
 {
     tl_material material = tl_material_default("extreme");
@@ -61,21 +60,22 @@ static void run_cell(const struct extreme *extreme, int model, float glossiness,
         outcome = dark ? TL_OUTCOME_EXACT : TL_OUTCOME_BOUNDED;
     cJSON *row = tl_stability_add(out, "shading", outcome);
     cJSON_AddStringToObject(row, "extreme", extreme->name);
-    cJSON_AddStringToObject(row, "method", model_names[model]);
+    cJSON_AddStringToObject(row, "method", name);
     cJSON_AddNumberToObject(row, "glossiness", (double)glossiness);
     cJSON_AddNumberToObject(row, "sent", isfinite(sent) ? sent : -1);
     cJSON_AddNumberToObject(row, "bound", peak);
     if (tells)
-        printf("%-28s %-17s g %-9.7g %-8s %9.3g of %.3g\n", extreme->name, model_names[model],
-               (double)glossiness, tl_outcome_names[outcome], sent, peak);
+        printf("%-28s %-17s g %-9.7g %-8s %9.3g of %.3g\n", extreme->name, name, (double)glossiness,
+               tl_outcome_names[outcome], sent, peak);
 }
 
 bool tl_stability_shading(const struct tl_arguments *arguments, struct tl_stability *out, tl_error *error)
 {
+    const char *const *models = tl_experiment_choices(&tl_material_options, "model");
     (void)error;
     for (size_t e = 0; e < TL_COUNT(extremes); e++)
-        for (int model = 0; model < (int)TL_COUNT(model_names); model++)
+        for (int model = 0; models[model]; model++)
             for (size_t g = 0; g < TL_COUNT(glossinesses); g++)
-                run_cell(&extremes[e], model, glossinesses[g], !arguments->json, out);
+                run_cell(&extremes[e], model, models[model], glossinesses[g], !arguments->json, out);
     return true;
 }

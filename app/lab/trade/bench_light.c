@@ -1,52 +1,43 @@
-/* The presets' time and error in motion, side by side. */
+/* toile bench light: time and error of the presets in motion, measured side by side. */
 #include "app/cli/json.h"
+#include "app/lab/experiments/experiment.h"
 #include "app/lab/trade/bench.h"
 #include "app/measure/measure.h"
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
-#define FRAMES_MAX 12 /* measured ones */
-#define TRUTHS_MAX 3
-#define REST_MAX   1024 /* frames at rest */
+#define FRAMES_MAX   12 /* measured ones */
+#define COMPARED_MAX 3
+#define REST_MAX     1024 /* frames at rest */
 
 struct schedule {
-    int warm;        /* frames of history before the first measured one; FRONTIER.md measured with 16 */
-    int measured;    /* at most FRAMES_MAX */
-    int truth_every; /* measured frames from one that is compared with the oracle to the next */
+    int warm;          /* frames of history before the first measured one; FRONTIER.md measured with 16 */
+    int measured;      /* at most FRAMES_MAX */
+    int compare_every; /* measured frames from one that is compared with the oracle to the next */
 };
 static const struct schedule full = {16, 12, 4}, quick = {2, 2, 2};
 
-/* The paper's single lobe is another material than the oracle's two, so that its error would tell more of the
- * material than of light: it is compared with two lobes, and as it stands for information. */
-static const struct tl_setup choices[] = {
-    {"paper", "paper", {"light.regions=96", "light.lobe=dual"}},
-    {"paper, its single lobe", "paper", {"light.regions=96"}},
-    {"review", "review", {NULL}},
-    {"review by GL maps",
-     "review",
-     {"light.visibility=depth", "light.prefilter=slices", "light.composition=difference", "light.jitter=true",
-      "light.refresh=0"}},
-    {"draft", "draft", {NULL}},
-    {"final", "final", {NULL}},
-};
-enum { PAPER, PAPER_SINGLE, REVIEW, REVIEW_MAPS, DRAFT, FINAL, CHOICES };
+#define ROWS_MAX 8
 
 struct row {
+    const char *name;
     struct tl_variant_run variant;
     double cpu_ms[FRAMES_MAX], wall_ms[FRAMES_MAX];
-    struct tl_measured_error error[TRUTHS_MAX];
+    struct tl_measured_error error[COMPARED_MAX];
     size_t memory_bytes;
 };
 
-/* The last frame again until nothing is left to average, and once more. */
+/* Draws the last frame until the renderer is at rest, and once more. */
 struct rest {
     int frames;
-    double cpu_ms, done_cpu_ms; /* of a frame on the way (median), and of the one after */
+    double cpu_ms, done_cpu_ms; /* of a frame that still averages (median), and of the one after */
     struct tl_measured_error error;
 };
 
@@ -55,8 +46,9 @@ struct bench {
     struct schedule schedule;
     struct tl_stage stage;
     tl_recording *recording;
-    struct tl_variant_run oracle;
-    struct row rows[CHOICES];
+    struct tl_variant_run reference;
+    struct row rows[ROWS_MAX];
+    int row_count;
 };
 
 struct row_summary {
@@ -64,20 +56,32 @@ struct row_summary {
     double worst_share; /* of a frame's square error: the most that one pixel holds */
 };
 
-static int truth_count(const struct bench *bench)
+static int find_index(const struct bench *bench, const char *name)
 {
-    return bench->schedule.measured / bench->schedule.truth_every;
+    int i = 0;
+    while (strcmp(bench->rows[i].name, name) != 0)
+        i++;
+    return i;
 }
 
-static struct row_summary summarise(const struct bench *bench, int choice)
+static const struct row *find_row(const struct bench *bench, const char *name)
 {
-    const struct row *row = &bench->rows[choice];
+    return &bench->rows[find_index(bench, name)];
+}
+
+static int compared_count(const struct bench *bench)
+{
+    return bench->schedule.measured / bench->schedule.compare_every;
+}
+
+static struct row_summary summarise(const struct bench *bench, const struct row *row)
+{
     size_t frames = (size_t)bench->schedule.measured;
     struct row_summary summary = {.cpu_ms = tl_median(row->cpu_ms, frames),
                                   .wall_ms = tl_median(row->wall_ms, frames)};
-    for (int i = 0, truths = truth_count(bench); i < truths; i++) {
-        summary.rel_rmse += row->error[i].rel_rmse / truths;
-        summary.flip_mean += row->error[i].flip_mean / truths;
+    for (int i = 0, compared = compared_count(bench); i < compared; i++) {
+        summary.rel_rmse += row->error[i].rel_rmse / compared;
+        summary.flip_mean += row->error[i].flip_mean / compared;
         summary.worst_share = fmax(summary.worst_share, row->error[i].worst_share);
     }
     return summary;
@@ -86,7 +90,7 @@ static struct row_summary summarise(const struct bench *bench, int choice)
 static double coverage(const struct bench *bench)
 {
     const struct tl_image_params *image = &bench->stage.settings.image;
-    return (double)bench->rows[PAPER].error[0].covered / ((double)image->width * image->height);
+    return (double)find_row(bench, "paper")->error[0].covered / ((double)image->width * image->height);
 }
 
 static bool prepare(struct bench *bench, const struct tl_arguments *arguments, tl_error *error)
@@ -98,30 +102,37 @@ static bool prepare(struct bench *bench, const struct tl_arguments *arguments, t
         tl_motion_record(stage->session, bench->schedule.warm + bench->schedule.measured, error);
     if (!bench->recording)
         return false;
-    const struct tl_setup truth = tl_reference_settings();
-    if (!tl_variant_run_create(&bench->oracle, stage->gpu, &truth, &stage->settings, error))
+    const struct tl_experiment *experiment = tl_experiment_find(TL_OUTPUT_TABLE, "light");
+    if (!tl_variant_run_create(&bench->reference, stage->gpu, &experiment->reference, &stage->settings,
+                               error))
         return false;
-    for (int i = 0; i < CHOICES; i++)
-        if (!tl_variant_run_create(&bench->rows[i].variant, stage->gpu, &choices[i], &stage->settings, error))
+    const struct tl_technique *technique = NULL;
+    while ((technique = tl_experiment_next(experiment, TL_OUTPUT_TABLE, technique))) {
+        assert(bench->row_count < ROWS_MAX);
+        struct row *row = &bench->rows[bench->row_count++];
+        row->name = technique->table;
+        if (!tl_variant_run_create(&row->variant, stage->gpu, &technique->setup, &stage->settings, error))
             return false;
+    }
     return true;
 }
 
 static void release(struct bench *bench)
 {
-    for (int i = 0; i < CHOICES; i++)
+    for (int i = 0; i < bench->row_count; i++)
         tl_variant_run_release(&bench->rows[i].variant);
-    tl_variant_run_release(&bench->oracle);
+    tl_variant_run_release(&bench->reference);
     tl_recording_destroy(&bench->recording);
     tl_stage_release(&bench->stage);
 }
 
-/* Before the first measured frame: what has no history needs only its caches filled. */
+/* One frame before the first measured one. A technique without history draws only the last of them, to fill
+ * its caches. */
 static bool warm_up(struct bench *bench, int number, tl_error *error)
 {
     struct tl_taken unused;
     tl_frame frame = tl_recording_frame(bench->recording, number);
-    for (int i = 0; i < CHOICES; i++) {
+    for (int i = 0; i < bench->row_count; i++) {
         struct tl_variant_run *variant = &bench->rows[i].variant;
         if ((number == bench->schedule.warm - 1 || tl_variant_run_has_history(variant)) &&
             !tl_variant_run_draw(variant, &frame, &unused, error))
@@ -130,10 +141,10 @@ static bool warm_up(struct bench *bench, int number, tl_error *error)
     return true;
 }
 
-static bool come_to_rest(struct bench *bench, const tl_frame *frame, const struct tl_reference_frame *truth,
-                         tl_error *error)
+static bool come_to_rest(struct bench *bench, const tl_frame *frame,
+                         const struct tl_reference_frame *reference, tl_error *error)
 {
-    struct tl_variant_run *variant = &bench->rows[REVIEW].variant;
+    struct tl_variant_run *variant = &bench->rows[find_index(bench, "review")].variant;
     struct rest *rest = &bench->rest;
     struct tl_taken taken;
     double cpu_ms[REST_MAX];
@@ -146,27 +157,27 @@ static bool come_to_rest(struct bench *bench, const tl_frame *frame, const struc
     if (!tl_variant_run_draw(variant, frame, &taken, error))
         return false;
     rest->done_cpu_ms = taken.cpu_ms;
-    return tl_variant_run_compare(variant, truth, &rest->error, error);
+    return tl_variant_run_compare(variant, reference, &rest->error, error);
 }
 
 static bool compare_all(struct bench *bench, const tl_frame *frame, int at, tl_error *error)
 {
-    struct tl_reference_frame truth = {0};
-    bool done = tl_reference_frame_draw(&bench->oracle, frame, &truth, error);
-    for (int i = 0; done && i < CHOICES; i++)
-        done = tl_variant_run_compare(&bench->rows[i].variant, &truth, &bench->rows[i].error[at], error);
-    if (done && at == truth_count(bench) - 1)
-        done = come_to_rest(bench, frame, &truth, error);
-    tl_reference_frame_release(&truth);
+    struct tl_reference_frame reference = {0};
+    bool done = tl_reference_frame_draw(&bench->reference, frame, &reference, error);
+    for (int i = 0; done && i < bench->row_count; i++)
+        done = tl_variant_run_compare(&bench->rows[i].variant, &reference, &bench->rows[i].error[at], error);
+    if (done && at == compared_count(bench) - 1)
+        done = come_to_rest(bench, frame, &reference, error);
+    tl_reference_frame_release(&reference);
     return done;
 }
 
-/* One frame by every variant in turn, so that what else the machine does meets them alike. */
+/* Draws one frame by every technique in turn, so that other load on the machine affects all alike. */
 static bool measure(struct bench *bench, int number, tl_error *error)
 {
-    int at = number - bench->schedule.warm, every = bench->schedule.truth_every;
+    int at = number - bench->schedule.warm, every = bench->schedule.compare_every;
     tl_frame frame = tl_recording_frame(bench->recording, number);
-    for (int i = 0; i < CHOICES; i++) {
+    for (int i = 0; i < bench->row_count; i++) {
         struct tl_taken taken;
         struct row *row = &bench->rows[i];
         if (!tl_variant_run_draw(&row->variant, &frame, &taken, error))
@@ -203,13 +214,13 @@ static void print_table(const struct bench *bench)
            "worst "
            "pixel holds, as where an outline's tie puts a highlight in or out\n\n",
            image->width, image->height, 100 * coverage(bench), recording.garment_triangles,
-           1e3 * recording.mean_step_m, bench->schedule.measured, truth_count(bench),
-           100 * bench->rows[PAPER].error[0].standard_error);
+           1e3 * recording.mean_step_m, bench->schedule.measured, compared_count(bench),
+           100 * find_row(bench, "paper")->error[0].standard_error);
     printf("%-24s %10s %10s %10s %10s %10s %10s\n", "", "CPU ms", "wall ms", "rel. RMSE", "one pixel",
            "mean FLIP", "MiB");
-    for (int i = 0; i < CHOICES; i++) {
-        struct row_summary row = summarise(bench, i);
-        printf("%-24s %10.1f %10.1f %9.2f%% %9.0f%% %10.4f %10.1f\n", bench->rows[i].variant.name, row.cpu_ms,
+    for (int i = 0; i < bench->row_count; i++) {
+        struct row_summary row = summarise(bench, &bench->rows[i]);
+        printf("%-24s %10.1f %10.1f %9.2f%% %9.0f%% %10.4f %10.1f\n", bench->rows[i].name, row.cpu_ms,
                row.wall_ms, 100 * row.rel_rmse, 100 * row.worst_share, row.flip_mean,
                (double)bench->rows[i].memory_bytes / (1 << 20));
     }
@@ -219,7 +230,8 @@ static void print_table(const struct bench *bench)
            "holds %.0f %% of its square), mean FLIP %.4f\n",
            rest->cpu_ms, rest->frames, rest->done_cpu_ms, 100 * rest->error.rel_rmse,
            100 * rest->error.worst_share, rest->error.flip_mean);
-    struct row_summary paper = summarise(bench, PAPER), review = summarise(bench, REVIEW);
+    struct row_summary paper = summarise(bench, find_row(bench, "paper")),
+                       review = summarise(bench, find_row(bench, "review"));
     printf("paper takes %.1f times review's time; review has %.2f of paper's error (FLIP %.2f)\n",
            paper.cpu_ms / review.cpu_ms, review.rel_rmse / paper.rel_rmse,
            review.flip_mean / paper.flip_mean);
@@ -228,7 +240,8 @@ static void print_table(const struct bench *bench)
 static void print_json(const struct bench *bench)
 {
     struct tl_recording_report recording = tl_recording_report(bench->recording);
-    struct row_summary paper = summarise(bench, PAPER), review = summarise(bench, REVIEW);
+    struct row_summary paper = summarise(bench, find_row(bench, "paper")),
+                       review = summarise(bench, find_row(bench, "review"));
     cJSON *object = cJSON_CreateObject();
     cJSON_AddNumberToObject(object, "time_ratio", paper.cpu_ms / review.cpu_ms);
     cJSON_AddNumberToObject(object, "error_ratio", review.rel_rmse / paper.rel_rmse);
@@ -237,7 +250,7 @@ static void print_json(const struct bench *bench)
     cJSON_AddNumberToObject(object, "garment_triangles", (double)recording.garment_triangles);
     cJSON_AddNumberToObject(object, "mean_step_m", recording.mean_step_m);
     cJSON_AddNumberToObject(object, "cloth_cpu_ms", recording.cloth_cpu_ms);
-    cJSON_AddNumberToObject(object, "standard_error", bench->rows[PAPER].error[0].standard_error);
+    cJSON_AddNumberToObject(object, "standard_error", find_row(bench, "paper")->error[0].standard_error);
     cJSON *rest = cJSON_AddObjectToObject(object, "review_at_rest");
     cJSON_AddNumberToObject(rest, "frames", bench->rest.frames);
     cJSON_AddNumberToObject(rest, "cpu_ms", bench->rest.cpu_ms);
@@ -245,10 +258,10 @@ static void print_json(const struct bench *bench)
     cJSON_AddNumberToObject(rest, "rel_rmse", bench->rest.error.rel_rmse);
     cJSON_AddNumberToObject(rest, "flip_mean", bench->rest.error.flip_mean);
     cJSON *rows = cJSON_AddArrayToObject(object, "rows");
-    for (int i = 0; i < CHOICES; i++) {
-        struct row_summary summary = summarise(bench, i);
+    for (int i = 0; i < bench->row_count; i++) {
+        struct row_summary summary = summarise(bench, &bench->rows[i]);
         cJSON *row = cJSON_CreateObject();
-        cJSON_AddStringToObject(row, "name", bench->rows[i].variant.name);
+        cJSON_AddStringToObject(row, "name", bench->rows[i].name);
         cJSON_AddNumberToObject(row, "cpu_ms", summary.cpu_ms);
         cJSON_AddNumberToObject(row, "wall_ms", summary.wall_ms);
         cJSON_AddNumberToObject(row, "rel_rmse", summary.rel_rmse);

@@ -1,6 +1,7 @@
-/* toile bench shading: every way of shading under a lamp on a mesh that fills the picture, timed in turn
+/* toile bench shading: every technique of shading under a lamp, timed in turn on a mesh that fills the image
  * [001, figure 12]. */
 #include "app/cli/json.h"
+#include "app/lab/experiments/experiment.h"
 #include "app/lab/trade/bench.h"
 #include "app/measure/cost.h"
 #include "app/scene/headless.h"
@@ -9,6 +10,7 @@
 #include "config/memory.h"
 #include "render/local/shading_bench.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,55 +22,14 @@ struct schedule {
 };
 static const struct schedule full = {512, 100, 4}, quick = {96, 20, 2};
 
-/* A way of shading: assignments to table "shading", and the model, in which ways and tables differ. */
-struct variant {
-    const char *name;
-    enum tl_reflectance model;
-    const char *assignments[4];
-};
-static const struct variant variants[] = {
-    {"gouraud", TL_REFLECT_BLINN_PHONG, {"frequency=gouraud"}},
-    {"fast_phong, cosines by matrix", TL_REFLECT_BLINN_PHONG, {"frequency=fast_phong", "coordinates=matrix"}},
-    {"fast_phong, cosines from vertices",
-     TL_REFLECT_BLINN_PHONG,
-     {"frequency=fast_phong", "coordinates=vertex"}},
-    {"fast_phong, vectors at pixels", TL_REFLECT_BLINN_PHONG, {"frequency=fast_phong"}},
-    {"phong, cosines by matrix", TL_REFLECT_BLINN_PHONG, {"coordinates=matrix"}},
-    {"phong, normalised by newton", TL_REFLECT_BLINN_PHONG, {"normalisation=newton"}},
-    {"phong, normalised by cube8", TL_REFLECT_BLINN_PHONG, {"normalisation=cube8"}},
-    {"phong, normalised by cube16", TL_REFLECT_BLINN_PHONG, {"normalisation=cube16"}},
-    {"phong, exact", TL_REFLECT_BLINN_PHONG, {NULL}},
-    {"phong, power fixed8", TL_REFLECT_BLINN_PHONG, {"normalisation=newton", "power=fixed8"}},
-    {"phong, power table", TL_REFLECT_BLINN_PHONG, {"normalisation=cube16", "power=table"}},
-    {"phong, tangent space", TL_REFLECT_BLINN_PHONG, {"space=tangent"}},
-    {"phong, tangent space, newton", TL_REFLECT_BLINN_PHONG, {"space=tangent", "normalisation=newton"}},
-    {"phong, self-shadow by step", TL_REFLECT_BLINN_PHONG, {"self_shadow=step"}},
-    {"blinn_phong table", TL_REFLECT_BLINN_PHONG, {"reflectance=table"}},
-    {"phong model", TL_REFLECT_PHONG, {NULL}},
-    {"phong model table", TL_REFLECT_PHONG, {"reflectance=table"}},
-    {"cosine_lobe", TL_REFLECT_COSINE_LOBE, {NULL}},
-    {"cosine_lobe table", TL_REFLECT_COSINE_LOBE, {"reflectance=table"}},
-    {"torrance_sparrow", TL_REFLECT_TORRANCE_SPARROW, {NULL}},
-    {"torrance_sparrow tables", TL_REFLECT_TORRANCE_SPARROW, {"reflectance=table"}},
-    {"torrance_sparrow, 3 passes",
-     TL_REFLECT_TORRANCE_SPARROW,
-     {"reflectance=table", "max_textures_per_pass=1"}},
-    {"torrance_sparrow, 3 passes in 8 bits",
-     TL_REFLECT_TORRANCE_SPARROW,
-     {"reflectance=table", "max_textures_per_pass=1", "pass_target=fixed8"}},
-    {"ward", TL_REFLECT_WARD, {NULL}},
-    {"ward tables", TL_REFLECT_WARD, {"reflectance=table"}},
-    {"ward, 4 passes", TL_REFLECT_WARD, {"reflectance=table", "max_textures_per_pass=1"}},
-    {"banks", TL_REFLECT_BANKS, {NULL}},
-    {"banks tables", TL_REFLECT_BANKS, {"reflectance=table"}},
-};
-enum { VARIANTS = TL_COUNT(variants), LOOKS = 2 };
-static const char *const look_names[LOOKS] = {"plain", "decal and bumps"};
+enum { ROWS_MAX = 40, APPEARANCES = 2 };
 
 struct row {
+    const char *name;
+    enum tl_reflectance model;
     struct tl_shading_params shading;
     double cpu_ms, wall_ms; /* the best of the rounds */
-    double rel_rmse;        /* against the exact way with the same model */
+    double rel_rmse;        /* against exact evaluation of the same model */
 };
 
 struct bench {
@@ -79,7 +40,9 @@ struct bench {
     tl_gpu *gpu;
     struct tl_shading_bench *trial;
     uint64_t shown; /* surfaces so far */
-    struct row rows[LOOKS][VARIANTS];
+    const struct tl_experiment *experiment;
+    struct row rows[APPEARANCES][ROWS_MAX];
+    int row_count;
 };
 
 /* A screen of low waves, facing +Z. */
@@ -137,13 +100,13 @@ static tl_image make_map(bool is_normal)
     return image;
 }
 
-/* The surface in one look and model, ready to be shaded. */
-static bool show(struct bench *bench, int look, enum tl_reflectance model, tl_error *error)
+/* Shows the surface to the trial: with appearance 1 it has a decal and a normal map. */
+static bool show(struct bench *bench, int appearance, enum tl_reflectance model, tl_error *error)
 {
     tl_material *material = &bench->material;
     material->gloss.model = (int)model;
-    material->diffuse_map.image = look ? &bench->decal : NULL;
-    material->normal_map.image = look ? &bench->bumps : NULL;
+    material->diffuse_map.image = appearance ? &bench->decal : NULL;
+    material->normal_map.image = appearance ? &bench->bumps : NULL;
     tl_surface surface = tl_surface_of_mesh("mesh", &bench->mesh, material);
     surface.topology_revision = surface.motion_revision = ++bench->shown;
     const struct tl_camera camera = {
@@ -154,16 +117,37 @@ static bool show(struct bench *bench, int look, enum tl_reflectance model, tl_er
                                       bench->schedule.side, error);
 }
 
-static bool set_shading(const struct variant *variant, struct tl_shading_params *shading, tl_error *error)
+/* A row's params: defaults, then the experiment's assignments, then the technique's. The experiment is
+ * limited to the tables "shading" and "material". */
+static bool set_row(const struct tl_experiment *experiment, const struct tl_technique *technique,
+                    struct row *row, tl_error *error)
 {
-    struct tl_binding binding = {&tl_shading_options, shading};
-    tl_options_reset(&binding, 1);
-    for (size_t i = 0; i < TL_COUNT(variant->assignments) && variant->assignments[i]; i++) {
-        char *assignment = tl_format("shading.%s", variant->assignments[i]);
-        bool set = tl_options_set_assignment(&binding, 1, assignment, error);
-        free(assignment);
-        if (!set)
+    struct tl_material_params material;
+    struct tl_binding bindings[] = {{&tl_shading_options, &row->shading}, {&tl_material_options, &material}};
+    const char *const *lists[] = {experiment->base, technique->setup.assignments};
+    const size_t lengths[] = {TL_COUNT(experiment->base), TL_COUNT(technique->setup.assignments)};
+    tl_options_reset(bindings, TL_COUNT(bindings));
+    for (size_t l = 0; l < TL_COUNT(lists); l++)
+        for (size_t i = 0; i < lengths[l] && lists[l][i]; i++)
+            if (!tl_options_set_assignment(bindings, TL_COUNT(bindings), lists[l][i], error))
+                return false;
+    row->name = technique->table;
+    row->model = (enum tl_reflectance)material.model;
+    return true;
+}
+
+/* Every appearance measures the same techniques. */
+static bool list_rows(struct bench *bench, tl_error *error)
+{
+    const struct tl_technique *technique = NULL;
+    while ((technique = tl_experiment_next(bench->experiment, TL_OUTPUT_TABLE, technique))) {
+        assert(bench->row_count < ROWS_MAX);
+        struct row row = {.cpu_ms = INFINITY, .wall_ms = INFINITY};
+        if (!set_row(bench->experiment, technique, &row, error))
             return false;
+        for (int a = 0; a < APPEARANCES; a++)
+            bench->rows[a][bench->row_count] = row;
+        bench->row_count++;
     }
     return true;
 }
@@ -190,7 +174,7 @@ static bool draw_once(struct bench *bench, const struct tl_shading_params *shadi
     return drawn;
 }
 
-/* The first of two brings in what the variant before it let go. */
+/* Draws twice and measures the second draw: the first one loads what the technique before it evicted. */
 static bool draw_again(struct bench *bench, const struct tl_shading_params *shading, struct tl_taken *taken,
                        tl_error *error)
 {
@@ -200,7 +184,7 @@ static bool draw_again(struct bench *bench, const struct tl_shading_params *shad
     return drawn;
 }
 
-/* Also makes programs and tables, which are not measured. */
+/* Measures the error. It also makes programs and tables, outside of the measured time. */
 static bool measure_error(struct bench *bench, struct row *row, tl_error *error)
 {
     const struct tl_shading_params *exact = tl_shading_options.defaults;
@@ -218,19 +202,19 @@ static bool measure_error(struct bench *bench, struct row *row, tl_error *error)
     return drawn;
 }
 
-/* All variants of one look and model, in turn, so that what else the machine does meets them alike. */
-static bool measure_model(struct bench *bench, int look, enum tl_reflectance model, tl_error *error)
+/* Draws all techniques of one appearance and model in turn, so that other load on the machine affects all
+ * alike. */
+static bool measure_model(struct bench *bench, int appearance, enum tl_reflectance model, tl_error *error)
 {
-    bool done = show(bench, look, model, error);
+    bool done = show(bench, appearance, model, error);
     for (int round = -1; done && round < bench->schedule.rounds; round++)
-        for (int i = 0; done && i < VARIANTS; i++) {
-            struct row *row = &bench->rows[look][i];
+        for (int i = 0; done && i < bench->row_count; i++) {
+            struct row *row = &bench->rows[appearance][i];
             struct tl_taken taken;
-            if (variants[i].model != model)
+            if (row->model != model)
                 continue;
             if (round < 0) {
-                *row = (struct row){.cpu_ms = INFINITY, .wall_ms = INFINITY};
-                done = set_shading(&variants[i], &row->shading, error) && measure_error(bench, row, error);
+                done = measure_error(bench, row, error);
                 continue;
             }
             done = draw_again(bench, &row->shading, &taken, error);
@@ -243,11 +227,11 @@ static bool measure_model(struct bench *bench, int look, enum tl_reflectance mod
 static bool run(struct bench *bench, tl_error *error)
 {
     struct tl_progress progress = tl_progress_begin("measuring shading");
-    int steps = LOOKS * (TL_REFLECT_BANKS + 1), done = 0;
-    bool fine = tl_shading_bench_create(bench->trial, bench->gpu, error);
+    int steps = APPEARANCES * (TL_REFLECT_BANKS + 1), done = 0;
+    bool fine = list_rows(bench, error) && tl_shading_bench_create(bench->trial, bench->gpu, error);
     for (int model = TL_REFLECT_PHONG; fine && model <= TL_REFLECT_BANKS; model++)
-        for (int look = 0; fine && look < LOOKS; look++) {
-            fine = measure_model(bench, look, (enum tl_reflectance)model, error);
+        for (int appearance = 0; fine && appearance < APPEARANCES; appearance++) {
+            fine = measure_model(bench, appearance, (enum tl_reflectance)model, error);
             tl_progress_update(&progress, ++done, steps);
         }
     tl_progress_end(&progress);
@@ -255,9 +239,9 @@ static bool run(struct bench *bench, tl_error *error)
     return fine;
 }
 
-static double ratio_of(const struct bench *bench, int look, int variant)
+static double ratio_of(const struct bench *bench, int appearance, int variant)
 {
-    return bench->rows[look][variant].cpu_ms / bench->rows[0][0].cpu_ms;
+    return bench->rows[appearance][variant].cpu_ms / bench->rows[0][0].cpu_ms;
 }
 
 static void print_table(const struct bench *bench)
@@ -267,13 +251,14 @@ static void print_table(const struct bench *bench)
     printf("%d x %d pixels, all covered by %zu triangles under one point lamp; the best of %d draws each, "
            "process CPU time; errors against phong, exact, with the same model\n\n",
            schedule->side, schedule->side, triangles, schedule->rounds);
-    printf("%-38s %26s %26s\n", "", look_names[0], look_names[1]);
+    printf("%-38s %26s %26s\n", "", bench->experiment->appearances[0].name,
+           bench->experiment->appearances[1].name);
     printf("%-38s %8s %8s %8s %8s %8s %8s\n", "", "CPU ms", "ratio", "error", "CPU ms", "ratio", "error");
-    for (int i = 0; i < VARIANTS; i++) {
-        printf("%-38s", variants[i].name);
-        for (int look = 0; look < LOOKS; look++)
-            printf(" %8.1f %8.2f %8.4f", bench->rows[look][i].cpu_ms, ratio_of(bench, look, i),
-                   bench->rows[look][i].rel_rmse);
+    for (int i = 0; i < bench->row_count; i++) {
+        printf("%-38s", bench->rows[0][i].name);
+        for (int appearance = 0; appearance < APPEARANCES; appearance++)
+            printf(" %8.1f %8.2f %8.4f", bench->rows[appearance][i].cpu_ms, ratio_of(bench, appearance, i),
+                   bench->rows[appearance][i].rel_rmse);
         printf("\n");
     }
 }
@@ -286,15 +271,15 @@ static void print_json(const struct bench *bench)
     cJSON_AddNumberToObject(object, "height", bench->schedule.side);
     cJSON_AddNumberToObject(object, "triangles", (double)triangles);
     cJSON *rows = cJSON_AddArrayToObject(object, "rows");
-    for (int look = 0; look < LOOKS; look++)
-        for (int i = 0; i < VARIANTS; i++) {
-            const struct row *measured = &bench->rows[look][i];
+    for (int appearance = 0; appearance < APPEARANCES; appearance++)
+        for (int i = 0; i < bench->row_count; i++) {
+            const struct row *measured = &bench->rows[appearance][i];
             cJSON *row = cJSON_CreateObject();
-            cJSON_AddStringToObject(row, "name", variants[i].name);
-            cJSON_AddStringToObject(row, "look", look_names[look]);
+            cJSON_AddStringToObject(row, "name", bench->rows[0][i].name);
+            cJSON_AddStringToObject(row, "look", bench->experiment->appearances[appearance].name);
             cJSON_AddNumberToObject(row, "cpu_ms", measured->cpu_ms);
             cJSON_AddNumberToObject(row, "wall_ms", measured->wall_ms);
-            cJSON_AddNumberToObject(row, "ratio", ratio_of(bench, look, i));
+            cJSON_AddNumberToObject(row, "ratio", ratio_of(bench, appearance, i));
             cJSON_AddNumberToObject(row, "rel_rmse", measured->rel_rmse);
             cJSON_AddItemToArray(rows, row);
         }
@@ -317,6 +302,7 @@ bool tl_bench_shading(const struct tl_arguments *arguments, tl_error *error)
                        "bench shading: it has a mesh and settings of its own: leave scene and options out");
     struct bench *bench = TL_NEW(struct bench);
     bench->schedule = arguments->quick ? quick : full;
+    bench->experiment = tl_experiment_find(TL_OUTPUT_TABLE, "shading");
     bench->mesh = make_mesh(bench->schedule.cells);
     bench->decal = make_map(false);
     bench->bumps = make_map(true);

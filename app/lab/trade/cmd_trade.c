@@ -4,7 +4,6 @@
 #include "app/lab/trade/trade_cloth.h"
 #include "app/report/folder.h"
 #include "config/file.h"
-#include "config/memory.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -31,14 +30,14 @@ static void write_frames_html(const void *trade, FILE *out)
     tl_trade_write_html(trade, out);
 }
 
-static bool trade_frames(const struct tl_trade_axis *axis, const struct tl_arguments *arguments,
+static bool trade_frames(const struct tl_experiment *experiment, const struct tl_arguments *arguments,
                          tl_error *error)
 {
     struct tl_stage stage;
-    if (!tl_trade_stage(axis, arguments, &stage, error))
+    if (!tl_trade_stage(experiment, arguments, &stage, error))
         return false;
     struct tl_trade trade;
-    bool done = tl_trade_measure(axis, &stage, arguments->quick, &trade, error);
+    bool done = tl_trade_measure(experiment, &stage, arguments->quick, &trade, error);
     if (trade.row_count)
         done = write_both(arguments->output, &trade, write_frames_csv, write_frames_html, done, error);
     tl_trade_release(&trade);
@@ -68,16 +67,10 @@ static bool trade_cloth(const struct tl_arguments *arguments, tl_error *error)
 
 bool tl_command_trade(const struct tl_arguments *arguments, tl_error *error)
 {
-    static const struct tl_trade_axis *const axes[] = {&tl_trade_light,  &tl_trade_resolution,
-                                                       &tl_trade_detail, &tl_trade_shading,
-                                                       &tl_trade_levels, &tl_trade_overall};
     const char *name = arguments->axis ? arguments->axis : "overall";
     bool cloth = strcmp(name, "cloth") == 0;
-    const struct tl_trade_axis *axis = NULL;
-    for (size_t i = 0; i < TL_COUNT(axes); i++)
-        if (strcmp(axes[i]->name, name) == 0)
-            axis = axes[i];
-    if (!axis && !cloth)
+    const struct tl_experiment *experiment = tl_experiment_find(TL_OUTPUT_PAGE, name);
+    if (!experiment && !cloth)
         return tl_fail(
             error, TL_USAGE,
             "--axis: \"%s\": expected overall, light, resolution, detail, shading, levels or cloth", name);
@@ -87,5 +80,5 @@ bool tl_command_trade(const struct tl_arguments *arguments, tl_error *error)
     if (!arguments->output)
         return tl_fail(error, TL_USAGE, "trade: no folder named: add -o FOLDER");
     return tl_folder_make(arguments->output, error) &&
-           (cloth ? trade_cloth(arguments, error) : trade_frames(axis, arguments, error));
+           (cloth ? trade_cloth(arguments, error) : trade_frames(experiment, arguments, error));
 }

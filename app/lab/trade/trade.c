@@ -13,32 +13,32 @@
 #define QUICK_ROUNDS 4
 
 struct run {
-    const struct tl_trade_axis *axis;
+    const struct tl_experiment *experiment;
     struct tl_stage *stage;
-    struct tl_settings scene; /* without a look */
+    struct tl_settings scene; /* without an appearance */
     struct tl_trade *trade;
-    int warm, measured; /* frames before the first measured one, and those; the last is the one that rests */
+    int warm, measured; /* frames before the first measured one, and those measured; the last one rests */
     bool quick;
     tl_recording *recording;
     tl_environment sky;
-    struct tl_variant_run oracle;
-    struct tl_reference_frame
-        truths[2]; /* of the current look: the first and the last measured frame; empty until needed */
-    int look;
+    struct tl_variant_run reference;
+    struct tl_reference_frame frames[2]; /* the reference's first and last measured frame under this
+                                            appearance; empty until needed */
+    int appearance;
 };
 
-/* One that draws, and who chooses its levels. */
+/* One technique with its renderer, and the governor that chooses its levels. */
 struct entry {
-    const struct tl_entrant *entrant;
+    const struct tl_technique *technique;
     struct tl_variant_run variant;
-    struct tl_settings settings; /* as chosen, before any level */
-    tl_pace *pace;               /* NULL: as chosen */
+    struct tl_settings settings; /* before the governor's levels */
+    tl_pace *pace;               /* NULL: no budget */
 };
 
 static tl_frame frame_of(const struct run *run, int number)
 {
     tl_frame frame = tl_recording_frame(run->recording, number);
-    if (run->axis->looks[run->look].sky) {
+    if (run->experiment->appearances[run->appearance].uniform_sky) {
         frame.environment = &run->sky;
         frame.environment_revision = 0; /* sessions count from 1 */
     }
@@ -53,7 +53,7 @@ static int last_frame(const struct run *run)
 static bool keep_picture(struct run *run, struct tl_variant_run *variant, const char *name,
                          const struct tl_measured_error *measured, tl_error *error)
 {
-    struct tl_trade_picture picture = {.name = name, .look = run->look, .error = *measured};
+    struct tl_trade_picture picture = {.name = name, .appearance = run->appearance, .error = *measured};
     tl_image image = {0};
     bool kept = tl_renderer_show_image(variant->renderer, &image, error) &&
                 tl_image_encode_png(name, &image, &picture.png, &picture.size, error);
@@ -66,23 +66,25 @@ static bool keep_picture(struct run *run, struct tl_variant_run *variant, const 
     return true;
 }
 
-static bool need_truth(struct run *run, int number, const struct tl_reference_frame **truth, tl_error *error)
+static bool need_reference(struct run *run, int number, const struct tl_reference_frame **reference,
+                           tl_error *error)
 {
     bool last = number == last_frame(run);
-    struct tl_reference_frame *kept = &run->truths[last];
-    *truth = kept;
+    struct tl_reference_frame *kept = &run->frames[last];
+    *reference = kept;
     if (kept->image.texels)
         return true;
     tl_frame frame = frame_of(run, number);
-    return tl_reference_frame_draw(&run->oracle, &frame, kept, error) &&
-           (!last || keep_picture(run, &run->oracle, "the truth", &(struct tl_measured_error){0}, error));
+    return tl_reference_frame_draw(&run->reference, &frame, kept, error) &&
+           (!last || keep_picture(run, &run->reference, "the truth", &(struct tl_measured_error){0}, error));
 }
 
 static bool compare(struct run *run, struct tl_variant_run *variant, int number,
                     struct tl_measured_error *out, tl_error *error)
 {
-    const struct tl_reference_frame *truth;
-    return need_truth(run, number, &truth, error) && tl_variant_run_compare(variant, truth, out, error);
+    const struct tl_reference_frame *reference;
+    return need_reference(run, number, &reference, error) &&
+           tl_variant_run_compare(variant, reference, out, error);
 }
 
 static void add_row(struct run *run, const struct entry *entry, int draws, const double *cpu_ms,
@@ -91,12 +93,12 @@ static void add_row(struct run *run, const struct entry *entry, int draws, const
     struct tl_trade *trade = run->trade;
     trade->rows = tl_resize(trade->rows, trade->row_count + 1, sizeof *trade->rows);
     trade->rows[trade->row_count++] = (struct tl_trade_row){
-        .group = entry->entrant->group,
-        .name = entry->entrant->choice.name,
-        .look = run->look,
+        .group = entry->technique->group,
+        .name = entry->technique->page,
+        .appearance = run->appearance,
         .rest = draws > 1,
         .draws = draws,
-        .budget_ms = entry->entrant->budget_ms,
+        .budget_ms = entry->technique->budget_ms,
         .settings = entry->variant.settings,
         .taken = {tl_median(cpu_ms, (size_t)count), tl_median(wall_ms, (size_t)count)},
         .error = measured,
@@ -104,7 +106,7 @@ static void add_row(struct run *run, const struct entry *entry, int draws, const
     };
 }
 
-/* Under a budget a frame's time is that of drawing: the cloth's motion was recorded before. */
+/* Draws one frame. Under a budget the time counts drawing only: the cloth's motion was recorded before. */
 static bool draw(struct run *run, struct entry *entry, int number, struct tl_taken *taken, tl_error *error)
 {
     if (tl_interrupted())
@@ -152,11 +154,11 @@ static bool measure_motion(struct run *run, struct entry *entry, tl_error *error
                                        .flip_mean = 0.5 * (first.flip_mean + last.flip_mean),
                                        .max_abs = fmax(first.max_abs, last.max_abs),
                                        .covered = last.covered});
-    return !entry->entrant->picture || keep_picture(run, variant, variant->name, &last, error);
+    return !entry->technique->shown || keep_picture(run, variant, entry->technique->page, &last, error);
 }
 
-/* The last frame again until nothing is left to average; a row whenever its draws have doubled, and at the
- * end. */
+/* Draws the last frame until the renderer is at rest. Adds a row whenever the number of draws has doubled,
+ * and at the end. */
 static bool measure_rest(struct run *run, struct entry *entry, tl_error *error)
 {
     int draws = run->quick ? QUICK_ROUNDS : REST_DRAWS_MAX, since = 0;
@@ -188,7 +190,7 @@ static bool same_settings(const struct tl_render_settings *a, const struct tl_re
            tl_options_equal(&tl_image_options, &a->image, &b->image);
 }
 
-/* An entrant that is drawn with the settings of an earlier one has measured the same. */
+/* A technique whose settings equal those of an earlier one repeats its rows: they were measured once. */
 static bool repeat(struct run *run, const struct entry *entry)
 {
     struct tl_trade *trade = run->trade;
@@ -196,14 +198,14 @@ static bool repeat(struct run *run, const struct entry *entry)
     const char *earlier = NULL;
     for (size_t i = 0; i < count && !entry->pace; i++) {
         struct tl_trade_row same = trade->rows[i];
-        if (same.look != run->look || same.budget_ms > 0 ||
+        if (same.appearance != run->appearance || same.budget_ms > 0 ||
             !same_settings(&same.settings, &entry->variant.settings))
             continue;
         if (earlier && strcmp(earlier, same.name) != 0)
             continue; /* itself a repetition */
         earlier = same.name;
-        same.group = entry->entrant->group;
-        same.name = entry->entrant->choice.name;
+        same.group = entry->technique->group;
+        same.name = entry->technique->page;
         trade->rows = tl_resize(trade->rows, trade->row_count + 1, sizeof *trade->rows);
         trade->rows[trade->row_count++] = same;
     }
@@ -215,30 +217,29 @@ static void note_refusal(struct tl_trade *trade, const char *name, const tl_erro
     tl_warn("trade: %s: %s", name, error->message);
     for (size_t i = 0; i < trade->refusal_count; i++)
         if (strncmp(trade->refusals[i], name, strlen(name)) == 0)
-            return; /* the same for every look */
+            return; /* the same for every appearance */
     trade->refusals = tl_resize(trade->refusals, trade->refusal_count + 1, sizeof *trade->refusals);
     trade->refusals[trade->refusal_count++] = tl_format("%s: %s", name, error->message);
 }
 
-static bool enter(struct run *run, const struct tl_entrant *entrant, struct entry *out, tl_error *error)
+static bool enter(struct run *run, const struct tl_technique *technique, struct entry *out, tl_error *error)
 {
     const struct tl_settings *scene = &run->stage->settings;
-    *out = (struct entry){.entrant = entrant,
-                          .pace = entrant->budget_ms > 0 ? tl_pace_create(entrant->budget_ms) : NULL};
-    return tl_setup_apply(&entrant->choice, scene, &out->settings, error) &&
-           tl_variant_run_create(&out->variant, run->stage->gpu, &entrant->choice, scene, error);
+    *out = (struct entry){.technique = technique,
+                          .pace = technique->budget_ms > 0 ? tl_pace_create(technique->budget_ms) : NULL};
+    return tl_setup_apply(&technique->setup, scene, &out->settings, error) &&
+           tl_variant_run_create(&out->variant, run->stage->gpu, &technique->setup, scene, error);
 }
 
-/* An entrant that the renderer refuses is noted, and the others go on; only Ctrl-C and a failing truth end
- * the run. */
-static bool measure_entrant(struct run *run, const struct tl_entrant *entrant, tl_error *error)
+/* A technique that the renderer refuses is noted and skipped; Ctrl-C or a failing reference ends the run. */
+static bool measure_technique(struct run *run, const struct tl_technique *technique, tl_error *error)
 {
     struct entry entry;
     tl_error refusal = {0};
-    bool done = enter(run, entrant, &entry, &refusal);
+    bool done = enter(run, technique, &entry, &refusal);
     if (done && !repeat(run, &entry))
         done = measure_motion(run, &entry, &refusal) &&
-               (!run->axis->rests || measure_rest(run, &entry, &refusal));
+               (!run->experiment->rests || measure_rest(run, &entry, &refusal));
     tl_variant_run_release(&entry.variant);
     tl_pace_destroy(&entry.pace);
     if (done)
@@ -247,64 +248,69 @@ static bool measure_entrant(struct run *run, const struct tl_entrant *entrant, t
         *error = refusal;
         return false;
     }
-    note_refusal(run->trade, entrant->choice.name, &refusal);
+    note_refusal(run->trade, technique->page, &refusal);
     return true;
 }
 
-static bool make_oracle(struct run *run, const struct tl_trade_look *look, tl_error *error)
+static bool make_reference(struct run *run, const struct tl_experiment_appearance *appearance,
+                           tl_error *error)
 {
-    struct tl_setup truth = run->axis->truth;
+    struct tl_setup reference = run->experiment->reference;
     size_t own = 0;
-    while (own < TL_COUNT(truth.assignments) && truth.assignments[own])
+    while (own < TL_COUNT(reference.assignments) && reference.assignments[own])
         own++;
-    for (size_t i = 0; i < TL_COUNT(look->truth) && look->truth[i] && own < TL_COUNT(truth.assignments); i++)
-        truth.assignments[own++] = look->truth[i];
-    tl_variant_run_release(&run->oracle);
-    return tl_variant_run_create(&run->oracle, run->stage->gpu, &truth, &run->stage->settings, error);
+    for (size_t i = 0; i < TL_COUNT(appearance->reference) && appearance->reference[i] &&
+                       own < TL_COUNT(reference.assignments);
+         i++)
+        reference.assignments[own++] = appearance->reference[i];
+    tl_variant_run_release(&run->reference);
+    return tl_variant_run_create(&run->reference, run->stage->gpu, &reference, &run->stage->settings, error);
 }
 
-static bool begin_look(struct run *run, int number, tl_error *error)
+static bool begin_appearance(struct run *run, int number, tl_error *error)
 {
-    const struct tl_trade_look *look = &run->axis->looks[number];
-    run->look = number;
-    tl_reference_frame_release(&run->truths[0]);
-    tl_reference_frame_release(&run->truths[1]);
+    const struct tl_experiment_appearance *appearance = &run->experiment->appearances[number];
+    run->appearance = number;
+    tl_reference_frame_release(&run->frames[0]);
+    tl_reference_frame_release(&run->frames[1]);
     run->stage->settings = run->scene;
-    return tl_settings_assign(&run->stage->settings, look->scene, TL_COUNT(look->scene), error) &&
+    return tl_settings_assign(&run->stage->settings, appearance->assignments,
+                              TL_COUNT(appearance->assignments), error) &&
            tl_session_apply(run->stage->session, &run->stage->settings, error) &&
-           make_oracle(run, look, error);
+           make_reference(run, appearance, error);
 }
 
 static bool measure_all(struct run *run, tl_error *error)
 {
-    const struct tl_trade_axis *axis = run->axis;
+    const struct tl_experiment *experiment = run->experiment;
     char label[64];
-    snprintf(label, sizeof label, "measuring the trade of %s", axis->name);
+    snprintf(label, sizeof label, "measuring the trade of %s", experiment->name);
     struct tl_progress progress = tl_progress_begin(label);
-    int looks = run->quick ? 1 : axis->look_count;
+    size_t count = tl_experiment_count(experiment, TL_OUTPUT_PAGE), measured = 0;
+    int appearances = run->quick ? 1 : experiment->appearance_count;
     bool done = true;
-    for (int i = 0; done && i < looks; i++) {
-        done = begin_look(run, run->quick ? axis->quick_look : i, error);
-        for (size_t e = 0; done && e < axis->entrant_count; e++) {
-            if (!run->quick || axis->entrants[e].quick)
-                done = measure_entrant(run, &axis->entrants[e], error);
-            tl_progress_update(&progress, (double)((size_t)i * axis->entrant_count + e + 1),
-                               (double)(axis->entrant_count * (size_t)looks));
+    for (int i = 0; done && i < appearances; i++) {
+        done = begin_appearance(run, run->quick ? experiment->quick_appearance : i, error);
+        const struct tl_technique *technique = NULL;
+        while (done && (technique = tl_experiment_next(experiment, TL_OUTPUT_PAGE, technique))) {
+            if (!run->quick || technique->quick)
+                done = measure_technique(run, technique, error);
+            tl_progress_update(&progress, (double)++measured, (double)(count * (size_t)appearances));
         }
     }
     tl_progress_end(&progress);
     return done;
 }
 
-/* What the command line says counts more than the axis's base. */
-bool tl_trade_stage(const struct tl_trade_axis *axis, const struct tl_arguments *arguments,
+/* Assignments of the command line come after, and so override, the experiment's base. */
+bool tl_trade_stage(const struct tl_experiment *experiment, const struct tl_arguments *arguments,
                     struct tl_stage *stage, tl_error *error)
 {
     struct tl_arguments own = *arguments;
-    char *assignments[TL_TRADE_ASSIGNMENTS];
+    char *assignments[TL_EXPERIMENT_ASSIGNMENTS];
     size_t count = 0;
-    while (count < TL_COUNT(axis->base) && axis->base[count]) {
-        assignments[count] = tl_copy_string(axis->base[count]);
+    while (count < TL_COUNT(experiment->base) && experiment->base[count]) {
+        assignments[count] = tl_copy_string(experiment->base[count]);
         count++;
     }
     own.assignments = tl_alloc(count + arguments->assignment_count, sizeof(char *));
@@ -312,7 +318,7 @@ bool tl_trade_stage(const struct tl_trade_axis *axis, const struct tl_arguments 
     memcpy(own.assignments, assignments, count * sizeof(char *));
     for (size_t i = 0; i < arguments->assignment_count; i++)
         own.assignments[count + i] = arguments->assignments[i];
-    tl_topic_default_scene(&own, axis->scene);
+    tl_topic_default_scene(&own, experiment->scene);
     bool created = tl_stage_create(stage, &own, error);
     for (size_t i = 0; i < count; i++)
         free(assignments[i]);
@@ -320,20 +326,20 @@ bool tl_trade_stage(const struct tl_trade_axis *axis, const struct tl_arguments 
     return created;
 }
 
-bool tl_trade_measure(const struct tl_trade_axis *axis, struct tl_stage *stage, bool quick,
+bool tl_trade_measure(const struct tl_experiment *experiment, struct tl_stage *stage, bool quick,
                       struct tl_trade *out, tl_error *error)
 {
     struct run run = {
-        .axis = axis,
+        .experiment = experiment,
         .stage = stage,
         .scene = stage->settings,
         .trade = out,
-        .warm = quick ? 2 : axis->warm,
-        .measured = quick ? 2 : axis->measured,
+        .warm = quick ? 2 : experiment->warm_up,
+        .measured = quick ? 2 : experiment->measured,
         .quick = quick,
         .sky = tl_environment_constant(1, 1, 1),
     };
-    *out = (struct tl_trade){.axis = axis,
+    *out = (struct tl_trade){.experiment = experiment,
                              .width = stage->settings.image.width,
                              .height = stage->settings.image.height,
                              .quick = quick,
@@ -344,9 +350,9 @@ bool tl_trade_measure(const struct tl_trade_axis *axis, struct tl_stage *stage, 
         out->recording = tl_recording_report(run.recording);
         done = out->complete = measure_all(&run, error);
     }
-    tl_variant_run_release(&run.oracle);
-    tl_reference_frame_release(&run.truths[0]);
-    tl_reference_frame_release(&run.truths[1]);
+    tl_variant_run_release(&run.reference);
+    tl_reference_frame_release(&run.frames[0]);
+    tl_reference_frame_release(&run.frames[1]);
     tl_environment_release(&run.sky);
     tl_recording_destroy(&run.recording);
     return done;
@@ -362,4 +368,14 @@ void tl_trade_release(struct tl_trade *trade)
     free(trade->refusals);
     free(trade->rows);
     *trade = (struct tl_trade){0};
+}
+
+const struct tl_trade_row *tl_trade_next(const struct tl_trade *trade, const struct tl_trade_row *after,
+                                         const char *group, int appearance, bool rest)
+{
+    const struct tl_trade_row *end = trade->rows + trade->row_count;
+    for (const struct tl_trade_row *row = after ? after + 1 : trade->rows; row < end; row++)
+        if (row->appearance == appearance && row->rest == rest && (!group || strcmp(row->group, group) == 0))
+            return row;
+    return NULL;
 }

@@ -1,4 +1,5 @@
 #include "app/lab/trade/trade.h"
+#include "app/lab/trade/trade_light.h"
 #include "app/report/cells.h"
 #include "app/report/report.h"
 #include "config/memory.h"
@@ -11,10 +12,7 @@
 
 static const char *choice_name(const char *key, int index)
 {
-    for (size_t i = 0; i < tl_light_options.row_count; i++)
-        if (strcmp(tl_light_options.rows[i].name, key) == 0)
-            return tl_light_options.rows[i].choices[index];
-    return "";
+    return tl_experiment_choices(&tl_light_options, key)[index];
 }
 
 void tl_trade_write_csv(const struct tl_trade *trade, FILE *out)
@@ -31,8 +29,8 @@ void tl_trade_write_csv(const struct tl_trade *trade, FILE *out)
         fprintf(out,
                 "\"%s\",\"%s\",%s,%s,%d,%g,%g,%s,%s,%s,%s,%s,%d,%d,%s,%.3f,%.3f,%zu,%zu,%zu,%.6g,%.6g,%.6g,%."
                 "6g,%zu\n",
-                row->group, row->name, trade->axis->looks[row->look].name, row->rest ? "rest" : "moving",
-                row->draws, row->budget_ms, (double)row->settings.image.scale,
+                row->group, row->name, trade->experiment->appearances[row->appearance].name,
+                row->rest ? "rest" : "moving", row->draws, row->budget_ms, (double)row->settings.image.scale,
                 choice_name("method", light->method), choice_name("visibility", light->visibility),
                 choice_name("prefilter", light->prefilter), choice_name("composition", light->composition),
                 choice_name("cut", light->cut), light->regions, light->map_size,
@@ -42,22 +40,13 @@ void tl_trade_write_csv(const struct tl_trade *trade, FILE *out)
     }
 }
 
-const struct tl_trade_row *tl_trade_next(const struct tl_trade *trade, const struct tl_trade_row *after,
-                                         const char *group, int look, bool rest)
-{
-    const struct tl_trade_row *end = trade->rows + trade->row_count;
-    for (const struct tl_trade_row *row = after ? after + 1 : trade->rows; row < end; row++)
-        if (row->look == look && row->rest == rest && (!group || strcmp(row->group, group) == 0))
-            return row;
-    return NULL;
-}
-
-/* A variant's row in another look, or where it came to rest (after the most draws). */
+/* The row of the same technique under another appearance, or at rest (after the most draws). */
 static const struct tl_trade_row *sibling(const struct tl_trade *trade, const struct tl_trade_row *of,
-                                          int look, bool rest)
+                                          int appearance, bool rest)
 {
     const struct tl_trade_row *found = NULL;
-    for (const struct tl_trade_row *row = NULL; (row = tl_trade_next(trade, row, of->group, look, rest));)
+    for (const struct tl_trade_row *row = NULL;
+         (row = tl_trade_next(trade, row, of->group, appearance, rest));)
         if (strcmp(row->name, of->name) == 0)
             found = row;
     return found;
@@ -71,31 +60,32 @@ static void add_error_cell(struct tl_cells *cells, const struct tl_trade_row *ro
         tl_cells_add(cells, "-");
 }
 
-/* Names of one group, what they take at one look, and their errors in all. */
-static void print_group_table(const struct tl_trade *trade, const char *group, int look, FILE *out)
+/* One group's names, times under one appearance, and errors under all. */
+static void print_group_table(const struct tl_trade *trade, const char *group, int appearance, FILE *out)
 {
     static const char *const heads[] = {"", "CPU ms", "wall ms", "at rest", "MiB"};
     struct tl_cells cells = {0};
     for (size_t i = 0; i < TL_COUNT(heads); i++)
         tl_cells_add(&cells, "%s", heads[i]);
     size_t columns = TL_COUNT(heads);
-    bool shown[TL_TRADE_LOOKS];
-    for (int l = 0; l < trade->axis->look_count; l++) {
+    bool shown[TL_EXPERIMENT_APPEARANCES];
+    for (int l = 0; l < trade->experiment->appearance_count; l++) {
         shown[l] = tl_trade_next(trade, NULL, group, l, false) != NULL;
         if (!shown[l])
             continue;
-        tl_cells_add(&cells, "%s, moving", trade->axis->looks[l].title);
+        tl_cells_add(&cells, "%s, moving", trade->experiment->appearances[l].title);
         tl_cells_add(&cells, "at rest");
         columns += 2;
     }
-    for (const struct tl_trade_row *row = NULL; (row = tl_trade_next(trade, row, group, look, false));) {
-        const struct tl_trade_row *rest = sibling(trade, row, look, true);
+    for (const struct tl_trade_row *row = NULL;
+         (row = tl_trade_next(trade, row, group, appearance, false));) {
+        const struct tl_trade_row *rest = sibling(trade, row, appearance, true);
         tl_cells_add(&cells, "%s", row->name);
         tl_cells_add(&cells, "%.1f", row->taken.cpu_ms);
         tl_cells_add(&cells, "%.1f", row->taken.wall_ms);
         tl_cells_add(&cells, "%.1f", rest ? rest->taken.cpu_ms : NAN);
         tl_cells_add(&cells, "%.1f", (double)row->memory.total / MEBIBYTE);
-        for (int l = 0; l < trade->axis->look_count; l++)
+        for (int l = 0; l < trade->experiment->appearance_count; l++)
             if (shown[l]) {
                 add_error_cell(&cells, sibling(trade, row, l, false));
                 add_error_cell(&cells, sibling(trade, row, l, true));
@@ -106,12 +96,12 @@ static void print_group_table(const struct tl_trade *trade, const char *group, i
 
 static double time_of(const struct tl_trade *trade, const struct tl_trade_row *row)
 {
-    return trade->axis->by_wall ? row->taken.wall_ms : row->taken.cpu_ms;
+    return trade->experiment->by_wall ? row->taken.wall_ms : row->taken.cpu_ms;
 }
 
 static double error_of(const struct tl_trade *trade, const struct tl_trade_row *row)
 {
-    return trade->axis->by_flip ? row->error.flip_mean : 100 * row->error.rel_rmse;
+    return trade->experiment->by_flip ? row->error.flip_mean : 100 * row->error.rel_rmse;
 }
 
 /* Points of a plot by group, with room for the Pareto front. */
@@ -126,15 +116,15 @@ struct scatter {
     size_t front_count;
 };
 
-/* Error against time of all variants in motion at one look. */
-static void make_scatter(const struct tl_trade *trade, int look, struct scatter *out)
+/* Error against time of all variants in motion at one appearance. */
+static void make_scatter(const struct tl_trade *trade, int appearance, struct scatter *out)
 {
     *out = (struct scatter){.points = TL_NEW_ARRAY(struct tl_plot_point, trade->row_count),
                             .rows = TL_NEW_ARRAY(const struct tl_trade_row *, trade->row_count),
                             .front = TL_NEW_ARRAY(size_t, trade->row_count),
                             .front_points = TL_NEW_ARRAY(struct tl_plot_point, trade->row_count)};
     const char *group = NULL;
-    for (const struct tl_trade_row *row = NULL; (row = tl_trade_next(trade, row, NULL, look, false));) {
+    for (const struct tl_trade_row *row = NULL; (row = tl_trade_next(trade, row, NULL, appearance, false));) {
         if (!group || strcmp(group, row->group) != 0) {
             group = row->group;
             out->series[out->series_count++] =
@@ -184,21 +174,22 @@ static void print_front(const struct scatter *scatter, FILE *out)
 static void print_scatters(const struct tl_trade *trade, FILE *out)
 {
     tl_report_heading(out, "Error against time, in motion");
-    tl_report_paragraph(out, trade->axis->text);
-    const char *measure = trade->axis->by_flip ? "mean FLIP" : "relative RMSE, %";
-    for (int look = 0; look < trade->axis->look_count; look++) {
-        if (!tl_trade_next(trade, NULL, NULL, look, false))
+    tl_report_paragraph(out, trade->experiment->text);
+    const char *measure = trade->experiment->by_flip ? "mean FLIP" : "relative RMSE, %";
+    for (int appearance = 0; appearance < trade->experiment->appearance_count; appearance++) {
+        if (!tl_trade_next(trade, NULL, NULL, appearance, false))
             continue;
         struct scatter scatter;
-        make_scatter(trade, look, &scatter);
+        make_scatter(trade, appearance, &scatter);
         char caption[200];
         snprintf(caption, sizeof caption, "%c%s. Errors over covered pixels against the truth.",
-                 trade->axis->looks[look].title[0] - 'a' + 'A', trade->axis->looks[look].title + 1);
-        tl_report_plot(
-            out,
-            &(struct tl_plot){trade->axis->by_wall ? "ms a frame on the wall" : "CPU ms a frame, all threads",
-                              measure, true, true, scatter.series, scatter.series_count},
-            caption);
+                 trade->experiment->appearances[appearance].title[0] - 'a' + 'A',
+                 trade->experiment->appearances[appearance].title + 1);
+        tl_report_plot(out,
+                       &(struct tl_plot){trade->experiment->by_wall ? "ms a frame on the wall"
+                                                                    : "CPU ms a frame, all threads",
+                                         measure, true, true, scatter.series, scatter.series_count},
+                       caption);
         print_front(&scatter, out);
         release_scatter(&scatter);
     }
@@ -206,15 +197,16 @@ static void print_scatters(const struct tl_trade *trade, FILE *out)
 
 static void print_pictures(const struct tl_trade *trade, FILE *out)
 {
-    for (int look = 0; look < trade->axis->look_count; look++) {
+    for (int appearance = 0; appearance < trade->experiment->appearance_count; appearance++) {
         bool begun = false;
         for (size_t i = 0; i < trade->picture_count; i++) {
             const struct tl_trade_picture *picture = &trade->pictures[i];
             char text[120] = "ray traced";
-            if (picture->look != look)
+            if (picture->appearance != appearance)
                 continue;
             if (!begun) {
-                snprintf(text, sizeof text, "Side by side: %s", trade->axis->looks[look].title);
+                snprintf(text, sizeof text, "Side by side: %s",
+                         trade->experiment->appearances[appearance].title);
                 tl_report_heading(out, text);
                 tl_report_pictures_begin(out);
                 begun = true;
@@ -230,18 +222,18 @@ static void print_pictures(const struct tl_trade *trade, FILE *out)
     }
 }
 
-static void print_tables(const struct tl_trade *trade, int look, FILE *out)
+static void print_tables(const struct tl_trade *trade, int appearance, FILE *out)
 {
     tl_report_heading(out, "All figures");
     tl_report_paragraph(out, "Errors are relative RMSE and mean FLIP over covered pixels against the truth; "
                              "times are medians of process CPU time; at rest, of the last frames averaged.");
     const char *group = NULL;
-    for (const struct tl_trade_row *row = NULL; (row = tl_trade_next(trade, row, NULL, look, false));) {
+    for (const struct tl_trade_row *row = NULL; (row = tl_trade_next(trade, row, NULL, appearance, false));) {
         if (group && strcmp(group, row->group) == 0)
             continue;
         group = row->group;
         tl_report_paragraph(out, group);
-        print_group_table(trade, group, look, out);
+        print_group_table(trade, group, appearance, out);
     }
     for (size_t i = 0; i < trade->refusal_count; i++)
         tl_report_paragraph(out, trade->refusals[i]);
@@ -253,14 +245,14 @@ void tl_trade_write_html(const struct tl_trade *trade, FILE *out)
     snprintf(subtitle, sizeof subtitle,
              "toile trade --axis %s: %d x %d pixels, %zu garment triangles that move %.1f mm a frame on "
              "average, environment %.120s%s",
-             trade->axis->name, trade->width, trade->height, trade->recording.garment_triangles,
+             trade->experiment->name, trade->width, trade->height, trade->recording.garment_triangles,
              1e3 * trade->recording.mean_step_m, trade->environment->name,
              trade->complete ? "" : "; interrupted: what was measured until then");
-    tl_report_begin(out, trade->axis->title, subtitle);
+    tl_report_begin(out, trade->experiment->title, subtitle);
     print_scatters(trade, out);
     print_pictures(trade, out);
-    if (trade->axis->figures)
-        trade->axis->figures(trade, out);
-    print_tables(trade, trade->quick ? trade->axis->quick_look : 0, out);
+    if (strcmp(trade->experiment->name, "light") == 0)
+        tl_trade_write_light_figures(trade, out);
+    print_tables(trade, trade->quick ? trade->experiment->quick_appearance : 0, out);
     tl_report_end(out);
 }

@@ -4,8 +4,8 @@ set -u
 . "$(dirname "$0")/cli.sh"
 
 refuse "no folder" 'folder' gallery
-refuse "no such wall" 'd9' gallery d99 -o out
-refuse "two walls" 'one wall' gallery d9 a1 -o out
+refuse "no such section" 'd9' gallery d99 -o out
+refuse "two sections" 'one section' gallery d9 a1 -o out
 
 "$TOILE" gallery a9 --quick --quiet -o out || fail "exit status $?"
 [ "$(head -1 out/gallery.csv)" = "id,technique,setting,error,error_metric,time_ms,image" ] || fail "heads of gallery.csv"

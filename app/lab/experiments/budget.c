@@ -1,0 +1,154 @@
+/* What a frame's time buys: samples of the image, presets and budgets, and each of the governor's levels by
+ * itself. */
+#include "app/lab/experiments/rows.h"
+
+#define SATIN "material.use_file=false", "material.glossiness=0.7"
+
+/* ---- Resolution: samples of the image, against nine times as many ---- */
+
+static const struct tl_technique resolution[] = {
+    {.page = "scale 0.35", .group = "scale", SET("image.scale=0.35"), .shown = true},
+    {.page = "scale 0.5", .group = "scale", SET("image.scale=0.5"), .quick = true, .shown = true},
+    {.page = "scale 0.6", .group = "scale", SET("image.scale=0.6")},
+    {.page = "scale 0.7", .group = "scale", SET("image.scale=0.7"), .shown = true},
+    {.page = "scale 0.85", .group = "scale", SET("image.scale=0.85")},
+    {.page = "scale 1", .group = "scale", .quick = true, .shown = true},
+    {.page = "1 sample", .group = "supersample"},
+    {.page = "4 samples", .group = "supersample", SET("image.supersample=2"), .quick = true, .shown = true},
+    {.page = "9 samples", .group = "supersample", SET("image.supersample=3")},
+};
+
+static const struct tl_experiment_appearance cloths[] = {
+    {.name = "plain", .title = "plain satin", .assignments = {SATIN}},
+    {.name = "woven",
+     .title = "woven satin",
+     .assignments = {SATIN, "weave.pattern=satin", "weave.warp_pitch_mm=1.5", "weave.weft_pitch_mm=1.5",
+                     "weave.crimp_mm=0.2"}},
+};
+
+/* ---- Overall: presets, and what the governor makes of a budget ---- */
+
+#define BUDGET(ms) .page = #ms " ms", .group = "budget", PRESET("review"), .budget_ms = ms
+static const struct tl_technique overall[] = {
+    {.page = "paper", .group = "presets", PRESET("paper", "light.lobe=dual"), .quick = true, .shown = true},
+    {.page = "draft", .group = "presets", PRESET("draft"), .quick = true, .shown = true},
+    {.page = "review", .group = "presets", PRESET("review"), .quick = true, .shown = true},
+    {.page = "final", .group = "presets", PRESET("final"), .shown = true},
+    {.page = "unshadowed", .group = "presets", PRESET("review", "light.method=unshadowed"), .shown = true},
+    {BUDGET(8), .shown = true},
+    {BUDGET(16), .shown = true},
+    {BUDGET(25)},
+    {BUDGET(33), .quick = true, .shown = true},
+    {BUDGET(50), .shown = true},
+    {BUDGET(75)},
+    {BUDGET(100), .shown = true},
+    {BUDGET(150)},
+    {BUDGET(200), .shown = true},
+};
+
+static const struct tl_experiment_appearance studio[] = {
+    {.name = "studio",
+     .title = "g = 0.7 in the studio",
+     .assignments = {SATIN, "material.diffuse=[0.5, 0.5, 0.5]", "material.specular=[0.5, 0.5, 0.5]"}},
+};
+
+/* ---- Levels: what each of the governor's levels costs and errs by itself (app/budget/governor.c) ---- */
+
+#define REGIONS(n, renewed)                                                                                  \
+    {                                                                                                        \
+        .page = n " regions, " renewed " renewed", .group = "regions",                                       \
+        SET("light.regions=" n, "light.refresh=" renewed)                                                    \
+    }
+#define SCALE(value)                                                                                         \
+    {                                                                                                        \
+        .page = "scale " value, .group = "scale", SET("image.scale=" value)                                  \
+    }
+static const struct tl_technique levels[] = {
+    {.page = "review", .group = "settings", .quick = true, .shown = true},
+    REGIONS("192", "96"),
+    REGIONS("192", "48"),
+    REGIONS("192", "24"),
+    REGIONS("192", "12"),
+    REGIONS("192", "6"),
+    REGIONS("96", "96"),
+    REGIONS("96", "48"),
+    REGIONS("96", "24"),
+    REGIONS("96", "12"),
+    REGIONS("96", "6"),
+    REGIONS("48", "48"),
+    REGIONS("48", "24"),
+    REGIONS("48", "12"),
+    REGIONS("48", "6"),
+    REGIONS("24", "24"),
+    REGIONS("24", "12"),
+    REGIONS("24", "6"),
+    REGIONS("24", "3"),
+    {.page = "steps 32", .group = "steps", SET("detail.steps=32")},
+    {.page = "steps 16", .group = "steps", SET("detail.steps=16")},
+    {.page = "steps 8", .group = "steps", SET("detail.steps=8"), .quick = true, .shown = true},
+    SCALE("0.841"),
+    SCALE("0.707"),
+    SCALE("0.595"),
+    SCALE("0.5"),
+    SCALE("0.42"),
+    SCALE("0.354"),
+    SCALE("0.297"),
+    SCALE("0.25"),
+    SCALE("0.21"),
+    SCALE("0.177"),
+    SCALE("0.149"),
+    SCALE("0.125"),
+};
+
+static const struct tl_experiment_appearance samples[] = {
+    {.name = "one sample", .title = "plain satin"},
+    {.name = "four samples",
+     .title = "plain satin, four samples a pixel",
+     .assignments = {"image.supersample=2"}},
+    {.name = "relief",
+     .title = "threads of twelve pixels, marched",
+     .assignments = {WOVEN("20", "5"), "detail.mode=relief", "detail.steps=64"},
+     .reference = {"detail.steps=256", "detail.refine=16"}},
+};
+
+static const struct tl_experiment experiments[] = {
+    {.output = TL_OUTPUT_PAGE,
+     .name = "resolution",
+     .title = "The trade of resolution: error against time",
+     .text = FRONT "The truth is ray traced with nine samples a pixel, so that edges and threads count.",
+     .scene = "review",
+     .reference = {.assignments = {TRACED, "image.supersample=3"}},
+     APPEARANCES(cloths),
+     TECHNIQUES(resolution),
+     .warm_up = 16,
+     .measured = 3},
+    {.output = TL_OUTPUT_PAGE,
+     .name = "levels",
+     .title = "What each level of the planner costs and errs by itself",
+     .text = FRONT "What the planner can turn (but the cloth, whose motion is recorded), from the preset "
+                   "review; the truth is ray traced. What a level adds is what its error's square has over "
+                   "that of the settings.",
+     .scene = "review",
+     .reference = {.assignments = {"light.method=reference"}},
+     APPEARANCES(samples),
+     TECHNIQUES(levels),
+     .warm_up = 24,
+     .measured = 9,
+     .by_wall = true,
+     .by_flip = true},
+    {.output = TL_OUTPUT_PAGE,
+     .name = "overall",
+     .title = "What a frame's time buys",
+     .text =
+         FRONT "The presets, and the planner from the preset review downwards at budgets of 8 to 200 ms; the "
+               "truth is ray traced. Time is that of drawing: the motion was recorded before.",
+     .scene = "review",
+     .reference = {.assignments = {TRACED}},
+     APPEARANCES(studio),
+     TECHNIQUES(overall),
+     .warm_up = 60,
+     .measured = 16,
+     .by_wall = true,
+     .by_flip = true},
+};
+const struct tl_experiment_list tl_budget_experiments = {experiments, TL_COUNT(experiments)};

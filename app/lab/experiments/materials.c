@@ -1,0 +1,32 @@
+/* Materials of several layers: a clear coat, and open cloth that shows what is behind it. */
+#include "app/lab/experiments/rows.h"
+
+static const struct tl_technique coats[] = {
+    {.golden = "coat", SET("material.coat=1", "material.coat_glossiness=0.98")},
+    {.golden = "coat_half", SET("material.coat=0.5", "material.coat_glossiness=0.9")},
+};
+
+static const struct tl_technique open_cloths[] = {
+    {.golden = "open_cloth", SET("material.openness=0.4")},
+    {.golden = "open_cloth_transmission",
+     SET("material.openness=0.2", "material.transmission=[0.3, 0.2, 0.1]")},
+};
+
+static const struct tl_experiment experiments[] = {
+    {.output = TL_OUTPUT_GOLDEN,
+     .name = "coat",
+     .title = "A clear coat",
+     .scene = "gallery",
+     .solid = "torus",
+     .base = {"light.method=unshadowed"},
+     TECHNIQUES(coats)},
+    {.output = TL_OUTPUT_GOLDEN,
+     .name = "open cloth",
+     .title = "Open cloth over a ball",
+     .scene = "gallery",
+     .solid = "sheet",
+     .base = {"scene.avatar=ball", "cloth.edge_m=0.05", "camera.target=[0, 0.27, 0]",
+              "camera.distance_m=1.15", "light.method=unshadowed"},
+     TECHNIQUES(open_cloths)},
+};
+const struct tl_experiment_list tl_material_experiments = {experiments, TL_COUNT(experiments)};

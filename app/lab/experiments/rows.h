@@ -1,0 +1,29 @@
+/* Short forms for the rows of the families' lists. */
+#ifndef TOILE_APP_LAB_EXPERIMENTS_ROWS_H
+#define TOILE_APP_LAB_EXPERIMENTS_ROWS_H
+
+#include "app/lab/experiments/experiment.h"
+#include "config/memory.h"
+
+/* A technique's settings: assignments over the experiment's, or over a preset's. */
+#define SET(...)          .setup = {.assignments = {__VA_ARGS__}}
+#define PRESET(name, ...) .setup = {.preset = name, .assignments = {__VA_ARGS__}}
+
+#define TECHNIQUES(list)   .techniques = (list), .technique_count = TL_COUNT(list)
+#define APPEARANCES(array) .appearances = (array), .appearance_count = (int)TL_COUNT(array)
+
+/* One directional lamp in the dark. */
+#define LAMPLIT "scene.environment=none", "light.method=unshadowed", "lamp.kind=directional"
+#define WOVEN(pitch_mm, crimp_mm)                                                                            \
+    "weave.pattern=plain", "weave.warp_pitch_mm=" pitch_mm, "weave.weft_pitch_mm=" pitch_mm,                 \
+        "weave.crimp_mm=" crimp_mm
+
+/* The ray-traced reference, for two lobes. */
+#define TRACED "light.method=reference", "light.lobe=dual"
+
+/* Begins the text of every page. */
+#define FRONT                                                                                                \
+    "Down and left is better. Every mark is one choice of settings that drew the same moving cloth; the "    \
+    "dashed line joins those that nothing else beats in both. "
+
+#endif

@@ -1,0 +1,114 @@
+/* The table of experiments: every row of the technique set is pictured, every option of every row exists, names that
+ * become files are unique. */
+#include "tests/testing.h"
+
+#include "app/lab/experiments/picture.h"
+#include "config/memory.h"
+
+#include <string.h>
+
+static bool has_picture(const char *id)
+{
+    const struct tl_experiment *experiment;
+    for (size_t i = 0; (experiment = tl_experiment_at(TL_OUTPUT_PICTURES, i)); i++)
+        for (const struct tl_technique *t = NULL;
+             (t = tl_experiment_next(experiment, TL_OUTPUT_PICTURES, t));)
+            if (strcmp(t->id, id) == 0)
+                return true;
+    return false;
+}
+
+static void test_every_id_has_a_picture(void **state)
+{
+    (void)state;
+    static const struct {
+        char group;
+        int count;
+    } groups[] = {{'A', 12}, {'B', 7}, {'C', 8}};
+    for (size_t g = 0; g < TL_COUNT(groups); g++)
+        for (int i = 1; i <= groups[g].count; i++) {
+            char id[16];
+            snprintf(id, sizeof id, "%c%d", groups[g].group, i);
+            if (!has_picture(id))
+                fail_msg("%s has no picture", id);
+        }
+    assert_true(has_picture("D9"));
+}
+
+static void check_pictures(const struct tl_experiment *experiment, enum tl_output output)
+{
+    struct tl_picture picture = {.experiment = experiment};
+    assert_true(tl_picture_count(experiment, output) > 0);
+    while (tl_picture_next(&picture, output))
+        for (int object = 0; object < TL_PICTURE_OBJECTS; object++)
+            for (int reference = 0; reference < 2; reference++) {
+                struct tl_settings settings;
+                tl_error error = {0};
+                assert_ok(tl_picture_settings(&picture, (enum tl_picture_object)object, 64, reference,
+                                              &settings, &error),
+                          error);
+            }
+}
+
+/* Settings of techniques that are measured in motion: appearance over base over scene, then the setup. */
+static void check_setups(const struct tl_experiment *experiment, enum tl_output output)
+{
+    int appearances = experiment->appearance_count ? experiment->appearance_count : 1;
+    const struct tl_settings_source source = {.scene_file = experiment->scene};
+    struct tl_settings scene, settings;
+    tl_error error = {0};
+    assert_ok(tl_settings_load(&scene, &source, &error), error);
+    assert_ok(tl_settings_assign(&scene, experiment->base, TL_COUNT(experiment->base), &error), error);
+    assert_ok(tl_setup_apply(&experiment->reference, &scene, &settings, &error), error);
+    assert_true(tl_experiment_count(experiment, output) > 1);
+    for (int a = 0; a < appearances; a++) {
+        struct tl_settings seen = scene;
+        if (experiment->appearances)
+            assert_ok(tl_settings_assign(&seen, experiment->appearances[a].assignments,
+                                         TL_EXPERIMENT_ASSIGNMENTS, &error),
+                      error);
+        for (const struct tl_technique *t = NULL; (t = tl_experiment_next(experiment, output, t));)
+            assert_ok(tl_setup_apply(&t->setup, &seen, &settings, &error), error);
+    }
+}
+
+static void test_every_option_exists(void **state)
+{
+    (void)state;
+    for (int output = 0; output < TL_OUTPUTS; output++) {
+        const struct tl_experiment *experiment;
+        for (size_t i = 0; (experiment = tl_experiment_at((enum tl_output)output, i)); i++)
+            if (output == TL_OUTPUT_PICTURES || output == TL_OUTPUT_GOLDEN)
+                check_pictures(experiment, (enum tl_output)output);
+            else
+                check_setups(experiment, (enum tl_output)output);
+    }
+}
+
+/* Pictures' files are called after their experiments; a page's rows are found by their group and name. */
+static void test_names_are_unique(void **state)
+{
+    (void)state;
+    for (int output = 0; output < TL_OUTPUTS; output++) {
+        const struct tl_experiment *experiment;
+        for (size_t i = 0; (experiment = tl_experiment_at((enum tl_output)output, i)); i++) {
+            assert_ptr_equal(tl_experiment_find((enum tl_output)output, experiment->name), experiment);
+            for (const struct tl_technique *t = NULL;
+                 (t = tl_experiment_next(experiment, (enum tl_output)output, t));)
+                for (const struct tl_technique *u = t;
+                     (u = tl_experiment_next(experiment, (enum tl_output)output, u));)
+                    assert_false(strcmp(t->names[output], u->names[output]) == 0 &&
+                                 (!t->group || !u->group || strcmp(t->group, u->group) == 0));
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_every_id_has_a_picture),
+        cmocka_unit_test(test_every_option_exists),
+        cmocka_unit_test(test_names_are_unique),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
