@@ -1,6 +1,6 @@
-/* toile view: the review window. Its life and its loop.
+/* toile view: opens the review window, runs its loop, closes it.
  *
- * A window in which nothing happens costs nothing: the loop sleeps. */
+ * The loop sleeps while nothing happens, so that an idle window uses no processor time. */
 #include "app/scene/headless.h"
 #include "app/view/commands.h"
 #include "app/view/review/review_draw.h"
@@ -20,12 +20,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* How long nothing needs to be done unless something happens. */
+/* Seconds that the loop may sleep when no event arrives. */
 static double event_timeout_s(const struct tl_review *review)
 {
-    const double idle_s = 0.5;                    /* Ctrl-C and edited files are looked for */
-    const double settling_s = 0.05, tick_s = 0.1; /* tick: of progress that is shown */
-    const double screen_s = 1 / 60.0;             /* what moves by itself need not be drawn more often */
+    const double idle_s = 0.5; /* the interval at which interrupts and edited files are checked */
+    const double settling_s = 0.05, tick_s = 0.1; /* tick: between updates of the progress */
+    const double screen_s = 1 / 60.0;             /* a turntable needs no more images than the screen shows */
     if (review->redraws > 0)
         return 0;
     if (tl_review_moves_itself(review) || review->path.records)
@@ -49,7 +49,7 @@ static bool is_minimised(const struct tl_review *review)
     return width < 1 || height < 1;
 }
 
-/* What the window does between two looks at its events. */
+/* The work between two checks for events. */
 static bool run_one_frame(struct tl_review *review, bool always_shows, tl_error *error)
 {
     review->times.began_s = review->times.lap_s = tl_clock_s();
@@ -57,7 +57,7 @@ static bool run_one_frame(struct tl_review *review, bool always_shows, tl_error 
     tl_review_reload_edited(review);
     tl_review_lap(review, "watching files");
     tl_review_load(review);
-    tl_review_lap(review, "what was loaded beside");
+    tl_review_lap(review, "taking over what was loaded");
     tl_review_move(review);
     if (!tl_review_update_image(review, error))
         return false;
@@ -87,13 +87,13 @@ static bool run(struct tl_review *review, int max_frames, tl_error *error)
     return true;
 }
 
-/* Every image of the default quality takes a software driver about a second. Unless quality was asked for, a
- * review there begins with less of it. */
+/* A software driver takes about a second for an image at the default quality. Unless the command line asks
+ * for a quality, a review on such a driver starts with the preset draft. */
 static bool needs_draft(const struct tl_review *review)
 {
     const struct tl_arguments *arguments = review->arguments;
     if (arguments->positional_count > 0 || !strstr(tl_gpu_name(review->gpu), "llvmpipe"))
-        return false; /* a scene means what it says */
+        return false; /* the scene decides its quality */
     for (size_t i = 0; i < arguments->assignment_count; i++)
         if (strncmp(arguments->assignments[i], "scene.preset", 12) == 0 ||
             strncmp(arguments->assignments[i], "light.", 6) == 0)
@@ -114,15 +114,15 @@ static bool open_window(struct tl_review *review, tl_error *error)
     return review->renderer != NULL;
 }
 
-/* What was remembered may lie on a disk that is gone: then the review begins as the first time. */
-static bool open_scene(struct tl_review *review, bool is_remembered, tl_error *error)
+/* Restored settings may name files that no longer exist: then the built-in review is opened. */
+static bool open_scene(struct tl_review *review, bool is_restored, tl_error *error)
 {
     struct tl_settings remembered = review->wanted;
     if (tl_review_load_first(review, error))
         return true;
-    if (review->closing || !is_remembered || tl_interrupted())
+    if (review->closing || !is_restored || tl_interrupted())
         return false;
-    tl_warn("view: the last review cannot be shown again (%s): the built-in one is", error->message);
+    tl_warn("view: the last review cannot be restored (%s): opening the built-in one", error->message);
     if (!tl_stage_settings(review->arguments, &review->wanted, error))
         return false;
     review->wanted.camera = remembered.camera;
@@ -134,30 +134,29 @@ static bool open_review(struct tl_review *review, tl_error *error)
     const struct tl_arguments *arguments = review->arguments;
     if (!tl_stage_settings(arguments, &review->wanted, error))
         return false;
-    bool is_remembered = tl_review_restore_state(review);
+    bool is_restored = tl_review_restore_state(review);
     if (arguments->budget_ms > 0)
         review->params.budget_ms = (float)arguments->budget_ms;
     if (!open_window(review, error))
         return false;
-    bool is_draft = !is_remembered && needs_draft(review);
+    bool is_draft = !is_restored && needs_draft(review);
     if (is_draft && !tl_settings_apply_preset(&review->wanted, "draft", error))
         return false;
-    if (!open_scene(review, is_remembered, error))
+    if (!open_scene(review, is_restored, error))
         return false;
     review->history = tl_history_create(&review->wanted);
     review->pace = tl_pace_create((double)review->params.budget_ms);
     tl_review_add_environment(review, "studio");
     tl_review_add_environment(review, review->wanted.scene.environment);
-    /* The first image must come off: there is nothing good to go back to yet. */
+    /* The first image must succeed: there are no earlier settings to go back to. */
     review->good = review->wanted;
     review->changed = true;
     if (!tl_review_draw_sharp(review, error))
         return false;
     tl_info("view: ready with %s; H lists keys and gestures", tl_gpu_name(review->gpu));
     if (is_draft)
-        tl_review_report(review,
-                         "No graphics card: preset draft instead of review, to keep_present quick. H: keys");
-    else if (!is_remembered)
+        tl_review_report(review, "no graphics card: preset draft instead of review, for speed; H lists keys");
+    else if (!is_restored)
         tl_review_report(review, "H lists keys and gestures");
     return true;
 }
@@ -169,7 +168,7 @@ static void close_review(struct tl_review *review)
     tl_renderer_destroy(&review->renderer);
     tl_panel_destroy(&review->panel);
     tl_gpu_destroy(&review->gpu);
-    tl_window_destroy(&review->window); /* gone at once, however long a loader takes to stop */
+    tl_window_destroy(&review->window); /* before the loader, which may take a while to stop */
     tl_loader_cancel(&review->loader);
     tl_session_destroy(&review->session);
     tl_history_destroy(&review->history);

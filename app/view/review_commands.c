@@ -11,28 +11,6 @@
 #define SHIFT GLFW_MOD_SHIFT
 #define CTRL  GLFW_MOD_CONTROL
 
-/* One key; another argument for it; the digits 1 to 9. */
-#define KEY(name)                                                                                            \
-    {                                                                                                        \
-        GLFW_KEY_##name, 0, 1, 0                                                                             \
-    }
-#define WITH(modifiers, name)                                                                                \
-    {                                                                                                        \
-        GLFW_KEY_##name, modifiers, 1, 0                                                                     \
-    }
-#define TO(name, argument)                                                                                   \
-    {                                                                                                        \
-        GLFW_KEY_##name, 0, 1, argument                                                                      \
-    }
-#define WITH_TO(modifiers, name, argument)                                                                   \
-    {                                                                                                        \
-        GLFW_KEY_##name, modifiers, 1, argument                                                              \
-    }
-#define DIGITS(modifiers)                                                                                    \
-    {                                                                                                        \
-        GLFW_KEY_1, modifiers, 9, 0                                                                          \
-    }
-
 const char *const tl_review_section_names[TL_SECTION_COUNT] = {
     [TL_SECTION_CLOTH] = "Cloth",   [TL_SECTION_CAMERA] = "Camera",   [TL_SECTION_LIGHT] = "Light",
     [TL_SECTION_FABRIC] = "Fabric", [TL_SECTION_COMPARE] = "Compare", [TL_SECTION_INSPECT] = "Inspect",
@@ -45,55 +23,62 @@ static bool is_playing(const struct tl_review *review)
 }
 
 /* clang-format off */
+/* Keys of a row: one, with modifiers, with an argument of the action, with both; the digits 1 to 9. */
+#define KEY(name)                          {GLFW_KEY_##name, 0, 1, 0}
+#define WITH(modifiers, name)              {GLFW_KEY_##name, modifiers, 1, 0}
+#define TO(name, argument)                 {GLFW_KEY_##name, 0, 1, argument}
+#define WITH_TO(modifiers, name, argument) {GLFW_KEY_##name, modifiers, 1, argument}
+#define DIGITS(modifiers)                  {GLFW_KEY_1, modifiers, 9, 0}
+
 const struct tl_review_command tl_review_commands[] = {
-    {TL_SECTION_CLOTH, "play or pause", tl_act_play, .keys = {KEY(SPACE)},
+    {"play or pause", tl_act_play, TL_SECTION_CLOTH, .keys = {KEY(SPACE)},
      .button = "Play", .button_on = "Pause", .is_on = is_playing},
-    {TL_SECTION_CLOTH, "one frame further", tl_act_step, .keys = {KEY(PERIOD)}, .repeats = true, .button = "Step"},
-    {TL_SECTION_CLOTH, "back to the settled start", tl_act_reset, .keys = {KEY(R)}, .button = "Reset"},
-    {TL_SECTION_CLOTH, "pin what is pulled; else remove all pins", tl_act_pin, .keys = {KEY(P)}},
+    {"one frame further", tl_act_step, TL_SECTION_CLOTH, .keys = {KEY(PERIOD)}, .repeats = true, .button = "Step"},
+    {"back to the settled start", tl_act_reset, TL_SECTION_CLOTH, .keys = {KEY(R)}, .button = "Reset"},
+    {"pin what is pulled; else remove all pins", tl_act_pin, TL_SECTION_CLOTH, .keys = {KEY(P)}},
 
-    {TL_SECTION_CAMERA, "turn about the figure", tl_act_turn_camera,
+    {"turn about the figure", tl_act_turn_camera, TL_SECTION_CAMERA,
      .keys = {TO(LEFT, TL_ACT_LEFT), TO(RIGHT, TL_ACT_RIGHT), TO(UP, TL_ACT_UP), TO(DOWN, TL_ACT_DOWN)}, .repeats = true},
-    {TL_SECTION_CAMERA, "nearer, farther", tl_act_zoom, .keys = {TO(PAGE_UP, 1), TO(PAGE_DOWN, -1)}, .repeats = true},
-    {TL_SECTION_CAMERA, "frame the whole figure", tl_act_frame_all, .keys = {KEY(F)}, .button = "Frame"},
-    {TL_SECTION_CAMERA, "turntable", tl_act_turntable, .keys = {KEY(T)}, .button = "Turn"},
-    {TL_SECTION_CAMERA, "go to a saved view", tl_act_view, .keys = {DIGITS(0)}},
-    {TL_SECTION_CAMERA, "save this view: camera and light", tl_act_save_view, .keys = {DIGITS(SHIFT)}},
-    {TL_SECTION_CAMERA, "add a key to the camera path: 2 s on", tl_act_path_key, .keys = {KEY(K)}},
-    {TL_SECTION_CAMERA, "record a camera path; again: save it", tl_act_path_record, .keys = {WITH(SHIFT, K)}},
-    {TL_SECTION_CAMERA, "play the camera path", tl_act_path_play, .keys = {KEY(L)}},
+    {"nearer, farther", tl_act_zoom, TL_SECTION_CAMERA, .keys = {TO(PAGE_UP, 1), TO(PAGE_DOWN, -1)}, .repeats = true},
+    {"frame the whole figure", tl_act_frame_all, TL_SECTION_CAMERA, .keys = {KEY(F)}, .button = "Frame"},
+    {"turntable", tl_act_turntable, TL_SECTION_CAMERA, .keys = {KEY(T)}, .button = "Turn"},
+    {"go to a saved view", tl_act_view, TL_SECTION_CAMERA, .keys = {DIGITS(0)}},
+    {"save this view: camera and light", tl_act_save_view, TL_SECTION_CAMERA, .keys = {DIGITS(SHIFT)}},
+    {"add a key to the camera path: 2 s on", tl_act_path_key, TL_SECTION_CAMERA, .keys = {KEY(K)}},
+    {"record a camera path; again: save it", tl_act_path_record, TL_SECTION_CAMERA, .keys = {WITH(SHIFT, K)}},
+    {"play the camera path", tl_act_path_play, TL_SECTION_CAMERA, .keys = {KEY(L)}},
 
-    {TL_SECTION_LIGHT, "next environment", tl_act_next_environment, .keys = {KEY(E)}, .button = "Next light"},
-    {TL_SECTION_LIGHT, "turn the environment by 15\u00b0", tl_act_turn_environment,
+    {"next environment", tl_act_next_environment, TL_SECTION_LIGHT, .keys = {KEY(E)}, .button = "Next light"},
+    {"turn the environment by 15\u00b0", tl_act_turn_environment, TL_SECTION_LIGHT,
      .keys = {TO(LEFT_BRACKET, 1), TO(RIGHT_BRACKET, -1)}, .repeats = true},
-    {TL_SECTION_LIGHT, "turn the environment continuously", tl_act_environment_turntable, .keys = {WITH(SHIFT, T)}},
+    {"turn the environment continuously", tl_act_environment_turntable, TL_SECTION_LIGHT, .keys = {WITH(SHIFT, T)}},
 
-    {TL_SECTION_FABRIC, "next, previous fabric", tl_act_next_fabric, .keys = {TO(G, 1), WITH_TO(SHIFT, G, -1)}},
-    {TL_SECTION_FABRIC, "a fabric, in the order of the panel's list", tl_act_fabric, .keys = {DIGITS(CTRL)}},
-    {TL_SECTION_FABRIC, "next, previous colourway", tl_act_next_colourway, .keys = {TO(C, 1), WITH_TO(SHIFT, C, -1)},
+    {"next, previous fabric", tl_act_next_fabric, TL_SECTION_FABRIC, .keys = {TO(G, 1), WITH_TO(SHIFT, G, -1)}},
+    {"a fabric, in the order of the panel's list", tl_act_fabric, TL_SECTION_FABRIC, .keys = {DIGITS(CTRL)}},
+    {"next, previous colourway", tl_act_next_colourway, TL_SECTION_FABRIC, .keys = {TO(C, 1), WITH_TO(SHIFT, C, -1)},
      .button = "Colours"},
 
-    {TL_SECTION_COMPARE, "split the view; A stays as it looks now", tl_act_compare, .keys = {KEY(W)},
+    {"split the view; A stays as it looks now", tl_act_compare, TL_SECTION_COMPARE, .keys = {KEY(W)},
      .button = "Compare"},
-    {TL_SECTION_COMPARE, "exchange A and B", tl_act_swap, .keys = {KEY(X)}},
-    {TL_SECTION_COMPARE, "move the line between them", tl_act_move_wipe, .keys = {TO(COMMA, -1), TO(SLASH, 1)},
+    {"exchange A and B", tl_act_swap, TL_SECTION_COMPARE, .keys = {KEY(X)}},
+    {"move the line between them", tl_act_move_wipe, TL_SECTION_COMPARE, .keys = {TO(COMMA, -1), TO(SLASH, 1)},
      .repeats = true},
 
-    {TL_SECTION_INSPECT, "show normals, UVs, visibility, strain ...", tl_act_next_view,
+    {"show normals, UVs, visibility, strain ...", tl_act_next_view, TL_SECTION_INSPECT,
      .keys = {TO(V, 1), WITH_TO(SHIFT, V, -1)}, .button = "Inspect"},
-    {TL_SECTION_INSPECT, "show light again", tl_act_light_view, .keys = {KEY(B)}},
-    {TL_SECTION_INSPECT, "print the values under the pointer", tl_act_read_out, .keys = {KEY(I)}},
+    {"show light again", tl_act_light_view, TL_SECTION_INSPECT, .keys = {KEY(B)}},
+    {"print the values under the pointer", tl_act_read_out, TL_SECTION_INSPECT, .keys = {KEY(I)}},
 
-    {TL_SECTION_WINDOW, "undo the last edit", tl_act_undo, .keys = {WITH(CTRL, Z)}, .repeats = true, .button = "Undo"},
-    {TL_SECTION_WINDOW, "redo", tl_act_redo, .keys = {WITH(CTRL | SHIFT, Z), WITH(CTRL, Y)}, .repeats = true},
-    {TL_SECTION_WINDOW, "less, more time for a frame", tl_act_budget, .keys = {TO(MINUS, -1), TO(EQUAL, 1)}},
-    {TL_SECTION_WINDOW, "screenshot as PNG", tl_act_screenshot, .keys = {TO(S, 0), TO(F12, 0)}, .button = "Picture"},
-    {TL_SECTION_WINDOW, "screenshot as linear EXR", tl_act_screenshot, .keys = {WITH_TO(SHIFT, S, 1)}},
-    {TL_SECTION_WINDOW, "use the panel by keys; Esc ends", tl_act_options, .keys = {KEY(O)}},
-    {TL_SECTION_WINDOW, "hide or show the panel", tl_act_panel, .keys = {KEY(TAB)}},
-    {TL_SECTION_WINDOW, "list keys and gestures", tl_act_help, .keys = {KEY(H), KEY(F1)}, .button = "Keys"},
-    {TL_SECTION_WINDOW, "stop or close what is open, or quit", tl_act_back, .keys = {KEY(ESCAPE)}},
-    {TL_SECTION_WINDOW, "quit", tl_act_quit, .keys = {KEY(Q)}},
+    {"undo the last edit", tl_act_undo, TL_SECTION_WINDOW, .keys = {WITH(CTRL, Z)}, .repeats = true, .button = "Undo"},
+    {"redo", tl_act_redo, TL_SECTION_WINDOW, .keys = {WITH(CTRL | SHIFT, Z), WITH(CTRL, Y)}, .repeats = true},
+    {"less, more time for a frame", tl_act_budget, TL_SECTION_WINDOW, .keys = {TO(MINUS, -1), TO(EQUAL, 1)}},
+    {"screenshot as PNG", tl_act_screenshot, TL_SECTION_WINDOW, .keys = {TO(S, 0), TO(F12, 0)}, .button = "Picture"},
+    {"screenshot as linear EXR", tl_act_screenshot, TL_SECTION_WINDOW, .keys = {WITH_TO(SHIFT, S, 1)}},
+    {"use the panel by keys; Esc ends", tl_act_options, TL_SECTION_WINDOW, .keys = {KEY(O)}},
+    {"hide or show the panel", tl_act_panel, TL_SECTION_WINDOW, .keys = {KEY(TAB)}},
+    {"list keys and gestures", tl_act_help, TL_SECTION_WINDOW, .keys = {KEY(H), KEY(F1)}, .button = "Keys"},
+    {"stop or close what is open, or quit", tl_act_back, TL_SECTION_WINDOW, .keys = {KEY(ESCAPE)}},
+    {"quit", tl_act_quit, TL_SECTION_WINDOW, .keys = {KEY(Q)}},
 };
 const size_t tl_review_command_count = TL_COUNT(tl_review_commands);
 

@@ -30,11 +30,11 @@ struct tl_review_key {
 
 #define TL_REVIEW_KEYS_MAX 4
 struct tl_review_command {
+    const char *help;      /* what it does; never empty */
+    tl_review_action *act; /* never NULL */
     enum tl_review_section section;
-    const char *help;                              /* what it does; never empty */
-    tl_review_action *act;                         /* never NULL */
-    struct tl_review_key keys[TL_REVIEW_KEYS_MAX]; /* the button passes the argument of keys[0] */
     bool repeats;                                  /* while the key is held */
+    struct tl_review_key keys[TL_REVIEW_KEYS_MAX]; /* the button passes the argument of keys[0] */
     const char *button;                            /* its label; NULL: no button */
     const char *button_on;                         /* its label while is_on; NULL: always `button` */
     bool (*is_on)(const struct tl_review *review);

@@ -148,7 +148,7 @@ static void on_key(struct tl_review *review, const struct tl_window_event *event
         return;
     int modifiers = event->modifiers & (GLFW_MOD_SHIFT | GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER),
         argument;
-    if (review->drag == TL_DRAG_CLOTH) /* Ctrl is held to pull */
+    if (review->drag == TL_DRAG_CLOTH) /* Ctrl is held in order to pull */
         modifiers &= ~GLFW_MOD_CONTROL;
     const struct tl_review_command *command = tl_review_command_of_key(event->key, modifiers, &argument);
     if (command && (!event->repeated || command->repeats))

@@ -15,7 +15,7 @@
 #define TABLES_A_VIEW 4
 
 static const struct tl_option view_rows[] = {
-    TL_OPTION_BOOL(struct tl_saved_view, saved, "the view is there"),
+    TL_OPTION_BOOL(struct tl_saved_view, saved, "the view has been saved"),
     TL_OPTION_STRING(struct tl_saved_view, environment, "as scene.environment"),
     TL_OPTION_FLOAT(struct tl_saved_view, environment_yaw_deg, -3600, 3600, "degrees",
                     "as scene.environment_yaw_deg"),
@@ -31,7 +31,7 @@ struct view_tables {
     size_t count;
 };
 
-/* A table under a name of its own: "camera" becomes "camera3". */
+/* Adds a table under a numbered name: "camera" becomes "camera3". */
 static void bind(struct view_tables *tables, const struct tl_option_table *table, int number, void *params)
 {
     size_t i = tables->count++;
@@ -56,7 +56,7 @@ static void bind_views(struct view_tables *tables, struct tl_saved_views *views,
     }
 }
 
-/* The same file, wherever one stands. New string. */
+/* An absolute path for a file's name; other names as they are. New string. */
 static char *full_name(const char *name)
 {
     char *path = tl_option_is_file_name(name) ? realpath(name, NULL) : NULL;

@@ -10,32 +10,33 @@
 #define TABLES (TL_SETTINGS_TABLES + 2)
 
 static const struct tl_option window_rows[] = {
-    TL_OPTION_INT(struct tl_window_params, width, 320, 16384, "pixels", "of the window when it opens"),
-    TL_OPTION_INT(struct tl_window_params, height, 240, 16384, "pixels", "of the window when it opens"),
-    TL_OPTION_BOOL(struct tl_window_params, panel, "the panel is there: Tab"),
+    TL_OPTION_INT(struct tl_window_params, width, 320, 16384, "pixels", "size of the window when it opens"),
+    TL_OPTION_INT(struct tl_window_params, height, 240, 16384, "pixels", "size of the window when it opens"),
+    TL_OPTION_BOOL(struct tl_window_params, panel, "show the panel; Tab toggles it"),
     TL_OPTION_FLOAT(struct tl_window_params, budget_ms, 0, 1000, "ms",
-                    "what a frame may take; a larger one buys quality; 0: as long as it takes"),
+                    "time budget of a frame; a larger one allows more quality; 0: no limit"),
     TL_OPTION_FLOAT(struct tl_window_params, turntable_deg_s, -360, 360, "degrees/s",
-                    "how quickly T turns the camera about the figure"),
+                    "speed of the turntable, T"),
     TL_OPTION_FLOAT(struct tl_window_params, environment_turn_deg_s, -360, 360, "degrees/s",
-                    "how quickly Shift+T turns the environment"),
+                    "speed at which Shift+T turns the environment"),
 };
 const struct tl_option_table tl_window_options =
-    TL_OPTION_TABLE("window", "the review window itself; remembered, and no part of a scene", window_rows,
+    TL_OPTION_TABLE("window", "the review window; kept between runs, not a part of a scene", window_rows,
                     struct tl_window_params, .width = 1280, .height = 800, .panel = true, .budget_ms = 50,
                     .turntable_deg_s = 30, .environment_turn_deg_s = 30);
 
-/* Whether a state file has settings in it, besides the window. */
+/* Whether a state file holds settings besides the window's. */
 static const struct tl_option review_rows[] = {
-    TL_OPTION_BOOL(struct tl_left_review, has_settings, "the other tables are those of the built-in review"),
+    TL_OPTION_BOOL(struct tl_left_review, has_settings,
+                   "the other tables hold the settings of the built-in review"),
 };
 static const struct tl_option_table review_table = TL_OPTION_TABLE(
-    "review", "how the built-in review was left", review_rows, struct tl_left_review, .has_settings = false);
+    "review", "state of the built-in review", review_rows, struct tl_left_review, .has_settings = false);
 
 char *tl_state_folder(void)
 {
     const char *state = getenv("XDG_STATE_HOME"), *home = getenv("HOME");
-    if (state && state[0] == '/') /* the standard has relative ones ignored */
+    if (state && state[0] == '/') /* the XDG specification ignores relative paths */
         return tl_format("%s/toile", state);
     return home && home[0] == '/' ? tl_format("%s/.local/state/toile", home) : NULL;
 }
@@ -50,7 +51,7 @@ static size_t bind(struct tl_state *state, struct tl_binding bindings[TABLES])
     return TABLES;
 }
 
-/* The weave of the second fabric and the colourways stand in no table: they follow from names. */
+/* The second fabric's weave and the colourways are not in a table: they are loaded again by their names. */
 static bool follow_names(struct tl_settings *settings, tl_error *error)
 {
     struct tl_material_params look = settings->overlay;
@@ -64,7 +65,7 @@ bool tl_state_load(const char *file, const struct tl_settings *defaults, struct 
                    tl_error *error)
 {
     struct tl_state read = {.review = {.has_settings = true},
-                            .settings = *defaults}; /* true: all tables are known */
+                            .settings = *defaults}; /* true: all tables are accepted */
     struct tl_binding bindings[TABLES];
     size_t count = bind(&read, bindings);
     tl_options_reset(bindings, 2);

@@ -1,9 +1,9 @@
-/* What the review window remembers from one time to the next: its size, its panel, and the settings with
- * which the built-in review was left. YAML of option tables in $XDG_STATE_HOME/toile, or
- * ~/.local/state/toile; saved views (app/view/memory/saved_views.h) lie beside it.
+/* The review window's state between runs: its size, its panel, and the last settings of the built-in review.
+ * A YAML file of option tables in $XDG_STATE_HOME/toile, or ~/.local/state/toile; saved views
+ * (app/view/memory/saved_views.h) are stored next to it.
  *
- * A file that is missing means defaults. Failure: TL_USAGE or TL_INPUT when it cannot be understood, in which
- * case nothing of it is used; TL_OUTPUT when it cannot be written. */
+ * A missing file means defaults. Errors: TL_USAGE or TL_INPUT when the file is malformed, and nothing of it
+ * is used; TL_OUTPUT when it cannot be written. Threads: any, one at a time for a file. */
 #ifndef TOILE_APP_VIEW_MEMORY_STATE_H
 #define TOILE_APP_VIEW_MEMORY_STATE_H
 
@@ -25,15 +25,15 @@ struct tl_state {
     struct tl_settings settings;
 };
 
-/* The folder; NULL where the system says none. New string. */
+/* The folder; NULL when neither variable names one. New string. */
 char *tl_state_folder(void);
 
-/* `defaults`: the settings that a file's stand upon. */
+/* Loads a state; options that the file does not set are those of `defaults`, and of the window's table. */
 bool tl_state_load(const char *file, const struct tl_settings *defaults, struct tl_state *out,
                    tl_error *error);
 bool tl_state_save(const char *file, const struct tl_state *state, tl_error *error);
 
-/* Writes tables as YAML, whole or not at all; makes the file's folder too. */
+/* Writes tables as YAML, completely or not at all; creates the file's folder. */
 bool tl_state_write(const char *file, const struct tl_binding *bindings, size_t count, tl_error *error);
 
 #endif

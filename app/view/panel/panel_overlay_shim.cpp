@@ -20,8 +20,8 @@ float view_width(const tl_panel_input &input)
     return io.DisplaySize.x - static_cast<float>(input.width) / io.DisplayFramebufferScale.x;
 }
 
-/* Room for a text that is new: ImGui finds the size of what a window holds one frame later, and until then it
- * would be cut off. */
+/* Reserves the size of a new text: ImGui learns the size of a window's content one frame late, and would cut
+ * the text off in its first frame. */
 void make_room(const char *text, float wrap = -1)
 {
     ImGui::SetNextWindowContentSize(ImGui::CalcTextSize(text, nullptr, false, wrap));
@@ -106,7 +106,7 @@ ImU32 colour_of(const float srgb[3])
     return ImGui::ColorConvertFloat4ToU32(ImVec4(srgb[0], srgb[1], srgb[2], 1));
 }
 
-/* Colours lie between stops that need not be evenly apart. */
+/* Colours are interpolated between stops, which need not be equidistant. */
 void draw_scale(const tl_panel_legend &legend)
 {
     const ImVec2 corner = ImGui::GetCursorScreenPos();
@@ -160,7 +160,7 @@ void draw_legend(const tl_panel_input &input)
     ImGui::End();
 }
 
-/* Beside the pointer, on the side where there is room. */
+/* Next to the pointer, towards the middle of the view. */
 void draw_read_out(const tl_panel_input &input)
 {
     if (!input.read_out || !input.read_out[0])
@@ -178,7 +178,7 @@ void draw_read_out(const tl_panel_input &input)
     ImGui::End();
 }
 
-/* Half of the rows beside the other half, parted at a heading. */
+/* The heading nearest after the middle: rows are drawn in two columns that break there. */
 size_t middle_of(const tl_panel_line *help, size_t count)
 {
     size_t middle = (count + 1) / 2;
@@ -268,7 +268,7 @@ void tl_panel_strip_draw(const tl_panel_strip &strip)
         list->AddLine(ImVec2(corner.x, y), ImVec2(right, y), light, 1);
     }
     ImGui::Dummy(ImVec2(width, height));
-    /* Room for two lines, so that nothing below moves when there is one. */
+    /* Two lines are reserved, so that nothing below moves when the label takes one. */
     const ImVec2 label = ImGui::GetCursorPos();
     ImGui::PushTextWrapPos(label.x + width);
     ImGui::TextDisabled("%s", strip.label);

@@ -53,7 +53,7 @@ void set_number(const tl_option &row, char *field, double value)
     memcpy(field, &narrow, sizeof narrow);
 }
 
-/* A slider over several decades is of use only when its steps are ratios. */
+/* A slider over several decades is usable only when equal distances are equal ratios. */
 bool spans_decades(const tl_option &row, double usual)
 {
     const double decades = 1000, headroom = 50;
@@ -72,10 +72,10 @@ double three_digits(double value)
 bool edit_number(const tl_binding &binding, const tl_option &row)
 {
     char format[64];
-    snprintf(format, sizeof format, "%%.6g %s", row.unit); /* six digits: what a float has for sure */
+    snprintf(format, sizeof format, "%%.6g %s", row.unit); /* six digits: a float has no more */
     double value = number_at(row, field_of(binding, row)), before = value;
     const double usual = number_at(row, default_of(binding, row));
-    const double wide = 1000; /* linear sliders wider than this are too coarse to aim with */
+    const double wide = 1000; /* wider ranges are too coarse for a linear slider */
     bool edited;
     if (row.minimum < 0 && row.maximum - row.minimum > wide) {
         const float speed = strcmp(row.unit, "degrees") == 0 ? 0.5f : 0.01f; /* per pixel */
@@ -148,7 +148,7 @@ bool keep_three(const tl_binding &binding, const tl_option &row, float value[3])
     return true;
 }
 
-/* Colours are linear in the table and are shown as a screen shows them. */
+/* Colours are linear in the table and encoded as sRGB in the widget. */
 bool edit_colour(const tl_binding &binding, const tl_option &row)
 {
     float value[3];
@@ -174,10 +174,10 @@ bool edit_vector(const tl_binding &binding, const tl_option &row)
 bool edit_text(const tl_binding &binding, const tl_option &row)
 {
     char *field = field_of(binding, row);
-    if (row.choices) /* room for the list's arrow beside the text */
+    if (row.choices) /* leaves room for the list's arrow */
         ImGui::SetNextItemWidth(-ImGui::GetFrameHeight());
     ImGui::InputText("##value", field, TL_STRING_SIZE);
-    bool edited = ImGui::IsItemDeactivatedAfterEdit(); /* half a path is no value yet */
+    bool edited = ImGui::IsItemDeactivatedAfterEdit(); /* a value is taken when typing has ended */
     if (!row.choices)
         return edited;
     ImGui::SameLine(0, 0);
@@ -222,7 +222,7 @@ void explain(const tl_binding &binding, const tl_option &row)
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(ImGui::GetFontSize() * 25.0f);
     if (is_text(row) && field_of(binding, row)[0])
-        ImGui::TextUnformatted(field_of(binding, row)); /* paths are longer than their widget */
+        ImGui::TextUnformatted(field_of(binding, row)); /* a path is often longer than its widget */
     ImGui::TextUnformatted(row.help);
     ImGui::TextDisabled("%s.%s", binding.table->name, row.name);
     if (row.type == TL_INT || row.type == TL_FLOAT || row.type == TL_DOUBLE)

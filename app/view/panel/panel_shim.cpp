@@ -17,7 +17,7 @@ extern "C" {
 
 struct tl_panel {
     tl_panel_fonts *fonts;
-    bool has_platform, has_drawing; /* which backends are up */
+    bool has_platform, has_drawing; /* whether ImGui's backends are initialised */
     bool uses_keys, takes_focus;    /* takes_focus: in the next frame */
     int pressed[8];                 /* keys for the next frame */
     int pressed_count;
@@ -28,7 +28,7 @@ namespace
 
 const float font_size = 15.0f;
 
-/* Neutral greys: a coloured surround would colour the eye's judgement of the cloth. */
+/* Neutral greys: a coloured surround would bias the judgement of the cloth's colour. */
 void choose_style(float scale)
 {
     ImGui::StyleColorsDark();
@@ -68,7 +68,7 @@ void tooltip_of_last_item(const char *help)
         ImGui::SetTooltip("%s", help);
 }
 
-/* Side by side, onto the next line where the panel ends. */
+/* Buttons in a row, wrapped at the panel's edge. */
 void draw_buttons(const tl_panel_button *buttons, size_t count, tl_panel_result &result)
 {
     const ImGuiStyle &style = ImGui::GetStyle();
@@ -138,7 +138,8 @@ void draw_table(const tl_binding &binding, tl_panel_result &result)
     int changed_count = 0;
     for (size_t i = 0; i < table.row_count; i++)
         changed_count += tl_panel_row_changed(&binding, &table.rows[i]);
-    char label[128]; /* the part after ### is the identity, so a new count does not close the header */
+    char label[128]; /* ImGui takes the part after ### as the identity: a new count does not close the header
+                      */
     if (changed_count > 0)
         snprintf(label, sizeof label, "%s (%d changed)###%s", table.name, changed_count, table.name);
     else
@@ -165,7 +166,8 @@ void draw_panel(tl_panel &panel, const tl_panel_input &input, tl_panel_result &r
     ImGui::Begin("panel", nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_NoBringToFrontOnFocus);
-    ImGui::PushAllowKeyboardFocus(false); /* Tab hides the panel; it must not begin to type into it */
+    ImGui::PushAllowKeyboardFocus(
+        false); /* Tab hides the panel and must not move the keyboard focus into it */
     ImGui::TextWrapped("%s", input.title);
     draw_buttons(input.buttons, input.button_count, result);
     tl_panel_strip_draw(input.strip);
@@ -230,7 +232,7 @@ void note_texts(tl_panel_fonts *fonts, const tl_panel_input &input)
                                 tl_panel_row_text(&input.bindings[i], &input.bindings[i].table->rows[row]));
 }
 
-/* ImGui looks at what is held when a frame begins, and would miss a key that was let go before. */
+/* ImGui samples the keys when a frame begins and would miss one that was released before. */
 void hold_keys(const tl_panel &panel, bool held)
 {
     for (int i = 0; i < panel.pressed_count; i++)
@@ -243,7 +245,7 @@ struct tl_panel *tl_panel_create(struct GLFWwindow *window, float scale, tl_erro
 {
     tl_panel *panel = new tl_panel{};
     ImGui::CreateContext();
-    ImGui::GetIO().IniFilename = nullptr; /* a review leaves no file behind that nobody asked for */
+    ImGui::GetIO().IniFilename = nullptr; /* ImGui must not write a file of its own */
     panel->fonts = tl_panel_fonts_create(font_size * scale, scale);
     choose_style(scale);
     panel->has_platform = ImGui_ImplGlfw_InitForOpenGL(window, true);

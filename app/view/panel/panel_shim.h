@@ -1,9 +1,10 @@
-/* The panel of the review window, drawn by Dear ImGui. C++ stays inside panel_shim.cpp.
+/* The panel of the review window, drawn with Dear ImGui. C++ stays inside this room's *_shim.cpp.
  *
- * It knows no option by name: widgets come from the option tables, lists and measures from its caller. It
- * edits the params that the bindings point to, in place and within range, and says so; taking the change
- * over, or back, is the caller's affair. Ownership: everything passed in is borrowed for the call. Threads:
- * the window's. */
+ * The panel knows no option by name: widgets are made from the option tables, and the caller passes lists and
+ * measures. Widgets edit the params that the bindings point to, in place and within range; the result says
+ * so, and the caller applies or reverts the edit. Errors: tl_panel_create only. Lifetime: everything passed
+ * in is borrowed for the call; the panel must be destroyed before its window. Threads: the window's, with its
+ * GL context current. */
 #ifndef TOILE_APP_VIEW_PANEL_PANEL_SHIM_H
 #define TOILE_APP_VIEW_PANEL_PANEL_SHIM_H
 
@@ -28,7 +29,7 @@ struct tl_panel_lines {
     bool open; /* at first */
 };
 
-/* The last frames' times as bars, the oldest first, and the line that they are to keep_present below. */
+/* Times of the last frames as bars, the oldest first, with a line at the budget. */
 struct tl_panel_strip {
     const float *ms;
     size_t count;
@@ -36,13 +37,13 @@ struct tl_panel_strip {
     const char *label;
 };
 
-/* Two looks side by side: the line between them, pixels from the left, and what each is. */
+/* Two appearances side by side: the line between them, pixels from the left, and their labels. */
 struct tl_panel_wipe {
-    int column; /* 0: one look alone */
+    int column; /* 0: nothing is compared */
     const char *left, *right;
 };
 
-/* What the colours of the image mean: a scale between stops, or entries, or both. Colours: sRGB, [0, 1]. */
+/* Legend of the image's colours: a scale between stops, entries, or both. Colours: sRGB, [0, 1]. */
 #define TL_PANEL_LEGEND_STOPS   33
 #define TL_PANEL_LEGEND_ENTRIES 8
 struct tl_panel_legend {
@@ -55,35 +56,35 @@ struct tl_panel_legend {
     float entry_colours[TL_PANEL_LEGEND_ENTRIES][3];
 };
 
-/* Something that takes time, and goes on beside the window. */
+/* An operation that runs asynchronously. */
 struct tl_panel_progress {
     const char *what; /* NULL: nothing */
-    float share;      /* [0, 1]; negative: not known */
-    const char *hint; /* how it is ended */
+    float share;      /* [0, 1]; negative: unknown */
+    const char *hint; /* the key that stops it */
 };
 
 struct tl_panel_input {
     const char *title;
-    const char *message; /* what was said last, or ""; stands over the view */
+    const char *message; /* the last report, or ""; over the view */
     bool message_is_error;
-    const char *status; /* what goes on, or ""; stands over the view */
+    const char *status; /* motion without input, or ""; over the view */
     struct tl_panel_strip strip;
     struct tl_panel_wipe wipe;
     struct tl_panel_progress progress;
     const struct tl_panel_legend *legend; /* NULL: none */
-    const char *read_out;                 /* lines beside the pointer, or "" */
+    const char *read_out;                 /* lines next to the pointer, or "" */
     const struct tl_panel_button *buttons;
     size_t button_count;
-    const char *const *favourites; /* "table.key" of options that stand on top */
+    const char *const *favourites; /* "table.key" of the options at the top */
     size_t favourite_count;
     const struct tl_panel_lines *measures;
     size_t measure_count;
     const struct tl_binding *bindings;
     size_t binding_count;
-    const struct tl_panel_line *help; /* key, what it does, or a heading; drawn over the view when there are
-                                         any */
+    const struct tl_panel_line
+        *help; /* keys and what they do, or a heading; drawn over the view when there are any */
     size_t help_count;
-    const char *question; /* asks and waits for one of the answers, unless NULL */
+    const char *question; /* a modal question with answers; NULL: none */
     const struct tl_panel_button *answers;
     size_t answer_count;
     int x, y, width, height; /* the panel's place, framebuffer pixels; width 0: hidden */
@@ -91,20 +92,21 @@ struct tl_panel_input {
 
 struct tl_panel_result {
     bool changed; /* an option was edited */
-    bool editing; /* a widget is held or typed in: more is to come */
+    bool editing; /* a widget is held or typed into: further edits are expected */
     int button;   /* index of the one that was pressed, -1 for none */
     int answer;   /* index of the one that was chosen, -1 for none */
 };
 
-/* Chains itself after the window's own callbacks. */
+/* Installs its input callbacks, which call the window's own first. `scale`: of the window's content, 1 on a
+ * plain screen. TL_DEVICE when the GL context cannot draw it. */
 tl_panel *tl_panel_create(struct GLFWwindow *window, float scale, tl_error *error);
 void tl_panel_destroy(tl_panel **panel);
 
 bool tl_panel_wants_pointer(const tl_panel *panel);
 bool tl_panel_wants_keys(const tl_panel *panel);
-/* A key (GLFW's number) for the next frame, however short it was held. */
+/* Passes a key (GLFW_KEY_*) to the next frame, even if it was released before that frame. */
 void tl_panel_press(tl_panel *panel, int key);
-/* From now on keys move through the panel's widgets; or no longer. */
+/* Turns keyboard navigation of the panel's widgets on or off. */
 void tl_panel_use_keys(tl_panel *panel, bool used);
 
 /* Builds one frame of the panel, then draws it into the current framebuffer. */

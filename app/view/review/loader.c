@@ -12,7 +12,7 @@
 
 struct tl_loader {
     pthread_t thread;
-    bool runs; /* the thread has to be joined */
+    bool runs; /* the thread must be joined */
     enum tl_load kind;
     struct tl_settings settings;
     struct tl_session_models models;
@@ -24,9 +24,9 @@ struct tl_loader {
     pthread_mutex_t guard; /* of `progress` */
     struct tl_load_progress progress;
 
-    /* The thread's until is_done. */
+    /* Written by the worker before is_done is set, read by the window's thread after. */
     struct tl_loaded loaded;
-    bool made;
+    bool has_loaded;
     tl_error error;
 };
 
@@ -45,7 +45,7 @@ static tl_frame frame_of(tl_loader *loader, tl_surface surfaces[2])
     if (loader->kind == TL_LOAD_SCENE)
         return tl_session_frame(loaded->session);
     tl_frame frame = {.environment = &loaded->light.environment};
-    if (loader->kind == TL_LOAD_LOOK)
+    if (loader->kind == TL_LOAD_APPEARANCE)
         frame = tl_session_frame_in(&loader->models, &loaded->looks, surfaces);
     return frame;
 }
@@ -73,21 +73,21 @@ static bool load(tl_loader *loader)
         return loaded->session != NULL;
     case TL_LOAD_LIGHT:
         return tl_moving_light_open(&loaded->light, settings->scene.environment, 0, &loader->error);
-    case TL_LOAD_LOOK:
+    case TL_LOAD_APPEARANCE:
         return tl_session_make_look(&loader->models, settings, &loaded->looks, &loader->error);
     }
     return false;
 }
 
-static void *make(void *argument)
+static void *run(void *argument)
 {
     tl_loader *loader = argument;
     tl_interrupt_by(&loader->stops);
     tl_progress_observe(observe, loader);
     if (loader->threads > 0)
         omp_set_num_threads(loader->threads); /* of this thread's loops only */
-    loader->made = load(loader);
-    if (loader->made)
+    loader->has_loaded = load(loader);
+    if (loader->has_loaded)
         prepare(loader);
     atomic_store(&loader->is_done, true);
     loader->wake();
@@ -108,7 +108,7 @@ tl_loader *tl_loader_start(enum tl_load kind, const struct tl_settings *settings
     loader->threads = threads;
     loader->wake = wake;
     pthread_mutex_init(&loader->guard, NULL);
-    loader->runs = pthread_create(&loader->thread, NULL, make, loader) == 0;
+    loader->runs = pthread_create(&loader->thread, NULL, run, loader) == 0;
     if (!loader->runs) {
         tl_fail(&loader->error, TL_DEVICE, "no thread can be started to load with: close other programs");
         atomic_store(&loader->is_done, true);
@@ -162,11 +162,11 @@ bool tl_loader_take(tl_loader **handle, struct tl_loaded *out, tl_error *error)
     join(loader);
     *out = loader->loaded;
     loader->loaded = (struct tl_loaded){0};
-    bool made = loader->made;
-    if (!made)
+    bool has_loaded = loader->has_loaded;
+    if (!has_loaded)
         *error = loader->error;
     tl_loader_cancel(handle);
-    return made;
+    return has_loaded;
 }
 
 void tl_loader_stop(tl_loader *loader)

@@ -33,40 +33,40 @@
 
 enum tl_review_drag { TL_DRAG_NONE, TL_DRAG_ORBIT, TL_DRAG_PAN, TL_DRAG_LIGHT, TL_DRAG_CLOTH, TL_DRAG_WIPE };
 
-struct tl_review_times {       /* ms, of the last frame that had them */
-    double frame, cloth, draw; /* frame: all of it, to the swap of buffers */
-    double began_s;            /* the frame at hand */
+struct tl_review_times {       /* of the last frame that had such a part */
+    double frame, cloth, draw; /* ms; frame: from its start to the swap of buffers */
+    double began_s;            /* when the current frame began */
     double lap_s;              /* when its last part ended */
-    const char *longest;       /* of its parts so far, outside of drawing */
+    const char *longest;       /* its longest part so far other than drawing */
     double longest_ms;
 };
 
-/* What moves without being pushed. */
+/* Motion without input. */
 struct tl_review_motion {
     bool turntable, environment;
-    double moved_s; /* when it moved last */
-    bool glides;    /* to a saved view */
+    double moved_s; /* time of the last step */
+    bool glides;    /* from one saved view to another */
     struct tl_saved_view from, to;
     double glide_began_s;
 };
 
 struct tl_review_path {
     struct tl_path path; /* count 0: none yet */
-    char *file;          /* that it is written to; NULL: none yet */
+    char *file;          /* where it is saved; NULL: nowhere yet */
     bool records, plays;
     double began_s;
-    double key_due_s; /* recording: when the next key is taken */
+    double key_due_s; /* while recording: time of the next key */
 };
 
-/* Look A, on the left, is what the settings were; look B, on the right, is what they are. */
+/* Appearance A, on the left, is what the settings were; B, on the right, is what they are. */
 struct tl_review_wipe {
-    tl_renderer *renderer; /* of look A; NULL: nothing is compared */
-    struct tl_settings look;
-    float place; /* of the line between, as a share of the view's width */
+    tl_renderer *renderer;       /* of A; NULL: nothing is compared */
+    struct tl_settings settings; /* of A */
+    float place;                 /* of the line between A and B, as a share of the view's width */
 };
 
 struct tl_review_memory {
-    size_t min_unused; /* bytes, since some were given back last */
+    size_t min_unused; /* bytes: the minimum since memory was last returned to the system */
     double checked_s, logged_s;
 };
 
@@ -76,24 +76,25 @@ struct tl_review {
     tl_panel *panel;
     tl_renderer *renderer;
     tl_session *session;
-    tl_loader *loader;                    /* NULL: nothing is being made ready */
-    struct tl_settings loaded_appearance; /* the last look that was */
+    tl_loader *loader;                    /* NULL: nothing is loading */
+    struct tl_settings loaded_appearance; /* the settings of the last one */
 
-    struct tl_settings wanted; /* edited by keys, pointer and panel; the session follows */
-    struct tl_settings good;   /* the last that could be loaded and drawn; where a failure goes back to */
-    bool changed;              /* wanted has been edited */
-    bool editing;              /* a widget of the panel is held: more edits will come */
-    bool image_is_old;         /* the image does not show the session's state */
-    int redraws;    /* presentations due though the image is not old: the panel follows the pointer */
-    double moved_s; /* when the camera, the light or a slider moved last */
-    double shown_s; /* when something was presented last */
+    struct tl_settings
+        wanted; /* edited by keys, pointer and panel; the session follows as fast as it can load */
+    struct tl_settings good; /* the last settings that were drawn; restored after a failure */
+    bool changed;            /* `wanted` was edited since the last image */
+    bool editing;            /* a widget of the panel is held: further edits are expected */
+    bool image_is_old;       /* the session has changed since the last image */
+    int redraws;             /* frames to present with the same image, because the panel changes */
+    double moved_s;          /* time of the last move of the camera, the light or a slider */
+    double shown_s;          /* time of the last presented frame */
     tl_pace *pace;
     struct tl_pace_choice pace_choice; /* of the last image */
-    bool is_paced, is_new;             /* the last image: drawn at these levels; not shown yet */
+    bool is_paced, is_new;             /* the last image: drawn within the budget; not presented yet */
     tl_history *history;
 
     bool playing, closing, help_shown, reads_out;
-    double next_step_s; /* when playing: the next simulated frame is due */
+    double next_step_s; /* while playing: time of the next simulated frame */
     struct tl_review_motion motion;
     struct tl_review_path path;
     struct tl_review_wipe wipe;
@@ -101,36 +102,37 @@ struct tl_review {
     enum tl_review_drag drag;
     int drag_button;
     float pointer_x, pointer_y; /* pixels */
-    double pressed_s;           /* last press, for double clicks */
+    double pressed_s;           /* time of the last press, for double clicks */
     float pressed_x, pressed_y;
-    float grab_depth_m; /* of the plane, parallel to the image, in which the cloth is pulled */
+    float grab_depth_m; /* depth of the plane, parallel to the image, in which the cloth is pulled */
     uint32_t grab_vertex;
-    vec3s grab_target, grab_at; /* metres: where the pointer is, and where the hand has got to */
+    vec3s grab_target,
+        grab_at; /* metres: the pointer's point in that plane, and the hand, which follows it */
 
     char *title;
     char message[1200]; /* "": none is shown */
     bool message_is_error;
     double message_s;
     char *dropped;  /* the file that the panel asks about, or NULL */
-    char **waiting; /* those that it will ask about next */
+    char **waiting; /* those that it asks about next */
     size_t waiting_count;
     char **environments; /* those that E cycles through */
     size_t environment_count;
-    const char *output_folder; /* of screenshots and camera paths */
+    const char *output_folder; /* for screenshots and camera paths */
 
     struct tl_window_params params;
-    char *state_folder; /* NULL: nothing is remembered */
-    bool keeps_settings;
-    char *views_file; /* of what is shown; NULL as above */
+    char *state_folder;  /* NULL: no state is kept between runs */
+    bool keeps_settings; /* the settings are a part of that state */
+    char *views_file;    /* of the present scene; NULL as above */
     struct tl_saved_views views;
-    char *scene_file;                     /* YAML that the settings came from, or NULL */
+    char *scene_file;                     /* YAML file that the settings came from, or NULL */
     const struct tl_arguments *arguments; /* borrowed */
     struct tl_file_watch watch;
     double watched_s;
 
     struct tl_review_memory memory;
     struct tl_review_times times;
-    struct tl_frame_times frame_times, rest_times; /* while something moves; else */
+    struct tl_frame_times frame_times, rest_times; /* of images in motion, and at rest */
     struct tl_cloth_report report;
     int reported_frame;
     double reported_s;

@@ -47,14 +47,14 @@ void tl_review_lap(struct tl_review *review, const char *part)
     times->longest_ms = ms;
 }
 
-/* What an image that one feels spent its time on, for whoever wants to know why. */
+/* Logs the parts of an image that took noticeably long. */
 static void log_slow_image(const struct tl_review *review, double image_ms)
 {
     const double slow_ms = 250;
     if (image_ms < slow_ms)
         return;
     const tl_plan *plan = tl_renderer_last_plan(review->renderer);
-    tl_debug("view: slow image %d, %s: %.0f ms with the cloth's %.0f%s", review->drawn_count,
+    tl_debug("view: slow image %d, %s: %.0f ms, of which cloth %.0f ms%s", review->drawn_count,
              review->is_paced ? "in motion" : "at rest", image_ms, review->times.cloth,
              review->wipe.renderer ? ", compared" : "");
     if (review->times.longest_ms > 0.1 * image_ms)
@@ -65,8 +65,8 @@ static void log_slow_image(const struct tl_review *review, double image_ms)
                      plan->rows[i].reason);
 }
 
-/* Until here it is the program's time; the swap may wait for the screen. What nobody waits for is shown as
- * well as it can be: its time says nothing about the budget. */
+/* Called before the swap of buffers, which may wait for the screen. Images at rest are drawn at full quality
+ * whatever they take, so that only images in motion teach the governor. */
 static void record_time(struct tl_review *review)
 {
     if (!review->is_new)
@@ -99,7 +99,8 @@ bool tl_review_present(struct tl_review *review, tl_error *error)
     return true;
 }
 
-/* What makes the cloth or the light anew takes seconds: it waits until a slider is let go. */
+/* Whether the edit rebuilds cloth or light, which takes seconds: such an edit waits until the slider is
+ * released. */
 static bool is_slow_change(const struct tl_review *review)
 {
     struct tl_settings quick = review->good;
@@ -127,7 +128,7 @@ static void log_changes(const struct tl_scene_params *old, const struct tl_scene
             tl_info("view: %s %s", names[i].what, names[i].new);
 }
 
-/* One simulated frame when it is due. A machine that is too slow plays slower, and skips nothing. */
+/* A machine that is too slow plays more slowly; it skips no frame. */
 static bool is_step_due(const struct tl_review *review)
 {
     return review->playing && tl_clock_s() >= review->next_step_s;
@@ -155,7 +156,7 @@ static bool draw_with(struct tl_review *review, tl_renderer *renderer, const str
     return tl_renderer_draw(renderer, &frame, &render, error);
 }
 
-/* Both looks share the budget. */
+/* Both appearances share the budget. */
 static void choose_levels(struct tl_review *review, const struct tl_settings *settings)
 {
     double budget_ms = (double)review->params.budget_ms;
@@ -164,8 +165,8 @@ static void choose_levels(struct tl_review *review, const struct tl_settings *se
     review->pace_choice = tl_pace_choose(review->pace, review->renderer, &coming, settings);
 }
 
-/* Brings the session to what can be followed, a frame further when that is due, and draws it; both looks
- * where two are compared. */
+/* Applies `settings` to the session, simulates a frame when one is due, and draws; both appearances when two
+ * are compared. */
 static bool draw_image(struct tl_review *review, const struct tl_settings *settings, bool is_paced,
                        tl_error *error)
 {
@@ -173,7 +174,8 @@ static bool draw_image(struct tl_review *review, const struct tl_settings *setti
     review->times.lap_s = tl_clock_s();
     if (!is_paced)
         *levels = (struct tl_levels){{0}};
-    struct tl_settings b = tl_levels_apply(levels, settings); /* the last frame's: the camera goes first */
+    struct tl_settings b = tl_levels_apply(
+        levels, settings); /* the last frame's levels: the new camera is needed to choose the next */
     if (!tl_session_apply(review->session, &b, error))
         return false;
     if (is_paced)
@@ -190,7 +192,7 @@ static bool draw_image(struct tl_review *review, const struct tl_settings *setti
                                  a = tl_levels_apply(levels, &other);
         if (!draw_with(review, review->wipe.renderer, &a, error))
             return false;
-        review->times.began_s += tl_clock_s() - started_s; /* the pace learns of one look alone */
+        review->times.began_s += tl_clock_s() - started_s; /* the governor learns from one renderer, B's */
     }
     if (!draw_with(review, review->renderer, &b, error))
         return false;
@@ -215,12 +217,11 @@ static void accept_settings(struct tl_review *review, const struct tl_settings *
     tl_review_load_views(review);
 }
 
-/* Draws what is wanted. What cannot be drawn is reported, and what was good is drawn instead; false only when
- * that fails too. */
+/* Draws `wanted`. When that fails, reports it and draws `good` instead; false only when that fails too. */
 static bool redraw(struct tl_review *review, bool is_paced, tl_error *error)
 {
     int width, height;
-    bool is_another = review->changed || review->image_is_old; /* not the same, refined */
+    bool is_another = review->changed || review->image_is_old; /* new content, rather than a refinement */
     tl_review_size(review, &width, &height);
     review->wanted.image.width = width;
     review->wanted.image.height = height;
@@ -239,9 +240,9 @@ static bool redraw(struct tl_review *review, bool is_paced, tl_error *error)
         accept_settings(review, &followed);
     }
     review->changed = review->image_is_old = false;
-    int settles =
-        is_paced || !is_another ? 1 : 2; /* the panel's texts take a second frame to find their size */
-    review->redraws = review->redraws > settles ? review->redraws : settles;
+    int redraws_min =
+        is_paced || !is_another ? 1 : 2; /* ImGui needs a second frame to find the size of new texts */
+    review->redraws = review->redraws > redraws_min ? review->redraws : redraws_min;
     return true;
 }
 
@@ -268,7 +269,7 @@ bool tl_review_is_at_rest(const struct tl_review *review)
 bool tl_review_update_image(struct tl_review *review, tl_error *error)
 {
     bool waits = review->changed && review->editing && is_slow_change(review);
-    /* Jittered rounds are left to average; keys and the panel are answered first. */
+    /* At rest the renderer averages jittered rounds, which may wait until input and the panel are handled. */
     bool is_refined = tl_review_is_at_rest(review) || review->redraws > 0;
     bool improves = !tl_review_is_moving(review) && !(is_refined && tl_review_is_sharp(review));
     bool is_due = review->changed || review->image_is_old || is_step_due(review) || improves;

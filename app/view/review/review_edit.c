@@ -92,12 +92,12 @@ void tl_review_use_fabric(struct tl_review *review, const char *name)
 
 void tl_review_next_fabric(struct tl_review *review, int by)
 {
-    int count = 0, present = -1;
-    for (; tl_embedded_fabrics_names[count]; count++)
+    int count = 0,
+        present = by > 0 ? -1 : 0; /* a fabric from a file comes before the first, or after the last */
+    do {
         if (strcmp(tl_embedded_fabrics_names[count], review->wanted.scene.fabric) == 0)
             present = count;
-    if (present < 0) /* the fabric comes from a file: start at the list's end that is nearer */
-        present = by > 0 ? -1 : 0;
+    } while (tl_embedded_fabrics_names[++count]);
     tl_review_use_fabric(review, tl_embedded_fabrics_names[(present + by + count) % count]);
 }
 

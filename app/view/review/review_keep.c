@@ -29,15 +29,15 @@ bool tl_review_restore_state(struct tl_review *review)
     struct tl_state state;
     char *file = state_file(review);
     if (!tl_state_load(file, &review->wanted, &state, &error))
-        tl_warn("view: %s: begins as the first time", error.message);
+        tl_warn("view: %s: starts with the defaults", error.message);
     free(file);
     review->params = state.window;
-    /* Who names a scene or an option means that one, not what was left lying here. */
+    /* A scene or an option on the command line takes precedence over kept settings. */
     review->keeps_settings = !scene && arguments->assignment_count == 0;
-    bool is_remembered = review->keeps_settings && state.review.has_settings;
-    if (is_remembered)
+    bool is_restored = review->keeps_settings && state.review.has_settings;
+    if (is_restored)
         review->wanted = state.settings;
-    return is_remembered;
+    return is_restored;
 }
 
 void tl_review_save_state(struct tl_review *review)
@@ -48,7 +48,7 @@ void tl_review_save_state(struct tl_review *review)
     struct tl_settings defaults = review->good;
     struct tl_state state;
     char *file = state_file(review);
-    /* What is not this review's to say stays as it was written. */
+    /* The file is read first, so that tables which this review does not keep are written back unchanged. */
     if (!tl_state_load(file, &defaults, &state, &error))
         state.review.has_settings = false;
     if (review->keeps_settings) {
@@ -58,7 +58,7 @@ void tl_review_save_state(struct tl_review *review)
     state.window = review->params;
     tl_window_unscaled_size(review->window, &state.window.width, &state.window.height);
     if (!tl_state_save(file, &state, &error))
-        tl_warn("view: %s: the next review begins as this one did", error.message);
+        tl_warn("view: %s: the state of this review is not saved", error.message);
     free(file);
 }
 
@@ -78,7 +78,7 @@ void tl_review_load_views(struct tl_review *review)
     if (!review->state_folder)
         review->views = (struct tl_saved_views){0};
     else if (!tl_saved_views_load(file, &review->views, &error))
-        tl_warn("view: %s: there are no saved views", error.message);
+        tl_warn("view: %s: saved views are not loaded", error.message);
 }
 
 void tl_review_save_view(struct tl_review *review, int index)
@@ -89,10 +89,10 @@ void tl_review_save_view(struct tl_review *review, int index)
     if (review->state_folder && !tl_saved_views_save(review->views_file, &review->views, &error))
         tl_review_report_error(review, &error);
     else
-        tl_review_report(review, "view %d saved: %d comes back to it", index + 1, index + 1);
+        tl_review_report(review, "view %d saved: %d returns to it", index + 1, index + 1);
 }
 
-/* The file's settings, seen from where the eye is now. */
+/* Takes over the file's settings except the camera. */
 static void reload_scene(struct tl_review *review)
 {
     const struct tl_arguments *arguments = review->arguments;
@@ -121,7 +121,7 @@ static void reload_named(struct tl_review *review, const char *name,
     if (!tl_option_is_file_name(name) || !tl_file_has_changed(&review->watch, name))
         return;
     tl_error error;
-    char *copy = tl_copy_string(name); /* it lies within the settings that are changed */
+    char *copy = tl_copy_string(name); /* `name` points into the settings that are changed */
     if (apply(&review->wanted, copy, &error)) {
         review->changed = true;
         tl_review_report(review, "edited: %s", copy);

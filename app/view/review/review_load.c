@@ -7,9 +7,10 @@
 #include <omp.h>
 #include <string.h>
 
-/* A look has to be made ready unless the session has it, or it was just made. Light that plays is new with
- * every frame: nothing can be made ready for it. The material follows a slider at once. */
-static bool needs_look(const struct tl_review *review, const struct tl_settings *settings)
+/* Whether an appearance must be loaded first: the session does not have it, and it was not loaded last.
+ * Nothing can be prepared for an environment sequence, whose light changes with every frame. While a slider
+ * is held the material is applied at once. */
+static bool needs_appearance(const struct tl_review *review, const struct tl_settings *settings)
 {
     struct tl_settings present = *tl_session_settings(review->session);
     if (review->editing)
@@ -22,15 +23,15 @@ static bool is_slow(const struct tl_review *review, const struct tl_settings *se
 {
     const struct tl_settings *present = tl_session_settings(review->session);
     return tl_session_needs_scene(present, settings) || tl_session_needs_light(present, settings) ||
-           needs_look(review, settings);
+           needs_appearance(review, settings);
 }
 
-/* What of `settings` has to be made ready is left as it is. */
+/* Sets the options that need loading to the values that the session has. */
 static void keep_present(const struct tl_review *review, struct tl_settings *settings)
 {
     const struct tl_settings *present = tl_session_settings(review->session);
     tl_session_keep_scene(present, settings);
-    if (needs_look(review, settings))
+    if (needs_appearance(review, settings))
         tl_looks_take(present, settings);
 }
 
@@ -49,7 +50,7 @@ static int loader_threads(void)
     return cores > 1 ? cores - 1 : 1;
 }
 
-/* With the regions of every level that the pace may choose. */
+/* Requests the light of every number of regions that the governor's levels may choose. */
 static struct tl_prepared_request light_of(const struct tl_review *review, const struct tl_settings *settings)
 {
     struct tl_prepared_request request = {.settings = tl_settings_render(settings)};
@@ -66,20 +67,21 @@ static struct tl_prepared_request light_of(const struct tl_review *review, const
     return request;
 }
 
-/* Another scene needs its own light, another environment that of the looks there are; another look, which is
- * B's, beside its own what B's renderer had: for going back. */
+/* A scene needs its own light; an environment, the lobes of the appearances that are shown; an appearance,
+ * which is B's, its own lobes in addition to those of B's renderer, so that going back costs nothing. */
 static struct tl_load_lights lights_of(struct tl_review *review, enum tl_load kind)
 {
     const tl_renderer *renderers[TL_LOADER_LIGHTS_MAX] = {review->renderer, review->wipe.renderer};
     struct tl_settings drawn = review->wanted;
-    if (kind == TL_LOAD_LIGHT && needs_look(review, &drawn)) /* which comes after the light */
+    if (kind == TL_LOAD_LIGHT &&
+        needs_appearance(review, &drawn)) /* the appearance is loaded after the light */
         tl_looks_take(tl_session_settings(review->session), &drawn);
     const struct tl_settings other = tl_review_settings_a(review, &drawn);
-    struct tl_load_lights lights = {.count = review->wipe.renderer && kind != TL_LOAD_LOOK ? 2 : 1,
+    struct tl_load_lights lights = {.count = review->wipe.renderer && kind != TL_LOAD_APPEARANCE ? 2 : 1,
                                     .of = {light_of(review, &drawn), light_of(review, &other)}};
     for (int i = 0; i < lights.count && kind != TL_LOAD_SCENE; i++)
         lights.of[i].exponents = tl_renderer_exponents(renderers[i]);
-    if (kind == TL_LOAD_LOOK) {
+    if (kind == TL_LOAD_APPEARANCE) {
         lights.of[0].environment = tl_session_frame(review->session).environment;
         lights.of[0].known = tl_renderer_copy_prepared(review->renderer);
     }
@@ -91,7 +93,7 @@ static enum tl_load what_to_load(const struct tl_review *review)
     const struct tl_settings *present = tl_session_settings(review->session);
     return tl_session_needs_scene(present, &review->wanted)   ? TL_LOAD_SCENE
            : tl_session_needs_light(present, &review->wanted) ? TL_LOAD_LIGHT
-                                                              : TL_LOAD_LOOK;
+                                                              : TL_LOAD_APPEARANCE;
 }
 
 static void start(struct tl_review *review)
@@ -102,19 +104,20 @@ static void start(struct tl_review *review)
     review->loader =
         tl_loader_start(kind, &review->wanted, &models, &lights, loader_threads(), tl_window_wake);
     const struct tl_scene_params *scene = &review->wanted.scene;
-    if (kind != TL_LOAD_LOOK)
+    if (kind != TL_LOAD_APPEARANCE)
         tl_info("view: loads %s", kind == TL_LOAD_SCENE ? scene->garment : scene->environment);
 }
 
-/* Whether what is being made is still what is wanted. */
+/* Whether `wanted` has changed since the loader was started. */
 static bool is_outdated(const struct tl_review *review)
 {
     const struct tl_settings *made = tl_loader_settings(review->loader);
     return tl_session_needs_scene(made, &review->wanted) || tl_session_needs_light(made, &review->wanted) ||
-           (tl_loader_kind(review->loader) == TL_LOAD_LOOK && tl_session_needs_look(made, &review->wanted));
+           (tl_loader_kind(review->loader) == TL_LOAD_APPEARANCE &&
+            tl_session_needs_look(made, &review->wanted));
 }
 
-/* Hands the light that was made ready to the renderers. */
+/* Hands the loaded light to the renderers. */
 static void take_lights(struct tl_review *review, struct tl_loaded *loaded)
 {
     uint64_t revision = tl_session_frame(review->session).environment_revision;
@@ -134,7 +137,7 @@ static void finish(struct tl_review *review)
     if (!tl_loader_take(&review->loader, &loaded, &error)) {
         keep_present(review, &review->wanted);
         tl_review_report_error(review, &error);
-    } else if (kind == TL_LOAD_LOOK) {
+    } else if (kind == TL_LOAD_APPEARANCE) {
         tl_session_keep_look(review->session, &made_of, &loaded.looks);
         take_lights(review, &loaded);
         review->loaded_appearance = made_of;
@@ -142,7 +145,7 @@ static void finish(struct tl_review *review)
         tl_session_replace(review->session, &loaded.session);
         take_lights(review, &loaded);
         review->reported_frame = -1;
-        review->drag = TL_DRAG_NONE; /* what was held is gone */
+        review->drag = TL_DRAG_NONE; /* the cloth that was pulled is gone */
     } else {
         tl_session_replace_light(review->session, &loaded.light, environment);
         take_lights(review, &loaded);
@@ -150,8 +153,8 @@ static void finish(struct tl_review *review)
     tl_loaded_release(&loaded);
 }
 
-/* A loader that is stopped takes as long as its present step: nobody waits for that, and the next one begins
- * when it is done. */
+/* A stopped loader still finishes its current step. The window does not wait for it: the next loader starts
+ * once it is done. */
 void tl_review_load(struct tl_review *review)
 {
     if (review->loader && is_outdated(review))
@@ -170,11 +173,11 @@ void tl_review_load(struct tl_review *review)
 bool tl_review_stop_loading(struct tl_review *review)
 {
     if (!review->loader || !is_slow(review, &review->wanted))
-        return false; /* nothing, or nothing that anybody waits for */
+        return false; /* the loader, if any, is stopped already, or prepares what nothing waits for */
     tl_loader_stop(review->loader);
     keep_present(review, &review->wanted);
     review->changed = true;
-    tl_review_report(review, "loading was stopped: the scene stays as it was");
+    tl_review_report(review, "loading was stopped: the scene is unchanged");
     return true;
 }
 
@@ -185,13 +188,13 @@ struct tl_panel_progress tl_review_progress(const struct tl_review *review, char
     const struct tl_scene_params *scene = &tl_loader_settings(review->loader)->scene;
     enum tl_load kind = tl_loader_kind(review->loader);
     const char *name = kind == TL_LOAD_LIGHT                 ? scene->environment
-                       : kind == TL_LOAD_LOOK                ? scene->fabric
+                       : kind == TL_LOAD_APPEARANCE          ? scene->fabric
                        : strcmp(scene->garment, "none") == 0 ? scene->avatar
                                                              : scene->garment;
     const char *slash = strrchr(name, '/');
     struct tl_load_progress progress = tl_loader_progress(review->loader);
-    const double unseen_s = 0.3; /* most looks are there sooner: nothing flickers */
-    if (kind == TL_LOAD_LOOK && progress.seconds < unseen_s)
+    const double unseen_s = 0.3; /* most appearances load faster: the progress would only flicker */
+    if (kind == TL_LOAD_APPEARANCE && progress.seconds < unseen_s)
         return (struct tl_panel_progress){0};
     bool is_known = progress.what[0] != '\0';
     snprintf(text, size, "Loading %.100s%s%s", slash ? slash + 1 : name, is_known ? ": " : "", progress.what);

@@ -7,13 +7,13 @@
 #include <stdio.h>
 #include <unistd.h>
 
-/* How much may lie idle. Images in motion free some 80 MB that those at rest take again, and to give that
- * back at once would cost the next ones more than it frees; where nobody waits, the first image to come is
- * all that pays. */
-#define IDLE_IN_MOTION ((size_t)96 << 20)
-#define IDLE_AT_REST   ((size_t)32 << 20)
-#define CHECK_EVERY_S  1.0
-#define LOG_EVERY_S    10.0
+/* Unused memory that is tolerated. Images in motion free some 80 MB that images at rest allocate again:
+ * returning it at once would cost the following images more than it saves. At rest only the next image pays.
+ */
+#define UNUSED_MAX_IN_MOTION ((size_t)96 << 20)
+#define UNUSED_MAX_AT_REST   ((size_t)32 << 20)
+#define CHECK_EVERY_S        1.0
+#define LOG_EVERY_S          10.0
 
 size_t tl_review_resident_bytes(void)
 {
@@ -26,7 +26,7 @@ size_t tl_review_resident_bytes(void)
     return (size_t)pages * (size_t)sysconf(_SC_PAGESIZE);
 }
 
-static bool is_awaited(const struct tl_review *review)
+static bool is_busy(const struct tl_review *review)
 {
     return tl_review_is_moving(review) || review->loader || !tl_review_is_sharp(review) ||
            !tl_review_is_at_rest(review);
@@ -38,15 +38,15 @@ static size_t used_bytes(void)
     return heap.uordblks + heap.hblkhd;
 }
 
-/* Resident, but not in use: idle pages, beside the program itself and what drivers map. */
+/* Resident but not allocated: unused pages, and constant amounts for the program and for what drivers map. */
 static size_t unused_bytes(void)
 {
     size_t resident = tl_review_resident_bytes(), used = used_bytes();
     return resident > used ? resident - used : 0;
 }
 
-/* What is in use tells a leak from pages that lie idle. */
-static void tell(struct tl_review_memory *memory, double now_s)
+/* Logs used beside resident memory: a leak makes both grow, fragmentation only the latter. */
+static void log_memory(struct tl_review_memory *memory, double now_s)
 {
     if (now_s - memory->logged_s < LOG_EVERY_S)
         return;
@@ -62,14 +62,14 @@ void tl_review_trim_memory(struct tl_review *review)
     if (now_s - memory->checked_s < CHECK_EVERY_S)
         return;
     memory->checked_s = now_s;
-    tell(memory, now_s);
-    size_t unused = unused_bytes(), idle_max = is_awaited(review) ? IDLE_IN_MOTION : IDLE_AT_REST;
+    log_memory(memory, now_s);
+    size_t unused = unused_bytes(), unused_max = is_busy(review) ? UNUSED_MAX_IN_MOTION : UNUSED_MAX_AT_REST;
     if (memory->min_unused == 0 || unused < memory->min_unused)
         memory->min_unused = unused;
-    if (unused - memory->min_unused < idle_max)
+    if (unused - memory->min_unused < unused_max)
         return;
     malloc_trim(0);
     memory->min_unused = unused_bytes();
-    tl_debug("view: memory: %zu MB of %zu MB unused given back in %.0f ms",
+    tl_debug("view: memory: %zu MB of %zu MB unused returned to the system in %.0f ms",
              (unused - memory->min_unused) >> 20, unused >> 20, 1e3 * (tl_clock_s() - now_s));
 }

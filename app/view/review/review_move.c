@@ -10,7 +10,7 @@
 #include <stdlib.h>
 
 #define GLIDE_S        0.6
-#define KEY_APART_S    2.0 /* between keys that are set one by one */
+#define KEY_APART_S    2.0 /* between keys that are added by hand */
 #define RECORD_EVERY_S 0.2
 
 void tl_review_fix_camera(struct tl_review *review)
@@ -27,12 +27,12 @@ void tl_review_stop_moving(struct tl_review *review)
     review->motion.glides = review->path.plays = false;
 }
 
-void tl_review_toggle(struct tl_review *review, bool *which, const char *what)
+void tl_review_toggle(struct tl_review *review, bool *turntable, const char *name)
 {
     if (!tl_review_moves_itself(review))
         review->motion.moved_s = tl_clock_s();
-    *which = !*which;
-    tl_review_report(review, "%s %s", what, *which ? "turns" : "stands");
+    *turntable = !*turntable;
+    tl_review_report(review, "%s %s", name, *turntable ? "turns" : "stands");
 }
 
 void tl_review_go_to_view(struct tl_review *review, int index)
@@ -74,7 +74,8 @@ static void follow_path(struct tl_review *review, double now_s)
     }
 }
 
-/* Angles go on from the key before: turning on is never turning back. */
+/* Angles continue from the previous key by the shorter way, so that a path through 180 degrees does not turn
+ * back. */
 static void add_key(struct tl_review *review, double time_s)
 {
     tl_review_fix_camera(review);
@@ -118,7 +119,7 @@ void tl_review_path_add(struct tl_review *review)
     struct tl_review_path *recorded = &review->path;
     tl_review_stop_moving(review);
     if (recorded->records) {
-        tl_review_report(review, "keys come by themselves while a path is recorded: Shift+K ends it");
+        tl_review_report(review, "keys are added automatically while a path is recorded: Shift+K ends it");
         return;
     }
     if (!recorded->file)
@@ -147,7 +148,7 @@ void tl_review_path_record(struct tl_review *review)
         recorded->began_s = now_s;
         recorded->key_due_s = now_s + RECORD_EVERY_S;
         add_key(review, 0);
-        tl_review_report(review, "records the camera's path: Shift+K ends and saves it");
+        tl_review_report(review, "records the camera path: Shift+K ends and saves it");
         return;
     }
     recorded->records = false;
@@ -181,11 +182,11 @@ void tl_review_path_release(struct tl_review_path *path)
     *path = (struct tl_review_path){0};
 }
 
-/* A window that was hidden for an hour does not make up for it. */
-static float passed_s(struct tl_review_motion *motion, double now_s)
+/* Seconds since the last step, limited: a window that was hidden for an hour does not catch up. */
+static float step_length_s(struct tl_review_motion *motion, double now_s)
 {
-    const double longest_s = 0.5;
-    double passed = fmin(now_s - motion->moved_s, longest_s);
+    const double max_s = 0.5;
+    double passed = fmin(now_s - motion->moved_s, max_s);
     motion->moved_s = now_s;
     return (float)passed;
 }
@@ -195,7 +196,7 @@ void tl_review_move(struct tl_review *review)
     struct tl_review_motion *motion = &review->motion;
     double now_s = tl_clock_s();
     if (tl_review_moves_itself(review)) {
-        float step_s = passed_s(motion, now_s);
+        float step_s = step_length_s(motion, now_s);
         float *camera_deg = &review->wanted.camera.yaw_deg,
               *environment_deg = &review->wanted.scene.environment_yaw_deg;
         if (motion->glides)

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The look that lies under the pointer. */
+/* The renderer of the appearance under the pointer. */
 static const tl_renderer *renderer_under(const struct tl_review *review, int width)
 {
     bool is_left = (int)review->pointer_x < tl_review_wipe_column(review, width);

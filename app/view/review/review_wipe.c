@@ -24,26 +24,28 @@ void tl_review_compare(struct tl_review *review)
         tl_review_report_error(review, &error);
         return;
     }
-    tl_prepared *light = tl_renderer_copy_prepared(review->renderer); /* the same light */
+    tl_prepared *light = tl_renderer_copy_prepared(review->renderer); /* both draw the same light */
     if (light)
         tl_renderer_take_prepared(wipe->renderer, &light,
                                   tl_session_frame(review->session).environment_revision);
-    wipe->look = review->good;
+    wipe->settings = review->good;
     wipe->place = 0.5f;
     review->image_is_old = true;
-    tl_review_report(review, "compares: A, left, stays as it is now; change fabric, preset or options for B");
+    tl_review_report(review,
+                     "compares: A, left, keeps its appearance; change fabric, preset or options for B");
 }
 
 void tl_review_swap(struct tl_review *review)
 {
     if (!review->wipe.renderer) {
-        tl_review_report(review, "nothing is compared: W begins");
+        tl_review_report(review, "nothing is compared: W starts a comparison");
         return;
     }
     struct tl_settings b = review->wanted;
     review->wanted = tl_review_settings_a(review, &b);
-    review->wipe.look = b;
-    tl_renderer *renderer_b = review->renderer; /* each look keeps what was made for it */
+    review->wipe.settings = b;
+    tl_renderer *renderer_b =
+        review->renderer; /* each appearance keeps the renderer that has its resources */
     review->renderer = review->wipe.renderer;
     review->wipe.renderer = renderer_b;
     review->loaded_appearance = review->wanted;
@@ -53,7 +55,7 @@ void tl_review_swap(struct tl_review *review)
 
 void tl_review_move_wipe(struct tl_review *review, float place)
 {
-    const float margin = 0.02f; /* so that the line can be caught again */
+    const float margin = 0.02f; /* so that the pointer can reach the line again */
     review->wipe.place = fminf(fmaxf(place, margin), 1 - margin);
     review->redraws = 2;
 }
@@ -66,7 +68,7 @@ int tl_review_wipe_column(const struct tl_review *review, int width)
 struct tl_settings tl_review_settings_a(const struct tl_review *review, const struct tl_settings *settings)
 {
     struct tl_settings result = *settings;
-    tl_looks_take(&review->wipe.look, &result);
+    tl_looks_take(&review->wipe.settings, &result);
     return result;
 }
 
@@ -87,10 +89,10 @@ static void label(char *out, size_t size, const char *side, const struct tl_scen
 
 void tl_review_wipe_labels(const struct tl_review *review, char *a, char *b, size_t size)
 {
-    const struct tl_settings *run_one_frame = &review->good;
-    struct tl_settings same = tl_review_settings_a(review, run_one_frame);
-    char *difference = tl_history_describe(&same, run_one_frame);
+    const struct tl_settings *now = &review->good;
+    struct tl_settings same = tl_review_settings_a(review, now);
+    char *difference = tl_history_describe(&same, now);
     label(a, size, "A", &same.scene, "");
-    label(b, size, "B", &run_one_frame->scene, strcmp(difference, "nothing") == 0 ? "the same" : difference);
+    label(b, size, "B", &now->scene, strcmp(difference, "nothing") == 0 ? "the same" : difference);
     free(difference);
 }

@@ -24,7 +24,7 @@ bool tl_file_has_changed(struct tl_file_watch *watch, const char *path)
         struct tl_watched_file *file = &watch->files[i];
         if (strcmp(file->path, path) != 0)
             continue;
-        bool changed = stamp != file->stamp && stamp != 0; /* gone: its writer will be back */
+        bool changed = stamp != file->stamp && stamp != 0; /* it is missing while its writer replaces it */
         if (stamp != 0)
             file->stamp = stamp;
         return changed;

@@ -13,12 +13,12 @@
 
 struct tl_window {
     GLFWwindow *handle;
-    double pointer_x, pointer_y;    /* screen coordinates, as of the event at hand */
-    struct tl_window_event *events; /* [first, count) are still to be handed out */
+    double pointer_x, pointer_y;    /* screen coordinates, at the current event */
+    struct tl_window_event *events; /* [first, count) are queued */
     size_t first, count, capacity;
 };
 
-static char last_glfw_message[512]; /* GLFW reports before there is a window to remember it */
+static char last_glfw_message[512]; /* static: GLFW reports errors before there is a window */
 
 static void remember_glfw_message(int code, const char *message)
 {
@@ -36,9 +36,9 @@ static void queue(tl_window *window, struct tl_window_event event)
     window->events[window->count++] = event;
 }
 
-/* The pointer in framebuffer pixels; GLFW counts in screen coordinates. Where it was at the event, not where
- * it is: glfwGetCursorPos tells the latter, and a drag that waited behind a slow frame would shrink to a
- * point. */
+/* The pointer's position at the event, in framebuffer pixels; GLFW counts in screen coordinates.
+ * glfwGetCursorPos would give the present position: all events of a drag during a slow frame would then lie
+ * at one point. */
 static struct tl_window_event pointer_event(const tl_window *window, enum tl_window_event_type type)
 {
     int width, height, pixels_x, pixels_y;
@@ -51,7 +51,8 @@ static struct tl_window_event pointer_event(const tl_window *window, enum tl_win
     };
 }
 
-/* A letter is the key that prints it (A and Q change places on a French keyboard); the rest go by place. */
+/* Letters are identified by the keyboard's layout (A and Q change places on a French one), other keys by
+ * position. */
 static int key_of_layout(int key, int scancode)
 {
     const char *name = glfwGetKeyName(key, scancode);
@@ -140,7 +141,7 @@ static void ask_for_context(void)
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
     glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, GLFW_TRUE);
     glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
-    glfwWindowHint(GLFW_DEPTH_BITS, 0); /* scenes are drawn into the renderer's own targets */
+    glfwWindowHint(GLFW_DEPTH_BITS, 0); /* the renderer draws into targets of its own */
     glfwWindowHint(GLFW_STENCIL_BITS, 0);
 }
 
@@ -217,12 +218,12 @@ struct GLFWwindow *tl_window_handle(const tl_window *window)
     return window->handle;
 }
 
-void tl_window_wait(tl_window *window, double event_timeout_s)
+void tl_window_wait(tl_window *window, double timeout_s)
 {
-    if (window->first < window->count || event_timeout_s <= 0)
+    if (window->first < window->count || timeout_s <= 0)
         glfwPollEvents();
     else
-        glfwWaitEventsTimeout(event_timeout_s);
+        glfwWaitEventsTimeout(timeout_s);
 }
 
 void tl_window_wake(void)

@@ -26,7 +26,7 @@ enum tl_window_event_type {
 
 struct tl_window_event {
     enum tl_window_event_type type;
-    int key;       /* GLFW_KEY_*: letters as the keyboard's layout says, others by place */
+    int key;       /* GLFW_KEY_*: letters by the keyboard's layout, others by position */
     int button;    /* GLFW_MOUSE_BUTTON_* */
     int modifiers; /* GLFW_MOD_* */
     bool repeated; /* KEY: it is held */
@@ -41,18 +41,18 @@ void tl_window_destroy(tl_window **window);
 void tl_window_set_title(tl_window *window, const char *title);
 void tl_window_size(const tl_window *window, int *width, int *height); /* 0 x 0 while minimised */
 void tl_window_unscaled_size(const tl_window *window, int *width,
-                             int *height);                    /* that tl_window_create takes */
+                             int *height);                    /* at scale 1, as tl_window_create takes it */
 float tl_window_scale(const tl_window *window);               /* 1 on a plain screen, 2 on a HiDPI one */
 struct GLFWwindow *tl_window_handle(const tl_window *window); /* for the panel */
 
-/* Waits until something happens, at most `event_timeout_s`; 0 only collects what has happened. */
-void tl_window_wait(tl_window *window, double event_timeout_s);
-void tl_window_wake(void); /* ends a wait; any thread */
+/* Waits for events for at most `timeout_s` seconds and queues them; 0 does not wait. */
+void tl_window_wait(tl_window *window, double timeout_s);
+void tl_window_wake(void); /* ends tl_window_wait; any thread */
 /* False when no event is left. */
 bool tl_window_next(tl_window *window, struct tl_window_event *out);
 bool tl_window_is_escape(const struct tl_window_event *event);
 void tl_window_event_release(struct tl_window_event *event);
 
-void tl_window_show(tl_window *window); /* swaps buffers, in step with the screen */
+void tl_window_show(tl_window *window); /* swaps buffers, synchronised with the screen */
 
 #endif

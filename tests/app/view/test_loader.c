@@ -41,7 +41,7 @@ static void an_appearance_is_made_while_the_session_plays(void **state)
                 .region_counts = {16}}},
     };
     const struct tl_session_models models = tl_session_models(session);
-    tl_loader *loader = tl_loader_start(TL_LOAD_LOOK, &wanted, &models, &lights, 1, wake);
+    tl_loader *loader = tl_loader_start(TL_LOAD_APPEARANCE, &wanted, &models, &lights, 1, wake);
     play_beside(session, loader);
     struct tl_loaded loaded;
     assert_ok(tl_loader_take(&loader, &loaded, &error), error);
