@@ -1,5 +1,6 @@
 #include "config/options.h"
 
+#include "config/hash.h"
 #include "config/memory.h"
 #include "config/options_value.h"
 #include "config/words.h"
@@ -170,4 +171,50 @@ bool tl_options_equal(const struct tl_option_table *table, const void *a, const 
             return false;
     }
     return true;
+}
+
+bool tl_option_passes(const struct tl_option *row, struct tl_option_filter filter)
+{
+    return (row->affects & filter.any_of) && !(row->affects & filter.none_of);
+}
+
+bool tl_options_differ(const struct tl_binding *a, const struct tl_binding *b, size_t count,
+                       struct tl_option_filter filter)
+{
+    for (size_t i = 0; i < count; i++)
+        for (size_t r = 0; r < a[i].table->row_count; r++) {
+            const struct tl_option *row = &a[i].table->rows[r];
+            if (tl_option_passes(row, filter) &&
+                !tl_option_equal(row, (const char *)a[i].params + row->offset,
+                                 (const char *)b[i].params + row->offset))
+                return true;
+        }
+    return false;
+}
+
+void tl_options_take(const struct tl_binding *from, const struct tl_binding *to, size_t count,
+                     struct tl_option_filter filter)
+{
+    for (size_t i = 0; i < count; i++)
+        for (size_t r = 0; r < from[i].table->row_count; r++)
+            if (tl_option_passes(&from[i].table->rows[r], filter))
+                tl_options_copy(&from[i].table->rows[r], from[i].params, to[i].params);
+}
+
+/* A name and a value end with a NUL or have a fixed size, so that no two lists of values make the same bytes.
+ * Text is hashed up to its end: what lies behind it in the field is of an earlier value. */
+uint64_t tl_options_hash(const struct tl_binding *bindings, size_t count, struct tl_option_filter filter,
+                         uint64_t hash)
+{
+    for (size_t i = 0; i < count; i++)
+        for (size_t r = 0; r < bindings[i].table->row_count; r++) {
+            const struct tl_option *row = &bindings[i].table->rows[r];
+            const char *field = (const char *)bindings[i].params + row->offset;
+            bool is_text = row->type == TL_STRING || row->type == TL_PATH;
+            if (!tl_option_passes(row, filter))
+                continue;
+            hash = tl_hash(hash, row->name, strlen(row->name) + 1);
+            hash = tl_hash(hash, field, is_text ? strlen(field) + 1 : tl_option_size(row));
+        }
+    return hash;
 }

@@ -7,11 +7,14 @@
  *     struct tl_shadow_params { int map_size; float softness_m; };
  *     #define TL_SHADOW_DEFAULTS .map_size = 256, .softness_m = 0.05f
  *     static const struct tl_option rows[] = {
- *         TL_OPTION_INT(struct tl_shadow_params, map_size, 1, 4096, "texels", "side of a shadow map"),
- *         TL_OPTION_FLOAT(struct tl_shadow_params, softness_m, 0, 10, "m", "..."),
+ *         TL_OPTION_INT(struct tl_shadow_params, map_size, AFFECTS, 1, 4096, "texels", "side of a map"),
+ *         TL_OPTION_FLOAT(struct tl_shadow_params, softness_m, AFFECTS, 0, 10, "m", "..."),
  *     };
- *     const struct tl_option_table tl_shadow_options = TL_OPTION_TABLE("shadow", "...", rows, struct
- * tl_shadow_params, TL_SHADOW_DEFAULTS);
+ *     const struct tl_option_table tl_shadow_options =
+ *         TL_OPTION_TABLE("shadow", "...", rows, struct tl_shadow_params, TL_SHADOW_DEFAULTS);
+ *
+ * The third argument of a row is its column `affects` (below): what must be done again when the
+ * option changes. A row without it does not compile.
  *
  * Field types by option type: TL_BOOL bool; TL_INT int; TL_FLOAT float; TL_DOUBLE double; TL_ENUM int (index
  * into `choices`); TL_COLOUR float[3] (linear Rec. 709, written [r, g, b]); TL_VECTOR float[3] (written
@@ -27,9 +30,45 @@
 #include "config/error.h"
 
 #include <stddef.h>
+#include <stdint.h>
 #include <stdio.h>
 
 #define TL_STRING_SIZE 1024
+
+/* ---- The column `affects`: what must be done again when an option changes ---- */
+
+/* Each row names all of its consequences, and nothing else lists options by name for this purpose: a new
+ * option is one row. This file reads the column as a mask of bits only. The bits below are those of the
+ * program as a whole: they stand here because rows on every floor name them, and app/ acts upon them. The
+ * bits from TL_AFFECTS_RENDER on are the renderer's own (render/affects.h). */
+#define TL_AFFECTS_BIT(i) ((uint64_t)1 << (i))
+
+/* Nothing is kept that depends on the option: it is read each time that it is used. Every row has at least
+ * one bit, so a row that has no other consequence says this. */
+#define TL_AFFECTS_NOTHING TL_AFFECTS_BIT(0)
+/* Avatar and garment are loaded and the cloth is draped again. */
+#define TL_AFFECTS_SCENE TL_AFFECTS_BIT(1)
+/* The state in which the cloth settles: drapes that differ in it are not the same drape. */
+#define TL_AFFECTS_DRAPE TL_AFFECTS_BIT(2)
+/* Set in the cloth that is there, which moves on from its present state. */
+#define TL_AFFECTS_CLOTH TL_AFFECTS_BIT(3)
+/* The environment is read again. */
+#define TL_AFFECTS_ENVIRONMENT TL_AFFECTS_BIT(4)
+/* The materials and weaves of garment and avatar are made again. */
+#define TL_AFFECTS_MATERIALS TL_AFFECTS_BIT(5)
+/* A part of an appearance: what may differ between two appearances of one scene that are compared. */
+#define TL_AFFECTS_APPEARANCE TL_AFFECTS_BIT(6)
+/* Belongs to the garment: it has no meaning for another one. */
+#define TL_AFFECTS_GARMENT TL_AFFECTS_BIT(7)
+/* A change costs no more than a frame, so it is shown while a slider is being dragged; other changes wait
+ * until the slider is released. */
+#define TL_AFFECTS_AT_ONCE TL_AFFECTS_BIT(8)
+/* The amount of work in a frame: times of recorded flights that differ in it cannot be compared. */
+#define TL_AFFECTS_WORK TL_AFFECTS_BIT(9)
+
+#define TL_AFFECTS_RENDER 16 /* the first bit of render/affects.h */
+
+/* ---- Tables ---- */
 
 enum tl_option_type {
     TL_BOOL,
@@ -47,6 +86,7 @@ struct tl_option {
     const char *name; /* key inside its table: map_size */
     enum tl_option_type type;
     size_t offset;           /* of the field in the params struct */
+    uint64_t affects;        /* what must be done again when it changes; never 0 */
     double minimum, maximum; /* inclusive; for TL_COLOUR and TL_VECTOR of each component; unused for text */
     const char *const
         *choices;     /* TL_ENUM: names, NULL-terminated; TL_PATH: NULL or names that are not files */
@@ -69,45 +109,45 @@ struct tl_binding {
 };
 
 /* clang-format off: it takes the braces of an initialiser for a block. */
-#define TL_OPTION_BOOL(s, field, text)                                                                       \
+#define TL_OPTION_BOOL(s, field, bits, text)                                                                 \
     {                                                                                                        \
-#field, TL_BOOL, offsetof(s, field), 0, 1, NULL, "", text                                            \
+#field, TL_BOOL, offsetof(s, field), bits, 0, 1, NULL, "", text                                      \
     }
-#define TL_OPTION_INT(s, field, lo, hi, u, text)                                                             \
+#define TL_OPTION_INT(s, field, bits, lo, hi, u, text)                                                       \
     {                                                                                                        \
-#field, TL_INT, offsetof(s, field), lo, hi, NULL, u, text                                            \
+#field, TL_INT, offsetof(s, field), bits, lo, hi, NULL, u, text                                      \
     }
-#define TL_OPTION_FLOAT(s, field, lo, hi, u, text)                                                           \
+#define TL_OPTION_FLOAT(s, field, bits, lo, hi, u, text)                                                     \
     {                                                                                                        \
-#field, TL_FLOAT, offsetof(s, field), lo, hi, NULL, u, text                                          \
+#field, TL_FLOAT, offsetof(s, field), bits, lo, hi, NULL, u, text                                    \
     }
-#define TL_OPTION_DOUBLE(s, field, lo, hi, u, text)                                                          \
+#define TL_OPTION_DOUBLE(s, field, bits, lo, hi, u, text)                                                    \
     {                                                                                                        \
-#field, TL_DOUBLE, offsetof(s, field), lo, hi, NULL, u, text                                         \
+#field, TL_DOUBLE, offsetof(s, field), bits, lo, hi, NULL, u, text                                   \
     }
-#define TL_OPTION_ENUM(s, field, names, text)                                                                \
+#define TL_OPTION_ENUM(s, field, bits, names, text)                                                          \
     {                                                                                                        \
-#field, TL_ENUM, offsetof(s, field), 0, 0, names, "", text                                           \
+#field, TL_ENUM, offsetof(s, field), bits, 0, 0, names, "", text                                     \
     }
-#define TL_OPTION_COLOUR(s, field, lo, hi, text)                                                             \
+#define TL_OPTION_COLOUR(s, field, bits, lo, hi, text)                                                       \
     {                                                                                                        \
-#field, TL_COLOUR, offsetof(s, field), lo, hi, NULL, "linear", text                                  \
+#field, TL_COLOUR, offsetof(s, field), bits, lo, hi, NULL, "linear", text                            \
     }
-#define TL_OPTION_VECTOR(s, field, lo, hi, u, text)                                                          \
+#define TL_OPTION_VECTOR(s, field, bits, lo, hi, u, text)                                                    \
     {                                                                                                        \
-#field, TL_VECTOR, offsetof(s, field), lo, hi, NULL, u, text                                         \
+#field, TL_VECTOR, offsetof(s, field), bits, lo, hi, NULL, u, text                                   \
     }
-#define TL_OPTION_STRING(s, field, text)                                                                     \
+#define TL_OPTION_STRING(s, field, bits, text)                                                               \
     {                                                                                                        \
-#field, TL_STRING, offsetof(s, field), 0, 0, NULL, "", text                                          \
+#field, TL_STRING, offsetof(s, field), bits, 0, 0, NULL, "", text                                    \
     }
-#define TL_OPTION_PATH(s, field, text)                                                                       \
+#define TL_OPTION_PATH(s, field, bits, text)                                                                 \
     {                                                                                                        \
-#field, TL_PATH, offsetof(s, field), 0, 0, NULL, "", text                                            \
+#field, TL_PATH, offsetof(s, field), bits, 0, 0, NULL, "", text                                      \
     }
-#define TL_OPTION_NAME_OR_PATH(s, field, names, text)                                                        \
+#define TL_OPTION_NAME_OR_PATH(s, field, bits, names, text)                                                  \
     {                                                                                                        \
-#field, TL_PATH, offsetof(s, field), 0, 0, names, "", text                                           \
+#field, TL_PATH, offsetof(s, field), bits, 0, 0, names, "", text                                     \
     }
 #define TL_OPTION_TABLE(label, text, row_array, s, ...)                                                      \
     {                                                                                                        \
@@ -174,6 +214,21 @@ bool tl_options_read_yaml_file_with(const struct tl_binding *bindings, size_t co
 
 /* True when two fields of the row's type hold the same value. */
 bool tl_option_equal(const struct tl_option *row, const void *a, const void *b);
+
+/* Chooses rows by what they affect: those that have a bit of `any_of` and no bit of `none_of`. */
+struct tl_option_filter {
+    uint64_t any_of, none_of;
+};
+bool tl_option_passes(const struct tl_option *row, struct tl_option_filter filter);
+
+/* The rows that pass a filter, over lists of bindings to the same tables in the same order: whether a value
+ * differs; `from`'s values into `to`; a hash of names and values that goes on from `hash` (config/hash.h). */
+bool tl_options_differ(const struct tl_binding *a, const struct tl_binding *b, size_t count,
+                       struct tl_option_filter filter);
+void tl_options_take(const struct tl_binding *from, const struct tl_binding *to, size_t count,
+                     struct tl_option_filter filter);
+uint64_t tl_options_hash(const struct tl_binding *bindings, size_t count, struct tl_option_filter filter,
+                         uint64_t hash);
 
 /* Copies one option from a params struct to another of the same table. */
 void tl_options_copy(const struct tl_option *row, const void *from, void *to);

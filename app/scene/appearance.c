@@ -330,32 +330,19 @@ void tl_looks_release(struct tl_looks *looks)
 
 bool tl_looks_are_same(const struct tl_settings *a, const struct tl_settings *b)
 {
-    return tl_options_equal(&tl_weave_options, &a->weave, &b->weave) &&
-           tl_options_equal(&tl_material_options, &a->material, &b->material) &&
-           tl_options_equal(&tl_overlay_options, &a->overlay, &b->overlay) &&
-           strcmp(a->scene.overlay_fabric, b->scene.overlay_fabric) == 0 &&
-           strcmp(a->scene.colourway, b->scene.colourway) == 0 &&
+    return !tl_settings_differ(a, b, (struct tl_option_filter){.any_of = TL_AFFECTS_MATERIALS}) &&
            tl_colourways_equal(&a->colourways, &b->colourways);
 }
 
+/* Colourways belong to a garment: another garment keeps its own. What follows from options that are taken
+ * (overlay_weave, colourways) is taken with them. */
 void tl_looks_take(const struct tl_settings *look, struct tl_settings *settings)
 {
-    struct tl_scene_params *scene = &settings->scene;
-    memcpy(scene->fabric, look->scene.fabric, sizeof scene->fabric);
-    memcpy(scene->overlay_fabric, look->scene.overlay_fabric, sizeof scene->overlay_fabric);
-    memcpy(scene->preset, look->scene.preset, sizeof scene->preset);
-    if (strcmp(look->scene.garment, scene->garment) == 0) { /* else it has other colourways */
-        memcpy(scene->colourway, look->scene.colourway, sizeof scene->colourway);
-        memcpy(scene->colourways, look->scene.colourways, sizeof scene->colourways);
-        settings->colourways = look->colourways;
-    }
-    settings->weave = look->weave;
-    settings->material = look->material;
-    settings->overlay = look->overlay;
+    bool same_garment = strcmp(look->scene.garment, settings->scene.garment) == 0;
+    tl_settings_take(look, settings,
+                     (struct tl_option_filter){.any_of = TL_AFFECTS_APPEARANCE,
+                                               .none_of = same_garment ? 0 : TL_AFFECTS_GARMENT});
     settings->overlay_weave = look->overlay_weave;
-    settings->light = look->light;
-    settings->detail = look->detail;
-    settings->maps = look->maps;
-    settings->shading = look->shading;
-    settings->image.supersample = look->image.supersample;
+    if (same_garment)
+        settings->colourways = look->colourways;
 }

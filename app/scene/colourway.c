@@ -31,8 +31,9 @@ static void add_rows(struct swatch_rows *to, const struct tl_option_table *from,
 static void make_rows(struct swatch_rows *out)
 {
     const struct tl_option own[OWN_ROWS] = {
-        [FABRIC] = TL_OPTION_NAME_OR_PATH(struct draft, fabric, tl_embedded_fabrics_names, ""),
-        [PRINT] = TL_OPTION_BOOL(struct draft, swatch.print, ""),
+        [FABRIC] =
+            TL_OPTION_NAME_OR_PATH(struct draft, fabric, TL_AFFECTS_NOTHING, tl_embedded_fabrics_names, ""),
+        [PRINT] = TL_OPTION_BOOL(struct draft, swatch.print, TL_AFFECTS_NOTHING, ""),
     };
     *out = (struct swatch_rows){.table = {.name = "swatch", .row_count = OWN_ROWS}};
     memcpy(out->rows, own, sizeof own);

@@ -12,8 +12,8 @@
 /* What a key may say; ranges are those of the options camera.* and scene.environment_yaw_deg. */
 #define KEY_ROW(field, path, kind, low, high, u)                                                             \
     {                                                                                                        \
-        .name = #field, .type = (kind), .offset = offsetof(struct tl_path_key, path), .minimum = (low),      \
-        .maximum = (high), .unit = (u), .help = ""                                                           \
+        .name = #field, .type = (kind), .offset = offsetof(struct tl_path_key, path),                        \
+        .affects = TL_AFFECTS_NOTHING, .minimum = (low), .maximum = (high), .unit = (u), .help = ""          \
     }
 static const struct tl_option key_rows[] = {
     KEY_ROW(time_s, time_s, TL_DOUBLE, 0, 86400, "s"),

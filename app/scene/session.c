@@ -482,25 +482,14 @@ int tl_session_frame_number(const tl_session *session)
     return session->frame;
 }
 
-static bool same_text(const char *a, const char *b)
-{
-    return strcmp(a, b) == 0;
-}
-
-/* What cannot be changed in place: who wears what, and what is decided when the cloth is made. */
 bool tl_session_needs_scene(const struct tl_settings *old, const struct tl_settings *new)
 {
-    return !same_text(old->scene.garment, new->scene.garment) ||
-           !same_text(old->scene.avatar, new->scene.avatar) || !same_text(old->scene.clip, new->scene.clip) ||
-           !same_text(old->scene.motion, new->scene.motion) || old->scene.units != new->scene.units ||
-           old->scene.avatar_units != new->scene.avatar_units ||
-           old->scene.motion_rate != new->scene.motion_rate || old->cloth.edge_m != new->cloth.edge_m ||
-           old->cloth.longest_edge_m != new->cloth.longest_edge_m || old->image.ground != new->image.ground;
+    return tl_settings_differ(old, new, (struct tl_option_filter){.any_of = TL_AFFECTS_SCENE});
 }
 
 bool tl_session_needs_light(const struct tl_settings *old, const struct tl_settings *new)
 {
-    return !same_text(old->scene.environment, new->scene.environment);
+    return tl_settings_differ(old, new, (struct tl_option_filter){.any_of = TL_AFFECTS_ENVIRONMENT});
 }
 
 bool tl_session_needs_look(const struct tl_settings *old, const struct tl_settings *new)
@@ -510,24 +499,16 @@ bool tl_session_needs_look(const struct tl_settings *old, const struct tl_settin
     return !tl_settings_equal(&same, new);
 }
 
+/* Colourways belong to a garment: with the garment that is kept, its colourways are kept too. */
 void tl_session_keep_scene(const struct tl_settings *kept, struct tl_settings *settings)
 {
-    if (!same_text(settings->scene.garment, kept->scene.garment)) { /* its colourways are its own */
-        memcpy(settings->scene.colourway, kept->scene.colourway, sizeof settings->scene.colourway);
-        memcpy(settings->scene.colourways, kept->scene.colourways, sizeof settings->scene.colourways);
+    const struct tl_option_filter colourways = {.any_of = TL_AFFECTS_GARMENT};
+    const struct tl_option_filter scene = {.any_of = TL_AFFECTS_SCENE | TL_AFFECTS_ENVIRONMENT};
+    if (strcmp(settings->scene.garment, kept->scene.garment) != 0) {
+        tl_settings_take(kept, settings, colourways);
         settings->colourways = kept->colourways;
     }
-    memcpy(settings->scene.garment, kept->scene.garment, sizeof settings->scene.garment);
-    memcpy(settings->scene.avatar, kept->scene.avatar, sizeof settings->scene.avatar);
-    memcpy(settings->scene.clip, kept->scene.clip, sizeof settings->scene.clip);
-    memcpy(settings->scene.motion, kept->scene.motion, sizeof settings->scene.motion);
-    memcpy(settings->scene.environment, kept->scene.environment, sizeof settings->scene.environment);
-    settings->scene.units = kept->scene.units;
-    settings->scene.avatar_units = kept->scene.avatar_units;
-    settings->scene.motion_rate = kept->scene.motion_rate;
-    settings->cloth.edge_m = kept->cloth.edge_m;
-    settings->cloth.longest_edge_m = kept->cloth.longest_edge_m;
-    settings->image.ground = kept->image.ground;
+    tl_settings_take(kept, settings, scene);
 }
 
 /* Revisions go on rising, so that the renderer sees everything as new. */
@@ -573,10 +554,9 @@ static bool change_in_place(tl_session *session, const struct tl_settings *setti
             ? !tl_moving_light_open(&session->light, environment, position, error)
             : !tl_moving_light_follow(&session->light, position, error))
         return false;
-    /* Cloth that is set anew forgets what it touches: only what changes it may do that. */
-    const struct tl_settings *old = &session->settings;
-    bool same_cloth = tl_options_equal(&tl_cloth_fabric_options, &old->fabric, &settings->fabric) &&
-                      tl_options_equal(&tl_cloth_options, &old->cloth, &settings->cloth);
+    /* To set the cloth's options forgets its contacts, so that is done only where one of them has changed. */
+    bool same_cloth = !tl_settings_differ(&session->settings, settings,
+                                          (struct tl_option_filter){.any_of = TL_AFFECTS_CLOTH});
     return !session->cloth || same_cloth ||
            tl_cloth_set(session->cloth, &settings->fabric, &settings->cloth, error);
 }

@@ -28,45 +28,50 @@ static const char *const colourways_names[] = {OWN, "dress", "skirt", "composed"
     .colourways = OWN, .preset = "review"
 
 static const struct tl_option scene_rows[] = {
-    TL_OPTION_NAME_OR_PATH(struct tl_scene_params, garment, garment_names,
+    TL_OPTION_NAME_OR_PATH(struct tl_scene_params, garment,
+                           TL_AFFECTS_SCENE | TL_AFFECTS_DRAPE | TL_AFFECTS_WORK, garment_names,
                            "what is worn: built in, or a glTF or OBJ file"),
     TL_OPTION_ENUM(
-        struct tl_scene_params, units, tl_units_names,
+        struct tl_scene_params, units, TL_AFFECTS_SCENE | TL_AFFECTS_DRAPE | TL_AFFECTS_WORK, tl_units_names,
         "of the garment's file and its motion; auto: glTF is in metres, OBJ is guessed by its size"),
     TL_OPTION_NAME_OR_PATH(
-        struct tl_scene_params, motion, motion_names,
+        struct tl_scene_params, motion, TL_AFFECTS_SCENE | TL_AFFECTS_WORK, motion_names,
         "how the garment moves instead of being simulated: a .pc2 or .mdd point cache, or OBJ "
         "files, frame.####.obj"),
-    TL_OPTION_FLOAT(struct tl_scene_params, motion_rate, 0, 100000, "1/s",
+    TL_OPTION_FLOAT(struct tl_scene_params, motion_rate, TL_AFFECTS_SCENE, 0, 100000, "1/s",
                     "frames of the motion a second: faster; 0: what its file says, or one a frame"),
-    TL_OPTION_NAME_OR_PATH(struct tl_scene_params, avatar, avatar_names,
+    TL_OPTION_NAME_OR_PATH(struct tl_scene_params, avatar,
+                           TL_AFFECTS_SCENE | TL_AFFECTS_DRAPE | TL_AFFECTS_WORK, avatar_names,
                            "who wears it: built in, or a glTF or OBJ file"),
-    TL_OPTION_ENUM(struct tl_scene_params, avatar_units, tl_units_names, "of the avatar's file, as units"),
-    TL_OPTION_NAME_OR_PATH(struct tl_scene_params, environment, environment_names,
+    TL_OPTION_ENUM(struct tl_scene_params, avatar_units, TL_AFFECTS_SCENE | TL_AFFECTS_DRAPE, tl_units_names,
+                   "of the avatar's file, as units"),
+    TL_OPTION_NAME_OR_PATH(struct tl_scene_params, environment, TL_AFFECTS_ENVIRONMENT, environment_names,
                            "the light: built in (white: 1 from everywhere), an .exr or .hdr file, or a "
                            "sequence of them, sky.####.exr: "
                            "each # is a digit of the frame's number"),
     TL_OPTION_NAME_OR_PATH(
-        struct tl_scene_params, fabric, tl_embedded_fabrics_names,
+        struct tl_scene_params, fabric, TL_AFFECTS_APPEARANCE, tl_embedded_fabrics_names,
         "sets the tables fabric, weave and material: built in, or a YAML file; left out: satin on built-in "
         "garments, none on a garment file"),
-    TL_OPTION_NAME_OR_PATH(struct tl_scene_params, overlay_fabric, tl_embedded_fabrics_names,
+    TL_OPTION_NAME_OR_PATH(struct tl_scene_params, overlay_fabric,
+                           TL_AFFECTS_MATERIALS | TL_AFFECTS_APPEARANCE, tl_embedded_fabrics_names,
                            "sets the table overlay, and the weave, of a garment's second fabric; how it "
                            "moves is scene.fabric's"),
     TL_OPTION_STRING(struct tl_scene_params, colourway,
+                     TL_AFFECTS_MATERIALS | TL_AFFECTS_APPEARANCE | TL_AFFECTS_GARMENT,
                      "fabrics and colours that the scene or a glTF file (its variants) has under this name; "
                      "empty: as they are"),
     TL_OPTION_NAME_OR_PATH(
-        struct tl_scene_params, colourways, colourways_names,
+        struct tl_scene_params, colourways, TL_AFFECTS_APPEARANCE | TL_AFFECTS_GARMENT, colourways_names,
         "where colourways are from: this scene or, when it has none, its built-in garment (own); or "
         "another scene, built in or a YAML file"),
-    TL_OPTION_NAME_OR_PATH(struct tl_scene_params, preset, tl_embedded_presets_names,
+    TL_OPTION_NAME_OR_PATH(struct tl_scene_params, preset, TL_AFFECTS_APPEARANCE, tl_embedded_presets_names,
                            "sets quality in the tables cloth, light and image: built in, or a YAML file"),
-    TL_OPTION_STRING(struct tl_scene_params, clip,
+    TL_OPTION_STRING(struct tl_scene_params, clip, TL_AFFECTS_SCENE | TL_AFFECTS_DRAPE | TL_AFFECTS_WORK,
                      "animation of the avatar; empty: its first; none: the rest pose"),
-    TL_OPTION_FLOAT(struct tl_scene_params, environment_yaw_deg, -3600, 3600, "degrees",
+    TL_OPTION_FLOAT(struct tl_scene_params, environment_yaw_deg, TL_AFFECTS_AT_ONCE, -3600, 3600, "degrees",
                     "turns the environment about the vertical, counter-clockwise from above"),
-    TL_OPTION_FLOAT(struct tl_scene_params, environment_rate, 0, 1000, "1/s",
+    TL_OPTION_FLOAT(struct tl_scene_params, environment_rate, TL_AFFECTS_NOTHING, 0, 1000, "1/s",
                     "frames of a sequence of environments a second; 0 stays at its first"),
 };
 static const struct tl_option_table scene_table =
@@ -75,15 +80,16 @@ static const struct tl_option_table scene_table =
 #define TL_CAMERA_DEFAULTS .yaw_deg = 25, .pitch_deg = 8, .distance_m = 0, .fov_deg = 30
 
 static const struct tl_option camera_rows[] = {
-    TL_OPTION_FLOAT(struct tl_camera_params, yaw_deg, -3600, 3600, "degrees",
+    TL_OPTION_FLOAT(struct tl_camera_params, yaw_deg, TL_AFFECTS_AT_ONCE, -3600, 3600, "degrees",
                     "where the eye is about the vertical: 0 looks from +Z, positive moves it towards +X"),
-    TL_OPTION_FLOAT(struct tl_camera_params, pitch_deg, -90, 90, "degrees", "positive looks down"),
-    TL_OPTION_FLOAT(struct tl_camera_params, distance_m, 0, 10000, "m",
+    TL_OPTION_FLOAT(struct tl_camera_params, pitch_deg, TL_AFFECTS_AT_ONCE, -90, 90, "degrees",
+                    "positive looks down"),
+    TL_OPTION_FLOAT(struct tl_camera_params, distance_m, TL_AFFECTS_AT_ONCE, 0, 10000, "m",
                     "from the target; 0 frames the avatar and the garment"),
-    TL_OPTION_VECTOR(struct tl_camera_params, target, -10000, 10000, "m",
+    TL_OPTION_VECTOR(struct tl_camera_params, target, TL_AFFECTS_AT_ONCE, -10000, 10000, "m",
                      "what the eye looks at and turns about, once distance_m is given; 0 0 0: the middle of "
                      "all there is"),
-    TL_OPTION_FLOAT(struct tl_camera_params, fov_deg, 1, 150, "degrees",
+    TL_OPTION_FLOAT(struct tl_camera_params, fov_deg, TL_AFFECTS_AT_ONCE, 1, 150, "degrees",
                     "vertical field of view; larger looks wider"),
 };
 const struct tl_option_table tl_camera_options = TL_OPTION_TABLE(
@@ -135,18 +141,6 @@ struct tl_render_settings tl_settings_render(const struct tl_settings *settings)
                                        .shading = settings->shading,
                                        .image = settings->image,
                                        .reference = settings->reference};
-}
-
-bool tl_settings_equal(const struct tl_settings *a, const struct tl_settings *b)
-{
-    struct tl_settings first = *a, second = *b; /* bindings can be written through, so they get copies */
-    struct tl_binding first_bindings[TL_SETTINGS_TABLES], second_bindings[TL_SETTINGS_TABLES];
-    tl_settings_bind(&first, first_bindings);
-    tl_settings_bind(&second, second_bindings);
-    for (size_t i = 0; i < TL_SETTINGS_TABLES; i++)
-        if (!tl_options_equal(first_bindings[i].table, first_bindings[i].params, second_bindings[i].params))
-            return false;
-    return tl_colourways_equal(&a->colourways, &b->colourways);
 }
 
 /* One kind of file that can be named or lie on disk. */

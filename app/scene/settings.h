@@ -64,6 +64,16 @@ void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[T
 /* True when every option of every table agrees. */
 bool tl_settings_equal(const struct tl_settings *a, const struct tl_settings *b);
 
+/* Of the options whose rows pass a filter, that is, that affect something (config/options.h): whether a value
+ * differs; `from`'s values into `to`. Pure. */
+bool tl_settings_differ(const struct tl_settings *a, const struct tl_settings *b,
+                        struct tl_option_filter filter);
+void tl_settings_take(const struct tl_settings *from, struct tl_settings *to, struct tl_option_filter filter);
+
+/* True when to go from one to the other takes longer than a frame: while a slider is dragged, such a change
+ * waits until it is released. Pure. */
+bool tl_settings_differ_slowly(const struct tl_settings *a, const struct tl_settings *b);
+
 /* What of it the renderer takes. */
 struct tl_render_settings tl_settings_render(const struct tl_settings *settings);
 

@@ -7,23 +7,32 @@
 
 static const char *const pattern_names[] = {"none", "plain", "twill", "satin", NULL};
 
+#define AFFECTS (TL_AFFECTS_MATERIALS | TL_AFFECTS_APPEARANCE)
+
 static const struct tl_option rows[] = {
-    TL_OPTION_ENUM(struct tl_weave_params, pattern, pattern_names,
+    TL_OPTION_ENUM(struct tl_weave_params, pattern, AFFECTS, pattern_names,
                    "how the yarns interlace; none: the material's own maps only"),
-    TL_OPTION_FLOAT(struct tl_weave_params, warp_pitch_mm, 0.05, 20, "mm", "distance between warp yarns"),
-    TL_OPTION_FLOAT(struct tl_weave_params, weft_pitch_mm, 0.05, 20, "mm", "distance between weft yarns"),
-    TL_OPTION_FLOAT(struct tl_weave_params, crimp_mm, 0, 5, "mm",
+    TL_OPTION_FLOAT(struct tl_weave_params, warp_pitch_mm, AFFECTS, 0.05, 20, "mm",
+                    "distance between warp yarns"),
+    TL_OPTION_FLOAT(struct tl_weave_params, weft_pitch_mm, AFFECTS, 0.05, 20, "mm",
+                    "distance between weft yarns"),
+    TL_OPTION_FLOAT(struct tl_weave_params, crimp_mm, AFFECTS, 0, 5, "mm",
                     "height of a yarn's crest over the middle plane; larger is rougher"),
-    TL_OPTION_FLOAT(struct tl_weave_params, warp_gloss, -1, 1, "", "added to the glossiness on warp yarns"),
-    TL_OPTION_FLOAT(struct tl_weave_params, weft_gloss, -1, 1, "", "added to the glossiness on weft yarns"),
-    TL_OPTION_COLOUR(struct tl_weave_params, warp_tint, 0, 1, "factor on the diffuse colour of warp yarns"),
-    TL_OPTION_COLOUR(struct tl_weave_params, weft_tint, 0, 1, "factor on the diffuse colour of weft yarns"),
-    TL_OPTION_INT(struct tl_weave_params, texels_per_yarn, 16, 64, "texels", "resolution of the maps"),
-    TL_OPTION_PATH(struct tl_weave_params, picture,
+    TL_OPTION_FLOAT(struct tl_weave_params, warp_gloss, AFFECTS, -1, 1, "",
+                    "added to the glossiness on warp yarns"),
+    TL_OPTION_FLOAT(struct tl_weave_params, weft_gloss, AFFECTS, -1, 1, "",
+                    "added to the glossiness on weft yarns"),
+    TL_OPTION_COLOUR(struct tl_weave_params, warp_tint, AFFECTS, 0, 1,
+                     "factor on the diffuse colour of warp yarns"),
+    TL_OPTION_COLOUR(struct tl_weave_params, weft_tint, AFFECTS, 0, 1,
+                     "factor on the diffuse colour of weft yarns"),
+    TL_OPTION_INT(struct tl_weave_params, texels_per_yarn, AFFECTS, 16, 64, "texels",
+                  "resolution of the maps"),
+    TL_OPTION_PATH(struct tl_weave_params, picture, AFFECTS,
                    "heights instead of yarns: a .png or .exr that repeats; empty: none"),
-    TL_OPTION_FLOAT(struct tl_weave_params, picture_mm, 0.001, 10000, "mm",
+    TL_OPTION_FLOAT(struct tl_weave_params, picture_mm, AFFECTS, 0.001, 10000, "mm",
                     "width of the picture on the cloth"),
-    TL_OPTION_FLOAT(struct tl_weave_params, depth_mm, 0, 10000, "mm",
+    TL_OPTION_FLOAT(struct tl_weave_params, depth_mm, AFFECTS, 0, 10000, "mm",
                     "from the picture's lowest to its highest; larger is rougher"),
 };
 const struct tl_option_table tl_weave_options =

@@ -5,23 +5,27 @@
     .areal_density = 0.15, .stretch_weft = 1000, .stretch_warp = 1500, .shear = 100, .bend_weft = 6e-6,      \
     .bend_warp = 1e-5, .damping = 0.5, .friction = 0.4, .thickness_m = 0.003
 
+/* It decides where the cloth settles, and can be set while the cloth moves. */
+#define AFFECTS (TL_AFFECTS_CLOTH | TL_AFFECTS_DRAPE)
+
 static const struct tl_option fabric_rows[] = {
-    TL_OPTION_DOUBLE(struct tl_cloth_fabric, areal_density, 1e-4, 100, "kg/m^2", "mass per area: heavier"),
-    TL_OPTION_DOUBLE(struct tl_cloth_fabric, stretch_weft, 0, 1e9, "N/m",
+    TL_OPTION_DOUBLE(struct tl_cloth_fabric, areal_density, AFFECTS, 1e-4, 100, "kg/m^2",
+                     "mass per area: heavier"),
+    TL_OPTION_DOUBLE(struct tl_cloth_fabric, stretch_weft, AFFECTS, 0, 1e9, "N/m",
                      "membrane stiffness along the weft: stretches less"),
-    TL_OPTION_DOUBLE(struct tl_cloth_fabric, stretch_warp, 0, 1e9, "N/m",
+    TL_OPTION_DOUBLE(struct tl_cloth_fabric, stretch_warp, AFFECTS, 0, 1e9, "N/m",
                      "membrane stiffness along the warp: stretches less"),
-    TL_OPTION_DOUBLE(struct tl_cloth_fabric, shear, 0, 1e9, "N/m",
+    TL_OPTION_DOUBLE(struct tl_cloth_fabric, shear, AFFECTS, 0, 1e9, "N/m",
                      "resistance of the weave's right angles: shears less, drapes in fewer folds"),
-    TL_OPTION_DOUBLE(struct tl_cloth_fabric, bend_weft, 0, 1e3, "N m",
+    TL_OPTION_DOUBLE(struct tl_cloth_fabric, bend_weft, AFFECTS, 0, 1e3, "N m",
                      "bending stiffness of a strip cut along the weft: rounder folds"),
-    TL_OPTION_DOUBLE(struct tl_cloth_fabric, bend_warp, 0, 1e3, "N m",
+    TL_OPTION_DOUBLE(struct tl_cloth_fabric, bend_warp, AFFECTS, 0, 1e3, "N m",
                      "bending stiffness of a strip cut along the warp: rounder folds"),
-    TL_OPTION_DOUBLE(struct tl_cloth_fabric, damping, 0, 1e3, "1/s",
+    TL_OPTION_DOUBLE(struct tl_cloth_fabric, damping, AFFECTS, 0, 1e3, "1/s",
                      "drag of the air and, ten times it, of the weave in itself: comes to rest sooner"),
-    TL_OPTION_DOUBLE(struct tl_cloth_fabric, friction, 0, 10, "",
+    TL_OPTION_DOUBLE(struct tl_cloth_fabric, friction, AFFECTS, 0, 10, "",
                      "Coulomb coefficient against avatar and ground: slides less"),
-    TL_OPTION_DOUBLE(struct tl_cloth_fabric, thickness_m, 0, 0.1, "m",
+    TL_OPTION_DOUBLE(struct tl_cloth_fabric, thickness_m, AFFECTS, 0, 0.1, "m",
                      "distance kept between the cloth's middle surface and the avatar"),
 };
 const struct tl_option_table tl_cloth_fabric_options = TL_OPTION_TABLE(

@@ -6,36 +6,44 @@ static const char *const facets_names[] = {"gaussian", "beckmann", NULL};
 static const char *const masking_names[] = {"smith", "v_grooves", NULL};
 static const char *const fresnel_names[] = {"schlick", "dielectric", "conductor", NULL};
 
+#define AFFECTS (TL_AFFECTS_MATERIALS | TL_AFFECTS_APPEARANCE | TL_AFFECTS_AT_ONCE)
+
 typedef struct tl_material_params material_params;
 static const struct tl_option material_rows[] = {
-    TL_OPTION_BOOL(material_params, use_file, "keep the materials of the garment's file where it has them"),
-    TL_OPTION_COLOUR(material_params, diffuse, 0, 1, "share of light scattered evenly; larger is brighter"),
-    TL_OPTION_COLOUR(material_params, specular, 0, 1,
+    TL_OPTION_BOOL(material_params, use_file, AFFECTS,
+                   "keep the materials of the garment's file where it has them"),
+    TL_OPTION_COLOUR(material_params, diffuse, AFFECTS, 0, 1,
+                     "share of light scattered evenly; larger is brighter"),
+    TL_OPTION_COLOUR(material_params, specular, AFFECTS, 0, 1,
                      "share of light reflected at normal incidence; 0.04 for most fibres, larger is shinier"),
     TL_OPTION_FLOAT(
-        material_params, glossiness, 0, 1, "",
+        material_params, glossiness, AFFECTS, 0, 1, "",
         "0 reflects in all directions, 1 is a mirror; the lobe's exponent is 1 / (1 - glossiness)"),
-    TL_OPTION_ENUM(material_params, model, model_names, "how gloss is spread about the mirror direction"),
-    TL_OPTION_ENUM(material_params, facets, facets_names,
+    TL_OPTION_ENUM(material_params, model, AFFECTS, model_names,
+                   "how gloss is spread about the mirror direction"),
+    TL_OPTION_ENUM(material_params, facets, AFFECTS, facets_names,
                    "torrance_sparrow: how the slopes of its facets are spread"),
-    TL_OPTION_ENUM(material_params, masking, masking_names, "torrance_sparrow: how facets hide one another"),
-    TL_OPTION_ENUM(material_params, fresnel, fresnel_names,
+    TL_OPTION_ENUM(material_params, masking, AFFECTS, masking_names,
+                   "torrance_sparrow: how facets hide one another"),
+    TL_OPTION_ENUM(material_params, fresnel, AFFECTS, fresnel_names,
                    "how reflectance rises towards grazing angles: from specular, or from the index"),
-    TL_OPTION_FLOAT(material_params, index, 1, 200, "",
+    TL_OPTION_FLOAT(material_params, index, AFFECTS, 1, 200, "",
                     "index of refraction of dielectric and conductor; larger reflects more"),
-    TL_OPTION_FLOAT(material_params, extinction, 0, 20, "", "conductor: imaginary part of the index"),
-    TL_OPTION_FLOAT(material_params, width_weft, 0, 1, "",
+    TL_OPTION_FLOAT(material_params, extinction, AFFECTS, 0, 20, "",
+                    "conductor: imaginary part of the index"),
+    TL_OPTION_FLOAT(material_params, width_weft, AFFECTS, 0, 1, "",
                     "torrance_sparrow, ward: root mean square slope of the facets along the weft; larger is "
                     "duller; 0: from glossiness"),
-    TL_OPTION_FLOAT(material_params, width_warp, 0, 1, "", "ward: ... along the warp"),
-    TL_OPTION_FLOAT(material_params, rotation_deg, -360, 360, "degrees",
+    TL_OPTION_FLOAT(material_params, width_warp, AFFECTS, 0, 1, "", "ward: ... along the warp"),
+    TL_OPTION_FLOAT(material_params, rotation_deg, AFFECTS, -360, 360, "degrees",
                     "ward, banks: turns weft and warp, counter-clockwise seen from outside"),
-    TL_OPTION_FLOAT(material_params, coat, 0, 1, "", "share of the surface under a clear coat of index 1.5"),
-    TL_OPTION_FLOAT(material_params, coat_glossiness, 0, 1, "", "glossiness of the coat"),
-    TL_OPTION_COLOUR(material_params, transmission, 0, 1,
+    TL_OPTION_FLOAT(material_params, coat, AFFECTS, 0, 1, "",
+                    "share of the surface under a clear coat of index 1.5"),
+    TL_OPTION_FLOAT(material_params, coat_glossiness, AFFECTS, 0, 1, "", "glossiness of the coat"),
+    TL_OPTION_COLOUR(material_params, transmission, AFFECTS, 0, 1,
                      "share of light scattered through to the other side; larger is more sheer"),
     TL_OPTION_FLOAT(
-        material_params, openness, 0, 0.99, "",
+        material_params, openness, AFFECTS, 0, 0.99, "",
         "share of the surface that is holes between threads; larger shows more of what is behind"),
 };
 #define DEFAULTS                                                                                             \

@@ -1,5 +1,7 @@
 #include "render/detail/options.h"
 
+#include "render/affects.h"
+
 static const char *const mode_names[] = {"normal", "blinn", "parallax", "parallax_limited", "relief", NULL};
 static const char *const shadow_names[] = {"none", "horizon", "relief", NULL};
 static const char *const angle_names[] = {"8", "16", "32", NULL};
@@ -8,23 +10,24 @@ static const char *const minify_names[] = {"none", "toksvig", "lean", NULL};
 typedef struct tl_detail_params params;
 static const struct tl_option rows[] = {
     TL_OPTION_ENUM(
-        params, mode, mode_names,
+        params, mode, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL_MAPS, mode_names,
         "how bumps are seen: normal and blinn bend the light, parallax and relief also move what is seen"),
     TL_OPTION_INT(
-        params, steps, 1, 1024, "",
+        params, steps, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL, 1, 1024, "",
         "relief: steps at most, from cone to cone through the heights; few miss crests at grazing views"),
-    TL_OPTION_INT(params, refine, 0, 32, "",
+    TL_OPTION_INT(params, refine, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL, 0, 32, "",
                   "relief: halvings of the step that was too far; more are exacter"),
-    TL_OPTION_ENUM(params, shadow, shadow_names,
+    TL_OPTION_ENUM(params, shadow, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL_MAPS, shadow_names,
                    "shadows of bumps on their own surface; relief: those of lamps by steps, not by maps"),
     TL_OPTION_ENUM(
-        params, angles, angle_names,
+        params, angles, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL_MAPS, angle_names,
         "horizon: directions all around that a texel has; more place shadows better under low lamps"),
-    TL_OPTION_FLOAT(params, height_scale, 0, 100, "", "factor on the heights of weaves and height maps"),
-    TL_OPTION_BOOL(params, silhouette,
+    TL_OPTION_FLOAT(params, height_scale, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL_MAPS, 0, 100, "",
+                    "factor on the heights of weaves and height maps"),
+    TL_OPTION_BOOL(params, silhouette, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL,
                    "relief: nothing is seen beyond the border of a map that does not repeat"),
     TL_OPTION_ENUM(
-        params, minify, minify_names,
+        params, minify, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL_MAPS, minify_names,
         "how bumps too small to be seen dull the gloss; none: they vanish, and far cloth turns to plastic"),
 };
 const struct tl_option_table tl_detail_options = TL_OPTION_TABLE(

@@ -1,5 +1,6 @@
 #include "render/envmap/options.h"
 
+#include "render/affects.h"
 #include "render/env/layout.h"
 
 static const char *const look_up_names[] = {"direct", "matrix", NULL};
@@ -10,29 +11,30 @@ static const char *const fresnel_names[] = {"off", "additive", "coat", NULL};
 
 typedef struct tl_maps_params maps_params;
 static const struct tl_option rows[] = {
-    TL_OPTION_ENUM(maps_params, layout, tl_layout_names,
+    TL_OPTION_ENUM(maps_params, layout, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LAYOUT, tl_layout_names,
                    "how the environment map is laid out; sphere is made anew whenever the view turns"),
-    TL_OPTION_INT(maps_params, size, TL_MAPS_SIZE_MIN, TL_MAPS_SIZE_MAX, "texels",
+    TL_OPTION_INT(maps_params, size, TL_AFFECTS_APPEARANCE | TL_AFFECTS_ENVMAP | TL_AFFECTS_CAPTURE,
+                  TL_MAPS_SIZE_MIN, TL_MAPS_SIZE_MAX, "texels",
                   "side of a cube's face, height of the others, a power of two; larger sharpens mirrors"),
     TL_OPTION_ENUM(
-        maps_params, look_up, look_up_names,
+        maps_params, look_up, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LOOK_UP, look_up_names,
         "matrix: paraboloids by projective texture matrices and the first map's alpha, as in 1999"),
-    TL_OPTION_ENUM(maps_params, mode, mode_names,
+    TL_OPTION_ENUM(maps_params, mode, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LOOK_UP, mode_names,
                    "surface: diffuse and gloss; mirror; refraction by the material's index; one term alone; "
                    "transmission: straight through a thin sheet"),
     TL_OPTION_ENUM(
-        maps_params, fresnel, fresnel_names,
+        maps_params, fresnel, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LOOK_UP, fresnel_names,
         "what mirrors reflect by material.fresnel; additive: on top of what lies under them; coat: "
         "the rest of the light alone reaches that"),
     TL_OPTION_BOOL(
-        maps_params, minify,
+        maps_params, minify, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LOOK_UP,
         "mirrors and refraction read mip levels, weighted by solid angle, where a pixel sees much of "
         "the map"),
-    TL_OPTION_INT(maps_params, capture_every, 0, 1000000, "frames",
+    TL_OPTION_INT(maps_params, capture_every, TL_AFFECTS_APPEARANCE, 0, 1000000, "frames",
                   "the scene is drawn into the map anew when it has changed and so many frames are over; 0: "
                   "maps hold the environment alone"),
     TL_OPTION_VECTOR(
-        maps_params, capture_at, -10000, 10000, "m",
+        maps_params, capture_at, TL_AFFECTS_APPEARANCE | TL_AFFECTS_CAPTURE, -10000, 10000, "m",
         "where from, measured from the middle of the scene; what is around that point is left out"),
 };
 const struct tl_option_table tl_maps_options =

@@ -130,6 +130,11 @@ struct tl_rest {
     bool is_captured;  /* ... and it is the one that is there */
 };
 
+/* The option tables of a frame's settings, bound to them. */
+#define TL_RENDER_TABLES 6
+void tl_render_settings_bind(struct tl_render_settings *settings,
+                             struct tl_binding bindings[TL_RENDER_TABLES]);
+
 /* One number for each input of the frame: an input has changed when its number has. `rest` becomes that of
  * this frame. */
 void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *settings,

@@ -1,5 +1,6 @@
 #include "config/hash.h"
 #include "config/memory.h"
+#include "render/affects.h"
 #include "render/brdf/lobe_fit.h"
 #include "render/detail/detail.h"
 #include "render/env/exponent.h"
@@ -34,30 +35,37 @@ static uint64_t camera_signature(const struct tl_camera *camera)
     return MIX(MIX(MIX(hash, camera->fov_y), camera->near_m), camera->far_m);
 }
 
-static uint64_t light_signature(const struct tl_light_params *light)
+/* What options decide, by bits of their rows. Inputs that are not here follow from the frame alone. */
+static const uint64_t bits_of[TL_INPUT_COUNT] = {
+    [TL_INPUT_SIZE] = TL_AFFECTS_SIZE,         [TL_INPUT_GROUND] = TL_AFFECTS_GROUND,
+    [TL_INPUT_PEM_SIZE] = TL_AFFECTS_PEM_SIZE, [TL_INPUT_FILTER] = TL_AFFECTS_FILTER,
+    [TL_INPUT_SUN] = TL_AFFECTS_SUN,           [TL_INPUT_REGIONS] = TL_AFFECTS_REGIONS,
+    [TL_INPUT_PASSES] = TL_AFFECTS_PASSES,     [TL_INPUT_MAPS] = TL_AFFECTS_SHADOW_MAPS,
+    [TL_INPUT_RAYS] = TL_AFFECTS_RAYS,         [TL_INPUT_LIGHT] = TL_AFFECTS_LIGHT,
+    [TL_INPUT_LAMPS] = TL_AFFECTS_LAMPS,       [TL_INPUT_REFERENCE] = TL_AFFECTS_REFERENCE,
+    [TL_INPUT_DETAIL] = TL_AFFECTS_DETAIL,     [TL_INPUT_DETAIL_MAPS] = TL_AFFECTS_DETAIL_MAPS,
+    [TL_INPUT_SHOW] = TL_AFFECTS_SHOW,         [TL_INPUT_ENVMAP] = TL_AFFECTS_ENVMAP,
+    [TL_INPUT_LAYOUT] = TL_AFFECTS_LAYOUT,     [TL_INPUT_LOOK_UP] = TL_AFFECTS_LOOK_UP,
+    [TL_INPUT_CAPTURE] = TL_AFFECTS_CAPTURE,   [TL_INPUT_VIEW] = TL_AFFECTS_VIEW,
+};
+
+/* Each input's signature as far as options decide it. */
+static void sign_options(const struct tl_render_settings *settings, uint64_t signatures[TL_INPUT_COUNT])
 {
-    uint64_t hash = MIX(MIX(MIX(TL_HASH_START, light->method), light->lobe), light->prefilter);
-    hash = MIX(MIX(MIX(hash, light->visibility), light->composition), light->reflect_scene);
-    hash = MIX(hash, light->fan);
-    return MIX(MIX(MIX(hash, light->depth_bias_m), light->min_variance), light->bleed_reduction);
+    struct tl_render_settings copy = *settings; /* bindings can be written through */
+    struct tl_binding bindings[TL_RENDER_TABLES];
+    tl_render_settings_bind(&copy, bindings);
+    for (int i = 0; i < TL_INPUT_COUNT; i++)
+        signatures[i] = tl_options_hash(bindings, TL_RENDER_TABLES,
+                                        (struct tl_option_filter){.any_of = bits_of[i]}, TL_HASH_START);
+    const struct tl_option_filter scale = {.any_of = TL_AFFECTS_VIEW_SCALE};
+    if (settings->image.view != TL_VIEW_LIGHT)
+        signatures[TL_INPUT_VIEW] =
+            tl_options_hash(bindings, TL_RENDER_TABLES, scale, signatures[TL_INPUT_VIEW]);
 }
 
-static uint64_t maps_signature(const struct tl_light_params *light)
-{
-    bool in_passes =
-        tl_light_source(light) == TL_LIGHT_CHAIN; /* so many maps to an array as PEMs to a pass */
-    uint64_t hash = MIX(MIX(MIX(TL_HASH_START, light->visibility), light->map_size), in_passes);
-    return MIX(MIX(hash, light->blur_m), light->jitter);
-}
-
-static uint64_t rays_signature(const struct tl_light_params *light)
-{
-    uint64_t hash = MIX(MIX(TL_HASH_START, light->rays), light->refresh);
-    return MIX(MIX(MIX(hash, light->repair), light->repair_rest), light->jitter);
-}
-
-/* Always the same without lamps, however surfaces would be shaded under them. */
-static uint64_t lamps_signature(const tl_frame *frame, const struct tl_shading_params *shading)
+/* Without lamps it does not depend on `shading`, the signature of how surfaces are shaded under them. */
+static uint64_t lamps_signature(const tl_frame *frame, uint64_t shading)
 {
     struct tl_lamp lamps[TL_LAMPS_MAX];
     size_t count = tl_lamps_lit(frame, lamps);
@@ -66,55 +74,24 @@ static uint64_t lamps_signature(const tl_frame *frame, const struct tl_shading_p
         hash = MIX(MIX(hash, lamps[i].kind), lamps[i].irradiance);
         hash = MIX(MIX(hash, lamps[i].direction), lamps[i].position);
     }
-    return count > 0 ? MIX(hash, *shading) : hash;
+    return count > 0 ? MIX(hash, shading) : hash;
 }
 
-static uint64_t reference_signature(const struct tl_reference_params *reference)
+/* A sphere map depends on where the viewer looks, the other layouts do not. */
+static uint64_t layout_signature(const tl_frame *frame, const struct tl_maps_params *maps, uint64_t options)
 {
-    uint64_t hash = MIX(MIX(TL_HASH_START, reference->strata), reference->lobe_samples);
-    return MIX(MIX(hash, reference->replicates), reference->terminator);
-}
-
-static uint64_t detail_signature(const struct tl_detail_params *detail)
-{
-    return MIX(MIX(MIX(TL_HASH_START, detail->steps), detail->refine), detail->silhouette);
-}
-
-/* What maps are made by. */
-static uint64_t detail_maps_signature(const struct tl_detail_params *detail)
-{
-    uint64_t hash = MIX(MIX(MIX(TL_HASH_START, detail->mode), detail->shadow), detail->angles);
-    return MIX(MIX(hash, detail->height_scale), detail->minify);
-}
-
-static uint64_t layout_signature(const tl_frame *frame, const struct tl_maps_params *maps)
-{
-    uint64_t hash = MIX(TL_HASH_START, maps->layout);
     if (maps->layout != TL_LAYOUT_SPHERE)
-        return hash;
+        return options;
     struct tl_view view = tl_view_make(&frame->camera, 1, 1);
-    return MIX(MIX(hash, view.forward), view.up);
-}
-
-static uint64_t look_up_signature(const struct tl_maps_params *maps)
-{
-    uint64_t hash = MIX(MIX(TL_HASH_START, maps->look_up), maps->mode);
-    return MIX(MIX(hash, maps->fresnel), maps->minify);
-}
-
-/* Always the same while light is shown. */
-static uint64_t view_signature(const struct tl_image_params *image)
-{
-    uint64_t hash = MIX(TL_HASH_START, image->view);
-    return image->view == TL_VIEW_LIGHT ? hash : MIX(MIX(hash, image->view_region), image->view_range);
+    return MIX(MIX(options, view.forward), view.up);
 }
 
 /* What a capture shows. */
-static uint64_t scene_signature(const uint64_t signatures[TL_INPUT_COUNT], const struct tl_maps_params *maps)
+static uint64_t scene_signature(const uint64_t signatures[TL_INPUT_COUNT])
 {
     static const enum tl_resource shown[] = {TL_INPUT_ENVIRONMENT, TL_INPUT_YAW, TL_INPUT_SHAPES,
                                              TL_INPUT_MOTION, TL_INPUT_GROUND};
-    uint64_t hash = MIX(MIX(TL_HASH_START, maps->size), maps->capture_at);
+    uint64_t hash = signatures[TL_INPUT_CAPTURE];
     for (size_t i = 0; i < TL_COUNT(shown); i++)
         hash = MIX(hash, signatures[shown[i]]);
     return hash;
@@ -126,7 +103,7 @@ static void count_capture(const tl_frame *frame, const struct tl_render_settings
 {
     const struct tl_maps_params *maps = &settings->maps;
     bool is_wanted = settings->light.method == TL_METHOD_MAPS && maps->capture_every > 0;
-    uint64_t scene = is_wanted ? scene_signature(signatures, maps) : 0;
+    uint64_t scene = is_wanted ? scene_signature(signatures) : 0;
     rest->capture_age = rest->capture_age < maps->capture_every ? rest->capture_age + 1 : maps->capture_every;
     bool is_time = frame->still || rest->captured == 0 || rest->capture_age >= maps->capture_every;
     if (scene != rest->captured && (is_time || !is_wanted)) {
@@ -162,36 +139,22 @@ void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *setti
                    uint64_t signatures[TL_INPUT_COUNT])
 {
     const struct tl_light_params *light = &settings->light;
-    const struct tl_image_params *image = &settings->image;
     const uint64_t start = TL_HASH_START;
+    sign_options(settings, signatures);
     signatures[TL_INPUT_ENVIRONMENT] = MIX(start, frame->environment_revision);
     signatures[TL_INPUT_YAW] = MIX(start, frame->environment_yaw);
     signatures[TL_INPUT_SHAPES] = shapes_signature(frame);
     signatures[TL_INPUT_MOTION] = motion_signature(frame);
     signatures[TL_INPUT_CAMERA] = camera_signature(&frame->camera);
-    signatures[TL_INPUT_SIZE] =
-        MIX(MIX(MIX(MIX(start, image->width), image->height), image->supersample), image->scale);
-    signatures[TL_INPUT_GROUND] = MIX(start, image->ground);
-    signatures[TL_INPUT_PEM_SIZE] = MIX(start, light->pem_size);
-    signatures[TL_INPUT_FILTER] = MIX(MIX(start, light->filter), light->prefilter);
-    signatures[TL_INPUT_SUN] = MIX(start, light->sun);
-    signatures[TL_INPUT_REGIONS] = MIX(MIX(start, light->regions), light->cut);
-    signatures[TL_INPUT_PASSES] = MIX(start, light->pems_per_pass);
-    signatures[TL_INPUT_MAPS] = maps_signature(light);
-    signatures[TL_INPUT_RAYS] = rays_signature(light);
-    signatures[TL_INPUT_LIGHT] = light_signature(light);
-    signatures[TL_INPUT_LAMPS] = lamps_signature(frame, &settings->shading);
-    signatures[TL_INPUT_REFERENCE] = reference_signature(&settings->reference);
-    signatures[TL_INPUT_DETAIL] = detail_signature(&settings->detail);
-    signatures[TL_INPUT_DETAIL_MAPS] = detail_maps_signature(&settings->detail);
-    signatures[TL_INPUT_SHOW] = MIX(MIX(start, image->exposure_ev), image->background);
+    bool in_passes =
+        tl_light_source(light) == TL_LIGHT_CHAIN; /* so many maps to an array as PEMs to a pass */
+    signatures[TL_INPUT_MAPS] = MIX(signatures[TL_INPUT_MAPS], in_passes);
+    signatures[TL_INPUT_LAMPS] = lamps_signature(frame, signatures[TL_INPUT_LAMPS]);
     bool captures = settings->maps.capture_every > 0;
-    signatures[TL_INPUT_ENVMAP] = MIX(MIX(start, settings->maps.size), captures);
-    signatures[TL_INPUT_LAYOUT] = layout_signature(frame, &settings->maps);
+    signatures[TL_INPUT_ENVMAP] = MIX(signatures[TL_INPUT_ENVMAP], captures);
+    signatures[TL_INPUT_LAYOUT] = layout_signature(frame, &settings->maps, signatures[TL_INPUT_LAYOUT]);
     count_capture(frame, settings, signatures, rest);
     signatures[TL_INPUT_CAPTURE] = MIX(start, rest->captured);
-    signatures[TL_INPUT_VIEW] = view_signature(image);
-    signatures[TL_INPUT_LOOK_UP] = look_up_signature(&settings->maps);
     count_rest(light, before, signatures, rest);
     signatures[TL_INPUT_ROUND] = MIX(start, rest->image);
     signatures[TL_INPUT_SCENE_ROUND] = MIX(start, rest->scene);

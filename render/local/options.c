@@ -1,3 +1,4 @@
+#include "render/affects.h"
 #include "render/brdf/tables.h"
 #include "render/local/shading.h"
 
@@ -12,30 +13,33 @@ static const char *const power_names[] = {"pow", "fixed8", "table", NULL};
 static const char *const space_names[] = {"world", "tangent", NULL};
 static const char *const self_shadow_names[] = {"step", "ramp", NULL};
 
+#define AFFECTS (TL_AFFECTS_APPEARANCE | TL_AFFECTS_LAMPS)
+
 typedef struct tl_shading_params params;
 static const struct tl_option rows[] = {
-    TL_OPTION_ENUM(params, frequency, frequency_names,
+    TL_OPTION_ENUM(params, frequency, AFFECTS, frequency_names,
                    "where light is evaluated: at vertices; at pixels with vectors as interpolation leaves "
                    "them; at pixels with unit vectors"),
-    TL_OPTION_ENUM(params, coordinates, coordinates_names,
+    TL_OPTION_ENUM(params, coordinates, AFFECTS, coordinates_names,
                    "what it is evaluated with: cosines by one matrix, for a far light and viewer; cosines "
                    "interpolated from vertices, without bumps; vectors at pixels"),
-    TL_OPTION_ENUM(params, reflectance, reflectance_names,
+    TL_OPTION_ENUM(params, reflectance, AFFECTS, reflectance_names,
                    "gloss by its formula, or from tables made for the material, without its maps of gloss"),
-    TL_OPTION_INT(params, table_size, 8, 512, "texels", "side of a table; larger is more exact"),
-    TL_OPTION_ENUM(params, table_precision, precision_names, "of a table's values"),
-    TL_OPTION_ENUM(params, table_range, range_names,
+    TL_OPTION_INT(params, table_size, AFFECTS, 8, 512, "texels", "side of a table; larger is more exact"),
+    TL_OPTION_ENUM(params, table_precision, AFFECTS, precision_names, "of a table's values"),
+    TL_OPTION_ENUM(params, table_range, AFFECTS, range_names,
                    "fixed-point tables of a factor that grows without bounds at grazing angles: cut at 1, or "
                    "divided by its greatest value"),
-    TL_OPTION_INT(params, max_textures_per_pass, 1, 4, "tables",
+    TL_OPTION_INT(params, max_textures_per_pass, AFFECTS, 1, 4, "tables",
                   "gloss of more tables is multiplied in several passes; smaller takes more of them"),
-    TL_OPTION_ENUM(params, pass_target, pass_target_names, "precision in which passes are multiplied"),
-    TL_OPTION_ENUM(params, normalisation, normalisation_names,
+    TL_OPTION_ENUM(params, pass_target, AFFECTS, pass_target_names,
+                   "precision in which passes are multiplied"),
+    TL_OPTION_ENUM(params, normalisation, AFFECTS, normalisation_names,
                    "phong: how vectors are made unit; all but exact begin with interpolated ones"),
-    TL_OPTION_ENUM(params, power, power_names, "how the direct formula raises a cosine to a power"),
-    TL_OPTION_ENUM(params, space, space_names,
+    TL_OPTION_ENUM(params, power, AFFECTS, power_names, "how the direct formula raises a cosine to a power"),
+    TL_OPTION_ENUM(params, space, AFFECTS, space_names,
                    "vectors at pixels: taken into the world there, or into tangent space at vertices"),
-    TL_OPTION_ENUM(params, self_shadow, self_shadow_names,
+    TL_OPTION_ENUM(params, self_shadow, AFFECTS, self_shadow_names,
                    "light ends at the smooth surface's own horizon: at once, or along a steep ramp"),
 };
 const struct tl_option_table tl_shading_options = TL_OPTION_TABLE(

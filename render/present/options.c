@@ -1,5 +1,6 @@
 #include "render/present/options.h"
 
+#include "render/affects.h"
 #include "render/pem/regions.h"
 
 #include <math.h>
@@ -11,25 +12,29 @@ const char *const tl_image_view_names[] = {
     "visibility", "region", "strain_warp", "strain_weft", "strain_shear", NULL};
 
 static const struct tl_option image_rows[] = {
-    TL_OPTION_INT(image_params, width, 1, 16384, "pixels", "width of the image"),
-    TL_OPTION_INT(image_params, height, 1, 16384, "pixels", "height of the image"),
-    TL_OPTION_INT(image_params, supersample, 1, 8, "",
-                  "samples per pixel side; larger smooths edges and weave for the square of the time"),
-    TL_OPTION_FLOAT(image_params, exposure_ev, -20, 20, "EV",
+    TL_OPTION_INT(image_params, width, TL_AFFECTS_SIZE | TL_AFFECTS_AT_ONCE | TL_AFFECTS_WORK, 1, 16384,
+                  "pixels", "width of the image"),
+    TL_OPTION_INT(image_params, height, TL_AFFECTS_SIZE | TL_AFFECTS_AT_ONCE | TL_AFFECTS_WORK, 1, 16384,
+                  "pixels", "height of the image"),
+    TL_OPTION_INT(image_params, supersample, TL_AFFECTS_SIZE | TL_AFFECTS_APPEARANCE | TL_AFFECTS_WORK, 1, 8,
+                  "", "samples per pixel side; larger smooths edges and weave for the square of the time"),
+    TL_OPTION_FLOAT(image_params, exposure_ev, TL_AFFECTS_SHOW | TL_AFFECTS_AT_ONCE, -20, 20, "EV",
                     "brightness on the screen and in PNG files, in stops; EXR files stay as they are"),
-    TL_OPTION_ENUM(image_params, background, background_names,
+    TL_OPTION_ENUM(image_params, background, TL_AFFECTS_SHOW | TL_AFFECTS_AT_ONCE, background_names,
                    "what is seen behind, on the screen and in PNG files"),
-    TL_OPTION_BOOL(image_params, ground, "a matt grey disc at y = 0 that catches the shadow"),
-    TL_OPTION_ENUM(image_params, view, tl_image_view_names,
+    TL_OPTION_BOOL(image_params, ground, TL_AFFECTS_GROUND | TL_AFFECTS_SCENE | TL_AFFECTS_DRAPE,
+                   "a matt grey disc at y = 0 that catches the shadow"),
+    TL_OPTION_ENUM(image_params, view, TL_AFFECTS_VIEW, tl_image_view_names,
                    "what is shown: light, or in its place what it is made of, or the cloth's strain"),
-    TL_OPTION_INT(image_params, view_region, -1, TL_REGIONS_MAX - 1, "",
+    TL_OPTION_INT(image_params, view_region, TL_AFFECTS_VIEW_SCALE, -1, TL_REGIONS_MAX - 1, "",
                   "view=visibility: of this region alone; -1: of all, by their power"),
     TL_OPTION_FLOAT(
-        image_params, view_range, 0, 1000, "%",
+        image_params, view_range, TL_AFFECTS_VIEW_SCALE, 0, 1000, "%",
         "views of strain: strain at the ends of the legend; 0: what 99 % of the cloth keeps within"),
-    TL_OPTION_FLOAT(image_params, scale, 0.1, 1, "",
+    TL_OPTION_FLOAT(image_params, scale, TL_AFFECTS_SIZE, 0.1, 1, "",
                     "samples a side over those of supersample; smaller is faster and softer"),
-    TL_OPTION_BOOL(image_params, legend, "pictures of views other than light say what their colours mean"),
+    TL_OPTION_BOOL(image_params, legend, TL_AFFECTS_NOTHING,
+                   "pictures of views other than light say what their colours mean"),
 };
 const struct tl_option_table tl_image_options = TL_OPTION_TABLE(
     "image", "size and show of the image", image_rows, image_params, .width = 960, .height = 540,

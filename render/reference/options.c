@@ -1,17 +1,18 @@
+#include "render/affects.h"
 #include "render/reference/reference.h"
 
 typedef struct tl_reference_params reference_params;
 static const char *const terminator_names[] = {"smooth", "geometric", NULL};
 
 static const struct tl_option reference_rows[] = {
-    TL_OPTION_INT(reference_params, strata, 1, 65536, "",
+    TL_OPTION_INT(reference_params, strata, TL_AFFECTS_REFERENCE, 1, 65536, "",
                   "directions that a replicate takes from the environment; more are truer and slower"),
-    TL_OPTION_INT(reference_params, lobe_samples, 1, 4096, "",
+    TL_OPTION_INT(reference_params, lobe_samples, TL_AFFECTS_REFERENCE, 1, 4096, "",
                   "directions that a replicate takes from the glossy lobe; more help mirrors"),
     TL_OPTION_INT(
-        reference_params, replicates, 1, 65536, "",
+        reference_params, replicates, TL_AFFECTS_REFERENCE, 1, 65536, "",
         "independent images whose mean is the answer and whose spread is its error; at least 2 tell it"),
-    TL_OPTION_ENUM(reference_params, terminator, terminator_names,
+    TL_OPTION_ENUM(reference_params, terminator, TL_AFFECTS_REFERENCE, terminator_names,
                    "horizon of the interpolated normal, rays from the smooth surface; or of the triangle"),
 };
 const struct tl_option_table tl_reference_options =

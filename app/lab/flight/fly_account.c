@@ -245,33 +245,31 @@ void tl_flight_record_release(struct tl_flight_record *record)
     record->settings = NULL;
 }
 
-/* Times of other work cannot be set against each other. */
-static bool is_the_work(const char *key)
-{
-    static const char *const keys[] = {
-        "scene.garment", "scene.avatar", "scene.motion",      "scene.clip",       "scene.units",
-        "image.width",   "image.height", "image.supersample", "cloth.frame_rate", "cloth.edge_m"};
-    for (size_t i = 0; i < TL_COUNT(keys); i++)
-        if (strcmp(key, keys[i]) == 0)
-            return true;
-    return false;
-}
-
+/* Times of other work cannot be compared; a replay needs every option to be the same. */
 bool tl_flight_record_suits(const struct tl_flight_record *record, const char *folder,
                             const struct tl_settings *settings, bool whole, tl_error *error)
 {
-    cJSON *own = cJSON_CreateObject();
+    const struct tl_option_filter filter = {.any_of = whole ? UINT64_MAX : TL_AFFECTS_WORK};
+    struct tl_settings copy = *settings;
+    struct tl_binding bindings[TL_SETTINGS_TABLES];
     bool suits = true;
-    add_settings(own, settings);
-    for (const cJSON *item = own->child->child; suits && item; item = item->next) {
-        const cJSON *other = cJSON_GetObjectItemCaseSensitive(record->settings, item->string);
-        const char *text = cJSON_IsString(other) ? other->valuestring : "not set";
-        if ((whole || is_the_work(item->string)) && strcmp(text, item->valuestring) != 0)
-            suits = tl_fail(error, TL_USAGE, "%s: was flown with %s %s, here it is %s: %s", folder,
-                            item->string, text, item->valuestring,
-                            whole ? "a replay needs the same scene and options"
-                                  : "times of other work cannot be compared");
-    }
-    cJSON_Delete(own);
+    tl_settings_bind(&copy, bindings);
+    for (size_t t = 0; t < TL_SETTINGS_TABLES; t++)
+        for (size_t r = 0; suits && r < bindings[t].table->row_count; r++) {
+            const struct tl_option *row = &bindings[t].table->rows[r];
+            if (!tl_option_passes(row, filter))
+                continue;
+            char *key = tl_format("%s.%s", bindings[t].table->name, row->name);
+            char *own = tl_options_get_text(&bindings[t], row);
+            const cJSON *other = cJSON_GetObjectItemCaseSensitive(record->settings, key);
+            const char *text = cJSON_IsString(other) ? other->valuestring : "not set";
+            if (strcmp(text, own) != 0)
+                suits = tl_fail(error, TL_USAGE, "%s: was flown with %s %s, here it is %s: %s", folder, key,
+                                text, own,
+                                whole ? "a replay needs the same scene and options"
+                                      : "times of other work cannot be compared");
+            free(own);
+            free(key);
+        }
     return suits;
 }

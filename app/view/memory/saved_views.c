@@ -15,11 +15,12 @@
 #define TABLES_A_VIEW 4
 
 static const struct tl_option view_rows[] = {
-    TL_OPTION_BOOL(struct tl_saved_view, saved, "the view has been saved"),
-    TL_OPTION_STRING(struct tl_saved_view, environment, "as scene.environment"),
-    TL_OPTION_FLOAT(struct tl_saved_view, environment_yaw_deg, -3600, 3600, "degrees",
+    TL_OPTION_BOOL(struct tl_saved_view, saved, TL_AFFECTS_NOTHING, "the view has been saved"),
+    TL_OPTION_STRING(struct tl_saved_view, environment, TL_AFFECTS_NOTHING, "as scene.environment"),
+    TL_OPTION_FLOAT(struct tl_saved_view, environment_yaw_deg, TL_AFFECTS_NOTHING, -3600, 3600, "degrees",
                     "as scene.environment_yaw_deg"),
-    TL_OPTION_FLOAT(struct tl_saved_view, exposure_ev, -100, 100, "EV", "as image.exposure_ev"),
+    TL_OPTION_FLOAT(struct tl_saved_view, exposure_ev, TL_AFFECTS_NOTHING, -100, 100, "EV",
+                    "as image.exposure_ev"),
 };
 static const struct tl_option_table view_table =
     TL_OPTION_TABLE("view", "a saved view", view_rows, struct tl_saved_view, .saved = false);

@@ -10,15 +10,17 @@
 #define TABLES (TL_SETTINGS_TABLES + 2)
 
 static const struct tl_option window_rows[] = {
-    TL_OPTION_INT(struct tl_window_params, width, 320, 16384, "pixels", "size of the window when it opens"),
-    TL_OPTION_INT(struct tl_window_params, height, 240, 16384, "pixels", "size of the window when it opens"),
-    TL_OPTION_BOOL(struct tl_window_params, panel, "show the panel; Tab toggles it"),
-    TL_OPTION_FLOAT(struct tl_window_params, budget_ms, 0, 1000, "ms",
+    TL_OPTION_INT(struct tl_window_params, width, TL_AFFECTS_NOTHING, 320, 16384, "pixels",
+                  "size of the window when it opens"),
+    TL_OPTION_INT(struct tl_window_params, height, TL_AFFECTS_NOTHING, 240, 16384, "pixels",
+                  "size of the window when it opens"),
+    TL_OPTION_BOOL(struct tl_window_params, panel, TL_AFFECTS_NOTHING, "show the panel; Tab toggles it"),
+    TL_OPTION_FLOAT(struct tl_window_params, budget_ms, TL_AFFECTS_NOTHING, 0, 1000, "ms",
                     "time budget of a frame; a larger one allows more quality; 0: no limit"),
-    TL_OPTION_FLOAT(struct tl_window_params, turntable_deg_s, -360, 360, "degrees/s",
+    TL_OPTION_FLOAT(struct tl_window_params, turntable_deg_s, TL_AFFECTS_NOTHING, -360, 360, "degrees/s",
                     "speed of the turntable, T"),
-    TL_OPTION_FLOAT(struct tl_window_params, environment_turn_deg_s, -360, 360, "degrees/s",
-                    "speed at which Shift+T turns the environment"),
+    TL_OPTION_FLOAT(struct tl_window_params, environment_turn_deg_s, TL_AFFECTS_NOTHING, -360, 360,
+                    "degrees/s", "speed at which Shift+T turns the environment"),
 };
 const struct tl_option_table tl_window_options =
     TL_OPTION_TABLE("window", "the review window; kept between runs, not a part of a scene", window_rows,
@@ -27,7 +29,7 @@ const struct tl_option_table tl_window_options =
 
 /* Whether a state file holds settings besides the window's. */
 static const struct tl_option review_rows[] = {
-    TL_OPTION_BOOL(struct tl_left_review, has_settings,
+    TL_OPTION_BOOL(struct tl_left_review, has_settings, TL_AFFECTS_NOTHING,
                    "the other tables hold the settings of the built-in review"),
 };
 static const struct tl_option_table review_table = TL_OPTION_TABLE(

@@ -99,21 +99,6 @@ bool tl_review_present(struct tl_review *review, tl_error *error)
     return true;
 }
 
-/* Whether the edit rebuilds cloth or light, which takes seconds: such an edit waits until the slider is
- * released. */
-static bool is_slow_change(const struct tl_review *review)
-{
-    struct tl_settings quick = review->good;
-    quick.camera = review->wanted.camera;
-    quick.material = review->wanted.material;
-    quick.scene.environment_yaw_deg = review->wanted.scene.environment_yaw_deg;
-    quick.image.exposure_ev = review->wanted.image.exposure_ev;
-    quick.image.background = review->wanted.image.background;
-    quick.image.width = review->wanted.image.width;
-    quick.image.height = review->wanted.image.height;
-    return !tl_settings_equal(&quick, &review->wanted);
-}
-
 static void log_changes(const struct tl_scene_params *old, const struct tl_scene_params *new)
 {
     const struct {
@@ -268,7 +253,8 @@ bool tl_review_is_at_rest(const struct tl_review *review)
 
 bool tl_review_update_image(struct tl_review *review, tl_error *error)
 {
-    bool waits = review->changed && review->editing && is_slow_change(review);
+    bool waits =
+        review->changed && review->editing && tl_settings_differ_slowly(&review->good, &review->wanted);
     /* At rest the renderer averages jittered rounds, which may wait until input and the panel are handled. */
     bool is_refined = tl_review_is_at_rest(review) || review->redraws > 0;
     bool improves = !tl_review_is_moving(review) && !(is_refined && tl_review_is_sharp(review));

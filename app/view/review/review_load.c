@@ -9,12 +9,12 @@
 
 /* Whether an appearance must be loaded first: the session does not have it, and it was not loaded last.
  * Nothing can be prepared for an environment sequence, whose light changes with every frame. While a slider
- * is held the material is applied at once. */
+ * is held, options whose rows say AT_ONCE are applied at once. */
 static bool needs_appearance(const struct tl_review *review, const struct tl_settings *settings)
 {
     struct tl_settings present = *tl_session_settings(review->session);
     if (review->editing)
-        present.material = settings->material;
+        tl_settings_take(settings, &present, (struct tl_option_filter){.any_of = TL_AFFECTS_AT_ONCE});
     return !tl_session_light_plays(review->session) && tl_session_needs_look(&present, settings) &&
            tl_session_needs_look(&review->loaded_appearance, settings);
 }
