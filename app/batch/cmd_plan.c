@@ -35,26 +35,27 @@ static void print_memory(const tl_renderer *renderer)
 
 /* ---- The budget ---- */
 
-/* What a budget would choose for the frame, and what the next better level of each knob would change. */
+/* What a budget would choose for the frame, and what the next better level of each control would change. */
 struct budgeted {
     double budget_ms; /* 0: none was given */
-    struct tl_pace_choice choice;
-    struct tl_pace_step steps[TL_KNOB_COUNT];
+    struct tl_quality_choice choice;
+    struct tl_quality_step steps[TL_CONTROL_COUNT];
 };
 
 static void print_budget(const struct budgeted *budgeted)
 {
-    const struct tl_pace_choice *choice = &budgeted->choice;
+    const struct tl_quality_choice *choice = &budgeted->choice;
     printf("\nlevels for %g ms: ", budgeted->budget_ms);
     if (isfinite(choice->predicted_ms))
         printf("predicted %.1f ms, cloth and drawing, ", choice->predicted_ms);
     else
         printf("nothing was measured yet (--frame N draws the frames before N), ");
-    printf("%.2g %% of error\n%-8s %6s %8s  %s\n", 100 * choice->error, "knob", "level", "setting",
+    printf("%.2g %% of error\n%-8s %6s %8s  %s\n", 100 * choice->error, "control", "level", "setting",
            "one level better");
-    for (int k = 0; k < TL_KNOB_COUNT; k++) {
-        const struct tl_pace_step *step = &budgeted->steps[k];
-        printf("%-8s %2d of %d %8.4g  ", tl_knob_names[k], step->level, step->level_count - 1, step->value);
+    for (int k = 0; k < TL_CONTROL_COUNT; k++) {
+        const struct tl_quality_step *step = &budgeted->steps[k];
+        printf("%-8s %2d of %d %8.4g  ", tl_control_names[k], step->level, step->level_count - 1,
+               step->value);
         if (step->level > 0)
             printf("%+.1f ms, %+.2g of FLIP\n", step->ms, -step->error);
         else
@@ -73,17 +74,17 @@ static void add_budget(cJSON *object, const struct budgeted *budgeted)
     cJSON_AddNumberToObject(budget, "budget_ms", budgeted->budget_ms);
     cJSON_AddItemToObject(budget, "predicted_ms", number_or_null(budgeted->choice.predicted_ms));
     cJSON_AddNumberToObject(budget, "error", budgeted->choice.error);
-    cJSON *knobs = cJSON_AddArrayToObject(budget, "knobs");
-    for (int k = 0; k < TL_KNOB_COUNT; k++) {
-        const struct tl_pace_step *step = &budgeted->steps[k];
-        cJSON *knob = cJSON_CreateObject();
-        cJSON_AddStringToObject(knob, "name", tl_knob_names[k]);
-        cJSON_AddNumberToObject(knob, "level", step->level);
-        cJSON_AddNumberToObject(knob, "levels", step->level_count);
-        cJSON_AddNumberToObject(knob, "value", step->value);
-        cJSON_AddItemToObject(knob, "next_ms", number_or_null(step->ms));
-        cJSON_AddItemToObject(knob, "next_error", number_or_null(-step->error));
-        cJSON_AddItemToArray(knobs, knob);
+    cJSON *controls = cJSON_AddArrayToObject(budget, "controls");
+    for (int k = 0; k < TL_CONTROL_COUNT; k++) {
+        const struct tl_quality_step *step = &budgeted->steps[k];
+        cJSON *control = cJSON_CreateObject();
+        cJSON_AddStringToObject(control, "name", tl_control_names[k]);
+        cJSON_AddNumberToObject(control, "level", step->level);
+        cJSON_AddNumberToObject(control, "levels", step->level_count);
+        cJSON_AddNumberToObject(control, "value", step->value);
+        cJSON_AddItemToObject(control, "next_ms", number_or_null(step->ms));
+        cJSON_AddItemToObject(control, "next_error", number_or_null(-step->error));
+        cJSON_AddItemToArray(controls, control);
     }
 }
 
@@ -223,21 +224,21 @@ static void tell(const struct tl_stage *stage, const tl_plan *plan, const struct
 }
 
 /* A frame as fly has it: chosen, simulated, drawn, and learned from. */
-static bool draw_paced(struct tl_stage *stage, tl_pace *pace, tl_error *error)
+static bool draw_paced(struct tl_stage *stage, tl_quality_governor *governor, tl_error *error)
 {
     const struct tl_settings full = stage->settings;
     struct tl_stopwatch watch = tl_stopwatch_start();
     const tl_frame frame = tl_session_frame(stage->session);
-    struct tl_pace_choice choice = tl_pace_choose(pace, stage->renderer, &frame, &full);
-    stage->settings = tl_levels_apply(&choice.levels, &full);
+    struct tl_quality_choice choice = tl_quality_governor_choose(governor, stage->renderer, &frame, &full);
+    stage->settings = tl_quality_apply(&choice.levels, &full);
     bool done = tl_session_apply(stage->session, &stage->settings, error);
     struct tl_stopwatch cloth = tl_stopwatch_start();
     done = done && tl_session_advance(stage->session, error);
     double cloth_ms = tl_stopwatch_read(&cloth).wall_ms;
     done = done && tl_stage_draw(stage, error);
     if (done)
-        tl_pace_learn(pace, tl_renderer_last_plan(stage->renderer), cloth_ms,
-                      tl_stopwatch_read(&watch).wall_ms);
+        tl_quality_governor_learn(governor, tl_renderer_last_plan(stage->renderer), cloth_ms,
+                                  tl_stopwatch_read(&watch).wall_ms);
     stage->settings = full;
     return done;
 }
@@ -247,20 +248,20 @@ static bool draw_paced(struct tl_stage *stage, tl_pace *pace, tl_error *error)
 static bool choose_levels(struct tl_stage *stage, int number, struct budgeted *out, tl_error *error)
 {
     const int learned_from = 30; /* frames */
-    tl_pace *pace = tl_pace_create(out->budget_ms);
+    tl_quality_governor *governor = tl_quality_governor_create(out->budget_ms);
     const struct tl_settings full = stage->settings;
     int first = number - 1 > learned_from ? number - 1 - learned_from : 0;
     bool done = tl_session_go_to(stage->session, first, error);
     while (done && tl_session_frame_number(stage->session) < number - 1)
-        done = draw_paced(stage, pace, error);
+        done = draw_paced(stage, governor, error);
     if (done) {
         const tl_frame frame = tl_session_frame(stage->session);
-        out->choice = tl_pace_choose(pace, stage->renderer, &frame, &full);
-        tl_pace_steps(pace, stage->renderer, &frame, &full, out->steps);
-        stage->settings = tl_levels_apply(&out->choice.levels, &full);
+        out->choice = tl_quality_governor_choose(governor, stage->renderer, &frame, &full);
+        tl_quality_governor_steps(governor, stage->renderer, &frame, &full, out->steps);
+        stage->settings = tl_quality_apply(&out->choice.levels, &full);
         done = tl_session_apply(stage->session, &stage->settings, error);
     }
-    tl_pace_destroy(&pace);
+    tl_quality_governor_destroy(&governor);
     return done;
 }
 

@@ -1,52 +1,59 @@
-/* Keeps frames within a time budget: before each frame it chooses the level of every knob from what frames
- * like it have cost, afterwards it learns what this one took.
+/* The governor keeps frames within a time budget. Before each frame it chooses the level of every quality
+ * control from what similar frames have cost; after it, it learns what the frame took.
  *
  *     choose -> settings of this frame -> cloth, draw -> learn
  *
- * The choice itself is render/plan/budget.h, pure; here knobs are bound to settings and costs to jobs. A
- * record of levels, applied to the same settings again, gives the same images bit by bit: only tl_pace_choose
- * looks at what the clock said. Times: milliseconds on the wall, of the machine as it is. Threads: one at a
- * time. */
+ * The choice itself is render/plan/budget.h, pure; here controls are bound to settings and costs to jobs.
+ * Only tl_quality_governor_choose depends on the clock: recorded levels, applied to the same settings again,
+ * give the same images to the bit.
+ *
+ * Units: milliseconds of wall time, on the machine as loaded as it is. Errors: none of the functions fails.
+ * Lifetime: the caller owns a governor from create to destroy; results are values. Threads: one at a time for
+ * each governor. */
 #ifndef TOILE_APP_BUDGET_GOVERNOR_H
 #define TOILE_APP_BUDGET_GOVERNOR_H
 
-#include "app/budget/levels.h"
+#include "app/budget/quality.h"
 #include "render/renderer.h"
 
-struct tl_pace_choice {
-    struct tl_levels levels;
-    double predicted_ms; /* cloth and drawing; NaN while nothing is known */
-    double change_ms;    /* of these, what changing to the levels takes, once */
-    double least_ms;     /* of the cheapest levels, where that is more than the budget; else predicted_ms */
-    double error;        /* estimated, mean FLIP that the levels add to that of the settings */
-    char reason[120];    /* for people: what was shed or taken back, and why; "" when nothing changed */
+struct tl_quality_choice {
+    struct tl_quality levels;
+    double predicted_ms; /* cloth and drawing; NaN before the first frame */
+    double change_ms;    /* the part of it that the change to these levels costs once */
+    double min_ms;    /* of the cheapest levels, where predicted_ms exceeds the budget; else predicted_ms */
+    double error;     /* estimated mean FLIP that the levels add to that of the settings */
+    char reason[120]; /* for people: what was reduced or restored, and why; "" when nothing changed */
 };
 
-typedef struct tl_pace tl_pace;
+typedef struct tl_quality_governor tl_quality_governor;
 
-tl_pace *tl_pace_create(double budget_ms); /* 0: no budget, level 0 always, but it predicts */
-void tl_pace_destroy(tl_pace **handle);
-void tl_pace_set_budget(tl_pace *pace, double budget_ms);
+tl_quality_governor *
+tl_quality_governor_create(double budget_ms); /* 0: no budget: always level 0, but it predicts */
+void tl_quality_governor_destroy(tl_quality_governor **handle);
+void tl_quality_governor_set_budget(tl_quality_governor *governor, double budget_ms);
 
-/* `frame` is the coming one as far as it is known: the last one drawn, with the camera that will be there, so
- * that the end of a rest is seen; or the first. `settings` are those of full quality. At rest (three frames
- * in which nothing moved) everything goes into the image: level 0, whatever the budget; and so is the first.
- * In the first frames after an environment came, the renderer makes the regions of other levels ready, one
- * level a frame. */
-struct tl_pace_choice tl_pace_choose(tl_pace *pace, tl_renderer *renderer, const tl_frame *frame,
-                                     const struct tl_settings *settings);
+/* Chooses the levels of the coming frame. `frame` is that frame as far as it is known: the last one drawn
+ * with the coming camera, so that the end of a rest is noticed; or the first frame. `settings` are those of
+ * full quality. The first frame, and frames at rest (after three frames in which nothing moved), are at level
+ * 0 whatever the budget. In the first frames after a change of environment the renderer prepares the regions
+ * of other levels, one level a frame. */
+struct tl_quality_choice tl_quality_governor_choose(tl_quality_governor *governor, tl_renderer *renderer,
+                                                    const tl_frame *frame,
+                                                    const struct tl_settings *settings);
 
-/* What a frame took that was drawn at the levels chosen last: its plan with took_ms, the cloth's part, and
- * the whole from the choice to the finished image. */
-void tl_pace_learn(tl_pace *pace, const tl_plan *plan, double cloth_ms, double total_ms);
+/* Learns from a frame drawn at the levels chosen last: its plan with took_ms, the time of the cloth, and the
+ * total time from the choice to the finished image. */
+void tl_quality_governor_learn(tl_quality_governor *governor, const tl_plan *plan, double cloth_ms,
+                               double total_ms);
 
-/* What the next better level of a knob would change, from the levels chosen last. */
-struct tl_pace_step {
+/* For each control, what its next better level would change from the levels chosen last. */
+struct tl_quality_step {
     int level, level_count;
     double value;     /* of the setting at this level: regions, steps, substeps a frame, scale */
-    double ms, error; /* dearer by so much, in error by so much less; NaN at level 0 */
+    double ms, error; /* additional time, and error removed; NaN at level 0 */
 };
-void tl_pace_steps(const tl_pace *pace, const tl_renderer *renderer, const tl_frame *frame,
-                   const struct tl_settings *settings, struct tl_pace_step out[TL_KNOB_COUNT]);
+void tl_quality_governor_steps(const tl_quality_governor *governor, const tl_renderer *renderer,
+                               const tl_frame *frame, const struct tl_settings *settings,
+                               struct tl_quality_step out[TL_CONTROL_COUNT]);
 
 #endif

@@ -145,7 +145,7 @@ static bool open_review(struct tl_review *review, tl_error *error)
     if (!open_scene(review, is_restored, error))
         return false;
     review->history = tl_history_create(&review->wanted);
-    review->pace = tl_pace_create((double)review->params.budget_ms);
+    review->governor = tl_quality_governor_create((double)review->params.budget_ms);
     tl_review_add_environment(review, "studio");
     tl_review_add_environment(review, review->wanted.scene.environment);
     /* The first image must succeed: there are no earlier settings to go back to. */
@@ -172,7 +172,7 @@ static void close_review(struct tl_review *review)
     tl_loader_cancel(&review->loader);
     tl_session_destroy(&review->session);
     tl_history_destroy(&review->history);
-    tl_pace_destroy(&review->pace);
+    tl_quality_governor_destroy(&review->governor);
     tl_review_path_release(&review->path);
     for (size_t i = 0; i < review->environment_count; i++)
         free(review->environments[i]);

@@ -89,7 +89,7 @@ static size_t list_measures(struct tl_review *review, struct tl_panel_line *line
     add_line(lines, &count, "cloth", "%.1f ms", review->times.cloth);
     add_line(lines, &count, "drawing", "%.0f ms", review->times.draw);
     int samples_x, samples_y;
-    const struct tl_settings drawn = tl_levels_apply(&review->pace_choice.levels, &review->good);
+    const struct tl_settings drawn = tl_quality_apply(&review->quality_choice.levels, &review->good);
     tl_image_samples(&drawn.image, &samples_x, &samples_y);
     add_line(lines, &count, "image", "%d x %d of %d x %d samples", width, height, samples_x, samples_y);
     count_triangles(review, &triangles, &vertices);
@@ -204,7 +204,7 @@ static void apply_result(struct tl_review *review, const struct tl_panel_result 
 /* Percent of the settings' samples that are drawn at the present levels. */
 static double share_of_samples(const struct tl_review *review)
 {
-    const struct tl_settings drawn = tl_levels_apply(&review->pace_choice.levels, &review->good);
+    const struct tl_settings drawn = tl_quality_apply(&review->quality_choice.levels, &review->good);
     int full_x, full_y, x, y;
     tl_image_samples(&review->good.image, &full_x, &full_y);
     tl_image_samples(&drawn.image, &x, &y);
@@ -217,7 +217,7 @@ static struct tl_panel_strip strip_of(const struct tl_review *review, float *tim
     float budget_ms = review->params.budget_ms;
     for (size_t i = 0; i < all->count; i++)
         times[i] = tl_frame_times_at(all, i);
-    const struct tl_levels *levels = &review->pace_choice.levels;
+    const struct tl_quality *levels = &review->quality_choice.levels;
     char *end = label;
     const char *stop = label + size;
     bool has_frames = all->count > 0;
@@ -230,12 +230,12 @@ static struct tl_panel_strip strip_of(const struct tl_review *review, float *tim
     if (tl_review_is_sharp(review))
         end = append(end, stop, ": full quality");
     const char *before = ": ";
-    for (int i = 0; i < TL_KNOB_COUNT; i++)
-        if (levels->of[i] > 0 && i != TL_KNOB_SCALE) {
-            end = append(end, stop, "%s%s -%d", before, tl_knob_names[i], levels->of[i]);
+    for (int i = 0; i < TL_CONTROL_COUNT; i++)
+        if (levels->of[i] > 0 && i != TL_CONTROL_SCALE) {
+            end = append(end, stop, "%s%s -%d", before, tl_control_names[i], levels->of[i]);
             before = ", ";
         }
-    if (levels->of[TL_KNOB_SCALE] > 0)
+    if (levels->of[TL_CONTROL_SCALE] > 0)
         append(end, stop, "%s%.0f %% of the pixels", before, share_of_samples(review));
     return (struct tl_panel_strip){times, all->count, budget_ms, label};
 }

@@ -26,11 +26,11 @@ struct run {
     struct tl_check_outcome *outcome;
     struct tl_motion motion;
     struct auxiliary auxiliary;
-    uint64_t *hashes, *places; /* [frames]: of all that is seen; of positions alone */
-    int played;                /* of them are there */
-    tl_pace *pace;             /* NULL: no budget */
-    struct tl_levels *levels;  /* [frames] */
-    struct tl_pace_choice choice;
+    uint64_t *hashes, *places;     /* [frames]: of all that is seen; of positions alone */
+    int played;                    /* of them are there */
+    tl_quality_governor *governor; /* NULL: no budget */
+    struct tl_quality *levels;     /* [frames] */
+    struct tl_quality_choice choice;
     double chosen_ms, moved_ms, drawn_ms; /* on the wall, of this frame: the choice, the cloth, the picture */
     struct tl_cloth_monitor watch;
     struct tl_progress progress;
@@ -46,14 +46,14 @@ static bool is_swung(const struct run *run, int number)
 /* What frame `number` is drawn and simulated with. */
 static struct tl_settings settings_of(const struct run *run, int number)
 {
-    return tl_levels_apply(&run->levels[number], &run->stage->settings);
+    return tl_quality_apply(&run->levels[number], &run->stage->settings);
 }
 
 static bool advance(struct run *run, int number, tl_error *error)
 {
     tl_session *session = run->stage->session;
     const struct tl_settings settings = settings_of(run, number);
-    if (run->pace && !tl_session_apply(session, &settings, error))
+    if (run->governor && !tl_session_apply(session, &settings, error))
         return false;
     if (is_swung(run, number))
         return tl_motion_advance(&run->motion, number - run->params->frames / 10, error);
@@ -134,9 +134,9 @@ static bool draw_frame(struct run *run, const tl_frame *frame, const struct tl_r
     if (!tl_renderer_draw(run->stage->renderer, frame, settings, error))
         return false;
     run->drawn_ms = tl_stopwatch_read(&watch).wall_ms;
-    if (run->pace)
-        tl_pace_learn(run->pace, tl_renderer_last_plan(run->stage->renderer), run->moved_ms,
-                      run->chosen_ms + run->moved_ms + run->drawn_ms);
+    if (run->governor)
+        tl_quality_governor_learn(run->governor, tl_renderer_last_plan(run->stage->renderer), run->moved_ms,
+                                  run->chosen_ms + run->moved_ms + run->drawn_ms);
     return tl_renderer_read(run->stage->renderer, image, error);
 }
 
@@ -201,11 +201,11 @@ static bool check_frame(struct run *run, int number, tl_error *error)
                                  .is_sampled = number % run->params->every == 0,
                                  .predicted_ms = run->choice.predicted_ms - run->choice.change_ms,
                                  .budget_ms = run->params->budget_ms,
-                                 .least_ms = run->choice.least_ms,
+                                 .least_ms = run->choice.min_ms,
                                  .is_reduced = run->choice.error > 0};
     if (tl_session_cloth(run->stage->session)) {
         /* Other steps of the solver are another stiffness, too. */
-        cloth = tl_cloth_monitor_measure(&run->watch, &frame, is_swung(run, number), run->pace);
+        cloth = tl_cloth_monitor_measure(&run->watch, &frame, is_swung(run, number), run->governor);
         checked.cloth = &cloth;
     }
     bool done = !is_finite(&frame) || prepare(run, &frame, images, &checked, error);
@@ -231,11 +231,12 @@ static void begin(struct run *run)
 
 static void choose(struct run *run, int number)
 {
-    if (!run->pace)
+    if (!run->governor)
         return;
     struct tl_stopwatch watch = tl_stopwatch_start();
     tl_frame frame = frame_of(run, number);
-    run->choice = tl_pace_choose(run->pace, run->stage->renderer, &frame, &run->stage->settings);
+    run->choice =
+        tl_quality_governor_choose(run->governor, run->stage->renderer, &frame, &run->stage->settings);
     run->levels[number] = run->choice.levels;
     run->chosen_ms = tl_stopwatch_read(&watch).wall_ms;
 }
@@ -309,7 +310,7 @@ static void release(struct run *run)
     tl_renderer_destroy(&run->auxiliary.white_shadowed);
     tl_renderer_destroy(&run->auxiliary.fresh);
     tl_environment_release(&run->auxiliary.light);
-    tl_pace_destroy(&run->pace);
+    tl_quality_governor_destroy(&run->governor);
     free(run->levels);
     free(run->hashes);
     free(run->places);
@@ -325,8 +326,9 @@ bool tl_check_play(struct tl_stage *stage, const struct tl_check_params *params,
                       .outcome = out,
                       .hashes = TL_NEW_ARRAY(uint64_t, (size_t)params->frames),
                       .places = TL_NEW_ARRAY(uint64_t, (size_t)params->frames),
-                      .pace = params->budget_ms > 0 ? tl_pace_create(params->budget_ms) : NULL,
-                      .levels = TL_NEW_ARRAY(struct tl_levels, (size_t)params->frames),
+                      .governor =
+                          params->budget_ms > 0 ? tl_quality_governor_create(params->budget_ms) : NULL,
+                      .levels = TL_NEW_ARRAY(struct tl_quality, (size_t)params->frames),
                       .progress = tl_progress_begin("checking")};
     int again = params->frames < 20 ? (params->frames + 1) / 2 : params->frames / 10;
     run.steps = params->frames + again;

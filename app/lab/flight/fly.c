@@ -18,7 +18,7 @@ struct recorder {
     const struct tl_fly_options *options;
     struct tl_flight *flight;
     struct tl_motion motion;
-    tl_pace *pace; /* NULL: a replay */
+    tl_quality_governor *governor; /* NULL: a replay */
 };
 
 /* At full quality. */
@@ -156,7 +156,7 @@ static void record_jobs(struct tl_flight *flight, const tl_plan *plan, struct tl
 /* The camera goes first, so that the choice is made for where it will be. The cloth stays as it is: whenever
  * its step changes it forgets its contacts. */
 static bool choose(struct recorder *recorder, const struct tl_settings *wanted, int number,
-                   struct tl_pace_choice *out, tl_error *error)
+                   struct tl_quality_choice *out, tl_error *error)
 {
     struct tl_stage *stage = recorder->stage;
     struct tl_settings looked_from = *wanted;
@@ -166,10 +166,10 @@ static bool choose(struct recorder *recorder, const struct tl_settings *wanted, 
     const tl_frame coming = tl_session_frame(stage->session);
     if (recorder->options->replay) {
         const struct tl_flight_frame *recorded = &recorder->options->replay->frames[number];
-        *out = (struct tl_pace_choice){
+        *out = (struct tl_quality_choice){
             .levels = recorded->levels, .predicted_ms = NAN, .error = recorded->error};
     } else {
-        *out = tl_pace_choose(recorder->pace, stage->renderer, &coming, wanted);
+        *out = tl_quality_governor_choose(recorder->governor, stage->renderer, &coming, wanted);
     }
     return true;
 }
@@ -178,12 +178,12 @@ static bool choose(struct recorder *recorder, const struct tl_settings *wanted, 
 static bool draw_timed(struct recorder *recorder, int number, struct tl_flight_frame *frame, tl_error *error)
 {
     struct tl_stage *stage = recorder->stage;
-    struct tl_pace_choice choice;
+    struct tl_quality_choice choice;
     const struct tl_settings wanted = settings_at(stage, recorder->flight, number);
     struct tl_stopwatch watch = tl_stopwatch_start();
     if (!choose(recorder, &wanted, number, &choice, error))
         return false;
-    const struct tl_settings settings = tl_levels_apply(&choice.levels, &wanted);
+    const struct tl_settings settings = tl_quality_apply(&choice.levels, &wanted);
     struct tl_stopwatch cloth_watch = tl_stopwatch_start();
     if (!tl_session_apply(stage->session, &settings, error) ||
         (number > 0 && !tl_motion_advance(&recorder->motion, number, error)))
@@ -207,8 +207,8 @@ static bool record_frame(struct recorder *recorder, int number, tl_error *error)
     if (!draw_timed(recorder, number, &frame, error))
         return false;
     const tl_plan *plan = tl_renderer_last_plan(recorder->stage->renderer);
-    if (recorder->pace)
-        tl_pace_learn(recorder->pace, plan, frame.cloth_ms, frame.total_ms);
+    if (recorder->governor)
+        tl_quality_governor_learn(recorder->governor, plan, frame.cloth_ms, frame.total_ms);
     record_jobs(flight, plan, &frame);
     frame.memory_bytes = tl_renderer_memory(recorder->stage->renderer).total;
     flight->frames[number] = frame;
@@ -235,7 +235,7 @@ bool tl_fly(struct tl_stage *stage, const struct tl_fly_options *options, struct
     *path = (struct tl_path){0};
     struct recorder recorder = {.stage = stage, .options = options, .flight = out};
     if (!options->replay)
-        recorder.pace = tl_pace_create(options->budget_ms);
+        recorder.governor = tl_quality_governor_create(options->budget_ms);
     struct tl_progress progress = tl_progress_begin("flying");
     bool done = begin_motion(stage, out, &recorder.motion, error);
     for (int number = 0; done && number < options->frames; number++) {
@@ -246,7 +246,7 @@ bool tl_fly(struct tl_stage *stage, const struct tl_fly_options *options, struct
         tl_progress_update(&progress, number + 1, options->frames);
     }
     tl_progress_end(&progress);
-    tl_pace_destroy(&recorder.pace);
+    tl_quality_governor_destroy(&recorder.governor);
     return done;
 }
 
@@ -296,7 +296,7 @@ bool tl_fly_judge(struct tl_stage *stage, struct tl_flight *flight, tl_error *er
     for (int number = 0; done && judged < flight->kept_count; number++) {
         struct tl_flight_frame *frame = &flight->frames[number];
         const struct tl_settings wanted = settings_at(stage, flight, number);
-        const struct tl_settings settings = tl_levels_apply(&frame->levels, &wanted);
+        const struct tl_settings settings = tl_quality_apply(&frame->levels, &wanted);
         done = tl_session_apply(stage->session, &settings, error) &&
                (number == 0 || tl_motion_advance(&motion, number, error));
         if (done && flight->kept[judged].frame == number)

@@ -22,7 +22,7 @@ struct tl_flight_frame {
     double predicted_ms; /* NaN: nothing was known yet */
     double error;        /* estimated, of what the levels shed; NaN: unknown */
     double job_ms[TL_JOBS_MAX];
-    struct tl_levels levels;
+    struct tl_quality levels;
     size_t memory_bytes;        /* the renderer's */
     uint64_t hash;              /* of the linear image; 0: not asked for */
     double flip_mean, rel_rmse; /* against the oracle; NaN: not measured */

@@ -12,7 +12,7 @@
 #define LIMIT_CSV_BYTES ((size_t)256 << 20)
 #define COLUMNS_MAX     128
 
-/* Columns of one number each; beside them: frame, warm_up, image_hash, level_KNOB, job_NAME_ms. */
+/* Columns of one number each; beside them: frame, warm_up, image_hash, level_CONTROL, job_NAME_ms. */
 static const struct {
     const char *name;
     size_t offset;
@@ -40,8 +40,8 @@ static void write_heads(const struct tl_flight *flight, FILE *out)
     for (size_t i = 0; i < TL_COUNT(numbers); i++)
         fprintf(out, ",%s", numbers[i].name);
     fputs(",memory_bytes", out);
-    for (int knob = 0; knob < TL_KNOB_COUNT; knob++)
-        fprintf(out, ",level_%s", tl_knob_names[knob]);
+    for (int control = 0; control < TL_CONTROL_COUNT; control++)
+        fprintf(out, ",level_%s", tl_control_names[control]);
     for (int job = 0; job < flight->job_count; job++)
         if (ever_ran(flight, job))
             fprintf(out, ",job_%s_ms", flight->job_names[job]);
@@ -61,8 +61,8 @@ void tl_flight_write_csv(const struct tl_flight *flight, FILE *out)
                 fprintf(out, numbers[k].format, value);
         }
         fprintf(out, ",%zu", frame->memory_bytes);
-        for (int knob = 0; knob < TL_KNOB_COUNT; knob++)
-            fprintf(out, ",%d", frame->levels.of[knob]);
+        for (int control = 0; control < TL_CONTROL_COUNT; control++)
+            fprintf(out, ",%d", frame->levels.of[control]);
         for (int job = 0; job < flight->job_count; job++)
             if (ever_ran(flight, job))
                 fprintf(out, ",%.4f", frame->job_ms[job]);
@@ -125,9 +125,9 @@ static void know_column(struct table *table, const char *name, struct tl_flight 
     for (size_t i = 0; i < TL_COUNT(numbers); i++)
         if (strcmp(name, numbers[i].name) == 0)
             kind = NUMBER, index = (int)i;
-    for (int knob = 0; knob < TL_KNOB_COUNT; knob++)
-        if (strncmp(name, "level_", 6) == 0 && strcmp(name + 6, tl_knob_names[knob]) == 0)
-            kind = LEVEL, index = knob;
+    for (int control = 0; control < TL_CONTROL_COUNT; control++)
+        if (strncmp(name, "level_", 6) == 0 && strcmp(name + 6, tl_control_names[control]) == 0)
+            kind = LEVEL, index = control;
     bool is_job = strncmp(name, "job_", 4) == 0 && length > 7 && strcmp(name + length - 3, "_ms") == 0;
     if (is_job && flight->job_count < TL_JOBS_MAX) {
         kind = JOB, index = flight->job_count++;
@@ -154,8 +154,8 @@ static bool read_heads(struct table *table, char *line, struct tl_flight *flight
     }
     if (!has_column(table, FRAME, 0) || !has_column(table, NUMBER, 0))
         return fail(table, "has no columns frame and total_ms");
-    for (int knob = 0; knob < TL_KNOB_COUNT; knob++)
-        if (!has_column(table, LEVEL, knob))
+    for (int control = 0; control < TL_CONTROL_COUNT; control++)
+        if (!has_column(table, LEVEL, control))
             return fail(table, "lacks a column of levels");
     return true;
 }
@@ -204,7 +204,7 @@ static bool read_frame(struct table *table, char *line, struct tl_flight *flight
             return column < table->column_count ? false : fail(table, "has more cells than heads");
     if (column < table->column_count)
         return fail(table, "has fewer cells than heads");
-    if (!tl_levels_exist(&frame->levels))
+    if (!tl_quality_is_valid(&frame->levels))
         return fail(table, "there is no such level");
     flight->count++;
     return true;

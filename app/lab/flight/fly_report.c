@@ -262,36 +262,37 @@ static void print_job_table(const struct tl_flight *flight, FILE *out)
     tl_cells_print(&cells, TL_COUNT(heads), out);
 }
 
-static int highest_level(const struct tl_flight *flight, int knob)
+static int highest_level(const struct tl_flight *flight, int control)
 {
     int highest = 0;
     for (int i = 0; i < flight->count; i++)
-        if (flight->frames[i].levels.of[knob] > highest)
-            highest = flight->frames[i].levels.of[knob];
+        if (flight->frames[i].levels.of[control] > highest)
+            highest = flight->frames[i].levels.of[control];
     return highest;
 }
 
-/* A lane for each knob that was turned, the first on top. */
+/* A lane for each control that was turned, the first on top. */
 static void print_levels(const struct tl_flight *flight, FILE *out)
 {
     const double lane_height = 46, used = 0.72; /* of a lane, for its levels */
     struct lines lines = make_lines(flight);
-    struct tl_plot_guide lanes[TL_KNOB_COUNT];
-    char names[TL_KNOB_COUNT][40];
+    struct tl_plot_guide lanes[TL_CONTROL_COUNT];
+    char names[TL_CONTROL_COUNT][40];
     size_t count = 0;
-    for (int knob = 0; knob < TL_KNOB_COUNT; knob++)
-        count += highest_level(flight, knob) > 0;
+    for (int control = 0; control < TL_CONTROL_COUNT; control++)
+        count += highest_level(flight, control) > 0;
     double base = (double)count;
-    for (int knob = 0; knob < TL_KNOB_COUNT; knob++) {
-        int highest = highest_level(flight, knob);
+    for (int control = 0; control < TL_CONTROL_COUNT; control++) {
+        int highest = highest_level(flight, control);
         if (!highest)
             continue;
         base--;
         lanes[lines.series_count] = (struct tl_plot_guide){base, ""};
-        snprintf(names[lines.series_count], sizeof *names, "%s, up to %d", tl_knob_names[knob], highest);
+        snprintf(names[lines.series_count], sizeof *names, "%s, up to %d", tl_control_names[control],
+                 highest);
         struct tl_plot_point *points = add_line(&lines, flight, names[lines.series_count]);
         for (int i = 0; i < flight->count; i++)
-            points[i].y = base + used * flight->frames[i].levels.of[knob] / highest;
+            points[i].y = base + used * flight->frames[i].levels.of[control] / highest;
     }
     tl_report_heading(out, "What was shed to keep the time");
     if (!count) {
@@ -307,7 +308,7 @@ static void print_levels(const struct tl_flight *flight, FILE *out)
     manner.height = 66 + lane_height * (double)count;
     print_lines(
         &lines, "levels", &manner,
-        "On its line a knob is where the settings want it; above, cheaper and worse by as many levels. "
+        "On its line a control is where the settings want it; above, cheaper and worse by as many levels. "
         "Knobs that are not shown stayed on their line.",
         out);
 }

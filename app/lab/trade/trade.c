@@ -31,8 +31,8 @@ struct run {
 struct entry {
     const struct tl_technique *technique;
     struct tl_variant_run variant;
-    struct tl_settings settings; /* before the governor's levels */
-    tl_pace *pace;               /* NULL: no budget */
+    struct tl_settings settings;   /* before the governor's levels */
+    tl_quality_governor *governor; /* NULL: no budget */
 };
 
 static tl_frame frame_of(const struct run *run, int number)
@@ -113,14 +113,15 @@ static bool draw(struct run *run, struct entry *entry, int number, struct tl_tak
         return tl_fail(error, TL_INTERRUPTED, "trade: stopped: what was measured is written");
     struct tl_variant_run *variant = &entry->variant;
     tl_frame frame = frame_of(run, number);
-    if (!entry->pace)
+    if (!entry->governor)
         return tl_variant_run_draw(variant, &frame, taken, error);
-    struct tl_pace_choice choice = tl_pace_choose(entry->pace, variant->renderer, &frame, &entry->settings);
-    struct tl_settings levelled = tl_levels_apply(&choice.levels, &entry->settings);
+    struct tl_quality_choice choice =
+        tl_quality_governor_choose(entry->governor, variant->renderer, &frame, &entry->settings);
+    struct tl_settings levelled = tl_quality_apply(&choice.levels, &entry->settings);
     variant->settings = tl_settings_render(&levelled);
     if (!tl_variant_run_draw(variant, &frame, taken, error))
         return false;
-    tl_pace_learn(entry->pace, tl_renderer_last_plan(variant->renderer), 0, taken->wall_ms);
+    tl_quality_governor_learn(entry->governor, tl_renderer_last_plan(variant->renderer), 0, taken->wall_ms);
     return true;
 }
 
@@ -134,7 +135,7 @@ static bool measure_motion(struct run *run, struct entry *entry, tl_error *error
     struct tl_taken taken = {0};
     struct tl_measured_error first = {0}, last;
     struct tl_variant_run *variant = &entry->variant;
-    bool remembers = entry->pace || tl_variant_run_has_history(variant);
+    bool remembers = entry->governor || tl_variant_run_has_history(variant);
     for (int number = remembers ? 0 : warm - 1; number < warm; number++)
         if (!draw(run, entry, number, &taken, error))
             return false;
@@ -196,7 +197,7 @@ static bool repeat(struct run *run, const struct entry *entry)
     struct tl_trade *trade = run->trade;
     size_t count = trade->row_count;
     const char *earlier = NULL;
-    for (size_t i = 0; i < count && !entry->pace; i++) {
+    for (size_t i = 0; i < count && !entry->governor; i++) {
         struct tl_trade_row same = trade->rows[i];
         if (same.appearance != run->appearance || same.budget_ms > 0 ||
             !same_settings(&same.settings, &entry->variant.settings))
@@ -225,8 +226,9 @@ static void note_refusal(struct tl_trade *trade, const char *name, const tl_erro
 static bool enter(struct run *run, const struct tl_technique *technique, struct entry *out, tl_error *error)
 {
     const struct tl_settings *scene = &run->stage->settings;
-    *out = (struct entry){.technique = technique,
-                          .pace = technique->budget_ms > 0 ? tl_pace_create(technique->budget_ms) : NULL};
+    *out = (struct entry){
+        .technique = technique,
+        .governor = technique->budget_ms > 0 ? tl_quality_governor_create(technique->budget_ms) : NULL};
     return tl_setup_apply(&technique->setup, scene, &out->settings, error) &&
            tl_variant_run_create(&out->variant, run->stage->gpu, &technique->setup, scene, error);
 }
@@ -241,7 +243,7 @@ static bool measure_technique(struct run *run, const struct tl_technique *techni
         done = measure_motion(run, &entry, &refusal) &&
                (!run->experiment->rests || measure_rest(run, &entry, &refusal));
     tl_variant_run_release(&entry.variant);
-    tl_pace_destroy(&entry.pace);
+    tl_quality_governor_destroy(&entry.governor);
     if (done)
         return true;
     if (refusal.code != TL_USAGE) {

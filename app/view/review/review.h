@@ -88,9 +88,9 @@ struct tl_review {
     int redraws;             /* frames to present with the same image, because the panel changes */
     double moved_s;          /* time of the last move of the camera, the light or a slider */
     double shown_s;          /* time of the last presented frame */
-    tl_pace *pace;
-    struct tl_pace_choice pace_choice; /* of the last image */
-    bool is_paced, is_new;             /* the last image: drawn within the budget; not presented yet */
+    tl_quality_governor *governor;
+    struct tl_quality_choice quality_choice; /* of the last image */
+    bool is_paced, is_new;                   /* the last image: drawn within the budget; not presented yet */
     tl_history *history;
 
     bool playing, closing, help_shown, reads_out;

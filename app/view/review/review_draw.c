@@ -80,7 +80,8 @@ static void record_time(struct tl_review *review)
     }
     review->times.frame = frame_ms;
     tl_frame_times_add(&review->frame_times, frame_ms);
-    tl_pace_learn(review->pace, tl_renderer_last_plan(review->renderer), review->times.cloth, frame_ms);
+    tl_quality_governor_learn(review->governor, tl_renderer_last_plan(review->renderer), review->times.cloth,
+                              frame_ms);
 }
 
 bool tl_review_present(struct tl_review *review, tl_error *error)
@@ -145,9 +146,10 @@ static bool draw_with(struct tl_review *review, tl_renderer *renderer, const str
 static void choose_levels(struct tl_review *review, const struct tl_settings *settings)
 {
     double budget_ms = (double)review->params.budget_ms;
-    tl_pace_set_budget(review->pace, review->wipe.renderer ? budget_ms / 2 : budget_ms);
+    tl_quality_governor_set_budget(review->governor, review->wipe.renderer ? budget_ms / 2 : budget_ms);
     const tl_frame coming = tl_session_frame(review->session);
-    review->pace_choice = tl_pace_choose(review->pace, review->renderer, &coming, settings);
+    review->quality_choice =
+        tl_quality_governor_choose(review->governor, review->renderer, &coming, settings);
 }
 
 /* Applies `settings` to the session, simulates a frame when one is due, and draws; both appearances when two
@@ -155,17 +157,17 @@ static void choose_levels(struct tl_review *review, const struct tl_settings *se
 static bool draw_image(struct tl_review *review, const struct tl_settings *settings, bool is_paced,
                        tl_error *error)
 {
-    struct tl_levels *levels = &review->pace_choice.levels;
+    struct tl_quality *levels = &review->quality_choice.levels;
     review->times.lap_s = tl_clock_s();
     if (!is_paced)
-        *levels = (struct tl_levels){{0}};
-    struct tl_settings b = tl_levels_apply(
+        *levels = (struct tl_quality){{0}};
+    struct tl_settings b = tl_quality_apply(
         levels, settings); /* the last frame's levels: the new camera is needed to choose the next */
     if (!tl_session_apply(review->session, &b, error))
         return false;
     if (is_paced)
         choose_levels(review, settings);
-    b = tl_levels_apply(levels, settings);
+    b = tl_quality_apply(levels, settings);
     if (!tl_session_apply(review->session, &b, error))
         return false;
     tl_review_lap(review, "settings and levels");
@@ -174,7 +176,7 @@ static bool draw_image(struct tl_review *review, const struct tl_settings *setti
     double started_s = tl_clock_s();
     if (review->wipe.renderer) {
         const struct tl_settings other = tl_review_settings_a(review, settings),
-                                 a = tl_levels_apply(levels, &other);
+                                 a = tl_quality_apply(levels, &other);
         if (!draw_with(review, review->wipe.renderer, &a, error))
             return false;
         review->times.began_s += tl_clock_s() - started_s; /* the governor learns from one renderer, B's */
@@ -233,8 +235,8 @@ static bool redraw(struct tl_review *review, bool is_paced, tl_error *error)
 
 bool tl_review_is_sharp(const struct tl_review *review)
 {
-    for (int i = 0; i < TL_KNOB_COUNT; i++)
-        if (review->pace_choice.levels.of[i] > 0)
+    for (int i = 0; i < TL_CONTROL_COUNT; i++)
+        if (review->quality_choice.levels.of[i] > 0)
             return false;
     return true;
 }

@@ -56,10 +56,10 @@ static struct tl_prepared_request light_of(const struct tl_review *review, const
     struct tl_prepared_request request = {.settings = tl_settings_render(settings)};
     request.region_counts[0] = settings->light.regions;
     for (int level = 1; review->params.budget_ms > 0 && level < TL_PREPARED_COUNTS_MAX; level++) {
-        struct tl_levels levels = {.of[TL_KNOB_REGIONS] = (uint8_t)level};
-        if (!tl_levels_exist(&levels))
+        struct tl_quality levels = {.of[TL_CONTROL_REGIONS] = (uint8_t)level};
+        if (!tl_quality_is_valid(&levels))
             break;
-        int regions = tl_levels_apply(&levels, settings).light.regions;
+        int regions = tl_quality_apply(&levels, settings).light.regions;
         request.region_counts[level] = regions < request.region_counts[level - 1] ? regions : 0;
         if (request.region_counts[level] == 0)
             break;

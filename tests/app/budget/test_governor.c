@@ -15,17 +15,17 @@ static struct tl_settings full_settings(void)
     return settings;
 }
 
-static struct tl_settings at(enum tl_knob knob, uint8_t level, const struct tl_settings *full)
+static struct tl_settings at(enum tl_control control, uint8_t level, const struct tl_settings *full)
 {
-    struct tl_levels levels = {{0}};
-    levels.of[knob] = level;
-    return tl_levels_apply(&levels, full);
+    struct tl_quality levels = {{0}};
+    levels.of[control] = level;
+    return tl_quality_apply(&levels, full);
 }
 
 static void level_0_is_what_was_asked_for(void **state)
 {
     (void)state;
-    struct tl_settings full = full_settings(), same = at(TL_KNOB_SCALE, 0, &full);
+    struct tl_settings full = full_settings(), same = at(TL_CONTROL_SCALE, 0, &full);
     assert_true(tl_settings_equal(&full, &same));
 }
 
@@ -37,27 +37,27 @@ static void levels_change_their_own_setting(void **state)
     full.light.regions = 192;
     full.light.refresh = 24;
     full.detail.steps = 32;
-    s = at(TL_KNOB_REFRESH, 2, &full);
+    s = at(TL_CONTROL_REFRESH, 2, &full);
     assert_int_equal(s.light.refresh, 6);
     s.light.refresh = full.light.refresh;
     assert_true(tl_settings_equal(&full, &s));
 
     const int regions[] = {192, 96, 48, 24};
     for (uint8_t level = 0; level < 4; level++) {
-        s = at(TL_KNOB_REGIONS, level, &full);
+        s = at(TL_CONTROL_REGIONS, level, &full);
         assert_int_equal(s.light.regions, regions[level]);
         assert_int_equal(s.light.refresh, 24);
     }
     s.light.regions = full.light.regions;
     assert_true(tl_settings_equal(&full, &s));
 
-    s = at(TL_KNOB_RELIEF, 1, &full);
+    s = at(TL_CONTROL_RELIEF, 1, &full);
     assert_int_equal(s.detail.steps, 16);
     s.detail.steps = full.detail.steps;
     assert_true(tl_settings_equal(&full, &s));
 
     full.image.scale = 0.8f;
-    s = at(TL_KNOB_SCALE, 4, &full);
+    s = at(TL_CONTROL_SCALE, 4, &full);
     assert_near(s.image.scale, 0.4, 1e-6);
     s.image.scale = full.image.scale;
     assert_true(tl_settings_equal(&full, &s));
@@ -65,10 +65,10 @@ static void levels_change_their_own_setting(void **state)
     full.cloth.frame_rate = 30;
     full.cloth.dt = 1.0 / 60;
     full.cloth.substeps = 30;
-    s = at(TL_KNOB_CLOTH, 1, &full); /* one step a frame instead of two */
+    s = at(TL_CONTROL_CLOTH, 1, &full); /* one step a frame instead of two */
     assert_near(s.cloth.dt, 1.0 / 30, 1e-12);
     assert_int_equal(s.cloth.substeps, 30);
-    s = at(TL_KNOB_CLOTH, 2, &full); /* and half its substeps */
+    s = at(TL_CONTROL_CLOTH, 2, &full); /* and half its substeps */
     assert_near(s.cloth.dt, 1.0 / 30, 1e-12);
     assert_int_equal(s.cloth.substeps, 15);
 }
@@ -82,8 +82,8 @@ static void levels_end_somewhere(void **state)
     full.light.refresh = 1;
     full.detail.steps = 4;
     full.image.scale = 0.12f;
-    for (int knob = 0; knob < TL_KNOB_COUNT; knob++) {
-        struct tl_settings s = at((enum tl_knob)knob, 2, &full);
+    for (int control = 0; control < TL_CONTROL_COUNT; control++) {
+        struct tl_settings s = at((enum tl_control)control, 2, &full);
         assert_int_equal(s.light.regions, 12);
         assert_int_equal(s.light.refresh, 1);
         assert_int_equal(s.detail.steps, 4);
@@ -91,7 +91,7 @@ static void levels_end_somewhere(void **state)
     }
     full.light.refresh = 0; /* all */
     full.light.regions = 192;
-    assert_int_equal(at(TL_KNOB_REFRESH, 1, &full).light.refresh, 96);
+    assert_int_equal(at(TL_CONTROL_REFRESH, 1, &full).light.refresh, 96);
 }
 
 /* Whatever the settings ask for, no level below is thought to be as good. */
@@ -101,15 +101,15 @@ static void what_is_asked_for_errs_least(void **state)
     struct tl_settings full = full_settings();
     const int regions[] = {384, 192, 96};
     for (size_t i = 0; i < sizeof regions / sizeof *regions; i++)
-        for (int knob = 0; knob < TL_KNOB_COUNT; knob++) {
+        for (int control = 0; control < TL_CONTROL_COUNT; control++) {
             full.light.regions = regions[i];
             full.light.refresh = 0;
-            const struct tl_level_scope scope = tl_level_scope_of(&full);
-            struct tl_levels levels = {{0}};
-            assert_near(tl_levels_error(&levels, &scope), 0, 0);
-            for (int level = 1; level < tl_levels_count((enum tl_knob)knob, &scope); level++) {
-                levels.of[knob] = (uint8_t)level;
-                assert_true(tl_levels_error(&levels, &scope) > 0);
+            const struct tl_quality_scope scope = tl_quality_scope_of(&full);
+            struct tl_quality levels = {{0}};
+            assert_near(tl_quality_error(&levels, &scope), 0, 0);
+            for (int level = 1; level < tl_quality_count((enum tl_control)control, &scope); level++) {
+                levels.of[control] = (uint8_t)level;
+                assert_true(tl_quality_error(&levels, &scope) > 0);
             }
         }
 }
@@ -189,7 +189,7 @@ static struct tl_settings small_settings(void)
 }
 
 /* Always worth shedding; other regions take a cut, which a small image may not be worth. */
-static const enum tl_knob dear[2] = {TL_KNOB_REFRESH, TL_KNOB_SCALE};
+static const enum tl_control dear[2] = {TL_CONTROL_REFRESH, TL_CONTROL_SCALE};
 
 /* The first frame is whole; after it, as nothing was drawn, the table's costs decide. No budget gives
  * everything, none at all the least. */
@@ -205,36 +205,37 @@ static void budgets_are_kept_to(void **state)
     double before = INFINITY;
     const double budgets[] = {1e-3, 5, 10, 20, 50, 200, 1e6};
     for (size_t i = 0; i < sizeof budgets / sizeof *budgets; i++) {
-        tl_pace *pace = tl_pace_create(budgets[i]);
-        struct tl_pace_choice choice = tl_pace_choose(pace, fresh, &frame, &settings);
+        tl_quality_governor *governor = tl_quality_governor_create(budgets[i]);
+        struct tl_quality_choice choice = tl_quality_governor_choose(governor, fresh, &frame, &settings);
         assert_true(isnan(choice.predicted_ms));
         assert_near(choice.error, 0, 0);
-        tl_pace_learn(pace, tl_renderer_last_plan(fresh), 0, 0);
-        choice = tl_pace_choose(pace, fresh, &frame, &settings);
+        tl_quality_governor_learn(governor, tl_renderer_last_plan(fresh), 0, 0);
+        choice = tl_quality_governor_choose(governor, fresh, &frame, &settings);
         assert_true(choice.error <= before);
         before = choice.error;
         for (size_t k = 0; k < 2; k++) /* the others cost nothing here, that is known of */
             assert_true(i > 0 || choice.levels.of[dear[k]] > 0);
-        tl_pace_destroy(&pace);
+        tl_quality_governor_destroy(&governor);
     }
     assert_near(before, 0, 0);
-    tl_pace *pace = tl_pace_create(0);
-    assert_near(tl_pace_choose(pace, fresh, &frame, &settings).error, 0, 0);
-    tl_pace_destroy(&pace);
+    tl_quality_governor *governor = tl_quality_governor_create(0);
+    assert_near(tl_quality_governor_choose(governor, fresh, &frame, &settings).error, 0, 0);
+    tl_quality_governor_destroy(&governor);
     tl_renderer_destroy(&fresh);
 }
 
 /* Draws as fly and the window do; what frames "took" is made up, and dearer than any budget. */
-static struct tl_pace_choice draw_frame(struct device *device, tl_pace *pace, const tl_frame *frame,
-                                        double total_ms)
+static struct tl_quality_choice draw_frame(struct device *device, tl_quality_governor *governor,
+                                           const tl_frame *frame, double total_ms)
 {
     tl_error error = {0};
     const struct tl_settings settings = small_settings();
-    struct tl_pace_choice choice = tl_pace_choose(pace, device->renderer, frame, &settings);
-    const struct tl_settings now = tl_levels_apply(&choice.levels, &settings);
+    struct tl_quality_choice choice =
+        tl_quality_governor_choose(governor, device->renderer, frame, &settings);
+    const struct tl_settings now = tl_quality_apply(&choice.levels, &settings);
     const struct tl_render_settings drawn = tl_settings_render(&now);
     assert_ok(tl_renderer_draw(device->renderer, frame, &drawn, &error), error);
-    tl_pace_learn(pace, tl_renderer_last_plan(device->renderer), 0.5, total_ms);
+    tl_quality_governor_learn(governor, tl_renderer_last_plan(device->renderer), 0.5, total_ms);
     return choice;
 }
 
@@ -243,22 +244,22 @@ static struct tl_pace_choice draw_frame(struct device *device, tl_pace *pace, co
 static void rest_gives_everything_back(void **state)
 {
     struct device *device = *state;
-    tl_pace *pace = tl_pace_create(1e-3);
+    tl_quality_governor *governor = tl_quality_governor_create(1e-3);
     tl_frame frame = frame_of(device);
-    struct tl_pace_choice choice;
+    struct tl_quality_choice choice;
     for (int i = 0; i < 6; i++) {
         frame.camera.eye.x += 0.01f;
-        choice = draw_frame(device, pace, &frame, 50);
+        choice = draw_frame(device, governor, &frame, 50);
     }
-    assert_true(choice.levels.of[TL_KNOB_SCALE] > 0 && choice.levels.of[TL_KNOB_REFRESH] > 0);
+    assert_true(choice.levels.of[TL_CONTROL_SCALE] > 0 && choice.levels.of[TL_CONTROL_REFRESH] > 0);
     assert_true(isfinite(choice.predicted_ms));
     for (int i = 0; i < 5; i++)
-        choice = draw_frame(device, pace, &frame, 50);
+        choice = draw_frame(device, governor, &frame, 50);
     assert_near(choice.error, 0, 0);
     frame.camera.eye.x += 0.01f;
-    choice = draw_frame(device, pace, &frame, 50);
-    assert_true(choice.levels.of[TL_KNOB_SCALE] > 0);
-    tl_pace_destroy(&pace);
+    choice = draw_frame(device, governor, &frame, 50);
+    assert_true(choice.levels.of[TL_CONTROL_SCALE] > 0);
+    tl_quality_governor_destroy(&governor);
 }
 
 /* The last levels, one by one. */
@@ -266,22 +267,22 @@ static void steps_tell_what_a_level_is_worth(void **state)
 {
     struct device *device = *state;
     const struct tl_settings settings = small_settings();
-    tl_pace *pace = tl_pace_create(1e-3);
+    tl_quality_governor *governor = tl_quality_governor_create(1e-3);
     tl_frame frame = frame_of(device);
     for (int i = 0; i < 6; i++) {
         frame.camera.eye.x += 0.01f;
-        draw_frame(device, pace, &frame, 50);
+        draw_frame(device, governor, &frame, 50);
     }
-    struct tl_pace_step steps[TL_KNOB_COUNT];
-    tl_pace_steps(pace, device->renderer, &frame, &settings, steps);
+    struct tl_quality_step steps[TL_CONTROL_COUNT];
+    tl_quality_governor_steps(governor, device->renderer, &frame, &settings, steps);
     for (size_t k = 0; k < 2; k++)
         assert_int_equal(steps[dear[k]].level, steps[dear[k]].level_count - 1);
-    for (int k = 0; k < TL_KNOB_COUNT; k++) {
+    for (int k = 0; k < TL_CONTROL_COUNT; k++) {
         assert_true(steps[k].level == 0 ? isnan(steps[k].error) : steps[k].error > 0);
     }
-    assert_true(steps[TL_KNOB_SCALE].ms > 0);
-    assert_near(steps[TL_KNOB_REFRESH].value, 6, 0);
-    tl_pace_destroy(&pace);
+    assert_true(steps[TL_CONTROL_SCALE].ms > 0);
+    assert_near(steps[TL_CONTROL_REFRESH].value, 6, 0);
+    tl_quality_governor_destroy(&governor);
 }
 
 int main(void)

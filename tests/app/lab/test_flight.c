@@ -45,9 +45,9 @@ static struct tl_flight make_record(void)
 {
     struct tl_flight record = {.frames = TL_NEW_ARRAY(struct tl_flight_frame, FRAMES), .count = FRAMES};
     for (int i = 0; i < FRAMES; i++) {
-        record.frames[i].levels.of[TL_KNOB_CLOTH] = i >= 2 && i < 4;
-        record.frames[i].levels.of[TL_KNOB_REGIONS] = (uint8_t)(i % 2);
-        record.frames[i].levels.of[TL_KNOB_SCALE] = (uint8_t)(i / 2);
+        record.frames[i].levels.of[TL_CONTROL_CLOTH] = i >= 2 && i < 4;
+        record.frames[i].levels.of[TL_CONTROL_REGIONS] = (uint8_t)(i % 2);
+        record.frames[i].levels.of[TL_CONTROL_SCALE] = (uint8_t)(i / 2);
     }
     return record;
 }

@@ -41,7 +41,7 @@ static struct tl_flight make_flight(int count, uint32_t seed)
         frame->total_ms = frame->cloth_ms + frame->job_ms[0] + frame->job_ms[1] + frame->job_ms[2];
         frame->predicted_ms = 1.02 * frame->total_ms;
         frame->error = 0.01;
-        frame->levels.of[TL_KNOB_SCALE] = (uint8_t)(i % 3);
+        frame->levels.of[TL_CONTROL_SCALE] = (uint8_t)(i % 3);
     }
     return flight;
 }

@@ -1,0 +1,55 @@
+/* Quality controls: what is reduced so that a frame fits its budget, level by level; what a level makes of
+ * the settings, and how much it adds to their error.
+ *
+ * Errors are mean FLIP against the ray-traced image over covered pixels, in motion, and independent: their
+ * squares add. They are measured by `toile trade --axis levels`. Threads: all functions are pure. */
+#ifndef TOILE_APP_BUDGET_QUALITY_H
+#define TOILE_APP_BUDGET_QUALITY_H
+
+#include "app/scene/settings.h"
+
+#include <stdint.h>
+
+/* In the order in which the loss is least noticed. */
+enum tl_control {
+    TL_CONTROL_REFRESH, /* light.refresh: visibility renewed a frame, of rays or of shadow maps */
+    TL_CONTROL_REGIONS, /* light.regions: how much of the tree of regions is used */
+    TL_CONTROL_RELIEF,  /* detail.steps, where relief is marched */
+    TL_CONTROL_CLOTH,   /* cloth.dt: substeps of the solver */
+    TL_CONTROL_SCALE,   /* image.scale: samples of the image, last of all */
+    TL_CONTROL_COUNT
+};
+extern const char *const tl_control_names[TL_CONTROL_COUNT + 1];
+
+/* Level 0 is what the settings ask for; each further one is cheaper. */
+struct tl_quality {
+    uint8_t of[TL_CONTROL_COUNT];
+};
+
+/* True when every level exists. Levels that are read from a file must be checked before they are used. */
+bool tl_quality_is_valid(const struct tl_quality *levels);
+
+/* The settings of a frame at these levels, which must exist. */
+struct tl_settings tl_quality_apply(const struct tl_quality *levels, const struct tl_settings *settings);
+
+/* The part of the settings that levels change: cheap to copy. */
+struct tl_quality_scope {
+    struct tl_render_settings drawn;
+    struct tl_cloth_params cloth;
+};
+
+/* That part of settings; the same at some levels. */
+struct tl_quality_scope tl_quality_scope_of(const struct tl_settings *settings);
+struct tl_quality_scope tl_quality_scope_at(const struct tl_quality *levels,
+                                            const struct tl_quality_scope *full);
+
+/* The number of levels of a control that differ in these settings: at least 1. */
+int tl_quality_count(enum tl_control control, const struct tl_quality_scope *full);
+
+/* The error that these levels add to that of the settings. */
+double tl_quality_error(const struct tl_quality *levels, const struct tl_quality_scope *full);
+
+/* The value that a control sets: regions, regions renewed, steps, substeps a frame, scale. */
+double tl_quality_value(enum tl_control control, const struct tl_quality_scope *scope);
+
+#endif
