@@ -1,6 +1,10 @@
 # Sourced by every cli_*.sh: each drives the real executable, TOILE, from an empty folder of its own that goes with it.
 # Checks are told as they are made and go on after a failure, which the exit status remembers.
 data=${TOILE_DATA:-${TOILE_DATA_DIR:-}}
+# What every start takes, whatever the size of its picture: the drape, and the light of each region for each texel of the
+# pre-filtered cubes and of the fabric's weave. Scripts that look at something else leave most of it out.
+cheap_light="--set light.regions=24 --set light.pem_size=16"
+cheap_cloth="--garment sheet --avatar ball --fabric none --set cloth.settle_s=0.2"
 room=$(mktemp -d)
 failed=0
 trap 'status=$?; rm -rf "$room"; exit $((status | failed))' EXIT

@@ -69,34 +69,39 @@ printf 'light: [1\n' >broken.yaml
 for file in good.glb good.obj good.pc2; do
     "$TOILE" info $file >/dev/null || fail "$file must load, or the tests below prove nothing"
 done
-"$TOILE" export -o played.glb --garment good.obj --motion good.pc2 --quiet && rm played.glb ||
+"$TOILE" export -o played.glb --env white --avatar ball --garment good.obj --motion good.pc2 --quiet && rm played.glb ||
     fail "good.pc2 must play"
 
+# other_GARMENT_OR_AVATAR: the rest of a scene that names one file, made in no time.
+other_garment="--env white --avatar ball"
+other_avatar="--env white --garment none"
 for kind in garment avatar; do
-    refuse "missing $kind" 'nowhere\.glb.*no such file' render -o a.png --$kind nowhere.glb
-    refuse "folder as $kind" 'folder\.glb.*folder' render -o a.png --$kind folder.glb
-    refuse "empty $kind" 'empty\.glb.*empty' render -o a.png --$kind empty.glb
-    refuse "text as $kind" 'text\.glb' render -o a.png --$kind text.glb
-    refuse "truncated $kind" 'truncated\.glb' render -o a.png --$kind truncated.glb
-    refuse "$kind whose length lies" 'huge\.glb' render -o a.png --$kind huge.glb
-    refuse "$kind whose counts lie" 'lies\.glb' render -o a.png --$kind lies.glb
-    refuse "$kind with an index out of range" 'index\.glb.*(index|vertex|range)' render -o a.png --$kind index.glb
-    refuse "$kind with NaN positions" 'nan\.glb.*(NaN|finite|number)' render -o a.png --$kind nan.glb
-    refuse "$kind without a mesh" 'nomesh\.glb.*(mesh|triangle)' render -o a.png --$kind nomesh.glb
+    other=other_$kind other=${!other}
+    refuse "missing $kind" 'nowhere\.glb.*no such file' render -o a.png $other --$kind nowhere.glb
+    refuse "folder as $kind" 'folder\.glb.*folder' render -o a.png $other --$kind folder.glb
+    refuse "empty $kind" 'empty\.glb.*empty' render -o a.png $other --$kind empty.glb
+    refuse "text as $kind" 'text\.glb' render -o a.png $other --$kind text.glb
+    refuse "truncated $kind" 'truncated\.glb' render -o a.png $other --$kind truncated.glb
+    refuse "$kind whose length lies" 'huge\.glb' render -o a.png $other --$kind huge.glb
+    refuse "$kind whose counts lie" 'lies\.glb' render -o a.png $other --$kind lies.glb
+    refuse "$kind with an index out of range" 'index\.glb.*(index|vertex|range)' render -o a.png $other --$kind index.glb
+    refuse "$kind with NaN positions" 'nan\.glb.*(NaN|finite|number)' render -o a.png $other --$kind nan.glb
+    refuse "$kind without a mesh" 'nomesh\.glb.*(mesh|triangle)' render -o a.png $other --$kind nomesh.glb
 done
 for kind in garment avatar; do
-    refuse "missing OBJ $kind" 'nowhere\.obj.*no such file' export -o a.glb --$kind nowhere.obj
-    refuse "text as OBJ $kind" 'text\.obj.*triangles' export -o a.glb --$kind text.obj
-    refuse "truncated OBJ $kind" 'truncated\.obj.*line' export -o a.glb --$kind truncated.obj
-    refuse "OBJ $kind with an index out of range" 'index\.obj.*out of range' export -o a.glb --$kind index.obj
-    refuse "OBJ $kind with NaN" 'nan\.obj: line 4.*nan' export -o a.glb --$kind nan.obj
-    refuse "OBJ $kind with words for numbers" 'words\.obj: line 4.*abc' export -o a.glb --$kind words.obj
-    refuse "OBJ $kind without faces" 'nomesh\.obj.*triangles' export -o a.glb --$kind nomesh.obj
+    other=other_$kind other=${!other}
+    refuse "missing OBJ $kind" 'nowhere\.obj.*no such file' export -o a.glb $other --$kind nowhere.obj
+    refuse "text as OBJ $kind" 'text\.obj.*triangles' export -o a.glb $other --$kind text.obj
+    refuse "truncated OBJ $kind" 'truncated\.obj.*line' export -o a.glb $other --$kind truncated.obj
+    refuse "OBJ $kind with an index out of range" 'index\.obj.*out of range' export -o a.glb $other --$kind index.obj
+    refuse "OBJ $kind with NaN" 'nan\.obj: line 4.*nan' export -o a.glb $other --$kind nan.obj
+    refuse "OBJ $kind with words for numbers" 'words\.obj: line 4.*abc' export -o a.glb $other --$kind words.obj
+    refuse "OBJ $kind without faces" 'nomesh\.obj.*triangles' export -o a.glb $other --$kind nomesh.obj
 done
-play="export -o a.glb --garment good.obj --motion"
+play="export -o a.glb $other_garment --garment good.obj --motion"
 refuse "missing motion" 'nowhere\.pc2.*no such file' $play nowhere.pc2
 refuse "motion of no known kind" 'good\.glb.*motion' $play good.glb
-refuse "motion without a garment" 'scene\.motion.*garment' export -o a.glb --garment none --motion good.pc2
+refuse "motion without a garment" 'scene\.motion.*garment' export -o a.glb --garment none --avatar ball --motion good.pc2
 refuse "truncated PC2" 'truncated\.pc2.*cut short' $play truncated.pc2
 refuse "PC2 of other points" 'count\.pc2.*1 points.*good\.obj has 3' $play count.pc2
 refuse "PC2 with NaN" 'nan\.pc2.*not finite' $play nan.pc2
@@ -112,14 +117,14 @@ refuse "sequence of other points" 'pose\.2\.obj.*1 vertices' $play 'pose.#.obj' 
 refuse "unknown units" 'units.*feet.*auto, m' render -o a.png --units feet
 refuse "export of no known kind" 'a\.fbx.*\.glb' export -o a.fbx
 refuse "frames as OBJ" 'a\.obj.*one frame' export -o a.obj --frames 0:3
-refuse "motion of no garment" 'a\.pc2.*garment' export -o a.pc2 --garment none --frames 0:3
+refuse "motion of no garment" 'a\.pc2.*garment' export -o a.pc2 --garment none --avatar ball --frames 0:3
 refuse "info of a broken PC2" 'lies\.pc2' info lies.pc2
 refuse "missing environment" 'nowhere\.exr.*no such file' render -o a.png --env nowhere.exr
 refuse "text as environment" 'text\.glb' render -o a.png --env text.glb
 refuse "zero-sized image" 'zero\.hdr' render -o a.png --env zero.hdr
 refuse "sequence without frames" 'sky\.##\.exr.*no file' render -o a.png --env 'sky.##.exr'
 refuse "sequence with a gap" 'gap\.2\.hdr.*missing' render -o a.png --env 'gap.#.hdr'
-refuse "sequence with a broken frame" 'torn\.2\.hdr' render -o a.png --env 'torn.#.hdr' --garment none --frame 1
+refuse "sequence with a broken frame" 'torn\.2\.hdr' render -o a.png --env 'torn.#.hdr' --garment none --avatar ball $cheap_light --frame 1
 refuse "unknown key" 'key\.yaml:2.*regionz.*regions' render key.yaml -o a.png
 refuse "value out of range" 'range\.yaml:2.*light\.regions' render range.yaml -o a.png
 refuse "wrong type" 'type\.yaml:2.*light\.regions' render type.yaml -o a.png
@@ -142,7 +147,7 @@ refuse "info of a broken file" 'text\.glb' info text.glb
 
 full=$(mktemp -d)
 if mount -t tmpfs -o size=8k tmpfs "$full" 2>/dev/null; then
-    fast="--preset draft --garment none --size 256x256"
+    fast="--preset draft --garment none --avatar ball $cheap_light --size 256x256"
     refuse "full disk, PNG" 'written' render -o "$full/a.png" $fast
     refuse "full disk, EXR" 'written' render -o "$full/a.exr" $fast
     [ -z "$(ls -A "$full")" ] || fail "full disk: files left: $(ls -A "$full")"

@@ -2,7 +2,7 @@
 # toile check through the real executable: a clean scene, a broken one that is kept and opened again, messages.
 set -eu
 . "$(dirname "$0")/cli.sh"
-quick="--set cloth.edge_m=0.06 --set cloth.settle_s=0.3 --fabric none --size 96x128 --set image.supersample=1 --set light.regions=48"
+quick="--set cloth.edge_m=0.06 --set cloth.settle_s=0.3 --fabric none --size 96x128 --set image.supersample=1 --set light.regions=48 --set light.pem_size=32"
 
 $TOILE check $quick --frames 8 --every 4 --furnace --json --quiet >clean.json
 check "a clean scene has its keys" sh -c 'grep -q "\"frames\":.*8" clean.json && grep -q "\"failed\":.*0" clean.json &&

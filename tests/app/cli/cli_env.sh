@@ -47,9 +47,9 @@ grep -q 'faces +X -X' cube.exr || fail "cube.exr does not say how it is laid out
 "$TOILE" env cube.exr -o guess.exr --layout latlong 2>&1 | grep -q 'taken for cube' || fail "a cube is not guessed"
 
 # A figure without a garment, in a file of the studio: the capture shows both.
-"$TOILE" env --capture --garment none -o captured.exr --layout paraboloid --size 16 --quiet || fail "--capture"
+"$TOILE" env --capture --garment none $cheap_light -o captured.exr --layout paraboloid --size 16 --quiet || fail "--capture"
 [ "$(shape captured.exr)" = "32 16" ] || fail "captured.exr: $(shape captured.exr)"
-"$TOILE" env --capture --garment none --set maps.capture_at='[0,0,2]' -o aside.exr --layout paraboloid --size 16 \
+"$TOILE" env --capture --garment none $cheap_light --set maps.capture_at='[0,0,2]' -o aside.exr --layout paraboloid --size 16 \
     --quiet || fail "--capture from aside"
 "$TOILE" compare aside.exr captured.exr --json | grep -q '"rel_rmse":[[:space:]]*0[,.]0*[,}]' &&
     fail "the figure is not seen from aside"

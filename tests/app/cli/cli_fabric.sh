@@ -38,7 +38,7 @@ printf '%s' "$told" | grep -q '4 x 4 mm a repeat, 1 mm deep' || fail "the scale 
 grep -q 'picture_mm: 4$' maps/height.yaml && grep -q 'depth_mm: 1 ' maps/height.yaml || fail "its scale: $(cat maps/height.yaml)"
 wear() {
     "$TOILE" render -o "$1" --garment sphere --avatar none --size 32x32 --set light.method=unshadowed \
-        --quiet "${@:2}" || fail "$1 is not drawn"
+        $cheap_light --quiet "${@:2}" || fail "$1 is not drawn"
 }
 wear shape.png
 "$TOILE" fabric shape.png -o shaped --repeat-mm 100 --height-mm 20 --quiet || fail "a picture is not baked"

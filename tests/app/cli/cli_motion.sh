@@ -48,9 +48,9 @@ check "so is what lies below the ground" grep -q 'sheet.obj: reached 1 m below t
 check "they are fine" awk '/^v / { lowest = $3 < lowest ? $3 : lowest } END { exit !(NR > 1000 && lowest > -0.001) }' fine.obj
 check "nothing is split or lifted where that is asked" sh -c "[ -z \"\$($TOILE export $sheet --set cloth.longest_edge_m=0 --set image.ground=false -o as_is.obj 2>&1)\" ] && [ \"\$(grep -c '^v ' as_is.obj)\" = 4 ]"
 $TOILE export $sheet --frames 0:2 --quiet -o sheet.pc2
-check "what was split is played on what was split" $TOILE render --garment fine.obj --motion sheet.pc2 --avatar none --preset draft --size 32x32 --quiet -o sheet.exr
+check "what was split is played on what was split" $TOILE render --garment fine.obj --motion sheet.pc2 --avatar none --fabric none --preset draft --size 32x32 $cheap_light --quiet -o sheet.exr
 
-fast="--preset draft --size 96x96 --avatar none --set image.ground=false --quiet"
+fast="--preset draft --size 96x96 --avatar none --fabric none --set image.ground=false $cheap_light --quiet"
 $TOILE render $fast $played skirt.pc2 --frames 0:4 -o seen.exr
 check "playback is rendered, frame by frame" sh -c '[ "$(md5sum seen.*.exr | cut -d" " -f1 | sort -u | wc -l)" = 5 ]'
 

@@ -4,7 +4,7 @@
 set -eu
 command -v python3 >/dev/null || { echo "skipped: JSON is not parsed: python3 is absent"; exit 77; }
 . "$(dirname "$0")/cli.sh"
-fast="--preset draft --size 128x96 --set cloth.edge_m=0.05 --quiet --frame 1 --json"
+fast="--preset draft --size 64x48 $cheap_cloth $cheap_light --quiet --frame 1 --json"
 
 cat >less.py <<'END'
 import json, sys
