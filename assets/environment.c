@@ -9,13 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-void tl_environment_release(tl_environment *environment)
-{
-    free(environment->name);
-    tl_image_release(&environment->image);
-    *environment = (tl_environment){0};
-}
-
 static void drop_alpha(tl_image *image)
 {
     if (image->channels == 3)

@@ -1,25 +1,10 @@
 #include "assets/garment.h"
 
-#include "config/memory.h"
-
-#include <stdlib.h>
+#include "assets/model.h"
 
 bool tl_garment_load(const char *path, tl_garment *out, tl_error *error)
 {
     return tl_garment_load_in(path, TL_UNITS_AUTO, out, error);
-}
-
-void tl_garment_take_pins(tl_garment *garment)
-{
-    const tl_model *model = &garment->model;
-    if (!model->pins)
-        return;
-    free(garment->pins);
-    garment->pin_count = 0;
-    garment->pins = TL_NEW_ARRAY(uint32_t, model->mesh.vertex_count);
-    for (uint32_t i = 0; i < model->mesh.vertex_count; i++)
-        if (model->pins[i] > 0.5f)
-            garment->pins[garment->pin_count++] = i;
 }
 
 bool tl_garment_load_in(const char *path, enum tl_units units, tl_garment *out, tl_error *error)
@@ -29,13 +14,4 @@ bool tl_garment_load_in(const char *path, enum tl_units units, tl_garment *out, 
         return false;
     tl_garment_take_pins(out);
     return true;
-}
-
-void tl_garment_release(tl_garment *garment)
-{
-    tl_model_release(&garment->model);
-    free(garment->pattern);
-    free(garment->seams);
-    free(garment->pins);
-    *garment = (tl_garment){0};
 }

@@ -1,6 +1,7 @@
 #include "assets/model_export.h"
 
-#include "assets/model.h"
+#include "assets/gltf/gltf_model.h"
+#include "assets/obj/wavefront.h"
 #include "config/file.h"
 
 #include <stdlib.h>
@@ -18,5 +19,14 @@ bool tl_model_export_glb(const char *path, const tl_surface *surfaces, size_t su
     }
     fwrite(data, 1, size, writer.stream); /* a failure is kept by the stream and seen by the commit */
     free(data);
+    return tl_writer_commit(&writer, error);
+}
+
+bool tl_model_export_obj(const char *path, const tl_model *model, const tl_surface *surface, tl_error *error)
+{
+    struct tl_writer writer;
+    if (!tl_writer_begin(&writer, path, error))
+        return false;
+    wave_write(writer.stream, model, surface);
     return tl_writer_commit(&writer, error);
 }

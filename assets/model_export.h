@@ -1,15 +1,20 @@
-/* tl_model_export_glb's way into tinygltf. Private to assets. */
+/* Draped garments as model files. */
 #ifndef TOILE_ASSETS_MODEL_EXPORT_H
 #define TOILE_ASSETS_MODEL_EXPORT_H
 
+#include "assets/base/model.h"
 #include "assets/base/surface.h"
 #include "config/error.h"
 
-/* What an F0 is multiplied by when a GGX lobe of these widths is shown by Ward's (model_extensions.c). */
-float model_ward_factor(float width_weft, float width_warp);
+/* Writes surfaces as one GLB: positions, normals, tangents, UVs, materials with colours and PNG maps.
+ *
+ * Errors: false with one message (TL_OUTPUT); an older file at `path` is then untouched.
+ * Lifetime: nothing is kept. Threads: several, to different paths. */
+bool tl_model_export_glb(const char *path, const tl_surface *surfaces, size_t surface_count, tl_error *error);
 
-/* The surfaces as one GLB in memory; free(*data). Message on failure names `path`. */
-bool gltf_write_glb(const char *path, const tl_surface *surfaces, size_t surface_count, char **data,
-                    size_t *size, tl_error *error);
+/* Writes a surface of `model` as OBJ: its file's points in its file's units, UVs, normals, groups.
+ *
+ * Errors, Lifetime, Threads: as tl_model_export_glb. */
+bool tl_model_export_obj(const char *path, const tl_model *model, const tl_surface *surface, tl_error *error);
 
 #endif

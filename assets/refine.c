@@ -1,6 +1,6 @@
 #include "assets/refine.h"
 
-#include "assets/gltf/rig.h"
+#include "assets/base/rig.h"
 #include "config/memory.h"
 
 #include <math.h>

@@ -5,7 +5,8 @@
 #ifndef TOILE_ASSETS_REFINE_H
 #define TOILE_ASSETS_REFINE_H
 
-#include "assets/garment.h"
+#include "assets/base/garment.h"
+#include "config/error.h"
 
 /* Of a garment from a file, neither sewn nor with a pattern. Old vertices keep their numbers; what is new
  * takes the mean of what its edge's ends have, and is pinned where both are. The garment follows no

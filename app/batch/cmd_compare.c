@@ -2,6 +2,7 @@
 #include "app/batch/commands.h"
 #include "app/cli/json.h"
 #include "assets/image/exr.h"
+#include "assets/image/image_file.h"
 #include "config/file.h"
 #include "render/metrics/compare.h"
 

@@ -2,6 +2,7 @@
 #include "app/batch/commands.h"
 #include "app/scene/headless.h"
 #include "app/scene/session.h"
+#include "assets/model_export.h"
 #include "assets/motion/point_cache.h"
 #include "config/file.h"
 #include "config/interrupt.h"

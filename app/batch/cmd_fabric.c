@@ -3,6 +3,7 @@
 #include "app/batch/commands.h"
 #include "app/scene/height_picture.h"
 #include "assets/image/exr.h"
+#include "assets/image/image_file.h"
 #include "config/file.h"
 #include "config/log.h"
 #include "config/memory.h"

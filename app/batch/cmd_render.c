@@ -3,6 +3,7 @@
 #include "app/report/legend.h"
 #include "app/scene/headless.h"
 #include "assets/image/exr.h"
+#include "assets/image/image_file.h"
 #include "config/file.h"
 #include "config/interrupt.h"
 #include "config/log.h"

@@ -1,6 +1,7 @@
 #include "app/scene/height_picture.h"
 
 #include "assets/image/exr.h"
+#include "assets/image/image_file.h"
 #include "config/file.h"
 #include "render/detail/bake.h"
 

@@ -2,6 +2,7 @@
 #ifndef TOILE_APP_SCENE_MOVING_H
 #define TOILE_APP_SCENE_MOVING_H
 
+#include "assets/base/surface.h"
 #include "assets/model.h"
 #include "cloth/tangents/tangent_frames.h"
 

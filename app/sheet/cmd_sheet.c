@@ -8,6 +8,7 @@
 #include "app/sheet/commands.h"
 #include "app/sheet/contact_plan.h"
 #include "app/sheet/contact_store.h"
+#include "assets/image/image_file.h"
 #include "config/file.h"
 #include "config/interrupt.h"
 #include "config/log.h"

@@ -1,6 +1,7 @@
 #include "app/sheet/contact_store.h"
 
 #include "app/report/folder.h"
+#include "assets/image/image_file.h"
 #include "config/file.h"
 #include "config/memory.h"
 

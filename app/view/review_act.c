@@ -9,6 +9,7 @@
 #include "app/view/review/review_move.h"
 #include "app/view/review/review_wipe.h"
 #include "assets/image/exr.h"
+#include "assets/image/image_file.h"
 #include "config/embedded.h"
 #include "config/file.h"
 #include "config/log.h"

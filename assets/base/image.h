@@ -1,9 +1,8 @@
-/* Pictures in memory, and PNG/JPEG files.
+/* Images in memory.
  *
  * Rows run from the top of the picture down, texels within a row from left to right, channels interleaved.
  * TL_IMAGE_U8 holds file values: colour images are sRGB-encoded unless `linear` is set. TL_IMAGE_F32 is
- * linear. Ownership: tl_image owns `texels`; tl_image_release frees. Threads: pure, but for the file
- * functions. */
+ * linear. Ownership: tl_image owns `texels`; tl_image_release frees. Threads: pure. */
 #ifndef TOILE_ASSETS_BASE_IMAGE_H
 #define TOILE_ASSETS_BASE_IMAGE_H
 
@@ -39,18 +38,6 @@ static inline uint8_t *tl_image_bytes(const tl_image *image)
 {
     return (uint8_t *)image->texels;
 }
-
-/* PNG (also 16-bit, indexed, interlaced) and JPEG from memory into U8; `name` is for messages. */
-bool tl_image_decode(const char *name, const void *data, size_t size, tl_image *out, tl_error *error);
-bool tl_image_load(const char *path, tl_image *out, tl_error *error);
-
-/* The first channel of a PNG or JPEG as data, 0 to 1, F32 x1: what 16 bits hold is kept. */
-bool tl_image_load_values(const char *path, tl_image *out, tl_error *error);
-
-/* U8 image as PNG in memory; free(*data). `name` is for messages. */
-bool tl_image_encode_png(const char *name, const tl_image *image, void **data, size_t *size, tl_error *error);
-/* ... and as a file; atomic. */
-bool tl_image_save_png(const char *path, const tl_image *image, tl_error *error);
 
 /* sRGB transfer function, IEC 61966-2-1. */
 float tl_srgb_to_linear(float encoded);

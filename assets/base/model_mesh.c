@@ -1,4 +1,4 @@
-#include "assets/base/model_read.h"
+#include "assets/base/model_build.h"
 #include "config/memory.h"
 
 #include <stdlib.h>

@@ -3,7 +3,7 @@
 #ifndef TOILE_ASSETS_BUILTIN_FIT_H
 #define TOILE_ASSETS_BUILTIN_FIT_H
 
-#include "assets/garment.h"
+#include "assets/base/garment.h"
 
 struct tl_girth {
     float length_m; /* of the convex hull of the section, as a tape measure reads it */

@@ -1,6 +1,5 @@
 #include "assets/builtin/form.h"
 
-#include "assets/avatar.h"
 #include "config/memory.h"
 
 #include <assert.h>

@@ -5,7 +5,7 @@
 #ifndef TOILE_ASSETS_BUILTIN_FORM_H
 #define TOILE_ASSETS_BUILTIN_FORM_H
 
-#include <stdbool.h>
+#include "assets/base/avatar.h"
 
 /* Landmarks, metres above the floor. */
 #define TL_FORM_BOTTOM   0.70 /* lower edge of the torso */
@@ -23,5 +23,9 @@ double tl_form_radius(double y, double angle);
 
 /* Length of the torso's horizontal section at height y, as a tape measure takes it: of its convex hull. */
 double tl_form_girth(double y);
+
+/* The built-in dress form: a tailor's torso on a stand, 1.6 m high, feet of the stand
+ * at y = 0, facing +Z, closed and manifold, covered in canvas. */
+tl_avatar tl_avatar_form(void);
 
 #endif

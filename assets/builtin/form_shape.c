@@ -1,4 +1,3 @@
-#include "assets/avatar.h"
 #include "assets/builtin/form.h"
 
 #include "config/memory.h"

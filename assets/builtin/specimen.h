@@ -3,8 +3,8 @@
 #ifndef TOILE_ASSETS_BUILTIN_SPECIMEN_H
 #define TOILE_ASSETS_BUILTIN_SPECIMEN_H
 
-#include "assets/avatar.h"
-#include "assets/garment.h"
+#include "assets/base/avatar.h"
+#include "assets/base/garment.h"
 
 /* "sheet": a square of 0.5 m that lies above the ball and falls. "disc": Cusick's drape test (BS 5058, ISO
  * 9073-9), a disc 30 cm across that lies level, 0.4 m up, its middle held by plates of 18 cm, which are not

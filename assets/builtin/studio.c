@@ -1,6 +1,5 @@
 #include "assets/builtin/studio.h"
 
-#include "assets/environment.h"
 #include "config/memory.h"
 
 #include <math.h>

@@ -1,9 +1,12 @@
-/* The built-in studio: a grey room and the lamps that hang in it, as data (environment.h has the picture).
+/* The built-in studio: a grey room and the lamps that hang in it, as data (tl_environment_studio paints
+ * them).
  *
  * Each light is a rectangle far away, seen from the scene's middle; the picture is the room plus all lights.
  * Threads: pure. */
 #ifndef TOILE_ASSETS_BUILTIN_STUDIO_H
 #define TOILE_ASSETS_BUILTIN_STUDIO_H
+
+#include "assets/base/environment.h"
 
 #include <cglm/struct.h>
 
@@ -28,5 +31,12 @@ struct tl_studio_axes tl_studio_light_axes(const struct tl_studio_light *light);
 
 /* Radiance of the empty room from a unit direction: grey, so one value. */
 float tl_studio_room(vec3s direction);
+
+/* Built-in lights that need no file: soft boxes and one strong small lamp in a grey
+ * room, 512 x 256 lat-long. */
+tl_environment tl_environment_studio(void);
+
+/* The same radiance from everywhere; the furnace. */
+tl_environment tl_environment_constant(float red, float green, float blue);
 
 #endif

@@ -1,4 +1,4 @@
-#include "assets/gltf/gltf.h"
+#include "assets/gltf/gltf_internal.h"
 
 #include "config/file.h"
 #include "config/memory.h"

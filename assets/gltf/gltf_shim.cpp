@@ -1,5 +1,5 @@
 extern "C" {
-#include "assets/gltf/gltf.h"
+#include "assets/gltf/gltf_internal.h"
 #include "config/file.h"
 }
 
@@ -194,18 +194,18 @@ gltf_channel copy_channel(const tinygltf::AnimationChannel &from, const tinygltf
 {
     gltf_channel to = {};
     to.node = from.target_node;
-    to.path = from.target_path == "translation" ? GLTF_TRANSLATION
-              : from.target_path == "rotation"  ? GLTF_ROTATION
-              : from.target_path == "scale"     ? GLTF_SCALE
-                                                : GLTF_OTHER_PATH;
+    to.path = from.target_path == "translation" ? RIG_TRANSLATION
+              : from.target_path == "rotation"  ? RIG_ROTATION
+              : from.target_path == "scale"     ? RIG_SCALE
+                                                : RIG_OTHER_PATH;
     to.times = to.values = -1;
     if (from.sampler >= 0 && static_cast<size_t>(from.sampler) < animation.samplers.size()) {
         const tinygltf::AnimationSampler &sampler = animation.samplers[static_cast<size_t>(from.sampler)];
         to.times = sampler.input;
         to.values = sampler.output;
-        to.interpolation = sampler.interpolation == "STEP"          ? GLTF_STEP
-                           : sampler.interpolation == "CUBICSPLINE" ? GLTF_CUBIC_SPLINE
-                                                                    : GLTF_LINEAR;
+        to.interpolation = sampler.interpolation == "STEP"          ? RIG_STEP
+                           : sampler.interpolation == "CUBICSPLINE" ? RIG_CUBIC_SPLINE
+                                                                    : RIG_LINEAR;
     }
     return to;
 }

@@ -1,5 +1,7 @@
 extern "C" {
-#include "assets/model_export.h"
+#include "assets/gltf/gltf_model.h"
+#include "assets/gltf/model_internal.h"
+#include "assets/image/image_file.h"
 #include "config/log.h"
 #include "config/memory.h"
 }

@@ -1,6 +1,5 @@
 /* glTF's material extensions as the nearest that a tl_material can say, and in words what that changes. */
-#include "assets/base/model_read.h"
-#include "assets/model_export.h"
+#include "assets/gltf/model_internal.h"
 
 #include <math.h>
 
@@ -10,23 +9,23 @@ static float unit(float value)
 }
 
 /* F0 of the index, tinted and weakened [KHR_materials_specular]. An index of 0 stands for infinity there. */
-vec3s model_dielectric_f0(const struct model_look *look)
+vec3s model_dielectric_f0(const struct material_build *build)
 {
-    const struct gltf_extensions *from = &look->from->extensions;
+    const struct gltf_extensions *from = &build->from->extensions;
     float ior = from->ior == 0 || from->ior >= 1 ? from->ior : 1.5f, root = (ior - 1) / (ior + 1);
     float f0 = root * root * unit(from->specular);
-    f0 *= model_map_mean(look, &from->specular_map, "a", "KHR_materials_specular: its strength").a;
+    f0 *= model_map_mean(build, &from->specular_map, "a", "KHR_materials_specular: its strength").a;
     if (from->specular < 1)
-        model_approximate(look->model,
+        model_approximate(build->model,
                           "KHR_materials_specular: weakens reflection in front; at grazing angles it "
                           "stays whole");
-    if (look->metallic <= 0.5f)
-        model_colour_map(look, &from->specular_colour_map, &look->to->specular_map);
+    if (build->metallic <= 0.5f)
+        model_colour_map(build, &from->specular_colour_map, &build->to->specular_map);
     vec3s out;
     for (int c = 0; c < 3; c++)
         out.raw[c] = unit(f0 * fmaxf(from->specular_colour[c], 0));
     if (ior > 1)
-        look->to->gloss.index = ior;
+        build->to->gloss.index = ior;
     return out;
 }
 
@@ -40,33 +39,33 @@ float model_ward_factor(float width_weft, float width_warp)
 /* GGX of widths mix(alpha, 1, strength^2) along the direction and alpha across, as a Ward lobe of the same
  * widths. Wide slopes along a direction stretch the highlight along it; the grooves that make them run
  * across. It is nearest when it is a little brighter. */
-static void apply_anisotropy(const struct model_look *look)
+static void apply_anisotropy(const struct material_build *build)
 {
-    const struct gltf_extensions *from = &look->from->extensions;
+    const struct gltf_extensions *from = &build->from->extensions;
     float strength = unit(from->anisotropy_strength);
     if (strength <= 0)
         return;
-    struct tl_gloss *gloss = &look->to->gloss;
+    struct tl_gloss *gloss = &build->to->gloss;
     gloss->rotation = isfinite(from->anisotropy_rotation) ? from->anisotropy_rotation : 0;
     if (from->anisotropy_map.used) {
-        struct model_mean mean = model_map_mean(look, &from->anisotropy_map, "rgb",
+        struct model_mean mean = model_map_mean(build, &from->anisotropy_map, "rgb",
                                                 "KHR_materials_anisotropy: its direction or strength");
         strength *= mean.b;
         if (mean.r < 1 || mean.g < 1) /* all ones: it could not be read */
             gloss->rotation += atan2f(2 * mean.g - 1, 2 * mean.r - 1);
     }
-    float alpha = fmaxf(look->roughness * look->roughness, 1e-3f);
+    float alpha = fmaxf(build->roughness * build->roughness, 1e-3f);
     gloss->model = TL_REFLECT_WARD;
     gloss->width_weft = alpha + (1 - alpha) * strength * strength;
     gloss->width_warp = alpha;
     float brighter = model_ward_factor(gloss->width_weft, gloss->width_warp);
     for (int c = 0; c < 3; c++)
-        look->to->specular.raw[c] = fminf(look->to->specular.raw[c] * brighter, 1);
-    model_approximate(look->model,
+        build->to->specular.raw[c] = fminf(build->to->specular.raw[c] * brighter, 1);
+    model_approximate(build->model,
                       "KHR_materials_anisotropy: shown by Ward's elliptical lobe of the same widths "
                       "instead of GGX: shorter tails, brighter in front, darker at grazing views");
-    if (look->roughness_varies)
-        model_approximate(look->model,
+    if (build->roughness_varies)
+        model_approximate(build->model,
                           "KHR_materials_anisotropy: roughness varies over a texture: its mean is used");
 }
 
@@ -91,18 +90,18 @@ static float sheen_albedo(float roughness)
 
 /* None of the lobes rises towards the rim as fuzz does: its mean light is scattered evenly instead, and what
  * lies under it gets the rest, as glTF has it. */
-static void apply_sheen(const struct model_look *look)
+static void apply_sheen(const struct material_build *build)
 {
-    const struct gltf_extensions *from = &look->from->extensions;
+    const struct gltf_extensions *from = &build->from->extensions;
     float most = 0, colour[3];
     for (int c = 0; c < 3; c++)
         most = fmaxf(most, unit(from->sheen_colour[c]));
     if (most <= 0)
         return;
     struct model_mean tint =
-        model_map_mean(look, &from->sheen_colour_map, "colour", "KHR_materials_sheen: its colour");
+        model_map_mean(build, &from->sheen_colour_map, "colour", "KHR_materials_sheen: its colour");
     struct model_mean rough =
-        model_map_mean(look, &from->sheen_roughness_map, "a", "KHR_materials_sheen: its roughness");
+        model_map_mean(build, &from->sheen_roughness_map, "a", "KHR_materials_sheen: its roughness");
     float albedo = sheen_albedo(unit(from->sheen_roughness) * rough.a);
     const float tints[] = {tint.r, tint.g, tint.b};
     most = 0;
@@ -111,90 +110,92 @@ static void apply_sheen(const struct model_look *look)
         most = fmaxf(most, colour[c]);
     }
     for (int c = 0; c < 3; c++) {
-        look->to->diffuse.raw[c] = unit(look->to->diffuse.raw[c] * (1 - most * albedo) + colour[c] * albedo);
-        look->to->specular.raw[c] *= 1 - most * albedo;
+        build->to->diffuse.raw[c] =
+            unit(build->to->diffuse.raw[c] * (1 - most * albedo) + colour[c] * albedo);
+        build->to->specular.raw[c] *= 1 - most * albedo;
     }
-    model_approximate(look->model,
+    model_approximate(build->model,
                       "KHR_materials_sheen: its light is added to the diffuse colour in the mean: no "
                       "brighter rim");
 }
 
 /* Mean colour of what light is filtered by. */
-static vec3s base_mean(const struct model_look *look)
+static vec3s base_mean(const struct material_build *build)
 {
-    struct model_mean map = model_map_mean(look, &look->from->base_colour_map, "colour",
+    struct model_mean map = model_map_mean(build, &build->from->base_colour_map, "colour",
                                            "colour of the light that shines through");
-    return (vec3s){{look->base[0] * map.r, look->base[1] * map.g, look->base[2] * map.b}};
+    return (vec3s){{build->base[0] * map.r, build->base[1] * map.g, build->base[2] * map.b}};
 }
 
 /* Light through a smooth thin sheet goes straight on, as through holes; through a rough one it is scattered.
  * What is left of the surface between the holes is as much brighter as it is smaller. */
-static void apply_transmission(const struct model_look *look)
+static void apply_transmission(const struct material_build *build)
 {
-    const struct gltf_extensions *from = &look->from->extensions;
-    tl_material *to = look->to;
-    float share = unit(from->transmission) * (1 - look->metallic);
+    const struct gltf_extensions *from = &build->from->extensions;
+    tl_material *to = build->to;
+    float share = unit(from->transmission) * (1 - build->metallic);
     if (share <= 0)
         return;
-    share *= model_map_mean(look, &from->transmission_map, "r", "KHR_materials_transmission: its share").r;
-    vec3s base = base_mean(look);
-    float clear = share * (1 - look->roughness) * (base.x + base.y + base.z) / 3,
+    share *= model_map_mean(build, &from->transmission_map, "r", "KHR_materials_transmission: its share").r;
+    vec3s base = base_mean(build);
+    float clear = share * (1 - build->roughness) * (base.x + base.y + base.z) / 3,
           kept = fmaxf(1 - clear, 0.01f);
     to->openness = 1 - kept;
     for (int c = 0; c < 3; c++) {
         to->diffuse.raw[c] = unit(to->diffuse.raw[c] * (1 - share) / kept);
         to->specular.raw[c] = unit(to->specular.raw[c] / kept);
-        to->transmission.raw[c] = unit(base.raw[c] * share * look->roughness / kept);
+        to->transmission.raw[c] = unit(base.raw[c] * share * build->roughness / kept);
     }
-    model_approximate(look->model,
+    model_approximate(build->model,
                       "KHR_materials_transmission: smooth parts let light straight through, neither "
                       "tinted nor bent; rough parts scatter it evenly");
 }
 
 /* [KHR_materials_diffuse_transmission], which is what a tl_material has. */
-static void apply_diffuse_transmission(const struct model_look *look)
+static void apply_diffuse_transmission(const struct material_build *build)
 {
-    const struct gltf_extensions *from = &look->from->extensions;
+    const struct gltf_extensions *from = &build->from->extensions;
     float share = unit(from->diffuse_transmission);
     if (share <= 0)
         return;
-    share *= model_map_mean(look, &from->diffuse_transmission_map, "a",
+    share *= model_map_mean(build, &from->diffuse_transmission_map, "a",
                             "KHR_materials_diffuse_transmission: its share")
                  .a;
-    struct model_mean tint = model_map_mean(look, &from->diffuse_transmission_colour_map, "colour",
+    struct model_mean tint = model_map_mean(build, &from->diffuse_transmission_colour_map, "colour",
                                             "KHR_materials_diffuse_transmission: its colour");
     const float tints[] = {tint.r, tint.g, tint.b};
     for (int c = 0; c < 3; c++) {
         float colour = unit(from->diffuse_transmission_colour[c]) * tints[c];
-        look->to->transmission.raw[c] =
-            unit(look->to->transmission.raw[c] + share * colour * (1 - look->metallic));
-        look->to->diffuse.raw[c] *= 1 - share;
+        build->to->transmission.raw[c] =
+            unit(build->to->transmission.raw[c] + share * colour * (1 - build->metallic));
+        build->to->diffuse.raw[c] *= 1 - share;
     }
 }
 
-static void apply_clearcoat(const struct model_look *look)
+static void apply_clearcoat(const struct material_build *build)
 {
-    const struct gltf_extensions *from = &look->from->extensions;
+    const struct gltf_extensions *from = &build->from->extensions;
     float share = unit(from->clearcoat);
     if (share <= 0)
         return;
-    share *= model_map_mean(look, &from->clearcoat_map, "r", "KHR_materials_clearcoat: its share").r;
+    share *= model_map_mean(build, &from->clearcoat_map, "r", "KHR_materials_clearcoat: its share").r;
     float roughness = unit(from->clearcoat_roughness);
     if (roughness > 0)
-        roughness *= model_map_mean(look, &from->clearcoat_roughness_map, "g",
+        roughness *= model_map_mean(build, &from->clearcoat_roughness_map, "g",
                                     "KHR_materials_clearcoat: its roughness")
                          .g;
-    look->to->coat = share;
-    look->to->coat_glossiness = tl_glossiness_from_roughness(roughness);
+    build->to->coat = share;
+    build->to->coat_glossiness = tl_glossiness_from_roughness(roughness);
     if (from->clearcoat_normal_map.used)
-        model_approximate(look->model, "KHR_materials_clearcoat: the coat follows the surface's own normals");
+        model_approximate(build->model,
+                          "KHR_materials_clearcoat: the coat follows the surface's own normals");
 }
 
-void model_apply_extensions(const struct model_look *look)
+void model_apply_extensions(const struct material_build *build)
 {
-    apply_anisotropy(look);
-    apply_sheen(look);
-    apply_transmission(look);
-    apply_diffuse_transmission(look);
-    apply_clearcoat(look);
+    apply_anisotropy(build);
+    apply_sheen(build);
+    apply_transmission(build);
+    apply_diffuse_transmission(build);
+    apply_clearcoat(build);
 }

@@ -1,20 +1,11 @@
 /* KHR_materials_variants: which material each part has in each variant. */
-#include "assets/base/model_read.h"
+#include "assets/gltf/model_internal.h"
 #include "config/memory.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define VARIANTS_MAX 256
-
-const struct tl_variant *tl_model_find_variant(const tl_model *model, const char *name)
-{
-    for (size_t i = 0; i < model->variant_count; i++)
-        if (strcmp(model->variants[i].name, name) == 0)
-            return &model->variants[i];
-    return NULL;
-}
 
 /* A variant is chosen by its name: one without is numbered, and so is one whose name is taken. */
 static void name_variant(const tl_model *model, const char *given, size_t number, char name[64])
@@ -68,11 +59,4 @@ bool model_read_variants(const gltf_document *document, const struct gltf_primit
             if (!read_mapping(document, &document->mappings[sources[p]->first_mapping + m], p, model, error))
                 return false;
     return true;
-}
-
-void model_release_variants(tl_model *model)
-{
-    for (size_t i = 0; i < model->variant_count; i++)
-        free(model->variants[i].materials);
-    free(model->variants);
 }

@@ -1,6 +1,6 @@
 #include "assets/image/exr.h"
 
-#include "assets/image/exr_shim.h"
+#include "assets/image/exr_shim_internal.h"
 #include "config/file.h"
 #include "config/memory.h"
 

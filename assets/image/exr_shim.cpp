@@ -1,4 +1,4 @@
-#include "assets/image/exr_shim.h"
+#include "assets/image/exr_shim_internal.h"
 
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>

@@ -1,4 +1,4 @@
-#include "assets/base/image.h"
+#include "assets/image/image_file.h"
 
 #include "config/file.h"
 #include "config/memory.h"

@@ -1,9 +1,10 @@
-#include "assets/motion/point_cache_read.h"
+#include "assets/motion/point_cache_internal.h"
 
 #include "assets/motion/sequence.h"
 #include "config/file.h"
 #include "config/memory.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -36,13 +37,50 @@ static double even_step(const double *moments, size_t count)
     return step;
 }
 
+/* Reads a sample, brings it into metres and refuses what is not finite or far away. */
+static bool fetch(tl_point_cache *cache, size_t index, vec3s *points, tl_error *error)
+{
+    const float farthest_m = 1e5f; /* as for models */
+    if (!(cache->numbers ? point_cache_read_frame : point_cache_read_file)(cache, index, points, error))
+        return false;
+    for (size_t i = 0; i < cache->facts.point_count; i++) {
+        points[i] = glms_vec3_scale(points[i], cache->metres);
+        if (!(glms_vec3_norm(points[i]) <= farthest_m))
+            return tl_fail(error, TL_INPUT,
+                           "%s: sample %zu: point %zu lies more than 100 km away or is not finite: write it "
+                           "again, or check its units",
+                           cache->name, index, i);
+    }
+    return true;
+}
+
+/* Reads every sample once, so that damage is found when the file is opened, and for the box. One sample is in
+ * memory at a time. */
+static bool scan(tl_point_cache *cache, tl_error *error)
+{
+    size_t count = cache->facts.point_count;
+    vec3s *points = TL_NEW_ARRAY(vec3s, count);
+    struct tl_box *box = &cache->facts.box;
+    *box = (struct tl_box){{{FLT_MAX, FLT_MAX, FLT_MAX}}, {{-FLT_MAX, -FLT_MAX, -FLT_MAX}}};
+    bool good = true;
+    for (size_t i = 0; good && i < cache->facts.sample_count; i++) {
+        good = fetch(cache, i, points, error);
+        struct tl_box sample = tl_box_of(points, count);
+        box->lower = glms_vec3_minv(box->lower, sample.lower);
+        box->upper = glms_vec3_maxv(box->upper, sample.upper);
+    }
+    free(points);
+    return good;
+}
+
 tl_point_cache *tl_point_cache_open(const char *name, double metres, tl_error *error)
 {
     tl_point_cache *cache = TL_NEW(tl_point_cache);
     cache->name = tl_copy_string(name);
     cache->metres = (float)metres;
     cache->held[0] = cache->held[1] = SIZE_MAX;
-    if (!open_format(cache, error)) {
+    /* The frames of an OBJ sequence are checked one by one as they are read. */
+    if (!open_format(cache, error) || (cache->stream && !scan(cache, error))) {
         tl_point_cache_destroy(&cache);
         return NULL;
     }
@@ -69,22 +107,6 @@ void tl_point_cache_destroy(tl_point_cache **handle)
 const struct tl_point_cache_facts *tl_point_cache_facts(const tl_point_cache *cache)
 {
     return &cache->facts;
-}
-
-bool point_cache_fetch(tl_point_cache *cache, size_t index, vec3s *points, tl_error *error)
-{
-    const float farthest_m = 1e5f; /* as for models */
-    if (!(cache->numbers ? point_cache_read_frame : point_cache_read_file)(cache, index, points, error))
-        return false;
-    for (size_t i = 0; i < cache->facts.point_count; i++) {
-        points[i] = glms_vec3_scale(points[i], cache->metres);
-        if (!(glms_vec3_norm(points[i]) <= farthest_m))
-            return tl_fail(error, TL_INPUT,
-                           "%s: sample %zu: point %zu lies more than 100 km away or is not finite: write it "
-                           "again, or check its units",
-                           cache->name, index, i);
-    }
-    return true;
 }
 
 /* Times of frames are products of fractions: 59.9999999 is 60. */
@@ -125,7 +147,7 @@ static const vec3s *hold(tl_point_cache *cache, size_t index, size_t keep, tl_er
     if (!cache->points[slot])
         cache->points[slot] = TL_NEW_ARRAY(vec3s, cache->facts.point_count);
     cache->held[slot] = SIZE_MAX;
-    if (!point_cache_fetch(cache, index, cache->points[slot], error))
+    if (!fetch(cache, index, cache->points[slot], error))
         return NULL;
     cache->held[slot] = index;
     return cache->points[slot];

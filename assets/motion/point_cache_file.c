@@ -1,11 +1,10 @@
 /* PC2 and MDD: a header, and samples of three floats a point that follow each other. */
-#include "assets/motion/point_cache_read.h"
+#include "assets/motion/point_cache_internal.h"
 
 #include "config/file.h"
 #include "config/memory.h"
 
 #include <errno.h>
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -69,24 +68,6 @@ static bool check_counts(tl_point_cache *cache, uint32_t points, uint32_t sample
     return true;
 }
 
-/* Every number once, for honesty and for the box; a sample is all that is held. */
-static bool scan(tl_point_cache *cache, tl_error *error)
-{
-    size_t count = cache->facts.point_count;
-    vec3s *points = TL_NEW_ARRAY(vec3s, count);
-    struct tl_box *box = &cache->facts.box;
-    *box = (struct tl_box){{{FLT_MAX, FLT_MAX, FLT_MAX}}, {{-FLT_MAX, -FLT_MAX, -FLT_MAX}}};
-    bool good = true;
-    for (size_t i = 0; good && i < cache->facts.sample_count; i++) {
-        good = point_cache_fetch(cache, i, points, error);
-        struct tl_box sample = tl_box_of(points, count);
-        box->lower = glms_vec3_minv(box->lower, sample.lower);
-        box->upper = glms_vec3_maxv(box->upper, sample.upper);
-    }
-    free(points);
-    return good;
-}
-
 /* Offsets: 0 magic, 12 version, 16 points, 20 start, 24 rate (frames between samples), 28 samples. */
 bool point_cache_open_pc2(tl_point_cache *cache, tl_error *error)
 {
@@ -111,7 +92,7 @@ bool point_cache_open_pc2(tl_point_cache *cache, tl_error *error)
     cache->facts.format = "PC2";
     cache->facts.first = start;
     cache->facts.last = start + cache->moments[samples - 1];
-    return scan(cache, error);
+    return true;
 }
 
 static bool read_times(tl_point_cache *cache, size_t count, tl_error *error)
@@ -151,7 +132,7 @@ bool point_cache_open_mdd(tl_point_cache *cache, tl_error *error)
         !read_times(cache, samples, error))
         return false;
     cache->data_offset += 4 * (uint64_t)samples;
-    return scan(cache, error);
+    return true;
 }
 
 bool point_cache_read_file(tl_point_cache *cache, size_t index, vec3s *points, tl_error *error)

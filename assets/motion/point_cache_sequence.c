@@ -1,5 +1,5 @@
 /* OBJ sequences as point caches: the vertices of each file, at the moment that its number tells. */
-#include "assets/motion/point_cache_read.h"
+#include "assets/motion/point_cache_internal.h"
 
 #include "assets/motion/sequence.h"
 #include "assets/obj/wavefront.h"

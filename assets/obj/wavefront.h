@@ -1,4 +1,4 @@
-/* Wavefront OBJ and MTL: reading lines of words, and what an OBJ file holds. Private to assets.
+/* Wavefront OBJ and MTL: what an OBJ file holds, as a model, and written.
  *
  * Read here and not by tinyobjloader (2.0rc10), which was tried: it takes `v 1 abc 2` for (1, 0, 2), a
  * missing coordinate for 0, 1e400 for infinity and the index 4294967299 for 3, and only warns of indices out
@@ -6,34 +6,11 @@
 #ifndef TOILE_ASSETS_OBJ_WAVEFRONT_H
 #define TOILE_ASSETS_OBJ_WAVEFRONT_H
 
-#include "assets/model.h"
+#include "assets/base/model.h"
+#include "assets/base/surface.h"
 #include "config/error.h"
 
-#include <locale.h>
-
-/* A text being read. Lines end in \n, \r\n or \r; a backslash before the end joins the next line. */
-struct wave_text {
-    const char *path; /* for messages; borrowed */
-    char *data;
-    char *next, *end; /* what follows the current line */
-    char *word;       /* what follows the current word, within the line */
-    size_t line;      /* number, from 1 */
-    locale_t plain;   /* numbers are read in the C locale */
-};
-
-bool wave_open(const char *path, struct wave_text *out, tl_error *error);
-void wave_close(struct wave_text *text);
-
-/* Moves to the next line that has a word and returns that word; NULL at the end. */
-char *wave_line(struct wave_text *text);
-/* The line's next word, or NULL. */
-char *wave_word(struct wave_text *text);
-/* The rest of the line, without blanks at its ends; may be empty. */
-char *wave_rest(struct wave_text *text);
-
-/* `count` finite numbers from the line's next words; false, with a message that names the line and `what`,
- * when they are not all there. */
-bool wave_numbers(struct wave_text *text, const char *what, int count, float *out, tl_error *error);
+#include <stdio.h>
 
 #define WAVE_NONE UINT32_MAX
 
@@ -65,11 +42,10 @@ struct wave_object {
 bool wave_read(const char *path, struct wave_object *out, tl_error *error);
 void wave_release(struct wave_object *object);
 
-/* Materials of the MTL files that `object` names, and a default one after them; images. A file or a picture
- * that cannot be read is noted as ignored (mtl.c). */
-void wave_read_materials(const char *path, const struct wave_object *object, tl_model *model);
+/* An OBJ file and its MTL files as a model that has its name only; on failure the caller releases it. */
+bool wave_load_model(const char *path, enum tl_units wanted, tl_model *out, tl_error *error);
 
-/* .obj as a model; positions in units of the file (obj.c). */
-bool wave_load_model(const char *path, tl_model *out, tl_error *error);
+/* Writes a surface of `model` as OBJ; numbers in the C locale. A failure to write is kept by the stream. */
+void wave_write(FILE *stream, const tl_model *model, const tl_surface *surface);
 
 #endif

@@ -1,5 +1,6 @@
-#include "assets/base/model_read.h"
-#include "assets/obj/wavefront.h"
+#include "assets/base/model_build.h"
+#include "assets/image/image_file.h"
+#include "assets/obj/wavefront_internal.h"
 #include "config/file.h"
 #include "config/memory.h"
 

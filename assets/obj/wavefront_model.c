@@ -1,6 +1,6 @@
-#include "assets/base/model_read.h"
+#include "assets/base/model_build.h"
 #include "assets/obj/polygon.h"
-#include "assets/obj/wavefront.h"
+#include "assets/obj/wavefront_internal.h"
 #include "config/memory.h"
 
 #include <stdlib.h>
@@ -160,7 +160,7 @@ static void fill_parts(struct builder *builder)
     free(part_of);
 }
 
-bool wave_load_model(const char *path, tl_model *out, tl_error *error)
+bool wave_load_model(const char *path, enum tl_units wanted, tl_model *out, tl_error *error)
 {
     struct wave_object object;
     if (!wave_read(path, &object, error))
@@ -181,5 +181,9 @@ bool wave_load_model(const char *path, tl_model *out, tl_error *error)
     free(builder.vertices);
     free(builder.corner_vertices);
     wave_release(&object);
+    if (!model_take_units(path, wanted, false, out, error))
+        return false;
+    model_smooth_normals(&out->mesh);
+    tl_mesh_measure_uvs(&out->mesh);
     return true;
 }

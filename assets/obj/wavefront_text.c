@@ -1,4 +1,4 @@
-#include "assets/obj/wavefront.h"
+#include "assets/obj/wavefront_internal.h"
 
 #include "config/file.h"
 

@@ -1,5 +1,4 @@
-#include "assets/model.h"
-#include "config/file.h"
+#include "assets/obj/wavefront.h"
 #include "config/memory.h"
 
 #include <locale.h>
@@ -38,15 +37,10 @@ static void write_object(FILE *stream, const tl_model *model, const tl_surface *
     free(points);
 }
 
-/* A failure to write is kept by the stream and seen by the commit. */
-bool tl_model_export_obj(const char *path, const tl_model *model, const tl_surface *surface, tl_error *error)
+void wave_write(FILE *stream, const tl_model *model, const tl_surface *surface)
 {
-    struct tl_writer writer;
-    if (!tl_writer_begin(&writer, path, error))
-        return false;
     locale_t plain = newlocale(LC_ALL_MASK, "C", (locale_t)0), before = uselocale(plain);
-    write_object(writer.stream, model, surface);
+    write_object(stream, model, surface);
     uselocale(before);
     freelocale(plain);
-    return tl_writer_commit(&writer, error);
 }

@@ -5,6 +5,7 @@
 #define TOILE_TESTS_SMALL_GLB_H
 
 #include "assets/base/image.h"
+#include "assets/image/image_file.h"
 
 #include "tests/assets/hostile.h"
 #include "tests/testing.h"

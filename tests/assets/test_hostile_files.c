@@ -1,6 +1,7 @@
 #include "assets/base/image.h"
 #include "assets/environment.h"
 #include "assets/image/exr.h"
+#include "assets/image/image_file.h"
 #include "assets/model.h"
 #include "config/memory.h"
 

@@ -3,6 +3,8 @@
 #include "app/report/canvas.h"
 #include "app/report/folder.h"
 #include "assets/image/exr.h"
+#include "assets/image/image_file.h"
+#include "assets/model_export.h"
 #include "assets/motion/point_cache.h"
 #include "config/file.h"
 #include "config/log.h"

@@ -2,6 +2,7 @@
 #include "app/lab/flight/fly_account.h"
 #include "app/report/cells.h"
 #include "app/report/report.h"
+#include "assets/image/image_file.h"
 #include "config/memory.h"
 
 #include <math.h>

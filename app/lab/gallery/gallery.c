@@ -3,6 +3,7 @@
 #include "app/measure/cost.h"
 #include "app/report/canvas.h"
 #include "app/scene/session.h"
+#include "assets/image/image_file.h"
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"

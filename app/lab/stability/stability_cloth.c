@@ -3,6 +3,7 @@
 #include "app/lab/stability/extremes_cloth.h"
 #include "app/lab/stability/stability.h"
 #include "app/measure/cost.h"
+#include "assets/image/image_file.h"
 #include "config/file.h"
 #include "config/interrupt.h"
 #include "config/log.h"

@@ -2,6 +2,7 @@
 
 #include "app/budget/governor.h"
 #include "app/cli/topic.h"
+#include "assets/image/image_file.h"
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"

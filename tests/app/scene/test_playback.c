@@ -2,6 +2,8 @@
 #include "tests/testing.h"
 
 #include "app/scene/session.h"
+#include "assets/model.h"
+#include "assets/model_export.h"
 #include "assets/motion/point_cache.h"
 #include "config/log.h"
 #include "config/memory.h"

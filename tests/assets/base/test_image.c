@@ -1,4 +1,5 @@
 #include "assets/base/image.h"
+#include "assets/image/image_file.h"
 
 #include "config/memory.h"
 

@@ -2,6 +2,7 @@
 
 #include "assets/avatar.h"
 #include "assets/garment.h"
+#include "assets/model_export.h"
 #include "config/memory.h"
 
 #include "tests/assets/small_glb.h"

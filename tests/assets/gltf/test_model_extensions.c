@@ -1,4 +1,5 @@
 #include "assets/model.h"
+#include "assets/model_export.h"
 
 #include "tests/assets/small_glb.h"
 

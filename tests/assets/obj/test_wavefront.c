@@ -1,5 +1,8 @@
 /* OBJ and MTL as models. */
 #include "assets/garment.h"
+#include "assets/image/image_file.h"
+#include "assets/model.h"
+#include "assets/model_export.h"
 
 #include "tests/testing.h"
 

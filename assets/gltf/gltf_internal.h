@@ -3,10 +3,11 @@
  *
  * The shim copies, it does not judge: every index, offset and count below is the file's word, to be checked
  * where it is used (gltf_read_* do that for accessors). -1: absent. Pointers live as long as the document. */
-#ifndef TOILE_ASSETS_GLTF_GLTF_H
-#define TOILE_ASSETS_GLTF_GLTF_H
+#ifndef TOILE_ASSETS_GLTF_GLTF_INTERNAL_H
+#define TOILE_ASSETS_GLTF_GLTF_INTERNAL_H
 
 #include "assets/base/material.h"
+#include "assets/base/rig.h"
 #include "config/error.h"
 
 #include <stddef.h>
@@ -51,6 +52,8 @@ struct gltf_mapping {
     size_t first_variant, variant_count; /* in mapped_variants */
 };
 
+enum { GLTF_MODE_TRIANGLES = 4, GLTF_MODE_STRIP = 5, GLTF_MODE_FAN = 6 }; /* GL's */
+
 struct gltf_primitive {
     int attributes[GLTF_ATTRIBUTE_COUNT]; /* accessors */
     int indices, material, mode;
@@ -77,13 +80,10 @@ struct gltf_skin {
     int inverse_binds; /* accessor */
 };
 
-enum gltf_path { GLTF_TRANSLATION, GLTF_ROTATION, GLTF_SCALE, GLTF_OTHER_PATH };
-enum gltf_interpolation { GLTF_LINEAR, GLTF_STEP, GLTF_CUBIC_SPLINE };
-
 struct gltf_channel {
     int node;
-    enum gltf_path path;
-    enum gltf_interpolation interpolation;
+    enum rig_path path;
+    enum rig_interpolation interpolation;
     int times, values; /* accessors */
 };
 

@@ -3,11 +3,10 @@
  * Every vertex follows up to four slots; a slot is a node and the matrix that brings a vertex into the node's
  * space: an inverse bind matrix for a skin, the identity for a rigid mesh. Pose: x = sum of weight *
  * world(node) * bind * x_local. */
-#ifndef TOILE_ASSETS_GLTF_RIG_H
-#define TOILE_ASSETS_GLTF_RIG_H
+#ifndef TOILE_ASSETS_BASE_RIG_H
+#define TOILE_ASSETS_BASE_RIG_H
 
-#include "assets/gltf/gltf.h"
-#include "assets/model.h"
+#include "assets/base/model.h"
 
 struct rig_transform {
     vec3s translation;
@@ -32,10 +31,19 @@ struct rig_influence {
     float weights[4]; /* sum to 1 */
 };
 
+enum rig_path { RIG_TRANSLATION, RIG_ROTATION, RIG_SCALE, RIG_OTHER_PATH };
+enum rig_interpolation { RIG_LINEAR, RIG_STEP, RIG_CUBIC_SPLINE };
+
+/* Floats of a value: a quaternion has 4, a vector 3. */
+static inline int rig_components(enum rig_path path)
+{
+    return path == RIG_ROTATION ? 4 : 3;
+}
+
 struct rig_channel {
     int node;
-    enum gltf_path path;
-    enum gltf_interpolation interpolation;
+    enum rig_path path;
+    enum rig_interpolation interpolation;
     size_t key_count;
     float *times_s; /* [key_count], rising */
     float *values;  /* [key_count][3 or 4], or [key_count][3][3 or 4] with tangents for cubic splines */
@@ -57,8 +65,6 @@ struct tl_rig {
     struct rig_clip *clips;
 };
 
-/* Nodes, their order and the clips of a document; slots and vertices are added by the caller. */
-bool rig_read(const gltf_document *document, tl_rig *rig, tl_error *error);
 void rig_destroy(tl_rig **handle);
 
 /* World matrices [node_count] at a time of a clip (-1: rest). */

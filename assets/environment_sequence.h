@@ -3,8 +3,8 @@
  *
  * Ownership: tl_environment_sequence owns its pattern. Threads: pure, but for reading files. Failure: a
  * pattern without files and a gap are refused when it is opened; a damaged frame when it is loaded. */
-#ifndef TOILE_ASSETS_MOTION_ENVIRONMENT_SEQUENCE_H
-#define TOILE_ASSETS_MOTION_ENVIRONMENT_SEQUENCE_H
+#ifndef TOILE_ASSETS_ENVIRONMENT_SEQUENCE_H
+#define TOILE_ASSETS_ENVIRONMENT_SEQUENCE_H
 
 #include "assets/environment.h"
 

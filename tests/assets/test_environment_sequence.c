@@ -1,6 +1,6 @@
 /* Sequences of environments: what is a frame, gaps, numbers, damaged frames. */
+#include "assets/environment_sequence.h"
 #include "assets/image/exr.h"
-#include "assets/motion/environment_sequence.h"
 #include "config/file.h"
 #include "config/memory.h"
 

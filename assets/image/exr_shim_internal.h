@@ -1,7 +1,7 @@
 /* The pixels of OpenEXR parts that OpenEXRCore 3.1 cannot decode (DWAA, DWAB, B44, B44A), through OpenEXR's
  * C++ library. Private to assets/image/exr.c, which has checked the header before. Exceptions stop here. */
-#ifndef TOILE_ASSETS_IMAGE_EXR_SHIM_H
-#define TOILE_ASSETS_IMAGE_EXR_SHIM_H
+#ifndef TOILE_ASSETS_IMAGE_EXR_SHIM_INTERNAL_H
+#define TOILE_ASSETS_IMAGE_EXR_SHIM_INTERNAL_H
 
 #include <stdbool.h>
 #include <stddef.h>

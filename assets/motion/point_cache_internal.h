@@ -1,6 +1,6 @@
 /* The inside of a tl_point_cache: point_cache.c has what formats share. Private to assets. */
-#ifndef TOILE_ASSETS_MOTION_POINT_CACHE_READ_H
-#define TOILE_ASSETS_MOTION_POINT_CACHE_READ_H
+#ifndef TOILE_ASSETS_MOTION_POINT_CACHE_INTERNAL_H
+#define TOILE_ASSETS_MOTION_POINT_CACHE_INTERNAL_H
 
 #include "assets/motion/point_cache.h"
 
@@ -32,8 +32,5 @@ bool point_cache_read_file(tl_point_cache *cache, size_t index, vec3s *points, t
 /* (point_cache_sequence.c) */
 bool point_cache_open_sequence(tl_point_cache *cache, tl_error *error);
 bool point_cache_read_frame(tl_point_cache *cache, size_t index, vec3s *points, tl_error *error);
-
-/* Reads a sample, brings it into metres and refuses what is not finite or far away. */
-bool point_cache_fetch(tl_point_cache *cache, size_t index, vec3s *points, tl_error *error);
 
 #endif

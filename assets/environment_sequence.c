@@ -1,4 +1,4 @@
-#include "assets/motion/environment_sequence.h"
+#include "assets/environment_sequence.h"
 
 #include "assets/motion/sequence.h"
 #include "config/memory.h"

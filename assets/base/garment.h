@@ -1,0 +1,38 @@
+/* A garment: the mesh to draw, its flat pattern at rest, its seams and its pins.
+ *
+ * Physics vertices are not listed: cloth welds render vertices of bitwise equal start position, and those
+ * that seams join. Immutable once made. */
+#ifndef TOILE_ASSETS_BASE_GARMENT_H
+#define TOILE_ASSETS_BASE_GARMENT_H
+
+#include "assets/base/model.h"
+
+struct tl_seam_pair {
+    uint32_t a, b;
+}; /* render vertices to be drawn together and then welded */
+
+typedef struct tl_garment {
+    tl_model model; /* mesh.positions is where the cloth starts */
+    /* Rest shape as flat cloth, metres: x along the weft, y along the warp, one per render vertex; NULL when
+     * the file has no pattern: then each triangle's start shape is its rest shape and UV directions give warp
+     * and weft. */
+    vec2s *pattern;
+    size_t seam_count;
+    struct tl_seam_pair *seams;
+    size_t pin_count;
+    uint32_t *pins; /* render vertices held where they start (on the avatar, they follow its nearest point) */
+    bool solid;     /* no cloth: it keeps its shape (assets/builtin/specimen.h) */
+} tl_garment;
+
+/* Replaces the garment's pins by the vertices that its model's file pins; a file without pins changes
+ * nothing.
+ *
+ * Errors: none. Lifetime: the garment owns the list. Threads: one per garment. */
+void tl_garment_take_pins(tl_garment *garment);
+
+/* Frees what the garment owns and zeroes it; a zeroed garment is accepted.
+ *
+ * Errors: none. Lifetime: pointers into the garment end here. Threads: one, while no other uses it. */
+void tl_garment_release(tl_garment *garment);
+
+#endif

@@ -1,0 +1,82 @@
+/* How a built-in garment is described and cut: flat pieces, where each is held around the dress form to begin
+ * with, what is sewn to what, what is pinned. One plan per garment (garment_cut_dress.c,
+ * garment_cut_skirt.c); garment_cut.c turns a plan into a tl_garment.
+ *
+ * A piece is symmetric about x = 0: `half` runs counter-clockwise along its right side from the bottom's
+ * middle to the top's middle. In the whole outline, curve i < half_count is half[i] and curve
+ * 2 half_count - 1 - i is its mirror image. Metres; x along the weft, y along the warp. */
+#ifndef TOILE_ASSETS_BUILTIN_GARMENT_CUT_INTERNAL_H
+#define TOILE_ASSETS_BUILTIN_GARMENT_CUT_INTERNAL_H
+
+#include "assets/builtin/garment_cut.h"
+#include "assets/builtin/panel.h"
+#include "assets/builtin/wrap.h"
+
+#include <stdbool.h>
+
+enum { TL_CUT_MAX_HALF = 8, TL_CUT_MAX_PIECES = 6, TL_CUT_MAX_SEAMS = 16, TL_CUT_MAX_PINS = 4 };
+
+struct tl_cut_piece {
+    struct tl_curve half[TL_CUT_MAX_HALF];
+    size_t half_count;
+    struct tl_point table_offset; /* where the piece lies on the cutting table: pieces do not overlap */
+    void (*place)(const void *context, struct tl_point pattern, double position[3]);
+    const void *context;
+    const char *material; /* its name; pieces of one material follow one another */
+};
+
+/* Curves that are sewn: they run in opposite directions, as neighbours in counter-clockwise outlines do. */
+struct tl_cut_seam {
+    size_t piece_a, curve_a, piece_b, curve_b;
+};
+
+struct tl_cut_pin {
+    size_t piece, curve;
+};
+
+struct tl_cut_plan {
+    const char *name;
+    struct tl_cut_piece pieces[TL_CUT_MAX_PIECES];
+    size_t piece_count;
+    struct tl_cut_seam seams[TL_CUT_MAX_SEAMS];
+    size_t seam_count;
+    struct tl_cut_pin pins[TL_CUT_MAX_PINS];
+    size_t pin_count;
+    void *placement; /* owned: what the pieces' contexts point into; free() releases it */
+};
+
+/* A piece of a flared skirt: half of a sector of a ring, hung around the form. Its curves: 0 hem, 1 side, 2
+ * waist. The pattern's circles are centred at (0, 0), the cloth hangs to -y. */
+struct tl_cut_flared {
+    const struct tl_flare *flare;
+    double waist_length, full_angle; /* of the whole skirt: metres, radians */
+    double turn;                     /* where the piece's middle hangs: front 0, back 1/2 of a turn */
+};
+struct tl_cut_piece tl_cut_flared_piece(const struct tl_cut_flared *flared);
+
+struct tl_cut_plan tl_cut_plan_dress(void);
+struct tl_cut_plan tl_cut_plan_skirt(void);
+struct tl_cut_plan tl_cut_plan_layers(void);
+
+/* The index of half[i]'s mirror image in the whole outline. */
+static inline size_t tl_cut_mirror(const struct tl_cut_piece *piece, size_t i)
+{
+    return 2 * piece->half_count - 1 - i;
+}
+
+/* Eases a start shape: edges towards their rest lengths, vertices out of the dress form, `fixed` ones stay.
+ * Not a simulation: no mass, no gravity; it takes the strain out of the first guess. `reach_m`: how far
+ * corrections travel, one edge a pass; there are a hundred passes in any case. */
+struct tl_fit_edge {
+    uint32_t a, b;
+    double length; /* metres, at rest */
+};
+void tl_cut_fit(double (*positions)[3], size_t count, const bool *fixed, const struct tl_fit_edge *edges,
+                size_t edge_count, double reach_m);
+
+/* Moves positions [vertex of `garment`], metres, to where its pattern lies on a coarser cut of the same plan,
+ * of edges of about edge_m: linear over triangles, and a little past the outline. Pins stay, and what is
+ * further off. */
+void tl_cut_carry(const tl_garment *coarse, double edge_m, const tl_garment *garment, double (*positions)[3]);
+
+#endif

@@ -1,0 +1,181 @@
+#include "assets/gltf/model_internal.h"
+#include "assets/image/image_file.h"
+#include "config/memory.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static bool decode(struct texture_reader *reader, int source, tl_image *out)
+{
+    const gltf_document *document = reader->document;
+    tl_error error;
+    if (source < 0 || (size_t)source >= document->image_count) {
+        model_ignore(reader->model, "texture without a picture that can be read");
+        return false;
+    }
+    const struct gltf_image *image = &document->images[source];
+    const uint8_t *bytes = image->data;
+    size_t size = image->size;
+    char name[160];
+    snprintf(name, sizeof name, "image %d %s", source, image->name ? image->name : "");
+    if (!bytes && image->view >= 0 && !gltf_view_bytes(document, image->view, name, &bytes, &size, &error)) {
+        model_ignore(reader->model, "%s", error.message);
+        return false;
+    }
+    if (!bytes) {
+        model_ignore(reader->model, "%s: no such file", name);
+        return false;
+    }
+    if (!tl_image_decode(name, bytes, size, out, &error)) {
+        model_ignore(reader->model, "%s", error.message);
+        return false;
+    }
+    return true;
+}
+
+/* Of 255: what differs by less counts as the same. */
+#define VARIES 25
+
+/* glTF packs roughness in green and metalness in blue. A gloss map holds g of each texel over the largest g:
+ * 255 must not stand for everything above 0.998, where s = 1 / (1 - g) runs from 500 to infinity. Metalness
+ * becomes its mean, which is exact for cloth (0) and plain metal (1). */
+static void unpack_roughness(const tl_image *packed, struct texture_loaded *to, tl_image *gloss)
+{
+    *gloss = tl_image_create(packed->width, packed->height, 1, TL_IMAGE_U8);
+    gloss->linear = true;
+    size_t texels = (size_t)packed->width * (size_t)packed->height, channels = (size_t)packed->channels;
+    const uint8_t *from = tl_image_bytes(packed);
+    uint64_t sum = 0, green_sum = 0;
+    uint8_t lowest = 255, highest = 0, smoothest = 255, roughest = 0;
+    for (size_t i = 0; i < texels; i++) {
+        uint8_t green = from[i * channels + (channels > 2 ? 1 : 0)];
+        uint8_t blue = channels > 2 ? from[i * channels + 2] : 0;
+        tl_image_bytes(gloss)[i] = green;
+        smoothest = green < smoothest ? green : smoothest;
+        roughest = green > roughest ? green : roughest;
+        green_sum += green;
+        sum += blue;
+        lowest = blue < lowest ? blue : lowest;
+        highest = blue > highest ? blue : highest;
+    }
+    to->glossiest = tl_glossiness_from_roughness(to->roughness * (float)smoothest / 255);
+    uint8_t table[256] = {0};
+    for (int i = smoothest; i < 256 && to->glossiest > 0; i++) {
+        float glossiness = tl_glossiness_from_roughness(to->roughness * (float)i / 255);
+        table[i] = (uint8_t)lrintf(255 * glossiness / to->glossiest);
+    }
+    for (size_t i = 0; i < texels; i++)
+        tl_image_bytes(gloss)[i] = table[tl_image_bytes(gloss)[i]];
+    to->metallic_mean = (float)((double)sum / (255.0 * (double)texels));
+    to->metallic_varies = highest - lowest > VARIES;
+    to->roughness_mean = (float)((double)green_sum / (255.0 * (double)texels));
+    to->roughness_varies = roughest - smoothest > VARIES;
+}
+
+/* One or two channels are grey, and alpha. */
+static void take_means(const tl_image *image, bool is_colour, struct texture_loaded *to)
+{
+    size_t texels = (size_t)image->width * (size_t)image->height, channels = (size_t)image->channels;
+    const uint8_t *from = tl_image_bytes(image);
+    to->has_means = true;
+    for (size_t c = 0; c < 4; c++) {
+        size_t channel = channels > 2 ? c : c == 3 ? 1 : 0;
+        to->means[c] = 1;
+        if (channel >= channels)
+            continue;
+        size_t counts[256] = {0};
+        for (size_t i = 0; i < texels; i++)
+            counts[from[i * channels + channel]]++;
+        double sum = 0;
+        int lowest = 255, highest = 0;
+        for (int level = 0; level < 256; level++) {
+            float value = (float)level / 255;
+            sum += (double)counts[level] * (double)(is_colour && c < 3 ? tl_srgb_to_linear(value) : value);
+            if (counts[level] == 0)
+                continue;
+            lowest = level < lowest ? level : lowest;
+            highest = level;
+        }
+        to->means[c] = (float)(sum / (double)texels);
+        to->varies[c] = highest - lowest > VARIES;
+    }
+}
+
+static const struct texture_loaded *load_image(struct texture_reader *reader, int source,
+                                               enum texture_use use, float roughness)
+{
+    for (size_t i = 0; i < reader->loaded_count; i++) {
+        const struct texture_loaded *known = &reader->loaded[i];
+        if (known->source == source && known->use == use &&
+            (use != TEXTURE_GLOSS || known->roughness == roughness))
+            return known;
+    }
+    struct texture_loaded *fresh = &reader->loaded[reader->loaded_count++];
+    *fresh = (struct texture_loaded){.source = source, .use = use, .roughness = roughness};
+    tl_image decoded;
+    if (!decode(reader, source, &decoded))
+        return fresh;
+    /* A few bytes of file may be a huge plain picture, and many materials may ask for it again. */
+    reader->texel_count += (uint64_t)decoded.width * (uint64_t)decoded.height;
+    if (reader->texel_count > TL_LIMIT_IMAGE_TEXELS) {
+        model_ignore(reader->model, "maps beyond %zu texels in all", TL_LIMIT_IMAGE_TEXELS);
+        tl_image_release(&decoded);
+        return fresh;
+    }
+    if (use == TEXTURE_COLOUR_MEAN || use == TEXTURE_DATA_MEAN) {
+        take_means(&decoded, use == TEXTURE_COLOUR_MEAN, fresh);
+        tl_image_release(&decoded);
+        return fresh;
+    }
+    tl_image *kept = &reader->model->images[reader->model->image_count++];
+    if (use == TEXTURE_GLOSS) {
+        unpack_roughness(&decoded, fresh, kept);
+        tl_image_release(&decoded);
+    } else {
+        *kept = decoded;
+        kept->linear = use == TEXTURE_DATA;
+    }
+    fresh->image = kept;
+    return fresh;
+}
+
+const struct texture_loaded *texture_read_map(struct texture_reader *reader,
+                                              const struct gltf_texture *texture, enum texture_use use,
+                                              float roughness, struct tl_map *map)
+{
+    static const struct texture_loaded none = {0};
+    if (!texture->used)
+        return &none;
+    if (texture->uv_set != 0) {
+        model_ignore(reader->model, "maps on TEXCOORD_%d", texture->uv_set);
+        return &none;
+    }
+    const struct texture_loaded *loaded = load_image(reader, texture->image, use, roughness);
+    map->image = loaded->image;
+    map->transform = texture->transform;
+    map->clamp_u = texture->clamp_u;
+    map->clamp_v = texture->clamp_v;
+    return loaded;
+}
+
+struct model_mean model_map_mean(const struct material_build *build, const struct gltf_texture *texture,
+                                 const char *which, const char *what)
+{
+    struct tl_map map;
+    bool is_colour = strcmp(which, "colour") == 0;
+    const struct texture_loaded *loaded = texture_read_map(
+        build->textures, texture, is_colour ? TEXTURE_COLOUR_MEAN : TEXTURE_DATA_MEAN, 0, &map);
+    for (int c = 0; c < 4; c++)
+        if (strchr(is_colour ? "rgb" : which, "rgba"[c]) && loaded->varies[c])
+            model_approximate(build->model, "%s varies over a texture: its mean is used", what);
+    if (!loaded->has_means)
+        return (struct model_mean){1, 1, 1, 1};
+    return (struct model_mean){loaded->means[0], loaded->means[1], loaded->means[2], loaded->means[3]};
+}
+
+void model_colour_map(const struct material_build *build, const struct gltf_texture *texture,
+                      struct tl_map *out)
+{
+    texture_read_map(build->textures, texture, TEXTURE_COLOUR, 0, out);
+}
