@@ -1,16 +1,9 @@
-/* Small linear images, kept in tests/render/golden/. Software GL draws the same everywhere but for the last
- * bits, so a pixel may differ by a 500th of its value (at least of 1), and one in 200, at the edges of
- * shapes and shadows, by more. A golden that is missing, or that differs, writes what was drawn beside the
- * test's executable and fails; look at it, and copy it over the golden when it is right. */
+/* One scene by every method of light, against the images kept in tests/render/golden/ (tests/golden.h). */
 #include "tests/render/scenes.h"
 
-#include "assets/image/exr.h"
 #include "config/memory.h"
 
-#include "tests/testing.h"
-
-#define PIXEL_TOLERANCE  (1 / 500.0)
-#define FAILING_FRACTION (1 / 200.0)
+#include "tests/golden.h"
 
 static vec3s room(vec3s d)
 {
@@ -28,52 +21,6 @@ static vec3s sunny_room(vec3s d)
     if (glms_vec3_dot(d, glms_vec3_normalize((vec3s){{0.5f, 0.8f, 0.6f}})) > 0.9995f)
         return (vec3s){{1800, 1600, 1200}};
     return light.x > 80 ? (vec3s){{0.3f, 0.3f, 0.3f}} : light;
-}
-
-static void write_drawn(const char *path, const tl_image *image)
-{
-    static const char *const names[] = {"R", "G", "B", "A"};
-    const struct tl_exr_layer layer = {names, image};
-    tl_error error = {0};
-    assert_ok(tl_exr_save(path, &layer, 1, &error), error);
-}
-
-static size_t differing_pixels(const tl_image *drawn, const tl_image *golden)
-{
-    size_t failing = 0;
-    for (size_t p = 0; p < (size_t)drawn->width * (size_t)drawn->height; p++) {
-        bool same = true;
-        for (size_t c = 4 * p; c < 4 * p + 4; c++) {
-            double expected = (double)tl_image_floats(golden)[c];
-            double difference = fabs((double)tl_image_floats(drawn)[c] - expected);
-            same = same && difference <= PIXEL_TOLERANCE * fmax(1, expected);
-        }
-        failing += !same;
-    }
-    return failing;
-}
-
-static void check_golden(const char *name, const tl_image *drawn)
-{
-    char *golden_path = tl_format("%s/tests/render/golden/%s.exr", TOILE_SOURCE_DIR, name);
-    char *drawn_path = tl_format("%s/%s.exr", TOILE_SCRATCH_DIR, name);
-    tl_error error = {0};
-    tl_image golden = {0};
-    enum tl_exr_envmap envmap;
-    size_t pixels = (size_t)drawn->width * (size_t)drawn->height, failing = pixels;
-    bool found = tl_exr_load(golden_path, &golden, &envmap, &error);
-    if (found && golden.width == drawn->width && golden.height == drawn->height && golden.channels == 4)
-        failing = differing_pixels(drawn, &golden);
-    bool passed = (double)failing <= FAILING_FRACTION * (double)pixels;
-    if (!passed) {
-        write_drawn(drawn_path, drawn);
-        print_error("%s: %zu of %zu pixels differ from %s: drawn is %s\n", found ? name : error.message,
-                    failing, pixels, golden_path, drawn_path);
-    }
-    tl_image_release(&golden);
-    free(golden_path);
-    free(drawn_path);
-    assert_true(passed);
 }
 
 /* A ball under a waved sheet on the ground, half a cloth of coarse weave behind them. */
@@ -128,7 +75,7 @@ static void draw_and_check(struct test_device *device, const char *name, enum tl
     scene.settings.light.lobe = (int)lobe;
     tl_image image = test_scene_draw(&scene, device->renderer);
     test_scene_close(&scene);
-    check_golden(name, &image);
+    golden_check("tests/render/golden", name, &image);
     tl_image_release(&image);
 }
 
@@ -199,7 +146,7 @@ static void draw_variant(struct test_device *device, const char *name, enum tl_m
         image = test_scene_draw(&scene, device->renderer);
     }
     test_scene_close(&scene);
-    check_golden(name, &image);
+    golden_check("tests/render/golden", name, &image);
     tl_image_release(&image);
 }
 

@@ -1,6 +1,6 @@
 /* What a frame's time buys: samples of the image, presets and budgets, and each of the governor's levels by
  * itself. */
-#include "app/lab/experiments/rows.h"
+#include "app/lab/experiments/rows_internal.h"
 
 #define SATIN "material.use_file=false", "material.glossiness=0.7"
 

@@ -1,6 +1,6 @@
 /* Fabric detail: heights as normals, parallax and relief, their shadows, and weaves too fine to be seen. Ids
  * C1 to C8. */
-#include "app/lab/experiments/rows.h"
+#include "app/lab/experiments/rows_internal.h"
 
 #define BUMPY  WOVEN("8", "2")
 #define COARSE WOVEN("20", "5")
@@ -9,6 +9,7 @@ static const struct tl_technique techniques[] = {
     /* What moves the point that is looked up. */
     {.page = "normal",
      .picture = "normal map alone",
+     .golden = "weave_plain",
      .group = "mode",
      .id = "C4",
      SET("detail.mode=normal"),
@@ -28,10 +29,7 @@ static const struct tl_technique techniques[] = {
      SET("detail.mode=parallax_limited"),
      .shown = true},
     {.page = "relief", .group = "mode", SET("detail.mode=relief"), .quick = true, .shown = true},
-    {.picture = "normal map by finite differences",
-     .golden = "weave_normals",
-     .id = "C1",
-     SET("detail.mode=normal")},
+    {.picture = "normal map by finite differences", .id = "C1", SET("detail.mode=normal")},
     {.picture = "normal map, bumps twice as high",
      .id = "C1",
      SET("detail.mode=normal", "detail.height_scale=2")},
@@ -86,7 +84,7 @@ static const struct tl_technique techniques[] = {
     {.picture = "64 steps, refined", .id = "C6", SET("detail.steps=64", "detail.refine=5")},
 
     {.picture = "all yarns alike", .id = "C7"},
-    {.picture = "matt weft", .golden = "weave_gloss", .id = "C7", SET("weave.weft_gloss=-0.6")},
+    {.picture = "matt weft", .id = "C7", SET("weave.weft_gloss=-0.6")},
     {.picture = "matt warp", .id = "C7", SET("weave.warp_gloss=-0.6")},
 
     /* What becomes of bumps that are finer than pixels. */

@@ -4,28 +4,6 @@
 
 #include <string.h>
 
-static const struct tl_experiment_list *const families[] = {&tl_shading_experiments,  &tl_maps_experiments,
-                                                            &tl_detail_experiments,   &tl_light_experiments,
-                                                            &tl_material_experiments, &tl_budget_experiments};
-
-const struct tl_experiment *tl_experiment_at(enum tl_output output, size_t index)
-{
-    for (size_t f = 0; f < TL_COUNT(families); f++)
-        for (size_t i = 0; i < families[f]->count; i++)
-            if (families[f]->items[i].output == output && index-- == 0)
-                return &families[f]->items[i];
-    return NULL;
-}
-
-const struct tl_experiment *tl_experiment_find(enum tl_output output, const char *name)
-{
-    const struct tl_experiment *experiment;
-    for (size_t i = 0; (experiment = tl_experiment_at(output, i)); i++)
-        if (strcmp(experiment->name, name) == 0)
-            return experiment;
-    return NULL;
-}
-
 static bool has_id(const struct tl_experiment *experiment, const char *id)
 {
     for (size_t i = 0; i < TL_COUNT(experiment->ids) && experiment->ids[i]; i++)

@@ -74,18 +74,6 @@ struct tl_experiment {
     bool by_wall;          /* plots show wall time; else CPU time of all threads */
 };
 
-/* One family's experiments, in order. */
-struct tl_experiment_list {
-    const struct tl_experiment *items;
-    size_t count;
-};
-extern const struct tl_experiment_list tl_shading_experiments, tl_maps_experiments, tl_detail_experiments,
-    tl_light_experiments, tl_material_experiments, tl_budget_experiments;
-
-/* All experiments that one writer takes, in order; NULL past the last one. */
-const struct tl_experiment *tl_experiment_at(enum tl_output output, size_t index);
-/* NULL: none has this name. */
-const struct tl_experiment *tl_experiment_find(enum tl_output output, const char *name);
 /* The next technique of the experiment that `output` takes; `after` NULL: the first. NULL past the last one.
  */
 const struct tl_technique *tl_experiment_next(const struct tl_experiment *experiment, enum tl_output output,

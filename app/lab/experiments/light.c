@@ -1,6 +1,6 @@
 /* Methods of light: the 2014 algorithm's parameters, the back-ends that go beyond it, and other methods. Id
  * D9. */
-#include "app/lab/experiments/rows.h"
+#include "app/lab/experiments/rows_internal.h"
 
 #define PAPER(...)     PRESET("paper", "light.lobe=dual", __VA_ARGS__)
 #define PAPER_SLICES   "light.prefilter=slices"

@@ -1,15 +1,21 @@
-/* Materials of several layers: a clear coat, and open cloth that shows what is behind it. */
-#include "app/lab/experiments/rows.h"
+/* Materials that have a golden alone: a clear coat, open cloth that shows what is behind it, a weave of two
+ * yarns. */
+#include "app/lab/experiments/rows_internal.h"
 
 static const struct tl_technique coats[] = {
     {.golden = "coat", SET("material.coat=1", "material.coat_glossiness=0.98")},
-    {.golden = "coat_half", SET("material.coat=0.5", "material.coat_glossiness=0.9")},
 };
 
 static const struct tl_technique open_cloths[] = {
     {.golden = "open_cloth", SET("material.openness=0.4")},
     {.golden = "open_cloth_transmission",
      SET("material.openness=0.2", "material.transmission=[0.3, 0.2, 0.1]")},
+};
+
+static const struct tl_technique weaves[] = {
+    {.golden = "weave_satin",
+     SET("weave.pattern=satin", "weave.texels_per_yarn=16", "weave.warp_pitch_mm=20",
+         "weave.weft_pitch_mm=20", "weave.crimp_mm=2", "weave.weft_gloss=-0.6")},
 };
 
 static const struct tl_experiment experiments[] = {
@@ -20,6 +26,13 @@ static const struct tl_experiment experiments[] = {
      .solid = "torus",
      .base = {"light.method=unshadowed"},
      TECHNIQUES(coats)},
+    {.output = TL_OUTPUT_GOLDEN,
+     .name = "weave",
+     .title = "A satin of matt wefts",
+     .scene = "gallery",
+     .solid = "torus",
+     .base = {LAMPLIT},
+     TECHNIQUES(weaves)},
     {.output = TL_OUTPUT_GOLDEN,
      .name = "open cloth",
      .title = "Open cloth over a ball",

@@ -1,6 +1,6 @@
 /* Shading under lamps: reflectance models, their tables, and how their terms are evaluated
  * [Heidrich and Seidel 1999]. Ids A1 to A12. */
-#include "app/lab/experiments/rows.h"
+#include "app/lab/experiments/rows_internal.h"
 
 #define TABLE      "shading.reflectance=table"
 #define FIXED8     "shading.table_precision=fixed8"

@@ -1,5 +1,6 @@
 #include "app/lab/gallery/gallery.h"
 
+#include "app/lab/experiments/experiments.h"
 #include "app/measure/cost.h"
 #include "app/report/canvas.h"
 #include "app/scene/session.h"

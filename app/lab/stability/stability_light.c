@@ -1,6 +1,7 @@
 /* The extremes of light, drawn by two methods and compared with the ray-traced reference. */
 #include "app/cli/topic.h"
 #include "app/lab/experiments/experiment.h"
+#include "app/lab/experiments/experiments.h"
 #include "app/lab/stability/extremes_light.h"
 #include "app/lab/stability/stability.h"
 #include "config/interrupt.h"

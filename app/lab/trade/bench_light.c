@@ -1,6 +1,7 @@
 /* toile bench light: time and error of the presets in motion, measured side by side. */
 #include "app/cli/json.h"
 #include "app/lab/experiments/experiment.h"
+#include "app/lab/experiments/experiments.h"
 #include "app/lab/trade/bench.h"
 #include "app/measure/measure.h"
 #include "config/interrupt.h"

@@ -2,6 +2,7 @@
  * [001, figure 12]. */
 #include "app/cli/json.h"
 #include "app/lab/experiments/experiment.h"
+#include "app/lab/experiments/experiments.h"
 #include "app/lab/trade/bench.h"
 #include "app/measure/cost.h"
 #include "app/scene/headless.h"

@@ -1,7 +1,8 @@
-/* The table of experiments: every row of the technique set is pictured, every option of every row exists, names that
- * become files are unique. */
+/* The table of experiments: every row of the technique set is pictured, every option of every row exists,
+ * names that become files are unique. */
 #include "tests/testing.h"
 
+#include "app/lab/experiments/experiments.h"
 #include "app/lab/experiments/picture.h"
 #include "config/memory.h"
 

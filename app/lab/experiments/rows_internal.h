@@ -1,9 +1,18 @@
-/* Short forms for the rows of the families' lists. */
-#ifndef TOILE_APP_LAB_EXPERIMENTS_ROWS_H
-#define TOILE_APP_LAB_EXPERIMENTS_ROWS_H
+/* What the families' files share: their lists, and short forms for rows. Included by them and by the table.
+ */
+#ifndef TOILE_APP_LAB_EXPERIMENTS_ROWS_INTERNAL_H
+#define TOILE_APP_LAB_EXPERIMENTS_ROWS_INTERNAL_H
 
 #include "app/lab/experiments/experiment.h"
 #include "config/memory.h"
+
+/* One family's experiments, in order. */
+struct tl_experiment_list {
+    const struct tl_experiment *items;
+    size_t count;
+};
+extern const struct tl_experiment_list tl_shading_experiments, tl_maps_experiments, tl_detail_experiments,
+    tl_light_experiments, tl_material_experiments, tl_budget_experiments;
 
 /* A technique's settings: assignments over the experiment's, or over a preset's. */
 #define SET(...)          .setup = {.assignments = {__VA_ARGS__}}
