@@ -3,7 +3,7 @@
 # Figures are not judged here (time never is; errors have their own tests), only that they are there and finite.
 set -eu
 . "$(dirname "$0")/cli.sh"
-small="--size 96x96 $cheap_cloth $cheap_light --set reference.replicates=4 --quiet"
+small="--size 96x96 --set cloth.edge_m=0.06 --set reference.replicates=4 --quiet"
 
 refuse "trade without a folder" "add -o FOLDER" trade --quick
 refuse "trade along nothing known" "expected overall, light" trade --axis wind -o measured
@@ -38,7 +38,7 @@ for row in rows:
         assert math.isfinite(float(row[key])) and float(row[key]) >= 0, (key, row)
 PYTHON
     done
-    check "bench --json" sh -c "$TOILE bench light $small --garment dress --avatar form --set cloth.edge_m=0.06 --quick --json | python3 -c '
+    check "bench --json" sh -c "$TOILE bench light $small --quick --json | python3 -c '
 import json, math, sys
 bench = json.load(sys.stdin)
 for key in (\"time_ratio\", \"error_ratio\", \"flip_ratio\"):
@@ -50,6 +50,6 @@ else
 fi
 
 # Ctrl-C once the first choice of settings is measured: exit status 130, and what was measured is there.
-interrupt "measuring the trade" trade --axis light --size 32x32 $cheap_cloth $cheap_light --set reference.replicates=2 -o stopped
+interrupt "measuring the trade" trade --axis light --size 32x32 --set cloth.edge_m=0.06 --set reference.replicates=2 -o stopped
 check "interrupted: status 130" test $status -eq 130
 check "interrupted: what was measured is kept" test "$(wc -l <stopped/trade.csv)" -ge 2 -a -s stopped/report.html

@@ -5,11 +5,11 @@ set -eu
 . "$(dirname "$0")/view_room.sh"
 [ -n "${DROP:-}" ] || { echo "skipped: built without X11's headers (libx11-dev), there is nothing to drop with"; exit 77; }
 
-fast="--preset draft --set cloth.edge_m=0.08"
+fast="--preset draft --set cloth.edge_m=0.08 --set light.regions=24 --set light.pem_size=16"
 $TOILE render $fast --size 64x32 --quiet -o light.exr # any picture is an environment
 $TOILE export $fast --set image.ground=false --avatar none --garment skirt --quiet -o skirt.obj
 printf 'material: {diffuse: [0.1, 0.2, 0.3], glossiness: 0.4}\n' >"bleu é 100%.yaml"
-printf 'scene: {garment: dress, preset: draft}\ncloth: {edge_m: 0.08}\n' >scene.yaml
+printf 'scene: {garment: dress, preset: draft}\ncloth: {edge_m: 0.08}\nlight: {regions: 24, pem_size: 16}\n' >scene.yaml
 echo "material: [" >broken.yaml
 echo "no light" >broken.exr
 echo "no model" >broken.glb
