@@ -1,5 +1,6 @@
 # The parts of render that know neither GL nor the clock.
 add_library(toile_light STATIC
+  brdf/angles.c
   brdf/brdf.c
   brdf/coat.c
   brdf/sample.c
@@ -49,6 +50,7 @@ add_library(toile_light STATIC
   pem/memory.c
   pem/regions.c
   pem/regions_faces.c
+  pem/regions_internal.c
   pem/regions_sphere.c
   pem/slices.c
   plan/budget.c
@@ -60,6 +62,7 @@ add_library(toile_light STATIC
   reference/lamps.c
   reference/options.c
   reference/reference.c
+  reference/scene.c
   reference/sky.c
   reference/shading_point.c
   surfaces/ground.c

@@ -1,12 +1,12 @@
 #include "render/brdf/brdf.h"
 
-#include "render/brdf/brdf_internal.h"
+#include "render/brdf/fresnel.h"
 #include "render/env/exponent.h"
 
 #include <math.h>
 
-#define LEAST_WIDTH 1e-3f
-#define PI          ((float)M_PI)
+#define MIN_WIDTH 1e-3f
+#define PI        ((float)M_PI)
 
 static float finite_or(float x, float otherwise)
 {
@@ -16,7 +16,7 @@ static float finite_or(float x, float otherwise)
 static float width_of(float width, float exponent)
 {
     float from_exponent = sqrtf(2 / (4 * exponent + 2));
-    return fminf(fmaxf(width > 0 ? width : from_exponent, LEAST_WIDTH), 1);
+    return fminf(fmaxf(width > 0 ? width : from_exponent, MIN_WIDTH), 1);
 }
 
 struct tl_brdf tl_brdf_of(const tl_material *material, vec3s f0, float glossiness)
@@ -33,60 +33,9 @@ struct tl_brdf tl_brdf_of(const tl_material *material, vec3s f0, float glossines
     return brdf;
 }
 
-/* Unit and at right angles to the unit normal. */
-static vec3s any_tangent(vec3s n)
-{
-    vec3s axis = fabsf(n.x) < 0.6f ? (vec3s){{1, 0, 0}} : (vec3s){{0, 1, 0}};
-    return glms_vec3_normalize(glms_vec3_cross(axis, n));
-}
-
-struct tl_brdf_frame tl_brdf_frame_make(vec3s normal, vec3s tangent, float handedness, float rotation)
-{
-    vec3s t = glms_vec3_sub(tangent, glms_vec3_scale(normal, glms_vec3_dot(normal, tangent)));
-    float length = glms_vec3_norm(t);
-    t = length > 1e-6f ? glms_vec3_scale(t, 1 / length) : any_tangent(normal);
-    vec3s left = glms_vec3_cross(normal, t);
-    t = glms_vec3_add(glms_vec3_scale(t, cosf(rotation)), glms_vec3_scale(left, sinf(rotation)));
-    vec3s b = glms_vec3_scale(glms_vec3_cross(normal, t), handedness < 0 ? -1.0f : 1.0f);
-    return (struct tl_brdf_frame){normal, t, b};
-}
-
-struct tl_brdf_angles tl_brdf_angles_of(const struct tl_brdf_frame *frame, vec3s l, vec3s v)
-{
-    struct tl_brdf_angles angles = {.cos_a = glms_vec3_dot(frame->normal, l),
-                                    .cos_b = glms_vec3_dot(frame->normal, v)};
-    vec3s sum = glms_vec3_add(l, v);
-    float length = glms_vec3_norm(sum);
-    if (length < 1e-7f)
-        return angles;
-    vec3s h = glms_vec3_scale(sum, 1 / length);
-    angles.cos_t = fminf(length / 2, 1); /* |l + v| = 2 cos t */
-    angles.h = (vec3s){{glms_vec3_dot(frame->tangent, h), glms_vec3_dot(frame->bitangent, h),
-                        glms_vec3_dot(frame->normal, h)}};
-    return angles;
-}
-
-vec3s tl_brdf_mirror(vec3s normal, vec3s v)
-{
-    return glms_vec3_sub(glms_vec3_scale(normal, 2 * glms_vec3_dot(normal, v)), v);
-}
-
-/* Near the peak a cosine in float has lost the angle: 1 - cos is below its last digit where the sine is not.
- */
-static float power_of(float cosine, float sine_squared, float exponent)
-{
-    if (cosine <= 0)
-        return 0;
-    return sine_squared < 0.5f ? expf(exponent / 2 * log1pf(-sine_squared)) : powf(cosine, exponent);
-}
-
-float tl_brdf_cosine_power(vec3s a, vec3s b, float exponent)
-{
-    return power_of(glms_vec3_dot(a, b), glms_vec3_norm2(glms_vec3_cross(a, b)), exponent);
-}
-
-/* P: the integral of 2 d exp(-(d/w)^2) cos d sin d / (d w^2) over d in [0, pi/2], which is 1 for narrow
- * facets; met at five Chebyshev nodes of w^2 in [0, 1], within 1e-4. */
+/* P(w^2) is the integral of 2 d exp(-(d/w)^2) cos d sin d / (d w^2) over d in [0, pi/2]. It is 1 for
+ * narrow facets. This polynomial interpolates it at five Chebyshev nodes of w^2 in [0, 1], with an error
+ * below 1e-4. */
 static float gaussian_volume(float w2)
 {
     return 0.99992717f + w2 * (-0.66309756f + w2 * (0.24115347f + w2 * (-0.02326816f - w2 * 0.00701674f)));
@@ -104,8 +53,8 @@ float tl_brdf_facets(const struct tl_brdf *brdf, float tangent_squared)
     return expf(-d * d / w2) / (4 * w2 * gaussian_volume(w2));
 }
 
-/* Smith's lambda: the share of facets hidden over the share seen. */
-static float hidden(float width, float cosine)
+/* Smith's lambda for Beckmann facets: the ratio of smith_lambda to visible facets, L(x) of brdf.h. */
+static float smith_lambda(float width, float cosine)
 {
     float sine = sqrtf(fmaxf(1 - cosine * cosine, 0));
     if (sine <= 0)
@@ -117,7 +66,7 @@ static float hidden(float width, float cosine)
 float tl_brdf_smith(const struct tl_brdf *brdf, float cos_a, float cos_b)
 {
     float width = brdf->gloss.width_weft;
-    return 1 / (1 + hidden(width, cos_a) + hidden(width, cos_b));
+    return 1 / (1 + smith_lambda(width, cos_a) + smith_lambda(width, cos_b));
 }
 
 float tl_brdf_v_grooves(float cos_a, float cos_b, float cos_t, float cos_d)
@@ -125,7 +74,8 @@ float tl_brdf_v_grooves(float cos_a, float cos_b, float cos_t, float cos_d)
     return fminf(1, 2 * cos_d * fminf(cos_a, cos_b) / cos_t);
 }
 
-/* Gamma(z + 1/2) / Gamma(z), z = s/2 + 3/2, by the first terms of its series: within 5e-4 for s >= 1. */
+/* c(s) of BANKS by Gamma(z + 1/2) / Gamma(z), z = s/2 + 3/2, from the first terms of its asymptotic series.
+ * The relative error is below 5e-4 for s >= 1. */
 static float thread_scale(float s)
 {
     float z = s / 2 + 1.5f;
@@ -147,7 +97,7 @@ float tl_brdf_lobe_scale(const struct tl_brdf *brdf)
     }
 }
 
-/* G / (pi cos b), which stays finite where G itself does: both vanish with cos b. */
+/* D G / (pi cos b). The quotient G / cos b stays finite wherever G does, because both vanish with cos b. */
 static float torrance_sparrow(const struct tl_brdf *brdf, const struct tl_brdf_angles *at)
 {
     float tangent_squared = (at->h.x * at->h.x + at->h.y * at->h.y) / (at->h.z * at->h.z);
@@ -166,22 +116,17 @@ static float ward(const struct tl_brdf *brdf, const struct tl_brdf_angles *at)
 
 static float half_power(const struct tl_brdf *brdf, const struct tl_brdf_angles *at)
 {
-    return power_of(at->h.z, at->h.x * at->h.x + at->h.y * at->h.y, 4 * brdf->exponent);
-}
-
-float tl_brdf_thread_angle(float t_dot_l, float t_dot_v)
-{
-    return acosf(fminf(fmaxf(t_dot_l, -1), 1)) + acosf(fminf(fmaxf(t_dot_v, -1), 1)) - PI;
+    return tl_cosine_power(at->h.z, at->h.x * at->h.x + at->h.y * at->h.y, 4 * brdf->exponent);
 }
 
 static float thread_power(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s l, vec3s v)
 {
     float angle = tl_brdf_thread_angle(glms_vec3_dot(frame->tangent, l), glms_vec3_dot(frame->tangent, v));
     float sine = sinf(angle);
-    return power_of(cosf(angle), sine * sine, brdf->exponent);
+    return tl_cosine_power(cosf(angle), sine * sine, brdf->exponent);
 }
 
-/* Without F. */
+/* The lobe without the Fresnel term. */
 static float lobe_of(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame,
                      const struct tl_brdf_angles *at, vec3s l, vec3s v)
 {
@@ -201,6 +146,19 @@ static float lobe_of(const struct tl_brdf *brdf, const struct tl_brdf_frame *fra
         return tl_brdf_lobe_scale(brdf) *
                tl_brdf_cosine_power(tl_brdf_mirror(frame->normal, v), l, brdf->exponent);
     }
+}
+
+vec3s tl_brdf_fresnel(const struct tl_brdf *brdf, float cosine)
+{
+    const struct tl_gloss *gloss = &brdf->gloss;
+    vec3s reflectance = brdf->f0;
+    if (gloss->fresnel == TL_FRESNEL_DIELECTRIC)
+        return glms_vec3_scale(reflectance, tl_fresnel_dielectric(gloss->index, cosine));
+    if (gloss->fresnel == TL_FRESNEL_CONDUCTOR)
+        return glms_vec3_scale(reflectance, tl_fresnel_conductor(gloss->index, gloss->extinction, cosine));
+    for (int c = 0; c < 3; c++)
+        reflectance.raw[c] = tl_fresnel_schlick(reflectance.raw[c], cosine);
+    return reflectance;
 }
 
 vec3s tl_brdf_gloss(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s l, vec3s v)

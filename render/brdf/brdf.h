@@ -1,9 +1,9 @@
-/* Reflectance of gloss under one light, evaluated directly: the exact value that every table, interpolation
- * and reduced precision of this folder is measured against.
+/* Reflectance of gloss under one light, evaluated directly. Every table, interpolation and reduced precision
+ * of this folder is measured against this exact value.
  *
  * With l towards the light and v towards the viewer, unit, h = (l + v) / |l + v|, r = v reflected about n,
  * cosines a = n.l, b = n.v, t = h.l (all clamped to [0, 1]), d the angle of n and h, p the azimuth of h from
- * the tangent, the functions return f_r(l, v) cos a:
+ * the tangent, tl_brdf_gloss returns f_r(l, v) cos a:
  *
  *     PHONG             F (s + 1)/2pi (r.l)^s                          the PEM method's K_s; not reciprocal
  *     BLINN_PHONG       F (s' + 2)/8pi (n.h)^s' , s' = 4 s             [Blinn 1977]; not reciprocal
@@ -13,18 +13,18 @@
  *                                                                      [Ward 1992, eq. 5a]; reciprocal
  *     BANKS             F c(s) (sin(t,l) sin(t,v) - (t.l)(t.v))^s cos a        [op. cit., 3.2]
  *
- * D has width w = w_u and the integral of D cos d over h is pi/4, which makes a white surface send back what
- * it gets: GAUSSIAN exp(-(d/w)^2) / (4 w^2 P(w^2)), BECKMANN exp(-(tan d/w)^2) / (4 w^2 cos^4 d). G is
+ * D has width w = w_u. The integral of D cos d over h is pi/4, so that a white surface reflects all incident
+ * light: GAUSSIAN exp(-(d/w)^2) / (4 w^2 P(w^2)), BECKMANN exp(-(tan d/w)^2) / (4 w^2 cos^4 d). G is
  * SMITH's for Beckmann's slopes, heights correlated: 1 / (1 + L(a) + L(b)), L(x) = (exp(-k^2)/(k sqrt pi) -
  * erfc k)/2, k = 1/(w tan x); or of V_GROOVES: min(1, 2 cos d min(cos a, cos b)/cos t). Reciprocal.
  *
- * BANKS is no physical model. (sin sin - cos cos) is the cosine of l with the nearest mirror direction of a
- * thread along t; c(s) = Gamma(s/2 + 2) / (2 sqrt(pi) Gamma(s/2 + 3/2)) is the factor at which a white thread
- * seen at right angles sends back what it gets.
+ * BANKS is not a physical model. (sin sin - cos cos) is the cosine of l with the nearest mirror direction of
+ * a thread along t. c(s) = Gamma(s/2 + 2) / (2 sqrt(pi) Gamma(s/2 + 3/2)) is the factor for which a white
+ * thread seen at right angles reflects all incident light.
  *
- * Energy, F = 1: no model sends back more than it gets, but for two: WARD, as its author wrote it, grows
- * without bound in the last degree of grazing views, and TORRANCE_SPARROW by GAUSSIAN and SMITH, which do not
- * belong together, sends back up to 5 % too much there if its facets are wide.
+ * Energy with F = 1: all models conserve energy, with two exceptions. WARD, as published, grows without bound
+ * in the last degree of grazing views. TORRANCE_SPARROW with GAUSSIAN facets and SMITH masking, which were
+ * not derived for each other, reflects up to 5 % too much there if its facets are wide.
  *
  * F is by `fresnel`: Schlick's from f0, f90 = min(50 f0, 1); or a dielectric's or conductor's from its index,
  * times f0. PHONG and BANKS take it at n.v, as the frame's G-buffer does, so BANKS is reciprocal but for F;
@@ -33,48 +33,43 @@
 #define TOILE_RENDER_BRDF_BRDF_H
 
 #include "assets/base/material.h"
+#include "render/brdf/angles.h"
 
-/* A surface's frame: unit, at right angles; `tangent` along u (weft), turned already by gloss.rotation. */
-struct tl_brdf_frame {
-    vec3s normal, tangent, bitangent;
-};
-
+/* A reflectance model with the parameters of one point of a surface. */
 struct tl_brdf {
-    struct tl_gloss gloss; /* widths filled in: none is 0 */
+    struct tl_gloss gloss; /* with both widths resolved: neither is 0 */
     vec3s f0;
     float exponent; /* s = 1 / (1 - g) */
 };
 
-/* What a material does where its maps say glossiness g and reflectance f0. Widths of 0 become
- * sqrt(2 / (4 s + 2)), the Gaussian slopes of the Blinn-Phong lobe with the same peak; kept in [1e-3, 1]. */
+/* The model of a material where its maps give glossiness g and reflectance f0. A width of 0 becomes sqrt(2 /
+ * (4 s + 2)), the Gaussian slope of the Blinn-Phong lobe with the same peak. Widths are clamped to [1e-3, 1].
+ * Inputs that are not finite become 0. */
 struct tl_brdf tl_brdf_of(const tl_material *material, vec3s f0, float glossiness);
-
-/* `tangent` need not be at right angles to the normal and may be zero (then any will do). */
-struct tl_brdf_frame tl_brdf_frame_make(vec3s normal, vec3s tangent, float handedness, float rotation);
 
 /* f_r cos a by channel; 0 where light or viewer lie below the surface. Finite for all finite input. */
 vec3s tl_brdf_gloss(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s l, vec3s v);
 
-/* Its factors, for tables. D(d) of TORRANCE_SPARROW from tan^2 d; G; the cosine to a power from the sine
- * squared, which keeps its digits near the peak; the factor that stands before a lobe: (s + 1)/2pi and so on.
- */
+/* The factors of the models, which tables store one by one. */
+
+/* D(d) of TORRANCE_SPARROW, from tan^2 d. */
 float tl_brdf_facets(const struct tl_brdf *brdf, float tangent_squared);
+/* G of SMITH, from the cosines a and b. */
 float tl_brdf_smith(const struct tl_brdf *brdf, float cos_a, float cos_b);
+/* G of V_GROOVES, from the cosines a, b, t and d. */
 float tl_brdf_v_grooves(float cos_a, float cos_b, float cos_t, float cos_d);
+/* The normalisation of a lobe: (s + 1)/2pi for PHONG, (s + 2)/2pi for COSINE_LOBE, c(s) for BANKS. */
 float tl_brdf_lobe_scale(const struct tl_brdf *brdf);
 
-/* Fresnel reflectance for the cosine of the angle to the facet, in [0, 1] (render/brdf/fresnel.c). */
+/* Fresnel reflectance by channel for the cosine of the angle to the facet, clamped to [0, 1]. */
 vec3s tl_brdf_fresnel(const struct tl_brdf *brdf, float cosine);
-/* Of one interface, unpolarised; a dielectric's extinction is 0. */
-float tl_fresnel_dielectric(float index, float cosine);
-float tl_fresnel_conductor(float index, float extinction, float cosine);
-float tl_fresnel_schlick(float f0, float cosine);
 
-/* A direction drawn for light in proportion to the gloss, or nearly so, from two uniform numbers in [0, 1);
- * its density by solid angle in *density (0: no direction, below the surface). And the density of any
- * direction. (render/brdf/sample.c) */
+/* Importance sampling (render/brdf/sample.c). Returns a direction towards the light whose pdf is proportional
+ * to the gloss or close to it, from two uniform numbers in [0, 1). *pdf is by solid angle; 0 means that the
+ * direction lies below the surface and must be rejected. */
 vec3s tl_brdf_sample(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, float u1,
-                     float u2, float *density);
+                     float u2, float *pdf);
+/* The pdf, by solid angle, with which tl_brdf_sample returns l. */
 float tl_brdf_pdf(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s l, vec3s v);
 
 #endif

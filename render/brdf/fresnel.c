@@ -1,4 +1,4 @@
-#include "render/brdf/brdf.h"
+#include "render/brdf/fresnel.h"
 
 #include <math.h>
 
@@ -13,7 +13,7 @@ float tl_fresnel_schlick(float f0, float cosine)
     return f0 + (fminf(50 * f0, 1) - f0) * fifth;
 }
 
-/* Fresnel's equations [Born and Wolf, 1.5.2]; an index below 1 reflects totally beyond its critical angle. */
+/* Fresnel's equations [Born and Wolf, 1.5.2]. An index below 1 reflects totally beyond the critical angle. */
 float tl_fresnel_dielectric(float index, float cosine)
 {
     float c = clamp01(cosine), inside_squared = index * index - (1 - c * c);
@@ -26,8 +26,8 @@ float tl_fresnel_dielectric(float index, float cosine)
     return clamp01((s * s + p * p) / 2);
 }
 
-/* The same with a complex index [Born and Wolf, 14.4; in this real form: Hecht and others]: (p + iq)^2 = (n +
- * ik)^2 - sin^2. In double: n^2 + k^2 of metals is large against what is left of it. */
+/* The same with a complex index [Born and Wolf, 14.4], in the real form: (p + iq)^2 = (n + ik)^2 - sin^2.
+ * Computed in double, because n^2 + k^2 of metals is large compared with the differences taken from it. */
 float tl_fresnel_conductor(float index, float extinction, float cosine)
 {
     double c = (double)clamp01(cosine), s2 = 1 - c * c, n = (double)index, k = (double)extinction;
@@ -41,17 +41,4 @@ float tl_fresnel_conductor(float index, float extinction, float cosine)
     double along =
         across * (c * c * size - 2 * p * c * s2 + s2 * s2) / (c * c * size + 2 * p * c * s2 + s2 * s2);
     return clamp01((float)((across + along) / 2));
-}
-
-vec3s tl_brdf_fresnel(const struct tl_brdf *brdf, float cosine)
-{
-    const struct tl_gloss *gloss = &brdf->gloss;
-    vec3s reflectance = brdf->f0;
-    if (gloss->fresnel == TL_FRESNEL_DIELECTRIC)
-        return glms_vec3_scale(reflectance, tl_fresnel_dielectric(gloss->index, cosine));
-    if (gloss->fresnel == TL_FRESNEL_CONDUCTOR)
-        return glms_vec3_scale(reflectance, tl_fresnel_conductor(gloss->index, gloss->extinction, cosine));
-    for (int c = 0; c < 3; c++)
-        reflectance.raw[c] = tl_fresnel_schlick(reflectance.raw[c], cosine);
-    return reflectance;
 }

@@ -1,39 +1,41 @@
-/* The gloss towards one viewer as a few cosine lobes, which is what prefiltered light can be asked with
+/* A fit of the gloss towards one viewer by a few cosine lobes, for which prefiltered light can be looked up
  * [DESIGN 4; TECHNIQUES D7, "several lobes for a BRDF"]:
  *
  *     f_r(l, v) cos a  ~  sum over k of weight_k K_{s_k}(direction_k, l)
  *
- * Facets whose slopes spread as a Gaussian of covariance S spread the light they reflect by J S J^T, J being
- * the derivative of the mirror direction by the slope. Lobes are as narrow as its narrow axis and lie along
- * its broad one, each where a facet of that slope sends the light, so that they follow the cone of a strongly
- * anisotropic gloss; where there are too few of them to touch each other they are widened. Their weights are
- * the gloss over the density of the slopes there, and add up to the gloss's albedo towards the viewer by
- * Gauss-Hermite quadrature: light that is the same from everywhere is kept. What of a lobe lies below the
- * horizon is made up for by what lies above.
+ * Facets whose slopes are Gaussian with covariance S spread the light they reflect with covariance J S J^T,
+ * where J is the derivative of the mirror direction by the slope. The lobes are as narrow as the narrow axis
+ * of that covariance and lie along its broad axis, each in the direction in which a facet of that slope
+ * reflects. So they follow the cone of a strongly anisotropic gloss. Where there are too few lobes to overlap
+ * they are widened. The weight of a lobe is the gloss divided by the pdf of the slopes there. All weights are
+ * then scaled so that their sum is the albedo of the gloss towards the viewer, computed by Gauss-Legendre
+ * quadrature; this keeps light that is the same from everywhere. The part of a lobe above the horizon is
+ * scaled up for the part that lies below it.
  *
- * Errors: tests/render/brdf/test_lobe_fit.c prints them. Pure; threads: any. */
+ * tests/render/brdf/test_lobe_fit.c prints the errors. Pure; threads: any. */
 #ifndef TOILE_RENDER_BRDF_LOBE_FIT_H
 #define TOILE_RENDER_BRDF_LOBE_FIT_H
 
 #include "render/brdf/brdf.h"
 
-#define TL_LOBE_FIT_MAX 7
+#define TL_LOBE_FIT_MAX 7 /* lobes */
 
 struct tl_fitted_lobe {
-    vec3s direction; /* unit, as the frame */
+    vec3s direction; /* unit, in the space of the frame's vectors */
     float exponent;
     vec3s weight; /* by channel */
 };
 
-/* Up to `most` lobes, 1 to TL_LOBE_FIT_MAX; returns how many. Fewer serve where the gloss is round. */
-int tl_lobe_fit_make(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int most,
+/* Fits at most `max_count` lobes (1 to TL_LOBE_FIT_MAX) and returns their number. A round gloss needs fewer.
+ * 0 when the viewer is below the surface. */
+int tl_lobe_fit_make(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int max_count,
                      struct tl_fitted_lobe lobes[TL_LOBE_FIT_MAX]);
 
-/* The least and the greatest exponent of any lobe, towards all viewers and however many there are. */
-void tl_lobe_fit_exponents(const struct tl_brdf *brdf, float *least, float *greatest);
+/* The smallest and the largest exponent of any lobe, over all viewers and numbers of lobes. */
+void tl_lobe_fit_exponents(const struct tl_brdf *brdf, float *min, float *max);
 
-/* Gloss under a source of light that is a disc of this radius (rad) about `l`: tl_brdf_gloss, its facets
- * spread by as much as the disc spreads its light. */
+/* Gloss under a light that is a disc of angular radius `radius` (rad) about `l`: tl_brdf_gloss with the
+ * facets widened by the variance of the disc. */
 vec3s tl_brdf_gloss_under_disc(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s l,
                                vec3s v, float radius);
 

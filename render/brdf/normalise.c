@@ -50,24 +50,24 @@ vec3s tl_normal_cube_at(const struct tl_normal_cube *cube, vec3s v)
     return sum;
 }
 
-/* What a register of 8 bits and a sign keeps. */
-static float kept(float x)
+/* Rounds to a register of 8 bits and a sign. */
+static float rounded(float x)
 {
     return roundf(fminf(fmaxf(x, -1), 1) * 255) / 255;
 }
 
-static vec3s kept_vector(vec3s v)
+static vec3s rounded_vector(vec3s v)
 {
-    return (vec3s){{kept(v.x), kept(v.y), kept(v.z)}};
+    return (vec3s){{rounded(v.x), rounded(v.y), rounded(v.z)}};
 }
 
-/* v + v/2 (1 - v.v): the form of two combiner stages [001, eq. 6]. */
+/* v + v/2 (1 - v.v), evaluated by two register combiner stages [001, eq. 6]. */
 static vec3s newton_fixed(vec3s v)
 {
-    vec3s start = kept_vector(v);
-    float missing = kept(1 - kept(glms_vec3_norm2(start)));
-    vec3s more = kept_vector(glms_vec3_scale(start, missing / 2));
-    return kept_vector(glms_vec3_add(start, more));
+    vec3s start = rounded_vector(v);
+    float missing = rounded(1 - rounded(glms_vec3_norm2(start)));
+    vec3s more = rounded_vector(glms_vec3_scale(start, missing / 2));
+    return rounded_vector(glms_vec3_add(start, more));
 }
 
 vec3s tl_normalise(int method, const struct tl_normal_cube *cube, vec3s v)
@@ -90,10 +90,10 @@ vec3s tl_normalise(int method, const struct tl_normal_cube *cube, vec3s v)
     }
 }
 
-#define ARCS   256
-#define PLACES 64 /* on each arc */
+#define ARCS      256
+#define POSITIONS 64 /* on each arc */
 
-/* Arc i: its middle, and the direction in which it runs. Spread evenly. */
+/* The middle of arc i and its direction there. Arcs are spread evenly over the sphere by the golden angle. */
 static void set_arc(int i, vec3s *middle, vec3s *along)
 {
     float z = 1 - 2 * ((float)i + 0.5f) / ARCS, radius = sqrtf(1 - z * z), azimuth = (float)i * 2.3999632f;
@@ -126,13 +126,13 @@ static void measure_arc(int method, const struct tl_normal_cube *cube, double an
     set_arc(arc, &middle, &along);
     vec3s first = on_arc(middle, along, -angle / 2), last = on_arc(middle, along, angle / 2);
     vec3s h = on_arc(middle, along, angle * (arc % 17 / 16.0 - 0.5));
-    for (int i = 0; i <= PLACES; i++) {
-        double place = (double)i / PLACES;
+    for (int i = 0; i <= POSITIONS; i++) {
+        double place = (double)i / POSITIONS;
         vec3s linear = glms_vec3_lerp(first, last, (float)place);
         vec3s slerp = on_arc(middle, along, angle * (place - 0.5));
         vec3s exact = glms_vec3_scale(linear, 1 / glms_vec3_norm(linear));
         vec3s v = tl_normalise(method, cube, linear);
-        double samples = (double)ARCS * (PLACES + 1);
+        double samples = (double)ARCS * (POSITIONS + 1);
         error->length = fmax(error->length, fabs((double)glms_vec3_norm(v) - 1));
         error->direction = fmax(error->direction, angle_between(v, exact));
         error->vector += (double)glms_vec3_distance2(v, exact) / samples;

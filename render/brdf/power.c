@@ -63,9 +63,9 @@ struct tl_power_error tl_power_error(int method, int exponent, int table_size)
             value = (double)tl_power_table_at(table, table_size, (float)cosine);
         double difference = fabs(value - exact), level = round(value * 255) / 255;
         error.rms += difference * difference / STEPS;
-        error.most = fmax(error.most, difference);
+        error.max = fmax(error.max, difference);
         if (cosine >= last_cell)
-            error.most_near_one = fmax(error.most_near_one, difference);
+            error.max_near_one = fmax(error.max_near_one, difference);
         error.band = fmax(error.band, fabs(level - before));
         before = level;
         shown[(int)round(value * 255)] = true;

@@ -1,6 +1,6 @@
-/* A cosine to the power of a highlight, three ways [001, sections 5.1, 5.2 and figure 10]: pow; multiplying
- * with itself in 8 bits and a sign, as register combiners do; a table of 8-bit values between which a texture
- * unit interpolates. Pure. */
+/* A cosine raised to the exponent of a highlight by three methods [001, sections 5.1, 5.2 and figure 10]:
+ * pow; repeated squaring in 8 bits and a sign, as register combiners do; a table of 8-bit values that a
+ * texture unit interpolates. Pure; threads: any. */
 #ifndef TOILE_RENDER_BRDF_POWER_H
 #define TOILE_RENDER_BRDF_POWER_H
 
@@ -14,15 +14,17 @@ float tl_power_fixed8(float cosine, int squarings);
 
 /* `size` values of x^exponent in 8 bits, at x = i / (size - 1), from 0 up. */
 void tl_power_table_make(float exponent, int size, uint8_t *out);
+/* The table at a cosine, interpolated linearly; the cosine is clamped to [0, 1]. */
 float tl_power_table_at(const uint8_t *table, int size, float cosine);
 
-/* Over a highlight, from its middle to where it is below half of 1/255, in steps of angle that even the exact
- * power in 8 bits would show as single levels. Exponent: a power of two for FIXED8. */
+/* Errors over a highlight, from its centre to where it falls below half of 1/255. The steps of angle are so
+ * small that the exact power rounded to 8 bits changes by single levels. FIXED8 needs an exponent that is a
+ * power of two. */
 struct tl_power_error {
-    double rms, most;     /* of the difference from cosine^exponent */
-    double most_near_one; /* where the cosine lies between the table's last two values */
-    double band;          /* largest step from one level to the next: 1/255 is none that can be seen */
-    int levels;           /* different values shown, rounded to 8 bits, of 256 */
+    double rms, max;     /* of the difference from cosine^exponent */
+    double max_near_one; /* largest difference where the cosine lies between the table's last two values */
+    double band;         /* largest step between neighbouring levels; 1/255 is invisible */
+    int levels;          /* number of different values out of 256, rounded to 8 bits */
 };
 #define TL_POWER_TABLE_SIZE 256
 struct tl_power_error tl_power_error(int method, int exponent, int table_size);

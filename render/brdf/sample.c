@@ -1,5 +1,4 @@
 #include "render/brdf/brdf.h"
-#include "render/brdf/brdf_internal.h"
 
 #include <math.h>
 
@@ -17,22 +16,24 @@ static vec3s from_frame(const struct tl_brdf_frame *frame, float x, float y, flo
     return glms_vec3_add(flat, glms_vec3_scale(frame->normal, z));
 }
 
-/* Share of the Gaussian of an angle that lies below a right angle. */
+/* The part of the integral of the Gaussian of an angle that lies below a right angle. */
 static float gaussian_share(float width)
 {
     float end = PI / 2 / width;
     return 1 - expf(-end * end);
 }
 
-/* Half vectors. Slopes are Gaussian for Ward's and Beckmann's facets, the angle is for the others; Blinn's
- * lobe is a power. h in the frame. */
-static vec3s draw_half(const struct tl_brdf *brdf, float u1, float u2)
+/* Samples a half vector, in the frame, by inverting the cumulative distribution of each model. Slopes are
+ * Gaussian for Ward and Beckmann facets; the angle is Gaussian for Gaussian facets; Blinn-Phong is a power of
+ * the cosine. */
+static vec3s sample_half_vector(const struct tl_brdf *brdf, float u1, float u2)
 {
     const struct tl_gloss *gloss = &brdf->gloss;
     float c = cosf(2 * PI * u2), s = sinf(2 * PI * u2), x, y, z;
     if (gloss->model == TL_REFLECT_BLINN_PHONG) {
         z = powf(1 - u1, 1 / (4 * brdf->exponent + 1));
-        float radius = sqrtf(fmaxf(-expm1f(2 * log1pf(-u1) / (4 * brdf->exponent + 1)), 0)); /* 1 - z^2 */
+        float radius = sqrtf(
+            fmaxf(-expm1f(2 * log1pf(-u1) / (4 * brdf->exponent + 1)), 0)); /* 1 - z^2 without cancellation */
         x = radius * c, y = radius * s;
     } else if (gloss->model == TL_REFLECT_TORRANCE_SPARROW && gloss->facets == TL_FACETS_GAUSSIAN) {
         float angle = gloss->width_weft * sqrtf(-log1pf(-u1 * gaussian_share(gloss->width_weft)));
@@ -47,8 +48,8 @@ static vec3s draw_half(const struct tl_brdf *brdf, float u1, float u2)
     return (vec3s){{x, y, z}};
 }
 
-/* By solid angle of h. */
-static float half_density(const struct tl_brdf *brdf, vec3s h)
+/* The pdf of a half vector, by its solid angle. */
+static float half_vector_pdf(const struct tl_brdf *brdf, vec3s h)
 {
     const struct tl_gloss *gloss = &brdf->gloss;
     float sine = hypotf(h.x, h.y);
@@ -69,10 +70,12 @@ static float half_density(const struct tl_brdf *brdf, vec3s h)
     return fall > 0 ? fall / (PI * u * v * h.z * h.z * h.z) : 0;
 }
 
-/* How far from a thread's mirror cone: logistic, of width 0.6/sqrt(s), cut where the angle to the thread
- * leaves [0, pi]. Its tails are heavier than those of cos^s. */
+/* Distribution of the angle from a thread's mirror cone: logistic, of width 0.6/sqrt(s), truncated where the
+ * angle to the thread leaves [0, pi]. A logistic is invertible in closed form and its tails are heavier than
+ * those of cos^s, so that no weight grows without bound. */
 struct cone {
-    float mirror, scale, low, high; /* rad; rad; of the logistic's integral */
+    float mirror, scale, low,
+        high; /* the cone's angle to the thread and the width, rad; cumulative distribution at both ends */
 };
 
 static float logistic(float x)
@@ -89,7 +92,7 @@ static struct cone cone_of(const struct tl_brdf *brdf, const struct tl_brdf_fram
     return cone;
 }
 
-static vec3s draw_cone(const struct cone *cone, const struct tl_brdf_frame *frame, float u1, float u2)
+static vec3s sample_cone(const struct cone *cone, const struct tl_brdf_frame *frame, float u1, float u2)
 {
     float share = cone->low + u1 * (cone->high - cone->low);
     share = fminf(fmaxf(share, 1e-7f), 1 - 1e-7f);
@@ -99,7 +102,7 @@ static vec3s draw_cone(const struct cone *cone, const struct tl_brdf_frame *fram
     return from_frame(frame, cosf(angle), sine * across, sine * sqrtf(fmaxf(1 - across * across, 0)));
 }
 
-static float cone_density(const struct cone *cone, const struct tl_brdf_frame *frame, vec3s l)
+static float cone_pdf(const struct cone *cone, const struct tl_brdf_frame *frame, vec3s l)
 {
     float along = fminf(fmaxf(glms_vec3_dot(frame->tangent, l), -1), 1);
     float sine_squared = 1 - along * along, up = glms_vec3_dot(frame->normal, l);
@@ -117,16 +120,16 @@ float tl_brdf_pdf(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame,
         return 0;
     if (brdf->gloss.model == TL_REFLECT_BANKS) {
         struct cone cone = cone_of(brdf, frame, v);
-        return cone_density(&cone, frame, l);
+        return cone_pdf(&cone, frame, l);
     }
     if (has_facets(brdf))
-        return at.cos_t > 0 ? half_density(brdf, at.h) / (4 * at.cos_t) : 0;
+        return at.cos_t > 0 ? half_vector_pdf(brdf, at.h) / (4 * at.cos_t) : 0;
     float s = brdf->exponent;
     return (s + 1) / (2 * PI) * tl_brdf_cosine_power(tl_brdf_mirror(frame->normal, v), l, s);
 }
 
-/* About the mirror direction, cos = (1 - u)^(1 / (s + 1)). */
-static vec3s draw_lobe(float exponent, vec3s axis, float u1, float u2)
+/* Samples K_s about an axis: cos = (1 - u)^(1 / (s + 1)). */
+static vec3s sample_lobe(float exponent, vec3s axis, float u1, float u2)
 {
     struct tl_brdf_frame around = tl_brdf_frame_make(axis, (vec3s){{0, 0, 0}}, 1, 2 * PI * u2);
     float log_cosine = log1pf(-u1) / (exponent + 1);
@@ -134,22 +137,22 @@ static vec3s draw_lobe(float exponent, vec3s axis, float u1, float u2)
 }
 
 vec3s tl_brdf_sample(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, float u1,
-                     float u2, float *density)
+                     float u2, float *pdf)
 {
     vec3s l;
     if (brdf->gloss.model == TL_REFLECT_BANKS) {
         struct cone cone = cone_of(brdf, frame, v);
-        l = draw_cone(&cone, frame, u1, u2);
+        l = sample_cone(&cone, frame, u1, u2);
     } else if (has_facets(brdf)) {
-        vec3s h = draw_half(brdf, u1, u2);
+        vec3s h = sample_half_vector(brdf, u1, u2);
         h = from_frame(frame, h.x, h.y, h.z);
         l = tl_brdf_mirror(h, v);
         if (glms_vec3_dot(h, v) <= 0)
             l = glms_vec3_negate(frame->normal);
     } else {
-        l = draw_lobe(brdf->exponent, tl_brdf_mirror(frame->normal, v), u1, u2);
+        l = sample_lobe(brdf->exponent, tl_brdf_mirror(frame->normal, v), u1, u2);
     }
     l = glms_vec3_normalize(l);
-    *density = tl_brdf_pdf(brdf, frame, l, v);
+    *pdf = tl_brdf_pdf(brdf, frame, l, v);
     return l;
 }

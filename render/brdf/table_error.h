@@ -1,30 +1,31 @@
-/* How far gloss from tables is from the formula: what precision, size and the cut of the singular factor
- * cost. Pure; the same on every machine.
+/* The error of gloss from tables against the formula: the cost of precision, size and clamping of the
+ * singular factor. Pure; results are the same on every machine.
  *
- * Over pairs of viewers, even in the cosine of their angle and in azimuth, and lights drawn as the gloss
- * spreads them, half of them, or evenly over the hemisphere, the other half:
+ * Viewers are spread evenly in the cosine of their angle and in azimuth. For each viewer half of the lights
+ * are importance sampled by the gloss and half are spread evenly over the hemisphere:
  *
  *     relative RMSE = sqrt(sum (table - direct)^2 / sum direct^2)
- *     darkening     = 1 - sum table / sum direct, in the grazing pairs alone */
+ *     darkening     = 1 - sum table / sum direct, over the grazing pairs only */
 #ifndef TOILE_RENDER_BRDF_TABLE_ERROR_H
 #define TOILE_RENDER_BRDF_TABLE_ERROR_H
 
 #include "render/brdf/tables.h"
 
-/* Pairs whose n.l or n.v is below are grazing: 78.5 degrees. */
+/* Pairs whose n.l or n.v is smaller count as grazing (beyond 78.5 degrees). */
 #define TL_GRAZING_COSINE 0.2f
 
 struct tl_table_error {
-    double away, grazing; /* relative RMSE */
+    double steep, grazing; /* relative RMSE of pairs that are not grazing, and of those that are */
     double darkening;
-    size_t bytes; /* of the tables */
+    size_t bytes; /* size of the tables */
 };
-/* Folded tables are compared with ambient + diffuse n.l / pi + f0 times the white lobe. */
+/* Errors of the tables made with these parameters. Folded tables are compared with ambient + diffuse n.l / pi
+ * + f0 times the white lobe. */
 struct tl_table_error tl_brdf_table_error(const struct tl_brdf *brdf,
                                           const struct tl_brdf_table_params *params);
 
-/* [000, figure 2's artefact] What tables show at one angle of the viewer over what they should, summed over
- * lights: 1 is right, less is too dark. */
+/* The artefact of [000, figure 2]: the sum over lights of the gloss from tables at one angle of the viewer,
+ * divided by that of the formula. 1 is exact, less is too dark. */
 double tl_brdf_table_ratio(const struct tl_brdf *brdf, const struct tl_brdf_tables *tables, float n_dot_v);
 
 #endif

@@ -1,7 +1,6 @@
 #include "render/brdf/tables.h"
 
 #include "config/memory.h"
-#include "render/brdf/brdf_internal.h"
 
 #include <assert.h>
 #include <math.h>
@@ -9,13 +8,13 @@
 
 #define PI ((float)M_PI)
 
-/* Below this share of the peak a lobe is taken for dark: the range of its axis ends there. */
+/* A lobe counts as dark below this fraction of its peak; the range of its axis ends there. */
 #define DARK     1e-6f
 #define LOG_DARK 13.815511f
-/* Wider facets fill the whole range of cosines. */
+/* Facets wider than this fill the whole range of cosines. */
 #define WIDE 0.25f
 
-/* A factor of a model: its value by channel for the inputs on its axes. */
+/* A factor of a model: its value by channel as a function of the inputs on its axes. */
 struct factor {
     const struct tl_brdf *brdf;
     const struct tl_brdf_table_params *params;
@@ -26,7 +25,7 @@ struct factor {
         float low, high;
     } x, y;
     int channels;
-    bool singular; /* without bound, or with one that narrow facets make large */
+    bool singular; /* unbounded, or with a bound that grows as facets get narrow */
 };
 
 static void all_channels(float value, float out[3])
@@ -34,7 +33,7 @@ static void all_channels(float value, float out[3])
     out[0] = out[1] = out[2] = value;
 }
 
-/* K: a power of the cosine x, and for BANKS the angle to the mirror cone. */
+/* K as a power of a cosine; for BANKS the cosine is that of the angle to the mirror cone. */
 static float lobe_at(const struct tl_brdf *brdf, float cosine)
 {
     float exponent = brdf->gloss.model == TL_REFLECT_BLINN_PHONG ? 4 * brdf->exponent : brdf->exponent;
@@ -76,14 +75,15 @@ static void fresnel_alone(const struct factor *factor, float cosine, float none,
         out[c] = value.raw[c];
 }
 
-/* Smith's term vanishes with n.v as fast as n.v does: so near to 0 the quotient is its limit. */
+/* Smith's term vanishes as fast as n.v, so the quotient has a limit at n.v = 0, which is evaluated at
+ * 1e-5. */
 static void smith_over_cosine(const struct factor *factor, float n_dot_l, float n_dot_v, float out[3])
 {
     float b = fmaxf(n_dot_v, 1e-5f);
     all_channels(n_dot_l > 0 ? tl_brdf_smith(factor->brdf, n_dot_l, b) / (PI * b) : 0, out);
 }
 
-/* What has no limit at n.v = 0 takes, in the texels there, its value half a texel away. */
+/* Quotients without a limit at n.v = 0 are evaluated half a texel away from it in the texels there. */
 static float off_zero(const struct factor *factor, float n_dot_v)
 {
     return fmaxf(n_dot_v, 0.5f / (float)(factor->params->size - 1));
@@ -117,7 +117,7 @@ static struct range cosines(int input)
     return (struct range){.input = input, .high = 1};
 }
 
-/* From where cosine^exponent is dark. */
+/* The range in which cosine^exponent is not dark. */
 static struct range lobe_range(int input, float exponent)
 {
     return (struct range){.input = input, .low = powf(DARK, 1 / exponent), .high = 1};
@@ -125,7 +125,8 @@ static struct range lobe_range(int input, float exponent)
 
 static struct range facets_range(const struct tl_brdf *brdf)
 {
-    float width = brdf->gloss.width_weft, end = width * sqrtf(LOG_DARK); /* slope or angle */
+    float width = brdf->gloss.width_weft,
+          end = width * sqrtf(LOG_DARK); /* a slope (Beckmann) or an angle (Gaussian) */
     struct range range = cosines(TL_AXIS_N_DOT_H);
     if (width <= WIDE)
         range.low = brdf->gloss.facets == TL_FACETS_BECKMANN ? 1 / sqrtf(1 + end * end) : cosf(end);
@@ -144,7 +145,7 @@ static struct range thread_range(int input, bool angle)
                  : (struct range){.input = input, .low = -1, .high = 1};
 }
 
-/* The factors of a model; their number. */
+/* Lists the factors of a model and returns their number. */
 static int factors_of(const struct tl_brdf *brdf, const struct tl_brdf_table_params *params,
                       struct factor out[TL_BRDF_TABLES_MAX])
 {
@@ -203,7 +204,7 @@ static float at_texel(const struct range *range, int i, int count)
     return range->low + (range->high - range->low) * (float)i / (float)(count - 1);
 }
 
-/* The range's ends on the centres of the first and the last texel. */
+/* Maps the ends of the range to the centres of the first and the last texel. */
 static struct tl_brdf_axis axis_of(const struct range *range, int count)
 {
     if (count == 1)
@@ -222,21 +223,21 @@ static size_t value_count(const struct tl_brdf_table *table)
     return (size_t)table->width * (size_t)table->height * (size_t)table->channels;
 }
 
-static float greatest(const float *values, size_t count)
+static float max_value(const float *values, size_t count)
 {
-    float most = 0;
+    float max = 0;
     for (size_t i = 0; i < count; i++)
-        most = fmaxf(most, values[i]);
-    return most > 0 ? most : 1;
+        max = fmaxf(max, values[i]);
+    return max > 0 ? max : 1;
 }
 
-/* What the texels are multiplied by. */
+/* The factor on the texels. */
 static float scale_of(const struct factor *factor, const float *values, size_t count)
 {
     const struct tl_brdf_table_params *params = factor->params;
     if (params->precision == TL_PRECISION_FLOAT || (factor->singular && params->range == TL_RANGE_CLAMPED))
         return 1;
-    return factor->singular && params->constant > 0 ? params->constant : greatest(values, count);
+    return factor->singular && params->constant > 0 ? params->constant : max_value(values, count);
 }
 
 static void store(struct tl_brdf_table *table, float *values)
@@ -246,10 +247,10 @@ static void store(struct tl_brdf_table *table, float *values)
         table->texels = values;
         return;
     }
-    float most = table->precision == TL_PRECISION_FIXED8 ? 255 : 65535;
+    float max = table->precision == TL_PRECISION_FIXED8 ? 255 : 65535;
     table->texels = tl_alloc(count, texel_bytes(table->precision));
     for (size_t i = 0; i < count; i++) {
-        float level = roundf(fminf(fmaxf(values[i] / table->scale, 0), 1) * most);
+        float level = roundf(fminf(fmaxf(values[i] / table->scale, 0), 1) * max);
         if (table->precision == TL_PRECISION_FIXED8)
             ((uint8_t *)table->texels)[i] = (uint8_t)level;
         else
@@ -351,7 +352,7 @@ static float texel(const struct tl_brdf_table *table, int x, int y, int channel)
     return ((const float *)table->texels)[i];
 }
 
-/* Two neighbours and where between them, clamped to the edge. */
+/* The two neighbouring texels and the position between them, clamped to the edge. */
 static float neighbours(float coordinate, int count, int out[2])
 {
     float place = fminf(fmaxf(coordinate * (float)count - 0.5f, 0), (float)(count - 1)); /* NaN: 0 */

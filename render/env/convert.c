@@ -9,21 +9,26 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What a target texel has in common with the texels of the source: it is quartered into cells whose outlines
- * in the source picture are as good as straight, and these are cut along the source's texel borders. Each
- * cell gives away its exact solid angle. Cells over seams, poles and rims of the source never become
- * straight: the smallest go to the texel in their middle. */
-#define STRAIGHT  0.01 /* source texels between a cell's centre and the mean of its corners */
-#define DEPTH_MAX 6    /* quarterings of a target texel */
-#define INSET     1e-4 /* corners are taken this part of the cell inside of it, off the seam it may touch */
-#define CORNERS   4
-#define POLYGON   19 /* corners: of any outline each of four cuts makes half as many more, 4 6 9 13 19 */
-/* The shares are then scaled by turns, until each source texel gives its exact solid angle away and each
- * target receives its own (iterative proportional fitting: Deming and Stephan 1940). */
+/* Overlaps of texels. A target texel is subdivided into cells whose outlines in the source picture are nearly
+ * straight; these are clipped along the borders of the source texels. The shares of a cell sum to its exact
+ * solid angle. Cells over seams, poles and rims of the source never become straight: at the last depth they
+ * are assigned to the texel at their centre. */
+#define STRAIGHT                                                                                             \
+    0.01 /* largest distance, in source texels, between the centre of a cell and the mean of its corners */
+#define DEPTH_MAX 6    /* subdivisions of a target texel into quarters */
+#define INSET     1e-4 /* corners are moved inside by this fraction of the cell, off a seam that they may touch \
+                        */
+#define CORNERS 4
+#define POLYGON 19 /* largest number of corners: each of four clips adds at most half as many, 4 6 9 13 19   \
+                    */
+/* The shares are then scaled alternately by source and by target until each source texel distributes and each
+ * target texel receives its exact solid angle (iterative proportional fitting: Deming and Stephan 1940). */
 #define ROUNDS_MAX 400
-/* Fixed blocks of texels, each with shares of its own, so that the result does not depend on the threads. */
+/* A fixed number of blocks of texels, each with its own list of shares, so that the result does not depend on
+ * the number of threads. */
 #define BLOCKS 64
-/* Finding the shares takes about as long as so many of the usual rounds of scaling; for show only. */
+/* Number of rounds of scaling that take about as long as finding the shares; used for the progress report
+ * only. */
 #define ROUNDS_USUAL 40
 
 struct share {
@@ -36,12 +41,12 @@ struct block {
     size_t count, capacity;
 };
 
-/* One of the pictures. */
+/* The source or the target picture. */
 struct side {
     const struct tl_sphere_map *map;
     double *solid_angles; /* [texels], sr */
-    double *scales;       /* [texels], of the shares */
-    double *sums;         /* [texels], of the shares scaled */
+    double *scales;       /* [texels], factors on the shares */
+    double *sums;         /* [texels], of the scaled shares */
 };
 
 struct conversion {
@@ -153,7 +158,8 @@ static int index_in(double value, int begin, int end)
     return value < begin ? begin : value >= end ? end - 1 : (int)value;
 }
 
-/* Shares a cell's solid angle out over the source texels that its outline covers. */
+/* Distributes the solid angle of a cell over the source texels that its outline covers, in proportion to the
+ * overlaps. */
 static void share_outline(const struct side *source, const struct polygon *outline, int piece, size_t target,
                           double solid_angle, struct block *block)
 {
@@ -183,7 +189,8 @@ static void share_outline(const struct side *source, const struct polygon *outli
         block->shares[i].solid_angle = (float)((double)block->shares[i].solid_angle / sum * solid_angle);
 }
 
-/* The outline of a cell in the source picture. False when it is not straight, or not in one piece. */
+/* Projects a cell into the source picture. False when the outline is not straight or not within one piece of
+ * it. */
 static bool find_outline(const struct conversion *conversion, const struct tl_layout_cell *cell,
                          struct polygon *outline, int *piece)
 {
@@ -241,7 +248,7 @@ static int by_source(const void *a, const void *b)
     return (first > second) - (first < second);
 }
 
-/* Makes one share of those that a target's cells have in the same source texel. */
+/* Merges the shares that the cells of one target texel have in the same source texel. */
 static void merge_shares(struct block *block, size_t begin)
 {
     size_t kept = begin;
@@ -304,7 +311,7 @@ static void sum_sources(struct conversion *conversion)
     }
 }
 
-/* Slivers of source texels at the rims of discs that every cell missed. */
+/* Assigns slivers of source texels at the rims of discs that no cell covered. */
 static void share_missed(struct conversion *conversion)
 {
     const struct side *source = &conversion->source;
@@ -328,7 +335,7 @@ static void scale_to_fit(struct side *side)
             side->scales[i] = side->solid_angles[i] / side->sums[i];
 }
 
-/* Largest relative error of what a source texel gives away. */
+/* Largest relative error of the solid angle that a source texel distributes. */
 static double worst_source(const struct side *source)
 {
     double worst = 0;
@@ -338,7 +345,8 @@ static double worst_source(const struct side *source)
     return worst;
 }
 
-/* Ends with the targets, whose sums are exact then. */
+/* Fits the shares and returns the remaining error of the sources. The last step scales the targets, whose
+ * sums are exact then. */
 static double fit_shares(struct conversion *conversion)
 {
     double worst = INFINITY;
@@ -354,7 +362,7 @@ static double fit_shares(struct conversion *conversion)
     return worst;
 }
 
-static void gather_light(const struct conversion *conversion, const float *from, float *to)
+static void sum_light(const struct conversion *conversion, const float *from, float *to)
 {
     const struct side *source = &conversion->source, *target = &conversion->target;
     double(*sums)[3] = tl_alloc(texel_count(target->map), sizeof *sums);
@@ -373,7 +381,7 @@ static void gather_light(const struct conversion *conversion, const float *from,
     free(sums);
 }
 
-/* Texels outside of the discs show what lies in their direction. */
+/* Fills texels outside of the discs with the colour that lies in their direction. */
 static void fill_outside(const struct side *target, float *texels)
 {
     for (size_t i = 0; i < texel_count(target->map); i++) {
@@ -398,7 +406,8 @@ int tl_convert_size(const struct tl_sphere_map *from, enum tl_layout to)
     return size > 1 ? size : 1;
 }
 
-/* Writes the converted picture. Returns the largest relative error of what a source texel gives away. */
+/* Writes the converted picture. Returns the largest relative error of the solid angle that a source texel
+ * distributes. */
 static double convert(const tl_image *image, const struct tl_sphere_map *from, const struct tl_sphere_map *to,
                       float *texels)
 {
@@ -407,7 +416,7 @@ static double convert(const tl_image *image, const struct tl_sphere_map *from, c
     find_shares(&conversion);
     share_missed(&conversion);
     double worst = fit_shares(&conversion);
-    gather_light(&conversion, tl_image_floats(image), texels);
+    sum_light(&conversion, tl_image_floats(image), texels);
     fill_outside(&conversion.target, texels);
     tl_progress_end(&conversion.progress);
     for (int i = 0; i < BLOCKS; i++)

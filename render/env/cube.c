@@ -51,7 +51,7 @@ void tl_cube_project(int face, vec3s direction, float *s, float *t)
     float x = direction.x, y = direction.y, z = direction.z;
     const float sc[6] = {-z, z, x, x, x, -x}, tc[6] = {-y, -y, z, -z, -y, -y};
     float major = fabsf(direction.raw[face / 2]);
-    if (major <= 0) /* the zero vector looks along its face rather than nowhere */
+    if (major <= 0) /* the zero vector maps to the centre of the face */
         major = 1;
     *s = 0.5f * (sc[face] / major + 1);
     *t = 0.5f * (tc[face] / major + 1);
@@ -65,7 +65,8 @@ void tl_cube_locate(vec3s direction, int *face, float *s, float *t)
     tl_cube_project(*face, direction, s, t);
 }
 
-/* Solid angle of the rectangle between the centre of a face at distance 1 and (u, v) on it, signed. */
+/* Signed solid angle of the rectangle between the centre of a face at distance 1 and the point (u, v) on
+ * it. */
 static double corner_solid_angle(double u, double v)
 {
     return atan2(u * v, sqrt(u * u + v * v + 1));
@@ -130,7 +131,7 @@ int tl_cube_texel_across(int size, int face, int x, int y)
 {
     if (x >= 0 && x < size && y >= 0 && y < size)
         return (face * size + y) * size + x;
-    /* A point just over the border, level with the texel's centre, lies in the neighbour that touches it. */
+    /* A point just across the border, at the height of the texel centre, lies in the neighbouring texel. */
     float over = 0.25f / (float)size, step = 1 / (float)size;
     float s = x < 0 ? -over : x >= size ? 1 + over : ((float)x + 0.5f) * step;
     float t = y < 0 ? -over : y >= size ? 1 + over : ((float)y + 0.5f) * step;
@@ -156,7 +157,7 @@ struct tl_cube_taps tl_cube_taps(int size, vec3s direction)
         else
             taps.texel[i] = tl_cube_texel_across(size, face, tap_x, tap_y);
     }
-    if (missing >= 0) { /* three faces meet: the texel that does not exist is the mean of those that do */
+    if (missing >= 0) { /* three faces meet: the missing texel is the mean of those that exist */
         float share = taps.weight[missing] / 3;
         for (int i = 0; i < 4; i++)
             taps.weight[i] = i == missing ? 0 : taps.weight[i] + share;

@@ -7,18 +7,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A lobe is cut off where it is below this part of its peak: at the edge of a sun that outshines all the rest
- * ten thousand times that is a tenth of what is there. */
+/* A lobe is cut off where it is below this fraction of its peak. At the edge of a sun that is ten thousand
+ * times as strong as everything else, this loses a tenth of the light there. */
 #define LOBE_CUT 1e-4f
 
-/* Cells are at most this many lobe widths 1 / sqrt(s) wide; half as many where lobes end in a crease at their
- * horizon (s = 1), across which no mean and variance stand for the lamps of a cell. */
+/* Largest size of merged cells in lobe widths 1 / sqrt(s). Half of it applies to lobes that end in a crease
+ * at their horizon (s = 1), because across a crease a mean and a variance do not describe the emitters of a
+ * cell. */
 #define MERGE_WIDTH 0.25f
 
-/* Bits of x or of y in a code; the face stands above them. */
+/* Bits of x or y in a code; the face is stored above them. */
 #define CODE_BITS 13
 
-/* Every second bit of a code. */
+/* Extracts every second bit of a code. */
 static uint32_t compact_bits(uint32_t code)
 {
     code &= 0x55555555u;
@@ -28,14 +29,14 @@ static uint32_t compact_bits(uint32_t code)
     return (code | code >> 8) & 0x0000ffffu;
 }
 
-static const vec3s nowhere = {{NAN, NAN, NAN}};
+static const vec3s no_direction = {{NAN, NAN, NAN}};
 
 static float luminance(vec3s colour)
 {
     return 0.2126f * colour.x + 0.7152f * colour.y + 0.0722f * colour.z;
 }
 
-/* The opposite: room for another number's bits between those of one. */
+/* The inverse: inserts a zero bit between all bits, for those of another number. */
 static uint32_t spread_bits(uint32_t number)
 {
     number = (number | number << 8) & 0x00ff00ffu;
@@ -73,7 +74,8 @@ static tl_emitter emitter_of(const tl_cube *cube, const float *solid_angles, uin
         emitter.power.raw[c] =
             solid_angles[y * size + x] * tl_emitter_radiance(cube->texels[3 * (size_t)texel + c]);
     emitter.weight = luminance(emitter.power);
-    emitter.variance = solid_angles[y * size + x] / 12; /* of a square */
+    emitter.variance =
+        solid_angles[y * size + x] / 12; /* a square of area A has the variance A / 12 along each axis */
     return emitter;
 }
 
@@ -97,8 +99,9 @@ static int merges_for(int cube_size, float exponent)
     return merges;
 }
 
-/* The emitters [first, end) as one. */
-static tl_emitter merge_run(const tl_emitter *first, const tl_emitter *end, uint32_t code)
+/* Merges the emitters [first, end) into one at their luminance-weighted centroid; their variance is the mean
+ * of their own variances and of their squared distances. */
+static tl_emitter merge_range(const tl_emitter *first, const tl_emitter *end, uint32_t code)
 {
     tl_emitter merged = {.code = code};
     for (const tl_emitter *emitter = first; emitter < end; emitter++) {
@@ -118,16 +121,16 @@ static tl_emitter merge_run(const tl_emitter *first, const tl_emitter *end, uint
     return merged;
 }
 
-/* By how much a lobe's exponent falls as it is blurred: that multiplies its mean cosine, (s + 1) / (s + 2),
- * by 1 - the variance along one axis. In parts of (s + 1)(s + 2), as it is for a small variance. A lobe much
- * narrower than a texel cannot be had by blurring. */
-static float fall_of(float s, float variance)
+/* Decrease of the exponent of a blurred lobe, divided by (s + 1)(s + 2). Blurring multiplies the mean cosine
+ * (s + 1) / (s + 2) by 1 - the variance along one axis. The quotient is nearly independent of s for a small
+ * variance. It is bounded, because a lobe much narrower than a texel cannot result from blurring. */
+static float exponent_decrease(float s, float variance)
 {
     float blurred = 1 / (1 - (s + 1) / (s + 2) * (1 - fminf(variance, 0.5f))) - 2;
     return fminf(s - blurred, s / 2) / ((s + 1) * (s + 2));
 }
 
-/* Merges in place, leaving black ones out; the number that remains. */
+/* Merges in place, omitting black emitters. Returns the number that remains. */
 static size_t merge_all(tl_emitter *emitters, size_t count, int shift)
 {
     size_t remaining = 0, next;
@@ -135,7 +138,7 @@ static size_t merge_all(tl_emitter *emitters, size_t count, int shift)
         uint32_t code = emitters[i].code >> shift;
         for (next = i; next < count && emitters[next].code >> shift == code;)
             next++;
-        tl_emitter merged = merge_run(emitters + i, emitters + next, code);
+        tl_emitter merged = merge_range(emitters + i, emitters + next, code);
         if (merged.weight > 0)
             emitters[remaining++] = merged;
     }
@@ -155,10 +158,10 @@ static void fill_block(struct tl_emitters *emitters, size_t index, const tl_emit
     struct tl_emitter_block *block = &emitters->blocks[index];
     vec3s sum = {{0, 0, 0}};
     for (size_t i = 0; i < TL_LANES; i++) {
-        set_direction(&block->directions, i, i < count ? items[i].direction : nowhere);
+        set_direction(&block->directions, i, i < count ? items[i].direction : no_direction);
         if (i >= count)
             continue;
-        block->fall[i] = fall_of(exponent, items[i].variance);
+        block->fall[i] = exponent_decrease(exponent, items[i].variance);
         memcpy(block->power[i], items[i].power.raw, sizeof items[i].power.raw);
         sum = glms_vec3_add(sum, items[i].direction);
     }
@@ -168,8 +171,8 @@ static void fill_block(struct tl_emitters *emitters, size_t index, const tl_emit
         emitters->radius = fmaxf(emitters->radius, glms_vec3_angle(axis, items[i].direction));
 }
 
-/* Squares of 4 x 4 emitters, or what is left of them, become blocks: runs of the curve that share their
- * leading bits. */
+/* Groups squares of 4 x 4 emitters, or fewer, into blocks: runs of the curve that share their leading
+ * bits. */
 static struct tl_emitters make_blocks(const tl_emitter *items, size_t count, float exponent)
 {
     struct tl_emitters emitters = {0};
@@ -179,7 +182,7 @@ static struct tl_emitters make_blocks(const tl_emitter *items, size_t count, flo
     emitters.blocks = TL_NEW_ARRAY(struct tl_emitter_block, emitters.count);
     emitters.axes = TL_NEW_ARRAY(struct tl_directions, groups);
     for (size_t i = emitters.count; i < groups * TL_LANES; i++)
-        set_direction(&emitters.axes[i / TL_LANES], i % TL_LANES, nowhere);
+        set_direction(&emitters.axes[i / TL_LANES], i % TL_LANES, no_direction);
     for (size_t index = 0, first = 0, next; first < count; first = next, index++) {
         for (next = first; next < count && items[next].code / TL_LANES == items[first].code / TL_LANES;)
             next++;
@@ -205,30 +208,30 @@ void tl_emitters_release(struct tl_emitters *emitters)
     *emitters = (struct tl_emitters){0};
 }
 
-void tl_lobe_packet_set(struct tl_lobe_packet *gaze, const vec3s directions[TL_LANES],
+void tl_lobe_packet_set(struct tl_lobe_packet *packet, const vec3s directions[TL_LANES],
                         const float steps[TL_LANES], float s)
 {
     vec3s sum = {{0, 0, 0}};
     for (size_t i = 0; i < TL_LANES; i++) {
-        set_direction(&gaze->directions, i, directions[i]);
+        set_direction(&packet->directions, i, directions[i]);
         sum = glms_vec3_add(sum, directions[i]);
         float mean = (s + 1) / (s + 2) / (1 - steps[i] * steps[i] / 6);
-        gaze->exponent[i] = 1 / (1 - mean) - 2;
+        packet->exponent[i] = 1 / (1 - mean) - 2;
     }
-    gaze->axis = glms_vec3_normalize(sum);
+    packet->axis = glms_vec3_normalize(sum);
     float farthest = 0;
     for (int i = 0; i < TL_LANES; i++)
-        farthest = tl_greater(farthest, glms_vec3_distance2(gaze->axis, directions[i]));
-    gaze->radius = 2 * asinf(tl_lesser(sqrtf(farthest) / 2, 1));
+        farthest = tl_greater(farthest, glms_vec3_distance2(packet->axis, directions[i]));
+    packet->radius = 2 * asinf(tl_lesser(sqrtf(farthest) / 2, 1));
 }
 
-/* The angle within which a lobe must be looked at, from the middle of the gaze. */
-static float reach_of(const struct tl_lobe_packet *gaze)
+/* The angle from the axis of the packet beyond which all lobes are cut off. */
+static float packet_reach(const struct tl_lobe_packet *packet)
 {
-    float least = gaze->exponent[0];
+    float min = packet->exponent[0];
     for (int i = 1; i < TL_LANES; i++)
-        least = tl_lesser(least, gaze->exponent[i]);
-    return acosf(powf(LOBE_CUT, 1 / least)) + gaze->radius;
+        min = tl_lesser(min, packet->exponent[i]);
+    return acosf(powf(LOBE_CUT, 1 / min)) + packet->radius;
 }
 
 static float cosine_of(float angle)
@@ -236,7 +239,7 @@ static float cosine_of(float angle)
     return angle < (float)M_PI ? cosf(angle) : -2;
 }
 
-/* Bit i: direction i is within the cosine of the axis. */
+/* Bit mask of the directions whose cosine with the axis is at least `cosine`. */
 TL_INLINE uint32_t find_within(const struct tl_directions *directions, vec3s axis, float cosine)
 {
     float cosines[TL_LANES];
@@ -251,34 +254,35 @@ TL_INLINE uint32_t find_within(const struct tl_directions *directions, vec3s axi
     return (uint32_t)bits;
 }
 
-TL_INLINE void add_emitter(const struct tl_emitter_block *block, int k, const struct tl_lobe_packet *gaze,
+TL_INLINE void add_emitter(const struct tl_emitter_block *block, int k, const struct tl_lobe_packet *packet,
                            const float widening[TL_LANES], float sums[3][TL_LANES])
 {
-    const struct tl_directions *directions = &gaze->directions;
+    const struct tl_directions *directions = &packet->directions;
     for (int i = 0; i < TL_LANES; i++) {
         float cosine = directions->x[i] * block->directions.x[k] + directions->y[i] * block->directions.y[k] +
                        directions->z[i] * block->directions.z[k];
-        float exponent = gaze->exponent[i] - widening[i] * block->fall[k];
+        float exponent = packet->exponent[i] - widening[i] * block->fall[k];
         float lobe = (exponent + 1) * tl_power(cosine, exponent);
         for (int c = 0; c < 3; c++)
             sums[c][i] += lobe * block->power[k][c];
     }
 }
 
-TL_CLONES void tl_emitters_convolve(const struct tl_emitters *emitters, const struct tl_lobe_packet *gaze,
+TL_CLONES void tl_emitters_convolve(const struct tl_emitters *emitters, const struct tl_lobe_packet *packet,
                                     float out[3][TL_LANES])
 {
-    float reach = reach_of(gaze), near = cosine_of(reach), near_block = cosine_of(reach + emitters->radius);
-    struct tl_lobe_packet own = *gaze; /* nothing else points to it, so that it stays in registers */
+    float angle = packet_reach(packet), min_cosine = cosine_of(angle),
+          block_cosine = cosine_of(angle + emitters->radius);
+    struct tl_lobe_packet own = *packet; /* a local copy has no aliases, so that it stays in registers */
     float widening[TL_LANES], sums[3][TL_LANES] = {{0}};
     for (int i = 0; i < TL_LANES; i++)
         widening[i] = (own.exponent[i] + 1) * (own.exponent[i] + 2);
     for (size_t group = 0; group * TL_LANES < emitters->count; group++) {
-        uint32_t blocks = find_within(&emitters->axes[group], own.axis, near_block);
+        uint32_t blocks = find_within(&emitters->axes[group], own.axis, block_cosine);
         for (; blocks; blocks &= blocks - 1) {
             const struct tl_emitter_block *block =
                 &emitters->blocks[group * TL_LANES + (size_t)__builtin_ctz(blocks)];
-            uint32_t items = find_within(&block->directions, own.axis, near);
+            uint32_t items = find_within(&block->directions, own.axis, min_cosine);
             for (; items; items &= items - 1)
                 add_emitter(block, __builtin_ctz(items), &own, widening, sums);
         }

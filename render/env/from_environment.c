@@ -8,7 +8,8 @@ static int clamp_index(int value, int count)
     return value < 0 ? 0 : value >= count ? count - 1 : value;
 }
 
-/* An environment in cube layout is a tl_cube already; this only looks at it as one. */
+/* The image of an environment in cube layout has the memory layout of a tl_cube; this returns a view of
+ * it. */
 static tl_cube environment_as_cube(const tl_environment *environment)
 {
     assert(environment->image.height == 6 * environment->image.width);
@@ -65,7 +66,8 @@ vec3s tl_environment_texel(const tl_environment *environment, vec3s direction)
     return (vec3s){{texel[0], texel[1], texel[2]}};
 }
 
-/* Cube to cube: texels of both are rectangles of the same plane, so overlaps are exact. */
+/* Area average of a cube. The texels of both cubes are rectangles of the same planes, so the overlaps are
+ * exact. */
 static void average_cube(const tl_cube *source, tl_cube *target)
 {
     double ratio = (double)source->size / target->size, step = 1.0 / source->size;
@@ -95,7 +97,8 @@ static void average_cube(const tl_cube *source, tl_cube *target)
     }
 }
 
-tl_cube tl_cube_from_environment_with(const tl_environment *environment, int size, struct tl_resampling *kept)
+tl_cube tl_cube_from_environment_with(const tl_environment *environment, int size,
+                                      struct tl_resampling *weights)
 {
     assert(environment->image.type == TL_IMAGE_F32 && environment->image.channels == 3);
     tl_cube target = tl_cube_create(size);
@@ -103,7 +106,7 @@ tl_cube tl_cube_from_environment_with(const tl_environment *environment, int siz
         tl_cube source = environment_as_cube(environment);
         average_cube(&source, &target);
     } else {
-        tl_resample_latlong(&environment->image, size, target.texels, kept);
+        tl_resample_latlong(&environment->image, size, target.texels, weights);
     }
     return target;
 }

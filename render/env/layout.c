@@ -20,7 +20,7 @@ int tl_layout_size(const struct tl_sphere_map *map)
     return map->layout == TL_LAYOUT_CUBE ? map->width : map->height;
 }
 
-/* A disc of a picture: left border, texels, and the side from which its mirror is seen. */
+/* A disc of a picture: left border and radius (texels) and the side from which its mirror is seen. */
 struct disc {
     double left, radius;
     double side; /* 1 from +Z, -1 from -Z */
@@ -98,7 +98,7 @@ vec3s tl_layout_direction(const struct tl_sphere_map *map, double x, double y)
     return map->layout == TL_LAYOUT_SPHERE ? sphere_direction(point) : paraboloid_direction(point, disc.side);
 }
 
-/* The half angle from both parts of the direction: z alone says too little near the axis. */
+/* The half angle from atan2 of both components: z alone loses precision near the axis. */
 static void sphere_locate(vec3s direction, double point[2])
 {
     double x = (double)direction.x, y = (double)direction.y, z = (double)direction.z;
@@ -128,7 +128,8 @@ int tl_layout_locate(const struct tl_sphere_map *map, vec3s direction, double *x
     if (map->layout == TL_LAYOUT_LATLONG) {
         double x0 = (double)direction.x, y0 = (double)direction.y, z0 = (double)direction.z;
         *x = map->width * (0.5 + atan2(x0, -z0) / (2 * M_PI));
-        *y = map->height * atan2(hypot(x0, z0), y0) / M_PI; /* acos loses half its digits at the poles */
+        *y = map->height * atan2(hypot(x0, z0), y0) /
+             M_PI; /* atan2, because acos loses half of its digits at the poles */
         return 0;
     }
     if (map->layout == TL_LAYOUT_CUBE) {
@@ -136,8 +137,8 @@ int tl_layout_locate(const struct tl_sphere_map *map, vec3s direction, double *x
         float s, t;
         tl_cube_locate(direction, &face, &s, &t);
         *x = map->width * (double)s;
-        *y =
-            fmin(map->width * (face + (double)t), nextafter(map->width * (face + 1.0), 0)); /* not the next */
+        *y = fmin(map->width * (face + (double)t),
+                  nextafter(map->width * (face + 1.0), 0)); /* stays on this face */
         return face;
     }
     double point[2];
@@ -226,12 +227,7 @@ void tl_layout_nearest(const struct tl_sphere_map *map, const struct tl_layout_c
     *y = round ? fmin(fmax(radius, cell->y0), cell->y1) : middle_y;
 }
 
-/* Solid angle between the disc's centre and a piece of a straight line that lies inside of the disc, signed.
- *
- * Both layouts are the same all around, so that a sector up to radius r has the solid angle g(r) dphi. For
- * the ball, dw = 4 dA: halving the angle to +Z gives 4 cos dw_h, and the orthographic view takes the cosine
- * away. So g = 2 r^2. For the paraboloid dw = 4 dA / (1 + r^2)^2, which is equation 6, so g = 2 r^2 / (1 +
- * r^2). Along a line at distance p from the centre r^2 dphi = p ds. */
+/* Signed solid angle between the centre of a disc and a straight segment that lies inside of the disc. */
 static double inner_piece(enum tl_layout layout, const double a[2], const double b[2])
 {
     double twice_area = a[0] * b[1] - a[1] * b[0];
@@ -245,14 +241,14 @@ static double inner_piece(enum tl_layout layout, const double a[2], const double
     return 2 * distance / reach * (atan((from + length) / reach) - atan(from / reach));
 }
 
-/* Outside of the disc its rim takes the place of the line. */
+/* Outside of the disc the segment is replaced by the rim. */
 static double outer_piece(enum tl_layout layout, const double a[2], const double b[2])
 {
     double angle = atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
     return layout == TL_LAYOUT_SPHERE ? 2 * angle : angle;
 }
 
-/* A straight line from `a` to `b`, parted where it crosses the rim. */
+/* A straight segment from `a` to `b`, split where it crosses the rim. */
 static double line_solid_angle(enum tl_layout layout, const double a[2], const double b[2])
 {
     double along[2] = {b[0] - a[0], b[1] - a[1]};
@@ -275,7 +271,7 @@ static double disc_solid_angle(const struct tl_sphere_map *map, const struct tl_
     double near_x, near_y, sum = 0;
     tl_layout_nearest(map, cell, &near_x, &near_y);
     if (!tl_layout_contains(map, near_x, near_y))
-        return 0; /* rather than what rounding leaves of it */
+        return 0; /* not a rounding residue */
     struct disc disc = disc_at(map, 0.5 * (cell->x0 + cell->x1));
     double corners[4][2];
     for (int i = 0; i < 4; i++) /* anticlockwise */
@@ -285,13 +281,13 @@ static double disc_solid_angle(const struct tl_sphere_map *map, const struct tl_
     return fmax(sum, 0);
 }
 
-/* Between the centre of a cube's face at distance 1 and (u, v) on it, signed. */
+/* Signed solid angle of the rectangle between the centre of a cube's face at distance 1 and (u, v) on it. */
 static double corner_solid_angle(double u, double v)
 {
     return atan2(u * v, sqrt(u * u + v * v + 1));
 }
 
-/* A convex outline on one face of the octahedron: u, v >= 0 and u + v <= 1 stand for (u, 1 - u - v, v). */
+/* A convex polygon on one face of the octahedron: u, v >= 0 and u + v <= 1 stand for (u, 1 - u - v, v). */
 struct face_outline {
     double points[6][2];
     int count;
@@ -349,7 +345,7 @@ static struct face_outline cut_at_horizon(const double corners[4][2], double sid
     return part;
 }
 
-/* A cell is parted where the octahedron has edges: along both axes of the map, and at the horizon. */
+/* A cell is split at the edges of the octahedron: along both axes of the map, and at the horizon. */
 static double octahedral_solid_angle(const struct tl_sphere_map *map, const struct tl_layout_cell *cell)
 {
     double u[2] = {2 * cell->x0 / map->width - 1, 2 * cell->x1 / map->width - 1};
@@ -372,7 +368,7 @@ double tl_layout_cell_solid_angle(const struct tl_sphere_map *map, const struct 
 {
     if (map->layout == TL_LAYOUT_OCTAHEDRAL)
         return octahedral_solid_angle(map, cell);
-    if (map->layout == TL_LAYOUT_LATLONG) { /* cos a - cos b, without the cancellation at the poles */
+    if (map->layout == TL_LAYOUT_LATLONG) { /* cos a - cos b without cancellation at the poles */
         double middle = 0.5 * M_PI * (cell->y0 + cell->y1) / map->height;
         double half = 0.5 * M_PI * (cell->y1 - cell->y0) / map->height;
         return 2 * M_PI * (cell->x1 - cell->x0) / map->width * 2 * sin(middle) * sin(half);

@@ -9,16 +9,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Texels along the side of a map: they follow the lobe's width, and the widest lobes, which end at a horizon
- * rather than fade, need some more; most of all that of s = 1, which ends in a crease. Across it a straight
- * line between texels errs by a quarter of their distance, which is 2 sqrt(6) / side in the middle of an
- * octahedron's face: 1.5 % of what a lone lamp gives at its brightest (2.6 % without). */
+/* Texels along the side of a map. They follow the width of the lobe. The widest lobes, which end at a horizon
+ * instead of fading out, need more, and the lobe of s = 1, which ends in a crease, needs most. Across the
+ * crease linear interpolation between texels errs by a quarter of their distance, which is 2 sqrt(6) / side
+ * in the middle of a face of the octahedron: 1.5 % of the peak of a single light (2.6 % without
+ * SIDE_OF_CREASE). */
 #define SIDE_PER_WIDTH  16
 #define SIDE_OF_HORIZON 32
 #define SIDE_OF_CREASE  32
-/* Sixteen lanes look at a square of the map. */
+/* Sixteen lanes process a square of the map. */
 #define TILE 4
-/* Samples along a side of a texel of the environment itself. */
+/* Samples along a side of a texel in the map of the environment itself. */
 #define AREA_SAMPLES 8
 
 float tl_exponent(int index)
@@ -26,12 +27,12 @@ float tl_exponent(int index)
     return powf(TL_EXPONENT_RATIO, (float)index);
 }
 
-/* The lobe that the environment itself has for the blend beyond the last exponent: that of a texel of 128 a
- * face, fetched bilinearly. */
+/* Exponent that the environment itself has in the blend beyond the last exponent: that of a texel of a cube
+ * with 128 texels a face, fetched bilinearly. */
 #define MIRROR_EXPONENT 32768.0f
 
-/* The best weights in L1 lie on a straight line over log(s + 1) but for a part that depends little on s: for
- * the ratio sqrt 2 within 0.0003 of the least error [test_slices.c]. */
+/* The best weights in L1 are linear in log(s + 1), plus a bend that hardly depends on s. For the ratio sqrt 2
+ * this fit is within 0.0003 of the smallest error [test_slices.c]. */
 #define BLEND_BEND 0.033f
 
 struct tl_exponent_blend tl_exponent_blend(float s)
@@ -56,8 +57,8 @@ uint32_t tl_exponents_needed(float glossiness_low, float glossiness_high)
     return 1 | ((2u << last) - (1u << low.index));
 }
 
-/* The octahedron |x| + |y| + |z| = 1 unfolded about +Y: u and v in [-1, 1]; below the horizon the corners
- * are folded outwards. */
+/* Point on the octahedron |x| + |y| + |z| = 1, unfolded about +Y, for u and v in [-1, 1]. Below the horizon
+ * the corners are folded outwards. */
 static vec3s unfold(float u, float v)
 {
     float y = 1 - fabsf(u) - fabsf(v);
@@ -66,19 +67,19 @@ static vec3s unfold(float u, float v)
     return (vec3s){{copysignf(1 - fabsf(v), u), y, copysignf(1 - fabsf(u), v)}};
 }
 
-/* Mean square, over the two axes of the map, of the angle that a step of 1 in u or v turns: at a point p of
- * the octahedron a step (1, -1, 0) turns |step - (step . w) w| / |p|. */
+/* Mean square, over the two axes of the map, of the angle of a step of 1 in u or v: at a point p of the
+ * octahedron a step (1, -1, 0) turns the direction w by |step - (step . w) w| / |p|. */
 static float square_scale(vec3s p)
 {
     float square = glms_vec3_norm2(p), sum = 0;
     for (int axis = 0; axis < 3; axis += 2) {
-        float along = fabsf(p.raw[axis]) - fabsf(p.y); /* step . p, but for the signs that both have */
+        float along = fabsf(p.raw[axis]) - fabsf(p.y); /* step . p up to the common signs */
         sum += (2 - along * along / square) / square;
     }
     return sum / 2;
 }
 
-static void look(int side, int left, int top, float s, struct tl_lobe_packet *gaze)
+static void set_packet(int side, int left, int top, float s, struct tl_lobe_packet *packet)
 {
     float step = 2 / (float)side, steps[TL_LANES];
     vec3s directions[TL_LANES];
@@ -88,7 +89,7 @@ static void look(int side, int left, int top, float s, struct tl_lobe_packet *ga
         directions[i] = glms_vec3_normalize(p);
         steps[i] = step * sqrtf(square_scale(p));
     }
-    tl_lobe_packet_set(gaze, directions, steps, s);
+    tl_lobe_packet_set(packet, directions, steps, s);
 }
 
 static float *texel_of(const struct tl_lobe_map *map, int x, int y)
@@ -96,7 +97,7 @@ static float *texel_of(const struct tl_lobe_map *map, int x, int y)
     return map->texels + 4 * ((size_t)(y + 1) * (size_t)(map->side + 2) + (size_t)(x + 1));
 }
 
-/* Beyond a side of the unfolded octahedron the same side goes on, backwards. */
+/* Beyond a side of the unfolded octahedron the same side continues in reverse order. */
 static void fill_border(const struct tl_lobe_map *map)
 {
     int last = map->side - 1;
@@ -138,11 +139,11 @@ static struct tl_lobe_map convolve(const tl_emitter *texels, int cube_size, floa
     int tiles = map.side / TILE;
 #pragma omp parallel for schedule(dynamic, 4)
     for (int tile = 0; tile < tiles * tiles; tile++) {
-        struct tl_lobe_packet gaze;
+        struct tl_lobe_packet packet;
         float colour[3][TL_LANES];
         int left = tile % tiles * TILE, top = tile / tiles * TILE;
-        look(map.side, left, top, s, &gaze);
-        tl_emitters_convolve(&emitters, &gaze, colour);
+        set_packet(map.side, left, top, s, &packet);
+        tl_emitters_convolve(&emitters, &packet, colour);
         for (int i = 0; i < TL_LANES; i++)
             for (int c = 0; c < 3; c++)
                 texel_of(&map, left + i % TILE, top + i / TILE)[c] = colour[c][i];
@@ -152,10 +153,10 @@ static struct tl_lobe_map convolve(const tl_emitter *texels, int cube_size, floa
     return map;
 }
 
-/* The environment itself: the mean over every texel. */
+/* The map of the environment itself: the mean radiance over every texel. */
 static struct tl_lobe_map sample_area(const tl_cube *cube)
 {
-    /* As many texels as the cube has. */
+    /* as many texels as the cube has */
     struct tl_lobe_map map = create_map(whole_tiles(sqrtf(6) * (float)cube->size));
     float step = 2 / (float)(map.side * AREA_SAMPLES);
 #pragma omp parallel for
@@ -207,7 +208,7 @@ void tl_lobes_make(struct tl_lobes *lobes, const tl_cube *cube, uint32_t needed)
     free(texels);
 }
 
-struct tl_lobes tl_lobes_map(const struct tl_lobes *from, uint32_t which, tl_lobe_map_function *change,
+struct tl_lobes tl_lobes_map(const struct tl_lobes *from, uint32_t which, tl_lobe_map_function *function,
                              const void *context)
 {
     struct tl_lobes lobes = {.made = from->made & which};
@@ -223,9 +224,9 @@ struct tl_lobes tl_lobes_map(const struct tl_lobes *from, uint32_t which, tl_lob
             for (int x = 0; x < source->side; x++) {
                 const float *light = texel_of(source, x, y);
                 vec3s direction = unfold(((float)x + 0.5f) * step - 1, ((float)y + 0.5f) * step - 1);
-                vec3s changed = change(glms_vec3_normalize(direction), exponent,
-                                       (vec3s){{light[0], light[1], light[2]}}, context);
-                memcpy(texel_of(&lobes.maps[k], x, y), changed.raw, sizeof changed);
+                vec3s result = function(glms_vec3_normalize(direction), exponent,
+                                        (vec3s){{light[0], light[1], light[2]}}, context);
+                memcpy(texel_of(&lobes.maps[k], x, y), result.raw, sizeof result);
             }
         fill_border(&lobes.maps[k]);
     }
@@ -275,7 +276,7 @@ void tl_lobes_release(struct tl_lobes *lobes)
 
 typedef float quad __attribute__((vector_size(4 * sizeof(float)), aligned(4)));
 
-/* Point of the unfolded octahedron, u and v in [0, 1]. */
+/* A point of the unfolded octahedron, u and v in [0, 1]. */
 struct place {
     float u, v;
 };
@@ -295,7 +296,7 @@ static inline quad fetch(const struct tl_lobe_map *map, struct place place)
 {
     float x = place.u * (float)map->side + 0.5f, y = place.v * (float)map->side + 0.5f,
           last = (float)map->side + 0.5f;
-    x = x > 0 ? x < last ? x : last : 0; /* also what is not a number */
+    x = x > 0 ? x < last ? x : last : 0; /* NaN becomes 0, too */
     y = y > 0 ? y < last ? y : last : 0;
     int column = (int)x, row = (int)y;
     float right = x - (float)column, below = y - (float)row;
@@ -310,7 +311,7 @@ vec3s tl_lobes_fetch(const struct tl_lobes *lobes, vec3s direction, struct tl_ex
     assert(lobes->maps[blend.index].side);
     struct place place = place_of(direction);
     quad colour = fetch(&lobes->maps[blend.index], place);
-    if (blend.weight > 0) /* the next one need not be there otherwise */
+    if (blend.weight > 0) /* the next map need not exist otherwise */
         colour += blend.weight * (fetch(&lobes->maps[blend.index + 1], place) - colour);
     return (vec3s){{colour[0], colour[1], colour[2]}};
 }

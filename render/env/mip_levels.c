@@ -28,11 +28,11 @@ static double *first_solid_angles(const struct tl_sphere_map *map)
     return solid_angles;
 }
 
-/* Numbers of the four finer texels under one; the pieces of every layout have even sides. */
-static void find_four(int finer_width, int x, int y, size_t four[4])
+/* Indices of the children finer texels under one. The pieces of every layout have even sides. */
+static void find_children(int finer_width, int x, int y, size_t children[4])
 {
     for (int i = 0; i < 4; i++)
-        four[i] = (size_t)(2 * y + (i >> 1)) * (size_t)finer_width + (size_t)(2 * x + (i & 1));
+        children[i] = (size_t)(2 * y + (i >> 1)) * (size_t)finer_width + (size_t)(2 * x + (i & 1));
 }
 
 static double *summed_solid_angles(const struct tl_mip_levels *levels, int level)
@@ -41,11 +41,11 @@ static double *summed_solid_angles(const struct tl_mip_levels *levels, int level
     double *solid_angles = TL_NEW_ARRAY(double, texel_count(map));
     for (int y = 0; y < map->height; y++)
         for (int x = 0; x < map->width; x++) {
-            size_t four[4];
-            find_four(2 * map->width, x, y, four);
+            size_t children[4];
+            find_children(2 * map->width, x, y, children);
             for (int i = 0; i < 4; i++)
                 solid_angles[(size_t)y * (size_t)map->width + (size_t)x] +=
-                    levels->solid_angles[level - 1][four[i]];
+                    levels->solid_angles[level - 1][children[i]];
         }
     return solid_angles;
 }
@@ -78,32 +78,32 @@ bool tl_mip_levels_reads_first(const struct tl_sphere_map *map, int x, int y)
     return x < map->height && hypot(x + 0.5 - radius, y + 0.5 - radius) < radius - 1;
 }
 
-/* Where on the sphere's part of the picture a texel outside of the discs finds what it is to show: the other
- * paraboloid in its direction, and the ball's nearest rim. */
-static int find_shown(const struct tl_sphere_map *map, int x, int y, double *shown_x, double *shown_y)
+/* The point on the sphere whose colour a texel outside of the discs gets: in the other paraboloid in the same
+ * direction, or at the nearest point of the rim of the ball. Returns its piece. */
+static int find_replacement(const struct tl_sphere_map *map, int x, int y, double *found_x, double *found_y)
 {
     if (map->layout == TL_LAYOUT_PARABOLOID)
-        return tl_layout_locate(map, tl_layout_direction(map, x + 0.5, y + 0.5), shown_x, shown_y);
+        return tl_layout_locate(map, tl_layout_direction(map, x + 0.5, y + 0.5), found_x, found_y);
     double radius = 0.5 * map->height, across = x + 0.5 - radius, down = y + 0.5 - radius;
     double length = hypot(across, down);
-    *shown_x = radius * (1 + across / length);
-    *shown_y = radius * (1 + down / length);
+    *found_x = radius * (1 + across / length);
+    *found_y = radius * (1 + down / length);
     return 0;
 }
 
-/* Bilinear among the texels that cover some of the sphere. */
-static void show_neighbour(const struct tl_mip_levels *levels, int level, int x, int y, float *texels)
+/* Fills a texel by a bilinear fetch at that point, among the texels that cover some of the sphere. */
+static void fill_texel(const struct tl_mip_levels *levels, int level, int x, int y, float *texels)
 {
     const struct tl_sphere_map *map = &levels->maps[level];
-    double place_x, place_y, weights = 0, sum[3] = {0, 0, 0};
-    struct tl_layout_piece piece = tl_layout_piece(map, find_shown(map, x, y, &place_x, &place_y));
-    int left = (int)floor(place_x - 0.5), top = (int)floor(place_y - 0.5);
+    double point_x, point_y, weights = 0, sum[3] = {0, 0, 0};
+    struct tl_layout_piece piece = tl_layout_piece(map, find_replacement(map, x, y, &point_x, &point_y));
+    int left = (int)floor(point_x - 0.5), top = (int)floor(point_y - 0.5);
     for (int i = 0; i < 4; i++) {
         int column = left + (i & 1), row = top + (i >> 1);
         if (column < piece.x0 || column >= piece.x1 || row < piece.y0 || row >= piece.y1)
             continue;
         size_t texel = (size_t)row * (size_t)map->width + (size_t)column;
-        double weight = fmax(1 - fabs(place_x - 0.5 - column), 0) * fmax(1 - fabs(place_y - 0.5 - row), 0);
+        double weight = fmax(1 - fabs(point_x - 0.5 - column), 0) * fmax(1 - fabs(point_y - 0.5 - row), 0);
         if (levels->solid_angles[level][texel] <= 0)
             continue;
         weights += weight;
@@ -120,7 +120,7 @@ static void fill_outside(const struct tl_mip_levels *levels, int level, float *t
     for (int y = 0; y < map->height; y++)
         for (int x = 0; x < map->width; x++)
             if (levels->solid_angles[level][(size_t)y * (size_t)map->width + (size_t)x] <= 0)
-                show_neighbour(levels, level, x, y, texels);
+                fill_texel(levels, level, x, y, texels);
 }
 
 void tl_mip_levels_reduce(const struct tl_mip_levels *levels, int level, const float *finer, float *coarser)
@@ -130,12 +130,12 @@ void tl_mip_levels_reduce(const struct tl_mip_levels *levels, int level, const f
 #pragma omp parallel for
     for (int y = 0; y < map->height; y++)
         for (int x = 0; x < map->width; x++) {
-            size_t four[4], texel = (size_t)y * (size_t)map->width + (size_t)x;
+            size_t children[4], texel = (size_t)y * (size_t)map->width + (size_t)x;
             double sum[3] = {0, 0, 0}, whole = levels->solid_angles[level][texel];
-            find_four(2 * map->width, x, y, four);
+            find_children(2 * map->width, x, y, children);
             for (int i = 0; i < 4; i++)
                 for (size_t c = 0; c < 3; c++)
-                    sum[c] += weights[four[i]] * (double)finer[4 * four[i] + c];
+                    sum[c] += weights[children[i]] * (double)finer[4 * children[i] + c];
             for (size_t c = 0; c < 3; c++)
                 coarser[4 * texel + c] = whole > 0 ? (float)(sum[c] / whole) : 0;
             coarser[4 * texel + 3] = tl_mip_levels_reads_first(map, x, y) ? 1 : 0;

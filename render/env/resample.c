@@ -6,25 +6,28 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Every source texel is poured into the cube texels that it covers. Where all its corners
- * lie in one it goes there whole; otherwise it is halved, down to cells of an eighth of a cube texel, which
- * are shared out by area. So nothing is missed, however thin the source texels are (at the poles), and each
+/* Every source texel is distributed over the cube texels that it covers. If all its corners lie in one cube
+ * texel it belongs there entirely; otherwise it is halved, down to cells of an eighth of a cube texel, which
+ * are distributed by area. So no texel is missed, however thin the source texels are at the poles, and each
  * keeps its exact solid angle. */
 #define CELLS_PER_TEXEL 8
-/* Corners say where a cell lies only while its sides are nearly straight. */
+/* The corners determine the texel of a cell only if its sides are nearly straight: a turn has at least this
+ * many cells. */
 #define TURN_CELLS_MIN 64
-/* Fixed blocks of rows, each with shares of its own, so that the result does not depend on the threads. */
+/* A fixed number of blocks of rows, each with its own list of shares, so that the result does not depend on
+ * the number of threads. */
 #define BLOCKS 4
-/* Source texels of a band: what is poured at once, and kept when it is all there is. */
+/* Source texels in a band, the part that is resampled at once. The weights of an image of one band are
+ * kept. */
 #define BAND_TEXELS ((size_t)1 << 20)
 
 struct grid {
     const tl_image *image;
     int size;                  /* of the target cube */
     int steps_x, steps_y;      /* per source texel, powers of two; the smallest cell has two */
-    int widest, highest;       /* steps of a cell that its corners may judge */
-    double *sin_phi, *cos_phi; /* [width * steps_x + 1] where phi = atan2(x, -z) */
-    double *y, *radius;        /* [height * steps_y + 1] of the unit sphere, radius from the axis */
+    int widest, highest;       /* largest steps of a cell whose corners decide */
+    double *sin_phi, *cos_phi; /* [width * steps_x + 1], phi = atan2(x, -z) */
+    double *y, *radius; /* [height * steps_y + 1]: height and distance from the axis on the unit sphere */
 };
 
 struct cell {
@@ -89,53 +92,53 @@ static int grid_texel(const struct grid *grid, int x, int y)
     return tl_cube_texel(grid->size, grid_direction(grid, x, y));
 }
 
-/* A share before it is sorted by target. */
-struct drop {
+/* A share before sorting by target. */
+struct share {
     uint32_t source, target;
     double solid_angle;
 };
 
-/* The shares of some rows, in the order of their sources. */
+/* The shares of some rows in the order of their sources. */
 struct stream {
-    struct drop *drops;
+    struct share *shares;
     size_t count, capacity;
-    uint32_t source; /* that is being poured */
-    uint32_t *last;  /* [6 * size * size]: number of a target's latest drop, from 1 */
+    uint32_t source; /* texel that is being split */
+    uint32_t *last;  /* [6 * size * size]: 1 + index of the latest share of a target; 0: none */
 };
 
-static void add_drop(struct stream *stream, uint32_t target, double solid_angle)
+static void append_share(struct stream *stream, uint32_t target, double solid_angle)
 {
     uint32_t last = stream->last[target];
-    if (last > 0 && stream->drops[last - 1].source == stream->source) {
-        stream->drops[last - 1].solid_angle += solid_angle;
+    if (last > 0 && stream->shares[last - 1].source == stream->source) {
+        stream->shares[last - 1].solid_angle += solid_angle;
         return;
     }
     if (stream->count == stream->capacity) {
         stream->capacity = stream->capacity ? 2 * stream->capacity : 1024;
-        stream->drops = tl_resize(stream->drops, stream->capacity, sizeof *stream->drops);
+        stream->shares = tl_resize(stream->shares, stream->capacity, sizeof *stream->shares);
     }
-    stream->drops[stream->count++] = (struct drop){stream->source, target, solid_angle};
+    stream->shares[stream->count++] = (struct share){stream->source, target, solid_angle};
     stream->last[target] = (uint32_t)stream->count;
 }
 
-static void pour_whole(const struct grid *grid, const struct cell *cell, double share, int target,
-                       struct stream *stream)
+static void add_share(const struct grid *grid, const struct cell *cell, double share, int target,
+                      struct stream *stream)
 {
     double step = 2 * M_PI / ((double)grid->image->width * grid->steps_x);
     double height = grid->y[cell->y0] - grid->y[cell->y1];
-    add_drop(stream, (uint32_t)target, share * (cell->x1 - cell->x0) * step * height);
+    append_share(stream, (uint32_t)target, share * (cell->x1 - cell->x0) * step * height);
 }
 
-/* Part of [centre - reach, centre + reach] that lies above the border. */
+/* The fraction of [centre - reach, centre + reach] above the border. */
 static double share_above(double centre, double reach, double border)
 {
     return fmin(fmax((centre + reach - border) / (2 * reach), 0), 1);
 }
 
-/* The smallest cell, taken for the box around it on the plane of its face. Borders of cube texels run along
- * lines of the map on four of the faces, so that sending it whole to where its centre lies would err the same
- * way for all cells of a column. */
-static void pour_smallest(const struct grid *grid, const struct cell *cell, struct stream *stream)
+/* Distributes the smallest cell, approximated by its bounding box on the plane of its face, over up to four
+ * cube texels by area. On four of the faces the borders of cube texels run along lines of the map; assigning
+ * the whole cell to the texel of its centre would make the same error for all cells of a column. */
+static void split_smallest(const struct grid *grid, const struct cell *cell, struct stream *stream)
 {
     int face;
     float s, t;
@@ -154,33 +157,33 @@ static void pour_smallest(const struct grid *grid, const struct cell *cell, stru
     for (int i = 0; i < 4; i++) {
         double share = (i & 1 ? above_x : 1 - above_x) * (i & 2 ? above_y : 1 - above_y);
         if (share > 0)
-            pour_whole(grid, cell, share,
-                       tl_cube_texel_across(grid->size, face, border_x - !(i & 1), border_y - !(i & 2)),
-                       stream);
+            add_share(grid, cell, share,
+                      tl_cube_texel_across(grid->size, face, border_x - !(i & 1), border_y - !(i & 2)),
+                      stream);
     }
 }
 
-static void pour_cell(const struct grid *grid, const struct cell *cell, struct stream *stream)
+static void split_cell(const struct grid *grid, const struct cell *cell, struct stream *stream)
 {
     const int *corners = cell->corners;
     int x0 = cell->x0, y0 = cell->y0, x1 = cell->x1, y1 = cell->y1;
     bool uniform = corners[0] == corners[1] && corners[0] == corners[2] && corners[0] == corners[3];
     if (uniform && x1 - x0 <= grid->widest && y1 - y0 <= grid->highest) {
-        pour_whole(grid, cell, 1, corners[0], stream);
+        add_share(grid, cell, 1, corners[0], stream);
     } else if (x1 - x0 == 2 && y1 - y0 == 2) {
-        pour_smallest(grid, cell, stream);
+        split_smallest(grid, cell, stream);
     } else if (x1 - x0 >= y1 - y0) {
         int middle = (x0 + x1) / 2, top = grid_texel(grid, middle, y0), bottom = grid_texel(grid, middle, y1);
-        pour_cell(grid, &(struct cell){x0, y0, middle, y1, {corners[0], top, corners[2], bottom}}, stream);
-        pour_cell(grid, &(struct cell){middle, y0, x1, y1, {top, corners[1], bottom, corners[3]}}, stream);
+        split_cell(grid, &(struct cell){x0, y0, middle, y1, {corners[0], top, corners[2], bottom}}, stream);
+        split_cell(grid, &(struct cell){middle, y0, x1, y1, {top, corners[1], bottom, corners[3]}}, stream);
     } else {
         int middle = (y0 + y1) / 2, left = grid_texel(grid, x0, middle), right = grid_texel(grid, x1, middle);
-        pour_cell(grid, &(struct cell){x0, y0, x1, middle, {corners[0], corners[1], left, right}}, stream);
-        pour_cell(grid, &(struct cell){x0, middle, x1, y1, {left, right, corners[2], corners[3]}}, stream);
+        split_cell(grid, &(struct cell){x0, y0, x1, middle, {corners[0], corners[1], left, right}}, stream);
+        split_cell(grid, &(struct cell){x0, middle, x1, y1, {left, right, corners[2], corners[3]}}, stream);
     }
 }
 
-static void pour_rows(const struct grid *grid, int begin, int end, struct stream *stream)
+static void split_rows(const struct grid *grid, int begin, int end, struct stream *stream)
 {
     for (int row = begin; row < end; row++) {
         int y0 = row * grid->steps_y, y1 = y0 + grid->steps_y;
@@ -193,7 +196,7 @@ static void pour_rows(const struct grid *grid, int begin, int end, struct stream
             cell.corners[1] = grid_texel(grid, cell.x1, y0);
             cell.corners[3] = grid_texel(grid, cell.x1, y1);
             stream->source = (uint32_t)row * (uint32_t)grid->image->width + (uint32_t)column;
-            pour_cell(grid, &cell, stream);
+            split_cell(grid, &cell, stream);
         }
     }
 }
@@ -203,15 +206,15 @@ static size_t target_count(int size)
     return 6 * (size_t)size * (size_t)size;
 }
 
-/* Deals the drops out to their targets, in the order of the sources. */
-static void sort_drops(struct stream streams[BLOCKS], struct tl_resampling *out)
+/* Sorts the shares by target (counting sort); shares of a target keep the order of their sources. */
+static void sort_shares(struct stream streams[BLOCKS], struct tl_resampling *out)
 {
     size_t targets = target_count(out->size), count = 0;
     uint32_t *next = TL_NEW_ARRAY(uint32_t, targets), place = 0;
     for (int block = 0; block < BLOCKS; block++) {
         count += streams[block].count;
         for (size_t i = 0; i < streams[block].count; i++)
-            next[streams[block].drops[i].target]++;
+            next[streams[block].shares[i].target]++;
     }
     out->first = TL_NEW_ARRAY(uint32_t, targets + 1);
     out->shares = TL_NEW_ARRAY(struct tl_resampling_share, count);
@@ -223,44 +226,44 @@ static void sort_drops(struct stream streams[BLOCKS], struct tl_resampling *out)
     out->first[targets] = place;
     for (int block = 0; block < BLOCKS; block++) {
         for (size_t i = 0; i < streams[block].count; i++) {
-            const struct drop *drop = &streams[block].drops[i];
-            out->shares[next[drop->target]++] =
-                (struct tl_resampling_share){drop->source, (float)drop->solid_angle};
+            const struct share *share = &streams[block].shares[i];
+            out->shares[next[share->target]++] =
+                (struct tl_resampling_share){share->source, (float)share->solid_angle};
         }
     }
     free(next);
 }
 
 /* The shares of rows [begin, end). */
-static struct tl_resampling share_out(const struct grid *grid, int begin, int end)
+static struct tl_resampling overlaps_of_rows(const struct grid *grid, int begin, int end)
 {
-    struct tl_resampling pour = {
+    struct tl_resampling weights = {
         .width = grid->image->width, .height = grid->image->height, .size = grid->size};
     struct stream streams[BLOCKS] = {{0}};
     int64_t rows = end - begin;
 #pragma omp parallel for schedule(dynamic)
     for (int block = 0; block < BLOCKS; block++) {
         streams[block].last = TL_NEW_ARRAY(uint32_t, target_count(grid->size));
-        pour_rows(grid, begin + (int)(rows * block / BLOCKS), begin + (int)(rows * (block + 1) / BLOCKS),
-                  &streams[block]);
+        split_rows(grid, begin + (int)(rows * block / BLOCKS), begin + (int)(rows * (block + 1) / BLOCKS),
+                   &streams[block]);
     }
-    sort_drops(streams, &pour);
+    sort_shares(streams, &weights);
     for (int block = 0; block < BLOCKS; block++) {
-        free(streams[block].drops);
+        free(streams[block].shares);
         free(streams[block].last);
     }
-    return pour;
+    return weights;
 }
 
 /* Sums of colour x solid angle, and of solid angle, by target. */
-static void gather(const struct tl_resampling *pour, const tl_image *image, double (*sums)[4])
+static void gather(const struct tl_resampling *weights, const tl_image *image, double (*sums)[4])
 {
     const float *colours = tl_image_floats(image);
 #pragma omp parallel for
-    for (size_t i = 0; i < target_count(pour->size); i++) {
-        for (uint32_t k = pour->first[i]; k < pour->first[i + 1]; k++) {
-            const float *colour = colours + 3 * (size_t)pour->shares[k].source;
-            double solid_angle = (double)pour->shares[k].solid_angle;
+    for (size_t i = 0; i < target_count(weights->size); i++) {
+        for (uint32_t k = weights->first[i]; k < weights->first[i + 1]; k++) {
+            const float *colour = colours + 3 * (size_t)weights->shares[k].source;
+            double solid_angle = (double)weights->shares[k].solid_angle;
             for (int c = 0; c < 3; c++)
                 sums[i][c] += solid_angle * (double)colour[c];
             sums[i][3] += solid_angle;
@@ -268,45 +271,45 @@ static void gather(const struct tl_resampling *pour, const tl_image *image, doub
     }
 }
 
-void tl_resampling_release(struct tl_resampling *pour)
+void tl_resampling_release(struct tl_resampling *weights)
 {
-    free(pour->first);
-    free(pour->shares);
-    *pour = (struct tl_resampling){0};
+    free(weights->first);
+    free(weights->shares);
+    *weights = (struct tl_resampling){0};
 }
 
-/* Band by band, because the shares of the largest images would not fit into memory. */
-static void pour_bands(const tl_image *image, int size, int band_rows, double (*sums)[4])
+/* Resamples band by band, because the shares of the largest images would not fit into memory. */
+static void resample_in_bands(const tl_image *image, int size, int band_rows, double (*sums)[4])
 {
     struct grid grid = grid_create(image, size);
     for (int begin = 0; begin < image->height; begin += band_rows) {
         int end = image->height - begin > band_rows ? begin + band_rows : image->height;
-        struct tl_resampling pour = share_out(&grid, begin, end);
-        gather(&pour, image, sums);
-        tl_resampling_release(&pour);
+        struct tl_resampling weights = overlaps_of_rows(&grid, begin, end);
+        gather(&weights, image, sums);
+        tl_resampling_release(&weights);
     }
     grid_release(&grid);
 }
 
-static void keep_shares(const tl_image *image, int size, struct tl_resampling *kept)
+static void update_weights(const tl_image *image, int size, struct tl_resampling *weights)
 {
-    if (kept->width == image->width && kept->height == image->height && kept->size == size)
+    if (weights->width == image->width && weights->height == image->height && weights->size == size)
         return;
     struct grid grid = grid_create(image, size);
-    tl_resampling_release(kept);
-    *kept = share_out(&grid, 0, image->height);
+    tl_resampling_release(weights);
+    *weights = overlaps_of_rows(&grid, 0, image->height);
     grid_release(&grid);
 }
 
-void tl_resample_latlong(const tl_image *image, int size, float *texels, struct tl_resampling *kept)
+void tl_resample_latlong(const tl_image *image, int size, float *texels, struct tl_resampling *weights)
 {
     size_t targets = target_count(size), band_rows = BAND_TEXELS / (size_t)image->width;
     double(*sums)[4] = tl_alloc(targets, sizeof *sums);
     if (band_rows < (size_t)image->height) {
-        pour_bands(image, size, (int)band_rows, sums);
+        resample_in_bands(image, size, (int)band_rows, sums);
     } else {
-        keep_shares(image, size, kept);
-        gather(kept, image, sums);
+        update_weights(image, size, weights);
+        gather(weights, image, sums);
     }
     for (size_t i = 0; i < targets; i++)
         for (size_t c = 0; c < 3; c++)

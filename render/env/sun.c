@@ -6,21 +6,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The least share of all light. A sun that stays in the regions is shadowed from vertex to vertex, which cost
- * 13 % of the image where it held 65 % of the light (FRONTIER, finding 3): 1 % at this share, against some 3
- * % that interpolated visibility costs anyway. Rays of its own take a tenth of a frame's time. */
+/* The smallest share of all light. A sun that stays in the regions is shadowed by interpolation from vertex
+ * to vertex, which cost 13 % of the image where the sun held 65 % of the light (FRONTIER, finding 3). At this
+ * share it costs 1 %, compared with about 3 % that interpolated visibility costs anyway. Its own rays take a
+ * tenth of the time of a frame. */
 #define SHARE_MIN 0.05
-/* rad; the largest radius. Half of that of the smallest regions there are (384: 5.9 degrees): what is larger,
- * a soft box say, is cut up by the regions and gets its penumbra from them. */
+/* Largest radius (rad): half of that of the smallest regions (with 384 regions 5.9 degrees). A larger light,
+ * such as a soft box, is divided into regions and gets its penumbra from them. */
 #define RADIUS_MAX (2.5 * M_PI / 180)
-/* rad; no texel of a sun is farther from its brightest one. */
+/* Largest angle (rad) between a texel of a sun and its brightest texel. */
 #define REACH_MAX (2 * RADIUS_MAX)
-/* A patch is what is brighter than its brightest texel divided by one of these; by the first of them that
- * makes it compact, so that a glow is left behind but nothing of the disc. */
+/* A patch consists of the texels brighter than its brightest texel divided by one of these depths. The first
+ * depth that makes the patch compact is used, so that a glow is left out but the whole disc is included. */
 static const float depths[] = {256, 64, 16, 4};
-/* Points in which a sun's disc is seen when it is parted into samples. */
+/* Number of points by which a sun's disc is sampled before it is divided into samples. */
 #define POINTS_WANTED 4096
-/* Points a texel side, where texels are large. */
+/* Largest number of points along a side of a texel, where texels are large. */
 #define POINTS_SIDE_MAX 64
 
 struct search {
@@ -37,8 +38,8 @@ struct search {
 /* A point of light within a sun. */
 struct point {
     vec3s direction; /* unit */
-    float weight;    /* luminance above what surrounds the sun x solid angle */
-    float along;     /* where it lies on the axis of what is parted */
+    float weight;    /* luminance above the surroundings of the sun x solid angle */
+    float along;     /* coordinate along the axis of the part that is being divided */
 };
 
 struct points {
@@ -77,9 +78,9 @@ static void clear_patch(struct search *search)
     search->count = 0;
 }
 
-/* What is connected with `peak` and at least `least` bright, and one texel around it, over which the
- * averaging of the cube may have spread it. False when it reaches too far. */
-static bool flood(struct search *search, int peak, float least)
+/* Flood fill: the texels connected with `peak` that are at least `min` bright, and one texel around them,
+ * into which the averaging of the cube may have spread their light. False when the patch extends too far. */
+static bool flood(struct search *search, int peak, float min)
 {
     int size = search->cube->size;
     vec3s centre = tl_cube_texel_direction(size, peak);
@@ -90,7 +91,7 @@ static bool flood(struct search *search, int peak, float least)
             return false;
         for (int i = 0; i < 8; i++) {
             int texel = neighbour(size, search->patch[next], i);
-            if (!search->inside[texel] && search->luminance[texel] >= least)
+            if (!search->inside[texel] && search->luminance[texel] >= min)
                 add_to_patch(search, texel);
         }
     }
@@ -104,7 +105,7 @@ static bool flood(struct search *search, int peak, float least)
     return true;
 }
 
-/* Mean colour of the texels that touch the patch. */
+/* Mean colour of the texels adjacent to the patch. */
 static vec3s surroundings(const struct search *search)
 {
     double sum[3] = {0};
@@ -119,11 +120,11 @@ static vec3s surroundings(const struct search *search)
             count++;
         }
     }
-    double share = count > 0 ? 1.0 / count : 0; /* a cube so small that the patch is all of it */
+    double share = count > 0 ? 1.0 / count : 0; /* the patch may cover the whole of a small cube */
     return (vec3s){{(float)(sum[0] * share), (float)(sum[1] * share), (float)(sum[2] * share)}};
 }
 
-/* What the patch holds above its surroundings. */
+/* Power of the patch above its surroundings. */
 static void sum_power(const struct search *search, vec3s around, double power[3])
 {
     power[0] = power[1] = power[2] = 0;
@@ -135,8 +136,8 @@ static void sum_power(const struct search *search, vec3s around, double power[3]
     }
 }
 
-/* Of the point (x, y) of the environment's image, texels from the top left corner. `density`: steradians a
- * texel there. */
+/* Direction of the point (x, y) of the environment's image, in texels from the top left corner. `density` is
+ * the solid angle (sr) per texel there. */
 static vec3s environment_direction(const tl_environment *environment, double x, double y, double *density)
 {
     int width = environment->image.width, height = environment->image.height;
@@ -182,7 +183,7 @@ static void add_texel(const struct search *search, int x, int y, int side, float
     }
 }
 
-/* The rows of a lat-long map in which the patch around `peak` may lie; all of a cube's. */
+/* The range of rows of a lat-long map that may contain the patch around `peak`; all rows of a cube. */
 static void find_rows(const tl_environment *environment, vec3s peak, int rows[2])
 {
     int height = environment->image.height;
@@ -195,8 +196,8 @@ static void find_rows(const tl_environment *environment, vec3s peak, int rows[2]
     rows[1] = (int)fmin((theta + reach) / M_PI * height + 1, height);
 }
 
-/* The patch as the environment shows it, in points brighter than the surroundings. */
-static struct points see_points(const struct search *search, vec3s peak, float around)
+/* Samples the patch in the environment at points that are brighter than the surroundings. */
+static struct points collect_points(const struct search *search, vec3s peak, float around)
 {
     const tl_environment *environment = search->environment;
     double area = 0, texel = texel_side(environment);
@@ -252,7 +253,7 @@ static int compare_along(const void *a, const void *b)
     return (first > second) - (first < second);
 }
 
-/* Sorts the points along the tangent in which they spread the most. */
+/* Sorts the points along the tangent of their largest variance. */
 static void sort_along(struct point *points, size_t count)
 {
     vec3s centre = centroid(points, count);
@@ -274,8 +275,9 @@ static void sort_along(struct point *points, size_t count)
     qsort(points, count, sizeof *points, compare_along);
 }
 
-/* The points halved by weight, and so on until there are `samples`; each part's centroid. Sample i of the two
- * halves become 2 i and 2 i + 1, so that the first few already lie all over the disc. */
+/* Divides the points into halves of equal weight, recursively, until there are `samples` parts, and returns
+ * the centroid of each. The samples of the two halves are interleaved, so that the first few are spread all
+ * over the disc. */
 static void part(struct point *points, size_t count, int samples, int stride, vec3s *out)
 {
     if (samples == 1 || count < 2) {
@@ -310,7 +312,7 @@ static void place_samples(struct points *points, struct tl_sun *sun)
     sun->samples[nearest] = first;
 }
 
-/* Takes the patch out of the cube. */
+/* Replaces the patch in the cube by its surroundings. */
 static void remove_patch(struct search *search, vec3s around)
 {
     for (int k = 0; k < search->count; k++) {
@@ -321,8 +323,8 @@ static void remove_patch(struct search *search, vec3s around)
     }
 }
 
-/* The patch around `peak` as a sun, when it is one at this depth. */
-static bool take_sun(struct search *search, int peak, float depth, struct tl_sun *out)
+/* Extracts the patch around `peak` as a sun. False when it is not a sun at this depth. */
+static bool extract_sun(struct search *search, int peak, float depth, struct tl_sun *out)
 {
     if (!flood(search, peak, search->luminance[peak] / depth))
         return false;
@@ -333,7 +335,7 @@ static bool take_sun(struct search *search, int peak, float depth, struct tl_sun
     if (luminance < SHARE_MIN * search->total)
         return false;
     struct points points =
-        see_points(search, tl_cube_texel_direction(search->cube->size, peak), luminance_of(around.raw));
+        collect_points(search, tl_cube_texel_direction(search->cube->size, peak), luminance_of(around.raw));
     struct tl_sun sun = {.power = {{(float)power[0], (float)power[1], (float)power[2]}}};
     if (points.count > 0) {
         sun.direction = centroid(points.items, points.count);
@@ -374,34 +376,34 @@ static void search_end(struct search *search)
     free(search->patch);
 }
 
-/* The brightest texel that was not `tried`; -1 when no patch of that brightness can hold enough light. */
-static int next_peak(const struct search *search, const bool *tried)
+/* The brightest texel that was not visited; -1 when no patch of that brightness can hold enough light. */
+static int next_peak(const struct search *search, const bool *visited)
 {
     int best = -1, count = 6 * search->cube->size * search->cube->size;
     for (int i = 0; i < count; i++)
-        if (!tried[i] && (best < 0 || search->luminance[i] > search->luminance[best]))
+        if (!visited[i] && (best < 0 || search->luminance[i] > search->luminance[best]))
             best = i;
     if (best < 0 || !(search->total > 0))
         return -1;
-    double most = (double)search->luminance[best] * M_PI * REACH_MAX * REACH_MAX;
-    return most < SHARE_MIN * search->total ? -1 : best;
+    double max = (double)search->luminance[best] * M_PI * REACH_MAX * REACH_MAX;
+    return max < SHARE_MIN * search->total ? -1 : best;
 }
 
 void tl_suns_extract(tl_cube *cube, const tl_environment *environment, struct tl_suns *out)
 {
     struct search search = search_begin(cube, environment);
-    bool *tried = TL_NEW_ARRAY(bool, 6 * (size_t)cube->size * (size_t)cube->size);
+    bool *visited = TL_NEW_ARRAY(bool, 6 * (size_t)cube->size * (size_t)cube->size);
     *out = (struct tl_suns){0};
     int peak;
-    while (out->count < TL_SUNS_MAX && (peak = next_peak(&search, tried)) >= 0) {
+    while (out->count < TL_SUNS_MAX && (peak = next_peak(&search, visited)) >= 0) {
         bool taken = false;
         for (size_t i = 0; i < TL_COUNT(depths) && !taken; i++)
-            taken = take_sun(&search, peak, depths[i], &out->items[out->count]);
+            taken = extract_sun(&search, peak, depths[i], &out->items[out->count]);
         out->count += taken;
-        /* What the last flood reached is no sun, or is one already. */
+        /* The patch of the last flood fill is either not a sun or has been extracted. */
         for (int k = 0; k < search.count; k++)
-            tried[search.patch[k]] = true;
+            visited[search.patch[k]] = true;
     }
-    free(tried);
+    free(visited);
     search_end(&search);
 }

@@ -10,18 +10,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Where the paper is silent:
+/* Choices that the paper leaves open:
  *  - Level l + 1 is level l shrunk and then filtered, so that level 0 stays the mirror [002, figure 2: the
  *    pyramid "contains a convolution with a mirror reflective glossiness at the top resolution"].
- *  - Beyond a border the plane of the face is continued, and what lies in that direction is fetched from the
- *    neighbours as GL fetches it: seamless, bilinear. So borders and corners need no case of their own.
+ *  - Beyond a border the plane of the face is continued, and the colour in that direction is fetched from the
+ *    neighbouring faces as GL does: seamless, bilinear. So borders and corners need no special case.
  *  - Each face is filtered with these borders by rows, then by columns.
- *  - No weights for solid angle: the paper has none, and the energy that this costs is measured in the
- *    test. */
+ *  - Texels are not weighted by solid angle, because the paper does not; the test measures the loss of
+ * energy. */
 
 const char *const tl_chain_filter_names[] = {"none", "gauss", "cosine", "box", "sqrt_cosine", NULL};
 
-#define REACH 2 /* texels that a filter of five reaches to either side */
+#define REACH 2 /* texels on either side that a filter of five taps reads */
 
 static double raw_weight(enum tl_chain_filter filter, int offset)
 {
@@ -48,12 +48,12 @@ void tl_chain_weights(enum tl_chain_filter filter, float weights[5])
         sum += raw_weight(filter, i - REACH);
     for (int i = 0; i < 5; i++)
         weights[i] = (float)(raw_weight(filter, i - REACH) / sum);
-    /* Rounding would let a constant drift from level to level. */
+    /* The centre takes the rounding error, so that a constant does not drift from level to level. */
     weights[REACH] = 1 - 2 * (weights[0] + weights[1]);
 }
 
 /* The part of a face, or of a face with its borders, that may differ from black. Most of a PEM is black;
- * leaving that out changes no bit of the result. */
+ * skipping that part changes no bit of the result. */
 struct extent {
     int x0, y0, x1, y1; /* [x0, x1) x [y0, y1); empty when x0 >= x1 */
 };
@@ -107,10 +107,10 @@ static void shrink(const tl_cube *fine, tl_cube *coarse)
     }
 }
 
-/* A face with REACH texels of its neighbours around it; row 0, column 0 are the outermost. */
+/* A face with REACH texels of its neighbours around it; row 0 and column 0 are the outermost. */
 struct bordered {
     int side;             /* size + 2 REACH */
-    float *texels, *rows; /* [side][side][3]: as fetched; filtered along x */
+    float *texels, *rows; /* [side][side][3]: as fetched; after filtering along x */
     struct extent lit;
 };
 
@@ -140,7 +140,7 @@ static void bordered_fetch(struct bordered *bordered, const tl_cube *cube, int f
     }
 }
 
-/* Five texels, `stride` floats apart, the middle one at `centre`. */
+/* Filters five texels, `stride` floats apart, with the middle one at `centre`. */
 static void filter_texel(const float *centre, ptrdiff_t stride, const float weights[5], float *target)
 {
     for (int c = 0; c < 3; c++)
@@ -153,7 +153,7 @@ static int clamp_index(int value, int low, int high)
     return value < low ? low : value > high ? high : value;
 }
 
-/* By rows, then by columns, wherever something lit can reach. */
+/* Filters by rows, then by columns, the texels that lit texels can reach. */
 static void bordered_filter(struct bordered *bordered, const float weights[5], const tl_cube *target,
                             int face)
 {

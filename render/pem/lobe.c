@@ -7,8 +7,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Integral of each texel's hat, the function that a bilinear fetch makes of a single white texel: the volume
- * of a level is the sum of its texels times these. By the midpoint rule on a grid that halves every hat. */
+/* The integral over the sphere of each texel's hat, the function that a bilinear fetch makes of a single
+ * white texel. The volume of a level is the sum of its texels times these. Midpoint rule on a grid of half
+ * the texel size. */
 static double *hat_volumes(int size)
 {
     double *volumes = TL_NEW_ARRAY(double, 6 * (size_t)size * (size_t)size);
@@ -27,8 +28,9 @@ static double *hat_volumes(int size)
     return volumes;
 }
 
-/* The curve volume / peak against level, in steps between every two levels: denser towards the coarser, where
- * the last of the finer level's sharp peak still outweighs its share. */
+/* The curve of volume / peak against level is sampled at several blends between every two levels. They are
+ * denser towards the coarser level, where the remaining weight of the finer level's sharp peak still
+ * dominates. */
 #define BLENDS_PER_LEVEL 24
 static double blend_of(int step)
 {
@@ -41,7 +43,7 @@ struct curve {
     double widths[(TL_CHAIN_LEVELS_MAX - 1) * BLENDS_PER_LEVEL + 1]; /* sr */
 };
 
-/* White on black: one channel says all. */
+/* The red channel; all three are equal. */
 static float red_of(const tl_cube *cube, int texel)
 {
     return cube->texels[3 * (size_t)texel];
@@ -49,7 +51,7 @@ static float red_of(const tl_cube *cube, int texel)
 
 static double level_volume(const tl_cube *level, const double *hats)
 {
-    assert(hats); /* the chain has as many levels as there are tables of hats */
+    assert(hats); /* the chain has as many levels as there are tables */
     double volume = 0;
     for (int i = 0; i < 6 * level->size * level->size; i++)
         volume += (double)red_of(level, i) * hats[i];
@@ -63,7 +65,8 @@ static vec3s texel_direction(const tl_cube *cube, int i)
                              ((float)y + 0.5f) / (float)cube->size);
 }
 
-/* The peaks of the blends of two levels: both are bilinear, so it lies at a texel of one or the other. */
+/* Peaks of the blends of two levels. Both levels are bilinear, so the peak lies at a texel of one or the
+ * other. */
 static void raise_peaks(const tl_cube *at, const tl_cube *fine, const tl_cube *coarse,
                         double peaks[BLENDS_PER_LEVEL])
 {
@@ -77,7 +80,7 @@ static void raise_peaks(const tl_cube *at, const tl_cube *fine, const tl_cube *c
     }
 }
 
-/* Adds the lobe of one white texel. */
+/* Adds the widths of the response to one white texel. */
 static void add_lobe(const tl_cube *impulse, enum tl_chain_filter filter, double *const hats[],
                      struct curve *curve)
 {
@@ -100,7 +103,7 @@ static void add_lobe(const tl_cube *impulse, enum tl_chain_filter filter, double
     tl_chain_release(&chain);
 }
 
-/* Texels of a face, spread evenly from border to border (Roberts' R2 sequence). */
+/* Texel i of a sequence that is spread evenly over a face (Roberts' R2 sequence). */
 #define POSITIONS 64
 static int position_texel(int size, int i)
 {
@@ -126,7 +129,8 @@ static struct curve measure_curve(int size, enum tl_chain_filter filter)
     }
     for (int i = 0; i < curve.count; i++) {
         curve.widths[i] /= POSITIONS;
-        if (i > 0) /* a blend may be a little narrower than its finer level: the table must not turn */
+        if (i >
+            0) /* a blend may be slightly narrower than its finer level, but the table must be monotonic */
             curve.widths[i] = fmax(curve.widths[i], curve.widths[i - 1]);
     }
     for (int i = 0; i < level_count; i++)
@@ -135,8 +139,8 @@ static struct curve measure_curve(int size, enum tl_chain_filter filter)
     return curve;
 }
 
-/* The level at which the curve reaches a width; the ends hold beyond them. Between two steps the peak falls
- * in proportion, so the reciprocal of the width is interpolated. */
+/* The level at which the curve reaches a width, clamped to both ends. Between two steps the peak is linear in
+ * the blend and the volume nearly constant, so the reciprocal of the width is interpolated. */
 static float find_level(const struct curve *curve, double width)
 {
     if (width <= curve->widths[0])
@@ -160,6 +164,6 @@ void tl_lobe_calibrate(int size, enum tl_chain_filter filter, struct tl_lobe_tab
         double exponent = (double)tl_lobe_exponent((float)i / (TL_LOBE_STEPS - 1));
         out->level[i] = find_level(&curve, 2 * M_PI / (exponent + 1));
     }
-    /* A mirror is a mirror, also where one texel is wider than s = 1e6. */
+    /* g = 1 is an exact mirror, even where one texel is wider than the lobe of s = 1e6. */
     out->level[TL_LOBE_STEPS - 1] = 0;
 }

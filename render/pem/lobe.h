@@ -1,7 +1,8 @@
-/* Which level of the chain stands for which glossiness [002, sections 3.2 and 5].
+/* Calibration of the chain: the level that stands for a glossiness [002, sections 3.2 and 5].
  *
- * A white texel on black, filtered, is the chain's lobe. Its volume relative to its peak (sr) is matched to
- * that of the cosine lobe, 2 pi / (s + 1). Averaged over texel positions on a face, corner included. Pure. */
+ * The chain's lobe is the response to one white texel on black. Its volume divided by its peak (sr) is
+ * matched to that of the cosine lobe, 2 pi / (s + 1). The response is averaged over texel positions on a
+ * face, corner included. Pure; threads: any. */
 #ifndef TOILE_RENDER_PEM_LOBE_H
 #define TOILE_RENDER_PEM_LOBE_H
 
@@ -14,6 +15,7 @@ struct tl_lobe_table {
                                    0 at 1 */
 };
 
+/* Measures the chain of a cube of `size` texels a face and fills the table. */
 void tl_lobe_calibrate(int size, enum tl_chain_filter filter, struct tl_lobe_table *out);
 
 #endif

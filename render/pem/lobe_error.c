@@ -29,7 +29,7 @@ struct tl_lobe_source tl_lobe_source(int cube_size, vec3s direction)
     return source;
 }
 
-static double wanted_lobe(const struct tl_lobe_source *source, float s, vec3s direction)
+static double exact_lobe(const struct tl_lobe_source *source, float s, vec3s direction)
 {
     double sum = 0;
     for (int i = 0; i < TL_LOBE_SOURCE_POINTS; i++)
@@ -42,7 +42,7 @@ static vec3s source_axis(const struct tl_lobe_source *source)
     return source->points[TL_LOBE_SOURCE_POINTS / 2];
 }
 
-/* A direction at an angle from the axis, turned by phi about it. */
+/* A direction with a given cosine to the axis, turned by phi about it. */
 static vec3s around(vec3s axis, double cosine, double phi)
 {
     vec3s right = glms_vec3_normalize(glms_vec3_ortho(axis)), up = glms_vec3_cross(axis, right);
@@ -52,14 +52,15 @@ static vec3s around(vec3s axis, double cosine, double phi)
     return glms_vec3_muladds(up, (float)(sine * sin(phi)), direction);
 }
 
-/* Rings and spokes of the quadrature: as dense as a cosine lobe of half the exponent, so that the tail has
- * its share, but for a thousandth of that; from there to the antipode ever wider. */
+/* Rings and spokes of the quadrature. The rings are as dense as a cosine lobe of half the exponent, so that
+ * the tail is represented, up to a thousandth of its volume; from there to the antipode they get wider
+ * geometrically. */
 #define RINGS_NEAR 64
 #define RINGS_FAR  16
 #define RINGS      (RINGS_NEAR + RINGS_FAR)
 #define SPOKES     48
 
-/* 1 - cosine of where a ring begins, `place` = its number, or half a number in its middle. */
+/* 1 - cosine at the start of ring `place`; a half number is the middle of a ring. */
 static double ring_place(double place, double s)
 {
     const double left = 1e-3;
@@ -71,52 +72,52 @@ static double ring_place(double place, double s)
 
 #define SAMPLES (RINGS * SPOKES)
 
-/* Where the lobes are compared: directions, what they should show, the solid angles that they stand for as
- * parts of the lobe's volume. */
+/* The nodes at which the lobes are compared: directions, exact values, and solid angles divided by the volume
+ * of the lobe. */
 struct quadrature {
     vec3s directions[SAMPLES];
-    double wanted[SAMPLES], shares[SAMPLES];
+    double exact[SAMPLES], shares[SAMPLES];
 };
 
-static void set_quadrature(const struct tl_lobe_source *source, float s, struct quadrature *out)
+static void make_quadrature(const struct tl_lobe_source *source, float s, struct quadrature *out)
 {
     double volume = 0;
     for (int i = 0; i < SAMPLES; i++) {
         int ring = i / SPOKES, spoke = i % SPOKES;
         double cosine = 1 - ring_place(ring + 0.5, (double)s);
-        /* Rings are turned by the golden section, lest spokes follow a texel grid. */
+        /* Each ring is turned by the golden ratio, so that spokes do not follow the grid of texels. */
         double turn = fmod(ring * 0.6180339887498949, 1);
         out->directions[i] = around(source_axis(source), cosine, 2 * M_PI * (turn + spoke) / SPOKES);
-        out->wanted[i] = wanted_lobe(source, s, out->directions[i]);
+        out->exact[i] = exact_lobe(source, s, out->directions[i]);
         out->shares[i] = 2 * M_PI * (ring_place(ring + 1, (double)s) - ring_place(ring, (double)s)) / SPOKES;
-        volume += out->shares[i] * out->wanted[i];
+        volume += out->shares[i] * out->exact[i];
     }
     for (int i = 0; i < SAMPLES; i++)
         out->shares[i] /= volume;
 }
 
-static struct tl_lobe_error compare(const struct quadrature *quadrature, const double shown[SAMPLES])
+static struct tl_lobe_error compare(const struct quadrature *quadrature, const double response[SAMPLES])
 {
     struct tl_lobe_error result = {0};
     for (int i = 0; i < SAMPLES; i++)
-        result.energy += quadrature->shares[i] * shown[i];
+        result.energy += quadrature->shares[i] * response[i];
     for (int i = 0; i < SAMPLES; i++) {
-        double share = quadrature->shares[i], wanted = quadrature->wanted[i];
-        result.error += share * fabs(shown[i] - wanted);
-        result.same_volume += share * fabs(shown[i] / result.energy - wanted);
+        double share = quadrature->shares[i], exact = quadrature->exact[i];
+        result.error += share * fabs(response[i] - exact);
+        result.same_volume += share * fabs(response[i] / result.energy - exact);
     }
     return result;
 }
 
-struct tl_lobe_error tl_lobe_measure(const struct tl_lobe_source *source, float s, tl_lobe_response *response,
+struct tl_lobe_error tl_lobe_measure(const struct tl_lobe_source *source, float s, tl_lobe_response *evaluate,
                                      const void *prefilter)
 {
     struct quadrature quadrature;
-    double shown[SAMPLES];
-    set_quadrature(source, s, &quadrature);
+    double response[SAMPLES];
+    make_quadrature(source, s, &quadrature);
     for (int i = 0; i < SAMPLES; i++)
-        shown[i] = response(prefilter, quadrature.directions[i]);
-    return compare(&quadrature, shown);
+        response[i] = evaluate(prefilter, quadrature.directions[i]);
+    return compare(&quadrature, response);
 }
 
 const char *const tl_lobe_method_names[] = {"none",        "gauss",  "cosine", "box",
@@ -125,7 +126,7 @@ const char *const tl_lobe_method_names[] = {"none",        "gauss",  "cosine", "
 vec3s tl_lobe_probe(int i, int count)
 {
     const int awkward = 26;
-    if (i < awkward) { /* the points of a 3 x 3 x 3 grid but for its middle */
+    if (i < awkward) { /* the points of a 3 x 3 x 3 grid except its centre */
         int place = i < awkward / 2 ? i : i + 1;
         int x = place % 3 - 1, y = place / 3 % 3 - 1, z = place / 9 - 1;
         return glms_vec3_normalize((vec3s){{(float)x, (float)y, (float)z}});
@@ -135,8 +136,8 @@ vec3s tl_lobe_probe(int i, int count)
     return (vec3s){{radius * cosf(phi), y, radius * sinf(phi)}};
 }
 
-/* One prefilter of one lit texel: the chain, or the whole, or the slices of all regions of which one is
- * looked at. */
+/* One prefilter of one lit texel: the chain, the whole environment, or the slices of all regions, of which
+ * one is looked up. */
 struct prefilter {
     int method;
     struct tl_lobe_table table;
@@ -144,12 +145,12 @@ struct prefilter {
     struct tl_lobes lobes;
     const struct tl_slices *slices;
     int region;
-    /* What to fetch. */
+    /* The look-up. */
     float level;
     struct tl_exponent_blend blend;
 };
 
-static double respond(const void *data, vec3s direction)
+static double fetch_response(const void *data, vec3s direction)
 {
     const struct prefilter *prefilter = data;
     if (prefilter->method == TL_LOBE_SLICES)
@@ -159,7 +160,7 @@ static double respond(const void *data, vec3s direction)
     return (double)tl_chain_sample(&prefilter->chain, direction, prefilter->level).x;
 }
 
-/* As light.frag looks the level up: between steps of the table. */
+/* The level as the light pass looks it up: interpolated between steps of the table. */
 static float chain_level(const struct tl_lobe_table *table, float s)
 {
     float place = (1 - 1 / s) * (TL_LOBE_STEPS - 1);
@@ -175,7 +176,7 @@ static void aim(struct prefilter *prefilter, float s)
         prefilter->level = chain_level(&prefilter->table, s);
 }
 
-/* The exponents that the blends of these need. */
+/* Bit mask of the exponents that the blends need. */
 static uint32_t exponents_of(const float *exponents, int count)
 {
     uint32_t needed = 0;
@@ -209,11 +210,11 @@ static void measure_all(const struct tl_lobe_curves *curves, const struct tl_lob
 {
     for (int i = 0; i < curves->exponent_count; i++) {
         aim(prefilter, curves->exponents[i]);
-        out[i] = tl_lobe_measure(source, curves->exponents[i], respond, prefilter);
+        out[i] = tl_lobe_measure(source, curves->exponents[i], fetch_response, prefilter);
     }
 }
 
-/* Each direction on its own. */
+/* Measures each direction separately. */
 static void measure_one_by_one(const struct tl_lobe_curves *curves, int method, struct tl_lobe_error *errors)
 {
     struct tl_lobe_table table = {0};
@@ -232,7 +233,7 @@ static void measure_one_by_one(const struct tl_lobe_curves *curves, int method, 
     }
 }
 
-/* Light that keeps a region what it is and adds nothing that counts. */
+/* Radiance so small that it does not count, but keeps the regions from being black. */
 #define FAINT 1e-6f
 
 static tl_cube even_cube(int size, float radiance)
@@ -243,8 +244,8 @@ static tl_cube even_cube(int size, float radiance)
     return cube;
 }
 
-/* Regions do not touch each other: as many directions at once as lie in different ones. `done` marks those
- * that were measured. */
+/* Regions are filtered independently, so one directions per region is measured at a time. `done` marks the
+ * directions that were measured. */
 static void measure_round(const struct tl_lobe_curves *curves, const struct tl_regions *regions, bool *done,
                           struct tl_lobe_error *errors)
 {
@@ -317,26 +318,26 @@ void tl_lobe_curve(const struct tl_lobe_curves *curves, int method, struct tl_lo
     free(errors);
 }
 
-/* Levels tried between two of the chain. */
+/* Levels tried between every two levels of the chain. */
 #define LEVEL_STEPS 8
 
-static double least_error(const struct tl_chain *chain, const struct tl_lobe_source *source, float s)
+static double min_error(const struct tl_chain *chain, const struct tl_lobe_source *source, float s)
 {
     struct quadrature quadrature;
-    set_quadrature(source, s, &quadrature);
-    double(*levels)[SAMPLES] = tl_alloc((size_t)chain->level_count, sizeof *levels), least = INFINITY;
+    make_quadrature(source, s, &quadrature);
+    double(*levels)[SAMPLES] = tl_alloc((size_t)chain->level_count, sizeof *levels), min = INFINITY;
     for (int level = 0; level < chain->level_count; level++)
         for (int i = 0; i < SAMPLES; i++)
             levels[level][i] = (double)tl_cube_sample(&chain->levels[level], quadrature.directions[i]).x;
     for (int step = 0; step < (chain->level_count - 1) * LEVEL_STEPS; step++) {
         const double *fine = levels[step / LEVEL_STEPS], *coarse = levels[step / LEVEL_STEPS + 1];
-        double part = (double)(step % LEVEL_STEPS) / LEVEL_STEPS, shown[SAMPLES];
+        double part = (double)(step % LEVEL_STEPS) / LEVEL_STEPS, response[SAMPLES];
         for (int i = 0; i < SAMPLES; i++)
-            shown[i] = fine[i] + part * (coarse[i] - fine[i]);
-        least = fmin(least, compare(&quadrature, shown).same_volume);
+            response[i] = fine[i] + part * (coarse[i] - fine[i]);
+        min = fmin(min, compare(&quadrature, response).same_volume);
     }
     free(levels);
-    return least;
+    return min;
 }
 
 void tl_lobe_min_error(const struct tl_lobe_curves *curves, int method, double *mean, double *worst)
@@ -351,7 +352,7 @@ void tl_lobe_min_error(const struct tl_lobe_curves *curves, int method, double *
         struct prefilter prefilter = {.method = method};
         prepare(&prefilter, curves->cube_size, &source, 0);
         for (size_t k = 0; k < exponents; k++)
-            errors[k * directions + (size_t)i] = least_error(&prefilter.chain, &source, curves->exponents[k]);
+            errors[k * directions + (size_t)i] = min_error(&prefilter.chain, &source, curves->exponents[k]);
         tl_chain_release(&prefilter.chain);
     }
     for (size_t k = 0; k < exponents; k++) {
@@ -364,9 +365,10 @@ void tl_lobe_min_error(const struct tl_lobe_curves *curves, int method, double *
     free(errors);
 }
 
-void tl_lobe_section(int cube_size, int method, float s, int count, float *shown, float *wanted)
+void tl_lobe_section(int cube_size, int method, float s, int count, float *response, float *exact)
 {
-    assert(method != TL_LOBE_SLICES); /* a region's are the whole's when nothing else shines */
+    assert(method !=
+           TL_LOBE_SLICES); /* with a single light the slices equal those of the whole environment */
     struct tl_lobe_source source = tl_lobe_source(cube_size, (vec3s){{0.01f, 0.01f, 1}});
     struct prefilter prefilter = {.method = method};
     if (method < TL_LOBE_SLICES)
@@ -376,8 +378,8 @@ void tl_lobe_section(int cube_size, int method, float s, int count, float *shown
     for (int i = 0; i < count; i++) {
         double angle = -M_PI + 2 * M_PI * i / (count - 1);
         vec3s direction = around(source_axis(&source), cos(angle), angle < 0 ? M_PI : 0);
-        shown[i] = (float)respond(&prefilter, direction);
-        wanted[i] = (float)wanted_lobe(&source, s, direction);
+        response[i] = (float)fetch_response(&prefilter, direction);
+        exact[i] = (float)exact_lobe(&source, s, direction);
     }
     tl_chain_release(&prefilter.chain);
     tl_lobes_release(&prefilter.lobes);

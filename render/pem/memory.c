@@ -15,7 +15,7 @@ const struct tl_paper_memory tl_paper_memory[TL_PAPER_ROWS] = {
     {128, {192, 768}, {2, 8, 32, 128, 512}},       {256, {384, 1536}, {4, 16, 64, 256, 1024}},
 };
 
-/* Texels of a square and of all its mips. */
+/* Texels of a square and of all of its mip levels. */
 static size_t chain_texels(int side)
 {
     size_t texels = 0;
@@ -45,8 +45,8 @@ size_t tl_memory_paraboloids(const tl_cube *cube, const struct tl_regions *regio
     tl_slices_radii(cube, regions, radii);
     size_t texels = 0;
     for (int i = 0; i < regions->count; i++) {
-        /* A paraboloid holds one half of all directions; its coordinate, tan(angle / 2), turns by 2 in the
-         * middle, as that of a cube's face from -1 to 1 does by 1. */
+        /* A paraboloid holds one hemisphere. Its coordinate is tan(angle / 2); at the centre it changes half
+         * as fast with the angle as that of a cube's face, so 2 in it correspond to 1 there. */
         float reach = tanf(fminf(radii[i], (float)M_PI_2) / 2);
         texels += chain_texels((int)ceilf(2 * reach * (float)cube->size));
     }

@@ -1,14 +1,13 @@
-/* What the maps of all regions take, in several forms: the paper's figure 8 beside this program's own [002,
- * section 5]. Pure; computed, without making any of them. Slices
- * are told by tl_slices_bytes_of. */
+/* Memory of the maps of all regions in several forms: the paper's figure 8 and this program's own [002,
+ * section 5]. Computed without making the maps. For slices see tl_slices_bytes_of. Pure; threads: any. */
 #ifndef TOILE_RENDER_PEM_MEMORY_H
 #define TOILE_RENDER_PEM_MEMORY_H
 
 #include "render/pem/slices.h"
 
 /* Figure 8 as printed, in MB of 2^20 bytes: PEMs of 128 and 256 texels a side (RGBA16F), variance shadow maps
- * of 64 to 1024 (RG16F). The PEM columns are twice what six faces of RGBA16F take, mips or none: 128^2 x 6 x
- * 8 bytes are 0.75 MB, 1 MB with mips. */
+ * of 64 to 1024 (RG16F). The PEM columns are twice the size of six faces of RGBA16F: 128^2 x 6 x 8 bytes are
+ * 0.75 MB, or 1 MB with mip levels. */
 #define TL_PAPER_ROWS 6
 #define TL_PAPER_PEMS 2
 #define TL_PAPER_MAPS 5
@@ -19,14 +18,14 @@ struct tl_paper_memory {
 extern const int tl_paper_pem_sizes[TL_PAPER_PEMS], tl_paper_map_sizes[TL_PAPER_MAPS]; /* texels */
 extern const struct tl_paper_memory tl_paper_memory[TL_PAPER_ROWS];
 
-/* Bytes of `regions` cube maps of RGBA16F: level 0 alone, and the whole chain, as pem/pems.h keeps it. */
+/* Bytes of `regions` cube maps of RGBA16F: level 0 only, and the whole chain as pem/pems.h keeps it. */
 size_t tl_memory_cubes(int regions, int size);
 size_t tl_memory_chains(int regions, int size);
 /* Bytes of `regions` shadow maps. */
 size_t tl_memory_shadow_maps(int regions, int size, size_t texel_bytes);
 
-/* The paper's proposal: a paraboloid map a region, cropped to the region, with mips, in the middle as dense
- * as the middle of a cube's face. RGBA16F. Wider lobes than the region's own size are not kept by it. */
+/* The paper's proposal: one paraboloid map per region, cropped to the region, with mip levels, at its centre
+ * as dense as the centre of a cube's face. RGBA16F. Lobes wider than the region itself do not fit into it. */
 size_t tl_memory_paraboloids(const tl_cube *cube, const struct tl_regions *regions);
 
 #endif

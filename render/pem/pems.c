@@ -8,9 +8,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define BATCH 8 /* chains in memory at once; each takes about 1.6 MB at 128 texels */
+#define BATCH 8 /* chains in memory at a time; each takes about 1.6 MB at 128 texels */
 
-/* The smallest power of two that brings every texel into the range of halves. */
+/* The smallest power of two that scales every texel into the range of half floats. */
 static float storage_scale(const tl_cube *cube)
 {
     float peak = 0;
@@ -31,7 +31,8 @@ static void scale_chain(struct tl_chain *chain, float factor)
     }
 }
 
-/* `first_face` is 6 x the cube's place in an array. A lone cube map is addressed by face in the same way. */
+/* `first_face` is 6 x the index of the cube in its array. A single cube map is addressed by face in the same
+ * way. */
 static void upload(const tl_texture *texture, int first_face, const struct tl_chain *chain)
 {
     for (int level = 0; level < chain->level_count; level++) {

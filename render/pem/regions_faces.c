@@ -9,7 +9,7 @@ struct rectangle {
     int x0, y0, x1, y1;
 };
 
-/* What the cuts of one face read, by texel. */
+/* Importance and solid angle of the texels of one face. */
 struct face {
     int index, size;
     double *importance;  /* integral of luminance [Rec. 709] */
@@ -49,7 +49,8 @@ static vec3s face_direction(const struct face *face, float x, float y)
 static struct tl_region make_region(const struct face *face, struct rectangle r)
 {
     double importance = 0, solid_angle = 0;
-    double bright[3] = {0}, plain[3] = {0}; /* sums of directions, weighted by either */
+    double bright[3] = {0},
+           uniform[3] = {0}; /* sums of directions, weighted by importance and by solid angle */
     for (int y = r.y0; y < r.y1; y++) {
         for (int x = r.x0; x < r.x1; x++) {
             int i = y * face->size + x;
@@ -58,11 +59,11 @@ static struct tl_region make_region(const struct face *face, struct rectangle r)
             solid_angle += face->solid_angle[i];
             for (int c = 0; c < 3; c++) {
                 bright[c] += face->importance[i] * (double)direction.raw[c];
-                plain[c] += face->solid_angle[i] * (double)direction.raw[c];
+                uniform[c] += face->solid_angle[i] * (double)direction.raw[c];
             }
         }
     }
-    const double *sum = importance > 0 ? bright : plain;
+    const double *sum = importance > 0 ? bright : uniform;
     double length = sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
     vec3s direction = face_direction(face, (float)r.x0 + 0.5f, (float)r.y0 + 0.5f);
     if (length > 0)
@@ -79,7 +80,7 @@ static struct tl_region make_region(const struct face *face, struct rectangle r)
                               .cone = (float)acos(1 - solid_angle / (2 * M_PI))};
 }
 
-/* By the angles that the rectangle subtends across its middle. */
+/* True if the rectangle subtends a larger angle in width than in height, across its middle. */
 static bool is_wide(const struct face *face, struct rectangle r)
 {
     float xm = 0.5f * (float)(r.x0 + r.x1), ym = 0.5f * (float)(r.y0 + r.y1);
@@ -89,12 +90,12 @@ static bool is_wide(const struct face *face, struct rectangle r)
     return width <= height; /* cosines */
 }
 
-/* The number of columns (or rows) left of the cut that comes closest to `share` of the importance. Where
- * importance does not decide, as in the dark, solid angle does. */
+/* The number of columns (or rows) before the cut that comes closest to `share` of the importance. Ties, as in
+ * black areas, are decided by solid angle. */
 static int find_cut(const struct face *face, struct rectangle r, bool wide, double share)
 {
     int count = wide ? r.x1 - r.x0 : r.y1 - r.y0;
-    double *importance = TL_NEW_ARRAY(double, (size_t)count + 1); /* of what lies before slice i */
+    double *importance = TL_NEW_ARRAY(double, (size_t)count + 1); /* sum over the slices before i */
     double *solid_angle = TL_NEW_ARRAY(double, (size_t)count + 1);
     for (int y = r.y0; y < r.y1; y++) {
         for (int x = r.x0; x < r.x1; x++) {
@@ -120,11 +121,11 @@ static int find_cut(const struct face *face, struct rectangle r, bool wide, doub
     return best;
 }
 
-/* Median cut: `count` regions into out[0 .. count). */
+/* Median cut into `count` regions, out[0 .. count). */
 static void cut_rectangle(const struct face *face, struct rectangle r, int count, struct tl_region *out)
 {
     int width = r.x1 - r.x0, height = r.y1 - r.y0;
-    if (count == 1 || width * height <= 1) { /* fewer texels than regions leave some empty */
+    if (count == 1 || width * height <= 1) { /* with fewer texels than regions some stay empty */
         struct rectangle empty = {r.x0, r.y0, r.x0, r.y0};
         for (int i = 0; i < count; i++)
             out[i] = make_region(face, i == 0 ? r : empty);
@@ -138,7 +139,7 @@ static void cut_rectangle(const struct face *face, struct rectangle r, int count
         first.x1 = second.x0 = r.x0 + cut;
     else
         first.y1 = second.y0 = r.y0 + cut;
-    /* No half gets more regions than it has texels, while the other can take them. */
+    /* Neither half gets more regions than it has texels as long as the other half can take them. */
     int first_texels = (first.x1 - first.x0) * (first.y1 - first.y0);
     int second_texels = width * height - first_texels;
     if (count <= width * height) {

@@ -1,25 +1,26 @@
-/* What every way of cutting shares: from labels to the rest of a tl_regions. For the files of this folder. */
+/* The steps that all methods of cutting share: from labels to a complete tl_regions. Included within
+ * render/pem only. A cut calls tl_regions_begin, sets `count`, `labels` and its nodes, then calls the others
+ * in the order of this header. */
 #ifndef TOILE_RENDER_PEM_REGIONS_INTERNAL_H
 #define TOILE_RENDER_PEM_REGIONS_INTERNAL_H
 
 #include "render/pem/regions.h"
 
-/* Cubes of fewer texels are done before other threads have woken up. */
+/* Smaller cubes are processed by one thread, because starting others takes longer. */
 #define TL_REGIONS_PARALLEL_TEXELS 16384
 
-/* In this order: a cut begins, sets `count`, `labels` and the nodes it has, then lets the rest be made. */
-
-/* Releases what `out` held, allocates, and fills in `size`, `solid_angles` and `importance`. */
+/* Releases the contents of `out`, allocates it, and fills in `size`, `solid_angles` and `importance` from the
+ * cube. */
 void tl_regions_begin(const tl_cube *cube, struct tl_regions *out);
-/* ... as `from` has them. */
+/* The same with the values of `from`. */
 void tl_regions_begin_like(const struct tl_regions *from, struct tl_regions *out);
-/* texels, first. */
+/* Fills in `texels` and `first`. */
 void tl_regions_order(struct tl_regions *regions);
-/* direction, solid_angle, importance and cone of the items. */
+/* Fills in direction, solid_angle, importance and cone of the items. */
 void tl_regions_measure(struct tl_regions *regions);
-/* cumulative; spread of the items about their direction. */
+/* Fills in `cumulative`, and the spread of the items about their direction. */
 void tl_regions_weigh(struct tl_regions *regions);
-/* power of the items. */
+/* Fills in the power of the items. */
 void tl_regions_colour(const tl_cube *cube, struct tl_regions *regions);
 
 #endif

@@ -7,35 +7,36 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Places where a node may be cut: far finer than what is cut, so that none runs through a compact light. */
+/* Candidate positions of a cut along the axis of a node: much finer than the parts, so that no cut divides a
+ * compact light. */
 #define BINS 256
 
-/* Texels in a structure of arrays; a node's lie side by side. `weight` is the mixed measure: half the share
- * of all luminance, half that of the sphere. */
+/* Texels in a structure of arrays; those of a node are contiguous. `weight` is the mixed measure: half of the
+ * texel's share of all luminance and half of its share of the sphere. */
 struct points {
     float *x, *y, *z, *weight;
     uint32_t *texel;
 };
 
-/* Weighted sums of a node's directions d: 1, d, and d d^T. */
+/* Weighted sums over the directions d of a node: 1, d, and d d^T. */
 struct moments {
     double weight, mean[3];
     double xx, yy, zz, xy, xz, yz;
 };
 
-/* A node while the tree grows. All nodes of a depth come before those of the next, left before right, so that
- * the order of two nodes does not depend on how many others there are. */
+/* A node of the growing tree. All nodes of a depth come before those of the next depth, left before right, so
+ * that the order of two nodes does not depend on the number of others. */
 struct growth {
     uint32_t first, last; /* its points */
     struct moments moments;
-    double variance; /* weighted sum of squared distances from the centroid; never more than its parent's */
+    double variance; /* weighted sum of squared distances from the centroid; at most that of the parent */
     int parent, children[2];
     int rank;
 };
 
 struct tree {
     struct points points, spare;
-    float *along; /* of each point: where it lies on its node's axis */
+    float *along; /* coordinate of each point on the axis of its node */
     struct growth *nodes;
     int count, capacity;
 };
@@ -113,8 +114,8 @@ static void multiply(double a[3][3])
     memcpy(a, product, sizeof product);
 }
 
-/* The direction of most variance, by power iteration: squaring the covariance matrix over and over leaves the
- * columns along it. Any direction will do where several tie. */
+/* The direction of largest variance, by power iteration: repeated squaring of the covariance matrix turns its
+ * columns into that direction. If several directions tie, any of them is returned. */
 static void find_axis(const struct moments *m, double axis[3])
 {
     const double w = m->weight, *s = m->mean;
@@ -136,7 +137,7 @@ static void find_axis(const struct moments *m, double axis[3])
         axis[i] = length > 0 ? a[longest][i] / length : i == 0;
 }
 
-/* Projects a node's points on the axis; returns the range in which they lie. */
+/* Projects the points of a node on the axis. Returns their range. */
 static void project(const struct points *points, uint32_t first, uint32_t last, const double axis[3],
                     float *along, float range[2])
 {
@@ -157,8 +158,8 @@ static int bin_of(float along, float low, float scale)
     return bin < BINS - 1 ? bin : BINS - 1;
 }
 
-/* The bin before which a cut leaves the least variance: of all that is cut, the sum of |sum w d|^2 / sum w of
- * the two sides is the largest. The first and the last bin are never empty. */
+/* The bin before which a cut leaves the least variance. The total is fixed, so this is where the sum of |sum
+ * w d|^2 / sum w over both sides is largest. The first and the last bin are never empty. */
 static int find_cut(const struct points *points, uint32_t first, uint32_t last, const float *along, float low,
                     float scale)
 {
@@ -198,7 +199,7 @@ static void move_point(const struct points *from, uint32_t i, struct points *to,
     to->texel[place] = from->texel[i];
 }
 
-/* Parts the points of `node` into those of its two children, in place; both keep their order. */
+/* Partitions the points of `node` into those of its two children, in place; both keep their order. */
 static void cut_node(struct tree *tree, const struct growth *node, struct growth children[2])
 {
     struct points *points = &tree->points, *spare = &tree->spare;
@@ -207,10 +208,10 @@ static void cut_node(struct tree *tree, const struct growth *node, struct growth
     find_axis(&node->moments, axis);
     project(points, node->first, node->last, axis, tree->along, range);
     float scale = BINS / (range[1] - range[0]);
-    bool flat = !isfinite(scale); /* points that the axis cannot tell apart: halved as they come */
+    bool flat = !isfinite(scale); /* the axis does not separate the points: split in the middle */
     int cut = flat ? 0 : find_cut(points, node->first, node->last, tree->along, range[0], scale);
     uint32_t middle = node->first + (node->last - node->first) / 2;
-    uint32_t left = node->first, right = node->first; /* places in `points` and in `spare` */
+    uint32_t left = node->first, right = node->first; /* write positions in `points` and in `spare` */
     for (uint32_t i = node->first; i < node->last; i++) {
         bool before = flat ? i < middle : bin_of(tree->along[i], range[0], scale) < cut;
         add_moments(&children[!before].moments, points, i);
@@ -241,8 +242,8 @@ static int compare_ranks(const void *a, const void *b)
     return first->node < second->node ? -1 : 1;
 }
 
-/* Ranks all nodes that can be cut: the one with the largest variance is the first to be. As no child has more
- * than its parent, none comes before it. */
+/* Ranks all nodes that can be cut, by decreasing variance. No child has a larger variance than its parent, so
+ * no child precedes it. */
 static void rank_nodes(struct tree *tree)
 {
     struct rank *ranks = TL_NEW_ARRAY(struct rank, (size_t)tree->count);
@@ -273,8 +274,8 @@ static int add_child(struct tree *tree, int parent)
     return tree->count++;
 }
 
-/* Depth by depth, so that there is work for many threads: everything is cut that may be among the first
- * `count` - 1 by what is known so far; what deeper nodes push out of them is not used in the end. */
+/* Grows the tree depth by depth, so that there is work for many threads. At each depth all nodes are cut that
+ * rank among the first `count` - 1 so far; nodes that deeper nodes displace later stay unused. */
 static void grow(struct tree *tree, int count)
 {
     int begin = 0, end = tree->count;
@@ -296,7 +297,7 @@ static void grow(struct tree *tree, int count)
     }
 }
 
-static void plant(struct tree *tree, const struct tl_regions *regions)
+static void tree_create(struct tree *tree, const struct tl_regions *regions)
 {
     size_t count = 6 * (size_t)regions->size * (size_t)regions->size;
     *tree = (struct tree){.points = points_create(count),
@@ -313,7 +314,7 @@ static void plant(struct tree *tree, const struct tl_regions *regions)
     root->variance = variance_of(&root->moments);
 }
 
-static void fell(struct tree *tree)
+static void tree_release(struct tree *tree)
 {
     points_release(&tree->points);
     points_release(&tree->spare);
@@ -321,7 +322,7 @@ static void fell(struct tree *tree)
     free(tree->nodes);
 }
 
-/* Regions are numbered from left to right, so that what merges is next to each other. */
+/* Numbers the regions from left to right, so that merged regions are neighbours. */
 static void number_leaves(struct tl_regions *regions, int node)
 {
     struct tl_region_node *item = &regions->nodes[node];
@@ -333,8 +334,8 @@ static void number_leaves(struct tl_regions *regions, int node)
     number_leaves(regions, item->children[1]);
 }
 
-/* The nodes that a cut into `count` regions has, in their order. `region_of`, for each node of `from` at or
- * below a leaf: the region that it belongs to; for one above them -1. */
+/* Copies the nodes of the cut into `count` regions in their order. `region_of` is the region of each node of
+ * `from` at or below a leaf, and -1 for the nodes above. */
 static void keep_nodes(const struct tl_region_node *from, int from_count, int count, struct tl_regions *out,
                        int *region_of)
 {
@@ -354,7 +355,7 @@ static void keep_nodes(const struct tl_region_node *from, int from_count, int co
         kept[i] = out->node_count++;
     }
     number_leaves(out, 0);
-    for (int i = 0; i < from_count; i++) /* parents come first */
+    for (int i = 0; i < from_count; i++) /* parents precede their children */
         region_of[i] = kept[i] >= 0 ? out->nodes[kept[i]].region : region_of[from[i].parent];
     free(kept);
 }
@@ -382,10 +383,10 @@ void tl_regions_cut_sphere(const tl_cube *cube, int count, struct tl_regions *ou
     assert(count >= 1 && count <= TL_REGIONS_MAX);
     struct tree tree;
     tl_regions_begin(cube, out);
-    plant(&tree, out);
+    tree_create(&tree, out);
     grow(&tree, count);
     label_points(&tree, count, out);
-    fell(&tree);
+    tree_release(&tree);
     tl_regions_order(out);
     tl_regions_measure(out);
     tl_regions_weigh(out);

@@ -10,14 +10,14 @@
 
 #define EXPONENTS (TL_EXPONENT_COUNT + 1)
 
-/* As slices.glsl names them. */
+/* The same numbers as in slices.glsl. */
 #define MAPS_UNIT      10
 #define FRAMES_BINDING 1
 
-/* The largest number that RGB9_E5 holds [GL 4.5, 8.5.2]. */
+/* The largest number of RGB9_E5 [GL 4.5, 8.5.2]. */
 #define STORED_MAX 65408.0f
 
-/* std430 of slices.glsl. */
+/* struct SliceFrame of slices.glsl, std430. */
 struct gpu_frame {
     vec4s right, up, direction;
     float scale[EXPONENTS];
@@ -27,11 +27,12 @@ struct place {
     int x, y;
 };
 
-/* Squares in rows, wide ones first, in a strip of this width; its height. */
+/* Packs the squares in rows, large ones first, into a strip of the given width. Returns its height. */
 static int pack(const struct tl_slices *slices, int width, struct place places[EXPONENTS])
 {
     int x = 0, y = 0, row_height = 0;
-    for (int k = EXPONENTS - 1; k >= 0; k--) { /* sides grow with the exponent, the environment's own aside */
+    for (int k = EXPONENTS - 1; k >= 0;
+         k--) { /* sides grow with the exponent, except that of the environment itself */
         int side = slices->made & 1u << k ? slices->side[k] : 0;
         if (x + side > width) {
             x = 0;
@@ -45,7 +46,7 @@ static int pack(const struct tl_slices *slices, int width, struct place places[E
     return y + row_height;
 }
 
-/* The strip that wastes least; its width. */
+/* The width of the strip with the smallest area. */
 static int choose_width(const struct tl_slices *slices)
 {
     int widest = 1, sum = 0, best = 0, least = 0;
@@ -65,7 +66,7 @@ static int choose_width(const struct tl_slices *slices)
     return best;
 }
 
-/* The smallest power of two that brings every texel into range. */
+/* The smallest power of two that scales every texel into range. */
 static float storage_scale(const struct tl_slices *slices)
 {
     float peak = 0;
@@ -85,7 +86,7 @@ static void upload_texels(const tl_texture *texture, const struct tl_slices *sli
 {
     size_t count = 3 * (size_t)slices->side[k] * (size_t)slices->side[k] * (size_t)slices->region_count;
     float *scaled = NULL;
-    if (scale > 1) { /* hardly ever: a sun that was not taken out */
+    if (scale > 1) { /* rare: a sun that was not extracted */
         scaled = TL_NEW_ARRAY(float, count);
         for (size_t i = 0; i < count; i++)
             scaled[i] = slices->texels[k][i] / scale;

@@ -8,28 +8,28 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Texels of a map per radian in its middle: they follow the lobe's width, and the widest lobes, which end at
- * a horizon rather than fade, need some more. The worst lobe errs by 0.8 % so; with 2.5 and 5, which take 0.7
- * of the memory, by 1.2 %, and 1 % is asked. (A map as wide as its own region, not as the widest, would take
- * 0.72 of it at 96 regions and 0.80 at 384.) */
+/* Texels of a map per radian at its centre. They follow the width of the lobe; the widest lobes, which end at
+ * a horizon instead of fading out, need more. The worst lobe errs by 0.8 %. With 2.5 and 5, at 0.7 of the
+ * memory, it errs by 1.2 %; the limit is 1 %. (If the size of a map followed its own region instead of the
+ * widest one, it would take 0.72 of the memory with 96 regions and 0.80 with 384.) */
 #define DENSITY_PER_WIDTH  3
 #define DENSITY_OF_HORIZON 6
-/* The map ends where the lobe is below this part of its peak; what is lost there is less than that part of
- * the energy, since the lobe's tail beyond holds c^(s + 1). */
+/* The map ends where the lobe is below this fraction of its peak. The lost energy is a smaller fraction,
+ * because the tail of the lobe beyond cosine c holds c^(s + 1). */
 #define CROP 3e-4f
-/* A ring of black texels around the map, so that a fetch beyond it, clamped to it, finds nothing. */
+/* A ring of black texels around the map, so that a fetch outside, clamped to the edge, returns black. */
 #define RING 1
 #define TILE 4
-/* Samples along a side of a texel of the region itself. */
+/* Samples along a side of a texel in the map of the region itself. */
 #define AREA_SAMPLES 4
 
-/* Distance from the middle of Lambert's map of the directions `angle` from its axis. */
+/* Distance from the centre of Lambert's map of directions at an angle from its axis. */
 static float lambert(float angle)
 {
     return 2 * sinf(fminf(angle, (float)M_PI) / 2);
 }
 
-/* Beyond the antipode, which is the circle of radius 2, it goes on. */
+/* The direction of a point of the map; points beyond radius 2, the antipode, are clamped to it. */
 static vec3s unproject(const struct tl_slice_frame *frame, float x, float y)
 {
     float square = fminf(x * x + y * y, 4), sine = sqrtf(1 - square / 4);
@@ -38,27 +38,26 @@ static vec3s unproject(const struct tl_slice_frame *frame, float x, float y)
     return glms_vec3_muladds(frame->up, y * sine, d);
 }
 
-/* Mean square over two axes of the angle that a step of 1 in the map turns. */
+/* Mean square, over two axes, of the angle of a step of 1 in the map. */
 static float square_scale(float x, float y)
 {
-    float square =
-        fmaxf(1 - (x * x + y * y) / 4, 0.05f); /* the stretch grows without bound at the antipode */
+    float square = fmaxf(1 - (x * x + y * y) / 4, 0.05f); /* the stretch is unbounded at the antipode */
     return (1 / square + square) / 2;
 }
 
-/* The middle of the smallest cone around the directions, nearly: stepping towards the farthest, ever less
- * [Badoiu and Clarkson 2003]. */
+/* Approximate axis of the smallest cone around the directions: repeated steps of decreasing size towards the
+ * farthest direction [Badoiu and Clarkson 2003]. */
 #define CENTRE_STEPS 60
 static vec3s middle_of(const tl_emitter *emitters, size_t count, vec3s start)
 {
     vec3s centre = start;
     for (int step = 1; step <= CENTRE_STEPS && count > 0; step++) {
         size_t farthest = 0;
-        float least = 2;
+        float min = 2;
         for (size_t i = 0; i < count; i++) {
             float cosine = emitters[i].weight > 0 ? glms_vec3_dot(emitters[i].direction, centre) : 2;
-            if (cosine < least) {
-                least = cosine;
+            if (cosine < min) {
+                min = cosine;
                 farthest = i;
             }
         }
@@ -71,7 +70,7 @@ static vec3s middle_of(const tl_emitter *emitters, size_t count, vec3s start)
 struct region {
     size_t count;
     tl_emitter *texels;
-    float radius; /* rad: of the cone about the frame's direction that holds them */
+    float radius; /* rad: of the cone about the direction of the frame that contains the texels */
 };
 
 static float angle_between(vec3s a, vec3s b)
@@ -94,11 +93,11 @@ static struct region prepare(const tl_cube *cube, const struct tl_regions *regio
     return region;
 }
 
-/* How far the lobe reaches. */
+/* The angle beyond which the lobe is cut off. */
 static float reach(int exponent, int cube_size)
 {
     if (exponent == TL_EXPONENT_COUNT)
-        return 1.5f / (float)cube_size; /* half a texel's diagonal in the middle of a face */
+        return 1.5f / (float)cube_size; /* half of the diagonal of a texel at the centre of a face */
     return acosf(powf(CROP, 1 / tl_exponent(exponent)));
 }
 
@@ -110,7 +109,7 @@ static float step_of(int exponent, int cube_size)
     return 1 / (DENSITY_PER_WIDTH / width + DENSITY_OF_HORIZON * width);
 }
 
-/* Sides and scales of all maps of one exponent: the widest region sets the side. */
+/* Sets side and scales of all maps of one exponent. The widest region determines the side. */
 static void lay_out(struct tl_slices *slices, const struct region *regions, int exponent, int cube_size)
 {
     float lobe = reach(exponent, cube_size), widest = 0;
@@ -120,7 +119,7 @@ static void lay_out(struct tl_slices *slices, const struct region *regions, int 
     int side = TILE * ((inner + 2 * RING + TILE - 1) / TILE);
     slices->side[exponent] = side;
     for (int i = 0; i < slices->region_count; i++) {
-        /* The lobe's end lies on centres of the outermost texels within the ring. */
+        /* The cut-off angle lies on the centres of the outermost texels inside the ring. */
         float half = lambert(regions[i].radius + lobe) * (float)side / (float)(side - 1 - 2 * RING);
         slices->frames[i].scale[exponent] = 0.5f / half;
     }
@@ -132,7 +131,7 @@ static float *texel_of(const struct tl_slices *slices, int exponent, int region,
     return slices->texels[exponent] + 3 * (((size_t)region * side + (size_t)y) * side + (size_t)x);
 }
 
-/* Whether nothing but light beyond the reach is left out by the ring: a map of all directions has none. */
+/* True for texels of the ring, which are black. A map of all directions has no ring. */
 static bool in_ring(const struct tl_slices *slices, int exponent, int region, int x, int y)
 {
     int last = slices->side[exponent] - 1;
@@ -154,10 +153,10 @@ static void convolve_tile(const struct tl_slices *slices, int exponent, int regi
         directions[i] = unproject(frame, x, y);
         steps[i] = step * sqrtf(square_scale(x, y));
     }
-    struct tl_lobe_packet gaze;
+    struct tl_lobe_packet packet;
     float colour[3][TL_LANES];
-    tl_lobe_packet_set(&gaze, directions, steps, tl_exponent(exponent));
-    tl_emitters_convolve(emitters, &gaze, colour);
+    tl_lobe_packet_set(&packet, directions, steps, tl_exponent(exponent));
+    tl_emitters_convolve(emitters, &packet, colour);
     for (int i = 0; i < TL_LANES; i++) {
         int x = left + i % TILE, y = top + i / TILE;
         bool black = in_ring(slices, exponent, region, x, y);
@@ -177,7 +176,7 @@ static void convolve(const struct tl_slices *slices, int exponent, int region, c
     tl_emitters_release(&emitters);
 }
 
-/* The region itself: the mean over every texel. */
+/* The map of the region itself: the mean radiance over every texel. */
 static void sample_area(const struct tl_slices *slices, int region, const tl_cube *cube,
                         const struct tl_regions *regions)
 {
@@ -237,7 +236,7 @@ void tl_slices_make(struct tl_slices *slices, const tl_cube *cube, const struct 
             slices->texels[k] = TL_NEW_ARRAY(float, 3 * (size_t)regions->count * (size_t)slices->side[k] *
                                                         (size_t)slices->side[k]);
 #pragma omp parallel for collapse(2) schedule(dynamic)
-    for (int k = TL_EXPONENT_COUNT; k >= 0; k--) { /* the longest first */
+    for (int k = TL_EXPONENT_COUNT; k >= 0; k--) { /* the most expensive first */
         for (int i = 0; i < regions->count; i++) {
             if (!(missing & 1u << k))
                 continue;
@@ -279,7 +278,7 @@ void tl_slices_release(struct tl_slices *slices)
     *slices = (struct tl_slices){0};
 }
 
-/* Bilinear; beyond the map its outermost texels, which are black. */
+/* Bilinear fetch; outside of the map the black texels of the ring. */
 static vec3s fetch(const struct tl_slices *slices, int exponent, int region, float x, float y)
 {
     assert(slices->texels[exponent]);
@@ -287,7 +286,7 @@ static vec3s fetch(const struct tl_slices *slices, int exponent, int region, flo
     float last = (float)(side - 1), scale = slices->frames[region].scale[exponent];
     x = (0.5f + x * scale) * (float)side - 0.5f;
     y = (0.5f + y * scale) * (float)side - 0.5f;
-    x = x > 0 ? x < last ? x : last : 0; /* also what is not a number */
+    x = x > 0 ? x < last ? x : last : 0; /* NaN becomes 0, too */
     y = y > 0 ? y < last ? y : last : 0;
     int column = (int)x, row = (int)y;
     column -= column == side - 1;
@@ -313,7 +312,7 @@ vec3s tl_slices_fetch(const struct tl_slices *slices, int region, vec3s directio
         y = glms_vec3_dot(direction, frame->up) * sqrtf(2 / above);
     }
     vec3s colour = fetch(slices, blend.index, region, x, y);
-    if (blend.weight > 0) /* the next one need not be there otherwise */
+    if (blend.weight > 0) /* the next map need not exist otherwise */
         colour = glms_vec3_lerp(colour, fetch(slices, blend.index + 1, region, x, y), blend.weight);
     return colour;
 }

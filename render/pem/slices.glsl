@@ -1,4 +1,4 @@
-// P_i(d, s) of the regions' slices (pem/slices.h), as pem/slice_maps.c has put them into a texture.
+// P_i(d, s) of the slices of regions (pem/slices.h), from the texture of pem/slice_maps.c.
 const int SLICE_EXPONENTS = 32; // TL_EXPONENT_COUNT + 1
 
 struct SliceFrame {
@@ -7,7 +7,7 @@ struct SliceFrame {
 };
 layout(std430, binding = 1) readonly buffer SliceFrames
 {
-    vec4 slice_places[SLICE_EXPONENTS]; // first column, first row, side: texels; what a stored 1 stands for
+    vec4 slice_places[SLICE_EXPONENTS]; // first column, first row and side (texels); radiance of a stored 1
     SliceFrame slice_frames[];          // by region
 };
 layout(binding = 10) uniform sampler2DArray slice_maps;
@@ -21,8 +21,8 @@ vec3 slice_map(int region, int exponent, vec2 p)
     return place.w * textureLod(slice_maps, vec3(texel / size, float(region)), 0.0).rgb;
 }
 
-// P_region(d, s); d unit, in the environment's frame. `level` is the fractional number of the exponent: index + weight
-// of tl_exponent_blend(s). The exponents on both sides of it must have been made, or the one that it meets.
+// P_region(d, s) for a unit d in the environment's frame. `level` is the fractional index of the exponent: index +
+// weight of tl_exponent_blend(s). The maps of the exponents on both sides must exist, or the one at an integer level.
 vec3 slice_fetch(int region, vec3 d, float level)
 {
     SliceFrame frame = slice_frames[region];

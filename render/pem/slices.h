@@ -1,20 +1,20 @@
 /* Exactly prefiltered partial environment maps: P_i(d, s) = integral over region i of L(w) K_s(d, w) dw
  * [DESIGN 4], by direct convolution with solid-angle weights. Each source texel belongs to one region, so all
- * regions together cost about what one whole map does.
+ * regions together cost about as much as one whole map.
  *
- * The slice of region i and exponent k is a small square map in the region's own frame: Lambert's azimuthal
- * equal-area projection about the region's direction, cropped to where the lobe of the region does not vanish
- * (the paper's proposal of cropped paraboloid maps [002, section 6], with a projection whose texels are
- * equal). Outside of it P is 0. Pure; results do not depend on the number of threads. */
+ * The slice of region i and exponent k is a small square map in the frame of the region: Lambert's azimuthal
+ * equal-area projection about the direction of the region, cropped to where its lobes do not vanish. (The
+ * paper proposes cropped paraboloid maps [002, section 6]; in this projection all texels have the same size.)
+ * P is 0 outside of the map. Pure; results do not depend on the number of threads. */
 #ifndef TOILE_RENDER_PEM_SLICES_H
 #define TOILE_RENDER_PEM_SLICES_H
 
 #include "render/env/lobes.h"
 #include "render/pem/regions.h"
 
-/* Frame of a region's maps. With (x, y, z) = (d.right, d.up, d.direction) of a unit d, the map coordinate is
- * 0.5 + (x, y) * sqrt(2 / (1 + z)) * scale[k], in [0, 1] inside the crop; texel centres at (i + 0.5) / side.
- */
+/* The frame of a region's maps. With (x, y, z) = (d.right, d.up, d.direction) of a unit d, the map coordinate
+ * is 0.5 + (x, y) * sqrt(2 / (1 + z)) * scale[k], in [0, 1] inside the crop; texel centres lie at (i + 0.5) /
+ * side. */
 struct tl_slice_frame {
     vec3s right, up, direction; /* environment's frame, unit */
     float scale[TL_EXPONENT_COUNT + 1];
@@ -28,18 +28,20 @@ struct tl_slices {
     float *texels[TL_EXPONENT_COUNT + 1]; /* [region][side][side][3]; NULL: not made */
 };
 
-/* Makes those of `needed` that are not there yet. Release when cube or regions change. */
+/* Computes the slices of `needed` that do not exist yet. Release them when cube or regions change. */
 void tl_slices_make(struct tl_slices *slices, const tl_cube *cube, const struct tl_regions *regions,
                     uint32_t needed);
 void tl_slices_release(struct tl_slices *slices);
+/* P_region(d, s); `direction` is unit, in the environment's frame. The exponents of the blend must exist. */
 vec3s tl_slices_fetch(const struct tl_slices *slices, int region, vec3s direction,
                       struct tl_exponent_blend blend);
 
-/* Bytes as they are kept on the GPU (4 a texel); and what they will be, without making them. */
+/* Size on the GPU (4 bytes per texel). */
 size_t tl_slices_bytes(const struct tl_slices *slices);
+/* The size that the slices of `exponents` will have, computed without making them. */
 size_t tl_slices_bytes_of(const tl_cube *cube, const struct tl_regions *regions, uint32_t exponents);
-/* Half-angles (rad, by region) of the smallest cones that hold what is lit in them, about the directions of
- * the frames. */
+/* Half-angles (rad, by region) of the smallest cones about the directions of the frames that contain all lit
+ * texels. */
 void tl_slices_radii(const tl_cube *cube, const struct tl_regions *regions, float radii[]);
 
 #endif

@@ -77,11 +77,11 @@ float tl_bump_statistics_roughness(const struct tl_detail_params *params, float 
     float square = view.x * view.x + view.y * view.y;
     float share = square > 1e-12f ? view.x * view.x / square : 0.5f;
     float along = bumps->spread[0] * share + bumps->spread[1] * (1 - share);
-    float beside = bumps->spread[0] * (1 - share) + bumps->spread[1] * share;
-    return detail_widened(rough, along, beside, fabsf(view.z));
+    float across = bumps->spread[0] * (1 - share) + bumps->spread[1] * share;
+    return detail_widened(rough, along, across, fabsf(view.z));
 }
 
-/* Four steps a texel along the surface, and never less than the image's own march takes. */
+/* Number of steps: four per texel along the surface, and at least as many as the renderer takes. */
 static int fine_steps(const struct tl_height_field *field, vec3s view)
 {
     float depth = (field->high_m - field->low_m) * detail_slant(view.z);

@@ -1,5 +1,5 @@
 #include "render/affects.h"
-#include "render/reference/reference.h"
+#include "render/reference/options.h"
 
 typedef struct tl_reference_params reference_params;
 static const char *const terminator_names[] = {"smooth", "geometric", NULL};

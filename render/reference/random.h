@@ -1,5 +1,5 @@
-/* Numbers that look random and are the same everywhere: splitmix64 [Steele, Lea and Flood 2014], begun anew
- * from a key for every piece of work, so that neither threads nor their order matter. Pure. */
+/* Pseudo-random numbers, the same on every machine: splitmix64 [Steele, Lea and Flood 2014]. Each work item
+ * starts its own sequence from a key, so that results depend neither on threads nor on their order. Pure. */
 #ifndef TOILE_RENDER_REFERENCE_RANDOM_H
 #define TOILE_RENDER_REFERENCE_RANDOM_H
 
@@ -9,6 +9,7 @@ struct tl_random {
     uint64_t state;
 };
 
+/* The next 64 bits. */
 static inline uint64_t tl_random_bits(struct tl_random *random)
 {
     uint64_t z = random->state += 0x9e3779b97f4a7c15u;
@@ -17,6 +18,7 @@ static inline uint64_t tl_random_bits(struct tl_random *random)
     return z ^ (z >> 31);
 }
 
+/* Starts the sequence of a key (a, b). */
 static inline struct tl_random tl_random_begin(uint64_t a, uint64_t b)
 {
     struct tl_random random = {a};
@@ -25,7 +27,7 @@ static inline struct tl_random tl_random_begin(uint64_t a, uint64_t b)
     return random;
 }
 
-/* [0, 1), in steps of 2^-53. */
+/* The next number in [0, 1), in steps of 2^-53. */
 static inline double tl_random_unit(struct tl_random *random)
 {
     return (double)(tl_random_bits(random) >> 11) * 0x1p-53;

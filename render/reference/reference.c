@@ -11,11 +11,12 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Pixels a side: a bundle holds the same sample of each. */
+/* Pixels along the side of a tile. A batch holds the same sample of each pixel of a tile. */
 enum { TILE = 4, TILE_PIXELS = TILE * TILE };
 
-#define GROUPS_MAX     64
-#define DIRECTIONS_MAX (1 << 20) /* of all groups, where one is not more */
+#define GROUPS_MAX 64
+#define DIRECTIONS_MAX                                                                                       \
+    (1 << 20) /* largest number of sky samples of all groups together, unless one group has more */
 
 struct drawing {
     const struct tl_reference_scene *scene;
@@ -23,80 +24,82 @@ struct drawing {
     struct tl_view view;
     int width, height; /* pixels */
     int tiles_x, tiles_y;
-    /* Of the current replicate: `groups` times a set of directions for each sample of a pixel. Tiles take
-     * them in turn, because drawing them costs as much as tracing them. */
+    /* Sky samples of the current replicate: `groups` sets for each sample of a pixel. Tiles reuse the groups
+     * in turn, because sampling the sky costs as much as tracing the rays. */
     int groups;
     struct tl_sky_sample *directions; /* [groups][samples][strata] */
-    float *replicate;                 /* [height][width][4], of the one that is being drawn */
-    double *sums;                     /* [height][width][4], over the replicates that are done */
-    double *squares;                  /* [height][width][3] */
+    float *replicate;                 /* [height][width][4], of the current replicate */
+    double *sums;                     /* [height][width][4], sums over the finished replicates */
+    double *squares;                  /* [height][width][3], sums of squares */
     size_t rays;
     struct tl_progress progress;
 };
 
-/* A ray of the camera on its way, and how much of it has got there. */
-struct sight {
+/* A camera ray and the fraction of the pixel sample that it carries. */
+struct camera_ray {
     struct tl_ray_differential ray;
     size_t pixel;
     float share;
 };
 
-/* One sample of each of a tile's pixels. */
-struct sights {
+/* One sample of each pixel of a tile. */
+struct camera_rays {
     int count;
-    struct sight items[TL_SHADING_POINTS];
+    struct camera_ray items[TL_SHADING_POINTS];
 };
 
-/* What they meet. */
-struct bundle {
-    struct tl_shading_points spots;
+/* The hits of a batch of camera rays. */
+struct hits {
+    struct tl_shading_points points;
     size_t pixel[TL_SHADING_POINTS];
     float cover[TL_SHADING_POINTS];
     vec3s lamplight[TL_SHADING_POINTS];
-    size_t rays; /* spent on it */
+    size_t rays; /* rays traced for the batch so far */
 };
 
-static struct sights aim(const struct drawing *drawing, int tile, int sample)
+static struct camera_rays make_camera_rays(const struct drawing *drawing, int tile, int sample)
 {
     int side = drawing->request->supersample;
     int left = tile % drawing->tiles_x * TILE, top = tile / drawing->tiles_x * TILE;
-    struct sights sights = {0};
+    struct camera_rays camera_rays = {0};
     for (int i = 0; i < TILE_PIXELS; i++) {
         int x = left + i % TILE, y = top + i / TILE;
         if (x >= drawing->width || y >= drawing->height)
             continue;
-        sights.items[sights.count++] =
-            (struct sight){.ray = tl_camera_ray(&drawing->view, drawing->width * side, drawing->height * side,
-                                                x * side + sample % side, y * side + sample / side),
-                           .pixel = (size_t)y * (size_t)drawing->width + (size_t)x,
-                           .share = 1};
+        camera_rays.items[camera_rays.count++] = (struct camera_ray){
+            .ray = tl_camera_ray(&drawing->view, drawing->width * side, drawing->height * side,
+                                 x * side + sample % side, y * side + sample / side),
+            .pixel = (size_t)y * (size_t)drawing->width + (size_t)x,
+            .share = 1};
     }
-    return sights;
+    return camera_rays;
 }
 
-/* What the sights meet; they become what goes on through it. What is met last is taken as closed. */
-static void find_spots(const struct drawing *drawing, bool last, struct sights *sights, struct bundle *bundle)
+/* Intersects the camera rays with the scene. The rays continue layer open sheets with the fraction that
+ * these let through. The last layer counts as closed. */
+static void intersect(const struct drawing *drawing, bool last, struct camera_rays *camera_rays,
+                      struct hits *hits)
 {
     int through = 0;
-    bundle->spots.count = 0;
-    bundle->spots.any_layered = false;
-    bundle->rays = 0;
-    for (int i = 0; i < sights->count; i++) {
-        struct sight sight = sights->items[i];
-        struct tl_shading_point spot = tl_shading_point_find(drawing->scene, &sight.ray);
-        if (!(spot.cover > 0))
+    hits->points.count = 0;
+    hits->points.any_layered = false;
+    hits->rays = 0;
+    for (int i = 0; i < camera_rays->count; i++) {
+        struct camera_ray ray = camera_rays->items[i];
+        struct tl_shading_point point = tl_shading_point_find(drawing->scene, &ray.ray);
+        if (!(point.cover > 0))
             continue;
-        float openness = spot.layered && !last ? spot.layers.openness : 0;
-        bundle->pixel[bundle->spots.count] = sight.pixel;
-        bundle->cover[bundle->spots.count] = sight.share * spot.cover * (1 - openness);
-        bundle->lamplight[bundle->spots.count] = tl_reference_lamps(drawing->scene, &spot, &bundle->rays);
-        tl_shading_points_add(&bundle->spots, &spot);
-        sight.share *= openness;
-        sight.ray.from_m = spot.distance_m + drawing->scene->offset_m;
-        if (sight.share > 0)
-            sights->items[through++] = sight;
+        float openness = point.layered && !last ? point.layers.openness : 0;
+        hits->pixel[hits->points.count] = ray.pixel;
+        hits->cover[hits->points.count] = ray.share * point.cover * (1 - openness);
+        hits->lamplight[hits->points.count] = tl_reference_lamps(drawing->scene, &point, &hits->rays);
+        tl_shading_points_add(&hits->points, &point);
+        ray.share *= openness;
+        ray.ray.from_m = point.distance_m + drawing->scene->offset_m;
+        if (ray.share > 0)
+            camera_rays->items[through++] = ray;
     }
-    sights->count = through;
+    camera_rays->count = through;
 }
 
 static struct tl_sky_sample *directions_of(const struct drawing *drawing, int group, int sample)
@@ -106,14 +109,15 @@ static struct tl_sky_sample *directions_of(const struct drawing *drawing, int gr
     return drawing->directions + set * (size_t)drawing->request->params->strata;
 }
 
-/* Every so many tiles have one group each; then the order is shifted, so that columns do not share them. */
+/* Tiles take the groups in turn; after each round the order is shifted, so that the tiles of a column do not
+ * share a group. */
 static const struct tl_sky_sample *directions_for(const struct drawing *drawing, int tile, int sample)
 {
     const int shift = 37;
     return directions_of(drawing, (tile + tile / drawing->groups * shift) % drawing->groups, sample);
 }
 
-static void draw_directions(const struct drawing *drawing, int replicate)
+static void sample_sky(const struct drawing *drawing, int replicate)
 {
     int side = drawing->request->supersample, samples = side * side;
     int strata = drawing->request->params->strata;
@@ -127,45 +131,47 @@ static void draw_directions(const struct drawing *drawing, int replicate)
     }
 }
 
-/* Sample `sample` of a tile's pixels, `behind` sheets that it has passed. Returns the number of rays. */
-static size_t draw_spots(const struct drawing *drawing, int replicate, int tile, int sample, int behind,
-                         const struct bundle *bundle)
+/* Shades sample `sample` of the pixels of a tile at layer `layer`, counted from the camera through open
+ * sheets. Returns the number of rays. */
+static size_t accumulate(const struct drawing *drawing, int replicate, int tile, int sample, int layer,
+                         const struct hits *hits)
 {
     const struct tl_reference_params *params = drawing->request->params;
     int side = drawing->request->supersample, samples = side * side;
-    const struct tl_gather_request gathering = {
+    const struct tl_gather_request gather_request = {
         .scene = drawing->scene,
         .strata = params->strata,
         .sky = directions_for(drawing, tile, sample),
         .lobe_samples = params->lobe_samples,
         .reflect = drawing->scene->reflect,
         .random = tl_random_begin((uint64_t)replicate << 32 | (uint32_t)tile,
-                                  (uint64_t)sample + (uint64_t)behind * (uint64_t)samples)};
+                                  (uint64_t)sample + (uint64_t)layer * (uint64_t)samples)};
     float light[3][TL_SHADING_POINTS];
-    size_t rays = tl_gather(&gathering, &bundle->spots, light);
-    for (int i = 0; i < bundle->spots.count; i++) {
-        float *pixel = drawing->replicate + 4 * bundle->pixel[i], share = bundle->cover[i] / (float)samples;
+    size_t rays = tl_gather(&gather_request, &hits->points, light);
+    for (int i = 0; i < hits->points.count; i++) {
+        float *pixel = drawing->replicate + 4 * hits->pixel[i], share = hits->cover[i] / (float)samples;
         for (int c = 0; c < 3; c++)
-            pixel[c] = fminf(pixel[c] + share * (light[c][i] + bundle->lamplight[i].raw[c]), FLT_MAX);
+            pixel[c] = fminf(pixel[c] + share * (light[c][i] + hits->lamplight[i].raw[c]), FLT_MAX);
         pixel[3] += share;
     }
-    return rays + bundle->rays;
+    return rays + hits->rays;
 }
 
 static size_t draw_sample(const struct drawing *drawing, int replicate, int tile, int sample)
 {
-    struct sights sights = aim(drawing, tile, sample);
-    struct bundle bundle = {0};
+    struct camera_rays camera_rays = make_camera_rays(drawing, tile, sample);
+    struct hits hits = {0};
     size_t rays = TILE_PIXELS;
-    for (int behind = 0; behind <= TL_TRANSPARENCY_LAYERS && sights.count > 0; behind++) {
-        find_spots(drawing, behind == TL_TRANSPARENCY_LAYERS, &sights, &bundle);
-        if (bundle.spots.count > 0)
-            rays += draw_spots(drawing, replicate, tile, sample, behind, &bundle);
+    for (int layer = 0; layer <= TL_TRANSPARENCY_LAYERS && camera_rays.count > 0; layer++) {
+        intersect(drawing, layer == TL_TRANSPARENCY_LAYERS, &camera_rays, &hits);
+        if (hits.points.count > 0)
+            rays += accumulate(drawing, replicate, tile, sample, layer, &hits);
     }
     return rays;
 }
 
-/* Tiles own their pixels, so the number of threads does not show. False when interrupted. */
+/* Draws one replicate. Each tile writes its own pixels only, so that the result does not depend on the number
+ * of threads. False when interrupted. */
 static bool draw_replicate(struct drawing *drawing, int replicate)
 {
     int tiles = drawing->tiles_x * drawing->tiles_y, done = 0;
@@ -173,7 +179,7 @@ static bool draw_replicate(struct drawing *drawing, int replicate)
     size_t rays = 0;
     for (size_t i = 0; i < 4 * (size_t)drawing->width * (size_t)drawing->height; i++)
         drawing->replicate[i] = 0;
-    draw_directions(drawing, replicate);
+    sample_sky(drawing, replicate);
 #pragma omp parallel for schedule(dynamic) reduction(+ : rays)
     for (int tile = 0; tile < tiles; tile++) {
         if (tl_interrupted())
@@ -188,7 +194,7 @@ static bool draw_replicate(struct drawing *drawing, int replicate)
     return !tl_interrupted();
 }
 
-static void keep_replicate(struct drawing *drawing)
+static void add_replicate(struct drawing *drawing)
 {
 #pragma omp parallel for
     for (size_t p = 0; p < (size_t)drawing->width * (size_t)drawing->height; p++) {
@@ -201,7 +207,7 @@ static void keep_replicate(struct drawing *drawing)
     }
 }
 
-/* The variance of a pixel's mean, from the spread of the replicates. */
+/* The variance of a pixel's mean, from the variance of the replicates. */
 static double variance_of_mean(double sum, double squares, int replicates)
 {
     double count = replicates;
@@ -237,7 +243,7 @@ static int draw_replicates(struct drawing *drawing)
     int done = 0;
     drawing->progress = tl_progress_begin("tracing the reference");
     while (done < drawing->request->params->replicates && draw_replicate(drawing, done)) {
-        keep_replicate(drawing);
+        add_replicate(drawing);
         done++;
     }
     tl_progress_end(&drawing->progress);

@@ -1,40 +1,29 @@
-/* The oracle: what a pixel truly is (DESIGN 4), ray traced. No GL; none of the renderer's approximations: it
- * shares the scene, the camera and the definition of a material, and nothing else.
+/* The reference renderer: the exact colour of a pixel (DESIGN 4) by ray tracing. It uses no GL and none of
+ * the renderer's approximations; it shares the scene, the camera and the definition of a material.
  *
  *     c*(x) = integral of L(w) V(x, w) [ kd K_1(n, w) + F ks K_s(r, w) ] dw
  *
- * The environment is constant over each of its own texels. These are stratified by power; each replicate
- * takes one direction from every stratum, and one from the glossy lobe for each of `lobe_samples`, combined
- * by the balance heuristic [Veach 1997]. Replicates are independent: their spread is the standard error.
- * Deterministic at any thread count. Ctrl-C keeps the replicates that are done. */
+ * The environment is constant over each of its own texels. These are stratified by power. Each replicate
+ * takes one sample from every stratum and `lobe_samples` samples from the glossy lobe, combined by the
+ * balance heuristic [Veach 1997]. Replicates are independent, so that their spread gives the standard error.
+ * Deterministic at any number of threads. */
 #ifndef TOILE_RENDER_REFERENCE_REFERENCE_H
 #define TOILE_RENDER_REFERENCE_REFERENCE_H
 
-#include "render/detail/options.h"
-#include "render/reference/options.h"
-#include "render/scene/frame.h"
-#include "render/surfaces/ground.h"
-
-struct tl_reference_request {
-    const tl_frame *frame;
-    const struct tl_ground *ground; /* not among the frame's surfaces; NULL: none */
-    const struct tl_reference_params *params;
-    const struct tl_detail_params *detail;
-    int lobe;           /* enum tl_lobe (render/light/options.h) */
-    bool reflect_scene; /* near mirrors see the lit scene; false: black */
-    int width, height;  /* pixels */
-    int supersample;    /* samples a pixel side */
-};
+#include "render/reference/request.h"
 
 struct tl_reference_report {
-    int replicates; /* done */
+    int replicates; /* finished */
     double
-        standard_error; /* of the image: root of the mean square over covered pixels / mean, as rel_rmse is */
+        standard_error; /* relative, of the image: root mean square over covered pixels / mean, as rel_rmse */
     size_t rays;
 };
 
-/* Image as tl_renderer_read gives it. False,
- * with TL_INTERRUPTED, only when nothing was finished. */
+/* Draws the frame. The image has the format of tl_renderer_read; the caller releases it.
+ *
+ * Errors: false with TL_INTERRUPTED if an interrupt (config/interrupt.h) came before the first replicate was
+ * finished; a later one keeps the finished replicates. TL_DEVICE if the BVH cannot be built.
+ * Threads: one call at a time; OpenMP inside. */
 bool tl_reference_draw(const struct tl_reference_request *request, tl_image *out,
                        struct tl_reference_report *report, tl_error *error);
 

@@ -1,151 +1,19 @@
 #include "render/reference/shading_point.h"
 
-#include "config/memory.h"
 #include "render/brdf/coat.h"
+#include "render/brdf/fresnel.h"
 #include "render/detail/detail_terms.h"
 #include "render/env/exponent.h"
 #include "render/surfaces/surfaces.h"
 
 #include <math.h>
-#include <stdlib.h>
-
-/* Of the distance that is safe at any price: still a hundred times the rounding of positions, and what rests
- * on a surface is seen as resting on it. */
-#define OFFSET_SHARE 0.1f
-
-struct look_map {
-    const struct tl_map_texture *texture; /* NULL: none */
-    bool clamp_u, clamp_v;
-    float rows[6]; /* of its UV transform */
-};
-
-struct look_material {
-    struct look_map maps[TL_MAP_USES];
-    const struct tl_map_texture *weave[TL_WEAVE_USES];
-    const struct tl_map_texture *own_moments, *weave_moments; /* NULL: none */
-    struct tl_detail_heights heights;                         /* of its first part; empty: none */
-};
-
-struct tl_surface_materials {
-    size_t count;
-    struct look_material *materials;
-};
-
-static const struct tl_map_texture *find_texture(struct tl_reference_scene *scene, const tl_image *image,
-                                                 bool colour)
-{
-    if (!image)
-        return NULL;
-    for (size_t i = 0; i < scene->texture_count; i++)
-        if (scene->textures[i]->image == image && scene->textures[i]->colour == colour)
-            return scene->textures[i];
-    scene->textures = tl_resize(scene->textures, scene->texture_count + 1, sizeof(struct tl_map_texture *));
-    struct tl_map_texture *texture = TL_NEW(struct tl_map_texture);
-    *texture = tl_map_texture_make(image, colour);
-    scene->textures[scene->texture_count++] = texture;
-    return texture;
-}
-
-static struct look_material make_material(struct tl_reference_scene *scene, const tl_material *material)
-{
-    const struct tl_map *maps[TL_MAP_USES] = {[TL_MAP_DIFFUSE] = &material->diffuse_map,
-                                              [TL_MAP_NORMAL] = &material->normal_map,
-                                              [TL_MAP_GLOSS] = &material->gloss_map,
-                                              [TL_MAP_SPECULAR] = &material->specular_map,
-                                              [TL_MAP_OCCLUSION] = &material->occlusion_map};
-    struct look_material look = {0};
-    for (enum tl_map_use use = 0; use < TL_MAP_USES; use++) {
-        bool colour = use == TL_MAP_DIFFUSE || use == TL_MAP_SPECULAR;
-        look.maps[use] = (struct look_map){.texture = find_texture(scene, maps[use]->image, colour),
-                                           .clamp_u = maps[use]->clamp_u,
-                                           .clamp_v = maps[use]->clamp_v};
-        tl_uv_transform_rows(&maps[use]->transform, look.maps[use].rows);
-    }
-    look.own_moments = tl_reference_moments(&scene->detail, material->normal_map.image);
-    const tl_weave *weave = material->weave;
-    if (weave && weave->size_m[0] > 0 && weave->size_m[1] > 0) {
-        look.weave_moments = tl_reference_moments(&scene->detail, &weave->normal);
-        look.weave[TL_WEAVE_NORMAL] = find_texture(scene, &weave->normal, false);
-        look.weave[TL_WEAVE_GLOSS] = find_texture(scene, &weave->gloss, false);
-        look.weave[TL_WEAVE_TINT] = find_texture(scene, &weave->tint, false);
-    }
-    return look;
-}
-
-static struct tl_surface_materials make_look(struct tl_reference_scene *scene, const tl_surface *surface)
-{
-    size_t count = 0;
-    for (size_t p = 0; p < surface->part_count; p++) {
-        size_t needed = (size_t)surface->parts[p].material + 1;
-        count = needed > count ? needed : count;
-    }
-    struct tl_surface_materials look = {count, TL_NEW_ARRAY(struct look_material, count)};
-    for (size_t m = 0; m < count; m++)
-        look.materials[m] = make_material(scene, &surface->materials[m]);
-    const struct tl_detail_params *detail = &scene->detail.params;
-    for (size_t p = 0; p < surface->part_count && tl_detail_wants_heights(detail); p++) {
-        const struct tl_mesh_part *part = &surface->parts[p];
-        struct tl_detail_heights *heights = &look.materials[part->material].heights;
-        if (!heights->image.texels)
-            tl_detail_heights_make(&surface->materials[part->material], part->uv_metres, detail->height_scale,
-                                   heights);
-    }
-    return look;
-}
-
-bool tl_reference_scene_make(const struct tl_reference_request *request, struct tl_reference_scene *out,
-                             tl_error *error)
-{
-    const tl_frame *frame = request->frame;
-    const struct tl_ground *ground = request->ground;
-    *out = (struct tl_reference_scene){.surfaces = frame->surfaces,
-                                       .surface_count = frame->surface_count,
-                                       .ground = ground,
-                                       .lobe = request->lobe,
-                                       .terminator = request->params->terminator,
-                                       .detail.params = *request->detail,
-                                       .reflect = request->reflect_scene};
-    out->looks = TL_NEW_ARRAY(struct tl_surface_materials, out->surface_count + 1);
-    for (size_t i = 0; i < out->surface_count; i++)
-        out->looks[i] = make_look(out, &frame->surfaces[i]);
-    if (ground)
-        out->looks[out->surface_count] = make_look(out, &ground->surface);
-    out->lamp_count = tl_lamps_lit(frame, out->lamps);
-    tl_sky_make(frame->environment, frame->environment_yaw, &out->sky);
-    out->trace = tl_trace_create(error);
-    if (!out->trace || !tl_trace_update(out->trace, out->surfaces, out->surface_count, error)) {
-        tl_reference_scene_release(out);
-        return false;
-    }
-    out->offset_m = OFFSET_SHARE * tl_trace_offset(out->trace);
-    return true;
-}
-
-void tl_reference_scene_release(struct tl_reference_scene *scene)
-{
-    for (size_t i = 0; scene->looks && i <= scene->surface_count; i++) {
-        for (size_t m = 0; m < scene->looks[i].count; m++)
-            tl_detail_heights_release(&scene->looks[i].materials[m].heights);
-        free(scene->looks[i].materials);
-    }
-    tl_reference_detail_release(&scene->detail);
-    free(scene->looks);
-    for (size_t i = 0; i < scene->texture_count; i++) {
-        tl_map_texture_release(scene->textures[i]);
-        free(scene->textures[i]);
-    }
-    free(scene->textures);
-    tl_sky_release(&scene->sky);
-    tl_trace_destroy(&scene->trace);
-    *scene = (struct tl_reference_scene){0};
-}
 
 struct tl_ray_differential tl_camera_ray(const struct tl_view *view, int columns, int rows, int x, int y)
 {
     float step_x = 2 / (float)columns, step_y = 2 / (float)rows;
     vec3s along = glms_vec3_add(view->forward, glms_vec3_scale(view->right, ((float)x + 0.5f) * step_x - 1));
     along = glms_vec3_add(along, glms_vec3_scale(view->up, 1 - ((float)y + 0.5f) * step_y));
-    float length = glms_vec3_norm(along); /* metres of the ray for each metre of depth */
+    float length = glms_vec3_norm(along); /* metres along the ray per metre of depth */
     return (struct tl_ray_differential){.origin = view->eye,
                                         .direction = glms_vec3_divs(along, length),
                                         .from_m = view->near_m * length,
@@ -154,20 +22,20 @@ struct tl_ray_differential tl_camera_ray(const struct tl_view *view, int columns
                                         .down = glms_vec3_scale(view->up, -step_y / length)};
 }
 
-/* A point of a surface with all that its material is asked with. */
+/* A point of a surface with all inputs of its material. */
 struct place {
     const tl_material *material;
-    const struct look_material *look;
+    const struct tl_reference_material *prepared;
     bool woven;
     float weave_scale[2]; /* repeats per UV unit */
     float uv_metres;
     const struct tl_detail_params *detail;
     struct tl_footprint footprint;
-    vec3s point, facet; /* normal of the triangle, on the viewer's side */
-    vec3s normal;       /* interpolated, towards the outside, as long as it comes out */
+    vec3s point, facet; /* normal of the triangle, on the side of the viewer */
+    vec3s normal;       /* interpolated, towards the front, not normalised */
     vec4s tangent;
-    float
-        side; /* 1, or -1 where the back is seen: it is a surface of its own, whose whole frame turns over */
+    float side; /* 1 for the front; -1 for the back, which is a surface of its own with the whole frame turned
+                   over */
 };
 
 static vec3s direction_or(vec3s v, vec3s fallback)
@@ -188,17 +56,17 @@ static struct tl_footprint through_rows(const struct tl_footprint *at, const flo
 
 static bool has_map(const struct place *place, enum tl_map_use use)
 {
-    return place->look->maps[use].texture != NULL;
+    return place->prepared->maps[use].texture != NULL;
 }
 
 static vec4s map_at(const struct place *place, enum tl_map_use use)
 {
-    const struct look_map *map = &place->look->maps[use];
+    const struct tl_reference_map *map = &place->prepared->maps[use];
     struct tl_footprint at = through_rows(&place->footprint, map->rows);
     return tl_map_texture_fetch(map->texture, &at, map->clamp_u, map->clamp_v);
 }
 
-/* A level coarser where the spread of normals is kept, as surface.glsl has it. */
+/* The weave at a point. The footprint is doubled where the spread of normals is kept, as in surface.glsl. */
 static vec4s weave_texel(const struct place *place, const struct tl_map_texture *texture)
 {
     const float rows[6] = {place->weave_scale[0], 0, 0, 0, place->weave_scale[1], 0};
@@ -212,7 +80,7 @@ static vec4s weave_texel(const struct place *place, const struct tl_map_texture 
 
 static vec4s weave_at(const struct place *place, enum tl_weave_use use)
 {
-    return weave_texel(place, place->look->weave[use]);
+    return weave_texel(place, place->prepared->weave[use]);
 }
 
 static vec3s decoded(vec4s texel)
@@ -225,11 +93,11 @@ static struct tl_bump_statistics own_bumps(const struct place *place)
     float scale = place->material->normal_scale;
     if (!has_map(place, TL_MAP_NORMAL))
         return tl_bump_statistics_of_normal((vec3s){{0, 0, 1}});
-    if (place->look->own_moments) {
-        const struct look_map *map = &place->look->maps[TL_MAP_NORMAL];
+    if (place->prepared->own_moments) {
+        const struct tl_reference_map *map = &place->prepared->maps[TL_MAP_NORMAL];
         struct tl_footprint at = through_rows(&place->footprint, map->rows);
         return tl_bump_statistics_of_moments(
-            tl_map_texture_fetch(place->look->own_moments, &at, map->clamp_u, map->clamp_v), scale);
+            tl_map_texture_fetch(place->prepared->own_moments, &at, map->clamp_u, map->clamp_v), scale);
     }
     vec3s n = decoded(map_at(place, TL_MAP_NORMAL));
     return tl_bump_statistics_of_normal((vec3s){{scale * n.x, scale * n.y, n.z}});
@@ -238,13 +106,13 @@ static struct tl_bump_statistics own_bumps(const struct place *place)
 static struct tl_bump_statistics weave_bumps(const struct place *place)
 {
     float scale = place->detail->height_scale;
-    if (place->look->weave_moments)
-        return tl_bump_statistics_of_moments(weave_texel(place, place->look->weave_moments), scale);
+    if (place->prepared->weave_moments)
+        return tl_bump_statistics_of_moments(weave_texel(place, place->prepared->weave_moments), scale);
     vec3s n = decoded(weave_at(place, TL_WEAVE_NORMAL));
     return tl_bump_statistics_of_normal((vec3s){{scale * n.x, scale * n.y, n.z}});
 }
 
-/* In tangent space: the file's map and the weave. */
+/* Statistics of all bumps in tangent space: those of the normal map of the file plus those of the weave. */
 static struct tl_bump_statistics bumps_at(const struct place *place)
 {
     struct tl_bump_statistics own = own_bumps(place);
@@ -270,7 +138,7 @@ static vec3s bent_normal(const struct place *place, vec3s mapped, vec3s smooth)
     return direction_or(sum, smooth);
 }
 
-/* A direction in the outside's tangent space. */
+/* Transforms a direction into the tangent space of the front. */
 static vec3s into_tangent(const struct place *place, vec3s smooth, vec3s d)
 {
     vec3s t = {{place->tangent.x, place->tangent.y, place->tangent.z}};
@@ -314,59 +182,58 @@ static vec3s f0_of(const struct place *place)
     return has_map(place, TL_MAP_SPECULAR) ? times_map(f0, map_at(place, TL_MAP_SPECULAR)) : f0;
 }
 
-/* Schlick's Fresnel term with f90 = min(50 F0, 1). */
 static vec3s specular_of(vec3s f0, float n_dot_v)
 {
-    float away = 1 - fminf(fmaxf(n_dot_v, 0), 1), fifth = away * away * away * away * away;
     for (int c = 0; c < 3; c++)
-        f0.raw[c] += (fminf(50 * f0.raw[c], 1) - f0.raw[c]) * fifth;
+        f0.raw[c] = tl_fresnel_schlick(f0.raw[c], n_dot_v);
     return f0;
 }
 
-/* A back is a surface of its own: with its normal the bitangent turns over, the tangent stays. */
-static void set_tangent(const struct place *place, vec3s n, struct tl_shading_point *spot)
+/* Sets tangent and handedness. On a back face normal and bitangent are turned over and the tangent is
+ * kept. */
+static void set_tangent(const struct place *place, vec3s n, struct tl_shading_point *result)
 {
     vec3s t = {{place->tangent.x, place->tangent.y, place->tangent.z}};
     t = glms_vec3_sub(t, glms_vec3_scale(n, glms_vec3_dot(n, t)));
-    spot->tangent = direction_or(t, (vec3s){{0, 0, 0}});
-    spot->handedness = place->tangent.w * place->side;
+    result->tangent = direction_or(t, (vec3s){{0, 0, 0}});
+    result->handedness = place->tangent.w * place->side;
 }
 
-/* A coat levels the threads out: its mirror direction is the smooth surface's. */
-static void set_coat(const struct place *place, vec3s smooth, struct tl_shading_point *spot)
+/* Sets the coat. It fills the threads up, so that its mirror direction is that of the smooth surface. */
+static void set_coat(const struct place *place, vec3s smooth, struct tl_shading_point *result)
 {
-    struct tl_shading_layers *layers = &spot->layers;
+    struct tl_shading_layers *layers = &result->layers;
     vec3s n = glms_vec3_scale(smooth, place->side);
-    float cosine = fmaxf(glms_vec3_dot(n, spot->viewer), 0);
-    vec3s mirror = glms_vec3_sub(glms_vec3_scale(n, 2 * cosine), spot->viewer);
+    float cosine = fmaxf(glms_vec3_dot(n, result->viewer), 0);
+    vec3s mirror = glms_vec3_sub(glms_vec3_scale(n, 2 * cosine), result->viewer);
     layers->coat = place->material->coat * tl_coat_reflectance(cosine);
     layers->coat_axis = direction_or(mirror, n);
     layers->coat_exponent = tl_lobe_exponent(place->material->coat_glossiness);
 }
 
-static void set_layers(const struct place *place, vec3s smooth, struct tl_shading_point *spot)
+static void set_layers(const struct place *place, vec3s smooth, struct tl_shading_point *result)
 {
     const tl_material *material = place->material;
-    struct tl_shading_layers *layers = &spot->layers;
-    spot->layered = true;
+    struct tl_shading_layers *layers = &result->layers;
+    result->layered = true;
     layers->openness = material->openness;
     if (material->coat > 0)
-        set_coat(place, smooth, spot);
+        set_coat(place, smooth, result);
     layers->base = 1 - layers->coat;
     layers->faceted = material->gloss.model != TL_REFLECT_PHONG;
     if (layers->faceted) {
-        layers->brdf = tl_brdf_of(material, spot->f0, spot->glossiness);
-        layers->frame = tl_brdf_frame_make(spot->normal, spot->tangent, spot->handedness,
+        layers->brdf = tl_brdf_of(material, result->f0, result->glossiness);
+        layers->frame = tl_brdf_frame_make(result->normal, result->tangent, result->handedness,
                                            place->side * material->gloss.rotation);
-        spot->glossy = (vec3s){{0, 0, 0}};
+        result->glossy = (vec3s){{0, 0, 0}};
     }
-    spot->diffuse = glms_vec3_scale(spot->diffuse, layers->base);
-    spot->glossy = glms_vec3_scale(spot->glossy, layers->base);
+    result->diffuse = glms_vec3_scale(result->diffuse, layers->base);
+    result->glossy = glms_vec3_scale(result->glossy, layers->base);
     layers->transmitted = glms_vec3_scale(material->transmission, layers->base);
 }
 
 static void set_lobes(const struct place *place, const struct tl_reference_scene *scene, vec3s viewer,
-                      vec3s smooth, struct tl_shading_point *spot)
+                      vec3s smooth, struct tl_shading_point *result)
 {
     vec3s n = glms_vec3_scale(smooth, place->side);
     float g = glossiness_of(place), open = 1;
@@ -379,39 +246,39 @@ static void set_lobes(const struct place *place, const struct tl_reference_scene
     }
     float n_dot_v = glms_vec3_dot(n, viewer);
     vec3s mirror = glms_vec3_sub(glms_vec3_scale(n, 2 * fmaxf(n_dot_v, 0)), viewer);
-    spot->viewer = viewer;
-    spot->glossiness = g;
-    spot->material = place->material;
-    set_tangent(place, n, spot);
-    spot->normal = n;
-    spot->axis = direction_or(mirror, n);
-    spot->exponent = tl_lobe_exponent(g);
-    spot->side = place->side;
-    spot->f0 = f0_of(place);
-    spot->diffuse = spot->albedo = glms_vec3_scale(diffuse_of(place), open);
-    spot->glossy = specular_of(spot->f0, n_dot_v);
+    result->viewer = viewer;
+    result->glossiness = g;
+    result->material = place->material;
+    set_tangent(place, n, result);
+    result->normal = n;
+    result->axis = direction_or(mirror, n);
+    result->exponent = tl_lobe_exponent(g);
+    result->side = place->side;
+    result->f0 = f0_of(place);
+    result->diffuse = result->albedo = glms_vec3_scale(diffuse_of(place), open);
+    result->glossy = specular_of(result->f0, n_dot_v);
     if (scene->lobe == TL_LOBE_SINGLE && place->material->gloss.model == TL_REFLECT_PHONG) {
-        spot->axis = direction_or(glms_vec3_lerp(n, mirror, g), n);
-        spot->glossy = glms_vec3_lerp(spot->diffuse, spot->glossy, g);
-        spot->diffuse = (vec3s){{0, 0, 0}};
+        result->axis = direction_or(glms_vec3_lerp(n, mirror, g), n);
+        result->glossy = glms_vec3_lerp(result->diffuse, result->glossy, g);
+        result->diffuse = (vec3s){{0, 0, 0}};
     }
     if (tl_material_is_layered(place->material))
-        set_layers(place, smooth, spot);
+        set_layers(place, smooth, result);
 }
 
-static struct tl_shading_point spot_of(const struct place *place, const struct tl_reference_scene *scene,
-                                       const struct tl_ray_differential *ray, vec3s smooth_point)
+static struct tl_shading_point point_of(const struct place *place, const struct tl_reference_scene *scene,
+                                        const struct tl_ray_differential *ray, vec3s smooth_point)
 {
-    struct tl_shading_point spot = {.cover = 1};
+    struct tl_shading_point result = {.cover = 1};
     vec3s smooth = direction_or(place->normal, glms_vec3_scale(place->facet, place->side));
-    set_lobes(place, scene, glms_vec3_negate(ray->direction), smooth, &spot);
+    set_lobes(place, scene, glms_vec3_negate(ray->direction), smooth, &result);
     bool geometric = scene->terminator == TL_TERMINATOR_GEOMETRIC;
-    spot.horizon = geometric ? place->facet : glms_vec3_scale(smooth, place->side);
-    spot.point = geometric ? place->point : smooth_point;
-    return spot;
+    result.horizon = geometric ? place->facet : glms_vec3_scale(smooth, place->side);
+    result.point = geometric ? place->point : smooth_point;
+    return result;
 }
 
-/* A triangle that was hit. */
+/* The corners of the triangle that was hit. */
 struct corners {
     vec3s positions[3], normals[3];
     vec4s tangents[3];
@@ -443,14 +310,14 @@ static const struct tl_mesh_part *part_of(const tl_surface *surface, uint32_t tr
     return &surface->parts[part];
 }
 
-/* How far the point where a ray meets a plane moves when the ray's direction changes by `change`. */
+/* Shift of the intersection of a ray with a plane when the direction of the ray changes by `change`. */
 static vec3s shift_on_plane(const struct tl_ray_differential *ray, float distance, vec3s normal, vec3s change)
 {
     float slope = glms_vec3_dot(normal, change) / glms_vec3_dot(normal, ray->direction);
     return glms_vec3_scale(glms_vec3_sub(change, glms_vec3_scale(ray->direction, slope)), distance);
 }
 
-/* How far (u, v) moves when a point moves within its triangle: the plane's coordinates by least squares. */
+/* Shift of (u, v) when a point moves within its triangle, by least squares in the plane of the triangle. */
 static vec2s shift_of_uv(const struct corners *corners, vec3s move)
 {
     vec3s e1 = glms_vec3_sub(corners->positions[1], corners->positions[0]);
@@ -481,15 +348,15 @@ static void set_material(const struct tl_reference_scene *scene, const struct tl
     const tl_surface *surface = &scene->surfaces[hit->surface];
     const struct tl_mesh_part *part = part_of(surface, hit->triangle);
     place->material = &surface->materials[part->material];
-    place->look = &scene->looks[hit->surface].materials[part->material];
+    place->prepared = &scene->materials[hit->surface].materials[part->material];
     place->uv_metres = part->uv_metres;
     place->detail = &scene->detail.params;
-    place->woven = place->look->weave[TL_WEAVE_NORMAL] && part->uv_metres > 0;
+    place->woven = place->prepared->weave[TL_WEAVE_NORMAL] && part->uv_metres > 0;
     for (int i = 0; place->woven && i < 2; i++)
         place->weave_scale[i] = part->uv_metres / place->material->weave->size_m[i];
 }
 
-/* Where the same sheet's other side is looked at from. */
+/* Origin of rays on the other side of the same sheet. */
 static vec3s point_behind(const struct place *place, const struct tl_reference_scene *scene,
                           const struct corners *corners, const float weights[3])
 {
@@ -501,9 +368,9 @@ static vec3s point_behind(const struct place *place, const struct tl_reference_s
     return glms_vec3_sub(point, glms_vec3_scale(place->facet, scene->offset_m));
 }
 
-static struct tl_shading_point surface_spot(const struct tl_reference_scene *scene,
-                                            const struct tl_ray_differential *ray,
-                                            const struct tl_trace_hit *hit)
+static struct tl_shading_point surface_point(const struct tl_reference_scene *scene,
+                                             const struct tl_ray_differential *ray,
+                                             const struct tl_trace_hit *hit)
 {
     struct corners corners = corners_of(&scene->surfaces[hit->surface], hit->triangle);
     const float weights[3] = {1 - hit->u - hit->v, hit->u, hit->v};
@@ -522,18 +389,18 @@ static struct tl_shading_point surface_spot(const struct tl_reference_scene *sce
     vec3s outside = direction_or(place.normal, glms_vec3_scale(place.facet, place.side));
     vec3s view = into_tangent(&place, outside, glms_vec3_negate(ray->direction));
     place.footprint.uv = glms_vec2_add(
-        place.footprint.uv, tl_reference_shift(place.detail, &place.look->heights, place.footprint.uv,
+        place.footprint.uv, tl_reference_shift(place.detail, &place.prepared->heights, place.footprint.uv,
                                                place.uv_metres, view, place.side));
     vec3s smooth = tl_smooth_point(place.point, corners.positions, corners.normals, weights);
-    struct tl_shading_point spot = spot_of(&place, scene, ray, smooth);
-    spot.distance_m = hit->distance_m;
-    spot.point = glms_vec3_add(spot.point, glms_vec3_scale(place.facet, scene->offset_m));
-    if (spot.layered)
-        spot.layers.behind = point_behind(&place, scene, &corners, weights);
-    return spot;
+    struct tl_shading_point result = point_of(&place, scene, ray, smooth);
+    result.distance_m = hit->distance_m;
+    result.point = glms_vec3_add(result.point, glms_vec3_scale(place.facet, scene->offset_m));
+    if (result.layered)
+        result.layers.behind = point_behind(&place, scene, &corners, weights);
+    return result;
 }
 
-/* How far along the ray the ground's plane is met; infinite when it is not. */
+/* Distance along the ray to the plane of the ground; infinite when there is no intersection. */
 static float distance_to_ground(const struct tl_reference_scene *scene, const struct tl_ray_differential *ray)
 {
     if (!scene->ground || fabsf(ray->direction.y) < 1e-12f)
@@ -542,8 +409,8 @@ static float distance_to_ground(const struct tl_reference_scene *scene, const st
     return distance > ray->from_m && distance < ray->to_m ? distance : INFINITY;
 }
 
-static struct tl_shading_point ground_spot(const struct tl_reference_scene *scene,
-                                           const struct tl_ray_differential *ray, float distance)
+static struct tl_shading_point ground_point(const struct tl_reference_scene *scene,
+                                            const struct tl_ray_differential *ray, float distance)
 {
     const struct tl_ground *ground = scene->ground;
     vec3s point = glms_vec3_add(ray->origin, glms_vec3_scale(ray->direction, distance));
@@ -552,7 +419,7 @@ static struct tl_shading_point ground_spot(const struct tl_reference_scene *scen
     const struct place place = {
         .detail = &scene->detail.params,
         .material = &ground->material,
-        .look = &scene->looks[scene->surface_count].materials[0],
+        .prepared = &scene->materials[scene->surface_count].materials[0],
         .footprint.uv = {{(point.x - ground->centre.x) / ground->radius,
                           (point.z - ground->centre.z) / ground->radius}},
         .point = point,
@@ -561,10 +428,10 @@ static struct tl_shading_point ground_spot(const struct tl_reference_scene *scen
         .tangent = {{1, 0, 0, 1}},
         .side = side,
     };
-    struct tl_shading_point spot = spot_of(&place, scene, ray, point);
-    spot.cover = cover;
-    spot.distance_m = distance;
-    return spot;
+    struct tl_shading_point result = point_of(&place, scene, ray, point);
+    result.cover = cover;
+    result.distance_m = distance;
+    return result;
 }
 
 struct tl_shading_point tl_shading_point_find(const struct tl_reference_scene *scene,
@@ -574,9 +441,9 @@ struct tl_shading_point tl_shading_point_find(const struct tl_reference_scene *s
         tl_trace_nearest(scene->trace, ray->origin, ray->direction, ray->from_m, ray->to_m);
     float to_ground = distance_to_ground(scene, ray);
     if (to_ground < (hit.surface == TL_TRACE_NONE ? INFINITY : hit.distance_m)) {
-        struct tl_shading_point spot = ground_spot(scene, ray, to_ground);
-        if (spot.cover > 0)
-            return spot;
+        struct tl_shading_point result = ground_point(scene, ray, to_ground);
+        if (result.cover > 0)
+            return result;
     }
-    return hit.surface == TL_TRACE_NONE ? (struct tl_shading_point){0} : surface_spot(scene, ray, &hit);
+    return hit.surface == TL_TRACE_NONE ? (struct tl_shading_point){0} : surface_point(scene, ray, &hit);
 }

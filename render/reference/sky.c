@@ -5,13 +5,15 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define BRIGHT_SHARE 0.9 /* of the draws; the others are uniform, for dim light on whatever faces it */
+#define BRIGHT_SHARE                                                                                         \
+    0.9 /* of the samples; the others are uniform, for dim light on points that face away from the bright    \
+           one */
 
-/* Hilbert's curve over a square, from `corner` along `a`, in half texels; texels outside of the map (or of a
- * cube's face) are left out. */
+/* Hilbert's curve over a square, from `corner` along `a`, in half texels. Texels outside of the map (or the
+ * face of a cube) are skipped. */
 struct walk {
     int width, height;    /* of the map or face, texels */
-    uint32_t first, line; /* number of its first texel; numbers from row to row */
+    uint32_t first, line; /* index of its first texel; increment per row */
     uint32_t *next;
 };
 
@@ -73,8 +75,8 @@ static double solid_angle_of(const struct tl_sky *sky, size_t texel)
     return is_cube(sky) ? (double)tl_cube_solid_angle(width, x, y % width) : sky->row_angles[y];
 }
 
-/* Mean density over a texel. */
-static double density_of(const struct tl_sky *sky, size_t texel)
+/* Mean pdf over a texel, per sr. */
+static double pdf_of(const struct tl_sky *sky, size_t texel)
 {
     const double uniform = 1 / (4 * M_PI);
     if (!(sky->brightness > 0))
@@ -97,9 +99,8 @@ static void sum_shares(struct tl_sky *sky)
         sky->brightness += brightness_of(sky, i) * solid_angle_of(sky, i);
     sky->before = TL_NEW_ARRAY(double, sky->texel_count + 1);
     for (size_t i = 0; i < sky->texel_count; i++)
-        sky->before[i + 1] =
-            sky->before[i] + density_of(sky, sky->order[i]) * solid_angle_of(sky, sky->order[i]);
-    double total = sky->before[sky->texel_count]; /* 1 but for rounding */
+        sky->before[i + 1] = sky->before[i] + pdf_of(sky, sky->order[i]) * solid_angle_of(sky, sky->order[i]);
+    double total = sky->before[sky->texel_count]; /* 1 except for rounding */
     for (size_t i = 0; i <= sky->texel_count; i++)
         sky->before[i] /= total;
 }
@@ -157,30 +158,32 @@ static vec3s from_world(const struct tl_sky *sky, vec3s d)
     return (vec3s){{c * d.x - s * d.z, d.y, s * d.x + c * d.z}};
 }
 
-/* A point of a face at distance 1 has the solid angle dA / |p|^3 [area of the face: 4]. */
-static double cube_density(const struct tl_sky *sky, size_t texel, vec3s on_face)
+/* The pdf at a point of a cube face. An area dA of the face at distance 1 subtends dA / |p|^3 [area of a
+ * face: 4], so uniform sampling of the texel in the plane is not uniform in solid angle. */
+static double cube_pdf(const struct tl_sky *sky, size_t texel, vec3s on_face)
 {
     double size = sky->environment->image.width, square = (double)glms_vec3_norm2(on_face);
     double area = 4 / (size * size);
-    return density_of(sky, texel) * solid_angle_of(sky, texel) / area * square * sqrt(square);
+    return pdf_of(sky, texel) * solid_angle_of(sky, texel) / area * square * sqrt(square);
 }
 
-static struct tl_sky_sample seen(const struct tl_sky *sky, size_t texel, vec3s world, double density)
+static struct tl_sky_sample sample_of(const struct tl_sky *sky, size_t texel, vec3s world, double pdf)
 {
     const float *rgb = texel_of(sky, texel);
-    return (struct tl_sky_sample){world, {{rgb[0], rgb[1], rgb[2]}}, (float)density};
+    return (struct tl_sky_sample){world, {{rgb[0], rgb[1], rgb[2]}}, (float)pdf};
 }
 
-static struct tl_sky_sample draw_cube(const struct tl_sky *sky, size_t texel, double x, double y)
+static struct tl_sky_sample sample_cube(const struct tl_sky *sky, size_t texel, double x, double y)
 {
     size_t size = (size_t)sky->environment->image.width;
     double s = ((double)(texel % size) + x) / (double)size;
     double t = ((double)(texel / size % size) + y) / (double)size;
     vec3s on_face = tl_cube_direction((int)(texel / size / size), (float)s, (float)t);
-    return seen(sky, texel, into_world(sky, glms_vec3_normalize(on_face)), cube_density(sky, texel, on_face));
+    return sample_of(sky, texel, into_world(sky, glms_vec3_normalize(on_face)),
+                     cube_pdf(sky, texel, on_face));
 }
 
-static struct tl_sky_sample draw_latlong(const struct tl_sky *sky, size_t texel, double x, double y)
+static struct tl_sky_sample sample_latlong(const struct tl_sky *sky, size_t texel, double x, double y)
 {
     const tl_image *image = &sky->environment->image;
     size_t row = texel / (size_t)image->width;
@@ -189,10 +192,10 @@ static struct tl_sky_sample draw_latlong(const struct tl_sky *sky, size_t texel,
     double height = upper + (lower - upper) * y, radius = sqrt(fmax(1 - height * height, 0));
     double phi = 2 * M_PI * (((double)(texel % (size_t)image->width) + x) / image->width - 0.5);
     vec3s direction = {{(float)(radius * sin(phi)), (float)height, (float)(-radius * cos(phi))}};
-    return seen(sky, texel, into_world(sky, direction), density_of(sky, texel));
+    return sample_of(sky, texel, into_world(sky, direction), pdf_of(sky, texel));
 }
 
-/* Every second bit, from the lowest on, as a number in (0, 1). */
+/* Every second bit, starting with the lowest, as a number in (0, 1). */
 static double every_second_bit(uint32_t bits)
 {
     bits &= 0x55555555;
@@ -205,7 +208,8 @@ static double every_second_bit(uint32_t bits)
 
 struct tl_sky_sample tl_sky_sample_at(const struct tl_sky *sky, double share)
 {
-    size_t guide = (size_t)fmin(share * TL_SKY_GUIDES, TL_SKY_GUIDES - 1); /* shares may round to 1 */
+    size_t guide =
+        (size_t)fmin(share * TL_SKY_GUIDES, TL_SKY_GUIDES - 1); /* a share may have been rounded to 1 */
     size_t low = sky->guide[guide], high = (size_t)sky->guide[guide + 1] + 1;
     while (high - low > 1) { /* before[low] <= share < before[high] */
         size_t middle = (low + high) / 2;
@@ -214,13 +218,13 @@ struct tl_sky_sample tl_sky_sample_at(const struct tl_sky *sky, double share)
         else
             high = middle;
     }
-    /* What is left of the share goes through the texel in Z order, so that a sun of one texel is stratified
-     * too. */
+    /* The remainder of the share selects a point within the texel in Z order, so that a sun of one texel is
+     * stratified, too. */
     double left = (share - sky->before[low]) / (sky->before[low + 1] - sky->before[low]);
     uint32_t bits = (uint32_t)fmin(fmax(left, 0) * 0x1p32, 0x1p32 - 1);
     double x = every_second_bit(bits), y = every_second_bit(bits >> 1);
     size_t texel = sky->order[low];
-    return is_cube(sky) ? draw_cube(sky, texel, x, y) : draw_latlong(sky, texel, x, y);
+    return is_cube(sky) ? sample_cube(sky, texel, x, y) : sample_latlong(sky, texel, x, y);
 }
 
 static size_t index_within(float share, int count)
@@ -241,10 +245,10 @@ struct tl_sky_sample tl_sky_lookup(const struct tl_sky *sky, vec3s direction)
         size_t row = (size_t)face * width + index_within(t, image->width);
         size_t texel = row * width + index_within(s, image->width);
         float major = fmaxf(fabsf(d.x), fmaxf(fabsf(d.y), fabsf(d.z)));
-        return seen(sky, texel, direction, cube_density(sky, texel, glms_vec3_divs(d, major)));
+        return sample_of(sky, texel, direction, cube_pdf(sky, texel, glms_vec3_divs(d, major)));
     }
     float u = 0.5f + atan2f(d.x, -d.z) / (float)(2 * M_PI);
     float v = acosf(fminf(fmaxf(d.y, -1), 1)) / (float)M_PI;
     size_t texel = index_within(v, image->height) * width + index_within(u, image->width);
-    return seen(sky, texel, direction, density_of(sky, texel));
+    return sample_of(sky, texel, direction, pdf_of(sky, texel));
 }

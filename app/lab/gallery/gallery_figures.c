@@ -3,6 +3,7 @@
 #include "app/lab/experiments/experiment.h"
 #include "app/report/report.h"
 #include "config/memory.h"
+#include "render/brdf/fresnel.h"
 #include "render/brdf/normalise.h"
 #include "render/brdf/power.h"
 #include "render/brdf/table_error.h"
@@ -37,7 +38,7 @@ static void plot_sizes(int precision, const char *caption, FILE *out)
             struct tl_brdf_table_params params = {
                 .size = sizes[i], .precision = precision, .range = TL_RANGE_SCALED};
             points[model][i] = (struct tl_plot_point){
-                sizes[i], 100 * tl_brdf_table_error(&brdf, &params).away, names[model], false};
+                sizes[i], 100 * tl_brdf_table_error(&brdf, &params).steep, names[model], false};
         }
         series[model] = (struct tl_plot_series){
             .name = names[model], .points = points[model], .count = TL_COUNT(sizes), .line = true};
@@ -113,7 +114,7 @@ void tl_gallery_folded_figures(FILE *out)
                                                   .folded = true,
                                                   .ambient = {{0.02f, 0.02f, 0.02f}},
                                                   .diffuse = {{0.3f, 0.3f, 0.3f}}};
-            points[t][i] = (struct tl_plot_point){sizes[i], 100 * tl_brdf_table_error(&brdf, &params).away,
+            points[t][i] = (struct tl_plot_point){sizes[i], 100 * tl_brdf_table_error(&brdf, &params).steep,
                                                   kinds[t].name, false};
         }
         series[t] = (struct tl_plot_series){
@@ -199,7 +200,7 @@ static void plot_highlight(int exponent, FILE *out)
              "A highlight of n = %d. In 8 bits and a sign it has %d levels, the widest step is %.3f; a table "
              "of 256 "
              "values errs by %.4f near 1, where the power is steepest, and shows no step.",
-             exponent, fixed.levels, fixed.band, lines.most_near_one);
+             exponent, fixed.levels, fixed.band, lines.max_near_one);
     tl_report_plot(out,
                    &(struct tl_plot){"degrees from the highlight's middle", "shown", false, false, series,
                                      TL_POWER_COUNT},

@@ -1,4 +1,5 @@
 #include "render/brdf/brdf.h"
+#include "render/brdf/fresnel.h"
 
 #include "config/memory.h"
 

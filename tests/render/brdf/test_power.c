@@ -8,7 +8,7 @@ static void pow_is_the_ruler(void **state)
 {
     (void)state;
     struct tl_power_error error = tl_power_error(TL_POWER_POW, 64, TL_POWER_TABLE_SIZE);
-    assert_near(error.most, 0, 0);
+    assert_near(error.max, 0, 0);
     assert_near(error.band, 1.0 / 255, 1e-9);
     assert_true(error.levels >= 255); /* the sweep ends on the border to level 0 */
 }
@@ -44,8 +44,8 @@ static void the_table_is_weak_near_one(void **state)
             double chord = 0, h = 1.0 / (size - 1), low = pow(1 - h, n);
             for (int i = 0; i <= 1000; i++) /* over the last two values */
                 chord = fmax(chord, low + (1 - low) * i / 1000.0 - pow(1 - h + h * i / 1000.0, n));
-            assert_near(error.most_near_one, chord, 0.55 / 255);
-            assert_near(error.most, error.most_near_one, 1.1 / 255);
+            assert_near(error.max_near_one, chord, 0.55 / 255);
+            assert_near(error.max, error.max_near_one, 1.1 / 255);
         }
     }
 }
@@ -60,7 +60,7 @@ static void banding_grows_with_the_exponent(void **state)
         struct tl_power_error fixed = tl_power_error(TL_POWER_FIXED8, n, TL_POWER_TABLE_SIZE);
         struct tl_power_error table = tl_power_error(TL_POWER_TABLE, n, TL_POWER_TABLE_SIZE);
         printf("%4d %20d  %.4f  %.4f  %.4f | %21d  %.4f  %.4f  %.4f  %.4f\n", n, fixed.levels, fixed.band,
-               fixed.rms, fixed.most, table.levels, table.band, table.rms, table.most, table.most_near_one);
+               fixed.rms, fixed.max, table.levels, table.band, table.rms, table.max, table.max_near_one);
         assert_true(fixed.levels < before.levels && fixed.band > before.band);
         /* No more levels than there are different cosines in the highlight. */
         assert_true(fixed.levels <= 255 * (1 - pow(0.5 / 255, 1.0 / n)) + 2);

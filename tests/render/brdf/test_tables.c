@@ -1,6 +1,7 @@
 #include "render/brdf/tables.h"
 
 #include "config/memory.h"
+#include "render/brdf/fresnel.h"
 #include "render/brdf/table_error.h"
 
 #include "tests/testing.h"
@@ -24,7 +25,7 @@ static struct tl_brdf brdf_of(int model, float glossiness, int fresnel)
 static double away_of(const struct tl_brdf *brdf, int size, int precision)
 {
     struct tl_brdf_table_params params = {.size = size, .precision = precision, .range = TL_RANGE_SCALED};
-    return tl_brdf_table_error(brdf, &params).away;
+    return tl_brdf_table_error(brdf, &params).steep;
 }
 
 /* 512 texels in float: half a per cent, for each model. A bilinear table errs by the square of its step, so a
@@ -91,8 +92,8 @@ static void banks_by_angles_is_finer(void **state)
     params.angles = true;
     struct tl_table_error angles = tl_brdf_table_error(&brdf, &params);
     printf("banks, g 0.98, over cosines: %.3f %% away, %.3f %% grazing; over angles: %.3f %%, %.3f %%\n",
-           100 * cosines.away, 100 * cosines.grazing, 100 * angles.away, 100 * angles.grazing);
-    assert_true(cosines.away <= 0.005 && angles.away <= 0.005 && angles.grazing < cosines.grazing);
+           100 * cosines.steep, 100 * cosines.grazing, 100 * angles.steep, 100 * angles.grazing);
+    assert_true(cosines.steep <= 0.005 && angles.steep <= 0.005 && angles.grazing < cosines.grazing);
 }
 
 /* A2. The factor G / (pi cos b) reaches 1.13/w: cut at 1 it darkens grazing views, the more the shinier the
@@ -147,12 +148,12 @@ static void constants_trade_grazing_views_for_steps(void **state)
             .size = 512, .range = TL_RANGE_SCALED, .constant = constants[i]};
         errors[i] = tl_brdf_table_error(&brdf, &params);
         printf("v_grooves, 8 bits, constant %4.0f: %.2f %% away, %.2f %% grazing, %.1f %% too dark there\n",
-               (double)constants[i], 100 * errors[i].away, 100 * errors[i].grazing,
+               (double)constants[i], 100 * errors[i].steep, 100 * errors[i].grazing,
                100 * errors[i].darkening);
     }
     assert_true(errors[1].darkening < errors[0].darkening / 2);
-    assert_true(errors[1].away < errors[3].away / 5);
-    assert_true(errors[1].away < errors[0].away / 5); /* 1 / (pi n.v) is above 1 from 71 degrees on */
+    assert_true(errors[1].steep < errors[3].steep / 5);
+    assert_true(errors[1].steep < errors[0].steep / 5); /* 1 / (pi n.v) is above 1 from 71 degrees on */
 }
 
 /* Ambient, diffuse and gloss from one look-up. */
@@ -167,8 +168,8 @@ static void folded_tables_hold_three_terms(void **state)
                                               .ambient = {{0.02f, 0.03f, 0.01f}},
                                               .diffuse = {{0.5f, 0.3f, 0.6f}}};
         struct tl_table_error error = tl_brdf_table_error(&brdf, &params);
-        printf("%s, folded: %.4f %%\n", names[model], 100 * error.away);
-        assert_true(error.away <= 0.005);
+        printf("%s, folded: %.4f %%\n", names[model], 100 * error.steep);
+        assert_true(error.steep <= 0.005);
         struct tl_brdf_tables tables = tl_brdf_tables_make(&brdf, &params);
         assert_int_equal(tables.count, 1);
         float inputs[TL_AXIS_COUNT] = {[TL_AXIS_N_DOT_V] = 0.5f,
@@ -219,7 +220,7 @@ static void sizes_are_free(void **state)
                                                                   : 3;
             size_t lines = model >= TL_REFLECT_WARD ? 3 : 0, area = (size_t)size * (size_t)size;
             assert_int_equal(error.bytes, (squares * area + lines * (size_t)size) << params.precision);
-            assert_true(isfinite(error.away) && isfinite(error.grazing));
+            assert_true(isfinite(error.steep) && isfinite(error.grazing));
         }
     }
 }

@@ -7,6 +7,7 @@
 #include "config/memory.h"
 #include "render/env/exponent.h"
 #include "render/reference/reference.h"
+#include "render/reference/scene.h"
 
 #include "tests/testing.h"
 

@@ -1,10 +1,10 @@
-/* Directions drawn from an environment, in both layouts, with a yaw. */
+/* Directions sampled from an environment, in both layouts, with a yaw. */
 #include "config/memory.h"
 #include "render/reference/sky.h"
 
 #include "tests/testing.h"
 
-#define DRAWS 20000
+#define SAMPLES 20000
 
 /* Sizes that are no powers of two; a bright texel on a dim slope. */
 static tl_environment environment_of(enum tl_env_layout layout)
@@ -38,7 +38,7 @@ static void test_curve(void **state)
     }
 }
 
-/* What is drawn is what is seen there: unit direction, radiance and density, but where rounding puts a
+/* What is sampled is what is seen there: unit direction, radiance and density, but where rounding puts a
  * direction over the border of its texel. */
 static void test_draw_and_look_agree(void **state)
 {
@@ -48,14 +48,14 @@ static void test_draw_and_look_agree(void **state)
         struct tl_sky sky;
         int differ = 0;
         tl_sky_make(&environment, 1.3f, &sky);
-        for (int i = 0; i < DRAWS; i++) {
-            struct tl_sky_sample drawn = tl_sky_sample_at(&sky, (i + 0.37) / DRAWS);
-            struct tl_sky_sample seen = tl_sky_lookup(&sky, drawn.direction);
-            assert_near(glms_vec3_norm(drawn.direction), 1, 1e-6);
-            differ += drawn.radiance.x != seen.radiance.x ||
-                      fabsf(drawn.density - seen.density) > 1e-5f * drawn.density;
+        for (int i = 0; i < SAMPLES; i++) {
+            struct tl_sky_sample sampled = tl_sky_sample_at(&sky, (i + 0.37) / SAMPLES);
+            struct tl_sky_sample seen = tl_sky_lookup(&sky, sampled.direction);
+            assert_near(glms_vec3_norm(sampled.direction), 1, 1e-6);
+            differ +=
+                sampled.radiance.x != seen.radiance.x || fabsf(sampled.pdf - seen.pdf) > 1e-5f * sampled.pdf;
         }
-        assert_true(differ <= DRAWS / 1000);
+        assert_true(differ <= SAMPLES / 1000);
         tl_sky_release(&sky);
         tl_environment_release(&environment);
     }
@@ -72,14 +72,14 @@ static void test_measure(void **state)
         struct tl_sky sky;
         tl_sky_make(&environment, -2.1f, &sky);
         double area = 0, light = 0, first[3] = {0, 0, 0}, second[3] = {0, 0, 0};
-        for (int i = 0; i < DRAWS; i++) {
-            struct tl_sky_sample drawn = tl_sky_sample_at(&sky, (i + 0.5) / DRAWS);
-            double weight = 1 / ((double)drawn.density * DRAWS);
+        for (int i = 0; i < SAMPLES; i++) {
+            struct tl_sky_sample sampled = tl_sky_sample_at(&sky, (i + 0.5) / SAMPLES);
+            double weight = 1 / ((double)sampled.pdf * SAMPLES);
             area += weight;
-            light += weight * (double)(drawn.radiance.x + drawn.radiance.y + drawn.radiance.z) / 3;
+            light += weight * (double)(sampled.radiance.x + sampled.radiance.y + sampled.radiance.z) / 3;
             for (int c = 0; c < 3; c++) {
-                first[c] += weight * (double)drawn.direction.raw[c];
-                second[c] += weight * pow((double)drawn.direction.raw[c], 2);
+                first[c] += weight * (double)sampled.direction.raw[c];
+                second[c] += weight * pow((double)sampled.direction.raw[c], 2);
             }
         }
         assert_near(area / (4 * M_PI), 1, 1e-3);
