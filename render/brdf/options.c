@@ -11,7 +11,7 @@ static const char *const fresnel_names[] = {"schlick", "dielectric", "conductor"
 typedef struct tl_material_params material_params;
 static const struct tl_option material_rows[] = {
     TL_OPTION_BOOL(material_params, use_file, AFFECTS,
-                   "keep the materials of the garment's file where it has them"),
+                   "keep the materials of the garment's file, if it has any"),
     TL_OPTION_COLOUR(material_params, diffuse, AFFECTS, 0, 1,
                      "share of light scattered evenly; larger is brighter"),
     TL_OPTION_COLOUR(material_params, specular, AFFECTS, 0, 1,

@@ -44,7 +44,7 @@ tl_image tl_bake_smaller(const tl_image *heights, int width, int height)
     return small;
 }
 
-/* Of neighbours along one axis: their texels, and how many texels lie between them. */
+/* The neighbouring texels along one axis and their distance in texels. */
 struct neighbours {
     int before, after, distance;
 };
@@ -55,7 +55,7 @@ static struct neighbours neighbours_of(int at, int size, bool clamp)
     return (struct neighbours){before, after, clamp ? after - before : 2};
 }
 
-/* Change of height for a repeat, by central differences. */
+/* Change of height per repeat, by central differences. */
 static float difference(const float *row_before, const float *row_after, int before, int after, int size,
                         int distance)
 {
@@ -145,7 +145,7 @@ static float area_of(vec2s a, vec2s b, vec2s c)
     return (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
 }
 
-/* The texels of one row whose middles lie in the triangle. */
+/* Bakes the texels of one row whose centres lie in the triangle. */
 static void bake_row(const tl_mesh *mesh, const uint32_t *corners, const tl_image *normals, tl_image *out,
                      int row)
 {
@@ -163,7 +163,7 @@ static void bake_row(const tl_mesh *mesh, const uint32_t *corners, const tl_imag
     }
 }
 
-/* Rows own their texels, so that threads do not show. */
+/* Each row is written by one thread, so that the result does not depend on their number. */
 tl_image tl_bake_object_normals(const tl_mesh *mesh, const tl_image *normals, int width, int height)
 {
     tl_image out = tl_image_create(width, height, 3, TL_IMAGE_F32);
@@ -183,8 +183,8 @@ tl_image tl_bake_object_normals(const tl_mesh *mesh, const tl_image *normals, in
 
 /* ---- Horizons ---- */
 
-/* Metres along (x, y) in which the map moves on by half a texel, and how many of them reach as far as shadows
- * do. */
+/* The distance (m) along (x, y) that corresponds to half a texel, and the number of such steps within the
+ * reach of shadows. */
 static float half_texel(const struct tl_height_field *field, float x, float y, int *count)
 {
     vec2s moved = tl_field_moved(field, (vec2s){{0, 0}}, x, y);
@@ -196,8 +196,8 @@ static float half_texel(const struct tl_height_field *field, float x, float y, i
     return 0.5f / texels;
 }
 
-/* The largest slope from a height at uv to the field along (x, y). Nothing farther than where the highest
- * point would rise above it can matter. */
+/* The largest slope from a height at uv to the field along (x, y). The search stops where even the highest
+ * point could not exceed the slope found so far. */
 static float horizon_slope(const struct tl_height_field *field, vec2s uv, float from_m, float x, float y)
 {
     int count = 0;
@@ -263,7 +263,7 @@ static float horizon_texel(const struct tl_horizon_maps *maps, const struct tl_h
            255;
 }
 
-/* Of one angle, between texels. */
+/* The sine of one angle, interpolated between texels. */
 static float horizon_at(const struct tl_horizon_maps *maps, const struct tl_height_field *field, vec2s uv,
                         int angle)
 {
@@ -291,8 +291,8 @@ float tl_horizon_sine(const struct tl_horizon_maps *maps, const struct tl_height
 
 /* ---- The spread of normals ---- */
 
-/* A texel's normal, made unit: bytes round it, and a length below 1 would count as spread. Outwards where
- * there is no direction. */
+/* The normal of a texel, renormalised, because bytes are rounded and a length below 1 would count as spread.
+ * +Z where the texel has no direction. */
 static vec3s unit_normal(const tl_image *normals, size_t texel)
 {
     float n[3];

@@ -1,18 +1,19 @@
-/* Bumped normals: Blinn's form and the shorter ones that stand for it [004]. World or any other space; pure.
- */
+/* Bumped normals: Blinn's form and the shorter forms that approximate it [004]. In any space; pure; threads:
+ * any. */
 #ifndef TOILE_RENDER_DETAIL_BUMPS_H
 #define TOILE_RENDER_DETAIL_BUMPS_H
 
 #include <cglm/struct.h>
 
-/* N' = N + h_u (N_n x P_v) + h_v (P_u x N_n), N = P_u x P_v, normalised [Blinn 1978]; `normal` is N_n, which
- * a mesh smooths, so that N = |P_u x P_v| N_n. Heights in the unit of positions; derivatives by the same u
- * and v. Where P_u x P_v points the other way (v down, mirrored UVs) its sign turns the offsets over with it.
- * `normal` where the surface has no such derivatives. */
+/* Blinn's bumped normal: N' = N + h_u (N_n x P_v) + h_v (P_u x N_n), N = P_u x P_v, normalised [Blinn 1978].
+ * `normal` is N_n, the interpolated normal of a mesh, so that N = |P_u x P_v| N_n. Heights have the unit of
+ * positions; h and P are differentiated by the same u and v. Where P_u x P_v points to the other side (v
+ * down, mirrored UVs) its sign is applied to the offsets. Returns `normal` where the surface has no such
+ * derivatives. */
 vec3s tl_blinn_normal(vec3s normal, vec3s p_u, vec3s p_v, float h_u, float h_v);
 
-/* The square patch: x tangent + y bitangent + z normal, normalised; for a tangent-space normal (-h_x, -h_y,
- * 1), or a multiple of it, by slopes in metres a metre. `handedness` as MikkTSpace has it. */
+/* The square patch approximation: x tangent + y bitangent + z normal, normalised, for a tangent-space normal
+ * (-h_x, -h_y, 1), or a multiple of it, with slopes in metres per metre. `handedness` as in MikkTSpace. */
 vec3s tl_patch_normal(vec3s normal, vec3s tangent, float handedness, vec3s mapped);
 
 #endif

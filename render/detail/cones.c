@@ -8,21 +8,21 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-/* What is nearer than two texels is looked at by halves of them, where bounds by whole ones would leave
- * nothing of a cone. */
+/* Up to two texels the field is sampled at half texels; bounds by whole texels would leave a cone of width
+ * 0. */
 #define NEAR_HALVES 4
 #define MARGIN      (NEAR_HALVES + 2)
-/* So many times as far away as it is large, a block counts as a whole: the cone is a little narrower for it.
- */
+/* A block counts as a whole when its distance exceeds its size by this factor. The cone gets slightly
+ * narrower by that. */
 #define FAR 6.0f
 
-/* Of the field around a texel's middle, half a texel each way. */
+/* Range of the field within half a texel of a texel centre. */
 struct patch {
     float low, high;
-    float slope_least[2], slope_most[2]; /* along columns and rows, for a texel */
+    float slope_min[2], slope_max[2]; /* along columns and rows, per texel */
 };
 
-/* Highest point of blocks of patches, each level of half as many a side. */
+/* Maximum heights of blocks of patches; each level has half as many blocks per side. */
 struct level {
     int width, height;
     float *high;
@@ -30,8 +30,8 @@ struct level {
 
 #define LEVELS_MAX 16
 struct cells {
-    int width, height, copies_x, copies_y; /* how many repeats are looked at on each side */
-    float *halves; /* heights at every half texel, middles at odd places, with a margin all around */
+    int width, height, copies_x, copies_y; /* number of repeats examined on each side */
+    float *halves; /* heights at every half texel, texel centres at odd indices, with a margin all around */
     struct patch *patches;
     int level_count;
     struct level levels[LEVELS_MAX];
@@ -50,8 +50,8 @@ static void widen(float range[2], float value)
     range[1] = fmaxf(range[1], value);
 }
 
-/* The field is bilinear between middles of texels: its extremes around one, and those of its slopes, are at
- * the middle, half way to the neighbours and where four texels meet. */
+/* The range of a patch. The field is bilinear between texel centres, so its extremes around a texel, and
+ * those of its slopes, lie at the centre, half way to the neighbours, and where four texels meet. */
 static struct patch patch_of(const struct tl_height_field *field, int column, int row)
 {
     const tl_image *heights = field->heights;
@@ -67,11 +67,13 @@ static struct patch patch_of(const struct tl_height_field *field, int column, in
     for (int j = 0; j < 3; j++)
         for (int i = 0; i < 3; i++) {
             widen(range, 0.25f * (at[1][1] + at[1][i] + at[j][1] + at[j][i]));
-            int beside = i == 0 ? 0 : 1, below = j == 0 ? 0 : 1;
+            int column_pair = i == 0 ? 0 : 1, row_pair = j == 0 ? 0 : 1;
             if (i != 1)
-                widen(across, 0.5f * (at[1][beside + 1] - at[1][beside] + at[j][beside + 1] - at[j][beside]));
+                widen(across, 0.5f * (at[1][column_pair + 1] - at[1][column_pair] + at[j][column_pair + 1] -
+                                      at[j][column_pair]));
             if (j != 1)
-                widen(down, 0.5f * (at[below + 1][1] - at[below][1] + at[below + 1][i] - at[below][i]));
+                widen(down,
+                      0.5f * (at[row_pair + 1][1] - at[row_pair][1] + at[row_pair + 1][i] - at[row_pair][i]));
         }
     return (struct patch){range[0], range[1], {across[0], down[0]}, {across[1], down[1]}};
 }
@@ -134,24 +136,24 @@ static void release(struct cells *cells)
     free(cells->patches);
 }
 
-/* A cone that grows narrower as more of the field is known. */
+/* A cone; it gets narrower as more of the field is examined. */
 struct cone {
     int column, row;
-    float apex;  /* the lowest that it may stand */
-    float ratio; /* texels for a metre */
+    float apex;  /* the lowest position of the apex */
+    float ratio; /* texels per metre */
 };
 
-/* Whether a field of such slopes can fall along any way between two texels that lie (x, y) apart. */
+/* True if a field with slopes in the ranges of the patch can fall along any line between two texels that are
+ * (x, y) apart. */
 static bool may_fall(const struct patch *patch, float x, float y)
 {
     const float to[2] = {x, y};
-    float least = 0;
+    float min = 0;
     for (int axis = 0; axis < 2; axis++) {
-        float a = patch->slope_least[axis], b = patch->slope_most[axis], near = to[axis] - 1,
-              far = to[axis] + 1;
-        least += fminf(fminf(a * near, a * far), fminf(b * near, b * far));
+        float a = patch->slope_min[axis], b = patch->slope_max[axis], near = to[axis] - 1, far = to[axis] + 1;
+        min += fminf(fminf(a * near, a * far), fminf(b * near, b * far));
     }
-    return least < 0;
+    return min < 0;
 }
 
 static void narrow_by_patch(struct cone *cone, const struct cells *cells, int x, int y)
@@ -174,12 +176,12 @@ struct block {
     int level, x, y;
 };
 
-/* How a block, shifted by whole repeats, bounds a cone at the narrowest. */
+/* The tightest bound that a block, shifted by whole repeats, can set on a cone. */
 struct bound {
     float distance, rise;
 };
 
-/* Texels reach half a texel. */
+/* Texels extend half a texel to each side, hence the margin of one. */
 static struct bound bound_of(const struct cone *cone, const struct cells *cells, struct block block,
                              int shift_x, int shift_y)
 {
@@ -207,7 +209,7 @@ static void narrow_by_repeat(struct cone *cone, const struct cells *cells, int s
             narrow_by_patch(cone, cells, block.x + shift_x, block.y + shift_y);
             continue;
         }
-        /* The nearest quarter is looked at first: most often it makes the others not matter. */
+        /* The nearest quarter is examined first, because it usually makes the others irrelevant. */
         const struct level *finer = &cells->levels[block.level - 1];
         int half = 1 << (block.level - 1);
         int nearest = (cone->column >= (2 * block.x + 1) * half + shift_x ? 1 : 0) |
@@ -221,7 +223,7 @@ static void narrow_by_repeat(struct cone *cone, const struct cells *cells, int s
     }
 }
 
-/* By what is (x, y) half texels away from a place of the apex's texel, if the field falls from there on. */
+/* Narrows the cone by the point (x, y) half texels away, if the field falls from there on. */
 static void narrow_by_half(struct cone *cone, const float *from, ptrdiff_t row_length, int x, int y)
 {
     const float *here = from + y * row_length + x;
@@ -247,7 +249,8 @@ static void narrow_near(struct cone *cone, const struct cells *cells)
                 narrow_by_half(cone, corner + (k / 3) * row_length + k % 3, row_length, x, y);
 }
 
-/* Beyond the repeats that are looked at, everything may be as high as anything is. */
+/* The cone at a texel. Beyond the examined repeats the field is assumed to have its maximum height
+ * everywhere. */
 static float cone_at(const struct cells *cells, int column, int row)
 {
     const struct patch *patch = &cells->patches[(size_t)row * (size_t)cells->width + (size_t)column];

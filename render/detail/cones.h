@@ -1,22 +1,21 @@
-/* How far a ray over a height field may go at once: relaxed cones [Policarpo and Oliveira 2007, after Dummer
- * 2006].
+/* Relaxed cone maps for ray marching of height fields [Policarpo and Oliveira 2007, after Dummer 2006].
  *
- * Over every texel stands a cone, its apex on the field, so wide that a ray which comes down into it from
- * above goes under the field at most once before it leaves it. A search that walks from cone to cone steps
- * over no crest, and once it is under the field, halving its last step finds the place where it went under
- * and no other. Two points of the field bound a cone: only where the field falls away from the apex can a ray
- * that was under it be over it again, so that slopes which rise do not count, however steep.
+ * Every texel stores the width of a cone with its apex on the field, such that a ray which enters the cone
+ * from above crosses the field at most once before it leaves the cone. A march from cone to cone does not
+ * step over a crest, and once it is below the field, bisection of the last step finds the only crossing. Each
+ * pair of points of the field bounds a cone: only where the field falls away from the apex can a ray that was
+ * below it come above it again, so rising slopes do not bound the cone, however steep they are.
  *
- * Pure; deterministic at any thread count. */
+ * Pure; deterministic at any number of threads. */
 #ifndef TOILE_RENDER_DETAIL_CONES_H
 #define TOILE_RENDER_DETAIL_CONES_H
 
 #include "render/detail/field.h"
 
-/* Of the field's heights, one texel for each of theirs: U8 x2, of the sheet from above and from below. A cone
- * opens by r = DETAIL_CONE_TEXELS / depth * q / (1 - q) texels for a metre of height, q being a byte's share
- * of 255, rounded down; depth is high_m - low_m. `texel`: how many texels of the map that is not made smaller
- * one of these is; r counts the former. */
+/* The cone map of a field, one texel per height: U8 x2, for the sheet from above and from below. A cone opens
+ * by r = DETAIL_CONE_TEXELS / depth * q / (1 - q) texels per metre of height, where q is byte / 255, rounded
+ * down, and depth is high_m - low_m. `texel` is the size of a texel of this field in texels of the full map,
+ * in which r is measured. */
 tl_image tl_bake_cones(const struct tl_height_field *field, float texel);
 
 #endif

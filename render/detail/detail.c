@@ -10,7 +10,8 @@ static bool has_weave(const tl_material *material)
     return material->weave && material->weave->size_m[0] > 0 && material->weave->size_m[1] > 0;
 }
 
-/* Deepest at 0 and the mesh at 1. A step in metres is (x, -y) / uv_metres in UV. */
+/* The heights of a height map: 0 is deepest, 1 is the surface of the mesh. A step (x, y) in metres is (x, -y)
+ * / uv_metres in UV. */
 static void heights_of_map(const tl_material *material, float uv_metres, float scale,
                            struct tl_detail_heights *out)
 {

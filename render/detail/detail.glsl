@@ -1,9 +1,7 @@
-// Fabric detail: where a surface's height field is seen, and what it shadows; the GLSL face of field.c. What is done is
-// chosen by DETAIL_MODE, DETAIL_SHADOW and DETAIL_MINIFY, numbered as in options.h.
-//
-// Its uniforms are those of surface.glsl.
-//
-// Tangent space: x along u, y along minus v, z outwards. Its back sees the same sheet from below: heights turn over.
+// Fabric detail: where a height field is visible and what it shadows; the GLSL counterpart of field.c. DETAIL_MODE,
+// DETAIL_SHADOW and DETAIL_MINIFY are the numbers of the enums in options.h. The uniforms are declared in surface.glsl.
+// Tangent space: x along u, y along minus v, z outwards. The back face sees the same sheet from below, with its heights
+// negated.
 #include "surface.glsl"
 #include "detail_terms.glsl"
 
@@ -21,22 +19,23 @@
 #define DETAIL_TOKSVIG 1
 #define DETAIL_LEAN 2
 
-// Of detail_flags: which of its maps the part has, and where its field does not repeat.
+// Bits of detail_flags: the maps that the part has, and the axes along which its field does not repeat.
 const int DETAIL_OWN_MOMENTS = 1, DETAIL_WEAVE_MOMENTS = 2, DETAIL_HEIGHTS = 4, DETAIL_HORIZONS = 8;
 const int DETAIL_CLAMP_U = 16, DETAIL_CLAMP_V = 32;
 
 layout(binding = 8) uniform sampler2D detail_heights;       // m
-layout(binding = 9) uniform sampler2DArray detail_horizons; // sines at DETAIL_ANGLES angles, four a layer; then the back's
+layout(binding = 9) uniform sampler2DArray detail_horizons; // sines at DETAIL_ANGLES angles, four per layer; then those of the back
 layout(binding = 10) uniform sampler2D detail_own_moments;  // of the normal map: (x, y, x^2, y^2)
 layout(binding = 11) uniform sampler2D detail_weave_moments;
-layout(binding = 12) uniform sampler2D detail_cones; // of the front, and of the back
+layout(binding = 12) uniform sampler2D detail_cones; // of the front and of the back
 
 bool has_detail(int map)
 {
     return (detail_flags & map) != 0;
 }
 
-// Where a surface is seen: moved UV, the height there on the side that is seen, whether it lies beyond the field's end.
+// The visible point of a surface: displaced UV, height there on the visible side, and whether it lies beyond the end of
+// the field.
 struct DetailPlace {
     vec2 uv;
     float height;
@@ -49,7 +48,7 @@ vec2 detail_field_uv(vec2 uv)
     return vec2(dot(detail_rows[0], point), dot(detail_rows[1], point));
 }
 
-// A map that lies over the field, at its level of detail.
+// Samples a map of the field at its level of detail.
 vec4 detail_texel(sampler2D map, vec2 uv)
 {
 #if defined(VERTEX_STAGE)
@@ -63,7 +62,7 @@ vec4 detail_texel(sampler2D map, vec2 uv)
 }
 
 #ifndef VERTEX_STAGE
-// Columns: tangent, bitangent and normal at right angles, of the outside. `v * frame` is v in tangent space.
+// Orthonormal tangent, bitangent and normal of the front as columns. `v * frame` is v in tangent space.
 mat3 detail_frame(vec3 smooth_normal, vec4 tangent)
 {
     vec3 along = tangent.xyz - smooth_normal * dot(smooth_normal, tangent.xyz);
@@ -73,7 +72,7 @@ mat3 detail_frame(vec3 smooth_normal, vec4 tangent)
 }
 
 #if DETAIL_MODE >= DETAIL_PARALLAX || DETAIL_SHADOW == DETAIL_SHADOW_RELIEF
-// Level of the field whose texels are as large as a sample is; of the unmoved UV.
+// The mip level of the field at which texels have the size of a sample, from the UV before displacement.
 float detail_level(vec2 uv)
 {
     vec2 place = detail_field_uv(uv) * vec2(textureSize(detail_heights, 0));
@@ -81,14 +80,14 @@ float detail_level(vec2 uv)
     return 0.5 * log2(max(max(dot(across, across), dot(down, down)), 1.0));
 }
 
-// Height of a ray over the field, `rise` metres above the mesh and `along` the surface: UV for a metre of height.
+// Clearance of a ray at height `rise` (m over the mesh) above the field. `along` is the UV per metre of height.
 float detail_clearance(vec2 uv, vec2 along, float rise, float from, float side, float level)
 {
     vec2 place = detail_field_uv(uv + (rise - from) * along);
     return rise - side * textureLod(detail_heights, place, level).r;
 }
 
-// UV for a metre of height, along a direction of tangent space.
+// UV per metre of height, along a direction of tangent space.
 vec2 detail_along(vec3 direction, float side)
 {
     return vec2(direction.x, -direction.y) * (detail_slant(side * direction.z) / detail_range.z);
@@ -101,7 +100,7 @@ vec2 detail_bounds(float side)
 #endif
 
 #if DETAIL_MODE == DETAIL_RELIEF
-// The height at which a ray through uv on the mesh meets the field: tl_field_relief.
+// The height at which a ray through uv on the mesh hits the field, as in tl_field_relief.
 float detail_hit(vec2 uv, vec2 along, float side, float level)
 {
     int levels = textureQueryLevels(detail_heights), coarse = min(int(level), levels - 1);
@@ -134,7 +133,7 @@ float detail_hit(vec2 uv, vec2 along, float side, float level)
 }
 #endif
 
-// `view` towards the eye in the outside's tangent space; `side` is -1 where the back is seen.
+// The visible point. `view` points to the eye in the tangent space of the front; `side` is -1 for a back face.
 DetailPlace detail_place(vec2 uv, vec3 view, float side)
 {
     DetailPlace place = DetailPlace(uv, 0.0, false);
@@ -168,32 +167,32 @@ struct DetailHorizon {
     vec4 sines[DETAIL_ANGLES / 4]; // at angles k DETAIL_STEP from the tangent
 };
 
-// Where horizons are read, and how that changes from sample to sample.
-struct DetailSight {
+// The coordinates at which horizons are read and their derivatives.
+struct DetailLookup {
     vec2 place, across, down;
-    int layer; // the first of the side that is seen
+    int layer; // first layer of the visible side
 };
 
-DetailSight detail_sight(vec2 uv, float side, vec2 across, vec2 down)
+DetailLookup detail_lookup(vec2 uv, float side, vec2 across, vec2 down)
 {
     mat2 turned = transpose(mat2(detail_rows[0].xy, detail_rows[1].xy));
-    return DetailSight(detail_field_uv(uv), turned * across, turned * down, side > 0.0 ? 0 : DETAIL_ANGLES / 4);
+    return DetailLookup(detail_field_uv(uv), turned * across, turned * down, side > 0.0 ? 0 : DETAIL_ANGLES / 4);
 }
 
-vec4 detail_horizon_layer(DetailSight sight, int layer)
+vec4 detail_horizon_layer(DetailLookup lookup, int layer)
 {
-    return textureGrad(detail_horizons, vec3(sight.place, float(sight.layer + layer)), sight.across, sight.down);
+    return textureGrad(detail_horizons, vec3(lookup.place, float(lookup.layer + layer)), lookup.across, lookup.down);
 }
 
-DetailHorizon detail_horizon(DetailSight sight)
+DetailHorizon detail_horizon(DetailLookup lookup)
 {
     DetailHorizon horizon;
     for (int i = 0; i < DETAIL_ANGLES / 4; i++)
-        horizon.sines[i] = detail_horizon_layer(sight, i);
+        horizon.sines[i] = detail_horizon_layer(lookup, i);
     return horizon;
 }
 
-// The angle before a direction; `turned`: how far the direction lies beyond it.
+// Index of the angle before a direction; `turned` is the angle from there to the direction.
 int detail_angle(vec2 toward, out float turned)
 {
     float turn = dot(toward, toward) > 0.0 ? atan(toward.y, toward.x) / DETAIL_STEP + float(DETAIL_ANGLES) : 0.0;
@@ -208,16 +207,17 @@ float detail_horizon_sine(DetailHorizon horizon, vec2 toward)
     return detail_between(horizon.sines[first / 4][first % 4], horizon.sines[second / 4][second % 4], turned, DETAIL_STEP);
 }
 
-// The same where one direction is all that is asked for.
-float detail_horizon_toward(DetailSight sight, vec2 toward)
+// The same for a single direction, reading two layers only.
+float detail_horizon_toward(DetailLookup lookup, vec2 toward)
 {
     float turned;
     int first = detail_angle(toward, turned), second = (first + 1) % DETAIL_ANGLES;
-    return detail_between(detail_horizon_layer(sight, first / 4)[first % 4],
-                          detail_horizon_layer(sight, second / 4)[second % 4], turned, DETAIL_STEP);
+    return detail_between(detail_horizon_layer(lookup, first / 4)[first % 4],
+                          detail_horizon_layer(lookup, second / 4)[second % 4], turned, DETAIL_STEP);
 }
 
-// Share of an even sky that a place sees: `normal` in tangent space, of the side that is seen.
+// The fraction of the light of a uniform sky that reaches a point over its horizon; `normal` is in tangent space, on
+// the visible side.
 float detail_ambient(DetailHorizon horizon, vec3 normal)
 {
     float seen = 0.0, open = 0.0;
@@ -229,7 +229,7 @@ float detail_ambient(DetailHorizon horizon, vec3 normal)
     return open > 0.0 ? seen / open : 1.0;
 }
 
-// Share of a lobe about `mirror` (tangent space, of the side that is seen) that clears the horizon.
+// The fraction of a lobe about `mirror` (tangent space, visible side) above the horizon.
 float detail_gloss_seen(DetailHorizon horizon, vec3 mirror, float rough)
 {
     float width = max(sqrt(rough), 0.04);
@@ -237,19 +237,19 @@ float detail_gloss_seen(DetailHorizon horizon, vec3 mirror, float rough)
 }
 #endif
 
-// Share of a lamp's light that the surface's own bumps let through. `light` towards the lamp, in the outside's tangent
-// space; `across` and `down`: how the unmoved UV changes from sample to sample.
+// The fraction of a lamp's light that is not shadowed by the surface's own bumps. `light` points to the lamp in the
+// tangent space of the front; `across` and `down` are the derivatives of the UV before displacement.
 float detail_shadow(DetailPlace place, vec3 light, float side, vec2 across, vec2 down)
 {
 #if DETAIL_SHADOW == DETAIL_SHADOW_HORIZON
     if (has_detail(DETAIL_HORIZONS)) {
-        float horizon = detail_horizon_toward(detail_sight(place.uv, side, across, down), light.xy);
+        float horizon = detail_horizon_toward(detail_lookup(place.uv, side, across, down), light.xy);
         return detail_over_horizon(side * light.z, horizon, fwidth(side * light.z - horizon));
     }
 #elif DETAIL_SHADOW == DETAIL_SHADOW_RELIEF
     if (has_detail(DETAIL_HEIGHTS)) {
         vec2 bounds = detail_bounds(side);
-        vec2 along = vec2(light.x, -light.y) * (detail_climb(side * light.z) / detail_range.z); // UV for a metre of height
+        vec2 along = vec2(light.x, -light.y) * (detail_climb(side * light.z) / detail_range.z); // UV per metre of height
         vec2 texels = vec2(textureSize(detail_heights, 0));
         mat2 turned = transpose(mat2(detail_rows[0].xy, detail_rows[1].xy));
         vec2 dx = turned * across * texels, dy = turned * down * texels;
@@ -272,7 +272,7 @@ float detail_shadow(DetailPlace place, vec3 light, float side, vec2 across, vec2
 
 // ---- Averaged normals ----
 
-// Of a tangent-space normal and what became of it: variance of its slopes along x and y, length of the mean.
+// Statistics of averaged normals: mean tangent-space normal, variance of its slopes along x and y, length of the mean.
 struct Bumps {
     vec3 normal;
     vec2 spread;
@@ -284,10 +284,10 @@ Bumps detail_bumps(vec4 moments, float scale)
     float z = sqrt(max(1.0 - moments.z - moments.w, 0.0));
     vec3 mean = vec3(scale * moments.xy, z);
     vec2 spread = max(moments.zw - moments.xy * moments.xy, 0.0) * scale * scale;
-    return Bumps(mean, spread, sqrt(clamp(1.0 - spread.x - spread.y, 0.0025, 1.0))); // but for what z varies itself
+    return Bumps(mean, spread, sqrt(clamp(1.0 - spread.x - spread.y, 0.0025, 1.0))); // neglecting the variance of z
 }
 
-// 1 - g of the gloss over averaged normals; `view` in tangent space.
+// Roughness 1 - g over averaged normals; `view` is in tangent space.
 float detail_rough(float rough, Bumps bumps, vec3 view)
 {
 #if DETAIL_MINIFY == DETAIL_TOKSVIG
@@ -303,8 +303,8 @@ float detail_rough(float rough, Bumps bumps, vec3 view)
 }
 
 #ifndef VERTEX_STAGE
-// Blinn's N' = N + h_u (N_n x P_v) + h_v (P_u x N_n), by the derivatives of the triangle in the image. `mapped` has slopes
-// over the metres that a UV unit should have.
+// Blinn's N' = N + h_u (N_n x P_v) + h_v (P_u x N_n), with screen-space derivatives of the triangle. `mapped` has
+// slopes per metre of the nominal size of a UV unit.
 vec3 detail_blinn(vec3 mapped, vec3 normal, vec3 point, vec2 uv)
 {
     vec3 point_x = dFdx(point), point_y = dFdy(point);

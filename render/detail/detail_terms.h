@@ -1,10 +1,10 @@
-/* The C face of detail_terms.glsl: detail's scalar terms, one text for both languages. Pure. */
+/* The scalar terms of detail_terms.glsl in C, from the same text. Pure; threads: any. */
 #ifndef TOILE_RENDER_DETAIL_TERMS_H
 #define TOILE_RENDER_DETAIL_TERMS_H
 
 #include "render/gpu/glsl.h"
 
-/* GLSL's names, while the file is read. */
+/* Names of GLSL, while the file is read. */
 #define TERM  static inline
 #define max   term_max
 #define clamp term_clamp

@@ -67,12 +67,12 @@ vec2s tl_field_parallax(const struct tl_height_field *field, vec2s uv, vec3s vie
     return tl_field_moved(field, uv, shift * view.x, shift * view.y);
 }
 
-/* A ray through uv on the mesh: where it is at a height, and how far it then is above the field. */
+/* A ray through uv on the mesh. */
 struct field_ray {
     const struct tl_height_field *field;
     vec2s uv;
-    float x, y;     /* metres along the surface for a metre of height */
-    float height_m; /* where it is at uv */
+    float x, y;     /* displacement along the surface per height */
+    float height_m; /* its height at uv */
 };
 
 static vec2s place_at(const struct field_ray *ray, float height)
@@ -86,7 +86,7 @@ static float clearance(const struct field_ray *ray, float height)
     return height - tl_field_height(ray->field, place_at(ray, height));
 }
 
-/* A part of a ray, from over the field to under it: heights, and how far from it they are. */
+/* A segment of a ray from above the field to below it: heights of its ends and their clearances. */
 struct bracket {
     float above, over, below, under;
 };
@@ -112,7 +112,7 @@ static struct field_ray view_ray(const struct tl_height_field *field, vec2s uv, 
     return (struct field_ray){field, uv, slant * view.x, slant * view.y, 0};
 }
 
-/* A byte's share of 255, of the texel that is nearest. */
+/* The value of the nearest texel of the cone map, byte / 255. */
 static float cone_at(const struct tl_height_field *field, vec2s uv)
 {
     int column = wrapped(floorf(uv.x * (float)field->cones->width), field->cones->width, field->clamp_u);
@@ -121,7 +121,7 @@ static float cone_at(const struct tl_height_field *field, vec2s uv)
     return (float)tl_image_bytes(field->cones)[2 * texel + (field->turned_over ? 1 : 0)] / 255;
 }
 
-/* Texels that a ray passes while it comes down a metre. */
+/* Texels that a ray passes per metre of descent. */
 static vec2s texels_down(const struct field_ray *ray)
 {
     vec2s along = tl_field_moved(ray->field, (vec2s){{0, 0}}, ray->x, ray->y);

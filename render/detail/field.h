@@ -1,8 +1,8 @@
-/* A height field over the tangent plane of a surface, and how it is seen: parallax [004], relief [004],
- * shadow. The pure counterpart of detail.glsl.
+/* A height field over the tangent plane of a surface, and its visibility: parallax [004], relief [004],
+ * shadows. The counterpart of detail.glsl on the CPU.
  *
- * Tangent space: x along u, y along minus v, z outwards; metres; directions unit, towards the viewer or the
- * light. Heights are over the mesh's own surface. Places are in repeats of the map (uv of its texels).
+ * Tangent space: x along u, y along minus v, z outwards; metres; unit directions towards the viewer or the
+ * light. Heights are above the surface of the mesh. Positions are in repeats of the map (uv of its texels).
  * Borrows the image; pure; threads: any. */
 #ifndef TOILE_RENDER_DETAIL_FIELD_H
 #define TOILE_RENDER_DETAIL_FIELD_H
@@ -16,42 +16,43 @@ struct tl_height_field {
     bool clamp_u, clamp_v;   /* else periodic */
     float repeats_per_m[4];  /* rows of the matrix from (x, y) in metres to repeats */
     float low_m, high_m;     /* of all heights */
-    bool turned_over;        /* the sheet from below: heights count downwards */
-    const tl_image *cones;   /* of tl_bake_cones, for relief; else NULL */
+    bool turned_over;        /* the sheet from below: heights are negated */
+    const tl_image *cones;   /* from tl_bake_cones, for relief; else NULL */
 };
 
-/* A map that is `width_m` x `height_m` large on the surface. Heights that are not finite are not allowed. */
+/* The field of a map of size `width_m` x `height_m` on the surface. All heights must be finite. */
 struct tl_height_field tl_height_field_make(const tl_image *heights, float width_m, float height_m,
                                             bool clamp_u, bool clamp_v);
 
 /* The same sheet seen from its back. */
 struct tl_height_field tl_height_field_back(const struct tl_height_field *field);
 
-/* Bilinear, as GL reads level 0. */
+/* Height at uv, bilinear as GL reads level 0. */
 float tl_field_height(const struct tl_height_field *field, vec2s uv);
-/* uv moved along the surface. */
+/* uv displaced along the surface by (x_m, y_m). */
 vec2s tl_field_moved(const struct tl_height_field *field, vec2s uv, float x_m, float y_m);
 
-/* T_n = T_0 + h V_xy / V_z, or without the division: the height at uv is taken for that of all around it. */
+/* Parallax mapping: T_n = T_0 + h V_xy / V_z, or without the division (`limited`). The height at uv is
+ * assumed for its whole neighbourhood. */
 vec2s tl_field_parallax(const struct tl_height_field *field, vec2s uv, vec3s view, bool limited);
 
-/* Where a ray towards the viewer's side, which meets the mesh at uv, meets the field. */
+/* The hit of a ray on the field, for the view ray through uv on the mesh. */
 struct tl_relief {
     vec2s uv;
     float height_m;
 };
-/* As images are drawn: at most `steps` from cone to cone, from high_m to low_m, then `refine` halvings of the
- * step in which the ray went under, then a straight line. The field must have cones. */
+/* Relief mapping as in the shaders: at most `steps` cone steps from high_m to low_m, then `refine` bisections
+ * of the step in which the ray went below the field, then linear interpolation. The field must have cones. */
 struct tl_relief tl_field_relief(const struct tl_height_field *field, vec2s uv, vec3s view, int steps,
                                  int refine);
-/* The truth that it is held against: `steps` of equal height, then halvings to the end. */
+/* The reference for it: `steps` of equal height, then bisection to convergence. */
 struct tl_relief tl_field_march(const struct tl_height_field *field, vec2s uv, vec3s view, int steps);
 
-/* Whether a light is seen from the field at uv, 0 or 1, by `steps` of equal height up to high_m, or as far as
+/* Visibility of a light from the field at uv, 0 or 1, by `steps` of equal height up to high_m, or as far as
  * DETAIL_REACH. */
 float tl_field_lit(const struct tl_height_field *field, vec2s uv, vec3s light, int steps);
 
-/* True where uv lies off a map that does not repeat: the silhouette's clip. */
+/* True where uv lies outside of a map that does not repeat; used to clip silhouettes. */
 bool tl_field_is_outside(const struct tl_height_field *field, vec2s uv);
 
 #endif

@@ -10,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* detail_flags, which say which maps there are (cones are where heights are): detail.glsl has the same
- * numbers. */
+/* Bits of detail_flags: the existing maps (cones exist where heights do). The same numbers as in
+ * detail.glsl. */
 enum {
     FLAG_OWN_MOMENTS = 1,
     FLAG_WEAVE_MOMENTS = 2,
@@ -27,7 +27,7 @@ static const int unit_flags[TL_DETAIL_UNITS] = {[TL_DETAIL_HEIGHTS] = FLAG_HEIGH
 
 struct tl_detail_entry {
     const tl_material
-        *material; /* of the part that it was made for; compared, and read while maps are made */
+        *material; /* of the part for which it was made; compared, and read while maps are made */
     float uv_metres;
     float low_m, high_m;
     float rows[6];
@@ -63,7 +63,8 @@ static tl_texture upload_heights(tl_gpu *gpu, const tl_image *image)
     return texture;
 }
 
-/* Halves cannot tell the small variances of small maps' narrow lobes; of large maps the memory counts. */
+/* Half floats do not resolve the small variances of narrow lobes. Large maps use them nevertheless, because
+ * of their size. */
 #define FLOAT_MOMENTS_SIDE 512
 
 static tl_texture upload_moments(tl_gpu *gpu, const tl_image *normals)
@@ -78,28 +79,29 @@ static tl_texture upload_moments(tl_gpu *gpu, const tl_image *normals)
     return texture;
 }
 
-/* Heights averaged until no side is longer than `most`. */
-static tl_image shrunk(const tl_image *image, int most)
+/* Averages heights until no side is longer than `full_size`. */
+static tl_image shrunk(const tl_image *image, int full_size)
 {
     int longest = image->width > image->height ? image->width : image->height;
-    int factor = (longest + most - 1) / most;
+    int factor = (longest + full_size - 1) / full_size;
     int width = image->width / factor > 1 ? image->width / factor : 1;
     int height = image->height / factor > 1 ? image->height / factor : 1;
     return tl_bake_smaller(image, width, height);
 }
 
-/* Of every level of the heights its own: an average is no bound. */
+/* Uploads cone maps. Each mip level is computed from the heights of its own resolution, because an average of
+ * cones is not a bound. */
 static tl_texture upload_cones(tl_gpu *gpu, const struct tl_height_field *field)
 {
-    tl_image most = shrunk(field->heights, TL_CONE_SIDE_MAX);
-    tl_texture texture = tl_texture_create(gpu, GL_TEXTURE_2D, GL_RG8, most.width, most.height, 1,
-                                           tl_texture_full_levels(most.width, most.height));
+    tl_image full_size = shrunk(field->heights, TL_CONE_SIDE_MAX);
+    tl_texture texture = tl_texture_create(gpu, GL_TEXTURE_2D, GL_RG8, full_size.width, full_size.height, 1,
+                                           tl_texture_full_levels(full_size.width, full_size.height));
     glTextureParameteri(texture.id, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     glTextureParameteri(texture.id, GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_NEAREST);
     for (int level = 0; level < texture.levels; level++) {
-        int width = most.width >> level > 1 ? most.width >> level : 1;
-        int height = most.height >> level > 1 ? most.height >> level : 1;
-        tl_image small = tl_bake_smaller(&most, width, height);
+        int width = full_size.width >> level > 1 ? full_size.width >> level : 1;
+        int height = full_size.height >> level > 1 ? full_size.height >> level : 1;
+        tl_image small = tl_bake_smaller(&full_size, width, height);
         struct tl_height_field baked = *field;
         baked.heights = &small;
         tl_image cones = tl_bake_cones(&baked, (float)field->heights->width / (float)width);
@@ -107,11 +109,11 @@ static tl_texture upload_cones(tl_gpu *gpu, const struct tl_height_field *field)
         tl_image_release(&cones);
         tl_image_release(&small);
     }
-    tl_image_release(&most);
+    tl_image_release(&full_size);
     return texture;
 }
 
-/* Both sides of the sheet, each with all its angles. */
+/* Uploads the horizons of both sides of the sheet at all angles. */
 static tl_texture upload_horizons(tl_gpu *gpu, const struct tl_detail_heights *heights, int angle_count)
 {
     int layers = angle_count / 4;
@@ -267,7 +269,7 @@ void tl_detail_maps_bind(const struct tl_detail_maps *maps, size_t surface, size
     glUniform3fv(first_location + TL_DETAIL_ROWS, 2, entry->rows);
     if (maps)
         glUniform2i(first_location + TL_DETAIL_STEPS, maps->params.steps, maps->params.refine);
-    for (int i = 0; i < TL_DETAIL_UNITS; i++) /* of what is not there, too: see set_material in surfaces.c */
+    for (int i = 0; i < TL_DETAIL_UNITS; i++) /* also of missing maps: see set_material in surfaces.c */
         glBindTextureUnit((GLuint)(first_unit + i), entry->textures[i].id);
 }
 

@@ -11,24 +11,24 @@ typedef struct tl_detail_params params;
 static const struct tl_option rows[] = {
     TL_OPTION_ENUM(
         params, mode, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL_MAPS, mode_names,
-        "how bumps are seen: normal and blinn bend the light, parallax and relief also move what is seen"),
+        "how bumps appear: normal and blinn bend the light, parallax and relief also displace the texture"),
     TL_OPTION_INT(
         params, steps, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL, 1, 1024, "",
-        "relief: steps at most, from cone to cone through the heights; few miss crests at grazing views"),
+        "relief: largest number of cone steps through the heights; too few miss crests at grazing views"),
     TL_OPTION_INT(params, refine, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL, 0, 32, "",
-                  "relief: halvings of the step that was too far; more are exacter"),
-    TL_OPTION_ENUM(params, shadow, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL_MAPS, shadow_names,
-                   "shadows of bumps on their own surface; relief: those of lamps by steps, not by maps"),
+                  "relief: bisections of the last step; more are more exact"),
     TL_OPTION_ENUM(
-        params, angles, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL_MAPS, angle_names,
-        "horizon: directions all around that a texel has; more place shadows better under low lamps"),
+        params, shadow, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL_MAPS, shadow_names,
+        "shadows of bumps on their own surface; relief: marched for lamps instead of horizon maps"),
+    TL_OPTION_ENUM(params, angles, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL_MAPS, angle_names,
+                   "horizon: number of azimuths per texel; more place the shadows of low lamps better"),
     TL_OPTION_FLOAT(params, height_scale, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL_MAPS, 0, 100, "",
                     "factor on the heights of weaves and height maps"),
     TL_OPTION_BOOL(params, silhouette, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL,
-                   "relief: nothing is seen beyond the border of a map that does not repeat"),
-    TL_OPTION_ENUM(
-        params, minify, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL_MAPS, minify_names,
-        "how bumps too small to be seen dull the gloss; none: they vanish, and far cloth turns to plastic"),
+                   "relief: clips the surface beyond the border of a map that does not repeat"),
+    TL_OPTION_ENUM(params, minify, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL_MAPS, minify_names,
+                   "how bumps smaller than a pixel widen the gloss; none: they vanish, and distant cloth "
+                   "looks like plastic"),
 };
 const struct tl_option_table tl_detail_options = TL_OPTION_TABLE(
     "detail", "fabric detail: bumps, their depth and their shadows", rows, params, .steps = 32, .refine = 5,

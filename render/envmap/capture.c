@@ -6,13 +6,13 @@
 
 #include <stdlib.h>
 
-#define SAMPLES 2 /* along a texel's side */
+#define SAMPLES 2 /* along the side of a texel */
 
-/* The environment is looked up in its cheapest layout to fetch from. */
+/* The environment is looked up in the layout that is cheapest to fetch from. */
 static const struct tl_maps_params around_params = {.layout = TL_LAYOUT_OCTAHEDRAL, .mode = TL_MAPS_SURFACE};
 
-/* Rows of a GL image run upwards as t of a face does, so the image's up is the direction in which t grows;
- * then its right is the direction in which s does. */
+/* The camera of a face. Rows of a GL image run upwards, as t of a face does, so that the up direction of the
+ * image is the direction of increasing t and its right is that of increasing s. */
 static struct tl_camera camera_of(const struct tl_capture_request *request, int face)
 {
     vec3s forward = tl_cube_direction(face, 0.5f, 0.5f);
@@ -33,8 +33,9 @@ static bool box_holds(const tl_surface *surface, vec3s point)
     return surface->vertex_count > 0;
 }
 
-/* The ground is never left out: the point may lie in its plane, but is not inside of it. */
-static void leave_out(const struct tl_capture_request *request, bool hidden)
+/* Hides or shows the surfaces that contain the point. The ground is never hidden: the point may lie in its
+ * plane, but not inside of it. */
+static void set_hidden(const struct tl_capture_request *request, bool hidden)
 {
     const struct tl_triangle_ranges *ranges = request->ranges;
     size_t count = ranges->surface_count - (request->ground ? 1 : 0);
@@ -56,7 +57,8 @@ static bool light_view(struct tl_capture *capture, tl_gpu *gpu, const struct tl_
     return fine;
 }
 
-/* Light comes premultiplied by cover, which the G-buffer's points hold. */
+/* Averages the samples of a face over the environment. Light is premultiplied by coverage, which is stored
+ * with the points of the G-buffer. */
 static void average_face(const struct tl_capture_request *request, int face, const float *light,
                          const float *points, tl_cube *cube)
 {
@@ -110,10 +112,10 @@ static bool draw_faces(struct tl_capture *capture, tl_gpu *gpu, const struct tl_
     size_t texels = (size_t)(SAMPLES * request->size) * (size_t)(SAMPLES * request->size);
     float *staging[2] = {TL_NEW_ARRAY(float, 4 * texels), TL_NEW_ARRAY(float, 4 * texels)};
     bool drawn = true;
-    leave_out(request, true);
+    set_hidden(request, true);
     for (int face = 0; drawn && face < 6; face++)
         drawn = draw_face(capture, gpu, request, face, staging, error);
-    leave_out(request, false);
+    set_hidden(request, false);
     free(staging[0]);
     free(staging[1]);
     return drawn;

@@ -12,11 +12,11 @@
 
 /* Uniform locations of envmap.frag and what it includes; sample.glsl has 1 and 2. */
 enum { EYE = 1, TEXEL_REACH = 3, PART_COUNT, TURN, SLOTS, FRONT_MATRIX = 40, BACK_MATRIX };
-/* Texture units; the G-buffer's layers come first. */
+/* Texture units; the layers of the G-buffer come first. */
 enum { LEVELS_UNIT = 5, MAPS_UNIT, FRESNEL_UNIT };
 #define PARTS_BINDING 1
-#define COSINES       256 /* of the Fresnel table: its error is a fifteenth of a per mille */
-#define TEXEL_BYTES   16  /* RGBA32F: no light is too bright for it */
+#define COSINES       256 /* width of the Fresnel table: error 0.07 per mille */
+#define TEXEL_BYTES   16  /* RGBA32F, so that no light is clamped */
 
 /* std430: struct Part in envmap.frag. */
 struct part {
@@ -28,7 +28,7 @@ struct part {
     float transmission[4];
 };
 
-/* Layers of an array texture that one picture takes. */
+/* Layers of the array texture per picture. */
 static int layers_of(enum tl_layout layout)
 {
     return layout == TL_LAYOUT_CUBE ? 6 : layout == TL_LAYOUT_PARABOLOID ? 2 : 1;
@@ -68,10 +68,10 @@ uint64_t tl_envmap_bytes_needed(const struct tl_maps_params *params, uint32_t ex
     tl_layout_extent((enum tl_layout)params->layout, params->size, &width, &height);
     uint64_t texels = (uint64_t)width * (uint64_t)height;
     return (uint64_t)__builtin_popcount(exponents) * (texels + texels / 2) *
-           TEXEL_BYTES; /* levels: a third */
+           TEXEL_BYTES; /* mip levels take another third; rounded up */
 }
 
-/* Rows of the world's axes in the picture's frame. */
+/* The rotation from world axes to the frame of the picture. */
 static mat3s world_to_picture(enum tl_layout layout, const mat3s *into_world, const struct tl_view *view)
 {
     mat3s axes = *into_world;
@@ -102,7 +102,8 @@ static void allocate(struct tl_envmap *envmap, tl_gpu *gpu, enum tl_layout layou
         glTextureParameteri(envmap->maps.id, GL_TEXTURE_WRAP_S, GL_REPEAT);
 }
 
-/* A cube's faces lie below one another in the picture, as layers do in a texture; discs lie side by side. */
+/* Uploads a picture. The faces of a cube lie below one another in it, as layers do in a texture; discs lie
+ * side by side. */
 static void upload(const struct tl_envmap *envmap, const struct tl_prefiltered_map *picture, int slot)
 {
     int layers = layers_of(envmap->layout), across = envmap->layout == TL_LAYOUT_PARABOLOID ? 2 : 1;
@@ -148,8 +149,8 @@ static size_t count_parts(const struct tl_triangle_ranges *ranges)
     return count;
 }
 
-/* What a part is told by, until its place in the order is known. */
-struct told {
+/* A part before sorting. */
+struct part_source {
     uint32_t first_triangle;
     const tl_material *material;
     bool is_ground;
@@ -157,12 +158,13 @@ struct told {
 
 static int by_first_triangle(const void *a, const void *b)
 {
-    uint32_t first = ((const struct told *)a)->first_triangle,
-             second = ((const struct told *)b)->first_triangle;
+    uint32_t first = ((const struct part_source *)a)->first_triangle,
+             second = ((const struct part_source *)b)->first_triangle;
     return (first > second) - (first < second);
 }
 
-static size_t list_parts(const struct tl_triangle_ranges *ranges, bool has_ground, struct told *told)
+static size_t list_parts(const struct tl_triangle_ranges *ranges, bool has_ground,
+                         struct part_source *sources)
 {
     size_t count = 0;
     for (size_t s = 0; s < ranges->surface_count; s++) {
@@ -170,10 +172,11 @@ static size_t list_parts(const struct tl_triangle_ranges *ranges, bool has_groun
         bool is_ground = has_ground && s + 1 == ranges->surface_count;
         for (size_t p = 0; p < surface->part_count; p++)
             if (surface->parts[p].index_count > 0)
-                told[count++] = (struct told){ranges->first[s] + surface->parts[p].first_index / 3,
-                                              &surface->materials[surface->parts[p].material], is_ground};
+                sources[count++] =
+                    (struct part_source){ranges->first[s] + surface->parts[p].first_index / 3,
+                                         &surface->materials[surface->parts[p].material], is_ground};
     }
-    qsort(told, count, sizeof *told, by_first_triangle);
+    qsort(sources, count, sizeof *sources, by_first_triangle);
     return count;
 }
 
@@ -183,25 +186,25 @@ static bool is_layered(const tl_material *material)
     return material->coat > 0 || through.x > 0 || through.y > 0 || through.z > 0;
 }
 
-static struct part part_of(const struct told *told)
+static struct part part_of(const struct part_source *source)
 {
-    const tl_material *material = told->material;
+    const tl_material *material = source->material;
     vec3s through = material->transmission;
-    return (struct part){.first_triangle = told->first_triangle,
+    return (struct part){.first_triangle = source->first_triangle,
                          .index = fmaxf(material->gloss.index, 1),
-                         .is_ground = told->is_ground,
+                         .is_ground = source->is_ground,
                          .coat = material->coat,
                          .coat_glossiness = material->coat_glossiness,
                          .transmission = {through.x, through.y, through.z}};
 }
 
-static void send_parts(struct tl_envmap *envmap, const struct told *told, size_t count)
+static void send_parts(struct tl_envmap *envmap, const struct part_source *sources, size_t count)
 {
-    struct part *parts = TL_NEW_ARRAY(struct part, count + 1); /* GL has no empty buffers */
+    struct part *parts = TL_NEW_ARRAY(struct part, count + 1); /* GL does not allow empty buffers */
     envmap->has_layers = false;
     for (size_t i = 0; i < count; i++) {
-        parts[i] = part_of(&told[i]);
-        envmap->has_layers |= is_layered(told[i].material);
+        parts[i] = part_of(&sources[i]);
+        envmap->has_layers |= is_layered(sources[i].material);
     }
     if (!envmap->parts_buffer)
         glCreateBuffers(1, &envmap->parts_buffer);
@@ -211,13 +214,14 @@ static void send_parts(struct tl_envmap *envmap, const struct told *told, size_t
     free(parts);
 }
 
-/* Parts beyond what a texture can hold share its last row. */
-static void send_fresnel(struct tl_envmap *envmap, tl_gpu *gpu, const struct told *told, size_t count)
+/* Uploads the Fresnel table. Parts beyond the height limit of a texture share its last row. */
+static void send_fresnel(struct tl_envmap *envmap, tl_gpu *gpu, const struct part_source *sources,
+                         size_t count)
 {
-    size_t most = (size_t)tl_gpu_texture_side_max(gpu), rows = count < most ? count : most;
+    size_t max_rows = (size_t)tl_gpu_texture_side_max(gpu), rows = count < max_rows ? count : max_rows;
     float *texels = TL_NEW_ARRAY(float, (size_t)4 * COSINES * (rows + 1));
     for (size_t row = 0; row < rows; row++) {
-        const tl_material *material = told[row].material;
+        const tl_material *material = sources[row].material;
         struct tl_brdf brdf = tl_brdf_of(material, material->specular, material->glossiness);
         for (size_t i = 0; i < COSINES; i++) {
             vec3s reflectance = tl_brdf_fresnel(&brdf, (float)i / (float)(COSINES - 1));
@@ -236,12 +240,12 @@ static void send_fresnel(struct tl_envmap *envmap, tl_gpu *gpu, const struct tol
 void tl_envmap_set_parts(struct tl_envmap *envmap, tl_gpu *gpu, const struct tl_triangle_ranges *ranges,
                          bool has_ground)
 {
-    struct told *told = TL_NEW_ARRAY(struct told, count_parts(ranges));
+    struct part_source *sources = TL_NEW_ARRAY(struct part_source, count_parts(ranges));
     envmap->has_ground = has_ground;
-    size_t count = list_parts(ranges, has_ground, told);
-    send_parts(envmap, told, count);
-    send_fresnel(envmap, gpu, told, count);
-    free(told);
+    size_t count = list_parts(ranges, has_ground, sources);
+    send_parts(envmap, sources, count);
+    send_fresnel(envmap, gpu, sources, count);
+    free(sources);
 }
 
 static bool by_matrix(const struct tl_envmap *envmap, const struct tl_maps_params *params)
@@ -281,8 +285,8 @@ static const tl_program *program_of(struct tl_envmap *envmap, tl_gpu *gpu,
     return &envmap->variants[envmap->variant_count++].program;
 }
 
-/* P S M^-1 of equation 7, with the texture's own scale: (x, y, z, 1) -> (x, y) / (1 + z) from [-1, 1] to
- * [0, 1], rows downwards; M^-1 takes the world to the picture. */
+/* P S M^-1 of equation 7, with the transformation to texture coordinates: (x, y, z, 1) -> (x, y) / (1 + z)
+ * from [-1, 1] to [0, 1], rows downwards. M^-1 transforms from world to picture. */
 static void set_matrices(const mat3s *turn)
 {
     mat3s axes = *turn;
@@ -297,7 +301,7 @@ static void set_matrices(const mat3s *turn)
     }
 }
 
-/* Root of the mean solid angle of a texel, rad. */
+/* Square root of the mean solid angle of a texel, rad. */
 static float texel_reach(const struct tl_mip_levels *levels)
 {
     const struct tl_sphere_map *map = &levels->maps[0];
@@ -320,7 +324,8 @@ bool tl_envmap_draw(struct tl_envmap *envmap, tl_gpu *gpu, const struct tl_envma
         set_matrices(&envmap->turn);
     else
         glUniformMatrix3fv(TURN, 1, GL_FALSE, envmap->turn.raw[0]);
-    glTextureParameteri(request->triangles->id, GL_TEXTURE_MIN_FILTER, GL_NEAREST); /* numbers do not blend */
+    glTextureParameteri(request->triangles->id, GL_TEXTURE_MIN_FILTER,
+                        GL_NEAREST); /* integers cannot be interpolated */
     glTextureParameteri(request->triangles->id, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     glBindTextureUnit(TL_GBUFFER_TRIANGLE, request->triangles->id);
     glBindTextureUnit(LEVELS_UNIT, request->exponent_levels->id);

@@ -1,25 +1,25 @@
 #version 450 core
 // The light of every sample of the G-buffer by look-ups in an environment map (envmap.h). MODE and COMPOSITION are
-// #defined as numbers below; GROUND: the ground is drawn, in its own way; MINIFY: what mirrors show is taken from mip
-// levels; LAYERED: surfaces have coats or let light through.
+// #defined as the numbers below. GROUND: the ground is drawn, always as SURFACE. MINIFY: mirrors read mip levels.
+// LAYERED: some surfaces have coats or transmit light.
 #include "exponents.glsl"
 #include "look_up.glsl"
 #include "sample.glsl"
 
 const int SURFACE = 0, MIRROR = 1, REFRACTION = 2, DIFFUSE = 3, GLOSSY = 4, TRANSMISSION = 5;
 const int OFF = 0, ADDITIVE = 1, COAT = 2;
-const int ENVIRONMENT = 31; // as if it were the exponent after the last
+const int ENVIRONMENT = 31; // index after the last exponent
 const uint TRIANGLE_BACK = 0x80000000u;
 
 layout(location = 4) uniform int part_count;
 layout(location = 6) uniform int slots[32];
-layout(location = 3) uniform float texel_reach; // root of a texel's mean solid angle
+layout(location = 3) uniform float texel_reach; // square root of the mean solid angle of a texel
 
 layout(binding = 4) uniform usampler2D triangles;
-layout(binding = 7) uniform sampler2D fresnel; // F over the cosine, a row for each part
+layout(binding = 7) uniform sampler2D fresnel; // F over the cosine, one row per part
 
 struct Part {
-    uint first_triangle; // counted through all surfaces, from 0
+    uint first_triangle; // counted over all surfaces, from 0
     float index;         // of refraction
     uint is_ground;
     float coat, coat_glossiness;
@@ -32,7 +32,7 @@ layout(std430, binding = 1) readonly buffer Parts
 
 layout(location = 0) out vec4 light;
 
-// Parts come in the order of their triangles.
+// The part of a triangle, by binary search; parts are sorted by their first triangle.
 int part_of(uint triangle)
 {
     int low = 0, high = part_count - 1;
@@ -46,7 +46,8 @@ int part_of(uint triangle)
     return low;
 }
 
-// A pixel's reach over the sphere. Where two surfaces meet one of its two sides is no measure, so the lesser is taken.
+// The mip level of the footprint of a pixel. At the border of two surfaces one of the two differences is meaningless,
+// so the smaller one is used.
 float level_of(vec3 d)
 {
     vec3 across = dFdx(d), down = dFdy(d);
@@ -68,7 +69,7 @@ vec3 irradiance(vec3 d)
     return look_up(d, slots[0], 0.0);
 }
 
-// E(d, s), between the two exponents that stand for s.
+// E(d, s), interpolated between two exponents.
 vec3 lobe_light(vec3 d, float glossiness)
 {
     float level = exponent_level(1.0 / max(1.0 - glossiness, 1e-6));
@@ -78,7 +79,7 @@ vec3 lobe_light(vec3 d, float glossiness)
     return weight > 0.0 ? mix(lower, look_up(d, slots[exponent + 1], 0.0), min(weight, 1.0)) : lower;
 }
 
-// Snell's law for the view vector -v: `ratio` is the index on the viewer's side over the one on the other.
+// The refracted view vector by Snell's law. `ratio` is the index on the side of the viewer over that on the other side.
 vec3 refracted(vec3 v, vec3 n, vec3 mirror, float ratio)
 {
     float cosine = clamp(dot(n, v), 0.0, 1.0), square = 1.0 - ratio * ratio * (1.0 - cosine * cosine);
@@ -92,7 +93,7 @@ vec3 reflectance(int part, float cosine)
     return textureLod(fresnel, vec2((cosine * float(size.x - 1) + 0.5) / float(size.x), row), 0.0).rgb;
 }
 
-// What a mirror reflects, and what lies under it.
+// Lm: the light that a mirror reflects.
 vec3 over_light(int mode, Sample place)
 {
     if (mode == MIRROR || mode == REFRACTION)
@@ -100,6 +101,7 @@ vec3 over_light(int mode, Sample place)
     return mode == DIFFUSE ? vec3(0.0) : lobe_light(place.mirror, place.glossiness);
 }
 
+// Ld: the light below it.
 vec3 under_light(int mode, Sample place, vec3 v, float ratio)
 {
     if (mode == REFRACTION)
@@ -126,7 +128,7 @@ vec3 light_of(int mode, Sample place, vec3 v, float ratio)
 #ifdef LAYERED
 const float COAT_INDEX = 1.5;
 
-// Of a film, as brdf/fresnel.c has it.
+// Fresnel reflectance of the coat, as in brdf/fresnel.c.
 float coat_reflectance(float cosine)
 {
     float g = sqrt(COAT_INDEX * COAT_INDEX - 1.0 + cosine * cosine), under = COAT_INDEX * COAT_INDEX * cosine;
@@ -134,7 +136,7 @@ float coat_reflectance(float cosine)
     return 0.5 * (s * s + p * p);
 }
 
-// What a thin sheet lets through adds to what it sends back; a clear coat, which lies on the smooth surface, is over both.
+// Adds the light that a thin sheet transmits, and a clear coat, which lies on the smooth surface, over both.
 vec3 layered(Part part, Sample place, vec3 v, vec3 light)
 {
     float cosine = clamp(dot(place.smooth_normal, v), 0.0, 1.0), coat = part.coat * coat_reflectance(cosine);

@@ -1,25 +1,24 @@
-/* Classic environment mapping: the environment's light through lobes, poured into textures in one of the
+/* Classic environment mapping: the environment convolved with lobes, resampled to textures in one of the
  * layouts (env/layout.h), and a pass that looks it up for every sample of the G-buffer [Heidrich and Seidel
  * 1999, section 4]. Light is unshadowed:
  *
  *     SURFACE       kd E(n, 1) + F ks E(r, s)
  *     MIRROR        L(r)
- *     REFRACTION    L(t), t by Snell's law from the material's index; a back refracts out of the material,
- *                   and where that reflects totally t is r
- *     DIFFUSE       kd E(n, 1)
- *     GLOSSY        F ks E(r, s)                                                                      (eq. 9)
- *     TRANSMISSION  kd E(-v, s): the lobe straight through a thin sheet, dyed by it                    (4.5)
+ *     REFRACTION    L(t), t by Snell's law from the material's index; a back face refracts out of the
+ * material, and in case of total reflection t is r DIFFUSE       kd E(n, 1) GLOSSY        F ks E(r, s) (eq.
+ * 9) TRANSMISSION  kd E(-v, s): the lobe straight through a thin sheet, coloured by it                (4.5)
  *
- * With `fresnel` a mirror's light Lm lies over what is under it, Ld: of SURFACE and GLOSSY Lm = E(r, s), of
- * MIRROR, REFRACTION and TRANSMISSION L(r), L(r) and E(r, s); under it lies the diffuse light, or what is
- * refracted or transmitted. DIFFUSE shows Ld's part alone, GLOSSY Lm's.
+ * With `fresnel` a mirror's light Lm is combined with the light Ld below it. Lm is E(r, s) for SURFACE and
+ * GLOSSY, L(r) for MIRROR and REFRACTION, and E(r, s) for TRANSMISSION. Ld is the diffuse, the refracted or
+ * the transmitted light. DIFFUSE shows Ld only, GLOSSY Lm only.
  *
  *     ADDITIVE      F Lm + Ld
  *     COAT          F Lm + (1 - F) Ld
  *
- * F is the material's own (render/brdf), by a table over n . v, where maps that vary it do not count.
+ * F is that of the material (render/brdf), from a table over n . v, which ignores maps.
  *
- * L and E are what is in the map: L of its resolution. World space; needs the context of its tl_gpu. */
+ * L and E are the contents of the map; the sharpness of L is limited by its resolution. World space; needs
+ * the GL context of its tl_gpu. */
 #ifndef TOILE_RENDER_ENVMAP_ENVMAP_H
 #define TOILE_RENDER_ENVMAP_ENVMAP_H
 
@@ -29,40 +28,44 @@
 #include "render/gbuffer/samples.h"
 #include "render/scene/view.h"
 
-/* Software drivers take both ways of every branch: what does not change within a picture is #defined. */
+/* A program variant. Software drivers execute both sides of every branch, so options that are constant over
+ * an image are #defined. */
 struct tl_envmap_variant {
     char *defines;
     tl_program program;
 };
 
 struct tl_envmap {
-    struct tl_envmap_variant *variants; /* programs that were asked for so far */
+    struct tl_envmap_variant *variants; /* programs compiled so far */
     size_t variant_count;
-    enum tl_layout layout; /* of what is in the texture */
+    enum tl_layout layout; /* layout of the texture */
     struct tl_mip_levels levels;
-    tl_texture maps;                  /* layers by slot; faces and discs are layers too */
-    int slots[TL_EXPONENT_COUNT + 1]; /* by exponent; -1: not there */
-    mat3s turn;                       /* world -> picture */
-    unsigned parts_buffer;            /* GL name: what the pass must know of the surfaces' parts */
+    tl_texture maps;                  /* layers by slot; faces and discs are layers, too */
+    int slots[TL_EXPONENT_COUNT + 1]; /* by exponent; -1: does not exist */
+    mat3s turn;                       /* world to picture */
+    unsigned parts_buffer;            /* GL name: the parts of the surfaces, for the pass */
     size_t parts_bytes;
     int part_count;
-    bool has_ground, has_layers; /* what the parts are */
-    tl_texture fresnel;          /* F over the cosine, a row for each part */
+    bool has_ground, has_layers; /* properties of the parts */
+    tl_texture fresnel;          /* F over the cosine, one row per part */
 };
 
+/* Frees and zeroes. */
 void tl_envmap_release(struct tl_envmap *envmap);
+/* Recompiles the shaders from their files; keeps the old ones and returns false on an error. */
 bool tl_envmap_reload(struct tl_envmap *envmap, tl_error *error);
+/* Size of textures and buffers. */
 size_t tl_envmap_bytes(const struct tl_envmap *envmap);
-/* Of the textures that these settings will ask for. */
+/* Size of the textures that these settings will need. */
 uint64_t tl_envmap_bytes_needed(const struct tl_maps_params *params, uint32_t exponents);
 
-/* Pours all lobes that are made. `into_world`: directions of the lobes' frame -> world. `view`: a sphere map
- * is laid out about it, so that its centre shows what lies behind the eye and its singular rim what the view
- * looks at. */
+/* Fills the textures from all existing lobes. `into_world` transforms directions from the frame of the lobes
+ * to world axes. A sphere map is laid out about `view`: its centre shows the direction behind the eye, and
+ * its singular rim the view direction. */
 void tl_envmap_fill(struct tl_envmap *envmap, tl_gpu *gpu, const struct tl_maps_params *params,
                     const struct tl_lobes *lobes, const mat3s *into_world, const struct tl_view *view);
 
-/* Tells the parts' materials. The ground, which comes last, is always lit as SURFACE. */
+/* Sets the parts and their materials. The ground, which comes last, is always lit as SURFACE. */
 void tl_envmap_set_parts(struct tl_envmap *envmap, tl_gpu *gpu, const struct tl_triangle_ranges *ranges,
                          bool has_ground);
 
@@ -72,7 +75,8 @@ struct tl_envmap_request {
     vec3s eye;
     const struct tl_maps_params *params;
 };
-/* Draws over the whole target that is bound, with the G-buffer in the first units (tl_lighting_begin). */
+/* Draws over the whole bound target, with the G-buffer in the first texture units (tl_lighting_begin). False
+ * when a shader cannot be compiled. */
 bool tl_envmap_draw(struct tl_envmap *envmap, tl_gpu *gpu, const struct tl_envmap_request *request,
                     tl_error *error);
 

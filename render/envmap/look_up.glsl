@@ -1,6 +1,6 @@
-// Light of an environment map in a direction of the world (env/layout.h). The layout is #defined: CUBE, SPHERE,
-// PARABOLOID, LATLONG or OCTAHEDRAL; MATRIX: paraboloids by their projective matrices.
-layout(location = 5) uniform mat3 turn; // world -> picture
+// Look-ups in an environment map by a world direction (env/layout.h). The layout is #defined: CUBE, SPHERE, PARABOLOID,
+// LATLONG or OCTAHEDRAL; MATRIX: paraboloids by projective matrices.
+layout(location = 5) uniform mat3 turn; // world to picture
 
 #ifdef CUBE
 layout(binding = 6) uniform samplerCubeArray maps;
@@ -13,7 +13,7 @@ vec3 look_up(vec3 direction, int slot, float level)
 #elif defined(SPHERE)
 layout(binding = 6) uniform sampler2DArray maps;
 
-// The half-way vector between d and +Z, by whichever of its forms does not cancel.
+// The half vector of d and +Z, by whichever of two forms does not cancel.
 vec3 look_up(vec3 direction, int slot, float level)
 {
     vec3 d = turn * direction;
@@ -25,10 +25,10 @@ vec3 look_up(vec3 direction, int slot, float level)
 #elif defined(PARABOLOID)
 layout(binding = 6) uniform sampler2DArray maps;
 #ifdef MATRIX
-layout(location = 40) uniform mat4 front_matrix; // eq. 7: P S M^-1, and what takes [-1, 1] to the texture's [0, 1]
+layout(location = 40) uniform mat4 front_matrix; // eq. 7: P S M^-1, then [-1, 1] to [0, 1]
 layout(location = 41) uniform mat4 back_matrix;
 
-// Both maps are looked up, and the first one's alpha says which is to be seen.
+// Both maps are looked up; the alpha of the first one selects between them.
 vec3 look_up(vec3 direction, int slot, float level)
 {
     vec4 front = front_matrix * vec4(direction, 1.0), back = back_matrix * vec4(direction, 1.0);
@@ -63,7 +63,7 @@ vec3 look_up(vec3 direction, int slot, float level)
 #elif defined(OCTAHEDRAL)
 layout(binding = 6) uniform sampler2DArray maps;
 
-// A step over a side of the unfolded octahedron lands on the same side, mirrored about its middle.
+// A step across a side of the unfolded octahedron lands on the same side, mirrored about its centre.
 vec3 octahedral_texel(ivec2 texel, int side, int slot, int level)
 {
     bool over_x = texel.x < 0 || texel.x >= side, over_y = texel.y < 0 || texel.y >= side;

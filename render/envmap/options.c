@@ -22,20 +22,18 @@ static const struct tl_option rows[] = {
     TL_OPTION_ENUM(maps_params, mode, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LOOK_UP, mode_names,
                    "surface: diffuse and gloss; mirror; refraction by the material's index; one term alone; "
                    "transmission: straight through a thin sheet"),
-    TL_OPTION_ENUM(
-        maps_params, fresnel, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LOOK_UP, fresnel_names,
-        "what mirrors reflect by material.fresnel; additive: on top of what lies under them; coat: "
-        "the rest of the light alone reaches that"),
-    TL_OPTION_BOOL(
-        maps_params, minify, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LOOK_UP,
-        "mirrors and refraction read mip levels, weighted by solid angle, where a pixel sees much of "
-        "the map"),
+    TL_OPTION_ENUM(maps_params, fresnel, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LOOK_UP, fresnel_names,
+                   "combines mirrors with the light below them by material.fresnel; additive: adds both; "
+                   "coat: only the light that is not reflected reaches the layer below"),
+    TL_OPTION_BOOL(maps_params, minify, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LOOK_UP,
+                   "mirrors and refraction read mip levels, weighted by solid angle, where a pixel covers "
+                   "many texels of the map"),
     TL_OPTION_INT(maps_params, capture_every, TL_AFFECTS_APPEARANCE, 0, 1000000, "frames",
-                  "the scene is drawn into the map anew when it has changed and so many frames are over; 0: "
-                  "maps hold the environment alone"),
+                  "redraws the scene into the map when it has changed and this many frames have passed; 0: "
+                  "the map holds the environment only"),
     TL_OPTION_VECTOR(
         maps_params, capture_at, TL_AFFECTS_APPEARANCE | TL_AFFECTS_CAPTURE, -10000, 10000, "m",
-        "where from, measured from the middle of the scene; what is around that point is left out"),
+        "point of the capture, relative to the centre of the scene; surfaces around it are left out"),
 };
 const struct tl_option_table tl_maps_options =
     TL_OPTION_TABLE("maps", "classic environment mapping, light.method maps: unshadowed", rows, maps_params,

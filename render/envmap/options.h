@@ -4,7 +4,7 @@
 
 #include "config/options.h"
 
-/* How environment maps are looked up (render/envmap/envmap.h), and what is made of it. */
+/* Look-up of paraboloids, and the light that is shown (render/envmap/envmap.h). */
 enum tl_maps_look_up { TL_LOOK_UP_DIRECT, TL_LOOK_UP_MATRIX };
 enum tl_maps_mode {
     TL_MAPS_SURFACE,
@@ -14,8 +14,8 @@ enum tl_maps_mode {
     TL_MAPS_GLOSSY,
     TL_MAPS_TRANSMISSION
 };
-/* off: the reflectance of the G-buffer. Else F of a table over the cosine: Lo = F Lm + Ld, or F Lm + (1 - F)
- * Ld [Heidrich and Seidel 1999, 4.4]. */
+/* OFF: the reflectance of the G-buffer. The others: F from a table over the cosine, Lo = F Lm + Ld, or F Lm +
+ * (1 - F) Ld [Heidrich and Seidel 1999, 4.4]. */
 enum tl_maps_fresnel { TL_MAPS_FRESNEL_OFF, TL_MAPS_FRESNEL_ADDITIVE, TL_MAPS_FRESNEL_COAT };
 struct tl_maps_params {  /* table "maps", of TL_METHOD_MAPS */
     int layout;          /* enum tl_layout (render/env/layout.h) */
@@ -24,8 +24,8 @@ struct tl_maps_params {  /* table "maps", of TL_METHOD_MAPS */
     int mode;            /* enum tl_maps_mode */
     int fresnel;         /* enum tl_maps_fresnel */
     bool minify;         /* mirrors read mip levels */
-    int capture_every;   /* frames from one capture of the scene to the next; 0: the environment alone */
-    float capture_at[3]; /* metres, from the middle of what casts shadows */
+    int capture_every;   /* frames between captures of the scene; 0: the environment only */
+    float capture_at[3]; /* metres, from the centre of the casters */
 };
 extern const struct tl_option_table tl_maps_options;
 #define TL_MAPS_SIZE_MIN 4

@@ -6,7 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Look-ups along a texel's side in the environment itself, whose texels have edges; lobes are smooth. */
+/* Look-ups along the side of a texel for the environment itself, whose texels have edges. Lobes are smooth
+ * and need one. */
 #define EDGE_LOOK_UPS 2
 
 static vec3s mean_over_texel(const struct tl_sphere_map *map, const struct tl_lobes *lobes, int exponent,

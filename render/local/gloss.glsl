@@ -1,5 +1,5 @@
-// The reflectance models of render/brdf/brdf.h, evaluated directly. MODEL, FACETS, MASKING and FRESNEL are numbers of
-// assets/base/material.h's enums.
+// The reflectance models of render/brdf/brdf.h, evaluated directly. MODEL, FACETS, MASKING and FRESNEL are the numbers
+// of the enums of assets/base/material.h.
 #include "lamp.glsl"
 #include "power.glsl"
 #include "tables.glsl"
@@ -47,7 +47,7 @@ float fresnel_conductor(float n, float k, float cosine)
     return clamp(0.5 * across * (1.0 + along), 0.0, 1.0);
 }
 
-// What the model reflects of its lobe, which PHONG and BANKS take towards the viewer's cosine, as the G-buffer does.
+// The Fresnel term. PHONG and BANKS take it at the cosine of the viewer, as the G-buffer does.
 vec3 fresnel(vec3 f0, Cosines c)
 {
     float cosine = clamp(MODEL == PHONG || MODEL == BANKS ? c.b : c.t, 0.0, 1.0);
@@ -59,7 +59,7 @@ vec3 fresnel(vec3 f0, Cosines c)
     return f0 + (min(50.0 * f0, vec3(1.0)) - f0) * (away2 * away2 * away);
 }
 
-// Built in, it is only good to the fourth digit.
+// atan with full precision; the built-in function has only four digits.
 float arc_tangent(float x)
 {
     float y = x * x;
@@ -84,9 +84,9 @@ float facets(float tangent2, float width)
     return exp(-d * d / w2) / (4.0 * w2 * gaussian_volume(w2));
 }
 
-// Smith's share of facets hidden over share seen: (exp(-k^2) / (k sqrt pi) - erfc k) / 2, erfc by [Abramowitz and Stegun
-// 7.1.26], within 1.5e-7.
-float hidden(float width, float cosine)
+// Smith's lambda, the ratio of hidden to visible facets: (exp(-k^2) / (k sqrt pi) - erfc k) / 2, with erfc by
+// [Abramowitz and Stegun 7.1.26], error below 1.5e-7.
+float smith_lambda(float width, float cosine)
 {
     float sine = sqrt(max(1.0 - cosine * cosine, 0.0));
     if (sine <= 0.0)
@@ -97,10 +97,10 @@ float hidden(float width, float cosine)
     return max(0.5 * exp(-k * k) * (0.56418958 / k - scaled), 0.0);
 }
 
-// Multiplied by F it is f_r cos a of a Torrance-Sparrow surface but for D.
+// G / (pi n.v): times D and F it is f_r cos a of a Torrance-Sparrow surface.
 float masked(Cosines c, float width)
 {
-    float g = MASKING == SMITH ? 1.0 / (1.0 + hidden(width, c.a) + hidden(width, c.b))
+    float g = MASKING == SMITH ? 1.0 / (1.0 + smith_lambda(width, c.a) + smith_lambda(width, c.b))
                                : min(1.0, 2.0 * c.half_normal * min(c.a, c.b) / c.t);
     return g / (PI * c.b);
 }
@@ -111,7 +111,7 @@ float ward(Cosines c, vec2 widths)
     return exp(-dot(slope, slope)) / (4.0 * PI * widths.x * widths.y) * sqrt(c.a / c.b);
 }
 
-// The cosine of l with the nearest mirror direction of a thread, and its sine squared.
+// The cosine of l with the nearest mirror direction of a thread, and its squared sine.
 vec2 thread_mirror(vec2 thread)
 {
     vec2 cosine = clamp(thread, -1.0, 1.0), sine = sqrt(1.0 - cosine * cosine);
@@ -125,7 +125,7 @@ float thread_scale(float s)
     return sqrt(z - 0.25 + 1.0 / (32.0 * z)) * 0.28209479;
 }
 
-// f_r cos a without F.
+// f_r cos a without the Fresnel term.
 float lobe(Cosines c, float s)
 {
     if (MODEL == TORRANCE_SPARROW) {
@@ -145,7 +145,7 @@ float lobe(Cosines c, float s)
     return (s + 1.0) / (2.0 * PI) * power(c.mirror, c.mirror_sine2, s);
 }
 
-// f_r cos a, of a material whose maps say f0 and s; tables know the material alone.
+// f_r cos a of a material whose maps give f0 and s. Tables are made for constant values and ignore the maps.
 vec3 gloss(Cosines c, vec3 f0, float s)
 {
     if (!(c.a > 0.0 && c.b > 0.0 && c.half_normal > 0.0))

@@ -8,7 +8,8 @@ static const char *const kind_names[] = {"none", "directional", "point", NULL};
 
 typedef struct tl_lamp_params lamp_params;
 static const struct tl_option rows[] = {
-    TL_OPTION_ENUM(lamp_params, kind, TL_AFFECTS_NOTHING, kind_names, "a light beside the environment"),
+    TL_OPTION_ENUM(lamp_params, kind, TL_AFFECTS_NOTHING, kind_names,
+                   "a light in addition to the environment"),
     TL_OPTION_FLOAT(lamp_params, yaw_deg, TL_AFFECTS_NOTHING, -3600, 3600, "degrees",
                     "about the camera's target: 0 shines from +Z, positive moves it towards +X"),
     TL_OPTION_FLOAT(lamp_params, pitch_deg, TL_AFFECTS_NOTHING, -90, 90, "degrees",
@@ -19,10 +20,10 @@ static const struct tl_option rows[] = {
                      "on a surface that faces it, of a point at 1 m; larger is brighter, 3.14 makes white 1"),
 };
 const struct tl_option_table tl_lamp_options =
-    TL_OPTION_TABLE("lamp", "a light beside the environment", rows, lamp_params, .yaw_deg = -40,
+    TL_OPTION_TABLE("lamp", "a light in addition to the environment", rows, lamp_params, .yaw_deg = -40,
                     .pitch_deg = 40, .distance_m = 2, .irradiance = {3, 3, 3});
 const struct tl_option_table tl_fill_options =
-    TL_OPTION_TABLE("fill", "a second light beside the environment", rows, lamp_params, .yaw_deg = 60,
+    TL_OPTION_TABLE("fill", "a second light in addition to the environment", rows, lamp_params, .yaw_deg = 60,
                     .pitch_deg = 10, .distance_m = 2, .irradiance = {1, 1, 1});
 
 struct tl_lamp tl_lamp_make(const struct tl_lamp_params *params, vec3s target)

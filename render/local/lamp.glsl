@@ -1,13 +1,13 @@
-// The lamp that is being added, and the cosines that a reflectance model is evaluated with.
+// The current lamp, and the cosines with which a reflectance model is evaluated.
 #include "direction.glsl"
 
 layout(location = 64) uniform mat4 view_projection;
 layout(location = 65) uniform vec3 eye;
-layout(location = 66) uniform vec4 lamp; // w 1: its place; 0: the direction towards it
+layout(location = 66) uniform vec4 lamp; // w = 1: position; w = 0: direction towards it
 layout(location = 67) uniform vec3 lamp_irradiance;
-layout(location = 68) uniform vec3 constant_lamp; // COORDINATES_MATRIX: l and v for the whole picture
+layout(location = 68) uniform vec3 constant_lamp; // COORDINATES_MATRIX: l and v, constant over the image
 layout(location = 69) uniform vec3 constant_eye;
-layout(location = 70) uniform vec4 gloss_widths; // weft, warp, 0: from glossiness; cosine and sine of the rotation
+layout(location = 70) uniform vec4 gloss_widths; // widths along weft and warp (0: from glossiness); cosine and sine of the rotation
 
 const float NEAREST_M = 1e-3; // TL_LAMP_NEAREST_M
 
@@ -22,7 +22,7 @@ vec3 irradiance_at(vec3 point)
     return lamp_irradiance / (lamp.w > 0.0 ? max(dot(away, away), NEAREST_M * NEAREST_M) : 1.0);
 }
 
-// `normal` and `halfway` with their squared sines, which keep their digits near a peak where cosines do not.
+// Cosines of the vectors of shading. The squared sines keep their digits near a peak, where cosines do not.
 struct Cosines {
     float a, b;                    // n.l, n.v
     float t;                       // h.l
@@ -36,15 +36,15 @@ struct Frame {
     vec3 n, t, b;
 };
 
-// At right angles to the unit normal.
+// The tangent at right angles to the unit normal; any tangent where the given one is zero.
 vec3 tangent_across(vec3 n, vec3 tangent)
 {
     vec3 any = cross(abs(n.x) < 0.6 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0), n);
     return direction_or(tangent - n * dot(n, tangent), normalize(any));
 }
 
-// As tl_brdf_frame_make: t at right angles to the unit normal, turned counter-clockwise as seen from outside; `side` -1
-// where that is not the viewer's side. The bitangent's sign is nobody's concern: models are symmetric.
+// As tl_brdf_frame_make: t at right angles to the unit normal, turned counter-clockwise as seen from the front; `side`
+// is -1 on back faces. The sign of the bitangent does not matter, because the models are symmetric.
 Frame frame_of(vec3 n, vec3 tangent, float side)
 {
     vec3 t = tangent_across(n, tangent);
@@ -52,7 +52,7 @@ Frame frame_of(vec3 n, vec3 tangent, float side)
     return Frame(n, t, cross(n, t));
 }
 
-// Of unit vectors.
+// The cosines of unit vectors.
 Cosines cosines_of(Frame frame, vec3 l, vec3 v, vec3 h)
 {
     Cosines c;
@@ -71,7 +71,7 @@ Cosines cosines_of(Frame frame, vec3 l, vec3 v, vec3 h)
     return c;
 }
 
-// Of vectors that are nearly unit: what follows from cosines alone.
+// The cosines of vectors that are nearly unit: everything is derived from dot products.
 Cosines cosines_from(vec4 a_b_half_t, vec4 half_plane_thread, float l_dot_v)
 {
     Cosines c;
@@ -87,6 +87,7 @@ Cosines cosines_from(vec4 a_b_half_t, vec4 half_plane_thread, float l_dot_v)
     return c;
 }
 
+// As cosines_from, computing the dot products.
 Cosines cosines_near(Frame frame, vec3 l, vec3 v, vec3 h)
 {
     return cosines_from(vec4(dot(frame.n, l), dot(frame.n, v), dot(frame.n, h), dot(h, l)),

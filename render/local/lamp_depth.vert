@@ -1,5 +1,5 @@
 #version 450 core
-// A surface seen from a lamp; maps.frag keeps its depth.
+// A surface in the view of a lamp. maps.frag writes its depth.
 layout(location = 0) in vec3 position;
 layout(location = 3) in vec2 vertex_uv;
 

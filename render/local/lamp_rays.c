@@ -3,19 +3,20 @@
 #include <math.h>
 #include <string.h>
 
-#define BUNDLE 16 /* rays */
-#define BLOCK  64 /* bundles that a thread takes at a time */
+#define PACKET 16 /* rays */
+#define BLOCK  64 /* packets that a thread takes at a time */
 
-/* One bundle of neighbouring samples. Rays are as long as the way to the lamp, which ends at 1. */
-static void look(const struct tl_lamp *lamp, const struct tl_trace *trace, const tl_sample *samples,
-                 int count, const struct tl_triangle_ranges *ranges, const struct tl_ground *ground,
-                 uint8_t *out)
+/* Traces one packet of neighbouring samples. Directions to a point lamp have the length of the distance to
+ * it, so that the rays end at 1. */
+static void trace_packet(const struct tl_lamp *lamp, const struct tl_trace *trace, const tl_sample *samples,
+                         int count, const struct tl_triangle_ranges *ranges, const struct tl_ground *ground,
+                         uint8_t *out)
 {
     bool is_point = lamp->kind == TL_LAMP_POINT;
     float offset_m = tl_trace_offset(trace);
-    struct tl_ray_packet bundle = {.to_m = is_point ? 1 : INFINITY, .coherent = true};
-    uint32_t texels[BUNDLE];
-    float shown[BUNDLE];
+    struct tl_ray_packet packet = {.to_m = is_point ? 1 : INFINITY, .coherent = true};
+    uint32_t texels[PACKET];
+    float shown[PACKET];
     for (int i = 0; i < count; i++) {
         const tl_sample *sample = &samples[i];
         vec3s start = tl_sample_start(sample, ranges, offset_m);
@@ -24,18 +25,18 @@ static void look(const struct tl_lamp *lamp, const struct tl_trace *trace, const
         if (left <= 0 || glms_vec3_dot(sample->smooth, light.direction) <= 0)
             continue;
         vec3s way = is_point ? glms_vec3_sub(lamp->position, start) : light.direction;
-        int k = bundle.count++;
-        bundle.origin_x[k] = start.x, bundle.origin_y[k] = start.y, bundle.origin_z[k] = start.z;
-        bundle.direction_x[k] = way.x, bundle.direction_y[k] = way.y, bundle.direction_z[k] = way.z;
+        int k = packet.count++;
+        packet.origin_x[k] = start.x, packet.origin_y[k] = start.y, packet.origin_z[k] = start.z;
+        packet.direction_x[k] = way.x, packet.direction_y[k] = way.y, packet.direction_z[k] = way.z;
         texels[k] = sample->texel;
         shown[k] = left;
     }
-    if (bundle.count == 0)
+    if (packet.count == 0)
         return;
-    float seen[BUNDLE];
-    tl_trace_transmittance_packet(trace, &bundle, seen);
-    for (int k = 0; k < bundle.count; k++)
-        out[texels[k]] = (uint8_t)lroundf(255 * shown[k] * seen[k]);
+    float transmittance[PACKET];
+    tl_trace_transmittance_packet(trace, &packet, transmittance);
+    for (int k = 0; k < packet.count; k++)
+        out[texels[k]] = (uint8_t)lroundf(255 * shown[k] * transmittance[k]);
 }
 
 void tl_lamp_rays(const struct tl_lamp *lamp, const struct tl_trace *trace, const struct tl_samples *samples,
@@ -44,9 +45,9 @@ void tl_lamp_rays(const struct tl_lamp *lamp, const struct tl_trace *trace, cons
     size_t count = samples->primary_count;
     memset(out, 0, (size_t)samples->width * (size_t)samples->height);
 #pragma omp parallel for schedule(dynamic, BLOCK)
-    for (size_t first = 0; first < count; first += BUNDLE)
-        look(lamp, trace, samples->items + first, count - first < BUNDLE ? (int)(count - first) : BUNDLE,
-             ranges, ground, out);
+    for (size_t first = 0; first < count; first += PACKET)
+        trace_packet(lamp, trace, samples->items + first,
+                     count - first < PACKET ? (int)(count - first) : PACKET, ranges, ground, out);
 }
 
 vec3s tl_lamp_irradiance_at(const struct tl_lamp *lamp, const tl_trace *trace, const tl_sample *sample,
@@ -59,13 +60,13 @@ vec3s tl_lamp_irradiance_at(const struct tl_lamp *lamp, const tl_trace *trace, c
     *direction = light.direction;
     if (shown <= 0 || glms_vec3_dot(sample->smooth, light.direction) <= 0)
         return (vec3s){{0, 0, 0}};
-    struct tl_ray_packet bundle = {.count = trace ? 1 : 0, .to_m = light.distance_m};
-    bundle.origin_x[0] = start.x, bundle.origin_y[0] = start.y, bundle.origin_z[0] = start.z;
-    bundle.direction_x[0] = light.direction.x;
-    bundle.direction_y[0] = light.direction.y;
-    bundle.direction_z[0] = light.direction.z;
-    float seen[BUNDLE] = {1};
+    struct tl_ray_packet packet = {.count = trace ? 1 : 0, .to_m = light.distance_m};
+    packet.origin_x[0] = start.x, packet.origin_y[0] = start.y, packet.origin_z[0] = start.z;
+    packet.direction_x[0] = light.direction.x;
+    packet.direction_y[0] = light.direction.y;
+    packet.direction_z[0] = light.direction.z;
+    float transmittance[PACKET] = {1};
     if (trace)
-        tl_trace_transmittance_packet(trace, &bundle, seen);
-    return glms_vec3_scale(light.irradiance, shown * seen[0]);
+        tl_trace_transmittance_packet(trace, &packet, transmittance);
+    return glms_vec3_scale(light.irradiance, shown * transmittance[0]);
 }

@@ -8,13 +8,13 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* A sample as a lamp finds it. */
+/* The material of a sample for lamps. */
 struct lit {
     const tl_sample *sample;
     const tl_material *material;
     vec3s viewer;
-    float base, coat; /* shares of the material under the coat, and of what the coat reflects */
-    bool faceted;     /* gloss is `brdf`, instead of K_s about the mirror direction */
+    float base, coat; /* fractions of the material below the coat and of the reflection by the coat */
+    bool faceted;     /* gloss is `brdf` instead of K_s about the mirror direction */
     struct tl_brdf brdf;
     struct tl_brdf_frame frame;
 };
@@ -28,7 +28,8 @@ static struct lit lit_of(const struct tl_lamp_samples_request *request, size_t i
                       .material = tl_triangle_material(request->ranges, sample->triangle & ~TL_SAMPLE_BACK),
                       .viewer = glms_vec3_normalize(glms_vec3_sub(request->eye, sample->point)),
                       .base = 1};
-    if (!is_behind) /* other sides are matt and know of their coat; mirrors show two lobes */
+    if (!is_behind) /* samples on other sides are diffuse and include their coat already; mirrored samples
+                       have two lobes only */
         return lit;
     float cosine = fmaxf(glms_vec3_dot(sample->smooth, lit.viewer), 0);
     lit.coat = lit.material->coat > 0 ? lit.material->coat * tl_coat_reflectance(cosine) : 0;
@@ -87,7 +88,7 @@ static float share_of(const struct tl_lamp_samples_request *request, size_t inde
     return request->shares && is_seen ? request->shares[index] : request->samples->items[index].cover;
 }
 
-/* What sample `index` shows of the lamplight on others, if it is a near mirror. */
+/* The light of lamps on other samples that sample `index` reflects, if it is a near mirror. */
 static vec3s mirrored(const struct tl_lamp_samples_request *request, const vec3s *lit, size_t index)
 {
     const struct tl_mirror *mirror = &request->mirrors[index];
@@ -117,7 +118,7 @@ void tl_lamp_samples_add(const struct tl_lamp_samples_request *request, float *l
 #pragma omp parallel for schedule(dynamic, 64)
     for (size_t i = 0; i < count; i++)
         lit[i] = light_of_sample(request, first + i);
-    for (size_t i = first; i < seen; i++) /* several share a texel, so one thread adds */
+    for (size_t i = first; i < seen; i++) /* several samples share a texel, so one thread adds them */
         add_at(request, i, lit[i - first], light);
     for (size_t i = 0; request->mirrors && i < seen; i++)
         if (request->mirrors[i].ray_count > 0)

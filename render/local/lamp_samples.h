@@ -1,7 +1,6 @@
-/* Lamplight of what the camera does not see at first: behind open cloth, on the other side of cloth that
- * scatters light through, and in near mirrors. These samples exist on the CPU only (light/transparency.h,
- * light/mirrors.h), so they are lit here, exactly, with a shadow ray each. Pure; OpenMP inside; results do
- * not depend on the number of threads. */
+/* Light of lamps on samples that the camera does not see directly: behind open cloth, on the other side of
+ * translucent cloth, and in near mirrors. These samples exist on the CPU only, so they are shaded here,
+ * exactly, with a shadow ray each. Pure; OpenMP inside; results do not depend on the number of threads. */
 #ifndef TOILE_RENDER_LOCAL_LAMP_SAMPLES_H
 #define TOILE_RENDER_LOCAL_LAMP_SAMPLES_H
 
@@ -11,7 +10,7 @@
 struct tl_lamp_samples_request {
     const struct tl_lamp *lamps;
     size_t lamp_count;
-    bool shadowed; /* else no ray is asked */
+    bool shadowed; /* false: no rays are traced */
     const tl_trace *trace;
     const struct tl_samples *samples;
     const float *shares;             /* by sample that is seen, as light/compose.h; NULL: their cover */
@@ -21,8 +20,8 @@ struct tl_lamp_samples_request {
     vec3s eye;
 };
 
-/* Adds to light[height][width][4], premultiplied. Of samples [0, primary_count) only what their mirrors show.
- */
+/* Adds to light[height][width][4], premultiplied. The samples [0, primary_count) only get what their mirrors
+ * reflect. */
 void tl_lamp_samples_add(const struct tl_lamp_samples_request *request, float *light);
 
 #endif

@@ -7,9 +7,9 @@
 
 #include <math.h>
 
-/* From nearer a map's frustum is so wide that its texels are large where it looks straight ahead. */
+/* A lamp nearer than this many radii would need a frustum so wide that its central texels are large. */
 #define NEAREST_RADII 1.2f
-#define SLOPE_OFFSET  2.0f /* as visibility/maps.c */
+#define SLOPE_OFFSET  2.0f /* the same as in visibility/maps.c */
 
 enum { LAMP_VIEW = 73 }; /* uniform location */
 
@@ -25,7 +25,7 @@ enum tl_lamp_shadow tl_lamp_shadow_of(const struct tl_lamp *lamp, const struct t
     return is_near ? TL_LAMP_SHADOW_RAYS : TL_LAMP_SHADOW_MAP;
 }
 
-/* Rows of a view give [0, 1], clip space is [-1, 1]. */
+/* Converts the rows of a region view, which map to [0, 1], to clip space, [-1, 1]. */
 static mat4s clip_of(const struct tl_region_view *view)
 {
     mat4s clip = GLMS_MAT4_ZERO_INIT;

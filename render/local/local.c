@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Uniform locations of lamp.glsl, gloss.glsl and local.frag beside those of surface.glsl. */
+/* Uniform locations of lamp.glsl, gloss.glsl and local.frag, in addition to those of surface.glsl. */
 enum {
     VIEW_PROJECTION = 64,
     EYE,
@@ -30,13 +30,13 @@ enum {
 };
 enum { TRIANGLE_UNIT = 16, POINT_UNIT, SHADOW_UNIT, CUBE_UNIT, TABLE_UNIT, POWER_UNIT = 23, PRODUCT_UNIT };
 
-/* What one draw does: all that there is to it, or its part of several passes. */
+/* The work of one draw call: everything, or its part of several passes. */
 struct pass {
-    int first, last;    /* tables that it takes; none when last < first */
+    int first, last;    /* tables to multiply; none when last < first */
     const char *define; /* or NULL */
 };
 
-/* A part of a surface, one lamp, and what they are shaded with. */
+/* A part of a surface, a lamp, and the resources of shading. */
 struct lit_part {
     size_t surface, part, lamp;
     const tl_material *material;
@@ -76,7 +76,7 @@ static void define(char defines[TL_LOCAL_DEFINES_SIZE], const char *name)
     snprintf(defines + length, TL_LOCAL_DEFINES_SIZE - length, "#define %s\n", name);
 }
 
-/* Where vectors come from, and how they become unit. */
+/* Defines the origin of the vectors and their normalisation. */
 static void define_vectors(const struct tl_shading_params *params, char defines[TL_LOCAL_DEFINES_SIZE])
 {
     static const char *const ways[] = {[TL_NORMALISE_NONE] = "NORMALISE_NONE",
@@ -144,7 +144,7 @@ static void define_all(const struct tl_local_request *request, const struct lit_
     tl_detail_defines(detail, defines + length, TL_LOCAL_DEFINES_SIZE - length);
 }
 
-/* The program of these defines, made when it is first asked for. */
+/* The program with these defines, compiled at the first call. */
 static const tl_program *find_program(struct tl_local *local, tl_gpu *gpu, const char *defines,
                                       tl_error *error)
 {
@@ -238,7 +238,7 @@ static bool draw_pass(struct tl_local *local, tl_gpu *gpu, const struct tl_local
 static void draw_into_light(const struct tl_local_request *request)
 {
     glBindFramebuffer(GL_FRAMEBUFFER, request->light->id);
-    glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE); /* coverage stays: no light has any of its own */
+    glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE); /* coverage is kept, because light has none */
 }
 
 static void prepare_product(struct tl_local *local, tl_gpu *gpu, const struct tl_local_request *request)
@@ -255,7 +255,8 @@ static void prepare_product(struct tl_local *local, tl_gpu *gpu, const struct tl
     glBindTextureUnit(PRODUCT_UNIT, product->colours[0].id);
 }
 
-/* Tables multiplied by blending, some a pass; then one pass that adds them and the matt light [000, 3.1]. */
+/* Multiplies the tables by blending, a few in each pass. A last pass adds the product and the diffuse light
+ * [000, 3.1]. */
 static bool draw_passes(struct tl_local *local, tl_gpu *gpu, const struct tl_local_request *request,
                         const struct lit_part *part, tl_error *error)
 {

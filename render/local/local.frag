@@ -1,16 +1,16 @@
 #version 450 core
-// The light of one lamp on what the G-buffer sees, to be added to the rest.
+// The light of one lamp on the surfaces of the G-buffer, added to the light target.
 #include "gloss.glsl"
 #include "ground.glsl"
 #include "material.glsl"
 #include "terms.glsl"
 
-layout(location = 73) uniform mat4 lamp_view; // SHADOW_MAP: world -> clip space of the lamp's map
+layout(location = 73) uniform mat4 lamp_view; // SHADOW_MAP: world to clip space of the lamp's map
 layout(location = 74) uniform float lamp_bias; // metres
 layout(location = 75) uniform int lamp_layer;
-layout(location = 76) uniform vec4 lamp_ground; // the ground's disc, if it can stop this lamp's light
+layout(location = 76) uniform vec4 lamp_ground; // disc of the ground, if it can block the light of this lamp
 
-layout(location = 77) uniform vec3 lamp_layers; // coat, the exponent of its lobe, share of the surface that is no hole
+layout(location = 77) uniform vec3 lamp_layers; // coverage of the coat, exponent of its lobe, 1 - openness
 
 layout(binding = 16) uniform usampler2D seen_triangle;
 layout(binding = 17) uniform sampler2D seen_point; // w: coverage
@@ -20,11 +20,11 @@ layout(binding = 18) uniform sampler2DArray lamp_visibility;
 layout(binding = 18) uniform sampler2DArrayShadow lamp_depths;
 #endif
 #ifdef NORMALISE_CUBE
-layout(binding = 19) uniform samplerCube normalising; // unit vectors, 0 to 1 standing for -1 to 1
+layout(binding = 19) uniform samplerCube normalising; // unit vectors, with 0 to 1 standing for -1 to 1
 #endif
 
 #ifdef PASS_LAST
-layout(binding = 24) uniform sampler2D product; // of all tables, multiplied in earlier passes
+layout(binding = 24) uniform sampler2D product; // product of all tables from earlier passes
 #endif
 
 in vec3 point;
@@ -45,7 +45,7 @@ layout(location = 0) out vec4 out_light; // premultiplied by coverage
 
 const uint TRIANGLE_BACK = 0x80000000u;
 
-// How an interpolated vector becomes unit again. What is exact is nearly never far from it.
+// Renormalises an interpolated vector. The fallback is used for zero vectors only.
 vec3 made_unit(vec3 v, vec3 fallback)
 {
 #if defined(NORMALISE_NONE)
@@ -66,7 +66,7 @@ float visibility(vec3 l)
 #elif defined(SHADOW_MAP)
     float shown = ground_visibility(lamp_ground, point, l);
     vec4 place = lamp_view * vec4(point + lamp_bias * l, 1.0);
-    if (place.w <= 0.0) // behind a lamp that shines on something else
+    if (place.w <= 0.0) // behind the lamp
         return shown;
     vec3 texel = 0.5 * place.xyz / place.w + 0.5;
     return shown * texture(lamp_depths, vec4(texel.xy, float(lamp_layer), min(texel.z, 1.0)));
@@ -84,7 +84,7 @@ float self_shadow(float facing)
 #endif
 }
 
-// What fabric detail says of the sample: set before anything is asked.
+// Fabric detail of the sample; set first by find_detail.
 bool bumpy;
 Bumps bumps;
 DetailPlace place;
@@ -104,7 +104,7 @@ void find_detail(mat3 frame, float side, vec3 smooth_normal)
 }
 
 #ifndef GOURAUD
-// The normal with its bumps, as long as interpolation and the map leave it.
+// The normal with bumps, not normalised after interpolation and map.
 vec3 bumped_normal(vec3 smooth_normal)
 {
     if (!bumpy)
@@ -117,7 +117,7 @@ vec3 bumped_normal(vec3 smooth_normal)
     return mapped.x * tangent.xyz + mapped.y * tangent.w * cross(normal, tangent.xyz) + mapped.z * normal;
 }
 
-// `facing`: cosine of the light and the normal without bumps.
+// `facing` is the cosine of the light with the normal without bumps.
 Cosines cosines_here(float side, vec3 smooth_normal, out float facing)
 {
 #if defined(COSINES)
@@ -147,12 +147,12 @@ Cosines cosines_here(float side, vec3 smooth_normal, out float facing)
 }
 #endif
 
-// The light sent to the eye for each irradiance, unshadowed.
+// Unshadowed reflected light divided by the irradiance.
 vec3 reflected(float side, vec3 smooth_normal)
 {
     vec3 kd = diffuse(surface_colour(place.uv).rgb, place.uv);
     if (bumpy)
-        kd *= bumps.length; // the mean of the normals, not its direction, meets the light
+        kd *= bumps.length; // the mean normal, which is shorter than 1, receives the light
 #ifdef GOURAUD
     vec4 lit = side > 0.0 ? lit_front : lit_back;
     return kd * lit.w + lit.rgb;
@@ -173,7 +173,7 @@ vec3 reflected(float side, vec3 smooth_normal)
 #endif
 }
 
-// ... of what lies under a coat, and of the coat, which levels bumps out and is always lit exactly.
+// Adds the coat. It is smooth and always evaluated exactly; the light below is multiplied by 1 - its reflectance.
 vec3 under_coat(vec3 light, vec3 l, vec3 n)
 {
 #ifdef COAT
@@ -196,7 +196,7 @@ void main()
     mat3 frame = detail_frame(smooth_normal, tangent);
     find_detail(frame, side, smooth_normal);
     vec3 l = towards_lamp(point, side * smooth_normal);
-    float own_shadow = detail_shadow(place, l * frame, side, across, down); // while all neighbours are there
+    float own_shadow = detail_shadow(place, l * frame, side, across, down); // before discard, because it needs derivatives
     ivec2 texel = ivec2(gl_FragCoord.xy);
     uint triangle = (first_triangle + uint(gl_PrimitiveID) + 1u) | (gl_FrontFacing ? 0u : TRIANGLE_BACK);
     if (texelFetch(seen_triangle, texel, 0).r != triangle)

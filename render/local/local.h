@@ -1,13 +1,13 @@
-/* Local lighting: the light of lamps, added to the light target by drawing the surfaces again over the
- * G-buffer's depth, one lamp and one part of a surface at a time, with a program for each way of shading.
+/* Local lighting: the light of lamps, added to the light target by drawing the surfaces again over the depth
+ * of the G-buffer, one lamp and one part of a surface at a time, with a program for each combination of
+ * shading options.
  *
  *     c += cover E(x) V(x) s(n0.l) [ kd/pi max(0, n.l) + f_r(l, v) n.l ]
  *
- * with the gloss f_r cos of render/brdf/brdf.h, n0 the normal without bumps and s the self-shadow, under the
- * material's coat and as far as it is no hole. What is seen behind open cloth, through cloth and in mirrors
- * gets its lamplight by lamp_samples.h. Lamps know
- * the material's two lobes; light.lobe is about the environment. Everything is made when it is first used,
- * and nothing without lamps. */
+ * with the gloss f_r cos of render/brdf/brdf.h, the normal n0 without bumps and the self-shadow s; below the
+ * coat of the material, and multiplied by 1 - openness. lamp_samples.h adds the light of lamps behind open
+ * cloth, through cloth and in mirrors. Lamps always use two lobes; light.lobe applies to the environment.
+ * Resources are made when they are first used, and none without lamps. Needs the GL context of its tl_gpu. */
 #ifndef TOILE_RENDER_LOCAL_LOCAL_H
 #define TOILE_RENDER_LOCAL_LOCAL_H
 
@@ -26,16 +26,16 @@ struct tl_local_program {
 
 struct tl_local {
     size_t program_count;
-    struct tl_local_program **programs; /* apart, because a program's defines must stay where they are */
+    struct tl_local_program **programs; /* by pointer, so that the defines of a program do not move */
     struct tl_lamp_shadows shadows;
     struct tl_table_textures tables;
-    tl_target product; /* what passes multiply in; shares the G-buffer's depth */
+    tl_target product; /* target in which passes multiply; shares the depth of the G-buffer */
     bool product_used; /* in this frame */
 };
 
 struct tl_local_request {
     const struct tl_gbuffer *gbuffer;
-    const tl_target *light; /* has the G-buffer's depth */
+    const tl_target *light; /* with the depth of the G-buffer */
     const struct tl_view *view;
     const tl_surfaces *surfaces;
     size_t surface_count;
@@ -44,14 +44,18 @@ struct tl_local_request {
     const struct tl_lamp *lamps;
     size_t lamp_count;
     const struct tl_shading_params *params;
-    const struct tl_detail_params *detail; /* as the G-buffer has it; NULL: its defaults */
+    const struct tl_detail_params *detail; /* as in the G-buffer; NULL: defaults */
     float depth_bias_m;                    /* of shadow maps */
-    float weight;                          /* of this image among those that are averaged in the target */
+    float weight;                          /* weight of this image in the average of the target */
 };
 
+/* Frees and zeroes. */
 void tl_local_release(struct tl_local *local);
-void tl_local_reload(struct tl_local *local);        /* programs are made again from their files */
-size_t tl_local_bytes(const struct tl_local *local); /* of tables and the passes' target, without shadows */
+/* Discards all programs, so that they are compiled again from their files. */
+void tl_local_reload(struct tl_local *local);
+/* Size of the tables and of the target of the passes, without shadows. */
+size_t tl_local_bytes(const struct tl_local *local);
+/* Adds the light of all lamps. False when a shader cannot be compiled. */
 bool tl_local_draw(struct tl_local *local, tl_gpu *gpu, const struct tl_local_request *request,
                    tl_error *error);
 

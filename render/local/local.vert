@@ -1,12 +1,11 @@
 #version 450 core
-// Vertices of surfaces that a lamp lights, with what a way of shading computes there. GOURAUD: the light itself.
-// COSINES: what the model is evaluated with. VECTORS: unit vectors to be interpolated, in tangent space with
-// TANGENT_SPACE.
+// Vertices of surfaces lit by a lamp, with the values that the shading option computes per vertex. GOURAUD: the light
+// itself. COSINES: the inputs of the model. VECTORS: unit vectors to interpolate, in tangent space with TANGENT_SPACE.
 #define VERTEX_STAGE
 #include "gloss.glsl"
 #include "terms.glsl"
 
-// As surface.glsl has them, whose textures are no business of vertices.
+// The same uniforms as in surface.glsl, whose textures are not needed here.
 layout(location = 1) uniform vec3 material_specular;
 layout(location = 2) uniform vec4 material_scalars;
 
@@ -23,7 +22,7 @@ out vec2 uv;
 #if defined(GOURAUD)
 out vec4 lit_front, lit_back; // gloss; diffuse
 #elif defined(COSINES)
-out vec4 cosines_normal; // of the front: n.l, n.v, n.h; h.l
+out vec4 cosines_normal; // of the front face: n.l, n.v, n.h; h.l
 out vec4 cosines_plane;  // t.h, b.h, t.l, t.v
 out float cosine_lamp;   // l.v
 #elif defined(VECTORS)

@@ -21,26 +21,26 @@ static const struct tl_option rows[] = {
                    "where light is evaluated: at vertices; at pixels with vectors as interpolation leaves "
                    "them; at pixels with unit vectors"),
     TL_OPTION_ENUM(params, coordinates, AFFECTS, coordinates_names,
-                   "what it is evaluated with: cosines by one matrix, for a far light and viewer; cosines "
+                   "inputs of the model: cosines from one matrix, for a distant light and viewer; cosines "
                    "interpolated from vertices, without bumps; vectors at pixels"),
     TL_OPTION_ENUM(params, reflectance, AFFECTS, reflectance_names,
-                   "gloss by its formula, or from tables made for the material, without its maps of gloss"),
+                   "gloss by its formula, or from tables of the material, which ignore its gloss maps"),
     TL_OPTION_INT(params, table_size, AFFECTS, 8, 512, "texels", "side of a table; larger is more exact"),
-    TL_OPTION_ENUM(params, table_precision, AFFECTS, precision_names, "of a table's values"),
+    TL_OPTION_ENUM(params, table_precision, AFFECTS, precision_names, "precision of the values of a table"),
     TL_OPTION_ENUM(params, table_range, AFFECTS, range_names,
-                   "fixed-point tables of a factor that grows without bounds at grazing angles: cut at 1, or "
-                   "divided by its greatest value"),
+                   "fixed-point tables of a factor that is unbounded at grazing angles: clamped to 1, or "
+                   "divided by its maximum"),
     TL_OPTION_INT(params, max_textures_per_pass, AFFECTS, 1, 4, "tables",
-                  "gloss of more tables is multiplied in several passes; smaller takes more of them"),
+                  "gloss with more tables is multiplied in several passes; smaller needs more passes"),
     TL_OPTION_ENUM(params, pass_target, AFFECTS, pass_target_names,
                    "precision in which passes are multiplied"),
     TL_OPTION_ENUM(params, normalisation, AFFECTS, normalisation_names,
-                   "phong: how vectors are made unit; all but exact begin with interpolated ones"),
+                   "phong: how vectors are renormalised; all but exact start from interpolated vectors"),
     TL_OPTION_ENUM(params, power, AFFECTS, power_names, "how the direct formula raises a cosine to a power"),
     TL_OPTION_ENUM(params, space, AFFECTS, space_names,
-                   "vectors at pixels: taken into the world there, or into tangent space at vertices"),
+                   "space of vectors at pixels: world, or tangent space by a transformation at vertices"),
     TL_OPTION_ENUM(params, self_shadow, AFFECTS, self_shadow_names,
-                   "light ends at the smooth surface's own horizon: at once, or along a steep ramp"),
+                   "how light ends at the horizon of the smooth surface: abruptly, or along a steep ramp"),
 };
 const struct tl_option_table tl_shading_options = TL_OPTION_TABLE(
     "shading", "how surfaces are shaded under lamps", rows, params, .frequency = TL_FREQUENCY_PHONG,

@@ -1,6 +1,6 @@
-// A cosine to a power.
+// Powers of cosines.
 
-// log(1 - x), which keeps its digits where x is small.
+// log(1 - x) by its series where x is small, so that no digits are lost.
 float log_of_rest(float x)
 {
     float y = x / (2.0 - x), y2 = y * y;
@@ -16,8 +16,8 @@ float exact_power(float cosine, float sine2, float exponent)
 layout(binding = 23) uniform sampler2D power_table; // of the material's exponent
 #endif
 
-// With POWER_FIXED8 as register combiners do it: the cosine multiplied with itself in 8 bits and a sign, as often as the
-// nearest power of two wants. With POWER_TABLE from 8-bit values, interpolated.
+// POWER_FIXED8 repeats the squaring of register combiners in 8 bits and a sign, as often as the nearest power of two
+// requires. POWER_TABLE interpolates a table of 8-bit values.
 float power(float cosine, float sine2, float exponent)
 {
 #if defined(POWER_FIXED8)

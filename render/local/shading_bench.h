@@ -1,5 +1,5 @@
-/* One surface under one lamp, shaded again and again with nothing else: what `toile bench shading` measures.
- * Threads: the one that the GL context is current on. */
+/* One surface under one lamp, shaded repeatedly without anything else: what `toile bench shading` measures.
+ * Needs the GL context of its tl_gpu. */
 #ifndef TOILE_RENDER_LOCAL_SHADING_BENCH_H
 #define TOILE_RENDER_LOCAL_SHADING_BENCH_H
 
@@ -17,20 +17,21 @@ struct tl_shading_bench {
     struct tl_lamp lamp;
 };
 
+/* False when a shader cannot be compiled. Released by tl_shading_bench_release. */
 bool tl_shading_bench_create(struct tl_shading_bench *out, tl_gpu *gpu, tl_error *error);
-void tl_shading_bench_release(struct tl_shading_bench *trial);
+void tl_shading_bench_release(struct tl_shading_bench *bench);
 
-/* Takes what is seen; the surface need not stay. Programs that were made are kept. */
-bool tl_shading_bench_set_scene(struct tl_shading_bench *trial, const tl_surface *surface,
+/* Sets the scene and draws its G-buffer. The surface is copied to the GPU. Compiled programs are kept. */
+bool tl_shading_bench_set_scene(struct tl_shading_bench *bench, const tl_surface *surface,
                                 const struct tl_camera *camera, const struct tl_lamp *lamp, int width,
                                 int height, tl_error *error);
 
-/* Makes the target black, and whatever was drawn before is done. */
-void tl_shading_bench_clear(struct tl_shading_bench *trial);
-/* Shades, without shadows, and waits until that is done. */
-bool tl_shading_bench_draw(struct tl_shading_bench *trial, const struct tl_shading_params *params,
+/* Clears the target and waits until all previous commands have finished. */
+void tl_shading_bench_clear(struct tl_shading_bench *bench);
+/* Shades without shadows and waits until that has finished. */
+bool tl_shading_bench_draw(struct tl_shading_bench *bench, const struct tl_shading_params *params,
                            tl_error *error);
-/* What was drawn: F32 RGBA, rows upwards. */
-tl_image tl_shading_bench_read(const struct tl_shading_bench *trial);
+/* Reads the target: F32 RGBA, rows upwards. The caller releases the image. */
+tl_image tl_shading_bench_read(const struct tl_shading_bench *bench);
 
 #endif

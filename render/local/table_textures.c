@@ -71,16 +71,16 @@ void tl_table_textures_end(struct tl_table_textures *textures)
             tl_texture_destroy(&textures->cubes[i]);
 }
 
-/* A float table's texels brought into [0, 1] too, where passes of 8 bits can hold them. */
+/* Scales the texels of a float table into [0, 1], too, so that passes of 8 bits can hold them. */
 static void bound_floats(struct tl_brdf_table *table)
 {
-    float *texels = table->texels, most = 0;
+    float *texels = table->texels, max = 0;
     size_t count = (size_t)table->width * (size_t)table->height * (size_t)table->channels;
     for (size_t i = 0; i < count; i++)
-        most = texels[i] > most ? texels[i] : most;
-    for (size_t i = 0; i < count && most > 0; i++)
-        texels[i] /= most;
-    table->scale *= most > 0 ? most : 1;
+        max = texels[i] > max ? texels[i] : max;
+    for (size_t i = 0; i < count && max > 0; i++)
+        texels[i] /= max;
+    table->scale *= max > 0 ? max : 1;
 }
 
 static struct tl_gloss_table upload(tl_gpu *gpu, struct tl_brdf_table *table)
@@ -138,7 +138,8 @@ const struct tl_gloss_tables *tl_table_textures_gloss(struct tl_table_textures *
         struct tl_gloss_tables *gloss = &textures->gloss[i];
         bool same = gloss->size == params->table_size && gloss->precision == params->table_precision &&
                     gloss->range == params->table_range;
-        /* Numbers that differ in their bits only make tables of their own. */
+        /* A bitwise comparison: values that are equal but differ in their bits (0 and -0) only cause an
+         * additional table. */
         if (same &&
             memcmp(&gloss->brdf, brdf, sizeof *brdf) == 0) // NOLINT(bugprone-suspicious-memory-comparison)
             found = gloss;

@@ -1,5 +1,5 @@
-/* The tables of render/brdf and their like as textures: factors of gloss, powers, unit vectors. Each is made
- * when a surface first asks for it, and goes when none did for a frame. */
+/* The tables of render/brdf as textures: factors of gloss, powers, unit vectors. Each is made when a surface
+ * first needs it and destroyed after a frame in which none did. Needs the GL context of its tl_gpu. */
 #ifndef TOILE_RENDER_LOCAL_TABLE_TEXTURES_H
 #define TOILE_RENDER_LOCAL_TABLE_TEXTURES_H
 
@@ -11,13 +11,13 @@
 
 struct tl_gloss_table {
     tl_texture texture;
-    float scale;   /* what texels, which lie in [0, 1], are multiplied by */
+    float scale;   /* factor on the texels, which are in [0, 1] */
     float axes[4]; /* scale and bias of x, of y */
     int x, y;      /* enum tl_table_input */
-    bool angles;   /* of which axes are acos */
+    bool angles;   /* axes are acos of the inputs */
 };
 
-/* What a material with constant gloss is shaded by. */
+/* The tables of a material with constant gloss. */
 struct tl_gloss_tables {
     struct tl_brdf brdf; /* the key, with the next line */
     int size, precision, range;
@@ -41,18 +41,21 @@ struct tl_table_textures {
     bool cubes_used[2];
 };
 
+/* Frees and zeroes. */
 void tl_table_textures_release(struct tl_table_textures *textures);
+/* Size of all textures. */
 size_t tl_table_textures_bytes(const struct tl_table_textures *textures);
-/* About a frame: what is not found between them is let go. */
+/* Enclose a frame: textures that were not requested between these calls are destroyed. */
 void tl_table_textures_begin(struct tl_table_textures *textures);
 void tl_table_textures_end(struct tl_table_textures *textures);
 
-/* Valid until the next call of a function of this header. */
+/* The tables of a material; the pointer is valid until the next call of a function of this header. */
 const struct tl_gloss_tables *tl_table_textures_gloss(struct tl_table_textures *textures, tl_gpu *gpu,
                                                       const struct tl_brdf *brdf,
                                                       const struct tl_shading_params *params);
+/* The table of an exponent; valid as above. */
 const tl_texture *tl_table_textures_power(struct tl_table_textures *textures, tl_gpu *gpu, float exponent);
-/* `normalisation` is CUBE8 or CUBE16. */
+/* The normalisation cube map for CUBE8 or CUBE16; valid as above. */
 const tl_texture *tl_table_textures_cube(struct tl_table_textures *textures, tl_gpu *gpu, int normalisation);
 
 #endif

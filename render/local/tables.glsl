@@ -1,5 +1,5 @@
-// Gloss from tables, as render/brdf/tables.h factors it: TABLES of them, of which a pass takes FIRST_TABLE to
-// LAST_TABLE. TABLE0_X and so on are numbers of enum tl_table_input; TABLE0_ANGLES: its axes are angles.
+// Gloss from the tables of render/brdf/tables.h. There are TABLES of them; a pass multiplies FIRST_TABLE to LAST_TABLE.
+// TABLE0_X and so on are numbers of enum tl_table_input; TABLE0_ANGLES: the axes are angles.
 layout(location = 80) uniform vec4 table_axes[3]; // scale and bias of x, of y: the texture matrix
 layout(location = 83) uniform vec3 table_scales;
 
@@ -25,7 +25,7 @@ vec3 table_value(sampler2D table, vec4 axes, float x, float y)
     table_value(table##number, table_axes[number], table_input(TABLE##number##_X, TABLE##number##_ANGLES, c),          \
                 table_input(TABLE##number##_Y, TABLE##number##_ANGLES, c))
 
-// The product of this pass' tables, without their scales.
+// The product of the tables of this pass, without their scales.
 vec3 tables_product(Cosines c)
 {
     vec3 product = vec3(1.0);

@@ -7,12 +7,12 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Below, FLIP's filters are narrower than a pixel; above, they only cost time (a phone in the hand has 120).
- */
+/* Below this range the filters of FLIP are narrower than a pixel; above it they only cost time (a phone in
+ * the hand has 120). */
 #define PIXELS_PER_DEGREE_MIN 10
 #define PIXELS_PER_DEGREE_MAX 1000
 
-/* An image as it is compared: linear RGB, and which of its pixels count. */
+/* An image prepared for comparison: linear RGB and its covered pixels. */
 struct plain {
     size_t count;
     float *rgb; /* [count][3] */
@@ -54,7 +54,8 @@ static void plain_release(struct plain *plain)
     *plain = (struct plain){0};
 }
 
-/* A pixel counts when either image covers it; `reference->covered` says so for both afterwards. */
+/* Merges the coverage of both images into `reference->covered`: a pixel counts if either image covers it.
+ * Returns the number of covered pixels. */
 static size_t join_coverage(const struct plain *test, struct plain *reference)
 {
     size_t covered = 0;

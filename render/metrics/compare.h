@@ -1,8 +1,9 @@
-/* How different two images are: relative RMSE, FLIP (LDR and HDR), largest difference. Pure.
+/* Image difference: relative RMSE, FLIP (LDR and HDR), largest difference. Pure; threads: any.
  *
- * Linear RGB(A) float images of equal size. A pixel counts when alpha > 0 in either image; images without
- * alpha count whole. FLIP: Andersson et al. 2020, "FLIP: A Difference Evaluator for Alternating Images", and
- * 2021 for HDR; HDR exposures are found from covered pixels only, and a non-finite one is an error. */
+ * Linear RGB(A) float images of equal size. A pixel counts if alpha > 0 in either image; images without alpha
+ * count entirely. FLIP: Andersson et al. 2020, "FLIP: A Difference Evaluator for Alternating Images", and
+ * 2021 for HDR. HDR exposures are computed from covered pixels only; an exposure that is not finite is an
+ * error. */
 #ifndef TOILE_RENDER_METRICS_COMPARE_H
 #define TOILE_RENDER_METRICS_COMPARE_H
 
@@ -12,21 +13,20 @@ struct tl_comparison {
     size_t covered;    /* pixels compared */
     double rel_rmse;   /* sqrt(mean (a - b)^2) / mean b over covered pixels and their three channels; infinite
                           against a black reference, unless equal */
-    double flip_mean;  /* covered pixels */
-    double flip_frame; /* whole frame */
+    double flip_mean;  /* mean over the covered pixels */
+    double flip_frame; /* mean over the whole frame */
     double max_abs;    /* largest channel difference */
     size_t worst;      /* the pixel of the largest square error, y * width + x */
-    double
-        worst_share; /* its part of the sum of square errors; 0 when images are equal. At an outline that one
-                        image puts on the other side of a pixel's middle, a highlight may be all of it */
-    bool hdr;        /* HDR-FLIP was used: a value above 1 in the reference, or asked for */
+    double worst_share; /* its fraction of the sum of square errors; 0 when the images are equal. It can be
+                           large at an outline that the two images put on different sides of a pixel centre */
+    bool hdr;           /* HDR-FLIP was used: requested, or a value above 1 in the reference */
     double exposure_start, exposure_stop; /* HDR only, log2 */
 };
 
-/* `a` is tested, `b` the reference. Sizes that differ, NaN or Inf in either, or
- * no covered pixel at all are TL_INPUT errors; so is HDR against a reference that is half black, which has no
- * exposure. 8-bit images are decoded from sRGB. `hdr`:
- * -1 decides by content, 0 LDR, 1 HDR. `pixels_per_degree` <= 0 means FLIP's default, 67; else 10 to 1000. */
+/* Compares `a` with the reference `b`. `hdr`: -1 decides by content, 0 LDR, 1 HDR. `pixels_per_degree`: 10 to
+ * 1000; <= 0 means the default of FLIP, 67. 8-bit images are decoded from sRGB. Errors: TL_INPUT if the sizes
+ * differ, if a value is not finite, if no pixel is covered, or for HDR if half of the reference is black, so
+ * that it has no exposure. */
 bool tl_image_compare(const tl_image *a, const tl_image *b, int hdr, double pixels_per_degree,
                       struct tl_comparison *out, tl_error *error);
 

@@ -77,7 +77,7 @@ static float hyab_distance(struct colour p, struct colour q)
 
 /* -- Filters -------------------------------------------------------------------------------------------- */
 
-/* All of them separate into (sums of) products of 1D filters. */
+/* All kernels separate into (sums of) products of 1D filters. */
 enum kernel_name {
     ACHROMATIC, /* contrast sensitivity: normalised Gaussians */
     RED_GREEN,
@@ -94,7 +94,7 @@ struct filters {
         int radius;
         float *weights; /* [2 radius + 1] */
     } kernels[KERNEL_COUNT];
-    float wide_share; /* of the two Gaussians for blue-yellow */
+    float wide_share; /* weight of the wide one of the two Gaussians for blue-yellow */
 };
 
 static float *gaussian(int radius, double sigma)
@@ -144,7 +144,7 @@ static struct filters filters_create(double pixels_per_degree)
         filters.kernels[i].weights = gaussian(radius, sensitivity_sigma(b[i], pixels_per_degree));
     }
     for (int i = 0; i < 2; i++) {
-        /* the sum of a Gaussian whose middle is 1 */
+        /* the sum of a Gaussian whose peak is 1 */
         double sum = 1 / (double)filters.kernels[BLUE_YELLOW_WIDE + i].weights[radius];
         volumes[i] = blue_yellow_a[i] * sqrt(M_PI / b[BLUE_YELLOW_WIDE + i]) * sum * sum;
     }
@@ -175,7 +175,7 @@ static int clamp_index(int value, int count)
 /* -- One image ------------------------------------------------------------------------------------------ */
 
 enum plane_name {
-    LUMINANCE, /* opponents as they are */
+    LUMINANCE, /* opponent colours before filtering */
     RED_GREEN_OPPONENT,
     BLUE_YELLOW_OPPONENT,
     GREY,                         /* the achromatic image in [0, 1] */
@@ -187,7 +187,7 @@ enum plane_name {
     PLANE_COUNT = POINTS + 2
 };
 
-/* What is filtered along x by the kernel of the same number, and what along y then. */
+/* The source of each kernel along x, and the kernels along y. */
 static const enum plane_name row_sources[KERNEL_COUNT] = {
     LUMINANCE, RED_GREEN_OPPONENT, BLUE_YELLOW_OPPONENT, BLUE_YELLOW_OPPONENT, GREY, GREY, GREY};
 static const struct {
@@ -216,7 +216,7 @@ static float *line_of(const struct analysis *analysis, int plane, int y)
     return analysis->planes + line * (size_t)analysis->frame->width;
 }
 
-/* out[x] = sum of weights[i] line[x + i]: first what reads before the line, then within, then after it. */
+/* out[x] = sum of weights[i] line[x + i], in three parts: taps before the line, inside of it and after it. */
 static void filter_row(const struct analysis *analysis, enum kernel_name kernel, int y)
 {
     const float *line = line_of(analysis, row_sources[kernel], y);
@@ -351,7 +351,7 @@ static float feature_at(const struct analysis *analysis, int plane, int x, int y
     return sqrtf(along_x * along_x + along_y * along_y);
 }
 
-/* Raises `map` to the error of each pixel where that is larger. */
+/* Replaces `map` by the error of each pixel where that is larger. */
 static void raise_map(const struct analysis *test, const struct analysis *reference, float *map)
 {
     float largest = largest_colour_difference();
@@ -399,7 +399,7 @@ static int compare_floats(const void *a, const void *b)
     return (left > right) - (left < right);
 }
 
-/* Where the tone mapper's curve reaches t. */
+/* The input at which the tone mapper's curve reaches t. */
 static double shown_at(double t)
 {
     double a = aces[0] - t * aces[3], b = aces[1] - t * aces[4], c = aces[2] - t * aces[5];

@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-/* Texel index along one side, wrapped as GL wraps it. `at` is a whole number. */
+/* Texel index along one side, wrapped as in GL. `at` is an integer. */
 static int wrap(float at, int size, bool clamp)
 {
     if (clamp)

@@ -9,32 +9,33 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A dress of 20,000 triangles beside a body of as many: a refit takes 0.7 ms of CPU time, a Morton tree 1.3,
- * a good tree 4.7, and rays run at 4.2, 3.6 and 4.3 million a second after a dozen frames of motion. Trees of
- * what has gone far are built again. */
+/* Measured for a dress of 20,000 triangles and a body of as many: a refit takes 0.7 ms of CPU time, building
+ * a Morton tree 1.3 ms and a good tree 4.7 ms, and after a dozen frames of motion they trace 4.2, 3.6 and 4.3
+ * million rays per second. The tree of a surface is rebuilt after this many refits, because refitting
+ * degrades it as the surface moves away. */
 #define REFITS_MAX 64
 
 #define OFFSET_SHARE                                                                                         \
-    1e-4f /* a thousand times the rounding of positions, a tenth of a millimetre of a figure */
+    1e-4f /* a thousand times the rounding error of positions; a tenth of a millimetre for a figure */
 
-/* A surface is up to three geometries, so that what is opaque needs no filter. */
+/* A surface has up to three geometries, so that opaque parts need no filter function. */
 enum kind { OPAQUE, MASKED, OPEN, KINDS };
 
-/* What a filter is told of the question that is asked. */
-struct question {
-    struct RTCIntersectContext context; /* first: Embree hands on its address */
-    float *through;                     /* by ray: what open sheets leave of it; NULL: they stop rays too */
+/* Context of a query for the filter function. */
+struct query {
+    struct RTCIntersectContext context; /* must be first: Embree passes its address */
+    float *transmittance;               /* by ray: transmittance of open sheets; NULL: they block rays, too */
 };
 
 struct piece {
     RTCGeometry geometry; /* NULL: the surface has no such part */
     size_t count;
-    uint32_t *triangles; /* numbers of these triangles in the surface */
+    uint32_t *triangles; /* indices of these triangles in the surface */
 };
 
 struct slot {
-    tl_surface surface; /* as last given */
-    int refits;         /* since its tree was built */
+    tl_surface surface; /* as of the last update */
+    int refits;         /* number of refits since its tree was built */
     RTCBuffer positions;
     struct piece pieces[KINDS];
 };
@@ -43,7 +44,7 @@ struct tl_trace {
     RTCDevice device;
     RTCScene scene; /* geometry ids: KINDS x slot + kind */
     size_t slot_count;
-    struct slot **slots; /* at fixed addresses: the filters hold them */
+    struct slot **slots; /* by pointer, because the filters keep their addresses */
     int64_t bytes;
 };
 
@@ -55,7 +56,8 @@ static bool count_bytes(void *user, ssize_t bytes, bool post)
     return true;
 }
 
-/* Built by one thread: the same tree, and so the same answer between equally near triangles, everywhere. */
+/* The BVH is built by one thread, so that the tree, and with it the order of equally near triangles, is the
+ * same everywhere. */
 tl_trace *tl_trace_create(tl_error *error)
 {
     tl_trace *trace = TL_NEW(tl_trace);
@@ -68,8 +70,8 @@ tl_trace *tl_trace_create(tl_error *error)
     }
     rtcSetDeviceMemoryMonitorFunction(trace->device, count_bytes, trace);
     trace->scene = rtcNewScene(trace->device);
-    /* Dynamic and of low quality: every geometry keeps a tree of its own below one that joins them, so that
-     * what stands still is not built again. The quality of the trees themselves is the geometries'. */
+    /* A dynamic scene of low quality keeps one tree per geometry below a tree that joins them, so that
+     * surfaces at rest are not rebuilt. The quality of those trees is set per geometry. */
     rtcSetSceneFlags(trace->scene, RTC_SCENE_FLAG_DYNAMIC | RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(trace->scene, RTC_BUILD_QUALITY_LOW);
     rtcCommitScene(trace->scene);
@@ -141,8 +143,9 @@ static bool in_hole(const tl_surface *surface, uint32_t triangle, float u, float
     return tl_cutout_at(material_of(surface, triangle), uv);
 }
 
-/* Rays and hits of N are arrays of N: a ray's eleventh is its id; a hit's are three of the normal, u, v,
- * primitive, geometry (rtcore_ray.h reads them in C++ only). */
+/* The filter function: skips holes and accumulates the transmittance of open sheets. Rays and hits of N lanes
+ * are arrays of N numbers: the eleventh of a ray is its id; those of a hit are three of the normal, u, v,
+ * primitive, geometry (the accessors of rtcore_ray.h are C++ only). */
 static void skip_holes(const struct RTCFilterFunctionNArguments *arguments)
 {
     unsigned count = arguments->N;
@@ -151,16 +154,16 @@ static void skip_holes(const struct RTCFilterFunctionNArguments *arguments)
     const uint32_t *geometries = (const uint32_t *)arguments->hit + 6 * (size_t)count;
     const uint32_t *ids = (const uint32_t *)arguments->ray + 10 * (size_t)count;
     const struct slot *slot = arguments->geometryUserPtr;
-    float *through = ((const struct question *)arguments->context)->through;
+    float *transmittance = ((const struct query *)arguments->context)->transmittance;
     for (unsigned i = 0; i < count; i++) {
         if (!arguments->valid[i])
             continue;
         enum kind kind = (enum kind)(geometries[i] % KINDS);
         uint32_t triangle = slot->pieces[kind].triangles[primitives[i]];
         bool hole = in_hole(&slot->surface, triangle, numbers[3 * count + i], numbers[4 * count + i]);
-        if (!hole && kind == OPEN && through)
-            through[ids[i]] *= material_of(&slot->surface, triangle)->openness;
-        if (hole || (kind == OPEN && through))
+        if (!hole && kind == OPEN && transmittance)
+            transmittance[ids[i]] *= material_of(&slot->surface, triangle)->openness;
+        if (hole || (kind == OPEN && transmittance))
             arguments->valid[i] = 0;
     }
 }
@@ -198,7 +201,7 @@ static void build_piece(tl_trace *trace, size_t index, enum kind kind)
                          sizeof(vec3s), surface->vertex_count);
     uint32_t *indices = rtcSetNewGeometryBuffer(piece->geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                                 3 * sizeof(uint32_t), piece->count);
-    if (!indices) /* no memory: the device's error says so to tl_trace_update */
+    if (!indices) /* out of memory: tl_trace_update reports the error of the device */
         return;
     for (size_t i = 0; i < piece->count; i++)
         memcpy(indices + 3 * i, surface->indices + 3 * (size_t)triangles[i], 3 * sizeof(uint32_t));
@@ -218,7 +221,8 @@ static void copy_positions(const struct slot *slot)
            slot->surface.vertex_count * sizeof(vec3s));
 }
 
-/* Embree reads 16 bytes from every vertex on, so the buffer is its own and longer. */
+/* Rebuilds all geometries of a slot. Embree reads 16 bytes at every vertex, so the buffer is a longer
+ * copy. */
 static void build_slot(tl_trace *trace, size_t index, const tl_surface *surface)
 {
     empty_slot(trace, index);
@@ -232,7 +236,7 @@ static void build_slot(tl_trace *trace, size_t index, const tl_surface *surface)
         build_piece(trace, index, kind);
 }
 
-/* Keeps the trees' shape and moves their boxes. */
+/* Refits: keeps the topology of the trees and updates their boxes. */
 static void refit_slot(struct slot *slot)
 {
     slot->refits++;
@@ -300,11 +304,11 @@ struct tl_trace_hit tl_trace_nearest(const tl_trace *trace, vec3s origin, vec3s 
     struct tl_trace_hit none = {.surface = TL_TRACE_NONE};
     if (!is_finite(origin) || !is_finite(direction))
         return none;
-    struct question question = {.through = NULL};
-    rtcInitIntersectContext(&question.context);
+    struct query query = {.transmittance = NULL};
+    rtcInitIntersectContext(&query.context);
     struct RTCRayHit ray = {.ray = make_ray(origin, direction, from_m, to_m),
                             .hit = {.geomID = RTC_INVALID_GEOMETRY_ID}};
-    rtcIntersect1(trace->scene, &question.context, &ray);
+    rtcIntersect1(trace->scene, &query.context, &ray);
     if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID)
         return none;
     const struct piece *piece = &trace->slots[ray.hit.geomID / KINDS]->pieces[ray.hit.geomID % KINDS];
@@ -321,37 +325,37 @@ bool tl_trace_occluded(const tl_trace *trace, vec3s origin, vec3s direction, flo
 {
     if (!is_finite(origin) || !is_finite(direction))
         return false;
-    struct question question = {.through = NULL};
-    rtcInitIntersectContext(&question.context);
+    struct query query = {.transmittance = NULL};
+    rtcInitIntersectContext(&query.context);
     struct RTCRay ray = make_ray(origin, direction, from_m, to_m);
-    rtcOccluded1(trace->scene, &question.context, &ray);
+    rtcOccluded1(trace->scene, &query.context, &ray);
     return ray.tfar < 0;
 }
 
-/* Bits of the rays that are stopped. */
-static uint32_t ask_bundle(const tl_trace *trace, const struct tl_ray_packet *bundle, float *through)
+/* Traces a packet. Returns the bit mask of the blocked rays. */
+static uint32_t trace_packet(const tl_trace *trace, const struct tl_ray_packet *packet, float *transmittance)
 {
-    struct question question = {.through = through};
-    rtcInitIntersectContext(&question.context);
-    question.context.flags =
-        bundle->coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_NONE;
+    struct query query = {.transmittance = transmittance};
+    rtcInitIntersectContext(&query.context);
+    query.context.flags =
+        packet->coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_NONE;
     struct RTCRay16 rays = {0};
-    memcpy(rays.org_x, bundle->origin_x, sizeof rays.org_x);
-    memcpy(rays.org_y, bundle->origin_y, sizeof rays.org_y);
-    memcpy(rays.org_z, bundle->origin_z, sizeof rays.org_z);
-    memcpy(rays.dir_x, bundle->direction_x, sizeof rays.dir_x);
-    memcpy(rays.dir_y, bundle->direction_y, sizeof rays.dir_y);
-    memcpy(rays.dir_z, bundle->direction_z, sizeof rays.dir_z);
+    memcpy(rays.org_x, packet->origin_x, sizeof rays.org_x);
+    memcpy(rays.org_y, packet->origin_y, sizeof rays.org_y);
+    memcpy(rays.org_z, packet->origin_z, sizeof rays.org_z);
+    memcpy(rays.dir_x, packet->direction_x, sizeof rays.dir_x);
+    memcpy(rays.dir_y, packet->direction_y, sizeof rays.dir_y);
+    memcpy(rays.dir_z, packet->direction_z, sizeof rays.dir_z);
     _Alignas(64) int valid[16];
     for (int i = 0; i < 16; i++) {
-        rays.tnear[i] = bundle->from_m;
-        rays.tfar[i] = bundle->to_m;
+        rays.tnear[i] = packet->from_m;
+        rays.tfar[i] = packet->to_m;
         rays.mask[i] = (unsigned)-1;
         rays.id[i] = (unsigned)i;
-        /* One sum is finite only where all six are, or nearly overflow: such rays hit nothing either. */
+        /* The sum is finite only if all six numbers are, or nearly overflow; such rays hit nothing either. */
         float sum =
             rays.org_x[i] + rays.org_y[i] + rays.org_z[i] + rays.dir_x[i] + rays.dir_y[i] + rays.dir_z[i];
-        valid[i] = i < bundle->count && isfinite(sum) ? -1 : 0;
+        valid[i] = i < packet->count && isfinite(sum) ? -1 : 0;
         if (!valid[i]) {
             /* Where the processor has no vectors of 16 floats, Embree 3.13 traces the packet as a stream,
              * which ignores `valid`: a ray is inactive there if it ends before it begins, and its numbers are
@@ -361,25 +365,26 @@ static uint32_t ask_bundle(const tl_trace *trace, const struct tl_ray_packet *bu
             rays.tfar[i] = -INFINITY;
         }
     }
-    rtcOccluded16(valid, trace->scene, &question.context, &rays);
-    uint32_t stopped = 0;
+    rtcOccluded16(valid, trace->scene, &query.context, &rays);
+    uint32_t blocked = 0;
     for (int i = 0; i < 16; i++)
-        stopped |= (uint32_t)(valid[i] && rays.tfar[i] < 0) << i;
-    return stopped;
+        blocked |= (uint32_t)(valid[i] && rays.tfar[i] < 0) << i;
+    return blocked;
 }
 
-uint32_t tl_trace_occluded_packet(const tl_trace *trace, const struct tl_ray_packet *bundle)
+uint32_t tl_trace_occluded_packet(const tl_trace *trace, const struct tl_ray_packet *packet)
 {
-    return ask_bundle(trace, bundle, NULL);
+    return trace_packet(trace, packet, NULL);
 }
 
-void tl_trace_transmittance_packet(const tl_trace *trace, const struct tl_ray_packet *bundle, float seen[16])
+void tl_trace_transmittance_packet(const tl_trace *trace, const struct tl_ray_packet *packet,
+                                   float transmittance[16])
 {
     for (int i = 0; i < 16; i++)
-        seen[i] = 1;
-    uint32_t stopped = ask_bundle(trace, bundle, seen);
+        transmittance[i] = 1;
+    uint32_t blocked = trace_packet(trace, packet, transmittance);
     for (int i = 0; i < 16; i++)
-        seen[i] = stopped >> i & 1 ? 0 : seen[i];
+        transmittance[i] = blocked >> i & 1 ? 0 : transmittance[i];
 }
 
 vec3s tl_smooth_point(vec3s point, const vec3s corners[3], const vec3s normals[3], const float weights[3])

@@ -142,7 +142,7 @@ static double energy(const struct tl_brdf *brdf, double view_deg)
     return over_hemisphere(gloss_of, brdf, polar(view_deg, 30));
 }
 
-static void sends_back_no_more_than_it_gets(void **state)
+static void energy_is_not_created(void **state)
 {
     (void)state;
     const float glossiness[] = {0, 0.5f, 0.8f, 0.9f, 0.98f};
@@ -171,7 +171,7 @@ static void sends_back_no_more_than_it_gets(void **state)
     }
 }
 
-/* In front a narrow lobe loses nothing. */
+/* Seen from the front, a narrow lobe keeps all energy. */
 static void narrow_lobes_keep_all_energy(void **state)
 {
     (void)state;
@@ -250,9 +250,10 @@ static void banks_shines_along_the_cone(void **state)
     }
 }
 
-/* The disc of the paper's figure 3: threads run in circles about its middle, light and viewer are far away.
- * Where a thread runs across both, at azimuths 0 and 180 degrees, it mirrors one into the other; the further
- * its azimuth from there the darker, the same all along a radius and on both sides. */
+/* The disc of the paper's figure 3: threads run in circles about its centre; light and viewer are far away.
+ * Where a thread is at right angles to both, at azimuths 0 and 180 degrees, it reflects one into the other.
+ * The brightness falls with the distance of the azimuth from there, is constant along a radius and equal on
+ * both sides. */
 static void banks_on_a_disc_is_a_bow_tie(void **state)
 {
     (void)state;
@@ -330,7 +331,7 @@ static void check_draws(const struct tl_brdf *brdf, vec3s v)
     assert_near(lost, DRAWS - total, 5 * sqrt(fabs(DRAWS - total)) + 0.002 * DRAWS);
 }
 
-static void draws_follow_their_density(void **state)
+static void samples_follow_their_pdf(void **state)
 {
     (void)state;
     const double views[] = {0, 50, 80};
@@ -349,7 +350,7 @@ static void draws_follow_their_density(void **state)
 
 /* The mean of gloss / density over even numbers is the energy: also for lobes that no grid would find. And
  * no draw weighs much more than the others. */
-static void draws_estimate_the_energy(void **state)
+static void samples_estimate_the_energy(void **state)
 {
     (void)state;
     const float glossiness[] = {0.5f, 0.9f, 0.99f, 1};
@@ -427,7 +428,7 @@ static void conductors_are_the_complex_form(void **state)
     }
 }
 
-/* F(n.v) where the header says so. */
+/* F(n.v) for the models that take it at n.v. */
 static void gloss_takes_fresnel_at_the_right_angle(void **state)
 {
     (void)state;
@@ -446,8 +447,8 @@ static void gloss_takes_fresnel_at_the_right_angle(void **state)
     assert_near(tl_fresnel_schlick(0.04f, NAN), 1, 1e-6);
 }
 
-/* Directions that divide by nothing: grazing, below, equal, opposite; all widths and exponents. */
-static void nothing_is_ever_not_a_number(void **state)
+/* Directions that cause divisions by zero: grazing, below, equal, opposite; all widths and exponents. */
+static void results_are_always_finite(void **state)
 {
     (void)state;
     const vec3s directions[] = {polar(0, 0),         polar(90, 0),     polar(90, 180), polar(89.9999, 10),
@@ -482,7 +483,7 @@ static void nothing_is_ever_not_a_number(void **state)
     }
 }
 
-/* What a file says is made harmless. */
+/* Invalid values of a file are clamped or replaced. */
 static void materials_are_kept_in_range(void **state)
 {
     (void)state;
@@ -523,7 +524,7 @@ int main(void)
         cmocka_unit_test(facets_are_normalised),
         cmocka_unit_test(exchanges_light_and_viewer),
         cmocka_unit_test(phong_and_blinn_are_not_reciprocal),
-        cmocka_unit_test(sends_back_no_more_than_it_gets),
+        cmocka_unit_test(energy_is_not_created),
         cmocka_unit_test(narrow_lobes_keep_all_energy),
         cmocka_unit_test(ward_of_equal_widths_is_isotropic),
         cmocka_unit_test(anisotropy_turns_with_the_tangent),
@@ -531,12 +532,12 @@ int main(void)
         cmocka_unit_test(banks_shines_along_the_cone),
         cmocka_unit_test(banks_on_a_disc_is_a_bow_tie),
         cmocka_unit_test(scales_are_the_formulas),
-        cmocka_unit_test(draws_follow_their_density),
-        cmocka_unit_test(draws_estimate_the_energy),
+        cmocka_unit_test(samples_follow_their_pdf),
+        cmocka_unit_test(samples_estimate_the_energy),
         cmocka_unit_test(fresnel_is_the_closed_form),
         cmocka_unit_test(conductors_are_the_complex_form),
         cmocka_unit_test(gloss_takes_fresnel_at_the_right_angle),
-        cmocka_unit_test(nothing_is_ever_not_a_number),
+        cmocka_unit_test(results_are_always_finite),
         cmocka_unit_test(materials_are_kept_in_range),
         cmocka_unit_test(frames_are_orthonormal),
     };

@@ -17,8 +17,8 @@
 #define ENERGY_OFF         0.05
 #define ENERGY_OFF_THREADS 0.09
 
-/* Errors are bounded by what came out, rounded up: they keep a change from making fans worse. What fans are
- * good for, test_layered bounds against the oracle. */
+/* The bounds are measured errors, rounded up; they detect changes that make the fit worse. test_layered
+ * compares images with the reference. */
 struct gloss_case {
     const char *name;
     int model;
@@ -83,7 +83,7 @@ static struct sums integrate(const struct tl_brdf *brdf, vec3s v, const struct t
     return sums;
 }
 
-static void test_lobes_stand_for_the_gloss(void **state)
+static void test_lobes_match_the_gloss(void **state)
 {
     (void)state;
     const float polars[] = {0, 0.5f, 1, 1.3f}, azimuths[] = {0, 0.785f, 1.571f};
@@ -116,6 +116,6 @@ static void test_lobes_stand_for_the_gloss(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_lobes_stand_for_the_gloss)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_lobes_match_the_gloss)};
     return cmocka_run_group_tests_name("fan", tests, NULL, NULL);
 }

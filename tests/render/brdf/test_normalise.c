@@ -90,8 +90,9 @@ static void sixteen_bits_are_nearly_exact(void **state)
     }
 }
 
-/* What no normalisation mends: linear interpolation runs faster in the middle. Its angle at place p is off by
- * up to about angle^3 / 124 [atan((2p - 1) tan(a/2)) - (2p - 1) a/2, at its largest]. */
+/* The error that no normalisation removes: linear interpolation is faster in the middle of the arc. Its
+ * angle at position p is off by up to about angle^3 / 124, the maximum of atan((2p - 1) tan(a/2)) - (2p -
+ * 1) a/2. */
 static void slerp_differs_by_the_third_power(void **state)
 {
     (void)state;

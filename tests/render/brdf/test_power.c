@@ -4,7 +4,7 @@
 
 #include "tests/testing.h"
 
-static void pow_is_the_ruler(void **state)
+static void pow_is_the_baseline(void **state)
 {
     (void)state;
     struct tl_power_error error = tl_power_error(TL_POWER_POW, 64, TL_POWER_TABLE_SIZE);
@@ -74,7 +74,7 @@ static void banding_grows_with_the_exponent(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pow_is_the_ruler),
+        cmocka_unit_test(pow_is_the_baseline),
         cmocka_unit_test(fixed_point_rounds_at_each_squaring),
         cmocka_unit_test(the_table_is_weak_near_one),
         cmocka_unit_test(banding_grows_with_the_exponent),

@@ -54,8 +54,8 @@ static void float_tables_are_the_formula(void **state)
     }
 }
 
-/* g -> 1: up to where the header says, and finite to the end. */
-static void near_mirrors_hold_as_far_as_told(void **state)
+/* g -> 1: exact up to the exponent that tables.h states, and finite up to the end. */
+static void near_mirrors_are_exact_up_to_the_stated_exponent(void **state)
 {
     (void)state;
     for (int model = 0; model < MODELS; model++) {
@@ -281,7 +281,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(float_tables_are_the_formula),
-        cmocka_unit_test(near_mirrors_hold_as_far_as_told),
+        cmocka_unit_test(near_mirrors_are_exact_up_to_the_stated_exponent),
         cmocka_unit_test(every_torrance_sparrow_holds),
         cmocka_unit_test(banks_by_angles_is_finer),
         cmocka_unit_test(scaling_keeps_what_clamping_darkens),

@@ -250,8 +250,8 @@ static void test_horizon_against_rays(void **state)
      * bytes leave about a hundredth; between eight angles a sine may bend by a few more. */
     assert_true(at_angles > 0.98);
     assert_true(anywhere > 0.96);
-    /* Halfway up the side of a yarn, between a texel that sees it and one that does not, the map says half.
-     */
+    /* Halfway up the side of a yarn, between a texel that is lit and one that is not, the interpolated map is
+     * half lit. */
     assert_near(lit[1] / by_map, lit[0] / by_map, 0.01);
     tl_horizon_maps_release(&maps);
     tl_weave_release(&weave);

@@ -93,7 +93,7 @@ static vec2s pixel_uv(const struct bench *bench, int pixel)
 
 /* ---- Truths: whether light reaches a place of the field ---- */
 
-/* Of the ripples' own cosine, along x: no crest farther than a wave can be the first in the way. */
+/* For the cosine of the ripples, along x: no crest farther than one wave can be the first occluder. */
 static bool clears_ripples(const struct bench *bench, double u, double v, vec3s light)
 {
     (void)bench;
@@ -137,7 +137,7 @@ struct verdict {
 
 typedef bool truth_of(const struct bench *bench, double u, double v, vec3s light);
 
-/* Pixels that their own slope keeps from all light have no say. */
+/* Pixels whose own slope faces away from all light are ignored. */
 static struct verdict judge(const tl_image *open, const tl_image *shadowed, const bool *lit)
 {
     double agreed = 0, squares = 0, sum = 0;

@@ -1,6 +1,5 @@
-/* Detail in the frame against its counterpart on the CPU and against the reference; and that what is not
- * asked for is not there. A square whose colour is its u, in light of 1 from everywhere, shows where its maps
- * are read. */
+/* Detail in the frame against its counterpart on the CPU and against the reference; options that are off cost
+ * nothing. A square whose colour is its u, in uniform light of 1, shows where its maps are read. */
 #include "tests/render/scenes.h"
 
 #include "config/memory.h"
@@ -68,7 +67,7 @@ static void stage_free(struct stage *stage)
     free(stage);
 }
 
-/* Where a pixel's ray meets z = 0, and the direction back. */
+/* The intersection of a pixel's ray with z = 0, and the direction back. */
 static vec3s pixel_point(const struct stage *stage, int x, int y, vec3s *view)
 {
     const struct tl_camera *camera = &stage->frame.camera;

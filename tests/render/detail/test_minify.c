@@ -80,7 +80,7 @@ static tl_image view(tl_renderer *renderer, const struct stage *stage, int size,
     return test_draw(renderer, &frame, &settings);
 }
 
-/* Of what is covered, so that the edge's steps do not count. */
+/* Over fully covered pixels only, so that the steps of the edge do not count. */
 static vec3s mean_of(const tl_image *image)
 {
     double sums[4] = {0};
@@ -124,8 +124,9 @@ static double pixel_rmse(const tl_image *image, const tl_image *truth)
     return sqrt(squares / count) / (mean / count);
 }
 
-/* Every octave's mean colour within 2 % of the truth's, in method rays, whose facets send nothing below the
- * surface's horizon; and once yarns are smaller than a pixel, pixels nearer to the truth than without. */
+/* The mean colour of every octave is within 2 % of the exact one with method rays, whose facets reflect
+ * nothing below the horizon of the surface. Once yarns are smaller than a pixel, pixels are nearer to the
+ * exact values with minification than without. */
 static void test_mean(void **state)
 {
     struct test_device *device = *state;
@@ -157,8 +158,8 @@ static void test_mean(void **state)
     }
 }
 
-/* Root mean square change of a pixel from frame to frame, by the image's mean, while the camera backs away
- * from a flat sheet that fills the image: far away nothing should change at all. */
+/* Root mean square change of a pixel from frame to frame, relative to the mean of the image, while the camera
+ * moves away from a flat sheet that fills the image. Far away nothing should change. */
 static double shimmer(tl_renderer *renderer, const struct stage *stage, int minify, float distance_m)
 {
     enum { FRAMES = 8 };

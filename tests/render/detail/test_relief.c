@@ -139,9 +139,8 @@ static struct spread relief_errors(const struct tl_height_field *field, int step
     return spread;
 }
 
-/* 64 steps find every place, and so do as many more as one likes. With fewer the last ones are as long as
- * what is left asks for, and a ray that grazes may pass a crest in them: with 16 less than one in a hundred,
- * as it comes out. */
+/* 64 steps find every hit, and so do more. With fewer steps the last ones must be long, and a grazing ray may
+ * step over a crest: with 16 steps less than one ray in a hundred (measured). */
 static void check_steps(const struct tl_height_field *field, const char *name, float tilt)
 {
     for (int steps = 1; steps <= 256; steps *= 4) {
@@ -156,7 +155,7 @@ static void check_steps(const struct tl_height_field *field, const char *name, f
     }
 }
 
-/* Of cloth as its front and its back are seen. */
+/* For the front and the back of cloth. */
 static void test_steps(void **state)
 {
     (void)state;

@@ -94,7 +94,7 @@ static void a_sun_keeps_its_power(void **state)
     }
 }
 
-/* The error that is told bounds every sun at once; at the sizes of real maps. */
+/* The reported error bounds the error of every sun; at the sizes of real maps. */
 static void every_sun_keeps_its_power(void **state)
 {
     (void)state;

@@ -166,7 +166,7 @@ static void cubes_are_averaged_exactly(void **state)
     release_environment(&environment);
 }
 
-/* What the lat-long convention of assets/environment.h says, texel by texel. */
+/* The lat-long convention of assets/environment.h, texel by texel. */
 static void latlong_is_turned_the_right_way(void **state)
 {
     (void)state;
@@ -299,7 +299,7 @@ static void expect_same_cube(const tl_environment *environment, int size, struct
 }
 
 /* One environment after the other, of changing values, sizes and layouts, with what was kept of the last. */
-static void what_is_kept_changes_no_bit(void **state)
+static void cached_weights_change_no_bit(void **state)
 {
     (void)state;
     struct tl_resampling kept = {0};
@@ -319,9 +319,9 @@ static void what_is_kept_changes_no_bit(void **state)
     tl_resampling_release(&kept);
 }
 
-/* So large that it is poured in bands, of which nothing is kept: a constant stays constant, and what lies in
- * either band arrives. Red grows downwards, so that the top face is darker than the bottom. */
-static void large_images_are_poured_in_bands(void **state)
+/* An image so large that it is resampled in bands and no weights are kept: a constant stays constant, and the
+ * light of both bands arrives. Red increases downwards, so that the top face is darker than the bottom. */
+static void large_images_are_resampled_in_bands(void **state)
 {
     (void)state;
     struct tl_resampling kept = {0};
@@ -360,8 +360,8 @@ int main(void)
         cmocka_unit_test(a_corner_is_the_mean_of_three),
         cmocka_unit_test(layouts_agree_on_a_real_scene),
         cmocka_unit_test(threads_change_no_bit),
-        cmocka_unit_test(what_is_kept_changes_no_bit),
-        cmocka_unit_test(large_images_are_poured_in_bands),
+        cmocka_unit_test(cached_weights_change_no_bit),
+        cmocka_unit_test(large_images_are_resampled_in_bands),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

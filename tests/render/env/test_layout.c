@@ -19,8 +19,8 @@ static vec3s direction_number(int i)
     return (vec3s){{(float)(radius * cos(phi)), (float)(radius * sin(phi)), (float)z}};
 }
 
-/* Directions are floats: 6e-8 of each component. The ball's rim is where a point tells least of a direction:
- * that is paid for in the point, not in the direction, which returns as it was. */
+/* Directions are floats: 6e-8 of each component. At the rim of the ball the point is ill-conditioned in the
+ * direction. The loss is in the point; the direction is recovered exactly. */
 static void check_round_trip(const struct tl_sphere_map *map, vec3s direction)
 {
     double x, y;
@@ -37,8 +37,8 @@ static void directions_return(void **state)
         struct tl_sphere_map map = map_of((enum tl_layout)layout, 100);
         for (int i = 0; i < 20000; i++)
             check_round_trip(&map, direction_number(i));
-        /* axes (poles, discs' centres, the ball's singular -Z), edges and corners of the cube, and beside
-         * them */
+        /* axes (poles, centres of the discs, the singular -Z of the ball), edges and corners of the cube, and
+         * directions near them */
         for (int i = 0; i < 27; i++)
             for (int step = -1; step <= 1 && i != 13; step++) {
                 float beside = 1e-4f * (float)step;
@@ -82,7 +82,7 @@ static void latlong_is_the_convention(void **state)
     }
 }
 
-/* What an orthographic camera sees that looks along `side` * -Z at a mirror with this normal. */
+/* The direction that an orthographic camera, looking along `side` -Z, sees in a mirror with this normal. */
 static vec3s reflected(double x, double y, double z, double side)
 {
     double scale = 2 * z / (x * x + y * y + z * z);
@@ -122,7 +122,7 @@ static void solid_angles_sum_to_the_sphere(void **state)
         }
 }
 
-/* Of the parallelogram that a small cell spans on the sphere, from directions within it alone. */
+/* Solid angle of the parallelogram of a small cell on the sphere, from directions within it only. */
 static double spanned(const struct tl_sphere_map *map, double x, double y, double step)
 {
     vec3s left = tl_layout_direction(map, x - step / 4, y), right = tl_layout_direction(map, x + step / 4, y);

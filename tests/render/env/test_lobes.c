@@ -31,8 +31,8 @@ static struct tl_exponent_blend node(int i)
 #define DIRECTIONS 28
 #endif
 
-/* Of the paper's filters, also what the best level for each direction would give. */
-static void print_least_error(const struct tl_lobe_curves *curves, int method)
+/* For the filters of the paper, also the error at the best level for each direction. */
+static void print_min_error(const struct tl_lobe_curves *curves, int method)
 {
     double mean[EXPONENTS], worst[EXPONENTS], sum = 0, most = 0;
     tl_lobe_min_error(curves, method, mean, worst);
@@ -42,7 +42,7 @@ static void print_least_error(const struct tl_lobe_curves *curves, int method)
     }
     printf("%-12s at the best level for each direction: mean %.1f %%, worst %.1f %%\n", "", 100 * sum,
            100 * most);
-    assert_true(sum > 0.15); /* ten times what is asked of the slices is out of its reach */
+    assert_true(sum > 0.15); /* ten times the limit of the slices, which it cannot reach */
 }
 
 /* The acceptance of the exact prefilter, beside the same figures of the paper's filters: 26 awkward
@@ -71,18 +71,18 @@ static void lobes_of_one_texel(void **state)
             "%.3f\n",
             tl_lobe_method_names[method], 100 * mean, 100 * worst, 100 * same_volume, low, high);
         if (method < TL_LOBE_SLICES) {
-            print_least_error(&curves, method);
+            print_min_error(&curves, method);
             continue;
         }
-        assert_true(worst <= 0.01); /* asked for: 3.5 %, and 1 % as a stretch */
+        assert_true(worst <= 0.01); /* the limit is 3.5 %, the goal 1 % */
         assert_true(low >= 0.99 && high <= 1.01);
     }
 }
 
-/* Any exponent, any direction: the same. Merged cells of s = 1 meet its horizon whole (0.4 %, measured), and
- * at s = 1024 a texel is almost as wide as the lobe, and skew in the cube's corners (0.6 %; a fifth of that
- * with 128 texels). */
-static void an_even_sky_stays_even(void **state)
+/* Any exponent, any direction: the same. Merged cells of s = 1 lie on the horizon as a whole (0.4 %,
+ * measured). At s = 1024 a texel is nearly as wide as the lobe, and skewed in the corners of the cube (0.6 %;
+ * a fifth of that with 128 texels). */
+static void a_uniform_sky_stays_uniform(void **state)
 {
     (void)state;
     tl_cube cube = tl_cube_create(64);
@@ -101,11 +101,10 @@ static void an_even_sky_stays_even(void **state)
     tl_cube_release(&cube);
 }
 
-/* What falls from one small lamp on a surface that turns away from it: cos w / pi, with a crease at the
- * horizon. Straight lines between texels, 2 sqrt(6) / side apart at most, err there by a quarter of
- * that, 1.53 % of the brightest for 80 texels; and lobes that will be interpolated are sharpened, which
- * raises them by 0.2 %.
- */
+/* The irradiance of one small lamp on a surface that turns away from it: cos w / pi, with a crease at the
+ * horizon. Linear interpolation between texels, at most 2 sqrt(6) / side apart, errs there by a quarter of
+ * that, 1.53 % of the peak for 80 texels. Lobes that will be interpolated are sharpened, which raises the
+ * peak by 0.2 %. */
 static void a_lamp_sets_where_its_horizon_is(void **state)
 {
     (void)state;
@@ -132,8 +131,8 @@ static void a_lamp_sets_where_its_horizon_is(void **state)
     assert_true(worst <= 0.0173);
 }
 
-/* Over a border of the unfolded octahedron nothing jumps: directions on both sides of each of its edges, and
- * all around the pole that is its four corners. */
+/* No seams across the borders of the unfolded octahedron: directions on both sides of each edge, and all
+ * around the pole at its four corners. */
 static void no_seam_below_the_horizon(void **state)
 {
     (void)state;
@@ -219,8 +218,8 @@ static void threads_change_no_bit(void **state)
     tl_cube_release(&cube);
 }
 
-/* Whatever the file held and whatever is asked: numbers. */
-static void nothing_but_numbers_comes_out(void **state)
+/* Results are finite for any contents of a file and any request. */
+static void results_are_finite(void **state)
 {
     (void)state;
     const float strange[] = {NAN, INFINITY, -INFINITY, -1, 1e30f, 65504, 0, 1e-40f};
@@ -259,9 +258,9 @@ static void a_black_sky_is_black(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lobes_of_one_texel),        cmocka_unit_test(an_even_sky_stays_even),
+        cmocka_unit_test(lobes_of_one_texel),        cmocka_unit_test(a_uniform_sky_stays_uniform),
         cmocka_unit_test(no_seam_below_the_horizon), cmocka_unit_test(the_environment_itself_keeps_its_light),
-        cmocka_unit_test(threads_change_no_bit),     cmocka_unit_test(nothing_but_numbers_comes_out),
+        cmocka_unit_test(threads_change_no_bit),     cmocka_unit_test(results_are_finite),
         cmocka_unit_test(a_black_sky_is_black),      cmocka_unit_test(a_lamp_sets_where_its_horizon_is),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

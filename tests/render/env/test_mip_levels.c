@@ -1,4 +1,4 @@
-/* Mip levels weighted by solid angle, and light poured into pictures, in every layout. */
+/* Mip levels weighted by solid angle, and prefiltered maps in every layout. */
 #include "render/env/mip_levels.h"
 
 #include "config/memory.h"
@@ -85,8 +85,8 @@ static void a_constant_stays_constant(void **state)
     }
 }
 
-/* Every texel of the sphere in its turn is a sun. Its share of a coarse texel is rounded to a float: 6e-8 a
- * level; asked for is 0.1 %. */
+/* Every texel of the sphere, one at a time, is a sun. Its share of a coarse texel is rounded to float: 6e-8
+ * per level; the limit is 0.1 %. */
 static void a_sun_anywhere_keeps_its_power(void **state)
 {
     (void)state;
@@ -132,7 +132,7 @@ static void paraboloids_weigh_as_equation_6(void **state)
     tl_mip_levels_release(&levels);
 }
 
-/* What plain mip-mapping would make of a sun: the reason for the weights. */
+/* The error of mip-mapping without weights on a sun, which is the reason for the weights. */
 static void plain_means_lose_light(void **state)
 {
     (void)state;
@@ -182,7 +182,7 @@ static mat3s some_turn(void)
 /* The environment itself, in directions of a turned picture: within the slope times the look-ups' reach, a
  * texel of the source, 2 / 32, on the average over four. Off the sphere the same holds in the direction that
  * the layout names there. */
-static void pictures_show_what_lies_there(void **state)
+static void pictures_show_their_directions(void **state)
 {
     (void)state;
     tl_cube cube = cube_of(32, smooth);
@@ -223,7 +223,7 @@ static vec3s patch(vec3s d)
 
 /* Sampling is not exact: a lamp of some 100 texels keeps its power within 1 %, a sun of one texel only within
  * 3 %; conversions of files (env/convert.h) keep both exactly. */
-static void power_poured(void **state)
+static void prefiltered_power(void **state)
 {
     (void)state;
     tl_cube lamp = cube_of(64, patch), sun = tl_cube_create(64);
@@ -291,8 +291,8 @@ int main(void)
         cmocka_unit_test(a_sun_anywhere_keeps_its_power),
         cmocka_unit_test(paraboloids_weigh_as_equation_6),
         cmocka_unit_test(plain_means_lose_light),
-        cmocka_unit_test(pictures_show_what_lies_there),
-        cmocka_unit_test(power_poured),
+        cmocka_unit_test(pictures_show_their_directions),
+        cmocka_unit_test(prefiltered_power),
         cmocka_unit_test(threads_change_no_bit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -90,7 +90,7 @@ static void sum_light(const tl_cube *cube, const struct tl_suns *suns, double su
             sum[c] += (double)suns->items[i].power.raw[c];
 }
 
-/* Of the last size that was asked for: most of the time would go into making it anew. */
+/* The cube of the last size requested, cached, because making it would take most of the time. */
 static struct tl_resampling pour;
 
 /* Takes the suns of a cube of `size`; no light may be lost but by the rounding of floats, and what is left
@@ -192,7 +192,7 @@ static void the_cube_does_not_blur_the_sun(void **state)
     tl_environment_release(&sky);
 }
 
-static void what_is_no_sun_stays(void **state)
+static void other_lights_stay(void **state)
 {
     (void)state;
     const struct disc discs[] = {
@@ -353,7 +353,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(suns_are_found_everywhere),
         cmocka_unit_test(the_cube_does_not_blur_the_sun),
-        cmocka_unit_test(what_is_no_sun_stays),
+        cmocka_unit_test(other_lights_stay),
         cmocka_unit_test(suns_have_an_end),
         cmocka_unit_test(extremes),
         cmocka_unit_test(cubes_have_suns_too),

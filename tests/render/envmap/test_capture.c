@@ -50,7 +50,7 @@ static void draw(tl_renderer *renderer, struct test_scene *scene)
     tl_image_release(&image);
 }
 
-/* What a ray from the origin meets: the ball's normal there, or nothing. */
+/* Intersects a ray from the origin with the ball: the normal there, or false. */
 static bool meet(vec3s direction, vec3s *normal)
 {
     float along = glms_vec3_dot(direction, centre);
@@ -229,8 +229,8 @@ static void move(struct test_scene *scene)
     test_scene_refresh(scene);
 }
 
-/* Something moves in every frame: every third one is captured. At rest what is pending is captured, and then
- * nothing is drawn any more. A still image waits for nothing. */
+/* The scene moves in every frame: every third frame is captured. At rest a pending capture is completed, and
+ * then none is drawn. A still image does not wait. */
 static void every_few_frames(void **state)
 {
     struct test_device *device = *state;

@@ -173,8 +173,8 @@ static double compare(const struct test_scene *scene, tl_renderer *renderer, boo
 static const char *const modes[] = {"surface", "mirror", "refraction", "diffuse", "glossy", "transmission"};
 static const char *const fresnels[] = {"off", "additive", "coat"};
 
-/* Of the brightest light: 1 % for normals in halves (1e-3 rad times a slope of 6 in exponents), the blend of
- * two exponents (0.6 %), and bilinear texels of 1/40 rad (their square times 36 / 8: 0.3 %). */
+/* Relative to the peak: 1 % for normals in half floats (1e-3 rad times a slope of 6 in exponents), the blend
+ * of two exponents (0.6 %), and bilinear texels of 1/40 rad (their square times 36 / 8: 0.3 %). */
 #define TOLERANCE (0.01 * BRIGHTEST)
 
 static void modes_are_integrals(void **state)
@@ -296,8 +296,8 @@ static void white_furnace(void **state)
     test_scene_close(&scene);
 }
 
-/* Of a material with a coat, and light that comes through: what the film leaves of the two lobes and of the
- * diffuse light of the other side, and what it reflects. */
+/* The light of a material with a coat and transmission: the two lobes and the diffuse light of the other side
+ * below the film, plus the reflection of the film. */
 static vec3s layered_light(const struct test_scene *scene, const struct point *point)
 {
     const tl_environment *environment = &scene->environment;
@@ -364,7 +364,7 @@ static vec3s checks(vec3s d)
     return (column + row) & 1 ? (vec3s){{1, 0.9f, 0.8f}} : (vec3s){{0.1f, 0.1f, 0.2f}};
 }
 
-/* Of the covered pixels: an outline is not a map's to smooth. */
+/* Over covered pixels only, because maps do not smooth outlines. */
 static double difference(const tl_image *a, const tl_image *truth)
 {
     double squares = 0;
@@ -450,8 +450,8 @@ static void sphere_maps_follow_the_view(void **state)
     }
 }
 
-/* A scene that does not ask for them pays nothing. */
-static void nobody_pays_who_does_not_ask(void **state)
+/* A scene without environment maps allocates nothing for them. */
+static void unused_maps_cost_nothing(void **state)
 {
     (void)state;
     struct test_device *fresh;
@@ -480,11 +480,11 @@ static void nobody_pays_who_does_not_ask(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(modes_are_integrals),          cmocka_unit_test(backs_refract_outwards),
-        cmocka_unit_test(layouts_are_integrals),        cmocka_unit_test(white_furnace),
-        cmocka_unit_test(layers_are_integrals),         cmocka_unit_test(surfaces_are_lit_as_elsewhere),
-        cmocka_unit_test(levels_stand_for_samples),     cmocka_unit_test(sphere_maps_follow_the_view),
-        cmocka_unit_test(nobody_pays_who_does_not_ask),
+        cmocka_unit_test(modes_are_integrals),      cmocka_unit_test(backs_refract_outwards),
+        cmocka_unit_test(layouts_are_integrals),    cmocka_unit_test(white_furnace),
+        cmocka_unit_test(layers_are_integrals),     cmocka_unit_test(surfaces_are_lit_as_elsewhere),
+        cmocka_unit_test(levels_stand_for_samples), cmocka_unit_test(sphere_maps_follow_the_view),
+        cmocka_unit_test(unused_maps_cost_nothing),
     };
     return cmocka_run_group_tests(tests, test_device_open, test_device_close);
 }

@@ -98,7 +98,7 @@ static void look_up(struct device *device, const struct tl_maps_params *params, 
     tl_target_destroy(&gbuffer);
 }
 
-/* A lobe map for the environment's slot, of what a function says. */
+/* A lobe map in the slot of the environment, from a function of direction. */
 static struct tl_lobes lobes_of(int size, vec3s (*light)(vec3s))
 {
     tl_cube cube = tl_cube_create(size);

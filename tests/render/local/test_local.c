@@ -108,8 +108,8 @@ static void shadows_equal_the_reference(void **state)
     test_scene_close(&scene);
 }
 
-/* Coats; holes and what is behind them; light through cloth; mirrors that show what is lit: all under a lamp,
- * against the oracle. What is left are edges of shadows and of what holes and mirrors show. */
+/* Coats; holes and the surfaces behind them; transmission; mirrors of lit surfaces: under a lamp, against the
+ * reference. The remaining differences are edges of shadows and of what holes and mirrors show. */
 static void layers_equal_the_reference(void **state)
 {
     struct test_device *device = *state;
@@ -191,7 +191,7 @@ static void costs_nothing_without_lamps(void **state)
         assert_int_equal(row_of(plan, jobs[i])->action, TL_JOB_DROP);
     assert_non_null(strstr(row_of(plan, "lamps")->reason, "no lamps"));
 
-    scene.settings.shading.frequency = TL_FREQUENCY_GOURAUD; /* nobody is shaded by it */
+    scene.settings.shading.frequency = TL_FREQUENCY_GOURAUD; /* no surface uses it */
     tl_image again = test_scene_draw(&scene, device->renderer);
     assert_int_equal(row_of(tl_renderer_last_plan(device->renderer), "light")->action, TL_JOB_REUSE);
     tl_image_release(&again);
@@ -248,7 +248,7 @@ static void adds_once(void **state)
             tl_image_release(&with);
             with = test_scene_draw(&scene, device->renderer);
         }
-        /* All that is left of the lamp must be its own light, which the dark scene knows. */
+        /* The difference must be the light of the lamp alone, as rendered in the dark scene. */
         struct test_scene dark = scene;
         dark.environment = test_environment(8, 4, daylight);
         for (size_t i = 0; i < (size_t)8 * 4 * 3; i++)
@@ -263,7 +263,7 @@ static void adds_once(void **state)
                              fabs((double)tl_image_floats(&with)[i] - (double)tl_image_floats(&without)[i] -
                                   (double)tl_image_floats(&lamp)[i]));
         print_message("visibility %d: with - without - lamp alone: %.2e\n", visibility, worst);
-        assert_true(worst < 2e-3); /* rays are averaged anew from other rounds */
+        assert_true(worst < 2e-3); /* rays are averaged over different rounds */
         tl_image_release(&lamp);
         tl_environment_release(&dark.environment);
         tl_image_release(&with);
@@ -274,7 +274,7 @@ static void adds_once(void **state)
 
 /* A lamp in the surface, behind it, at zero distance, absurdly bright or nowhere: finite, and dark where dark
  * it is. */
-static void bears_extremes(void **state)
+static void survives_extremes(void **state)
 {
     struct test_device *device = *state;
     struct test_scene scene;
@@ -327,7 +327,7 @@ int main(void)
         cmocka_unit_test(layers_equal_the_reference),
         cmocka_unit_test(costs_nothing_without_lamps),
         cmocka_unit_test(adds_once),
-        cmocka_unit_test(bears_extremes),
+        cmocka_unit_test(survives_extremes),
     };
     return cmocka_run_group_tests(tests, test_device_open, test_device_close);
 }

@@ -1,5 +1,5 @@
-/* Ways of shading under lamps that are not exact: each against the exact one, and against what the CPU says
- * that this way must give. Rows A6, A8 to A12 of the technique set. */
+/* Approximate shading options under lamps: each against exact shading, and against its counterpart on the
+ * CPU. Rows A6, A8 to A12 of the technique set. */
 #include "tests/render/scenes.h"
 
 #include "config/memory.h"
@@ -32,9 +32,10 @@ static double error_of(const struct test_scene *scene, tl_renderer *renderer, co
     return test_scene_error(scene, renderer, expected).rel_rmse;
 }
 
-/* A6. Where light and viewer are the same everywhere, cosines by one matrix, from vertices and of vectors at
- * pixels are one thing: all are linear in the normal. The camera's 0.2 degrees are what is left: seen through
- * a lobe of exponent 40 they change its value by up to 40 x 0.0017 x tan of its width, about a hundredth. */
+/* A6. With constant light and view directions, cosines by one matrix, cosines from vertices and vectors at
+ * pixels are equal, because all are linear in the normal. The remaining difference is the field of view of
+ * 0.2 degrees: through a lobe of exponent 40 it changes the value by up to 40 x 0.0017 x the tangent of its
+ * width, about a hundredth. */
 static void coordinates_agree_far_away(void **state)
 {
     struct test_device *device = *state;
@@ -123,8 +124,8 @@ static void gouraud_loses_the_highlight_first(void **state)
     tl_image_release(&exact);
 }
 
-/* What a pixel's ray meets, and its corners. */
-struct met {
+/* The hit of a pixel's ray and the vectors at the corners of its triangle. */
+struct hit {
     bool is_hit;
     vec3s n, l, v, h; /* interpolated from unit vectors at the corners */
 };
@@ -135,8 +136,8 @@ static vec3s mixed(const vec3s corners[3], float u, float v)
     return glms_vec3_add(glms_vec3_add(sum, glms_vec3_scale(corners[1], u)), glms_vec3_scale(corners[2], v));
 }
 
-static struct met meet(const struct test_scene *scene, const tl_trace *trace, const struct tl_view *view,
-                       int x, int y)
+static struct hit intersect(const struct test_scene *scene, const tl_trace *trace, const struct tl_view *view,
+                            int x, int y)
 {
     const struct tl_image_params *image = &scene->settings.image;
     float right = 2 * ((float)x + 0.5f) / (float)image->width - 1,
@@ -144,9 +145,9 @@ static struct met meet(const struct test_scene *scene, const tl_trace *trace, co
     vec3s along = glms_vec3_add(view->forward, glms_vec3_scale(view->right, right));
     along = glms_vec3_normalize(glms_vec3_add(along, glms_vec3_scale(view->up, up)));
     struct tl_trace_hit hit = tl_trace_nearest(trace, view->eye, along, 0.01f, 100);
-    struct met met = {.is_hit = hit.surface != TL_TRACE_NONE};
-    if (!met.is_hit)
-        return met;
+    struct hit hit = {.is_hit = hit.surface != TL_TRACE_NONE};
+    if (!hit.is_hit)
+        return hit;
     vec3s n[3], l[3], v[3], h[3];
     for (int i = 0; i < 3; i++) {
         uint32_t corner = scene->surfaces[0].indices[3 * hit.triangle + (uint32_t)i];
@@ -155,11 +156,11 @@ static struct met meet(const struct test_scene *scene, const tl_trace *trace, co
         v[i] = glms_vec3_normalize(glms_vec3_sub(view->eye, scene->surfaces[0].positions[corner]));
         h[i] = glms_vec3_normalize(glms_vec3_add(l[i], v[i]));
     }
-    met.n = mixed(n, hit.u, hit.v);
-    met.l = mixed(l, hit.u, hit.v);
-    met.v = mixed(v, hit.u, hit.v);
-    met.h = mixed(h, hit.u, hit.v);
-    return met;
+    hit.n = mixed(n, hit.u, hit.v);
+    hit.l = mixed(l, hit.u, hit.v);
+    hit.v = mixed(v, hit.u, hit.v);
+    hit.h = mixed(h, hit.u, hit.v);
+    return hit;
 }
 
 static float raised(float cosine, float exponent, int power, const uint8_t *table)
@@ -190,17 +191,17 @@ static tl_image evaluate_reduced(const struct test_scene *scene)
     tl_image out = tl_image_create(image->width, image->height, 4, TL_IMAGE_F32);
     for (int y = 0; y < image->height; y++)
         for (int x = 0; x < image->width; x++) {
-            struct met met = meet(scene, trace, &view, x, y);
+            struct hit hit = intersect(scene, trace, &view, x, y);
             float *pixel = tl_image_floats(&out) + 4 * ((size_t)y * (size_t)image->width + (size_t)x);
-            pixel[3] = met.is_hit;
-            if (!met.is_hit)
+            pixel[3] = hit.is_hit;
+            if (!hit.is_hit)
                 continue;
             float facing =
-                glms_vec3_dot(glms_vec3_normalize(met.n), tl_normalise(shading->normalisation, &cube, met.l));
-            vec3s n = tl_normalise(shading->normalisation, &cube, met.n);
-            vec3s l = tl_normalise(shading->normalisation, &cube, met.l);
-            vec3s v = tl_normalise(shading->normalisation, &cube, met.v);
-            vec3s h = tl_normalise(shading->normalisation, &cube, met.h);
+                glms_vec3_dot(glms_vec3_normalize(hit.n), tl_normalise(shading->normalisation, &cube, hit.l));
+            vec3s n = tl_normalise(shading->normalisation, &cube, hit.n);
+            vec3s l = tl_normalise(shading->normalisation, &cube, hit.l);
+            vec3s v = tl_normalise(shading->normalisation, &cube, hit.v);
+            vec3s h = tl_normalise(shading->normalisation, &cube, hit.h);
             float a = glms_vec3_dot(n, l), b = glms_vec3_dot(n, v), d = glms_vec3_dot(n, h);
             float ramp = fminf(fmaxf(32 * facing, 0), 1);
             vec3s f = tl_brdf_fresnel(&brdf, fminf(fmaxf(glms_vec3_dot(h, l), 0), 1));
@@ -216,9 +217,10 @@ static tl_image evaluate_reduced(const struct test_scene *scene)
     return out;
 }
 
-/* A9. Each way gives what render/brdf says of it, and their order is the paper's: one Newton step is better
- * than eight bits, sixteen bits are nearly exact. Eight bits are also how finely software GL blends texels of
- * eight bits, so there two answers may lie a step of 1/255 of a vector apart: 4 s / 255 of the highlight. */
+/* A9. Each method matches its counterpart in render/brdf, and their order is that of the paper: one Newton
+ * step is better than eight bits, and sixteen bits are nearly exact. Software GL also interpolates texels of
+ * eight bits with eight bits, so two results may differ by a step of 1/255 of a vector: 4 s / 255 of the
+ * highlight. */
 static void normalises_as_the_cpu_does(void **state)
 {
     struct test_device *device = *state;
@@ -351,11 +353,11 @@ static void no_light_on_what_faces_away(void **state)
         int away = 0, towards = 0;
         for (int y = 0; y < 96; y++)
             for (int x = 0; x < 96; x++) {
-                struct met met = meet(&scene, trace, &view, x, y);
-                float facing = glms_vec3_dot(met.n, scene.lamps[0].direction);
-                away += met.is_hit && facing < -0.01f;
+                struct hit hit = intersect(&scene, trace, &view, x, y);
+                float facing = glms_vec3_dot(hit.n, scene.lamps[0].direction);
+                away += hit.is_hit && facing < -0.01f;
                 towards += test_pixel(&image, x, y)[0] > 0;
-                if (met.is_hit && facing < -0.01f && test_pixel(&image, x, y)[3] > 0)
+                if (hit.is_hit && facing < -0.01f && test_pixel(&image, x, y)[3] > 0)
                     assert_true(test_pixel(&image, x, y)[0] == 0);
             }
         assert_true(away > 1000 && towards > 500);

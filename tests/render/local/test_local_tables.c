@@ -32,7 +32,7 @@ static void open_scene(struct test_scene *scene, int model)
     scene->lamps[0] = test_lamp_towards((vec3s){{0.3f, 1, -0.5f}}, 3);
 }
 
-/* The error asked for: half a percent at float and 512^2, matt light left out. */
+/* The limit is half a percent for float tables of 512^2, without the diffuse light. */
 static void tables_are_near_the_formula(void **state)
 {
     struct test_device *device = *state;
@@ -107,7 +107,7 @@ static void passes_give_one_image(void **state)
                               (ptrdiff_t)tl_renderer_memory(device->renderer).other - (ptrdiff_t)bytes);
                 assert_true(off.largest < (target == TL_PASS_TARGET_FLOAT ? 1e-5 : level + 1e-5));
                 if (target == TL_PASS_TARGET_FIXED8 && most == 1 && model >= TL_REFLECT_TORRANCE_SPARROW)
-                    assert_true(off.rel_rmse > 1e-4); /* it was indeed drawn in passes */
+                    assert_true(off.rel_rmse > 1e-4); /* it was drawn in several passes */
             }
         tl_image_release(&one);
         test_scene_close(&scene);
@@ -142,7 +142,7 @@ static void clamped_tables_darken_grazing_views(void **state)
     test_scene_close(&scene);
 }
 
-/* What no surface asks for any more goes. */
+/* Tables that no surface needs any more are destroyed. */
 static void tables_come_and_go(void **state)
 {
     struct test_device *device = *state;

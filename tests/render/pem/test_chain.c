@@ -21,7 +21,7 @@ static double level_energy(const tl_cube *cube)
     return sum;
 }
 
-/* Values from a fixed hash, black where it says so. */
+/* Values from a fixed hash; parts of the cube are black. */
 static tl_cube noise_cube(int size)
 {
     tl_cube cube = tl_cube_create(size);

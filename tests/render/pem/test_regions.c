@@ -195,7 +195,7 @@ static void small_faces_are_shared_out(void **state)
     tl_cube_release(&cube);
 }
 
-/* More regions than texels: the surplus is empty, holds nothing and still points somewhere. */
+/* More regions than texels: the surplus regions are empty and still have a direction. */
 static void surplus_regions_are_empty(void **state)
 {
     (void)state;

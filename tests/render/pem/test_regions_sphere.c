@@ -1,5 +1,5 @@
-/* The cut of the whole sphere: a partition, a tree, no slice through a light; and directions drawn from it.
- */
+/* The cut of the whole sphere: a partition and a tree that divides no light; and directions sampled from
+ * it. */
 #include "render/env/from_environment.h"
 #include "render/pem/regions.h"
 
@@ -370,7 +370,7 @@ static double chi_square(const struct tl_regions *regions, const tl_cube *cube, 
     return square;
 }
 
-static void directions_are_drawn_by_luminance(void **state)
+static void directions_are_sampled_by_luminance(void **state)
 {
     (void)state;
     tl_cube cube = cube_of(64, smooth);
@@ -391,7 +391,7 @@ static void directions_are_drawn_by_luminance(void **state)
 
 /* Both cuts, on both: sixteen even u lie closer to the region's centroid together than sixteen free ones
  * would, because neighbouring u are neighbouring texels. */
-static void even_draws_cover_evenly(void **state)
+static void stratified_samples_cover_evenly(void **state)
 {
     (void)state;
     tl_cube cube = cube_of(64, smooth);
@@ -494,8 +494,8 @@ int main(void)
         cmocka_unit_test(extremes_are_cut),
         cmocka_unit_test(threads_change_no_bit),
         cmocka_unit_test(spread_is_the_mean_square_angle),
-        cmocka_unit_test(directions_are_drawn_by_luminance),
-        cmocka_unit_test(even_draws_cover_evenly),
+        cmocka_unit_test(directions_are_sampled_by_luminance),
+        cmocka_unit_test(stratified_samples_cover_evenly),
         cmocka_unit_test(the_sphere_loses_less_than_the_faces),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -88,7 +88,7 @@ static void regions_sum_to_the_whole(void **state)
 
 /* A furnace in parts: every region's P is positive, their sum 1, for every exponent; opposite to a region
  * there is nothing of it. */
-static void an_even_sky_adds_up_to_one(void **state)
+static void a_uniform_sky_sums_to_one(void **state)
 {
     (void)state;
     tl_cube cube = tl_cube_create(64);
@@ -148,8 +148,8 @@ static void slices_keep_their_regions_power(void **state)
     tl_cube_release(&cube);
 }
 
-/* What `review` and `final` keep for a garment of two glossinesses: 0.15 MB a region, ten times less than the
- * paper's chain. */
+/* The memory that `review` and `final` need for a garment with two glossinesses: 0.15 MB per region, a tenth
+ * of the chains of the paper. */
 static void slices_are_small(void **state)
 {
     (void)state;
@@ -199,7 +199,7 @@ static void threads_change_no_bit(void **state)
     tl_cube_release(&cube);
 }
 
-static void nothing_but_numbers_comes_out(void **state)
+static void results_are_finite(void **state)
 {
     (void)state;
     const float strange[] = {0, INFINITY, NAN, -1, 1e30f, 65504, 0, 1e-40f};
@@ -230,9 +230,9 @@ static void nothing_but_numbers_comes_out(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(regions_sum_to_the_whole),        cmocka_unit_test(an_even_sky_adds_up_to_one),
+        cmocka_unit_test(regions_sum_to_the_whole),        cmocka_unit_test(a_uniform_sky_sums_to_one),
         cmocka_unit_test(slices_keep_their_regions_power), cmocka_unit_test(slices_are_small),
-        cmocka_unit_test(threads_change_no_bit),           cmocka_unit_test(nothing_but_numbers_comes_out),
+        cmocka_unit_test(threads_change_no_bit),           cmocka_unit_test(results_are_finite),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,6 @@
-/* The oracle against closed forms. Every answer must lie within 0.1 % of its formula, and three of its own
- * standard errors must be less than that, so that noise cannot hide a fault. What a formula does not know is
- * smaller: rays start 1e-5 of the scene's half diagonal off their surface, discs have 256 sides. */
+/* The reference against closed forms. Every result must be within 0.1 % of its formula, and three standard
+ * errors must be less than that, so that noise cannot hide an error. Effects that the formulas neglect are
+ * smaller: rays start 1e-5 of the half diagonal of the scene off their surface, and discs have 256 sides. */
 #include "tests/render/scenes.h"
 
 #include "config/interrupt.h"
@@ -97,7 +97,7 @@ static void check(struct test_scene *scene, double expected)
     assert_near(estimate.mean, expected, EXACTNESS * expected);
 }
 
-/* Where the middle of a pixel lies on a plane through `at`, seen by the scene's camera. */
+/* The point of the plane through `at` under the centre of a pixel, seen by the camera of the scene. */
 static vec3s pixel_point(const struct test_scene *scene, int x, int y, vec3s at, vec3s normal)
 {
     const struct tl_camera *camera = &scene->frame.camera;
@@ -113,7 +113,7 @@ static vec3s pixel_point(const struct test_scene *scene, int x, int y, vec3s at,
 
 static const vec3s origin = {{0, 0, 0}}, x_axis = {{1, 0, 0}}, y_axis = {{0, 1, 0}}, z_axis = {{0, 0, 1}};
 
-/* Uniform light of 1 and nothing in its way, looked at from the front: every lobe gives back its colour. */
+/* Uniform light of 1 without occluders, seen from the front: every lobe returns its colour. */
 static void test_furnace(void **state)
 {
     (void)state;
@@ -133,8 +133,8 @@ static void test_furnace(void **state)
         }
 }
 
-/* The same, looked at aslant with s = 1: the part of the lobe below the surface is lost. A cosine lobe whose
- * axis stands at an angle a to the normal keeps (1 + cos a) / 2. */
+/* The same seen obliquely with s = 1: the part of the lobe below the surface is lost. A cosine lobe whose
+ * axis is at an angle a to the normal keeps (1 + cos a) / 2. */
 static void test_lobe_below_the_horizon(void **state)
 {
     (void)state;
@@ -320,7 +320,7 @@ static vec3s sun_and_sky(vec3s direction)
 static struct estimate sun_in_mirror(float glossiness, int strata, int lobe_samples)
 {
     vec3s sun = glms_vec3_normalize(sun_direction);
-    vec3s eye = {{-2 * sun.x, -2 * sun.y + 0.03f, 2 * sun.z}}; /* the mirror shows what is beside the sun */
+    vec3s eye = {{-2 * sun.x, -2 * sun.y + 0.03f, 2 * sun.z}}; /* the mirror shows the sky near the sun */
     struct test_scene *scene = scene_new(test_environment(256, 128, sun_and_sky), eye, origin, 3);
     tl_material *material = scene_add(scene, test_square(origin, x_axis, z_axis, 0.5f, 1));
     material->diffuse = (vec3s){{0, 0, 0}};
@@ -394,7 +394,7 @@ static struct test_scene *mixed_scene(void)
     return scene;
 }
 
-static void test_threads_do_not_show(void **state)
+static void test_threads_change_no_bit(void **state)
 {
     (void)state;
     struct tl_reference_report reports[2];
@@ -415,8 +415,9 @@ static void test_threads_do_not_show(void **state)
     scene_free(scene);
 }
 
-/* The error it tells is the error it makes: images of 8 replicates differ from a converged one by as much as
- * they say, within a fifth, as far as 576 tiles can tell. No mirror: one glint would outweigh them all. */
+/* The reported standard error is the actual error: images of 8 replicates differ from a converged image by
+ * their standard error, within a fifth, which is the accuracy of 576 tiles. No mirror, because one highlight
+ * would dominate. */
 static void test_standard_error(void **state)
 {
     (void)state;
@@ -560,7 +561,7 @@ int main(void)
         cmocka_unit_test(test_one_texel),
         cmocka_unit_test(test_samplers_agree),
         cmocka_unit_test(test_reflected_scene),
-        cmocka_unit_test(test_threads_do_not_show),
+        cmocka_unit_test(test_threads_change_no_bit),
         cmocka_unit_test(test_standard_error),
         cmocka_unit_test(test_extreme_light),
     };

@@ -1,5 +1,5 @@
-/* What the oracle's camera rays find against what the rasteriser puts into the G-buffer: the same samples
- * covered, the same points, normals and materials. The two share no code but the shapes. */
+/* The shading points of the reference against the G-buffer: the same samples are covered, with the same
+ * points, normals and materials. The two share no code except the shapes. */
 #include "tests/render/scenes.h"
 
 #include "assets/builtin/weave.h"
@@ -135,7 +135,7 @@ static float largest_difference(const float *a, const float *b)
     return fmaxf(fabsf(a[0] - b[0]), fmaxf(fabsf(a[1] - b[1]), fabsf(a[2] - b[2])));
 }
 
-/* Of all samples, how many differ by more than a tolerance. */
+/* The number of samples that differ by more than a tolerance. */
 struct tally {
     int samples, cover, point, normal, diffuse, specular, gloss;
 };

@@ -38,9 +38,9 @@ static void test_curve(void **state)
     }
 }
 
-/* What is sampled is what is seen there: unit direction, radiance and density, but where rounding puts a
- * direction over the border of its texel. */
-static void test_draw_and_look_agree(void **state)
+/* Samples agree with look-ups: unit direction, radiance and pdf, except where rounding moves a direction
+ * across the border of its texel. */
+static void test_samples_and_lookups_agree(void **state)
 {
     (void)state;
     for (size_t l = 0; l < TL_COUNT(layouts); l++) {
@@ -97,7 +97,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_curve),
-        cmocka_unit_test(test_draw_and_look_agree),
+        cmocka_unit_test(test_samples_and_lookups_agree),
         cmocka_unit_test(test_measure),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

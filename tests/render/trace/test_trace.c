@@ -107,7 +107,7 @@ static void nearest_hits_are_those_of_brute_force(void **state)
     update(trace, surfaces, 2);
     int hits = compare_rays(trace, surfaces, 2, 3, &backs);
     assert_in_range(hits, RAYS / 8, RAYS);
-    assert_in_range(backs, hits / 3, 2 * hits / 3); /* both sides are met */
+    assert_in_range(backs, hits / 3, 2 * hits / 3); /* both sides are hit */
     assert_true(tl_trace_bytes(trace) > sizeof(vec3s) * soups[0].surface.vertex_count);
     tl_trace_destroy(&trace);
     assert_null(trace);
@@ -131,7 +131,7 @@ static void updates_follow_motion_and_change(void **state)
         if (frame < 3 || frame > 67)
             compare_rays(trace, surfaces, 2, 20 + frame, &backs);
     }
-    update(trace, &soups[1].surface, 1); /* another surface in the first place, nothing in the second */
+    update(trace, &soups[1].surface, 1); /* another surface in the first slot, none in the second */
     compare_rays(trace, &soups[1].surface, 1, 30, &backs);
     update(trace, NULL, 0);
     assert_false(tl_trace_occluded(trace, (vec3s){{0, 0, 0}}, (vec3s){{0, 1, 0}}, 0, INFINITY));
@@ -145,7 +145,7 @@ static void updates_follow_motion_and_change(void **state)
     soup_release(&soups[1]);
 }
 
-static void bundles_answer_as_single_rays(void **state)
+static void packets_match_single_rays(void **state)
 {
     (void)state;
     struct soup soup;
@@ -181,7 +181,7 @@ static void bundles_answer_as_single_rays(void **state)
 
 /* A map of 4 x 1 texels, alpha 1 0 0 1 from left to right: bilinear alpha falls below 1/2 between the centres
  * of texels 0 and 1, at u = 1/4, and rises above it at u = 3/4. */
-static void alpha_cuts_holes_where_it_says(void **state)
+static void alpha_cuts_holes(void **state)
 {
     (void)state;
     struct soup soup;
@@ -246,7 +246,7 @@ static void cutouts_wrap_and_turn(void **state)
     tl_image_release(&image);
 }
 
-/* Points, lines and nothing hit nothing; rays that are no rays get an answer. */
+/* Points, lines and empty surfaces are not hit; invalid rays hit nothing. */
 static void degenerate_input_is_harmless(void **state)
 {
     (void)state;
@@ -298,8 +298,8 @@ static void smooth_points_lie_on_the_smooth_side(void **state)
     assert_true(glms_vec3_eqv_eps(tl_smooth_point(corners[0], corners, corners, first), corners[0]));
 }
 
-/* Sheets across a ray: each leaves its openness of it, an alpha map's hole all, and what is closed nothing.
- * To the other questions an open sheet is a sheet. */
+/* Open sheets across a ray: each multiplies the transmittance by its openness, a hole of an alpha map by 1, a
+ * closed surface by 0. The other queries treat open sheets as closed. */
 static void open_sheets_let_light_through(void **state)
 {
     (void)state;
@@ -354,8 +354,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nearest_hits_are_those_of_brute_force),
         cmocka_unit_test(updates_follow_motion_and_change),
-        cmocka_unit_test(bundles_answer_as_single_rays),
-        cmocka_unit_test(alpha_cuts_holes_where_it_says),
+        cmocka_unit_test(packets_match_single_rays),
+        cmocka_unit_test(alpha_cuts_holes),
         cmocka_unit_test(cutouts_wrap_and_turn),
         cmocka_unit_test(open_sheets_let_light_through),
         cmocka_unit_test(degenerate_input_is_harmless),
