@@ -37,8 +37,10 @@ struct spread {
     vec2s slope;
 };
 
-/* J S J^T in the plane of the mirror direction is 4 S scaled by the cosine across the plane of incidence.
- * Its eigenvalues are the variances and the eigenvector of the larger one is the broad axis. */
+/* The eigenvalues of J S J^T are those of S^(1/2) J^T J S^(1/2), where J^T J = 4 (v_t v_t^T + c^2 I) with the
+ * tangential part v_t and the cosine c of the view direction: a facet turns light by twice its own angle in
+ * the plane of incidence, and by 2 c times that angle across it. The eigenvector of the larger eigenvalue,
+ * times S^(1/2), is the slope of one standard deviation along the broad axis. */
 static struct spread spread_of(const struct slopes *slopes, vec3s local_v)
 {
     float c = fmaxf(local_v.z, MIN_COSINE), u = slopes->weft, w = slopes->warp;

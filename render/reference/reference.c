@@ -75,7 +75,7 @@ static struct camera_rays make_camera_rays(const struct drawing *drawing, int ti
     return camera_rays;
 }
 
-/* Intersects the camera rays with the scene. The rays continue layer open sheets with the fraction that
+/* Intersects the camera rays with the scene. Behind open sheets the rays continue with the fraction that
  * these let through. The last layer counts as closed. */
 static void intersect(const struct drawing *drawing, bool last, struct camera_rays *camera_rays,
                       struct hits *hits)
