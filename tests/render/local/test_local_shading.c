@@ -144,22 +144,22 @@ static struct hit intersect(const struct test_scene *scene, const tl_trace *trac
           up = 1 - 2 * ((float)y + 0.5f) / (float)image->height;
     vec3s along = glms_vec3_add(view->forward, glms_vec3_scale(view->right, right));
     along = glms_vec3_normalize(glms_vec3_add(along, glms_vec3_scale(view->up, up)));
-    struct tl_trace_hit hit = tl_trace_nearest(trace, view->eye, along, 0.01f, 100);
-    struct hit hit = {.is_hit = hit.surface != TL_TRACE_NONE};
+    struct tl_trace_hit traced = tl_trace_nearest(trace, view->eye, along, 0.01f, 100);
+    struct hit hit = {.is_hit = traced.surface != TL_TRACE_NONE};
     if (!hit.is_hit)
         return hit;
     vec3s n[3], l[3], v[3], h[3];
     for (int i = 0; i < 3; i++) {
-        uint32_t corner = scene->surfaces[0].indices[3 * hit.triangle + (uint32_t)i];
+        uint32_t corner = scene->surfaces[0].indices[3 * traced.triangle + (uint32_t)i];
         n[i] = scene->surfaces[0].normals[corner];
         l[i] = scene->lamps[0].direction;
         v[i] = glms_vec3_normalize(glms_vec3_sub(view->eye, scene->surfaces[0].positions[corner]));
         h[i] = glms_vec3_normalize(glms_vec3_add(l[i], v[i]));
     }
-    hit.n = mixed(n, hit.u, hit.v);
-    hit.l = mixed(l, hit.u, hit.v);
-    hit.v = mixed(v, hit.u, hit.v);
-    hit.h = mixed(h, hit.u, hit.v);
+    hit.n = mixed(n, traced.u, traced.v);
+    hit.l = mixed(l, traced.u, traced.v);
+    hit.v = mixed(v, traced.u, traced.v);
+    hit.h = mixed(h, traced.u, traced.v);
     return hit;
 }
 
