@@ -36,7 +36,7 @@ struct tl_lobe_source tl_lobe_source(int cube_size, vec3s direction);
 /* The prefiltered value of one channel in a direction. */
 typedef double tl_lobe_response(const void *prefilter, vec3s direction);
 /* Compares a response with K_s of the source. */
-struct tl_lobe_error tl_lobe_measure(const struct tl_lobe_source *source, float s, tl_lobe_response *response,
+struct tl_lobe_error tl_lobe_measure(const struct tl_lobe_source *source, float s, tl_lobe_response *evaluate,
                                      const void *prefilter);
 
 /* Methods: the chains of enum tl_chain_filter at the level of tl_lobe_calibrate, then the slices of a region

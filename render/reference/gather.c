@@ -14,23 +14,23 @@
 #define GOLDEN                                                                                               \
     0.61803398874989485 /* of a turn: successive angles are evenly spread for any number of samples */
 
-void tl_shading_points_add(struct tl_shading_points *points, const struct tl_shading_point *index)
+void tl_shading_points_add(struct tl_shading_points *points, const struct tl_shading_point *point)
 {
     int i = points->count++;
     for (int c = 0; c < 3; c++) {
-        points->point[c][i] = index->point.raw[c];
-        points->horizon[c][i] = index->horizon.raw[c];
-        points->normal[c][i] = index->normal.raw[c];
-        points->axis[c][i] = index->axis.raw[c];
-        points->diffuse[c][i] = index->diffuse.raw[c];
-        points->glossy[c][i] = index->glossy.raw[c];
+        points->point[c][i] = point->point.raw[c];
+        points->horizon[c][i] = point->horizon.raw[c];
+        points->normal[c][i] = point->normal.raw[c];
+        points->axis[c][i] = point->axis.raw[c];
+        points->diffuse[c][i] = point->diffuse.raw[c];
+        points->glossy[c][i] = point->glossy.raw[c];
     }
-    points->exponent[i] = index->exponent;
-    points->layered[i] = index->layered;
-    if (index->layered) {
+    points->exponent[i] = point->exponent;
+    points->layered[i] = point->layered;
+    if (point->layered) {
         points->any_layered = true;
-        points->layers[i] = index->layers;
-        points->viewer[i] = index->viewer;
+        points->layers[i] = point->layers;
+        points->viewer[i] = point->viewer;
     }
 }
 

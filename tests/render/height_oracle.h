@@ -1,4 +1,4 @@
-/* The oracle of height fields, by the definition. */
+/* The reference for height fields, by their definition. */
 #ifndef TOILE_TESTS_HEIGHT_ORACLE_H
 #define TOILE_TESTS_HEIGHT_ORACLE_H
 
@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-/* Metres, at (u, v) in repeats: of the bilinear field, in double. */
+/* The height (m) of the bilinear field at (u, v), in repeats, computed in double. */
 static inline double height_at(const struct tl_height_field *field, double u, double v)
 {
     int width = field->heights->width, height = field->heights->height;

@@ -1,5 +1,5 @@
-/* Surfaces for the tests of rays: random triangles, and the ray-triangle test by hand that they are checked
- * against. */
+/* Surfaces of random triangles for the tests of ray tracing, and a brute-force ray-triangle intersection as
+ * their reference. */
 #ifndef TOILE_TESTS_RENDER_SOUP_H
 #define TOILE_TESTS_RENDER_SOUP_H
 
@@ -54,8 +54,8 @@ static inline void soup_place(struct soup *soup, uint64_t seed)
     soup->surface.motion_revision++;
 }
 
-/* `count` triangles of about 0.3 m in a box of 2 m; the second half is a part of its own. `soup` must stay
- * where it is. */
+/* Makes `count` triangles of about 0.3 m in a box of 2 m; the second half is a part of its own. `soup` must
+ * not be moved. */
 static inline void soup_create(struct soup *soup, size_t count, uint64_t seed)
 {
     *soup = (struct soup){.positions = TL_NEW_ARRAY(vec3s, 3 * count),
@@ -89,10 +89,11 @@ static inline void soup_release(struct soup *soup)
     free(soup->indices);
 }
 
-/* Where a ray meets a triangle's plane, in doubles: distance and weights of the second and third corner,
- * which tell inside from outside. False for a ray in the plane. Cramer's rule [Moeller and Trumbore 1997]. */
-static inline bool soup_meet(const vec3s t[3], vec3s origin, vec3s direction, double *distance, double *u,
-                             double *v)
+/* Intersects a ray with the plane of a triangle, in doubles: distance, and weights of the second and third
+ * corner, from which inside or outside follows. False for a ray in the plane. Cramer's rule [Moeller and
+ * Trumbore 1997]. */
+static inline bool soup_intersect(const vec3s t[3], vec3s origin, vec3s direction, double *distance,
+                                  double *u, double *v)
 {
     double a[3], b[3], d[3], o[3];
     for (int i = 0; i < 3; i++) {

@@ -42,7 +42,7 @@ static struct expected try_all(const tl_surface *surfaces, size_t count, vec3s o
             double distance, u, v;
             for (int i = 0; i < 3; i++)
                 corners[i] = surfaces[s].positions[surfaces[s].indices[3 * t + (size_t)i]];
-            if (!soup_meet(corners, origin, direction, &distance, &u, &v) || distance < 0)
+            if (!soup_intersect(corners, origin, direction, &distance, &u, &v) || distance < 0)
                 continue;
             double inside = fmin(fmin(u, v), 1 - u - v);
             best.doubtful |= fabs(inside) < 1e-5;
