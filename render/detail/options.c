@@ -1,6 +1,6 @@
 #include "render/detail/options.h"
 
-#include "render/affects.h"
+#include "render/plan/affects.h"
 
 static const char *const mode_names[] = {"normal", "blinn", "parallax", "parallax_limited", "relief", NULL};
 static const char *const shadow_names[] = {"none", "horizon", "relief", NULL};

@@ -1,7 +1,7 @@
 #include "render/envmap/options.h"
 
-#include "render/affects.h"
 #include "render/env/layout.h"
+#include "render/plan/affects.h"
 
 static const char *const look_up_names[] = {"direct", "matrix", NULL};
 static const char *const mode_names[] = {"surface", "mirror",       "refraction", "diffuse",

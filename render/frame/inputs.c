@@ -1,11 +1,11 @@
 #include "config/hash.h"
 #include "config/memory.h"
-#include "render/affects.h"
 #include "render/brdf/lobe_fit.h"
 #include "render/detail/detail.h"
 #include "render/env/exponent.h"
 #include "render/frame/frame.h"
 #include "render/inspect/job.h"
+#include "render/plan/affects.h"
 
 #include <math.h>
 

@@ -1,9 +1,9 @@
 #include "render/light/options.h"
 
-#include "render/affects.h"
 #include "render/brdf/lobe_fit.h"
 #include "render/pem/chain.h"
 #include "render/pem/regions.h"
+#include "render/plan/affects.h"
 
 static const char *const method_names[] = {"pem",        "lights",    "ao",   "ao_colour",
                                            "unshadowed", "reference", "maps", NULL};

@@ -1,6 +1,6 @@
-#include "render/affects.h"
 #include "render/brdf/tables.h"
 #include "render/local/shading.h"
+#include "render/plan/affects.h"
 
 static const char *const frequency_names[] = {"gouraud", "fast_phong", "phong", NULL};
 static const char *const coordinates_names[] = {"matrix", "vertex", "pixel", NULL};

@@ -1,7 +1,7 @@
 #include "render/present/options.h"
 
-#include "render/affects.h"
 #include "render/pem/regions.h"
+#include "render/plan/affects.h"
 
 #include <math.h>
 

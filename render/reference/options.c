@@ -1,5 +1,5 @@
 #include "render/reference/options.h"
-#include "render/affects.h"
+#include "render/plan/affects.h"
 
 typedef struct tl_reference_params reference_params;
 static const char *const terminator_names[] = {"smooth", "geometric", NULL};

@@ -7,8 +7,8 @@
 #include "app/lab/flight/fly_account.h"
 #include "app/scene/session.h"
 #include "config/memory.h"
-#include "render/affects.h"
 #include "render/frame/frame.h"
+#include "render/plan/affects.h"
 
 #include <string.h>
 
