@@ -12,10 +12,19 @@
 
 #define TL_LANES 16
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define TL_SANITIZED /* as GCC names it */
+#elif defined(__has_feature)
+#if __has_feature(thread_sanitizer) || __has_feature(address_sanitizer)
+#define TL_SANITIZED /* as Clang does */
+#endif
+#endif
+
 /* Before a hot function's definition: it is compiled for AVX-512, for AVX2 and for any x86-64, and the best
- * is chosen as the program starts. What it calls must be TL_INLINE to go with it. Sanitizers run before such
- * a choice can be made, so with them there is one version. */
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
+ * is chosen as the program starts. What it calls must be TL_INLINE to be cloned with it. The choice is made
+ * before a sanitizer has started, and would crash in its instrumentation: with sanitizers there is one
+ * version. */
+#if defined(__x86_64__) && !defined(TL_SANITIZED)
 #define TL_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 #else
 #define TL_CLONES
