@@ -1,4 +1,4 @@
-/* toile compare: how different two images are. */
+/* toile compare: measures how far two images differ. */
 #include "app/batch/commands.h"
 #include "app/cli/json.h"
 #include "assets/image/exr.h"
@@ -8,7 +8,7 @@
 
 #include <stdio.h>
 
-/* EXR as it is; PNG and JPEG as display-referred light in [0, 1]. */
+/* Loads linear light: an EXR as it is; a PNG or JPEG decoded from sRGB, in [0, 1]. */
 static bool load_linear(const char *path, tl_image *out, tl_error *error)
 {
     if (!tl_file_check(path, error))

@@ -1,4 +1,4 @@
-/* toile env: an environment map from one layout into another, or what a scene's middle sees of it. */
+/* toile env: converts an environment map to another layout, or captures what the middle of a scene sees. */
 #include "app/batch/commands.h"
 #include "app/scene/headless.h"
 #include "app/scene/moving_light.h"
@@ -12,7 +12,7 @@
 
 #include <string.h>
 
-/* What the file says to who opens it elsewhere. */
+/* Comments in the written files, for users of other programs. */
 static const char *const descriptions[TL_LAYOUT_COUNT] = {
     [TL_LAYOUT_CUBE] = "environment map, cube: faces +X -X +Y -Y +Z -Z from the top, each oriented as OpenGL "
                        "has it; +Y is up",
@@ -59,7 +59,8 @@ static bool check_arguments(const struct tl_arguments *arguments, tl_error *erro
     return true;
 }
 
-/* By its shape; paraboloids look like lat-long maps and octahedral ones like spheres: they must be named. */
+/* Guesses the layout from the shape. Paraboloids have the shape of lat-long maps and octahedral maps that of
+ * spheres: for both the user has to name the layout. */
 static enum tl_layout guess_layout(const tl_environment *environment)
 {
     if (environment->layout == TL_ENV_CUBE)
@@ -74,7 +75,7 @@ static bool find_source(const struct tl_arguments *arguments, const tl_environme
     *from = (struct tl_sphere_map){guess_layout(environment), environment->image.width,
                                    environment->image.height};
     if (!arguments->from) {
-        tl_info("%s: %d x %d texels, taken for %s: --from tells otherwise", path, from->width, from->height,
+        tl_info("%s: %d x %d texels, taken for %s: name another with --from", path, from->width, from->height,
                 tl_layout_names[from->layout]);
         return true;
     }
@@ -142,7 +143,7 @@ static bool convert_file(const struct tl_arguments *arguments, enum tl_layout la
     return done;
 }
 
-/* A captured cube is as large as the result, so that it is seen as sharply as that can show it. */
+/* The captured cube has about the resolution of the result. */
 static int capture_size(const struct tl_arguments *arguments, enum tl_layout layout,
                         const struct tl_maps_params *maps)
 {
@@ -176,7 +177,7 @@ static bool convert_capture(const struct tl_arguments *arguments, enum tl_layout
     struct tl_stage stage;
     tl_image cube = {0};
     struct tl_sphere_map from = {TL_LAYOUT_CUBE, TL_MAPS_SIZE_MIN, 6 * TL_MAPS_SIZE_MIN}, to;
-    if (!find_target(arguments, &from, layout, &to, error) || /* before the cloth is settled */
+    if (!find_target(arguments, &from, layout, &to, error) || /* checked before the cloth is settled */
         !tl_stage_create(&stage, arguments, error))
         return false;
     bool done = capture(&stage, arguments, layout, &cube, error);

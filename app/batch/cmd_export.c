@@ -1,4 +1,4 @@
-/* toile export: a frame as GLB or OBJ, or the motion of the garment as a PC2 or MDD point cache. */
+/* toile export: writes a frame as GLB or OBJ, or the garment's motion as a PC2 or MDD point cache. */
 #include "app/batch/commands.h"
 #include "app/scene/headless.h"
 #include "app/scene/session.h"
@@ -30,7 +30,8 @@ static bool check_output(const struct tl_arguments *arguments, tl_error *error)
     struct tl_writer writer;
     if (!tl_writer_begin(&writer, output, error))
         return false;
-    tl_writer_abandon(&writer); /* it could be written; the exporter makes its own */
+    tl_writer_abandon(
+        &writer); /* this only checked that the file can be written; the exporter opens its own writer */
     return true;
 }
 
@@ -62,7 +63,7 @@ static bool export_frames(tl_session *session, const struct tl_arguments *argume
     bool done = true;
     for (int number = first; done && number <= last; number++) {
         if (tl_interrupted())
-            done = tl_fail(error, TL_INTERRUPTED, "export: stopped at frame %d: nothing is written", number);
+            done = tl_fail(error, TL_INTERRUPTED, "export: stopped at frame %d: no file was written", number);
         else
             done = tl_session_go_to(session, number, error);
         if (!done)

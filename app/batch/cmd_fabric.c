@@ -1,5 +1,5 @@
-/* toile fabric: the maps that a height map gives: heights in metres, normals, offsets, moments, gloss,
- * horizons, cones. */
+/* toile fabric: bakes maps from a height map: heights in metres, normals, offsets, moments, gloss, horizons,
+ * cones. */
 #include "app/batch/commands.h"
 #include "app/scene/height_picture.h"
 #include "assets/image/exr.h"
@@ -18,7 +18,7 @@
 #define DEFAULT_REPEAT_MM 10.0f
 #define DEFAULT_HEIGHT_MM 0.5f
 #define DEFAULT_GLOSS     0.9f
-#define GLOSS_WINDOW      4 /* texels a side that the gloss map takes together */
+#define GLOSS_WINDOW      4 /* texels; the gloss map describes the normals of such a square */
 
 static bool check_arguments(const struct tl_arguments *arguments, tl_error *error)
 {
@@ -32,12 +32,13 @@ static bool check_arguments(const struct tl_arguments *arguments, tl_error *erro
 
 struct baking {
     const struct tl_arguments *arguments;
-    float width_m, height_m, depth_m; /* of a repeat, and from the deepest to the highest */
+    float width_m, height_m; /* of a repeat */
+    float depth_m;           /* from the lowest point to the highest */
     tl_image heights;
-    struct tl_height_field field;
+    struct tl_height_field field; /* borrows `heights` */
 };
 
-/* In place: the field points to the heights. */
+/* The struct must not be moved afterwards: `field` points to `heights`. */
 static void begin(struct baking *baking, const tl_image *picture)
 {
     const struct tl_arguments *asked = baking->arguments;
@@ -49,7 +50,7 @@ static void begin(struct baking *baking, const tl_image *picture)
         tl_height_field_make(&baking->heights, baking->width_m, baking->height_m, asked->clamp, asked->clamp);
 }
 
-static void tell(const char *path, const tl_image *image)
+static void log_map(const char *path, const tl_image *image)
 {
     tl_info("%s: %d x %d texels, %zu bytes in memory", path, image->width, image->height,
             tl_image_size_bytes(image));
@@ -60,7 +61,7 @@ static bool save_png(const struct baking *baking, const char *name, tl_image *im
     char *path = tl_format("%s/%s.png", baking->arguments->output, name);
     bool saved = tl_image_save_png(path, image, error);
     if (saved)
-        tell(path, image);
+        log_map(path, image);
     free(path);
     tl_image_release(image);
     return saved;
@@ -73,7 +74,7 @@ static bool save_exr(const struct baking *baking, const char *name, const char *
     const struct tl_exr_layer layer = {channels, image};
     bool saved = tl_exr_save(path, &layer, 1, error);
     if (saved)
-        tell(path, image);
+        log_map(path, image);
     free(path);
     tl_image_release(image);
     return saved;
@@ -105,7 +106,7 @@ static bool save_horizons(const struct baking *baking, tl_error *error)
     return saved;
 }
 
-/* Red: of the front, green: of the back. */
+/* Saves a picture whose red channel holds the cones of the front, green those of the back. */
 static bool save_cones(const struct baking *baking, tl_error *error)
 {
     tl_image cones = tl_bake_cones(&baking->field, 1),
@@ -124,7 +125,7 @@ static bool save_heights(const struct baking *baking, tl_error *error)
     return save_exr(baking, "height", names, &heights, error);
 }
 
-/* IN's own name without folder and ending. New string. */
+/* The file's name without folder and extension, as a new string. */
 static char *name_of(const char *path)
 {
     const char *slash = strrchr(path, '/');
@@ -134,7 +135,8 @@ static char *name_of(const char *path)
     return name;
 }
 
-/* What --fabric reads: the renderer makes its own maps of height.exr; the others are for other programs. */
+/* Saves the fabric for --fabric. The renderer reads height.exr and bakes its own maps; the others are for
+ * other programs. */
 static bool save_fabric(const struct baking *baking, tl_error *error)
 {
     struct tl_writer writer;
@@ -144,13 +146,13 @@ static bool save_fabric(const struct baking *baking, tl_error *error)
     if (saved) {
         fprintf(writer.stream,
                 "# Baked by toile fabric; --fabric takes this file.\n"
-                "# Beside it, for other programs: normal.png, offset.exr, moments.exr, gloss.png, "
+                "# For other programs: normal.png, offset.exr, moments.exr, gloss.png, "
                 "horizon_*.png, cones.png.\n"
                 "weave:\n"
                 "  picture: height.exr # metres; a repeat of %g x %g mm\n"
                 "  picture_mm: %g\n"
                 "  depth_mm: %g # from the lowest to the highest\n"
-                "# The look is yours to choose.\n"
+                "# Choose the appearance.\n"
                 "material:\n"
                 "  use_file: false\n"
                 "  diffuse: [0.5, 0.5, 0.5]\n"
@@ -161,7 +163,7 @@ static bool save_fabric(const struct baking *baking, tl_error *error)
         saved = tl_writer_commit(&writer, error);
     }
     if (saved)
-        tl_info("%s: use it by --fabric %s", path, path);
+        tl_info("%s: use it with --fabric %s", path, path);
     free(path);
     free(name);
     return saved;

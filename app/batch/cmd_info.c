@@ -1,4 +1,4 @@
-/* toile info: what a file holds and how it will be read; or what is built in. */
+/* toile info: prints what a file holds and how it is read, or what is built in. */
 #include "app/batch/commands.h"
 #include "app/cli/json.h"
 #include "app/scene/settings.h"
@@ -15,7 +15,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Both outputs come from one object: --json prints it, otherwise its members become lines. */
+/* Both outputs are printed from one JSON object: --json prints it as it is, else each member becomes a line.
+ */
 static void print_value(const cJSON *value, int indent)
 {
     const cJSON *child;
@@ -59,7 +60,7 @@ static cJSON *describe_vector(vec3s vector)
     return cJSON_CreateFloatArray(vector.raw, 3);
 }
 
-/* What most materials have not, where this one has it. */
+/* Describes the features that few materials have. */
 static void describe_layers(cJSON *object, const tl_material *material)
 {
     const struct tl_gloss *gloss = &material->gloss;
@@ -133,7 +134,7 @@ static bool varies(const tl_model *model, size_t part)
     return false;
 }
 
-/* Colourways of the file's own: what each makes the parts of that differ between them. */
+/* Describes the file's colourways: the materials of those parts that differ between colourways. */
 static void describe_variants(cJSON *object, const tl_model *model)
 {
     cJSON *variants = cJSON_AddObjectToObject(object, "colourways");
@@ -146,7 +147,7 @@ static void describe_variants(cJSON *object, const tl_model *model)
     }
 }
 
-/* Vertices that the file itself holds as cloth, and those that cloth.pin_colour would. */
+/* Counts the vertices that the file pins, and those that cloth.pin_colour would pin by their colour. */
 static void describe_pins(cJSON *object, const tl_model *model)
 {
     size_t pinned = 0, painted[3] = {0};
@@ -193,7 +194,7 @@ static cJSON *describe_model(const tl_model *model)
     return object;
 }
 
-/* In the file's own units: only the garment that it moves can say what they are. */
+/* Describes a recorded motion in the file's own units, which depend on the garment that it moves. */
 static cJSON *describe_motion(const char *path, const struct tl_point_cache_facts *facts)
 {
     cJSON *object = cJSON_CreateObject();
@@ -236,7 +237,7 @@ static void add_colourways(cJSON *object, const char *key, const struct tl_setti
         cJSON_AddItemToArray(names, cJSON_CreateString(settings->colourways.names[i]));
 }
 
-/* What it names, built-in colourways included. */
+/* Describes a scene file by the names in it, with its colourways. */
 static cJSON *describe_scene(const char *path, tl_error *error)
 {
     struct tl_settings settings;

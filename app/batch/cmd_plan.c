@@ -1,4 +1,4 @@
-/* toile plan: what would run for a frame, and why. */
+/* toile plan: prints which jobs a frame runs, why, and what they cost in time and memory. */
 #include "app/batch/commands.h"
 #include "app/budget/governor.h"
 #include "app/cli/json.h"
@@ -35,7 +35,7 @@ static void print_memory(const tl_renderer *renderer)
 
 /* ---- The budget ---- */
 
-/* What a budget would choose for the frame, and what the next better level of each control would change. */
+/* The levels that a budget allows for the frame, and what one level better would change for each control. */
 struct budgeted {
     double budget_ms; /* 0: none was given */
     struct tl_quality_choice choice;
@@ -95,7 +95,7 @@ static int substeps_per_frame(const struct tl_settings *settings, const struct t
     return (int)lround(1 / (settings->cloth.frame_rate * report->substep_s));
 }
 
-/* What the cloth is kept from passing through, and at what cost. */
+/* Describes whether the cloth may pass through itself, and what it costs to prevent that. */
 static void describe_self_repulsion(const struct tl_settings *settings, const struct tl_cloth_report *cloth,
                                     char *out, size_t size)
 {
@@ -123,7 +123,7 @@ static void print_cloth(const struct tl_settings *settings, const struct tl_clot
            tl_cloth_solver_names[settings->cloth.solver], substeps_per_frame(settings, report),
            1000 * report->substep_s, self_repulsion);
     if (report->caught_count + report->unconverged_steps + report->shortened_steps > 0)
-        printf("cloth's doubts: %zu vertices caught between parts of the avatar, %zu steps cut short before "
+        printf("cloth: %zu vertices caught between parts of the avatar, %zu steps cut short before "
                "they "
                "converged, %zu shortened because they would have gained energy\n",
                report->caught_count, report->unconverged_steps, report->shortened_steps);
@@ -147,7 +147,7 @@ static void add_cloth(cJSON *object, const struct tl_settings *settings, const s
     cJSON_AddNumberToObject(cloth, "shortened_steps", (double)report->shortened_steps);
 }
 
-/* ---- The whole ---- */
+/* ---- The report ---- */
 
 static void add_jobs(cJSON *object, const tl_plan *plan, const tl_plan *drawn)
 {
@@ -186,8 +186,8 @@ static void add_memory(cJSON *object, const tl_renderer *renderer)
 
 static void print_clocks(const struct tl_gpu_clocks *clocks)
 {
-    printf("clock: the CPU's around finished work; GL's timer says %.3g ms of %.3g: %s\n", clocks->timer_ms,
-           clocks->cpu_ms, clocks->timer_is_trusted ? "it could be trusted too" : "not to be trusted");
+    printf("clock: the CPU's, read after the work is finished; GL's timer measures %.3g ms of %.3g: %s\n",
+           clocks->timer_ms, clocks->cpu_ms, clocks->timer_is_trusted ? "it agrees" : "it is not used");
 }
 
 static void add_clocks(cJSON *object, const struct tl_gpu_clocks *clocks)
@@ -198,8 +198,8 @@ static void add_clocks(cJSON *object, const struct tl_gpu_clocks *clocks)
     cJSON_AddBoolToObject(clock, "timer_is_trusted", clocks->timer_is_trusted);
 }
 
-static void tell(const struct tl_stage *stage, const tl_plan *plan, const struct budgeted *budgeted,
-                 const struct tl_gpu_clocks *clocks, bool json)
+static void print_report(const struct tl_stage *stage, const tl_plan *plan, const struct budgeted *budgeted,
+                         const struct tl_gpu_clocks *clocks, bool json)
 {
     struct tl_cloth_report report = tl_session_report(stage->session);
     if (json) {
@@ -223,8 +223,9 @@ static void tell(const struct tl_stage *stage, const tl_plan *plan, const struct
         print_cloth(&stage->settings, &report);
 }
 
-/* A frame as fly has it: chosen, simulated, drawn, and learned from. */
-static bool draw_paced(struct tl_stage *stage, tl_quality_governor *governor, tl_error *error)
+/* Simulates and draws a frame as toile fly does: the governor chooses the levels, then learns from the
+ * measured times. */
+static bool draw_within_budget(struct tl_stage *stage, tl_quality_governor *governor, tl_error *error)
 {
     const struct tl_settings full = stage->settings;
     struct tl_stopwatch watch = tl_stopwatch_start();
@@ -253,7 +254,7 @@ static bool choose_levels(struct tl_stage *stage, int number, struct budgeted *o
     int first = number - 1 > learned_from ? number - 1 - learned_from : 0;
     bool done = tl_session_go_to(stage->session, first, error);
     while (done && tl_session_frame_number(stage->session) < number - 1)
-        done = draw_paced(stage, governor, error);
+        done = draw_within_budget(stage, governor, error);
     if (done) {
         const tl_frame frame = tl_session_frame(stage->session);
         out->choice = tl_quality_governor_choose(governor, stage->renderer, &frame, &full);
@@ -265,8 +266,8 @@ static bool choose_levels(struct tl_stage *stage, int number, struct budgeted *o
     return done;
 }
 
-/* The plan of frame N is that of an animation at N: the frame before it is drawn, so that what it leaves
- * behind is reused and costs are known. Frame 0 is the first frame, where all is new. */
+/* Plans frame N as a part of an animation: draws the frame before it, so that its results can be reused and
+ * its costs are known. Frame 0 is the first, for which everything is computed. */
 bool tl_command_plan(const struct tl_arguments *arguments, tl_error *error)
 {
     struct tl_stage stage;
@@ -285,11 +286,11 @@ bool tl_command_plan(const struct tl_arguments *arguments, tl_error *error)
         const struct tl_render_settings settings = tl_settings_render(&stage.settings);
         tl_plan plan;
         tl_renderer_plan(stage.renderer, &next, &settings, &plan);
-        done = tl_stage_draw(&stage, error); /* memory is what the frame really holds */
+        done = tl_stage_draw(&stage, error); /* so that the memory is what the frame really takes */
         struct tl_gpu_clocks clocks;
         done = done && tl_gpu_compare_clocks(stage.gpu, &clocks, error);
         if (done)
-            tell(&stage, &plan, &budgeted, &clocks, arguments->json);
+            print_report(&stage, &plan, &budgeted, &clocks, arguments->json);
     }
     tl_stage_release(&stage);
     return done;

@@ -1,4 +1,4 @@
-/* toile render: frames without a screen. */
+/* toile render: renders frames to EXR or PNG files, without a window. */
 #include "app/batch/commands.h"
 #include "app/report/legend.h"
 #include "app/scene/headless.h"
@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* OUT.png -> OUT.0012.png when a range of frames was asked for. */
+/* The file of a frame, as a new string: OUT.png, or OUT.0012.png where a range of frames is rendered. */
 static char *frame_path(const struct tl_arguments *arguments, int frame)
 {
     const char *output = arguments->output;
@@ -24,7 +24,7 @@ static char *frame_path(const struct tl_arguments *arguments, int frame)
     return tl_format("%.*s.%04d%s", (int)(dot - output), output, frame, dot);
 }
 
-/* Everything about the output that can be known before minutes of work are spent. */
+/* Checks the output's kind, and that it can be written, before minutes of work are spent. */
 static bool check_output(const struct tl_arguments *arguments, tl_error *error)
 {
     if (!arguments->output)
@@ -52,7 +52,7 @@ static void draw_legend(const struct tl_stage *stage, tl_image *image)
         tl_info("%s: the picture is too small for its legend", legend.title);
 }
 
-/* The image, and what the stage was to keep beside it. */
+/* Saves the image, and as further layers the AOVs that were asked for. */
 static bool save_layers(const struct tl_stage *stage, const char *path, const tl_image *image,
                         tl_error *error)
 {
@@ -91,7 +91,8 @@ static bool render_frames(struct tl_stage *stage, const struct tl_arguments *arg
     struct tl_progress progress =
         tl_progress_begin(first == 0 && last == 0 ? "rendering" : "simulating and rendering");
     bool done = true;
-    /* Frames before the first are simulated only: the cloth's state is the sum of all steps. */
+    /* Frames before the first are simulated but not drawn: the cloth's state follows from all steps before
+     * it. */
     for (int frame = 0; done && frame <= last; frame++) {
         if (frame > 0)
             done = tl_session_advance(stage->session, error);
@@ -103,8 +104,8 @@ static bool render_frames(struct tl_stage *stage, const struct tl_arguments *arg
             free(path);
         }
         if (tl_interrupted())
-            done =
-                tl_fail(error, TL_INTERRUPTED, "render: stopped at frame %d: what was drawn is kept", frame);
+            done = tl_fail(error, TL_INTERRUPTED,
+                           "render: stopped at frame %d: the frames drawn so far are kept", frame);
         tl_progress_update(&progress, frame + 1, last + 1);
     }
     tl_progress_end(&progress);

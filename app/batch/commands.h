@@ -1,15 +1,23 @@
-/* Commands of this room: files in, files out. app/cli/command.h says what a command is. */
+/* The commands that read files, write files or print a table, without a window. Each reports its failure
+ * through `error` and returns false (app/cli/command.h). */
 #ifndef TOILE_APP_BATCH_COMMANDS_H
 #define TOILE_APP_BATCH_COMMANDS_H
 
 #include "app/cli/arguments.h"
 
+/* Renders frames as EXR or PNG files. */
 bool tl_command_render(const struct tl_arguments *arguments, tl_error *error);
+/* Prints which jobs a frame runs, why, and what they cost in time and memory. */
 bool tl_command_plan(const struct tl_arguments *arguments, tl_error *error);
+/* Prints how far two images differ. */
 bool tl_command_compare(const struct tl_arguments *arguments, tl_error *error);
+/* Writes a frame as GLB or OBJ, or the garment's motion as PC2 or MDD. */
 bool tl_command_export(const struct tl_arguments *arguments, tl_error *error);
+/* Bakes the maps of a fabric from a height map. */
 bool tl_command_fabric(const struct tl_arguments *arguments, tl_error *error);
+/* Converts an environment map to another layout, or captures one from a scene. */
 bool tl_command_env(const struct tl_arguments *arguments, tl_error *error);
+/* Prints what a file holds, or what is built in. */
 bool tl_command_info(const struct tl_arguments *arguments, tl_error *error);
 
 #endif

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of the drawing, in its own units. */
+/* Sizes in the units of the drawing's view box. */
 #define WIDTH  TL_PLOT_WIDTH
 #define HEIGHT 430.0
 #define LEFT   66.0
@@ -14,28 +14,28 @@
 #define TOP    14.0
 #define BOTTOM 52.0
 
-#define LETTER_WIDTH  6.3 /* of the names, on average */
+#define LETTER_WIDTH  6.3 /* average over the letters of a name */
 #define LETTER_HEIGHT 13.0
 #define TICKS_MAX     32
-#define CURVE_POINTS  40 /* a line of more is a curve, whose points have no marks */
+#define CURVE_POINTS  40 /* a line with more points is drawn without marks */
 
 struct axis {
-    double low, high; /* values at its ends */
+    double low, high; /* values at the axis's ends */
     bool logarithmic;
-    double from, to; /* where they are drawn */
+    double from, to; /* coordinates of the ends */
 };
 
 struct box {
     double x0, y0, x1, y1;
 };
 
-struct canvas {
+struct drawing {
     FILE *out;
-    const struct tl_plot_manner *manner;
+    const struct tl_plot_options *options;
     double height;
     struct axis x, y;
-    struct box *taken; /* by marks and names */
-    size_t taken_count;
+    struct box *occupied; /* boxes of marks and names drawn so far */
+    size_t occupied_count;
 };
 
 void tl_html_print(FILE *out, const char *text)
@@ -72,12 +72,12 @@ static bool usable(const struct tl_plot *plot, const struct tl_plot_point *point
            (!plot->y_log || point->y > 0);
 }
 
-/* Room for all values and a margin around them; a linear axis begins at 0. */
+/* An axis that holds all values and a margin; a linear axis includes 0. */
 static struct axis make_axis(double low, double high, bool logarithmic, bool tight, double from, double to)
 {
     const double margin_share = tight ? 0 : 0.07;
     struct axis axis = {low, high, logarithmic, from, to};
-    if (low > high) { /* no value at all */
+    if (low > high) { /* no value is in range */
         axis.low = 1;
         axis.high = 10;
     } else if (logarithmic) {
@@ -91,7 +91,7 @@ static struct axis make_axis(double low, double high, bool logarithmic, bool tig
     return axis;
 }
 
-static void find_axes(struct canvas *canvas, const struct tl_plot *plot)
+static void find_axes(struct drawing *drawing, const struct tl_plot *plot)
 {
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
     for (size_t s = 0; s < plot->series_count; s++)
@@ -104,12 +104,12 @@ static void find_axes(struct canvas *canvas, const struct tl_plot *plot)
             low[1] = fmin(low[1], point->y);
             high[1] = fmax(high[1], point->y);
         }
-    for (size_t i = 0; i < canvas->manner->guide_count; i++) {
-        low[1] = fmin(low[1], canvas->manner->guides[i].y);
-        high[1] = fmax(high[1], canvas->manner->guides[i].y);
+    for (size_t i = 0; i < drawing->options->guide_count; i++) {
+        low[1] = fmin(low[1], drawing->options->guides[i].y);
+        high[1] = fmax(high[1], drawing->options->guides[i].y);
     }
-    canvas->x = make_axis(low[0], high[0], plot->x_log, canvas->manner->x_tight, LEFT, WIDTH - RIGHT);
-    canvas->y = make_axis(low[1], high[1], plot->y_log, false, canvas->height - BOTTOM, TOP);
+    drawing->x = make_axis(low[0], high[0], plot->x_log, drawing->options->x_tight, LEFT, WIDTH - RIGHT);
+    drawing->y = make_axis(low[1], high[1], plot->y_log, false, drawing->height - BOTTOM, TOP);
 }
 
 struct tick {
@@ -117,7 +117,7 @@ struct tick {
     bool labelled;
 };
 
-/* 1, 2 and 5 of every decade; labels on all of them when there are few decades, else on the ones. */
+/* Ticks at 1, 2 and 5 times each power of ten. Over many decades only the powers of ten have labels. */
 static size_t log_ticks(const struct axis *axis, struct tick ticks[TICKS_MAX])
 {
     static const double steps[] = {1, 2, 5};
@@ -133,7 +133,7 @@ static size_t log_ticks(const struct axis *axis, struct tick ticks[TICKS_MAX])
     return count;
 }
 
-/* As many as have room. */
+/* Ticks at round steps, as many as fit with `room` units between them. */
 static size_t linear_ticks(const struct axis *axis, bool whole, struct tick ticks[TICKS_MAX])
 {
     static const double factors[] = {1, 2, 5, 10};
@@ -157,53 +157,54 @@ static size_t find_ticks(const struct axis *axis, bool whole, struct tick ticks[
 {
     size_t count = axis->logarithmic ? log_ticks(axis, ticks) : 0;
     return count < 3 ? linear_ticks(axis, whole, ticks)
-                     : count; /* a narrow range holds none of the round numbers */
+                     : count; /* a range within one decade holds too few of the round numbers */
 }
 
-static void print_y_ticks(const struct canvas *canvas)
+static void print_y_ticks(const struct drawing *drawing)
 {
     struct tick ticks[TICKS_MAX];
-    size_t count = find_ticks(&canvas->y, canvas->manner->y_whole, ticks);
+    size_t count = find_ticks(&drawing->y, drawing->options->y_is_count, ticks);
     for (size_t i = 0; i < count; i++) {
-        double at = place(&canvas->y, ticks[i].value);
-        fprintf(canvas->out, "<line class=\"grid\" x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\"/>\n", LEFT,
-                at, WIDTH - RIGHT, at);
+        double at = place(&drawing->y, ticks[i].value);
+        fprintf(drawing->out, "<line class=\"grid\" x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\"/>\n",
+                LEFT, at, WIDTH - RIGHT, at);
         if (ticks[i].labelled)
-            fprintf(canvas->out,
+            fprintf(drawing->out,
                     "<text class=\"tick\" text-anchor=\"end\" x=\"%.1f\" y=\"%.1f\">%.4g</text>\n", LEFT - 7,
                     at + 4, ticks[i].value);
     }
 }
 
-static void print_axes(const struct canvas *canvas, const struct tl_plot *plot)
+static void print_axes(const struct drawing *drawing, const struct tl_plot *plot)
 {
     struct tick ticks[TICKS_MAX];
-    FILE *out = canvas->out;
-    size_t count = find_ticks(&canvas->x, false, ticks);
+    FILE *out = drawing->out;
+    size_t count = find_ticks(&drawing->x, false, ticks);
     for (size_t i = 0; i < count; i++) {
-        double at = place(&canvas->x, ticks[i].value);
+        double at = place(&drawing->x, ticks[i].value);
         fprintf(out, "<line class=\"grid\" x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\"/>\n", at, TOP, at,
-                canvas->height - BOTTOM);
+                drawing->height - BOTTOM);
         if (ticks[i].labelled)
             fprintf(out, "<text class=\"tick\" text-anchor=\"middle\" x=\"%.1f\" y=\"%.1f\">%.4g</text>\n",
-                    at, canvas->height - BOTTOM + 16, ticks[i].value);
+                    at, drawing->height - BOTTOM + 16, ticks[i].value);
     }
-    if (!canvas->manner->y_bare)
-        print_y_ticks(canvas);
-    fprintf(out, "<path class=\"frame\" d=\"M%.1f %.1fV%.1fH%.1f\"/>\n", LEFT, TOP, canvas->height - BOTTOM,
+    if (!drawing->options->y_unlabelled)
+        print_y_ticks(drawing);
+    fprintf(out, "<path class=\"frame\" d=\"M%.1f %.1fV%.1fH%.1f\"/>\n", LEFT, TOP, drawing->height - BOTTOM,
             WIDTH - RIGHT);
     fprintf(out, "<text class=\"axis\" text-anchor=\"middle\" x=\"%.1f\" y=\"%.1f\">",
-            0.5 * (LEFT + WIDTH - RIGHT), canvas->height - 10);
+            0.5 * (LEFT + WIDTH - RIGHT), drawing->height - 10);
     tl_html_print(out, plot->x_label);
     fprintf(
         out,
         "</text>\n<text class=\"axis\" text-anchor=\"middle\" transform=\"translate(15 %.1f) rotate(-90)\">",
-        0.5 * (TOP + canvas->height - BOTTOM));
+        0.5 * (TOP + drawing->height - BOTTOM));
     tl_html_print(out, plot->y_label);
     fputs("</text>\n", out);
 }
 
-/* Marks of about equal weight, centred at 0: disc, square, diamond, triangles, cross, ring, bar. */
+/* SVG paths of the marks, of about equal area, centred at 0: disc, square, diamond, triangles, cross, bars.
+ */
 static const char *const marks[TL_PLOT_STYLES] = {
     "M-4.5 0a4.5 4.5 0 1 0 9 0a4.5 4.5 0 1 0 -9 0z",
     "M-4 -4H4V4H-4z",
@@ -215,16 +216,16 @@ static const char *const marks[TL_PLOT_STYLES] = {
     "M-2.5 -5.5H2.5V5.5H-2.5z",
 };
 
-static void take(struct canvas *canvas, struct box box)
+static void occupy(struct drawing *drawing, struct box box)
 {
-    canvas->taken[canvas->taken_count++] = box;
+    drawing->occupied[drawing->occupied_count++] = box;
 }
 
-/* Along the points, and back along 0 where the area below them is filled. */
-static void print_line(const struct canvas *canvas, const struct tl_plot *plot,
+/* Joins the points; an area is closed along the lower end of y. */
+static void print_line(const struct drawing *drawing, const struct tl_plot *plot,
                        const struct tl_plot_series *series, size_t style)
 {
-    bool steps = canvas->manner->kind == TL_PLOT_STEPS, areas = canvas->manner->kind == TL_PLOT_AREAS;
+    bool steps = drawing->options->kind == TL_PLOT_STEPS, areas = drawing->options->kind == TL_PLOT_AREAS;
     bool begun = false;
     double first = 0, last = 0;
     for (size_t i = 0; i < series->count; i++) {
@@ -232,126 +233,127 @@ static void print_line(const struct canvas *canvas, const struct tl_plot *plot,
         if (!usable(plot, point))
             continue;
         if (!begun && series->front)
-            fputs("<path class=\"front\" d=\"M", canvas->out);
+            fputs("<path class=\"front\" d=\"M", drawing->out);
         else if (!begun)
-            fprintf(canvas->out, "<path class=\"%s s%zu\" d=\"M", areas ? "area" : "line", style);
+            fprintf(drawing->out, "<path class=\"%s s%zu\" d=\"M", areas ? "area" : "line", style);
         else if (!steps)
-            fputc('L', canvas->out);
-        double x = place(&canvas->x, point->x), y = place(&canvas->y, point->y);
+            fputc('L', drawing->out);
+        double x = place(&drawing->x, point->x), y = place(&drawing->y, point->y);
         if (begun && steps)
-            fprintf(canvas->out, "H%.1fV%.1f", x, y);
+            fprintf(drawing->out, "H%.1fV%.1f", x, y);
         else
-            fprintf(canvas->out, "%.1f %.1f", x, y);
+            fprintf(drawing->out, "%.1f %.1f", x, y);
         first = begun ? first : x;
         last = x;
         begun = true;
     }
     if (begun && areas)
-        fprintf(canvas->out, "L%.1f %.1fH%.1fZ", last, place(&canvas->y, canvas->y.low), first);
+        fprintf(drawing->out, "L%.1f %.1fH%.1fZ", last, place(&drawing->y, drawing->y.low), first);
     if (begun)
-        fputs("\"/>\n", canvas->out);
+        fputs("\"/>\n", drawing->out);
 }
 
-static void print_bars(const struct canvas *canvas, const struct tl_plot *plot,
+static void print_bars(const struct drawing *drawing, const struct tl_plot *plot,
                        const struct tl_plot_series *series, size_t style)
 {
-    double floor_y = place(&canvas->y, canvas->y.low);
+    double floor_y = place(&drawing->y, drawing->y.low);
     for (size_t i = 0; i < series->count; i++) {
         const struct tl_plot_point *point = &series->points[i];
         if (!usable(plot, point))
             continue;
-        double from = place(&canvas->x, point->x - 0.5 * canvas->manner->bar_width),
-               to = place(&canvas->x, point->x + 0.5 * canvas->manner->bar_width),
-               top = place(&canvas->y, point->y);
-        fprintf(canvas->out,
+        double from = place(&drawing->x, point->x - 0.5 * drawing->options->bar_width),
+               to = place(&drawing->x, point->x + 0.5 * drawing->options->bar_width),
+               top = place(&drawing->y, point->y);
+        fprintf(drawing->out,
                 "<rect class=\"mark s%zu\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"><title>",
                 style, from, top, to - from, floor_y - top);
-        tl_html_print(canvas->out, point->name);
-        fputs("</title></rect>\n", canvas->out);
+        tl_html_print(drawing->out, point->name);
+        fputs("</title></rect>\n", drawing->out);
     }
 }
 
-static void print_shade(const struct canvas *canvas)
+static void print_shade(const struct drawing *drawing)
 {
-    if (canvas->manner->shaded_to > canvas->x.low)
-        fprintf(canvas->out, "<rect class=\"shade\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"/>\n",
-                LEFT, TOP, place(&canvas->x, fmin(canvas->manner->shaded_to, canvas->x.high)) - LEFT,
-                canvas->height - BOTTOM - TOP);
+    if (drawing->options->shaded_to > drawing->x.low)
+        fprintf(drawing->out,
+                "<rect class=\"shade\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"/>\n", LEFT, TOP,
+                place(&drawing->x, fmin(drawing->options->shaded_to, drawing->x.high)) - LEFT,
+                drawing->height - BOTTOM - TOP);
 }
 
-static void print_guides(const struct canvas *canvas)
+static void print_guides(const struct drawing *drawing)
 {
-    const struct tl_plot_manner *manner = canvas->manner;
-    for (size_t i = 0; i < manner->guide_count; i++) {
-        double y = place(&canvas->y, manner->guides[i].y);
-        fprintf(canvas->out, "<path class=\"%s\" d=\"M%.1f %.1fH%.1f\"/>\n",
-                manner->y_bare ? "grid" : "guide", LEFT, y, WIDTH - RIGHT);
-        if (manner->y_bare)
+    const struct tl_plot_options *options = drawing->options;
+    for (size_t i = 0; i < options->guide_count; i++) {
+        double y = place(&drawing->y, options->guides[i].y);
+        fprintf(drawing->out, "<path class=\"%s\" d=\"M%.1f %.1fH%.1f\"/>\n",
+                options->y_unlabelled ? "grid" : "guide", LEFT, y, WIDTH - RIGHT);
+        if (options->y_unlabelled)
             continue;
-        fprintf(canvas->out, "<text class=\"name\" text-anchor=\"end\" x=\"%.1f\" y=\"%.1f\">",
+        fprintf(drawing->out, "<text class=\"name\" text-anchor=\"end\" x=\"%.1f\" y=\"%.1f\">",
                 WIDTH - RIGHT - 4, y - 5);
-        tl_html_print(canvas->out, manner->guides[i].name);
-        fputs("</text>\n", canvas->out);
+        tl_html_print(drawing->out, options->guides[i].name);
+        fputs("</text>\n", drawing->out);
     }
 }
 
-static void print_marks(struct canvas *canvas, const struct tl_plot *plot,
+static void print_marks(struct drawing *drawing, const struct tl_plot *plot,
                         const struct tl_plot_series *series, size_t style)
 {
     for (size_t i = 0; i < series->count; i++) {
         const struct tl_plot_point *point = &series->points[i];
         if (!usable(plot, point))
             continue;
-        double x = place(&canvas->x, point->x), y = place(&canvas->y, point->y);
-        take(canvas, (struct box){x - 4, y - 4, x + 4, y + 4});
-        fprintf(canvas->out, "<path class=\"mark s%zu\" transform=\"translate(%.1f %.1f)\" d=\"%s\"><title>",
+        double x = place(&drawing->x, point->x), y = place(&drawing->y, point->y);
+        occupy(drawing, (struct box){x - 4, y - 4, x + 4, y + 4});
+        fprintf(drawing->out, "<path class=\"mark s%zu\" transform=\"translate(%.1f %.1f)\" d=\"%s\"><title>",
                 style, x, y, marks[style]);
-        tl_html_print(canvas->out, point->name);
-        fprintf(canvas->out, " (%.4g, %.4g)</title></path>\n", point->x, point->y);
+        tl_html_print(drawing->out, point->name);
+        fprintf(drawing->out, " (%.4g, %.4g)</title></path>\n", point->x, point->y);
     }
 }
 
-static bool overlaps(const struct canvas *canvas, struct box box)
+static bool overlaps(const struct drawing *drawing, struct box box)
 {
-    if (box.x0 < LEFT || box.x1 > WIDTH || box.y0 < 0 || box.y1 > canvas->height - BOTTOM)
+    if (box.x0 < LEFT || box.x1 > WIDTH || box.y0 < 0 || box.y1 > drawing->height - BOTTOM)
         return true;
-    for (size_t i = 0; i < canvas->taken_count; i++) {
-        const struct box *other = &canvas->taken[i];
+    for (size_t i = 0; i < drawing->occupied_count; i++) {
+        const struct box *other = &drawing->occupied[i];
         if (box.x0 < other->x1 && box.x1 > other->x0 && box.y0 < other->y1 && box.y1 > other->y0)
             return true;
     }
     return false;
 }
 
-/* Right, left, above, below, and the corners: the first place where the name covers nothing; where there is
- * none, hovering must do. */
-static void print_name(struct canvas *canvas, const struct tl_plot_point *point)
+/* Writes a name beside its point, at the first of eight places where it covers no mark or other name. Without
+ * such a place the name only shows when the point is hovered. */
+static void print_name(struct drawing *drawing, const struct tl_plot_point *point)
 {
-    static const double ways[][2] = {{1, 0}, {-1, 0}, {0, -1}, {0, 1}, {1, -1}, {-1, -1}, {1, 1}, {-1, 1}};
+    static const double sides[][2] = {{1, 0}, {-1, 0}, {0, -1}, {0, 1}, {1, -1}, {-1, -1}, {1, 1}, {-1, 1}};
     const double gap = 7;
-    double x = place(&canvas->x, point->x), y = place(&canvas->y, point->y);
+    double x = place(&drawing->x, point->x), y = place(&drawing->y, point->y);
     double width = LETTER_WIDTH * (double)strlen(point->name), height = LETTER_HEIGHT;
-    for (size_t i = 0; i < TL_COUNT(ways); i++) {
-        double left = ways[i][0] > 0 ? x + gap : ways[i][0] < 0 ? x - gap - width : x - 0.5 * width;
-        double middle = y + ways[i][1] * (gap + 0.5 * height);
+    for (size_t i = 0; i < TL_COUNT(sides); i++) {
+        double left = sides[i][0] > 0 ? x + gap : sides[i][0] < 0 ? x - gap - width : x - 0.5 * width;
+        double middle = y + sides[i][1] * (gap + 0.5 * height);
         struct box box = {left, middle - 0.5 * height, left + width, middle + 0.5 * height};
-        if (overlaps(canvas, box))
+        if (overlaps(drawing, box))
             continue;
-        take(canvas, box);
-        fprintf(canvas->out, "<text class=\"name\" x=\"%.1f\" y=\"%.1f\">", left, middle + 4);
-        tl_html_print(canvas->out, point->name);
-        fputs("</text>\n", canvas->out);
+        occupy(drawing, box);
+        fprintf(drawing->out, "<text class=\"name\" x=\"%.1f\" y=\"%.1f\">", left, middle + 4);
+        tl_html_print(drawing->out, point->name);
+        fputs("</text>\n", drawing->out);
         return;
     }
 }
 
-static void print_names(struct canvas *canvas, const struct tl_plot *plot)
+static void print_names(struct drawing *drawing, const struct tl_plot *plot)
 {
     for (size_t s = 0; s < plot->series_count; s++)
         for (size_t i = 0; !plot->series[s].front && i < plot->series[s].count; i++) {
             const struct tl_plot_point *point = &plot->series[s].points[i];
             if (point->named && usable(plot, point))
-                print_name(canvas, point);
+                print_name(drawing, point);
         }
 }
 
@@ -384,43 +386,43 @@ static bool has_marks(const struct tl_plot_series *series, enum tl_plot_kind kin
     return !series->front && !curve && (kind == TL_PLOT_LINES || kind == TL_PLOT_STEPS);
 }
 
-/* Areas lie below the grid, all else above it. */
-static void print_series(struct canvas *canvas, const struct tl_plot *plot)
+/* Areas are drawn before the grid, so that its lines show on them; other series are drawn after it. */
+static void print_series(struct drawing *drawing, const struct tl_plot *plot)
 {
-    enum tl_plot_kind kind = canvas->manner->kind;
+    enum tl_plot_kind kind = drawing->options->kind;
     for (size_t s = plot->series_count; s-- > 0 && kind == TL_PLOT_AREAS;)
-        print_line(canvas, plot, &plot->series[s], s % TL_PLOT_STYLES);
-    print_axes(canvas, plot);
+        print_line(drawing, plot, &plot->series[s], s % TL_PLOT_STYLES);
+    print_axes(drawing, plot);
     for (size_t s = 0; s < plot->series_count; s++) {
         if (kind == TL_PLOT_BARS)
-            print_bars(canvas, plot, &plot->series[s], s % TL_PLOT_STYLES);
+            print_bars(drawing, plot, &plot->series[s], s % TL_PLOT_STYLES);
         if (is_joined(&plot->series[s], kind))
-            print_line(canvas, plot, &plot->series[s], s % TL_PLOT_STYLES);
+            print_line(drawing, plot, &plot->series[s], s % TL_PLOT_STYLES);
     }
     for (size_t s = 0; s < plot->series_count; s++)
         if (has_marks(&plot->series[s], kind))
-            print_marks(canvas, plot, &plot->series[s], s % TL_PLOT_STYLES);
+            print_marks(drawing, plot, &plot->series[s], s % TL_PLOT_STYLES);
 }
 
-void tl_plot_print_as(FILE *out, const struct tl_plot *plot, const struct tl_plot_manner *manner)
+void tl_plot_print(FILE *out, const struct tl_plot *plot, const struct tl_plot_options *options)
 {
     size_t points = 0;
     for (size_t s = 0; s < plot->series_count; s++)
         points += plot->series[s].count;
-    struct canvas canvas = {.out = out,
-                            .manner = manner,
-                            .height = manner->height > 0 ? manner->height : HEIGHT,
-                            .taken = TL_NEW_ARRAY(struct box, 2 * points)};
-    find_axes(&canvas, plot);
-    if (plot->series_count > 1 || manner->kind == TL_PLOT_LINES)
+    struct drawing drawing = {.out = out,
+                              .options = options,
+                              .height = options->height > 0 ? options->height : HEIGHT,
+                              .occupied = TL_NEW_ARRAY(struct box, 2 * points)};
+    find_axes(&drawing, plot);
+    if (plot->series_count > 1 || options->kind == TL_PLOT_LINES)
         print_legend(out, plot);
-    fprintf(out, "<svg class=\"plot\" viewBox=\"0 0 %.0f %.0f\" role=\"img\">\n", WIDTH, canvas.height);
-    print_shade(&canvas);
-    print_series(&canvas, plot);
-    print_guides(&canvas);
-    print_names(&canvas, plot);
+    fprintf(out, "<svg class=\"plot\" viewBox=\"0 0 %.0f %.0f\" role=\"img\">\n", WIDTH, drawing.height);
+    print_shade(&drawing);
+    print_series(&drawing, plot);
+    print_guides(&drawing);
+    print_names(&drawing, plot);
     fputs("</svg>\n", out);
-    free(canvas.taken);
+    free(drawing.occupied);
 }
 
 struct ranked {

@@ -1,6 +1,9 @@
-/* Plots as inline SVG for the reports: points and lines over two axes, with a legend, points that tell their
- * name when hovered, and names beside those that deserve one. Colours come from the page's style sheet
- * (app/report/report.h), so that a plot suits a light and a dark page. Pure but for the stream. */
+/* Prints plots as inline SVG: points and lines over two axes with a legend. A point shows its name when the
+ * mouse is over it, and beside it where that is asked for and there is room. The page's style sheet sets the
+ * colours (app/report/report.h), so that a plot suits a light and a dark page.
+ *
+ * Texts are UTF-8 and need no escaping. Errors: the caller finds write errors when it commits the stream.
+ * Lifetime: nothing is kept. Threads: any, each with a stream of its own. */
 #ifndef TOILE_APP_REPORT_PLOT_H
 #define TOILE_APP_REPORT_PLOT_H
 
@@ -8,19 +11,20 @@
 #include <stddef.h>
 #include <stdio.h>
 
-#define TL_PLOT_STYLES 8 /* colours and marks; series beyond begin again */
+#define TL_PLOT_STYLES 8     /* pairs of colour and mark; the ninth series has the first again */
+#define TL_PLOT_WIDTH  760.0 /* units of the drawing's view box */
 
 struct tl_plot_point {
-    double x, y; /* positive on logarithmic axes; points that are not finite are left out */
+    double x, y; /* positive on logarithmic axes; other points and those that are not finite are left out */
     const char *name;
-    bool named; /* its name stands beside it; else it shows when hovered */
+    bool named; /* the name is printed beside the point, where it covers nothing */
 };
 
 struct tl_plot_series {
     const char *name;
     const struct tl_plot_point *points;
     size_t count;
-    bool line;  /* points are joined, in their order */
+    bool line;  /* joins the points in their order */
     bool front; /* a dashed line without marks: the Pareto front */
 };
 
@@ -30,42 +34,42 @@ struct tl_plot {
     const struct tl_plot_series *series;
     size_t series_count;
 };
-#define TL_PLOT_WIDTH 760.0
 
-/* How series are drawn. */
 enum tl_plot_kind {
     TL_PLOT_LINES,
-    TL_PLOT_STEPS, /* lines whose values hold until the next point */
+    TL_PLOT_STEPS, /* each value holds until the next point */
     TL_PLOT_AREAS, /* filled down to 0, later series behind earlier ones */
-    TL_PLOT_BARS   /* on 0, of equal width in x */
+    TL_PLOT_BARS   /* from 0 up, of equal width in x */
 };
 
-/* A level that is told, across the whole plot. */
+/* A level marked by a line across the whole plot. */
 struct tl_plot_guide {
     double y;
     const char *name;
 };
 
-/* What a plot may have beside its points; all 0 is a plain plot. */
-struct tl_plot_manner {
+/* How a plot is drawn; {0} is a plot of lines with the default height. */
+struct tl_plot_options {
     enum tl_plot_kind kind;
-    double bar_width;
-    const struct tl_plot_guide *guides; /* in view whatever the points are */
+    double bar_width;                   /* in x; for bars */
+    const struct tl_plot_guide *guides; /* the y axis reaches all of them */
     size_t guide_count;
-    double shaded_to; /* x from 0 to here is set apart; 0: nothing is */
-    double height;    /* of the drawing, whose width is TL_PLOT_WIDTH; 0: its own */
-    bool x_tight;     /* no margin behind the largest x */
-    bool y_whole;     /* y counts: ticks at whole numbers only */
-    bool y_bare;      /* y is a matter of drawing: no ticks, guides are plain lines without names */
+    double shaded_to;  /* the ground from x = 0 to here is shaded; 0: nowhere */
+    double height;     /* of the view box, TL_PLOT_WIDTH wide; 0: the default */
+    bool x_tight;      /* no margin behind the largest x */
+    bool y_is_count;   /* ticks at whole numbers only */
+    bool y_unlabelled; /* no ticks in y, and guides without names */
 };
 
-/* The text with &, <, > and quotes as HTML and SVG want them. */
+/* Prints the text with &, <, > and double quotes escaped, for elements and attributes of HTML and SVG. */
 void tl_html_print(FILE *out, const char *text);
 
-void tl_plot_print_as(FILE *out, const struct tl_plot *plot, const struct tl_plot_manner *manner);
+/* Prints the plot and its legend. */
+void tl_plot_print(FILE *out, const struct tl_plot *plot, const struct tl_plot_options *options);
 
-/* The best of `points` where less x and less y are both better: indices in order of rising x. Returns their
- * number; `best` holds up to `count`. */
+/* Finds the Pareto front of points whose x and y are both better when smaller: the points for which no other
+ * has a smaller y at a smaller or equal x. Writes their indices into `best`, which holds `count`, in order of
+ * rising x; returns their number. Points that are not finite are left out. */
 size_t tl_pareto_front(const struct tl_plot_point *points, size_t count, size_t *best);
 
 #endif

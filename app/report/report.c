@@ -76,18 +76,18 @@ void tl_report_fold_end(FILE *out)
     fputs("</details>\n", out);
 }
 
-void tl_report_plot_as(FILE *out, const struct tl_plot *plot, const struct tl_plot_manner *manner,
-                       const char *caption)
+void tl_report_plot_with(FILE *out, const struct tl_plot *plot, const struct tl_plot_options *options,
+                         const char *caption)
 {
     fputs("<figure>\n", out);
-    tl_plot_print_as(out, plot, manner);
+    tl_plot_print(out, plot, options);
     print_element(out, "figcaption", caption);
     fputs("</figure>\n", out);
 }
 
 void tl_report_plot(FILE *out, const struct tl_plot *plot, const char *caption)
 {
-    tl_report_plot_as(out, plot, &(const struct tl_plot_manner){0}, caption);
+    tl_report_plot_with(out, plot, &(const struct tl_plot_options){0}, caption);
 }
 
 static void print_base64(FILE *out, const uint8_t *bytes, size_t size)
@@ -132,7 +132,7 @@ void tl_report_picture(FILE *out, const void *png, size_t size, const char *name
     end_picture(out, name, caption);
 }
 
-void tl_report_picture_beside(FILE *out, const char *file, const char *name, const char *caption)
+void tl_report_picture_file(FILE *out, const char *file, const char *name, const char *caption)
 {
     begin_picture(out, name);
     tl_html_print(out, file);

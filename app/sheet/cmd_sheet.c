@@ -1,4 +1,4 @@
-/* toile sheet: a contact sheet, cell by cell, as a folder of pictures or as one image. */
+/* toile sheet: renders a contact sheet cell by cell, as a folder of pictures or as one image. */
 #include "app/report/folder.h"
 #include "app/report/report.h"
 #include "app/scene/camera.h"
@@ -18,15 +18,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A sheet in the making. */
+/* The state of one run. */
 struct work {
     const struct tl_arguments *arguments;
     struct tl_contact_plan plan;
     tl_contact_store *store;
     char *folder;
-    bool is_image;         /* OUT.png: the folder is only kept until the image is complete */
-    struct tl_stage stage; /* device and renderer from the first cell on; a session from row to row */
-    bool *refused;         /* [cells] */
+    bool is_image; /* the output is a PNG: the folder is removed once the image is complete */
+    struct tl_stage
+        stage;     /* the device and renderer are made for the first cell, the session for the first row */
+    bool *refused; /* [cells] */
     size_t drawn, kept, refused_count;
 };
 
@@ -45,8 +46,8 @@ static bool is_done(const struct work *work, size_t row, size_t column)
 
 /* ---- Drawing ---- */
 
-/* What another fabric or colourway changes in place: looks. Cloth that moves otherwise drapes anew. */
-static bool can_take_over(const struct tl_settings *draped, const struct tl_settings *settings)
+/* Whether the drape can be kept: only the appearance differs. */
+static bool keeps_drape(const struct tl_settings *draped, const struct tl_settings *settings)
 {
     return tl_options_equal(&tl_cloth_fabric_options, &draped->fabric, &settings->fabric) &&
            tl_options_equal(&tl_cloth_options, &draped->cloth, &settings->cloth) &&
@@ -56,7 +57,7 @@ static bool can_take_over(const struct tl_settings *draped, const struct tl_sett
 static bool begin_row(struct work *work, const struct tl_settings *settings, tl_error *error)
 {
     struct tl_stage *stage = &work->stage;
-    if (stage->session && can_take_over(tl_session_settings(stage->session), settings))
+    if (stage->session && keeps_drape(tl_session_settings(stage->session), settings))
         return tl_session_apply(stage->session, settings, error);
     bool draped = true;
     if (stage->session)
@@ -66,11 +67,12 @@ static bool begin_row(struct work *work, const struct tl_settings *settings, tl_
     return draped && tl_session_go_to(stage->session, work->arguments->first_frame, error);
 }
 
-/* The box of a garment where it hangs, as large as the cloth was before it fell, a little longer for its
- * fall: so all fabrics are seen from the same distance. It is as deep as it is wide, for a turn. */
+/* The box that the camera frames: where the garment hangs, but with the size of the cloth before it fell, a
+ * little longer for the fall, so that all fabrics are seen from the same distance. It is square from above,
+ * for any turn. */
 static struct tl_box worn_box(const struct tl_box *before, const struct tl_box *worn)
 {
-    const float fall = 1.08f, corner = 0.70710678f; /* the camera looks for room for a corner */
+    const float fall = 1.08f, corner = 0.70710678f; /* the camera makes room for the box's corners */
     vec3s size = glms_vec3_sub(before->upper, before->lower);
     float half_m = 0.5f * fmaxf(size.x, size.z) * corner;
     vec3s middle = glms_vec3_scale(glms_vec3_add(worn->lower, worn->upper), 0.5f);
@@ -78,11 +80,11 @@ static struct tl_box worn_box(const struct tl_box *before, const struct tl_box *
                            {{middle.x + half_m, worn->upper.y, middle.z + half_m}}};
 }
 
-/* Heads and feet are not cut off where they would nearly fit. */
-static void add_wearer(const tl_surface *wearer, struct tl_box *box)
+/* Extends the box to the avatar's head and feet where they nearly fit, so that they are not cut off. */
+static void add_avatar(const tl_surface *avatar, struct tl_box *box)
 {
     const float above = 0.3f, below = 0.15f; /* of the garment's height */
-    struct tl_box body = tl_box_of(wearer->positions, wearer->vertex_count);
+    struct tl_box body = tl_box_of(avatar->positions, avatar->vertex_count);
     float height_m = box->upper.y - box->lower.y;
     float over_m = body.upper.y - box->upper.y, under_m = box->lower.y - body.lower.y;
     if (over_m > 0 && over_m <= above * height_m)
@@ -91,22 +93,22 @@ static void add_wearer(const tl_surface *wearer, struct tl_box *box)
         box->lower.y = body.lower.y;
 }
 
-/* A camera that the scene has not placed frames the garment, whoever wears it. */
+/* Places the camera so that it frames the garment, unless the scene has placed it. */
 static void frame_garment(tl_session *session, struct tl_settings *settings)
 {
     const tl_model *garment = tl_session_garment(session);
     if (!garment || tl_camera_is_placed(&settings->camera))
         return;
     tl_frame frame = tl_session_frame(session);
-    const tl_surface *surface = &frame.surfaces[frame.surface_count - 1]; /* who wears it comes before it */
+    const tl_surface *surface = &frame.surfaces[frame.surface_count - 1]; /* the avatar's comes before it */
     struct tl_box worn = tl_box_of(surface->positions, surface->vertex_count);
     struct tl_box before = tl_box_of(garment->mesh.positions, garment->mesh.vertex_count);
     if (!tl_session_cloth(session))
-        before = worn; /* a motion may begin as flat panels */
+        before = worn; /* recorded motion may begin with flat panels, whose size says nothing */
     float aspect = (float)settings->image.width / (float)settings->image.height;
     struct tl_box box = worn_box(&before, &worn);
     if (frame.surface_count > 1)
-        add_wearer(&frame.surfaces[0], &box);
+        add_avatar(&frame.surfaces[0], &box);
     struct tl_camera camera = tl_camera_frame(&settings->camera, box, aspect);
     tl_orbit_take(&settings->camera, &camera);
 }
@@ -116,22 +118,22 @@ static bool draw_cell(struct work *work, size_t row, size_t column, tl_image *ou
     struct tl_stage *stage = &work->stage;
     if (!tl_contact_cell_settings(&work->plan, row, column, &stage->settings, error))
         return false;
-    tl_renderer_forget(stage->renderer); /* a cell looks the same whichever were drawn before it */
+    tl_renderer_forget(stage->renderer); /* so that a cell does not depend on those drawn before it */
     if (work->plan.columns[column].view.camera == TL_CONTACT_ORBIT)
         frame_garment(stage->session, &stage->settings);
     return tl_session_apply(stage->session, &stage->settings, error) && tl_stage_draw_still(stage, error) &&
            tl_renderer_show_image(stage->renderer, out, error);
 }
 
-static bool is_of_the_cell(const tl_error *error)
+static bool concerns_one_cell(const tl_error *error)
 {
     return error->code == TL_USAGE || error->code == TL_INPUT || error->code == TL_UNSTABLE;
 }
 
-/* A cell that cannot be shown is told of and left empty; true when the others can go on. */
+/* Leaves a cell empty that cannot be rendered. Returns false where the error concerns the whole run. */
 static bool refuse(struct work *work, size_t row, size_t column, const tl_error *error)
 {
-    if (!is_of_the_cell(error))
+    if (!concerns_one_cell(error))
         return false;
     work->refused[cell_of(work, row, column)] = true;
     work->refused_count++;
@@ -144,7 +146,7 @@ static bool refuse_row(struct work *work, size_t row, const tl_error *error)
     for (size_t column = 0; column < work->plan.column_count; column++)
         if (!is_done(work, row, column) && !refuse(work, row, column, error))
             return false;
-    return is_of_the_cell(error);
+    return concerns_one_cell(error);
 }
 
 static bool make_cell(struct work *work, size_t row, size_t column, tl_error *error)
@@ -152,7 +154,7 @@ static bool make_cell(struct work *work, size_t row, size_t column, tl_error *er
     tl_image picture = {0};
     char *name = tl_contact_cell_name(&work->plan, row, column);
     bool made = draw_cell(work, row, column, &picture, error);
-    if (made && tl_interrupted()) /* the picture may be an average that was cut short */
+    if (made && tl_interrupted()) /* the picture may be an average of too few frames */
         made = tl_fail(error, TL_INTERRUPTED, "stopped");
     if (made) {
         uint64_t hash = tl_contact_cell_hash(&work->plan, row, column);
@@ -213,7 +215,7 @@ static bool make_cells(struct work *work, tl_error *error)
     tl_progress_end(&progress);
     if (!made && error->code == TL_INTERRUPTED)
         tl_fail(error, TL_INTERRUPTED,
-                "sheet: stopped with %zu of %zu cells done, in %s: the same command goes on from there",
+                "sheet: stopped with %zu of %zu cells done, in %s: the same command continues from there",
                 work->kept + work->drawn, work->plan.row_count * work->plan.column_count, work->folder);
     return made;
 }
@@ -260,12 +262,12 @@ static void print_row(const struct work *work, size_t row, FILE *out)
         if (work->refused[cell_of(work, row, column)])
             continue;
         char *name = tl_contact_cell_name(plan, row, column);
-        tl_report_picture_beside(out, name, plan->columns[column].view.name, plan->columns[column].group);
+        tl_report_picture_file(out, name, plan->columns[column].view.name, plan->columns[column].group);
         free(name);
     }
     tl_report_pictures_end(out);
     if (work->refused[cell_of(work, row, 0)])
-        tl_report_paragraph(out, "Refused: the run said why.");
+        tl_report_paragraph(out, "Refused: the run's messages say why.");
 }
 
 static void write_page(const void *what, FILE *out)
@@ -320,8 +322,8 @@ static bool finish(struct work *work, tl_error *error)
             work->refused_count);
     if (work->refused_count > 0)
         return tl_fail(error, TL_UNSTABLE,
-                       "sheet: %zu of %zu cells were refused: mend what is named above, the "
-                       "same command draws only them",
+                       "sheet: %zu of %zu cells were refused: repair what is named above; the "
+                       "same command then draws only these",
                        work->refused_count, work->plan.row_count * work->plan.column_count);
     if (work->is_image)
         tl_contact_store_remove(&work->store);

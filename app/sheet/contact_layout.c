@@ -11,16 +11,16 @@
 #define MARGIN      28
 #define GUTTER      6
 #define GROUP_GAP   20
-#define LINE        24 /* of text, with the room below it */
+#define LINE        24 /* from one line of text to the next */
 #define LABEL_MAX   260
 #define LABEL_GAP   14
 #define FLOW_ASPECT 1.5
 
-#define PAPER   0xf6f4f0u
-#define INK     0x1d2126u
-#define SOFT    0x6b737bu
-#define RULE    0xd8d3cau
-#define NOTHING 0xe9e5deu
+#define PAPER 0xf6f4f0u
+#define INK   0x1d2126u
+#define SOFT  0x6b737bu
+#define RULE  0xd8d3cau
+#define EMPTY 0xe9e5deu
 
 static bool same_group(const struct tl_contact_label *a, const struct tl_contact_label *b)
 {
@@ -53,7 +53,8 @@ static bool flows(const struct tl_contact_grid *grid)
     return grid->column_count == 1 && grid->row_count > 2;
 }
 
-/* Cells in a line of a sheet that flows: lines of about one length that make about the wanted shape. */
+/* Cells in a line of a sheet with one column. The number of lines is what gives the sheet the aspect
+ * FLOW_ASPECT; the cells are then spread evenly over these lines, so that the last is not short. */
 static size_t cells_across(const struct tl_contact_grid *grid)
 {
     double cells = (double)grid->row_count * grid->cell_height / grid->cell_width;
@@ -67,7 +68,7 @@ static struct tl_text_style style_of(int width, enum tl_text_align align, uint32
     return (struct tl_text_style){.size = TL_CANVAS_LETTER, .colour = colour, .width = width, .align = align};
 }
 
-/* Of the column of row labels; 0 without one. */
+/* The width of the column of row labels; 0 where there are none. */
 static int label_width(const struct tl_contact_grid *grid)
 {
     int widest = 0;
@@ -96,7 +97,7 @@ static int64_t column_x(const struct tl_contact_grid *grid, size_t column)
     return x;
 }
 
-/* Top of a row's cells; in a sheet that flows, of the row's only one. */
+/* The top of a row's cells. In a sheet with one column also the cell's place in its line. */
 static int64_t row_y(const struct tl_contact_grid *grid, size_t row, size_t *place_in_line)
 {
     int64_t y = head_height(grid);
@@ -225,7 +226,7 @@ void tl_contact_mark_empty(const struct tl_contact_grid *grid, size_t row, size_
 {
     int x, y;
     tl_contact_place(grid, row, column, &x, &y);
-    tl_canvas_box(sheet, x, y, grid->cell_width, grid->cell_height, NOTHING);
+    tl_canvas_box(sheet, x, y, grid->cell_width, grid->cell_height, EMPTY);
     for (int i = 0; i < grid->cell_width; i++) {
         int line = (int)((int64_t)i * (grid->cell_height - 1) / grid->cell_width);
         tl_canvas_box(sheet, x + i, y + line, 1, 2, RULE);

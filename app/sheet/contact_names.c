@@ -83,7 +83,7 @@ static bool is_taken(char **const *slugs, size_t count, const char *slug)
     return false;
 }
 
-void tl_contact_make_differ(char **const *slugs, size_t count)
+void tl_contact_make_unique(char **const *slugs, size_t count)
 {
     for (size_t i = 1; i < count; i++) {
         char *slug = tl_copy_string(*slugs[i]);

@@ -1,5 +1,5 @@
-/* Names on a contact sheet: as lists on the command line, as labels, and in the names of files. New strings.
- */
+/* Names on a contact sheet: lists on the command line, labels, and parts of file names. Functions that return
+ * char * return a new string; free() releases it. Threads: any. */
 #ifndef TOILE_APP_SHEET_CONTACT_NAMES_H
 #define TOILE_APP_SHEET_CONTACT_NAMES_H
 
@@ -7,28 +7,35 @@
 
 #include <stddef.h>
 
+/* A list of strings that owns them; starts as {0}. */
 struct tl_names {
     char **items;
     size_t count;
 };
 
-void tl_names_add(struct tl_names *names, char *item); /* takes it over */
+/* Appends `item` and takes ownership of it. */
+void tl_names_add(struct tl_names *names, char *item);
+/* Frees the strings and leaves {0}. */
 void tl_names_release(struct tl_names *names);
 
-/* "a,b": each once. An option that was not given is a list of `otherwise` alone. */
+/* Reads the option `flag`, a list such as "a,b", into a new list. An option that was not given (NULL) gives a
+ * list of `otherwise` alone. Errors: TL_USAGE for an empty name and for a name that stands there twice. */
 bool tl_names_read(const char *flag, const char *text, const char *otherwise, struct tl_names *out,
                    tl_error *error);
 
-/* How a garment, a fabric or an environment is called on the sheet: a file without its folders. */
+/* Returns the label of a garment, a fabric or an environment: a file's name without its folders. */
 char *tl_contact_label_of(const char *name);
 
-/* The first `length` bytes of a text as lower-case letters, digits, dots and dashes. */
+/* Returns the first `length` bytes of a text with lower-case ASCII letters, and a dash for everything but
+ * letters, digits and dots: a name that is safe in any file system. */
 char *tl_contact_plain(const char *text, size_t length);
 
-/* The last part of a path so, without a model's or map's extension: "dress", "my-shirt". */
+/* Returns the last part of a path as tl_contact_plain writes it, without a model's or map's extension:
+ * "my-shirt". */
 char *tl_contact_slug(const char *text);
 
-/* Numbers those that are taken: two files of one name in different folders must not share a cell. */
-void tl_contact_make_differ(char **const *slugs, size_t count);
+/* Appends numbers to repeated slugs until all differ: two files of one name in different folders must not
+ * share a cell. */
+void tl_contact_make_unique(char **const *slugs, size_t count);
 
 #endif

@@ -19,7 +19,7 @@
 
 /* ---- Names ---- */
 
-static void make_slugs_differ(struct tl_contact_plan *plan)
+static void make_slugs_unique(struct tl_contact_plan *plan)
 {
     char ***rows = TL_NEW_ARRAY(char **, plan->row_count),
          ***columns = TL_NEW_ARRAY(char **, plan->column_count);
@@ -27,8 +27,8 @@ static void make_slugs_differ(struct tl_contact_plan *plan)
         rows[i] = &plan->rows[i].slug;
     for (size_t i = 0; i < plan->column_count; i++)
         columns[i] = &plan->columns[i].slug;
-    tl_contact_make_differ(rows, plan->row_count);
-    tl_contact_make_differ(columns, plan->column_count);
+    tl_contact_make_unique(rows, plan->row_count);
+    tl_contact_make_unique(columns, plan->column_count);
     free((void *)rows);
     free((void *)columns);
 }
@@ -45,7 +45,7 @@ static uint64_t hash_text(uint64_t hash, const char *text)
     return tl_hash(hash, text, strlen(text) + 1);
 }
 
-/* What a file holds; of one that cannot be read, its name alone. */
+/* Adds a file's name and contents to the hash; where it cannot be read, its name alone. */
 static uint64_t hash_file(uint64_t hash, const char *name)
 {
     char *data;
@@ -73,7 +73,7 @@ static uint64_t hash_settings(const struct tl_settings *settings, int frame)
     uint64_t hash = tl_hash(TL_HASH_START, text, size);
     free(text);
     for (size_t i = 0; i < copy.colourways.swatch_count; i++)
-        copy.colourways.swatches[i].line = 0; /* where it stands in its file changes nothing */
+        copy.colourways.swatches[i].line = 0; /* its place in the file does not matter */
     hash = tl_hash(hash, copy.colourways.swatches, sizeof copy.colourways.swatches);
     const char *const files[] = {settings->scene.garment, settings->scene.avatar, settings->scene.motion};
     for (size_t i = 0; i < TL_COUNT(files); i++)
@@ -142,7 +142,7 @@ bool tl_contact_view_read(const char *text, struct tl_contact_view *out, tl_erro
 
 /* ---- Rows ---- */
 
-/* What stands on one row, "" where the scene decides. */
+/* The choices that make a row; "" keeps the scene's. */
 struct choice {
     const char *garment, *fabric, *colourway;
 };
@@ -212,13 +212,13 @@ static void add_variants(const char *path, struct tl_names *out)
     tl_model model;
     tl_error ignored;
     if (!tl_model_is_file(path) || !tl_model_load(path, &model, &ignored))
-        return; /* its row will say why */
+        return; /* rendering its row reports the reason */
     for (size_t i = 0; i < model.variant_count; i++)
         tl_names_add(out, tl_copy_string(model.variants[i].name));
     tl_model_release(&model);
 }
 
-/* Every colourway that a garment has, the scene's and its files' own. */
+/* Lists the colourways of the scene file and of the garment's and the avatar's files. */
 static bool find_colourways(const struct tl_arguments *arguments, const char *garment, struct tl_names *out,
                             tl_error *error)
 {
@@ -279,7 +279,7 @@ static bool add_rows(const struct tl_arguments *arguments, struct tl_contact_pla
     return added;
 }
 
-/* One drape for all rows of a garment: how the first one's fabric moves. */
+/* Gives all rows of a garment the mechanical fabric of its first row, so that one drape serves for all. */
 static void share_drapes(struct tl_contact_plan *plan)
 {
     for (size_t i = 1; i < plan->row_count; i++) {
@@ -300,7 +300,7 @@ static bool check_environment(const struct tl_contact_plan *plan, const char *na
     return tl_options_set(bindings, TL_SETTINGS_TABLES, "scene.environment", name, "--envs", NULL, error);
 }
 
-/* Takes the view over. */
+/* Takes ownership of the view's name. */
 static void add_column(struct tl_contact_plan *plan, const char *environment,
                        const struct tl_contact_view *view)
 {
@@ -316,7 +316,7 @@ static void add_column(struct tl_contact_plan *plan, const char *environment,
     free(parts[1]);
 }
 
-/* A view for every key of a camera path. */
+/* Adds a column for each key of a camera path. */
 static bool add_path(struct tl_contact_plan *plan, const char *environment, const char *file, tl_error *error)
 {
     struct tl_path path;
@@ -382,9 +382,9 @@ bool tl_contact_cell_settings(const struct tl_contact_plan *plan, size_t row, si
     return true;
 }
 
-/* ---- Words ---- */
+/* ---- Labels ---- */
 
-static bool all_rows_are_of_one_garment(const struct tl_contact_plan *plan)
+static bool have_one_garment(const struct tl_contact_plan *plan)
 {
     for (size_t i = 1; i < plan->row_count; i++)
         if (strcmp(plan->rows[i].garment, plan->rows[0].garment) != 0)
@@ -392,7 +392,7 @@ static bool all_rows_are_of_one_garment(const struct tl_contact_plan *plan)
     return true;
 }
 
-static bool all_columns_have_one_light(const struct tl_contact_plan *plan)
+static bool have_one_environment(const struct tl_contact_plan *plan)
 {
     for (size_t i = 1; i < plan->column_count; i++)
         if (strcmp(plan->columns[i].group, plan->columns[0].group) != 0)
@@ -403,7 +403,7 @@ static bool all_columns_have_one_light(const struct tl_contact_plan *plan)
 static void label(const struct tl_arguments *arguments, struct tl_contact_plan *plan)
 {
     const struct tl_settings *first = &plan->rows[0].settings;
-    bool one_garment = all_rows_are_of_one_garment(plan), one_light = all_columns_have_one_light(plan);
+    bool one_garment = have_one_garment(plan), one_environment = have_one_environment(plan);
     plan->row_labels = TL_NEW_ARRAY(struct tl_contact_label, plan->row_count);
     plan->column_labels = TL_NEW_ARRAY(struct tl_contact_label, plan->column_count);
     for (size_t i = 0; i < plan->row_count; i++) {
@@ -413,8 +413,8 @@ static void label(const struct tl_arguments *arguments, struct tl_contact_plan *
                                                         has_name || one_garment ? row->name : row->garment};
     }
     for (size_t i = 0; i < plan->column_count; i++)
-        plan->column_labels[i] =
-            (struct tl_contact_label){one_light ? "" : plan->columns[i].group, plan->columns[i].view.name};
+        plan->column_labels[i] = (struct tl_contact_label){one_environment ? "" : plan->columns[i].group,
+                                                           plan->columns[i].view.name};
     char *scene = tl_contact_label_of(arguments->positional_count ? arguments->positionals[0] : "");
     plan->title = tl_format("%s%s%s", scene, scene[0] && one_garment ? ": " : "",
                             one_garment ? plan->rows[0].garment
@@ -422,9 +422,9 @@ static void label(const struct tl_arguments *arguments, struct tl_contact_plan *
                                         : "built-in scene");
     free(scene);
     char *preset = tl_contact_label_of(first->scene.preset);
-    plan->note =
-        tl_format("%s%s%s preset, frame %d%s", one_light ? plan->columns[0].group : "", one_light ? ", " : "",
-                  preset, arguments->first_frame, plan->same_drape ? ", one drape for all fabrics" : "");
+    plan->note = tl_format("%s%s%s preset, frame %d%s", one_environment ? plan->columns[0].group : "",
+                           one_environment ? ", " : "", preset, arguments->first_frame,
+                           plan->same_drape ? ", one drape for all fabrics" : "");
     free(preset);
     plan->grid = (struct tl_contact_grid){.title = plan->title,
                                           .note = plan->note,
@@ -450,7 +450,7 @@ bool tl_contact_plan_make(const struct tl_arguments *arguments, struct tl_contac
     }
     if (out->same_drape)
         share_drapes(out);
-    make_slugs_differ(out);
+    make_slugs_unique(out);
     for (size_t i = 0; i < out->row_count; i++)
         out->rows[i].hash = hash_settings(&out->rows[i].settings, arguments->first_frame);
     label(arguments, out);

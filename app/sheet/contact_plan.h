@@ -1,5 +1,6 @@
-/* What a contact sheet shows: garments, and for each its fabrics and colourways, down; environments, and for
- * each the views, across. Every cell has a stable file name and a hash of all that its picture depends on. */
+/* The plan of a contact sheet: a row for each garment, fabric and colourway, a column for each environment
+ * and view. Every cell has a stable file name and a hash of everything that its picture depends on. Angles
+ * are in degrees. Threads: a plan is read-only once made. */
 #ifndef TOILE_APP_SHEET_CONTACT_PLAN_H
 #define TOILE_APP_SHEET_CONTACT_PLAN_H
 
@@ -11,28 +12,28 @@
 #define TL_CONTACT_CELLS_MAX 4096
 
 enum tl_contact_camera {
-    TL_CONTACT_ORBIT, /* the scene's, turned; it frames the garment unless the scene has placed it */
-    TL_CONTACT_SCENE, /* the scene's own */
-    TL_CONTACT_KEY    /* of a camera path */
+    TL_CONTACT_ORBIT, /* the scene's camera, turned; it frames the garment unless the scene places it */
+    TL_CONTACT_SCENE, /* the scene's camera */
+    TL_CONTACT_KEY    /* a key of a camera path */
 };
 
 struct tl_contact_view {
     char *name;
     enum tl_contact_camera camera;
-    bool has_pitch;
-    float yaw_deg, pitch_deg;
-    struct tl_path_key key;
+    bool has_pitch;           /* else the scene's pitch is kept */
+    float yaw_deg, pitch_deg; /* of TL_CONTACT_ORBIT */
+    struct tl_path_key key;   /* of TL_CONTACT_KEY */
 };
 
 struct tl_contact_row {
     char *garment, *name; /* labels */
     char *slug;           /* part of file names */
     struct tl_settings settings;
-    uint64_t hash;
+    uint64_t hash; /* of the settings and of the files that they name */
 };
 
 struct tl_contact_column {
-    char *environment; /* for scene.environment */
+    char *environment; /* a value of scene.environment */
     struct tl_contact_view view;
     char *group, *slug;
 };
@@ -44,23 +45,29 @@ struct tl_contact_plan {
     size_t column_count;
     char *title, *note;
     struct tl_contact_label *row_labels, *column_labels;
-    struct tl_contact_grid grid; /* all of the above, for show */
-    bool same_drape;
+    struct tl_contact_grid grid; /* borrows the texts above */
+    bool same_drape;             /* the first fabric's drape serves for all rows of a garment */
 };
 
-/* From the command line; all settings are read, so that a name that is wrong is told before any work. */
+/* Makes the plan that the command line asks for; release it with tl_contact_plan_release. Reads all settings,
+ * so that a wrong name fails before anything is rendered. Errors: false with TL_USAGE or TL_INPUT, and
+ * nothing to release. */
 bool tl_contact_plan_make(const struct tl_arguments *arguments, struct tl_contact_plan *out, tl_error *error);
 void tl_contact_plan_release(struct tl_contact_plan *plan);
 
-/* "front", "back-3/4", "scene", or YAW or YAW:PITCH in degrees. */
+/* Reads a view: "front", "back-3/4", "scene", or YAW or YAW:PITCH in degrees. The caller frees `out->name`.
+ */
 bool tl_contact_view_read(const char *text, struct tl_contact_view *out, tl_error *error);
 
-/* A row's settings with a column's environment and view, but for where the camera is. */
+/* Combines a row's settings with a column's environment and view. An orbiting camera has its angles, but no
+ * place yet: that follows from the drape. */
 bool tl_contact_cell_settings(const struct tl_contact_plan *plan, size_t row, size_t column,
                               struct tl_settings *out, tl_error *error);
 
-/* "dress_satin_studio_front.png": new string; no two cells of a plan have one name. */
+/* Returns a cell's file name, such as "dress_satin_studio_front.png", as a new string. No two cells of a plan
+ * have the same name. */
 char *tl_contact_cell_name(const struct tl_contact_plan *plan, size_t row, size_t column);
+/* Returns the hash of the settings, files, view and program version that a cell shows. */
 uint64_t tl_contact_cell_hash(const struct tl_contact_plan *plan, size_t row, size_t column);
 
 #endif

@@ -100,8 +100,8 @@ static bool save_manifest(const tl_contact_store *store, tl_error *error)
     return tl_folder_print(store->folder, TL_CONTACT_MANIFEST, store->manifest, write_manifest, error);
 }
 
-/* An old entry goes before its picture does: whenever the program is stopped, no hash stands for another
- * picture. */
+/* The old entry is removed before its picture is replaced. The program may be stopped at any point without
+ * leaving a hash in the manifest that belongs to another picture. */
 bool tl_contact_store_put(tl_contact_store *store, const char *name, uint64_t hash, const tl_image *picture,
                           tl_error *error)
 {

@@ -1,6 +1,6 @@
-/* The folder of a contact sheet: a PNG a cell, and manifest.json, which knows what each shows. A run that was
- * stopped goes on where it was: what is there and has the wanted hash is kept. Written after every cell,
- * atomically. */
+/* The folder of a contact sheet: a PNG for each cell, and manifest.json with the hash of what each picture
+ * shows. It is written after every cell, atomically, so that a run that was stopped continues where it was: a
+ * picture whose hash is the wanted one is kept. Threads: one at a time. */
 #ifndef TOILE_APP_SHEET_CONTACT_STORE_H
 #define TOILE_APP_SHEET_CONTACT_STORE_H
 
@@ -10,16 +10,22 @@
 
 typedef struct tl_contact_store tl_contact_store;
 
-/* Makes the folder, or takes up what is in it. Fails on a manifest that is none. */
+/* Opens the folder and reads its manifest; creates the folder where there is none. Errors: NULL; TL_INPUT for
+ * a file manifest.json that is not a sheet's. */
 tl_contact_store *tl_contact_store_open(const char *folder, tl_error *error);
-void tl_contact_store_close(tl_contact_store **handle); /* nulls it; null is fine */
+/* Frees the store and nulls the handle, which may be null; the folder stays. */
+void tl_contact_store_close(tl_contact_store **handle);
 
-/* True when the file of this name is there and shows what the hash stands for. */
+/* Returns whether the picture exists and was stored with this hash. */
 bool tl_contact_store_has(const tl_contact_store *store, const char *name, uint64_t hash);
+
+/* Writes a picture and its hash. Errors: false where a file cannot be written; the manifest then has no entry
+ * for it. */
 bool tl_contact_store_put(tl_contact_store *store, const char *name, uint64_t hash, const tl_image *picture,
                           tl_error *error);
 
-/* Removes the files that it knows of, and the folder if nothing else is in it. */
+/* Removes the manifest, the pictures that it lists, and the folder if that leaves it empty; closes the store.
+ */
 void tl_contact_store_remove(tl_contact_store **store);
 
 #endif

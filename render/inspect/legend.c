@@ -52,8 +52,8 @@ vec3s tl_direction_colour(vec3s direction)
     return colour;
 }
 
-/* Hue and lightness by Roberts' R2 sequence (2018, "The unreasonable effectiveness of quasirandom
- * sequences"), which keeps any number of points apart. */
+/* Hue and lightness follow Roberts' R2 sequence (2018, "The unreasonable effectiveness of quasirandom
+ * sequences"): any number of its points are well apart, and so are the colours of any number of regions. */
 vec3s tl_number_colour(uint32_t number)
 {
     const double plastic = 1.32471795724474602596;
@@ -61,8 +61,8 @@ vec3s tl_number_colour(uint32_t number)
     return colour_of_oklch(0.5f + 0.36f * (float)level, 0.125f, 360 * (float)hue);
 }
 
-/* Blue for less, pale grey for none, orange to brown for more: told apart by those who see no red or no
- * green, and equally dark at equal distances from the middle. `t` in [-1, 1]. */
+/* Diverging colours for t in [-1, 1]: blue below 0, pale grey at 0, orange to brown above. They differ for
+ * people who see no red or no green, and are equally dark at equal distances from 0. */
 static vec3s diverging(float t)
 {
     const float light = 0.94f, dark = 0.38f, most_chroma = 0.125f, blue_deg = 257, orange_deg = 55;
@@ -129,7 +129,7 @@ static void describe_visibility(const struct tl_legend_source *source, struct tl
     else
         snprintf(legend->title, sizeof legend->title, "visibility of region %d", source->region);
     snprintf(legend->note, sizeof legend->note, "%s",
-             source->region < 0 ? "share of what its regions would give a matt surface" : "by rays");
+             source->region < 0 ? "share of the regions' light that reaches a matt surface" : "by rays");
     set_scale(legend, 0, 1, grey);
 }
 
@@ -138,7 +138,7 @@ struct ranked {
     int number;
 };
 
-/* The brightest first; of equals the lower number. */
+/* Orders regions by falling importance; equal ones by their number. */
 static int compare_ranks(const void *a, const void *b)
 {
     const struct ranked *left = a, *right = b;
@@ -169,9 +169,10 @@ static void describe_regions(const struct tl_legend_source *source, struct tl_le
     snprintf(legend->title, sizeof legend->title, "brightest region");
     if (!source->regions)
         return;
-    snprintf(legend->note, sizeof legend->note,
-             "of %d: what lights a point most; the strongest, with their share of all light",
-             source->regions->count);
+    snprintf(
+        legend->note, sizeof legend->note,
+        "the region of %d that lights a point most; listed: the strongest, with their share of all light",
+        source->regions->count);
     list_regions(source->regions, legend);
 }
 
@@ -193,7 +194,7 @@ void tl_legend_make(const struct tl_legend_source *source, struct tl_legend *out
     case TL_VIEW_SMOOTH:
         snprintf(out->title, sizeof out->title,
                  source->view == TL_VIEW_NORMAL ? "normal, with bumps" : "normal, without bumps");
-        snprintf(out->note, sizeof out->note, "world axes, on the side that is seen");
+        snprintf(out->note, sizeof out->note, "world axes, for the side towards the camera");
         list_directions(out);
         break;
     case TL_VIEW_TANGENT:
@@ -207,7 +208,7 @@ void tl_legend_make(const struct tl_legend_source *source, struct tl_legend *out
         break;
     case TL_VIEW_ALBEDO:
         snprintf(out->title, sizeof out->title, "diffuse colour");
-        snprintf(out->note, sizeof out->note, "share of the light that is scattered, as it is used");
+        snprintf(out->note, sizeof out->note, "share of the light that is scattered");
         break;
     case TL_VIEW_GLOSS:
         snprintf(out->title, sizeof out->title, "glossiness");

@@ -12,9 +12,9 @@
 #define MEBIBYTE   1048576.0
 #define JOBS_SHOWN (TL_PLOT_STYLES - 2) /* in a stack, beside the cloth and what is left */
 
-static struct tl_plot_manner time_manner(const struct tl_flight *flight)
+static struct tl_plot_options time_options(const struct tl_flight *flight)
 {
-    return (struct tl_plot_manner){
+    return (struct tl_plot_options){
         .x_tight = true, .shaded_to = flight->warm_up / flight->frame_rate, .height = 300};
 }
 
@@ -43,15 +43,15 @@ static struct tl_plot_point *add_line(struct lines *lines, const struct tl_fligh
     return points;
 }
 
-static void print_lines(struct lines *lines, const char *y_label, const struct tl_plot_manner *manner,
+static void print_lines(struct lines *lines, const char *y_label, const struct tl_plot_options *options,
                         const char *caption, FILE *out)
 {
-    tl_report_plot_as(out,
-                      &(struct tl_plot){.x_label = "seconds of the flight",
-                                        .y_label = y_label,
-                                        .series = lines->series,
-                                        .series_count = lines->series_count},
-                      manner, caption);
+    tl_report_plot_with(out,
+                        &(struct tl_plot){.x_label = "seconds of the flight",
+                                          .y_label = y_label,
+                                          .series = lines->series,
+                                          .series_count = lines->series_count},
+                        options, caption);
     free(lines->points);
 }
 
@@ -146,16 +146,16 @@ static void print_strip(const struct tl_flight_account *account, FILE *out)
     }
     snprintf(name, sizeof name, "budget %g ms", flight->budget_ms);
     const struct tl_plot_guide budget = {flight->budget_ms, name};
-    struct tl_plot_manner manner = time_manner(flight);
-    manner.guides = &budget;
-    manner.guide_count = flight->budget_ms > 0;
+    struct tl_plot_options options = time_options(flight);
+    options.guides = &budget;
+    options.guide_count = flight->budget_ms > 0;
     snprintf(
         caption, sizeof caption,
         "Time on the wall, from the choice of levels to the finished image. Shaded: warm-up, which is not "
         "judged%s.",
         first_ms > highest_ms ? "; what goes beyond the top is cut off" : "");
     tl_report_heading(out, "Every frame");
-    print_lines(&lines, "ms", &manner, caption, out);
+    print_lines(&lines, "ms", &options, caption, out);
 }
 
 /* Of the times after the warm-up. The longest may lie far out: they are counted in the last bar. */
@@ -182,9 +182,10 @@ static void print_histogram(const struct tl_flight_account *account, FILE *out)
     snprintf(caption, sizeof caption, "How often a frame took how long%s.",
              beyond ? "; the last bar holds all that took longer too" : "");
     const struct tl_plot_series series = {.name = "frames", .points = points, .count = BARS};
-    tl_report_plot_as(
+    tl_report_plot_with(
         out, &(struct tl_plot){.x_label = "ms", .y_label = "frames", .series = &series, .series_count = 1},
-        &(struct tl_plot_manner){.kind = TL_PLOT_BARS, .bar_width = width, .height = 260, .y_whole = true},
+        &(struct tl_plot_options){
+            .kind = TL_PLOT_BARS, .bar_width = width, .height = 260, .y_is_count = true},
         caption);
 }
 
@@ -235,11 +236,11 @@ static void print_stack(const struct tl_flight_account *account, FILE *out)
         }
         layers[1 + shown][i].y = fmin(fmax(height, frame->total_ms), highest_ms);
     }
-    struct tl_plot_manner manner = time_manner(flight);
-    manner.kind = TL_PLOT_AREAS;
+    struct tl_plot_options options = time_options(flight);
+    options.kind = TL_PLOT_AREAS;
     tl_report_heading(out, "What it went to");
-    print_lines(&lines, "ms", &manner, "Each job's time, one on the other: `toile plan` says what each does.",
-                out);
+    print_lines(&lines, "ms", &options,
+                "Each job's time, one on the other: `toile plan` says what each does.", out);
 }
 
 static void print_job_table(const struct tl_flight *flight, FILE *out)
@@ -301,14 +302,14 @@ static void print_levels(const struct tl_flight *flight, FILE *out)
         free(lines.points);
         return;
     }
-    struct tl_plot_manner manner = time_manner(flight);
-    manner.kind = TL_PLOT_STEPS;
-    manner.y_bare = true;
-    manner.guides = lanes;
-    manner.guide_count = count;
-    manner.height = 66 + lane_height * (double)count;
+    struct tl_plot_options options = time_options(flight);
+    options.kind = TL_PLOT_STEPS;
+    options.y_unlabelled = true;
+    options.guides = lanes;
+    options.guide_count = count;
+    options.height = 66 + lane_height * (double)count;
     print_lines(
-        &lines, "levels", &manner,
+        &lines, "levels", &options,
         "On its line a control is where the settings want it; above, cheaper and worse by as many levels. "
         "Knobs that are not shown stayed on their line.",
         out);
@@ -340,11 +341,11 @@ static void print_predictions(const struct tl_flight_account *account, FILE *out
              100 * account->figures.prediction_error);
     if (count) {
         tl_report_heading(out, "Predicted and measured");
-        tl_report_plot_as(
+        tl_report_plot_with(
             out,
             &(struct tl_plot){
                 .x_label = "predicted, ms", .y_label = "measured, ms", .series = series, .series_count = 2},
-            &(struct tl_plot_manner){.height = 400}, caption);
+            &(struct tl_plot_options){.height = 400}, caption);
     }
     free(names);
     free(points);
@@ -411,14 +412,14 @@ static void print_oracle(const struct tl_flight_account *account, FILE *out)
             (struct tl_plot_point){i / flight->frame_rate, frame->rel_rmse, "relative RMSE", false};
     }
     lines.series[0].count = lines.series[1].count = (size_t)count;
-    struct tl_plot_manner manner = time_manner(flight);
+    struct tl_plot_options options = time_options(flight);
     tl_report_heading(out, "How wrong it was");
     snprintf(text, sizeof text,
              "%d frames against the ray-traced reference, over covered pixels: mean FLIP %.4f (worst %.4f), "
              "relative RMSE %.2f %%.",
              account->figures.oracle_frames, account->figures.flip_mean, account->figures.flip_worst,
              100 * account->figures.rel_rmse);
-    print_lines(&lines, "error", &manner, text, out);
+    print_lines(&lines, "error", &options, text, out);
 }
 
 static void print_against(const struct tl_flight_account *account, FILE *out)

@@ -42,7 +42,7 @@ static char *plotted(const struct tl_plot *plot)
     char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
-    tl_plot_print_as(out, plot, &(const struct tl_plot_manner){0});
+    tl_plot_print(out, plot, &(const struct tl_plot_options){0});
     fclose(out);
     return text;
 }
@@ -91,7 +91,7 @@ static void manners_are_drawn(void **state)
     const struct tl_plot_series series[] = {{"one", points, 3, true, false}, {"two", points, 3, true, false}};
     const struct tl_plot plot = {"x", "y", false, false, series, 2};
     const struct tl_plot_guide guide = {4, "budget <4>"};
-    struct tl_plot_manner manner = {
+    struct tl_plot_options manner = {
         .guides = &guide, .guide_count = 1, .shaded_to = 1, .height = 300, .x_tight = true};
 
     char *lines = NULL;
@@ -100,7 +100,7 @@ static void manners_are_drawn(void **state)
         size_t size = 0;
         FILE *out = open_memstream(&text, &size);
         manner.bar_width = 0.5;
-        tl_plot_print_as(out, &plot, &manner);
+        tl_plot_print(out, &plot, &manner);
         fclose(out);
         assert_int_equal(count_of(text, "class=\"shade\""), 1);
         assert_int_equal(count_of(text, "class=\"guide\""), 1);
