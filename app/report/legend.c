@@ -21,7 +21,7 @@ enum {
     COLUMN_WIDTH = TEXT_WIDTH / COLUMNS,
     COLUMN_GAP = 4
 };
-enum { LINES_MAX = 4, LARGE_PICTURE = 800 };
+enum { LINES_MAX = 6, LARGE_PICTURE = 800 };
 #define PAPER 0x181818
 #define INK   0xf0f0f0
 

@@ -23,7 +23,7 @@ static struct ink ink_of(const tl_image *picture)
     struct ink ink = {picture->width, -1, picture->height, -1, 0};
     for (int y = 0; y < picture->height; y++)
         for (int x = 0; x < picture->width; x++) {
-            if (tl_image_bytes(picture)[3 * (y * picture->width + x)] == 0xff)
+            if (tl_image_bytes(picture)[3 * ((ptrdiff_t)y * picture->width + x)] == 0xff)
                 continue;
             ink.left = x < ink.left ? x : ink.left;
             ink.right = x > ink.right ? x : ink.right;
