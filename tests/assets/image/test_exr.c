@@ -214,13 +214,103 @@ static void broken_files(void **state)
     assert_true(counts[1][0] > 0);
 }
 
+static size_t read_bytes(const char *path, uint8_t *bytes, size_t capacity)
+{
+    FILE *stream = fopen(path, "rb");
+    assert_non_null(stream);
+    size_t size = fread(bytes, 1, capacity, stream);
+    fclose(stream);
+    return size;
+}
+
+static void assert_refused(const char *path, const uint8_t *bytes, size_t size, const char *why)
+{
+    FILE *stream = fopen(path, "wb");
+    assert_non_null(stream);
+    assert_int_equal(fwrite(bytes, 1, size, stream), size);
+    assert_int_equal(fclose(stream), 0);
+    tl_image image;
+    enum tl_exr_envmap envmap;
+    tl_error error = {0};
+    assert_false(tl_exr_load(path, &image, &envmap, &error));
+    assert_int_equal(error.code, TL_INPUT);
+    if (!strstr(error.message, why)) {
+        print_error("%s\n", error.message);
+        fail();
+    }
+}
+
+/* The library allocates what an attribute's size claims before it reads the attribute: a claim beyond the
+ * file's end must be refused first, however small the file. */
+static void attributes_lie_within_the_file(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"R", "G", "B"};
+    static const char attribute[] = "comments\0string"; /* and its NUL; the size follows */
+    const char *path = TOILE_SCRATCH_DIR "/attribute.exr", *why = "claims more bytes than the file has";
+    uint8_t bytes[1024];
+    tl_image image = tl_image_create(2, 2, 3, TL_IMAGE_F32);
+    const struct tl_exr_layer layer = {names, &image};
+    tl_error error;
+    assert_ok(tl_exr_save_commented(path, &layer, 1, "ten letters", &error), error);
+    size_t size = read_bytes(path, bytes, sizeof bytes);
+    assert_true(size < sizeof bytes);
+    uint8_t *claim = memmem(bytes, size, attribute, sizeof attribute);
+    assert_non_null(claim);
+    claim += sizeof attribute;
+    const uint8_t claims[][4] = {
+        {0xff, 0xff, 0xff, 0x7f}, {0xff, 0xff, 0xff, 0xff}, {0, 0, 0, 0x80}, {0, 0x04, 0, 0}};
+    for (size_t i = 0; i < TL_COUNT(claims); i++) {
+        memcpy(claim, claims[i], 4);
+        assert_refused(path, bytes, size, why);
+    }
+    tl_image_release(&image);
+}
+
+/* A preview of 30,000 x 30,000 texels in an attribute of eight bytes. */
+static void previews_lie_within_their_attribute(void **state)
+{
+    (void)state;
+    static const uint8_t bytes[] = "\x76\x2f\x31\x01\x02\0\0\0preview\0preview\0\x08\0\0\0"
+                                   "\x30\x75\0\0\x30\x75\0\0";
+    assert_refused(TOILE_SCRATCH_DIR "/preview.exr", bytes, sizeof bytes,
+                   "claims more bytes than the file has");
+}
+
+/* Cut anywhere, a file is refused and never half read. */
+static void cut_files_are_refused(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"R", "G", "B"};
+    const char *path = TOILE_SCRATCH_DIR "/cut.exr";
+    uint8_t bytes[4096];
+    tl_image image = tl_image_create(8, 40, 3, TL_IMAGE_F32);
+    for (size_t i = 0; i < value_count(&image); i++)
+        tl_image_floats(&image)[i] = (float)(i * i % 7);
+    const struct tl_exr_layer layer = {names, &image};
+    tl_error error;
+    assert_ok(tl_exr_save(path, &layer, 1, &error), error);
+    size_t size = read_bytes(path, bytes, sizeof bytes);
+    assert_true(size < sizeof bytes);
+    for (size_t cut = 1; cut < size; cut++)
+        assert_refused(path, bytes, cut, "is not a whole OpenEXR file");
+    tl_image_release(&image);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(round_trip),   cmocka_unit_test(layers_are_kept_apart),
-        cmocka_unit_test(codecs_agree), cmocka_unit_test(all_half_values),
-        cmocka_unit_test(windows),      cmocka_unit_test(luminance_and_chroma),
-        cmocka_unit_test(broken_files), cmocka_unit_test(every_valid_file_loads),
+        cmocka_unit_test(round_trip),
+        cmocka_unit_test(layers_are_kept_apart),
+        cmocka_unit_test(codecs_agree),
+        cmocka_unit_test(all_half_values),
+        cmocka_unit_test(windows),
+        cmocka_unit_test(luminance_and_chroma),
+        cmocka_unit_test(broken_files),
+        cmocka_unit_test(every_valid_file_loads),
+        cmocka_unit_test(attributes_lie_within_the_file),
+        cmocka_unit_test(previews_lie_within_their_attribute),
+        cmocka_unit_test(cut_files_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
