@@ -1,4 +1,5 @@
-/* Files compiled into the program by toile_embed() (config/embed.cmake). Read only, live for ever. */
+/* Files compiled into the program by toile_embed() (config/embed.cmake). Read only, valid as long as the
+ * program runs. */
 #ifndef TOILE_CONFIG_EMBEDDED_H
 #define TOILE_CONFIG_EMBEDDED_H
 
@@ -14,7 +15,7 @@ struct tl_embedded {
 /* The entry called `name`, or NULL. */
 const struct tl_embedded *tl_embedded_find(const struct tl_embedded *list, const char *name);
 
-/* Each list has its names without extension beside it, NULL-terminated: choices for a tl_option. */
+/* The names of each list without their extension, NULL-terminated: choices for a tl_option. */
 extern const char *const tl_embedded_presets_names[];
 extern const char *const tl_embedded_scenes_names[];
 extern const char *const tl_embedded_fabrics_names[];

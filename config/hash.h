@@ -1,4 +1,4 @@
-/* FNV-1a, 64 bits [Fowler, Noll, Vo]: tells apart what is not the same to the bit. Threads: pure. */
+/* FNV-1a, 64 bits [Fowler, Noll, Vo]: detects change; it does not protect against forgery. Threads: pure. */
 #ifndef TOILE_CONFIG_HASH_H
 #define TOILE_CONFIG_HASH_H
 
@@ -7,7 +7,7 @@
 
 #define TL_HASH_START 14695981039346656037u
 
-/* Going on from `hash`. */
+/* The hash of what `hash` covers, followed by `bytes`. The first call passes TL_HASH_START. */
 uint64_t tl_hash(uint64_t hash, const void *bytes, size_t size);
 
 #endif

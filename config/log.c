@@ -72,13 +72,13 @@ struct tl_progress tl_progress_begin(const char *what)
 
 void tl_progress_update(struct tl_progress *progress, double done, double total)
 {
-    const double patience_s = 2.0, redraw_s = 0.1, line_s = 10.0;
+    const double silent_s = 2.0, redraw_s = 0.1, line_s = 10.0;
     double now = tl_clock_s(), share = total > 0 ? done / total : 0;
     if (current_observer) {
         current_observer(observer_user, progress->what, share);
         return;
     }
-    if (current_level < TL_LOG_INFO || now - progress->started_s < patience_s)
+    if (current_level < TL_LOG_INFO || now - progress->started_s < silent_s)
         return;
     bool terminal = isatty(STDERR_FILENO);
     if (progress->drawn && now - progress->shown_s < (terminal ? redraw_s : line_s))

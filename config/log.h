@@ -1,4 +1,4 @@
-/* What the program says while it works: stderr only, so that stdout stays for results and --json.
+/* Log lines and progress, on stderr only: stdout is for results and --json.
  *
  * Threads: any. Lines are written whole. */
 #ifndef TOILE_CONFIG_LOG_H
@@ -28,8 +28,8 @@ struct tl_progress tl_progress_begin(const char *what);
 void tl_progress_update(struct tl_progress *progress, double done, double total);
 void tl_progress_end(struct tl_progress *progress);
 
-/* Tells `observer` of every step of what this thread does, from the first one on; NULL ends that. For those
- * who show progress elsewhere than on stderr, which is left alone while one observes. `share` in [0, 1]. */
+/* Reports the progress of this thread's work to `observer` instead of stderr; NULL: to stderr again. `share`
+ * is in [0, 1]. For windows, which show progress themselves. */
 typedef void tl_progress_observer(void *user, const char *what, double share);
 void tl_progress_observe(tl_progress_observer *observer, void *user);
 

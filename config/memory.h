@@ -1,4 +1,4 @@
-/* Memory. Out of memory aborts with a message: nothing in toile can go on without it. Sizes that come from a
+/* Memory. Out of memory aborts with a message: no caller has a way to continue. Sizes that come from a
  * file must be checked against the file's own length or TL_LIMIT_* before they reach these functions. */
 #ifndef TOILE_CONFIG_MEMORY_H
 #define TOILE_CONFIG_MEMORY_H
@@ -8,7 +8,7 @@
 /* Zeroed array of `count` elements of `size` bytes; free() releases it. Never NULL, also for count 0. */
 void *tl_alloc(size_t count, size_t size);
 
-/* The same, beginning with a line of the processor's cache: what wide registers read crosses none then. */
+/* The same, aligned to a cache line: aligned vector loads then never straddle two lines. */
 #define TL_CACHE_LINE 64
 void *tl_alloc_lines(size_t count, size_t size);
 

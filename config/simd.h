@@ -1,8 +1,8 @@
-/* Wide arithmetic without intrinsics: a loop over TL_LANES neighbours whose body has no branch, in a function
- * that is compiled once for each kind of machine. GCC then makes the loop as wide as the machine is.
+/* Vector arithmetic without intrinsics: a loop over TL_LANES elements whose body has no branch, in a function
+ * that is compiled once for each instruction set. GCC then vectorises the loop to the machine's full width.
  *
- * Results are the same on every machine: lanes are summed by lane, in a fixed order, and nothing is
- * contracted or reordered. (GCC's vector types would be narrowed before the clones are made, so they gain
+ * Results are the same on every machine: lanes are summed in a fixed order, and nothing is contracted or
+ * reordered. (GCC's vector types are lowered to narrow ones before the clones are made, so they would gain
  * nothing here.) */
 #ifndef TOILE_CONFIG_SIMD_H
 #define TOILE_CONFIG_SIMD_H
@@ -21,9 +21,9 @@
 #endif
 
 /* Before a hot function's definition: it is compiled for AVX-512, for AVX2 and for any x86-64, and the best
- * is chosen as the program starts. What it calls must be TL_INLINE to be cloned with it. The choice is made
- * before a sanitizer has started, and would crash in its instrumentation: with sanitizers there is one
- * version. */
+ * is chosen when the program starts. Functions that it calls must be TL_INLINE to be cloned with it. The
+ * choice is made before a sanitizer has started, and would crash in its instrumentation: with sanitizers
+ * there is one version. */
 #if defined(__x86_64__) && !defined(TL_SANITIZED)
 #define TL_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 #else
@@ -31,7 +31,7 @@
 #endif
 #define TL_INLINE static inline __attribute__((always_inline))
 
-/* fminf and fmaxf treat NaN and signed zero in ways that keep loops narrow. */
+/* The rules of fminf and fmaxf for NaN and signed zero prevent vectorisation. */
 TL_INLINE float tl_lesser(float a, float b)
 {
     return a < b ? a : b;
@@ -58,8 +58,8 @@ union tl_float_bits {
     int32_t bits;
 };
 
-/* log2 of a positive normal number within 1e-6: its exponent, and a polynomial that meets log2 at Chebyshev's
- * nodes between sqrt(1/2) and sqrt(2). */
+/* log2 of a positive normal number within 1e-6: its exponent, and a polynomial that interpolates log2 at
+ * Chebyshev nodes between sqrt(1/2) and sqrt(2). */
 TL_INLINE float tl_log2(float a)
 {
     const int32_t half_root = 0x3f3504f3; /* sqrt(1/2) */
@@ -71,8 +71,8 @@ TL_INLINE float tl_log2(float a)
     return exponent + u * (1.44269652f + u * (-0.721360179f + u * series));
 }
 
-/* 2^a within 4e-7 relative; a is clamped to -80 .. 127: products of what is smaller would leave the normal
- * numbers, which costs a hundred times as much. The polynomial meets 2^f at Chebyshev's nodes. */
+/* 2^a within 4e-7 relative; a is clamped to -80 .. 127: products of smaller powers would be
+ * denormal, which costs a hundred times as much. The polynomial interpolates 2^f at Chebyshev nodes. */
 TL_INLINE float tl_exp2(float a)
 {
     a = tl_greater(tl_lesser(a, 127.0f), -80.0f);

@@ -24,7 +24,7 @@ char *tl_join_words(const char *const *words, size_t count, const char *link, co
     return list;
 }
 
-static size_t least(size_t a, size_t b)
+static size_t min_size(size_t a, size_t b)
 {
     return a < b ? a : b;
 }
@@ -43,9 +43,9 @@ static size_t alignment_distance(const char *a, size_t a_length, const char *b, 
         current[0] = i;
         for (size_t j = 1; j <= b_length; j++) {
             size_t substitution = above[j - 1] + (a[i - 1] != b[j - 1]);
-            current[j] = least(substitution, 1 + least(above[j], current[j - 1]));
+            current[j] = min_size(substitution, 1 + min_size(above[j], current[j - 1]));
             if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-                current[j] = least(current[j], before[j - 2] + 1);
+                current[j] = min_size(current[j], before[j - 2] + 1);
         }
         size_t *oldest = before;
         before = above;
@@ -64,7 +64,7 @@ const char *tl_nearest_word(const char *word, const char *const *words, size_t c
     size_t nearest_distance = 0;
     for (size_t i = 0; i < count; i++) {
         size_t other = strlen(words[i]);
-        size_t longer = length > other ? length : other, shorter = least(length, other);
+        size_t longer = length > other ? length : other, shorter = min_size(length, other);
         size_t allowed = longer < 6 ? 1 : longer / 3;
         if (longer - shorter > allowed)
             continue; /* also keeps an absurdly long word from costing anything */

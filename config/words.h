@@ -4,7 +4,7 @@
 
 #include <stddef.h>
 
-/* How many stand before the NULL that ends the list. */
+/* Number of words before the NULL that ends the list. */
 size_t tl_count_words(const char *const *words);
 
 /* "a, b or c", with the links ", " and " or ": new string, empty for no words. */

@@ -25,7 +25,7 @@ bool tl_yaml_is_empty(const struct tl_yaml *yaml)
     return yaml->event.type == YAML_SCALAR_EVENT && yaml->event.data.scalar.length == 0;
 }
 
-/* Bytes that are no characters have no line yet; libyaml knows their offset. */
+/* For bytes that are not UTF-8 libyaml reports an offset but no line. */
 static size_t line_of_offset(const struct tl_yaml *yaml, size_t offset)
 {
     size_t line = 1;
@@ -126,8 +126,8 @@ bool tl_yaml_read(struct tl_yaml *yaml, bool (*read_root)(void *context), void *
            tl_yaml_fail(yaml, tl_yaml_line(yaml), "a second document begins: keep one to a file");
 }
 
-/* Told the encoding, libyaml refuses UTF-16, but also takes the mark that some editors put before UTF-8 for a
- * character that indents the first line. */
+/* The encoding is set so that libyaml refuses UTF-16. It then takes the byte order mark that some editors put
+ * before UTF-8 for a character that indents the first line, so the mark is skipped here. */
 bool tl_yaml_begin(struct tl_yaml *yaml, const char *name, const char *data, size_t size, tl_error *error)
 {
     size_t mark = size >= 3 && memcmp(data, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0;

@@ -1,5 +1,6 @@
-/* YAML as this program takes it: libyaml's events one by one, with the line of each. Anchors, aliases, tags,
- * zero bytes and second documents are refused; every scalar is plain text, whatever YAML would take it for.
+/* The subset of YAML that this program accepts: libyaml's events one by one, with the line of each. Anchors,
+ * aliases, tags, zero bytes and second documents are refused; every scalar is plain text, whatever type YAML
+ * gives it.
  *
  * Failure: one line, "NAME:LINE: what: remedy", TL_USAGE. Threads: pure. */
 #ifndef TOILE_CONFIG_YAML_H
@@ -20,21 +21,24 @@ struct tl_yaml {
     tl_error *error;
 };
 
+/* Starts to read `data`; tl_yaml_end releases the parser, also after a failure. */
 bool tl_yaml_begin(struct tl_yaml *yaml, const char *name, const char *data, size_t size, tl_error *error);
 void tl_yaml_end(struct tl_yaml *yaml);
 
+/* Moves to the next event. */
 bool tl_yaml_next(struct tl_yaml *yaml);
 
-/* Goes through the only document: `read_root` finds its first event current and leaves its last one so. Not
- * called when there is nothing but comments. */
+/* Reads the only document: when `read_root` is called the document's first event is current, when it returns
+ * the last one must be. It is not called for a file of comments only. */
 bool tl_yaml_read(struct tl_yaml *yaml, bool (*read_root)(void *context), void *context);
 
 size_t tl_yaml_line(const struct tl_yaml *yaml); /* of the current event */
+/* Fails with "NAME:LINE: what". */
 bool tl_yaml_fail(const struct tl_yaml *yaml, size_t line, const char *what);
 
-/* Of a current scalar. */
+/* The text of the current event, which must be a scalar. */
 const char *tl_yaml_text(const struct tl_yaml *yaml);
-/* Nothing stands where a value or a table could: `light:` alone. */
+/* Whether a key has no value, such as `light:` alone. */
 bool tl_yaml_is_empty(const struct tl_yaml *yaml);
 
 /* The text of the value that begins with the current event: a scalar as it is, or a list of up to three
