@@ -22,6 +22,8 @@ static void drop_alpha(tl_image *image)
     *image = colour;
 }
 
+/* Replaces values that no radiance can have, and counts them: NaN and negative ones by 0, infinities by the
+ * largest finite value. */
 static void clean_values(tl_environment *environment)
 {
     float *values = tl_image_floats(&environment->image);
@@ -45,7 +47,7 @@ static void clean_values(tl_environment *environment)
     environment->peak = peak;
 }
 
-/* Faces side by side become faces stacked from the top. */
+/* Converts six faces in a row to six faces in a column. */
 static void stack_faces(tl_image *image)
 {
     size_t side = (size_t)image->height, row = 3 * side;
@@ -58,13 +60,15 @@ static void stack_faces(tl_image *image)
     *image = stacked;
 }
 
-/* OpenEXR's cube (ImfEnvmap.h) to GL's.
+/* Converts a cube from OpenEXR's convention (ImfEnvmap.h) to GL's.
  *
- * OpenEXR's lat-long image looks along +Z at its centre, with +X to the left; ours along -Z, with +X to the
- * right. An image is an image: we read it as ours, which turns OpenEXR's world half around Y, (x, y, z) ->
- * (-x, y, -z), and the cube must turn with it. So +X changes places with -X and +Z with -Z; and as OpenEXR's
- * faces are what an eye inside sees, while GL's are seen from outside, each is mirrored left to right.
- * OpenEXR's outermost samples lie on the cube's edges, ours half a texel inside: that difference is left. */
+ * At its centre OpenEXR's lat-long image looks along +Z, with +X to the left; ours along -Z, with +X to the
+ * right. Lat-long images are used as they are, by our convention, which turns OpenEXR's world half around Y:
+ * (x, y, z) ->
+ * (-x, y, -z). A cube must be turned in the same way: +X and -X change places, and +Z and -Z. Besides,
+ * OpenEXR's faces are seen from inside the cube, GL's from outside, so each is mirrored left to right.
+ * OpenEXR's outermost samples lie on the cube's edges, ours half a texel inside: that difference is not
+ * corrected. */
 static void turn_openexr_cube(tl_image *image)
 {
     static const size_t source[6] = {1, 0, 2, 3, 5, 4};
@@ -86,10 +90,9 @@ static bool arrange(const char *path, enum tl_exr_envmap kind, tl_environment *e
     bool upright = (int64_t)image->height == 6 * (int64_t)image->width;
     bool lying = (int64_t)image->width == 6 * (int64_t)image->height;
     if (kind == TL_EXR_CUBE && !upright)
-        return tl_fail(
-            error, TL_INPUT,
-            "%s: says that it is a cube map but is %d x %d texels: six square faces must be stacked", path,
-            image->width, image->height);
+        return tl_fail(error, TL_INPUT,
+                       "%s: is marked as a cube map but is %d x %d texels: six square faces must be stacked",
+                       path, image->width, image->height);
     environment->layout = kind != TL_EXR_LATLONG && (upright || lying) ? TL_ENV_CUBE : TL_ENV_LATLONG;
     if (environment->layout == TL_ENV_CUBE && lying)
         stack_faces(image);
@@ -109,7 +112,7 @@ static bool load_radiance(const char *path, tl_image *out, tl_error *error)
     return loaded;
 }
 
-/* By its contents, whatever the file is called. */
+/* By the content, not by the extension. */
 static bool is_radiance(const char *path)
 {
     char start[2] = "";

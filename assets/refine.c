@@ -7,7 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* An edge that is to be halved, a < b. Its number among all of them is its middle's, after the old vertices.
+/* An edge to be halved, a < b. Its index among all such edges is that of its midpoint, after the old
+ * vertices.
  */
 struct edge {
     uint32_t a, b;
@@ -18,7 +19,7 @@ struct edges {
     struct edge *items; /* sorted, each once */
 };
 
-/* One triangle with the middles of its sides: middle[i] between corners i and i + 1, or NO_MIDDLE. */
+/* One triangle with the midpoints of its sides: middles[i] between corners i and i + 1, or NO_MIDDLE. */
 #define NO_MIDDLE UINT32_MAX
 struct face {
     uint32_t corners[3], middles[3];
@@ -102,7 +103,9 @@ static uint32_t *put_triangle(uint32_t *out, uint32_t a, uint32_t b, uint32_t c)
     return out + 3;
 }
 
-/* Turned so that, of one or two sides with middles, the first is side 0, and of two the second is side 1. */
+/* Rotates a triangle so that, of one or two halved sides, the first is side 0, and of two the second is
+ * side 1.
+ */
 static struct face turned(const struct face *face)
 {
     int first = 0;
@@ -133,7 +136,8 @@ static uint32_t *split_face(const tl_mesh *mesh, const struct face *face, uint32
         out = put_triangle(out, a, m, c);
         return put_triangle(out, m, b, c);
     }
-    out = put_triangle(out, m, b, n); /* what is left has the corners a, m, n, c: cut where it is shorter */
+    out =
+        put_triangle(out, m, b, n); /* the quadrilateral a, m, n, c is left: cut along its shorter diagonal */
     if (length_of(mesh, a, n) < length_of(mesh, m, c)) {
         out = put_triangle(out, a, m, n);
         return put_triangle(out, a, n, c);
@@ -142,14 +146,14 @@ static uint32_t *split_face(const tl_mesh *mesh, const struct face *face, uint32
     return put_triangle(out, m, n, c);
 }
 
-/* ---- What the middles have ---- */
+/* ---- Attributes of the midpoints ---- */
 
 static vec3s mean3(vec3s a, vec3s b)
 {
     return glms_vec3_scale(glms_vec3_add(a, b), 0.5f);
 }
 
-/* The first one's where they cancel. */
+/* The unit mean of two normals; the first where they cancel. */
 static vec3s mean_direction(vec3s a, vec3s b)
 {
     vec3s sum = glms_vec3_add(a, b);
@@ -163,7 +167,7 @@ static vec4s mean_tangent(vec4s a, vec4s b)
     return (vec4s){{along.x, along.y, along.z, a.w}};
 }
 
-/* Makes room for `more` elements and fills them: middle i with what `mean` makes of its edge's ends. */
+/* Grows an array by `more` elements and fills them: that of midpoint i with `mean` of its edge's ends. */
 #define ADD_MIDDLES(array, count, edges, mean)                                                               \
     do {                                                                                                     \
         (array) = tl_resize((array), (count) + (edges)->count, sizeof *(array));                             \
@@ -176,7 +180,7 @@ static vec2s mean2(vec2s a, vec2s b)
     return glms_vec2_scale(glms_vec2_add(a, b), 0.5f);
 }
 
-/* Held where both ends are: what is half held would be held at the next halving. */
+/* Pinned where both ends are. A mean of one half would count as pinned at the next halving. */
 static float held_by_both(float a, float b)
 {
     return fminf(a, b);
@@ -204,7 +208,7 @@ static void add_middles(tl_model *model, const struct edges *edges)
     mesh->vertex_count += edges->count;
 }
 
-/* ---- A round ---- */
+/* ---- One pass ---- */
 
 static struct face *list_faces(const tl_mesh *mesh, const struct edges *edges, size_t *index_count)
 {
@@ -233,7 +237,7 @@ static void split_parts(tl_mesh *mesh, const struct face *faces, size_t index_co
     mesh->index_count = (size_t)(out - indices);
 }
 
-/* Halves what is too long, once. False when the mesh would get too large. */
+/* Halves every edge that is too long, once. False when the mesh would get too large. */
 static bool refine_once(tl_model *model, const struct edges *edges)
 {
     size_t index_count;
@@ -248,7 +252,7 @@ static bool refine_once(tl_model *model, const struct edges *edges)
     return fits;
 }
 
-/* A triangle whose sides are l at most has sqrt(3)/4 l^2 at most: how many it takes at least. */
+/* A lower bound of the number of triangles: one with sides of at most l covers at most sqrt(3)/4 l^2. */
 static double least_triangles(const tl_mesh *mesh, double longest_m)
 {
     double area = 0;

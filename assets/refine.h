@@ -1,20 +1,23 @@
-/* Coarse garments made fine: cloth folds along the edges of its mesh only, and what is kept at vertices, the
- * visibility of light for one, is a straight line between them. Edges longer than a length are halved until
- * none is. Whether an edge is halved, and where, follows from its two ends alone, so that pieces which met
- * along an edge of equal ends still do. Flat triangles stay flat: the shape is what it was. Pure. */
+/* Refinement of coarse garments: cloth folds only along the edges of its mesh, and values stored at vertices,
+ * such as visibility, are linear between them. Edges longer than a given length are halved until none is
+ * left. Whether an edge is halved, and where, depends on its two ends alone, so that pieces that share an
+ * edge still fit. Flat triangles stay flat, so the shape does not change. Threads: pure. */
 #ifndef TOILE_ASSETS_REFINE_H
 #define TOILE_ASSETS_REFINE_H
 
 #include "assets/base/garment.h"
 #include "config/error.h"
 
-/* Of a garment from a file, neither sewn nor with a pattern. Old vertices keep their numbers; what is new
- * takes the mean of what its edge's ends have, and is pinned where both are. The garment follows no
- * skeleton any more when anything was split. False when it would get larger than TL_LIMIT_MESH_*, which is
- * known before memory is asked for: then it is fit to be released only. */
+/* Refines a garment from a file that has neither seams nor a pattern. Old vertices keep their indices. A new
+ * vertex takes the mean of the attributes of its edge's ends, and is pinned when both are. If any edge is
+ * split, the garment loses its skeleton.
+ *
+ * Errors: false with a message when the mesh would exceed TL_LIMIT_MESH_*, which is known before memory is
+ * allocated; the garment can then only be released. Lifetime: it stays the caller's. Threads: one per
+ * garment. */
 bool tl_garment_refine(tl_garment *garment, float longest_m, tl_error *error);
 
-/* Of all triangles; 0 without any. */
+/* The longest edge of all triangles, metres; 0 without triangles. */
 float tl_mesh_longest_edge(const tl_mesh *mesh);
 
 #endif

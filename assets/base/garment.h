@@ -9,7 +9,7 @@
 
 struct tl_seam_pair {
     uint32_t a, b;
-}; /* render vertices to be drawn together and then welded */
+}; /* render vertices that sewing pulls together and then welds */
 
 typedef struct tl_garment {
     tl_model model; /* mesh.positions is where the cloth starts */
@@ -21,7 +21,7 @@ typedef struct tl_garment {
     struct tl_seam_pair *seams;
     size_t pin_count;
     uint32_t *pins; /* render vertices held where they start (on the avatar, they follow its nearest point) */
-    bool solid;     /* no cloth: it keeps its shape (assets/builtin/specimen.h) */
+    bool solid;     /* rigid, not cloth (assets/builtin/specimen.h) */
 } tl_garment;
 
 /* Replaces the garment's pins by the vertices that its model's file pins; a file without pins changes

@@ -27,9 +27,11 @@ typedef struct tl_image {
 /* Zeroed image; sizes are asserted to be within the limits, so check file sizes with tl_image_size_check
  * first. */
 tl_image tl_image_create(int width, int height, int channels, enum tl_image_type type);
-void tl_image_release(tl_image *image); /* frees and zeroes; a zeroed image is fine */
+void tl_image_release(tl_image *image); /* frees and zeroes; a zeroed image is accepted */
+/* False, with a message that names `name`, for a size that is not positive or beyond the limits. */
 bool tl_image_size_check(const char *name, int64_t width, int64_t height, tl_error *error);
 
+/* The texels of an F32 and of a U8 image; owned by the image. */
 static inline float *tl_image_floats(const tl_image *image)
 {
     return (float *)image->texels;

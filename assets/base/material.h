@@ -1,5 +1,5 @@
-/* What a surface does with light: two cosine lobes (the light model of the PEM method) and the maps that vary
- * them.
+/* Materials: how a surface reflects light, as two cosine lobes (the light model of the PEM method), and the
+ * maps that vary them.
  *
  *     c = light arriving * [ diffuse * K_1(n) + F * specular * K_s(r) ],   s = 1 / (1 - glossiness)
  *
@@ -20,7 +20,7 @@ struct tl_uv_transform {
 
 /* As the rows of a 2x3 matrix: u' = rows[0] u + rows[1] v + rows[2], v' = rows[3] u + rows[4] v + rows[5]. */
 void tl_uv_transform_rows(const struct tl_uv_transform *transform, float rows[6]);
-/* ... and applied. */
+/* Applies the rows of tl_uv_transform_rows. */
 vec2s tl_uv_transformed(const struct tl_uv_transform *transform, vec2s uv);
 
 struct tl_map {
@@ -39,8 +39,8 @@ typedef struct tl_weave {
     tl_image tint;   /* F32 x3: factor on the diffuse colour (yarn colours) */
 } tl_weave;
 
-/* How gloss is spread about the mirror direction: render/brdf has the formulas. PHONG is the PEM method's own
- * lobe, K_s about r, and the only one whose widths follow glossiness alone. */
+/* The shape of the specular lobe; render/brdf has the formulas. PHONG is the lobe of the PEM method, K_s
+ * about r, and the only one whose width follows from glossiness alone. */
 enum tl_reflectance {
     TL_REFLECT_PHONG,
     TL_REFLECT_BLINN_PHONG,
@@ -94,10 +94,10 @@ typedef struct tl_material {
 /* Matt mid-grey, no maps. */
 tl_material tl_material_default(const char *name);
 
-/* Whether it is more than two cosine lobes about the normal and the mirror direction: facets, a coat, or
- * light that comes through. */
+/* Whether the material has more than two cosine lobes about the normal and the mirror direction: microfacets,
+ * a coat, or transmission. */
 bool tl_material_is_layered(const tl_material *material);
-/* ... of which: whether light is scattered through it to the other side. */
+/* Whether the material scatters light through to the other side. */
 bool tl_material_transmits(const tl_material *material);
 
 /* Glossiness of the cosine lobe about the mirror direction that is nearest to a GGX lobe of glTF roughness r:

@@ -33,7 +33,7 @@ void tl_mesh_measure_uvs(tl_mesh *mesh)
             space += 0.5 * (double)glms_vec3_norm(glms_vec3_cross(side, other));
             texture += uv_area(mesh->uvs[v[0]], mesh->uvs[v[1]], mesh->uvs[v[2]]);
         }
-        /* Below a millionth of a texel of an 8k map nothing can be read from the UVs. */
+        /* UVs of less than a millionth of a texel of an 8k map are degenerate. */
         const double degenerate = 1e-14;
         part->uv_metres = texture > degenerate ? (float)sqrt(space / texture) : 0;
     }

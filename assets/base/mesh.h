@@ -25,7 +25,7 @@ typedef struct tl_mesh {
     vec3s *positions; /* metres */
     vec3s *normals;   /* unit */
     vec2s *uvs;       /* zero when the file has none */
-    vec4s *tangents;  /* unit xyz, handedness w, or NULL: computed by cloth/frames */
+    vec4s *tangents;  /* unit xyz, handedness w, or NULL: computed by cloth/tangents */
     size_t index_count;
     uint32_t *indices; /* triangles, counter-clockwise seen from outside */
     size_t part_count;
@@ -40,6 +40,7 @@ void tl_mesh_measure_uvs(tl_mesh *mesh);
 struct tl_box {
     vec3s lower, upper;
 };
-struct tl_box tl_box_of(const vec3s *positions, size_t count); /* a zero box for count 0 */
+/* The smallest box around the positions; zero for count 0. */
+struct tl_box tl_box_of(const vec3s *positions, size_t count);
 
 #endif

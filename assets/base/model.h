@@ -32,21 +32,21 @@ typedef struct tl_model {
     struct tl_variant *variants; /* no two of one name */
     size_t clip_count;
     struct tl_clip *clips;
-    tl_rig *rig; /* NULL when nothing moves */
+    tl_rig *rig; /* NULL for a model without animation */
     struct tl_units_reading units;
-    /* What a point cache counts: the vertices of the file, not the render vertices that they were split into.
+    /* Points: the vertices of the file, before they are split into render vertices. Point caches count these.
      */
     size_t point_count;
     uint32_t *points; /* [vertex_count] point of each vertex; NULL: each is its own */
-    /* What may say which vertices of cloth are held; NULL: the file has none. A glTF's attribute _PIN (or
-     * _pin; such names are free to applications [glTF 2.0, 3.7.2.1]), 0 where a part has none; and COLOR_0,
-     * white where a part has none. */
+    /* Two ways to mark the vertices that hold cloth in place; NULL: the file has none. A glTF's attribute
+     * _PIN (or _pin; such names are free to applications [glTF 2.0, 3.7.2.1]), 0 where a part has none; and
+     * COLOR_0, white where a part has none. */
     float *pins;    /* [vertex_count] held above a half */
     vec3s *colours; /* [vertex_count] 0 to 1 */
     size_t ignored_count;
-    char **ignored; /* "KHR_materials_iridescence", "morph targets", ...: each once */
+    char **ignored; /* features of the file without effect: "morph targets", ...; each once */
     size_t approximated_count;
-    char **approximated; /* "KHR_materials_sheen: ...": each once */
+    char **approximated; /* features shown differently from the file: "KHR_materials_sheen: ..."; each once */
 } tl_model;
 
 /* Number of points that the model's file counts.

@@ -1,4 +1,4 @@
-/* For the readers of model files (assets/gltf, assets/obj): notes on what a file holds and a model cannot,
+/* For the readers of model files (assets/gltf, assets/obj): notes on features that a model cannot represent,
  * and the steps that every format needs once its mesh is read. */
 #ifndef TOILE_ASSETS_BASE_MODEL_BUILD_H
 #define TOILE_ASSETS_BASE_MODEL_BUILD_H
@@ -6,19 +6,19 @@
 #include "assets/base/model.h"
 #include "config/error.h"
 
-/* Notes once that something of the file has no effect. */
+/* Notes a feature of the file that has no effect; each text once. */
 void model_ignore(tl_model *model, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* ... or another effect than the file says. */
+/* Notes a feature that is shown differently from what the file specifies; each text once. */
 void model_approximate(tl_model *model, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* Decides on the file's units and brings mesh.positions into metres; refuses what is not finite or far away.
- */
+/* Decides the file's units and converts mesh.positions to metres. Refuses positions that are not finite or
+ * more than 100 km away. */
 bool model_take_units(const char *path, enum tl_units wanted, bool is_metric, tl_model *model,
                       tl_error *error);
 
-/* For vertices without a normal (zero): area-weighted over the triangles of all vertices at the same place,
- * because a garment is smooth across its UV seams. */
+/* Computes the normals of vertices that have none (zero): area-weighted over the triangles of all vertices at
+ * the same position, because a garment is smooth across its UV seams. */
 void model_smooth_normals(tl_mesh *mesh);
 
 #endif

@@ -6,7 +6,7 @@
 bool model_take_units(const char *path, enum tl_units wanted, bool is_metric, tl_model *model,
                       tl_error *error)
 {
-    /* Beyond it a float has no millimetres left, and scales that overflow end here. */
+    /* Farther away a float cannot resolve a millimetre. A scale that overflows is caught here too. */
     const float farthest_m = 1e5f;
     tl_mesh *mesh = &model->mesh;
     model->units = tl_units_read(tl_box_of(mesh->positions, mesh->vertex_count), wanted, is_metric);

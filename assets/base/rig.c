@@ -28,7 +28,7 @@ void rig_destroy(tl_rig **handle)
 
 /* ---- Posing ---- */
 
-/* Spherical interpolation by the shorter way; both unit. */
+/* Spherical interpolation along the shorter arc. */
 static void slerp(const float *a, const float *b, float part, float *out)
 {
     versors from = {{a[0], a[1], a[2], a[3]}}, to = {{b[0], b[1], b[2], b[3]}};

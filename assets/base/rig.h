@@ -1,7 +1,8 @@
-/* What moves a model: its node tree, what hangs each vertex on it, and clips of keys. Private to assets.
+/* The animation of a model: its node tree, the binding of each vertex to it, and clips of keyframes. For the
+ * floor assets alone.
  *
- * Every vertex follows up to four slots; a slot is a node and the matrix that brings a vertex into the node's
- * space: an inverse bind matrix for a skin, the identity for a rigid mesh. Pose: x = sum of weight *
+ * Every vertex is bound to up to four slots. A slot is a node and the matrix that takes a vertex to the
+ * node's space: an inverse bind matrix for a skin, the identity for a rigid mesh. Pose: x = sum of weight *
  * world(node) * bind * x_local. */
 #ifndef TOILE_ASSETS_BASE_RIG_H
 #define TOILE_ASSETS_BASE_RIG_H
@@ -34,7 +35,7 @@ struct rig_influence {
 enum rig_path { RIG_TRANSLATION, RIG_ROTATION, RIG_SCALE, RIG_OTHER_PATH };
 enum rig_interpolation { RIG_LINEAR, RIG_STEP, RIG_CUBIC_SPLINE };
 
-/* Floats of a value: a quaternion has 4, a vector 3. */
+/* Number of floats of a keyframe's value: 4 for a quaternion, 3 for a vector. */
 static inline int rig_components(enum rig_path path)
 {
     return path == RIG_ROTATION ? 4 : 3;
@@ -67,10 +68,10 @@ struct tl_rig {
 
 void rig_destroy(tl_rig **handle);
 
-/* World matrices [node_count] at a time of a clip (-1: rest). */
+/* World matrices [node_count] at a time of a clip, looped; clip -1: the rest pose. */
 void rig_world(const tl_rig *rig, int clip, double time_s, mat4s *world);
 
-/* Positions [vertex_count] from world matrices. */
+/* Skins the vertices: positions [vertex_count], units of the file, from world matrices. */
 void rig_place(const tl_rig *rig, const mat4s *world, vec3s *positions);
 
 #endif

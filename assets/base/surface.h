@@ -1,5 +1,5 @@
-/* The contract between whoever moves a mesh (cloth, an animated avatar) and the renderer: a borrowed view of
- * one frame's geometry. Plain data, owned by nobody: the arrays must outlive the frame. */
+/* The interface between the floors that move meshes (cloth, animated avatars) and the renderer: a view of one
+ * frame's geometry. Lifetime: it owns nothing; its arrays must outlive the frame. */
 #ifndef TOILE_ASSETS_BASE_SURFACE_H
 #define TOILE_ASSETS_BASE_SURFACE_H
 
@@ -14,7 +14,7 @@ typedef struct tl_surface {
     const vec4s *tangents;  /* unit xyz, handedness w: bitangent = w * cross(n, t) */
     const vec2s *uvs;
     const vec3s *strains; /* along the warp, along the weft (length over rest length, less 1), shear (cosine
-                             of the angle between them); NULL: not known, or nobody asked */
+                             of the angle between them); NULL: unknown or not requested */
     size_t index_count;
     const uint32_t *indices;
     size_t part_count;
@@ -24,7 +24,7 @@ typedef struct tl_surface {
     uint64_t motion_revision;   /* changes when positions do */
 } tl_surface;
 
-/* A mesh as it stands: its own parts, no strains, revisions 0. */
+/* A view of a mesh that does not move: its own parts, no strains, revisions 0. */
 tl_surface tl_surface_of_mesh(const char *name, const tl_mesh *mesh, const tl_material *materials);
 
 #endif

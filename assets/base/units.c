@@ -12,7 +12,7 @@ static const char *const plurals[] = {"metres",      "metres",      "decimetres"
 
 #define SHORTEST_M 0.25f
 #define LONGEST_M  2.5f
-#define ABSURD_M   25 /* what says that it is in metres is believed below */
+#define ABSURD_M   25 /* a format's metres are trusted below this size */
 
 double tl_units_metres(enum tl_units units)
 {
@@ -68,9 +68,9 @@ char *tl_units_describe(const char *name, const struct tl_units_reading *reading
     double length = (double)reading->longest;
     const char *why = reading->absurd ? "absurd as metres: " : reading->fits ? "" : "no unit fits: ";
     char *other =
-        reading->other ? tl_format(", though %s would do", plurals[reading->other]) : tl_copy_string("");
+        reading->other ? tl_format(", though %s are possible", plurals[reading->other]) : tl_copy_string("");
     char *line =
-        tl_format("%s: %.4g units at its longest: %staken as %s (%.3g m)%s; %s tells otherwise", name, length,
+        tl_format("%s: %.4g units at its longest: %staken as %s (%.3g m)%s; %s overrides this", name, length,
                   why, plurals[reading->units], length * tl_units_metres(reading->units), other, option);
     free(other);
     return line;

@@ -35,8 +35,8 @@ static double twice_area(const struct tl_point *p, const uint32_t v[3])
            (p[v[2]].x - p[v[0]].x) * (p[v[1]].y - p[v[0]].y);
 }
 
-/* Counter-clockwise, with its circumcircle; a degenerate triangle gets a huge one, so that the next point
- * dissolves it. */
+/* Makes a counter-clockwise triangle with its circumcircle. A degenerate triangle gets a huge circle, so that
+ * the next point removes it. */
 static struct triangle make_triangle(const struct tl_point *p, uint32_t a, uint32_t b, uint32_t c)
 {
     struct triangle t = {.v = {a, b, c}};
@@ -63,8 +63,9 @@ static int compare_edges(const void *left, const void *right)
     return (a->b > b->b) - (a->b < b->b);
 }
 
-/* Takes out the open triangles whose circle holds the point, and joins the rim of the hole to it. An edge of
- * two of them occurs twice and vanishes. */
+/* Inserts a point [Bowyer, Watson]: removes the open triangles whose circle holds it and connects the
+ * boundary of the hole to it. An edge that two removed triangles share is inside the hole: it occurs twice
+ * and is dropped. */
 static void insert_point(const struct tl_point *p, uint32_t index, struct triangle_list *open,
                          struct triangle_list *done, struct edge **rim, size_t *rim_capacity)
 {
@@ -73,7 +74,7 @@ static void insert_point(const struct tl_point *p, uint32_t index, struct triang
         struct triangle t = open->items[i];
         double dx = p[index].x - t.centre_x, dy = p[index].y - t.centre_y;
         if (dx > 0 && dx * dx > t.radius2) {
-            push(done, &t); /* points come from left to right: none will reach this circle again */
+            push(done, &t); /* points are sorted by x: no later one can lie in this circle */
             continue;
         }
         if (dx * dx + dy * dy >= t.radius2) {
@@ -115,7 +116,7 @@ static int compare_x(const void *left, const void *right)
     return (a->index > b->index) - (a->index < b->index);
 }
 
-/* Copies the points and adds three far corners of a triangle around them all. */
+/* Copies the points and adds the three corners of a triangle that encloses them all. */
 static struct tl_point *with_corners(const struct tl_point *points, size_t count)
 {
     double lower_x = INFINITY, lower_y = INFINITY, upper_x = -INFINITY, upper_y = -INFINITY;
@@ -127,7 +128,7 @@ static struct tl_point *with_corners(const struct tl_point *points, size_t count
         upper_x = fmax(upper_x, points[i].x);
         upper_y = fmax(upper_y, points[i].y);
     }
-    /* Far enough that the corners' circles are straight lines to the hull's short edges. */
+    /* So far away that circles through a corner are straight lines at the scale of the hull's edges. */
     double reach = 1000 * fmax(upper_x - lower_x, upper_y - lower_y);
     double x = 0.5 * (lower_x + upper_x), y = 0.5 * (lower_y + upper_y);
     all[count] = (struct tl_point){x - reach, y - reach};

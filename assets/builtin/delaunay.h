@@ -1,5 +1,5 @@
-/* Delaunay triangulation of a planar point set (Bowyer 1981, Watson 1981), for point sets of up to some ten
- * thousands without duplicates. Threads: pure. */
+/* Delaunay triangulation of a planar point set (Bowyer 1981, Watson 1981), for up to some ten thousand points
+ * without duplicates. Threads: pure. */
 #ifndef TOILE_ASSETS_BUILTIN_DELAUNAY_H
 #define TOILE_ASSETS_BUILTIN_DELAUNAY_H
 

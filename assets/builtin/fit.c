@@ -34,7 +34,8 @@ static size_t cut_mesh(const tl_mesh *mesh, float y, struct segment *segments)
     return count;
 }
 
-/* Neighbouring triangles cut their common edge at the same point: equal ends join segments into sections. */
+/* Joins segments into sections: neighbouring triangles cut their common edge at the same point, so that equal
+ * ends connect. */
 static int join_segments(struct segment *segments, size_t count)
 {
     const float same_m = 1e-5f;
@@ -91,7 +92,7 @@ static float hull_length(vec2s *points, size_t count)
                 size--;
             hull[size++] = point;
         }
-        size--; /* the end of one half starts the other */
+        size--; /* the last point of one half is the first of the other */
     }
     float length = 0;
     for (size_t i = 0; i < size; i++)

@@ -6,18 +6,17 @@
 #include "assets/base/garment.h"
 
 struct tl_girth {
-    float length_m; /* of the convex hull of the section, as a tape measure reads it */
+    float length_m; /* of the section's convex hull, as a tape measure reads it */
     vec2s centre;   /* x, z of the middle of the section's bounding box, metres */
 };
 
-/* The largest connected section of the mesh with the plane y = `y_m`: the trunk, not an arm beside it. False
+/* Measures the largest connected section of the mesh with the plane y = `y_m`: the trunk, not an arm. False
  * when the plane misses the mesh. */
 bool tl_mesh_girth(const tl_mesh *mesh, float y_m, struct tl_girth *out);
 
 /* Scales a garment cut for the built-in form about its waist, pattern included, by the ratio of the waist
- * girths, and moves it to the body's waist. The body stands on y = 0 in its rest pose, is upright and about
- * as tall as wide persons are: the waist is looked for at the narrowest section between 0.56 and 0.66 of its
- * height. */
+ * girths, and moves it to the body's waist. The body stands on y = 0 in its rest pose, is upright and has
+ * human proportions: the waist is the narrowest section between 0.56 and 0.66 of its height. */
 bool tl_garment_fit(tl_garment *garment, const char *body_name, const tl_mesh *body, tl_error *error);
 
 #endif

@@ -34,7 +34,7 @@ struct profile_point {
     double y, radius;
 };
 
-/* Turned parts, from below: smooth through their points. */
+/* The profiles of the turned parts, from below: smooth curves through their points. */
 static const struct profile_point plate_rim[] = {
     {0.000, 0.150}, {0.003, 0.154}, {0.009, 0.154}, {0.013, 0.149}};
 static const struct profile_point plate_top[] = {{0.013, 0.149}, {0.019, 0.110}, {0.027, 0.070},
@@ -81,7 +81,7 @@ static struct ring circle(double y, double radius, double centre_z)
     return mirrored(ring);
 }
 
-/* The torso's section at height y, its columns at equal distances along the tape measure. */
+/* The torso's section at height y, its columns at equal arc lengths. */
 static struct ring section(double y)
 {
     enum { SAMPLES = 180 };
@@ -124,7 +124,7 @@ static void add_ring(struct loft *loft, const struct ring *ring)
     loft->rings[loft->ring_count++] = *ring;
 }
 
-/* A crease lies between bands: the new one begins by repeating the last ring. */
+/* Bands meet in a crease: the new one repeats the last ring, so that normals are not smoothed across it. */
 static void begin_band(struct loft *loft, enum form_material material, bool flat)
 {
     assert(loft->band_count < MAX_BANDS);

@@ -1,4 +1,5 @@
-/* The shape of the built-in dress form, for those who mesh it and those who cut garments around it.
+/* The built-in dress form: its shape as a distance function, for cutting garments around it, and as an
+ * avatar.
  *
  * The torso (with neck and shoulder stubs, without the stand) is the zero set of tl_form_distance, a smooth
  * union of lofted superellipses. Metres, +Y up, facing +Z, mirror-symmetric in x. Threads: pure. */

@@ -110,7 +110,7 @@ static double shoulder_distance(double x, double y, double z)
     return superellipse(y - 0.5 * (top + bottom), z + 0.016, 0.5 * (top - bottom), depth, 2.3);
 }
 
-/* Leans forward a little. */
+/* The neck, which leans forward a little. */
 static double neck_distance(double x, double y, double z)
 {
     double lean = -0.012 + 0.22 * (y - 1.40);
@@ -130,7 +130,7 @@ double tl_form_distance(const double point[3])
 double tl_form_radius(double y, double angle)
 {
     double sine = sin(angle), cosine = cos(angle);
-    double inside = 0, outside = 0.3; /* the form is slimmer than 0.3 m everywhere */
+    double inside = 0, outside = 0.3; /* the form's radius is below 0.3 m everywhere */
     if (tl_form_distance((double[3]){0, y, 0}) >= 0)
         return 0;
     for (int i = 0; i < 40; i++) {

@@ -10,9 +10,10 @@
 
 #define EDGE_MINIMUM_M 0.003f /* 130,000 vertices in the dress */
 #define EDGE_MAXIMUM_M 0.08f
-#define EDGE_FIRST_M   0.02f /* what is finer begins as a cut of edges twice as long lies */
+#define EDGE_FIRST_M   0.02f /* a finer cut starts from the shape of one with edges twice as long */
 
-#define REACH_M 4.0 /* the first cut is eased from neck to hem and back, finer ones between its points */
+#define REACH_M                                                                                              \
+    4.0 /* relaxation reaches from neck to hem and back in the first cut, less far in finer ones */
 
 static struct tl_cut_plan (*const plans[])(void) = {tl_cut_plan_dress, tl_cut_plan_skirt, tl_cut_plan_layers};
 const char *const tl_garment_names[] = {"dress", "skirt", "layers", NULL};
@@ -85,7 +86,7 @@ static uint32_t outline_vertex(const struct cutting *cutting, size_t piece_index
     return (uint32_t)(cutting->first_vertex[piece_index] + point);
 }
 
-/* A dart's legs share their point, which needs no stitch: fewer pairs may be used than counted. */
+/* The two legs of a dart share their tip, which needs no stitch, so fewer pairs may be used than counted. */
 static void sew(const struct cutting *cutting, tl_garment *garment)
 {
     const struct tl_cut_plan *plan = cutting->plan;
@@ -192,7 +193,7 @@ static size_t join_seams(const tl_garment *garment, uint32_t *body)
     size_t count = garment->model.mesh.vertex_count;
     for (size_t v = 0; v < count; v++)
         body[v] = (uint32_t)v;
-    /* Chains of seams are short (four pieces meet in a corner), so repeated minima settle at once. */
+    /* Chains of seams are short (four pieces meet in a corner), so a few passes of minima converge. */
     for (bool changed = true; changed;) {
         changed = false;
         for (size_t s = 0; s < garment->seam_count; s++) {
@@ -212,7 +213,7 @@ static double pattern_distance(const tl_garment *garment, uint32_t a, uint32_t b
     return (double)glms_vec2_distance(garment->pattern[a], garment->pattern[b]);
 }
 
-/* Every triangle side: inner ones come twice, which only makes them count twice. */
+/* Every triangle's sides as springs. An inner side occurs twice and so has twice the weight. */
 static struct tl_fit_edge *fit_edges(const tl_garment *garment, const uint32_t *body)
 {
     const tl_mesh *mesh = &garment->model.mesh;
@@ -224,7 +225,7 @@ static struct tl_fit_edge *fit_edges(const tl_garment *garment, const uint32_t *
     return edges;
 }
 
-/* Where each piece puts its vertices. */
+/* The start position of every vertex, by the placement of its piece. */
 static void hold(const struct cutting *cutting, double (*held)[3])
 {
     for (size_t p = 0; p < cutting->plan->piece_count; p++) {
@@ -234,8 +235,8 @@ static void hold(const struct cutting *cutting, double (*held)[3])
     }
 }
 
-/* Places the pieces with their seams closed: sewn vertices start in one place, the mean of where their pieces
- * put them, or where they lie on a cut of coarser edges (0: there is none). */
+/* Places the pieces with their seams closed: vertices sewn together start at one position, the mean of those
+ * of their pieces, or their position on a coarser cut (coarser edge 0: there is none). */
 static void place(const struct cutting *cutting, const tl_garment *coarse, double coarse_edge_m,
                   tl_garment *garment)
 {

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Triangles of a flat pattern by the squares that they, widened by half a square, reach into. */
+/* A grid over a flat pattern: each square lists the triangles that come within half a square of it. */
 struct squares {
     double side, low[2];
     size_t across[2];
@@ -38,7 +38,7 @@ static struct span span_of(const struct squares *squares, const tl_garment *garm
     return span;
 }
 
-/* Counts, or with `fill` lists, what reaches into each square. */
+/* Counts, or with `fill` lists, the triangles of each square. */
 static void visit(struct squares *squares, const tl_garment *garment, bool fill)
 {
     for (size_t t = 0; t < garment->model.mesh.index_count / 3; t++) {
@@ -70,14 +70,14 @@ static struct squares sort_triangles(const tl_garment *garment, double side)
     size_t count = squares.across[0] * squares.across[1];
     squares.first = TL_NEW_ARRAY(uint32_t, count + 1);
     visit(&squares, garment, false);
-    for (size_t i = 1; i <= count; i++) /* where each ends: filling goes back to where it begins */
+    for (size_t i = 1; i <= count; i++) /* ends first: filling then counts down to the beginnings */
         squares.first[i] += squares.first[i - 1];
     squares.items = TL_NEW_ARRAY(uint32_t, squares.first[count]);
     visit(&squares, garment, true);
     return squares;
 }
 
-/* Of a point in the pattern; their sum is 1, and outside the triangle one is below 0. */
+/* Barycentric coordinates of a point in the pattern: their sum is 1; outside the triangle one is negative. */
 static void find_weights(const tl_garment *garment, const uint32_t v[3], vec2s point, double weights[3])
 {
     double sum = 0;

@@ -21,7 +21,7 @@
 #define CURTAIN_Z      0.46
 #define CURTAIN_FOLDS  3
 #define CURTAIN_GATHER 0.92     /* its width as it hangs over its width as cloth */
-#define CURTAIN_DEPTH  0.0237   /* of the folds, which makes up for the rest */
+#define CURTAIN_DEPTH  0.0237   /* of the folds, which take up the difference */
 #define UNDERARM       0.190    /* metres of cloth above the waist seam */
 #define STRAP_X        0.112    /* the shoulder seam's middle */
 #define RIDGE_Z        (-0.016) /* the shoulders' ridge */
@@ -50,8 +50,9 @@ struct dress_placement {
     struct bodice_shape front, back;
 };
 
-/* The bust dart of the front: a wedge in the side seam whose legs are sewn together. It takes up what would
- * gape at the armhole: the part above it was turned about the dart's point by the dart's angle. */
+/* The bust dart of the front: a wedge in the side seam whose legs are sewn together. It removes the
+ * excess that would gape at the armhole: the part above it is rotated about the dart's tip by the dart's
+ * angle. */
 #define DART_ANGLE 0.17 /* radians */
 static const struct tl_point dart_point = {0.108, 0.158};
 
@@ -61,8 +62,8 @@ static struct tl_point turned(struct tl_point p, double angle)
     return (struct tl_point){dart_point.x + c * x - s * y, dart_point.y + s * x + c * y};
 }
 
-/* Turns what lies above the dart back to where it was: by the whole angle at the dart's leg, less and less
- * towards straight above its point. */
+/* Undoes the dart's rotation of the part above it: by the full angle at the dart's leg, falling to zero
+ * straight above its tip. */
 static struct tl_point undarted(struct tl_point p)
 {
     const double leg = -0.02; /* radians: between the dart's two legs */
@@ -74,7 +75,7 @@ static struct tl_point undarted(struct tl_point p)
     return (struct tl_point){side * q.x, q.y};
 }
 
-/* Ring point at `distance` from the piece's own middle, to the right as one looks at the piece. */
+/* The ring point at `distance` from the piece's middle, to the right as seen from outside. */
 static struct tl_point ring_point(const struct bodice_shape *bodice, const struct tl_ring *ring,
                                   double distance)
 {
@@ -105,7 +106,8 @@ static void place_bodice(const void *context, struct tl_point p, double position
     position[2] = RIDGE_Z + (position[2] - RIDGE_Z) * (depth[k] + (depth[k + 1] - depth[k]) * u);
 }
 
-/* Walks around the shoulder in the plane x = STRAP_X, seen from a point below the ridge, a centimetre off. */
+/* Traces the profile around the shoulder in the plane x = STRAP_X, a centimetre off the form, by rays from a
+ * point below the ridge. */
 static void trace_profile(double underarm_y, double facing, struct profile *out)
 {
     double y[PROFILE_STEPS + 1], z[PROFILE_STEPS + 1], length[PROFILE_STEPS + 1] = {0};
@@ -207,7 +209,7 @@ static void add_seam(struct tl_cut_plan *plan, size_t piece_a, size_t curve_a, s
     plan->seams[plan->seam_count++] = (struct tl_cut_seam){piece_a, curve_a, piece_b, curve_b};
 }
 
-/* The front's right curve meets the back's left one, and the other way round. */
+/* Sews the front's right curve to the back's left one and vice versa. */
 static void sew_around(struct tl_cut_plan *plan, size_t front, size_t front_curve, size_t back,
                        size_t back_curve)
 {
@@ -286,7 +288,7 @@ static struct tl_cut_piece curtain_piece(void)
     };
 }
 
-/* The dress behind a gathered curtain that hangs before one side of it, out of its way. */
+/* The dress, and a gathered curtain in front of its left side that does not touch it. */
 struct tl_cut_plan tl_cut_plan_layers(void)
 {
     enum { CURTAIN = 4, TOP = 2 };

@@ -5,7 +5,7 @@
 #include <math.h>
 
 enum { LEAST_PASSES = 100, PASSES_PER_PUSH = 4 };
-#define SHORT_STIFFNESS 0.15  /* cloth resists stretch, but slack may stay: it would only buckle */
+#define SHORT_STIFFNESS 0.15  /* weak: slack cloth buckles instead of pushing its vertices apart */
 #define CLEARANCE_M     0.006 /* kept between the cloth and the form */
 
 static void pull(double a[3], double b[3], bool a_fixed, bool b_fixed, double length)
@@ -20,7 +20,7 @@ static void pull(double a[3], double b[3], bool a_fixed, bool b_fixed, double le
     }
 }
 
-/* One step along the distance's gradient, to the clearance as far as the distance is right. */
+/* One Newton step along the distance's gradient towards the clearance; the distance is approximate. */
 static void push_out(double p[3])
 {
     const double step = 1e-4;
@@ -48,7 +48,7 @@ void tl_cut_fit(double (*positions)[3], size_t count, const bool *fixed, const s
         for (size_t e = 0; e < edge_count; e++)
             pull(positions[edges[e].a], positions[edges[e].b], fixed[edges[e].a], fixed[edges[e].b],
                  edges[e].length);
-        if ((passes - 1 - pass) % PASSES_PER_PUSH) /* the last pass pushes */
+        if ((passes - 1 - pass) % PASSES_PER_PUSH) /* the last pass resolves penetration */
             continue;
         for (size_t i = 0; i < count; i++) {
             if (!fixed[i])

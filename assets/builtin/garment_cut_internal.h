@@ -1,5 +1,5 @@
-/* How a built-in garment is described and cut: flat pieces, where each is held around the dress form to begin
- * with, what is sewn to what, what is pinned. One plan per garment (garment_cut_dress.c,
+/* How a built-in garment is described and cut: flat pieces, the start position of each around the dress form,
+ * their seams and their pins. One plan per garment (garment_cut_dress.c,
  * garment_cut_skirt.c); garment_cut.c turns a plan into a tl_garment.
  *
  * A piece is symmetric about x = 0: `half` runs counter-clockwise along its right side from the bottom's
@@ -64,9 +64,9 @@ static inline size_t tl_cut_mirror(const struct tl_cut_piece *piece, size_t i)
     return 2 * piece->half_count - 1 - i;
 }
 
-/* Eases a start shape: edges towards their rest lengths, vertices out of the dress form, `fixed` ones stay.
- * Not a simulation: no mass, no gravity; it takes the strain out of the first guess. `reach_m`: how far
- * corrections travel, one edge a pass; there are a hundred passes in any case. */
+/* Relaxes a start shape: moves edges towards their rest lengths and vertices out of the dress form; `fixed`
+ * ones stay. It is no simulation (no mass, no gravity) but removes the strain of the first guess. `reach_m`:
+ * how far corrections travel, at one edge a pass; at least a hundred passes are made. */
 struct tl_fit_edge {
     uint32_t a, b;
     double length; /* metres, at rest */
@@ -74,9 +74,9 @@ struct tl_fit_edge {
 void tl_cut_fit(double (*positions)[3], size_t count, const bool *fixed, const struct tl_fit_edge *edges,
                 size_t edge_count, double reach_m);
 
-/* Moves positions [vertex of `garment`], metres, to where its pattern lies on a coarser cut of the same plan,
- * of edges of about edge_m: linear over triangles, and a little past the outline. Pins stay, and what is
- * further off. */
+/* Interpolates positions [vertices of `garment`], metres, from a coarser cut of the same plan with edges of
+ * about edge_m, by the place of each vertex in the flat pattern: linearly over triangles, extrapolated a
+ * little past the outline. Pins, and vertices farther outside, stay. */
 void tl_cut_carry(const tl_garment *coarse, double edge_m, const tl_garment *garment, double (*positions)[3]);
 
 #endif

@@ -95,8 +95,8 @@ static double jitter(uint32_t seed)
 }
 
 /* Hexagonal grid points inside the outline, off it by 0.6 edges: farther than the radius of any outline
- * edge's diametral circle, so that every outline edge is a Delaunay edge. The jitter leaves the cloth no
- * favoured diagonal. */
+ * edge's diametral circle, so that every outline edge is a Delaunay edge. The jitter avoids a preferred
+ * direction in the cloth. */
 static void fill_inside(tl_panel *panel, double edge_m)
 {
     const double row_height = 0.5 * sqrt(3) * edge_m, clearance = 0.6 * edge_m, shake = 0.25 * edge_m;

@@ -64,8 +64,8 @@ static vec3s tilted(vec3s p, float angle)
     return (vec3s){{p.x, c * p.y - s * p.z, s * p.y + c * p.z}};
 }
 
-/* Both sides of the seam, which lies behind, are the same place to the bit, so that normals are smooth
- * across. */
+/* The two sides of the seam, at the back, have bitwise equal positions, so that normals are smooth across it.
+ */
 static void place_vertex(tl_mesh *mesh, size_t index, const struct profile *profile, float u, float v)
 {
     bool closed = profile->ring > 0;
@@ -82,7 +82,7 @@ static void place_vertex(tl_mesh *mesh, size_t index, const struct profile *prof
     mesh->uvs[index] = (vec2s){{girth * u, profile->tube * span * v}};
 }
 
-/* Poles become points, whose triangles with no area are left out. */
+/* A pole is a single point: the triangles without area there are left out. */
 static tl_mesh revolve(const struct profile *profile, float edge_m)
 {
     float girth = 2 * (float)M_PI * (profile->ring + profile->tube);
@@ -153,7 +153,7 @@ static tl_garment cut_sheet(float edge_m)
     return cut_level("sheet", outline, edge_m, SHEET_HEIGHT_M);
 }
 
-/* Quarter circles as cubic curves are round to 0.03 %. */
+/* A cubic curve approximates a quarter circle to 0.03 %. */
 static tl_garment cut_disc(float edge_m)
 {
     const double handle = 4 * (M_SQRT2 - 1) / 3 * DISC_RADIUS_M;

@@ -1,4 +1,4 @@
-/* Plain shapes to judge a fabric on beside garments: those of the papers' figures, and a sheet over a ball.
+/* Simple shapes for judging a fabric: those of the papers' figures, and a sheet over a ball.
  * Metres; UVs are metric, u along the weft, v along minus the warp, as a garment's. Threads: pure. */
 #ifndef TOILE_ASSETS_BUILTIN_SPECIMEN_H
 #define TOILE_ASSETS_BUILTIN_SPECIMEN_H
@@ -11,10 +11,10 @@
  * drawn. "sphere", "torus": solid, they do not move. */
 extern const char *const tl_specimen_names[]; /* NULL-terminated */
 
-/* Edges of about `edge_m`. False when the name is unknown. */
+/* Makes the shape called `name` with edges of about `edge_m`. False when the name is unknown. */
 bool tl_specimen_make(const char *name, float edge_m, tl_garment *out);
 
-/* What the sheet falls on: a sphere of 0.12 m on the axis. */
+/* The body under the sheet: a sphere of 0.12 m on the axis. */
 tl_avatar tl_specimen_ball(void);
 
 #endif

@@ -46,7 +46,7 @@ float tl_studio_room(vec3s direction)
     return grey + glow * expf(glow_exponent * (glms_vec3_dot(direction, backdrop) - 1));
 }
 
-/* How much of the light is seen in a direction: 1 inside, 0 outside, a smooth step across the edge. */
+/* The coverage of a light in a direction: 1 inside, 0 outside, a smooth step across the edge. */
 static float coverage(const struct tl_studio_light *light, const struct tl_studio_axes *axes, vec3s direction)
 {
     float depth = glms_vec3_dot(direction, axes->out);
@@ -119,7 +119,7 @@ tl_environment tl_environment_studio(void)
     return environment;
 }
 
-/* Small, but of a shape that every consumer of lat-long maps takes. */
+/* Small, but a size that every consumer of lat-long maps accepts. */
 enum { CONSTANT_WIDTH = 64, CONSTANT_HEIGHT = 32 };
 
 tl_environment tl_environment_constant(float red, float green, float blue)

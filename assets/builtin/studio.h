@@ -1,8 +1,8 @@
-/* The built-in studio: a grey room and the lamps that hang in it, as data (tl_environment_studio paints
- * them).
+/* The built-in studio: a grey room and the lamps that hang in it, as data (tl_environment_studio
+ * renders them).
  *
- * Each light is a rectangle far away, seen from the scene's middle; the picture is the room plus all lights.
- * Threads: pure. */
+ * Each light is a rectangle far away, seen from the scene's middle; the image is the sum of the room and all
+ * lights. Threads: pure. */
 #ifndef TOILE_ASSETS_BUILTIN_STUDIO_H
 #define TOILE_ASSETS_BUILTIN_STUDIO_H
 
@@ -36,7 +36,7 @@ float tl_studio_room(vec3s direction);
  * room, 512 x 256 lat-long. */
 tl_environment tl_environment_studio(void);
 
-/* The same radiance from everywhere; the furnace. */
+/* The same radiance from every direction, for furnace tests. */
 tl_environment tl_environment_constant(float red, float green, float blue);
 
 #endif

@@ -46,7 +46,8 @@ struct drawing {
 static const struct drawing drawings[] = {
     [TL_WEAVE_PLAIN] = {2, 1}, [TL_WEAVE_TWILL] = {4, 1}, [TL_WEAVE_SATIN] = {5, 2}};
 
-/* Half a yarn's width by its pitch: neighbours press into each other, which keeps the valleys' slopes finite.
+/* Half a yarn's width over its pitch: neighbours overlap a little, which keeps the slopes between them
+ * finite.
  */
 #define HALF_WIDTH 0.56
 
@@ -97,7 +98,7 @@ static struct sample yarn_surface(const struct yarns *yarns, const struct drawin
     };
 }
 
-/* The highest of the yarns that reach a place. */
+/* The highest yarn at a point. */
 static struct sample system_surface(const struct yarns *yarns, const struct drawing *drawing, double across,
                                     double along)
 {

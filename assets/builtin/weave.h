@@ -1,6 +1,6 @@
-/* Woven fabrics made from a drawing of their interlacing, at true millimetre scale: each yarn is a bent
- * elliptic tube; height is the upper envelope, normals its analytic slope, gloss and tint follow the yarn on
- * top. */
+/* The weave generator: detail maps of woven fabrics from their interlacing pattern, to scale in millimetres.
+ * Each yarn is a bent tube of elliptic section; the height map is the upper envelope of all yarns, normals
+ * are its analytic slopes, gloss and tint are those of the topmost yarn. */
 #ifndef TOILE_ASSETS_BUILTIN_WEAVE_H
 #define TOILE_ASSETS_BUILTIN_WEAVE_H
 
@@ -33,7 +33,7 @@ struct tl_weave_params {
     .depth_mm = 0.5f
 extern const struct tl_option_table tl_weave_options; /* "weave" */
 
-/* Maps of one repeat. pattern NONE gives false without an error: there is nothing to make. */
+/* Makes the maps of one repeat. False, without an error, for the pattern NONE. */
 bool tl_weave_create(const struct tl_weave_params *params, tl_weave *out);
 void tl_weave_release(tl_weave *weave);
 

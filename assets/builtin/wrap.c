@@ -72,8 +72,8 @@ struct tl_point tl_ring_at(const struct tl_ring *ring, double distance)
 }
 
 /* One row: the ring moved outwards by `out`, waved by `wave`. Directions turn evenly along the ring, which
- * keeps the cone of an oval waist nearly as developable as a round one's. The fold's phase wanders a little:
- * no cloth folds like a bellows. */
+ * keeps the cone of an oval waist nearly as developable as a round one's. The fold's phase varies a little:
+ * real folds are not evenly spaced. */
 static double waved_row(const struct tl_ring *ring, double out, double wave, int folds, struct tl_point *row)
 {
     struct tl_point raw[TL_FLARE_STEPS];

@@ -1,5 +1,6 @@
-/* Surfaces around the dress form that flat cloth bends onto with little strain: rings by arc length, and
- * flares that hang from a ring. For placing the pieces of built-in garments. Metres. Threads: pure. */
+/* Surfaces around the dress form that are nearly developable, for placing the flat pieces of built-in
+ * garments with little strain: rings by arc length, and flares that hang from a ring. Metres. Threads: pure.
+ */
 #ifndef TOILE_ASSETS_BUILTIN_WRAP_H
 #define TOILE_ASSETS_BUILTIN_WRAP_H
 

@@ -79,11 +79,11 @@ static void the_guess_is_said(void **state)
     struct tl_units_reading reading = read_tall(812);
     char *line = tl_units_describe("skirt.obj", &reading, "--units");
     assert_string_equal(line, "skirt.obj: 812 units at its longest: taken as millimetres (0.812 m); --units "
-                              "tells otherwise");
+                              "overrides this");
     free(line);
     reading = read_tall(60);
     line = tl_units_describe("skirt.obj", &reading, "--units");
-    assert_non_null(strstr(line, "centimetres (0.6 m), though inches would do"));
+    assert_non_null(strstr(line, "centimetres (0.6 m), though inches are possible"));
     free(line);
     reading = read_tall(0.1f);
     line = tl_units_describe("skirt.obj", &reading, "--units");
@@ -93,7 +93,7 @@ static void the_guess_is_said(void **state)
     line = tl_units_describe("a.glb", &reading, "scene.avatar_units");
     assert_string_equal(line,
                         "a.glb: 812 units at its longest: absurd as metres: taken as millimetres (0.812 m); "
-                        "scene.avatar_units tells otherwise");
+                        "scene.avatar_units overrides this");
     free(line);
 }
 
