@@ -17,7 +17,7 @@ bool tl_model_export_glb(const char *path, const tl_surface *surfaces, size_t su
         tl_writer_abandon(&writer);
         return false;
     }
-    fwrite(data, 1, size, writer.stream); /* a failure is kept by the stream and seen by the commit */
+    fwrite(data, 1, size, writer.stream); /* the stream remembers a failure until the commit */
     free(data);
     return tl_writer_commit(&writer, error);
 }

@@ -1,8 +1,8 @@
-/* A parsed glTF file as plain C: what assets/gltf/gltf_shim.cpp (tinygltf) hands to model.c, materials.c and
- * rig.c. Private to assets.
+/* A parsed glTF file as plain C, filled by gltf_shim.cpp (tinygltf).
  *
- * The shim copies, it does not judge: every index, offset and count below is the file's word, to be checked
- * where it is used (gltf_read_* do that for accessors). -1: absent. Pointers live as long as the document. */
+ * The shim copies without checks: every index, offset and count below comes from the file unchecked, and must
+ * be checked where it is used (gltf_read_* do that for accessors). -1: absent. Lifetime: pointers are valid
+ * as long as the document. */
 #ifndef TOILE_ASSETS_GLTF_GLTF_INTERNAL_H
 #define TOILE_ASSETS_GLTF_GLTF_INTERNAL_H
 
@@ -42,7 +42,7 @@ enum gltf_attribute {
     GLTF_JOINTS,
     GLTF_WEIGHTS,
     GLTF_COLOUR,
-    GLTF_PIN, /* "_PIN", in either case: which vertices hang from something */
+    GLTF_PIN, /* "_PIN", in either case: vertices that hold the cloth in place */
     GLTF_ATTRIBUTE_COUNT
 };
 
@@ -103,7 +103,7 @@ struct gltf_texture {
 
 enum gltf_alpha { GLTF_OPAQUE, GLTF_MASK, GLTF_BLEND };
 
-/* KHR_materials_*, by their own names; the defaults are those of a material without the extension. */
+/* KHR_materials_*, by their specifications' names; without an extension, its defaults. */
 struct gltf_extensions {
     float anisotropy_strength, anisotropy_rotation; /* rotation: rad */
     float clearcoat, clearcoat_roughness;
@@ -159,12 +159,12 @@ typedef struct gltf_document {
     void *owner; /* the shim's */
 } gltf_document;
 
-/* Parses JSON and gathers its buffers and images; `binary` is the GLB's BIN chunk or NULL. The shim keeps
- * nothing of `json` and `binary`. (gltf_shim.cpp; callers use gltf_open.) */
+/* Parses JSON and gathers its buffers and images; `binary` is the GLB's BIN chunk or NULL. Nothing of
+ * `json` and `binary` is kept. (gltf_shim.cpp; callers use gltf_open.) */
 bool gltf_parse(const char *path, const char *json, size_t json_size, const uint8_t *binary,
                 size_t binary_size, gltf_document *out, tl_error *error);
 
-/* Reads a .gltf or .glb whose container is sound. */
+/* Reads a .gltf or .glb file, after checks of its container; gltf_close releases the document. */
 bool gltf_open(const char *path, gltf_document *out, tl_error *error);
 void gltf_close(gltf_document *document);
 

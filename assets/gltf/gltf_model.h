@@ -6,10 +6,12 @@
 #include "assets/base/surface.h"
 #include "config/error.h"
 
-/* Fills a model that has its name only; on failure the caller releases it. */
+/* Fills a model of which only the name is set. On failure the caller releases it.
+ *
+ * Errors: false with one message (TL_INPUT). Lifetime: the file is closed on return. Threads: any. */
 bool gltf_load_model(const char *path, enum tl_units wanted, tl_model *out, tl_error *error);
 
-/* The surfaces as one GLB in memory; free(*data). Message on failure names `path`. */
+/* Encodes surfaces as one GLB in memory; free(*data). Messages name `path`; nothing is written there. */
 bool gltf_write_glb(const char *path, const tl_surface *surfaces, size_t surface_count, char **data,
                     size_t *size, tl_error *error);
 

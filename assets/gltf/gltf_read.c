@@ -7,11 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The container: whatever a GLB's lengths claim is checked against the file before anybody follows them. */
+/* ---- The container: a GLB's lengths are checked against the file before they are used ---- */
 
 static uint32_t little_endian(const uint8_t *bytes)
 {
-    /* The analyser takes a failed check, which ended the read, for a passed one. */
+    /* A false positive: the analyser assumes that a check failed but the function went on. */
     // NOLINTNEXTLINE(clang-analyzer-core.NullDereference)
     return (uint32_t)bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
 }
@@ -58,7 +58,7 @@ static bool find_chunks(const char *path, const uint8_t *data, size_t size, stru
     return true;
 }
 
-/* The parser recurses; a person's file is nested a dozen levels deep. */
+/* The parser is recursive, so depth is limited; real files are nested a dozen levels deep. */
 static bool is_nested_too_deep(const uint8_t *json, size_t size)
 {
     const int limit = 128;
@@ -166,7 +166,7 @@ static bool find_elements(const gltf_document *document, int view, size_t offset
     if (!gltf_view_bytes(document, view, what, &bytes, &available, error))
         return false;
     size_t stride = document->views[view].stride ? document->views[view].stride : size;
-    /* Counts are below 2^26 and strides below 2^8 here, so nothing overflows but the file's own offset. */
+    /* Counts are below 2^26 and strides below 2^8 here, so only the file's offset could overflow. */
     size_t needed = (count - 1) * stride + size;
     if (stride < size || offset > available || needed > available - offset)
         return tl_fail(
@@ -178,7 +178,9 @@ static bool find_elements(const gltf_document *document, int view, size_t offset
     return true;
 }
 
-/* An accessor without a view is zeros, and could ask for any amount of memory with a few bytes. */
+/* An accessor without a view is all zeros: a few bytes of file could request any amount of memory, hence
+ * `limit`.
+ */
 #define LIMIT_ZEROS ((size_t)1 << 20)
 
 static bool check_accessor(const gltf_document *document, int index, const char *what, int components,
@@ -271,7 +273,7 @@ static bool find_source(const gltf_document *document, int index, const char *wh
            find_sparse(document, accessor, size, what, &out->sparse_indices, &out->sparse_values, error);
 }
 
-/* One of the two takes the components of every element, one element after the other. */
+/* Exactly one of `floats` and `integers` is given: it receives the components, element by element. */
 struct sink {
     float *floats;
     uint32_t *integers;

@@ -90,7 +90,7 @@ void append_word(std::vector<char> &out, size_t word)
     append(out, bytes, sizeof bytes);
 }
 
-/* A GLB of the two chunks: one way in for both kinds of file, with lengths that are known to be true. */
+/* Assembles a GLB of the two chunks: both kinds of file then take one path, with lengths that are right. */
 std::vector<char> make_glb(const char *json, size_t json_size, const uint8_t *binary, size_t binary_size)
 {
     size_t json_padded = (json_size + 3) / 4 * 4, binary_padded = (binary_size + 3) / 4 * 4;
@@ -223,7 +223,7 @@ void copy_pair(float to[2], const tinygltf::Value &from)
             to[i] = number_of(from.Get(i), to[i]);
 }
 
-/* `Info` is one of tinygltf's three alike kinds of texture reference. */
+/* `Info` is one of tinygltf's three similar types of texture reference. */
 template <typename Info> gltf_texture copy_texture(const tinygltf::Model &model, const Info &from)
 {
     gltf_texture to = {};
@@ -466,7 +466,7 @@ void point_to(const Owner &owner, gltf_document &out)
     out.has_lights = !model.lights.empty();
 }
 
-/* tinygltf's complaint as part of one line. */
+/* Fails with the first line of tinygltf's message. */
 bool fail_parsing(const char *path, const std::string &complaint, tl_error *error)
 {
     std::string first = complaint.substr(0, complaint.find('\n'));

@@ -25,10 +25,11 @@ namespace
 
 const float AS_IT_IS = -1;
 
-/* One file in the making. Every array goes to the end of the only buffer. */
+/* The file under construction. Every array is appended to its one buffer. */
 struct Writer {
     tinygltf::Model model;
-    std::map<std::pair<const tl_image *, float>, int> textures; /* written: picture, glossiness or AS_IT_IS */
+    std::map<std::pair<const tl_image *, float>, int>
+        textures; /* written so far: image, and glossiness or AS_IT_IS */
 };
 
 int add_view(Writer &writer, const void *bytes, size_t size, int target)
@@ -78,7 +79,7 @@ int add_positions(Writer &writer, const tl_surface &surface)
     return index;
 }
 
-/* Pictures are PNG in the buffer. */
+/* Images are stored as PNG in the buffer. */
 int add_texture(Writer &writer, const tl_image *image, const char *path, tl_error *error)
 {
     void *png;
@@ -104,7 +105,8 @@ double roughness_of(float glossiness)
     return std::pow(2 / (4 * exponent + 2), 0.25);
 }
 
-/* glTF's packed picture for a gloss map: roughness in green; metalness, left to its factor, in blue. */
+/* glTF's packed texture for a gloss map: roughness in green, metalness in blue (all ones: the factor
+ * decides). */
 int add_roughness_texture(Writer &writer, const tl_image *gloss, float glossiness, const char *path,
                           tl_error *error)
 {
@@ -121,7 +123,7 @@ int add_roughness_texture(Writer &writer, const tl_image *gloss, float glossines
     return add_texture(writer, &image, path, error);
 }
 
-/* The index of a map's texture; a glossiness other than AS_IT_IS says that it is a gloss map. */
+/* The index of a map's texture; a glossiness other than AS_IT_IS marks a gloss map. */
 int find_texture(Writer &writer, const tl_image *image, float glossiness, const char *path, tl_error *error)
 {
     auto key = std::make_pair(image, glossiness);
@@ -214,7 +216,7 @@ void add_anisotropy(Writer &writer, const tl_material &from, tinygltf::Material 
             {"anisotropyRotation", number(turned)}});
 }
 
-/* F0 of what is no metal, as an index and what it is tinted by. */
+/* F0 of a dielectric, as an index of refraction and a specular colour. */
 void add_reflectance(Writer &writer, const tl_material &from, const vec3s &f0, tinygltf::Material &to,
                      const char *path, tl_error *error)
 {
@@ -247,7 +249,7 @@ void add_coat(Writer &writer, const tl_material &from, tinygltf::Material &to)
                 {"clearcoatRoughnessFactor", number(roughness_of(from.coat_glossiness))}});
 }
 
-/* Share of the light that goes through; the colour below it is what the rest is scattered by. */
+/* Diffuse transmission: its share, and the base colour for the remaining, reflected light. */
 double add_transmission(Writer &writer, const tl_material &from, tinygltf::Material &to)
 {
     double share = std::fmin(static_cast<double>(glms_vec3_max(from.transmission)), 0.99);
@@ -264,14 +266,14 @@ void tell_what_is_left_out(const tl_material &from, bool metal, const char *path
     const std::pair<bool, const char *> parts[] = {
         {from.gloss.model != TL_REFLECT_PHONG && !is_stretched(from), "its reflectance model"},
         {from.openness > 0, "its holes"},
-        {metal && glms_vec3_max(from.transmission) > 0, "light through a metal"},
+        {metal && glms_vec3_max(from.transmission) > 0, "transmission of a metal"},
         {from.weave != nullptr, "its weave"},
         {from.height_map.image != nullptr, "its heights"}};
     for (const auto &part : parts)
         if (part.first)
             left += std::string(left.empty() ? "" : ", ") + part.second;
     if (!left.empty())
-        tl_info("%s: %s: glTF has no place for %s", path, from.name, left.c_str());
+        tl_info("%s: %s: glTF cannot represent %s", path, from.name, left.c_str());
 }
 
 /* glTF has one base colour for both lobes: the diffuse one, or for a metal the specular one. */

@@ -1,4 +1,5 @@
-/* glTF's material extensions as the nearest that a tl_material can say, and in words what that changes. */
+/* glTF's material extensions as the nearest appearance that a tl_material can represent, with a note on each
+ * difference. */
 #include "assets/gltf/model_internal.h"
 
 #include <math.h>
@@ -8,7 +9,8 @@ static float unit(float value)
     return value > 0 ? fminf(value, 1) : 0; /* NaN: 0 */
 }
 
-/* F0 of the index, tinted and weakened [KHR_materials_specular]. An index of 0 stands for infinity there. */
+/* F0 from the index of refraction, scaled by the specular factor and colour [KHR_materials_specular,
+ * KHR_materials_ior]. An index of 0 means infinity there. */
 vec3s model_dielectric_f0(const struct material_build *build)
 {
     const struct gltf_extensions *from = &build->from->extensions;
@@ -17,8 +19,8 @@ vec3s model_dielectric_f0(const struct material_build *build)
     f0 *= model_map_mean(build, &from->specular_map, "a", "KHR_materials_specular: its strength").a;
     if (from->specular < 1)
         model_approximate(build->model,
-                          "KHR_materials_specular: weakens reflection in front; at grazing angles it "
-                          "stays whole");
+                          "KHR_materials_specular: weakens reflection at normal incidence; at grazing "
+                          "angles it stays full");
     if (build->metallic <= 0.5f)
         model_colour_map(build, &from->specular_colour_map, &build->to->specular_map);
     vec3s out;
@@ -29,8 +31,8 @@ vec3s model_dielectric_f0(const struct material_build *build)
     return out;
 }
 
-/* By least squares over views up to 70 degrees, where Ward's lobe falls with the cosine of the view and GGX
- * does not (tests/assets/gltf/test_model_extensions.c). */
+/* Fitted by least squares over views up to 70 degrees: there Ward's lobe falls with the cosine of the view,
+ * GGX does not (tests/assets/gltf/test_model_extensions.c). */
 float model_ward_factor(float width_weft, float width_warp)
 {
     return 1.14f + 0.17f * sqrtf(width_weft * width_warp);
@@ -38,7 +40,8 @@ float model_ward_factor(float width_weft, float width_warp)
 
 /* GGX of widths mix(alpha, 1, strength^2) along the direction and alpha across, as a Ward lobe of the same
  * widths. Wide slopes along a direction stretch the highlight along it; the grooves that make them run
- * across. It is nearest when it is a little brighter. */
+ * across. The fit is best with a factor a little
+ * above 1 (model_ward_factor). */
 static void apply_anisotropy(const struct material_build *build)
 {
     const struct gltf_extensions *from = &build->from->extensions;
@@ -51,7 +54,7 @@ static void apply_anisotropy(const struct material_build *build)
         struct model_mean mean = model_map_mean(build, &from->anisotropy_map, "rgb",
                                                 "KHR_materials_anisotropy: its direction or strength");
         strength *= mean.b;
-        if (mean.r < 1 || mean.g < 1) /* all ones: it could not be read */
+        if (mean.r < 1 || mean.g < 1) /* all ones: the map could not be read */
             gloss->rotation += atan2f(2 * mean.g - 1, 2 * mean.r - 1);
     }
     float alpha = fmaxf(build->roughness * build->roughness, 1e-3f);
@@ -63,15 +66,18 @@ static void apply_anisotropy(const struct material_build *build)
         build->to->specular.raw[c] = fminf(build->to->specular.raw[c] * brighter, 1);
     model_approximate(build->model,
                       "KHR_materials_anisotropy: shown by Ward's elliptical lobe of the same widths "
-                      "instead of GGX: shorter tails, brighter in front, darker at grazing views");
+                      "instead of GGX: shorter tails, brighter at normal incidence, darker at grazing views");
     if (build->roughness_varies)
         model_approximate(build->model,
                           "KHR_materials_anisotropy: roughness varies over a texture: its mean is used");
 }
 
-/* Mean albedo over all directions of the "Charlie" sheen [Estevez and Kulla 2017] by the midpoint rule: D =
- * (2
- * + 1/a) sin^(1/a) / 2 pi, V = 1 / (4 (l + v - l v)), a = roughness^2, l and v: the cosines. */
+/* Mean albedo of the "Charlie" sheen over all views [Estevez and Kulla 2017], by the midpoint rule over view,
+ * light and azimuth:
+ *
+ *     D = (2 + 1/a) sin^(1/a) / 2 pi,   V = 1 / (4 (l + v - l v)),   a = roughness^2,
+ *
+ * with l and v the cosines of light and view. */
 static float sheen_albedo(float roughness)
 {
     enum { VIEWS = 8, STEPS = 32 };
@@ -88,8 +94,8 @@ static float sheen_albedo(float roughness)
     return (float)(sum * 2 * M_PI / (VIEWS * STEPS * STEPS));
 }
 
-/* None of the lobes rises towards the rim as fuzz does: its mean light is scattered evenly instead, and what
- * lies under it gets the rest, as glTF has it. */
+/* No lobe of a tl_material rises towards grazing angles as sheen does. Its mean albedo is added to the
+ * diffuse colour instead, and the layers below are scaled by the rest, as glTF specifies. */
 static void apply_sheen(const struct material_build *build)
 {
     const struct gltf_extensions *from = &build->from->extensions;
@@ -115,20 +121,20 @@ static void apply_sheen(const struct material_build *build)
         build->to->specular.raw[c] *= 1 - most * albedo;
     }
     model_approximate(build->model,
-                      "KHR_materials_sheen: its light is added to the diffuse colour in the mean: no "
-                      "brighter rim");
+                      "KHR_materials_sheen: its mean light is added to the diffuse colour: no brighter "
+                      "rim");
 }
 
-/* Mean colour of what light is filtered by. */
+/* Mean base colour, which filters transmitted light. */
 static vec3s base_mean(const struct material_build *build)
 {
-    struct model_mean map = model_map_mean(build, &build->from->base_colour_map, "colour",
-                                           "colour of the light that shines through");
+    struct model_mean map =
+        model_map_mean(build, &build->from->base_colour_map, "colour", "colour of transmitted light");
     return (vec3s){{build->base[0] * map.r, build->base[1] * map.g, build->base[2] * map.b}};
 }
 
-/* Light through a smooth thin sheet goes straight on, as through holes; through a rough one it is scattered.
- * What is left of the surface between the holes is as much brighter as it is smaller. */
+/* A smooth thin sheet transmits light straight, as holes do; a rough one scatters it. A tl_material's colours
+ * are those of the surface between its holes, so they are divided by the share that is left. */
 static void apply_transmission(const struct material_build *build)
 {
     const struct gltf_extensions *from = &build->from->extensions;
@@ -151,7 +157,7 @@ static void apply_transmission(const struct material_build *build)
                       "tinted nor bent; rough parts scatter it evenly");
 }
 
-/* [KHR_materials_diffuse_transmission], which is what a tl_material has. */
+/* A tl_material has the same term [KHR_materials_diffuse_transmission]. */
 static void apply_diffuse_transmission(const struct material_build *build)
 {
     const struct gltf_extensions *from = &build->from->extensions;

@@ -10,14 +10,14 @@
 
 #define NO_SLOT UINT32_MAX
 
-/* What is being put together. */
+/* The model under construction. */
 struct builder {
     const gltf_document *document;
     tl_model *model;
     tl_rig *rig;
     vec3s *normals;       /* [vertex_count] before any transform; zero where the file has none */
     uint32_t *skin_slots; /* [skin_count] first slot of each skin, or NO_SLOT */
-    /* The vertices added last: primitives of one mesh often share theirs. */
+    /* The vertices added last: primitives of one mesh often share one set. */
     const int *last_attributes;
     const struct gltf_primitive **sources; /* [part_count] the primitive of each part */
     int last_node;
@@ -26,7 +26,7 @@ struct builder {
     bool has_pins, has_colours;
 };
 
-/* ---- Slots: what vertices hang on ---- */
+/* ---- Slots: a node and a bind matrix; vertices are bound to them ---- */
 
 static uint32_t add_slot(struct builder *builder, int node, mat4s bind)
 {
@@ -39,7 +39,7 @@ static uint32_t add_slot(struct builder *builder, int node, mat4s bind)
     return (uint32_t)rig->slot_count++;
 }
 
-/* One slot a joint, however many nodes use the skin. */
+/* Adds the slots of a skin once, one for each joint, however many nodes use it. */
 static bool add_skin(struct builder *builder, int index, tl_error *error)
 {
     const gltf_document *document = builder->document;
@@ -167,7 +167,7 @@ static void append_part(struct builder *builder, const struct gltf_vertices *fro
     mesh->index_count += from->index_count;
 }
 
-/* Appends the triangles of `from` at a node; skin: NULL or what its joints are counted in. */
+/* Appends the triangles of `from` at a node; skin: that of the node, or NULL. */
 static bool append_primitive(struct builder *builder, const struct gltf_primitive *from, int node,
                              const struct gltf_skin *skin, struct gltf_vertices *primitive, tl_error *error)
 {
@@ -242,7 +242,8 @@ static bool add_node(struct builder *builder, int index, tl_error *error)
     return true;
 }
 
-/* Nodes below the scene's roots, parents first. */
+/* Adds the nodes below the scene's roots, parents first: a node is shown when it is a root or its parent is.
+ */
 static bool add_scene(struct builder *builder, tl_error *error)
 {
     const gltf_document *document = builder->document;
@@ -268,7 +269,8 @@ static bool add_scene(struct builder *builder, tl_error *error)
 
 /* ---- The rest pose ---- */
 
-/* Columns of the cofactor matrix: normals under any linear map, scaled or mirrored. */
+/* Transforms a normal by the cofactor matrix, given by its columns: right for any linear map, also scaled or
+ * mirrored, and it needs no inverse. */
 static vec3s turn_normal(const mat4s *m, vec3s n)
 {
     vec3s x = {{m->m00, m->m01, m->m02}}, y = {{m->m10, m->m11, m->m12}}, z = {{m->m20, m->m21, m->m22}};
@@ -291,7 +293,7 @@ static void place_normals(const struct builder *builder, const mat4s *world)
             if (rig->influences[i].weights[k] <= 0)
                 continue;
             mat4s matrix = glms_mat4_mul(world[slot->node], slot->bind);
-            /* Every counted vertex has a normal: reserve() made both, which the analyser does not follow. */
+            /* A false positive: reserve() allocated normals for every vertex that is counted. */
             // NOLINTNEXTLINE(clang-analyzer-core.NullDereference)
             sum = glms_vec3_muladds(turn_normal(&matrix, builder->normals[i]), rig->influences[i].weights[k],
                                     sum);
@@ -301,7 +303,8 @@ static void place_normals(const struct builder *builder, const mat4s *world)
     }
 }
 
-/* A mirrored node turns its triangles inside out: their winding is mended [glTF 2.0, 3.7.4]. */
+/* A mirrored node (negative determinant) turns its triangles inside out: swap two corners of each [glTF 2.0,
+ * 3.7.4]. */
 static void repair_winding(const struct builder *builder, const mat4s *world)
 {
     tl_mesh *mesh = &builder->model->mesh;

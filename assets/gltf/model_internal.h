@@ -7,7 +7,8 @@
 #include "assets/base/rig.h"
 #include "assets/gltf/gltf_internal.h"
 
-/* The nodes of a document, their order, and its clips; gltf_load_model adds slots and vertices. */
+/* Reads the nodes of a document, their order, and its clips; gltf_load_model adds slots and vertices. On
+ * failure the caller destroys the rig. */
 bool rig_read(const gltf_document *document, tl_rig *rig, tl_error *error);
 
 /* The accessors of one primitive as plain arrays; NULL where the file has none. A zeroed one is empty. */
@@ -26,10 +27,10 @@ bool gltf_primitive_read_indices(const gltf_document *document, const struct glt
                                  struct gltf_vertices *to, tl_error *error);
 void gltf_vertices_release(struct gltf_vertices *vertices);
 
-/* What a decoded picture is used for decides how its texels are read. */
+/* The use of a decoded image decides how its texels are interpreted. */
 enum texture_use { TEXTURE_COLOUR, TEXTURE_DATA, TEXTURE_GLOSS, TEXTURE_COLOUR_MEAN, TEXTURE_DATA_MEAN };
 
-/* Pictures a material may name: each is decoded once for each use. */
+/* Maps that one material may name; an image is decoded once for each use. */
 #define MAPS_MAX 16
 
 struct texture_loaded {
@@ -55,17 +56,18 @@ struct texture_reader {
     uint64_t texel_count; /* decoded so far */
 };
 
-/* Points `map` at the texture's picture, decoded for that use; `roughness`: the factor of a gloss map. Never
- * NULL; without a picture its `image` is NULL. Lives as long as the reader. */
+/* Points `map` to the texture's image, decoded for that use; `roughness`: the factor of a gloss map. Returns
+ * facts about the image, valid as long as the reader, never NULL; `image` is NULL when there is none. */
 const struct texture_loaded *texture_read_map(struct texture_reader *reader,
                                               const struct gltf_texture *texture, enum texture_use use,
                                               float roughness, struct tl_map *map);
 
-/* materials, images: one tl_material for each of the file's and a default one after them. An image that is
- * missing or cannot be decoded is noted, and its map left out. */
+/* Fills the model's materials and images: one tl_material for each of the file's, then a default one. An
+ * image that is missing or cannot be decoded is noted, and its map left out. */
 void model_read_materials(const gltf_document *document, tl_model *model);
 
-/* variants, once the mesh has its parts; sources [mesh.part_count]: the primitive that each part is of. */
+/* Fills the model's variants; its mesh must have its parts. sources [mesh.part_count]: each part's primitive.
+ */
 bool model_read_variants(const gltf_document *document, const struct gltf_primitive *const *sources,
                          tl_model *model, tl_error *error);
 
@@ -79,22 +81,23 @@ struct material_build {
     bool roughness_varies;
     tl_material *to;
 };
-/* F0 of what is no metal [KHR_materials_ior, KHR_materials_specular]. (model_extensions.c) */
+/* F0 of the dielectric part [KHR_materials_ior, KHR_materials_specular]. (model_extensions.c) */
 vec3s model_dielectric_f0(const struct material_build *build);
-/* The other extensions, once `to` is as glTF without them has it. (model_extensions.c) */
+/* Applies the other extensions to `to`, which must be complete without them. (model_extensions.c) */
 void model_apply_extensions(const struct material_build *build);
 
-/* What an F0 is multiplied by when a GGX lobe of these widths is shown by Ward's (model_extensions.c). */
+/* Factor on F0 when a GGX lobe of these widths is approximated by Ward's (model_extensions.c). */
 float model_ward_factor(float width_weft, float width_warp);
 
-/* Mean over a texture, by channel; 1 where there is none. `which` of "rgba" are meant, or "colour": red,
- * green and blue, taken from sRGB to linear. Where one of them varies, that is told of `what`. */
+/* Mean of a texture by channel; 1 without a texture. `which`: the channels in use, of "rgba", or "colour" for
+ * red, green and blue, converted from sRGB to linear. If one of them varies, an approximation of `what` is
+ * noted. */
 struct model_mean {
     float r, g, b, a;
 };
 struct model_mean model_map_mean(const struct material_build *build, const struct gltf_texture *texture,
                                  const char *which, const char *what);
-/* A colour map that multiplies. */
+/* Points `out` to a texture that multiplies a colour. */
 void model_colour_map(const struct material_build *build, const struct gltf_texture *texture,
                       struct tl_map *out);
 

@@ -9,8 +9,8 @@ static float unit(float value, float otherwise)
     return isfinite(value) ? fminf(fmaxf(value, 0), 1) : otherwise;
 }
 
-/* The file's alpha is factor times texel; ours is the texel alone, so the factor goes into the cutoff. What
- * is evenly half transparent stays visible. */
+/* The file's alpha is factor times texel; a tl_material tests the texel alone, so the cutoff is divided by
+ * the factor. A surface that is half transparent everywhere stays visible. */
 static float alpha_cutoff(struct texture_reader *textures, const struct gltf_material *from)
 {
     float factor = fmaxf(unit(from->base_colour[3], 1), 1e-3f);
@@ -22,8 +22,8 @@ static float alpha_cutoff(struct texture_reader *textures, const struct gltf_mat
     return fminf(0.5f / factor, 1);
 }
 
-/* glTF's metallic-roughness model in two lobes: diffuse = base (1 - metallic), F0 = mix(F0 of what is no
- * metal, base, metallic). */
+/* glTF's metallic-roughness model in two lobes: diffuse = base (1 - metallic), F0 = mix(F0 of the
+ * dielectric, base, metallic). */
 static tl_material read_material(struct texture_reader *textures, const struct gltf_material *from)
 {
     tl_material to = tl_material_default(from->name && from->name[0] ? from->name : "unnamed");
@@ -57,7 +57,7 @@ static tl_material read_material(struct texture_reader *textures, const struct g
         to.specular.raw[i] = f0.raw[i] * (1 - metallic) + build.base[i] * metallic;
     }
     if (metallic > 0.5f)
-        to.specular_map = to.diffuse_map; /* a metal's colour is in what it mirrors */
+        to.specular_map = to.diffuse_map; /* a metal's colour is that of its reflection */
     to.alpha_cutoff = alpha_cutoff(textures, from);
     model_apply_extensions(&build);
     if (from->is_emissive)

@@ -34,12 +34,12 @@ static bool decode(struct texture_reader *reader, int source, tl_image *out)
     return true;
 }
 
-/* Of 255: what differs by less counts as the same. */
+/* A channel varies when its values differ by more than this, of 255. */
 #define VARIES 25
 
 /* glTF packs roughness in green and metalness in blue. A gloss map holds g of each texel over the largest g:
- * 255 must not stand for everything above 0.998, where s = 1 / (1 - g) runs from 500 to infinity. Metalness
- * becomes its mean, which is exact for cloth (0) and plain metal (1). */
+ * otherwise 255 would stand for everything above 0.998, where s = 1 / (1 - g) runs from 500 to infinity.
+ * Metalness becomes its mean, which is exact for cloth (0) and plain metal (1). */
 static void unpack_roughness(const tl_image *packed, struct texture_loaded *to, tl_image *gloss)
 {
     *gloss = tl_image_create(packed->width, packed->height, 1, TL_IMAGE_U8);
@@ -73,7 +73,7 @@ static void unpack_roughness(const tl_image *packed, struct texture_loaded *to, 
     to->roughness_varies = roughest - smoothest > VARIES;
 }
 
-/* One or two channels are grey, and alpha. */
+/* The mean of each channel. An image of one or two channels is grey, and alpha. */
 static void take_means(const tl_image *image, bool is_colour, struct texture_loaded *to)
 {
     size_t texels = (size_t)image->width * (size_t)image->height, channels = (size_t)image->channels;
@@ -116,7 +116,7 @@ static const struct texture_loaded *load_image(struct texture_reader *reader, in
     tl_image decoded;
     if (!decode(reader, source, &decoded))
         return fresh;
-    /* A few bytes of file may be a huge plain picture, and many materials may ask for it again. */
+    /* A few bytes may decode to a huge plain image, and many materials may use it: the sum is limited. */
     reader->texel_count += (uint64_t)decoded.width * (uint64_t)decoded.height;
     if (reader->texel_count > TL_LIMIT_IMAGE_TEXELS) {
         model_ignore(reader->model, "maps beyond %zu texels in all", TL_LIMIT_IMAGE_TEXELS);

@@ -1,4 +1,4 @@
-/* KHR_materials_variants: which material each part has in each variant. */
+/* KHR_materials_variants: the material of each part in each variant. */
 #include "assets/gltf/model_internal.h"
 #include "config/memory.h"
 
@@ -7,7 +7,7 @@
 
 #define VARIANTS_MAX 256
 
-/* A variant is chosen by its name: one without is numbered, and so is one whose name is taken. */
+/* Variants are chosen by name, so one without a name, or with a name in use, gets a number. */
 static void name_variant(const tl_model *model, const char *given, size_t number, char name[64])
 {
     snprintf(name, 64, "%s", given);
@@ -15,7 +15,7 @@ static void name_variant(const tl_model *model, const char *given, size_t number
         snprintf(name, 64, "%.30s%svariant %zu", given, given[0] ? " " : "", number);
 }
 
-/* Every variant of a part without a mapping for it has the part's own material. */
+/* Starts every variant with each part's own material; mappings then replace it. */
 static void begin_variants(const gltf_document *document, tl_model *model)
 {
     model->variants = TL_NEW_ARRAY(struct tl_variant, document->variant_count);

@@ -27,7 +27,7 @@ static bool read_parents(const gltf_document *document, tl_rig *rig, tl_error *e
     return true;
 }
 
-/* Breadth first from the nodes without a parent; what is never reached goes in circles. */
+/* Orders nodes breadth first from those without a parent. Nodes that are never reached form a cycle. */
 static bool order_nodes(const gltf_document *document, tl_rig *rig, tl_error *error)
 {
     size_t count = 0;
@@ -104,7 +104,7 @@ static bool read_clips(const gltf_document *document, tl_rig *rig, tl_error *err
         for (size_t c = 0; c < animation->channel_count; c++) {
             const struct gltf_channel *from = &document->channels[animation->first_channel + c];
             if (from->path == RIG_OTHER_PATH || from->node < 0)
-                continue; /* morph weights, and targets that only an extension knows */
+                continue; /* morph weights, and targets defined by extensions */
             struct rig_channel *channel = &rig->channels[rig->channel_count++];
             if (!read_channel(document, from, channel, error))
                 return false;

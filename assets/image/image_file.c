@@ -10,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* stb_image reads what it is given and makes up the rest, so a cut or damaged file would become a wrong
- * picture: the checks of a file's wholeness are made here. */
+/* stb_image fills in what a truncated or damaged file lacks, without an error, so files are checked for
+ * completeness here. */
 
 static uint32_t big_endian(const uint8_t *bytes)
 {
@@ -36,7 +36,7 @@ static uint32_t crc_of(const uint8_t *bytes, size_t size)
 
 static const uint8_t png_signature[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
 
-/* Every chunk up to IEND is there and has the checksum that it states. */
+/* Whether every chunk up to IEND is there with the right checksum. */
 static bool png_is_whole(const uint8_t *bytes, size_t size)
 {
     for (size_t at = sizeof png_signature; at + 12 <= size;) {
@@ -53,7 +53,8 @@ static bool png_is_whole(const uint8_t *bytes, size_t size)
     return false;
 }
 
-/* The image data that follow the headers (which may hold a thumbnail of its own) reach an end marker. */
+/* Whether the image data after the headers reach an end marker. (A header may hold a thumbnail with its own.)
+ */
 static bool jpeg_is_whole(const uint8_t *bytes, size_t size)
 {
     size_t at = 2;
@@ -65,8 +66,7 @@ static bool jpeg_is_whole(const uint8_t *bytes, size_t size)
     return at < size && memmem(bytes + at, size - at, end, sizeof end);
 }
 
-/* Deflate shrinks at most 1032 times, and a byte may hold 8 texels; nothing else that is read here does more.
- */
+/* Deflate compresses at most 1032:1 and a byte may hold 8 texels. JPEG is below that. */
 #define TEXELS_PER_BYTE ((uint64_t)1032 * 8)
 
 static bool check_before_decoding(const char *name, const uint8_t *bytes, size_t size, tl_error *error)
@@ -183,7 +183,7 @@ bool tl_image_save_png(const char *path, const tl_image *image, tl_error *error)
         tl_writer_abandon(&writer);
         return false;
     }
-    fwrite(data, 1, size, writer.stream); /* a failure is kept by the stream and seen by the commit */
+    fwrite(data, 1, size, writer.stream); /* the stream remembers a failure until the commit */
     free(data);
     return tl_writer_commit(&writer, error);
 }

@@ -4,16 +4,17 @@
 
 #include "assets/base/image.h"
 
-/* PNG (also 16-bit, indexed, interlaced) and JPEG from memory into U8; `name` is for messages. */
+/* Decodes PNG (also 16-bit, indexed, interlaced) and JPEG from memory, and from a file, into U8. `name` is
+ * for messages. *out belongs to the caller; zeroed on failure. */
 bool tl_image_decode(const char *name, const void *data, size_t size, tl_image *out, tl_error *error);
 bool tl_image_load(const char *path, tl_image *out, tl_error *error);
 
-/* The first channel of a PNG or JPEG as data, 0 to 1, F32 x1: what 16 bits hold is kept. */
+/* Loads the first channel of a PNG or JPEG as data, 0 to 1, F32 x1, with the full precision of 16 bits. */
 bool tl_image_load_values(const char *path, tl_image *out, tl_error *error);
 
-/* U8 image as PNG in memory; free(*data). `name` is for messages. */
+/* Encodes a U8 image as PNG in memory; free(*data). `name` is for messages. */
 bool tl_image_encode_png(const char *name, const tl_image *image, void **data, size_t *size, tl_error *error);
-/* ... and as a file; atomic. */
+/* Writes a U8 image as a PNG file, which appears whole or not at all. */
 bool tl_image_save_png(const char *path, const tl_image *image, tl_error *error);
 
 #endif

@@ -22,8 +22,7 @@ bool tl_radiance_begins(const void *data, size_t size)
     return size >= 2 && memcmp(data, "#?", 2) == 0;
 }
 
-/* Copies the next line without its end; false at the end of the file or when it is too long to be a header's.
- */
+/* Copies the next line without its end. False at the end of the file, or when it is too long for a header. */
 static bool next_line(struct reader *reader, char *line, size_t size)
 {
     const uint8_t *newline = memchr(reader->at, '\n', (size_t)(reader->end - reader->at));
@@ -143,7 +142,7 @@ bool tl_radiance_decode(const char *name, const void *data, size_t size, tl_imag
     struct header header;
     if (!read_header(name, &reader, &header, error))
         return false;
-    /* A run of at most 127 texels takes 8 bytes; small images may lie, they cost little. */
+    /* A run of at most 127 texels takes 8 bytes. Small images are not checked: they cost little. */
     const uint64_t bearable_texels = 1 << 22, texels_per_byte = 16;
     uint64_t texels = (uint64_t)header.width * (uint64_t)header.height;
     if (texels > bearable_texels && texels / texels_per_byte > size)

@@ -27,7 +27,7 @@ static bool open_format(tl_point_cache *cache, tl_error *error)
                    cache->name);
 }
 
-/* The distance between samples where it is the same all through. */
+/* The interval between samples when it is constant, else 0. */
 static double even_step(const double *moments, size_t count)
 {
     double step = count > 1 ? moments[count - 1] / (double)(count - 1) : 0;
@@ -37,7 +37,7 @@ static double even_step(const double *moments, size_t count)
     return step;
 }
 
-/* Reads a sample, brings it into metres and refuses what is not finite or far away. */
+/* Reads a sample in metres; refuses points that are not finite or more than 100 km away. */
 static bool fetch(tl_point_cache *cache, size_t index, vec3s *points, tl_error *error)
 {
     const float farthest_m = 1e5f; /* as for models */
@@ -109,7 +109,7 @@ const struct tl_point_cache_facts *tl_point_cache_facts(const tl_point_cache *ca
     return &cache->facts;
 }
 
-/* Times of frames are products of fractions: 59.9999999 is 60. */
+/* Frame times come from inexact products: rounds 59.9999999 to 60. */
 static double tidy(double position)
 {
     double whole = nearbyint(position);
@@ -137,7 +137,8 @@ double tl_point_cache_position(const tl_point_cache *cache, double time_s, doubl
     return tidy((double)low + (moment - cache->moments[low]) / span);
 }
 
-/* A sample through the two that are kept: playing reads each once. */
+/* Returns a sample from the two that are cached, reading it if needed; `keep` is not evicted. In playback
+ * each sample is read once. */
 static const vec3s *hold(tl_point_cache *cache, size_t index, size_t keep, tl_error *error)
 {
     for (int i = 0; i < 2; i++)

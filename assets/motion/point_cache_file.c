@@ -1,4 +1,4 @@
-/* PC2 and MDD: a header, and samples of three floats a point that follow each other. */
+/* PC2 and MDD files: a header, followed by samples of three floats per point. */
 #include "assets/motion/point_cache_internal.h"
 
 #include "config/file.h"
@@ -47,7 +47,7 @@ static bool open_file(tl_point_cache *cache, uint8_t *header, size_t header_byte
     return true;
 }
 
-/* What the header counts must be what the file has: nothing is allocated before. */
+/* Checks the header's counts against the file's length, before anything is allocated. */
 static bool check_counts(tl_point_cache *cache, uint32_t points, uint32_t samples, uint64_t bytes_a_sample,
                          uint64_t size, tl_error *error)
 {
@@ -116,7 +116,7 @@ static bool read_times(tl_point_cache *cache, size_t count, tl_error *error)
     return true;
 }
 
-/* Offsets: 0 samples, 4 points, 8 times. There is no magic: its length is what tells an MDD. */
+/* Offsets: 0 samples, 4 points, 8 times. There is no magic number: only its length identifies an MDD. */
 bool point_cache_open_mdd(tl_point_cache *cache, tl_error *error)
 {
     uint8_t header[MDD_HEADER_BYTES];
@@ -139,7 +139,7 @@ bool point_cache_read_file(tl_point_cache *cache, size_t index, vec3s *points, t
 {
     size_t count = cache->facts.point_count;
     uint64_t offset = cache->data_offset + (uint64_t)index * count * POINT_BYTES;
-    /* In place: a word is put together from the bytes that it replaces. */
+    /* Converted in place: each word replaces its own bytes. */
     uint8_t *bytes = (uint8_t *)points;
     if (fseeko(cache->stream, (off_t)offset, SEEK_SET) != 0 ||
         fread(bytes, POINT_BYTES, count, cache->stream) != count)

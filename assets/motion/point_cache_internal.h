@@ -1,4 +1,4 @@
-/* The inside of a tl_point_cache: point_cache.c has what formats share. Private to assets. */
+/* The fields of a tl_point_cache, and the readers of its formats. */
 #ifndef TOILE_ASSETS_MOTION_POINT_CACHE_INTERNAL_H
 #define TOILE_ASSETS_MOTION_POINT_CACHE_INTERNAL_H
 
@@ -18,18 +18,19 @@ struct tl_point_cache {
     bool big_endian;
     /* OBJ */
     int *numbers; /* [sample_count] */
-    /* Samples read last, in metres; SIZE_MAX: none. */
+    /* The two samples read last, in metres; SIZE_MAX: none. */
     size_t held[2];
     vec3s *points[2]; /* [point_count] */
 };
 
-/* Fill what belongs to the format; on failure the caller destroys the cache. (point_cache_file.c) */
+/* Read the header of a PC2 or MDD and fill the fields above. On failure the caller destroys the cache.
+ * (point_cache_file.c) */
 bool point_cache_open_pc2(tl_point_cache *cache, tl_error *error);
 bool point_cache_open_mdd(tl_point_cache *cache, tl_error *error);
-/* Sample `index` in units of the file. */
+/* Reads sample `index`, in units of the file. */
 bool point_cache_read_file(tl_point_cache *cache, size_t index, vec3s *points, tl_error *error);
 
-/* (point_cache_sequence.c) */
+/* The same for an OBJ sequence. (point_cache_sequence.c) */
 bool point_cache_open_sequence(tl_point_cache *cache, tl_error *error);
 bool point_cache_read_frame(tl_point_cache *cache, size_t index, vec3s *points, tl_error *error);
 

@@ -1,4 +1,4 @@
-/* OBJ sequences as point caches: the vertices of each file, at the moment that its number tells. */
+/* OBJ sequences as point caches: the vertices of each file, at the frame given by its number. */
 #include "assets/motion/point_cache_internal.h"
 
 #include "assets/motion/sequence.h"

@@ -12,7 +12,7 @@ struct tl_point_cache_writer {
     bool big_endian;
 };
 
-/* A failure is kept by the stream and seen by the commit. */
+/* The stream remembers a failure until the commit. */
 static void put_word(tl_point_cache_writer *writer, uint32_t word)
 {
     uint8_t bytes[4];

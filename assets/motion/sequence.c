@@ -10,7 +10,7 @@
 
 #define DIGITS_MAX 9 /* of a number that an int holds */
 
-/* A pattern in its parts: `folder` and `before` end where the next begins. */
+/* A pattern in its parts. */
 struct pattern {
     char *folder; /* with its last slash; "" for none */
     char *before; /* of the file name */
@@ -57,7 +57,7 @@ static void pattern_release(struct pattern *pattern)
     free(pattern->after);
 }
 
-/* The frame's number, or -1 when a file of that name is none of the sequence's. */
+/* The frame number in a file name, or -1 when the name does not match the pattern. */
 static int frame_number(const struct pattern *pattern, const char *name)
 {
     size_t before = strlen(pattern->before);
@@ -78,7 +78,7 @@ static int compare_numbers(const void *a, const void *b)
     return (first > second) - (first < second);
 }
 
-/* The numbers of the frames there are, in order; free() them. NULL when the folder cannot be read. */
+/* The frame numbers of the matching files, in order; free() them. NULL when the folder cannot be read. */
 static int *list_numbers(const struct pattern *pattern, size_t *count)
 {
     DIR *folder = opendir(pattern->folder[0] ? pattern->folder : ".");

@@ -2,7 +2,7 @@
 
 #include <stdbool.h>
 
-/* A polygon seen along its normal. */
+/* A polygon projected along its normal. */
 struct outline {
     const vec3s *corners;
     vec3s right, up;
@@ -28,7 +28,8 @@ static double turn(const struct outline *outline, uint32_t a, uint32_t b, uint32
            (double)glms_vec3_dot(ab, outline->up) * (double)glms_vec3_dot(ac, outline->right);
 }
 
-/* Corner `at` and its neighbours make a triangle that turns left and holds no other corner. */
+/* Whether corner `at` is an ear: it and its neighbours form a left-turning triangle that holds no other
+ * corner. */
 static bool is_ear(const struct outline *outline, size_t at)
 {
     size_t count = outline->count;
@@ -45,7 +46,7 @@ static bool is_ear(const struct outline *outline, size_t at)
     return true;
 }
 
-/* The next ear from `from` on; when there is none, because the polygon is flat or crosses itself, `from`. */
+/* The first ear from `from` on, or `from` when there is none: the polygon is degenerate or crosses itself. */
 static size_t find_ear(const struct outline *outline, size_t from)
 {
     for (size_t i = 0; i < outline->count; i++) {
@@ -67,7 +68,7 @@ void tl_polygon_cut(const vec3s *corners, size_t count, uint32_t *triangles, uin
                               .count = count};
     for (size_t i = 0; i < count; i++)
         scratch[i] = (uint32_t)i;
-    /* Two steps on after each cut: ears from all around instead of a fan from one corner. */
+    /* Moves on two corners after each cut: ears are taken from all around, not as a fan from one corner. */
     for (size_t at = 1; outline.count >= 3; at++) {
         at = find_ear(&outline, at);
         *triangles++ = outline.left[(at + outline.count - 1) % outline.count];

@@ -1,8 +1,9 @@
-/* Wavefront OBJ and MTL: what an OBJ file holds, as a model, and written.
+/* Wavefront OBJ and MTL files: read, as a model, and written.
  *
- * Read here and not by tinyobjloader (2.0rc10), which was tried: it takes `v 1 abc 2` for (1, 0, 2), a
+ * tinyobjloader (2.0rc10) was tried and is not used: it reads `v 1 abc 2` for (1, 0, 2), a
  * missing coordinate for 0, 1e400 for infinity and the index 4294967299 for 3, and only warns of indices out
- * of range. A garment that is silently wrong is worse than one that is refused. */
+ * of range. A garment that is silently wrong is worse than one that is refused.
+ * Threads: any. */
 #ifndef TOILE_ASSETS_OBJ_WAVEFRONT_H
 #define TOILE_ASSETS_OBJ_WAVEFRONT_H
 
@@ -20,7 +21,7 @@ struct wave_corner {
 
 struct wave_face {
     uint32_t corner_end; /* one past its last corner */
-    uint32_t group;      /* rises where the file begins a group or an object */
+    uint32_t group;      /* rises with each group or object of the file */
     uint32_t material;   /* index into `materials` */
 };
 
@@ -38,14 +39,16 @@ struct wave_object {
     char **ignored; /* keywords without effect, each once */
 };
 
-/* Reads and checks a whole file: every number finite, every index in range. */
+/* Reads and checks a whole file: every number is finite, every index in range. wave_release frees *out. */
 bool wave_read(const char *path, struct wave_object *out, tl_error *error);
 void wave_release(struct wave_object *object);
 
-/* An OBJ file and its MTL files as a model that has its name only; on failure the caller releases it. */
+/* Reads an OBJ file and its MTL files into a model of which only the name is set. On failure the caller
+ * releases it. */
 bool wave_load_model(const char *path, enum tl_units wanted, tl_model *out, tl_error *error);
 
-/* Writes a surface of `model` as OBJ; numbers in the C locale. A failure to write is kept by the stream. */
+/* Writes a surface of `model` as OBJ; numbers in the C locale. The stream remembers a failure to
+ * write. */
 void wave_write(FILE *stream, const tl_model *model, const tl_surface *surface);
 
 #endif

@@ -1,4 +1,4 @@
-/* The text of OBJ and MTL files as lines of words, and the materials of MTL files. */
+/* OBJ and MTL files as lines of words, and the materials of MTL files. */
 #ifndef TOILE_ASSETS_OBJ_WAVEFRONT_INTERNAL_H
 #define TOILE_ASSETS_OBJ_WAVEFRONT_INTERNAL_H
 
@@ -16,6 +16,7 @@ struct wave_text {
     locale_t plain;   /* numbers are read in the C locale */
 };
 
+/* Reads a file; wave_close releases it, also after a failure. */
 bool wave_open(const char *path, struct wave_text *out, tl_error *error);
 void wave_close(struct wave_text *text);
 
@@ -26,12 +27,12 @@ char *wave_word(struct wave_text *text);
 /* The rest of the line, without blanks at its ends; may be empty. */
 char *wave_rest(struct wave_text *text);
 
-/* `count` finite numbers from the line's next words; false, with a message that names the line and `what`,
- * when they are not all there. */
+/* Reads `count` finite numbers from the line's next words. False, with a message that names the line and
+ * `what`, when one is missing or is no number. */
 bool wave_numbers(struct wave_text *text, const char *what, int count, float *out, tl_error *error);
 
-/* Materials of the MTL files that `object` names, and a default one after them; images. A file or a picture
- * that cannot be read is noted as ignored (wavefront_materials.c). */
+/* Fills the model's materials and images from the MTL files that `object` names. A file or an image that
+ * cannot be read is noted as ignored. (wavefront_materials.c) */
 void wave_read_materials(const char *path, const struct wave_object *object, tl_model *model);
 
 #endif

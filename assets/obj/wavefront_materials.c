@@ -9,13 +9,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* MTL is a Phong model of the nineties: Kd is the diffuse colour, taken as linear; Ks the strength of the
+/* MTL describes a Phong model. Kd is the diffuse colour, taken as linear; Ks the strength of the
  * highlight, which exporters write from 0 to 1 with 0.5 for ordinary surfaces, so F0 = 0.08 Ks (Burley 2012,
  * "Physically Based Shading at Disney", 5.5: the specular parameter); Ns the exponent of the halfway vector,
  * four times that of the mirror direction (as in tl_glossiness_from_roughness). */
 #define F0_OF_KS 0.08f
 
-/* What is being read. */
+/* The state of reading. */
 struct reader {
     struct wave_text text;
     const struct wave_object *object;
@@ -31,7 +31,7 @@ static float unit(float value)
     return fminf(fmaxf(value, 0), 1);
 }
 
-/* A pattern of MTL: words that begin with - are options with so many numbers or words after them. */
+/* The number of arguments of a map statement's option, a word that starts with -. */
 static int option_arguments(const char *option)
 {
     static const struct {
@@ -45,7 +45,7 @@ static int option_arguments(const char *option)
     return 0;
 }
 
-/* -o and -s: one to three numbers, of which two count; what follows them is put back. */
+/* -o and -s take one to three numbers, of which two are used; the word after them is not consumed. */
 static void read_pair(struct wave_text *text, float out[2])
 {
     for (int i = 0; i < 3; i++) {
@@ -87,15 +87,15 @@ static const char *read_map_name(struct wave_text *text, struct tl_map *map)
     return wave_rest(text);
 }
 
-/* vt runs up, our v runs down, and a map's transform was meant for the former:
+/* OBJ's v runs up, ours runs down. A map's transform is for the former:
  * 1 - (offset + scale (1 - v)) = (1 - offset - scale) + scale v. */
 static void turn_over(struct tl_uv_transform *transform)
 {
     transform->offset[1] = 1 - transform->offset[1] - transform->scale[1];
 }
 
-/* Beside the MTL file. Exporters also write the path of the machine they ran on: then the name alone counts.
- */
+/* The path of an image, relative to the MTL file. Exporters also write paths of the machine that they ran on:
+ * when such a file does not exist, its name is looked for in the MTL file's folder. */
 static char *picture_path(const char *library, const char *name)
 {
     char *plain = tl_copy_string(name);
@@ -105,13 +105,13 @@ static char *picture_path(const char *library, const char *name)
     char *path = tl_path_beside(library, plain);
     const char *slash = strrchr(plain, '/');
     if (slash && !tl_file_exists(path)) {
-        char *beside = tl_path_beside(library, slash + 1);
-        if (tl_file_exists(beside)) {
+        char *sibling = tl_path_beside(library, slash + 1);
+        if (tl_file_exists(sibling)) {
             char *swap = path;
-            path = beside;
-            beside = swap;
+            path = sibling;
+            sibling = swap;
         }
-        free(beside);
+        free(sibling);
     }
     free(plain);
     return path;
@@ -157,7 +157,7 @@ static void read_map(struct reader *reader, struct tl_map *map, bool linear)
         map->image = load_picture(reader, name, linear);
 }
 
-/* A material that several files or statements define is what the last of them says. */
+/* Starts a material. Of several definitions of one material the last is used. */
 static void begin_material(struct reader *reader)
 {
     const char *name = wave_rest(&reader->text);
@@ -169,7 +169,7 @@ static void begin_material(struct reader *reader)
         }
 }
 
-/* Alpha is looked at where the file says that it means something. */
+/* map_d is supported when it is the alpha channel of map_Kd. */
 static void read_alpha_map(struct reader *reader)
 {
     struct tl_map map;

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LIMIT_PARTS 1024 /* each is drawn by itself */
+#define LIMIT_PARTS 1024 /* each is one draw call */
 
 struct builder {
     const struct wave_object *object;
@@ -29,8 +29,8 @@ static bool is_same(const struct wave_corner *a, const struct wave_corner *b)
     return a->position == b->position && a->uv == b->uv && a->normal == b->normal;
 }
 
-/* Corners that agree in vertex, texture coordinate and normal share a render vertex; numbered as they first
- * appear. */
+/* Corners of equal position, texture coordinate and normal share a render vertex; these are numbered in the
+ * order of their first corner. */
 static void share_corners(struct builder *builder)
 {
     const struct wave_object *object = builder->object;
@@ -75,8 +75,8 @@ static void fill_vertices(struct builder *builder)
     }
 }
 
-/* The material of each part, and which part each face is in. As many parts as the file has runs of one group
- * and material; too many of them are gathered by material. */
+/* Divides the faces into parts: one for each run of faces of one group and material; if these are too many,
+ * one for each material. Returns the part of each face, and the parts' materials. */
 static uint32_t *divide(const struct wave_object *object, uint32_t **part_materials, size_t *part_count)
 {
     uint32_t *part_of = TL_NEW_ARRAY(uint32_t, object->face_count);
@@ -132,7 +132,7 @@ static size_t corners_of(const struct wave_object *object, size_t face, uint32_t
     return object->faces[face].corner_end - *first;
 }
 
-/* Faces in the order of their parts; within a part as in the file. */
+/* Triangulates the faces in the order of their parts, within a part in that of the file. */
 static void fill_parts(struct builder *builder)
 {
     const struct wave_object *object = builder->object;

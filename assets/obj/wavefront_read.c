@@ -7,12 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LIMIT_FACE_CORNERS 1024 /* cutting a polygon into triangles takes the square of them */
+#define LIMIT_FACE_CORNERS 1024 /* ear clipping takes their square */
 #define LIMIT_MATERIALS    1024
 #define LIMIT_LIBRARIES    16
-#define LIMIT_IGNORED      16 /* keywords named; what is no OBJ at all has thousands */
+#define LIMIT_IGNORED      16 /* keywords listed; a file that is no OBJ has thousands */
 
-/* What is being read. */
+/* The state of reading. */
 struct reader {
     struct wave_text text;
     struct wave_object *object;
@@ -27,7 +27,7 @@ static bool fail_limit(const struct reader *reader, const char *what, size_t lim
                    reader->text.line, limit, what);
 }
 
-/* Room for one more; the file's length bounds what this comes to. */
+/* Makes room for one more element. The file's length bounds the total. */
 static void *grow(void *array, size_t count, size_t *capacity, size_t size)
 {
     if (count < *capacity)
@@ -46,7 +46,7 @@ static bool read_uv(struct reader *reader)
                         reader->error);
 }
 
-/* Exporters write nan for the normal of a triangle without area: it is computed instead. */
+/* Exporters write nan for the normal of a triangle without area; such a normal is computed instead. */
 static bool read_normal(struct reader *reader)
 {
     struct wave_object *object = reader->object;
@@ -61,8 +61,8 @@ static bool read_normal(struct reader *reader)
     return wave_numbers(&reader->text, "normal", 3, normal->raw, reader->error);
 }
 
-/* One of v/vt/vn at *at: from 1, or from -1 backwards. Positive ones may name what follows in the file: they
- * are checked at its end. */
+/* Reads one index of v/vt/vn at *at: from 1, or backwards from -1. A positive index may refer to a later
+ * line, so indices are checked at the end of the file. */
 static bool read_index(char **at, size_t count, uint32_t *out)
 {
     char *end;
@@ -121,7 +121,7 @@ static bool read_face(struct reader *reader)
     return true;
 }
 
-/* The index of a name in a list of strings, which it joins when it is new; `limit` when the list is full. */
+/* The index of a name in a list of strings; a new name is added. `limit` when the list is full. */
 static size_t find_or_add(char ***strings, size_t *count, size_t limit, const char *name)
 {
     for (size_t i = 0; i < *count; i++)
@@ -203,7 +203,7 @@ static bool read_line(struct reader *reader, const char *keyword)
         begin_group(reader);
     else if (strcmp(keyword, "mtllib") == 0)
         add_library(reader);
-    else if (strcmp(keyword, "s") != 0) /* cloth is smooth all over */
+    else if (strcmp(keyword, "s") != 0) /* smoothing groups: cloth is smooth everywhere */
         ignore_keyword(reader, keyword);
     return true;
 }
