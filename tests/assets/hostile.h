@@ -1,5 +1,5 @@
-/* What tests of broken files share: files are loaded or refused with one line that names them, nothing
- * crashes, and no small file takes much memory. */
+/* Shared by tests of broken files: a file is loaded, or refused with one line that names it; nothing crashes,
+ * and no small file takes much memory. */
 #ifndef TOILE_TESTS_HOSTILE_H
 #define TOILE_TESTS_HOSTILE_H
 
@@ -41,8 +41,8 @@ static inline void report(const char *what, struct outcome outcome)
     printf("%s: %zu loaded, %zu refused; peak so far %ld MiB\n", what, outcome.loaded, outcome.refused,
            usage.ru_maxrss / 1024);
 #ifndef __SANITIZE_ADDRESS__
-    /* A small file may claim up to 2^22 texels before it is doubted: 64 MiB of colour, as much again while it
-     * is copied or decoded, and what the process had. */
+    /* A small file may claim up to 2^22 texels before its length is checked: 64 MiB of colour, as much again
+     * while it is copied or decoded, and what the process had. */
     assert_true(usage.ru_maxrss < 512L * 1024);
 #endif
 }
@@ -64,7 +64,7 @@ static inline const char *scratch(const char *name)
     return path;
 }
 
-/* ---- Random damage, always the same ---- */
+/* ---- Random damage with a fixed seed ---- */
 
 static inline uint32_t next_random(uint32_t *seed)
 {
@@ -72,7 +72,7 @@ static inline uint32_t next_random(uint32_t *seed)
     return *seed;
 }
 
-/* A digit becomes another one: numbers that lie in a file that still parses. */
+/* A digit is replaced by another: the file still parses, with false numbers. */
 static inline uint8_t damaged(uint8_t byte, bool text, uint32_t *seed)
 {
     if (text)

@@ -1,6 +1,6 @@
-/* A small GLB with most of what the reader knows, made by the tests themselves: a square of four vertices on
- * two joints, one of which a clip turns, with a sparse accessor, normals, UVs, a picture and a second
- * primitive that shares the first one's vertices. */
+/* A small GLB with most of the features that the reader supports, made by the tests: a square of four
+ * vertices on two joints, one of which a clip turns, with a sparse accessor, normals, UVs, an image and a
+ * second primitive that shares the first one's vertices. */
 #ifndef TOILE_TESTS_SMALL_GLB_H
 #define TOILE_TESTS_SMALL_GLB_H
 
@@ -58,7 +58,7 @@ static inline struct small_glb small_glb_make(void)
 {
     struct small_glb glb = {0};
     const float positions[] = {0, 0, 0, 1, 0, 0,
-                               1, 1, 0, 0, 9, 9}; /* the last one is mended by sparse data */
+                               1, 1, 0, 0, 9, 9}; /* the last one is replaced by sparse data */
     const float normals[] = {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, uvs[] = {0, 1, 1, 1, 1, 0, 0, 0};
     const uint8_t joints[16] = {0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 1};
     const float weights[16] = {1, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 1}; /* 2: to be normalised */

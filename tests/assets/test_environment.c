@@ -135,8 +135,8 @@ static void formats_agree(void **state)
     tl_environment_release(&sun);
 }
 
-/* What cannot be light is cleaned and counted: the counts are what a reading of the files with OpenEXR's own
- * tools finds in R, G and B. */
+/* Values that are no radiance are replaced and counted: the counts are those that OpenEXR's own tools find in
+ * R, G and B. */
 static void cleaned_values_are_counted(void **state)
 {
     (void)state;
@@ -252,7 +252,7 @@ static void radiance_headers(void **state)
 }
 
 /* Six faces side by side become six stacked ones; any other shape is lat-long. */
-static void a_lying_cube_is_stacked(void **state)
+static void horizontal_cubes_are_stacked(void **state)
 {
     (void)state;
     uint8_t data[2][12][4];
@@ -280,7 +280,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(radiance_encodings),
         cmocka_unit_test(radiance_headers),
-        cmocka_unit_test(a_lying_cube_is_stacked),
+        cmocka_unit_test(horizontal_cubes_are_stacked),
         cmocka_unit_test(orientation),
         cmocka_unit_test(a_cube_and_a_latlong_of_one_place_agree),
         cmocka_unit_test(formats_agree),

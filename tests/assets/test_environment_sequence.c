@@ -1,4 +1,4 @@
-/* Sequences of environments: what is a frame, gaps, numbers, damaged frames. */
+/* Sequences of environments: patterns, numbers, gaps, damaged frames. */
 #include "assets/environment_sequence.h"
 #include "assets/image/exr.h"
 #include "config/file.h"
@@ -36,7 +36,7 @@ static void write_text(const char *name)
     free(path);
 }
 
-static void names_are_told_apart(void **state)
+static void patterns_are_recognised(void **state)
 {
     (void)state;
     assert_true(tl_environment_is_sequence("sky.####.exr"));
@@ -47,7 +47,7 @@ static void names_are_told_apart(void **state)
     assert_false(tl_environment_is_sequence(FOLDER "/odd#name.exr"));
 }
 
-/* Numbers from 8 to 11, one more digit than there are #; neighbours in the folder that are no frames. */
+/* Numbers from 8 to 11, one more digit than there are #; other files in the folder are not frames. */
 static void frames_are_found_in_order(void **state)
 {
     (void)state;
@@ -77,7 +77,7 @@ static void frames_are_found_in_order(void **state)
     tl_environment_sequence_release(&sequence);
 }
 
-static void zeros_stand_in_front(void **state)
+static void numbers_are_padded_with_zeros(void **state)
 {
     (void)state;
     write_frame("dawn_0000.exr", 1);
@@ -101,7 +101,7 @@ static void expect_refusal(const char *pattern, const char *part)
     assert_non_null(strstr(error.message, part));
 }
 
-static void what_is_wrong_is_named(void **state)
+static void errors_name_the_cause(void **state)
 {
     (void)state;
     write_frame("gap.01.exr", 1);
@@ -130,10 +130,10 @@ static void what_is_wrong_is_named(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(names_are_told_apart),
+        cmocka_unit_test(patterns_are_recognised),
         cmocka_unit_test(frames_are_found_in_order),
-        cmocka_unit_test(zeros_stand_in_front),
-        cmocka_unit_test(what_is_wrong_is_named),
+        cmocka_unit_test(numbers_are_padded_with_zeros),
+        cmocka_unit_test(errors_name_the_cause),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -57,7 +57,7 @@ static bool try_image(struct outcome *outcome, const char *path)
     return loaded;
 }
 
-/* ---- Files that others broke ---- */
+/* ---- Collections of broken files ---- */
 
 static try_function try_file;
 static struct outcome found;
@@ -102,7 +102,7 @@ static void broken_images(void **state)
     visit_folder("broken/images", try_environment);
 }
 
-/* ---- Files that lie, made here ---- */
+/* ---- Files with false claims, made here ---- */
 
 /* The small GLB with one piece of its JSON exchanged. */
 static struct small_glb exchanged(const char *from, const char *to)
@@ -121,7 +121,7 @@ static struct small_glb exchanged(const char *from, const char *to)
 
 #define POSITIONS_VIEW "\"byteOffset\":0,\"byteLength\":48"
 
-static void json_that_lies_is_refused(void **state)
+static void json_with_false_claims_is_refused(void **state)
 {
     (void)state;
     static const char *const lies[][2] = {
@@ -201,8 +201,8 @@ static void json_that_lies_is_refused(void **state)
     report("lies", outcome);
 }
 
-/* What only looks depend on is left out and named; so is what the reader does not know. */
-static void broken_looks_are_left_out(void **state)
+/* Broken parts that affect only the appearance are left out and listed; so are unknown features. */
+static void broken_appearance_is_left_out(void **state)
 {
     (void)state;
     static const char *const faults[][2] = {
@@ -224,7 +224,7 @@ static void broken_looks_are_left_out(void **state)
     }
 }
 
-static void binary_that_lies_is_refused(void **state)
+static void binary_with_false_claims_is_refused(void **state)
 {
     (void)state;
     const uint16_t index = 4, sparse = 4;
@@ -248,7 +248,7 @@ static void binary_that_lies_is_refused(void **state)
     }
 }
 
-/* A node's weight in the file is a few bytes; what it asks for must not be. */
+/* A node takes a few bytes of the file; the memory that nodes cause is limited all the same. */
 static void repetition_costs_little(void **state)
 {
     (void)state;
@@ -335,7 +335,7 @@ static void mutated_exr(void **state)
     tl_image_release(&image);
 }
 
-/* The codecs that are not written here. */
+/* Codecs that toile does not write. */
 static void mutated_codecs(void **state)
 {
     (void)state;
@@ -383,9 +383,9 @@ static void mutated_png(void **state)
     free(png);
 }
 
-/* ---- Sizes that lie ---- */
+/* ---- False sizes ---- */
 
-static void huge_pictures_are_refused(void **state)
+static void huge_images_are_refused(void **state)
 {
     (void)state;
     /* headers alone, checksums right: 30000 x 30000 and 16000 x 16000 of 8-bit RGBA */
@@ -411,7 +411,7 @@ static void huge_pictures_are_refused(void **state)
     report("huge pictures", outcome);
 }
 
-static void what_is_no_file_is_refused(void **state)
+static void paths_without_a_file_are_refused(void **state)
 {
     (void)state;
     struct outcome outcome = {0};
@@ -429,10 +429,10 @@ static void what_is_no_file_is_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_no_file_is_refused),
-        cmocka_unit_test(json_that_lies_is_refused),
-        cmocka_unit_test(broken_looks_are_left_out),
-        cmocka_unit_test(binary_that_lies_is_refused),
+        cmocka_unit_test(paths_without_a_file_are_refused),
+        cmocka_unit_test(json_with_false_claims_is_refused),
+        cmocka_unit_test(broken_appearance_is_left_out),
+        cmocka_unit_test(binary_with_false_claims_is_refused),
         cmocka_unit_test(repetition_costs_little),
         cmocka_unit_test(deep_nesting_is_refused),
         cmocka_unit_test(truncated_models),
@@ -441,7 +441,7 @@ int main(void)
         cmocka_unit_test(mutated_codecs),
         cmocka_unit_test(mutated_hdr),
         cmocka_unit_test(mutated_png),
-        cmocka_unit_test(huge_pictures_are_refused),
+        cmocka_unit_test(huge_images_are_refused),
         cmocka_unit_test(broken_models),
         cmocka_unit_test(broken_images),
         cmocka_unit_test(broken_environments),

@@ -4,7 +4,7 @@
 
 #include "tests/assets/hostile.h"
 
-/* ---- Loading all there is of a file ---- */
+/* ---- Loading everything in a file ---- */
 
 static bool try_object(struct outcome *outcome, const char *path)
 {
@@ -80,7 +80,7 @@ static void write_material(void)
     scratch_write(scratch("hostile_motion.mtl"), valid_material, strlen(valid_material));
 }
 
-/* ---- Lies ---- */
+/* ---- False claims ---- */
 
 struct change { /* at `offset`, these bytes */
     size_t offset, size;
@@ -106,12 +106,12 @@ static void refuse_changes(const char *name, const uint8_t *valid, size_t size, 
     }
     memcpy(bytes, valid, size);
     bytes[size] = 0;
-    scratch_write(path, bytes, size + 1); /* more than it claims */
+    scratch_write(path, bytes, size + 1); /* longer than it claims */
     assert_false(try_cache(&outcome, path));
     report(name, outcome);
 }
 
-static void pc2_that_lies_is_refused(void **state)
+static void pc2_with_false_claims_is_refused(void **state)
 {
     (void)state;
     uint8_t valid[CACHE_MAX] = {0};
@@ -141,7 +141,7 @@ static void pc2_that_lies_is_refused(void **state)
     refuse_changes("lie.pc2", valid, size, changes, TL_COUNT(changes));
 }
 
-static void mdd_that_lies_is_refused(void **state)
+static void mdd_with_false_claims_is_refused(void **state)
 {
     (void)state;
     uint8_t valid[CACHE_MAX] = {0};
@@ -165,7 +165,7 @@ static void mdd_that_lies_is_refused(void **state)
     refuse_changes("lie.mdd", valid, size, changes, TL_COUNT(changes));
 }
 
-static void objects_that_lie_are_refused(void **state)
+static void objects_with_false_claims_are_refused(void **state)
 {
     (void)state;
     static const char *const lies[] = {
@@ -211,7 +211,8 @@ static void objects_that_lie_are_refused(void **state)
     report("objects that lie", outcome);
 }
 
-/* Triangles without area, a face on one vertex, a mesh at one point: nothing to refuse, nothing infinite. */
+/* Triangles without area, a face on one vertex, a mesh at one point: they are read, and every result is
+ * finite. */
 static void degenerate_objects_are_read(void **state)
 {
     (void)state;
@@ -247,7 +248,7 @@ static void large_faces_are_refused(void **state)
     assert_false(try_object(&outcome, path));
 }
 
-/* A material that cannot be read leaves the shape: it is noted. */
+/* A material that cannot be read is noted, and the shape is read. */
 static void broken_materials_are_left_out(void **state)
 {
     (void)state;
@@ -273,8 +274,8 @@ static void broken_materials_are_left_out(void **state)
     }
 }
 
-/* A frame with another number of vertices, one that is no OBJ, one that is gone. */
-static void sequences_that_lie_are_refused(void **state)
+/* A frame with another number of vertices, one that is no OBJ, one that is missing. */
+static void inconsistent_sequences_are_refused(void **state)
 {
     (void)state;
     const char first[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
@@ -307,7 +308,7 @@ static void sequences_that_lie_are_refused(void **state)
     unlink(scratch("seq.2.obj"));
 }
 
-/* ---- Cut anywhere, damaged anywhere ---- */
+/* ---- Truncated and damaged at every place ---- */
 
 static void cut_anywhere(const char *name, const uint8_t *bytes, size_t size, try_function try, bool may_load)
 {
@@ -349,7 +350,7 @@ static void mutated_files(void **state)
     mutate("numbers.obj", object, strlen(valid_object), 1500, true, try_object);
 }
 
-/* The OBJ stays, its materials are damaged. */
+/* The OBJ is intact, its materials are damaged. */
 static bool try_material(struct outcome *outcome, const char *path)
 {
     static const char object[] =
@@ -383,13 +384,13 @@ static void mutated_materials(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pc2_that_lies_is_refused),
-        cmocka_unit_test(mdd_that_lies_is_refused),
-        cmocka_unit_test(objects_that_lie_are_refused),
+        cmocka_unit_test(pc2_with_false_claims_is_refused),
+        cmocka_unit_test(mdd_with_false_claims_is_refused),
+        cmocka_unit_test(objects_with_false_claims_are_refused),
         cmocka_unit_test(degenerate_objects_are_read),
         cmocka_unit_test(large_faces_are_refused),
         cmocka_unit_test(broken_materials_are_left_out),
-        cmocka_unit_test(sequences_that_lie_are_refused),
+        cmocka_unit_test(inconsistent_sequences_are_refused),
         cmocka_unit_test(truncated_files),
         cmocka_unit_test(mutated_files),
         cmocka_unit_test(mutated_materials),

@@ -1,4 +1,4 @@
-/* Coarse garments made fine: nothing but edges gets shorter. */
+/* Refinement of coarse garments: edges get shorter and nothing else changes. */
 #include "assets/refine.h"
 
 #include "config/memory.h"
@@ -49,13 +49,13 @@ static double area_of(const tl_mesh *mesh, const struct tl_mesh_part *part)
         const vec3s *p = mesh->positions;
         const uint32_t *v = &mesh->indices[i];
         vec3s cross = glms_vec3_cross(glms_vec3_sub(p[v[1]], p[v[0]]), glms_vec3_sub(p[v[2]], p[v[0]]));
-        assert_true(cross.z > 0); /* as it was wound */
+        assert_true(cross.z > 0); /* same winding */
         area += 0.5 * (double)glms_vec3_norm(cross);
     }
     return area;
 }
 
-/* How many of the triangles' sides run from a to b or from b to a, by place. */
+/* The number of triangle sides between positions a and b, in either direction. */
 static int sides_between(const tl_mesh *mesh, vec3s a, vec3s b)
 {
     int sides = 0;
@@ -68,7 +68,7 @@ static int sides_between(const tl_mesh *mesh, vec3s a, vec3s b)
     return sides;
 }
 
-/* Every side that no other triangle has lies on the outline, which is as long as it was: nothing gapes. */
+/* Every side of only one triangle lies on the outline, whose length is unchanged: there are no cracks. */
 static double outline_of(const tl_mesh *mesh)
 {
     double length = 0;
@@ -82,7 +82,7 @@ static double outline_of(const tl_mesh *mesh)
     return length;
 }
 
-static void edges_get_short_and_all_else_stays(void **state)
+static void refinement_changes_only_edge_lengths(void **state)
 {
     (void)state;
     const float lengths[] = {1.4f, 0.5f, 0.13f};
@@ -112,7 +112,7 @@ static void edges_get_short_and_all_else_stays(void **state)
     }
 }
 
-static void what_is_fine_stays_as_it_is(void **state)
+static void fine_garments_are_unchanged(void **state)
 {
     (void)state;
     tl_garment garment = make_sheet();
@@ -125,7 +125,7 @@ static void what_is_fine_stays_as_it_is(void **state)
 }
 
 /* Three square metres at 0.1 mm are 7e8 triangles. */
-static void what_would_be_too_large_is_refused(void **state)
+static void too_large_results_are_refused(void **state)
 {
     (void)state;
     tl_garment garment = make_sheet();
@@ -138,9 +138,9 @@ static void what_would_be_too_large_is_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(edges_get_short_and_all_else_stays),
-        cmocka_unit_test(what_is_fine_stays_as_it_is),
-        cmocka_unit_test(what_would_be_too_large_is_refused),
+        cmocka_unit_test(refinement_changes_only_edge_lengths),
+        cmocka_unit_test(fine_garments_are_unchanged),
+        cmocka_unit_test(too_large_results_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* The fabrics that ship: each reads, names a source for its numbers, and is cloth: within the ranges that
- * garment fabrics are measured in (KES: Kawabata 1980; FAST: De Boos and Tester 1994), widened to take
+/* The built-in fabrics: each can be read, names a source for its numbers, and lies within the ranges that
+ * garment fabrics have in measurements (KES: Kawabata 1980; FAST: De Boos and Tester 1994), widened to take
  * coatings and swimwear. */
 #include "tests/testing.h"
 
@@ -33,8 +33,7 @@ static void check_cloth(const char *name, const struct tl_cloth_fabric *fabric)
     }
 }
 
-/* Threads lie side by side: their pitch is that of sewing cloth, and fine enough to be resolved at 4 texels.
- */
+/* Yarn pitches are those of garment fabrics; the crimp is below the finer of them. */
 static void check_weave(const char *name, const struct tl_weave_params *weave)
 {
     if (weave->pattern == TL_WEAVE_NONE)
@@ -45,12 +44,12 @@ static void check_weave(const char *name, const struct tl_weave_params *weave)
     check_between(name, "crimp", (double)weave->crimp_mm, 0.05 * finer, finer);
 }
 
-/* Energy that leaves is less than what came, in every channel. */
-static void check_look(const char *name, const struct tl_material_params *look)
+/* Less light is reflected than arrives, in every channel. */
+static void check_appearance(const char *name, const struct tl_material_params *material)
 {
     for (int i = 0; i < 3; i++)
-        check_between(name, "albedo", (double)look->diffuse[i] + (double)look->specular[i], 0.01, 1);
-    check_between(name, "specular", (double)look->specular[1], 0.03, 0.15);
+        check_between(name, "albedo", (double)material->diffuse[i] + (double)material->specular[i], 0.01, 1);
+    check_between(name, "specular", (double)material->specular[1], 0.03, 0.15);
 }
 
 static void test_fabrics(void **state)
@@ -68,7 +67,7 @@ static void test_fabrics(void **state)
             continue;
         check_cloth(name, &settings.fabric);
         check_weave(name, &settings.weave);
-        check_look(name, &settings.material);
+        check_appearance(name, &settings.material);
         /* The publication's year, or where the file is. */
         bool sourced = strstr(text, "2011") || strstr(text, "2017") || strstr(text, "github");
         if (!sourced) {

@@ -1,5 +1,4 @@
-/* Files are read whole or refused in one line; written whole or not at all; nothing half-made stays behind.
- */
+/* Files are read whole or refused in one line, and written whole or not at all, without leftovers. */
 #include "tests/testing.h"
 
 #include "config/embedded.h"
@@ -132,7 +131,7 @@ static void test_abandoned_write_leaves_the_old_file(void **state)
     tl_writer_abandon(&(struct tl_writer){0});
 }
 
-/* Libraries that open files themselves are handed the temporary name. */
+/* Libraries that open files themselves get the temporary name. */
 static void test_closed_stream(void **state)
 {
     (void)state;
@@ -180,7 +179,7 @@ static void test_writing_is_refused(void **state)
     assert_true(S_ISCHR(status.st_mode)); /* not replaced by a renamed file */
 }
 
-/* A disk that takes no more: here a limit on the size of files, in a process of its own. */
+/* A full disk, simulated by a limit on file sizes in a child process. */
 static void test_full_disk_leaves_the_old_file(void **state)
 {
     (void)state;
@@ -232,7 +231,7 @@ static int interrupt_twice(int pause_ms)
         fflush(writer.stream);
         raise(SIGINT);
         if (!tl_interrupted() || count_entries(FOLDER) != 1)
-            _exit(2); /* the first is only remembered */
+            _exit(2); /* the first only sets a flag */
         usleep((useconds_t)pause_ms * 1000);
         raise(SIGINT);
         tl_writer_abandon(&writer);
@@ -263,7 +262,7 @@ static void test_path_extension(void **state)
     assert_false(tl_path_has_extension("", "glb"));
 }
 
-/* Whatever a name holds, a message is one line, and it is cut rather than overrun. */
+/* A message is one line whatever a name contains, and a long one is truncated. */
 static void test_messages_are_one_line(void **state)
 {
     (void)state;
@@ -278,7 +277,7 @@ static void test_messages_are_one_line(void **state)
     free(longest);
 }
 
-/* What is compiled in equals the file that it was made from, and each list of names fits its files. */
+/* Embedded data equal their files, and each list of names matches its files. */
 static void test_embedded_files(void **state)
 {
     (void)state;

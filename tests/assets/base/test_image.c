@@ -38,7 +38,7 @@ static void every_kind_of_png(void **state)
     }
 }
 
-/* The suite's interlaced picture is its plain one in another order. */
+/* The suite's interlaced image equals the one that is not interlaced. */
 static void interlacing_changes_nothing(void **state)
 {
     (void)state;
@@ -115,7 +115,7 @@ static void cut_or_damaged_png_is_refused(void **state)
     tl_image_release(&image);
 }
 
-static void what_is_no_png_cannot_be_written(void **state)
+static void failed_png_writes_are_reported(void **state)
 {
     (void)state;
     tl_image image = tl_image_create(2, 2, 3, TL_IMAGE_F32);
@@ -150,7 +150,7 @@ int main(void)
         cmocka_unit_test(srgb),
         cmocka_unit_test(png_round_trip),
         cmocka_unit_test(cut_or_damaged_png_is_refused),
-        cmocka_unit_test(what_is_no_png_cannot_be_written),
+        cmocka_unit_test(failed_png_writes_are_reported),
         cmocka_unit_test(sizes_are_checked),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

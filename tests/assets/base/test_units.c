@@ -15,7 +15,7 @@ static struct tl_units_reading read_tall(float tall)
 }
 
 /* The rows of the table in assets/base/units.h, and its borders from both sides. */
-static void sizes_tell_units(void **state)
+static void units_are_guessed_from_sizes(void **state)
 {
     (void)state;
     static const struct {
@@ -46,8 +46,8 @@ static void sizes_tell_units(void **state)
     }
 }
 
-/* Whatever is guessed as fitting is a garment's size once it is in metres; so is the other guess. */
-static void fitting_guesses_can_be_worn(void **state)
+/* A guess that fits gives the size of a garment in metres, and so does the second guess. */
+static void fitting_guesses_have_garment_sizes(void **state)
 {
     (void)state;
     for (int i = 0; i < 1600; i++) {
@@ -61,7 +61,7 @@ static void fitting_guesses_can_be_worn(void **state)
     }
 }
 
-static void who_says_units_is_believed(void **state)
+static void stated_units_are_used(void **state)
 {
     (void)state;
     struct tl_box tall = box_of_size(400, 812, 100), small = box_of_size(0.005f, 0.005f, 0.005f);
@@ -73,7 +73,7 @@ static void who_says_units_is_believed(void **state)
     assert_null(tl_units_describe("a.glb", &(struct tl_units_reading){.units = TL_UNITS_M}, ""));
 }
 
-static void the_guess_is_said(void **state)
+static void guesses_are_reported(void **state)
 {
     (void)state;
     struct tl_units_reading reading = read_tall(812);
@@ -97,9 +97,9 @@ static void the_guess_is_said(void **state)
     free(line);
 }
 
-/* A person who lies along Z with feet at z = 0, and with arms spread; panels about one whose waist is there;
- * upright; a wide skirt; a garment in front of the origin. */
-static void lying_boxes_are_noticed(void **state)
+/* A person along Z with feet at z = 0, and with arms spread; panels around one with its waist at z = 0; then
+ * upright ones: a person, a wide skirt, a garment in front of the origin. */
+static void models_along_z_are_detected(void **state)
 {
     (void)state;
     const struct tl_box lying = {{{-0.3f, -0.15f, 0}}, {{0.3f, 0.15f, 1.7f}}};
@@ -120,9 +120,9 @@ static void lying_boxes_are_noticed(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sizes_tell_units),           cmocka_unit_test(fitting_guesses_can_be_worn),
-        cmocka_unit_test(who_says_units_is_believed), cmocka_unit_test(the_guess_is_said),
-        cmocka_unit_test(lying_boxes_are_noticed),
+        cmocka_unit_test(units_are_guessed_from_sizes), cmocka_unit_test(fitting_guesses_have_garment_sizes),
+        cmocka_unit_test(stated_units_are_used),        cmocka_unit_test(guesses_are_reported),
+        cmocka_unit_test(models_along_z_are_detected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

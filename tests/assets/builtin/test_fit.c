@@ -42,7 +42,7 @@ static void girth_of_a_tube_is_its_circle(void **state)
     tl_mesh_release(&mesh);
 }
 
-static void an_arm_beside_the_trunk_is_not_measured(void **state)
+static void girth_ignores_arms(void **state)
 {
     (void)state;
     const float circles[][3] = {{0.05f, -0.3f, 0}, {0.15f, 0, 0}, {0.05f, 0.3f, 0}};
@@ -58,7 +58,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(girth_of_a_tube_is_its_circle),
-        cmocka_unit_test(an_arm_beside_the_trunk_is_not_measured),
+        cmocka_unit_test(girth_ignores_arms),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -40,7 +40,7 @@ static int compare_positions(const void *a, const void *b)
     return order ? order : compare_floats(p.z, q.z);
 }
 
-/* weld[v]: one render vertex for all of the same position. */
+/* weld[v]: the first render vertex of equal position. */
 static uint32_t *weld_by_position(const tl_mesh *mesh)
 {
     size_t count = mesh->vertex_count;
@@ -111,7 +111,7 @@ static void test_volume(void **state)
     assert_near(volume - torso, 0.002, 0.001);
 }
 
-/* The measurements that a tape gives, within 1 cm of the figure it was drawn for. */
+/* Tape measurements agree within 1 cm with the figure that the form was designed for. */
 static void test_measurements(void **state)
 {
     (void)state;
@@ -128,7 +128,7 @@ static void test_measurements(void **state)
     assert_near(tip, 1.38, 0.01);
 }
 
-/* Front and back differ as a figure's do: bust forward, seat back. */
+/* Front and back differ like a body's: bust to the front, seat to the back. */
 static void test_facing(void **state)
 {
     (void)state;

@@ -75,8 +75,9 @@ static float *corner_angles(const tl_garment *garment)
     return angles;
 }
 
-/* No slivers: no angle below 18 degrees, 99 % above 30; edges of about the wanted length (a hexagonal grid's
- * mean edge is its spacing; coarse cuts are mostly outline, whose edges are rounded to whole numbers). */
+/* No slivers: no angle below 18 degrees, 99 % above 30; edges of about the target length (a hexagonal grid's
+ * mean edge is its spacing; coarse cuts consist mostly of outline, whose curves have whole numbers of edges).
+ */
 static void check_quality(const tl_garment *garment, const char *name, float edge_m)
 {
     const tl_mesh *mesh = &garment->model.mesh;
@@ -222,9 +223,9 @@ static void test_topology(void **state)
     for_each_cut(check_topology);
 }
 
-/* The start is near enough to the flat pattern for a gentle settling: mean strain of edges below 2 %, none
- * beyond 20 %, everything at least 4 mm off the form (5 mm of ease in the waistband, 6 mm elsewhere). The
- * bounds are what a settling solver takes in its stride, not what the cut can do. */
+/* The start shape is close enough to the flat pattern to settle without violent motion: mean strain of edges
+ * below 2 %, none beyond 20 %, everything at least 4 mm off the form (5 mm of ease in the waistband, 6 mm
+ * elsewhere). The bounds are what the settling solver handles easily, not the best that the cut can do. */
 static void check_start(const tl_garment *garment, const char *name, float edge_m)
 {
     const tl_mesh *mesh = &garment->model.mesh;
@@ -254,7 +255,7 @@ static void test_start(void **state)
 {
     (void)state;
     for_each_cut(check_start);
-    tl_garment fine = cut("dress", 0.009f); /* begins as one that begins as another */
+    tl_garment fine = cut("dress", 0.009f); /* starts from a coarser cut, which starts from a coarser one */
     check_start(&fine, "dress", 0.009f);
     drop(&fine);
 }
@@ -297,8 +298,8 @@ static void test_outside(void **state)
     for_each_cut(check_outside);
 }
 
-/* What the renderer needs: UVs (x, -y) of the pattern, parts in metres that follow one another, a two-sided
- * material for each. */
+/* The requirements of the renderer: UVs (x, -y) of the pattern, parts in metres that follow one another, a
+ * two-sided material for each. */
 static void test_model(void **state)
 {
     (void)state;

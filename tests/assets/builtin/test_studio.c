@@ -1,4 +1,4 @@
-/* The studio's picture against closed forms of its lights: solid angles, Lambert's polygon formula, places.
+/* The studio's image against closed forms of its lights: solid angles, Lambert's polygon formula, directions.
  */
 #include "tests/testing.h"
 
@@ -40,7 +40,7 @@ static const float *texel(const tl_image *image, int x, int y)
     return tl_image_floats(image) + 3 * ((size_t)y * (size_t)image->width + (size_t)x);
 }
 
-/* What the picture shows of one light (the room taken away): integral over the light's own rectangle, grown
+/* The contribution of one light to the image, without the room: integral over the light's rectangle, extended
  * by its edge and a texel, of radiance, or of radiance x cosine to the light's axis. */
 static double integrate_light(const struct tl_studio_light *light, int channel, bool cosine)
 {
@@ -94,7 +94,7 @@ static void test_irradiance(void **state)
     }
 }
 
-/* What a white matt surface shows: irradiance / pi over the whole picture. */
+/* The radiance of a white matt surface: irradiance / pi over the whole image. */
 static double white_surface(vec3s normal)
 {
     double sum = 0;
@@ -108,8 +108,8 @@ static double white_surface(vec3s normal)
     return sum / M_PI;
 }
 
-/* The exposure that the scene is made for: a white surface towards the key light shows 0.8 to 1.2, the side
- * away from all lamps is darker by two stops at least, but not black. */
+/* The exposure that the scene is designed for: a white surface facing the key light has 0.8 to 1.2, the side
+ * facing away from all lamps is at least two stops darker, but not black. */
 static void test_exposure(void **state)
 {
     (void)state;
@@ -123,8 +123,9 @@ static void test_exposure(void **state)
     assert_true(below < key / 4 && below > 0.05);
 }
 
-/* The lamp, found in the picture, hangs where the data says, on the camera's side; a texel is 0.7 degrees, so
- * the brightest one is at most a degree off. It spans few texels, and its peak is the picture's. */
+/* The lamp is found in the image in the direction that the data states, on the camera's side; a texel is 0.7
+ * degrees, so the brightest one is at most a degree off. It spans few texels, and its peak is the picture's.
+ */
 static void test_lamp(void **state)
 {
     (void)state;
@@ -148,7 +149,7 @@ static void test_lamp(void **state)
     assert_true(tl_studio_light_axes(&tl_studio_lights[0]).out.z > 0.5f);
 }
 
-/* Behind the figure, as a camera of 50 degrees sees it, there is only the calm wall: neighbouring texels
+/* Behind the figure, as a camera of 50 degrees sees it, there is only the even wall: neighbouring texels
  * differ by less than 2 %, and it is brightest near the middle. */
 static void test_backdrop(void **state)
 {

@@ -1,5 +1,5 @@
-/* Woven detail: heights against closed forms, normals against finite differences of the heights, drawings
- * against their definitions, true scale, periodicity. */
+/* Woven detail: heights against closed forms, normals against finite differences of the heights, interlacing
+ * patterns against their definitions, scale, periodicity. */
 #include "tests/testing.h"
 
 #include "assets/builtin/weave.h"
@@ -8,7 +8,7 @@
 
 static const int patterns[] = {TL_WEAVE_PLAIN, TL_WEAVE_TWILL, TL_WEAVE_SATIN};
 
-/* Unequal pitches, so that swapped axes show; tints that say which yarn is on top. */
+/* Unequal pitches reveal swapped axes; the tints identify the yarn on top. */
 static struct tl_weave_params params_of(int pattern)
 {
     return (struct tl_weave_params){.pattern = pattern,
@@ -96,9 +96,9 @@ static void test_crests(void **state)
 }
 
 /* Of the weave's crossings, the share with the warp on top, and which: plain 1 of 2, chequered; twill 3 of 4,
- * each row of the drawing (a pick) one end to the right of the row below; satin 4 of 5, no two weft crossings
+ * each row of the pattern (a pick) one end to the right of the row below; satin 4 of 5, no two weft crossings
  * adjacent, not even by a corner. */
-static void test_drawings(void **state)
+static void test_interlacing(void **state)
 {
     (void)state;
     const int repeats[] = {2, 4, 5}, warp_crossings[] = {2, 12, 20};
@@ -197,8 +197,8 @@ static void test_periodic(void **state)
     }
 }
 
-/* The cloth as a whole is flat: yarns are symmetric, so the normals' mean leans nowhere, within a half of an
- * 8-bit step and what the warp-up valleys of an uneven drawing leave. */
+/* The cloth is flat on average: yarns are symmetric, so the mean normal is vertical, within half an 8-bit
+ * step and the asymmetry of the valleys of an uneven pattern. */
 static void test_mean_is_flat(void **state)
 {
     (void)state;
@@ -221,7 +221,7 @@ static void test_mean_is_flat(void **state)
     }
 }
 
-/* Gloss and tint are those of the yarn on top, nothing in between. */
+/* Gloss and tint are those of the yarn on top, without blending. */
 static void test_yarn_values(void **state)
 {
     (void)state;
@@ -262,7 +262,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_scale),       cmocka_unit_test(test_crests),
-        cmocka_unit_test(test_drawings),    cmocka_unit_test(test_normals_match_heights),
+        cmocka_unit_test(test_interlacing), cmocka_unit_test(test_normals_match_heights),
         cmocka_unit_test(test_periodic),    cmocka_unit_test(test_mean_is_flat),
         cmocka_unit_test(test_yarn_values), cmocka_unit_test(test_flat_cloth),
     };

@@ -34,7 +34,7 @@ static bool ignores(const tl_model *model, const char *what)
     return count == 1;
 }
 
-/* ---- A file of our own, every number of which is known ---- */
+/* ---- A file made here, of which every number is known ---- */
 
 static const char *small_path(void)
 {
@@ -67,7 +67,7 @@ static void small_geometry(void **state)
 }
 
 /* In inches the rest pose and every pose of a clip are 0.0254 times as large; a vertex is its own point. */
-static void told_units_scale_poses_too(void **state)
+static void given_units_scale_poses(void **state)
 {
     (void)state;
     tl_model metres = load(small_path()), inches;
@@ -121,7 +121,7 @@ static tl_model load_with_material(const char *material)
     return load(path);
 }
 
-/* The picture is grey, 10 250 / 30 200: that is roughness times the factor. */
+/* The image is grey, 10 250 / 30 200: roughness times the factor. */
 static void gloss_maps_are_exact_where_glossiest(void **state)
 {
     (void)state;
@@ -154,7 +154,7 @@ static void alpha_factors_go_into_the_cutoff(void **state)
     tl_model_release(&model);
 }
 
-static void metals_have_their_colour_in_the_mirror(void **state)
+static void metals_have_coloured_reflection(void **state)
 {
     (void)state;
     tl_model model =
@@ -168,7 +168,7 @@ static void metals_have_their_colour_in_the_mirror(void **state)
     tl_model_release(&model);
 }
 
-/* The clip turns joint 1, on which vertices 2 and 3 hang, by 90 degrees about z from 1 s to 2 s. */
+/* The clip turns joint 1, to which vertices 2 and 3 are bound, by 90 degrees about z from 1 s to 2 s. */
 static void small_clip(void **state)
 {
     (void)state;
@@ -179,7 +179,7 @@ static void small_clip(void **state)
     assert_int_equal(tl_model_find_clip(&model, "Turn"), -1);
     assert_near(model.clips[0].duration_s, 2, 1e-6);
     const double times_s[] = {0, 0.5, 1, 1.25, 1.5, 2 - 1e-9, 3.5, -0.5};
-    const double turns_deg[] = {0, 0, 0, 22.5, 45, 90, 45, 45}; /* before the first key it is held; loops */
+    const double turns_deg[] = {0, 0, 0, 22.5, 45, 90, 45, 45}; /* held before the first key; loops */
     for (size_t i = 0; i < TL_COUNT(times_s); i++) {
         vec3s posed[4];
         tl_model_pose(&model, 0, times_s[i], posed);
@@ -310,7 +310,7 @@ static void a_skin_ignores_its_node(void **state)
 
 /* ---- Real models ---- */
 
-/* Mirrored nodes must not turn triangles inside out: the file's normals say where outside is. */
+/* Mirrored nodes must not turn triangles inside out: the file's normals give the outside. */
 static void winding_agrees_with_normals(void **state)
 {
     (void)state;
@@ -336,7 +336,7 @@ static void winding_agrees_with_normals(void **state)
     }
 }
 
-static void people_have_their_sizes(void **state)
+static void bodies_have_plausible_sizes(void **state)
 {
     (void)state;
     const struct {
@@ -359,7 +359,7 @@ static void people_have_their_sizes(void **state)
     }
 }
 
-/* A walk: someone is always near the ground and nobody below it, and the last pose meets the first. */
+/* A walk: the lowest point is always near the ground, never below it, and the last pose joins the first. */
 static void cesium_man_walks(void **state)
 {
     (void)state;
@@ -389,7 +389,7 @@ static void cesium_man_walks(void **state)
     tl_model_release(&man);
 }
 
-static void garments_have_their_sizes(void **state)
+static void garments_have_plausible_sizes(void **state)
 {
     (void)state;
     tl_garment garment;
@@ -409,7 +409,7 @@ static void garments_have_their_sizes(void **state)
     }
 }
 
-static void what_has_no_effect_is_named_once(void **state)
+static void ignored_features_are_listed_once(void **state)
 {
     (void)state;
     static const char *const expected[][5] = {
@@ -522,7 +522,7 @@ static void check_round_trip(const char *from)
     release_exported(&e);
 }
 
-static void exports_come_back(void **state)
+static void exports_round_trip(void **state)
 {
     (void)state;
     check_round_trip(small_path());
@@ -541,7 +541,7 @@ static size_t count_files(const char *folder)
     return count;
 }
 
-static void failed_exports_leave_nothing(void **state)
+static void failed_exports_leave_no_file(void **state)
 {
     (void)state;
     struct exported e = make_exported(small_path());
@@ -565,24 +565,24 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(small_geometry),
-        cmocka_unit_test(told_units_scale_poses_too),
+        cmocka_unit_test(given_units_scale_poses),
         cmocka_unit_test(small_materials),
         cmocka_unit_test(gloss_maps_are_exact_where_glossiest),
         cmocka_unit_test(alpha_factors_go_into_the_cutoff),
-        cmocka_unit_test(metals_have_their_colour_in_the_mirror),
+        cmocka_unit_test(metals_have_coloured_reflection),
         cmocka_unit_test(small_clip),
         cmocka_unit_test(every_conformance_file_loads),
         cmocka_unit_test(primitive_modes),
         cmocka_unit_test(interpolations),
         cmocka_unit_test(a_skin_ignores_its_node),
         cmocka_unit_test(winding_agrees_with_normals),
-        cmocka_unit_test(people_have_their_sizes),
+        cmocka_unit_test(bodies_have_plausible_sizes),
         cmocka_unit_test(cesium_man_walks),
-        cmocka_unit_test(garments_have_their_sizes),
-        cmocka_unit_test(what_has_no_effect_is_named_once),
+        cmocka_unit_test(garments_have_plausible_sizes),
+        cmocka_unit_test(ignored_features_are_listed_once),
         cmocka_unit_test(texture_transforms_are_kept),
-        cmocka_unit_test(exports_come_back),
-        cmocka_unit_test(failed_exports_leave_nothing),
+        cmocka_unit_test(exports_round_trip),
+        cmocka_unit_test(failed_exports_leave_no_file),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

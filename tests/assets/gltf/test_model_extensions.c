@@ -3,8 +3,8 @@
 
 #include "tests/assets/small_glb.h"
 
-/* The small model whose second material, of base colour 0.8 0.6 0.4, no metal, has `extensions` and any other
- * members of its pbrMetallicRoughness. */
+/* The small model with `extensions` and other members of pbrMetallicRoughness in its second material, a
+ * dielectric of base colour 0.8 0.6 0.4. */
 static tl_model load_with(const char *pbr, const char *extensions)
 {
     static const char path[] = TOILE_SCRATCH_DIR "/model_extensions.glb";
@@ -24,7 +24,7 @@ static tl_model load_with(const char *pbr, const char *extensions)
 
 #define MATT "\"metallicFactor\":0,\"roughnessFactor\":0.5"
 
-static size_t told(const tl_model *model, const char *what)
+static size_t notes_with(const tl_model *model, const char *what)
 {
     size_t count = 0;
     for (size_t i = 0; i < model->approximated_count; i++)
@@ -32,7 +32,7 @@ static size_t told(const tl_model *model, const char *what)
     return count;
 }
 
-static void plain_materials_need_no_words(void **state)
+static void plain_materials_have_no_notes(void **state)
 {
     (void)state;
     tl_model model = load_with(MATT, "");
@@ -56,7 +56,7 @@ static void anisotropy_becomes_ward(void **state)
     assert_near(gloss->width_weft, 0.25 + 0.75 * 0.36, 1e-6);
     assert_near(gloss->width_warp, 0.25, 1e-6);
     assert_near(gloss->rotation, 1.25, 1e-6);
-    assert_int_equal(told(&model, "KHR_materials_anisotropy: shown by Ward"), 1);
+    assert_int_equal(notes_with(&model, "KHR_materials_anisotropy: shown by Ward"), 1);
     assert_int_equal(model.ignored_count, 0);
     tl_model_release(&model);
     model = load_with(MATT, "\"KHR_materials_anisotropy\":{\"anisotropyStrength\":0}");
@@ -98,7 +98,7 @@ static double nearest_factor(double u, double v)
     return across / square;
 }
 
-static void ward_is_as_near_to_ggx_as_it_comes(void **state)
+static void ward_factor_is_the_best_fit_to_ggx(void **state)
 {
     (void)state;
     const float strengths[] = {0.3f, 0.6f, 1}, roughnesses[] = {0.4f, 0.7f, 1};
@@ -115,8 +115,8 @@ static void ward_is_as_near_to_ggx_as_it_comes(void **state)
     }
 }
 
-/* The picture is grey, 10 250 / 30 200, mean 122.5: the mean direction is nearly nought by nought, equal in
- * both, on the diagonal below; the strength is its share; and that it varies is told. */
+/* The picture is grey, 10 250 / 30 200, mean 122.5: the mean direction is nearly zero, with equal
+ * components, on the lower diagonal; the strength is multiplied by the mean; the variation is noted. */
 static void anisotropy_takes_a_textures_mean(void **state)
 {
     (void)state;
@@ -126,16 +126,17 @@ static void anisotropy_takes_a_textures_mean(void **state)
     double mean = 122.5 / 255;
     assert_near(gloss->rotation, -3 * M_PI / 4, 1e-3);
     assert_near(gloss->width_weft, 0.25 + 0.75 * mean * mean, 1e-5);
-    assert_int_equal(told(&model, "its direction or strength varies over a texture: its mean is used"), 1);
+    assert_int_equal(notes_with(&model, "its direction or strength varies over a texture: its mean is used"),
+                     1);
     tl_model_release(&model);
     model = load_with("\"metallicFactor\":0,\"metallicRoughnessTexture\":{\"index\":0}",
                       "\"KHR_materials_anisotropy\":{\"anisotropyStrength\":1}");
     assert_near(model.materials[1].gloss.width_warp, mean * mean, 1e-5);
-    assert_int_equal(told(&model, "roughness varies over a texture: its mean is used"), 1);
+    assert_int_equal(notes_with(&model, "roughness varies over a texture: its mean is used"), 1);
     tl_model_release(&model);
 }
 
-/* ((n - 1)/(n + 1))^2, times factor and colour; a metal's is its base colour all the same. */
+/* ((n - 1)/(n + 1))^2, times factor and colour; a metal's is its base colour regardless. */
 static void index_and_specular_make_f0(void **state)
 {
     (void)state;
@@ -152,7 +153,7 @@ static void index_and_specular_make_f0(void **state)
     assert_near(model.materials[1].specular.x, 0.02, 1e-7);
     assert_near(model.materials[1].specular.y, 0.01, 1e-7);
     assert_near(model.materials[1].specular.z, 0, 0);
-    assert_int_equal(told(&model, "KHR_materials_specular: weakens reflection in front"), 1);
+    assert_int_equal(notes_with(&model, "KHR_materials_specular: weakens reflection at normal incidence"), 1);
     tl_model_release(&model);
     model = load_with("\"metallicFactor\":1,\"roughnessFactor\":0.5", "\"KHR_materials_ior\":{\"ior\":1.8}");
     assert_near(model.materials[1].specular.x, 0.8, 1e-6);
@@ -183,12 +184,12 @@ static void clearcoat_is_a_coat(void **state)
                       "\"KHR_materials_clearcoat\":{\"clearcoatFactor\":1,\"clearcoatTexture\":{\"index\":0},"
                       "\"clearcoatNormalTexture\":{\"index\":0}}");
     assert_near(model.materials[1].coat, 122.5 / 255, 1e-5);
-    assert_int_equal(told(&model, "KHR_materials_clearcoat: its share varies over a texture"), 1);
-    assert_int_equal(told(&model, "follows the surface's own normals"), 1);
+    assert_int_equal(notes_with(&model, "KHR_materials_clearcoat: its share varies over a texture"), 1);
+    assert_int_equal(notes_with(&model, "follows the surface's own normals"), 1);
     tl_model_release(&model);
 }
 
-/* What is scattered through is no longer scattered back: the two shares together are the material's. */
+/* Transmitted light is not reflected: the two shares add up to the material's. */
 static void diffuse_transmission_is_transmission(void **state)
 {
     (void)state;
@@ -204,8 +205,9 @@ static void diffuse_transmission_is_transmission(void **state)
     tl_model_release(&model);
 }
 
-/* Half of the light through a base of mean 0.6; roughness 0.5 lets half of that straight on. Surface and
- * holes together send as much each way as glTF's sheet: kept x (diffuse, transmission) and the holes. */
+/* Half of the light passes a base of mean 0.6; at roughness 0.5 half of that goes straight. Surface and holes
+ * together must reflect and transmit as much as glTF's sheet: kept x (diffuse, transmission) and the holes.
+ */
 static void transmission_is_holes_and_scatter(void **state)
 {
     (void)state;
@@ -216,7 +218,7 @@ static void transmission_is_holes_and_scatter(void **state)
     assert_near(kept * (double)sheer->diffuse.x, 0.8 * 0.5, 1e-6);
     assert_near(kept * (double)sheer->specular.x, 0.04, 1e-7);
     assert_near(kept * (double)sheer->transmission.z, 0.4 * 0.5 * 0.5, 1e-6);
-    assert_int_equal(told(&model, "neither tinted nor bent"), 1);
+    assert_int_equal(notes_with(&model, "neither tinted nor bent"), 1);
     tl_model_release(&model);
     model = load_with("\"metallicFactor\":0,\"roughnessFactor\":0",
                       "\"KHR_materials_transmission\":{\"transmissionFactor\":1}");
@@ -225,8 +227,8 @@ static void transmission_is_holes_and_scatter(void **state)
     tl_model_release(&model);
 }
 
-/* Light that fuzz sends back, by drawing directions at random: cosine-weighted views and even lights. */
-static double sheen_by_chance(double roughness)
+/* Albedo of the sheen by Monte Carlo: cosine-weighted views, uniform lights. */
+static double sheen_by_sampling(double roughness)
 {
     double inverse = 1 / (roughness * roughness), sum = 0;
     uint32_t seed = 1;
@@ -245,7 +247,7 @@ static double sheen_by_chance(double roughness)
     return sum / draws;
 }
 
-/* Its mean albedo is scattered evenly, and the cloth under it gets the rest. */
+/* The mean albedo of sheen is diffuse, and the cloth under it gets the rest. */
 static void sheen_is_scattered_light(void **state)
 {
     (void)state;
@@ -256,17 +258,17 @@ static void sheen_is_scattered_light(void **state)
                  i / 10.0);
         tl_model model = load_with(MATT, text);
         const tl_material *velvet = &model.materials[1];
-        double albedo = sheen_by_chance(i / 10.0);
+        double albedo = sheen_by_sampling(i / 10.0);
         assert_near(velvet->diffuse.x, 0.8 * (1 - albedo) + albedo, 0.004);
         assert_near(velvet->diffuse.y, 0.6 * (1 - albedo) + 0.5 * albedo, 0.004);
         assert_near(velvet->specular.z, 0.04 * (1 - albedo), 2e-4);
-        assert_int_equal(told(&model, "KHR_materials_sheen: its light is added"), 1);
+        assert_int_equal(notes_with(&model, "KHR_materials_sheen: its mean light is added"), 1);
         tl_model_release(&model);
     }
 }
 
-/* Numbers that no one means. */
-static void nonsense_is_harmless(void **state)
+/* Numbers outside every valid range. */
+static void invalid_parameters_are_clamped(void **state)
 {
     (void)state;
     static const char *const extensions[] = {
@@ -294,9 +296,9 @@ static void nonsense_is_harmless(void **state)
     }
 }
 
-/* What was read is written back so that it is read as the same material: within single precision, through a
- * glossiness's fourth root for the coat. */
-static void exports_come_back(void **state)
+/* A material survives reading, writing and reading: within single precision; the coat's roughness goes
+ * through the fourth root of a glossiness. */
+static void exports_round_trip(void **state)
 {
     (void)state;
     static const char path[] = TOILE_SCRATCH_DIR "/model_extensions_exported.glb";
@@ -353,19 +355,19 @@ static void real_files_are_read(void **state)
     for (size_t i = 0; i < model.material_count; i++)
         ward += model.materials[i].gloss.model == TL_REFLECT_WARD;
     assert_true(ward > 20);
-    assert_true(told(&model, "KHR_materials_anisotropy: shown by Ward") == 1);
+    assert_true(notes_with(&model, "KHR_materials_anisotropy: shown by Ward") == 1);
     tl_model_release(&model);
     assert_ok(tl_model_load(test_data("models/SheenChair/SheenChair.gltf"), &model, &error), error);
-    assert_true(told(&model, "KHR_materials_sheen: its light is added") == 1);
+    assert_true(notes_with(&model, "KHR_materials_sheen: its mean light is added") == 1);
     tl_model_release(&model);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(plain_materials_need_no_words),
+        cmocka_unit_test(plain_materials_have_no_notes),
         cmocka_unit_test(anisotropy_becomes_ward),
-        cmocka_unit_test(ward_is_as_near_to_ggx_as_it_comes),
+        cmocka_unit_test(ward_factor_is_the_best_fit_to_ggx),
         cmocka_unit_test(anisotropy_takes_a_textures_mean),
         cmocka_unit_test(index_and_specular_make_f0),
         cmocka_unit_test(specular_colours_are_maps),
@@ -373,8 +375,8 @@ int main(void)
         cmocka_unit_test(diffuse_transmission_is_transmission),
         cmocka_unit_test(transmission_is_holes_and_scatter),
         cmocka_unit_test(sheen_is_scattered_light),
-        cmocka_unit_test(nonsense_is_harmless),
-        cmocka_unit_test(exports_come_back),
+        cmocka_unit_test(invalid_parameters_are_clamped),
+        cmocka_unit_test(exports_round_trip),
         cmocka_unit_test(real_files_are_read),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

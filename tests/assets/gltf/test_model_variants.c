@@ -1,4 +1,4 @@
-/* KHR_materials_variants: what each part is made of in each variant, from small files and from real ones. */
+/* KHR_materials_variants: the material of each part in each variant, in small files and in real ones. */
 #include "assets/model.h"
 
 #include "tests/testing.h"
@@ -53,7 +53,7 @@ static void parts_change_material(void **state)
     tl_model_release(&model);
 }
 
-/* A variant is chosen by its name, so each gets one of its own. */
+/* Variants are chosen by name, so each has a name of its own. */
 static void every_variant_has_a_name(void **state)
 {
     (void)state;
@@ -70,7 +70,7 @@ static void every_variant_has_a_name(void **state)
     tl_model_release(&model);
 }
 
-static void what_does_not_exist_is_refused(void **state)
+static void indices_out_of_range_are_refused(void **state)
 {
     (void)state;
     static const struct {
@@ -94,8 +94,8 @@ static void what_does_not_exist_is_refused(void **state)
     }
 }
 
-/* What says nothing changes nothing. */
-static void empty_lists_are_fine(void **state)
+/* Empty lists of mappings and variants change nothing. */
+static void empty_lists_are_accepted(void **state)
 {
     (void)state;
     static const char *const mappings[] = {"[]", "{}", "[{\"material\":1}]",
@@ -141,8 +141,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(parts_change_material),
         cmocka_unit_test(every_variant_has_a_name),
-        cmocka_unit_test(what_does_not_exist_is_refused),
-        cmocka_unit_test(empty_lists_are_fine),
+        cmocka_unit_test(indices_out_of_range_are_refused),
+        cmocka_unit_test(empty_lists_are_accepted),
         cmocka_unit_test(the_velvet_sofa),
         cmocka_unit_test(the_sheen_chair),
     };

@@ -47,7 +47,7 @@ static void every_valid_file_loads(void **state)
     globfree(&found);
 }
 
-/* One picture in many codecs: those without loss agree to the bit. */
+/* One image in many codecs: the lossless ones agree to the bit. */
 static void codecs_agree(void **state)
 {
     (void)state;
@@ -60,8 +60,8 @@ static void codecs_agree(void **state)
         tl_image_release(&other);
     }
     /* B44's file has one column and row less. B44 keeps 6 bits of the range of 4 x 4 texels, in the
-     * logarithm: coarse beside the lamps of this picture. Read one texel aside, it differs by 8 to 15 % of
-     * its mean. */
+     * logarithm: coarse next to the lamps of this image. An image shifted by one texel differs by 8 to 15 %
+     * of its mean. */
     const char *const lossy[] = {"comp_b44", "comp_dwaa_v2", "comp_dwab_v2"};
     for (size_t i = 0; i < TL_COUNT(lossy); i++) {
         tl_image other = load_feature(lossy[i]);
@@ -81,7 +81,7 @@ static void codecs_agree(void **state)
     tl_image_release(&plain);
 }
 
-/* Every 16-bit pattern is somewhere in the picture; each kind of value must come through. */
+/* The image holds every 16-bit pattern; each kind of value must be kept. */
 static void all_half_values(void **state)
 {
     (void)state;
@@ -161,7 +161,7 @@ static void round_trip(void **state)
         }
 }
 
-/* Layers beside the colour do not disturb it, whatever the order of their names. */
+/* Other layers do not affect the colour, whatever the order of their names. */
 static void layers_are_kept_apart(void **state)
 {
     (void)state;
@@ -185,7 +185,7 @@ static void layers_are_kept_apart(void **state)
     tl_image_release(&back);
 }
 
-/* What the reference reader refuses is refused here too. */
+/* Every file that the reference reader refuses is refused here too. */
 static void broken_files(void **state)
 {
     (void)state;
@@ -277,7 +277,7 @@ static void previews_lie_within_their_attribute(void **state)
                    "claims more bytes than the file has");
 }
 
-/* Cut anywhere, a file is refused and never half read. */
+/* A file truncated at any byte is refused. */
 static void cut_files_are_refused(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* Point caches against what was written, against each other, and their time. */
+/* Point caches: what was written is read back, formats agree, times are right. */
 #include "assets/model.h"
 #include "assets/motion/point_cache.h"
 #include "config/memory.h"
@@ -76,12 +76,12 @@ static void check_samples(tl_point_cache *cache, float metres)
             for (int c = 0; c < 3; c++)
                 assert_near(points[i].raw[c],
                             metres * ((1 - part) * (double)from.raw[c] + part * (double)to.raw[c]),
-                            part > 0 || metres != 1 ? 1e-5 : 0); /* samples themselves come back to the bit */
+                            part > 0 || metres != 1 ? 1e-5 : 0); /* samples are exact to the bit */
         }
     }
 }
 
-static void what_is_written_is_read(void **state)
+static void written_caches_are_read_back(void **state)
 {
     (void)state;
     static const int numbers[] = {1, 2, 3, 4};
@@ -108,7 +108,7 @@ static void what_is_written_is_read(void **state)
 
 /* PC2: one sample a frame of the animation (30 a second here), or as many a second as are asked for. MDD: its
  * own seconds. */
-static void time_becomes_samples(void **state)
+static void times_map_to_samples(void **state)
 {
     (void)state;
     tl_point_cache *pc2 = open_cache(write_cache("a.pc2"), 1);
@@ -124,15 +124,15 @@ static void time_becomes_samples(void **state)
         assert_near(tl_point_cache_position(pc2, rows[i].time_s, 30, rows[i].own_rate), rows[i].pc2, 1e-5);
         assert_near(tl_point_cache_position(mdd, rows[i].time_s, 30, rows[i].own_rate), rows[i].mdd, 1e-5);
     }
-    for (int frame = 0; frame < SAMPLES; frame++) /* whole, whatever the division leaves */
+    for (int frame = 0; frame < SAMPLES; frame++) /* a whole sample despite rounding */
         for (int rate = 1; rate < 121; rate++)
             assert_true(tl_point_cache_position(pc2, frame / (double)rate, rate, 0) == frame);
     tl_point_cache_destroy(&mdd);
     tl_point_cache_destroy(&pc2);
 }
 
-/* The numbers of a sequence are its time, missing ones included. */
-static void gaps_take_their_time(void **state)
+/* The numbers of a sequence are its frames, also across missing ones. */
+static void missing_frames_keep_the_timing(void **state)
 {
     (void)state;
     static const int numbers[] = {10, 12, 20, 21};
@@ -226,8 +226,10 @@ static void real_caches_agree(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_written_is_read), cmocka_unit_test(time_becomes_samples),
-        cmocka_unit_test(gaps_take_their_time),    cmocka_unit_test(pc2_rate_counts_frames),
+        cmocka_unit_test(written_caches_are_read_back),
+        cmocka_unit_test(times_map_to_samples),
+        cmocka_unit_test(missing_frames_keep_the_timing),
+        cmocka_unit_test(pc2_rate_counts_frames),
         cmocka_unit_test(real_caches_agree),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -73,8 +73,8 @@ static void known_shapes(void **state)
     check_cut(stairs, 8);
 }
 
-/* Nothing to be right about, but as many triangles as ever, of corners that there are. */
-static void what_is_no_polygon_is_cut_too(void **state)
+/* Such polygons have no right triangulation, but the count and the indices must be valid. */
+static void degenerate_polygons_are_cut(void **state)
 {
     (void)state;
     const vec3s bow_tie[] = {{{0, 0, 0}}, {{1, 1, 0}}, {{1, 0, 0}}, {{0, 1, 0}}};
@@ -93,7 +93,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(known_shapes),
         cmocka_unit_test(stars_are_cut_without_overlap),
-        cmocka_unit_test(what_is_no_polygon_is_cut_too),
+        cmocka_unit_test(degenerate_polygons_are_cut),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -69,7 +69,7 @@ static void every_form_of_index_is_read(void **state)
     tl_model_release(&model);
 }
 
-static void lines_end_and_go_on_in_any_way(void **state)
+static void line_endings_and_continuations(void **state)
 {
     (void)state;
     tl_model plain = load_text(SQUARE "f 1 2 3 4\n");
@@ -114,7 +114,7 @@ static void groups_and_materials_make_parts(void **state)
     tl_model_release(&model);
 }
 
-static void maps_are_loaded_and_turned_over(void **state)
+static void maps_are_loaded_and_flipped(void **state)
 {
     (void)state;
     uint8_t texels[16] = {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 0};
@@ -158,7 +158,7 @@ static void units_scale_positions(void **state)
 }
 
 /* Too many groups to draw one by one are gathered by material, with every triangle kept. */
-static void many_groups_become_one_part_a_material(void **state)
+static void many_groups_are_merged_by_material(void **state)
 {
     (void)state;
     const int groups = 3000;
@@ -238,11 +238,11 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(corners_share_vertices),
         cmocka_unit_test(every_form_of_index_is_read),
-        cmocka_unit_test(lines_end_and_go_on_in_any_way),
+        cmocka_unit_test(line_endings_and_continuations),
         cmocka_unit_test(groups_and_materials_make_parts),
-        cmocka_unit_test(maps_are_loaded_and_turned_over),
+        cmocka_unit_test(maps_are_loaded_and_flipped),
         cmocka_unit_test(units_scale_positions),
-        cmocka_unit_test(many_groups_become_one_part_a_material),
+        cmocka_unit_test(many_groups_are_merged_by_material),
         cmocka_unit_test(written_objects_are_read_back),
         cmocka_unit_test(real_garments),
     };
