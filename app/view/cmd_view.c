@@ -117,7 +117,7 @@ static bool open_window(struct tl_review *review, tl_error *error)
 /* Restored settings may name files that no longer exist: then the built-in review is opened. */
 static bool open_scene(struct tl_review *review, bool is_restored, tl_error *error)
 {
-    struct tl_settings remembered = review->wanted;
+    struct tl_settings restored = review->wanted;
     if (tl_review_load_first(review, error))
         return true;
     if (review->closing || !is_restored || tl_interrupted())
@@ -125,7 +125,7 @@ static bool open_scene(struct tl_review *review, bool is_restored, tl_error *err
     tl_warn("view: the last review cannot be restored (%s): opening the built-in one", error->message);
     if (!tl_stage_settings(review->arguments, &review->wanted, error))
         return false;
-    review->wanted.camera = remembered.camera;
+    review->wanted.camera = restored.camera;
     return tl_review_load_first(review, error);
 }
 

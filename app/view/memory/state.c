@@ -56,10 +56,10 @@ static size_t bind(struct tl_state *state, struct tl_binding bindings[TABLES])
 /* The second fabric's weave and the colourways are not in a table: they are loaded again by their names. */
 static bool follow_names(struct tl_settings *settings, tl_error *error)
 {
-    struct tl_material_params look = settings->overlay;
+    struct tl_material_params material = settings->overlay;
     if (!tl_settings_apply_overlay(settings, settings->scene.overlay_fabric, error))
         return false;
-    settings->overlay = look;
+    settings->overlay = material;
     return tl_settings_apply_colourway(settings, settings->scene.colourway, error);
 }
 

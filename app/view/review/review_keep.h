@@ -15,7 +15,7 @@ void tl_review_save_view(struct tl_review *review, int index);
 /* After another scene was loaded: loads its saved views. */
 void tl_review_load_views(struct tl_review *review);
 
-/* Reloads the scene, fabric and preset files that have been edited; looks for them twice a second. */
+/* Reloads the scene, fabric and preset files that have been edited; checks twice a second. */
 void tl_review_reload_edited(struct tl_review *review);
 
 #endif

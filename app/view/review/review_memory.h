@@ -7,7 +7,7 @@
 #include "app/view/review/review.h"
 
 size_t tl_review_resident_bytes(void); /* of this process */
-/* Returns unused pages to the system when there are many; called every frame, looks once a second. */
+/* Returns unused pages to the system when there are many; called every frame, checks once a second. */
 void tl_review_trim_memory(struct tl_review *review);
 
 #endif

@@ -20,7 +20,7 @@ struct tl_window {
 
 static char last_glfw_message[512]; /* static: GLFW reports errors before there is a window */
 
-static void remember_glfw_message(int code, const char *message)
+static void store_glfw_message(int code, const char *message)
 {
     (void)code;
     snprintf(last_glfw_message, sizeof last_glfw_message, "%s", message);
@@ -149,7 +149,7 @@ tl_window *tl_window_create(const char *title, int width, int height, tl_error *
 {
     tl_window *window = TL_NEW(tl_window);
     last_glfw_message[0] = '\0';
-    glfwSetErrorCallback(remember_glfw_message);
+    glfwSetErrorCallback(store_glfw_message);
     if (!glfwInit()) {
         tl_fail(error, TL_DEVICE,
                 "no window can be opened (%s): run on a desktop or under Xvfb, or use `toile render`",

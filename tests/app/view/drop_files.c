@@ -1,5 +1,6 @@
 /* drop_files WINDOW X Y FILE...: drops files on a window as a file manager does (the XDND protocol, version
- * 5, as its source). X, Y: where, in the window. Exit 0: the window took them; 1: it did not, and says why.
+ * 5, as its source). X, Y: where, in the window. Exit 0: the window took them; 1: it did not, and the reason
+ * is printed.
  */
 #include <X11/Xatom.h>
 #include <X11/Xlib.h>
@@ -11,8 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define XDND_VERSION 5
-#define PATIENCE_MS  20000 /* a window that draws by software may be busy */
+#define XDND_VERSION      5
+#define ANSWER_TIMEOUT_MS 20000 /* a window that draws by software may be busy */
 
 struct drag {
     Display *display;
@@ -70,7 +71,7 @@ static bool understands(const struct drag *drag)
     return answers;
 }
 
-static void tell(const struct drag *drag, Atom what, const long data[4])
+static void send_message(const struct drag *drag, Atom what, const long data[4])
 {
     XEvent event = {.xclient = {.type = ClientMessage,
                                 .display = drag->display,
@@ -101,7 +102,7 @@ static void hand_over(const struct drag *drag, const XSelectionRequestEvent *req
 static bool hear(const struct drag *drag, Atom what, XClientMessageEvent *answer)
 {
     struct pollfd wire = {.fd = ConnectionNumber(drag->display), .events = POLLIN};
-    while (XPending(drag->display) > 0 || poll(&wire, 1, PATIENCE_MS) > 0) {
+    while (XPending(drag->display) > 0 || poll(&wire, 1, ANSWER_TIMEOUT_MS) > 0) {
         XEvent event;
         XNextEvent(drag->display, &event);
         if (event.type == SelectionRequest)
@@ -120,14 +121,14 @@ static int drop(const struct drag *drag, int x, int y)
     XClientMessageEvent answer;
     XTranslateCoordinates(drag->display, drag->target, root, x, y, &root_x, &root_y, &child);
     XSetSelectionOwner(drag->display, drag->selection, drag->source, CurrentTime);
-    tell(drag, drag->enter, (const long[4]){(long)XDND_VERSION << 24, (long)drag->uri_list});
-    tell(drag, drag->position,
-         (const long[4]){0, (long)root_x << 16 | root_y, CurrentTime, (long)drag->copy});
+    send_message(drag, drag->enter, (const long[4]){(long)XDND_VERSION << 24, (long)drag->uri_list});
+    send_message(drag, drag->position,
+                 (const long[4]){0, (long)root_x << 16 | root_y, CurrentTime, (long)drag->copy});
     if (!hear(drag, drag->status, &answer))
         return refuse("the window does not answer");
     if (!(answer.data.l[1] & 1))
         return refuse("the window does not want files");
-    tell(drag, drag->drop, (const long[4]){0, CurrentTime});
+    send_message(drag, drag->drop, (const long[4]){0, CurrentTime});
     return hear(drag, drag->finished, &answer) ? 0 : refuse("the window never took the files");
 }
 
@@ -140,7 +141,7 @@ int main(int argc, char **argv)
         return refuse("there is no display");
     find_atoms(&drag);
     if (!understands(&drag))
-        return refuse("the window does not say that it understands drops");
+        return refuse("the window does not announce that it accepts drops");
     drag.source = XCreateSimpleWindow(drag.display, DefaultRootWindow(drag.display), 0, 0, 1, 1, 0, 0, 0);
     drag.uris = calloc((size_t)(argc - 4), 3 * PATH_MAX + 16);
     for (int i = 4; i < argc; i++)

@@ -47,7 +47,7 @@ static void goes_back_and_forth(void **state)
     assert_null(history);
 }
 
-/* Far more edits than it remembers: the last ones are all there, in order, and nothing before them. */
+/* Many more edits than it keeps: the last ones are all there, in order, and nothing before them. */
 static void forgets_the_oldest(void **state)
 {
     (void)state;

@@ -1,9 +1,10 @@
-/* Fields of the panel whose text changes while nobody types in them. */
+/* Text fields of the panel whose text is changed by the program between two edits. */
 #include "tests/app/view/fields_shim.h"
 
 #include "tests/testing.h"
 
-/* The library's own steps of undo would write outside of the text: it aborts within some rounds. */
+/* Without tl_panel_forget_text the library's undo writes outside of the text and aborts within some rounds.
+ */
 static void a_field_survives_other_texts(void **state)
 {
     (void)state;

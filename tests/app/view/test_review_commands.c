@@ -1,5 +1,5 @@
-/* The table of the window's commands, without a window: no key is bound twice, every row says and does
- * something, and every key and every button leads to its row. */
+/* The table of the window's commands, without a window: no key is bound twice, every row has help and an
+ * action, and every key and every button leads to its row. */
 #include "tests/testing.h"
 
 #include "app/view/review_commands.h"

@@ -1,4 +1,4 @@
-/* What the window remembers: written and read back equal; broken files say so and change nothing. */
+/* The window's state: written and read back equal; broken files are reported and change nothing. */
 #include "app/view/memory/saved_views.h"
 #include "app/view/memory/state.h"
 #include "config/file.h"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# A real window under a virtual display, driven by keys and pointer: it follows, says what it did, takes different
+# A real window under a virtual display, driven by keys and pointer: it follows, reports what it did, takes different
 # screenshots, does not grow, and closes without an error and without a GL message.
 # TOILE is the program. ROUNDS (default 2) repeats the middle part.
 set -eu
@@ -9,7 +9,7 @@ shots=0
 shoot() {
     shots=$((shots + 1))
     xdotool key s
-    said "screenshot saved: shots/toile-$(printf %04d $shots).png"
+    logged "screenshot saved: shots/toile-$(printf %04d $shots).png"
 }
 
 fast="--preset draft --set cloth.edge_m=0.05"
@@ -25,7 +25,7 @@ scene() {
 scene dress
 $TOILE view scene.yaml --verbose --screenshots shots >out 2>log &
 viewer=$!
-said "view: ready"
+logged "view: ready"
 shoot # 1
 
 drag 1 450 300 600 340
@@ -52,16 +52,16 @@ press shift+t "environment turns"
 press shift+t "environment stands"
 press k "of shots/toile-path-0001.yaml"
 
-scene skirt # edited on disk: made ready beside the window, then perhaps given up
-said "edited: scene.yaml"
-said "view: loads skirt"
+scene skirt # edited on disk: loaded asynchronously, then stopped unless it is done
+logged "edited: scene.yaml"
+logged "view: loads skirt"
 xdotool key Escape
-said "loading was stopped\|garment skirt"
+logged "loading was stopped\|garment skirt"
 echo "scene: {garment: nosuch}" >scene.yaml
-said "warning: view: .*nosuch"
+logged "warning: view: .*nosuch"
 xdotool key Escape # the message goes
 scene dress
-said "edited: scene.yaml" 2
+logged "edited: scene.yaml" 2
 
 round() {
     press ctrl+5 "view: fabric silk"
@@ -70,7 +70,7 @@ round() {
     press space "plays at"
     drag 1 450 400 380 420
     xdotool keydown ctrl; drag 1 440 480 560 440; xdotool keyup ctrl
-    said "pulls on vertex" "$1"
+    logged "pulls on vertex" "$1"
     sleep 1
     press space "paused at"
     shoot
@@ -92,7 +92,7 @@ round() {
     press space "paused at"
     press ctrl+3 "view: fabric satin"
 }
-# At rest memory that lies idle is given back: what is left is in use.
+# At rest unused memory is returned to the system: the rest is in use.
 settle() {
     local before=0
     while [ $((before - $(resident_kb))) -gt 2048 ] || [ $(($(resident_kb) - before)) -gt 2048 ]; do
@@ -128,7 +128,7 @@ done
 echo "resident: $warm_kb kB after the first round, $grown_kb kB more at the end"
 [ "$grown_kb" -lt 122880 ] || fail "memory grew by $grown_kb kB"
 
-# The next review of this dress has its view; the window its size. A broken file of state is told, once.
+# The next review of this dress has its view; the window its size. A broken state file is reported, once.
 grep -q "^view2" state/toile/views/*.yaml || fail "view 2 is not kept"
 grep -q "width: 1280" state/toile/review.yaml || fail "the size is not kept"
 echo "window: [" >state/toile/review.yaml

@@ -19,7 +19,7 @@ open_display
 : >log
 $TOILE view $fast --fresh >out 2>log &
 viewer=$!
-said "view: ready"
+logged "view: ready"
 window=$(xdotool search --pid "$viewer" | tail -n 1)
 
 drop() { $DROP "$window" 200 200 "$@" || fail "not taken: $*"; }
@@ -28,7 +28,7 @@ drops() {
     local before
     before=$(grep -c -e "$2" log || true)
     drop "$1"
-    said "$2" $((before + 1))
+    logged "$2" $((before + 1))
 }
 answers() {
     drop "$1"
@@ -48,7 +48,7 @@ answers broken.yaml 1 "warning: view: .*broken.yaml"
 
 # Several at once: each in its turn.
 drop skirt.obj light.exr "bleu é 100%.yaml"
-said "view: environment .*/light.exr" 2
+logged "view: environment .*/light.exr" 2
 press 1 "view: garment .*/skirt.obj"
 press 2 "view: fabric .*/bleu é 100%.yaml"
 

@@ -26,7 +26,7 @@ scene dress light.exr
 : >log
 $TOILE view scene.yaml --budget 50 --screenshots shots --verbose 2>log &
 viewer=$!
-said "view: ready"
+logged "view: ready"
 window=$(xdotool search --pid "$viewer" | tail -n 1)
 
 point() { xdotool mousemove $((100 + RANDOM % 700)) $((100 + RANDOM % 600)); }
@@ -56,15 +56,15 @@ step() {
     esac
 }
 
-# ends KEY BEGUN ENDED: what the log says was begun last, and did not end, is ended.
+# ends KEY BEGUN ENDED: presses KEY when the last of the two texts in the log is BEGUN, and waits for ENDED.
 ends() { grep -e "$2" -e "$3" log | tail -n 1 | grep -q -e "$2" && press "$1" "$3" || true; }
 
-# The same state, whatever was before: at rest, with one scene that is read anew. Leaves what memory is in use and what is
-# resident, MB, in `memory`.
+# Brings the window to one fixed state: at rest, with the same scene loaded again. Sets `memory` to the megabytes in use and
+# resident.
 come_to_rest() {
     xdotool mousemove 300 300 click 1 # keys go to the picture, not to a field of the panel
     sleep 2
-    ends shift+k "records the camera's path" "path of .* saved"
+    ends shift+k "records the camera path" "path of .* saved"
     ends l "plays the path" "path played"
     ends t "turntable turns" "turntable stands"
     ends shift+t "the environment turns" "the environment stands"
@@ -74,9 +74,9 @@ come_to_rest() {
     sleep 3
     fabric 50 5
     scene dress light.exr
-    press period "view: frame" # it plays no longer
+    press period "view: frame" # pauses it
     press r "view: reset"
-    sleep 45 # images at rest, and two looks at memory
+    sleep 45 # images at rest, and two measurements of memory
     memory=$(sed -n 's/.*memory: \([0-9]*\) MB in use, \([0-9]*\) MB resident.*/\1 \2/p' log | tail -n 1)
     echo "memory at rest after $(((SECONDS - started) / 60)) minutes: ${memory% *} MB in use, ${memory#* } MB resident"
 }

@@ -1,4 +1,4 @@
-# Sourced by the scripts that drive the review window: a folder of their own, a virtual display, words with the window.
+# Sourced by the scripts that drive the review window: a folder of their own, a virtual display, keys and pointer, waiting for lines of the log.
 # TOILE is the program.
 for tool in Xvfb xdotool; do
     command -v "$tool" >/dev/null || { echo "skipped: $tool is absent"; exit 77; }
@@ -32,15 +32,15 @@ open_display() {
     unset WAYLAND_DISPLAY
 }
 
-# said TEXT [TIMES]: waits until the log holds the text so many times. Five minutes are not a bound on what it takes, but
-# on how long a window that hangs is waited for, beside any load.
-said() {
+# logged TEXT [TIMES]: waits until the log holds the text that many times. The five minutes are no performance bound: they
+# end the wait for a window that hangs, on a machine under any load.
+logged() {
     for _ in $(seq 3000); do
         [ "$(grep -c -e "$1" log)" -ge "${2:-1}" ] && { echo "ok     $1"; return; }
-        kill -0 "$viewer" 2>/dev/null || fail "the window closed before it said: $1"
+        kill -0 "$viewer" 2>/dev/null || fail "the window closed before it logged: $1"
         sleep 0.1
     done
-    fail "never said: $1"
+    fail "never logged: $1"
 }
 
 # press KEY TEXT: the log then holds the text once more.
@@ -48,7 +48,7 @@ press() {
     local before
     before=$(grep -c -e "$2" log || true)
     xdotool key $1
-    said "$2" $((before + 1))
+    logged "$2" $((before + 1))
 }
 
 resident_kb() { awk '/^VmRSS/ { print $2 }' "/proc/$viewer/status"; }
@@ -64,7 +64,7 @@ drag() {
     xdotool mouseup "$1"
 }
 
-# The window must have closed by itself: what it said of its end.
+# The window must have closed by itself, with status 0 and without GL messages.
 closed() {
     local status=0
     wait "$viewer" || status=$?
