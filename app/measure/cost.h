@@ -1,5 +1,5 @@
-/* What a piece of work took: CPU time of all the program's threads (software GL's among them) and time on the
- * wall; and medians. For show and for cost, never for results. */
+/* Time of a piece of work: CPU time of all threads of the process (those of software GL included) and wall
+ * time; and medians. Times are reported and steer costs; results never depend on them. */
 #ifndef TOILE_APP_MEASURE_COST_H
 #define TOILE_APP_MEASURE_COST_H
 

@@ -1,6 +1,5 @@
-/* Motion to measure in: a camera that walks round while a hand swings the garment's hem, or while the
- * avatar's own clip plays. What it looks like frame by frame is recorded once and then shown to every method
- * alike.
+/* The motion that measurements use: the camera orbits while a hand swings the garment's hem, or while the
+ * avatar's own clip plays. Its frames are recorded once and then drawn by every method.
  *
  * Metres, seconds. Ownership: a recording keeps positions, normals and tangents; all else (indices,
  * materials, the environment) it borrows from the session at the moment a frame is asked for. Threads: one at
@@ -21,9 +20,9 @@ struct tl_motion {
     float swing_m;       /* how far to either side */
 };
 
-/* From the session's current state, which is taken as frame 0 of the motion. */
+/* Begins the motion: the session's current state is frame 0. */
 void tl_motion_begin(struct tl_motion *motion, tl_session *session);
-/* To frame `number` of the motion, one after the other. */
+/* Advances to frame `number`, which must be the next one. */
 bool tl_motion_advance(struct tl_motion *motion, int number, tl_error *error);
 
 /* `camera` as it stands at a frame of the motion: turned about the vertical through its target. Pure. */

@@ -1,10 +1,8 @@
-/* What must hold in every frame of every scene: one table of invariants, each a function that looks at one
- * frame as a renderer has drawn it and tells how far off it is, and where.
- *
- * Nothing here draws or simulates: whoever asks (cmd_check.c, a test that breaks something on purpose) hands
- * over the frame, the renderer and what was made beside them. Results do not depend on the number of threads,
- * and a NaN anywhere is a failure, never a pass. Ownership: everything is borrowed. Threads: the one that the
- * GL context is current on. */
+/* The table of invariants that every frame of every scene must satisfy. Each is a function that measures the
+ * deviation of one drawn frame and its place. Nothing here draws or simulates: the caller (check_run.c, or a
+ * test that breaks something on purpose) passes the frame, its renderer and the auxiliary images. Results do
+ * not depend on the number of threads, and a NaN anywhere is a failure, never a pass. Ownership: everything
+ * is borrowed. Threads: the one that the GL context is current on. */
 #ifndef TOILE_APP_LAB_CHECK_CHECK_H
 #define TOILE_APP_LAB_CHECK_CHECK_H
 
@@ -35,13 +33,13 @@ struct tl_verdicts {
     struct tl_verdict items[TL_INVARIANTS_MAX];
 };
 
-/* Measures all invariants (only those of geometry when there is no image) and adds what they found. Returns
- * the index of the first one that this frame breaks, -1 when all hold; `broken` (or NULL) is what that one
- * found. */
+/* Measures all invariants (only those of geometry when there is no image) and merges the findings into
+ * `verdicts`. Returns the index of the first broken invariant, -1: none; `broken` (or NULL) receives its
+ * finding. */
 int tl_check_frame(const struct tl_checked *checked, struct tl_verdicts *verdicts, struct tl_finding *broken);
-int tl_verdicts_failed(const struct tl_verdicts *verdicts); /* how many are broken */
+int tl_verdicts_failed(const struct tl_verdicts *verdicts); /* number of broken invariants */
 
-/* FNV-1a over what a frame shows: positions of all surfaces, and the image; NULL: without it. */
+/* FNV-1a over the positions of all surfaces, and the image unless it is NULL. */
 uint64_t tl_check_hash(const tl_frame *frame, const tl_image *image);
 
 #endif

@@ -1,5 +1,6 @@
-/* The cloth within its envelope. What is worn keeps no momentum, for its wearer and the ground take it: there
- * the energy is watched, which only something that works on the cloth may raise. */
+/* Invariants of the cloth. Momentum is checked for free cloth only, because wearer and ground exchange
+ * momentum with the rest; for worn cloth the energy is checked, which may rise only while something drives
+ * it. */
 #include "app/lab/check/check_measures.h"
 #include "cloth/contact/caught.h"
 #include "cloth/drive/hand.h"
@@ -21,7 +22,7 @@
  * edge at 0.85 instead of 0.16. */
 #define HURRIED_STRAIN 1.0
 
-/* Of cloth as a whole: what `preview` is told to keep by default. */
+/* Root mean square over all edges: the default strain limit of `preview`. */
 #define USUAL_STRAIN 0.1
 
 /* Metres: what single precision leaves of places on an avatar. */
@@ -57,13 +58,13 @@ void tl_measure_strain(const struct tl_checked *checked, struct tl_finding *find
         return;
     const struct tl_cloth_report *report = &checked->cloth->report;
     finding->bound = strain_bound(checked->cloth);
-    /* The largest of numbers passes over what is none; a sum does not. */
+    /* The maximum of the strains skips NaNs; the sum of the energies does not. */
     tl_finding_add(finding, isfinite(energy_of(report)) ? report->max_strain : (double)NAN);
     tl_finding_place(finding, "garment: %zu of %zu particles caught", report->caught_count,
                      report->vertex_count);
 }
 
-/* Whatever a few edges have to bear where they are caught, most keep what the solver is told to keep. */
+/* A few edges may exceed the strain limit where cloth is caught; the mean must not. */
 void tl_measure_stretch(const struct tl_checked *checked, struct tl_finding *finding)
 {
     const struct tl_checked_cloth *cloth = checked->cloth;

@@ -1,4 +1,4 @@
-/* Pixels, and pictures beside pictures. */
+/* Invariants of one image, and of images that must agree. */
 #include "app/lab/check/check_measures.h"
 
 #include <math.h>
@@ -73,8 +73,9 @@ static double relative_error(const tl_image *a, const tl_image *b, size_t *worst
 }
 
 /* Two pictures by rays differ by the error of both: `toile bench light` has 3 to 4.5 % for review in motion,
- * of which each picture has its own part; small pictures and fewer regions widen that. Maps are drawn anew
- * whenever anything moves, so the picture is the same but for the rounds that a resting picture has averaged.
+ * of which each picture has its own part; small pictures and fewer regions widen that. Maps are rebuilt
+ * whenever anything moves, so that the image is the same but for the rounds that an image at rest has
+ * averaged.
  */
 static double fresh_bound(const struct tl_light_params *light)
 {
@@ -103,7 +104,7 @@ void tl_measure_repeat(const struct tl_checked *checked, struct tl_finding *find
                                                                         : "");
 }
 
-/* A budget that no plan can keep is nobody's fault. */
+/* Where even the cheapest plan exceeds the budget, that plan is the bound. */
 void tl_measure_budget(const struct tl_checked *checked, struct tl_finding *finding)
 {
     if (!(checked->budget_ms > 0) || !isfinite(checked->predicted_ms))

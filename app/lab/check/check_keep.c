@@ -1,4 +1,4 @@
-/* The frame that broke something, with all that opens it again. */
+/* Writes the broken frame, and the scene files that open it again. */
 #include "app/lab/check/check_keep.h"
 #include "app/report/canvas.h"
 #include "app/report/folder.h"
@@ -31,7 +31,7 @@ static void print_settings(const void *what, FILE *out)
     tl_options_print_yaml(bindings, TL_SETTINGS_TABLES, out);
 }
 
-/* The same settings from wherever the folder is looked at. */
+/* The settings with absolute paths, so that the folder can be opened from anywhere. */
 static struct tl_settings rooted(const struct tl_settings *settings)
 {
     struct tl_settings copy = *settings;
@@ -119,7 +119,7 @@ static bool keep_picture(const char *folder, struct tl_stage *stage, const struc
     return kept;
 }
 
-/* The positions beside the mesh: as a motion of one frame they are shown, instead of simulated. */
+/* Writes the positions as a motion of one frame, so that they are shown instead of simulated. */
 static bool keep_positions(const char *folder, const tl_surface *garment, double frame_rate, tl_error *error)
 {
     char *path = tl_format("%s/garment.pc2", folder);
@@ -161,7 +161,7 @@ bool tl_check_keep(const char *folder, struct tl_stage *stage, const struct tl_c
         !keep_environment(folder, checked->frame->environment, error) ||
         !keep_picture(folder, stage, checked, broken, error))
         return false;
-    /* What is no number cannot be written: the rest is still worth keeping. */
+    /* Files with NaN positions are refused; the others are kept. */
     tl_error refused = {0};
     if (!keep_surface(folder, checked->frame, "garment", &refused) ||
         !keep_surface(folder, checked->frame, "avatar", &refused) ||

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Directions that a lobe is looked at along: an even spiral. */
+/* Directions in which lobes are evaluated: a uniform spiral. */
 enum { DIRECTIONS = 12 };
 
 static vec3s spiral(int i)

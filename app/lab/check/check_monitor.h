@@ -1,5 +1,5 @@
-/* The cloth of a run, watched from frame to frame: what it weighs, what works on it, and so how fast it may
- * be and what energy it may draw on.
+/* Monitors the cloth of a run from frame to frame: its weight, the forces that drive it, and from them the
+ * bounds of its speed and its energy.
  *
  * Metres, seconds, newtons, joules. Ownership: borrows session and settings, owns the wearer's last pose.
  * Threads: one at a time. */
@@ -19,11 +19,12 @@ struct tl_cloth_monitor {
     vec3s *wearer;    /* positions one frame ago; NULL: none */
 };
 
-struct tl_cloth_monitor tl_cloth_monitor_begin(tl_session *session, const struct tl_settings *settings);
+/* Release with tl_cloth_monitor_release. */ struct tl_cloth_monitor
+tl_cloth_monitor_begin(tl_session *session, const struct tl_settings *settings);
 void tl_cloth_monitor_release(struct tl_cloth_monitor *watch);
 
-/* The cloth in a frame, one after the other; what `checked` holds of those before is of the frames so far.
- * `is_changed`: more than the hand works on it, so that its energy says nothing. */
+/* Measures the cloth of the next frame. `is_changed`: the solver's settings changed, so that energies of
+ * successive frames cannot be compared. */
 struct tl_checked_cloth tl_cloth_monitor_measure(struct tl_cloth_monitor *watch, const tl_frame *frame,
                                                  bool is_held, bool is_changed);
 

@@ -1,4 +1,5 @@
-/* A few pixels against the ray-traced oracle: the same camera rays, the oracle's own spots and light. */
+/* Compares a few pixels with the ray-traced reference: the same camera rays, the reference's own shading
+ * points and light. */
 #include "app/lab/check/check_measures.h"
 #include "config/memory.h"
 #include "render/frame/frame.h"
@@ -25,7 +26,7 @@ struct oracle {
 };
 
 /* Samples of pixels on their way through sheets of open cloth. */
-struct sights {
+struct ray_batch {
     int count;
     struct tl_ray_differential rays[TL_SHADING_POINTS];
     int pixels[TL_SHADING_POINTS]; /* index into the oracle's */
@@ -33,39 +34,39 @@ struct sights {
 };
 
 /* What they meet; they become what goes on through it. */
-struct met {
-    struct tl_shading_points spots;
+struct hits {
+    struct tl_shading_points points;
     int pixels[TL_SHADING_POINTS];
     float shares[TL_SHADING_POINTS];
     vec3s lamplight[TL_SHADING_POINTS];
 };
 
-static void meet(const struct oracle *oracle, bool last, struct sights *sights, struct met *met)
+static void intersect(const struct oracle *oracle, bool last, struct ray_batch *batch, struct hits *hits)
 {
     int through = 0;
     size_t rays = 0;
-    *met = (struct met){0};
-    for (int i = 0; i < sights->count; i++) {
-        struct tl_shading_point spot = tl_shading_point_find(&oracle->scene, &sights->rays[i]);
-        if (!(spot.cover > 0))
+    *hits = (struct hits){0};
+    for (int i = 0; i < batch->count; i++) {
+        struct tl_shading_point point = tl_shading_point_find(&oracle->scene, &batch->rays[i]);
+        if (!(point.cover > 0))
             continue;
-        float openness = spot.layered && !last ? spot.layers.openness : 0;
-        met->pixels[met->spots.count] = sights->pixels[i];
-        met->shares[met->spots.count] = sights->shares[i] * spot.cover * (1 - openness);
-        met->lamplight[met->spots.count] = tl_reference_lamps(&oracle->scene, &spot, &rays);
-        tl_shading_points_add(&met->spots, &spot);
+        float openness = point.layered && !last ? point.layers.openness : 0;
+        hits->pixels[hits->points.count] = batch->pixels[i];
+        hits->shares[hits->points.count] = batch->shares[i] * point.cover * (1 - openness);
+        hits->lamplight[hits->points.count] = tl_reference_lamps(&oracle->scene, &point, &rays);
+        tl_shading_points_add(&hits->points, &point);
         if (!(openness > 0))
             continue;
-        sights->rays[through] = sights->rays[i];
-        sights->rays[through].from_m = spot.distance_m + oracle->scene.offset_m;
-        sights->pixels[through] = sights->pixels[i];
-        sights->shares[through++] = sights->shares[i] * openness;
+        batch->rays[through] = batch->rays[i];
+        batch->rays[through].from_m = point.distance_m + oracle->scene.offset_m;
+        batch->pixels[through] = batch->pixels[i];
+        batch->shares[through++] = batch->shares[i] * openness;
     }
-    sights->count = through;
+    batch->count = through;
 }
 
-/* One replicate of the light of what was met. */
-static void light_up(struct oracle *oracle, const struct met *met, uint64_t key, int replicate)
+/* One replicate of the light of what was hits. */
+static void accumulate_light(struct oracle *oracle, const struct hits *hits, uint64_t key, int replicate)
 {
     struct tl_sky_sample sky[STRATA];
     uint64_t turn = (uint64_t)replicate + 1;
@@ -79,20 +80,20 @@ static void light_up(struct oracle *oracle, const struct met *met, uint64_t key,
                                                 .random = tl_random_begin(key, turn << 32)};
     float light[3][TL_SHADING_POINTS];
     double samples = oracle->side * oracle->side;
-    tl_gather(&gathering, &met->spots, light);
-    for (int i = 0; i < met->spots.count; i++)
+    tl_gather(&gathering, &hits->points, light);
+    for (int i = 0; i < hits->points.count; i++)
         for (int c = 0; c < 3; c++)
-            oracle->light[met->pixels[i]][replicate][c] +=
-                (double)(met->shares[i] * (light[c][i] + met->lamplight[i].raw[c])) / samples;
+            oracle->light[hits->pixels[i]][replicate][c] +=
+                (double)(hits->shares[i] * (light[c][i] + hits->lamplight[i].raw[c])) / samples;
 }
 
-static void follow(struct oracle *oracle, struct sights *sights, uint64_t key)
+static void trace_layers(struct oracle *oracle, struct ray_batch *batch, uint64_t key)
 {
-    for (int behind = 0; behind <= TL_TRANSPARENCY_LAYERS && sights->count > 0; behind++) {
-        struct met met;
-        meet(oracle, behind == TL_TRANSPARENCY_LAYERS, sights, &met);
-        for (int replicate = 0; met.spots.count > 0 && replicate < REPLICATES; replicate++)
-            light_up(oracle, &met, key * (TL_TRANSPARENCY_LAYERS + 1) + (uint64_t)behind, replicate);
+    for (int behind = 0; behind <= TL_TRANSPARENCY_LAYERS && batch->count > 0; behind++) {
+        struct hits hits;
+        intersect(oracle, behind == TL_TRANSPARENCY_LAYERS, batch, &hits);
+        for (int replicate = 0; hits.points.count > 0 && replicate < REPLICATES; replicate++)
+            accumulate_light(oracle, &hits, key * (TL_TRANSPARENCY_LAYERS + 1) + (uint64_t)behind, replicate);
     }
 }
 
@@ -104,18 +105,18 @@ static void trace_pixels(struct oracle *oracle)
 #pragma omp parallel for schedule(dynamic)
     for (int group = 0; group < groups; group++)
         for (int sample = 0; sample < samples; sample++) {
-            struct sights sights = {0};
-            for (int i = group * TL_SHADING_POINTS; i < oracle->count && sights.count < TL_SHADING_POINTS;
+            struct ray_batch batch = {0};
+            for (int i = group * TL_SHADING_POINTS; i < oracle->count && batch.count < TL_SHADING_POINTS;
                  i++) {
                 int x = (int)(oracle->pixels[i] % (size_t)oracle->width);
                 int y = (int)(oracle->pixels[i] / (size_t)oracle->width);
-                sights.rays[sights.count] =
+                batch.rays[batch.count] =
                     tl_camera_ray(&oracle->view, oracle->width * side, oracle->height * side,
                                   x * side + sample % side, y * side + sample / side);
-                sights.pixels[sights.count] = i;
-                sights.shares[sights.count++] = 1;
+                batch.pixels[batch.count] = i;
+                batch.shares[batch.count++] = 1;
             }
-            follow(oracle, &sights, (uint64_t)group * (uint64_t)samples + (uint64_t)sample);
+            trace_layers(oracle, &batch, (uint64_t)group * (uint64_t)samples + (uint64_t)sample);
         }
 }
 
@@ -225,7 +226,7 @@ static bool is_comparable(const struct tl_render_settings *settings)
 }
 
 /* Traces the pixels chosen, and compares. */
-static void consult(struct oracle *oracle, struct tl_finding *finding)
+static void compare_with_reference(struct oracle *oracle, struct tl_finding *finding)
 {
     const struct tl_checked *checked = oracle->checked;
     const struct tl_ground *ground = checked->settings->image.ground ? &checked->renderer->ground : NULL;
@@ -256,6 +257,6 @@ void tl_measure_oracle(const struct tl_checked *checked, struct tl_finding *find
     finding->bound = oracle_bound(&checked->settings->light);
     choose_pixels(oracle);
     if (oracle->count > 0)
-        consult(oracle, finding);
+        compare_with_reference(oracle, finding);
     free(oracle);
 }

@@ -43,7 +43,7 @@ static bool is_swung(const struct run *run, int number)
     return run->motion.pulls && !run->params->still && number > frames / 10 && number <= frames * 2 / 3;
 }
 
-/* What frame `number` is drawn and simulated with. */
+/* The settings that frame `number` is simulated and drawn with. */
 static struct tl_settings settings_of(const struct run *run, int number)
 {
     return tl_quality_apply(&run->levels[number], &run->stage->settings);
@@ -88,8 +88,8 @@ static void release_images(tl_image *images, size_t count)
 
 enum { DRAWN, FRESH, WHITE, WHITE_SHADOWED, IMAGES };
 
-/* Where an image is spread out from fewer samples than it has pixels, the samples themselves are looked at:
- * a filter that sharpens says nothing of light. */
+/* Where an image is upsampled from fewer samples than pixels, the furnace looks at the samples: a sharpening
+ * filter does not conserve light. */
 static void show_samples(struct tl_image_params *image)
 {
     int width, height;
@@ -126,7 +126,7 @@ static bool draw_white(struct run *run, const tl_frame *frame, tl_image images[I
     return true;
 }
 
-/* The picture that is looked at; the planner learns what it took. */
+/* Draws the frame that is checked, and reports its time to the governor. */
 static bool draw_frame(struct run *run, const tl_frame *frame, const struct tl_render_settings *settings,
                        tl_image *image, tl_error *error)
 {
@@ -140,7 +140,7 @@ static bool draw_frame(struct run *run, const tl_frame *frame, const struct tl_r
     return tl_renderer_read(run->stage->renderer, image, error);
 }
 
-/* Everything that the frame's checks look at. */
+/* Draws all images that the frame's invariants need. */
 static bool prepare(struct run *run, const tl_frame *frame, tl_image images[IMAGES],
                     struct tl_checked *checked, tl_error *error)
 {
@@ -186,8 +186,8 @@ static bool note(struct run *run, const struct tl_checked *checked, tl_error *er
     return tl_check_keep(run->params->keep, run->stage, checked, &found, error);
 }
 
-/* Frame `number`, which the session is at. A frame that is not finite cannot be drawn; it is noted all the
- * same. */
+/* Checks frame `number`, the session's current one. A frame with non-finite positions is not drawn, but its
+ * geometry is checked. */
 static bool check_frame(struct run *run, int number, tl_error *error)
 {
     tl_image images[IMAGES] = {0};
@@ -204,7 +204,7 @@ static bool check_frame(struct run *run, int number, tl_error *error)
                                  .least_ms = run->choice.min_ms,
                                  .is_reduced = run->choice.error > 0};
     if (tl_session_cloth(run->stage->session)) {
-        /* Other steps of the solver are another stiffness, too. */
+        /* A budget changes the solver's substeps, and with them its effective stiffness. */
         cloth = tl_cloth_monitor_measure(&run->watch, &frame, is_swung(run, number), run->governor);
         checked.cloth = &cloth;
     }
@@ -217,7 +217,7 @@ static bool check_frame(struct run *run, int number, tl_error *error)
     return done;
 }
 
-static bool tell(struct run *run, int step, tl_error *error)
+static bool report_progress(struct run *run, int step, tl_error *error)
 {
     tl_progress_update(&run->progress, step, run->steps);
     return !tl_interrupted() ||
@@ -256,14 +256,14 @@ static bool play(struct run *run, tl_error *error)
     for (int number = 0; done && number < run->params->frames; number++) {
         choose(run, number);
         done = move_on(run, number, error) && check_frame(run, number, error);
-        done = tell(run, run->played, error) && done;
+        done = report_progress(run, run->played, error) && done;
         if (done && run->hashes[number] == 0)
-            break; /* what is not finite does not mend itself */
+            break; /* a state that is not finite does not recover */
     }
     return done;
 }
 
-/* The first frames once more, from the start, drawn by another renderer. */
+/* Plays the first frames once more from the start, with a new renderer. */
 static bool play_again(struct run *run, int count, tl_error *error)
 {
     if (!tl_session_apply(run->stage->session, &run->stage->settings, error) ||
@@ -293,7 +293,7 @@ static bool play_again(struct run *run, int count, tl_error *error)
             done = note(run, &checked, error);
             verdicts->frames--; /* it has been counted */
         }
-        done = tell(run, run->params->frames + number + 1, error) && done;
+        done = report_progress(run, run->params->frames + number + 1, error) && done;
         tl_image_release(&image);
     }
     return done;

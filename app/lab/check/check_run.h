@@ -1,4 +1,4 @@
-/* A checked run: a scene plays and every frame is held against the invariants.
+/* A checked run: a scene is played and the invariants are measured in every frame.
  *
  * The camera walks round. A garment that nothing else moves stands still for a tenth of the frames, then a
  * hand swings its hem, and in the last third it is let go and comes to rest. Then the first tenth is played
@@ -27,8 +27,8 @@ struct tl_check_outcome {
     bool is_kept;
 };
 
-/* False only where it cannot go on: bad input, no device, cloth that left its envelope, Ctrl-C. What was
- * found until then stands in `out`. */
+/* False only where the run cannot go on: bad input, no device, a refused step of the cloth, Ctrl-C. `out`
+ * holds the findings until then. A broken invariant is no failure. */
 bool tl_check_play(struct tl_stage *stage, const struct tl_check_params *params, struct tl_check_outcome *out,
                    tl_error *error);
 

@@ -49,7 +49,7 @@ void tl_measure_finite(const struct tl_checked *checked, struct tl_finding *find
     }
 }
 
-/* The largest over all vertices of what `deviation` tells of one. */
+/* Adds the largest `deviation` of all vertices. */
 static void add_vertices(const struct tl_checked *checked, struct tl_finding *finding,
                          double (*deviation)(const tl_surface *surface, size_t vertex))
 {

@@ -154,7 +154,8 @@ static bool faces(const struct tl_sample *sample, const vec3s directions[RAYS])
 }
 
 /* Adds what one point sees of one region. */
-static void ask(struct witness *witness, const tl_sample *sample, vec3s start, size_t index, int region)
+static void queue_rays(struct witness *witness, const tl_sample *sample, vec3s start, size_t index,
+                       int region)
 {
     const tl_renderer *renderer = witness->renderer;
     const struct tl_ground *ground = renderer->settings.image.ground ? &renderer->ground : NULL;
@@ -180,7 +181,7 @@ static void ask(struct witness *witness, const tl_sample *sample, vec3s start, s
     }
 }
 
-static void hear(struct witness *witness, int frame)
+static void tally_answers(struct witness *witness, int frame)
 {
     const tl_renderer *renderer = witness->renderer;
     size_t count = renderer->samples.primary_count;
@@ -193,7 +194,7 @@ static void hear(struct witness *witness, int frame)
         const tl_sample *sample = &renderer->samples.items[index];
         vec3s start = tl_sample_start(sample, &renderer->ranges, offset_m);
         for (int region = 0; region < renderer->regions.count; region++)
-            ask(witness, sample, start, index, region);
+            queue_rays(witness, sample, start, index, region);
     }
 }
 
@@ -252,7 +253,7 @@ void tl_measure_leaks(const struct tl_checked *checked, struct tl_finding *findi
     witness->taps = tl_points_taps(checked->renderer->points);
     if (witness->trace &&
         tl_trace_update(witness->trace, checked->frame->surfaces, checked->frame->surface_count, &error)) {
-        hear(witness, checked->number);
+        tally_answers(witness, checked->number);
         add_tallies(witness, finding);
     } else {
         tl_finding_add(finding, NAN);

@@ -8,44 +8,44 @@
 #include "app/scene/session.h"
 #include "render/renderer.h"
 
-/* The cloth of a frame, and what it may draw its energy from. */
+/* The cloth of a frame, with the state that its bounds depend on. */
 struct tl_checked_cloth {
     struct tl_cloth_report report;
     double strain_limit; /* of the solver; 0: none */
     double kept_m;       /* the distance that contacts keep */
-    double first_strain; /* the largest in frame 0; NaN: this is it */
-    double weight_n;     /* newtons, of all of it */
-    /* Kinetic, elastic and potential, of the frames since nothing has worked on it but gravity; NaN: this is
-     * the first. */
+    double first_strain; /* the largest in frame 0; NaN: this is frame 0 */
+    double weight_n;     /* of the garment, newtons */
+    /* Minimum of kinetic + elastic + potential energy since only gravity acts on the cloth; NaN: no such
+     * frame yet. */
     double least_energy_j;
-    double allowed_speed; /* m/s: what its fall, its wearer and the wind can give it */
-    bool is_driven;       /* a hand, a clip or the wind works on it */
-    bool is_held;         /* the hand does */
-    bool is_dragged;      /* its wearer moves */
-    bool is_hurried;      /* a budget may take from its steps */
-    /* How far its centre of mass has gone sideways since frame 0, where nothing touches or drives it; else
-     * NaN. */
+    double allowed_speed; /* m/s: what fall, wearer and wind can cause */
+    bool is_driven;       /* by the hand, a clip or the wind */
+    bool is_held;         /* by the hand */
+    bool is_dragged;      /* by its moving wearer */
+    bool is_hurried;      /* a budget may reduce its substeps */
+    /* Horizontal displacement of the centre of mass since frame 0; NaN unless the cloth is free of contact
+     * and drive. */
     double drift_m;
 };
 
-/* One frame. What is NULL or 0 was not made for it, and what needs it is not measured. */
+/* One frame. An invariant that needs a member which is NULL or 0 is not measured. */
 struct tl_checked {
     int number;
     const tl_frame *frame;
     const struct tl_render_settings *settings;
-    const tl_renderer *renderer;    /* has drawn it */
-    const tl_image *image;          /* what it drew, as tl_renderer_read gives it; NULL: it cannot be drawn */
-    bool is_sampled;                /* what takes long is to be measured */
-    const tl_image *fresh;          /* the same by a renderer that had nothing to reuse */
-    const tl_renderer *white;       /* has drawn it unshadowed in white light ... */
-    const tl_image *white_image;    /* ... and this is it; */
-    const tl_image *white_shadowed; /* with shadows */
+    const tl_renderer *renderer;    /* drew the frame */
+    const tl_image *image;          /* as tl_renderer_read gives it; NULL: the frame cannot be drawn */
+    bool is_sampled;                /* the slow invariants are measured, too */
+    const tl_image *fresh;          /* the same frame by a renderer without history */
+    const tl_renderer *white;       /* drew the frame unshadowed in white light */
+    const tl_image *white_image;    /* its image */
+    const tl_image *white_shadowed; /* the same with shadows */
     const struct tl_checked_cloth *cloth;
-    uint64_t hash, first_hash; /* of positions and image; when the same frame was drawn first; 0: not yet */
-    uint64_t places_hash, first_places_hash; /* the same of positions alone */
-    double predicted_ms, budget_ms;          /* of the plan while it lasts; what was asked for */
-    double least_ms; /* of the cheapest plan there is, where that is more than the budget */
-    bool is_reduced; /* a budget took from the image: it is not what the oracle is asked for */
+    uint64_t hash, first_hash;               /* of positions and image, now and in the first run; 0: none */
+    uint64_t places_hash, first_places_hash; /* of positions alone */
+    double predicted_ms, budget_ms;          /* of the plan; of the command line */
+    double least_ms;                         /* of the cheapest plan, where it exceeds the budget */
+    bool is_reduced; /* a budget reduced the image, which the reference does not model */
 };
 
 #endif

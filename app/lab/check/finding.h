@@ -6,19 +6,19 @@
 
 enum { TL_CHECK_PLACE_SIZE = 112 };
 
-/* What one invariant found in one frame. */
+/* One invariant's result in one frame. */
 struct tl_finding {
     bool is_measured;
-    double worst; /* 0 and above: how far off, in the invariant's own measure */
+    double worst; /* largest deviation, >= 0, in the invariant's own unit */
     double bound;
-    char place[TL_CHECK_PLACE_SIZE]; /* where: a vertex, a pixel, a region; "" when nowhere in particular */
+    char place[TL_CHECK_PLACE_SIZE]; /* a vertex, a pixel, a region; "": none */
     int x, y;                        /* the pixel, from the upper left; -1: none */
     int surface;                     /* the vertex and its surface; -1: none */
     size_t vertex;
 };
 
-/* For the functions of the table: `worst` replaces what was found so far when it is worse. Returns whether it
- * is, so that a place is only put into words then. */
+/* Keeps the larger of `worst` and the deviation so far; a NaN is larger than any number. Returns whether
+ * `worst` was kept: only then does the caller format its place. */
 bool tl_finding_add(struct tl_finding *finding, double worst);
 void tl_finding_place(struct tl_finding *finding, const char *format, ...)
     __attribute__((format(printf, 2, 3)));

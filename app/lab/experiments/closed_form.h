@@ -1,5 +1,5 @@
-/* Cloth that is measured rather than worn: a flat square, and a tube whose rest under its own weight is known
- * in closed form. Metres. Free with tl_garment_release. Pure. */
+/* Garments for measurements: a flat square, and a tube and a triangle whose equilibrium under their own
+ * weight is known in closed form. Metres. Release with tl_garment_release. Pure. */
 #ifndef TOILE_APP_LAB_EXPERIMENTS_CLOSED_FORM_H
 #define TOILE_APP_LAB_EXPERIMENTS_CLOSED_FORM_H
 

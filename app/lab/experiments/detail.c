@@ -143,7 +143,7 @@ static const struct tl_experiment experiments[] = {
     {.output = TL_OUTPUT_PICTURES,
      .name = "c3",
      .scene = "gallery",
-     .title = "C3  Frames made anew every frame",
+     .title = "C3  Frames rebuilt every frame",
      .text = "A highlight that follows the threads, on the coarser meshes against the finest of the same "
              "kind: exact is the "
              "ray-traced reference of the same mesh.",

@@ -59,10 +59,9 @@ static const struct tl_experiment experiments[] = {
      .name = "b1",
      .scene = "gallery",
      .title = "B1  The sphere of directions as a picture",
-     .text =
-         "A mirror shows the map itself. Exact is a cube of 256 texels a face. The sphere map loses what "
-         "lies "
-         "behind in its rim and has to be made anew when the view turns; paraboloids and the cube do not.",
+     .text = "A mirror shows the map itself. Exact is a cube of 256 texels a face. The sphere map loses what "
+             "lies "
+             "behind in its rim and has to be rebuilt when the view turns; paraboloids and the cube do not.",
      .solid = "sphere",
      .base = {"light.method=maps", "maps.mode=mirror"},
      .reference = {.assignments = {"maps.layout=cube", "maps.size=256"}},
@@ -98,7 +97,7 @@ static const struct tl_experiment experiments[] = {
     {.output = TL_OUTPUT_PICTURES,
      .name = "b5",
      .scene = "gallery",
-     .title = "B5  What a map can be asked for",
+     .title = "B5  Terms that a map can hold",
      .text = "One term alone each: prefiltered for a diffuse or a glossy lobe, looked up along the mirrored "
              "or the "
              "refracted ray, or straight through. Exact is the same from a cube of 256 texels a face.",
@@ -138,7 +137,7 @@ static const struct tl_experiment experiments[] = {
      .name = "b7",
      .scene = "gallery",
      .title = "B7  Bumps under an environment",
-     .text = "Normal maps in a frame that is made anew every frame, looked up in world space at every pixel. "
+     .text = "Normal maps in a frame that is rebuilt every frame, looked up in world space at every pixel. "
              "Exact: a "
              "cube of 256 texels a face.",
      .solid = "torus",

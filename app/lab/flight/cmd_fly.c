@@ -15,7 +15,7 @@
 
 #define FRAMES_BUILT_IN  600
 #define FRAMES_MAX       1000000
-#define LIMIT_KEPT_BYTES ((size_t)2 << 30) /* images that wait for the oracle */
+#define LIMIT_KEPT_BYTES ((size_t)2 << 30) /* images kept for the reference */
 
 struct flying {
     const struct tl_arguments *arguments;
@@ -157,7 +157,7 @@ static bool prepare(struct flying *flying, struct tl_stage *stage, struct tl_pat
     return check_kept(flying, error);
 }
 
-/* -- what it came to -- */
+/* -- results -- */
 
 static void compare_images(const struct tl_flight *here, const struct tl_flight *there,
                            struct tl_flight_account *out)
@@ -234,9 +234,9 @@ static bool check_replay(const struct tl_flight_account *account, tl_error *erro
         account->replay, account->first_different, account->different - 1);
 }
 
-/* What was recorded is told and kept, whatever ended the flight. */
-static bool tell(const struct flying *flying, const struct tl_stage *stage, const char *stopped,
-                 tl_error *error)
+/* Writes and prints what was recorded, even if the flight ended early. */
+static bool report(const struct flying *flying, const struct tl_stage *stage, const char *stopped,
+                   tl_error *error)
 {
     const struct tl_flight_account account = account_of(flying, stage, stopped);
     if (!write_files(flying->arguments->output, &account, error))
@@ -260,11 +260,11 @@ static bool fly(struct flying *flying, struct tl_stage *stage, tl_error *error)
                 tl_fly_judge(stage, &flying->flight, error);
     if (flying->flight.count == 0)
         return done;
-    bool told = tell(flying, stage, done ? NULL : error->message, &failure) &&
-                tl_video_commit(&flying->options.video, &failure);
-    if (done && !told)
+    bool reported = report(flying, stage, done ? NULL : error->message, &failure) &&
+                    tl_video_commit(&flying->options.video, &failure);
+    if (done && !reported)
         *error = failure;
-    return done && told;
+    return done && reported;
 }
 
 bool tl_command_fly(const struct tl_arguments *arguments, tl_error *error)

@@ -267,30 +267,30 @@ void tl_flight_release(struct tl_flight *flight)
     *flight = (struct tl_flight){0};
 }
 
-static bool judge(struct tl_variant_run *oracle, tl_session *session, const struct tl_flight_picture *picture,
-                  struct tl_flight_frame *frame, tl_error *error)
+static bool judge(struct tl_variant_run *reference, tl_session *session,
+                  const struct tl_flight_picture *picture, struct tl_flight_frame *frame, tl_error *error)
 {
-    struct tl_reference_frame truth = {0};
+    struct tl_reference_frame frame_reference = {0};
     struct tl_measured_error measured;
     const tl_frame shown = tl_session_frame(session);
-    bool judged = tl_reference_frame_draw(oracle, &shown, &truth, error) &&
-                  tl_reference_frame_compare(&picture->image, &truth, &measured, error);
+    bool judged = tl_reference_frame_draw(reference, &shown, &frame_reference, error) &&
+                  tl_reference_frame_compare(&picture->image, &frame_reference, &measured, error);
     if (judged) {
         frame->flip_mean = measured.flip_mean;
         frame->rel_rmse = measured.rel_rmse;
     }
-    tl_reference_frame_release(&truth);
+    tl_reference_frame_release(&frame_reference);
     return judged;
 }
 
 bool tl_fly_judge(struct tl_stage *stage, struct tl_flight *flight, tl_error *error)
 {
     struct tl_motion motion;
-    struct tl_variant_run oracle = {0};
+    struct tl_variant_run reference = {0};
     /* A reset would not do: a cloth whose step has changed goes on otherwise than a fresh one. */
     bool done = tl_session_restart(stage->session, &stage->settings, error) &&
                 begin_motion(stage, flight, &motion, error) &&
-                tl_variant_run_create(&oracle, stage->gpu, &tl_setup_reference, &stage->settings, error);
+                tl_variant_run_create(&reference, stage->gpu, &tl_setup_reference, &stage->settings, error);
     struct tl_progress progress = tl_progress_begin("ray tracing what was flown");
     int judged = 0;
     for (int number = 0; done && judged < flight->kept_count; number++) {
@@ -300,12 +300,12 @@ bool tl_fly_judge(struct tl_stage *stage, struct tl_flight *flight, tl_error *er
         done = tl_session_apply(stage->session, &settings, error) &&
                (number == 0 || tl_motion_advance(&motion, number, error));
         if (done && flight->kept[judged].frame == number)
-            done = judge(&oracle, stage->session, &flight->kept[judged++], frame, error);
+            done = judge(&reference, stage->session, &flight->kept[judged++], frame, error);
         if (tl_interrupted())
             done = tl_fail(error, TL_INTERRUPTED, "fly: stopped while frame %d was ray traced", number);
         tl_progress_update(&progress, judged, flight->kept_count);
     }
     tl_progress_end(&progress);
-    tl_variant_run_release(&oracle);
+    tl_variant_run_release(&reference);
     return done;
 }

@@ -1,10 +1,10 @@
-/* A recorded fly-through: the camera goes along a path while the cloth moves, under a budget or as fast as it
- * goes, and every frame is written down.
+/* A recorded flight: the camera follows a path while the cloth moves, under a frame budget or without one,
+ * and every frame is recorded.
  *
  * A frame's clock, on the wall: from the choice of its levels over cloth and drawing to the finished linear
- * image. What is done with the image afterwards (thumbnails, hashes, video) is not in it. The first second is
- * warm-up: recorded, but not judged. Levels recorded and applied again (a replay) give the same images bit by
- * bit. Milliseconds, bytes. Threads: the one that the GL context is current on. */
+ * image. Later work on the image (thumbnails, hashes, video) is not counted. The first second is warm-up: it
+ * is recorded, but left out of the figures. Levels recorded and applied again (a replay) give the same images
+ * bit by bit. Milliseconds, bytes. Threads: the one that the GL context is current on. */
 #ifndef TOILE_APP_LAB_FLIGHT_FLY_H
 #define TOILE_APP_LAB_FLIGHT_FLY_H
 
@@ -20,12 +20,12 @@
 struct tl_flight_frame {
     double total_ms, cloth_ms;
     double predicted_ms; /* NaN: nothing was known yet */
-    double error;        /* estimated, of what the levels shed; NaN: unknown */
+    double error;        /* estimated, of the reduced levels; NaN: unknown */
     double job_ms[TL_JOBS_MAX];
     struct tl_quality levels;
     size_t memory_bytes;        /* the renderer's */
-    uint64_t hash;              /* of the linear image; 0: not asked for */
-    double flip_mean, rel_rmse; /* against the oracle; NaN: not measured */
+    uint64_t hash;              /* of the linear image; 0: none */
+    double flip_mean, rel_rmse; /* against the reference; NaN: not measured */
 };
 
 struct tl_flight_picture {
@@ -36,18 +36,18 @@ struct tl_flight_picture {
 struct tl_flight {
     double budget_ms; /* 0: none */
     double frame_rate;
-    int planned; /* frames that were to be flown */
-    int warm_up; /* frames at the start that are not judged */
+    int planned; /* frames of the path */
+    int warm_up; /* frames at the start that no figure counts */
     struct tl_flight_frame *frames;
-    int count; /* frames flown */
+    int count; /* frames recorded */
     int job_count;
     char job_names[TL_JOBS_MAX][TL_JOB_NAME_BYTES]; /* in the order of the frame's table */
     struct tl_path path;
 
-    /* Only of a flight that was flown, not of one that was read. */
+    /* Only of a flight that was recorded by this process. */
     struct tl_flight_picture worst[TL_FLIGHT_WORST], stops[TL_FLIGHT_STOPS]; /* slowest first; in order */
     int worst_count, stop_count;
-    struct tl_flight_picture *kept; /* linear images that the oracle is to judge */
+    struct tl_flight_picture *kept; /* linear images to compare with the reference */
     int kept_count;
 };
 
@@ -60,17 +60,17 @@ struct tl_fly_options {
     tl_video *video;                /* gets every image; NULL: none */
 };
 
-/* Flies `path`, which it takes over, from the stage's frame 0 with the stage's settings. What was recorded
- * until a failure or Ctrl-C is in `out`, which is the caller's to release either way. */
+/* Records a flight along `path`, which it takes ownership of, from the session's frame 0. After a failure or
+ * Ctrl-C `out` holds the frames until then. Release `out` in any case. */
 bool tl_fly(struct tl_stage *stage, const struct tl_fly_options *options, struct tl_path *path,
             struct tl_flight *out, tl_error *error);
 void tl_flight_release(struct tl_flight *flight);
 
-/* Measures the images that were kept against the ray-traced reference, drawn from the same motion run once
- * more. */
+/* Compares the kept images with the ray-traced reference, which is drawn in a second run of the same motion.
+ */
 bool tl_fly_judge(struct tl_stage *stage, struct tl_flight *flight, tl_error *error);
 
-/* FOLDER/frames.csv. What is read has frames, job names and the warm-up, but no pictures. */
+/* FOLDER/frames.csv. A flight that is read has frames, job names and the warm-up, but no images. */
 void tl_flight_write_csv(const struct tl_flight *flight, FILE *out);
 bool tl_flight_read_csv(const char *file, struct tl_flight *out, tl_error *error);
 

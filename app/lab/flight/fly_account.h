@@ -1,5 +1,5 @@
-/* What is told of a flight: summary.json for programs, report.html for people, a few lines on stdout; and
- * what is read of an earlier one. */
+/* A flight's results: summary.json for programs, report.html for people, a few lines on stdout; and the
+ * results of an earlier flight, read back. */
 #ifndef TOILE_APP_LAB_FLIGHT_FLY_ACCOUNT_H
 #define TOILE_APP_LAB_FLIGHT_FLY_ACCOUNT_H
 
@@ -39,8 +39,8 @@ bool tl_flight_record_load(const char *folder, const struct tl_settings *setting
                            struct tl_flight_record *out, tl_error *error);
 void tl_flight_record_release(struct tl_flight_record *record);
 
-/* False, naming the first option that differs: of all but what a pace changes nothing in (`whole`: a replay),
- * or of those without which times cannot be compared. */
+/* Whether times (or, with `whole`, images of a replay) of the record can be compared with a flight under
+ * `settings`; else the error names the first option that differs. */
 bool tl_flight_record_suits(const struct tl_flight_record *record, const char *folder,
                             const struct tl_settings *settings, bool whole, tl_error *error);
 

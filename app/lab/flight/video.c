@@ -35,17 +35,17 @@ static const char *container_of(const char *path)
     return NULL;
 }
 
-/* Runs ffmpeg with `input` as its stdin and `said` for all that it says; waits for nothing. In a group of its
+/* Runs ffmpeg with `input` as its stdin and `log` for its output; waits for nothing. In a group of its
  * own, so that Ctrl-C on the terminal reaches this program only. Returns 0, or what went wrong. */
-static int start(char *const arguments[], int input, int said, pid_t *out)
+static int start(char *const arguments[], int input, int log, pid_t *out)
 {
     posix_spawn_file_actions_t files;
     posix_spawnattr_t attributes;
     posix_spawn_file_actions_init(&files);
     posix_spawnattr_init(&attributes);
     posix_spawn_file_actions_adddup2(&files, input, STDIN_FILENO);
-    posix_spawn_file_actions_adddup2(&files, said, STDOUT_FILENO);
-    posix_spawn_file_actions_adddup2(&files, said, STDERR_FILENO);
+    posix_spawn_file_actions_adddup2(&files, log, STDOUT_FILENO);
+    posix_spawn_file_actions_adddup2(&files, log, STDERR_FILENO);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
     posix_spawnattr_setpgroup(&attributes, 0);
     int reason = posix_spawnp(out, arguments[0], &files, &attributes, arguments, environ);
@@ -120,13 +120,13 @@ bool tl_video_add(tl_video *video, const tl_image *image, tl_error *error)
     return true;
 }
 
-/* The last line that ffmpeg said, without its end. */
-static void last_words(FILE *said, char *out, size_t size)
+/* The last line of ffmpeg's output, without its line end. */
+static void last_line(FILE *log, char *out, size_t size)
 {
     char line[256];
-    rewind(said);
-    snprintf(out, size, "it said nothing");
-    while (fgets(line, sizeof line, said)) {
+    rewind(log);
+    snprintf(out, size, "no message");
+    while (fgets(line, sizeof line, log)) {
         line[strcspn(line, "\r\n")] = '\0';
         if (line[0])
             snprintf(out, size, "%s", line);
@@ -156,7 +156,7 @@ static bool feed(tl_video *video, int pipe_end)
     return heard && !ferror(video->waiting);
 }
 
-static bool encode(tl_video *video, FILE *said, tl_error *error)
+static bool encode(tl_video *video, FILE *log, tl_error *error)
 {
     char *size = tl_format("%dx%d", video->width, video->height), *rate = tl_format("%g", video->frame_rate);
     char *target = tl_format("file:%s", video->writer.temporary); /* whatever its name looks like */
@@ -198,7 +198,7 @@ static bool encode(tl_video *video, FILE *said, tl_error *error)
                                NULL};
     int ends[2] = {-1, -1};
     pid_t process = 0;
-    int reason = pipe2(ends, O_CLOEXEC) != 0 ? errno : start(arguments, ends[0], fileno(said), &process);
+    int reason = pipe2(ends, O_CLOEXEC) != 0 ? errno : start(arguments, ends[0], fileno(log), &process);
     free(size);
     free(rate);
     free(target);
@@ -220,7 +220,7 @@ static bool encode(tl_video *video, FILE *said, tl_error *error)
     if (heard && status == 0)
         return true;
     char words[256];
-    last_words(said, words, sizeof words);
+    last_line(log, words, sizeof words);
     return tl_fail(error, TL_OUTPUT, "%s: ffmpeg failed with status %d: %s", video->writer.path, status,
                    words);
 }
@@ -232,12 +232,12 @@ bool tl_video_commit(tl_video **handle, tl_error *error)
         tl_video_abandon(handle);
         return true;
     }
-    FILE *said = tmpfile();
-    bool done = said ? encode(video, said, error)
-                     : tl_fail(error, TL_OUTPUT, "%s: no temporary file could be made: %s",
-                               video->writer.path, strerror(errno));
-    if (said)
-        fclose(said);
+    FILE *log = tmpfile();
+    bool done = log ? encode(video, log, error)
+                    : tl_fail(error, TL_OUTPUT, "%s: no temporary file could be made: %s", video->writer.path,
+                              strerror(errno));
+    if (log)
+        fclose(log);
     if (done)
         done = tl_writer_commit(&video->writer, error);
     else

@@ -1,9 +1,9 @@
 /* A video file, made by the command `ffmpeg`, which is found when the program runs.
  *
- * While frames are taken nothing is encoded, so that it costs those who measure nothing but a copy: they wait
- * in a file beside the video that has no name and vanishes with the program. H.264, 4:2:0, Rec. 709. Writes
- * atomically, like tl_writer. Failure: TL_USAGE when there is no ffmpeg, TL_OUTPUT with ffmpeg's own words
- * else. Threads: one at a time. */
+ * Nothing is encoded while frames are added, so that a measured flight pays for a copy only: frames are kept
+ * in an unlinked temporary file in the video's folder. H.264, 4:2:0, Rec. 709. Writes atomically, like
+ * tl_writer. Failure: TL_USAGE when there is no ffmpeg, TL_OUTPUT with ffmpeg's message otherwise. Threads:
+ * one at a time. */
 #ifndef TOILE_APP_LAB_FLIGHT_VIDEO_H
 #define TOILE_APP_LAB_FLIGHT_VIDEO_H
 

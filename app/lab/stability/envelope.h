@@ -3,12 +3,12 @@
  * A cell is solved twice. A tube that hangs by its rim starts at rest under its own weight, which is known in
  * closed form (app/lab/experiments/closed_form.h), and should stay there: it is exact when no vertex leaves
  * its place by more than a thousandth of what it would sink, or of a free fall in the time that passes,
- * whichever is less (and a millionth of the tube, for its float positions). Else it is bounded if none falls
- * faster than free, but for the way to where `preview` rests and as far beyond (tl_tube_slack: much on
- * needles, which weigh little). Then the same tube without weight starts with every vertex moved by a fifth
- * of its cells: its energy must not grow beyond TL_ENVELOPE_GROWTH times what it began with (of `preview`:
- * its motion's, and its strain's by the square). What a solver cannot do it must refuse, with a message and
- * the last good state. Times in CPU ms. */
+ * whichever is less (and a millionth of the tube, for its float positions). Otherwise it is bounded if no
+ * vertex moves farther than a free fall plus twice the distance to the position where `preview` rests
+ * (tl_tube_slack, which is large on needle triangles of little mass). Then the same tube without weight
+ * starts with every vertex displaced by a fifth of its cells: its energy must not exceed TL_ENVELOPE_GROWTH
+ * times the initial energy (of `preview`: kinetic energy and the squared strain). A solver must refuse what
+ * it cannot solve, with a message and the last good state. Times in CPU ms. */
 #ifndef TOILE_APP_LAB_STABILITY_ENVELOPE_H
 #define TOILE_APP_LAB_STABILITY_ENVELOPE_H
 
@@ -22,8 +22,8 @@
 struct tl_envelope_size {
     const char *name;
     int columns, row_count; /* of the tube; 0: one triangle */
-    bool whole; /* over all stiffnesses, steps and mass ratios; else a few of them, for a frame of a
-                   millisecond */
+    bool whole; /* all stiffnesses, steps and mass ratios; else a few of them, for one frame of a millisecond
+                 */
     bool quick;
 };
 extern const struct tl_envelope_size tl_envelope_sizes[];
@@ -35,15 +35,15 @@ extern const double tl_envelope_ratios[];
 enum { TL_ENVELOPE_STIFFNESSES = 12, TL_ENVELOPE_STEPS = 5, TL_ENVELOPE_RATIOS = 3 };
 
 struct tl_envelope_cell {
-    bool run; /* false: not asked for at this size */
+    bool run; /* false: not part of this size */
     enum tl_outcome outcome;
-    double strayed; /* of what is exact: 1 is the limit */
-    double growth;  /* of the energy: most at any frame over what it began with */
+    double strayed; /* displacement over the limit of exact */
+    double growth;  /* largest energy of any frame over the initial one */
     double cpu_ms;
     tl_error error; /* why it was refused, or what is wrong */
 };
 
-/* What a cell is about. `height_m` is the tube's. */
+/* The parameters of a cell. `height_m` is the tube's. */
 struct tl_envelope_case {
     const struct tl_envelope_size *size;
     int solver;
@@ -53,16 +53,16 @@ struct tl_envelope_cell tl_envelope_run(const struct tl_envelope_case *tested);
 
 /* ---- What the extremes share ---- */
 
-/* Whether all that a cloth tells of itself is finite: positions of `vertex_count` render vertices, energies.
- */
+/* Whether the positions of `vertex_count` render vertices and the energies of a cloth are finite. */
 bool tl_cloth_is_finite(const tl_cloth *cloth, size_t vertex_count);
 
-/* One frame. When it is refused: REFUSED if that was said clearly and the state is that before it, else
- * SILENT or NAN with the reason in `error`. When it is not: BOUNDED if all is finite, else NAN. */
+/* Simulates one frame. If it is refused: REFUSED where the message is clear and the state is that before the
+ * frame, otherwise SILENT or NAN with the reason in `error`. If not: BOUNDED where all is finite, otherwise
+ * NAN. */
 enum tl_outcome tl_cloth_try_step(tl_cloth *cloth, const tl_collider *collider, size_t vertex_count,
                                   tl_error *error);
 
-/* The outcome of a tl_cloth_create that gave nothing. */
+/* The outcome of a tl_cloth_create that failed. */
 enum tl_outcome tl_refusal_outcome(const tl_error *error);
 
 #endif

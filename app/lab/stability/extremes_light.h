@@ -1,5 +1,5 @@
-/* The extremes that touch light: small scenes, each with one thing in it that a renderer may stumble over,
- * and what is promised of its image. Generated; metres, linear radiance.
+/* Extreme cases of light: small scenes, each with one feature that may break a renderer, and the bound that
+ * its image must meet. Generated; metres, linear radiance.
  *
  * Ownership: a scene owns all that its frame points to. Threads: one scene at a time. */
 #ifndef TOILE_APP_LAB_STABILITY_EXTREMES_LIGHT_H
@@ -17,8 +17,8 @@ struct tl_extreme_scene {
     bool ground;
 };
 
-/* Errors are relative RMSE against the oracle, by method: paper, review. TL_NO_WORSE promises little, but
- * something: no worse than the same method without shadows. */
+/* Errors are relative RMSE against the reference, by method: paper, review. TL_NO_WORSE is the weakest bound:
+ * not worse than the same method without shadows. */
 enum { TL_EXTREME_PAPER, TL_EXTREME_REVIEW, TL_EXTREME_METHODS };
 #define TL_NO_WORSE (-1.0)
 

@@ -9,7 +9,7 @@ enum tl_outcome {
     TL_OUTCOME_EXACT,
     TL_OUTCOME_BOUNDED,
     TL_OUTCOME_REFUSED,
-    TL_OUTCOME_SILENT, /* out of its bound without a word */
+    TL_OUTCOME_SILENT, /* out of its bound, and not refused */
     TL_OUTCOME_NAN,
     TL_OUTCOME_COUNT
 };
@@ -20,8 +20,8 @@ struct tl_stability {
     cJSON *rows; /* one object a cell, for --json */
 };
 
-/* Counts a cell and begins its row: axis and outcome are in it. */
+/* Counts a cell and adds its row, which has the axis and the outcome. The row is owned by `stability`. */
 cJSON *tl_stability_add(struct tl_stability *stability, const char *axis, enum tl_outcome outcome);
-int tl_stability_cells(const struct tl_stability *stability);
+/* All cells counted so far. */ int tl_stability_cells(const struct tl_stability *stability);
 
 #endif

@@ -1,12 +1,11 @@
-/* The contract of the extremes, for every axis alike: each cell meets its stated bound or is refused with a
- * clear message. Anything else is a failure of the program. */
+/* The axes of `toile stability`. Each runs its extreme cases and judges them by the contract in outcome.h. */
 #ifndef TOILE_APP_LAB_STABILITY_STABILITY_H
 #define TOILE_APP_LAB_STABILITY_STABILITY_H
 
 #include "app/cli/arguments.h"
 #include "app/lab/stability/outcome.h"
 
-/* One axis each. They print a table unless the arguments ask for JSON, and add to `out`. */
+/* One axis each. They add their cells to `out`, and print a table unless --json is given. */
 bool tl_stability_light(const struct tl_arguments *arguments, struct tl_stability *out, tl_error *error);
 bool tl_stability_detail(const struct tl_arguments *arguments, struct tl_stability *out, tl_error *error);
 bool tl_stability_shading(const struct tl_arguments *arguments, struct tl_stability *out, tl_error *error);

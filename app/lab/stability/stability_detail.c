@@ -1,4 +1,4 @@
-/* The extremes of fabric detail: height fields and views that nobody should have, each seen by parallax and
+/* The extremes of fabric detail: height fields and degenerate views, each seen by parallax and
  * relief. What is seen never lies farther off than twenty times the height [detail_slant], or than the height
  * itself where the shift is limited; flat fields are exact. */
 #include "app/lab/stability/stability.h"
@@ -56,7 +56,7 @@ static struct cell judge(const struct extreme *extreme, vec2s from, vec2s to, fl
 }
 
 static void add(const struct extreme *extreme, const char *way, float tilt_deg, const struct cell *cell,
-                bool tells, struct tl_stability *out)
+                bool prints, struct tl_stability *out)
 {
     cJSON *row = tl_stability_add(out, "detail", cell->outcome);
     cJSON_AddStringToObject(row, "extreme", extreme->name);
@@ -64,13 +64,13 @@ static void add(const struct extreme *extreme, const char *way, float tilt_deg, 
     cJSON_AddNumberToObject(row, "tilt_deg", (double)tilt_deg);
     cJSON_AddNumberToObject(row, "moved_m", isfinite(cell->moved_m) ? cell->moved_m : -1);
     cJSON_AddNumberToObject(row, "bound_m", cell->bound_m);
-    if (tells)
+    if (prints)
         printf("%-22s %-16s %6.1f degrees  %-8s %9.3g m of %.3g\n", extreme->name, way, (double)tilt_deg,
                tl_outcome_names[cell->outcome], cell->moved_m, cell->bound_m);
 }
 
 static void run_view(const struct extreme *extreme, const struct tl_height_field *field, float tilt_deg,
-                     bool tells, struct tl_stability *out)
+                     bool prints, struct tl_stability *out)
 {
     static const char *const relief_names[] = {"relief, 1 step", "relief, 256 steps"};
     const vec2s uv = {{0.37f, 0.61f}};
@@ -80,13 +80,13 @@ static void run_view(const struct extreme *extreme, const struct tl_height_field
     for (int limited = 0; limited < 2; limited++) {
         vec2s to = tl_field_parallax(field, uv, view, limited);
         struct cell cell = judge(extreme, uv, to, 1, limited ? height : SHIFT_SLANT * height);
-        add(extreme, limited ? "parallax_limited" : "parallax", tilt_deg, &cell, tells, out);
+        add(extreme, limited ? "parallax_limited" : "parallax", tilt_deg, &cell, prints, out);
     }
     for (size_t s = 0; s < TL_COUNT(steps); s++) {
         struct tl_relief relief = tl_field_relief(field, uv, view, steps[s], 5);
         float lit = tl_field_lit(field, relief.uv, view, steps[s]);
         struct cell cell = judge(extreme, uv, relief.uv, lit, SHIFT_SLANT * height);
-        add(extreme, relief_names[s], tilt_deg, &cell, tells, out);
+        add(extreme, relief_names[s], tilt_deg, &cell, prints, out);
     }
 }
 

@@ -96,14 +96,14 @@ static bool covers(const tl_image *image)
 }
 
 /* 0 when neither image shows anything. */
-static bool relative_error(const tl_image *tested, const tl_image *truth, double *out, tl_error *error)
+static bool relative_error(const tl_image *tested, const tl_image *reference, double *out, tl_error *error)
 {
     struct tl_comparison comparison;
     *out = 0;
-    if (!covers(tested) && !covers(truth))
+    if (!covers(tested) && !covers(reference))
         return true;
-    const int ldr = 0; /* FLIP is not asked for, and a picture that is half black has no exposure */
-    bool done = tl_image_compare(tested, truth, ldr, 0, &comparison, error);
+    const int ldr = 0; /* no FLIP: an image that is half black has no exposure */
+    bool done = tl_image_compare(tested, reference, ldr, 0, &comparison, error);
     *out = comparison.rel_rmse;
     return done;
 }
@@ -123,15 +123,15 @@ static bool picture(struct tl_variant_run *variant, const struct tl_extreme *ext
            tl_renderer_read(variant->renderer, out, error);
 }
 
-static struct cell judge(const struct tl_extreme *extreme, const tl_image *image, const tl_image *truth,
+static struct cell judge(const struct tl_extreme *extreme, const tl_image *image, const tl_image *reference,
                          double bound)
 {
     struct cell cell = {.outcome = TL_OUTCOME_SILENT, .rel_rmse = NAN, .bound = bound};
-    if (has_nan(image) || has_nan(truth))
+    if (has_nan(image) || has_nan(reference))
         cell.outcome = TL_OUTCOME_NAN;
     else if (extreme->refused)
         tl_fail(&cell.error, TL_UNSTABLE, "drawn, though %s", extreme->why);
-    else if (!relative_error(image, truth, &cell.rel_rmse, &cell.error))
+    else if (!relative_error(image, reference, &cell.rel_rmse, &cell.error))
         cell.rel_rmse = NAN;
     else if (cell.rel_rmse <= EXACT_RMSE)
         cell.outcome = TL_OUTCOME_EXACT;
@@ -140,7 +140,7 @@ static struct cell judge(const struct tl_extreme *extreme, const tl_image *image
     return cell;
 }
 
-/* A refusal counts when it has something to say, and was promised. */
+/* A refusal counts if it was expected and its message is not empty. */
 static struct cell refuse(const struct tl_extreme *extreme, const tl_error *error)
 {
     bool clear =
@@ -154,7 +154,7 @@ static struct cell refuse(const struct tl_extreme *extreme, const tl_error *erro
 
 /* The bound of one method; NaN, which nothing keeps, when there is nothing to compare with. */
 static double bound_of(struct suite *suite, const struct tl_extreme *extreme, int method,
-                       struct tl_extreme_scene *scene, const tl_image *truth)
+                       struct tl_extreme_scene *scene, const tl_image *reference)
 {
     if (extreme->bounds[method] != TL_NO_WORSE)
         return extreme->bounds[method];
@@ -162,7 +162,7 @@ static double bound_of(struct suite *suite, const struct tl_extreme *extreme, in
     double bound = NAN;
     tl_error error;
     if (picture(&suite->unshadowed, extreme, scene, &image, &error))
-        relative_error(&image, truth, &bound, &error);
+        relative_error(&image, reference, &bound, &error);
     tl_image_release(&image);
     return bound;
 }
@@ -172,20 +172,20 @@ static void run_extreme(struct suite *suite, size_t index)
     const struct tl_extreme *extreme = &tl_extremes[index];
     struct tl_extreme_scene scene;
     tl_error error = {0};
-    tl_image truth = {0};
+    tl_image reference = {0};
     bool made = tl_extreme_scene_make(extreme, &scene, &error) &&
-                (extreme->refused || picture(&suite->reference, extreme, &scene, &truth, &error));
+                (extreme->refused || picture(&suite->reference, extreme, &scene, &reference, &error));
     for (int m = 0; m < TL_EXTREME_METHODS; m++) {
         tl_image image = {0};
         struct cell *cell = &suite->cells[index * TL_EXTREME_METHODS + (size_t)m];
         if (made && picture(&suite->methods[m], extreme, &scene, &image, &error))
-            *cell = judge(extreme, &image, extreme->refused ? &image : &truth,
-                          extreme->refused ? NAN : bound_of(suite, extreme, m, &scene, &truth));
+            *cell = judge(extreme, &image, extreme->refused ? &image : &reference,
+                          extreme->refused ? NAN : bound_of(suite, extreme, m, &scene, &reference));
         else
             *cell = refuse(extreme, &error);
         tl_image_release(&image);
     }
-    tl_image_release(&truth);
+    tl_image_release(&reference);
     tl_extreme_scene_release(&scene);
 }
 

@@ -1,4 +1,4 @@
-/* The extremes of shading: every reflectance model under lights and views that nobody should have, from the
+/* The extremes of shading: every reflectance model under lights and degenerate views, from the
  * dullest gloss to the sharpest. Below the surface no light is sent back at all; above it never more than the
  * peak of the model's formula (render/brdf/brdf.h) under a Fresnel term of 1. */
 #include "app/lab/experiments/experiment.h"
@@ -42,8 +42,8 @@ static double peak_of(const struct tl_brdf *brdf, double a, double b)
     }
 }
 
-static void run_cell(const struct extreme *extreme, int model, const char *name, float glossiness, bool tells,
-                     struct tl_stability *out)
+static void run_cell(const struct extreme *extreme, int model, const char *name, float glossiness,
+                     bool prints, struct tl_stability *out)
 {
     tl_material material = tl_material_default("extreme");
     material.gloss.model = model;
@@ -64,7 +64,7 @@ static void run_cell(const struct extreme *extreme, int model, const char *name,
     cJSON_AddNumberToObject(row, "glossiness", (double)glossiness);
     cJSON_AddNumberToObject(row, "sent", isfinite(sent) ? sent : -1);
     cJSON_AddNumberToObject(row, "bound", peak);
-    if (tells)
+    if (prints)
         printf("%-28s %-17s g %-9.7g %-8s %9.3g of %.3g\n", extreme->name, name, (double)glossiness,
                tl_outcome_names[outcome], sent, peak);
 }

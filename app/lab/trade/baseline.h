@@ -1,7 +1,7 @@
-/* The baseline of bench cloth: the plain loop that anyone would write, scalar and in double: a square sheet
- * of point masses with structural, shear and second-neighbour bend springs, moved by Verlet's method below
- * its critical step. Six springs a particle. It is here to be compared with, and is no solver of this
- * program: second-neighbour springs have no linear bending stiffness (CLOTH.md section 3, 5). */
+/* The baseline of bench cloth: a plain scalar loop in double over a square sheet of point masses with
+ * structural, shear and second-neighbour bend springs (six a particle), integrated by Verlet's method below
+ * its critical step. It is only compared with and is no solver of this program: second-neighbour springs have
+ * no linear bending stiffness (CLOTH.md section 3, 5). */
 #ifndef TOILE_APP_LAB_TRADE_BASELINE_H
 #define TOILE_APP_LAB_TRADE_BASELINE_H
 
