@@ -42,7 +42,7 @@ static uint32_t hem_vertex(const tl_surface *garment, vec3s eye)
     return best;
 }
 
-/* The longest side of the box about it. */
+/* The longest side of its bounding box. */
 static float size_of(const tl_surface *garment)
 {
     vec3s box[2] = {garment->positions[0], garment->positions[0]};
@@ -68,7 +68,7 @@ void tl_motion_begin(struct tl_motion *motion, tl_session *session)
     motion->across = glms_vec3_normalize((vec3s){{-towards.z, 0, towards.x}});
 }
 
-/* To and fro, a little lifted where it turns. */
+/* A swing to both sides, raised at the ends. */
 static vec3s hand_at(const struct tl_motion *motion, double time_s)
 {
     double phase = 2 * M_PI * SWING_HZ * time_s;

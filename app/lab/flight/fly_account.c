@@ -181,7 +181,7 @@ void tl_flight_print(const struct tl_flight_account *account, FILE *out)
     if (isfinite(figures->prediction_error))
         fprintf(out, "frame times were predicted within %.1f %% (median)\n", 100 * figures->prediction_error);
     if (figures->oracle_frames)
-        fprintf(out, "%d frames against the oracle: mean FLIP %.4f, relative RMSE %.2f %%\n",
+        fprintf(out, "%d frames against the reference: mean FLIP %.4f, relative RMSE %.2f %%\n",
                 figures->oracle_frames, figures->flip_mean, 100 * figures->rel_rmse);
     if (account->replay && account->compared)
         fprintf(out, "replay of %s: %d of %d images are the same to the bit\n", account->replay,
@@ -245,7 +245,7 @@ void tl_flight_record_release(struct tl_flight_record *record)
     record->settings = NULL;
 }
 
-/* Times of other work cannot be compared; a replay needs every option to be the same. */
+/* Times can be compared only between flights that do the same work; a replay needs all options equal. */
 bool tl_flight_record_suits(const struct tl_flight_record *record, const char *folder,
                             const struct tl_settings *settings, bool whole, tl_error *error)
 {

@@ -1,4 +1,4 @@
-/* What a recorded flight comes to: percentiles, shares, medians, and one flight against another. Pure.
+/* Figures of a recorded flight: percentiles, shares, medians, and the comparison of two flights. Pure.
  *
  * Only frames after the warm-up count. Milliseconds. */
 #ifndef TOILE_APP_LAB_FLIGHT_FLY_FIGURES_H
@@ -6,7 +6,7 @@
 
 #include "app/lab/flight/fly.h"
 
-#define TL_FLIGHT_TOLERANCE 1.1 /* a frame within so many budgets keeps its time */
+#define TL_FLIGHT_TOLERANCE 1.1 /* a frame keeps its time within this multiple of the budget */
 
 struct tl_flight_figures {
     int judged; /* frames after the warm-up */
@@ -17,22 +17,22 @@ struct tl_flight_figures {
     double prediction_error; /* median of |predicted - measured| / measured; NaN: nothing was predicted */
     double estimated_error;  /* mean of the frames' estimates; NaN: none */
     size_t memory_bytes;     /* largest */
-    int oracle_frames;       /* those that were measured, warm-up or not */
-    double flip_mean, rel_rmse, flip_worst; /* over these: means, and the largest; NaN: none */
+    int oracle_frames;       /* frames compared with the reference, warm-up included */
+    double flip_mean, rel_rmse, flip_worst; /* over these frames: means, and the largest; NaN: none */
 };
 struct tl_flight_figures tl_flight_measure(const struct tl_flight *flight);
 
 /* The smallest value that at least `share` of the values do not exceed (nearest rank); NaN of none. */
 double tl_percentile(const double *values, size_t count, double share);
 
-/* What one job took in the frames in which it ran. */
+/* Time of one job in the frames in which it ran. */
 struct tl_flight_job {
     double median_ms, total_ms; /* NaN and 0 when it never ran */
     int ran;
 };
 struct tl_flight_job tl_flight_measure_job(const struct tl_flight *flight, int job);
 
-/* How much longer (above 1) something took than in an earlier flight along the same way: the ratio of medians
+/* The time of one part over its time in an earlier flight along the same path: the ratio of medians
  * over frames that both have, and the interval that holds it with 95 % by a bootstrap over the same pairs, in
  * blocks of a second, because frames that follow each other are alike. It knows the noise inside of two runs,
  * not that of a machine which was busier during one of them. */
@@ -44,14 +44,15 @@ struct tl_flight_ratio {
 };
 #define TL_FLIGHT_RATIOS_MAX (TL_JOBS_MAX + 2)
 
-/* Of the whole frame, of the cloth, and of every job that ran in both, in this order; returns their number.
- * A job counts as slower or faster when 1 lies outside of its interval and the difference of medians is at
- * least TL_FLIGHT_NOTICED of the frame's. */
+/* Compares the whole frame, the cloth, and every job that ran in both flights, in this order; returns the
+ * number of ratios. A job counts as slower or faster when 1 lies outside of its interval and the difference
+ * of medians is at least TL_FLIGHT_NOTICED of the frame's. */
 int tl_flight_compare(const struct tl_flight *here, const struct tl_flight *there,
                       struct tl_flight_ratio out[TL_FLIGHT_RATIOS_MAX]);
 #define TL_FLIGHT_NOTICED 0.01
 
-/* The ratio of medians of `count` pairs, and its interval; `block` pairs in a row are drawn together. */
+/* The ratio of medians of `count` pairs, and its interval; blocks of `block` consecutive pairs are resampled
+ * together. */
 struct tl_flight_ratio tl_ratio_of_medians(const double *here, const double *there, size_t count,
                                            size_t block);
 

@@ -1,4 +1,4 @@
-/* report.html of a flight: what it came to, then frame by frame. */
+/* report.html of a flight: its figures, then plots over all frames. */
 #include "app/lab/flight/fly_account.h"
 #include "app/report/cells.h"
 #include "app/report/report.h"
@@ -10,7 +10,7 @@
 #include <string.h>
 
 #define MEBIBYTE   1048576.0
-#define JOBS_SHOWN (TL_PLOT_STYLES - 2) /* in a stack, beside the cloth and what is left */
+#define JOBS_SHOWN (TL_PLOT_STYLES - 2) /* in a stack, between the cloth and the remainder */
 
 static struct tl_plot_options time_options(const struct tl_flight *flight)
 {
@@ -55,7 +55,7 @@ static void print_lines(struct lines *lines, const char *y_label, const struct t
     free(lines->points);
 }
 
-/* -- what it came to -- */
+/* -- figures -- */
 
 struct tiles {
     char texts[24][64];
@@ -86,8 +86,8 @@ static void print_tiles(const struct tl_flight_account *account, FILE *out)
     add_tile(&tiles, "of it for the cloth (median)", 1, figures->cloth_ms, " ms");
     add_tile(&tiles, "off: predicted against measured", 1, 100 * figures->prediction_error, " %");
     add_tile(&tiles, "mean FLIP that levels add, estimated", 3, figures->estimated_error, "");
-    add_tile(&tiles, "mean FLIP against the oracle", 3, figures->flip_mean, "");
-    add_tile(&tiles, "relative RMSE against the oracle", 1, 100 * figures->rel_rmse, " %");
+    add_tile(&tiles, "mean FLIP against the reference", 3, figures->flip_mean, "");
+    add_tile(&tiles, "relative RMSE against the reference", 1, 100 * figures->rel_rmse, " %");
     add_tile(&tiles, "held by the renderer", 0, (double)figures->memory_bytes / MEBIBYTE, " MiB");
     const char *cells[TL_COUNT(tiles.texts)];
     for (size_t i = 0; i < tiles.count; i++)
@@ -123,7 +123,8 @@ static void print_way(const struct tl_flight *flight, FILE *out)
 
 /* -- frame by frame -- */
 
-/* The first frames make everything ready: what they take beyond all others is cut off. */
+/* The largest time of the plots, from frames after the warm-up: the first frames create all resources and
+ * would dominate the scale. */
 static double highest_shown(const struct tl_flight_account *account)
 {
     const double room = 1.25;
@@ -158,7 +159,7 @@ static void print_strip(const struct tl_flight_account *account, FILE *out)
     print_lines(&lines, "ms", &options, caption, out);
 }
 
-/* Of the times after the warm-up. The longest may lie far out: they are counted in the last bar. */
+/* Histogram of the times after the warm-up. The last bar counts all outliers. */
 static void print_histogram(const struct tl_flight_account *account, FILE *out)
 {
     enum { BARS = 40 };
@@ -200,7 +201,7 @@ static int compare_ranked(const void *a, const void *b)
     return (second > first) - (second < first);
 }
 
-/* The jobs that took most, in order; returns how many ran. */
+/* Ranks the jobs by total time, longest first; returns the number of jobs that ran. */
 static int rank_jobs(const struct tl_flight *flight, struct ranked ranked[TL_JOBS_MAX])
 {
     int count = 0;
@@ -213,7 +214,7 @@ static int rank_jobs(const struct tl_flight *flight, struct ranked ranked[TL_JOB
     return count;
 }
 
-/* The cloth at the bottom, the jobs that took most above it, all else on top. */
+/* Stacked: the cloth at the bottom, the longest jobs above it, the remainder on top. */
 static void print_stack(const struct tl_flight_account *account, FILE *out)
 {
     const struct tl_flight *flight = account->flight;
@@ -273,7 +274,7 @@ static int highest_level(const struct tl_flight *flight, int control)
     return highest;
 }
 
-/* A lane for each control that was turned, the first on top. */
+/* One lane for each control that changed, the first on top. */
 static void print_levels(const struct tl_flight *flight, FILE *out)
 {
     const double lane_height = 46, used = 0.72; /* of a lane, for its levels */
@@ -351,7 +352,7 @@ static void print_predictions(const struct tl_flight_account *account, FILE *out
     free(points);
 }
 
-/* The part of a frame that exceeds its own median by most. */
+/* The part of a frame whose time exceeds its own median most. */
 static void explain(const struct tl_flight_account *account, int number, char *out, size_t size)
 {
     const struct tl_flight *flight = account->flight;

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* As many frames as a cell's work allows, for what grows may do so slowly. */
+/* As many frames as the work limit allows, because an instability may grow slowly. */
 #define FRAMES_MIN  2
 #define FRAMES_MAX  100
 #define FRAMES_WORK 1e6 /* particle-substeps */
@@ -17,7 +17,7 @@
 #define EXACT_SHARE 1e-3
 #define FLOAT_SHARE 1e-6
 #define SCRAMBLE    0.2
-#define SWING       2.0 /* what starts at rest swings as far beyond its place as it began before it */
+#define SWING       2.0 /* a vertex released at rest swings as far beyond its equilibrium as it began before it */
 
 const struct tl_envelope_size tl_envelope_sizes[] = {
     {"1 triangle", 0, 1, true, true}, {"12", 3, 3, true, true},       {"100", 5, 19, true, false},
@@ -113,7 +113,7 @@ static struct subject make_subject(const struct tl_envelope_case *tested)
     fabric->stretch_weft = fabric->stretch_warp = fabric->shear = tested->stiffness;
     fabric->bend_weft = fabric->bend_warp = fabric->damping = 0;
     subject.params.solver = tested->solver;
-    subject.params.strain_limit = 0; /* which no energy knows of */
+    subject.params.strain_limit = 0; /* because limiting changes no energy */
     subject.params.dt = tested->dt;
     subject.params.frame_rate = fmin(1 / tested->dt, 1000);
     return subject;
@@ -174,7 +174,7 @@ static double growth_since(const struct tl_cloth_report *first, const tl_cloth *
     return (now.kinetic_energy + now.elastic_energy) / began;
 }
 
-/* Frames until one is refused. */
+/* Simulates frames until one is refused. */
 static enum tl_outcome run_frames(tl_cloth *cloth, const struct subject *subject, double *growth,
                                   tl_error *error)
 {
@@ -188,7 +188,7 @@ static enum tl_outcome run_frames(tl_cloth *cloth, const struct subject *subject
     return outcome;
 }
 
-/* How far below its true rest a solver comes to rest. */
+/* How far below the true equilibrium a solver comes to rest. */
 static double slack(const tl_cloth *cloth, const struct subject *subject)
 {
     if (subject->params.solver != TL_CLOTH_PREVIEW || subject->tube.columns == 0)
@@ -252,8 +252,8 @@ struct tl_envelope_cell tl_envelope_run(const struct tl_envelope_case *tested)
     struct subject subject = make_subject(tested);
     struct tl_envelope_cell cell = {.run = true, .strayed = NAN, .growth = NAN};
     struct tl_stopwatch watch = tl_stopwatch_start();
-    omp_set_num_threads(tested->size->whole ? 1
-                                            : omp_get_num_procs()); /* small ones only wait for each other */
+    omp_set_num_threads(
+        tested->size->whole ? 1 : omp_get_num_procs()); /* threads cost more than they gain on small meshes */
     cell.outcome = run_hanging(&subject, &cell);
     if (cell.outcome == TL_OUTCOME_EXACT || cell.outcome == TL_OUTCOME_BOUNDED) {
         enum tl_outcome scrambled = run_scrambled(&subject, &cell);

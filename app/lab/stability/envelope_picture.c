@@ -15,7 +15,7 @@
 #define BOTTOM   90
 
 static const uint32_t paper = 0xfbfaf8, ink = 0x1d2126, soft = 0x5c6670, nothing = 0xefece6;
-/* Apart for eyes that tell few hues, by lightness too. */
+/* Colours differ in lightness, too, for colour-blind readers. */
 static const uint32_t colours[TL_OUTCOME_COUNT] = {0x2c8a57, 0x8fc7e8, 0xc9c4ba, 0xd3650b, 0xbd1030};
 
 /* 1e3 rather than 1e+03. */
@@ -70,7 +70,7 @@ static void draw_foot(tl_image *canvas)
         x += CELL + 6 + tl_canvas_text_width(tl_outcome_names[i]) + 2 * GAP;
     }
     tl_canvas_box(canvas, x, y, CELL, CELL, nothing);
-    tl_canvas_text(canvas, x + CELL + 6, y, "not asked for", ink);
+    tl_canvas_text(canvas, x + CELL + 6, y, "not run", ink);
 }
 
 tl_image tl_envelope_picture(const struct tl_envelope_sweep *sweep)

@@ -84,7 +84,7 @@ void tl_envelope_sweep_release(struct tl_envelope_sweep *sweep)
     *sweep = (struct tl_envelope_sweep){0};
 }
 
-/* A line of letters for each mass ratio; false when none was asked for. */
+/* Prints one line of letters for a mass ratio; false if no cell of it was run. */
 static bool spell_line(const struct tl_envelope_sweep *sweep, int solver, size_t size, int step,
                        char lines[TL_ENVELOPE_RATIOS][TL_ENVELOPE_STIFFNESSES + 1])
 {
@@ -106,7 +106,7 @@ void tl_envelope_print(const struct tl_envelope_sweep *sweep)
 {
     char lines[TL_ENVELOPE_RATIOS][TL_ENVELOPE_STIFFNESSES + 1];
     printf("the envelope of cloth, stiffness 1e-2 to 1e9 N/m from left to right\n"
-           "= exact   b bounded   . refused   S SILENT   ! NaN   (space: not asked for)\n\n%-12s%-12s%-8s",
+           "= exact   b bounded   . refused   S SILENT   ! NaN   (space: not run)\n\n%-12s%-12s%-8s",
            "solver", "particles", "dt");
     for (int ratio = 0; ratio < TL_ENVELOPE_RATIOS; ratio++)
         printf("  masses 1:%-5.0g", tl_envelope_ratios[ratio]);

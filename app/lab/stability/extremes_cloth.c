@@ -28,16 +28,16 @@ struct trial {
     int frames;
     tl_cloth *cloth;
     tl_collider *collider;
-    vec3s *moved; /* where the ball is to be */
-    double pace;  /* m/s, of what went farthest in the last frame */
+    vec3s *moved;     /* where the ball is to be */
+    double max_speed; /* m/s, of what went farthest in the last frame */
 };
 
-/* What a trial that is not refused must keep, beside being finite. */
+/* The bound of a trial that is not refused. Its state must be finite in any case. */
 enum promise {
-    REFUSES, /* nothing: a clear message is the promise */
-    ENERGY,  /* what starts at rest is never faster than its fall explains, but for HEADROOM */
-    OUTSIDE, /* in the end nothing is deeper in the avatar than DEEP_M */
-    RESTS,   /* in the last frame nothing goes farther than at REST_MS: within it explicit substeps tremble */
+    REFUSES, /* must be refused with a clear message */
+    ENERGY,  /* kinetic energy never exceeds the potential energy lost, but for HEADROOM */
+    OUTSIDE, /* finally no vertex is deeper in the avatar than DEEP_M */
+    RESTS, /* in the last frame no vertex is faster than REST_MS, within which explicit substeps oscillate */
     FINITE,
 };
 
@@ -246,7 +246,7 @@ static void upward_gravity(struct trial *trial)
     trial->params.gravity = -100;
 }
 
-/* Every number of a table in turn: none, infinite, and outside of its range. All must be refused. */
+/* Sets each number of a table in turn to NaN, infinity and values out of its range. All must be refused. */
 static enum tl_outcome refuse_numbers(int solver, const struct tl_option_table *table, bool is_fabric,
                                       tl_error *found)
 {
@@ -345,7 +345,7 @@ static void rough_and_thick(struct trial *trial)
 static void come_to_rest(struct trial *trial, int frame)
 {
     tl_error unused;
-    if (frame == 0) /* what it refuses the frames after it will refuse too */
+    if (frame == 0) /* later frames would refuse it, too */
         tl_cloth_settle(trial->cloth, trial->collider, &unused);
 }
 
@@ -541,7 +541,7 @@ static void release(struct trial *trial)
     free(trial->moved);
 }
 
-/* Elastic energy is never below 0, so this never exceeds what all were at the start. */
+/* Elastic energy is >= 0, so that kinetic + potential energy never exceeds the initial total. */
 static double motion_energy(const struct trial *trial)
 {
     struct tl_cloth_report report = tl_cloth_measure(trial->cloth, NULL);
@@ -564,9 +564,9 @@ static enum tl_outcome judge(const struct trial *trial, enum promise promise, do
         say(found, "%.2g mm deep, largest strain %.2g", 1e3 * report.deepest_m, report.max_strain);
         return report.deepest_m <= DEEP_M ? TL_OUTCOME_BOUNDED : TL_OUTCOME_SILENT;
     case RESTS:
-        say(found, "%.2g mm/s after %.0f s (%.2g mm/s at its end)", 1e3 * trial->pace, report.time_s,
+        say(found, "%.2g mm/s after %.0f s (%.2g mm/s at its end)", 1e3 * trial->max_speed, report.time_s,
             1e3 * report.max_speed);
-        return trial->pace <= REST_MS ? TL_OUTCOME_BOUNDED : TL_OUTCOME_SILENT;
+        return trial->max_speed <= REST_MS ? TL_OUTCOME_BOUNDED : TL_OUTCOME_SILENT;
     case FINITE:
         say(found, "finite; largest strain %.2g", report.max_strain);
         break;
@@ -576,11 +576,11 @@ static enum tl_outcome judge(const struct trial *trial, enum promise promise, do
 
 static void keep_pace(struct trial *trial, const vec3s *before, vec3s *after)
 {
-    trial->pace = 0;
+    trial->max_speed = 0;
     tl_cloth_positions(trial->cloth, after);
     for (size_t i = 0; i < trial->garment.model.mesh.vertex_count; i++)
-        trial->pace =
-            fmax(trial->pace, (double)glms_vec3_distance(before[i], after[i]) * trial->params.frame_rate);
+        trial->max_speed = fmax(trial->max_speed,
+                                (double)glms_vec3_distance(before[i], after[i]) * trial->params.frame_rate);
 }
 
 static enum tl_outcome run_frames(struct trial *trial, const struct extreme *extreme, tl_error *found)
@@ -607,7 +607,7 @@ enum tl_outcome tl_cloth_extreme_run(size_t index, int solver, tl_error *found)
     const struct extreme *extreme = &extremes[index];
     struct trial trial;
     *found = (tl_error){0};
-    omp_set_num_threads(1); /* small ones only wait for each other */
+    omp_set_num_threads(1); /* threads cost more than they gain on small meshes */
     if (extreme->run)
         return extreme->run(solver, found);
     enum tl_outcome outcome = prepare(&trial, solver, extreme, found) ? run_frames(&trial, extreme, found)

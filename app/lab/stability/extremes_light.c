@@ -74,7 +74,7 @@ static void make_frames(tl_mesh *mesh)
 
 static void fill_surface(struct tl_extreme_scene *scene)
 {
-    static uint64_t revision; /* every scene is news to a renderer */
+    static uint64_t revision; /* unique for every scene, so that a renderer reuses nothing */
     tl_mesh *mesh = &scene->mesh;
     revision++;
     mesh->part_count = 1;
@@ -228,7 +228,7 @@ static void flat_sheet(struct tl_extreme_scene *scene)
     make_frames(&scene->mesh);
 }
 
-/* The sheet's own plane holds the light. */
+/* The light lies in the sheet's plane. */
 static void sheet_edge_on(struct tl_extreme_scene *scene)
 {
     light_from(scene, (vec3s){{1, 0.7f, 0}});
@@ -263,7 +263,7 @@ static void hundred_metres(struct tl_extreme_scene *scene)
     scaled(scene, 100);
 }
 
-/* The floor goes a hundred times farther than the maps are fitted to without it. */
+/* A floor a hundred times as large as the scene that shadow maps are fitted to without it. */
 static void with_ground(struct tl_extreme_scene *scene)
 {
     scene->ground = true;
@@ -302,7 +302,7 @@ static void degenerate_uvs(struct tl_extreme_scene *scene)
     }
 }
 
-/* Every ninth triangle a point, every eleventh a needle, every thirteenth there twice. */
+/* Makes every ninth triangle a point and every eleventh a needle, and duplicates every thirteenth. */
 static void degenerate_triangles(struct tl_extreme_scene *scene)
 {
     tl_mesh *mesh = &scene->mesh;
@@ -449,7 +449,7 @@ const struct tl_extreme tl_extremes[] = {
 /* clang-format on */
 const size_t tl_extreme_count = TL_COUNT(tl_extremes);
 
-/* To a file and back: what a file may hold is its reader's affair. */
+/* Writes the environment to a file and reads it back, because the file reader checks its values. */
 static bool reload_environment(struct tl_extreme_scene *scene, tl_error *error)
 {
     static const char *const channels[] = {"R", "G", "B"};

@@ -16,13 +16,13 @@
 #include <omp.h>
 #include <stdlib.h>
 
-#define ROUNDS          3 /* the best counts: whatever else the machine does only takes away */
-#define FRAME_SUBSTEPS  64
-#define SIDES_MAX       3
-#define THREADS_MAX     2
-#define DRESSES_MAX     2
-#define BASELINE        TL_CLOTH_SOLVER_COUNT /* takes its turn after the solvers */
-#define CONTENDER_COUNT (TL_CLOTH_SOLVER_COUNT + 1)
+#define ROUNDS         3 /* the fastest counts: other load on the machine only slows a round down */
+#define FRAME_SUBSTEPS 64
+#define SIDES_MAX      3
+#define THREADS_MAX    2
+#define DRESSES_MAX    2
+#define BASELINE       TL_CLOTH_SOLVER_COUNT /* measured after the solvers */
+#define RUN_COUNT      (TL_CLOTH_SOLVER_COUNT + 1)
 
 struct plan {
     int sides[SIDES_MAX], side_count;
@@ -51,13 +51,13 @@ struct dress_run {
 
 struct bench {
     struct plan plan;
-    struct rate rates[SIDES_MAX][THREADS_MAX][CONTENDER_COUNT]; /* NaN: refused */
+    struct rate rates[SIDES_MAX][THREADS_MAX][RUN_COUNT]; /* NaN: refused */
     double frames_ms[SIDES_MAX];
     struct dress_run dresses[DRESSES_MAX * TL_CLOTH_SOLVER_COUNT];
     size_t dress_count;
 };
 
-static const char *contender_name(int variant)
+static const char *run_name(int variant)
 {
     return variant == BASELINE ? "plain loop" : tl_cloth_solver_names[variant];
 }
@@ -73,7 +73,7 @@ static tl_cloth *make_cloth(const tl_garment *garment, int solver, tl_error *err
     tl_cloth *cloth = tl_cloth_create(garment, &fabric, &params, error);
     if (!cloth)
         return NULL;
-    /* What is done once a frame weighs alike in all: a frame is made of so many substeps or one step. */
+    /* A frame has the same number of substeps for all, so that work done once a frame has equal weight. */
     double substep_s = tl_cloth_measure(cloth, NULL).substep_s;
     params.frame_rate = fmin(fmax(1 / (FRAME_SUBSTEPS * substep_s), params.frame_rate), 1000);
     if (tl_cloth_set(cloth, &fabric, &params, error))
@@ -116,7 +116,7 @@ static bool run_baseline(tl_baseline *baseline, int side, double turn_ms, struct
         steps += FRAME_SUBSTEPS * (double)side * side;
         taken = tl_stopwatch_read(&watch);
     } while (taken.cpu_ms < turn_ms);
-    if (!(tl_baseline_stretch(baseline) < 2)) /* read, so that the loop cannot be left out */
+    if (!(tl_baseline_stretch(baseline) < 2)) /* the result is used, so that the compiler keeps the loop */
         return tl_fail(error, TL_UNSTABLE, "bench: the plain loop stretched by %g",
                        tl_baseline_stretch(baseline));
     out->cpu = fmax(out->cpu, 1e3 * steps / taken.cpu_ms);
@@ -124,7 +124,7 @@ static bool run_baseline(tl_baseline *baseline, int side, double turn_ms, struct
     return true;
 }
 
-/* All variants in turn, round after round, so that what else the machine does meets them alike. */
+/* Runs all solvers in turn, round after round, so that other load on the machine affects all alike. */
 static bool run_sheet(struct bench *bench, int size, int threads, tl_error *error)
 {
     int side = bench->plan.sides[size];
@@ -186,7 +186,7 @@ static size_t count_particles(const tl_garment *garment)
     return count;
 }
 
-/* Cut as finely as gives about `wanted` particles. */
+/* Chooses the edge length that gives about `wanted` particles. */
 static bool cut_dress(int wanted, tl_garment *out, tl_error *error)
 {
     float edge_m = 0.04f;
@@ -255,11 +255,11 @@ static void print_rates(const struct bench *bench)
     printf("%-10s %8s %8s %12s %8s %14s\n", "particles", "threads", "", "M/s/core", "ratio", "wall M/s");
     for (int i = 0; i < bench->plan.side_count; i++)
         for (int t = 0; t < bench->plan.thread_count; t++)
-            for (int c = 0; c < CONTENDER_COUNT; c++) {
+            for (int c = 0; c < RUN_COUNT; c++) {
                 const struct rate *rate = &bench->rates[i][t][c];
                 printf("%-10d %8d %-12s %8.2f %8.2f %14.2f\n", bench->plan.sides[i] * bench->plan.sides[i],
-                       t + 1, contender_name(c), 1e-6 * rate->cpu,
-                       rate->cpu / bench->rates[i][t][BASELINE].cpu, 1e-6 * rate->wall);
+                       t + 1, run_name(c), 1e-6 * rate->cpu, rate->cpu / bench->rates[i][t][BASELINE].cpu,
+                       1e-6 * rate->wall);
             }
     printf("\nnormals and tangents on one core:\n");
     for (int i = 0; i < bench->plan.side_count; i++)
@@ -318,10 +318,10 @@ static void print_json(const struct bench *bench)
 {
     cJSON *object = cJSON_CreateObject(), *solvers = cJSON_AddArrayToObject(object, "solvers");
     int middle = bench->plan.side_count / 2;
-    for (int c = 0; c < CONTENDER_COUNT; c++) {
+    for (int c = 0; c < RUN_COUNT; c++) {
         const struct rate *rate = &bench->rates[middle][0][c];
         cJSON *row = cJSON_CreateObject();
-        cJSON_AddStringToObject(row, "name", contender_name(c));
+        cJSON_AddStringToObject(row, "name", run_name(c));
         cJSON_AddNumberToObject(row, "steps_per_s_core", rate->cpu);
         cJSON_AddNumberToObject(row, "ratio", rate->cpu / bench->rates[middle][0][BASELINE].cpu);
         add_runs(bench, c, row);

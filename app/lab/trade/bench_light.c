@@ -21,7 +21,7 @@
 struct schedule {
     int warm;          /* frames of history before the first measured one; FRONTIER.md measured with 16 */
     int measured;      /* at most FRAMES_MAX */
-    int compare_every; /* measured frames from one that is compared with the oracle to the next */
+    int compare_every; /* every so many measured frames one is compared with the reference */
 };
 static const struct schedule full = {16, 12, 4}, quick = {2, 2, 2};
 
@@ -209,14 +209,15 @@ static void print_table(const struct bench *bench)
 {
     struct tl_recording_report recording = tl_recording_report(bench->recording);
     const struct tl_image_params *image = &bench->stage.settings.image;
-    printf("%d x %d pixels, %.1f %% covered, %zu garment triangles, moving %.1f mm a frame on average;\n"
-           "medians of %d frames, process CPU time; errors are means of %d frames against the oracle, whose "
-           "standard error of %.2f %% is taken off; one pixel: the most of a frame's square error that its "
-           "worst "
-           "pixel holds, as where an outline's tie puts a highlight in or out\n\n",
-           image->width, image->height, 100 * coverage(bench), recording.garment_triangles,
-           1e3 * recording.mean_step_m, bench->schedule.measured, compared_count(bench),
-           100 * find_row(bench, "paper")->error[0].standard_error);
+    printf(
+        "%d x %d pixels, %.1f %% covered, %zu garment triangles, moving %.1f mm a frame on average;\n"
+        "medians of %d frames, process CPU time; errors are means of %d frames against the reference, whose "
+        "standard error of %.2f %% is taken off; one pixel: the most of a frame's square error that its "
+        "worst "
+        "pixel holds, as where an outline's tie puts a highlight in or out\n\n",
+        image->width, image->height, 100 * coverage(bench), recording.garment_triangles,
+        1e3 * recording.mean_step_m, bench->schedule.measured, compared_count(bench),
+        100 * find_row(bench, "paper")->error[0].standard_error);
     printf("%-24s %10s %10s %10s %10s %10s %10s\n", "", "CPU ms", "wall ms", "rel. RMSE", "one pixel",
            "mean FLIP", "MiB");
     for (int i = 0; i < bench->row_count; i++) {

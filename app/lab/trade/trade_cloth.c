@@ -11,17 +11,17 @@
 #include <string.h>
 
 #define FALL_S      0.5
-#define ENOUGH_MS   100  /* a fall that took less is measured again */
-#define REST_SIDE   33   /* the largest that comes to rest */
+#define ENOUGH_MS   100  /* a shorter fall is measured again */
+#define REST_SIDE   33   /* vertices a side of the largest sheet whose rest is measured */
 #define REST_S      60   /* longest */
 #define TRUTH_SHARE 0.25 /* of the reference's own step */
 
-/* One choice of settings. A solver's name that is not known yet is passed over. */
+/* One choice of settings. An unknown solver name is skipped. */
 struct setting {
     const char *solver, *name;
-    double dt;    /* s; 0: as long as the solver will take */
+    double dt;    /* s; 0: the longest that the solver accepts */
     double share; /* of the solver's own substep, instead of dt; 0: none */
-    int substeps; /* of preview, which also brings others near their rest; 0: as many as usual */
+    int substeps; /* of preview, which also pre-settles the other solvers; 0: the default */
     bool quick;
 };
 static const struct setting settings[] = {
@@ -40,7 +40,7 @@ static const struct setting settings[] = {
     {"reference", "reference, half step", 0, 0.5, 0, false},
 };
 
-/* What the sheet does. */
+/* The scenes of the sheet. */
 struct scene {
     enum tl_sheet_hold hold;
     double frame_rate;
@@ -52,7 +52,7 @@ static const struct scene falling = {TL_SHEET_EDGE, 10, false,
     resting = {TL_SHEET_CORNERS, 30, true, 1e-3},
                           calmest = {TL_SHEET_CORNERS, 30, true, 1e-4}; /* what others are compared with */
 
-/* Vertices a side; the finest is only compared with. */
+/* Vertices a side; the finest is the reference only. */
 struct sizes {
     int sides[4], count, finest;
 };
@@ -69,7 +69,7 @@ struct run {
     struct tl_trade_cloth *trade;
     bool quick;
     const struct sizes *sizes;
-    struct shape finest, fallen, rested; /* what is compared with; of the current size */
+    struct shape finest, fallen, rested; /* references: the finest; those of the current size */
 };
 
 static int find_solver(const char *name)
@@ -183,7 +183,7 @@ static bool fall_once(tl_cloth *cloth, struct tl_taken *taken, tl_error *error)
     return true;
 }
 
-/* The best of three when it is short. */
+/* The minimum of three runs if it is short. */
 static bool fall(int side, const struct setting *setting, struct shape *out, struct tl_trade_cloth_row *row,
                  tl_error *error)
 {
@@ -270,7 +270,7 @@ static bool measure(struct run *run, int side, const struct setting *setting, tl
     return true;
 }
 
-/* What a size is compared with. */
+/* The references of one size. */
 static bool find_truths(struct run *run, int side, tl_error *error)
 {
     const struct setting short_step = {"reference", "converged", 0, TRUTH_SHARE, 0, true},

@@ -109,9 +109,10 @@ void tl_trade_write_memory(const tl_environment *environment, FILE *out)
     struct tl_cells cells = {0};
     tl_cube cube = tl_cube_from_environment(environment, size);
     tl_report_heading(out, "Memory");
-    tl_report_paragraph(
-        out, "MiB, beside the paper's figure 8. Its column of PEMs is twice what six faces of 128 x 128 "
-             "RGBA16F take. Paraboloids: the paper's proposal of a map a region, cropped to it.");
+    tl_report_paragraph(out,
+                        "MiB, with the columns of the paper's figure 8. Its column of PEMs is twice what six "
+                        "faces of 128 x 128 "
+                        "RGBA16F take. Paraboloids: the paper's proposal of a map a region, cropped to it.");
     for (size_t i = 0; i < TL_COUNT(heads); i++)
         tl_cells_add(&cells, "%s", heads[i]);
     for (int i = 0; i < TL_PAPER_ROWS; i++) {

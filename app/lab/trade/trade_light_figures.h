@@ -1,5 +1,5 @@
 /* Figures of the report that need no measuring of frames: the paper's figures 4 and 5 (lobes) and 8 (memory)
- * beside this program's own. */
+ * with those of this program. */
 #ifndef TOILE_APP_LAB_TRADE_TRADE_LIGHT_FIGURES_H
 #define TOILE_APP_LAB_TRADE_TRADE_LIGHT_FIGURES_H
 
