@@ -15,26 +15,26 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A hand's pull: a soft spring, and no more than lifts a heavy coat. */
+/* The pull of tl_cloth_grab: a soft spring, N/m, whose force, N, is bounded by the weight of a heavy coat. */
 #define GRAB_STIFFNESS 200.0
 #define GRAB_FORCE     5.0
 
-/* Friction of the weave against itself, in units of the fabric's damping. */
+/* Damping of relative velocities along edges, as a multiple of fabric.damping: the weave's inner friction. */
 #define INNER_DAMPING 10
 
-/* One substep: what a solver is asked for. */
+/* One substep, as the solvers see it. */
 struct tl_substep {
     double h; /* s */
     double gravity, drag;
     double contact_budget, min_slip_speed; /* see struct tl_advance_params */
-    double phase_before, phase;            /* of the collider's motion at its start and end */
+    double phase_before, phase;            /* of the collider's motion at the substep's start and end */
     const tl_collider *collider;
-    bool continues_previous; /* another one, to whose end nothing was done; solvers may have begun with this
-                                one there */
-    bool continues_next;     /* to another one that will follow so */
+    bool continues_previous; /* follows a substep directly: a solver may have merged that one's end with this
+                                one's start */
+    bool continues_next;     /* is followed directly by another */
 };
 
-/* Whether the chosen solver can take this fabric's step within its budget. */
+/* Whether the chosen solver can simulate this fabric within its budget of substeps. */
 static bool check_budget(const tl_cloth *cloth, tl_error *error)
 {
     double wanted = tl_cloth_substeps_per_step(cloth) * tl_cloth_steps_per_frame(&cloth->params);
@@ -48,8 +48,8 @@ static bool check_budget(const tl_cloth *cloth, tl_error *error)
 
 /* ---- A frame ---- */
 
-/* A hand that jumped once a frame would stretch a fine mesh by many of its edges before any other vertex
- * knows. */
+/* The end of the pull's spring at a phase of the frame. If it jumped once a frame, one vertex of a fine mesh
+ * would be pulled over many of its edges before any other vertex could follow. */
 static vec3d hand_at(const tl_cloth *cloth, double phase)
 {
     vec3d step = vec3d_sub(cloth->grab_target, cloth->grab_from);
@@ -85,7 +85,8 @@ static struct tl_contact_params contact_params(const tl_cloth *cloth, const stru
                                       .h = substep->h};
 }
 
-/* The cloth from itself, then from the avatar, which has the last word. */
+/* Self-repulsion, then contact with the avatar: the last projection is satisfied exactly, and to be inside
+ * the body is the worse error. */
 static void keep_apart(tl_cloth *cloth, const struct tl_contact_params *contact)
 {
     if (cloth->params.self_repulsion) {
@@ -95,7 +96,7 @@ static void keep_apart(tl_cloth *cloth, const struct tl_contact_params *contact)
     tl_contacts_solve(&cloth->contacts, contact, &cloth->particles);
 }
 
-/* What the energy does not know of: seams, the hand, the avatar. Moves positions. */
+/* Projects positions onto the constraints that are not in the elastic energy: seams, the pull, contact. */
 static void apply_constraints(tl_cloth *cloth, const struct tl_substep *substep)
 {
     const struct tl_contact_params contact = contact_params(cloth, substep);
@@ -105,6 +106,9 @@ static void apply_constraints(tl_cloth *cloth, const struct tl_substep *substep)
     keep_apart(cloth, &contact);
 }
 
+/* One substep of XPBD: predict x from v and external forces, project the constraints, then take v from the
+ * displacement. The strain limit comes after the elastic constraints, which would otherwise undo it, and
+ * contact comes last, so that no substep ends inside the avatar. */
 static void advance_preview(tl_cloth *cloth, const struct tl_substep *substep)
 {
     bool bends = cloth->energy.bending_is_force;
@@ -128,15 +132,16 @@ static void advance_preview(tl_cloth *cloth, const struct tl_substep *substep)
         tl_particles_finish(&cloth->particles, substep->h);
 }
 
-/* Seams that close pull as stiff springs: they must close against what the fabric resists. */
 struct tl_springs tl_cloth_springs(const tl_cloth *cloth)
 {
-    const double firmer = 10, min = 1000;
+    const double factor = 10, min = 1000; /* N/m: closing seams must overcome the fabric's own stretch */
     return (struct tl_springs){.count = cloth->seams.pair_count,
                                .links = cloth->seams.links,
-                               .stiffness = fmax(firmer * cloth->fabric.stretch_warp, min)};
+                               .stiffness = fmax(factor * cloth->fabric.stretch_warp, min)};
 }
 
+/* One step of backward Euler. Pins move first, as they are prescribed to the solve. The solve already
+ * enforces contact planes; the projection after it catches what has moved past the planes that it knew. */
 static void advance_settle(tl_cloth *cloth, const struct tl_substep *substep)
 {
     struct tl_particles *particles = &cloth->particles;
@@ -173,8 +178,12 @@ static void compute_forces(tl_cloth *cloth, const struct tl_particle_kernel *the
     tl_energy_forces(&cloth->energy, &cloth->fabric, cloth->particles.x, cloth->forces, then);
 }
 
-/* Between substeps velocities may point into the avatar by h/2 of what presses there: the next one's first
- * half takes that on. Who looks at them after the last one wants to see rest. */
+/* One substep of velocity Verlet: drift, constraints, forces at the new positions, kick. Between two substeps
+ * the kick and the next drift are one pass over memory (tl_verlet_leap).
+ *
+ * After the half kick, velocities of touching particles point into the avatar by h/2 times the acceleration
+ * that presses them there; the next drift undoes it. After the last substep nothing does, and cloth at rest
+ * would seem to move: hence the velocity stage of contact there. */
 static void advance_reference(tl_cloth *cloth, const struct tl_substep *substep, bool last)
 {
     struct tl_particles *particles = &cloth->particles;
@@ -198,7 +207,7 @@ static bool wind_blows(const tl_cloth *cloth)
     return (velocity[0] != 0 || velocity[1] != 0 || velocity[2] != 0) && !tl_seams_are_closing(&cloth->seams);
 }
 
-/* Before a substep of any solver. */
+/* Adds the wind's impulse to the velocities, before a substep of any solver. */
 static void apply_wind(tl_cloth *cloth, const struct tl_substep *substep)
 {
     const float *velocity = cloth->params.wind;
@@ -213,7 +222,8 @@ static void apply_wind(tl_cloth *cloth, const struct tl_substep *substep)
         particles->v[i] = vec3d_muladd(particles->v[i], cloth->external[i], particles->w[i] * substep->h);
 }
 
-/* Crushed cloth is stiffer than at rest: more substeps, or none when that is beyond the budget. */
+/* Substeps of the next step. Crushed cloth is stiffer than at rest, so `reference` measures its critical step
+ * anew; returns 0, and sets refused_step, if the budget does not allow so many. */
 static double substeps_now(tl_cloth *cloth)
 {
     double substeps = tl_cloth_substeps_per_step(cloth);
@@ -232,7 +242,7 @@ static double substeps_now(tl_cloth *cloth)
 static void run_step(tl_cloth *cloth, const tl_collider *collider, const struct tl_advance_params *advance,
                      int step)
 {
-    /* Weightless until the panels have met. */
+    /* No gravity until the panels have met: they would fall off the body. */
     double gravity = tl_seams_are_closing(&cloth->seams) ? 0 : cloth->params.gravity;
     double substeps = substeps_now(cloth), total = tl_cloth_steps_per_frame(&cloth->params) * substeps;
     if (cloth->params.solver == TL_CLOTH_REFERENCE)
@@ -261,7 +271,7 @@ static void run_step(tl_cloth *cloth, const tl_collider *collider, const struct 
     }
 }
 
-/* Only what moves catches: a soft cloth may hang from a body at rest at any length. */
+/* Only a moving avatar catches cloth: on a body at rest, soft cloth may legitimately hang at any length. */
 static void release_caught(tl_cloth *cloth, const tl_collider *collider)
 {
     if (collider && tl_collider_travel(collider) > 0)
@@ -321,11 +331,10 @@ static bool check_state(const tl_cloth *cloth, tl_error *error)
             cloth->time_s, cloth->refused_step);
     for (size_t i = 0; i < cloth->particles.count; i++)
         if (!vec3d_finite(cloth->particles.x[i]) || !vec3d_finite(cloth->particles.v[i]))
-            return tl_fail(
-                error, TL_UNSTABLE,
-                "cloth: vertex %zu left the finite numbers at %.3f s; the last good frame is kept: "
-                "make cloth.dt smaller or cloth.substeps larger",
-                i, cloth->time_s);
+            return tl_fail(error, TL_UNSTABLE,
+                           "cloth: vertex %zu became NaN or infinite at %.3f s; the last good frame is kept: "
+                           "make cloth.dt smaller or cloth.substeps larger",
+                           i, cloth->time_s);
     double strain = tl_cloth_max_strain(cloth);
     if (strain > TL_CLOTH_MAX_STRAIN)
         return tl_fail(error, TL_UNSTABLE,
@@ -335,10 +344,10 @@ static bool check_state(const tl_cloth *cloth, tl_error *error)
     return true;
 }
 
-/* What is deeper in the ground is being lifted out of it, and no rounding. */
+/* Particles deeper below the ground than this are being lifted out of it; less is rounding. */
 #define BURIED_M 1e-6
 
-/* What may put energy into it. */
+/* Whether anything may add energy: contact that moves or pushes out, a pull, seams, self-repulsion, wind. */
 static bool is_driven(const tl_cloth *cloth, const tl_collider *collider)
 {
     const float *wind = cloth->params.wind;
@@ -351,23 +360,26 @@ static bool is_driven(const tl_cloth *cloth, const tl_collider *collider)
            wind[0] != 0 || wind[1] != 0 || wind[2] != 0;
 }
 
-/* What nothing drives never moves with more energy than it once had of all kinds, elastic energy being above
- * 0; a solver that makes it do so has left its envelope. That was seen on needles only: crushed to nothing no
- * step is short enough for them. Elastic energy itself may rise: `preview` rests a little stretched, by
- * h^2 w T for each vertex of inverse mass w under a tension T, and of stiff needles that is much energy.
- * Contact may lift the cloth out of the avatar. */
+/* Detects a solver that creates energy. While nothing drives the cloth, kinetic plus potential energy cannot
+ * exceed the smallest total energy so far, since elastic energy is not negative and dissipated energy cannot
+ * return. Violations were seen on meshes with needles only: for needles that are crushed to nothing no step
+ * is short enough. So other meshes are not checked.
+ *
+ * Elastic energy is left out of the gain, since it may rise: `preview` comes to rest stretched by h^2 w T for
+ * a vertex of inverse mass w under a tension T, which for stiff needles is much energy. The tolerance allows
+ * for contact, which may lift the cloth out of the avatar. */
 static bool check_energy(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
 {
     const double lift = 0.25; /* J/kg: 2.5 cm */
     if (!(cloth->needle_share > 0) || is_driven(cloth, collider)) {
-        cloth->left_alone = false;
+        cloth->undriven = false;
         cloth->collider_revision = cloth->contacts.revision;
         return true;
     }
     struct tl_energies energies = tl_cloth_energies(cloth);
     double total = energies.kinetic + energies.elastic + energies.potential;
-    if (!cloth->left_alone) {
-        cloth->left_alone = true;
+    if (!cloth->undriven) {
+        cloth->undriven = true;
         cloth->min_energy = total;
         cloth->start_energy = energies.kinetic + energies.elastic;
     }
@@ -377,12 +389,13 @@ static bool check_energy(tl_cloth *cloth, const tl_collider *collider, tl_error 
         return true;
     return tl_fail(
         error, TL_UNSTABLE,
-        "cloth: gained %.3g J at %.3f s though nothing drives it; the last good frame is kept: mend needle "
+        "cloth: gained %.3g J at %.3f s though nothing drives it; the last good frame is kept: repair needle "
         "triangles, make cloth.dt smaller, or choose cloth.solver settle",
         gain, cloth->time_s);
 }
 
-/* An avatar that jumps takes what it wears along, once. What is pinned in the world stays there. */
+/* Applies an avatar's jump (tl_collider_jump) to the cloth that it wears, once per jump. Cloth with a pin
+ * fixed in the world stays where it is. */
 static void follow_jump(tl_cloth *cloth, const tl_collider *collider)
 {
     struct tl_rigid jump;
@@ -394,7 +407,7 @@ static void follow_jump(tl_cloth *cloth, const tl_collider *collider)
         tl_collider_revision(collider) == cloth->jump_followed)
         return;
     cloth->jump_followed = tl_collider_revision(collider);
-    tl_info("the avatar jumped by %.2f m within a frame: the cloth goes along",
+    tl_info("the avatar jumped by %.2f m within a frame: the cloth is moved along with it",
             vec3d_distance(jump.from, jump.to));
     for (size_t i = 0; i < particles->count; i++) {
         particles->x[i] = tl_rigid_point(&jump, particles->x[i]);
@@ -403,7 +416,7 @@ static void follow_jump(tl_cloth *cloth, const tl_collider *collider)
     tl_contacts_forget(&cloth->contacts);
 }
 
-/* Not before the panels have met: until then each is a piece of its own. */
+/* Orders the layers once the panels have met: until then each panel is a piece of its own. */
 static bool decide_layers(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
 {
     if (!cloth->params.self_repulsion || cloth->layers.ordered || tl_seams_are_closing(&cloth->seams))

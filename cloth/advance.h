@@ -4,23 +4,25 @@
 
 #include "cloth/state.h"
 
-/* How one frame is advanced. */
+/* How tl_cloth_advance advances one frame. */
 struct tl_advance_params {
-    double drag;           /* 1/s, in place of the fabric's damping when larger */
-    bool clock;            /* the animation's time passes */
-    double contact_budget; /* settle: what further rounds of contact may take, as a share of the first */
+    double drag;           /* 1/s, replaces the fabric's damping if larger */
+    bool clock;            /* whether the animation's clock runs */
+    double contact_budget; /* settle: see struct tl_implicit_problem */
     double min_slip_speed; /* m/s: see struct tl_contact_params */
 };
 
-/* m/s. Worn cloth is held by hundreds of particles near their limit of friction, which take turns to stick
- * and slip: at a tenth of this they never all stick, and a dress creeps for ever at some mm/s. */
+/* m/s, the usual min_slip_speed. A worn garment is held by hundreds of particles near Coulomb's bound, which
+ * stick and slip in turn: with a tenth of this they never stick all at once, and a dress creeps for ever at a
+ * few mm/s. */
 #define TL_MIN_SLIP_SPEED 1e-3
 
-/* One frame; restores the state and fails when the result is out of its envelope. */
+/* Advances by one frame. Errors: as tl_cloth_settle; positions and velocities are then those of the frame's
+ * start. */
 bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct tl_advance_params *advance,
                       tl_error *error);
 
-/* The open seams as springs for `settle`. */
+/* The open seams as springs for `settle`, stiff enough to close against the fabric. Borrows the cloth. */
 struct tl_springs tl_cloth_springs(const tl_cloth *cloth);
 
 #endif

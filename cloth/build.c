@@ -7,7 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Inverse masses: held for pins and for vertices that no triangle uses. Slivers weigh next to nothing. */
+/* Inverse masses; 0 holds a particle: pins, and vertices that no triangle uses. Masses have a lower bound
+ * because slivers weigh next to nothing: see TL_CLOTH_MIN_MASS. */
 static void set_inverse_masses(tl_cloth *cloth)
 {
     size_t count = cloth->particles.count;
@@ -34,7 +35,8 @@ static void set_energy(tl_cloth *cloth)
     tl_energy_set_preview(&cloth->energy, &cloth->fabric, cloth->particles.w,
                           tl_xpbd_step(tl_cloth_substep(cloth), symmetric));
     cloth->energy.bending_is_force =
-        cloth->energy.bending_is_force && !symmetric; /* measured with the whole step */
+        cloth->energy.bending_is_force &&
+        !symmetric; /* that bound was taken with the whole step, not the halved stiffness */
 }
 
 void tl_cloth_set_constants(tl_cloth *cloth)
@@ -46,14 +48,14 @@ void tl_cloth_set_constants(tl_cloth *cloth)
     cloth->forces = tl_resize(cloth->forces, cloth->particles.count, sizeof *cloth->forces);
     tl_implicit_destroy(&cloth->implicit);
     set_energy(cloth);
-    tl_contacts_release(&cloth->contacts); /* its planes know the thickness */
+    tl_contacts_release(&cloth->contacts); /* the planes depend on the thickness */
     cloth->contacts = tl_contacts_create(&cloth->topology, cloth->rest);
     tl_strain_limits_release(&cloth->limits);
     cloth->limits =
         tl_strain_limits_create(&cloth->topology, &cloth->energy, (const vec2s(*)[3])cloth->rest,
                                 cloth->shortest_edge, cloth->params.strain_limit, cloth->particles.x);
     tl_layers_forget(&cloth->layers);
-    cloth->left_alone = false;
+    cloth->undriven = false;
 }
 
 void tl_cloth_use_solver(tl_cloth *cloth, const struct tl_cloth_params *params)
@@ -66,7 +68,8 @@ void tl_cloth_use_solver(tl_cloth *cloth, const struct tl_cloth_params *params)
     set_energy(cloth);
 }
 
-/* A hundredth of the mean edge. */
+/* Shorter edges are not measured for strain: a hundredth of the mean edge length, which is about the root of
+ * the mean area per vertex. */
 static double find_shortest_edge(const tl_cloth *cloth)
 {
     double area = 0;
@@ -75,7 +78,7 @@ static double find_shortest_edge(const tl_cloth *cloth)
     return 0.01 * sqrt(area / (double)cloth->topology.vertex_count);
 }
 
-/* The share of triangles whose height is less than a sixteenth of their longest side. */
+/* Share of the triangles that are needles: their height is less than a sixteenth of their longest side. */
 static double find_needle_share(const tl_cloth *cloth)
 {
     const double needle = 1.0 / 16;
@@ -90,7 +93,8 @@ static double find_needle_share(const tl_cloth *cloth)
     return (double)count / (double)cloth->topology.triangle_count;
 }
 
-/* Everything that follows from a numbering of the physics vertices, but for positions and velocities. */
+/* Builds everything that depends on the numbering of the physics vertices, except positions and velocities.
+ */
 static void build_mesh(tl_cloth *cloth, const uint32_t *weld, size_t vertex_count)
 {
     const tl_mesh *mesh = &cloth->garment->model.mesh;
@@ -116,7 +120,6 @@ void tl_cloth_add_pin(tl_cloth *cloth, uint32_t particle, bool by_hand)
         .particle = particle, .by_hand = by_hand, .at = cloth->particles.x[particle], .triangle = TL_NONE};
 }
 
-/* The garment's own, and what starts above cloth.pin_above_m or has cloth.pin_colour, where they are now. */
 void tl_cloth_make_pins(tl_cloth *cloth)
 {
     const tl_garment *garment = cloth->garment;
@@ -181,7 +184,7 @@ void tl_cloth_join(tl_cloth *cloth, const uint32_t *joined, size_t joined_count)
     struct tl_particles from = cloth->particles, to = tl_particles_create(joined_count);
     double *masses = TL_NEW_ARRAY(double, joined_count);
     bool *held = TL_NEW_ARRAY(bool, joined_count);
-    for (size_t i = 0; i < from.count; i++) { /* held ones decide where they all are */
+    for (size_t i = 0; i < from.count; i++) { /* if one of the joined particles is held, it alone decides */
         uint32_t j = joined[i];
         bool holds = !(from.w[i] > 0);
         if (held[j] && !holds)

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- What is refused ---- */
+/* ---- Checks ---- */
 
 static double read_number(const struct tl_option *row, const void *params)
 {
@@ -46,8 +46,8 @@ static bool check_indices(const char *name, const char *what, const uint32_t *in
 {
     for (size_t i = 0; i < count; i++)
         if (indices[i] >= vertex_count)
-            return tl_fail(error, TL_INPUT, "%s: %s %zu names vertex %u of %zu: mend the garment", name, what,
-                           i, indices[i], vertex_count);
+            return tl_fail(error, TL_INPUT, "%s: %s %zu names vertex %u of %zu: repair the garment", name,
+                           what, i, indices[i], vertex_count);
     return true;
 }
 
@@ -61,7 +61,7 @@ static bool check_garment(const tl_garment *garment, tl_error *error)
     for (size_t i = 0; i < mesh->vertex_count; i++) {
         bool flat = !garment->pattern || (isfinite(garment->pattern[i].x) && isfinite(garment->pattern[i].y));
         if (!flat || !vec3d_finite(vec3d_from(mesh->positions[i])))
-            return tl_fail(error, TL_INPUT, "%s: vertex %zu is not finite: mend the garment", name, i);
+            return tl_fail(error, TL_INPUT, "%s: vertex %zu is not finite: repair the garment", name, i);
     }
     return check_indices(name, "corner", mesh->indices, mesh->index_count, mesh->vertex_count, error) &&
            check_indices(name, "seam end", (const uint32_t *)garment->seams, 2 * garment->seam_count,
@@ -113,9 +113,10 @@ bool tl_cloth_set(tl_cloth *cloth, const struct tl_cloth_fabric *fabric, const s
     return true;
 }
 
-/* What contacts remember would make a run after a reset differ from the first one: the planes, and of
- * `settle` what stuck and slipped; and so would the time since the limits began. */
-static void forget_past(tl_cloth *cloth)
+/* A run after a reset must equal the first one to the bit. So everything is reset that remembers earlier
+ * frames: contact planes, the stick and slip states of `settle`, and the start lengths of the strain limits.
+ */
+static void reset_history(tl_cloth *cloth)
 {
     tl_strain_limits_restart(&cloth->limits, cloth->particles.x);
     tl_implicit_destroy(&cloth->implicit);
@@ -126,7 +127,7 @@ static void forget_past(tl_cloth *cloth)
     tl_layers_forget(&cloth->layers);
 }
 
-/* Kept by render vertex: seams that close later change the particles, but not these. */
+/* Stored by render vertex: seams that close later renumber the physics vertices, but not these. */
 void tl_cloth_mark_start(tl_cloth *cloth)
 {
     size_t count = cloth->topology.render_count;
@@ -139,13 +140,13 @@ void tl_cloth_mark_start(tl_cloth *cloth)
         cloth->start_pinched[i] = tl_contacts_is_pinched(&cloth->contacts, cloth->topology.weld[i]);
     }
     cloth->time_s = 0;
-    cloth->left_alone = false;
-    forget_past(cloth);
+    cloth->undriven = false;
+    reset_history(cloth);
 }
 
 void tl_cloth_reset(tl_cloth *cloth)
 {
-    cloth->grabbed = cloth->left_alone = false;
+    cloth->grabbed = cloth->undriven = false;
     cloth->time_s = 0;
     if (!cloth->start_x) {
         tl_cloth_release_state(cloth);
@@ -158,7 +159,7 @@ void tl_cloth_reset(tl_cloth *cloth)
         cloth->particles.x[cloth->topology.weld[i]] = cloth->start_x[i];
         cloth->particles.v[cloth->topology.weld[i]] = cloth->start_v[i];
     }
-    forget_past(cloth);
+    reset_history(cloth);
 }
 
 void tl_cloth_grab(tl_cloth *cloth, uint32_t render_vertex, vec3s target)

@@ -1,11 +1,14 @@
-/* The cloth: a mass-spring sheet in physical units, in double precision, with a choice of solvers over one
- * energy.
+/* The cloth: a triangle mesh with an elastic energy in physical units, in double precision, and a choice of
+ * three solvers for its motion.
  *
- * Render vertices are welded into physics vertices (bitwise equal start position; seams once they are
- * closed), so UV seams do not tear. Results do not depend on the number of threads. Positions are metres,
- * world axes. Cloth collides with itself only where params ask for
- * it. Ownership: a tl_cloth borrows its garment and must not
- * outlive it. Threads: one at a time per cloth. */
+ * Render vertices are welded into physics vertices where their start positions are equal to the bit (and
+ * along seams, once these are closed), so that UV seams do not tear. Results do not depend on the number of
+ * threads. Positions are in metres, in world axes. Cloth collides with itself only if params->self_repulsion
+ * is set.
+ *
+ * Lifetime: a tl_cloth borrows its garment, which must outlive it; it copies everything else that it is
+ * given. Threads: calls for one cloth must not overlap; different cloths are independent. Errors: functions
+ * that take a tl_error fill it when they fail; the others cannot fail. */
 #ifndef TOILE_CLOTH_CLOTH_H
 #define TOILE_CLOTH_CLOTH_H
 
@@ -16,106 +19,129 @@
 
 typedef struct tl_cloth tl_cloth;
 
-/* No particle weighs less than this share of their mean: one iteration would not move the others. */
+/* A particle's mass is at least this share of the mean mass: the vertex of a sliver would weigh next to
+ * nothing, and one iteration that corrects it would leave its neighbours where they are. */
 #define TL_CLOTH_MIN_MASS 1e-4
-/* What is strained beyond this is no longer cloth: refused. */
+/* A larger strain than this means that the solver has failed: the frame is refused. */
 #define TL_CLOTH_MAX_STRAIN 10
 
-/* How it is solved. Table "cloth". preview: cloth/solvers/xpbd.h; settle: cloth/solvers/implicit/implicit.h;
- * reference: cloth/solvers/verlet.h. */
+/* How the motion is solved. Table "cloth". preview: cloth/solvers/xpbd.h; settle:
+ * cloth/solvers/implicit/implicit.h; reference: cloth/solvers/verlet.h. */
 enum tl_cloth_solver { TL_CLOTH_PREVIEW, TL_CLOTH_SETTLE, TL_CLOTH_REFERENCE, TL_CLOTH_SOLVER_COUNT };
 extern const char *const tl_cloth_solver_names[]; /* NULL-terminated */
 enum tl_pin_colour { TL_PIN_NO_COLOUR, TL_PIN_RED, TL_PIN_GREEN, TL_PIN_BLUE };
 extern const char *const tl_pin_colour_names[]; /* NULL-terminated */
 struct tl_cloth_params {
     int solver;             /* enum tl_cloth_solver */
-    double dt;              /* s, one step; a frame is made of whole steps: see frame_rate */
+    double dt;              /* s, longest step; a frame is made of equal steps: see frame_rate */
     double frame_rate;      /* frames per second of the animation */
     int substeps;           /* preview: per step */
-    int cg_iterations;      /* settle: most per solve */
-    double cg_tolerance;    /* settle: of the residual, to the load */
-    int reference_substeps; /* reference: most per frame, beyond which it is refused */
-    double strain_limit;    /* preview: no edge gets longer than by this share; 0: as the energy has it */
-    double pin_above_m;  /* vertices that start higher are pinned, on the avatar's nearest point; 0: none */
-    int pin_colour;      /* enum tl_pin_colour; vertices of this colour in the file are pinned the same way */
-    bool self_repulsion; /* layers of a garment, and folds, keep their distance: layers.h, repulsion.h */
-    double gravity;      /* m/s^2, along -Y */
-    float wind[3];       /* m/s; air at rest presses on nothing: then only fabric.damping slows the cloth */
-    double gust;         /* 0 to 1, of the wind's speed */
-    double settle_s;     /* longest simulated time spent settling before the first frame */
-    double settle_speed; /* m/s: settled when no vertex goes further in a frame */
-    float edge_m;        /* wanted edge length of built-in garments */
-    float longest_edge_m; /* of garments from files, whose longer ones are halved; 0: as they are */
+    int cg_iterations;      /* settle: at most, per solve */
+    double cg_tolerance;    /* settle: residual at the end of a solve, relative to its start */
+    int reference_substeps; /* reference: at most, per frame; a fabric that needs more is refused */
+    double strain_limit;    /* preview: largest strain of an edge; 0: only the energy resists */
+    double pin_above_m;     /* vertices that start higher are pinned to the avatar's nearest point; 0: none */
+    int pin_colour;         /* enum tl_pin_colour; vertices of this colour in the file are pinned likewise */
+    bool
+        self_repulsion; /* garment layers and folds repel each other: contact/layers.h, contact/repulsion.h */
+    double gravity;     /* m/s^2, along -Y */
+    float wind[3];      /* m/s; 0: no aerodynamic force at all, fabric.damping alone slows the cloth */
+    double gust;        /* 0 to 1: amplitude of the wind's speed, relative to it */
+    double settle_s;    /* longest simulated time of settling before the first frame */
+    double settle_speed;  /* m/s: the cloth is settled when no vertex moves faster over a frame */
+    float edge_m;         /* target edge length of built-in garments */
+    float longest_edge_m; /* longer edges of garments from files are halved; 0: never */
 };
 extern const struct tl_option_table tl_cloth_options;
 
-/* What can be measured of the state; tests, `toile plan` and the panel read it. */
+/* Measurements of the state, for tests, `toile plan` and the panel. */
 struct tl_cloth_report {
     size_t vertex_count, edge_count, triangle_count; /* physics mesh */
-    size_t piece_count;       /* connected components; they and folds pass through one another without
-                                 self_repulsion */
-    size_t layer_count;       /* told apart by self_repulsion; 0: not yet, or off */
-    size_t open_seams;        /* seam pairs not yet welded */
-    double time_s;            /* simulated since creation or reset, settling excluded */
-    double max_speed;         /* m/s */
-    double max_strain;        /* largest |length / rest length - 1| over edges that are not seams; of one
-                                 below a quarter of the usual length that is the share it is of */
-    double rms_strain;        /* root mean square of the same over the triangles' sides */
-    double kinetic_energy;    /* J */
-    double elastic_energy;    /* J */
-    double potential_energy;  /* J, in gravity, of what is not held; 0 at y = 0 */
-    double critical_step_s;   /* the longest stable step of an explicit solver */
-    double substep_s;         /* what the chosen solver takes */
-    size_t unconverged_steps; /* settle: iterations cut short, since creation: bounded, not exact */
-    size_t shortened_steps;   /* settle: would have gained energy */
-    double deepest_m;         /* deepest penetration below the avatar's surface, 0 when none */
-    size_t caught_count; /* particles pinched between parts of the avatar during the last frame: kept outside,
-                            or slipped past one, at the price of strain */
+    size_t piece_count; /* connected components; without self_repulsion they pass through one another */
+    size_t layer_count; /* found by self_repulsion; 0: not found yet, or off */
+    size_t open_seams;  /* seam pairs that are not welded yet */
+    double time_s;      /* simulated since creation or reset, without settling */
+    double max_speed;   /* m/s */
+    double max_strain;  /* largest |length - rest length| / rest length over the triangles' sides. The divisor
+                           is at least a quarter of the usual edge length: see cloth/measure.c */
+    double rms_strain;  /* root mean square of the same */
+    double kinetic_energy;   /* J */
+    double elastic_energy;   /* J */
+    double potential_energy; /* J, of free particles in gravity; 0 at y = 0 */
+    double critical_step_s;  /* the longest stable step of an explicit solver */
+    double substep_s;        /* the chosen solver's substep */
+    size_t
+        unconverged_steps; /* settle: steps since creation whose solve reached cg_iterations: still bounded */
+    size_t shortened_steps; /* settle: steps since creation that were shortened because they gained energy */
+    double deepest_m;       /* deepest penetration of the avatar's surface or the ground; 0: none */
+    size_t caught_count;    /* particles caught between parts of the avatar in the last frame: moved back
+                               outside,    or slipped past one part, both at the price of strain */
     bool settled;
 };
 
+/* Creates the cloth of a garment, at rest at its start positions.
+ *
+ * Errors: TL_INPUT for a garment without triangles, with coordinates that are not finite, or with an index
+ * out of range; TL_USAGE for a parameter outside its option's range. Returns NULL then. Lifetime: `garment`
+ * must outlive the cloth; `fabric` and `params` are copied. End with tl_cloth_destroy. */
 tl_cloth *tl_cloth_create(const tl_garment *garment, const struct tl_cloth_fabric *fabric,
                           const struct tl_cloth_params *params, tl_error *error);
+
+/* Frees a cloth and sets the handle to NULL; a handle that is NULL already is ignored. */
 void tl_cloth_destroy(tl_cloth **cloth);
 
-/* Changes material or solver in place; the state is kept. */
+/* Changes the material or the solver; positions and velocities are kept, contacts are searched again.
+ *
+ * Errors: TL_USAGE for a parameter outside its option's range; the cloth is then unchanged.
+ * Lifetime: `fabric` and `params` are copied. */
 bool tl_cloth_set(tl_cloth *cloth, const struct tl_cloth_fabric *fabric, const struct tl_cloth_params *params,
                   tl_error *error);
 
-/* Remembers the state of now as the start, with its clock at 0; and goes back to it. Before the first mark
- * the start is the garment's own. */
+/* Stores the present positions and velocities as the start, and sets the clock to 0. */
 void tl_cloth_mark_start(tl_cloth *cloth);
+
+/* Returns to the marked start, or to the garment's own start positions if none was marked. The clock is at 0
+ * again; a vertex that was grabbed or pinned by hand is free. */
 void tl_cloth_reset(tl_cloth *cloth);
 
-/* Draws seams together, resolves starting penetration and lets the cloth come to rest against the collider,
- * at rest itself, with strong damping. Shows progress; stops early on tl_interrupted. The clock stays at 0.
- * TL_UNSTABLE when the state left its envelope (non-finite or strain beyond TL_CLOTH_MAX_STRAIN): the last
- * good state is kept.
- */
+/* Closes the seams, resolves penetration at the start and simulates until the cloth is at rest, with strong
+ * damping and against a collider at rest. The clock stays at 0. Reports progress; stops early when
+ * tl_interrupted() is true.
+ *
+ * Errors: TL_UNSTABLE when the state became NaN or infinite or was strained by more than TL_CLOTH_MAX_STRAIN;
+ * TL_USAGE when the reference solver's step does not fit its budget; TL_INTERRUPTED. The last good frame is
+ * kept. A cloth that still moves after settle_s is no error: report.settled is false.
+ * Lifetime: `collider` may be NULL; it is borrowed until the next call that takes a collider. */
 bool tl_cloth_settle(tl_cloth *cloth, const tl_collider *collider, tl_error *error);
 
-/* Advances by one frame, 1/frame_rate seconds; the collider's surface moves linearly from its previous to its
- * current pose during it. Failure as above. */
+/* Advances by one frame, 1 / frame_rate seconds, during which the collider's surface moves linearly from its
+ * previous to its current pose. Errors and Lifetime: as tl_cloth_settle. */
 bool tl_cloth_step(tl_cloth *cloth, const tl_collider *collider, tl_error *error);
 
-/* Pull: draws the physics vertex of a render vertex to a target (metres) by a soft constraint, until it is
- * released. The hand goes there evenly during the next frame, from where it was or from the vertex. */
+/* Pulls the physics vertex of a render vertex towards a target (metres) by a spring of bounded force, until
+ * tl_cloth_release. During the next frame the spring's end moves evenly to `target`, from the last target or,
+ * at first, from the vertex. A vertex out of range or a target that is not finite releases instead. */
 void tl_cloth_grab(tl_cloth *cloth, uint32_t render_vertex, vec3s target);
+
+/* Ends a pull; harmless when there is none. */
 void tl_cloth_release(tl_cloth *cloth);
 
-/* Holds the physics vertex of a render vertex where it is, as a pin that rides on the avatar where one is
- * near; reset and tl_cloth_unpin forget it. */
+/* Pins the physics vertex of a render vertex where it is; the pin rides on the avatar if that is within reach
+ * (cloth/drive/pins.h). tl_cloth_reset and tl_cloth_unpin remove it. A vertex out of range is ignored. */
 void tl_cloth_pin(tl_cloth *cloth, uint32_t render_vertex);
-/* Lets go of all that tl_cloth_pin holds. Returns how many. */
+
+/* Removes all pins that tl_cloth_pin has made; returns how many there were. */
 size_t tl_cloth_unpin(tl_cloth *cloth);
 
-/* Current positions of all render vertices, and the physics vertex of each (for tl_tangent_frames). The
- * latter changes when seams close: during settling, or in a step when there was none or something held them
- * apart.
- */
+/* Writes the present position of every render vertex to `out` [mesh.vertex_count], metres. */
 void tl_cloth_positions(const tl_cloth *cloth, vec3s *out);
+
+/* The physics vertex of every render vertex [mesh.vertex_count], for tl_tangent_frames_create. It changes
+ * when seams close: while settling, or in a step if something held them apart until then. Lifetime: owned by
+ * the cloth, valid until the next call that is not const. */
 const uint32_t *tl_cloth_weld(const tl_cloth *cloth);
 
-struct tl_cloth_report tl_cloth_measure(const tl_cloth *cloth, const tl_collider *collider /* or NULL */);
+/* Measures the state; penetration only against a collider that is not NULL. Takes longer than a substep. */
+struct tl_cloth_report tl_cloth_measure(const tl_cloth *cloth, const tl_collider *collider);
 
 #endif

@@ -14,14 +14,18 @@ double tl_cloth_max_speed(const tl_cloth *cloth)
     return sqrt(fastest);
 }
 
-/* A mesh shows folds as fine as its usual edge, and the short edge of a sliver takes what its neighbours
- * leave of them: below a quarter of the usual length it counts as that long. (A dress as a heap on the floor:
- * one edge of 0.4 mm among such of 8 is 1.5 mm long, no other is strained by more than 0.7.) */
-#define RESOLVED_EDGES 25 /* shortest ones, of a hundredth */
+/* Strain is change of length over rest length, but a much shorter edge than usual says little by it: a mesh
+ * resolves folds no finer than its usual edge, and the short edge of a sliver absorbs the rest. (Example: a
+ * dress as a heap on the floor; one edge of 0.4 mm among edges of 8 mm is 1.5 mm long, and no other is
+ * strained by more than 0.7.) So the divisor is at least a quarter of the usual edge length. */
+#define RESOLVED_EDGES                                                                                       \
+    25 /* times shortest_edge, which is a hundredth of the mean edge: a quarter of that                      \
+        */
 
 double tl_cloth_max_strain(const tl_cloth *cloth)
 {
-    double worst = 0, max = 1, min = 1; /* of the squared ratio of lengths: beyond is worse */
+    double worst = 0;
+    double max = 1, min = 1; /* squared length ratios within these cannot exceed `worst`: no root is needed */
     double shortest = cloth->shortest_edge * cloth->shortest_edge;
     double resolved = RESOLVED_EDGES * cloth->shortest_edge;
     const vec3d *x = cloth->particles.x;
@@ -42,7 +46,7 @@ double tl_cloth_max_strain(const tl_cloth *cloth)
     return worst;
 }
 
-/* Over the sides of all triangles, by the same measure. */
+/* Root mean square over the sides of all triangles. */
 static double rms_strain(const tl_cloth *cloth)
 {
     double resolved = RESOLVED_EDGES * cloth->shortest_edge, squares = 0;
@@ -57,7 +61,9 @@ static double rms_strain(const tl_cloth *cloth)
     return sqrt(squares / (3.0 * (double)cloth->topology.triangle_count));
 }
 
-/* Behind the surface that is nearest, and within what it surrounds. */
+/* Depth of a point below the surface if it is larger than `min`, else `min`. The sign at the nearest feature
+ * is not enough: where the surface passes through itself, creases are inside out. The winding number, which
+ * is expensive, confirms it. */
 static double depth_at(const tl_collider *collider, const double point[3], double min)
 {
     const double reach_m = 0.1;

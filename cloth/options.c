@@ -15,46 +15,44 @@ const char *const tl_pin_colour_names[] = {"none", "red", "green", "blue", NULL}
 static const struct tl_option cloth_rows[] = {
     TL_OPTION_ENUM(
         struct tl_cloth_params, solver, AFFECTS, tl_cloth_solver_names,
-        "preview: bounded cost, rests a little too soft; settle: any step, rests exactly, moves too calmly; "
-        "reference: exact, its step follows the fabric"),
+        "preview: bounded cost, rests as if slightly softer; settle: stable at any step, exact at rest, "
+        "overdamped in motion; reference: exact in motion, its step shrinks with the fabric's stiffness"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, dt, AFFECTS, 1e-5, 0.1, "s",
-                     "longest step; a frame is made of equal ones: faster, less exact"),
+                     "longest time step; a frame is made of equal steps; larger: faster, less exact"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, frame_rate, AFFECTS | TL_AFFECTS_WORK, 1, 1000, "1/s",
                      "frames per second of animation"),
     TL_OPTION_INT(struct tl_cloth_params, substeps, AFFECTS, 1, 1000, "",
-                  "preview: substeps per step: slower, stretches less"),
+                  "preview: substeps per step; more: slower, stretches less"),
     TL_OPTION_INT(struct tl_cloth_params, cg_iterations, AFFECTS, 1, 1000000, "",
-                  "settle: most iterations of a step's solve: slower, less often cut short"),
-    TL_OPTION_DOUBLE(struct tl_cloth_params, cg_tolerance, AFFECTS, 1e-12, 0.5, "",
-                     "settle: residual that is left of a step's first one: faster, less exact motion"),
+                  "settle: maximum iterations of a step's solve; more: slower, more steps converge"),
+    TL_OPTION_DOUBLE(
+        struct tl_cloth_params, cg_tolerance, AFFECTS, 1e-12, 0.5, "",
+        "settle: residual at which a solve ends, relative to its start; larger: faster, less exact motion"),
     TL_OPTION_INT(struct tl_cloth_params, reference_substeps, AFFECTS, 1, 100000000, "",
-                  "reference: most substeps per frame; a fabric that needs more is refused"),
+                  "reference: maximum substeps per frame; a fabric that needs more is refused"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, strain_limit, AFFECTS, 0, 10, "",
-                     "preview: most that an edge may stretch, as a share of its length; 0: no limit"),
+                     "preview: maximum strain of an edge; 0: no limit"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, pin_above_m, AFFECTS, 0, 1000, "m",
-                     "holds the vertices that start higher than this, a waistband say; 0: none of them"),
-    TL_OPTION_ENUM(
-        struct tl_cloth_params, pin_colour, AFFECTS, tl_pin_colour_names,
-        "holds the vertices that the garment's file has in this colour, where it has vertex colours"),
+                     "pins the vertices that start higher than this, for example a waistband; 0: none"),
+    TL_OPTION_ENUM(struct tl_cloth_params, pin_colour, AFFECTS, tl_pin_colour_names,
+                   "pins the vertices that have this vertex colour in the garment's file"),
     TL_OPTION_BOOL(struct tl_cloth_params, self_repulsion, AFFECTS,
-                   "layers, a shirt over trousers, and folds keep their distance: takes up to twice as long"),
+                   "layers (a shirt over trousers) and folds repel each other: takes up to twice as long"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, gravity, AFFECTS, -100, 100, "m/s^2",
-                     "along -Y: hangs more heavily"),
-    TL_OPTION_VECTOR(
-        struct tl_cloth_params, wind, AFFECTS, -100, 100, "m/s",
-        "which way the air moves: presses on the cloth; 0 0 0: nothing, and nothing is computed"),
+                     "acceleration along -Y; larger: hangs more heavily"),
+    TL_OPTION_VECTOR(struct tl_cloth_params, wind, AFFECTS, -100, 100, "m/s",
+                     "velocity of the air, which exerts pressure on the cloth; 0 0 0: no wind is computed"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, gust, AFFECTS, 0, 1, "",
-                     "how much of its speed the wind rises and falls by"),
+                     "amplitude of the gusts, relative to the wind's speed"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, settle_s, AFFECTS, 0, 600, "s",
-                     "longest simulated time for coming to rest before the first frame"),
+                     "maximum simulated time for coming to rest before the first frame"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, settle_speed, AFFECTS, 0, 10, "m/s",
-                     "settled when no vertex is faster than this over a frame: settles sooner"),
+                     "settled when no vertex moves faster than this over a frame; larger: settles sooner"),
     TL_OPTION_FLOAT(struct tl_cloth_params, edge_m, TL_AFFECTS_SCENE | AFFECTS | TL_AFFECTS_WORK, 0.001f, 1,
-                    "m", "length of an edge of the built-in garments: coarser, faster"),
-    TL_OPTION_FLOAT(
-        struct tl_cloth_params, longest_edge_m, TL_AFFECTS_SCENE | AFFECTS, 0, 1000, "m",
-        "a garment's file may have longer edges, but they are halved: without, it cannot fold; 0: "
-        "as the file has them"),
+                    "m", "target edge length of built-in garments; larger: coarser, faster"),
+    TL_OPTION_FLOAT(struct tl_cloth_params, longest_edge_m, TL_AFFECTS_SCENE | AFFECTS, 0, 1000, "m",
+                    "a garment's file may have longer edges, but they are halved: without, it cannot fold; "
+                    "0: as the file has them"),
 };
 const struct tl_option_table tl_cloth_options = TL_OPTION_TABLE(
     "cloth", "how the cloth is solved", cloth_rows, struct tl_cloth_params, TL_CLOTH_DEFAULTS);

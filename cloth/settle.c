@@ -1,4 +1,4 @@
-/* Coming to rest before the first frame. */
+/* Settling: simulating until rest, before the first frame. */
 #include "cloth/advance.h"
 #include "cloth/build.h"
 #include "config/log.h"
@@ -6,18 +6,20 @@
 
 #include <string.h>
 
-/* Settling goes through these drags. Under the first a fall ends at 2 m/s and a swing of 0.5 m dies within a
- * period; but what creeps slowly in it would still swing free in air, so the second one must be calm too. A
- * cloth that starts at rest has no speed either: each gets its least time to begin to move. */
+/* Settling runs through two phases of decreasing drag. Under the first drag a fall ends at 2 m/s and a swing
+ * of 0.5 m dies within a period. Cloth that merely creeps under strong drag would still swing freely without
+ * it, so rest is accepted only in the second phase. Each phase has a minimum duration because a cloth that
+ * starts at rest has no speed yet. */
 static const struct phase {
     double drag, min_s;
 } phases[] = {{5, 0.25}, {1, 0.5}};
 
-/* On its way to rest a cloth's contact changes with every step; when it is near, solves are so short that all
- * rounds of contact are run through anyway. */
+/* Far from rest, contact changes with every step, so that exact stick and slip states are wasted work. Near
+ * rest, solves are so short that MIN_CONTACT_ITERATIONS of implicit.c suffices for all contact rounds anyway.
+ */
 #define CONTACT_BUDGET 0.25
 
-/* `preview` brings the cloth near to its rest for a fraction of what others take; the chosen one ends it. */
+/* `preview` comes near to rest at a fraction of the others' cost; the chosen solver does the last phase. */
 static struct tl_cloth_params params_of_phase(const struct tl_cloth_params *chosen, size_t phase)
 {
     struct tl_cloth_params params = *chosen;
@@ -26,8 +28,9 @@ static struct tl_cloth_params params_of_phase(const struct tl_cloth_params *chos
     return params;
 }
 
-/* m/s, over the frame that ended: a vertex that hums between substeps, to and fro by a tenth of a millimetre,
- * has a speed and goes nowhere. */
+/* Largest displacement of a free vertex over the last frame, as a speed in m/s. Velocities would not do: a
+ * vertex that oscillates by a tenth of a millimetre between substeps has a large velocity and goes nowhere.
+ */
 static double max_displacement_speed(const tl_cloth *cloth)
 {
     double farthest = 0;
@@ -46,7 +49,7 @@ bool tl_cloth_settle(tl_cloth *cloth, const tl_collider *collider, tl_error *err
     bool good = true;
     cloth->settled = false;
     while (good && !cloth->settled && settled_s < params->settle_s) {
-        /* What slips more slowly than is rest is held. */
+        /* Slower slip than settle_speed counts as rest, so such contacts stick. */
         const struct tl_advance_params advance = {.drag = phases[phase].drag,
                                                   .contact_budget = CONTACT_BUDGET,
                                                   .min_slip_speed =
@@ -67,7 +70,7 @@ bool tl_cloth_settle(tl_cloth *cloth, const tl_collider *collider, tl_error *err
     tl_progress_end(&progress);
     tl_cloth_use_solver(cloth, params);
     if (good && !cloth->settled && params->settle_s > 0)
-        tl_info("the cloth still moves at %.3f m/s after settling for %g s: give it more with cloth.settle_s",
+        tl_info("the cloth still moves at %.3f m/s after settling for %g s: increase cloth.settle_s",
                 max_displacement_speed(cloth), params->settle_s);
     memset(cloth->particles.v, 0, cloth->particles.count * sizeof(vec3d));
     return good;

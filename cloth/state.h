@@ -1,4 +1,4 @@
-/* The inside of a tl_cloth, for cloth.c, sew.c, settle.c and tests. */
+/* The state of a tl_cloth, private to this room and the tests of cloth. */
 #ifndef TOILE_CLOTH_STATE_H
 #define TOILE_CLOTH_STATE_H
 
@@ -17,15 +17,16 @@ struct tl_cloth {
     struct tl_cloth_params params;
     struct tl_topology topology;
     vec2s (*rest)[3];     /* [triangle_count] flat rest shape of each physics triangle, metres */
-    vec3d *made_at;       /* [particles.count] m, where the garment's file has them */
-    double shortest_edge; /* m; strain says nothing of shorter ones */
+    vec3d *made_at;       /* [particles.count] m, positions in the garment's file */
+    double shortest_edge; /* m; shorter edges are not measured for strain */
     struct tl_energy energy;
     double critical_step; /* s, at rest */
-    double refused_step;  /* s, reference: what a crushed state would have taken; 0: none did */
+    double
+        refused_step; /* s, reference: the step that a crushed state needed and the budget refused; 0: none */
     struct tl_particles particles;
-    vec3d *forces;          /* [particles.count] N, elastic; reference only, good within a step */
-    vec3d *external;        /* [particles.count] N, of the wind; NULL: it never blew */
-    vec3d *good_x, *good_v; /* [particles.count] at the frame's start: what a failure goes back to */
+    vec3d *forces; /* [particles.count] N, elastic, valid within one step: reference, and preview's bending */
+    vec3d *external;        /* [particles.count] N, of the wind; NULL: there was none yet */
+    vec3d *good_x, *good_v; /* [particles.count] at the frame's start, restored after a failure */
     tl_implicit *implicit;  /* settle only */
     struct tl_implicit_tally tally;
     struct tl_strain_limits limits; /* preview */
@@ -37,20 +38,21 @@ struct tl_cloth {
     struct tl_pin *pins;
     bool grabbed;
     uint32_t grabbed_vertex;      /* render vertex */
-    vec3d grab_from, grab_target; /* the hand at the start of a frame and at its end */
-    uint64_t jump_followed;       /* the collider's revision whose jump the cloth has gone along with */
+    vec3d grab_from, grab_target; /* m, where the pull's spring ends at the start and the end of a frame */
+    uint64_t jump_followed;       /* collider revision whose jump has been applied to the cloth */
     double time_s;
     bool settled;
-    double needle_share;        /* of its triangles */
-    uint64_t collider_revision; /* of the last frame that was driven */
-    bool left_alone;            /* nothing has driven it since min_energy began */
-    double min_energy;          /* J, all kinds: what has been lost cannot come back */
-    double start_energy;        /* J, kinetic and elastic, when it was left alone */
-    vec3d *start_x, *start_v;   /* [render vertex] what reset goes back to; NULL until a start is marked */
-    bool *start_pinched;        /* [render vertex] the same: struct tl_contacts */
+    double needle_share;        /* share of the triangles that are needles */
+    uint64_t collider_revision; /* in the last frame in which something drove the cloth */
+    bool undriven;              /* nothing has driven the cloth since min_energy was first taken */
+    double min_energy;          /* J, smallest total energy since then: dissipated energy cannot return */
+    double start_energy;        /* J, kinetic and elastic energy at that time */
+    vec3d *start_x, *start_v;   /* [render vertex] the marked start; NULL: none was marked */
+    bool *start_pinched;        /* [render vertex] the same of struct tl_contacts */
 };
 
-/* Whether `preview` sweeps back as well: xpbd.h. A few slivers among sound triangles need not. */
+/* Whether `preview` follows each sweep by one in the opposite order, as meshes of needles require (xpbd.h). A
+ * few needles among well-shaped triangles do no harm. */
 #define TL_SYMMETRIC_NEEDLE_SHARE 0.01
 static inline bool tl_cloth_uses_symmetric_sweep(const tl_cloth *cloth)
 {

@@ -1,11 +1,11 @@
 #include "cloth/contact/caught.h"
 
 #define CAUGHT_STRETCH (1 + TL_CAUGHT_STRAIN)
-/* What it slips back to. Sweeps carry that along a chain of edges. */
+/* Length to which caught edges are shortened, relative to rest. Sweeps propagate it along chains of edges. */
 #define SLIPPED_STRETCH 1.5
 #define SWEEPS          8
 
-/* Draws one edge short when it is longer than `limit` times its rest length; whether it was. */
+/* Shortens an edge that is longer than `limit` times its rest length; returns whether it was. */
 static bool shorten(const uint32_t edge[2], double rest, double limit, struct tl_particles *particles,
                     bool *slipped)
 {

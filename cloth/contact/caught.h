@@ -1,8 +1,9 @@
-/* Cloth that two parts of the avatar have caught between them and drag along, an arm over a hip say.
+/* Cloth that is caught between two parts of the moving avatar and dragged along, for example by an arm over a
+ * hip.
  *
- * No particle may be inside, so what is caught can only stretch. Beyond a multiple of its length it slips
- * free instead of tearing: its edges are drawn short again in one go, whatever is in the way, and the
- * particles that moved look for the outside anew from there. Threads: pure. */
+ * No particle may be inside the avatar, so caught cloth can only stretch. Beyond a bound it slips free
+ * instead: its edges are shortened at once, whatever is in the way, and contact then moves the particles
+ * outside from where they are. Threads: pure. */
 #ifndef TOILE_CLOTH_CONTACT_CAUGHT_H
 #define TOILE_CLOTH_CONTACT_CAUGHT_H
 
@@ -11,11 +12,12 @@
 
 #include <cglm/struct.h>
 
-/* Strained beyond this an edge is caught: no fabric is worn like that. */
+/* An edge of larger strain is caught: no fabric is worn like that. */
 #define TL_CAUGHT_STRAIN 1.5
 
-/* Flags in `slipped` [particles->count] those that did, and stops them; leaves other flags as they are.
- * `rest` gives the flat rest shape of every triangle; edges shorter than `shortest` metres are let be. */
+/* Releases caught edges. Stops the particles that moved and sets their flags in `slipped` [particles->count];
+ * other flags keep their value. `rest` are the rest shapes of all triangles; edges shorter than `shortest`
+ * metres are ignored. */
 void tl_caught_release(const struct tl_topology *topology, const vec2s (*rest)[3], double shortest,
                        struct tl_particles *particles, bool *slipped);
 

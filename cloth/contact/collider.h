@@ -1,8 +1,8 @@
-/* What cloth rests on: a closed triangle mesh that may move from frame to frame, and the ground plane y = 0.
+/* The collider: a closed triangle mesh that may move from frame to frame, and the ground plane y = 0.
  *
  * Closest points come from Embree's point queries on a BVH over the welded mesh, the side from the
- * angle-weighted pseudo-normal of the closest feature (Baerentzen & Aanaes 2005). Metres, world. Ownership:
- * owns its copies. Threads: queries may run on several threads, moves may not. */
+ * angle-weighted pseudo-normal of the closest feature (Baerentzen & Aanaes 2005). Metres, world. Lifetime:
+ * copies the mesh. Threads: queries may run concurrently, but not with a move. */
 #ifndef TOILE_CLOTH_CONTACT_COLLIDER_H
 #define TOILE_CLOTH_CONTACT_COLLIDER_H
 
@@ -12,7 +12,9 @@
 
 typedef struct tl_collider tl_collider;
 
-/* `mesh` may be NULL: ground only. `ground` false: no plane. */
+/* `mesh` NULL: no mesh; `ground` false: no plane. Errors: TL_INPUT for a vertex that is not finite, TL_DEVICE
+ * if Embree fails; returns NULL then. End with tl_collider_destroy, which sets the handle to NULL and ignores
+ * NULL. */
 tl_collider *tl_collider_create(const tl_mesh *mesh, bool ground, tl_error *error);
 void tl_collider_destroy(tl_collider **collider);
 
@@ -35,28 +37,28 @@ bool tl_collider_query(const tl_collider *collider, const double point[3], doubl
 bool tl_collider_query_at(const tl_collider *collider, const double point[3], double phase, double reach_m,
                           struct tl_contact *out);
 
-/* How often the current surface winds around a point: 1 inside, 0 outside, whatever folds are nearest. A pose
- * that pushes the surface through itself leaves creases that are inside out; who sees the back of one from
- * the open has a negative distance and is not inside. Solid angles of all triangles (van Oosterom & Strackee
- * 1983): for few points. */
+/* Winding number of the current surface around a point: 1 inside, 0 outside, also near creases. A pose that
+ * pushes the surface through itself has creases that are inside out: a point outside that is nearest to the
+ * back of one has a negative distance. Sums the solid angles of all triangles (van Oosterom & Strackee 1983),
+ * so it is for few points. */
 double tl_collider_winding(const tl_collider *collider, const double point[3]);
 
-/* A point of a triangle at both ends of the motion. */
+/* A point of a triangle in the previous and in the current pose. */
 void tl_collider_path(const tl_collider *collider, uint32_t triangle, const double barycentric[3],
                       double previous[3], double current[3]);
 
 bool tl_collider_has_ground(const tl_collider *collider);
 
-/* Longest way of any vertex from the previous to the current pose. */
+/* Largest displacement of a vertex from the previous to the current pose, m. */
 double tl_collider_travel(const tl_collider *collider);
 
-/* A move in which a vertex goes farther than this, 15 m/s at 30 frames a second, is a jump: the rigid motion
- * that comes nearest to it is taken out, by putting the previous pose at its end, and is told by
- * tl_collider_jump for as long as the revision stays, so that what is worn can go along. */
+/* A move with a larger displacement (15 m/s at 30 frames a second) is a jump. The rigid motion nearest to it
+ * is then applied to the previous pose, so that only the rest remains as motion, and tl_collider_jump returns
+ * it while the revision stays the same, so that worn cloth can be moved along. */
 #define TL_COLLIDER_JUMP_M 0.5
 bool tl_collider_jump(const tl_collider *collider, struct tl_rigid *out);
 
-/* Rises with every move that changes something: answers to queries stay good while it is the same. */
+/* Increases with every move that changes a pose; results of queries stay valid while it is the same. */
 uint64_t tl_collider_revision(const tl_collider *collider);
 
 #endif

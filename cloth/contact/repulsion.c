@@ -4,12 +4,12 @@
 
 #include <stdlib.h>
 
-/* Pairs are looked for within this many thicknesses: what comes nearer by more than the rest in one step is
- * met one step later. */
+/* Pairs are searched within this many thicknesses. Particles that approach by more than the margin within one
+ * step are found one step later. */
 #define REACH_THICKNESSES 2.0
-/* m/s: what is too near already is parted at this speed. */
+/* m/s, at which pairs that are too near already are separated. */
 #define PUSH_APART_SPEED 1.0
-/* Where numbers of cells still fit; nothing that far away is near anything. */
+/* Bound of cell indices, so that they fit; nothing that far away has a neighbour. */
 #define FARTHEST_CELL 1e15
 
 void tl_repulsion_release(struct tl_repulsion *repulsion)
@@ -113,8 +113,8 @@ void tl_repulsion_update(struct tl_repulsion *repulsion, size_t count, const vec
     free(grid.items);
 }
 
-/* Apart to the kept distance, what was nearer before at a limited speed; of the slip in this substep friction
- * takes no more than its share of that. */
+/* Separates a pair to its distance; penetration that was there before, at a limited speed. Friction reduces
+ * the slip of this substep by at most `friction` times the correction. */
 static void solve_pair(const struct tl_repulsion_pair *pair, double friction, double max_push_m,
                        struct tl_particles *particles)
 {

@@ -1,8 +1,8 @@
-/* Cloth against itself, as far as a review of drape needs it: particles nearer than the thickness push each
- * other apart, with Coulomb friction. Folds keep their distance; an edge may still pass between the particles
- * of a coarse mesh. Pairs that are nearer than that from the start keep their start distance instead. The
- * pairs come from a spatial hash (Teschner et al. 2003), once a step, in a fixed order. Metres. Threads:
- * pure. */
+/* Self-repulsion: particles that are nearer than the thickness push each other apart, with Coulomb friction.
+ * That keeps folds apart, which is enough to review a drape; an edge may still pass between the particles of
+ * a coarse mesh. Pairs that start nearer than the thickness keep their start distance instead. Pairs are
+ * found by a spatial hash (Teschner et al. 2003), once a step, in a fixed order. Metres. Lifetime: plain
+ * struct that owns its array. Threads: pure. */
 #ifndef TOILE_CLOTH_CONTACT_REPULSION_H
 #define TOILE_CLOTH_CONTACT_REPULSION_H
 
@@ -19,11 +19,11 @@ struct tl_repulsion {
 };
 void tl_repulsion_release(struct tl_repulsion *repulsion);
 
-/* Once per step, at its start. `start` [count] are the positions that the cloth is made in. */
+/* Finds the pairs; once per step, at its start. `start` [count] are the positions in the garment's file. */
 void tl_repulsion_update(struct tl_repulsion *repulsion, size_t count, const vec3d *x, const vec3d *start,
                          double thickness_m);
 
-/* Once per substep of h seconds. */
+/* Pushes the pairs apart; once per substep of h seconds. */
 void tl_repulsion_solve(const struct tl_repulsion *repulsion, double friction, double h,
                         struct tl_particles *particles);
 

@@ -7,7 +7,7 @@ static double rest_length(const vec2s rest[3], int corner)
     return (double)glms_vec2_distance(rest[(corner + 1) % 3], rest[(corner + 2) % 3]);
 }
 
-/* Each edge from its first triangle only. */
+/* The samples of one triangle; an edge is sampled by its first triangle only. */
 static size_t probe_triangle(const struct tl_topology *topology, const vec2s (*rest)[3], uint32_t triangle,
                              double coarse_m, struct tl_contact_sample *out)
 {
@@ -17,7 +17,7 @@ static size_t probe_triangle(const struct tl_topology *topology, const vec2s (*r
     for (int corner = 0; corner < 3; corner++) {
         double length = rest_length(rest[triangle], corner);
         longest = fmax(longest, length);
-        bool first = topology->neighbour[triangle][corner] > triangle; /* also where there is none */
+        bool first = topology->neighbour[triangle][corner] > triangle; /* also if there is none */
         if (length > coarse_m && first)
             out[count++] = (struct tl_contact_sample){{v[(corner + 1) % 3], v[(corner + 2) % 3], v[corner]},
                                                       {0.5, 0.5, 0}};

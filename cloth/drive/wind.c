@@ -2,8 +2,7 @@
 
 #include <string.h>
 
-/* Of the speed against the air no more than this is taken out in one step, however long: a light cloth in a
- * storm would else be thrown back. */
+/* Largest share of the relative speed that one step may remove. */
 #define MAX_SPEED_LOSS 0.5
 
 vec3d tl_wind_at(const struct tl_wind *wind, vec3d point)

@@ -21,9 +21,10 @@ struct tl_wind {
 /* The wind's velocity at a point. */
 vec3d tl_wind_at(const struct tl_wind *wind, vec3d point);
 
-/* Its forces (N) on the particles [particles->count], which act for h seconds. Over a step so long that a
- * free sheet would lose more than half of its speed against the air (for 0.15 kg/m^2 and h = 1/60 s: above 7
- * m/s), they are held down to that. */
+/* Writes the forces (N) on the particles, constant for h seconds, to `forces` [particles->count]. If a free
+ * sheet would lose more than half of its speed against the air within h (0.15 kg/m^2 and h = 1/60 s: above 7
+ * m/s), forces are reduced to that: the explicit impulse would otherwise overshoot and throw a light cloth
+ * back. */
 void tl_wind_forces(const struct tl_wind *wind, const struct tl_topology *topology, double h,
                     const struct tl_particles *particles, vec3d *forces);
 

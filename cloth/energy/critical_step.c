@@ -1,10 +1,11 @@
-/* How stiff the energy is: the longest stable step of an explicit solver. */
+/* The longest stable step of an explicit solver, by Gershgorin's theorem. */
 #include "cloth/energy/energy.h"
 #include "config/memory.h"
 
 #include <stdlib.h>
 
-/* Adds to each vertex its row of |K| for an energy k/2 |sum rows x|^2. */
+/* Adds to each vertex the row sum of |K| for an energy k/2 |sum_i rows_i x_i|^2, whose K_ij = k rows_i
+ * rows_j. */
 static void add_rows(const double *rows, size_t stride, const uint32_t *vertices, size_t count,
                      double stiffness, double *sums)
 {
@@ -15,8 +16,8 @@ static void add_rows(const double *rows, size_t stride, const uint32_t *vertices
         sums[vertices[i * TL_BATCH]] += stiffness * fabs(rows[i * stride]) * total;
 }
 
-/* 1 over the length of a column of F, as it makes a membrane stiffer: a pressed thread turns, and its angle
- * to the other changes, more for the same way. */
+/* 1 / |F_u| or 1 / |F_v|: a compressed thread rotates further for the same displacement, which makes shear
+ * stiffer. */
 static double shortness(const double gradients[3][TL_BATCH], const uint32_t vertices[3][TL_BATCH],
                         size_t lane, const vec3d *x)
 {
@@ -27,7 +28,7 @@ static double shortness(const double gradients[3][TL_BATCH], const uint32_t vert
     return 1 / fmax(vec3d_norm(column), least);
 }
 
-/* Of k/2 (|F_u| - 1)^2 the Hessian has the eigenvalues k along F_u and k (1 - 1/|F_u|) across. */
+/* The Hessian of k/2 (|F_u| - 1)^2 has the eigenvalues k along F_u and k (1 - 1/|F_u|) across it. */
 static double stretch_stiffness(double k, double shortness)
 {
     return k * fmax(1, shortness - 1);

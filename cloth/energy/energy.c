@@ -5,12 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Height over the longest edge. Below `sliver` a triangle's plane is rounding noise: its edges become links.
- * Below `needle` its cotangents are too large to say anything of curvature: it does not bend. */
+/* Bounds of a triangle's height over its longest edge. Below `sliver` its plane is rounding noise, so its
+ * edges become links. Below `needle` its cotangents are too large to give a meaningful curvature, so it does
+ * not bend. */
 static const double sliver = 1e-4, needle = 0.02;
 
-/* Bending is a force, not a constraint, where omega h of its fastest wave is no more than this; beside
- * constraints it would blow up above 2. */
+/* Bending is an explicit force, not a constraint, if omega h of its fastest wave is at most this. The limit
+ * of stability is 2. */
 #define FORCE_LIMIT 1.4
 
 /* ---- Rest shapes ---- */
@@ -20,7 +21,7 @@ static vec3d start_of(const tl_garment *garment, uint32_t vertex)
     return vec3d_from(garment->model.mesh.positions[vertex]);
 }
 
-/* Direction in space in which u grows over a triangle; zero where UVs do not tell. */
+/* Direction in space in which u increases over a triangle; zero where UVs are missing or degenerate. */
 static vec3d weft_direction(const tl_garment *garment, const uint32_t *vertices)
 {
     const tl_mesh *mesh = &garment->model.mesh;
@@ -144,8 +145,8 @@ struct stencil {
     double rows[3][TL_BEND_STENCIL];
 };
 
-/* Adds a vertex's coefficient to a stencil, merging vertices that are met twice (a closed cone of three
- * triangles has one far corner for all its hinges). */
+/* Adds a vertex's coefficient to a stencil. A vertex may occur twice (a closed cone of three triangles has
+ * one far corner for all its hinges): its coefficients add up. */
 static void add_to_stencil(struct stencil *stencil, int *used, uint32_t vertex, double k,
                            const double unit[3])
 {
@@ -158,7 +159,8 @@ static void add_to_stencil(struct stencil *stencil, int *used, uint32_t vertex, 
         stencil->rows[row][slot] += k * unit[row];
 }
 
-/* Adds the hinge across the edge that faces `corner`. */
+/* Adds the hinge across the edge opposite to `corner`: n n^T / (A + A') times the hinge's cotangent
+ * coefficients. */
 static void add_hinge(const struct tl_topology *topology, const struct flat *flats, uint32_t triangle,
                       int corner, struct stencil *stencil, int *used)
 {
@@ -174,7 +176,8 @@ static void add_hinge(const struct tl_topology *topology, const struct flat *fla
 
     double dx = near->x[end] - near->x[start], dy = near->y[end] - near->y[start];
     double length = hypot(dx, dy), nx = dy / length, ny = -dx / length;
-    /* Pattern pieces that are eased together have edges of different length: each side measures its own. */
+    /* Pattern pieces that are eased together have edges of different lengths: the far cotangents are scaled
+     * to the near edge's length. */
     double near_start = cotangent(near, start), near_end = cotangent(near, end);
     double scale = length / edge_length(far, far_corner);
     double across_start = cotangent(far, far_start) * scale, across_end = cotangent(far, far_end) * scale;
@@ -316,7 +319,7 @@ void tl_energy_set_fabric(struct tl_energy *energy, const struct tl_cloth_fabric
     tl_pair_forces_set(&energy->pairs, energy, stiffness);
 }
 
-/* -1 / (gradient + 1/(stiffness h^2)), 0 where nothing can move or resist. */
+/* XPBD's -1 / (w |grad C|^2 + compliance / h^2); 0 where nothing can move or nothing resists. */
 static double factor_of(double gradient, double stiffness, double h)
 {
     double sum = gradient + 1 / (stiffness * h * h);
@@ -363,7 +366,8 @@ static void set_bend(struct tl_bend *bend, const struct tl_cloth_fabric *fabric,
         }
 }
 
-/* Gershgorin's bound on omega^2 of bending. */
+/* Gershgorin's upper bound of omega^2 of bending: twice the sum of a row's off-diagonal entries, as rows sum
+ * to 0. */
 static double fastest_bending(const struct tl_pair_forces *pairs, const double *w)
 {
     double fastest = 0;

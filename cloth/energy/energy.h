@@ -1,8 +1,8 @@
-/* The cloth's elastic energy, the same for every solver: membrane and bending of triangles, and links.
+/* The elastic energy of the cloth, the same for every solver: membrane and bending of triangles, and links.
  *
  * Membrane, per triangle, with the deformation gradient F = [F_u F_v] from the flat rest shape of area A:
  *     E = A/2 [ k_weft (|F_u| - 1)^2 + k_warp (|F_v| - 1)^2 + k_shear c^2 ],  c = F_u.F_v / (|F_u| |F_v|)
- * so that a strip's tension per width is k times its strain, for any triangulation.
+ * so that the tension of a strip per width is k times its strain, in any triangulation.
  *
  * Bending, per triangle with its up to three neighbours. A hinge's bend is the vector h = sum K_i x_i, K the
  * cotangents of the flat hinge (Bergou et al. 2006, "A Quadratic Bending Model for Inextensible Surfaces");
@@ -11,12 +11,13 @@
  * "Computing discrete shape operators on general meshes"):
  *     L = sum over edges h / (A + A') n n^T,     n the edge's unit normal in the rest plane
  *     E = A/2 [ B_weft L_uu^2 + B_warp L_vv^2 + 2 sqrt(B_weft B_warp) L_uv^2 ]
- * A sum of squared hinge angles with weights l^2/A alone overstates B by up to 3 on a grid (its bending all
- * falls on one of three edge directions); this tensor is exact for any quadratic surface over a regular grid.
- * Each component is linear in the positions, so it is an exact constraint with constant gradients. Rest is
- * flat: cloth has no memory of the folds in its file.
+ * A sum of squared hinge angles weighted by l^2/A would overstate B by up to 3 on a grid, where all bending
+ * falls on one of three edge directions; the tensor is exact for any quadratic surface over a regular grid.
+ * Each component is linear in the positions, and so a constraint with constant gradients. The rest state is
+ * flat: folds in the garment's file are not remembered.
  *
- * Rest shapes: x along weft, y along warp, metres. Threads: pure. */
+ * Rest shapes: x along the weft, y along the warp, metres. Lifetime: plain structs that own their arrays.
+ * Threads: pure, except where a function says otherwise. */
 #ifndef TOILE_CLOTH_ENERGY_ENERGY_H
 #define TOILE_CLOTH_ENERGY_ENERGY_H
 
@@ -28,8 +29,8 @@
 #include "cloth/mesh/vec3d.h"
 #include "config/memory.h"
 
-/* Triangles are kept in batches that share no vertex, lane by lane. An empty lane has the vertex one past the
- * last, which is held, and zeros. */
+/* Triangles are stored in batches (mesh/topology.h), one per lane. An empty lane holds zeros and the vertex
+ * one past the last, which is held. */
 
 /* Membranes. F_u = sum c_i x_i, F_v = sum d_i x_i. */
 struct tl_membrane {
@@ -38,30 +39,31 @@ struct tl_membrane {
     double area[TL_BATCH];                 /* m^2, at rest */
 };
 
-/* The same batches as `preview` solves them: all that it reads in a substep, as it waits for memory. */
+/* The same batches for `preview`, which is bound by memory: exactly what it reads in a substep. */
 struct tl_preview_membrane {
-    _Alignas(
-        TL_CACHE_LINE) double c[2][TL_BATCH]; /* of the last two vertices; the first's is minus their sum */
+    _Alignas(TL_CACHE_LINE) double c[2][TL_BATCH]; /* of the last two vertices; that of the first is minus
+                                                      their sum */
     double d[2][TL_BATCH];
     double w[3][TL_BATCH];                           /* 1/kg, of the vertices */
-    double cc[TL_BATCH], cd[TL_BATCH], dd[TL_BATCH]; /* sums of w c_i c_i, ...: fixed while masses are */
+    double cc[TL_BATCH], cd[TL_BATCH], dd[TL_BATCH]; /* sums of w c_i c_i, w c_i d_i, w d_i d_i */
     double weft[TL_BATCH], warp[TL_BATCH];           /* -1 / (w |grad|^2 + 1 / (k A h^2)) */
     double shear[TL_BATCH];                          /* 1 / (k A h^2) */
-    uint32_t from[3][TL_BATCH];                      /* the vertices' first numbers in the pulls' `places` */
+    uint32_t from[3][TL_BATCH];                      /* offsets of the vertices in the pairs' `positions` */
 };
 
 /* Curvatures: L_uu, L_vv, sqrt(2) L_uv = sum of rows over the stencil's vertices. */
 #define TL_BEND_STENCIL 6
 struct tl_bend {
-    uint32_t vertices[TL_BEND_STENCIL][TL_BATCH]; /* own three, then across each edge; a missing one repeats
-                                                     the first with rows of 0 */
+    uint32_t vertices[TL_BEND_STENCIL][TL_BATCH]; /* its own three, then the far corner of each hinge; a
+                                                     missing one repeats the first, with rows of 0 */
     double rows[3][TL_BEND_STENCIL][TL_BATCH];    /* 1/m^2 */
     double w[TL_BEND_STENCIL][TL_BATCH];          /* 1/kg */
     double factors[3][TL_BATCH];                  /* -1 / (sum w row^2 + 1 / (B A h^2)) */
     double area[TL_BATCH];
 };
 
-/* A spring: keeps slivers, which have no usable plane, in shape; closes seams. */
+/* A spring between two vertices. The edges of slivers, whose plane is rounding noise, are links; seams are
+ * too. */
 struct tl_link {
     uint32_t a, b;
     double rest;       /* m */
@@ -78,55 +80,61 @@ struct tl_energy {
     struct tl_link *links;
     double *masses; /* [vertex_count] kg per areal density: a third of the area around */
     struct tl_pair_forces pairs;
-    bool bending_is_force; /* preview's substep is short enough for bending as an explicit force: xpbd.h */
+    bool bending_is_force; /* preview: its substep is short enough for bending as an explicit force, see
+                              xpbd.h */
 };
 
-/* `rest` gives every physics triangle's flat rest shape. */
+/* Builds the energy of a mesh whose triangles have the flat `rest` shapes. */
 struct tl_energy tl_energy_build(const struct tl_topology *topology, const vec2s (*rest)[3]);
 void tl_energy_release(struct tl_energy *energy);
 
-/* Takes over the fabric. Before forces are asked for. */
+/* Sets the fabric; must precede evaluation of energy and forces. */
 void tl_energy_set_fabric(struct tl_energy *energy, const struct tl_cloth_fabric *fabric);
 
-/* Sets what `preview` needs: material, substep `h` seconds and inverse masses [vertex_count + 1]. */
+/* Sets the coefficients of `preview` for a fabric, a substep of `h` seconds and inverse masses [vertex_count
+ * + 1]. */
 void tl_energy_set_preview(struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
                            const double *inverse_masses, double h);
 
-/* The elastic energy (J) at positions `x` [vertex_count]; writes its forces -dE/dx (N) to `forces`
- * [vertex_count]. A link's energy is k/2 (length - rest)^2 with the warp's stretch stiffness. The fabric is
- * the one that was set. Threads: one call at a time for one energy. */
+/* Returns the elastic energy (J) at positions `x` [vertex_count] and writes its forces -dE/dx (N) to `forces`
+ * [vertex_count]. A link's energy is k/2 (length - rest)^2 with the stretch stiffness of the warp. `fabric`
+ * must be the one that was set last. Threads: parallel inside; one call at a time for one energy, as it has
+ * scratch space. */
 double tl_energy_evaluate(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
                           size_t vertex_count, const vec3d *x, vec3d *forces);
 
-/* The forces alone, the same to the last bit, sooner. `then`, if not NULL, moves the particles on, a block at
- * a time, with their forces in `forces`; it may move `x`. */
+/* The same forces to the last bit, without the energy, which saves time. If `then` is not NULL it is run on
+ * each block of particles as soon as their forces are in `forces`, while these are in the cache; it may
+ * change `x`. */
 void tl_energy_forces(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric, const vec3d *x,
                       vec3d *forces, const struct tl_particle_kernel *then);
 
-/* The same of bending alone. */
+/* The same with the forces of bending alone. */
 void tl_energy_bending_forces(const struct tl_energy *energy, const vec3d *x, vec3d *forces,
                               const struct tl_particle_kernel *then);
 
-/* Stiffness against L_uu, L_vv and sqrt(2) L_uv, N m. */
+/* Bending stiffness of the components L_uu, L_vv and sqrt(2) L_uv, N m. */
 void tl_bend_stiffness(const struct tl_cloth_fabric *fabric, double out[3]);
 
-/* The longest step (s) at which explicit integration is stable, from below: 2 / omega_max, omega_max^2 by
- * Gershgorin's bound on the rows of M^-1 K. Infinite when nothing resists.
+/* A lower bound of the longest step (s) at which explicit integration is stable, 2 / omega_max, with
+ * omega_max^2 from Gershgorin's theorem on the rows of M^-1 K. Infinite when nothing resists.
  *
- * K here is more than the Hessian at rest: a stretch counts in all three directions, as k (1 - 1/|F|) across
- * the thread is below k however far it is stretched, so that stretch, bending and links are bounded in any
- * state. Shear is bounded while neither thread is shorter than at rest; it grows as 1/|F|^2 when they are
- * crushed, which `x` [vertex_count + 1] tells; NULL: at rest. At rest the true limit lies 1.25 (a plate)
- * to 1.74 (isotropic cloth) times higher, as measured. */
+ * K is an upper bound of the Hessian, not the Hessian at rest: stretch stiffness counts in all three
+ * directions, since k (1 - 1/|F|) across the thread stays below k however far it is stretched, so that
+ * stretch, bending and links are bounded in any state. Shear is bounded while neither thread is shorter than
+ * at rest, and grows as 1/|F|^2 when they are crushed: the state `x` [vertex_count + 1] is used for it, or
+ * the rest state if NULL. At rest the true limit was measured to be 1.25 (a plate) to 1.74 times (isotropic
+ * cloth) as long. */
 double tl_energy_critical_step(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
                                size_t vertex_count, const double *inverse_masses, const vec3d *x);
 
-/* Flat rest shape of a garment's own triangle: from its pattern, else from the start shape turned so that x
- * follows the UVs' u direction (an arbitrary one where UVs are degenerate). */
+/* Flat rest shape of a triangle of the garment's mesh: from the garment's pattern, else its start shape,
+ * rotated so that x follows the direction of increasing u (an arbitrary direction where UVs are degenerate).
+ */
 void tl_rest_shape(const tl_garment *garment, size_t triangle, vec2s out[3]);
-/* Whether it is so thin that it has no membrane. */
+/* Whether a triangle of this rest shape is too thin to have a membrane. */
 bool tl_rest_is_sliver(const vec2s rest[3]);
-/* ... of all physics triangles. New array. */
+/* Rest shapes of all physics triangles, as a new array that the caller frees. */
 vec2s (*tl_rest_shapes(const tl_garment *garment, const struct tl_topology *topology))[3];
 
 #endif

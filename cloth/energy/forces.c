@@ -1,4 +1,4 @@
-/* The energy as a number, and its forces. */
+/* Evaluation of the elastic energy and its forces: see pair_forces.h for the passes. */
 #include "cloth/energy/energy.h"
 #include "cloth/mesh/particles.h"
 #include "cloth/mesh/threads.h"
@@ -6,10 +6,10 @@
 
 #include <string.h>
 
-/* What is squeezed to less than this share of its rest length pushes no harder than at it. */
+/* A thread or link compressed below this share of its rest length pushes no harder than at it. */
 #define MIN_LENGTH 1e-6
 
-/* Places are read four numbers at a time. */
+/* Pads positions to four numbers, so that one wide load reads a position. */
 TL_CLONES static void copy_positions(const vec3d *x, struct tl_range range, double *positions)
 {
     for (size_t i = range.from; i < range.to; i++) {
@@ -38,9 +38,11 @@ struct stretching {
     double weft, warp, shear;
 };
 
-/* With m = (|F_u|^2, F_u.F_v, |F_v|^2) and the energy per area
+/* One batch of triangles. With the metric m = (|F_u|^2, F_u.F_v, |F_v|^2) and the energy per area
  *     e = k_weft/2 (sqrt(m_uu) - 1)^2 + k_warp/2 (sqrt(m_vv) - 1)^2 + k_shear/2 m_uv^2 / (m_uu m_vv):
- * 2A de/d(l_k^2) for each edge k, and A e where it is wanted. */
+ * computes 2A de/d(l_k^2) for each edge k, and A e if `energies` is not NULL. Lengths have a lower bound,
+ * since the energy has no derivative where a thread is crushed to a point. One division serves both inverse
+ * lengths. */
 TL_INLINE void differentiate(const struct tl_metric *metric, const struct stretching *k,
                              const double squared[3][TL_BATCH], double *restrict shares, double *energies)
 {
@@ -101,7 +103,7 @@ TL_CLONES static void differentiate_all(const struct tl_pair_forces *pairs, stru
     differentiate_range(pairs, k, range, false);
 }
 
-/* The triangles' energies beside. */
+/* The same, and the triangles' energies. */
 TL_CLONES static void measure_all(const struct tl_pair_forces *pairs, struct stretching k,
                                   struct tl_range range)
 {
@@ -115,7 +117,7 @@ TL_CLONES static void add_shares(const struct tl_pair_forces *pairs, struct tl_r
             pairs->shares[pairs->slots[e][0]] + pairs->shares[pairs->slots[e][1]] + pairs->edge_bending[e];
 }
 
-/* What few edges have: more than two triangles, and links. Returns the links' energy. */
+/* Adds the rare contributions to edges: third and further triangles, and links. Returns the links' energy. */
 static double add_rare(const struct tl_energy *energy, double stiffness)
 {
     const struct tl_pair_forces *pairs = &energy->pairs;
@@ -131,7 +133,8 @@ static double add_rare(const struct tl_energy *energy, double stiffness)
     return sum;
 }
 
-/* Away from the other end, and subtracted: one instruction takes a register and memory, not the reverse. */
+/* sum += strength (other - at), written as a subtraction of strength (at - other): there the second operand
+ * can come straight from memory. */
 TL_INLINE void add_pull(const double *at, const double *other, double strength, struct tl_wide_force *sum)
 {
     double x = at[0] - other[0], y = at[1] - other[1], z = at[2] - other[2], unused = at[3] - other[3];
@@ -159,7 +162,7 @@ TL_INLINE void add_along(const struct tl_pair_forces *pairs, size_t vertex, cons
     }
 }
 
-/* All of bending, in two sums: what one adds the other need not wait for. */
+/* All of bending, in two independent sums, so that one addition need not wait for the other. */
 TL_INLINE struct tl_wide_force add_packs(const struct tl_pair_forces *pairs, size_t vertex)
 {
     const double *positions = pairs->positions, *at = &positions[4 * vertex];
@@ -198,7 +201,7 @@ static struct tl_range block_from(size_t from, struct tl_range range)
     return (struct tl_range){from, to < range.to ? to : range.to};
 }
 
-/* Each block's particles move as soon as their forces are known, while these are at hand. */
+/* Each block's particles are advanced as soon as their forces are known, while these are in the cache. */
 TL_INLINE void add_range(const struct tl_pair_forces *pairs, const double *strengths, struct tl_range range,
                          vec3d *forces, const struct tl_particle_kernel *then)
 {
@@ -206,7 +209,7 @@ TL_INLINE void add_range(const struct tl_pair_forces *pairs, const double *stren
         struct tl_range block = block_from(from, range);
         add_block(pairs, block, strengths, forces);
         if (then)
-            then->move(then->particles, block, then->params);
+            then->run(then->particles, block, then->params);
     }
 }
 
@@ -222,7 +225,8 @@ TL_CLONES static void add_bending(const struct tl_pair_forces *pairs, struct tl_
     add_range(pairs, NULL, range, forces, then);
 }
 
-/* x.Kx/2 of a block of vertices. Forces add up to nothing, so that x may be measured from anywhere. */
+/* x.Kx/2 of a block of vertices. Rows of K sum to 0, so that x may be measured from any origin; one near by
+ * keeps the rounding small. */
 TL_CLONES static double bending_energy(const struct tl_pair_forces *pairs, struct tl_range range)
 {
     double energy = 0;
@@ -244,7 +248,8 @@ static void add_energies(const struct tl_pair_forces *pairs)
             bending_energy(pairs, block_from(from, mine));
 }
 
-/* Returns the links' energy, and leaves the triangles' in pulls->parts, the bending's too if it is wanted. */
+/* Runs all passes. Returns the links' energy; the triangles' (and bending's) energies, if wanted, are in
+ * pairs->parts. */
 static double evaluate(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric, const vec3d *x,
                        bool wants_energy, vec3d *forces, const struct tl_particle_kernel *then)
 {

@@ -42,7 +42,7 @@ static void place_metric(const struct tl_energy *energy, const struct placed *pl
     metric->area[lane] = from->area[placed->lane % TL_BATCH];
 }
 
-/* In the order of their edges, so that neighbours in memory are neighbours in the cloth. */
+/* Sorted by their lowest edge, so that neighbours in memory are neighbours in the cloth. */
 static void build_metrics(struct tl_pair_forces *pairs, const struct tl_topology *topology,
                           const struct tl_energy *energy)
 {
@@ -66,7 +66,7 @@ static void build_metrics(struct tl_pair_forces *pairs, const struct tl_topology
     free(placed);
 }
 
-/* Which triangles pull along each edge. */
+/* Finds the triangles that contribute to each edge. */
 static void build_slots(struct tl_pair_forces *pairs)
 {
     uint32_t nothing = (uint32_t)(pairs->metric_count * 3 * TL_BATCH);
@@ -122,7 +122,7 @@ static void release_stencils(struct stencils *stencils)
     tl_fans_release(&stencils->fans);
 }
 
-/* Pairs of bending alone are found twice: first counted, then written. */
+/* Pairs that only bending connects are found in two passes: the first counts, the second writes. */
 struct finder {
     struct tl_pair_forces *pairs;
     const struct stencils *stencils;
@@ -228,7 +228,8 @@ static void set_packs(struct tl_pair_forces *pairs)
     }
 }
 
-/* Where a row keeps each vertex's number; an edge's is kept by its lower end, and NULL for the other. */
+/* Where the strength of the pair with each vertex is stored. The lower end of an edge writes it: NULL for the
+ * other. */
 static void list_entries(struct tl_pair_forces *pairs, uint32_t vertex, double **entries)
 {
     for (uint32_t k = pairs->incident_first[vertex]; k < pairs->incident_first[vertex + 1]; k++) {

@@ -1,15 +1,17 @@
-/* The energy's forces as pulls along pairs of vertices: fast, and opposite to the last bit.
+/* The elastic forces as sums of central forces between pairs of vertices, which is fast, and exact in
+ * momentum.
  *
  * A membrane's energy depends on |F_u|^2, F_u.F_v and |F_v|^2 only, and these are linear in the squared
  * lengths of the triangle's edges: F_u = sum c_i x_i with sum c_i = 0 gives |F_u|^2 = -sum_{i<j} c_i c_j |x_i
  * - x_j|^2. So its forces are 2 dE/d(l^2) (x_j - x_i) along each edge. Bending is x.Kx/2 with a constant K
- * whose rows add up to 0: its forces are -K_ij (x_j - x_i), over the pairs that share a stencil. Both act
- * along the line between two vertices, with one number for the two: linear and angular momentum are kept but
- * for the rounding of sums, whatever the numbers are.
+ * whose rows sum to 0: its forces are -K_ij (x_j - x_i) over the pairs that share a stencil. Both act along
+ * the line between two vertices, with one strength for both ends, so that linear and angular momentum are
+ * conserved except for the rounding of sums.
  *
  * Passes: squared lengths by edge, derivatives by triangle, their sums by edge, forces by vertex. Each entry
- * is written by one thread and summed in a fixed order: results do not depend on the number of threads.
- * Threads: it has scratch space; one call at a time. */
+ * is written by one thread and summed in a fixed order, so that results do not depend on the number of
+ * threads. Lifetime: plain struct that owns its arrays. Threads: it has scratch space, so one call at a time.
+ */
 #ifndef TOILE_CLOTH_ENERGY_PAIR_FORCES_H
 #define TOILE_CLOTH_ENERGY_PAIR_FORCES_H
 
@@ -37,13 +39,13 @@ struct tl_wide_force {
     double x, y, z, unused;
 };
 
-/* One end's view of an edge. */
+/* An edge as seen from one of its ends. */
 struct tl_incident_edge {
     uint32_t other, edge;
 };
 
-/* Pulls of bending alone on one vertex, as many as are in flight at once; what a vertex has too few of is
- * made up with pulls of 0 from itself. */
+/* Bending forces on one vertex, as many as are in flight at once. A row that does not fill its last pack ends
+ * with pairs of strength 0 with itself. */
 #define TL_PAIR_PACK 4
 struct tl_pair_pack {
     double bending[TL_PAIR_PACK]; /* -K_ij, N/m */
@@ -54,19 +56,19 @@ struct tl_pair_forces {
     size_t vertex_count, edge_count, metric_count, excess_count;
     uint32_t (*edges)[2]; /* as in the topology */
     struct tl_metric *metrics;
-    uint32_t (*slots)[2];  /* [edge_count] the two entries of `shares` that make up an edge's pull */
+    uint32_t (*slots)[2]; /* [edge_count] the two entries of `shares` that an edge's strength is the sum of */
     uint32_t (*excess)[2]; /* [excess_count] edge, entry: third and further triangles at an edge */
     uint32_t *link_edges;  /* [link_count] */
     double *edge_bending;  /* [edge_count] -K_ij of its ends, N/m */
 
-    /* Rows by vertex: along[incident_first[i]] and on are along edges, others[others_first[i]] and on are of
-     * bending alone. */
+    /* Rows by vertex i: incident[incident_first[i]] and on are its edges, others[others_first[i]] and on the
+     * pairs that only bending connects. */
     uint32_t *incident_first, *others_first; /* [vertex_count + 1] */
     struct tl_incident_edge *incident;
     uint32_t *others; /* the vertex at the other end */
     double *bending;  /* [entries of others] -K_ij, N/m */
 
-    /* The same of bending alone, along edges or not: fours[packs_first[i]] and on. */
+    /* All of bending, along edges or not: packs[packs_first[i]] and on. */
     uint32_t *packs_first; /* [vertex_count + 1] */
     struct tl_pair_pack *packs;
 
@@ -84,11 +86,11 @@ struct tl_pair_forces tl_pair_forces_build(const struct tl_topology *topology,
                                            const struct tl_energy *energy);
 void tl_pair_forces_release(struct tl_pair_forces *pairs);
 
-/* Takes over the stiffness against bending of L_uu, L_vv and sqrt(2) L_uv, N m. */
+/* Sets the bending stiffness of L_uu, L_vv and sqrt(2) L_uv, N m. */
 void tl_pair_forces_set(struct tl_pair_forces *pairs, const struct tl_energy *energy,
                         const double stiffness[3]);
 
-/* Copies a part of the vertices' places into the scratch. */
+/* Copies a range of the positions into the padded scratch array. */
 void tl_pair_forces_load_positions(const struct tl_pair_forces *pairs, const vec3d *x, struct tl_range range);
 
 /* Vertices whose energies are added up before those of all blocks are. */

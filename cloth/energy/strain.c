@@ -10,18 +10,18 @@
 struct triangle {
     uint32_t vertices[3];
     double weft[2],
-        warp[2]; /* 1/m: what the sides from the first corner are multiplied by to give F_u and F_v */
+        warp[2]; /* 1/m: F_u = weft[0] side + weft[1] other, and F_v likewise; sides leave the first corner */
     double area; /* m^2, at rest; 0: a sliver */
 };
 
 struct tl_strains {
     size_t vertex_count, triangle_count;
     struct triangle *triangles;
-    struct tl_fans fans; /* of triangles about vertices */
+    struct tl_fans fans; /* triangles around vertices */
     vec3d *of_triangles; /* [triangle_count]: warp, weft, shear */
 };
 
-/* F = [sides] [rest sides]^-1. */
+/* Coefficients of F = [sides] [rest sides]^-1. */
 static struct triangle make_triangle(const tl_garment *garment, size_t number)
 {
     vec2s rest[3];

@@ -1,10 +1,10 @@
-/* How far a garment is stretched, triangle by triangle, against its flat rest shape: what the membrane energy
- * is made of (cloth/energy/energy.h). F = [F_u F_v] is the deformation gradient:
+/* Strains of a garment against its flat rest shape, the measures that the membrane energy penalises
+ * (cloth/energy/energy.h). With the deformation gradient F = [F_u F_v]:
  *
  *     warp |F_v| - 1,  weft |F_u| - 1,  shear F_u.F_v / (|F_u| |F_v|)
  *
- * It needs positions alone, so that a garment whose motion is played back has strains as well. Ownership:
- * borrows nothing once made. Threads: one at a time. */
+ * Only positions are needed, so that a garment whose motion is played back has strains too. Lifetime: the
+ * garment may be released after creation. Threads: one update at a time per object, parallel inside. */
 #ifndef TOILE_CLOTH_ENERGY_STRAIN_H
 #define TOILE_CLOTH_ENERGY_STRAIN_H
 
@@ -12,13 +12,14 @@
 
 typedef struct tl_strains tl_strains;
 
+/* Cannot fail. End with tl_strains_destroy. */
 tl_strains *tl_strains_create(const tl_garment *garment);
-void tl_strains_destroy(tl_strains **strains); /* nulls it; null is fine */
+void tl_strains_destroy(tl_strains **strains); /* sets it to NULL; NULL is ignored */
 
-/* From positions [vertex_count] of the garment's render vertices, metres: warp, weft and shear of each, the
- * mean over the triangles that use it, by their area at rest. Seams between panels are not averaged over:
- * each panel has its own vertices there. Slivers, whose shape says nothing, count for nothing; a vertex
- * without any other triangle has 0. */
+/* Computes warp, weft and shear strain of each render vertex from positions [vertex_count], metres: the mean
+ * over its triangles weighted by their rest area, written to `out` [vertex_count]. There is no averaging
+ * across seams, where each panel has vertices of its own. Slivers are ignored; a vertex with slivers only has
+ * strain 0. */
 void tl_strains_update(tl_strains *strains, const vec3s *positions, vec3s *out);
 
 #endif

@@ -48,12 +48,12 @@ void tl_particles_release(struct tl_particles *particles)
     *particles = (struct tl_particles){0};
 }
 
-void tl_particles_run(const struct tl_particle_kernel *move)
+void tl_particles_run(const struct tl_particle_kernel *kernel)
 {
-#pragma omp parallel if (move->particles->count >= TL_PARALLEL_VERTICES)
+#pragma omp parallel if (kernel->particles->count >= TL_PARALLEL_VERTICES)
     {
         unsigned denormals = tl_denormals_off();
-        move->move(move->particles, tl_thread_range(move->particles->count, 1), move->params);
+        kernel->run(kernel->particles, tl_thread_range(kernel->particles->count, 1), kernel->params);
         tl_denormals_restore(denormals);
     }
 }
@@ -92,7 +92,7 @@ TL_CLONES static void predict(struct tl_particles *particles, struct tl_range pa
     tl_group_gravity(to.gravity_step, gravity_steps);
     size_t i = part.from;
     for (; i + TL_PARTICLE_GROUP <= part.to && to.forces && to.velocity_from_positions;
-         i += TL_PARTICLE_GROUP) /* the usual ones */
+         i += TL_PARTICLE_GROUP) /* the usual case, as constants */
         predict_group(particles, i, TL_PARTICLE_GROUP, &to, gravity_steps, true, true);
     for (; i < part.to; i++)
         predict_group(particles, i, 1, &to, gravity_steps, to.forces, to.velocity_from_positions);

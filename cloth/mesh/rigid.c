@@ -1,7 +1,8 @@
 #include "cloth/mesh/rigid.h"
 
-/* The eigenvector of a symmetric matrix's largest eigenvalue: with all eigenvalues shifted above 0, its power
- * 2^SQUARINGS has nothing else left. */
+/* The eigenvector of a symmetric matrix's largest eigenvalue, by repeated squaring: a shift by the sum of
+ * |entries| makes all eigenvalues positive, so that in the power 2^SQUARINGS the largest one dominates; every
+ * column is then the eigenvector. The longest column is taken, as others may vanish. */
 #define SQUARINGS 40
 static void largest_eigenvector(double m[4][4], double out[4])
 {

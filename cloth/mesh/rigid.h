@@ -1,5 +1,5 @@
-/* The rigid motion that takes one set of points nearest to another, in least squares (Horn 1987, "Closed-form
- * solution of absolute orientation using unit quaternions"). Threads: pure. */
+/* The rigid motion that maps one set of points onto another with the least sum of squared distances (Horn
+ * 1987, "Closed-form solution of absolute orientation using unit quaternions"). Threads: pure. */
 #ifndef TOILE_CLOTH_MESH_RIGID_H
 #define TOILE_CLOTH_MESH_RIGID_H
 
@@ -8,12 +8,14 @@
 #include <stddef.h>
 
 struct tl_rigid {
-    vec3d from, to;    /* the centres */
+    vec3d from, to;    /* centroids of both sets */
     vec3d rotation[3]; /* rows */
 };
 
+/* Fits the motion to `count` pairs of points, metres. */
 struct tl_rigid tl_rigid_fit(const vec3s *from, const vec3s *to, size_t count);
 
+/* Apply the rotation to a direction, and the whole motion to a point. */
 vec3d tl_rigid_turn(const struct tl_rigid *rigid, vec3d direction);
 vec3d tl_rigid_point(const struct tl_rigid *rigid, vec3d point);
 

@@ -7,7 +7,7 @@
 
 static uint32_t float_bits(float value)
 {
-    if (value == 0) /* -0 is the same place as 0 */
+    if (value == 0) /* -0 equals 0 */
         value = 0;
     uint32_t bits;
     memcpy(&bits, &value, sizeof bits);
@@ -22,7 +22,7 @@ static size_t hash_position(vec3s p)
     return (size_t)(hash ^ (hash >> 29));
 }
 
-static bool same_place(vec3s a, vec3s b)
+static bool same_position(vec3s a, vec3s b)
 {
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
@@ -32,11 +32,11 @@ size_t tl_weld_positions(const vec3s *positions, size_t count, uint32_t *weld)
     size_t slots = 16;
     while (slots < 2 * count)
         slots *= 2;
-    uint32_t *table = TL_NEW_ARRAY(uint32_t, slots); /* first vertex at a place, plus one */
+    uint32_t *table = TL_NEW_ARRAY(uint32_t, slots); /* first vertex at a position, plus one */
     size_t welded = 0;
     for (size_t i = 0; i < count; i++) {
         size_t slot = hash_position(positions[i]) & (slots - 1);
-        while (table[slot] && !same_place(positions[table[slot] - 1], positions[i]))
+        while (table[slot] && !same_position(positions[table[slot] - 1], positions[i]))
             slot = (slot + 1) & (slots - 1);
         if (table[slot]) {
             weld[i] = weld[table[slot] - 1];
@@ -69,7 +69,7 @@ void tl_sets_join(uint32_t *parents, uint32_t a, uint32_t b)
 }
 
 struct sorted_triangle {
-    uint32_t corners[3]; /* rising */
+    uint32_t corners[3]; /* ascending */
     uint32_t index;
 };
 
@@ -83,7 +83,8 @@ static int compare_words(const uint32_t *a, const uint32_t *b, int count)
 
 static int compare_triangles(const void *a, const void *b)
 {
-    return compare_words(a, b, 4); /* corners, then index: the first of equal ones comes first */
+    return compare_words(a, b,
+                         4); /* by corners, then by index, so that the first of equal triangles comes first */
 }
 
 static void order(uint32_t *a, uint32_t *b)
@@ -95,7 +96,7 @@ static void order(uint32_t *a, uint32_t *b)
     }
 }
 
-/* Marks the render triangles that have three different corners and repeat no earlier one. */
+/* Marks the render triangles that have three different corners and do not repeat an earlier triangle. */
 static void find_distinct(const uint32_t *indices, size_t count, const uint32_t *weld, bool *keep)
 {
     struct sorted_triangle *sorted = TL_NEW_ARRAY(struct sorted_triangle, count);
@@ -232,9 +233,10 @@ void tl_fans_release(struct tl_fans *fans)
     *fans = (struct tl_fans){0};
 }
 
-#define COLOURS 64 /* bits of a mask */
+#define COLOURS 64 /* one bit of a 64-bit mask each */
 
-/* A colour that no element at these vertices has; the last one is shared by what finds none. */
+/* The lowest colour that no element at these vertices has. If all are taken it is the last colour, whose
+ * elements may share vertices. */
 static uint8_t choose_colour(uint64_t *used, const uint32_t *vertices, size_t count)
 {
     uint64_t taken = 0;
@@ -246,7 +248,8 @@ static uint8_t choose_colour(uint64_t *used, const uint32_t *vertices, size_t co
     return (uint8_t)colour;
 }
 
-/* First batch of each colour; those of the shared one hold one element each, and are runs of their own. */
+/* Finds the first batch of each colour. Elements of the last colour may share vertices, so each gets a batch
+ * and a run of its own. */
 static void lay_out(struct tl_batches *batches, const size_t sizes[COLOURS], size_t first[COLOURS])
 {
     batches->run_ends = TL_NEW_ARRAY(size_t, COLOURS + sizes[COLOURS - 1]);

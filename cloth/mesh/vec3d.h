@@ -1,4 +1,4 @@
-/* Three doubles: cloth state is double, and cglm's structs are float. Pure. */
+/* Vectors of three doubles, since the cloth's state is double and cglm's structs are float. Threads: pure. */
 #ifndef TOILE_CLOTH_MESH_VEC3D_H
 #define TOILE_CLOTH_MESH_VEC3D_H
 

@@ -5,14 +5,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What is beyond the limit at first is drawn back at this speed, a share of the rest length a second: at
- * once, it would become a speed that grows as the substep shrinks. */
+/* Edges that exceed the limit at the start are shortened at this speed, in rest lengths per second. At once,
+ * the correction would become a velocity that grows as the substep shrinks. */
 #define CORRECTION_SPEED 1.0
 
-/* A triangle is near the limit when something in it is stretched by this share of it. */
+/* A triangle is near the limit if some direction in it is strained by this share of the limit. */
 #define NEAR 0.75
 
-/* Flags that are looked at together. */
+/* Flags that are tested together. */
 #define WORD 8
 _Static_assert(WORD == TL_BATCH && sizeof(bool) == 1, "eight flags are read as 64 bits");
 
@@ -32,7 +32,8 @@ static void list_edges(struct tl_strain_limits *limits, const struct tl_topology
     for (size_t e = 0; e < topology->edge_count; e++)
         limits->edges[e] = (struct tl_limited_edge){.ends = {topology->edges[e][0], topology->edges[e][1]},
                                                     .rest = HUGE_VAL};
-    for (size_t t = topology->triangle_count; t-- > 0;) /* of several the first triangle's */
+    for (size_t t = topology->triangle_count;
+         t-- > 0;) /* backwards, so that the first triangle of an edge decides */
         for (int corner = 0; corner < 3; corner++) {
             int a = (corner + 1) % 3, b = (corner + 2) % 3;
             const uint32_t *vertices = topology->triangles[t];
@@ -42,7 +43,7 @@ static void list_edges(struct tl_strain_limits *limits, const struct tl_topology
         }
 }
 
-/* Empty lanes stay with edge 0, as they are never seen. */
+/* Empty lanes keep edge 0; they are never marked. */
 static void list_sides(struct tl_strain_limits *limits, const struct tl_topology *topology,
                        const struct tl_energy *energy)
 {
@@ -73,7 +74,7 @@ struct tl_strain_limits tl_strain_limits_create(const struct tl_topology *topolo
     list_edges(&limits, topology, rest, shortest);
     tl_strain_limits_restart(&limits, x);
     list_sides(&limits, topology, energy);
-    for (size_t i = 0; i < energy->link_count; i++) /* slivers have no membrane that could be watched */
+    for (size_t i = 0; i < energy->link_count; i++) /* slivers have no membrane that could mark them */
         limits.always[energy->pairs.link_edges[i]] = true;
     return limits;
 }
@@ -89,7 +90,7 @@ void tl_strain_limits_release(struct tl_strain_limits *limits)
     *limits = (struct tl_strain_limits){0};
 }
 
-/* Whether all of WORD flags are down: few are up. */
+/* Whether no flag of a word is set, the usual case. */
 static bool none(const bool flags[WORD])
 {
     uint64_t bits;
@@ -108,7 +109,7 @@ static void mark_corrected(struct tl_strain_limits *limits)
     }
 }
 
-/* Returns whether any edge is to be looked at. */
+/* Marks the edges to be tested; returns whether there are any. */
 static bool mark(struct tl_strain_limits *limits, const struct tl_energy *energy)
 {
     bool any = energy->link_count > 0 || limits->any_corrected;
@@ -127,7 +128,7 @@ static bool mark(struct tl_strain_limits *limits, const struct tl_energy *energy
     return any;
 }
 
-/* All edges at a vertex. */
+/* Marks all edges at a vertex. */
 static void mark_vertex(struct tl_strain_limits *limits, const struct tl_pair_forces *pairs, uint32_t vertex)
 {
     for (uint32_t k = pairs->incident_first[vertex]; k < pairs->incident_first[vertex + 1]; k++)
@@ -142,7 +143,8 @@ TL_INLINE bool is_long(const struct tl_strain_limits *limits, const struct tl_li
     return vec3d_dot(apart, apart) > max * max;
 }
 
-/* What draws one edge back may stretch its neighbours. Of an edge that is long; whether it moved. */
+/* Shortens one edge that is too long; returns whether it moved. Its neighbours may become longer by it, so
+ * they are marked too. */
 static bool correct_edge(struct tl_strain_limits *limits, const struct tl_pair_forces *pairs,
                          const struct tl_limited_edge *edge, struct tl_particles *particles)
 {
@@ -162,8 +164,8 @@ static bool correct_edge(struct tl_strain_limits *limits, const struct tl_pair_f
     return true;
 }
 
-/* Through the list, or back through it; whether anything moved. What was found short enough is looked at
- * again only once one of its ends has moved. */
+/* One sweep through the list; returns whether anything moved. A tested edge is tested again only if an end of
+ * it moves. */
 static bool sweep(struct tl_strain_limits *limits, const struct tl_pair_forces *pairs, bool back,
                   struct tl_particles *particles)
 {

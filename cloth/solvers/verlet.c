@@ -5,14 +5,16 @@ struct tl_verlet tl_verlet_make(const vec3d *forces, double gravity, double drag
     return (struct tl_verlet){forces, gravity, exp(-drag * h / 2), h};
 }
 
-/* v + h/2 a, one number of it. */
+/* v + h/2 a, for one coordinate. */
 TL_INLINE double pushed(double v, double force, double weight, double gravity_step, double h)
 {
     return v + force * (weight * h / 2) - gravity_step;
 }
 
-/* Velocities are kept, not taken from the places: rounding of a place is 1e-16 m, over a step of 1e-5 s that
- * is 1e-11 m/s each time. What moved nobody adds exactly 0. */
+/* Kick, drift, or both, of `count` particles. Velocities are stored, not derived from positions: a position
+ * of 1 m is rounded by 1e-16 m, which over a step of 1e-5 s would be an error of 1e-11 m/s in every step.
+ * Only the displacement by constraints is divided by h; where there is none, the difference is exactly 0,
+ * since the same expression previous + speed h is evaluated. */
 TL_INLINE void advance(struct tl_particles *particles, size_t first, size_t count,
                        const struct tl_verlet *substep, const double gravity_steps[3 * TL_PARTICLE_GROUP],
                        bool kicks, bool drifts)

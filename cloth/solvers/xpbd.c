@@ -10,7 +10,7 @@
 
 /* ---- Batches ---- */
 
-/* The places of one vertex of each element. */
+/* Positions of one vertex of each element of a batch. */
 struct positions {
     double x[TL_BATCH], y[TL_BATCH], z[TL_BATCH];
 };
@@ -47,15 +47,15 @@ TL_INLINE void move(struct positions *positions, int lane, vec3d by, double shar
     put(positions, lane, vec3d_muladd(at(positions, lane), by, share));
 }
 
-/* Batches of a run that are solved side by side. */
+/* Batches of a run that are solved interleaved. */
 #define GROUP 8
 
-/* The corners of a group's membranes, as numbers side by side. */
+/* Corners of a group's membranes, as a structure of arrays. */
 struct corners {
     double x[GROUP][3][TL_BATCH], y[GROUP][3][TL_BATCH], z[GROUP][3][TL_BATCH];
 };
 
-/* The same as they lie in memory: of each x, y, z and what fills a wide register up. */
+/* The same as in memory: x, y, z and padding to a wide register. */
 struct rows {
     _Alignas(TL_CACHE_LINE) double of[GROUP][3][TL_BATCH][4];
 };
@@ -71,7 +71,7 @@ TL_INLINE void deinterleave(const struct rows *rows, size_t count, struct corner
     }
 }
 
-/* The filling is z again: a loop that writes all four is wide. */
+/* The padding is written too (z again), since a loop that writes all four numbers vectorises. */
 TL_INLINE void interleave(const struct corners *corners, size_t count, struct rows *rows)
 {
     double(*to)[4] = rows->of[0][0];
@@ -89,11 +89,13 @@ TL_INLINE vec3d corner_at(const struct corners *corners, size_t k, int i, int la
     return (vec3d){corners->x[k][i][lane], corners->y[k][i][lane], corners->z[k][i][lane]};
 }
 
-/* One membrane of each lane on its way. Both stretches and the shear are solved one after the other, on F
- * alone, and the vertices move once: a push p on row c moves vertex i by w_i c_i p, and so F_u by cc p and
- * F_v by cd p. All pushes lie in the plane of the first F_u and F_v, u and v: only their shares of these two
- * change, and scalar products follow from the first three. In stages: what one stage of a batch waits for,
- * roots and divisions, the same stage of the next batches need not. */
+/* One membrane per lane while its three rows are solved: weft, warp, then shear, Gauss-Seidel within the
+ * triangle, on the latest F. A correction p of row c moves vertex i by w_i c_i p, and so F_u by cc p and F_v
+ * by cd p: the rows can be solved on F alone, and the vertices move once at the end. All corrections lie in
+ * the plane of the first F_u and F_v, called u and v, so only their coefficients in u and v change, and
+ * scalar products follow from the first three: no vector is touched between. Work is done in stages over a
+ * group, because while one batch waits for its root and division the same stage of the next batches can run.
+ */
 struct membrane_work {
     struct positions u, v;
     double uu[TL_BATCH], vv[TL_BATCH], uv[TL_BATCH];
@@ -115,19 +117,19 @@ TL_INLINE void measure(const struct tl_preview_membrane *m, const struct corners
     work->uv[lane] = vec3d_dot(u, v);
 }
 
-/* F_u = u_u u + u_v v, F_v = v_u u + v_v v, and their scalar products. */
+/* The current F: F_u = u_u u + u_v v, F_v = v_u u + v_v v, and its scalar products. */
 struct deformation {
     double u_u, u_v, v_u, v_v;
     double a, b, g; /* |F_u|^2, |F_v|^2, F_u.F_v */
 };
 
-/* A stretch C = |F| - 1 pushes by factor C along F/|F|: in units of F. */
+/* The correction for C = |F| - 1 is factor C F/|F|; returned in units of F: factor (1 - 1/|F|). */
 TL_INLINE double stretch_push(double squared, double factor)
 {
     return factor * (1 - 1 / sqrt(squared > NO_LENGTH * NO_LENGTH ? squared : NO_LENGTH * NO_LENGTH));
 }
 
-/* The push is `push` F_u; F_u becomes (1 + cc push) F_u, F_v gets cd push F_u more. */
+/* The correction is push F_u: F_u becomes (1 + cc push) F_u, and F_v gains cd push F_u. */
 TL_INLINE double solve_weft(const struct tl_preview_membrane *m, int lane, struct deformation *f)
 {
     double push = stretch_push(f->a, m->weft[lane]);
@@ -154,10 +156,11 @@ TL_INLINE double solve_warp(const struct tl_preview_membrane *m, int lane, struc
     return push;
 }
 
-/* C = g/sqrt(p), with p = a b, has the gradient
- * c_i (v a - u g) / (a sqrt(p)) + d_i (u b - v g) / (b sqrt(p)), of weighted square
- * (p - g^2) (cc b - 2 cd g + dd a) / p^2: its push needs no root, and one division. Of p, on row c F_v gets
- * this share; F_u of row c gets -b g of it, F_v of row d -a g. */
+/* Shear: C = g / sqrt(p) with p = a b has the gradient
+ *     c_i (v a - u g) / (a sqrt(p)) + d_i (u b - v g) / (b sqrt(p)),
+ * whose weighted square is (p - g^2) (cc b - 2 cd g + dd a) / p^2. Multiplier times gradient then needs no
+ * root and one division. Returns the common factor: row c receives p F_v - b g F_u times it, row d p F_u - a
+ * g F_v. */
 TL_INLINE double solve_shear(const struct tl_preview_membrane *m, int lane, const struct deformation *f)
 {
     double p = f->a * f->b;
@@ -241,8 +244,8 @@ TL_INLINE void scatter(const struct group *group, size_t k, const struct rows *r
                    sizeof rows->of[k][i][lane]);
 }
 
-/* While a group waits for roots and divisions, the one before it is put back and the next one fetched: those
- * of a run share no vertex. */
+/* Software pipeline: while a group waits for roots and divisions, the group before it is scattered and the
+ * next one gathered. That is safe since the batches of a run share no vertex. */
 TL_CLONES static void solve_run(const struct tl_preview_membrane *membranes, size_t count, double max,
                                 double *positions, bool (*seen)[TL_BATCH])
 {
@@ -279,14 +282,14 @@ TL_CLONES static void solve_run(const struct tl_preview_membrane *membranes, siz
         scatter(&before, k, &out, positions);
 }
 
-/* Out of the pulls' `places`. */
+/* Copies positions back from the padded array. */
 TL_CLONES static void read_positions(const double *positions, struct tl_range range, vec3d *x)
 {
     for (size_t i = range.from; i < range.to; i++)
         x[i] = (vec3d){positions[4 * i], positions[4 * i + 1], positions[4 * i + 2]};
 }
 
-/* On the threads of a team: the batches of a run in any order, the runs one after the other. */
+/* Called by all threads of a team: batches of a run in any order, runs one after the other. */
 static void solve_membranes(const struct tl_energy *energy, const struct tl_stretch_watch *watch, vec3d *x)
 {
     double *positions = energy->pairs.positions;
@@ -307,7 +310,8 @@ static void solve_membranes(const struct tl_energy *energy, const struct tl_stre
 #pragma omp barrier
 }
 
-/* The three components of the curvature: vectors, linear in the positions. */
+/* One component of the curvature tensor, a vector and linear in the positions: L <- L + factor-weighted
+ * correction. */
 TL_INLINE void solve_curvature(const struct tl_bend *bend, int row, int lane,
                                struct positions x[TL_BEND_STENCIL])
 {
@@ -328,7 +332,8 @@ TL_CLONES static void solve_bend_run(const struct tl_bend *bends, size_t count, 
         for (int row = 0; row < 3; row++)
             for (int lane = 0; lane < TL_BATCH; lane++)
                 solve_curvature(bend, row, lane, x);
-        for (int i = TL_BEND_STENCIL - 1; i >= 0; i--) /* the first last: it stands in for missing ones */
+        for (int i = TL_BEND_STENCIL - 1; i >= 0;
+             i--) /* the first vertex last: it also stands in for missing ones, whose copies are stale */
             store(&x[i], bend->vertices[i], particles);
     }
 }

@@ -1,12 +1,13 @@
-/* The sweep of `preview` in the opposite order, for meshes of needles. Plain: such meshes are rare. */
+/* The backward half of a symmetric sweep of `preview`: bends, then membranes, each in reverse (xpbd.h). Plain
+ * loops, since meshes of needles are rare. */
 #include "cloth/mesh/threads.h"
 #include "cloth/solvers/xpbd.h"
 #include "config/simd.h"
 
 #define NO_LENGTH 1e-12
 
-/* A membrane on its way: the columns of F, and the pushes so far, of which vertex i gets w_i (c_i of the
- * first and d_i of the second). */
+/* A membrane while its rows are solved: the columns of F, and the accumulated corrections. Vertex i moves by
+ * w_i (c_i push_c + d_i push_d). */
 struct membrane_state {
     vec3d u, v, push_c, push_d;
 };
@@ -20,7 +21,7 @@ TL_INLINE void push(const struct tl_preview_membrane *m, int lane, vec3d c, vec3
     state->v = vec3d_muladd(vec3d_muladd(state->v, c, m->cd[lane]), d, m->dd[lane]);
 }
 
-/* As in xpbd.c. */
+/* The same formula as solve_shear in xpbd.c. */
 TL_INLINE void push_shear(const struct tl_preview_membrane *m, int lane, struct membrane_state *state)
 {
     vec3d u = state->u, v = state->v;

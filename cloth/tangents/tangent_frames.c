@@ -36,9 +36,9 @@ void tl_tangent_frames_destroy(tl_tangent_frames **frames)
 
 /* ---- Spokes ---- */
 
-#define KEPT 16 /* spokes held at a time: few vertices have more */
+#define KEPT 16 /* spokes in registers and cache at a time: few vertices have more */
 
-/* One block of fans, and where all vertices are. */
+/* One block of fans, and the positions of all vertices. */
 struct fans {
     const uint32_t (*centres)[LANES], (*spokes)[LANES];
     const float (*gradients)[2][LANES];
@@ -59,8 +59,8 @@ struct edges {
     float x[KEPT * LANES], y[KEPT * LANES], z[KEPT * LANES];
 };
 
-/* Edges to spokes `first` to first + KEPT - 1; returns how many there are. Copying vertices whole and parting
- * their coordinates in one long loop is twice as fast as the machine's own gathers. */
+/* Fetches the edges to spokes `first` to first + KEPT - 1; returns how many there are. Copying whole vertices
+ * and then separating coordinates in one long loop is twice as fast as hardware gathers. */
 TL_INLINE size_t fetch_edges(const struct fans *fans, size_t first, struct edges *out)
 {
     size_t count = fans->spoke_count - first < KEPT ? fans->spoke_count - first : KEPT;
@@ -88,8 +88,7 @@ TL_INLINE size_t fetch_edges(const struct fans *fans, size_t first, struct edges
 
 /* ---- Sums over corners ---- */
 
-/* Square metres, far below what the rounding of a garment's coordinates leaves of an area: keeps divisors
- * above 0. */
+/* m^2, far below the rounding error of a garment triangle's area: keeps divisors above 0. */
 #define NOTHING 1e-18f
 
 /* atan2(sine, cosine) / length for sine > 0: the angle at a corner over the length of what it weighs. The
@@ -159,7 +158,8 @@ TL_INLINE void add_tangents(const struct edges *edges, size_t count, const float
 /* Squared sums of unit vectors that cancel to their rounding. */
 #define OPPOSING 1e-8f
 
-/* 1 where a sum has a direction, which no NaN has, else 0: a number, as a condition would part the lanes. */
+/* 1 if a sum has a direction (NaN has none), else 0: a number, because a branch would prevent vectorisation.
+ */
 TL_INLINE float has_direction(float squared)
 {
     float above = squared > OPPOSING ? 1.0f : 0.0f;
@@ -237,8 +237,8 @@ TL_INLINE void borrow_normals(const tl_tangent_frames *frames, const uint32_t le
             normal[c][i] = frames->states[lenders[i] / LANES].normal[c][lenders[i] % LANES];
 }
 
-/* Asks for what a block reads in sequence while the one before it is being summed: large meshes would wait
- * for a third of the time. */
+/* Prefetches what the next block reads in sequence; large meshes would otherwise wait for memory a third of
+ * the time. */
 TL_INLINE void prefetch_block(const tl_tangent_frames *frames, size_t index)
 {
     if (index >= frames->block_count)
@@ -258,7 +258,8 @@ TL_INLINE void prefetch_block(const tl_tangent_frames *frames, size_t index)
     }
 }
 
-/* Fans of more than KEPT spokes are taken in pieces, each from the last spoke of the one before. */
+/* Updates one block: normals first, since tangents are projected on their planes. Fans of more than KEPT
+ * spokes are processed in pieces, each beginning with the last spoke of the one before. */
 TL_CLONES static void update_block(tl_tangent_frames *frames, size_t index, const vec3s *positions,
                                    vec3s *normals, vec4s *tangents)
 {

@@ -1,5 +1,5 @@
-/* What normals and tangents owe to connectivity and UVs alone: which corners of triangles share a normal, and
- * which a tangent. Built once for each mesh; cloth/frames lays it out for streaming.
+/* The part of tangent frames that depends on connectivity and UVs only: which corners of triangles share a
+ * normal, and which a tangent. Built once per mesh; tangent_layout.h arranges it for streaming.
  *
  * A corner is 3 * triangle + 0, 1 or 2. Ownership: plain struct that owns its arrays. Threads: pure. */
 #ifndef TOILE_CLOTH_TANGENTS_TANGENT_GROUPS_H

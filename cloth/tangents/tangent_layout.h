@@ -1,10 +1,10 @@
-/* Fans of triangles around vertices, laid out so that TL_LANES of them are streamed side by side.
+/* Fans of triangles around vertices, arranged so that TL_LANES of them are streamed in parallel lanes.
  *
  * An item is one tangent frame: a normal, and one tangent group around it. Its fan is a list of spokes, the
- * vertices around it in order, so that neighbours in the list are the other two corners of a triangle, and
- * each spoke is read once for two triangles. Where a fan is in several pieces, and past its end, the spoke is
- * the vertex itself: a triangle without area, which adds nothing. A vertex with several groups has an item
- * that sums its normal and the first group's tangent, and items that borrow that normal for the others. */
+ * neighbours of the vertex in order: two consecutive spokes and the vertex are a triangle, so that each spoke
+ * is read once for two triangles. Between the pieces of a fan, and after its end, the spoke is the vertex
+ * itself, which makes triangles without area that add nothing. A vertex with several groups has one item that
+ * sums its normal and the first group's tangent, and further items that borrow that normal. */
 #ifndef TOILE_CLOTH_TANGENTS_TANGENT_LAYOUT_H
 #define TOILE_CLOTH_TANGENTS_TANGENT_LAYOUT_H
 
@@ -23,7 +23,7 @@ struct tl_tangent_output {
     uint32_t vertex, lane;
 };
 
-/* Kept between updates: what a vertex has whose triangles have no direction. */
+/* The last result, which vertices keep whose triangles have no direction. */
 struct tl_tangent_state {
     float normal[3][TL_LANES], tangent[3][TL_LANES];
     float sign[TL_LANES];
@@ -39,6 +39,7 @@ struct tl_tangent_frames {
     struct tl_tangent_state *states;    /* [block_count] */
 };
 
+/* Fills empty `frames` from the groups. */
 void tl_tangent_frames_lay_out(tl_tangent_frames *frames, const struct tl_tangent_groups *groups);
 
 #endif

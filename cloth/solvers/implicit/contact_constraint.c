@@ -1,9 +1,9 @@
 #include "cloth/solvers/implicit/contact_constraint.h"
 
-/* A particle nearer to its plane than this at the start is taken to touch it still. */
+/* A particle within this distance of its plane at the start keeps the contact state of the last step. */
 #define TOUCHING_M 1e-4
 
-/* How far a way passes the plane; negative: not at all. */
+/* By how much a step violates the plane, m; negative: not at all. */
 static double violation(const struct tl_contact_plane *plane, vec3d step)
 {
     return plane->min_normal_step - vec3d_dot(step, plane->normal);
@@ -15,7 +15,7 @@ static void set_resistance(struct tl_contact_constraint *constraint, double slip
     constraint->resistance = constraint->max_friction / fmax(slip, params->min_slip_speed * params->h);
 }
 
-/* Slips are expected to grow or shrink as they did. */
+/* Extrapolates the slip linearly, bounded below by half the last one, so that the resistance stays finite. */
 static void extrapolate_slip(struct tl_contact_constraint *constraint, const struct tl_contact_params *params)
 {
     set_resistance(constraint,
@@ -24,7 +24,7 @@ static void extrapolate_slip(struct tl_contact_constraint *constraint, const str
     constraint->slips[1] = 0;
 }
 
-/* One plane only is heeded: the one that would be passed the farthest. */
+/* Enforces one plane only, the one that the inertial step violates most. */
 void tl_contact_constraint_begin(struct tl_contact_constraint *constraint, struct tl_contacts *contacts,
                                  const struct tl_contact_params *params, size_t particle, vec3d x, vec3d step)
 {
@@ -61,7 +61,7 @@ struct tl_motion_filter tl_contact_constraint_filter(const struct tl_contact_con
     return (struct tl_motion_filter){.allowed = TL_DOF_ALL};
 }
 
-/* Whether what resisted the last slip was no more than Coulomb allows, as nearly as it matters. */
+/* Whether the friction force of the last solve was within 2 % of Coulomb's bound or below it. */
 static bool friction_is_consistent(const struct tl_contact_constraint *constraint, double resisted)
 {
     const double slack = 1.02;
@@ -69,7 +69,9 @@ static bool friction_is_consistent(const struct tl_contact_constraint *constrain
            resisted * constraint->slips[1] <= slack * constraint->max_friction;
 }
 
-/* What a particle that touches its plane does. */
+/* The state that the solution implies for a particle in contact: free if the plane would have to pull; from
+ * sticking to slipping if the tangential reaction exceeds mu N, with the resistance that would hold if it
+ * slipped alone; from slipping to sticking if it slips more slowly than min_slip_speed. */
 static enum tl_contact_state next_state(struct tl_contact_constraint *constraint,
                                         const struct tl_contact_params *params, vec3d step, vec3d reaction,
                                         double inertia)
@@ -82,7 +84,7 @@ static enum tl_contact_state next_state(struct tl_contact_constraint *constraint
     constraint->max_friction = params->friction * pressure;
     if (constraint->state == TL_CONTACT_STICKS) {
         double excess = vec3d_norm(vec3d_muladd(reaction, normal, -pressure)) - constraint->max_friction;
-        set_resistance(constraint, excess / inertia, params); /* as it would slip if it were alone */
+        set_resistance(constraint, excess / inertia, params);
         return excess > 0 ? TL_CONTACT_SLIPS : TL_CONTACT_STICKS;
     }
     vec3d slip = vec3d_sub(step, constraint->plane.motion);

@@ -5,12 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Times that a step is solved again for particles that stick, slip or let go otherwise than was assumed. */
+/* Maximum solves of a step for its contact states: particles that stick, slip or separate otherwise than
+ * assumed. */
 #define ROUNDS 8
-/* Iterations that all further rounds may take in any case: in motion contact changes with every step anyway;
- * at rest, when solves are short, it must agree. */
+/* Iterations that further rounds may take in any case. In motion contact changes with every step, so the
+ * budget is relative; at rest solves are short, and the contact states must become consistent. */
 #define MIN_CONTACT_ITERATIONS 30
-/* Times that a step is linearised, and then halved, while it would gain energy. */
+/* Maximum linearisations of a step, and then halvings, while it would gain energy. */
 #define LINEARISED 4
 #define HALVINGS   6
 
@@ -21,14 +22,15 @@ struct tl_implicit {
     struct tl_conjugate_gradient_space space;
     struct tl_motion_filter *filters;
     struct tl_contact_constraint *constraints;
-    struct tl_penalty_contact *penalties;    /* [the contacts' sample_count] */
-    double *inertia, *inertia_with_friction; /* N/m: mu, and with the friction of what slips */
-    vec3d *inertial_load;                    /* N: inertia and gravity */
+    struct tl_penalty_contact *penalties; /* [the contacts' sample_count] */
+    double *inertia,
+        *inertia_with_friction; /* N/m: mu, and mu plus the friction resistance of slipping contacts */
+    vec3d *inertial_load;       /* N: mu (y - x) */
     vec3d *load, *load_with_friction;
     vec3d *elastic;    /* N */
-    vec3d *prescribed; /* m, the filtered parts of the step */
+    vec3d *prescribed; /* m, the prescribed part of the step, which filters remove from the solve */
     vec3d *step;       /* m */
-    vec3d *at;         /* m, positions where the forces are linearised, and of a trial */
+    vec3d *at;         /* m, positions at which the forces are linearised, and those of a trial step */
 };
 
 tl_implicit *tl_implicit_create(const struct tl_implicit_problem *problem,
@@ -106,7 +108,7 @@ static double add_spring(const struct tl_link *link, double stiffness, const vec
     return 0.5 * stiffness * stretch * stretch;
 }
 
-/* Of all that pulls, with its forces. */
+/* Elastic energy of the cloth, springs and pull; writes their forces. */
 static double elastic_energy(const struct tl_implicit_problem *problem, size_t count, const vec3d *x,
                              vec3d *forces)
 {
@@ -125,7 +127,8 @@ static double kinetic_energy(const struct tl_particles *particles)
     return energy;
 }
 
-/* Kinetic, elastic and gravity's, the last from the step's start, once a step has led to x. */
+/* Total energy after a step that ends at x: kinetic, elastic and gravitational, the latter relative to the
+ * start. */
 static double energy_at(tl_implicit *implicit, const struct tl_implicit_problem *problem,
                         const struct tl_particles *particles, const vec3d *x)
 {
@@ -153,7 +156,8 @@ static double inertia_of(const struct tl_implicit_problem *problem, double inver
     return inverse_mass > 0 ? (1 + problem->drag * problem->h) / (inverse_mass * problem->h * problem->h) : 0;
 }
 
-/* What holds for the whole step: inertia, planes, and what it starts from. */
+/* Sets what does not change while a step is solved: inertia, contact planes and the initial guess, the
+ * inertial step. */
 static void begin(tl_implicit *implicit, const struct tl_implicit_problem *problem,
                   const struct tl_particles *particles)
 {
@@ -171,7 +175,9 @@ static void begin(tl_implicit *implicit, const struct tl_implicit_problem *probl
     }
 }
 
-/* Adds the hand's stiffness, of its two the lesser: across what it pulls. */
+/* Adds the pull's stiffness. Along the spring it is k, or 0 once the force is at its bound; across it force /
+ * length. Adding the smaller of k and max_force / length in all directions keeps the matrix symmetric
+ * positive definite. */
 static void linearise_hand(tl_implicit *implicit, const struct tl_implicit_problem *problem,
                            const struct tl_particles *particles)
 {
@@ -190,7 +196,8 @@ static double max_stiffness(const struct tl_cloth_fabric *fabric)
     return fmax(fmax(fabric->stretch_weft, fabric->stretch_warp), fabric->shear);
 }
 
-/* K and the load mu (y - x) + f + K (at - x) at the present `at`, whose elastic forces are known. */
+/* Assembles K and the load mu (y - x) + f + K (at - x) at the positions `at`, whose elastic forces are known.
+ * The last term makes the unknown the whole step from x, also when `at` is the end of an earlier trial. */
 static void linearise(tl_implicit *implicit, const struct tl_implicit_problem *problem,
                       const struct tl_particles *particles)
 {
@@ -207,7 +214,7 @@ static void linearise(tl_implicit *implicit, const struct tl_implicit_problem *p
     tl_penalty_contacts_add(implicit->penalties, problem->contacts, &implicit->stiffness, implicit->load);
 }
 
-/* What each particle may do, what of its step is given, and what friction resists. */
+/* Sets each particle's degrees of freedom, the prescribed part of its step, and the friction resistance. */
 static void apply_constraints(tl_implicit *implicit, const struct tl_particles *particles)
 {
     for (size_t i = 0; i < implicit->count; i++) {
@@ -225,7 +232,7 @@ static void apply_constraints(tl_implicit *implicit, const struct tl_particles *
     }
 }
 
-/* Keeps what the step does where it is free, and gives the rest. */
+/* Replaces the filtered part of the initial guess by the prescribed part; the free part is kept. */
 static void impose_prescribed(tl_implicit *implicit)
 {
     for (size_t i = 0; i < implicit->count; i++) {
@@ -239,7 +246,7 @@ static void impose_prescribed(tl_implicit *implicit)
     }
 }
 
-/* Whether every particle does what was assumed. */
+/* Compares every contact's assumed state with its reaction; returns whether all agree. */
 static bool update_constraints(tl_implicit *implicit, const struct tl_implicit_problem *problem,
                                const struct tl_linear_system *system)
 {
@@ -258,8 +265,9 @@ static bool update_constraints(tl_implicit *implicit, const struct tl_implicit_p
     return agreed;
 }
 
-/* Squared residuals that need no more work: of speeds of 1e-5 m/s, as closely as others are solved; and
- * rounding, of positions within a few metres. */
+/* The squared residual (J, in the preconditioner's norm) below which a solve ends whatever its start: what
+ * corresponds to a velocity of 1e-5 m/s solved to the same tolerance, and to the rounding of positions within
+ * a few metres. At rest the relative criterion alone would chase rounding errors. */
 static double residual_floor(const tl_implicit *implicit, const struct tl_implicit_problem *problem)
 {
     const double rounding_m = 4e-15;
@@ -270,8 +278,8 @@ static double residual_floor(const tl_implicit *implicit, const struct tl_implic
            (double)implicit->count * max_stiffness(problem->fabric) * rounding_m * rounding_m;
 }
 
-/* What only falls and flies keeps its momentum to rounding, however little is solved: elastic forces add up
- * to nothing, so its mean way is that of inertia. */
+/* Restores the total momentum of cloth that touches nothing: elastic forces sum to 0, so the mean step must
+ * be the inertial one, which an inexact solve misses. One translation of all corrects it. */
 static void keep_momentum(tl_implicit *implicit, const struct tl_implicit_problem *problem)
 {
     vec3d missing = {0};
@@ -289,7 +297,8 @@ static void keep_momentum(tl_implicit *implicit, const struct tl_implicit_proble
         implicit->step[i] = vec3d_muladd(implicit->step[i], missing, 1 / inertia);
 }
 
-/* Solves until contact agrees; adds to `total`. */
+/* Solves for the step, and again while contact states change. Later rounds start from the last solution and
+ * aim at the first round's residual: more exactness would be wasted on them. Adds to `total`. */
 static void solve(tl_implicit *implicit, const struct tl_implicit_problem *problem,
                   const struct tl_particles *particles, struct tl_conjugate_gradient_result *total)
 {
@@ -322,7 +331,7 @@ static void solve(tl_implicit *implicit, const struct tl_implicit_problem *probl
 
 /* ---- A step ---- */
 
-/* at = previous + given + share (step - given). */
+/* at = previous + prescribed + share (step - prescribed). */
 static void set_trial(tl_implicit *implicit, const struct tl_particles *particles, double share)
 {
     for (size_t i = 0; i < implicit->count; i++)
@@ -330,8 +339,8 @@ static void set_trial(tl_implicit *implicit, const struct tl_particles *particle
             vec3d_add(particles->previous[i], vec3d_mix(implicit->prescribed[i], implicit->step[i], share));
 }
 
-/* The energy that a step may end with: what pins and contacts move does work of its own, so that their move
- * alone may be where it starts. */
+/* The energy that a step may end with. Pins and contact planes that move do work, so the bound is at least
+ * the energy after the prescribed part of the step alone. */
 static double allowed_energy(tl_implicit *implicit, const struct tl_implicit_problem *problem,
                              const struct tl_particles *particles, double before)
 {
@@ -339,7 +348,8 @@ static double allowed_energy(tl_implicit *implicit, const struct tl_implicit_pro
     return fmax(before, energy_at(implicit, problem, particles, implicit->at));
 }
 
-/* Halves the step until it gains no energy; at last only what is given is left of it. */
+/* Halves the free part of the step until no energy is gained; after the last halving only the prescribed part
+ * is left. */
 static void shorten(tl_implicit *implicit, const struct tl_implicit_problem *problem,
                     const struct tl_particles *particles, double max)
 {
@@ -352,7 +362,7 @@ static void shorten(tl_implicit *implicit, const struct tl_implicit_problem *pro
     set_trial(implicit, particles, 0);
 }
 
-/* Linearises until no energy is gained; returns whether it had to be shortened. */
+/* Linearises and solves until no energy is gained; returns whether the step had to be shortened. */
 static bool find_step(tl_implicit *implicit, const struct tl_implicit_problem *problem,
                       const struct tl_particles *particles, double before,
                       struct tl_conjugate_gradient_result *total)
@@ -367,7 +377,7 @@ static bool find_step(tl_implicit *implicit, const struct tl_implicit_problem *p
         if (after > max && times == 1) {
             max = allowed_energy(implicit, problem, particles, before);
             set_trial(implicit, particles, 1);
-            after = energy_at(implicit, problem, particles, implicit->at); /* and the forces there */
+            after = energy_at(implicit, problem, particles, implicit->at); /* again, for the forces there */
         }
         if (after <= max)
             return false;

@@ -1,16 +1,18 @@
 /* `settle`: backward Euler with one linearised step (Baraff and Witkin 1998, "Large Steps in Cloth
  * Simulation"): (mu + K) d = mu (y - x) + f(x),   mu = m (1 + drag h) / h^2,   y = x + (h v + h^2 g) / (1 +
- * drag h) by conjugate gradients (cloth/solvers/implicit/conjugate_gradient.h). What it comes to rest at does
- * not depend on the step: it is the exact equilibrium. Any stiffness and step stay finite.
+ * drag h), for the step d, by preconditioned conjugate gradients (conjugate_gradient.h). What the cloth comes
+ * to rest at does not depend on the step: it is the exact equilibrium. The state stays finite for any
+ * stiffness and step.
  *
- * Its price: motion is damped by the step, the more the quicker it is, so a swing dies sooner than it should;
- * of first order in h.
+ * The price: the scheme is of first order in h and damps motion, the more the faster it oscillates, so that a
+ * swing dies sooner than it should.
  *
- * Contact (cloth/solvers/implicit/contact_constraint.h, cloth/solvers/implicit/penalty_contact.h): planes are
- * heeded while solving.
+ * Contact planes are enforced within the solve: contact_constraint.h for particles, penalty_contact.h for
+ * samples.
  *
- * Guard: where kinetic, elastic and gravity's energy together would rise, the step is linearised again at its
- * end (Newton's method); if that does not help, it is shortened. Threads: uses all. */
+ * Energy guard: if the sum of kinetic, elastic and gravitational energy would rise, the step is linearised
+ * again at its end (Newton's method); if that does not help, it is shortened. Threads: uses all; one step at
+ * a time. */
 #ifndef TOILE_CLOTH_SOLVERS_IMPLICIT_IMPLICIT_H
 #define TOILE_CLOTH_SOLVERS_IMPLICIT_IMPLICIT_H
 
@@ -18,7 +20,7 @@
 #include "cloth/solvers/implicit/contact_constraint.h"
 #include "cloth/solvers/implicit/penalty_contact.h"
 
-/* The hand: a spring to a target with a bounded force. */
+/* The pull of tl_cloth_grab: a spring to a target, with a bounded force. */
 struct tl_hand {
     uint32_t particle; /* TL_NONE: none */
     vec3d target;
@@ -34,13 +36,14 @@ struct tl_implicit_problem {
     struct tl_contacts *contacts;
     struct tl_contact_params contact;
     double gravity, drag, h;
-    double
-        contact_budget; /* what further rounds of contact may take, as a share of the first; and a few more */
-    double tolerance;   /* of conjugate gradients */
+    /* Iterations that further rounds of contact may take, relative to the first round's, plus a fixed
+     * minimum. */
+    double contact_budget;
+    double tolerance; /* of conjugate gradients: residual at the end, relative to the start */
     int max_iterations;
 };
 
-/* What steps took. */
+/* Counters over steps. */
 struct tl_implicit_tally {
     size_t steps, iterations;
     size_t unconverged; /* steps whose iterations were cut short */
@@ -49,13 +52,14 @@ struct tl_implicit_tally {
 
 typedef struct tl_implicit tl_implicit;
 
-/* For steps of this problem's material, springs and h. */
+/* For steps with this problem's material, number of springs and h. Copies what it needs. End with
+ * tl_implicit_destroy, which sets the handle to NULL and ignores NULL. */
 tl_implicit *tl_implicit_create(const struct tl_implicit_problem *problem,
                                 const struct tl_particles *particles);
 void tl_implicit_destroy(tl_implicit **handle);
 
-/* From particles->previous and v to x; held particles (w = 0) are at their new x already. Velocities are
- * left. Adds to `tally`. */
+/* Computes x from `previous` and v. Held particles (w = 0) must be at their new x already. Leaves velocities
+ * unchanged. Adds to `tally`. */
 void tl_implicit_step(tl_implicit *implicit, const struct tl_implicit_problem *problem,
                       struct tl_particles *particles, struct tl_implicit_tally *tally);
 

@@ -1,11 +1,11 @@
 #include "cloth/solvers/implicit/penalty_contact.h"
 
-/* The spring is this many times stiffer than what it holds. */
+/* The spring's stiffness relative to the inertia that it acts on. */
 #define PENALTY_FACTOR 10.0
-/* What it gives beyond this was an impact, not a load. */
+/* A larger compression comes from an impact, not from a steady load, and must not be kept as a shift. */
 #define MAX_SHIFT_M 1e-4
 
-/* What a push on a probe meets, from what its vertices resist; 0 when none moves. */
+/* The effective inertia of a sample, N/m, from its vertices' inertia; 0 if none is free. */
 static double probe_inertia(const struct tl_contact_sample *sample, const double *inertia)
 {
     double mobility = 0;
@@ -16,7 +16,7 @@ static double probe_inertia(const struct tl_contact_sample *sample, const double
     return mobility > 0 ? 1 / mobility : 0;
 }
 
-/* One plane only is heeded: the one that lies nearest. */
+/* Enforces one plane only, the nearest. */
 static void begin_one(struct tl_penalty_contact *penalty, struct tl_contacts *contacts,
                       const struct tl_contact_params *params, size_t sample, vec3d x)
 {
@@ -45,7 +45,7 @@ void tl_penalty_contacts_begin(struct tl_penalty_contact *penalties, struct tl_c
     }
 }
 
-/* sign 1: it presses from now on, -1: no more. */
+/* Adds (sign 1) or removes (sign -1) a spring in the matrix and the load. */
 static void add_one(const struct tl_penalty_contact *penalty, const struct tl_contact_sample *sample,
                     double sign, struct tl_stiffness *stiffness, vec3d *load)
 {

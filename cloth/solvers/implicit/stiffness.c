@@ -9,7 +9,8 @@
 #define NO_LENGTH 1e-12
 #define CORNERS   3 /* of a membrane; a link repeats its second end */
 
-/* Second derivative by F_u, F_v: block (i, j) = c_i c_j uu + d_i d_j vv + c_i d_j uv + d_i c_j uv^T. */
+/* Second derivatives of an element's energy by F_u and F_v. The block of its vertices i and j is
+ * c_i c_j uu + d_i d_j vv + c_i d_j uv + d_i c_j uv^T. */
 struct tl_element_stiffness {
     double c[CORNERS], d[CORNERS];
     double uu[9], vv[9], uv[9];
@@ -67,7 +68,7 @@ static struct tl_sparse_rows make_rows(const struct tl_fans *fans, const uint32_
     return rows;
 }
 
-/* Elements of empty lanes lie around the vertex one past the last, which has no row. */
+/* Elements of empty lanes have the vertex one past the last, which has no row. */
 static struct tl_gather make_gather(const uint32_t *corners, size_t per_element, size_t element_count,
                                     size_t vertex_count, struct tl_sparse_rows *rows)
 {

@@ -1,19 +1,19 @@
-/* The stiffness of the cloth for `settle`: -d forces / d positions, made positive semidefinite.
+/* The stiffness matrix of `settle`: K = -d forces / d positions, made positive semidefinite.
  *
- * Membranes and links give 3 x 3 blocks that follow the shape: of a stretch k/2 (|F| - 1)^2 with n = F/|F|
- *     k [ n n^T + max(1 - 1/|F|, 0) (I - n n^T) ]
- * (exact under tension; in compression, where the sheet would rather buckle, what would push is left out:
- * Choi and Ko 2002, "Stable but Responsive Cloth"), of shear the Gauss-Newton part k g g^T. Bending is
- * quadratic in the positions: one number a pair of vertices, the same for x, y and z, constant and exact.
+ * Membranes and links give 3 x 3 blocks that depend on the shape. A stretch k/2 (|F| - 1)^2 with n = F/|F|
+ * gives k [ n n^T + max(1 - 1/|F|, 0) (I - n n^T) ], exact under tension; in compression the term across n
+ * would be negative (real cloth buckles) and make K indefinite, so it is left out (Choi and Ko 2002, "Stable
+ * but Responsive Cloth"). Shear gives its Gauss-Newton part k g g^T. Bending is quadratic in the positions:
+ * one number per pair of vertices, the same for x, y and z, constant and exact.
  *
- * Rows are gathered, so the numbers do not depend on the threads. Units N/m. Ownership: plain struct that
- * owns its arrays. Threads: uses all. */
+ * Rows are gathered by vertex, so that sums do not depend on the threads. Units N/m. Lifetime: plain structs
+ * that own their arrays. Threads: assembly uses all; one call at a time. */
 #ifndef TOILE_CLOTH_SOLVERS_IMPLICIT_STIFFNESS_H
 #define TOILE_CLOTH_SOLVERS_IMPLICIT_STIFFNESS_H
 
 #include "cloth/energy/energy.h"
 
-/* Fewer vertices are done before other threads have woken up. */
+/* Loops over at most this many vertices are serial: they end before other threads have woken up. */
 #define TL_PARALLEL_ROWS 1000
 
 /* Compressed rows: those of vertex v are entries first[v] to first[v + 1] - 1, columns rising. */
@@ -22,7 +22,7 @@ struct tl_sparse_rows {
     uint32_t *columns; /* [first[vertex_count]] */
 };
 
-/* Around which elements a vertex lies, and where their blocks go in its row. */
+/* The elements around each vertex, and the entries of its row that their blocks are added to. */
 struct tl_gather {
     struct tl_fans fans; /* of element corners */
     uint32_t *slots;     /* [fan item][corners of the element]: entry of the row */
@@ -38,19 +38,19 @@ struct tl_stiffness {
     struct tl_element_stiffness *elements; /* [element_count] of the current shape */
 };
 
-/* A pair of vertices held together beside the energy's own links: a seam that closes. */
+/* Springs besides the energy's own links: seams that are closing. Borrows its links. */
 struct tl_springs {
     size_t count;
     const struct tl_link *links;
     double stiffness; /* N/m, of each */
 };
 
-/* The pattern, and bending's numbers. */
+/* Builds the sparsity pattern and bending's entries. */
 struct tl_stiffness tl_stiffness_build(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
                                        const struct tl_springs *springs, size_t vertex_count);
 void tl_stiffness_release(struct tl_stiffness *stiffness);
 
-/* The blocks at positions x; springs as many as when it was built. */
+/* Computes the blocks at positions x, for as many springs as it was built with. */
 void tl_stiffness_assemble(struct tl_stiffness *stiffness, const struct tl_energy *energy,
                            const struct tl_cloth_fabric *fabric, const struct tl_springs *springs,
                            const vec3d *x);
