@@ -1,36 +1,37 @@
 #include "cloth/solvers/implicit/factor.h"
 
+#include "cloth/solvers/implicit/factor_shim.h"
 #include "config/memory.h"
 #include "config/simd.h"
-
-#include <suitesparse/cholmod.h>
 
 #include <stdlib.h>
 #include <string.h>
 
-/* Pivots below this share of the largest entry are rounding. */
+/* Pivots below this share of the largest matrix entry are rounding errors. */
 #define MIN_PIVOT 1e-14
-/* Of more vertices the factor costs more than it saves, or does not fit into memory: the diagonal alone. */
+/* With more vertices the factor costs more than it saves, or does not fit into memory: only the diagonal is
+ * used. */
 #define MAX_VERTICES 300000
 
-/* Neighbouring columns of L with the same rows below them: these are read, and their unknowns too, once for
- * all of them. Rows are the panel's part's own, then the top's, which are counted from its first. */
+/* A panel: neighbouring columns of L with the same rows below them (a small supernode). The row indices and
+ * the unknowns of those rows are read once for all its columns. Rows of the panel's own part come first, then
+ * those of the top, which are counted from the top's first. */
 #define MAX_PANEL_WIDTH 4
 struct panel {
     uint32_t column, width; /* of the first; 1, 2 or 4 */
     uint32_t own_count, top_count;
     size_t rows;   /* where they begin in the factor's rows */
-    size_t values; /* where these begin: 1 / D, L between the columns, L below row by row */
+    size_t values; /* where its values begin: 1 / D, L between its columns, L below row by row */
 };
 
-/* x, y, z of an unknown, so that a wide register takes it at once. */
+/* x, y, z of an unknown, padded to a wide register. */
 struct unknown {
     double x, y, z, unused;
 };
 
-/* The panels of a part of the elimination tree need nothing of other parts; what they have in common, its
- * top, comes last. The parts do not depend on the number of threads, and what they add to the top is summed
- * in their order. */
+/* The elimination tree is cut into PARTS groups of branches and the common top. Panels of one part depend on
+ * no other part, so parts are solved in parallel; their contributions to the top are summed in the order of
+ * the parts. The number of parts is fixed, so that sums do not depend on the number of threads. */
 #define PARTS 8
 struct tl_factor {
     size_t count, top_first; /* unknowns */
@@ -43,23 +44,21 @@ struct tl_factor {
     struct unknown *tops; /* [PARTS][count - top_first] what parts add to the top */
 };
 
-/* The matrix as it is summed up: entries may repeat. */
+/* The matrix as the sum of its terms: several may be of one entry. */
 struct sum {
-    cholmod_triplet *entries;
+    struct tl_triplet *terms;
+    size_t count;
     const double *inverse_masses;
     double largest;
-    bool diagonal; /* leave out the rest */
+    bool diagonal; /* leave out all other entries */
 };
 
 static void add_entry(struct sum *sum, uint32_t row, uint32_t column, double value)
 {
-    cholmod_triplet *entries = sum->entries;
     bool free_ends = sum->inverse_masses[row] > 0 && sum->inverse_masses[column] > 0;
     if (column > row || (sum->diagonal && column != row) || !free_ends || !(fabs(value) > 0))
         return;
-    ((int *)entries->i)[entries->nnz] = (int)row;
-    ((int *)entries->j)[entries->nnz] = (int)column;
-    ((double *)entries->x)[entries->nnz++] = value;
+    sum->terms[sum->count++] = (struct tl_triplet){(int)row, (int)column, value};
     sum->largest = fmax(sum->largest, value);
 }
 
@@ -95,54 +94,34 @@ static void add_links(struct sum *sum, const struct tl_link *links, size_t count
     }
 }
 
+/* A held particle has a row of its own with 1 on the diagonal: its residual is filtered out anyway. */
 static void add_masses(struct sum *sum, size_t vertex_count, double h)
 {
-    cholmod_triplet *entries = sum->entries;
     for (size_t v = 0; v < vertex_count; v++) {
         double w = sum->inverse_masses[v];
-        ((int *)entries->i)[entries->nnz] = ((int *)entries->j)[entries->nnz] = (int)v;
-        ((double *)entries->x)[entries->nnz++] = w > 0 ? 1 / (w * h * h) : 1;
+        sum->terms[sum->count++] = (struct tl_triplet){(int)v, (int)v, w > 0 ? 1 / (w * h * h) : 1};
     }
 }
 
-static cholmod_sparse *sum_up(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
-                              const struct tl_springs *springs, const struct tl_stiffness *stiffness,
-                              double h, struct sum *sum, cholmod_common *common)
+static void add_terms(struct sum *sum, const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
+                      const struct tl_springs *springs, const struct tl_stiffness *stiffness, double h)
 {
-    const int lower = -1; /* CHOLMOD's word for it */
     size_t count = stiffness->vertex_count;
     size_t capacity = (size_t)9 * TL_BATCH * energy->membrane_count + stiffness->bends.first[count] +
                       3 * (energy->link_count + springs->count) + count;
-    sum->entries = cholmod_allocate_triplet(count, count, capacity, lower, CHOLMOD_REAL, common);
-    if (!sum->entries)
-        return NULL;
+    sum->terms = TL_NEW_ARRAY(struct tl_triplet, capacity);
     add_membranes(sum, energy, fabric);
     add_rows(sum, stiffness);
     add_links(sum, energy->links, energy->link_count, fabric->stretch_warp);
     add_links(sum, springs->links, springs->count, springs->stiffness);
     add_masses(sum, count, h);
-    cholmod_sparse *matrix = cholmod_triplet_to_sparse(sum->entries, 0, common);
-    cholmod_free_triplet(&sum->entries, common);
-    return matrix;
-}
-
-/* L D L^T with D on L's diagonal; NULL: it does not fit into memory. */
-static cholmod_factor *factorise(cholmod_sparse *matrix, double largest, cholmod_common *common)
-{
-    common->dbound = MIN_PIVOT * largest;
-    cholmod_factor *factor = matrix ? cholmod_analyze(matrix, common) : NULL;
-    bool good = factor && cholmod_factorize(matrix, factor, common);
-    cholmod_free_sparse(&matrix, common);
-    if (!good)
-        cholmod_free_factor(&factor, common);
-    return factor;
 }
 
 /* ---- Panels ---- */
 
-/* The factor as it is taken over. */
+/* How the columns of Eigen's factor are divided into panels and parts. */
 struct layout {
-    const cholmod_factor *from;
+    const struct tl_sparse_factor *from;
     size_t panel_count;
     uint32_t *columns, *widths; /* [panel_count] in the order of `from` */
     size_t *parts;              /* [panel_count] PARTS: the top */
@@ -150,31 +129,37 @@ struct layout {
     uint32_t *panel_of;         /* [count] */
 };
 
-static uint32_t rows_below(const struct layout *layout, size_t panel)
+static uint32_t column_size(const struct tl_sparse_factor *from, size_t column)
 {
-    const int *used = layout->from->nz;
-    return (uint32_t)used[layout->columns[panel]] - layout->widths[panel];
+    return (uint32_t)(from->first[column + 1] - from->first[column]);
 }
 
-/* The rows below a panel. */
+/* How many rows a panel has below its own columns. */
+static uint32_t rows_below(const struct layout *layout, size_t panel)
+{
+    return column_size(layout->from, layout->columns[panel]) - (layout->widths[panel] - 1);
+}
+
+/* Those rows, rising. */
 static const int *rows_of(const struct layout *layout, size_t panel)
 {
-    const int *first = layout->from->p, *rows = layout->from->i;
-    return rows + first[layout->columns[panel]] + layout->widths[panel];
+    return layout->from->rows + layout->from->first[layout->columns[panel]] + (layout->widths[panel] - 1);
 }
 
 /* Whether the column after `column` has the same rows but for its own. */
-static bool continues_panel(const cholmod_factor *from, size_t column)
+static bool continues_panel(const struct tl_sparse_factor *from, size_t column)
 {
-    const int *first = from->p, *used = from->nz, *rows = from->i;
     size_t next = column + 1;
-    return next < from->n && used[column] == used[next] + 1 &&
-           memcmp(rows + first[column] + 1, rows + first[next], (size_t)used[next] * sizeof *rows) == 0;
+    if (next >= from->count || column_size(from, column) != column_size(from, next) + 1)
+        return false;
+    const int *rows = from->rows + from->first[column];
+    return rows[0] == (int)next &&
+           memcmp(rows + 1, from->rows + from->first[next], column_size(from, next) * sizeof *rows) == 0;
 }
 
 static void find_panels(struct layout *layout)
 {
-    size_t count = layout->from->n;
+    size_t count = layout->from->count;
     for (size_t column = 0; column < count;) {
         uint32_t width = 1;
         while (width < MAX_PANEL_WIDTH && continues_panel(layout->from, column + width - 1))
@@ -188,7 +173,8 @@ static void find_panels(struct layout *layout)
     }
 }
 
-/* Branches of the tree with no more than their share of the work are dealt out in their order. */
+/* Deals branches whose work is at most 1 / PARTS of all to the parts, in order; nodes with more work are the
+ * top. */
 static void find_parts(struct layout *layout)
 {
     size_t *work = TL_NEW_ARRAY(size_t, layout->panel_count), all = 0, dealt = 0;
@@ -215,15 +201,15 @@ static void find_parts(struct layout *layout)
 
 static void fill_panel(tl_factor *factor, const struct layout *layout, size_t p, struct panel *panel)
 {
-    const int *first = layout->from->p, *rows = rows_of(layout, p);
-    const double *values = layout->from->x;
+    const int *first = layout->from->first, *rows = rows_of(layout, p);
+    const double *values = layout->from->values;
     uint32_t column = layout->columns[p], row_count = rows_below(layout, p);
     double *to = factor->values + panel->values;
     for (uint32_t k = 0; k < panel->width; k++)
-        *to++ = 1 / values[first[column + k]];
+        *to++ = 1 / layout->from->pivots[column + k];
     for (uint32_t k = 0; k < panel->width; k++)
         for (uint32_t i = k + 1; i < panel->width; i++)
-            *to++ = values[first[column + k] + (int)(i - k)];
+            *to++ = values[first[column + k] + (int)(i - k - 1)];
     for (uint32_t e = 0; e < row_count; e++) {
         uint32_t place = layout->places[rows[e]];
         bool own = place < factor->top_first;
@@ -231,14 +217,14 @@ static void fill_panel(tl_factor *factor, const struct layout *layout, size_t p,
         panel->own_count += own;
         panel->top_count += !own;
         for (uint32_t k = 0; k < panel->width; k++)
-            *to++ = values[first[column + k] + (int)(panel->width - k + e)];
+            *to++ = values[first[column + k] + (int)(panel->width - k - 1 + e)];
     }
 }
 
 /* The columns' new order: part by part, the top last, each as before. */
 static void place_columns(tl_factor *factor, struct layout *layout)
 {
-    const int *order = layout->from->Perm;
+    const int *order = layout->from->order;
     uint32_t place = 0;
     for (size_t part = 0; part <= PARTS; part++) {
         if (part == PARTS)
@@ -272,12 +258,9 @@ static void fill_panels(tl_factor *factor, const struct layout *layout)
     }
 }
 
-static tl_factor *copy_factor(const cholmod_factor *from)
+static tl_factor *copy_factor(const struct tl_sparse_factor *from)
 {
-    size_t count = from->n, entry_count = 0;
-    const int *used = from->nz;
-    for (size_t j = 0; j < count; j++)
-        entry_count += (size_t)used[j];
+    size_t count = from->count, entry_count = (size_t)from->first[count];
     struct layout layout = {.from = from,
                             .columns = TL_NEW_ARRAY(uint32_t, count),
                             .widths = TL_NEW_ARRAY(uint32_t, count),
@@ -290,7 +273,7 @@ static tl_factor *copy_factor(const cholmod_factor *from)
     factor->count = count;
     factor->panels = TL_NEW_ARRAY(struct panel, layout.panel_count);
     factor->rows = TL_NEW_ARRAY(uint32_t, entry_count);
-    factor->values = TL_NEW_ARRAY(double, entry_count);
+    factor->values = TL_NEW_ARRAY(double, entry_count + count); /* and D */
     factor->order = TL_NEW_ARRAY(uint32_t, count);
     factor->work = TL_NEW_ARRAY(struct unknown, count);
     place_columns(factor, &layout);
@@ -308,21 +291,19 @@ tl_factor *tl_factor_create(const struct tl_energy *energy, const struct tl_clot
                             const struct tl_springs *springs, const struct tl_stiffness *stiffness,
                             const double *inverse_masses, double h)
 {
-    cholmod_common common;
-    cholmod_factor *whole = NULL;
-    cholmod_start(&common);
-    common.print = 0;                       /* stdout is for results */
-    common.supernodal = CHOLMOD_SIMPLICIAL; /* no BLAS: its sums may depend on the threads */
-    for (int diagonal = stiffness->vertex_count > MAX_VERTICES; !whole && diagonal < 2; diagonal++) {
+    size_t count = stiffness->vertex_count;
+    struct tl_sparse_factor whole = {0};
+    bool made = false;
+    for (int diagonal = count > MAX_VERTICES; !made && diagonal < 2; diagonal++) {
         struct sum sum = {.inverse_masses = inverse_masses, .diagonal = diagonal};
-        cholmod_sparse *matrix = sum_up(energy, fabric, springs, stiffness, h, &sum, &common);
-        whole = factorise(matrix, sum.largest, &common);
+        add_terms(&sum, energy, fabric, springs, stiffness, h);
+        made = tl_sparse_factor_create(count, sum.terms, sum.count, MIN_PIVOT * sum.largest, &whole);
+        free(sum.terms);
     }
-    if (!whole)
+    if (!made)
         abort(); /* out of memory for the diagonal, as in tl_alloc */
-    tl_factor *factor = copy_factor(whole);
-    cholmod_free_factor(&whole, &common);
-    cholmod_finish(&common);
+    tl_factor *factor = copy_factor(&whole);
+    tl_sparse_factor_release(&whole);
     return factor;
 }
 
@@ -362,7 +343,7 @@ TL_INLINE void subtract_products(const uint32_t *rows, uint32_t count, const dou
     }
 }
 
-/* L y = r, for the unknowns of a panel and what they add to those below. */
+/* Forward substitution L y = r for a panel: solves its unknowns and subtracts them from the rows below. */
 TL_INLINE void solve_panel_forward(const tl_factor *factor, const struct panel *panel, uint32_t width,
                                    struct unknown *y, struct unknown *top)
 {
@@ -391,7 +372,7 @@ TL_INLINE void gather(const uint32_t *rows, uint32_t count, const double *values
     }
 }
 
-/* D L^T z = y. */
+/* Back substitution D L^T z = y for a panel. */
 TL_INLINE void solve_panel_backward(const tl_factor *factor, const struct panel *panel, uint32_t width,
                                     struct unknown *y)
 {
@@ -415,7 +396,7 @@ TL_INLINE void solve_panel_backward(const tl_factor *factor, const struct panel 
     }
 }
 
-/* `top`: where what is taken from the top's unknowns goes. */
+/* `top` collects what the part subtracts from the top's unknowns. */
 TL_CLONES static void solve_part_forward(const tl_factor *factor, size_t part, struct unknown *y,
                                          struct unknown *top)
 {
@@ -430,7 +411,7 @@ TL_CLONES static void solve_part_forward(const tl_factor *factor, size_t part, s
     }
 }
 
-/* Panels are read last first, which no cache foresees. */
+/* Back substitution reads panels last first, which hardware prefetchers do not predict. */
 TL_INLINE void prefetch_panel(const tl_factor *factor, const struct panel *panel)
 {
     const char *values = (const char *)(factor->values + panel->values);
@@ -470,7 +451,7 @@ static void solve_top(const tl_factor *factor)
     solve_part_backward(factor, PARTS, y);
 }
 
-/* The three right-hand sides at once: L is read once for all. */
+/* Solves for x, y and z together, so that L, the bulk of the memory traffic, is read once for all three. */
 void tl_factor_solve(tl_factor *factor, const vec3d *r, vec3d *z)
 {
     struct unknown *y = factor->work;
