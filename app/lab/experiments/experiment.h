@@ -55,23 +55,22 @@ struct tl_experiment_appearance {
 };
 
 struct tl_experiment {
-    enum tl_output output;           /* its writer; the golden test takes part of the pictures, too */
     const char *name, *title, *text; /* "a3"; heading; what is seen, and what the papers say of it */
     const char *scene;               /* built-in */
     const char *solid;               /* pictures: garment of the first object, "sphere" or "torus" */
-    const char *base[TL_EXPERIMENT_ASSIGNMENTS]; /* over the scene's settings */
-    struct tl_setup reference;                   /* the exact evaluation */
-    bool reference_alone; /* the reference leaves out the technique's settings, so that all share one */
+    const char *base[TL_EXPERIMENT_ASSIGNMENTS];        /* over the scene's settings */
+    struct tl_setup reference;                          /* the exact evaluation */
     const struct tl_experiment_appearance *appearances; /* NULL: one, as `base` has it */
-    int appearance_count, quick_appearance;
-    const struct tl_technique *techniques; /* the family's list; those that `output` takes ... */
+    const struct tl_technique *techniques; /* the family's list; used are those that `output` takes ... */
     size_t technique_count;
     const char *ids[TL_EXPERIMENT_IDS]; /* ... pictures: and that have one of these ids */
-    bool by_flip;                       /* errors are mean FLIP, for images of edges; else relative RMSE */
-    /* Page. */
-    int warm_up, measured; /* frames before the first measured one, and those measured */
-    bool rests;            /* the last frame is drawn until it rests, too */
-    bool by_wall;          /* plots show wall time; else CPU time of all threads */
+    enum tl_output output;              /* its writer; the golden test draws some of the pictures, too */
+    int appearance_count, quick_appearance;
+    int warm_up, measured; /* page: frames before the first measured one, and those measured */
+    bool rests;            /* page: the last frame is drawn until it rests, too */
+    bool by_wall;          /* page: plots show wall time; else CPU time of all threads */
+    bool by_flip;          /* errors are mean FLIP, for images of edges; else relative RMSE */
+    bool reference_alone;  /* the reference leaves out the technique's settings, so that all share one */
 };
 
 /* The next technique of the experiment that `output` takes; `after` NULL: the first. NULL past the last one.
