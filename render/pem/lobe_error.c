@@ -244,7 +244,7 @@ static tl_cube even_cube(int size, float radiance)
     return cube;
 }
 
-/* Regions are filtered independently, so one directions per region is measured at a time. `done` marks the
+/* Regions are filtered independently, so one direction per region is measured at a time. `done` marks the
  * directions that were measured. */
 static void measure_round(const struct tl_lobe_curves *curves, const struct tl_regions *regions, bool *done,
                           struct tl_lobe_error *errors)
