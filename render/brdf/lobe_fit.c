@@ -178,8 +178,9 @@ static int fit_facets(const struct tl_brdf *brdf, const struct tl_brdf_frame *fr
     float variance = count == 1 ? sqrtf(spread.broad * spread.narrow)
                                 : fmaxf(spread.narrow, square / (1 + square) * spread.broad);
     float extent = sqrtf(fmaxf(1 - variance / spread.broad, 0));
+    int middle = count / 2;
     for (int k = 0; k < count; k++) {
-        float x = (float)(k - count / 2) * step_of(count);
+        float x = (float)(k - middle) * step_of(count);
         vec2s slope = glms_vec2_scale(spread.slope, x * extent);
         vec3s value = value_of_slope(brdf, frame, &slopes, v, slope);
         lobes[k] = (struct tl_fitted_lobe){.direction = mirrored(facet_of(frame, slope), v),
