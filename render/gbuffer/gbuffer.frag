@@ -83,7 +83,7 @@ void main()
 #endif
 #if DETAIL_SHADOW != 0
     if (has_detail(DETAIL_HORIZONS)) {
-        DetailHorizon sky = detail_horizon(detail_sight(place.uv, side, across, down));
+        DetailHorizon sky = detail_horizon(detail_lookup(place.uv, side, across, down));
         vec3 seen_side = vec3(1.0, 1.0, side);
         kd *= detail_ambient(sky, n * frame * seen_side);
         ks *= detail_gloss_seen(sky, reflect(-v, n) * frame * seen_side, rough);
