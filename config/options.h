@@ -40,7 +40,7 @@
 /* Each row names all of its consequences, and nothing else lists options by name for this purpose: a new
  * option is one row. This file reads the column as a mask of bits only. The bits below are those of the
  * program as a whole: they stand here because rows on every floor name them, and app/ acts upon them. The
- * bits from TL_AFFECTS_RENDER on are the renderer's own (render/affects.h). */
+ * bits from TL_AFFECTS_RENDER on are the renderer's own (render/plan/affects.h). */
 #define TL_AFFECTS_BIT(i) ((uint64_t)1 << (i))
 
 /* Nothing is kept that depends on the option: it is read each time that it is used. Every row has at least
@@ -66,7 +66,7 @@
 /* The amount of work in a frame: times of recorded flights that differ in it cannot be compared. */
 #define TL_AFFECTS_WORK TL_AFFECTS_BIT(9)
 
-#define TL_AFFECTS_RENDER 16 /* the first bit of render/affects.h */
+#define TL_AFFECTS_RENDER 16 /* the first bit of render/plan/affects.h */
 
 /* ---- Tables ---- */
 

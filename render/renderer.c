@@ -1,16 +1,23 @@
-#include "render/renderer.h"
+#include "render/renderer_internal.h"
 
 #include "config/log.h"
 #include "config/memory.h"
-#include "render/frame/work.h"
+#include "render/frame/facts.h"
+#include "render/frame/jobs.h"
+#include "render/frame/memory.h"
 #include "render/gpu/shaders.h"
-#include "render/inspect/job.h"
+#include "render/inside.h"
+#include "render/inspect/inspect.h"
 
 #include <epoxy/gl.h>
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Bytes of a sample: in the largest texture, and in all: G-buffer, its depth, light. */
+#define SAMPLE_LAYER_BYTES 16
+#define SAMPLE_BYTES       (16 + 3 * 8 + 4 + 4 + 16)
 
 /* Bounds on what a setting may ask the GPU for; software GL would take it from the machine's memory. */
 #define BYTES_MAX         ((uint64_t)4 << 30) /* all together */
@@ -29,8 +36,8 @@ static bool check_image_size(const tl_renderer *renderer, const struct tl_image_
     int width, height;
     tl_image_samples(image, &width, &height);
     int side = width > height ? width : height;
-    if (side > tl_gpu_texture_side_max(renderer->gpu) ||
-        sample_count(image) * TL_SAMPLE_LAYER_BYTES > TEXTURE_BYTES_MAX)
+    if (side > tl_gpu_texture_side_max(renderer->resources.gpu) ||
+        sample_count(image) * SAMPLE_LAYER_BYTES > TEXTURE_BYTES_MAX)
         return tl_fail(error, TL_USAGE,
                        "image: %d x %d pixels with %d samples a side are more than GL can hold: make "
                        "image.width, image.height or image.supersample smaller",
@@ -62,7 +69,7 @@ static bool check_light_size(const struct tl_render_settings *settings, tl_error
                        "light: %d PEMs of %d texels or maps of %d in one pass are more than %d MB: lower "
                        "light.pems_per_pass or light.map_size",
                        (int)in_one_pass, light->pem_size, light->map_size, (int)(TEXTURE_BYTES_MAX >> 20));
-    uint64_t bytes = regions * (pem + map) + sample_count(&settings->image) * TL_SAMPLE_BYTES;
+    uint64_t bytes = regions * (pem + map) + sample_count(&settings->image) * SAMPLE_BYTES;
     if (bytes > BYTES_MAX)
         return tl_fail(error, TL_USAGE,
                        "light: %d regions, PEMs of %d texels, maps of %d and this image need %d MB, more "
@@ -75,57 +82,68 @@ static bool check_light_size(const struct tl_render_settings *settings, tl_error
 tl_renderer *tl_renderer_create(tl_gpu *gpu, tl_error *error)
 {
     tl_renderer *renderer = TL_NEW(tl_renderer);
-    renderer->gpu = gpu;
-    renderer->surfaces = tl_surfaces_create(gpu);
-    tl_surfaces_use_detail(renderer->surfaces, &renderer->detail);
-    renderer->detail.params = *(const struct tl_detail_params *)tl_detail_options.defaults;
-    renderer->points = tl_points_create();
-    renderer->trace = tl_trace_create(error);
-    renderer->maps = tl_shadow_maps_create(gpu, error);
+    struct tl_resources *resources = &renderer->resources;
+    resources->gpu = gpu;
+    resources->surfaces = tl_surfaces_create(gpu);
+    tl_surfaces_use_detail(resources->surfaces, &resources->detail);
+    resources->detail.params = *(const struct tl_detail_params *)tl_detail_options.defaults;
+    tl_ground_make(&(struct tl_casters){.radius = TL_CASTERS_RADIUS_MIN}, &resources->ground);
+    resources->points = tl_points_create();
+    resources->trace = tl_trace_create(error);
+    resources->maps = tl_shadow_maps_create(gpu, error);
     renderer->shaders_stamp = tl_shaders_stamp(tl_embedded_shaders);
-    if (!renderer->trace || !renderer->maps || !tl_lighting_create(&renderer->lighting, gpu, error) ||
-        !tl_present_create(&renderer->present, gpu, error) ||
+    if (!resources->trace || !resources->maps || !tl_lighting_create(&resources->lighting, gpu, error) ||
+        !tl_present_create(&resources->present, gpu, error) ||
         !tl_jobs_check(tl_frame_jobs, tl_frame_job_count, error))
         tl_renderer_destroy(&renderer);
     return renderer;
+}
+
+static void release_environment(struct tl_resources *resources)
+{
+    tl_prepared_destroy(&resources->prepared);
+    tl_resampling_release(&resources->resampling);
+    tl_resampling_release(&resources->map_resampling);
+    tl_cube_release(&resources->cube);
+    tl_regions_release(&resources->regions);
+    tl_pems_release(&resources->pems);
+    tl_texture_destroy(&resources->lobe_levels);
+    tl_texture_destroy(&resources->exact.maps.lobes);
+    tl_slices_release(&resources->slices.slices);
+    tl_slice_maps_release(&resources->slices.maps);
+    tl_light_cache_release(&resources->light_cache);
+    tl_cube_release(&resources->surroundings.cube);
+    tl_lobes_release(&resources->surroundings.lobes);
+}
+
+static void release_scene(struct tl_resources *resources)
+{
+    tl_surfaces_destroy(&resources->surfaces);
+    tl_detail_maps_release(&resources->detail);
+    tl_triangle_ranges_release(&resources->shapes.ranges);
+    free(resources->shapes.drawn);
+    tl_samples_release(&resources->samples);
+    tl_transparency_release(&resources->transparency);
+    tl_mirrors_release(&resources->mirrors);
+    tl_trace_destroy(&resources->trace);
+    tl_points_destroy(&resources->points);
+    tl_shadow_maps_destroy(&resources->maps);
 }
 
 void tl_renderer_destroy(tl_renderer **renderer)
 {
     if (!*renderer)
         return;
-    tl_prepared_destroy(&(*renderer)->prepared);
-    tl_resampling_release(&(*renderer)->pour);
-    tl_cube_release(&(*renderer)->cube);
-    tl_regions_release(&(*renderer)->regions);
-    tl_pems_release(&(*renderer)->pems);
-    tl_lobes_release(&(*renderer)->lobes);
-    tl_slices_release(&(*renderer)->slices);
-    tl_slice_maps_release(&(*renderer)->slice_maps);
-    for (int i = 0; i < TL_LIGHTS_KEPT; i++) {
-        tl_regions_release(&(*renderer)->kept[i].cut_regions);
-        tl_region_lights_release(&(*renderer)->kept[i].lights);
-    }
-    tl_surfaces_destroy(&(*renderer)->surfaces);
-    tl_detail_maps_release(&(*renderer)->detail);
-    tl_triangle_ranges_release(&(*renderer)->ranges);
-    tl_samples_release(&(*renderer)->samples);
-    tl_transparency_release(&(*renderer)->transparency);
-    tl_mirrors_release(&(*renderer)->mirrors);
-    tl_trace_destroy(&(*renderer)->trace);
-    tl_points_destroy(&(*renderer)->points);
-    free((*renderer)->drawn);
-    free((*renderer)->light);
-    tl_shadow_maps_destroy(&(*renderer)->maps);
-    tl_gbuffer_release(&(*renderer)->gbuffer);
-    tl_lighting_release(&(*renderer)->lighting);
-    tl_resampling_release(&(*renderer)->surroundings.pour);
-    tl_cube_release(&(*renderer)->surroundings.cube);
-    tl_lobes_release(&(*renderer)->surroundings.lobes);
-    tl_envmap_release(&(*renderer)->envmap);
-    tl_local_release(&(*renderer)->local);
-    tl_capture_release(&(*renderer)->capture);
-    tl_present_release(&(*renderer)->present);
+    struct tl_resources *resources = &(*renderer)->resources;
+    release_environment(resources);
+    release_scene(resources);
+    tl_gbuffer_release(&resources->gbuffer);
+    tl_light_buffer_release(&resources->light);
+    tl_lighting_release(&resources->lighting);
+    tl_envmap_release(&resources->envmap);
+    tl_local_release(&resources->local);
+    tl_capture_release(&resources->capture);
+    tl_present_release(&resources->present);
     free(*renderer);
     *renderer = NULL;
 }
@@ -135,9 +153,10 @@ static struct tl_plan_input plan_input(const tl_renderer *renderer, const tl_fra
                                        tl_bits wanted)
 {
     /* Maps that wait for their turn are not what they should be. */
-    tl_bits waiting = tl_shadow_maps_wait(renderer->maps) ? TL_BIT(TL_MADE_DEPTHS) | TL_BIT(TL_MADE_MAPS) : 0;
+    tl_bits waiting =
+        tl_shadow_maps_wait(renderer->resources.maps) ? TL_BIT(TL_MADE_DEPTHS) | TL_BIT(TL_MADE_MAPS) : 0;
     return (struct tl_plan_input){.changed = changed,
-                                  .valid = renderer->valid & ~waiting,
+                                  .valid = renderer->resources.valid & ~waiting,
                                   .scene = tl_frame_facts(frame, settings),
                                   .wanted = wanted,
                                   .scene_fact_names = tl_scene_fact_names,
@@ -162,7 +181,7 @@ static tl_bits changed_inputs(const tl_renderer *renderer, const uint64_t signat
 /* Nothing holds, and the next frame begins anew: rounds are never averaged into what another frame left. */
 static void forget(tl_renderer *renderer)
 {
-    renderer->valid = 0;
+    renderer->resources.valid = 0;
     memset(renderer->signatures, 0, sizeof renderer->signatures);
 }
 
@@ -171,25 +190,25 @@ void tl_renderer_forget(tl_renderer *renderer)
 {
     renderer->signatures[TL_INPUT_MOTION] = 0;
     renderer->rest = (struct tl_rest){0};
-    tl_points_destroy(&renderer->points); /* they refine what they have */
-    renderer->points = tl_points_create();
+    tl_points_destroy(&renderer->resources.points); /* they refine what they have */
+    renderer->resources.points = tl_points_create();
 }
 
 bool tl_renderer_forget_scene(tl_renderer *renderer, tl_error *error)
 {
-    renderer->valid &= TL_BIT(TL_MADE_CUBE) | TL_BIT(TL_MADE_REGIONS) | TL_BIT(TL_MADE_LOBE) |
-                       TL_BIT(TL_MADE_PEMS) | TL_BIT(TL_MADE_LOBES) | TL_BIT(TL_MADE_SLICES) |
-                       TL_BIT(TL_MADE_LIGHTS) | TL_BIT(TL_MADE_ENVMAP_LOBES);
+    renderer->resources.valid &= TL_BIT(TL_MADE_CUBE) | TL_BIT(TL_MADE_REGIONS) | TL_BIT(TL_MADE_LOBE) |
+                                 TL_BIT(TL_MADE_PEMS) | TL_BIT(TL_MADE_LOBES) | TL_BIT(TL_MADE_SLICES) |
+                                 TL_BIT(TL_MADE_LIGHTS) | TL_BIT(TL_MADE_ENVMAP_LOBES);
     renderer->signatures[TL_INPUT_MOTION] = 0; /* no round goes on */
     renderer->rest = (struct tl_rest){0};
-    tl_surfaces_destroy(&renderer->surfaces);
-    renderer->surfaces = tl_surfaces_create(renderer->gpu);
-    tl_surfaces_use_detail(renderer->surfaces, &renderer->detail);
-    tl_points_destroy(&renderer->points);
-    renderer->points = tl_points_create();
-    tl_trace_destroy(&renderer->trace);
-    renderer->trace = tl_trace_create(error);
-    return renderer->trace != NULL;
+    tl_surfaces_destroy(&renderer->resources.surfaces);
+    renderer->resources.surfaces = tl_surfaces_create(renderer->resources.gpu);
+    tl_surfaces_use_detail(renderer->resources.surfaces, &renderer->resources.detail);
+    tl_points_destroy(&renderer->resources.points);
+    renderer->resources.points = tl_points_create();
+    tl_trace_destroy(&renderer->resources.trace);
+    renderer->resources.trace = tl_trace_create(error);
+    return renderer->resources.trace != NULL;
 }
 
 static struct tl_work work_of(int job, const struct tl_work_seen *seen)
@@ -201,7 +220,7 @@ static void make_plan(const tl_renderer *renderer, const struct tl_plan_input *i
                       const struct tl_render_settings *settings, tl_plan *plan)
 {
     double predicted_ms[TL_JOBS_MAX];
-    const struct tl_work_seen seen = tl_work_look(renderer, settings);
+    const struct tl_work_seen seen = tl_work_look(&renderer->resources, &renderer->counts, settings);
     for (int i = 0; i < tl_frame_job_count; i++) {
         struct tl_work work = work_of(i, &seen);
         predicted_ms[i] =
@@ -215,7 +234,7 @@ static void make_plan(const tl_renderer *renderer, const struct tl_plan_input *i
 static void learn_costs(tl_renderer *renderer, tl_plan *plan, double new_regions)
 {
     const int known = 3; /* runs */
-    struct tl_work_seen seen = tl_work_look(renderer, &renderer->settings);
+    struct tl_work_seen seen = tl_work_look(&renderer->resources, &renderer->counts, &renderer->settings);
     seen.new_regions = new_regions; /* as it was before they were made */
     double predicted_ms = 0, took_ms = 0, load = tl_machine_load_factor(&renderer->load);
     for (int i = 0; i < plan->count; i++) {
@@ -236,13 +255,14 @@ static void learn_costs(tl_renderer *renderer, tl_plan *plan, double new_regions
 static bool run_plan(tl_renderer *renderer, const struct tl_plan_input *input, tl_plan *plan, tl_error *error)
 {
     make_plan(renderer, input, &renderer->settings, plan);
-    double new_regions = tl_work_look(renderer, &renderer->settings).new_regions;
-    tl_gpu_reset_state(renderer->gpu);
+    double new_regions =
+        tl_work_look(&renderer->resources, &renderer->counts, &renderer->settings).new_regions;
+    tl_gpu_reset_state(renderer->resources.gpu);
     for (int i = 0; i < plan->count; i++) {
         if (plan->rows[i].action != TL_JOB_RUN)
             continue;
         double started_s = tl_clock_s();
-        if (!tl_frame_jobs[i].run(renderer, plan->rows[i].level, error)) {
+        if (!tl_frame_jobs[i].run(&renderer->resources, plan->rows[i].level, error)) {
             forget(renderer);
             return false;
         }
@@ -253,7 +273,7 @@ static bool run_plan(tl_renderer *renderer, const struct tl_plan_input *input, t
                  plan->rows[i].predicted_ms);
     }
     learn_costs(renderer, plan, new_regions);
-    renderer->valid = tl_plan_valid_after(tl_frame_jobs, tl_frame_job_count, input, plan);
+    renderer->resources.valid = tl_plan_valid_after(tl_frame_jobs, tl_frame_job_count, input, plan);
     return true;
 }
 
@@ -265,12 +285,15 @@ static void reload_shaders(tl_renderer *renderer)
     if (stamp == renderer->shaders_stamp)
         return;
     renderer->shaders_stamp = stamp;
-    tl_local_reload(&renderer->local);
+    tl_local_reload(&renderer->resources.local);
     tl_error error = {0};
-    if (!tl_shadow_maps_reload(renderer->maps, &error) || !tl_gbuffer_reload(&renderer->gbuffer, &error) ||
-        !tl_gbuffer_reload(&renderer->transparency.behind, &error) ||
-        !tl_lighting_reload(&renderer->lighting, &error) || !tl_envmap_reload(&renderer->envmap, &error) ||
-        !tl_capture_reload(&renderer->capture, &error) || !tl_present_reload(&renderer->present, &error))
+    if (!tl_shadow_maps_reload(renderer->resources.maps, &error) ||
+        !tl_gbuffer_reload(&renderer->resources.gbuffer, &error) ||
+        !tl_gbuffer_reload(&renderer->resources.transparency.behind, &error) ||
+        !tl_lighting_reload(&renderer->resources.lighting, &error) ||
+        !tl_envmap_reload(&renderer->resources.envmap, &error) ||
+        !tl_capture_reload(&renderer->resources.capture, &error) ||
+        !tl_present_reload(&renderer->resources.present, &error))
         tl_warn("%s", error.message);
     forget(renderer);
 }
@@ -292,7 +315,7 @@ static bool check_camera(const struct tl_camera *camera, tl_error *error)
 static bool check_envmap_size(const tl_frame *frame, const struct tl_render_settings *settings,
                               tl_error *error)
 {
-    uint32_t exponents = tl_frame_map_exponents(frame, &settings->detail);
+    uint32_t exponents = tl_map_exponents_of(frame->surfaces, frame->surface_count, &settings->detail);
     uint64_t bytes = tl_envmap_bytes_needed(&settings->maps, exponents);
     if (settings->light.method == TL_METHOD_MAPS && bytes > TEXTURE_BYTES_MAX)
         return tl_fail(error, TL_USAGE,
@@ -302,27 +325,93 @@ static bool check_envmap_size(const tl_frame *frame, const struct tl_render_sett
     return true;
 }
 
-/* What the scene does not call for any more is given back, and made anew when it does again. While something
- * else than light is shown, light's things wait. */
-static void let_go(tl_renderer *renderer, tl_bits facts)
+/* Releases what the scene does not need any more; jobs make it again when it does. While something else than
+ * light is shown, what light needs is kept. Bumps are as high as the options say, with maps or without. */
+static void release_unused(struct tl_resources *resources, const struct tl_detail_params *detail)
 {
+    tl_bits facts = resources->facts;
+    if (!(facts & TL_BIT(TL_SCENE_DETAIL)))
+        tl_detail_maps_release(&resources->detail);
+    resources->detail.params = *detail;
     if (facts & TL_BIT(TL_SCENE_INSPECT))
         return;
     if (!(facts & TL_BIT(TL_SCENE_LAMPS))) {
-        tl_local_release(&renderer->local);
-        renderer->valid &=
+        tl_local_release(&resources->local);
+        resources->valid &=
             ~(TL_BIT(TL_MADE_LAMP_MAPS) | TL_BIT(TL_MADE_LAMP_RAYS) | TL_BIT(TL_MADE_LAMPLIGHT));
     }
     if (!(facts & TL_BIT(TL_SCENE_TRANSPARENCY))) {
-        tl_transparency_release(&renderer->transparency);
-        renderer->valid &= ~TL_BIT(TL_MADE_TRANSPARENCY);
+        tl_transparency_release(&resources->transparency);
+        resources->valid &= ~TL_BIT(TL_MADE_TRANSPARENCY);
     }
+}
+
+/* What is drawn: the frame's surfaces, with the ground last when it is drawn. */
+static void list_surfaces(const tl_frame *frame, bool has_ground, uint64_t revision,
+                          struct tl_resources *resources)
+{
+    struct tl_shapes_input *shapes = &resources->shapes;
+    shapes->surfaces = frame->surfaces;
+    shapes->surface_count = frame->surface_count;
+    shapes->revision = revision;
+    shapes->drawn = tl_resize(shapes->drawn, frame->surface_count + 1,
+                              sizeof *shapes->drawn); // NOLINT(bugprone-sizeof-expression): of a pointer
+    for (size_t i = 0; i < frame->surface_count; i++)
+        shapes->drawn[i] = &frame->surfaces[i];
+    shapes->drawn[frame->surface_count] = &resources->ground.surface;
+    shapes->drawn_count = frame->surface_count + (has_ground ? 1 : 0);
+    tl_triangle_ranges_make(shapes->drawn, shapes->drawn_count, &shapes->ranges);
+    resources->motion =
+        (struct tl_motion_input){.surfaces = frame->surfaces, .surface_count = frame->surface_count};
+}
+
+/* The inputs of the frame: each holds what its signature covers (frame/inputs.h). */
+static void set_inputs(const tl_renderer *renderer, struct tl_resources *resources)
+{
+    const tl_frame *frame = &renderer->frame;
+    const struct tl_render_settings *settings = &renderer->settings;
+    const struct tl_light_params *light = &settings->light;
+    const struct tl_image_params *image = &settings->image;
+    list_surfaces(frame, image->ground, renderer->signatures[TL_INPUT_SHAPES], resources);
+    resources->environment = (struct tl_environment_input){frame->environment, frame->environment_revision};
+    resources->yaw = frame->environment_yaw;
+    resources->camera =
+        (struct tl_camera_input){frame->camera, tl_view_make(&frame->camera, image->width, image->height)};
+    resources->size = (struct tl_size_input){
+        .width = image->width, .height = image->height, .supersample = image->supersample};
+    tl_image_samples(image, &resources->size.columns, &resources->size.rows);
+    resources->has_ground = image->ground;
+    resources->pem_size = light->pem_size;
+    resources->filter = light->filter;
+    resources->takes_suns = light->sun;
+    resources->cut = (struct tl_cut_input){light->regions, light->cut};
+    resources->pems_per_pass = light->pems_per_pass;
+    resources->shadow_options = tl_input_shadows(light);
+    resources->ray_options = (struct tl_rays_input){tl_light_ray_params(light), tl_light_averages(light)};
+    resources->round = renderer->rest.image;
+    resources->scene_round = renderer->rest.scene;
+    resources->light_options = tl_input_light(light);
+    resources->lamps = tl_input_lamps(frame, &settings->shading);
+    resources->reference_options = settings->reference;
+    resources->detail_steps = settings->detail;
+    resources->detail_options = tl_input_detail_maps(&settings->detail);
+    resources->show_options = tl_input_show(image);
+    resources->envmap_size = (struct tl_envmap_input){settings->maps.size, settings->maps.capture_every > 0};
+    resources->layout = tl_input_layout(&settings->maps);
+    resources->look_up = tl_input_look_up(&settings->maps);
+    resources->capture_options = tl_input_capture(&settings->maps);
+    resources->view_options = tl_input_view(image);
+    resources->facts = tl_frame_facts(frame, settings);
+    const tl_bits moves_shadows = TL_BIT(TL_INPUT_MOTION) | TL_BIT(TL_INPUT_YAW);
+    resources->moment = (struct tl_moment){frame->still, renderer->moving & moves_shadows};
+    resources->points_are_done = renderer->rest.is_done;
 }
 
 bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct tl_render_settings *settings,
                       tl_error *error)
 {
     struct tl_render_settings used = tl_frame_usable(settings);
+    struct tl_resources *resources = &renderer->resources;
     if (!check_camera(&frame->camera, error) || !check_image_size(renderer, &used.image, error) ||
         !check_light_size(&used, error) || !check_envmap_size(frame, &used, error))
         return false;
@@ -330,18 +419,18 @@ bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct
     uint64_t signatures[TL_INPUT_COUNT];
     tl_frame_sign(frame, &used, renderer->signatures, &renderer->rest, signatures);
     tl_bits changed = changed_inputs(renderer, signatures);
-    if (renderer->valid) /* a first frame moves from nowhere */
+    if (resources->valid) /* a first frame moves from nowhere */
         renderer->moving = changed;
     renderer->frame = *frame;
-    tl_work_count(renderer, frame);
+    renderer->counts = tl_work_count(frame);
     renderer->settings = used;
-    renderer->view = tl_view_make(&frame->camera, used.image.width, used.image.height);
     memcpy(renderer->signatures, signatures, sizeof signatures);
-    tl_frame_list_surfaces(renderer);
-    let_go(renderer, tl_frame_facts(frame, &used));
+    set_inputs(renderer, resources);
+    release_unused(resources, &used.detail);
     const struct tl_plan_input input = plan_input(renderer, frame, &used, changed, read_of(frame));
-    renderer->facts = input.scene;
-    return run_plan(renderer, &input, &renderer->plan, error);
+    bool fine = run_plan(renderer, &input, &renderer->plan, error);
+    renderer->rest.is_done = resources->points_are_done;
+    return fine;
 }
 
 /* GL's rows run upwards, an image's downwards. */
@@ -360,12 +449,12 @@ static void flip_rows(tl_image *image, size_t row_bytes)
 
 bool tl_renderer_read(tl_renderer *renderer, tl_image *out, tl_error *error)
 {
-    if (!(renderer->valid & TL_BIT(TL_MADE_IMAGE)))
+    if (!(renderer->resources.valid & TL_BIT(TL_MADE_IMAGE)))
         return tl_fail(error, TL_USAGE, "renderer: there is no image to read: draw a frame first");
-    const tl_target *target = &renderer->present.image;
+    const tl_target *target = &renderer->resources.present.image;
     *out = tl_image_create(target->width, target->height, 4, TL_IMAGE_F32);
     size_t row_bytes = (size_t)target->width * 4 * sizeof(float);
-    tl_gpu_reset_state(renderer->gpu);
+    tl_gpu_reset_state(renderer->resources.gpu);
     glGetTextureImage(target->colours[0].id, 0, GL_RGBA, GL_FLOAT,
                       (GLsizei)(row_bytes * (size_t)target->height), out->texels);
     flip_rows(out, row_bytes);
@@ -374,8 +463,8 @@ bool tl_renderer_read(tl_renderer *renderer, tl_image *out, tl_error *error)
 
 bool tl_renderer_read_capture(const tl_renderer *renderer, tl_image *out, tl_error *error)
 {
-    const tl_cube *cube = &renderer->capture.cube;
-    if (!(renderer->valid & TL_BIT(TL_MADE_CAPTURE)))
+    const tl_cube *cube = &renderer->resources.capture.cube;
+    if (!(renderer->resources.valid & TL_BIT(TL_MADE_CAPTURE)))
         return tl_fail(error, TL_USAGE,
                        "renderer: no scene was captured: draw a frame with light.method maps and "
                        "maps.capture_every above 0");
@@ -386,17 +475,17 @@ bool tl_renderer_read_capture(const tl_renderer *renderer, tl_image *out, tl_err
 
 static bool show(tl_renderer *renderer, unsigned framebuffer, int width, int height, tl_error *error)
 {
-    if (!(renderer->valid & TL_BIT(TL_MADE_IMAGE)))
+    if (!(renderer->resources.valid & TL_BIT(TL_MADE_IMAGE)))
         return tl_fail(error, TL_USAGE, "renderer: there is no image to show: draw a frame first");
-    renderer->show_framebuffer = framebuffer;
-    renderer->show_width = width;
-    renderer->show_height = height;
-    renderer->valid &=
+    renderer->resources.show_target.framebuffer = framebuffer;
+    renderer->resources.show_target.width = width;
+    renderer->resources.show_target.height = height;
+    renderer->resources.valid &=
         ~TL_BIT(TL_MADE_SHOWN); /* a window's buffer holds nothing from one frame to the next */
     tl_plan plan;
     /* The image is there; the scene may have gone on since, and says nothing about it. */
-    const struct tl_plan_input input = {.valid = renderer->valid,
-                                        .scene = renderer->facts,
+    const struct tl_plan_input input = {.valid = renderer->resources.valid,
+                                        .scene = renderer->resources.facts,
                                         .wanted = TL_BIT(TL_MADE_SHOWN),
                                         .scene_fact_names = tl_scene_fact_names,
                                         .resource_names = tl_resource_names};
@@ -405,9 +494,9 @@ static bool show(tl_renderer *renderer, unsigned framebuffer, int width, int hei
 
 bool tl_renderer_show_image(tl_renderer *renderer, tl_image *out, tl_error *error)
 {
-    const tl_target *target = &renderer->present.shown;
-    renderer->show_first = 0;
-    renderer->show_end = target->width;
+    const tl_target *target = &renderer->resources.present.shown;
+    renderer->resources.show_target.first = 0;
+    renderer->resources.show_target.end = target->width;
     if (!show(renderer, target->id, target->width, target->height, error))
         return false;
     *out = tl_image_create(target->width, target->height, 3, TL_IMAGE_U8);
@@ -421,8 +510,8 @@ bool tl_renderer_show_image(tl_renderer *renderer, tl_image *out, tl_error *erro
 bool tl_renderer_show_columns(tl_renderer *renderer, int width, int height, int first, int end,
                               tl_error *error)
 {
-    renderer->show_first = first;
-    renderer->show_end = end;
+    renderer->resources.show_target.first = first;
+    renderer->resources.show_target.end = end;
     return show(renderer, 0, width, height, error);
 }
 
@@ -467,7 +556,7 @@ double tl_renderer_would_take(const tl_renderer *renderer, const struct tl_rende
                               tl_bits jobs)
 {
     double sum_ms = 0;
-    const struct tl_work_seen seen = tl_work_look(renderer, settings);
+    const struct tl_work_seen seen = tl_work_look(&renderer->resources, &renderer->counts, settings);
     for (int i = 0; i < tl_frame_job_count; i++) {
         if (!(jobs & (tl_bits)1 << i))
             continue;
@@ -489,26 +578,27 @@ bool tl_renderer_is_moving(const tl_renderer *renderer, const tl_frame *frame)
     struct tl_rest rest = renderer->rest;
     tl_frame_sign(frame, &renderer->settings, renderer->signatures, &rest, signatures);
     tl_bits moving = renderer->moving | changed_inputs(renderer, signatures);
-    return !renderer->valid || moving & (MOVING_INPUTS | TL_BIT(TL_INPUT_SHAPES));
+    return !renderer->resources.valid || moving & (MOVING_INPUTS | TL_BIT(TL_INPUT_SHAPES));
 }
 
 bool tl_renderer_has_regions(const tl_renderer *renderer, const struct tl_render_settings *settings)
 {
     const struct tl_render_settings used = tl_frame_usable(settings);
     const tl_bits needed = TL_BIT(TL_MADE_CUBE) | TL_BIT(TL_MADE_LOBES) | TL_BIT(TL_MADE_LIGHTS);
-    return (renderer->valid & needed) != needed || tl_frame_has_lights(renderer, &used.light);
+    return (renderer->resources.valid & needed) != needed ||
+           tl_light_cache_has(&renderer->resources.light_cache, &used.light);
 }
 
 void tl_renderer_prepare_regions(tl_renderer *renderer, const struct tl_render_settings *settings)
 {
     const struct tl_render_settings used = tl_frame_usable(settings);
     if (!tl_renderer_has_regions(renderer, &used))
-        tl_frame_prepare_lights(renderer, &used.light);
+        tl_light_cache_prepare(&renderer->resources.light_cache, &renderer->resources.cube, &used.light);
 }
 
 double tl_renderer_standard_error(const tl_renderer *renderer)
 {
-    return renderer->standard_error;
+    return renderer->resources.standard_error;
 }
 
 bool tl_renderer_is_at_rest(const tl_renderer *renderer)
@@ -516,8 +606,8 @@ bool tl_renderer_is_at_rest(const tl_renderer *renderer)
     const struct tl_light_params *light = &renderer->settings.light;
     bool is_done = light->visibility == TL_VISIBILITY_RAYS ? renderer->rest.is_done
                                                            : renderer->rest.image >= light->rounds - 1;
-    bool waits = light->visibility != TL_VISIBILITY_RAYS && tl_shadow_maps_wait(renderer->maps);
-    return renderer->valid & TL_BIT(TL_MADE_IMAGE) && renderer->rest.is_captured && !waits &&
+    bool waits = light->visibility != TL_VISIBILITY_RAYS && tl_shadow_maps_wait(renderer->resources.maps);
+    return renderer->resources.valid & TL_BIT(TL_MADE_IMAGE) && renderer->rest.is_captured && !waits &&
            (is_done || !tl_light_averages(light) || !tl_inspect_averages(renderer->settings.image.view));
 }
 

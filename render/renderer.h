@@ -5,6 +5,7 @@
 #ifndef TOILE_RENDER_RENDERER_H
 #define TOILE_RENDER_RENDERER_H
 
+#include "render/frame/bytes.h"
 #include "render/frame/prepared.h"
 #include "render/frame/settings.h"
 #include "render/gpu/gpu.h"
@@ -95,20 +96,9 @@ tl_prepared *tl_renderer_copy_prepared(const tl_renderer *renderer);
  * environment has this revision and its settings are those that it was made for. Nulls it. */
 void tl_renderer_take_prepared(tl_renderer *renderer, tl_prepared **prepared, uint64_t environment_revision);
 
-/* Bytes by use, summed from what is allocated. */
-struct tl_render_memory {
-    size_t pems, maps, rays;
-    size_t transparency; /* of what is seen through cloth */
-    size_t targets, surfaces, other, total;
-};
+/* See frame/bytes.h. */
 struct tl_render_memory tl_renderer_memory(const tl_renderer *renderer);
 
-/* The same bytes by what they hold; returns how many rows there are, of what is there at all. */
-#define TL_RESOURCES_MAX 64
-struct tl_resource_memory {
-    const char *name;
-    size_t bytes;
-};
 size_t tl_renderer_resources(const tl_renderer *renderer, struct tl_resource_memory out[TL_RESOURCES_MAX]);
 
 #endif

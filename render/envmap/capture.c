@@ -51,7 +51,7 @@ static bool light_view(struct tl_capture *capture, tl_gpu *gpu, const struct tl_
                                               .exponent_levels = request->exponent_levels,
                                               .eye = request->point,
                                               .params = &around_params};
-    tl_lighting_begin(&capture->lighting, gpu, gbuffer, true);
+    tl_light_buffer_begin(&capture->light, gpu, gbuffer, true);
     bool fine = tl_envmap_draw(&capture->around, gpu, &look_up, error);
     tl_gpu_reset_state(gpu);
     return fine;
@@ -99,7 +99,7 @@ static bool draw_face(struct tl_capture *capture, tl_gpu *gpu, const struct tl_c
                                             .ground = request->ground};
     if (!tl_gbuffer_draw(&capture->gbuffer, gpu, &draw, error) || !light_view(capture, gpu, request, error))
         return false;
-    glGetTextureImage(capture->lighting.target.colours[0].id, 0, GL_RGBA, GL_FLOAT, bytes, staging[0]);
+    glGetTextureImage(capture->light.target.colours[0].id, 0, GL_RGBA, GL_FLOAT, bytes, staging[0]);
     glGetTextureImage(capture->gbuffer.target.colours[TL_GBUFFER_POINT].id, 0, GL_RGBA, GL_FLOAT, bytes,
                       staging[1]);
     average_face(request, face, staging[0], staging[1], &capture->cube);
@@ -140,7 +140,7 @@ bool tl_capture_draw(struct tl_capture *capture, tl_gpu *gpu, const struct tl_ca
 void tl_capture_release(struct tl_capture *capture)
 {
     tl_gbuffer_release(&capture->gbuffer);
-    tl_lighting_release(&capture->lighting);
+    tl_light_buffer_release(&capture->light);
     tl_envmap_release(&capture->around);
     tl_cube_release(&capture->cube);
     tl_lobes_release(&capture->lobes);
@@ -153,6 +153,6 @@ bool tl_capture_reload(struct tl_capture *capture, tl_error *error)
 
 size_t tl_capture_bytes(const struct tl_capture *capture)
 {
-    return tl_gbuffer_bytes(&capture->gbuffer) + tl_target_bytes(&capture->lighting.target) +
+    return tl_gbuffer_bytes(&capture->gbuffer) + tl_target_bytes(&capture->light.target) +
            tl_envmap_bytes(&capture->around) + tl_lobes_bytes(&capture->lobes);
 }

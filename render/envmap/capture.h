@@ -7,11 +7,11 @@
 #define TOILE_RENDER_ENVMAP_CAPTURE_H
 
 #include "render/envmap/envmap.h"
-#include "render/light/light.h"
+#include "render/light/light_buffer.h"
 
 struct tl_capture {
     struct tl_gbuffer gbuffer;
-    struct tl_lighting lighting; /* only its target is used */
+    struct tl_light_buffer light;
     struct tl_envmap around;     /* the environment, which lights the captured surfaces */
     tl_cube cube;
     struct tl_lobes lobes; /* lobes of the cube */

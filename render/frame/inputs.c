@@ -1,10 +1,10 @@
+#include "render/frame/inputs.h"
+
 #include "config/hash.h"
 #include "config/memory.h"
-#include "render/brdf/lobe_fit.h"
-#include "render/detail/detail.h"
-#include "render/env/exponent.h"
-#include "render/frame/frame.h"
-#include "render/inspect/job.h"
+#include "render/env/layout.h"
+#include "render/light/light.h"
+#include "render/local/lamp.h"
 #include "render/plan/affects.h"
 
 #include <math.h>
@@ -160,169 +160,73 @@ void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *setti
     signatures[TL_INPUT_SCENE_ROUND] = MIX(start, rest->scene);
 }
 
-/* The least and the largest glossiness that a material's maps can make of it. */
-static void glossiness_range(const tl_material *material, float *low, float *high)
+struct tl_light_params tl_input_light(const struct tl_light_params *light)
 {
-    float least = material->gloss_map.image ? 0 : material->glossiness, most = material->glossiness;
-    if (material->weave) {
-        const tl_image *gloss = &material->weave->gloss;
-        float added_low = INFINITY, added_high = -INFINITY;
-        for (size_t i = 0; i < (size_t)gloss->width * (size_t)gloss->height; i++) {
-            added_low = fminf(added_low, tl_image_floats(gloss)[i]);
-            added_high = fmaxf(added_high, tl_image_floats(gloss)[i]);
-        }
-        least += added_low;
-        most += added_high;
-    }
-    *low = fminf(fmaxf(least, 0), 1);
-    *high = fminf(fmaxf(most, 0), 1);
+    return (struct tl_light_params){.method = light->method,
+                                    .lobe = light->lobe,
+                                    .prefilter = light->prefilter,
+                                    .visibility = light->visibility,
+                                    .composition = light->composition,
+                                    .reflect_scene = light->reflect_scene,
+                                    .fan = light->fan,
+                                    .depth_bias_m = light->depth_bias_m,
+                                    .min_variance = light->min_variance,
+                                    .bleed_reduction = light->bleed_reduction};
 }
 
-/* The G-buffer rounds 1 - glossiness to a half. */
-#define ROUNDING 1e-3f
-
-/* Exponents from `least` to `greatest`. */
-static uint32_t exponents_between(float least, float greatest)
+struct tl_shadow_input tl_input_shadows(const struct tl_light_params *light)
 {
-    return tl_exponents_needed(1 - 1 / fmaxf(least * (1 - ROUNDING), 1),
-                               1 - 1 / fmaxf(greatest * (1 + ROUNDING), 1));
+    return (struct tl_shadow_input){.kind = (enum tl_visibility)light->visibility,
+                                    .map_size = light->map_size,
+                                    .in_passes = tl_light_source(light) == TL_LIGHT_CHAIN,
+                                    .blur_m = light->blur_m};
 }
 
-/* Of what a material is beyond two lobes. */
-static uint32_t layered_exponents(const tl_material *material, float low, float high)
+struct tl_detail_params tl_input_detail_maps(const struct tl_detail_params *detail)
 {
-    uint32_t needed = 0;
-    if (material->coat > 0)
-        needed |= tl_exponents_needed(material->coat_glossiness, material->coat_glossiness);
-    if (!tl_material_is_faceted(material))
-        return needed;
-    float least, greatest, unused;
-    struct tl_brdf dull = tl_brdf_of(material, material->specular, low);
-    struct tl_brdf shiny = tl_brdf_of(material, material->specular, high);
-    tl_lobe_fit_exponents(&dull, &least, &unused);
-    tl_lobe_fit_exponents(&shiny, &unused, &greatest);
-    return needed | exponents_between(least, greatest);
+    return (struct tl_detail_params){.mode = detail->mode,
+                                     .shadow = detail->shadow,
+                                     .angles = detail->angles,
+                                     .height_scale = detail->height_scale,
+                                     .minify = detail->minify};
 }
 
-uint32_t tl_frame_exponents(const tl_frame *frame, const struct tl_detail_params *detail)
+struct tl_maps_params tl_input_layout(const struct tl_maps_params *maps)
 {
-    uint32_t needed = 1;
-    for (size_t s = 0; s < frame->surface_count; s++)
-        for (size_t p = 0; p < frame->surfaces[s].part_count; p++) {
-            const tl_material *material = &frame->surfaces[s].materials[frame->surfaces[s].parts[p].material];
-            float low, high;
-            glossiness_range(material, &low, &high);
-            if (tl_detail_wants_moments(detail) && tl_detail_wants_maps(detail, material))
-                low = 0; /* averaged bumps dull any gloss */
-            low = 1 - (1 - low) * (1 + ROUNDING);
-            needed |= tl_exponents_needed(low, 1 - (1 - high) * (1 - ROUNDING));
-            if (tl_mirror_ray_count(tl_lobe_exponent(high)) >
-                0) /* lobes along a mirror's rays are narrower still */
-                needed |= tl_exponents_needed(high, 1);
-            needed |= layered_exponents(material, low, 1 - (1 - high) * (1 - ROUNDING));
-        }
-    return needed;
+    return (struct tl_maps_params){.layout = maps->layout, .size = maps->size};
 }
 
-bool tl_material_is_faceted(const tl_material *material)
+struct tl_maps_params tl_input_look_up(const struct tl_maps_params *maps)
 {
-    return material->gloss.model != TL_REFLECT_PHONG;
+    struct tl_maps_params own = tl_input_layout(maps);
+    own.look_up = maps->look_up;
+    own.mode = maps->mode;
+    own.fresnel = maps->fresnel;
+    own.minify = maps->minify;
+    return own;
 }
 
-bool tl_frame_has(const tl_frame *frame, bool (*property)(const tl_material *material))
+struct tl_maps_params tl_input_capture(const struct tl_maps_params *maps)
 {
-    for (size_t s = 0; s < frame->surface_count; s++)
-        for (size_t p = 0; p < frame->surfaces[s].part_count; p++)
-            if (property(&frame->surfaces[s].materials[frame->surfaces[s].parts[p].material]))
-                return true;
-    return false;
+    return (struct tl_maps_params){
+        .size = maps->size, .capture_at = {maps->capture_at[0], maps->capture_at[1], maps->capture_at[2]}};
 }
 
-uint32_t tl_frame_map_exponents(const tl_frame *frame, const struct tl_detail_params *detail)
+struct tl_image_params tl_input_show(const struct tl_image_params *image)
 {
-    return tl_frame_exponents(frame, detail) | 1u << TL_EXPONENT_COUNT;
+    return (struct tl_image_params){
+        .exposure_ev = image->exposure_ev, .background = image->background, .view = image->view};
 }
 
-static float greatest_glossiness(const tl_frame *frame)
+struct tl_image_params tl_input_view(const struct tl_image_params *image)
 {
-    float greatest = 0;
-    for (size_t s = 0; s < frame->surface_count; s++)
-        for (size_t p = 0; p < frame->surfaces[s].part_count; p++) {
-            float low, high;
-            glossiness_range(&frame->surfaces[s].materials[frame->surfaces[s].parts[p].material], &low,
-                             &high);
-            greatest = fmaxf(greatest, high);
-        }
-    return greatest;
+    return (struct tl_image_params){
+        .view = image->view, .view_region = image->view_region, .view_range = image->view_range};
 }
 
-static bool wants_detail(const tl_frame *frame, const struct tl_detail_params *detail)
+struct tl_lamps_input tl_input_lamps(const tl_frame *frame, const struct tl_shading_params *shading)
 {
-    for (size_t s = 0; s < frame->surface_count; s++)
-        for (size_t p = 0; p < frame->surfaces[s].part_count; p++)
-            if (tl_detail_wants_maps(detail,
-                                     &frame->surfaces[s].materials[frame->surfaces[s].parts[p].material]))
-                return true;
-    return false;
-}
-
-static tl_bits lamp_facts(const tl_frame *frame, const struct tl_light_params *light)
-{
-    struct tl_lamp lamps[TL_LAMPS_MAX];
-    size_t count = tl_lamps_lit(frame, lamps);
-    tl_bits facts = count > 0 ? TL_BIT(TL_SCENE_LAMPS) : 0;
-    struct tl_casters casters = {0};
-    tl_error error = {0};
-    if (count > 0 && light->visibility != TL_VISIBILITY_RAYS)
-        tl_casters_measure(frame->surfaces, frame->surface_count, &casters, &error);
-    for (size_t i = 0; i < count; i++) {
-        enum tl_lamp_shadow shadow = tl_lamp_shadow_of(&lamps[i], light, &casters);
-        if (shadow == TL_LAMP_SHADOW_RAYS)
-            facts |= TL_BIT(TL_SCENE_LAMP_RAYS) | TL_BIT(TL_SCENE_SAMPLES);
-        else if (shadow == TL_LAMP_SHADOW_MAP)
-            facts |= TL_BIT(TL_SCENE_LAMP_MAPS);
-    }
-    return facts;
-}
-
-static tl_bits light_facts(const tl_frame *frame, const struct tl_render_settings *settings)
-{
-    const struct tl_light_params *light = &settings->light;
-    if (light->method == TL_METHOD_REFERENCE)
-        return TL_BIT(TL_SCENE_REFERENCE);
-    if (light->method == TL_METHOD_MAPS)
-        return TL_BIT(TL_SCENE_RASTER) | TL_BIT(TL_SCENE_ENVMAP) | lamp_facts(frame, light) |
-               (settings->maps.capture_every > 0 ? TL_BIT(TL_SCENE_CAPTURE) : 0);
-    bool shadowed = light->method != TL_METHOD_UNSHADOWED, rays = light->visibility == TL_VISIBILITY_RAYS;
-    tl_bits facts = TL_BIT(TL_SCENE_RASTER) | TL_BIT(rays ? TL_SCENE_RAYS : TL_SCENE_PASSES);
-    if (shadowed)
-        facts |= TL_BIT(TL_SCENE_SHADOWS) | (rays ? 0 : TL_BIT(TL_SCENE_MAPS));
-    if (wants_detail(frame, &settings->detail))
-        facts |= TL_BIT(TL_SCENE_DETAIL);
-    if (light->visibility == TL_VISIBILITY_VSM)
-        facts |= TL_BIT(TL_SCENE_BLUR);
-    if (!rays && tl_light_source(light) == TL_LIGHT_CHAIN)
-        facts |= TL_BIT(TL_SCENE_CHAINS);
-    if (!rays && tl_light_source(light) == TL_LIGHT_SLICES)
-        facts |= TL_BIT(TL_SCENE_SLICES);
-    if (rays || tl_light_needs_exact(light))
-        facts |= TL_BIT(TL_SCENE_EXACT);
-    if (rays && tl_frame_has(frame, tl_material_shows_more))
-        facts |= TL_BIT(TL_SCENE_TRANSPARENCY);
-    if (rays && light->method == TL_METHOD_PEM && light->reflect_scene &&
-        tl_mirror_ray_count(tl_lobe_exponent(greatest_glossiness(frame))) > 0)
-        facts |= TL_BIT(TL_SCENE_MIRRORS);
-    if (rays)
-        facts |= TL_BIT(TL_SCENE_SAMPLES) | TL_BIT(TL_SCENE_COMPOSED);
-    return facts | lamp_facts(frame, light);
-}
-
-tl_bits tl_frame_facts(const tl_frame *frame, const struct tl_render_settings *settings)
-{
-    tl_bits kept = frame->aovs ? TL_BIT(TL_SCENE_SAMPLES) : 0;
-    if (settings->image.view == TL_VIEW_LIGHT)
-        return kept | light_facts(frame, settings);
-    if (wants_detail(frame, &settings->detail))
-        kept |= TL_BIT(TL_SCENE_DETAIL);
-    return kept | tl_inspect_facts(settings->image.view);
+    struct tl_lamps_input lamps = {.shading = *shading};
+    lamps.count = tl_lamps_lit(frame, lamps.items);
+    return lamps;
 }

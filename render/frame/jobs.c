@@ -1,14 +1,97 @@
-#include "config/memory.h"
-#include "render/frame/run.h"
-#include "render/frame/work.h"
-#include "render/inspect/job.h"
+#include "render/frame/jobs.h"
 
-/* Sets of resources. */
-#define SET1(a)             TL_BIT(a)
-#define SET2(a, b)          (SET1(a) | SET1(b))
-#define SET3(a, b, c)       (SET2(a, b) | SET1(c))
-#define SET4(a, b, c, d)    (SET2(a, b) | SET2(c, d))
-#define SET5(a, b, c, d, e) (SET4(a, b, c, d) | SET1(e))
+#include "config/memory.h"
+#include "render/frame/work.h"
+
+/* The bits of a job's list (jobs.h) that it reads. */
+#define BIT_OF(member)            TL_BIT(TL_RESOURCE_OF_##member) |
+#define READ_READS(member)        BIT_OF(member)
+#define READ_READS_HANDLE(member) BIT_OF(member)
+#define READ_AFTER(bit)           TL_BIT(bit) |
+#define READ_SEES(member)
+#define READ_SEES_HANDLE(member)
+#define READ_WRITES(member)
+#define READ_WRITES_HANDLE(member)
+#define READ_WRITES_IN(member, bit)
+#define READ_EXTENDS(member, bit)        BIT_OF(member)
+#define READ_EXTENDS_HANDLE(member, bit) BIT_OF(member)
+#define READ_USES(member)
+#define READ_USES_HANDLE(member)
+#define READ(kind, ...) READ_##kind(__VA_ARGS__)
+
+/* ... and those that it writes. */
+#define WRITTEN_READS(member)
+#define WRITTEN_READS_HANDLE(member)
+#define WRITTEN_AFTER(bit)
+#define WRITTEN_SEES(member)
+#define WRITTEN_SEES_HANDLE(member)
+#define WRITTEN_WRITES(member)              BIT_OF(member)
+#define WRITTEN_WRITES_HANDLE(member)       BIT_OF(member)
+#define WRITTEN_WRITES_IN(member, bit)      TL_BIT(bit) |
+#define WRITTEN_EXTENDS(member, bit)        TL_BIT(bit) |
+#define WRITTEN_EXTENDS_HANDLE(member, bit) TL_BIT(bit) |
+#define WRITTEN_USES(member)
+#define WRITTEN_USES_HANDLE(member)
+#define WRITTEN(kind, ...) WRITTEN_##kind(__VA_ARGS__)
+
+/* The wiring: what the job's fields point to. */
+#define ADDRESS(member)           .member = &all->member,
+#define HANDLE(member)            .member = all->member,
+#define WIRE_READS(member)        ADDRESS(member)
+#define WIRE_READS_HANDLE(member) HANDLE(member)
+#define WIRE_AFTER(bit)
+#define WIRE_SEES(member)                ADDRESS(member)
+#define WIRE_SEES_HANDLE(member)         HANDLE(member)
+#define WIRE_WRITES(member)              ADDRESS(member)
+#define WIRE_WRITES_HANDLE(member)       HANDLE(member)
+#define WIRE_WRITES_IN(member, bit)      ADDRESS(member)
+#define WIRE_EXTENDS(member, bit)        ADDRESS(member)
+#define WIRE_EXTENDS_HANDLE(member, bit) HANDLE(member)
+#define WIRE_USES(member)                ADDRESS(member)
+#define WIRE_USES_HANDLE(member)         HANDLE(member)
+#define WIRE(kind, ...)                  WIRE_##kind(__VA_ARGS__)
+
+#define RUN(name, LIST)                                                                                      \
+    static bool run_##name(void *context, int level, tl_error *error)                                        \
+    {                                                                                                        \
+        struct tl_resources *all = context;                                                                  \
+        const struct tl_##name##_job job = {LIST(WIRE)};                                                     \
+        (void)level;                                                                                         \
+        return tl_run_##name(&job, error);                                                                   \
+    }
+RUN(cube, TL_CUBE_JOB)
+RUN(regions, TL_REGIONS_JOB)
+RUN(lobe, TL_LOBE_JOB)
+RUN(pems, TL_PEMS_JOB)
+RUN(lobes, TL_LOBES_JOB)
+RUN(slices, TL_SLICES_JOB)
+RUN(lights, TL_LIGHTS_JOB)
+RUN(surfaces, TL_SURFACES_JOB)
+RUN(detail, TL_DETAIL_JOB)
+RUN(maps, TL_MAPS_JOB)
+RUN(blur, TL_BLUR_JOB)
+RUN(gbuffer, TL_GBUFFER_JOB)
+RUN(samples, TL_SAMPLES_JOB)
+RUN(transparency, TL_TRANSPARENCY_JOB)
+RUN(trace, TL_TRACE_JOB)
+RUN(mirrors, TL_MIRRORS_JOB)
+RUN(points, TL_POINTS_JOB)
+RUN(light, TL_LIGHT_JOB)
+RUN(compose, TL_COMPOSE_JOB)
+RUN(inspect, TL_INSPECT_JOB)
+RUN(envmap_lobes, TL_ENVMAP_LOBES_JOB)
+RUN(capture, TL_CAPTURE_JOB)
+RUN(envmap, TL_ENVMAP_JOB)
+RUN(look_up, TL_LOOK_UP_JOB)
+RUN(lamp_maps, TL_LAMP_MAPS_JOB)
+RUN(lamp_rays, TL_LAMP_RAYS_JOB)
+RUN(lamps, TL_LAMPS_JOB)
+RUN(resolve, TL_RESOLVE_JOB)
+RUN(reference, TL_REFERENCE_JOB)
+RUN(backdrop, TL_BACKDROP_JOB)
+RUN(show, TL_SHOW_JOB)
+
+#define IO(name, LIST) .reads = LIST(READ) 0, .writes = LIST(WRITTEN) 0, .run = run_##name
 #define LEVELS_ONE                                                                                           \
     {                                                                                                        \
         "only"                                                                                               \
@@ -17,238 +100,169 @@
 const tl_job tl_frame_jobs[] = {
     {.name = "cube",
      .what = "environment to a cube map; its suns taken out",
-     .reads = SET3(TL_INPUT_ENVIRONMENT, TL_INPUT_PEM_SIZE, TL_INPUT_SUN),
-     .writes = SET1(TL_MADE_CUBE),
-     .levels = LEVELS_ONE,
-     .run = tl_run_cube},
+     IO(cube, TL_CUBE_JOB),
+     .levels = LEVELS_ONE},
     {.name = "regions",
      .what = "the cube cut into regions",
-     .reads = SET2(TL_MADE_CUBE, TL_INPUT_REGIONS),
-     .writes = SET1(TL_MADE_REGIONS),
-     .levels = LEVELS_ONE,
-     .run = tl_run_regions},
+     IO(regions, TL_REGIONS_JOB),
+     .levels = LEVELS_ONE},
     {.name = "lobe",
      .what = "calibration of glossiness to chain level",
-     .reads = SET2(TL_INPUT_PEM_SIZE, TL_INPUT_FILTER),
-     .writes = SET1(TL_MADE_LOBE),
-     .requires_scene = SET1(TL_SCENE_CHAINS),
-     .levels = LEVELS_ONE,
-     .run = tl_run_lobe},
+     IO(lobe, TL_LOBE_JOB),
+     .requires_scene = TL_BIT(TL_SCENE_CHAINS),
+     .levels = LEVELS_ONE},
     {.name = "pems",
      .what = "a filtered copy of the cube for each region",
-     .reads = SET4(TL_MADE_CUBE, TL_MADE_REGIONS, TL_INPUT_FILTER, TL_INPUT_PASSES),
-     .writes = SET1(TL_MADE_PEMS),
-     .requires_scene = SET1(TL_SCENE_CHAINS),
-     .levels = LEVELS_ONE,
-     .run = tl_run_pems},
+     IO(pems, TL_PEMS_JOB),
+     .requires_scene = TL_BIT(TL_SCENE_CHAINS),
+     .levels = LEVELS_ONE},
     {.name = "lobes",
      .what = "the whole environment through exact lobes",
-     .reads = SET3(TL_MADE_CUBE, TL_INPUT_SHAPES, TL_INPUT_DETAIL_MAPS),
-     .writes = SET1(TL_MADE_LOBES),
-     .requires_scene = SET1(TL_SCENE_EXACT),
-     .levels = LEVELS_ONE,
-     .run = tl_run_lobes},
+     IO(lobes, TL_LOBES_JOB),
+     .requires_scene = TL_BIT(TL_SCENE_EXACT),
+     .levels = LEVELS_ONE},
     {.name = "slices",
      .what = "the regions through exact lobes",
-     .reads = SET4(TL_MADE_CUBE, TL_MADE_REGIONS, TL_INPUT_SHAPES, TL_INPUT_DETAIL_MAPS),
-     .writes = SET1(TL_MADE_SLICES),
-     .requires_scene = SET1(TL_SCENE_SLICES),
-     .levels = LEVELS_ONE,
-     .run = tl_run_slices},
+     IO(slices, TL_SLICES_JOB),
+     .requires_scene = TL_BIT(TL_SCENE_SLICES),
+     .levels = LEVELS_ONE},
     {.name = "lights",
      .what = "the regions as lights that add up to the exact light",
-     .reads = SET3(TL_MADE_REGIONS, TL_MADE_LOBES, TL_INPUT_LIGHT),
-     .writes = SET1(TL_MADE_LIGHTS),
-     .requires_scene = SET2(TL_SCENE_RAYS, TL_SCENE_SHADOWS),
+     IO(lights, TL_LIGHTS_JOB),
+     .requires_scene = TL_BIT(TL_SCENE_RAYS) | TL_BIT(TL_SCENE_SHADOWS),
      .levels = LEVELS_ONE,
-     .run = tl_run_lights,
      .work = tl_lights_work},
     {.name = "surfaces",
      .what = "vertices and maps to the GPU",
-     .reads = SET3(TL_INPUT_SHAPES, TL_INPUT_MOTION, TL_INPUT_GROUND),
-     .writes = SET1(TL_MADE_SURFACES),
-     .levels = LEVELS_ONE,
-     .run = tl_run_surfaces},
+     IO(surfaces, TL_SURFACES_JOB),
+     .levels = LEVELS_ONE},
     {.name = "detail",
      .what = "heights, cones, horizons and spread of normals of the fabrics",
-     .reads = SET3(TL_INPUT_SHAPES, TL_INPUT_DETAIL_MAPS, TL_INPUT_GROUND),
-     .writes = SET1(TL_MADE_DETAIL),
-     .requires_scene = SET1(TL_SCENE_DETAIL),
-     .levels = LEVELS_ONE,
-     .run = tl_run_detail},
+     IO(detail, TL_DETAIL_JOB),
+     .requires_scene = TL_BIT(TL_SCENE_DETAIL),
+     .levels = LEVELS_ONE},
     {.name = "maps",
      .what = "a shadow map for each region and sun",
-     .reads = SET5(TL_MADE_SURFACES, TL_MADE_REGIONS, TL_INPUT_YAW, TL_INPUT_MAPS, TL_INPUT_PASSES) |
-              SET1(TL_INPUT_ROUND),
-     .writes = SET1(TL_MADE_DEPTHS),
-     .requires_scene = SET1(TL_SCENE_MAPS),
+     IO(maps, TL_MAPS_JOB),
+     .requires_scene = TL_BIT(TL_SCENE_MAPS),
      .levels = LEVELS_ONE,
-     .run = tl_run_maps,
      .work = tl_maps_work},
     {.name = "blur",
      .what = "shadow maps blurred by the size of their regions",
-     .reads = SET3(TL_MADE_DEPTHS, TL_MADE_REGIONS, TL_MADE_SURFACES),
-     .writes = SET1(TL_MADE_MAPS),
-     .requires_scene = SET2(TL_SCENE_MAPS, TL_SCENE_BLUR),
+     IO(blur, TL_BLUR_JOB),
+     .requires_scene = TL_BIT(TL_SCENE_MAPS) | TL_BIT(TL_SCENE_BLUR),
      .levels = LEVELS_ONE,
-     .run = tl_run_blur,
      .work = tl_maps_work},
     {.name = "gbuffer",
      .what = "nearest point, normal and material of every sample",
-     .reads = SET5(TL_MADE_SURFACES, TL_MADE_DETAIL, TL_INPUT_CAMERA, TL_INPUT_SIZE, TL_INPUT_GROUND) |
-              SET2(TL_INPUT_DETAIL, TL_INPUT_DETAIL_MAPS),
-     .writes = SET1(TL_MADE_GBUFFER),
+     IO(gbuffer, TL_GBUFFER_JOB),
      .levels = LEVELS_ONE,
-     .run = tl_run_gbuffer,
      .work = tl_gbuffer_work},
     {.name = "samples",
      .what = "the covered samples to the CPU",
-     .reads = SET3(TL_MADE_GBUFFER, TL_INPUT_CAMERA, TL_INPUT_SHAPES),
-     .writes = SET1(TL_MADE_SAMPLES),
-     .requires_scene = SET1(TL_SCENE_SAMPLES),
+     IO(samples, TL_SAMPLES_JOB),
+     .requires_scene = TL_BIT(TL_SCENE_SAMPLES),
      .levels = LEVELS_ONE,
-     .run = tl_run_samples,
      .work = tl_samples_work},
     {.name = "transparency",
      .what = "rays: what lies behind open cloth and shines through it",
-     .reads = SET2(TL_MADE_SAMPLES, TL_MADE_SURFACES),
-     .writes = SET1(TL_MADE_TRANSPARENCY),
-     .requires_scene = SET1(TL_SCENE_TRANSPARENCY),
+     IO(transparency, TL_TRANSPARENCY_JOB),
+     .requires_scene = TL_BIT(TL_SCENE_TRANSPARENCY),
      .levels = LEVELS_ONE,
-     .run = tl_run_transparency,
      .work = tl_sample_rays_work},
+    {.name = "trace",
+     .what = "surfaces to what rays are traced in",
+     IO(trace, TL_TRACE_JOB),
+     .levels = LEVELS_ONE,
+     .work = tl_trace_work},
     {.name = "mirrors",
      .what = "rays: what near mirrors show",
-     .reads = SET5(TL_MADE_SAMPLES, TL_MADE_TRANSPARENCY, TL_INPUT_SHAPES, TL_INPUT_MOTION, TL_INPUT_GROUND),
-     .writes = SET1(TL_MADE_MIRRORS),
-     .requires_scene = SET1(TL_SCENE_MIRRORS),
+     IO(mirrors, TL_MIRRORS_JOB),
+     .requires_scene = TL_BIT(TL_SCENE_MIRRORS),
      .levels = LEVELS_ONE,
-     .run = tl_run_mirrors,
      .work = tl_sample_rays_work},
     {.name = "points",
      .what = "rays: visibility of the regions, kept at vertices",
-     .reads = SET5(TL_MADE_SAMPLES, TL_MADE_REGIONS, TL_INPUT_SHAPES, TL_INPUT_MOTION, TL_INPUT_GROUND) |
-              SET5(TL_MADE_TRANSPARENCY, TL_MADE_MIRRORS, TL_INPUT_YAW, TL_INPUT_RAYS, TL_INPUT_SCENE_ROUND),
-     .writes = SET1(TL_MADE_POINTS),
-     .requires_scene = SET2(TL_SCENE_RAYS, TL_SCENE_SHADOWS),
+     IO(points, TL_POINTS_JOB),
+     .requires_scene = TL_BIT(TL_SCENE_RAYS) | TL_BIT(TL_SCENE_SHADOWS),
      .levels = LEVELS_ONE,
-     .run = tl_run_points,
      .work = tl_points_work},
     {.name = "light",
      .what = "visibility times PEM, summed over the regions",
-     .reads = SET5(TL_MADE_GBUFFER, TL_MADE_PEMS, TL_MADE_REGIONS, TL_MADE_LOBE, TL_MADE_MAPS) |
-              SET5(TL_MADE_SURFACES, TL_INPUT_YAW, TL_INPUT_CAMERA, TL_INPUT_LIGHT, TL_INPUT_GROUND) |
-              SET5(TL_MADE_LOBES, TL_MADE_SLICES, TL_MADE_DEPTHS, TL_INPUT_ROUND, TL_INPUT_LAMPS) |
-              SET1(TL_INPUT_VIEW),
-     .writes = SET1(TL_MADE_LIGHT),
-     .requires_scene = SET1(TL_SCENE_PASSES),
+     IO(light, TL_LIGHT_JOB),
+     .requires_scene = TL_BIT(TL_SCENE_PASSES),
      .levels = LEVELS_ONE,
-     .run = tl_run_light,
      .work = tl_passes_work},
     {.name = "compose",
      .what = "exact light times the share of it that is seen",
-     .reads = SET5(TL_MADE_SAMPLES, TL_MADE_POINTS, TL_MADE_LIGHTS, TL_MADE_LOBES, TL_MADE_CUBE) |
-              SET5(TL_MADE_TRANSPARENCY, TL_MADE_MIRRORS, TL_INPUT_YAW, TL_INPUT_LIGHT, TL_INPUT_CAMERA) |
-              SET2(TL_INPUT_LAMPS, TL_INPUT_VIEW),
-     .writes = SET1(TL_MADE_LIGHT),
-     .requires_scene = SET1(TL_SCENE_COMPOSED),
+     IO(compose, TL_COMPOSE_JOB),
+     .requires_scene = TL_BIT(TL_SCENE_COMPOSED),
      .levels = LEVELS_ONE,
-     .run = tl_run_compose,
      .work = tl_compose_work},
     {.name = "inspect",
      .what = "what a view shows in place of light",
-     .reads = SET5(TL_MADE_SAMPLES, TL_MADE_POINTS, TL_MADE_REGIONS, TL_INPUT_MOTION, TL_INPUT_YAW) |
-              SET1(TL_INPUT_VIEW),
-     .writes = SET1(TL_MADE_LIGHT),
-     .requires_scene = SET1(TL_SCENE_INSPECT),
+     IO(inspect, TL_INSPECT_JOB),
+     .requires_scene = TL_BIT(TL_SCENE_INSPECT),
      .levels = LEVELS_ONE,
-     .run = tl_inspect_run,
      .work = tl_inspect_work},
     {.name = "envmap_lobes",
      .what = "all light through exact lobes, for environment maps",
-     .reads = SET4(TL_INPUT_ENVIRONMENT, TL_INPUT_ENVMAP, TL_INPUT_SHAPES, TL_INPUT_DETAIL_MAPS),
-     .writes = SET1(TL_MADE_ENVMAP_LOBES),
-     .requires_scene = SET1(TL_SCENE_ENVMAP),
-     .levels = LEVELS_ONE,
-     .run = tl_run_envmap_lobes},
+     IO(envmap_lobes, TL_ENVMAP_LOBES_JOB),
+     .requires_scene = TL_BIT(TL_SCENE_ENVMAP),
+     .levels = LEVELS_ONE},
     /* What it draws is not among what it reads: what has changed since waits for the next capture. */
     {.name = "capture",
      .what = "the scene seen from a point, through exact lobes",
-     .reads = SET1(TL_INPUT_CAPTURE),
-     .writes = SET1(TL_MADE_CAPTURE),
-     .requires_scene = SET2(TL_SCENE_ENVMAP, TL_SCENE_CAPTURE),
-     .levels = LEVELS_ONE,
-     .run = tl_run_capture},
+     IO(capture, TL_CAPTURE_JOB),
+     .requires_scene = TL_BIT(TL_SCENE_ENVMAP) | TL_BIT(TL_SCENE_CAPTURE),
+     .levels = LEVELS_ONE},
     {.name = "envmap",
      .what = "lobes poured into environment maps of a layout",
-     .reads = SET5(TL_MADE_ENVMAP_LOBES, TL_INPUT_LAYOUT, TL_INPUT_YAW, TL_INPUT_SHAPES, TL_INPUT_GROUND) |
-              SET1(TL_MADE_CAPTURE),
-     .writes = SET1(TL_MADE_ENVMAP),
-     .requires_scene = SET1(TL_SCENE_ENVMAP),
-     .levels = LEVELS_ONE,
-     .run = tl_run_envmap},
+     IO(envmap, TL_ENVMAP_JOB),
+     .requires_scene = TL_BIT(TL_SCENE_ENVMAP),
+     .levels = LEVELS_ONE},
     {.name = "look_up",
      .what = "environment maps looked up for every sample",
-     .reads = SET5(TL_MADE_GBUFFER, TL_MADE_ENVMAP, TL_INPUT_CAMERA, TL_INPUT_LOOK_UP, TL_INPUT_LAMPS) |
-              SET1(TL_INPUT_VIEW),
-     .writes = SET1(TL_MADE_LIGHT),
-     .requires_scene = SET1(TL_SCENE_ENVMAP),
-     .levels = LEVELS_ONE,
-     .run = tl_run_look_up},
+     IO(look_up, TL_LOOK_UP_JOB),
+     .requires_scene = TL_BIT(TL_SCENE_ENVMAP),
+     .levels = LEVELS_ONE},
     /* Lamps add to the light in place, which is therefore made anew whenever they change. */
     {.name = "lamp_maps",
      .what = "a shadow map for each lamp",
-     .reads = SET4(TL_MADE_SURFACES, TL_INPUT_LAMPS, TL_INPUT_MAPS, TL_INPUT_LIGHT),
-     .writes = SET1(TL_MADE_LAMP_MAPS),
-     .requires_scene = SET1(TL_SCENE_LAMP_MAPS),
+     IO(lamp_maps, TL_LAMP_MAPS_JOB),
+     .requires_scene = TL_BIT(TL_SCENE_LAMP_MAPS),
      .levels = LEVELS_ONE,
-     .run = tl_run_lamp_maps,
      .work = tl_lamp_maps_work},
     {.name = "lamp_rays",
      .what = "rays: what is seen of each lamp",
-     .reads = SET5(TL_MADE_SAMPLES, TL_MADE_SURFACES, TL_INPUT_MOTION, TL_INPUT_GROUND, TL_INPUT_LAMPS) |
-              SET1(TL_INPUT_LIGHT),
-     .writes = SET1(TL_MADE_LAMP_RAYS),
-     .requires_scene = SET1(TL_SCENE_LAMP_RAYS),
+     IO(lamp_rays, TL_LAMP_RAYS_JOB),
+     .requires_scene = TL_BIT(TL_SCENE_LAMP_RAYS),
      .levels = LEVELS_ONE,
-     .run = tl_run_lamp_rays,
      .work = tl_sample_rays_work},
     {.name = "lamps",
      .what = "light of the lamps, added",
-     .reads = SET5(TL_MADE_LIGHT, TL_MADE_GBUFFER, TL_MADE_SURFACES, TL_MADE_LAMP_MAPS, TL_MADE_LAMP_RAYS) |
-              SET4(TL_INPUT_CAMERA, TL_INPUT_LAMPS, TL_INPUT_GROUND, TL_INPUT_LIGHT),
-     .writes = SET1(TL_MADE_LAMPLIGHT),
-     .requires_scene = SET1(TL_SCENE_LAMPS),
+     IO(lamps, TL_LAMPS_JOB),
+     .requires_scene = TL_BIT(TL_SCENE_LAMPS),
      .levels = LEVELS_ONE,
-     .run = tl_run_lamps,
      .work = tl_lamps_work},
     {.name = "resolve",
      .what = "samples to pixels",
-     .reads = SET4(TL_MADE_LIGHT, TL_MADE_LAMPLIGHT, TL_MADE_GBUFFER, TL_INPUT_SIZE),
-     .writes = SET1(TL_MADE_IMAGE),
-     .requires_scene = SET1(TL_SCENE_RASTER),
+     IO(resolve, TL_RESOLVE_JOB),
+     .requires_scene = TL_BIT(TL_SCENE_RASTER),
      .levels = LEVELS_ONE,
-     .run = tl_run_resolve,
      .work = tl_resolve_work},
     {.name = "reference",
      .what = "the image, ray traced",
-     .reads = SET5(TL_INPUT_ENVIRONMENT, TL_INPUT_YAW, TL_INPUT_CAMERA, TL_INPUT_SIZE, TL_INPUT_LIGHT) |
-              SET5(TL_MADE_SURFACES, TL_INPUT_GROUND, TL_INPUT_LAMPS, TL_INPUT_REFERENCE, TL_INPUT_VIEW),
-     .writes = SET1(TL_MADE_IMAGE),
-     .requires_scene = SET1(TL_SCENE_REFERENCE),
-     .levels = LEVELS_ONE,
-     .run = tl_run_reference},
+     IO(reference, TL_REFERENCE_JOB),
+     .requires_scene = TL_BIT(TL_SCENE_REFERENCE),
+     .levels = LEVELS_ONE},
     {.name = "backdrop",
      .what = "the environment as it is seen behind",
-     .reads = SET3(TL_INPUT_ENVIRONMENT, TL_MADE_CUBE, TL_INPUT_FILTER),
-     .writes = SET1(TL_MADE_BACKDROP),
-     .levels = LEVELS_ONE,
-     .run = tl_run_backdrop},
+     IO(backdrop, TL_BACKDROP_JOB),
+     .levels = LEVELS_ONE},
     {.name = "show",
      .what = "background, exposure, tone mapping",
-     .reads = SET5(TL_MADE_IMAGE, TL_MADE_BACKDROP, TL_INPUT_SHOW, TL_INPUT_YAW, TL_INPUT_CAMERA),
-     .writes = SET1(TL_MADE_SHOWN),
-     .levels = LEVELS_ONE,
-     .run = tl_run_show},
+     IO(show, TL_SHOW_JOB),
+     .levels = LEVELS_ONE},
 };
 const int tl_frame_job_count = (int)TL_COUNT(tl_frame_jobs);

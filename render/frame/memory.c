@@ -1,5 +1,5 @@
 /* What the renderer keeps, resource by resource. */
-#include "render/frame/frame.h"
+#include "render/frame/memory.h"
 
 static size_t cube_bytes(const tl_cube *cube)
 {
@@ -14,13 +14,12 @@ static size_t regions_bytes(const struct tl_regions *regions)
                    sizeof *regions->solid_angles);
 }
 
-static size_t lights_bytes(const tl_renderer *renderer)
+static size_t lights_bytes(const struct tl_light_cache *cache)
 {
     size_t bytes = 0;
     for (int i = 0; i < TL_LIGHTS_KEPT; i++)
-        bytes += regions_bytes(&renderer->kept[i].cut_regions) +
-                 tl_lobes_bytes(&renderer->kept[i].lights.gain) +
-                 tl_lobes_bytes(&renderer->kept[i].lights.diffuse_gain);
+        bytes += regions_bytes(&cache->kept[i].cut_regions) + tl_lobes_bytes(&cache->kept[i].lights.gain) +
+                 tl_lobes_bytes(&cache->kept[i].lights.diffuse_gain);
     return bytes;
 }
 
@@ -30,50 +29,53 @@ static size_t samples_bytes(const struct tl_samples *samples)
     return samples->capacity * (sizeof *samples->items + tangent) + samples->staging_bytes;
 }
 
-static size_t resource_bytes(const tl_renderer *renderer, enum tl_resource resource)
+static size_t resource_bytes(const struct tl_resources *from, enum tl_resource resource)
 {
-    const struct tl_present *present = &renderer->present;
+    const struct tl_present *present = &from->present;
     switch (resource) {
     case TL_MADE_CUBE:
-        return cube_bytes(&renderer->cube);
+        return cube_bytes(&from->cube);
     case TL_MADE_REGIONS:
-        return regions_bytes(&renderer->regions);
+        return regions_bytes(&from->regions);
     case TL_MADE_LOBE:
-        return tl_lighting_bytes(&renderer->lighting);
+        return tl_texture_bytes(&from->lobe_levels) + tl_texture_bytes(&from->lighting.exponent_levels) +
+               tl_texture_bytes(&from->exact.maps.lobes);
     case TL_MADE_PEMS:
-        return tl_pems_bytes(&renderer->pems);
+        return tl_pems_bytes(&from->pems);
     case TL_MADE_LOBES:
-        return tl_lobes_bytes(&renderer->lobes);
+        return tl_lobes_bytes(&from->light_cache.lobes);
     case TL_MADE_SLICES:
-        return tl_slice_maps_bytes(&renderer->slice_maps);
+        return tl_slice_maps_bytes(&from->slices.maps);
     case TL_MADE_LIGHTS:
-        return lights_bytes(renderer);
+        return lights_bytes(&from->light_cache);
     case TL_MADE_SURFACES:
-        return tl_surfaces_bytes(renderer->surfaces);
+        return tl_surfaces_bytes(from->surfaces);
     case TL_MADE_DETAIL:
-        return tl_detail_maps_bytes(&renderer->detail);
+        return tl_detail_maps_bytes(&from->detail);
     case TL_MADE_DEPTHS:
-        return tl_shadow_maps_bytes(renderer->maps);
+        return tl_shadow_maps_bytes(from->maps);
     case TL_MADE_GBUFFER:
-        return tl_gbuffer_bytes(&renderer->gbuffer);
+        return tl_gbuffer_bytes(&from->gbuffer);
     case TL_MADE_SAMPLES:
-        return samples_bytes(&renderer->samples);
+        return samples_bytes(&from->samples);
     case TL_MADE_TRANSPARENCY:
-        return tl_transparency_bytes(&renderer->transparency);
+        return tl_transparency_bytes(&from->transparency);
     case TL_MADE_POINTS:
-        return tl_points_bytes(renderer->points) + tl_trace_bytes(renderer->trace);
+        return tl_points_bytes(from->points);
+    case TL_MADE_TRACE:
+        return tl_trace_bytes(from->trace);
     case TL_MADE_ENVMAP_LOBES:
-        return cube_bytes(&renderer->surroundings.cube) + tl_lobes_bytes(&renderer->surroundings.lobes);
+        return cube_bytes(&from->surroundings.cube) + tl_lobes_bytes(&from->surroundings.lobes);
     case TL_MADE_CAPTURE:
-        return tl_capture_bytes(&renderer->capture);
+        return tl_capture_bytes(&from->capture);
     case TL_MADE_ENVMAP:
-        return tl_envmap_bytes(&renderer->envmap);
+        return tl_envmap_bytes(&from->envmap);
     case TL_MADE_LIGHT:
-        return tl_target_bytes(&renderer->lighting.target) + renderer->light_bytes;
+        return tl_light_buffer_bytes(&from->light);
     case TL_MADE_LAMP_MAPS:
-        return tl_lamp_shadows_bytes(&renderer->local.shadows);
+        return tl_lamp_shadows_bytes(&from->local.shadows);
     case TL_MADE_LAMPLIGHT:
-        return tl_local_bytes(&renderer->local);
+        return tl_local_bytes(&from->local);
     case TL_MADE_IMAGE:
         return tl_present_bytes(present);
     case TL_MADE_BACKDROP:
@@ -83,35 +85,35 @@ static size_t resource_bytes(const tl_renderer *renderer, enum tl_resource resou
     }
 }
 
-size_t tl_renderer_resources(const tl_renderer *renderer, struct tl_resource_memory out[TL_RESOURCES_MAX])
+size_t tl_resources_list(const struct tl_resources *from, struct tl_resource_memory out[TL_RESOURCES_MAX])
 {
     size_t count = 0;
     for (int i = TL_INPUT_COUNT; i < TL_RESOURCE_COUNT; i++) {
-        size_t bytes = resource_bytes(renderer, (enum tl_resource)i);
+        size_t bytes = resource_bytes(from, (enum tl_resource)i);
         if (bytes > 0)
             out[count++] = (struct tl_resource_memory){tl_resource_names[i], bytes};
     }
     return count;
 }
 
-static size_t sum_of(const tl_renderer *renderer, const enum tl_resource *resources, size_t count)
+static size_t sum_of(const struct tl_resources *from, const enum tl_resource *resources, size_t count)
 {
     size_t bytes = 0;
     for (size_t i = 0; i < count; i++)
-        bytes += resource_bytes(renderer, resources[i]);
+        bytes += resource_bytes(from, resources[i]);
     return bytes;
 }
 #define SUM_OF(...)                                                                                          \
-    sum_of(renderer, (const enum tl_resource[]){__VA_ARGS__},                                                \
+    sum_of(from, (const enum tl_resource[]){__VA_ARGS__},                                                    \
            sizeof((const enum tl_resource[]){__VA_ARGS__}) / sizeof(enum tl_resource))
 
-struct tl_render_memory tl_renderer_memory(const tl_renderer *renderer)
+struct tl_render_memory tl_resources_memory(const struct tl_resources *from)
 {
     struct tl_render_memory memory = {
         .pems = SUM_OF(TL_MADE_PEMS, TL_MADE_LOBES, TL_MADE_LIGHTS, TL_MADE_SLICES, TL_MADE_ENVMAP_LOBES,
                        TL_MADE_ENVMAP, TL_MADE_CAPTURE),
         .maps = SUM_OF(TL_MADE_DEPTHS, TL_MADE_LAMP_MAPS),
-        .rays = SUM_OF(TL_MADE_POINTS, TL_MADE_SAMPLES),
+        .rays = SUM_OF(TL_MADE_POINTS, TL_MADE_TRACE, TL_MADE_SAMPLES),
         .transparency = SUM_OF(TL_MADE_TRANSPARENCY),
         .targets = SUM_OF(TL_MADE_GBUFFER, TL_MADE_LIGHT, TL_MADE_IMAGE),
         .surfaces = SUM_OF(TL_MADE_SURFACES, TL_MADE_DETAIL),

@@ -1,4 +1,4 @@
-#include "render/frame/frame.h"
+#include "render/frame/resource.h"
 
 const char *const tl_resource_names[] = {
     [TL_INPUT_ENVIRONMENT] = "environment",
@@ -43,6 +43,7 @@ const char *const tl_resource_names[] = {
     [TL_MADE_SAMPLES] = "samples",
     [TL_MADE_TRANSPARENCY] = "what is seen through cloth",
     [TL_MADE_MIRRORS] = "what mirrors show",
+    [TL_MADE_TRACE] = "surfaces for rays",
     [TL_MADE_POINTS] = "visibility at points",
     [TL_MADE_ENVMAP_LOBES] = "lobes of the maps",
     [TL_MADE_CAPTURE] = "capture",

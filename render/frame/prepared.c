@@ -4,7 +4,7 @@
 #include "config/log.h"
 #include "config/memory.h"
 #include "render/env/from_environment.h"
-#include "render/frame/frame.h"
+#include "render/frame/facts.h"
 
 #include <stdlib.h>
 
@@ -24,12 +24,7 @@ struct tl_prepared {
 
 uint32_t tl_prepared_exponents(const tl_frame *frame, const struct tl_render_settings *settings)
 {
-    return tl_frame_exponents(frame, &settings->detail);
-}
-
-uint32_t tl_renderer_exponents(const tl_renderer *renderer)
-{
-    return renderer->exponents;
+    return tl_exponents_of(frame->surfaces, frame->surface_count, &settings->detail);
 }
 
 /* What is lit from regions at every sample. */
@@ -41,12 +36,10 @@ static bool wants_lights(const struct tl_light_params *light)
 
 static void add_lights(tl_prepared *prepared, uint32_t exponents, int region_count)
 {
-    struct tl_light_params light = prepared->light;
-    light.regions = region_count;
     struct tl_regions *regions = &prepared->lights[prepared->count].regions;
     struct tl_region_lights *lights = &prepared->lights[prepared->count].lights;
-    tl_frame_cut_regions(&prepared->cube, &light, regions);
-    tl_region_lights_begin(lights, regions, tl_frame_region_weight(&light));
+    tl_light_cut_regions(&prepared->cube, region_count, prepared->light.cut, regions);
+    tl_region_lights_begin(lights, regions, tl_light_region_weight(&prepared->light));
     tl_region_lights_add(lights, &prepared->lobes, exponents);
     prepared->lights[prepared->count++].count = region_count;
 }
@@ -111,7 +104,7 @@ static tl_prepared *begin(struct tl_prepared_request *request, const struct tl_l
     request->known = NULL;
     if (prepared && is_same_cube(&prepared->light, light)) {
         bool same_lights = prepared->light.cut == light->cut &&
-                           tl_frame_region_weight(&prepared->light) == tl_frame_region_weight(light);
+                           tl_light_region_weight(&prepared->light) == tl_light_region_weight(light);
         keep_requested(prepared, same_lights ? request : &(const struct tl_prepared_request){0});
         prepared->light = *light;
         return prepared;
@@ -164,25 +157,18 @@ static void copy_lights(tl_prepared *prepared, const struct tl_kept_lights *kept
     copy->diffuse_gain = tl_lobes_copy(&kept->lights.diffuse_gain);
 }
 
-/* The cube is that of the last frame: an image without light leaves it as it was. */
-static bool has_cube(const tl_renderer *renderer)
+tl_prepared *tl_prepared_copy_cache(const struct tl_light_cache *cache, const tl_cube *cube,
+                                    const struct tl_suns *suns, const struct tl_light_params *light)
 {
-    return renderer->valid & TL_BIT(TL_MADE_CUBE);
-}
-
-tl_prepared *tl_renderer_copy_prepared(const tl_renderer *renderer)
-{
-    if (!has_cube(renderer))
-        return NULL;
     tl_prepared *prepared = TL_NEW(tl_prepared);
-    prepared->light = renderer->settings.light;
-    prepared->cube = tl_cube_copy(&renderer->cube);
-    prepared->suns = renderer->suns;
-    prepared->lobes = tl_lobes_copy(&renderer->lobes);
+    prepared->light = *light;
+    prepared->cube = tl_cube_copy(cube);
+    prepared->suns = *suns;
+    prepared->lobes = tl_lobes_copy(&cache->lobes);
     for (int i = 0; i < TL_LIGHTS_KEPT; i++) {
-        const struct tl_kept_lights *kept = &renderer->kept[i];
-        if (kept->revision == renderer->light_revision && kept->cut == prepared->light.cut &&
-            kept->weight == tl_frame_region_weight(&prepared->light))
+        const struct tl_kept_lights *kept = &cache->kept[i];
+        if (kept->revision == cache->revision && kept->cut == light->cut &&
+            kept->weight == tl_light_region_weight(light))
             copy_lights(prepared, kept);
     }
     return prepared;
@@ -200,50 +186,31 @@ void tl_prepared_destroy(tl_prepared **prepared)
     *prepared = NULL;
 }
 
-static void add(tl_prepared *prepared, tl_renderer *renderer)
+void tl_prepared_set_revision(tl_prepared *prepared, uint64_t environment_revision)
 {
-    tl_lobes_merge(&renderer->lobes, &prepared->lobes);
+    prepared->environment_revision = environment_revision;
+}
+
+bool tl_prepared_fits(const tl_prepared *prepared, uint64_t environment_revision, int pem_size, bool sun)
+{
+    return prepared->environment_revision == environment_revision && prepared->light.pem_size == pem_size &&
+           prepared->light.sun == sun;
+}
+
+void tl_prepared_give_lights(tl_prepared *prepared, struct tl_light_cache *cache)
+{
+    tl_lobes_merge(&cache->lobes, &prepared->lobes);
     /* The first ones matter most: they come last, so that no other takes their place. */
     for (int i = prepared->count - 1; i >= 0; i--) {
         prepared->light.regions = prepared->lights[i].count;
-        tl_frame_keep_lights(renderer, &prepared->light, &prepared->lights[i].regions,
-                             &prepared->lights[i].lights);
+        tl_light_cache_keep(cache, &prepared->light, &prepared->lights[i].regions,
+                            &prepared->lights[i].lights);
     }
 }
 
-static bool is_of_this_frame(const tl_prepared *prepared, const tl_renderer *renderer)
+void tl_prepared_give_cube(tl_prepared *prepared, tl_cube *cube, struct tl_suns *suns)
 {
-    return prepared->environment_revision == renderer->frame.environment_revision &&
-           is_same_cube(&prepared->light, &renderer->settings.light);
-}
-
-void tl_renderer_take_prepared(tl_renderer *renderer, tl_prepared **prepared, uint64_t environment_revision)
-{
-    tl_prepared_destroy(&renderer->prepared);
-    (*prepared)->environment_revision = environment_revision;
-    if (has_cube(renderer) && is_of_this_frame(*prepared, renderer)) {
-        add(*prepared, renderer);
-        tl_prepared_destroy(prepared);
-        return;
-    }
-    renderer->prepared = *prepared;
-    *prepared = NULL;
-}
-
-static void use(tl_prepared *prepared, tl_renderer *renderer)
-{
-    renderer->cube = prepared->cube;
+    *cube = prepared->cube;
     prepared->cube = (tl_cube){0};
-    renderer->suns = prepared->suns;
-    renderer->lights = NULL; /* those of the cube before */
-    add(prepared, renderer);
-}
-
-bool tl_frame_use_prepared(tl_renderer *renderer)
-{
-    bool fits = renderer->prepared && is_of_this_frame(renderer->prepared, renderer);
-    if (fits)
-        use(renderer->prepared, renderer);
-    tl_prepared_destroy(&renderer->prepared);
-    return fits;
+    *suns = prepared->suns;
 }

@@ -5,9 +5,11 @@
 #ifndef TOILE_RENDER_FRAME_PREPARED_H
 #define TOILE_RENDER_FRAME_PREPARED_H
 
+#include "render/env/sun.h"
+#include "render/frame/light_cache.h"
 #include "render/frame/settings.h"
 
-#define TL_PREPARED_COUNTS_MAX 4 /* as many as a renderer keeps */
+#define TL_PREPARED_COUNTS_MAX TL_LIGHTS_KEPT
 
 typedef struct tl_prepared tl_prepared;
 
@@ -27,5 +29,16 @@ uint32_t tl_prepared_exponents(const tl_frame *frame, const struct tl_render_set
 /* Shows progress. One that is interrupted holds less. */
 tl_prepared *tl_prepared_make(struct tl_prepared_request *request);
 void tl_prepared_destroy(tl_prepared **prepared); /* null is fine */
+
+/* Between a renderer and what was prepared for it (render/renderer.h). A copy of what a cache holds of a
+ * cube, `light` being the options that it was made with. */
+tl_prepared *tl_prepared_copy_cache(const struct tl_light_cache *cache, const tl_cube *cube,
+                                    const struct tl_suns *suns, const struct tl_light_params *light);
+/* Whether the cube would be the same for this environment and these options. */
+bool tl_prepared_fits(const tl_prepared *prepared, uint64_t environment_revision, int pem_size, bool sun);
+void tl_prepared_set_revision(tl_prepared *prepared, uint64_t environment_revision);
+/* Moves the lobes and lights into a cache of the same cube; or the cube and its suns to the renderer. */
+void tl_prepared_give_lights(tl_prepared *prepared, struct tl_light_cache *cache);
+void tl_prepared_give_cube(tl_prepared *prepared, tl_cube *cube, struct tl_suns *suns);
 
 #endif

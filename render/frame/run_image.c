@@ -1,20 +1,22 @@
 /* Jobs of environment maps, of the reference, and of the image. */
-#include "render/frame/run.h"
-
 #include "config/log.h"
 #include "render/env/from_environment.h"
+#include "render/frame/facts.h"
+#include "render/frame/jobs.h"
+#include "render/inspect/inspect.h"
 #include "render/reference/reference.h"
 
-bool tl_run_envmap_lobes(void *context, int level, tl_error *error)
+bool tl_run_envmap_lobes(const struct tl_envmap_lobes_job *job, tl_error *error)
 {
-    tl_renderer *renderer = context;
-    (void)level, (void)error;
-    tl_cube_release(&renderer->surroundings.cube);
-    tl_lobes_release(&renderer->surroundings.lobes);
-    renderer->surroundings.cube = tl_cube_from_environment_with(
-        renderer->frame.environment, renderer->settings.maps.size, &renderer->surroundings.pour);
-    tl_lobes_make(&renderer->surroundings.lobes, &renderer->surroundings.cube,
-                  tl_frame_map_exponents(&renderer->frame, &renderer->settings.detail));
+    (void)error;
+    struct tl_surroundings *made = job->surroundings;
+    tl_cube_release(&made->cube);
+    tl_lobes_release(&made->lobes);
+    made->cube =
+        tl_cube_from_environment_with(job->environment->map, job->envmap_size->size, job->map_resampling);
+    tl_lobes_make(
+        &made->lobes, &made->cube,
+        tl_map_exponents_of(job->shapes->surfaces, job->shapes->surface_count, job->detail_options));
     return true;
 }
 
@@ -26,101 +28,127 @@ static mat3s environment_into_world(float yaw)
     return axes;
 }
 
-bool tl_run_capture(void *context, int level, tl_error *error)
+bool tl_run_capture(const struct tl_capture_job *job, tl_error *error)
 {
-    tl_renderer *renderer = context;
-    (void)level;
-    const struct tl_maps_params *maps = &renderer->settings.maps;
-    const struct tl_casters *casters = &renderer->casters;
+    const struct tl_maps_params *maps = job->capture_options;
+    const struct tl_casters *casters = job->casters;
+    const struct tl_shapes_input *shapes = job->shapes;
     vec3s offset = {{maps->capture_at[0], maps->capture_at[1], maps->capture_at[2]}};
-    mat3s into_world = environment_into_world(renderer->frame.environment_yaw);
+    mat3s into_world = environment_into_world(*job->yaw);
     const struct tl_capture_request request = {
         .point = glms_vec3_add(casters->centre, offset),
         .size = maps->size,
-        .environment = &renderer->surroundings.cube,
-        .lobes = &renderer->surroundings.lobes,
-        .environment_yaw = renderer->frame.environment_yaw,
+        .environment = &job->surroundings->cube,
+        .lobes = &job->surroundings->lobes,
+        .environment_yaw = *job->yaw,
         .into_world = &into_world,
-        .exponents = tl_frame_map_exponents(&renderer->frame, &renderer->settings.detail),
-        .exponent_levels = &renderer->lighting.exponent_levels,
-        .surfaces = renderer->surfaces,
-        .ranges = &renderer->ranges,
-        .ground = tl_frame_ground(renderer),
+        .exponents = tl_map_exponents_of(shapes->surfaces, shapes->surface_count, job->detail_options),
+        .exponent_levels = &job->lighting->exponent_levels,
+        .surfaces = job->surfaces,
+        .ranges = &shapes->ranges,
+        .ground = *job->has_ground ? job->ground : NULL,
         .near_m = 1e-3f * casters->radius,
         .far_m = glms_vec3_norm(offset) + 100 * casters->radius};
-    return tl_capture_draw(&renderer->capture, renderer->gpu, &request, error);
+    return tl_capture_draw(job->capture, *job->gpu, &request, error);
 }
 
-bool tl_run_envmap(void *context, int level, tl_error *error)
+/* A captured scene is in world axes, the environment alone in its own. Materials may have changed since the
+ * capture, and need lobes of other exponents. */
+bool tl_run_envmap(const struct tl_envmap_job *job, tl_error *error)
 {
-    tl_renderer *renderer = context;
-    (void)level, (void)error;
-    bool captured = renderer->settings.maps.capture_every > 0; /* in world axes */
-    if (captured)                                              /* materials may have changed since */
-        tl_lobes_make(&renderer->capture.lobes, &renderer->capture.cube,
-                      tl_frame_map_exponents(&renderer->frame, &renderer->settings.detail));
-    mat3s into_world = environment_into_world(captured ? 0 : renderer->frame.environment_yaw);
-    tl_envmap_fill(&renderer->envmap, renderer->gpu, &renderer->settings.maps,
-                   captured ? &renderer->capture.lobes : &renderer->surroundings.lobes, &into_world,
-                   &renderer->view);
-    tl_envmap_set_parts(&renderer->envmap, renderer->gpu, &renderer->ranges, renderer->settings.image.ground);
+    (void)error;
+    bool captured = job->envmap_size->is_captured;
+    const struct tl_shapes_input *shapes = job->shapes;
+    if (captured)
+        tl_lobes_make(&job->capture->lobes, &job->capture->cube,
+                      tl_map_exponents_of(shapes->surfaces, shapes->surface_count, job->detail_options));
+    mat3s into_world = environment_into_world(captured ? 0 : *job->yaw);
+    tl_envmap_fill(job->envmap, *job->gpu, job->layout,
+                   captured ? &job->capture->lobes : &job->surroundings->lobes, &into_world,
+                   &job->camera->view);
+    tl_envmap_set_parts(job->envmap, *job->gpu, &shapes->ranges, *job->has_ground);
     return true;
 }
 
-bool tl_run_look_up(void *context, int level, tl_error *error)
+bool tl_run_look_up(const struct tl_look_up_job *job, tl_error *error)
 {
-    tl_renderer *renderer = context;
-    (void)level;
-    const tl_target *gbuffer = &renderer->gbuffer.target;
+    const tl_target *gbuffer = &job->gbuffer->target;
     const struct tl_envmap_request request = {.triangles = &gbuffer->colours[TL_GBUFFER_TRIANGLE],
-                                              .exponent_levels = &renderer->lighting.exponent_levels,
-                                              .eye = renderer->view.eye,
-                                              .params = &renderer->settings.maps};
-    tl_lighting_begin(&renderer->lighting, renderer->gpu, gbuffer, true);
-    bool fine = tl_envmap_draw(&renderer->envmap, renderer->gpu, &request, error);
-    tl_gpu_reset_state(renderer->gpu);
+                                              .exponent_levels = &job->lighting->exponent_levels,
+                                              .eye = job->camera->view.eye,
+                                              .params = job->look_up};
+    tl_light_buffer_begin(job->light, *job->gpu, gbuffer, true);
+    bool fine = tl_envmap_draw(job->envmap, *job->gpu, &request, error);
+    tl_gpu_reset_state(*job->gpu);
     return fine;
 }
 
-bool tl_run_reference(void *context, int level, tl_error *error)
+bool tl_run_reference(const struct tl_reference_job *job, tl_error *error)
 {
-    tl_renderer *renderer = context;
-    (void)level;
+    const tl_frame frame = {.camera = job->camera->camera,
+                            .surfaces = job->motion->surfaces,
+                            .surface_count = job->shapes->surface_count,
+                            .environment = job->environment->map,
+                            .environment_yaw = *job->yaw,
+                            .lamps = job->lamps->items,
+                            .lamp_count = job->lamps->count};
+    const struct tl_reference_request request = {.frame = &frame,
+                                                 .ground = *job->has_ground ? job->ground : NULL,
+                                                 .params = job->reference_options,
+                                                 .detail = job->detail_steps,
+                                                 .lobe = job->light_options->lobe,
+                                                 .reflect_scene = job->light_options->reflect_scene,
+                                                 .width = job->size->width,
+                                                 .height = job->size->height,
+                                                 .supersample = job->size->supersample};
     tl_image image;
     struct tl_reference_report report;
-    const struct tl_reference_request request =
-        tl_frame_reference_request(&renderer->frame, &renderer->settings, tl_frame_ground(renderer));
     if (!tl_reference_draw(&request, &image, &report, error))
         return false;
     tl_info("reference: %d replicates, %.3g million rays, standard error %.2g %%", report.replicates,
             1e-6 * (double)report.rays, 100 * report.standard_error);
-    renderer->standard_error = report.standard_error;
-    tl_present_set_image(&renderer->present, renderer->gpu, &image);
+    *job->standard_error = report.standard_error;
+    tl_present_set_image(job->present, *job->gpu, &image);
     tl_image_release(&image);
     return true;
 }
 
-bool tl_run_resolve(void *context, int level, tl_error *error)
+bool tl_run_inspect(const struct tl_inspect_job *job, tl_error *error)
 {
-    tl_renderer *renderer = context;
-    (void)level, (void)error;
-    const struct tl_image_params *image = &renderer->settings.image;
-    tl_present_resolve(&renderer->present, renderer->gpu, &renderer->lighting.target.colours[0],
-                       &renderer->gbuffer.target.colours[TL_GBUFFER_POINT], image->width, image->height);
+    (void)error;
+    tl_light_buffer_clear(job->light, job->samples->width, job->samples->height);
+    *job->strain_range = tl_inspect_strain_range(job->view_options, job->shapes->drawn,
+                                                 job->shapes->drawn_count, *job->strain_range);
+    const struct tl_inspect_request request = {.image = job->view_options,
+                                               .strain_range = *job->strain_range,
+                                               .samples = job->samples,
+                                               .ranges = &job->shapes->ranges,
+                                               .regions = job->regions,
+                                               .points = job->points,
+                                               .view = &job->camera->view,
+                                               .environment_yaw = *job->yaw};
+    tl_inspect_paint(&request, job->light->texels);
+    tl_light_buffer_send(job->light, *job->gpu, &job->gbuffer->target);
     return true;
 }
 
-bool tl_run_show(void *context, int level, tl_error *error)
+bool tl_run_resolve(const struct tl_resolve_job *job, tl_error *error)
 {
-    tl_renderer *renderer = context;
-    (void)level;
-    const struct tl_show_request request = {.view = renderer->view,
-                                            .environment_yaw = renderer->frame.environment_yaw,
-                                            .params = &renderer->settings.image,
-                                            .framebuffer = renderer->show_framebuffer,
-                                            .width = renderer->show_width,
-                                            .first_column = renderer->show_first,
-                                            .end_column = renderer->show_end,
-                                            .height = renderer->show_height};
-    return tl_present_show(&renderer->present, renderer->gpu, &request, error);
+    (void)error;
+    tl_present_resolve(job->present, *job->gpu, &job->light->target.colours[0],
+                       &job->gbuffer->target.colours[TL_GBUFFER_POINT], job->size->width, job->size->height);
+    return true;
+}
+
+bool tl_run_show(const struct tl_show_job *job, tl_error *error)
+{
+    const struct tl_show_request request = {.view = job->camera->view,
+                                            .environment_yaw = *job->yaw,
+                                            .params = job->show_options,
+                                            .framebuffer = job->show_target->framebuffer,
+                                            .width = job->show_target->width,
+                                            .first_column = job->show_target->first,
+                                            .end_column = job->show_target->end,
+                                            .height = job->show_target->height};
+    return tl_present_show(job->present, *job->gpu, &request, error);
 }

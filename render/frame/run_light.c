@@ -1,205 +1,174 @@
 /* Jobs that light what the camera sees. */
-#include "render/frame/run.h"
-
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
+#include "render/frame/facts.h"
+#include "render/frame/jobs.h"
 #include "render/light/compose.h"
 #include "render/local/lamp_samples.h"
 
-#include <string.h>
+#include <stdlib.h>
 
-bool tl_run_light(void *context, int level, tl_error *error)
+bool tl_run_light(const struct tl_light_job *job, tl_error *error)
 {
-    tl_renderer *renderer = context;
-    (void)level;
-    const struct tl_light_request request = {.gbuffer = &renderer->gbuffer,
-                                             .pems = &renderer->pems,
-                                             .slices = &renderer->slice_maps,
-                                             .regions = &renderer->regions,
-                                             .suns = &renderer->suns,
-                                             .maps = renderer->maps,
-                                             .casters = renderer->casters,
-                                             .ground = tl_frame_ground(renderer),
-                                             .environment_yaw = renderer->frame.environment_yaw,
-                                             .eye = renderer->view.eye,
-                                             .round = renderer->rest.image,
-                                             .params = &renderer->settings.light};
-    return tl_lighting_draw(&renderer->lighting, renderer->gpu, &request, error);
+    const struct tl_light_request request = {.gbuffer = job->gbuffer,
+                                             .pems = job->pems,
+                                             .lobe_levels = job->lobe_levels,
+                                             .exact = &job->exact->maps,
+                                             .slices = &job->slices->maps,
+                                             .regions = job->regions,
+                                             .suns = job->suns,
+                                             .maps = job->maps,
+                                             .casters = *job->casters,
+                                             .ground = *job->has_ground ? job->ground : NULL,
+                                             .environment_yaw = *job->yaw,
+                                             .eye = job->camera->view.eye,
+                                             .round = *job->round,
+                                             .params = job->light_options};
+    return tl_lighting_draw(job->lighting, *job->gpu, &request, job->light, error);
 }
 
 /* A still image takes all its rounds before it is lit. */
-static void update_points(tl_renderer *renderer, struct tl_points_request *request)
+static void take_rounds(const struct tl_points_job *job, struct tl_points_request *request)
 {
-    const struct tl_light_params *light = &renderer->settings.light;
+    const struct tl_rays_input *options = job->ray_options;
     struct tl_progress progress = tl_progress_begin("averaging");
-    tl_points_update(renderer->points, request);
-    bool goes_on = renderer->frame.still && tl_light_averages(light);
-    for (int round = 1; goes_on && !tl_points_are_done(renderer->points) && !tl_interrupted(); round++) {
+    tl_points_update(job->points, request);
+    bool goes_on = job->moment->still && options->averages;
+    for (int round = 1; goes_on && !tl_points_are_done(job->points) && !tl_interrupted(); round++) {
         request->moved = false;
-        tl_points_update(renderer->points, request);
-        tl_progress_update(&progress, round, light->rounds);
+        tl_points_update(job->points, request);
+        tl_progress_update(&progress, round, options->params.rounds);
     }
     tl_progress_end(&progress);
-    renderer->rest.is_done = tl_points_are_done(renderer->points);
 }
 
-bool tl_run_points(void *context, int level, tl_error *error)
+bool tl_run_points(const struct tl_points_job *job, tl_error *error)
 {
-    tl_renderer *renderer = context;
-    (void)level;
-    if (!tl_frame_follow_motion(renderer, error))
-        return false;
-    const struct tl_ray_params params = tl_light_ray_params(&renderer->settings.light);
-    struct tl_points_request request = {.trace = renderer->trace,
-                                        .ranges = &renderer->ranges,
-                                        .samples = &renderer->samples,
-                                        .regions = &renderer->regions,
-                                        .suns = &renderer->suns,
-                                        .regions_revision = renderer->regions_revision,
-                                        .shapes_revision = renderer->signatures[TL_INPUT_SHAPES],
-                                        .ground = tl_frame_ground(renderer),
-                                        .environment_yaw = renderer->frame.environment_yaw,
-                                        .params = &params,
-                                        .moved = renderer->rest.scene == 0,
-                                        .whole_rounds = renderer->frame.still};
-    update_points(renderer, &request);
+    (void)error;
+    struct tl_points_request request = {.trace = job->trace,
+                                        .ranges = &job->shapes->ranges,
+                                        .samples = job->samples,
+                                        .regions = job->regions,
+                                        .suns = job->suns,
+                                        .regions_revision = *job->regions_revision,
+                                        .shapes_revision = job->shapes->revision,
+                                        .ground = *job->has_ground ? job->ground : NULL,
+                                        .environment_yaw = *job->yaw,
+                                        .params = &job->ray_options->params,
+                                        .moved = *job->scene_round == 0,
+                                        .whole_rounds = job->moment->still};
+    take_rounds(job, &request);
+    *job->points_are_done = tl_points_are_done(job->points);
     return true;
 }
 
-/* Which back-end shadows each lamp, kept for the jobs that follow. */
-static size_t list_lamps(tl_renderer *renderer, struct tl_lamp lamps[TL_LAMPS_MAX])
+/* Lamplight of the samples that no pass of the GPU knows: behind open cloth, through cloth, in mirrors. */
+static void add_lamps(const struct tl_compose_job *job, const struct tl_compose_request *composed)
 {
-    size_t count = tl_lamps_lit(&renderer->frame, lamps);
-    for (size_t i = 0; i < count; i++)
-        renderer->local.shadows.kinds[i] =
-            tl_lamp_shadow_of(&lamps[i], &renderer->settings.light, &renderer->casters);
-    return count;
-}
-
-/* Of samples that no pass of the GPU knows. */
-static bool add_lamps(tl_renderer *renderer, const struct tl_compose_request *composed, tl_error *error)
-{
-    struct tl_lamp lamps[TL_LAMPS_MAX];
-    const struct tl_lamp_samples_request request = {.lamp_count = list_lamps(renderer, lamps),
-                                                    .lamps = lamps,
-                                                    .shadowed = renderer->settings.light.method !=
-                                                                TL_METHOD_UNSHADOWED,
-                                                    .trace = renderer->trace,
-                                                    .samples = &renderer->samples,
+    const struct tl_lamp_samples_request request = {.lamp_count = job->lamps->count,
+                                                    .lamps = job->lamps->items,
+                                                    .shadowed =
+                                                        job->light_options->method != TL_METHOD_UNSHADOWED,
+                                                    .trace = job->trace,
+                                                    .samples = job->samples,
                                                     .shares = composed->shares,
                                                     .mirrors = composed->mirrors,
-                                                    .ranges = &renderer->ranges,
-                                                    .ground = tl_frame_ground(renderer),
-                                                    .eye = renderer->view.eye};
-    if (request.lamp_count == 0 || renderer->samples.count == renderer->samples.primary_count)
-        return true;
-    if (request.shadowed && !tl_frame_follow_motion(renderer, error))
-        return false;
-    tl_lamp_samples_add(&request, renderer->light);
+                                                    .ranges = &job->shapes->ranges,
+                                                    .ground = *job->has_ground ? job->ground : NULL,
+                                                    .eye = job->camera->view.eye};
+    if (request.lamp_count > 0 && job->samples->count > job->samples->primary_count)
+        tl_lamp_samples_add(&request, job->light->texels);
+}
+
+bool tl_run_compose(const struct tl_compose_job *job, tl_error *error)
+{
+    (void)error;
+    const struct tl_shapes_input *shapes = job->shapes;
+    tl_light_buffer_clear(job->light, job->samples->width, job->samples->height);
+    struct tl_compose_request request = {.samples = job->samples,
+                                         .lights = *job->lights,
+                                         .suns = job->suns,
+                                         .lobes = job->exact->lobes,
+                                         .environment = job->environment->map,
+                                         .environment_yaw = *job->yaw,
+                                         .params = job->light_options,
+                                         .eye = job->camera->view.eye};
+    if (tl_materials_have(shapes->surfaces, shapes->surface_count, tl_material_is_layered))
+        request.ranges = &shapes->ranges;
+    if (*job->facts & TL_BIT(TL_SCENE_TRANSPARENCY))
+        request.shares = job->transparency->shares;
+    if (job->light_options->method != TL_METHOD_UNSHADOWED) {
+        request.values = tl_points_values(job->points, &request.stride);
+        request.taps = tl_points_taps(job->points);
+        if (*job->facts & TL_BIT(TL_SCENE_MIRRORS))
+            request.mirrors = job->mirrors->items;
+        for (int i = 0; i < job->suns->count; i++)
+            request.sun_visibility[i] = tl_points_sun(job->points, i);
+    }
+    tl_compose(&request, job->light->texels);
+    add_lamps(job, &request);
+    tl_light_buffer_send(job->light, *job->gpu, &job->gbuffer->target);
     return true;
 }
 
-void tl_frame_clear_light(tl_renderer *renderer)
+/* The back-end that shadows each lamp. */
+static void choose_shadows(const struct tl_lamps_input *lamps, const struct tl_light_params *light,
+                           const struct tl_casters *casters, struct tl_lamp_shadows *shadows)
 {
-    const struct tl_samples *samples = &renderer->samples;
-    size_t bytes = (size_t)samples->width * (size_t)samples->height * 4 * sizeof(float);
-    if (bytes != renderer->light_bytes) {
-        free(renderer->light);
-        renderer->light = tl_alloc(bytes, 1);
-        renderer->light_bytes = bytes;
-    }
-    memset(renderer->light, 0, bytes);
+    for (size_t i = 0; i < lamps->count; i++)
+        shadows->kinds[i] = tl_lamp_shadow_of(&lamps->items[i], light, casters);
 }
 
-bool tl_run_compose(void *context, int level, tl_error *error)
+bool tl_run_lamp_maps(const struct tl_lamp_maps_job *job, tl_error *error)
 {
-    tl_renderer *renderer = context;
-    (void)level;
-    tl_frame_clear_light(renderer);
-    struct tl_compose_request request = {.samples = &renderer->samples,
-                                         .lights = renderer->lights,
-                                         .suns = &renderer->suns,
-                                         .lobes = &renderer->lobes,
-                                         .environment = renderer->frame.environment,
-                                         .environment_yaw = renderer->frame.environment_yaw,
-                                         .params = &renderer->settings.light,
-                                         .eye = renderer->view.eye};
-    if (tl_frame_has(&renderer->frame, tl_material_is_layered))
-        request.ranges = &renderer->ranges;
-    if (tl_frame_facts(&renderer->frame, &renderer->settings) & TL_BIT(TL_SCENE_TRANSPARENCY))
-        request.shares = renderer->transparency.shares;
-    if (renderer->settings.light.method != TL_METHOD_UNSHADOWED) {
-        request.values = tl_points_values(renderer->points, &request.stride);
-        request.taps = tl_points_taps(renderer->points);
-        if (tl_frame_facts(&renderer->frame, &renderer->settings) & TL_BIT(TL_SCENE_MIRRORS))
-            request.mirrors = renderer->mirrors.items;
-        for (int i = 0; i < renderer->suns.count; i++)
-            request.sun_visibility[i] = tl_points_sun(renderer->points, i);
-    }
-    tl_compose(&request, renderer->light);
-    if (!add_lamps(renderer, &request, error))
-        return false;
-    tl_lighting_set(&renderer->lighting, renderer->gpu, &renderer->gbuffer, renderer->light);
-    return true;
+    choose_shadows(job->lamps, job->light_options, job->casters, &job->local->shadows);
+    const struct tl_lamp_maps_request request = {.lamp_count = job->lamps->count,
+                                                 .lamps = job->lamps->items,
+                                                 .caster_surfaces = job->motion->surfaces,
+                                                 .caster_count = job->motion->surface_count,
+                                                 .casters = *job->casters,
+                                                 .surfaces = job->surfaces,
+                                                 .map_size = job->shadow_options->map_size};
+    return tl_lamp_maps_draw(&job->local->shadows, *job->gpu, &request, error);
 }
 
-bool tl_run_lamp_maps(void *context, int level, tl_error *error)
+bool tl_run_lamp_rays(const struct tl_lamp_rays_job *job, tl_error *error)
 {
-    tl_renderer *renderer = context;
-    (void)level;
-    struct tl_lamp lamps[TL_LAMPS_MAX];
-    const struct tl_lamp_maps_request request = {.lamp_count = list_lamps(renderer, lamps),
-                                                 .lamps = lamps,
-                                                 .caster_surfaces = renderer->frame.surfaces,
-                                                 .caster_count = renderer->frame.surface_count,
-                                                 .casters = renderer->casters,
-                                                 .surfaces = renderer->surfaces,
-                                                 .map_size = renderer->settings.light.map_size};
-    return tl_lamp_maps_draw(&renderer->local.shadows, renderer->gpu, &request, error);
-}
-
-bool tl_run_lamp_rays(void *context, int level, tl_error *error)
-{
-    tl_renderer *renderer = context;
-    (void)level;
-    if (!tl_frame_follow_motion(renderer, error))
-        return false;
-    struct tl_lamp lamps[TL_LAMPS_MAX];
-    struct tl_lamp_shadows *shadows = &renderer->local.shadows;
-    const struct tl_samples *samples = &renderer->samples;
-    size_t count = list_lamps(renderer, lamps);
+    (void)error;
+    struct tl_lamp_shadows *shadows = &job->local->shadows;
+    const struct tl_samples *samples = job->samples;
+    size_t count = job->lamps->count;
+    choose_shadows(job->lamps, job->light_options, job->casters, shadows);
     uint8_t *visible = TL_NEW_ARRAY(uint8_t, (size_t)samples->width * (size_t)samples->height);
     for (size_t i = 0; i < count; i++) {
         if (shadows->kinds[i] != TL_LAMP_SHADOW_RAYS)
             continue;
-        tl_lamp_rays(&lamps[i], renderer->trace, samples, &renderer->ranges, tl_frame_ground(renderer),
-                     visible);
-        tl_lamp_shadows_set(shadows, renderer->gpu, samples->width, samples->height, i, count, visible);
+        tl_lamp_rays(&job->lamps->items[i], job->trace, samples, &job->shapes->ranges,
+                     *job->has_ground ? job->ground : NULL, visible);
+        tl_lamp_shadows_set(shadows, *job->gpu, samples->width, samples->height, i, count, visible);
     }
     free(visible);
     return true;
 }
 
-bool tl_run_lamps(void *context, int level, tl_error *error)
+bool tl_run_lamps(const struct tl_lamps_job *job, tl_error *error)
 {
-    tl_renderer *renderer = context;
-    (void)level;
-    struct tl_lamp lamps[TL_LAMPS_MAX];
+    choose_shadows(job->lamps, job->light_options, job->casters, &job->local->shadows);
     /* Passes average their rounds in the target. */
-    bool passes = tl_frame_facts(&renderer->frame, &renderer->settings) & TL_BIT(TL_SCENE_PASSES);
-    const struct tl_local_request request = {.gbuffer = &renderer->gbuffer,
-                                             .light = &renderer->lighting.target,
-                                             .view = &renderer->view,
-                                             .surfaces = renderer->surfaces,
-                                             .surface_count = renderer->surface_count,
-                                             .ground = tl_frame_ground(renderer),
-                                             .casters = renderer->casters,
-                                             .lamp_count = list_lamps(renderer, lamps),
-                                             .lamps = lamps,
-                                             .params = &renderer->settings.shading,
-                                             .detail = &renderer->settings.detail,
-                                             .depth_bias_m = renderer->settings.light.depth_bias_m,
-                                             .weight = passes ? 1 / (float)(renderer->rest.image + 1) : 1};
-    return tl_local_draw(&renderer->local, renderer->gpu, &request, error);
+    bool passes = *job->facts & TL_BIT(TL_SCENE_PASSES);
+    const struct tl_local_request request = {.gbuffer = job->gbuffer,
+                                             .light = &job->light->target,
+                                             .view = &job->camera->view,
+                                             .surfaces = job->surfaces,
+                                             .surface_count = job->shapes->drawn_count,
+                                             .ground = *job->has_ground ? job->ground : NULL,
+                                             .casters = *job->casters,
+                                             .lamp_count = job->lamps->count,
+                                             .lamps = job->lamps->items,
+                                             .params = &job->lamps->shading,
+                                             .detail = job->detail_steps,
+                                             .depth_bias_m = job->light_options->depth_bias_m,
+                                             .weight = passes ? 1 / (float)(*job->round + 1) : 1};
+    return tl_local_draw(job->local, *job->gpu, &request, error);
 }

@@ -1,150 +1,96 @@
 /* Jobs that draw surfaces: for shadows, and for the camera. */
-#include "render/frame/run.h"
+#include "render/frame/facts.h"
+#include "render/frame/jobs.h"
 
-#include "config/memory.h"
-
-const struct tl_ground *tl_frame_ground(const tl_renderer *renderer)
+bool tl_run_surfaces(const struct tl_surfaces_job *job, tl_error *error)
 {
-    return renderer->settings.image.ground ? &renderer->ground : NULL;
-}
-
-bool tl_frame_follow_motion(tl_renderer *renderer, tl_error *error)
-{
-    return tl_trace_update(renderer->trace, renderer->frame.surfaces, renderer->frame.surface_count, error);
-}
-
-void tl_frame_list_surfaces(tl_renderer *renderer)
-{
-    const tl_frame *frame = &renderer->frame;
-    renderer->drawn = tl_resize(renderer->drawn, frame->surface_count + 1,
-                                sizeof *renderer->drawn); // NOLINT(bugprone-sizeof-expression): of a pointer
-    for (size_t i = 0; i < frame->surface_count; i++)
-        renderer->drawn[i] = &frame->surfaces[i];
-    renderer->drawn[frame->surface_count] = &renderer->ground.surface;
-    renderer->surface_count = frame->surface_count + (renderer->settings.image.ground ? 1 : 0);
-    tl_triangle_ranges_make(renderer->drawn, renderer->surface_count, &renderer->ranges);
-}
-
-bool tl_run_surfaces(void *context, int level, tl_error *error)
-{
-    tl_renderer *renderer = context;
-    (void)level;
-    const tl_frame *frame = &renderer->frame;
-    if (!tl_casters_measure(frame->surfaces, frame->surface_count, &renderer->casters, error))
+    if (!tl_casters_measure(job->motion->surfaces, job->motion->surface_count, job->casters, error))
         return false;
-    tl_ground_make(&renderer->casters, &renderer->ground);
-    tl_frame_list_surfaces(renderer);
-    return tl_surfaces_update(renderer->surfaces, renderer->drawn, renderer->surface_count, error);
+    tl_ground_make(job->casters, job->ground); /* the last of what is drawn, when it is drawn */
+    return tl_surfaces_update(job->surfaces, job->shapes->drawn, job->shapes->drawn_count, error);
 }
 
-bool tl_run_detail(void *context, int level, tl_error *error)
+bool tl_run_detail(const struct tl_detail_job *job, tl_error *error)
 {
-    tl_renderer *renderer = context;
-    (void)level;
-    return tl_detail_maps_make(&renderer->detail, renderer->gpu, renderer->drawn, renderer->surface_count,
-                               &renderer->settings.detail, error);
+    return tl_detail_maps_make(job->detail, *job->gpu, job->shapes->drawn, job->shapes->drawn_count,
+                               job->detail_steps, error);
 }
 
-static struct tl_shadow_request shadow_request(const tl_renderer *renderer)
-{
-    const struct tl_light_params *light = &renderer->settings.light;
-    bool in_passes = tl_light_source(light) == TL_LIGHT_CHAIN;
-    const tl_bits moves_shadows = TL_BIT(TL_INPUT_MOTION) | TL_BIT(TL_INPUT_YAW);
-    return (struct tl_shadow_request){
-        .kind = (enum tl_visibility)light->visibility,
-        .regions = &renderer->regions,
-        .suns = &renderer->suns,
-        .environment_yaw = renderer->frame.environment_yaw,
-        .caster_surfaces = renderer->frame.surfaces,
-        .caster_count = renderer->frame.surface_count,
-        .casters = renderer->casters,
-        .surfaces = renderer->surfaces,
-        .surface_count = renderer->surface_count,
-        .ground_index = renderer->settings.image.ground ? (int)renderer->surface_count - 1 : -1,
-        .map_size = light->map_size,
-        .maps_per_array = in_passes ? light->pems_per_pass : TL_REGIONS_MAX,
-        .blur_m = light->blur_m,
-        .regions_revision = renderer->regions_revision,
-        /* What moves is followed a part at a time; what rests is brought up to date. */
-        .refresh = renderer->moving & moves_shadows && !renderer->frame.still ? light->refresh : 0,
-        .round = renderer->rest.image};
-}
+/* Both jobs of shadow maps are handed the same. */
+#define SHADOW_REQUEST(job)                                                                                  \
+    (struct tl_shadow_request)                                                                               \
+    {                                                                                                        \
+        .kind = (job)->shadow_options->kind, .regions = (job)->regions, .suns = (job)->suns,                 \
+        .environment_yaw = *(job)->yaw, .caster_surfaces = (job)->shapes->surfaces,                          \
+        .caster_count = (job)->shapes->surface_count, .casters = *(job)->casters,                            \
+        .surfaces = (job)->surfaces, .surface_count = (job)->shapes->drawn_count,                            \
+        .ground_index = *(job)->has_ground ? (int)(job)->shapes->drawn_count - 1 : -1,                       \
+        .map_size = (job)->shadow_options->map_size,                                                         \
+        .maps_per_array = (job)->shadow_options->in_passes ? *(job)->pems_per_pass : TL_REGIONS_MAX,         \
+        .blur_m = (job)->shadow_options->blur_m, .regions_revision = *(job)->regions_revision,               \
+        .refresh =                                                                                           \
+            (job)->moment->moves_shadows && !(job)->moment->still ? (job)->ray_options->params.refresh : 0,  \
+        .round = *(job)->round                                                                               \
+    }
 
-bool tl_run_maps(void *context, int level, tl_error *error)
+/* While shadows move, as many maps a frame as light.refresh says; at rest all of them. */
+bool tl_run_maps(const struct tl_maps_job *job, tl_error *error)
 {
-    tl_renderer *renderer = context;
-    (void)level, (void)error;
-    struct tl_shadow_request request = shadow_request(renderer);
-    tl_shadow_maps_draw(renderer->maps, &request);
+    (void)error;
+    const struct tl_shadow_request request = SHADOW_REQUEST(job);
+    tl_shadow_maps_draw(job->maps, &request);
     return true;
 }
 
-bool tl_run_blur(void *context, int level, tl_error *error)
+bool tl_run_blur(const struct tl_blur_job *job, tl_error *error)
 {
-    tl_renderer *renderer = context;
-    (void)level, (void)error;
-    struct tl_shadow_request request = shadow_request(renderer);
-    tl_shadow_maps_blur(renderer->maps, &request);
+    (void)error;
+    const struct tl_shadow_request request = SHADOW_REQUEST(job);
+    tl_shadow_maps_blur(job->maps, &request);
     return true;
 }
 
-/* What no option asks for any more is not kept; bumps are as high as the options say, with maps or without.
- */
-static void forget_unused_detail(tl_renderer *renderer)
+/* The layers behind open cloth are drawn as the nearest one is. */
+#define GBUFFER_REQUEST(job)                                                                                 \
+    (struct tl_gbuffer_request)                                                                              \
+    {                                                                                                        \
+        .view = &(job)->camera->view, .width = (job)->size->columns, .height = (job)->size->rows,            \
+        .surfaces = (job)->surfaces, .drawn = (job)->shapes->drawn,                                          \
+        .surface_count = (job)->shapes->drawn_count, .ground = *(job)->has_ground ? (job)->ground : NULL,    \
+        .detail = (job)->detail_steps,                                                                       \
+        .frames =                                                                                            \
+            tl_materials_have((job)->shapes->surfaces, (job)->shapes->surface_count, tl_material_is_faceted) \
+    }
+
+bool tl_run_gbuffer(const struct tl_gbuffer_job *job, tl_error *error)
 {
-    if (!(tl_frame_facts(&renderer->frame, &renderer->settings) & TL_BIT(TL_SCENE_DETAIL)))
-        tl_detail_maps_release(&renderer->detail);
-    renderer->detail.params = renderer->settings.detail;
+    const struct tl_gbuffer_request request = GBUFFER_REQUEST(job);
+    return tl_gbuffer_draw(job->gbuffer, *job->gpu, &request, error);
 }
 
-static struct tl_gbuffer_request gbuffer_request(const tl_renderer *renderer)
+bool tl_run_samples(const struct tl_samples_job *job, tl_error *error)
 {
-    int width, height;
-    tl_image_samples(&renderer->settings.image, &width, &height);
-    return (struct tl_gbuffer_request){.view = &renderer->view,
-                                       .width = width,
-                                       .height = height,
-                                       .surfaces = renderer->surfaces,
-                                       .drawn = renderer->drawn,
-                                       .surface_count = renderer->surface_count,
-                                       .ground = tl_frame_ground(renderer),
-                                       .detail = &renderer->settings.detail,
-                                       .frames = tl_frame_has(&renderer->frame, tl_material_is_faceted)};
-}
-
-bool tl_run_gbuffer(void *context, int level, tl_error *error)
-{
-    tl_renderer *renderer = context;
-    (void)level;
-    struct tl_gbuffer_request request = gbuffer_request(renderer);
-    forget_unused_detail(renderer);
-    return tl_gbuffer_draw(&renderer->gbuffer, renderer->gpu, &request, error);
-}
-
-bool tl_run_samples(void *context, int level, tl_error *error)
-{
-    tl_renderer *renderer = context;
-    (void)level, (void)error;
-    tl_samples_read(&renderer->gbuffer, &renderer->ranges, renderer->view.eye, &renderer->samples);
+    (void)error;
+    tl_samples_read(job->gbuffer, &job->shapes->ranges, job->camera->view.eye, job->samples);
     return true;
 }
 
-bool tl_run_transparency(void *context, int level, tl_error *error)
+bool tl_run_transparency(const struct tl_transparency_job *job, tl_error *error)
 {
-    tl_renderer *renderer = context;
-    (void)level;
     const struct tl_transparency_request request = {
-        .gbuffer = &renderer->gbuffer, .draw = gbuffer_request(renderer), .ranges = &renderer->ranges};
-    return tl_transparency_find(&renderer->transparency, renderer->gpu, &request, &renderer->samples, error);
+        .gbuffer = job->gbuffer, .draw = GBUFFER_REQUEST(job), .ranges = &job->shapes->ranges};
+    return tl_transparency_find(job->transparency, *job->gpu, &request, job->samples, error);
 }
 
-bool tl_run_mirrors(void *context, int level, tl_error *error)
+bool tl_run_trace(const struct tl_trace_job *job, tl_error *error)
 {
-    tl_renderer *renderer = context;
-    (void)level;
-    if (!tl_frame_follow_motion(renderer, error))
-        return false;
-    tl_mirrors_trace(&renderer->mirrors, renderer->trace, &renderer->ranges, tl_frame_ground(renderer),
-                     &renderer->samples);
+    return tl_trace_update(job->trace, job->motion->surfaces, job->motion->surface_count, error);
+}
+
+bool tl_run_mirrors(const struct tl_mirrors_job *job, tl_error *error)
+{
+    (void)error;
+    tl_mirrors_trace(job->mirrors, job->trace, &job->shapes->ranges, *job->has_ground ? job->ground : NULL,
+                     job->samples);
     return true;
 }

@@ -19,6 +19,11 @@ struct tl_render_settings {
     struct tl_reference_params reference;
 };
 
+/* The option tables of these settings, bound to them. */
+#define TL_RENDER_TABLES 6
+void tl_render_settings_bind(struct tl_render_settings *settings,
+                             struct tl_binding bindings[TL_RENDER_TABLES]);
+
 /* As the jobs use them: regions in sixes, sizes in powers of two; views other than light show what rays find.
  */
 struct tl_render_settings tl_frame_usable(const struct tl_render_settings *settings);

@@ -1,4 +1,4 @@
-#include "render/frame/frame.h"
+#include "render/frame/settings.h"
 
 #include <string.h>
 

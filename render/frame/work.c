@@ -3,6 +3,7 @@
  * twelve frames); only their ratios within a job matter, the rest is learned. */
 #include "render/frame/work.h"
 
+#include "render/frame/facts.h"
 #include "render/inspect/legend.h"
 
 #include <math.h>
@@ -41,15 +42,18 @@ static bool is_bumpy(const tl_material *material)
     return material->weave || material->normal_map.image;
 }
 
-void tl_work_count(tl_renderer *renderer, const tl_frame *frame)
+struct tl_work_counts tl_work_count(const tl_frame *frame)
 {
+    const tl_surface *surfaces = frame->surfaces;
+    size_t count = frame->surface_count;
     struct tl_lamp lamps[TL_LAMPS_MAX];
-    renderer->counted = (struct tl_work_counts){.lamps = (int)tl_lamps_lit(frame, lamps),
-                                                .is_glossy = tl_frame_has(frame, is_glossy),
-                                                .is_bumpy = tl_frame_has(frame, is_bumpy),
-                                                .is_faceted = tl_frame_has(frame, tl_material_is_faceted)};
-    for (size_t i = 0; i < frame->surface_count; i++)
-        renderer->counted.triangles += (double)frame->surfaces[i].index_count / 3;
+    struct tl_work_counts counts = {.lamps = (int)tl_lamps_lit(frame, lamps),
+                                    .is_glossy = tl_materials_have(surfaces, count, is_glossy),
+                                    .is_bumpy = tl_materials_have(surfaces, count, is_bumpy),
+                                    .is_faceted = tl_materials_have(surfaces, count, tl_material_is_faceted)};
+    for (size_t i = 0; i < count; i++)
+        counts.triangles += (double)surfaces[i].index_count / 3;
+    return counts;
 }
 
 /* A matt one, a glossy one, those of a fan. */
@@ -58,9 +62,10 @@ static double lobes_of(const struct tl_work_counts *counts, const struct tl_ligh
     return 1 + (counts->is_glossy ? 1 : 0) + (counts->is_faceted ? light->fan : 0);
 }
 
-struct tl_work_seen tl_work_look(const tl_renderer *renderer, const struct tl_render_settings *settings)
+struct tl_work_seen tl_work_look(const struct tl_resources *resources, const struct tl_work_counts *counts,
+                                 const struct tl_render_settings *settings)
 {
-    const struct tl_samples *samples = &renderer->samples;
+    const struct tl_samples *samples = &resources->samples;
     const struct tl_light_params *light = &settings->light;
     double then = (double)samples->width * samples->height, now = texels_of(&settings->image);
     double covered_then = (double)tl_samples_seen(samples);
@@ -70,15 +75,15 @@ struct tl_work_seen tl_work_look(const tl_renderer *renderer, const struct tl_re
         .settings = settings,
         .texels = now,
         .covered = covered,
-        .points = points_seen((double)tl_points_visible(renderer->points), covered_then, covered),
-        .lobes = lobes_of(&renderer->counted, light),
+        .points = points_seen((double)tl_points_visible(resources->points), covered_then, covered),
+        .lobes = lobes_of(counts, light),
         .groups = shadowed ? ceil(light->regions / (double)TL_LANES) : 0,
         .refreshed = refreshed(light),
-        .is_bumpy = renderer->counted.is_bumpy,
-        .suns = shadowed ? renderer->suns.count : 0,
-        .lamps = renderer->counted.lamps,
-        .triangles = renderer->counted.triangles,
-        .new_regions = tl_frame_has_lights(renderer, light) ? 0 : light->regions};
+        .is_bumpy = counts->is_bumpy,
+        .suns = shadowed ? resources->suns.count : 0,
+        .lamps = counts->lamps,
+        .triangles = counts->triangles,
+        .new_regions = tl_light_cache_has(&resources->light_cache, light) ? 0 : light->regions};
 }
 
 struct tl_work tl_lights_work(const void *context)
@@ -103,6 +108,12 @@ struct tl_work tl_samples_work(const void *context)
 {
     const struct tl_work_seen *seen = context;
     return (struct tl_work){{1e-5 * seen->texels, 4e-5 * seen->covered}};
+}
+
+struct tl_work tl_trace_work(const void *context)
+{
+    const struct tl_work_seen *seen = context;
+    return (struct tl_work){{1e-4 * seen->triangles}};
 }
 
 struct tl_work tl_points_work(const void *context)

@@ -3,7 +3,7 @@
 #ifndef TOILE_RENDER_FRAME_WORK_H
 #define TOILE_RENDER_FRAME_WORK_H
 
-#include "render/frame/frame.h"
+#include "render/frame/resources.h"
 
 struct tl_work_seen {
     const struct tl_render_settings *settings;
@@ -17,14 +17,22 @@ struct tl_work_seen {
     double lamps, suns; /* lit; that stand apart */
     double new_regions; /* as lights that are not kept from an earlier frame */
 };
-/* Before a draw: what of the frame is remembered when its surfaces may be gone. */
-void tl_work_count(tl_renderer *renderer, const tl_frame *frame);
-struct tl_work_seen tl_work_look(const tl_renderer *renderer, const struct tl_render_settings *settings);
+/* What is remembered of a frame when its surfaces may be gone. */
+struct tl_work_counts {
+    double triangles;
+    int lamps;
+    bool is_glossy, is_faceted, is_bumpy; /* any material */
+};
+struct tl_work_counts tl_work_count(const tl_frame *frame);
+/* `counts` of the last frame, whose resources these are. */
+struct tl_work_seen tl_work_look(const struct tl_resources *resources, const struct tl_work_counts *counts,
+                                 const struct tl_render_settings *settings);
 
 /* Of the jobs of the same names; `seen` is a struct tl_work_seen. */
 struct tl_work tl_lights_work(const void *seen);
 struct tl_work tl_gbuffer_work(const void *seen);
 struct tl_work tl_samples_work(const void *seen);
+struct tl_work tl_trace_work(const void *seen);
 struct tl_work tl_points_work(const void *seen);
 struct tl_work tl_compose_work(const void *seen);
 struct tl_work tl_inspect_work(const void *seen);

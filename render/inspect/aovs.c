@@ -1,8 +1,5 @@
 #include "render/inspect/aovs.h"
 
-#include "render/inspect/find.h"
-#include "render/renderer.h"
-
 #include <string.h>
 
 enum layer { NORMAL, POINT, UV, ALBEDO, VISIBILITY, STRAIN };
@@ -24,17 +21,9 @@ static const struct kind {
                         [VISIBILITY] = {visibility_channels, 1},
                         [STRAIN] = {strain_channels, 3}};
 
-static bool has_strains(const tl_renderer *renderer)
+static void fill(const struct tl_inspect_request *request, size_t number, enum layer layer, float *texel)
 {
-    for (size_t i = 0; i < renderer->surface_count; i++)
-        if (renderer->drawn[i]->strains)
-            return true;
-    return false;
-}
-
-static void fill(const tl_renderer *renderer, size_t number, enum layer layer, float *texel)
-{
-    const tl_sample *sample = &renderer->samples.items[number];
+    const tl_sample *sample = &request->samples->items[number];
     struct tl_inspection found;
     switch (layer) {
     case NORMAL:
@@ -51,7 +40,7 @@ static void fill(const tl_renderer *renderer, size_t number, enum layer layer, f
     case STRAIN:
         break;
     }
-    tl_inspect_sample(renderer, number, &found);
+    tl_inspect_sample(request, number, &found);
     const float strain[3] = {found.strain_warp, found.strain_weft, found.shear};
     if (layer == UV)
         memcpy(texel, found.uv.raw, sizeof found.uv);
@@ -61,36 +50,33 @@ static void fill(const tl_renderer *renderer, size_t number, enum layer layer, f
         memcpy(texel, strain, sizeof strain);
 }
 
-static tl_image read_layer(const tl_renderer *renderer, enum layer layer)
+static tl_image read_layer(const struct tl_inspect_request *request, enum layer layer)
 {
-    const struct tl_image_params *size = &renderer->settings.image;
+    const struct tl_image_params *size = request->image;
     int channels = kinds[layer].channel_count;
     tl_image image = tl_image_create(size->width, size->height, channels, TL_IMAGE_F32);
 #pragma omp parallel for schedule(dynamic)
     for (int y = 0; y < size->height; y++)
         for (int x = 0; x < size->width; x++) {
-            size_t number = tl_inspect_find(renderer, x, y);
+            size_t number = tl_inspect_find(request->samples, size->width, size->height, x, y);
             float *texel =
                 tl_image_floats(&image) + ((size_t)y * (size_t)size->width + (size_t)x) * (size_t)channels;
-            if (number < renderer->samples.primary_count)
-                fill(renderer, number, layer, texel);
+            if (number < request->samples->primary_count)
+                fill(request, number, layer, texel);
         }
     return image;
 }
 
-bool tl_renderer_read_aovs(const tl_renderer *renderer, struct tl_aovs *out, tl_error *error)
+void tl_aovs_make(const struct tl_inspect_request *request, bool has_strains, struct tl_aovs *out)
 {
     *out = (struct tl_aovs){0};
-    if (!(renderer->valid & TL_BIT(TL_MADE_SAMPLES)))
-        return tl_fail(error, TL_USAGE, "renderer: the frame drawn last was not to have layers");
     bool is_known[TL_AOVS_MAX] = {[NORMAL] = true, [POINT] = true, [UV] = true, [ALBEDO] = true};
-    is_known[VISIBILITY] = renderer->valid & TL_BIT(TL_MADE_POINTS);
-    is_known[STRAIN] = has_strains(renderer);
+    is_known[VISIBILITY] = request->points != NULL;
+    is_known[STRAIN] = has_strains;
     for (int layer = 0; layer < TL_AOVS_MAX; layer++)
         if (is_known[layer])
             out->items[out->count++] = (struct tl_aov){.channels = kinds[layer].channels,
-                                                       .image = read_layer(renderer, (enum layer)layer)};
-    return true;
+                                                       .image = read_layer(request, (enum layer)layer)};
 }
 
 void tl_aovs_release(struct tl_aovs *aovs)

@@ -2,7 +2,7 @@
 #ifndef TOILE_RENDER_INSPECT_AOVS_H
 #define TOILE_RENDER_INSPECT_AOVS_H
 
-#include "assets/base/image.h"
+#include "render/inspect/inspect.h"
 
 #define TL_AOVS_MAX 6
 
@@ -18,6 +18,10 @@ struct tl_aovs {
     struct tl_aov items[TL_AOVS_MAX];
 };
 
+/* `request->image` is the whole image's; visibility is there when its points are, strain when `has_strains`.
+ * `out` is to be released. Each pixel has the values of the one sample nearest to its middle: normals and
+ * places of different surfaces have no mean. */
+void tl_aovs_make(const struct tl_inspect_request *request, bool has_strains, struct tl_aovs *out);
 void tl_aovs_release(struct tl_aovs *aovs);
 
 #endif

@@ -1,8 +1,7 @@
-#include "render/inspect/find.h"
+#include "render/inspect/inspect.h"
 
 #include "render/inspect/paint.h"
 #include "render/inspect/pick.h"
-#include "render/renderer.h"
 
 #include <string.h>
 
@@ -33,46 +32,45 @@ static size_t find_sample(const struct tl_samples *samples, uint32_t texel)
     return found ? low : samples->primary_count;
 }
 
-size_t tl_inspect_find(const tl_renderer *renderer, int x, int y)
+size_t tl_inspect_find(const struct tl_samples *samples, int width, int height, int x, int y)
 {
-    const struct tl_image_params *image = &renderer->settings.image;
-    const struct tl_samples *samples = &renderer->samples;
-    uint32_t column =
-        (uint32_t)(((uint64_t)x * 2 + 1) * (uint64_t)samples->width / 2 / (uint64_t)image->width);
-    uint64_t upwards = (uint64_t)(image->height - 1 - y);
-    uint32_t row = (uint32_t)((upwards * 2 + 1) * (uint64_t)samples->height / 2 / (uint64_t)image->height);
+    uint32_t column = (uint32_t)(((uint64_t)x * 2 + 1) * (uint64_t)samples->width / 2 / (uint64_t)width);
+    uint64_t upwards = (uint64_t)(height - 1 - y);
+    uint32_t row = (uint32_t)((upwards * 2 + 1) * (uint64_t)samples->height / 2 / (uint64_t)height);
     return find_sample(samples, row * (uint32_t)samples->width + column);
 }
 
-static bool pick(const tl_renderer *renderer, int x, int y, tl_sample *out)
+static bool pick(const struct tl_inspect_request *request, int width, int height, int x, int y,
+                 tl_sample *out)
 {
-    const struct tl_image_params *image = &renderer->settings.image;
-    const struct tl_view *view = &renderer->view;
-    float right = 2 * ((float)x + 0.5f) / (float)image->width - 1;
-    float up = 1 - 2 * ((float)y + 0.5f) / (float)image->height;
+    const struct tl_view *view = request->view;
+    float right = 2 * ((float)x + 0.5f) / (float)width - 1;
+    float up = 1 - 2 * ((float)y + 0.5f) / (float)height;
     vec3s direction = glms_vec3_add(
         view->forward, glms_vec3_add(glms_vec3_scale(view->right, right), glms_vec3_scale(view->up, up)));
-    if (!tl_pick(&renderer->ranges, view->eye, glms_vec3_normalize(direction), out))
+    if (!tl_pick(request->ranges, view->eye, glms_vec3_normalize(direction), out))
         return false;
-    out->glossiness = tl_triangle_material(&renderer->ranges, out->triangle & ~TL_SAMPLE_BACK)->glossiness;
+    out->glossiness = tl_triangle_material(request->ranges, out->triangle & ~TL_SAMPLE_BACK)->glossiness;
     return true;
 }
 
-static void tell_visibility(const tl_renderer *renderer, size_t sample, struct tl_inspection *out)
+static void describe_visibility(const struct tl_inspect_request *request, size_t sample,
+                                struct tl_inspection *out)
 {
     struct tl_seen_regions regions;
     size_t stride;
-    tl_seen_regions_make(&renderer->regions, renderer->frame.environment_yaw, &regions);
-    const uint16_t *values = tl_points_values(renderer->points, &stride);
+    tl_seen_regions_make(request->regions, request->environment_yaw, &regions);
+    const uint16_t *values = tl_points_values(request->points, &stride);
     struct tl_seen seen =
-        tl_seen_at(&regions, values, stride, &tl_points_taps(renderer->points)[sample], out->smooth);
+        tl_seen_at(&regions, values, stride, &tl_points_taps(request->points)[sample], out->smooth);
     out->has_visibility = true;
     out->visibility = seen.visibility;
     out->strongest_region = seen.strongest;
     out->strongest_share = seen.share;
 }
 
-static void tell_surface(const tl_renderer *renderer, const tl_sample *sample, struct tl_inspection *out)
+static void describe_surface(const struct tl_inspect_request *request, const tl_sample *sample,
+                             struct tl_inspection *out)
 {
     uint32_t number = sample->triangle & ~TL_SAMPLE_BACK, corners[3];
     *out = (struct tl_inspection){.strongest_region = -1,
@@ -82,8 +80,8 @@ static void tell_surface(const tl_renderer *renderer, const tl_sample *sample, s
                                   .smooth = sample->smooth,
                                   .glossiness = sample->glossiness};
     memcpy(out->weights, sample->weights, sizeof out->weights);
-    const tl_surface *surface = tl_triangle_find(&renderer->ranges, number, corners, &out->surface_index);
-    uint32_t own = number - renderer->ranges.first[out->surface_index];
+    const tl_surface *surface = tl_triangle_find(request->ranges, number, corners, &out->surface_index);
+    uint32_t own = number - request->ranges->first[out->surface_index];
     const struct tl_mesh_part *part = tl_triangle_part(surface, own);
     out->surface = surface->name;
     out->material = surface->materials[part->material].name;
@@ -108,30 +106,19 @@ static void tell_surface(const tl_renderer *renderer, const tl_sample *sample, s
     }
 }
 
-void tl_inspect_sample(const tl_renderer *renderer, size_t number, struct tl_inspection *out)
+void tl_inspect_sample(const struct tl_inspect_request *request, size_t number, struct tl_inspection *out)
 {
-    tell_surface(renderer, &renderer->samples.items[number], out);
-    if (renderer->valid & TL_BIT(TL_MADE_POINTS))
-        tell_visibility(renderer, number, out);
+    describe_surface(request, &request->samples->items[number], out);
+    if (request->points)
+        describe_visibility(request, number, out);
 }
 
-bool tl_renderer_inspect(const tl_renderer *renderer, int x, int y, struct tl_inspection *out)
+bool tl_inspect_ray(const struct tl_inspect_request *request, int width, int height, int x, int y,
+                    struct tl_inspection *out)
 {
-    const struct tl_image_params *image = &renderer->settings.image;
-    *out = (struct tl_inspection){.strongest_region = -1};
-    if (!(renderer->valid & TL_BIT(TL_MADE_IMAGE)) || x < 0 || y < 0 || x >= image->width ||
-        y >= image->height)
-        return false;
-    if (renderer->valid & TL_BIT(TL_MADE_SAMPLES)) {
-        size_t number = tl_inspect_find(renderer, x, y);
-        if (number == renderer->samples.primary_count)
-            return false;
-        tl_inspect_sample(renderer, number, out);
-        return true;
-    }
     tl_sample sample;
-    if (!pick(renderer, x, y, &sample))
+    if (!pick(request, width, height, x, y, &sample))
         return false;
-    tell_surface(renderer, &sample, out);
+    describe_surface(request, &sample, out);
     return true;
 }

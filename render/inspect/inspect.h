@@ -7,7 +7,10 @@
 #ifndef TOILE_RENDER_INSPECT_INSPECT_H
 #define TOILE_RENDER_INSPECT_INSPECT_H
 
+#include "render/gbuffer/samples.h"
 #include "render/inspect/legend.h"
+#include "render/scene/view.h"
+#include "render/visibility/points.h"
 
 struct tl_inspection {
     const char *surface;  /* "garment", "avatar", "ground"; borrowed from the frame */
@@ -33,5 +36,37 @@ struct tl_inspection {
     float strain_warp, strain_weft; /* length over rest length, less 1 */
     float shear;                    /* cosine of the angle between warp and weft; 0: at right angles */
 };
+
+/* What views are made of, all of the same image. Borrowed. */
+struct tl_inspect_request {
+    const struct tl_image_params *image; /* view, view_region, view_range */
+    float strain_range;                  /* views of strain: share of 1 at the ends of the legend */
+    const struct tl_samples *samples;
+    const struct tl_triangle_ranges *ranges;
+    const struct tl_regions *regions; /* NULL: none have been made */
+    const tl_points *points;          /* visibility at the samples; NULL: not kept */
+    const struct tl_view *view;
+    float environment_yaw; /* rad */
+};
+
+/* The range of a view of strain: as image.view_range says, or of what is drawn; `before` for other views. */
+float tl_inspect_strain_range(const struct tl_image_params *image, const tl_surface *const *drawn,
+                              size_t count, float before);
+/* The legend of a view. */
+void tl_inspect_legend(const struct tl_inspect_request *request, struct tl_legend *out);
+/* Writes light[4 * texel] of the samples: the view's colours in place of light. */
+void tl_inspect_paint(const struct tl_inspect_request *request, float *light);
+/* Whether rounds at rest change what is shown. */
+bool tl_inspect_averages(int view);
+
+/* The nearest sample of the texel in the middle of pixel (x, y) of a picture of width x height, counted from
+ * its upper left corner; primary_count where nothing is. */
+size_t tl_inspect_find(const struct tl_samples *samples, int width, int height, int x, int y);
+/* All that is known of sample `number`. */
+void tl_inspect_sample(const struct tl_inspect_request *request, size_t number, struct tl_inspection *out);
+/* What a ray through the middle of the pixel meets, for images whose samples were not kept; false: nothing.
+ */
+bool tl_inspect_ray(const struct tl_inspect_request *request, int width, int height, int x, int y,
+                    struct tl_inspection *out);
 
 #endif

@@ -94,10 +94,7 @@ void tl_lighting_release(struct tl_lighting *lighting)
     for (int source = 0; source < TL_LIGHT_SOURCES; source++)
         for (int kind = 0; kind < TL_LIGHT_MAP_KINDS; kind++)
             tl_program_destroy(&lighting->programs[source][kind]);
-    tl_texture_destroy(&lighting->lobe_levels);
     tl_texture_destroy(&lighting->exponent_levels);
-    tl_texture_destroy(&lighting->lobes);
-    tl_target_destroy(&lighting->target);
     if (lighting->regions_buffer)
         glDeleteBuffers(1, &lighting->regions_buffer);
     lighting->regions_buffer = 0;
@@ -111,12 +108,6 @@ bool tl_lighting_reload(struct tl_lighting *lighting, tl_error *error)
             if (lighting->programs[source][kind].id)
                 fine = fine && tl_program_reload(&lighting->programs[source][kind], error);
     return fine;
-}
-
-size_t tl_lighting_bytes(const struct tl_lighting *lighting)
-{
-    return tl_texture_bytes(&lighting->lobe_levels) + tl_texture_bytes(&lighting->exponent_levels) +
-           tl_texture_bytes(&lighting->lobes);
 }
 
 /* The program of a source under a kind of maps (RAYS: none). */
@@ -138,51 +129,33 @@ static const tl_program *program_of(struct tl_lighting *lighting, tl_gpu *gpu, e
     return program;
 }
 
-void tl_lighting_set_lobe(struct tl_lighting *lighting, tl_gpu *gpu, const struct tl_lobe_table *table)
+void tl_lobe_levels_upload(tl_texture *levels, tl_gpu *gpu, const struct tl_lobe_table *table)
 {
-    if (!lighting->lobe_levels.id)
-        lighting->lobe_levels = tl_texture_create(gpu, GL_TEXTURE_2D, GL_R32F, TL_LOBE_STEPS, 1, 1, 1);
-    glTextureSubImage2D(lighting->lobe_levels.id, 0, 0, 0, TL_LOBE_STEPS, 1, GL_RED, GL_FLOAT, table->level);
+    if (!levels->id)
+        *levels = tl_texture_create(gpu, GL_TEXTURE_2D, GL_R32F, TL_LOBE_STEPS, 1, 1, 1);
+    glTextureSubImage2D(levels->id, 0, 0, 0, TL_LOBE_STEPS, 1, GL_RED, GL_FLOAT, table->level);
 }
 
-void tl_lighting_set_exact(struct tl_lighting *lighting, tl_gpu *gpu, const struct tl_lobes *lobes)
+void tl_exact_maps_upload(struct tl_exact_maps *maps, tl_gpu *gpu, const struct tl_lobes *lobes)
 {
     int width = 0, height = 0;
     for (int i = 0; i <= TL_EXPONENT_COUNT; i++) {
         int side = lobes->made & 1u << i ? lobes->maps[i].side : 0;
-        lighting->lobe_places[i][0] = (float)height;
-        lighting->lobe_places[i][1] = (float)side;
+        maps->places[i][0] = (float)height;
+        maps->places[i][1] = (float)side;
         width = side > 0 && side + 2 > width ? side + 2 : width;
         height += side > 0 ? side + 2 : 0;
     }
-    if (lighting->lobes.width != width || lighting->lobes.height != height) {
-        tl_texture_destroy(&lighting->lobes);
-        lighting->lobes = tl_texture_create(gpu, GL_TEXTURE_2D, GL_RGBA32F, width, height, 1, 1);
+    if (maps->lobes.width != width || maps->lobes.height != height) {
+        tl_texture_destroy(&maps->lobes);
+        maps->lobes = tl_texture_create(gpu, GL_TEXTURE_2D, GL_RGBA32F, width, height, 1, 1);
     }
     for (int i = 0; i <= TL_EXPONENT_COUNT; i++) {
-        int side = (int)lighting->lobe_places[i][1];
+        int side = (int)maps->places[i][1];
         if (side > 0)
-            glTextureSubImage2D(lighting->lobes.id, 0, 0, (int)lighting->lobe_places[i][0], side + 2,
-                                side + 2, GL_RGBA, GL_FLOAT, lobes->maps[i].texels);
+            glTextureSubImage2D(maps->lobes.id, 0, 0, (int)maps->places[i][0], side + 2, side + 2, GL_RGBA,
+                                GL_FLOAT, lobes->maps[i].texels);
     }
-}
-
-static void allocate(struct tl_lighting *lighting, tl_gpu *gpu, const tl_target *gbuffer)
-{
-    const unsigned format = GL_RGBA32F;
-    if (lighting->target.width != gbuffer->width || lighting->target.height != gbuffer->height) {
-        tl_target_destroy(&lighting->target);
-        lighting->target = tl_target_create(gpu, gbuffer->width, gbuffer->height, &format, 1, false);
-    }
-    glNamedFramebufferTexture(lighting->target.id, GL_DEPTH_ATTACHMENT, gbuffer->depth.id, 0);
-}
-
-void tl_lighting_set(struct tl_lighting *lighting, tl_gpu *gpu, const struct tl_gbuffer *gbuffer,
-                     const float *light)
-{
-    allocate(lighting, gpu, &gbuffer->target);
-    glTextureSubImage2D(lighting->target.colours[0].id, 0, 0, 0, gbuffer->target.width,
-                        gbuffer->target.height, GL_RGBA, GL_FLOAT, light);
 }
 
 static vec4s vec4_of(vec3s v, float w)
@@ -286,9 +259,9 @@ static bool draw_regions(struct tl_lighting *lighting, tl_gpu *gpu, const struct
     glUniform2i(COUNTS, request->regions->count, request->suns->count);
     glUniform1i(COMPOSITION, (int)composition_of(params));
     glUniform1i(LAST_EXPONENT, TL_EXPONENT_COUNT);
-    glUniform2fv(LOBE_PLACES, TL_EXPONENT_COUNT + 1, lighting->lobe_places[0]);
+    glUniform2fv(LOBE_PLACES, TL_EXPONENT_COUNT + 1, request->exact->places[0]);
     glBindTextureUnit(LEVELS_UNIT, lighting->exponent_levels.id);
-    glBindTextureUnit(LOBES_UNIT, lighting->lobes.id);
+    glBindTextureUnit(LOBES_UNIT, request->exact->lobes.id);
     if (source == TL_LIGHT_SLICES)
         tl_slice_maps_bind(request->slices);
     if (shadowed) {
@@ -313,7 +286,7 @@ static bool draw_chains(struct tl_lighting *lighting, tl_gpu *gpu, const struct 
     use_program(program, request);
     glUniform1f(PEM_SCALE, pems->scale);
     glUniform1f(ALREADY_THERE, params->composition == TL_COMPOSE_DIFFERENCE ? 1 : 0);
-    glBindTextureUnit(LEVELS_UNIT, lighting->lobe_levels.id);
+    glBindTextureUnit(LEVELS_UNIT, request->lobe_levels->id);
     for (int pass = 0; pass < pems->array_count; pass++) {
         int first = pass * pems->per_array, left = pems->count - first;
         glUniform2i(REGION_RANGE, first, left < pems->per_array ? left : pems->per_array);
@@ -325,27 +298,11 @@ static bool draw_chains(struct tl_lighting *lighting, tl_gpu *gpu, const struct 
     return true;
 }
 
-void tl_lighting_begin(struct tl_lighting *lighting, tl_gpu *gpu, const tl_target *gbuffer, bool afresh)
-{
-    const float black[] = {0, 0, 0, 0};
-    allocate(lighting, gpu, gbuffer);
-    if (afresh)
-        glClearNamedFramebufferfv(lighting->target.id, GL_COLOR, 0, black);
-    glBindFramebuffer(GL_FRAMEBUFFER, lighting->target.id);
-    glViewport(0, 0, gbuffer->width, gbuffer->height);
-    glEnable(GL_DEPTH_TEST); /* the full-screen triangle lies at depth 1: this keeps to what is covered */
-    glDepthFunc(GL_GREATER);
-    glDepthMask(GL_FALSE);
-    for (GLuint i = 0; i < TL_GBUFFER_TRIANGLE; i++)
-        glBindTextureUnit(i, gbuffer->colours[i].id);
-}
-
 bool tl_lighting_draw(struct tl_lighting *lighting, tl_gpu *gpu, const struct tl_light_request *request,
-                      tl_error *error)
+                      struct tl_light_buffer *out, tl_error *error)
 {
-    const tl_target *gbuffer = &request->gbuffer->target;
     enum tl_light_source source = tl_light_source(request->params);
-    tl_lighting_begin(lighting, gpu, gbuffer, request->round == 0);
+    tl_light_buffer_begin(out, gpu, &request->gbuffer->target, request->round == 0);
     upload_regions(lighting, request);
     glEnable(GL_BLEND);
     glBlendColor(0, 0, 0, 1 / (float)(request->round + 1));

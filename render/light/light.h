@@ -13,6 +13,7 @@
 #include "render/env/lobes.h"
 #include "render/env/sun.h"
 #include "render/gbuffer/gbuffer.h"
+#include "render/light/light_buffer.h"
 #include "render/light/options.h"
 #include "render/pem/lobe.h"
 #include "render/pem/pems.h"
@@ -30,19 +31,29 @@ bool tl_light_needs_exact(const struct tl_light_params *params);
 
 #define TL_LIGHT_MAP_KINDS 3 /* enum tl_visibility, none instead of rays */
 
+/* What draws light: programs, and the table of exponents that they look up. It decides how fast light is
+ * drawn, never which. */
 struct tl_lighting {
     tl_program programs[TL_LIGHT_SOURCES][TL_LIGHT_MAP_KINDS]; /* made when first used */
     unsigned regions_buffer;                                   /* GL name: regions, then suns */
-    tl_texture lobe_levels;                                    /* chain level by glossiness */
-    tl_texture exponent_levels;                  /* fractional number of an exponent by the logarithm of s */
-    tl_texture lobes;                            /* maps of the exact light, stacked */
-    float lobe_places[TL_EXPONENT_COUNT + 1][2]; /* first row and side of each */
-    tl_target target;                            /* premultiplied by coverage; shares the G-buffer's depth */
+    tl_texture exponent_levels; /* fractional number of an exponent by the logarithm of s */
 };
+
+/* The exact light of the whole environment (env/lobes.h) on the GPU. */
+struct tl_exact_maps {
+    tl_texture lobes;                       /* maps of the lobes, stacked */
+    float places[TL_EXPONENT_COUNT + 1][2]; /* first row and side of each */
+};
+void tl_exact_maps_upload(struct tl_exact_maps *maps, tl_gpu *gpu, const struct tl_lobes *lobes);
+
+/* The chain level by glossiness, as a texture: made at the first call. */
+void tl_lobe_levels_upload(tl_texture *levels, tl_gpu *gpu, const struct tl_lobe_table *table);
 
 struct tl_light_request {
     const struct tl_gbuffer *gbuffer;
     const struct tl_pems *pems;         /* of CHAIN */
+    const tl_texture *lobe_levels;      /* ... */
+    const struct tl_exact_maps *exact;  /* where tl_light_needs_exact */
     const struct tl_slice_maps *slices; /* of SLICES */
     const struct tl_regions *regions;
     const struct tl_suns *suns;
@@ -58,18 +69,8 @@ struct tl_light_request {
 bool tl_lighting_create(struct tl_lighting *lighting, tl_gpu *gpu, tl_error *error);
 void tl_lighting_release(struct tl_lighting *lighting);
 bool tl_lighting_reload(struct tl_lighting *lighting, tl_error *error);
-size_t tl_lighting_bytes(const struct tl_lighting *lighting); /* of textures, without the target */
-
-void tl_lighting_set_lobe(struct tl_lighting *lighting, tl_gpu *gpu, const struct tl_lobe_table *table);
-void tl_lighting_set_exact(struct tl_lighting *lighting, tl_gpu *gpu, const struct tl_lobes *lobes);
-/* Makes the target as large as the G-buffer and binds it, with the G-buffer's layers in the first units, so
- * that what is drawn over it (at depth 1) keeps to the samples that are covered. The others are black, if
- * this image is begun afresh. */
-void tl_lighting_begin(struct tl_lighting *lighting, tl_gpu *gpu, const tl_target *gbuffer, bool afresh);
-/* The light of every sample, as tl_compose writes it, in place of the passes. */
-void tl_lighting_set(struct tl_lighting *lighting, tl_gpu *gpu, const struct tl_gbuffer *gbuffer,
-                     const float *light);
+/* The light of every sample. */
 bool tl_lighting_draw(struct tl_lighting *lighting, tl_gpu *gpu, const struct tl_light_request *request,
-                      tl_error *error);
+                      struct tl_light_buffer *out, tl_error *error);
 
 #endif

@@ -14,13 +14,9 @@ static void wait_for_gpu(void)
     glDeleteSync(fence);
 }
 
-bool tl_shading_bench_create(struct tl_shading_bench *out, tl_gpu *gpu, tl_error *error)
+void tl_shading_bench_create(struct tl_shading_bench *out, tl_gpu *gpu)
 {
     *out = (struct tl_shading_bench){.gpu = gpu, .surfaces = tl_surfaces_create(gpu)};
-    if (tl_lighting_create(&out->lighting, gpu, error))
-        return true;
-    tl_shading_bench_release(out);
-    return false;
 }
 
 bool tl_shading_bench_set_scene(struct tl_shading_bench *bench, const tl_surface *surface,
@@ -40,7 +36,7 @@ bool tl_shading_bench_set_scene(struct tl_shading_bench *bench, const tl_surface
                                             .surface_count = 1};
     if (!tl_gbuffer_draw(&bench->gbuffer, bench->gpu, &draw, error))
         return false;
-    tl_lighting_begin(&bench->lighting, bench->gpu, &bench->gbuffer.target, true);
+    tl_light_buffer_begin(&bench->light, bench->gpu, &bench->gbuffer.target, true);
     tl_gpu_reset_state(bench->gpu);
     return true;
 }
@@ -48,7 +44,7 @@ bool tl_shading_bench_set_scene(struct tl_shading_bench *bench, const tl_surface
 void tl_shading_bench_release(struct tl_shading_bench *bench)
 {
     tl_local_release(&bench->local);
-    tl_lighting_release(&bench->lighting);
+    tl_light_buffer_release(&bench->light);
     tl_gbuffer_release(&bench->gbuffer);
     tl_surfaces_destroy(&bench->surfaces);
 }
@@ -56,7 +52,7 @@ void tl_shading_bench_release(struct tl_shading_bench *bench)
 void tl_shading_bench_clear(struct tl_shading_bench *bench)
 {
     const float black[] = {0, 0, 0, 0};
-    glClearNamedFramebufferfv(bench->lighting.target.id, GL_COLOR, 0, black);
+    glClearNamedFramebufferfv(bench->light.target.id, GL_COLOR, 0, black);
     wait_for_gpu();
 }
 
@@ -64,7 +60,7 @@ bool tl_shading_bench_draw(struct tl_shading_bench *bench, const struct tl_shadi
                            tl_error *error)
 {
     const struct tl_local_request request = {.gbuffer = &bench->gbuffer,
-                                             .light = &bench->lighting.target,
+                                             .light = &bench->light.target,
                                              .view = &bench->view,
                                              .surfaces = bench->surfaces,
                                              .surface_count = 1,
@@ -81,7 +77,7 @@ bool tl_shading_bench_draw(struct tl_shading_bench *bench, const struct tl_shadi
 
 tl_image tl_shading_bench_read(const struct tl_shading_bench *bench)
 {
-    const tl_target *target = &bench->lighting.target;
+    const tl_target *target = &bench->light.target;
     tl_image image = tl_image_create(target->width, target->height, 4, TL_IMAGE_F32);
     glGetTextureImage(target->colours[0].id, 0, GL_RGBA, GL_FLOAT,
                       (GLsizei)((size_t)target->width * (size_t)target->height * 4 * sizeof(float)),

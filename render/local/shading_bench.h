@@ -3,22 +3,22 @@
 #ifndef TOILE_RENDER_LOCAL_SHADING_BENCH_H
 #define TOILE_RENDER_LOCAL_SHADING_BENCH_H
 
-#include "render/light/light.h"
+#include "render/light/light_buffer.h"
 #include "render/local/local.h"
 
 struct tl_shading_bench {
     tl_gpu *gpu;
     tl_surfaces *surfaces;
     struct tl_gbuffer gbuffer;
-    struct tl_lighting lighting;
+    struct tl_light_buffer light;
     struct tl_local local;
     struct tl_view view;
     struct tl_casters casters;
     struct tl_lamp lamp;
 };
 
-/* False when a shader cannot be compiled. Released by tl_shading_bench_release. */
-bool tl_shading_bench_create(struct tl_shading_bench *out, tl_gpu *gpu, tl_error *error);
+/* Released by tl_shading_bench_release. */
+void tl_shading_bench_create(struct tl_shading_bench *out, tl_gpu *gpu);
 void tl_shading_bench_release(struct tl_shading_bench *bench);
 
 /* Sets the scene and draws its G-buffer. The surface is copied to the GPU. Compiled programs are kept. */

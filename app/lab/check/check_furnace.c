@@ -1,7 +1,7 @@
 /* White light from everywhere: what is not shadowed sends back its albedo, whatever its shape. */
 #include "app/lab/check/check_measures.h"
 #include "config/memory.h"
-#include "render/frame/frame.h"
+#include "render/inside.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -18,31 +18,31 @@ static bool is_two_lobes(const tl_material *material)
     return !tl_material_is_faceted(material) && !(material->coat > 0) && !tl_material_shows_more(material);
 }
 
-static void add_sample(const tl_renderer *renderer, const tl_sample *sample, struct albedo *albedo)
+static void add_sample(const struct tl_resources *inside, const tl_sample *sample, struct albedo *albedo)
 {
-    int lobe = renderer->settings.light.lobe, side = renderer->settings.image.supersample;
+    int lobe = inside->light_options.lobe, side = inside->size.supersample;
     vec3s colour = lobe == TL_LOBE_SINGLE
                        ? glms_vec3_lerp(sample->diffuse, sample->specular, sample->glossiness)
                        : glms_vec3_add(sample->diffuse, sample->specular);
-    if (!is_two_lobes(tl_triangle_material(&renderer->ranges, sample->triangle & ~TL_SAMPLE_BACK)))
+    if (!is_two_lobes(tl_triangle_material(&inside->shapes.ranges, sample->triangle & ~TL_SAMPLE_BACK)))
         albedo->is_known = false;
     for (int c = 0; c < 3; c++)
         albedo->colour[c] += sample->cover * colour.raw[c] / (float)(side * side);
 }
 
 /* From the G-buffer, whichever back-end drew it. New array. */
-static struct albedo *find_albedos(const tl_renderer *renderer, int width, int height)
+static struct albedo *find_albedos(const struct tl_resources *inside, int width, int height)
 {
     struct albedo *albedos = TL_NEW_ARRAY(struct albedo, (size_t)width * (size_t)height);
     struct tl_samples samples = {0};
     for (int i = 0; i < width * height; i++)
         albedos[i].is_known = true;
-    tl_samples_read(&renderer->gbuffer, &renderer->ranges, renderer->view.eye, &samples);
-    int side = renderer->settings.image.supersample;
+    tl_samples_read(&inside->gbuffer, &inside->shapes.ranges, inside->camera.view.eye, &samples);
+    int side = inside->size.supersample;
     for (size_t i = 0; i < samples.primary_count; i++) {
         int x = (int)samples.items[i].texel % samples.width / side;
         int y = height - 1 - (int)samples.items[i].texel / samples.width / side;
-        add_sample(renderer, &samples.items[i], &albedos[y * width + x]);
+        add_sample(inside, &samples.items[i], &albedos[y * width + x]);
     }
     tl_samples_release(&samples);
     return albedos;
@@ -53,7 +53,7 @@ void tl_measure_furnace(const struct tl_checked *checked, struct tl_finding *fin
     if (!checked->white)
         return;
     const tl_image *image = checked->white_image;
-    struct albedo *albedos = find_albedos(checked->white, image->width, image->height);
+    struct albedo *albedos = find_albedos(tl_renderer_look_inside(checked->white), image->width, image->height);
     for (int i = 0; i < image->width * image->height; i++)
         for (int c = 0; albedos[i].is_known && c < 3; c++) {
             double off = fabs((double)tl_image_floats(image)[4 * i + c] - (double)albedos[i].colour[c]);

@@ -1,7 +1,7 @@
 /* Light is neither lost nor doubled on its way from the environment into regions and lobes. */
 #include "app/lab/check/check_measures.h"
 #include "config/memory.h"
-#include "render/frame/frame.h"
+#include "render/inside.h"
 #include "render/pem/chain.h"
 
 #include <math.h>
@@ -20,7 +20,7 @@ static vec3s spiral(int i)
 /* Both must have been made by this frame, or hold from one before it. */
 static bool has(const struct tl_checked *checked, enum tl_resource resource)
 {
-    return checked->renderer->valid & TL_BIT(resource);
+    return tl_renderer_look_inside(checked->renderer)->valid & TL_BIT(resource);
 }
 
 struct power {
@@ -103,22 +103,24 @@ static bool is_time(const struct tl_checked *checked)
 
 static bool has_lights(const struct tl_checked *checked)
 {
-    return is_time(checked) && has(checked, TL_MADE_LIGHTS) && checked->renderer->lights->gain.made;
+    return is_time(checked) && has(checked, TL_MADE_LIGHTS) &&
+           tl_renderer_look_inside(checked->renderer)->lights->gain.made;
 }
 
 static bool has_slices(const struct tl_checked *checked)
 {
-    return is_time(checked) && has(checked, TL_MADE_SLICES) && checked->renderer->slices.made;
+    return is_time(checked) && has(checked, TL_MADE_SLICES) &&
+           tl_renderer_look_inside(checked->renderer)->slices.slices.made;
 }
 
 void tl_measure_environment(const struct tl_checked *checked, struct tl_finding *finding)
 {
     if (!is_time(checked))
         return;
-    const tl_renderer *renderer = checked->renderer;
-    struct power got = power_of_cube(&renderer->cube);
-    for (int i = 0; i < renderer->suns.count; i++)
-        add_power(&got, renderer->suns.items[i].power);
+    const struct tl_resources *inside = tl_renderer_look_inside(checked->renderer);
+    struct power got = power_of_cube(&inside->cube);
+    for (int i = 0; i < inside->suns.count; i++)
+        add_power(&got, inside->suns.items[i].power);
     struct power expected = power_of_environment(checked->frame->environment);
     add_difference(finding, &got, &expected);
 }
@@ -127,14 +129,14 @@ void tl_measure_regions(const struct tl_checked *checked, struct tl_finding *fin
 {
     if (!is_time(checked))
         return;
-    const tl_renderer *renderer = checked->renderer;
-    struct power got = {{0}}, expected = power_of_cube(&renderer->cube);
-    for (int i = 0; i < renderer->regions.count; i++)
-        add_power(&got, renderer->regions.items[i].power);
+    const struct tl_resources *inside = tl_renderer_look_inside(checked->renderer);
+    struct power got = {{0}}, expected = power_of_cube(&inside->cube);
+    for (int i = 0; i < inside->regions.count; i++)
+        add_power(&got, inside->regions.items[i].power);
     add_difference(finding, &got, &expected);
     if (!has_lights(checked))
         return;
-    struct power shone = power_of_lights(renderer->lights);
+    struct power shone = power_of_lights(inside->lights);
     add_difference(finding, &shone, &expected);
 }
 
@@ -202,7 +204,7 @@ static int choose_exponents(uint32_t made, int exponents[2])
 }
 
 /* What stands for the integral, at one direction and one of the lobes' exponents. */
-typedef vec3s estimator(const tl_renderer *renderer, vec3s direction, int exponent);
+typedef vec3s estimator(const struct tl_resources *inside, vec3s direction, int exponent);
 
 static double largest_difference(vec3s got, const struct power *expected)
 {
@@ -223,11 +225,11 @@ static double brightest_of(const struct power *light, size_t count)
     return brightest;
 }
 
-static void add_estimates(const tl_renderer *renderer, uint32_t made, estimator *estimate,
+static void add_estimates(const struct tl_resources *inside, uint32_t made, estimator *estimate,
                           struct tl_finding *finding)
 {
     int exponents[2], count = choose_exponents(made, exponents);
-    struct texels texels = list_texels(&renderer->cube);
+    struct texels texels = list_texels(&inside->cube);
     struct power light[2 * DIRECTIONS];
 #pragma omp parallel for schedule(dynamic)
     for (int i = 0; i < count * DIRECTIONS; i++)
@@ -237,7 +239,7 @@ static void add_estimates(const tl_renderer *renderer, uint32_t made, estimator 
     for (int i = 0; i < count * DIRECTIONS; i++) {
         vec3s direction = spiral(i % DIRECTIONS);
         int exponent = exponents[i / DIRECTIONS];
-        double off = largest_difference(estimate(renderer, direction, exponent), &light[i]);
+        double off = largest_difference(estimate(inside, direction, exponent), &light[i]);
         if (tl_finding_add(finding, brightest > 0 ? off / brightest : off))
             tl_finding_place(finding, "s = %.3g along %.2f %.2f %.2f", (double)tl_exponent(exponent),
                              (double)direction.x, (double)direction.y, (double)direction.z);
@@ -250,21 +252,23 @@ static struct tl_exponent_blend only(int exponent)
     return (struct tl_exponent_blend){.index = exponent};
 }
 
-static vec3s fetch_exact(const tl_renderer *renderer, vec3s direction, int exponent)
+static vec3s fetch_exact(const struct tl_resources *inside, vec3s direction, int exponent)
 {
-    return tl_lobes_fetch(&renderer->lobes, direction, only(exponent));
+    return tl_lobes_fetch(inside->exact.lobes, direction, only(exponent));
 }
 
 void tl_measure_exact(const struct tl_checked *checked, struct tl_finding *finding)
 {
-    if (is_time(checked) && has(checked, TL_MADE_LOBES) && checked->renderer->lobes.made)
-        add_estimates(checked->renderer, checked->renderer->lobes.made, fetch_exact, finding);
+    if (is_time(checked) && has(checked, TL_MADE_LOBES) &&
+        tl_renderer_look_inside(checked->renderer)->exact.lobes->made)
+        add_estimates(tl_renderer_look_inside(checked->renderer),
+                      tl_renderer_look_inside(checked->renderer)->exact.lobes->made, fetch_exact, finding);
 }
 
 /* As every sample sums them when all of them are seen (light/region_lights.h). */
-static vec3s sum_lights(const tl_renderer *renderer, vec3s direction, int exponent)
+static vec3s sum_lights(const struct tl_resources *inside, vec3s direction, int exponent)
 {
-    const struct tl_region_lights *lights = renderer->lights;
+    const struct tl_region_lights *lights = inside->lights;
     double sum[3] = {0};
     for (int g = 0; g < lights->group_count; g++)
         for (int lane = 0; lane < TL_LANES; lane++) {
@@ -283,29 +287,29 @@ static vec3s sum_lights(const tl_renderer *renderer, vec3s direction, int expone
     return (vec3s){{gain.x * (float)sum[0], gain.y * (float)sum[1], gain.z * (float)sum[2]}};
 }
 
-static vec3s sum_slices(const tl_renderer *renderer, vec3s direction, int exponent)
+static vec3s sum_slices(const struct tl_resources *inside, vec3s direction, int exponent)
 {
     vec3s sum = {{0, 0, 0}};
-    for (int i = 0; i < renderer->slices.region_count; i++)
-        sum = glms_vec3_add(sum, tl_slices_fetch(&renderer->slices, i, direction, only(exponent)));
+    for (int i = 0; i < inside->slices.slices.region_count; i++)
+        sum = glms_vec3_add(sum, tl_slices_fetch(&inside->slices.slices, i, direction, only(exponent)));
     return sum;
 }
 
 void tl_measure_sum(const struct tl_checked *checked, struct tl_finding *finding)
 {
-    const tl_renderer *renderer = checked->renderer;
+    const struct tl_resources *inside = tl_renderer_look_inside(checked->renderer);
     if (has_lights(checked))
-        add_estimates(renderer, renderer->lights->gain.made, sum_lights, finding);
+        add_estimates(inside, inside->lights->gain.made, sum_lights, finding);
     if (has_slices(checked))
-        add_estimates(renderer, renderer->slices.made, sum_slices, finding);
+        add_estimates(inside, inside->slices.slices.made, sum_slices, finding);
 }
 
 /* P_i along the region's own direction, from the texels that bear its label. New array by region. */
-static struct power *gather_regions(const tl_renderer *renderer, double exponent)
+static struct power *gather_regions(const struct tl_resources *inside, double exponent)
 {
-    const struct tl_regions *regions = &renderer->regions;
+    const struct tl_regions *regions = &inside->regions;
     struct power *light = TL_NEW_ARRAY(struct power, (size_t)regions->count);
-    struct texels texels = list_texels(&renderer->cube);
+    struct texels texels = list_texels(&inside->cube);
     for (size_t i = 0; i < texels.count; i++) {
         int region = regions->labels[i];
         double lobe = lobe_towards(regions->items[region].direction, texels.directions[i], exponent);
@@ -320,27 +324,27 @@ void tl_measure_slices(const struct tl_checked *checked, struct tl_finding *find
 {
     if (!has_slices(checked))
         return;
-    const tl_renderer *renderer = checked->renderer;
-    struct power *light = gather_regions(renderer, (double)tl_exponent(0));
-    for (int i = 0; i < renderer->regions.count; i++) {
-        vec3s got = tl_slices_fetch(&renderer->slices, i, renderer->regions.items[i].direction, only(0));
+    const struct tl_resources *inside = tl_renderer_look_inside(checked->renderer);
+    struct power *light = gather_regions(inside, (double)tl_exponent(0));
+    for (int i = 0; i < inside->regions.count; i++) {
+        vec3s got = tl_slices_fetch(&inside->slices.slices, i, inside->regions.items[i].direction, only(0));
         double own = brightest_of(&light[i], 1), off = largest_difference(got, &light[i]);
         if (tl_finding_add(finding, own > 0 ? off / own : off))
-            tl_finding_place(finding, "region %d of %d", i, renderer->regions.count);
+            tl_finding_place(finding, "region %d of %d", i, inside->regions.count);
     }
     free(light);
 }
 
 /* All PEMs of one level, added up; and the level of the undivided cube, which must be the same: filters are
  * linear. */
-static void add_pem_level(const tl_renderer *renderer, const struct tl_chain *whole, int level,
+static void add_pem_level(const struct tl_resources *inside, const struct tl_chain *whole, int level,
                           struct tl_finding *finding)
 {
     const tl_cube *expected = &whole->levels[level];
     size_t values = 18 * (size_t)expected->size * (size_t)expected->size;
     double *sums = TL_NEW_ARRAY(double, values), mean = 0;
-    for (int i = 0; i < renderer->pems.count; i++) {
-        tl_cube pem = tl_pems_read(&renderer->pems, i, level);
+    for (int i = 0; i < inside->pems.count; i++) {
+        tl_cube pem = tl_pems_read(&inside->pems, i, level);
         for (size_t v = 0; v < values; v++)
             sums[v] += (double)pem.texels[v];
         tl_cube_release(&pem);
@@ -357,14 +361,14 @@ static void add_pem_level(const tl_renderer *renderer, const struct tl_chain *wh
 
 void tl_measure_pems(const struct tl_checked *checked, struct tl_finding *finding)
 {
-    if (!is_time(checked) || !has(checked, TL_MADE_PEMS) || checked->renderer->pems.count == 0)
+    if (!is_time(checked) || !has(checked, TL_MADE_PEMS) ||
+        tl_renderer_look_inside(checked->renderer)->pems.count == 0)
         return;
-    const tl_renderer *renderer = checked->renderer;
-    struct tl_chain whole =
-        tl_chain_build(&renderer->cube, (enum tl_chain_filter)renderer->settings.light.filter);
+    const struct tl_resources *inside = tl_renderer_look_inside(checked->renderer);
+    struct tl_chain whole = tl_chain_build(&inside->cube, (enum tl_chain_filter)inside->filter);
     if (whole.level_count >
         1) /* the first level is cut, not filtered, and takes four times as long to read */
-        add_pem_level(renderer, &whole, 1, finding);
-    add_pem_level(renderer, &whole, whole.level_count - 1, finding);
+        add_pem_level(inside, &whole, 1, finding);
+    add_pem_level(inside, &whole, whole.level_count - 1, finding);
     tl_chain_release(&whole);
 }

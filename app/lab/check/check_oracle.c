@@ -2,7 +2,7 @@
  * points and light. */
 #include "app/lab/check/check_measures.h"
 #include "config/memory.h"
-#include "render/frame/frame.h"
+#include "render/inside.h"
 #include "render/reference/gather.h"
 #include "render/reference/lamps.h"
 
@@ -229,7 +229,7 @@ static bool is_comparable(const struct tl_render_settings *settings)
 static void compare_with_reference(struct oracle *oracle, struct tl_finding *finding)
 {
     const struct tl_checked *checked = oracle->checked;
-    const struct tl_ground *ground = checked->settings->image.ground ? &checked->renderer->ground : NULL;
+    const struct tl_ground *ground = tl_ground_drawn(tl_renderer_look_inside(checked->renderer));
     tl_error error = {0};
     const struct tl_reference_request request =
         tl_frame_reference_request(checked->frame, checked->settings, ground);

@@ -1,7 +1,7 @@
 /* What is seen of the regions: the range of VIS and of what it is made of, and VIS against rays. */
 #include "app/lab/check/check_measures.h"
 #include "config/memory.h"
-#include "render/frame/frame.h"
+#include "render/inside.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -41,11 +41,11 @@ static double depth_deviation(const float *texel)
 
 void tl_measure_moments(const struct tl_checked *checked, struct tl_finding *finding)
 {
-    const tl_renderer *renderer = checked->renderer;
+    const struct tl_resources *inside = tl_renderer_look_inside(checked->renderer);
     if (!has_facts(checked, TL_BIT(TL_SCENE_MAPS)))
         return;
-    for (int i = 0; i < renderer->regions.count; i++) {
-        struct tl_shadow_texels map = tl_shadow_maps_read(renderer->maps, i);
+    for (int i = 0; i < inside->regions.count; i++) {
+        struct tl_shadow_texels map = tl_shadow_maps_read(inside->maps, i);
         size_t count = (size_t)map.size * (size_t)map.size, channels = (size_t)map.channels;
         for (size_t t = 0; t < count; t++) {
             const float *texel = map.texels + t * channels;
@@ -76,9 +76,9 @@ static double share_deviation(float share)
     return !isfinite(share) ? INFINITY : share < 0 ? -(double)share : share > 1 ? (double)share - 1 : 0;
 }
 
-static void place_sample(const tl_renderer *renderer, size_t index, struct tl_finding *finding)
+static void place_sample(const struct tl_resources *inside, size_t index, struct tl_finding *finding)
 {
-    const struct tl_samples *samples = &renderer->samples;
+    const struct tl_samples *samples = &inside->samples;
     uint32_t texel = samples->items[index].texel, width = (uint32_t)samples->width;
     tl_finding_place(finding, "sample %u, %u", texel % width, (uint32_t)samples->height - 1 - texel / width);
 }
@@ -92,17 +92,17 @@ void tl_measure_visibility(const struct tl_checked *checked, struct tl_finding *
 {
     if (!has_points(checked))
         return;
-    const tl_renderer *renderer = checked->renderer;
-    const struct tl_taps *taps = tl_points_taps(renderer->points);
-    size_t points = tl_points_report(renderer->points).points;
-    for (size_t i = 0; i < renderer->samples.count; i++)
+    const struct tl_resources *inside = tl_renderer_look_inside(checked->renderer);
+    const struct tl_taps *taps = tl_points_taps(inside->points);
+    size_t points = tl_points_report(inside->points).points;
+    for (size_t i = 0; i < inside->samples.count; i++)
         if (tl_finding_add(finding, taps_deviation(&taps[i], points)))
-            place_sample(renderer, i, finding);
-    for (int sun = 0; sun < renderer->suns.count; sun++) {
-        const float *seen = tl_points_sun(renderer->points, sun);
-        for (size_t i = 0; seen && i < renderer->samples.count; i++)
+            place_sample(inside, i, finding);
+    for (int sun = 0; sun < inside->suns.count; sun++) {
+        const float *seen = tl_points_sun(inside->points, sun);
+        for (size_t i = 0; seen && i < inside->samples.count; i++)
             if (tl_finding_add(finding, share_deviation(seen[i])))
-                place_sample(renderer, i, finding);
+                place_sample(inside, i, finding);
     }
 }
 
@@ -114,7 +114,7 @@ struct tally {
 };
 
 struct witness {
-    const tl_renderer *renderer;
+    const struct tl_resources *inside;
     tl_trace *trace; /* of its own, so that an old one shows too */
     const uint16_t *values;
     const struct tl_taps *taps;
@@ -135,12 +135,12 @@ static double claimed_of(const struct witness *witness, size_t sample, int regio
 }
 
 /* Even over the region. */
-static vec3s region_direction(const tl_renderer *renderer, int region, int ray)
+static vec3s region_direction(const struct tl_resources *inside, int region, int ray)
 {
     const float step = 0.5698402909980532f; /* of the plastic number, as tl_region_seen_direction has it */
     float u = ((float)ray + 0.5f) / RAYS, v = (float)ray * step;
-    vec3s direction = tl_region_direction(&renderer->regions, region, u, v - floorf(v));
-    return tl_turn_direction(direction, renderer->frame.environment_yaw);
+    vec3s direction = tl_region_direction(&inside->regions, region, u, v - floorf(v));
+    return tl_turn_direction(direction, inside->yaw);
 }
 
 /* Whether all of a region is well above a point's horizon: of what is not, VIS stands for what is above only.
@@ -157,8 +157,8 @@ static bool faces(const struct tl_sample *sample, const vec3s directions[RAYS])
 static void queue_rays(struct witness *witness, const tl_sample *sample, vec3s start, size_t index,
                        int region)
 {
-    const tl_renderer *renderer = witness->renderer;
-    const struct tl_ground *ground = renderer->settings.image.ground ? &renderer->ground : NULL;
+    const struct tl_resources *inside = witness->inside;
+    const struct tl_ground *ground = tl_ground_drawn(inside);
     const vec3s *directions = witness->directions[region];
     struct tally *tally = &witness->tallies[region];
     if (!faces(sample, directions))
@@ -183,17 +183,17 @@ static void queue_rays(struct witness *witness, const tl_sample *sample, vec3s s
 
 static void tally_answers(struct witness *witness, int frame)
 {
-    const tl_renderer *renderer = witness->renderer;
-    size_t count = renderer->samples.primary_count;
+    const struct tl_resources *inside = witness->inside;
+    size_t count = inside->samples.primary_count;
     float offset_m = tl_trace_offset(witness->trace);
-    for (int region = 0; region < renderer->regions.count; region++)
+    for (int region = 0; region < inside->regions.count; region++)
         for (int ray = 0; ray < RAYS; ray++)
-            witness->directions[region][ray] = region_direction(renderer, region, ray);
+            witness->directions[region][ray] = region_direction(inside, region, ray);
     for (size_t point = 0; point < POINTS && count > 0; point++) {
         size_t index = (point * count / POINTS + (size_t)frame * 7919) % count;
-        const tl_sample *sample = &renderer->samples.items[index];
-        vec3s start = tl_sample_start(sample, &renderer->ranges, offset_m);
-        for (int region = 0; region < renderer->regions.count; region++)
+        const tl_sample *sample = &inside->samples.items[index];
+        vec3s start = tl_sample_start(sample, &inside->shapes.ranges, offset_m);
+        for (int region = 0; region < inside->regions.count; region++)
             queue_rays(witness, sample, start, index, region);
     }
 }
@@ -227,7 +227,7 @@ static void spread_of(const struct tally *tally, double *mean, double *deviation
  * region. */
 static void add_tallies(const struct witness *witness, struct tl_finding *finding)
 {
-    const struct tl_regions *regions = &witness->renderer->regions;
+    const struct tl_regions *regions = &witness->inside->regions;
     for (int i = 0; i < regions->count; i++) {
         const struct tally *tally = &witness->tallies[i];
         double mean, deviation;
@@ -247,10 +247,10 @@ void tl_measure_leaks(const struct tl_checked *checked, struct tl_finding *findi
     if (!checked->is_sampled || !has_points(checked))
         return;
     struct witness *witness = TL_NEW(struct witness);
-    witness->renderer = checked->renderer;
+    witness->inside = tl_renderer_look_inside(checked->renderer);
     witness->trace = tl_trace_create(&error);
-    witness->values = tl_points_values(checked->renderer->points, &witness->stride);
-    witness->taps = tl_points_taps(checked->renderer->points);
+    witness->values = tl_points_values(tl_renderer_look_inside(checked->renderer)->points, &witness->stride);
+    witness->taps = tl_points_taps(tl_renderer_look_inside(checked->renderer)->points);
     if (witness->trace &&
         tl_trace_update(witness->trace, checked->frame->surfaces, checked->frame->surface_count, &error)) {
         tally_answers(witness, checked->number);

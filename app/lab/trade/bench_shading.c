@@ -229,7 +229,8 @@ static bool run(struct bench *bench, tl_error *error)
 {
     struct tl_progress progress = tl_progress_begin("measuring shading");
     int steps = APPEARANCES * (TL_REFLECT_BANKS + 1), done = 0;
-    bool fine = list_rows(bench, error) && tl_shading_bench_create(bench->trial, bench->gpu, error);
+    bool fine = list_rows(bench, error);
+    tl_shading_bench_create(bench->trial, bench->gpu);
     for (int model = TL_REFLECT_PHONG; fine && model <= TL_REFLECT_BANKS; model++)
         for (int appearance = 0; fine && appearance < APPEARANCES; appearance++) {
             fine = measure_model(bench, appearance, (enum tl_reflectance)model, error);

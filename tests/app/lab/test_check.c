@@ -8,7 +8,7 @@
 #include "cloth/tangents/tangent_frames.h"
 #include "config/log.h"
 #include "config/memory.h"
-#include "render/frame/frame.h"
+#include "render/inside.h"
 
 #include <epoxy/gl.h>
 
@@ -384,33 +384,38 @@ static void a_plan_over_budget_is_named(void **state)
     take_down(&stand);
 }
 
+/* What a renderer has made, to be broken. */
+static struct tl_resources *inside(const tl_renderer *renderer)
+{
+    return (struct tl_resources *)(uintptr_t)tl_renderer_look_inside(renderer);
+}
+
 /* ---- Shadows ---- */
 
 /* The region of which least is seen on average over the samples, among those that have their share of light.
  */
-static int most_hidden_region(const tl_renderer *renderer)
+static int most_hidden_region(const struct tl_resources *made)
 {
     size_t stride;
-    const uint16_t *values = tl_points_values(renderer->points, &stride);
-    const struct tl_taps *taps = tl_points_taps(renderer->points);
+    const uint16_t *values = tl_points_values(made->points, &stride);
+    const struct tl_taps *taps = tl_points_taps(made->points);
     int hidden = 0;
     double least = INFINITY, light = 0;
-    for (int i = 0; i < renderer->regions.count; i++)
-        light += (double)renderer->regions.items[i].importance / renderer->regions.count;
-    for (int i = 0; i < renderer->regions.count; i++) {
-        if ((double)renderer->regions.items[i].importance < light)
+    for (int i = 0; i < made->regions.count; i++)
+        light += (double)made->regions.items[i].importance / made->regions.count;
+    for (int i = 0; i < made->regions.count; i++) {
+        if ((double)made->regions.items[i].importance < light)
             continue;
         double sum = 0;
         size_t facing = 0;
-        for (size_t s = 0; s < renderer->samples.primary_count; s++) {
-            float cosine =
-                glms_vec3_dot(renderer->samples.items[s].smooth, renderer->regions.items[i].direction);
+        for (size_t s = 0; s < made->samples.primary_count; s++) {
+            float cosine = glms_vec3_dot(made->samples.items[s].smooth, made->regions.items[i].direction);
             if (cosine < 0.3f)
                 continue;
             facing++;
             sum += values[taps[s].point[0] * stride + (size_t)i];
         }
-        if (facing < renderer->samples.primary_count / 3 || !(sum / (double)facing < least))
+        if (facing < made->samples.primary_count / 3 || !(sum / (double)facing < least))
             continue;
         least = sum / (double)facing;
         hidden = i;
@@ -419,11 +424,11 @@ static int most_hidden_region(const tl_renderer *renderer)
 }
 
 /* What is kept says that all of one region is seen, everywhere. */
-static void leak(const tl_renderer *renderer, int region)
+static void leak(const struct tl_resources *made, int region)
 {
     size_t stride;
-    uint16_t *values = (uint16_t *)(uintptr_t)tl_points_values(renderer->points, &stride);
-    size_t points = tl_points_report(renderer->points).points;
+    uint16_t *values = (uint16_t *)(uintptr_t)tl_points_values(made->points, &stride);
+    size_t points = tl_points_report(made->points).points;
     for (size_t p = 0; p < points; p++)
         values[p * stride + (size_t)region] = UINT16_MAX;
 }
@@ -432,10 +437,10 @@ static void a_leaking_shadow_is_named(void **state)
 {
     (void)state;
     struct stand *stand = by_rays();
-    int region = most_hidden_region(stand->renderer);
+    int region = most_hidden_region(inside(stand->renderer));
     char place[32];
     snprintf(place, sizeof place, "region %d:", region);
-    leak(stand->renderer, region);
+    leak(inside(stand->renderer), region);
     assert_breaks(&stand->checked, "visibility.regions", place);
     take_down(&stand);
 
@@ -458,7 +463,7 @@ static void visibility_out_of_range_is_named(void **state)
 {
     (void)state;
     struct stand *stand = by_rays();
-    struct tl_taps *taps = (struct tl_taps *)(uintptr_t)tl_points_taps(stand->renderer->points);
+    struct tl_taps *taps = (struct tl_taps *)(uintptr_t)tl_points_taps(inside(stand->renderer)->points);
     struct tl_taps kept = taps[5];
     taps[5].weight[0] += 0.1f;
     assert_breaks(&stand->checked, "visibility.range", "sample");
@@ -474,7 +479,7 @@ static void moments_that_cannot_be_are_named(void **state)
 {
     (void)state;
     struct stand *stand = by_chains();
-    unsigned texture = tl_shadow_maps_texture(stand->renderer->maps, 0);
+    unsigned texture = tl_shadow_maps_texture(inside(stand->renderer)->maps, 0);
     const float less[2] = {0.5f, 0.2499f}, none[2] = {NAN, 1};
     glTextureSubImage3D(texture, 0, 30, 20, 3, 1, 1, 1, GL_RG, GL_FLOAT, less);
     assert_breaks(&stand->checked, "maps.moments", "map of region 3, texel 30, 20");
@@ -517,17 +522,18 @@ static void a_stale_map_is_named(void **state)
                                           .is_sampled = true,
                                           .fresh = &stand->fresh_image});
         /* ... but the shadows of the frame before are not what it calls for. */
-        tl_shadow_maps *maps = stand->renderer->maps;
-        tl_points *points = stand->renderer->points;
-        stand->renderer->maps = old_maps->maps;
-        stand->renderer->points = old_maps->points;
-        stand->renderer->valid &= ~(TL_BIT(TL_MADE_LIGHT) | TL_BIT(TL_MADE_IMAGE));
+        struct tl_resources *made = inside(stand->renderer);
+        tl_shadow_maps *maps = made->maps;
+        tl_points *points = made->points;
+        made->maps = inside(old_maps)->maps;
+        made->points = inside(old_maps)->points;
+        made->valid &= ~(TL_BIT(TL_MADE_LIGHT) | TL_BIT(TL_MADE_IMAGE));
         if (i > 0) { /* rays: what is kept survives a frame by design, and is bounded by its age */
             draw(stand, &stand->renderer, &stand->frame, &stand->settings, &stand->image);
             assert_breaks(&stand->checked, "image.fresh", "pixel");
         }
-        stand->renderer->maps = maps;
-        stand->renderer->points = points;
+        made->maps = maps;
+        made->points = points;
         tl_renderer_destroy(&old_maps);
         take_down(&stand);
     }
@@ -555,30 +561,30 @@ static void lost_light_is_named(void **state)
 {
     (void)state;
     struct stand *stand = by_rays();
-    tl_renderer *renderer = stand->renderer;
-    vec3s power = renderer->regions.items[40].power;
-    renderer->regions.items[40].power = (vec3s){{0, 0, 0}};
+    struct tl_resources *made = inside(stand->renderer);
+    vec3s power = made->regions.items[40].power;
+    made->regions.items[40].power = (vec3s){{0, 0, 0}};
     assert_breaks(&stand->checked, "light.regions", "");
-    renderer->regions.items[40].power = glms_vec3_scale(power, 2);
+    made->regions.items[40].power = glms_vec3_scale(power, 2);
     assert_breaks(&stand->checked, "light.regions", "");
-    renderer->regions.items[40].power = power;
+    made->regions.items[40].power = power;
 
-    float *lane = (float *)(uintptr_t)&renderer->lights->groups[2].power[1][8], kept = *lane;
+    float *lane = (float *)(uintptr_t)&made->lights->groups[2].power[1][8], kept = *lane;
     *lane = 0;
     assert_breaks(&stand->checked, "light.regions", "green");
     *lane = kept;
     assert_clean(&stand->checked);
 
-    const struct tl_lobe_map *map = &renderer->lights->diffuse_gain.maps[0];
+    const struct tl_lobe_map *map = &made->lights->diffuse_gain.maps[0];
     for (int i = 0; i < (map->side + 2) * (map->side + 2) * 4; i++)
         map->texels[i] *= 1.05f;
     assert_breaks(&stand->checked, "light.sum", "s = 1 ");
-    map = &renderer->lobes.maps[0];
+    map = &made->exact.lobes->maps[0];
     for (int i = 0; i < (map->side + 2) * (map->side + 2) * 4; i++)
         map->texels[i] *= 1.05f;
     assert_breaks(&stand->checked, "light.exact", "s = 1 ");
-    for (int i = 0; i < 6 * renderer->cube.size * renderer->cube.size * 3; i++)
-        renderer->cube.texels[i] *= 1.02f;
+    for (int i = 0; i < 6 * made->cube.size * made->cube.size * 3; i++)
+        made->cube.texels[i] *= 1.02f;
     assert_breaks(&stand->checked, "light.environment", "");
     take_down(&stand);
 }
@@ -587,7 +593,7 @@ static void a_lost_region_is_named(void **state)
 {
     (void)state;
     struct stand *stand = by_chains();
-    const tl_texture *array = &stand->renderer->pems.arrays[0];
+    const tl_texture *array = &inside(stand->renderer)->pems.arrays[0];
     const float black[4] = {0};
     for (int level = 0; level < array->levels; level++)
         glClearTexSubImage(array->id, level, 0, 0, 6 * 5, array->width >> level, array->width >> level, 6,
@@ -596,7 +602,7 @@ static void a_lost_region_is_named(void **state)
     take_down(&stand);
 
     stand = by_slices();
-    struct tl_slices *made = &stand->renderer->slices;
+    struct tl_slices *made = &inside(stand->renderer)->slices.slices;
     size_t texels = (size_t)made->side[0] * (size_t)made->side[0] * 3;
     memset(made->texels[0] + 5 * texels, 0, texels * sizeof(float));
     assert_breaks(&stand->checked, "light.slices", "region 5 of 24");

@@ -7,7 +7,7 @@
 #include "app/lab/flight/fly_account.h"
 #include "app/scene/session.h"
 #include "config/memory.h"
-#include "render/frame/frame.h"
+#include "render/frame/inputs.h"
 #include "render/plan/affects.h"
 
 #include <string.h>

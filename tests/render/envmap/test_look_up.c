@@ -12,7 +12,8 @@
 
 struct device {
     tl_gpu *gpu;
-    struct tl_lighting lighting; /* for its table of exponents and its target */
+    struct tl_lighting lighting; /* for its table of exponents */
+    struct tl_light_buffer light;
     struct tl_envmap envmap;
 };
 
@@ -36,6 +37,7 @@ static int close_device(void **state)
     struct device *device = *state;
     tl_envmap_release(&device->envmap);
     tl_lighting_release(&device->lighting);
+    tl_light_buffer_release(&device->light);
     size_t messages = tl_gpu_message_count(device->gpu), bytes = tl_gpu_texture_bytes(device->gpu);
     tl_gpu_destroy(&device->gpu);
     free(device);
@@ -85,12 +87,12 @@ static void look_up(struct device *device, const struct tl_maps_params *params, 
                                               .exponent_levels = &device->lighting.exponent_levels,
                                               .params = &mirror};
     tl_gpu_reset_state(device->gpu);
-    tl_lighting_begin(&device->lighting, device->gpu, &gbuffer, true);
+    tl_light_buffer_begin(&device->light, device->gpu, &gbuffer, true);
     assert_ok(tl_envmap_draw(&device->envmap, device->gpu, &request, &error), error);
     tl_gpu_reset_state(device->gpu);
     size_t texels = (size_t)WIDTH * (size_t)gbuffer.height;
     float *light = TL_NEW_ARRAY(float, 4 * texels);
-    glGetTextureImage(device->lighting.target.colours[0].id, 0, GL_RGBA, GL_FLOAT,
+    glGetTextureImage(device->light.target.colours[0].id, 0, GL_RGBA, GL_FLOAT,
                       (GLsizei)(4 * texels * sizeof(float)), light);
     for (int i = 0; i < count; i++)
         memcpy(out[i].raw, light + 4 * (size_t)i, sizeof out[i]);

@@ -3,7 +3,7 @@
 #include "tests/render/scenes.h"
 
 #include "config/memory.h"
-#include "render/frame/frame.h"
+#include "render/inside.h"
 #include "render/inspect/aovs.h"
 #include "render/inspect/inspect.h"
 
@@ -266,7 +266,7 @@ static void visibility_is_that_of_the_points(void **state)
     for (int region = -1; region < 24; region += 5) {
         scene.settings.image.view_region = region;
         tl_image image = show(device->renderer, &scene, TL_VIEW_VISIBILITY);
-        const tl_renderer *inside = device->renderer;
+        const struct tl_resources *inside = tl_renderer_look_inside(device->renderer);
         size_t stride, checked = 0;
         const uint16_t *values = tl_points_values(inside->points, &stride);
         for (size_t i = 0; i < inside->samples.primary_count; i++) {
@@ -288,7 +288,7 @@ static void visibility_is_that_of_the_points(void **state)
             for (int c = 0; c < 3; c++)
                 assert_near(byte_at(&image, x, y)[c] / 255.0, seen / all, 1 / 255.0);
             struct tl_inspection under;
-            assert_true(tl_renderer_inspect(inside, x, y, &under) && under.has_visibility);
+            assert_true(tl_renderer_inspect(device->renderer, x, y, &under) && under.has_visibility);
             if (region < 0)
                 assert_near(under.visibility, seen / all, 1e-4);
             checked++;

@@ -1,0 +1,188 @@
+#include "render/frame/facts.h"
+
+#include "render/brdf/lobe_fit.h"
+#include "render/detail/detail.h"
+#include "render/env/exponent.h"
+#include "render/env/lobes.h"
+#include "render/inspect/legend.h"
+#include "render/light/light.h"
+#include "render/light/mirrors.h"
+#include "render/light/transparency.h"
+#include "render/local/lamp_shadows.h"
+
+#include <math.h>
+
+/* The smallest and the largest glossiness that a material's maps can make of it. */
+static void glossiness_range(const tl_material *material, float *low, float *high)
+{
+    float least = material->gloss_map.image ? 0 : material->glossiness, most = material->glossiness;
+    if (material->weave) {
+        const tl_image *gloss = &material->weave->gloss;
+        float added_low = INFINITY, added_high = -INFINITY;
+        for (size_t i = 0; i < (size_t)gloss->width * (size_t)gloss->height; i++) {
+            added_low = fminf(added_low, tl_image_floats(gloss)[i]);
+            added_high = fmaxf(added_high, tl_image_floats(gloss)[i]);
+        }
+        least += added_low;
+        most += added_high;
+    }
+    *low = fminf(fmaxf(least, 0), 1);
+    *high = fminf(fmaxf(most, 0), 1);
+}
+
+/* The G-buffer rounds 1 - glossiness to a half. */
+#define ROUNDING 1e-3f
+
+/* Exponents from `least` to `greatest`. */
+static uint32_t exponents_between(float least, float greatest)
+{
+    return tl_exponents_needed(1 - 1 / fmaxf(least * (1 - ROUNDING), 1),
+                               1 - 1 / fmaxf(greatest * (1 + ROUNDING), 1));
+}
+
+/* Of what a material is beyond two lobes. */
+static uint32_t layered_exponents(const tl_material *material, float low, float high)
+{
+    uint32_t needed = 0;
+    if (material->coat > 0)
+        needed |= tl_exponents_needed(material->coat_glossiness, material->coat_glossiness);
+    if (!tl_material_is_faceted(material))
+        return needed;
+    float least, greatest, unused;
+    struct tl_brdf dull = tl_brdf_of(material, material->specular, low);
+    struct tl_brdf shiny = tl_brdf_of(material, material->specular, high);
+    tl_lobe_fit_exponents(&dull, &least, &unused);
+    tl_lobe_fit_exponents(&shiny, &unused, &greatest);
+    return needed | exponents_between(least, greatest);
+}
+
+uint32_t tl_exponents_of(const tl_surface *surfaces, size_t count, const struct tl_detail_params *detail)
+{
+    uint32_t needed = 1;
+    for (size_t s = 0; s < count; s++)
+        for (size_t p = 0; p < surfaces[s].part_count; p++) {
+            const tl_material *material = &surfaces[s].materials[surfaces[s].parts[p].material];
+            float low, high;
+            glossiness_range(material, &low, &high);
+            if (tl_detail_wants_moments(detail) && tl_detail_wants_maps(detail, material))
+                low = 0; /* averaged bumps dull any gloss */
+            low = 1 - (1 - low) * (1 + ROUNDING);
+            needed |= tl_exponents_needed(low, 1 - (1 - high) * (1 - ROUNDING));
+            if (tl_mirror_ray_count(tl_lobe_exponent(high)) >
+                0) /* lobes along a mirror's rays are narrower still */
+                needed |= tl_exponents_needed(high, 1);
+            needed |= layered_exponents(material, low, 1 - (1 - high) * (1 - ROUNDING));
+        }
+    return needed;
+}
+
+bool tl_material_is_faceted(const tl_material *material)
+{
+    return material->gloss.model != TL_REFLECT_PHONG;
+}
+
+bool tl_materials_have(const tl_surface *surfaces, size_t count,
+                       bool (*property)(const tl_material *material))
+{
+    for (size_t s = 0; s < count; s++)
+        for (size_t p = 0; p < surfaces[s].part_count; p++)
+            if (property(&surfaces[s].materials[surfaces[s].parts[p].material]))
+                return true;
+    return false;
+}
+
+uint32_t tl_map_exponents_of(const tl_surface *surfaces, size_t count, const struct tl_detail_params *detail)
+{
+    return tl_exponents_of(surfaces, count, detail) | 1u << TL_EXPONENT_COUNT;
+}
+
+static float greatest_glossiness(const tl_surface *surfaces, size_t count)
+{
+    float greatest = 0;
+    for (size_t s = 0; s < count; s++)
+        for (size_t p = 0; p < surfaces[s].part_count; p++) {
+            float low, high;
+            glossiness_range(&surfaces[s].materials[surfaces[s].parts[p].material], &low, &high);
+            greatest = fmaxf(greatest, high);
+        }
+    return greatest;
+}
+
+static bool wants_detail(const tl_surface *surfaces, size_t count, const struct tl_detail_params *detail)
+{
+    for (size_t s = 0; s < count; s++)
+        for (size_t p = 0; p < surfaces[s].part_count; p++)
+            if (tl_detail_wants_maps(detail, &surfaces[s].materials[surfaces[s].parts[p].material]))
+                return true;
+    return false;
+}
+
+static tl_bits lamp_facts(const tl_frame *frame, const struct tl_light_params *light)
+{
+    struct tl_lamp lamps[TL_LAMPS_MAX];
+    size_t count = tl_lamps_lit(frame, lamps);
+    tl_bits facts = count > 0 ? TL_BIT(TL_SCENE_LAMPS) : 0;
+    struct tl_casters casters = {0};
+    tl_error error = {0};
+    if (count > 0 && light->visibility != TL_VISIBILITY_RAYS)
+        tl_casters_measure(frame->surfaces, frame->surface_count, &casters, &error);
+    for (size_t i = 0; i < count; i++) {
+        enum tl_lamp_shadow shadow = tl_lamp_shadow_of(&lamps[i], light, &casters);
+        if (shadow == TL_LAMP_SHADOW_RAYS)
+            facts |= TL_BIT(TL_SCENE_LAMP_RAYS) | TL_BIT(TL_SCENE_SAMPLES);
+        else if (shadow == TL_LAMP_SHADOW_MAP)
+            facts |= TL_BIT(TL_SCENE_LAMP_MAPS);
+    }
+    return facts;
+}
+
+static tl_bits light_facts(const tl_frame *frame, const struct tl_render_settings *settings)
+{
+    const struct tl_light_params *light = &settings->light;
+    if (light->method == TL_METHOD_REFERENCE)
+        return TL_BIT(TL_SCENE_REFERENCE);
+    if (light->method == TL_METHOD_MAPS)
+        return TL_BIT(TL_SCENE_RASTER) | TL_BIT(TL_SCENE_ENVMAP) | lamp_facts(frame, light) |
+               (settings->maps.capture_every > 0 ? TL_BIT(TL_SCENE_CAPTURE) : 0);
+    bool shadowed = light->method != TL_METHOD_UNSHADOWED, rays = light->visibility == TL_VISIBILITY_RAYS;
+    tl_bits facts = TL_BIT(TL_SCENE_RASTER) | TL_BIT(rays ? TL_SCENE_RAYS : TL_SCENE_PASSES);
+    if (shadowed)
+        facts |= TL_BIT(TL_SCENE_SHADOWS) | (rays ? 0 : TL_BIT(TL_SCENE_MAPS));
+    if (wants_detail(frame->surfaces, frame->surface_count, &settings->detail))
+        facts |= TL_BIT(TL_SCENE_DETAIL);
+    if (light->visibility == TL_VISIBILITY_VSM)
+        facts |= TL_BIT(TL_SCENE_BLUR);
+    if (!rays && tl_light_source(light) == TL_LIGHT_CHAIN)
+        facts |= TL_BIT(TL_SCENE_CHAINS);
+    if (!rays && tl_light_source(light) == TL_LIGHT_SLICES)
+        facts |= TL_BIT(TL_SCENE_SLICES);
+    if (rays || tl_light_needs_exact(light))
+        facts |= TL_BIT(TL_SCENE_EXACT);
+    if (rays && tl_materials_have(frame->surfaces, frame->surface_count, tl_material_shows_more))
+        facts |= TL_BIT(TL_SCENE_TRANSPARENCY);
+    if (rays && light->method == TL_METHOD_PEM && light->reflect_scene &&
+        tl_mirror_ray_count(tl_lobe_exponent(greatest_glossiness(frame->surfaces, frame->surface_count))) > 0)
+        facts |= TL_BIT(TL_SCENE_MIRRORS);
+    if (rays)
+        facts |= TL_BIT(TL_SCENE_SAMPLES) | TL_BIT(TL_SCENE_COMPOSED);
+    return facts | lamp_facts(frame, light);
+}
+
+/* Of a frame whose view is not light, but for those of its materials. */
+static tl_bits view_facts(int view)
+{
+    tl_bits facts = TL_BIT(TL_SCENE_RASTER) | TL_BIT(TL_SCENE_SAMPLES) | TL_BIT(TL_SCENE_INSPECT);
+    if (tl_view_is_visibility(view))
+        facts |= TL_BIT(TL_SCENE_RAYS) | TL_BIT(TL_SCENE_SHADOWS);
+    return facts;
+}
+
+tl_bits tl_frame_facts(const tl_frame *frame, const struct tl_render_settings *settings)
+{
+    tl_bits kept = frame->aovs ? TL_BIT(TL_SCENE_SAMPLES) : 0;
+    if (settings->image.view == TL_VIEW_LIGHT)
+        return kept | light_facts(frame, settings);
+    if (wants_detail(frame->surfaces, frame->surface_count, &settings->detail))
+        kept |= TL_BIT(TL_SCENE_DETAIL);
+    return kept | view_facts(settings->image.view);
+}

@@ -1,0 +1,64 @@
+#include "render/light/light_buffer.h"
+
+#include "config/memory.h"
+
+#include <epoxy/gl.h>
+
+#include <stdlib.h>
+#include <string.h>
+
+void tl_light_buffer_release(struct tl_light_buffer *buffer)
+{
+    tl_target_destroy(&buffer->target);
+    free(buffer->texels);
+    *buffer = (struct tl_light_buffer){0};
+}
+
+size_t tl_light_buffer_bytes(const struct tl_light_buffer *buffer)
+{
+    return tl_target_bytes(&buffer->target) + buffer->bytes;
+}
+
+static void allocate(struct tl_light_buffer *buffer, tl_gpu *gpu, const tl_target *gbuffer)
+{
+    const unsigned format = GL_RGBA32F;
+    if (buffer->target.width != gbuffer->width || buffer->target.height != gbuffer->height) {
+        tl_target_destroy(&buffer->target);
+        buffer->target = tl_target_create(gpu, gbuffer->width, gbuffer->height, &format, 1, false);
+    }
+    glNamedFramebufferTexture(buffer->target.id, GL_DEPTH_ATTACHMENT, gbuffer->depth.id, 0);
+}
+
+void tl_light_buffer_begin(struct tl_light_buffer *buffer, tl_gpu *gpu, const tl_target *gbuffer,
+                           bool is_first)
+{
+    const float black[] = {0, 0, 0, 0};
+    allocate(buffer, gpu, gbuffer);
+    if (is_first)
+        glClearNamedFramebufferfv(buffer->target.id, GL_COLOR, 0, black);
+    glBindFramebuffer(GL_FRAMEBUFFER, buffer->target.id);
+    glViewport(0, 0, gbuffer->width, gbuffer->height);
+    glEnable(GL_DEPTH_TEST); /* the full-screen triangle lies at depth 1: this keeps to what is covered */
+    glDepthFunc(GL_GREATER);
+    glDepthMask(GL_FALSE);
+    for (GLuint i = 0; i < TL_GBUFFER_TRIANGLE; i++)
+        glBindTextureUnit(i, gbuffer->colours[i].id);
+}
+
+void tl_light_buffer_clear(struct tl_light_buffer *buffer, int width, int height)
+{
+    size_t bytes = (size_t)width * (size_t)height * 4 * sizeof(float);
+    if (bytes != buffer->bytes) {
+        free(buffer->texels);
+        buffer->texels = tl_alloc(bytes, 1);
+        buffer->bytes = bytes;
+    }
+    memset(buffer->texels, 0, bytes);
+}
+
+void tl_light_buffer_send(struct tl_light_buffer *buffer, tl_gpu *gpu, const tl_target *gbuffer)
+{
+    allocate(buffer, gpu, gbuffer);
+    glTextureSubImage2D(buffer->target.colours[0].id, 0, 0, 0, gbuffer->width, gbuffer->height, GL_RGBA,
+                        GL_FLOAT, buffer->texels);
+}

@@ -1,0 +1,25 @@
+/* The inside of a renderer: a frame's resources, and what plans the next one. */
+#ifndef TOILE_RENDER_RENDERER_INTERNAL_H
+#define TOILE_RENDER_RENDERER_INTERNAL_H
+
+#include "render/frame/work.h"
+#include "render/renderer.h"
+
+struct tl_renderer {
+    struct tl_resources resources;
+
+    /* Of the last draw; borrowed pointers in `frame` live as long as tl_frame says. */
+    tl_frame frame;
+    struct tl_render_settings settings;
+    struct tl_work_counts counts;
+    struct tl_rest rest;
+    uint64_t signatures[TL_INPUT_COUNT]; /* of its inputs */
+    tl_bits moving;                      /* inputs that changed from one frame to the last */
+
+    tl_plan plan;
+    struct tl_cost_job costs[TL_JOBS_MAX];
+    struct tl_machine_load load;
+    uint64_t shaders_stamp;
+};
+
+#endif

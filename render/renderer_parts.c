@@ -1,0 +1,109 @@
+/* What a renderer tells of its last frame beside the image, and what it exchanges with a worker thread. */
+#include "render/frame/memory.h"
+#include "render/inside.h"
+#include "render/renderer_internal.h"
+
+const struct tl_resources *tl_renderer_look_inside(const tl_renderer *renderer)
+{
+    return &renderer->resources;
+}
+
+struct tl_render_memory tl_renderer_memory(const tl_renderer *renderer)
+{
+    return tl_resources_memory(&renderer->resources);
+}
+
+size_t tl_renderer_resources(const tl_renderer *renderer, struct tl_resource_memory out[TL_RESOURCES_MAX])
+{
+    return tl_resources_list(&renderer->resources, out);
+}
+
+static bool has(const tl_renderer *renderer, enum tl_resource resource)
+{
+    return renderer->resources.valid & TL_BIT(resource);
+}
+
+static struct tl_inspect_request inspect_request(const tl_renderer *renderer)
+{
+    const struct tl_resources *resources = &renderer->resources;
+    return (struct tl_inspect_request){.image = &renderer->settings.image,
+                                       .strain_range = resources->strain_range,
+                                       .samples = &resources->samples,
+                                       .ranges = &resources->shapes.ranges,
+                                       .regions = has(renderer, TL_MADE_REGIONS) ? &resources->regions : NULL,
+                                       .points = has(renderer, TL_MADE_POINTS) ? resources->points : NULL,
+                                       .view = &resources->camera.view,
+                                       .environment_yaw = resources->yaw};
+}
+
+bool tl_renderer_inspect(const tl_renderer *renderer, int x, int y, struct tl_inspection *out)
+{
+    const struct tl_image_params *image = &renderer->settings.image;
+    const struct tl_inspect_request request = inspect_request(renderer);
+    *out = (struct tl_inspection){.strongest_region = -1};
+    if (!has(renderer, TL_MADE_IMAGE) || x < 0 || y < 0 || x >= image->width || y >= image->height)
+        return false;
+    if (!has(renderer, TL_MADE_SAMPLES))
+        return tl_inspect_ray(&request, image->width, image->height, x, y, out);
+    size_t number = tl_inspect_find(request.samples, image->width, image->height, x, y);
+    if (number == request.samples->primary_count)
+        return false;
+    tl_inspect_sample(&request, number, out);
+    return true;
+}
+
+void tl_renderer_legend(const tl_renderer *renderer, struct tl_legend *out)
+{
+    const struct tl_inspect_request request = inspect_request(renderer);
+    tl_inspect_legend(&request, out);
+}
+
+static bool has_strains(const struct tl_shapes_input *shapes)
+{
+    for (size_t i = 0; i < shapes->drawn_count; i++)
+        if (shapes->drawn[i]->strains)
+            return true;
+    return false;
+}
+
+bool tl_renderer_read_aovs(const tl_renderer *renderer, struct tl_aovs *out, tl_error *error)
+{
+    *out = (struct tl_aovs){0};
+    if (!has(renderer, TL_MADE_SAMPLES))
+        return tl_fail(error, TL_USAGE,
+                       "renderer: the last frame kept no layers: set aovs of the frame before drawing it");
+    const struct tl_inspect_request request = inspect_request(renderer);
+    tl_aovs_make(&request, has_strains(&renderer->resources.shapes), out);
+    return true;
+}
+
+uint32_t tl_renderer_exponents(const tl_renderer *renderer)
+{
+    return renderer->resources.light_cache.exponents;
+}
+
+/* The cube is that of the last frame: an image without light leaves it as it was. */
+tl_prepared *tl_renderer_copy_prepared(const tl_renderer *renderer)
+{
+    const struct tl_resources *resources = &renderer->resources;
+    if (!has(renderer, TL_MADE_CUBE))
+        return NULL;
+    return tl_prepared_copy_cache(&resources->light_cache, &resources->cube, &resources->suns,
+                                  &renderer->settings.light);
+}
+
+void tl_renderer_take_prepared(tl_renderer *renderer, tl_prepared **prepared, uint64_t environment_revision)
+{
+    struct tl_resources *resources = &renderer->resources;
+    const struct tl_light_params *light = &renderer->settings.light;
+    tl_prepared_destroy(&resources->prepared);
+    tl_prepared_set_revision(*prepared, environment_revision);
+    if (has(renderer, TL_MADE_CUBE) &&
+        tl_prepared_fits(*prepared, renderer->frame.environment_revision, light->pem_size, light->sun)) {
+        tl_prepared_give_lights(*prepared, &resources->light_cache);
+        tl_prepared_destroy(prepared);
+        return;
+    }
+    resources->prepared = *prepared;
+    *prepared = NULL;
+}
