@@ -1,4 +1,4 @@
-#include "render/renderer_internal.h"
+#include "render/renderer.h"
 
 #include "config/log.h"
 #include "config/memory.h"
@@ -6,8 +6,8 @@
 #include "render/frame/jobs.h"
 #include "render/frame/memory.h"
 #include "render/gpu/shaders.h"
-#include "render/inside.h"
 #include "render/inspect/inspect.h"
+#include "render/renderer_internal.h"
 
 #include <epoxy/gl.h>
 

@@ -2,8 +2,8 @@
 #ifndef TOILE_RENDER_RENDERER_INTERNAL_H
 #define TOILE_RENDER_RENDERER_INTERNAL_H
 
+#include "render/frame/settings.h"
 #include "render/frame/work.h"
-#include "render/renderer.h"
 
 struct tl_renderer {
     struct tl_resources resources;

@@ -1,9 +1,10 @@
 #include "render/frame/jobs.h"
 
 #include "config/memory.h"
+#include "render/frame/job_io.h"
 #include "render/frame/work.h"
 
-/* The bits of a job's list (jobs.h) that it reads. */
+/* The bits of a job's list (job_io.h) that it reads. */
 #define BIT_OF(member)            TL_BIT(TL_RESOURCE_OF_##member) |
 #define READ_READS(member)        BIT_OF(member)
 #define READ_READS_HANDLE(member) BIT_OF(member)

@@ -1,6 +1,6 @@
 /* What the jobs of a frame read and write, each resource by itself, and what they work with. The list names
  * the inputs of a frame first, then what jobs make; each has the bit that the plan knows it by (resource.h).
- * Jobs never see the whole: jobs.h lists what each of them is handed. */
+ * Jobs never see the whole: job_io.h lists what each of them is handed. */
 #ifndef TOILE_RENDER_FRAME_RESOURCES_H
 #define TOILE_RENDER_FRAME_RESOURCES_H
 

@@ -1,7 +1,7 @@
 /* Jobs that make light of the environment. */
 #include "render/env/from_environment.h"
 #include "render/frame/facts.h"
-#include "render/frame/jobs.h"
+#include "render/frame/job_io.h"
 
 bool tl_run_cube(const struct tl_cube_job *job, tl_error *error)
 {

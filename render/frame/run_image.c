@@ -2,7 +2,7 @@
 #include "config/log.h"
 #include "render/env/from_environment.h"
 #include "render/frame/facts.h"
-#include "render/frame/jobs.h"
+#include "render/frame/job_io.h"
 #include "render/inspect/inspect.h"
 #include "render/reference/reference.h"
 

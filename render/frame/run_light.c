@@ -3,7 +3,7 @@
 #include "config/log.h"
 #include "config/memory.h"
 #include "render/frame/facts.h"
-#include "render/frame/jobs.h"
+#include "render/frame/job_io.h"
 #include "render/light/compose.h"
 #include "render/local/lamp_samples.h"
 

@@ -1,6 +1,6 @@
 /* Jobs that draw surfaces: for shadows, and for the camera. */
 #include "render/frame/facts.h"
-#include "render/frame/jobs.h"
+#include "render/frame/job_io.h"
 
 bool tl_run_surfaces(const struct tl_surfaces_job *job, tl_error *error)
 {

@@ -4,7 +4,7 @@
 #ifndef TOILE_RENDER_VISIBILITY_COVER_TAPS_H
 #define TOILE_RENDER_VISIBILITY_COVER_TAPS_H
 
-#include "render/visibility/points.h"
+#include "render/visibility/points_request.h"
 
 /* Bit i of covered[c]: something lies close above point c x TL_CLUSTER + i. */
 void tl_taps_match_cover(const struct tl_points_request *request, const uint16_t *covered,

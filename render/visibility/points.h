@@ -9,39 +9,9 @@
 #ifndef TOILE_RENDER_VISIBILITY_POINTS_H
 #define TOILE_RENDER_VISIBILITY_POINTS_H
 
-#include "render/env/sun.h"
-#include "render/gbuffer/samples.h"
-#include "render/pem/regions.h"
-#include "render/surfaces/ground.h"
-#include "render/trace/trace.h"
-#include "render/visibility/options.h"
-
-#define TL_TAPS 4
-
-/* What a sample reads: values of `point[i]` times `weight[i]`; weights sum to 1, unused ones are 0. */
-struct tl_taps {
-    uint32_t point[TL_TAPS];
-    float weight[TL_TAPS];
-};
+#include "render/visibility/points_request.h"
 
 typedef struct tl_points tl_points;
-
-struct tl_points_request {
-    const tl_trace *trace;
-    const struct tl_triangle_ranges *ranges;
-    const struct tl_samples *samples;
-    const struct tl_regions *regions;
-    const struct tl_suns *suns; /* NULL: none stand apart */
-    uint64_t
-        regions_revision;     /* changes when the regions do: values are carried over to the nearest region */
-    uint64_t shapes_revision; /* changes when vertex numbers do: everything is forgotten */
-    const struct tl_ground *ground; /* NULL: none */
-    float environment_yaw;          /* rad */
-    const struct tl_ray_params *params;
-    bool moved; /* surfaces, environment or yaw differ from the last frame: values are replaced, not averaged
-                 */
-    bool whole_rounds; /* every frame traces all regions, however long that takes */
-};
 
 tl_points *tl_points_create(void);
 void tl_points_destroy(tl_points **points);
@@ -52,7 +22,6 @@ bool tl_points_are_done(const tl_points *points);
 
 /* After an update. Visibility of region i at point p is values[p * stride + i] / TL_VISIBILITY_ONE; stride is
  * a multiple of 16 and what lies beyond the regions is 0. One taps entry a sample. */
-#define TL_VISIBILITY_ONE 65535.0f
 const uint16_t *tl_points_values(const tl_points *points, size_t *stride);
 const struct tl_taps *tl_points_taps(const tl_points *points);
 /* Visibility of the sun by sample, [sun][sample], in [0, 1]; NULL when no sun stands apart. */

@@ -3,7 +3,7 @@
 #ifndef TOILE_RENDER_VISIBILITY_RAY_ORIGINS_H
 #define TOILE_RENDER_VISIBILITY_RAY_ORIGINS_H
 
-#include "render/visibility/points.h"
+#include "render/visibility/points_request.h"
 
 struct tl_ray_origins {
     size_t capacity;

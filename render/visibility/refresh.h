@@ -4,7 +4,7 @@
 #define TOILE_RENDER_VISIBILITY_REFRESH_H
 
 #include "render/visibility/cache_probes.h"
-#include "render/visibility/points.h"
+#include "render/visibility/points_request.h"
 
 /* What every cluster's rays share in one update. */
 struct tl_refresh {

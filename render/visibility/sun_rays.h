@@ -4,7 +4,7 @@
 #ifndef TOILE_RENDER_VISIBILITY_SUN_RAYS_H
 #define TOILE_RENDER_VISIBILITY_SUN_RAYS_H
 
-#include "render/visibility/points.h"
+#include "render/visibility/points_request.h"
 #include "render/visibility/ray_origins.h"
 
 struct tl_sun_rays {

@@ -1,0 +1,40 @@
+/* What visibility at points is found for, and what a sample reads of it: shared by points.c and its parts. */
+#ifndef TOILE_RENDER_VISIBILITY_POINTS_REQUEST_H
+#define TOILE_RENDER_VISIBILITY_POINTS_REQUEST_H
+
+#include "render/env/sun.h"
+#include "render/gbuffer/samples.h"
+#include "render/pem/regions.h"
+#include "render/surfaces/ground.h"
+#include "render/trace/trace.h"
+#include "render/visibility/options.h"
+
+#define TL_TAPS 4
+
+/* What a sample reads: values of `point[i]` times `weight[i]`; weights sum to 1, unused ones are 0. */
+struct tl_taps {
+    uint32_t point[TL_TAPS];
+    float weight[TL_TAPS];
+};
+
+/* Values of visibility are 16-bit shares of this. */
+#define TL_VISIBILITY_ONE 65535.0f
+
+struct tl_points_request {
+    const tl_trace *trace;
+    const struct tl_triangle_ranges *ranges;
+    const struct tl_samples *samples;
+    const struct tl_regions *regions;
+    const struct tl_suns *suns; /* NULL: none stand apart */
+    uint64_t
+        regions_revision;     /* changes when the regions do: values are carried over to the nearest region */
+    uint64_t shapes_revision; /* changes when vertex numbers do: everything is forgotten */
+    const struct tl_ground *ground; /* NULL: none */
+    float environment_yaw;          /* rad */
+    const struct tl_ray_params *params;
+    bool moved; /* surfaces, environment or yaw differ from the last frame: values are replaced, not averaged
+                 */
+    bool whole_rounds; /* every frame traces all regions, however long that takes */
+};
+
+#endif
