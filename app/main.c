@@ -1,6 +1,7 @@
 /* toile COMMAND [SCENE] [OPTIONS]: finds the command, parses its flags, runs it, turns its error into one
  * line. */
 #include "app/commands.h"
+#include "app/drape/cache.h"
 #include "config/interrupt.h"
 #include "config/log.h"
 
@@ -11,6 +12,14 @@
 #include <string.h>
 #include <sys/prctl.h>
 #include <unistd.h>
+
+/* Drapes are kept between runs unless the user asks otherwise or has no folder for it. */
+static void use_cache(const struct tl_arguments *arguments)
+{
+    char *folder = arguments->no_cache ? NULL : tl_cache_folder();
+    tl_cache_use(folder, TL_CACHE_LIMIT_BYTES);
+    free(folder);
+}
 
 static bool run(int argc, char **argv, tl_error *error)
 {
@@ -33,7 +42,9 @@ static bool run(int argc, char **argv, tl_error *error)
             tl_log_set_level(TL_LOG_QUIET);
         else if (arguments.verbose)
             tl_log_set_level(TL_LOG_DEBUG);
+        use_cache(&arguments);
         done = command->run(&arguments, error);
+        tl_cache_use(NULL, 0);
     }
     tl_arguments_release(&arguments);
     return done;

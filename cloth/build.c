@@ -93,9 +93,7 @@ static double find_needle_share(const tl_cloth *cloth)
     return (double)count / (double)cloth->topology.triangle_count;
 }
 
-/* Builds everything that depends on the numbering of the physics vertices, except positions and velocities.
- */
-static void build_mesh(tl_cloth *cloth, const uint32_t *weld, size_t vertex_count)
+void tl_cloth_build_mesh(tl_cloth *cloth, const uint32_t *weld, size_t vertex_count)
 {
     const tl_mesh *mesh = &cloth->garment->model.mesh;
     tl_topology_release(&cloth->topology);
@@ -143,7 +141,7 @@ void tl_cloth_build_state(tl_cloth *cloth)
     const tl_mesh *mesh = &garment->model.mesh;
     uint32_t *weld = TL_NEW_ARRAY(uint32_t, mesh->vertex_count);
     size_t count = tl_weld_positions(mesh->positions, mesh->vertex_count, weld);
-    build_mesh(cloth, weld, count);
+    tl_cloth_build_mesh(cloth, weld, count);
     cloth->particles = tl_particles_create(count);
     for (size_t i = 0; i < mesh->vertex_count; i++)
         cloth->particles.x[weld[i]] = vec3d_from(mesh->positions[i]);
@@ -203,7 +201,7 @@ void tl_cloth_join(tl_cloth *cloth, const uint32_t *joined, size_t joined_count)
     uint32_t *weld = TL_NEW_ARRAY(uint32_t, cloth->topology.render_count);
     for (size_t i = 0; i < cloth->topology.render_count; i++)
         weld[i] = joined[cloth->topology.weld[i]];
-    build_mesh(cloth, weld, joined_count);
+    tl_cloth_build_mesh(cloth, weld, joined_count);
     free(weld);
     tl_particles_release(&cloth->particles);
     cloth->particles = to;

@@ -8,6 +8,10 @@
 /* Fills a cloth that has its garment, fabric and params, and nothing else. */
 void tl_cloth_build_state(tl_cloth *cloth);
 
+/* Rebuilds all that follows from a numbering of the physics vertices, of which there are `vertex_count`:
+ * `weld` [render vertex]. Particles, pins and seams are left; tl_cloth_set_constants must follow. */
+void tl_cloth_build_mesh(tl_cloth *cloth, const uint32_t *weld, size_t vertex_count);
+
 /* Frees what tl_cloth_build_state made; the garment, fabric, params and marked start stay. */
 void tl_cloth_release_state(tl_cloth *cloth);
 

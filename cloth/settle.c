@@ -40,6 +40,12 @@ static double max_displacement_speed(const tl_cloth *cloth)
     return farthest * cloth->params.frame_rate;
 }
 
+void tl_cloth_log_unsettled(const tl_cloth *cloth)
+{
+    tl_info("the cloth still moves at %.3f m/s after settling for %g s: increase cloth.settle_s",
+            cloth->unsettled_speed, cloth->params.settle_s);
+}
+
 bool tl_cloth_settle(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
 {
     const struct tl_cloth_params chosen = cloth->params, *params = &chosen;
@@ -69,9 +75,10 @@ bool tl_cloth_settle(tl_cloth *cloth, const tl_collider *collider, tl_error *err
     }
     tl_progress_end(&progress);
     tl_cloth_use_solver(cloth, params);
-    if (good && !cloth->settled && params->settle_s > 0)
-        tl_info("the cloth still moves at %.3f m/s after settling for %g s: increase cloth.settle_s",
-                max_displacement_speed(cloth), params->settle_s);
+    bool timed_out = good && !cloth->settled && params->settle_s > 0;
+    cloth->unsettled_speed = timed_out ? max_displacement_speed(cloth) : 0;
+    if (timed_out)
+        tl_cloth_log_unsettled(cloth);
     memset(cloth->particles.v, 0, cloth->particles.count * sizeof(vec3d));
     return good;
 }

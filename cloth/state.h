@@ -42,6 +42,7 @@ struct tl_cloth {
     uint64_t jump_followed;       /* collider revision whose jump has been applied to the cloth */
     double time_s;
     bool settled;
+    double unsettled_speed;     /* m/s, when the time for settling ended before rest; else 0 */
     double needle_share;        /* share of the triangles that are needles */
     uint64_t collider_revision; /* in the last frame in which something drove the cloth */
     bool undriven;              /* nothing has driven the cloth since min_energy was first taken */
@@ -50,6 +51,9 @@ struct tl_cloth {
     vec3d *start_x, *start_v;   /* [render vertex] the marked start; NULL: none was marked */
     bool *start_pinched;        /* [render vertex] the same of struct tl_contacts */
 };
+
+/* Logs that the time for settling ended before the cloth was at rest. */
+void tl_cloth_log_unsettled(const tl_cloth *cloth);
 
 /* Whether `preview` follows each sweep by one in the opposite order, as meshes of needles require (xpbd.h). A
  * few needles among well-shaped triangles do no harm. */

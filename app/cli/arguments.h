@@ -29,6 +29,7 @@ enum tl_flag_set {
     TL_FLAGS_CAPTURE = 1 << 15, /* --capture, and those of the scene but the image's */
     TL_FLAGS_FLY = 1 << 16,     /* --frames N --path --video --against --replay --oracle --hash */
     TL_FLAGS_BUDGET = 1 << 17,  /* --budget MS */
+    TL_FLAGS_CLEAR = 1 << 18,   /* --clear */
 };
 
 struct tl_arguments {
@@ -55,7 +56,7 @@ struct tl_arguments {
     int hdr;           /* -1 by content, 0 --ldr, 1 --hdr */
     bool frames_given; /* --frames rather than --frame */
     bool json, quiet, verbose, help;
-    bool fresh, quick, full, clamp, capture, furnace, still, aovs, hash, same_drape;
+    bool fresh, quick, full, clamp, capture, furnace, still, aovs, hash, same_drape, no_cache, clear;
 };
 
 bool tl_arguments_parse(int argc, char **argv, unsigned flags, struct tl_arguments *out, tl_error *error);

@@ -1,5 +1,7 @@
 #include "app/scene/settings.h"
 
+#include "config/hash.h"
+
 /* Bindings can be written through, so constant settings are bound as a copy. */
 struct bound {
     struct tl_settings settings;
@@ -28,6 +30,13 @@ void tl_settings_take(const struct tl_settings *from, struct tl_settings *to, st
     bind_copy(from, &source);
     tl_settings_bind(to, bindings);
     tl_options_take(source.bindings, bindings, TL_SETTINGS_TABLES, filter);
+}
+
+uint64_t tl_settings_hash(const struct tl_settings *settings, struct tl_option_filter filter)
+{
+    struct bound source;
+    bind_copy(settings, &source);
+    return tl_options_hash(source.bindings, TL_SETTINGS_TABLES, filter, TL_HASH_START);
 }
 
 bool tl_settings_equal(const struct tl_settings *a, const struct tl_settings *b)

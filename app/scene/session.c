@@ -1,5 +1,6 @@
 #include "app/scene/session.h"
 
+#include "app/drape/drape.h"
 #include "app/scene/camera.h"
 #include "app/scene/moving.h"
 #include "app/scene/moving_light.h"
@@ -10,6 +11,7 @@
 #include "assets/refine.h"
 #include "cloth/energy/strain.h"
 #include "cloth/mesh/topology.h"
+#include "config/file.h"
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
@@ -19,10 +21,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* A clip's first pose may be far from the rest pose that a garment was made for. The avatar walks there in
- * this time, before frame 0, so that the cloth is carried along instead of torn. */
-#define POSE_IN_S 1.0
 
 struct tl_session {
     struct tl_settings settings;
@@ -208,56 +206,24 @@ static void pull_cloth(tl_session *session)
     tl_moving_update(&session->dress);
 }
 
-/* From the rest pose to the clip's first pose, vertex by vertex on straight lines. */
-static bool pose_in(tl_session *session, tl_error *error)
-{
-    size_t count = session->avatar->model.mesh.vertex_count;
-    const vec3s *rest = session->avatar->model.mesh.positions;
-    vec3s *first = TL_NEW_ARRAY(vec3s, count);
-    tl_model_pose(&session->avatar->model, session->clip, 0, first);
-    int steps = (int)(POSE_IN_S * session->settings.cloth.frame_rate) + 1;
-    bool done = true;
-    for (int step = 1; done && step <= steps && !tl_interrupted(); step++) {
-        float part = (float)step / (float)steps;
-        for (size_t i = 0; i < count; i++)
-            session->body.positions[i] = glms_vec3_lerp(rest[i], first[i], part);
-        tl_collider_move(session->collider, session->body.positions);
-        done = tl_cloth_step(session->cloth, session->collider, error);
-    }
-    free(first);
-    return done;
-}
-
-/* More than any garment here that fits is, by root mean square: 0.6 to 2.1 %. Preview passes over the edges
- * once a substep, so what is finer hangs longer, up to the strain limit: the dress by 0.9 % at 2 cm, 1.8 at
- * 1.07, 3.2 at 0.7; there 1.3 with 60 substeps and 0.7 with 120. Other solvers settle from there, and what
- * friction holds stays as long: the dress at 1.07 cm by 2.0 % under `settle`, with 100 substeps by 0.75. */
-#define STRETCHED 0.03
-
-static void tell_stretch(const tl_session *session)
-{
-    const struct tl_cloth_params *params = &session->settings.cloth;
-    double strain = tl_cloth_measure(session->cloth, NULL).rms_strain;
-    if (params->settle_s > 0 && strain > STRETCHED)
-        tl_info("the cloth is stretched by %.0f %%: it is tight, or cloth.substeps=%d are too few for edges "
-                "so fine",
-                100 * strain, params->substeps);
-}
-
 static bool drape(tl_session *session, tl_error *error)
 {
     const struct tl_settings *settings = &session->settings;
     const tl_mesh *body = session->avatar ? &session->avatar->model.mesh : NULL;
+    const struct tl_drape_request request = {
+        .garment = session->garment,
+        .avatar = session->avatar,
+        .clip = session->clip,
+        .fabric = &settings->fabric,
+        .params = &settings->cloth,
+        .options = tl_settings_hash(settings, (struct tl_option_filter){.any_of = TL_AFFECTS_DRAPE}),
+    };
     session->collider = tl_collider_create(body, settings->image.ground, error);
     if (!session->collider)
         return false;
-    session->cloth = tl_cloth_create(session->garment, &settings->fabric, &settings->cloth, error);
-    if (!session->cloth || !tl_cloth_settle(session->cloth, session->collider, error))
+    session->cloth = tl_drape(&request, session->collider, error);
+    if (!session->cloth)
         return false;
-    tell_stretch(session);
-    if (session->avatar && session->clip >= 0 && !pose_in(session, error))
-        return false;
-    tl_cloth_mark_start(session->cloth);
     tl_moving_create(&session->dress, &session->garment->model, tl_cloth_weld(session->cloth));
     pull_cloth(session);
     return true;
@@ -355,8 +321,20 @@ static bool make_look(const tl_session *session, const struct tl_settings *setti
     return tl_session_make_look(&models, settings, out, error);
 }
 
+/* A missing file is refused before anything is made: the built-in form alone takes half a second. */
+static bool check_files(const struct tl_scene_params *scene, tl_error *error)
+{
+    const char *names[] = {scene->garment, scene->avatar};
+    for (size_t i = 0; i < TL_COUNT(names); i++)
+        if (tl_option_is_file_name(names[i]) && !tl_file_check(names[i], error))
+            return false;
+    return true;
+}
+
 static bool load_all(tl_session *session, tl_error *error)
 {
+    if (!check_files(&session->settings.scene, error))
+        return false;
     const char *environment = session->settings.scene.environment;
     if (!tl_moving_light_open(&session->light, environment, 0, error) || !load_avatar(session, error) ||
         !load_garment(session, error))

@@ -69,6 +69,8 @@ bool tl_settings_equal(const struct tl_settings *a, const struct tl_settings *b)
 bool tl_settings_differ(const struct tl_settings *a, const struct tl_settings *b,
                         struct tl_option_filter filter);
 void tl_settings_take(const struct tl_settings *from, struct tl_settings *to, struct tl_option_filter filter);
+/* A hash of the values of such options. Pure. */
+uint64_t tl_settings_hash(const struct tl_settings *settings, struct tl_option_filter filter);
 
 /* True when to go from one to the other takes longer than a frame: while a slider is dragged, such a change
  * waits until it is released. Pure. */

@@ -15,5 +15,5 @@ endif()
 foreach(script IN ITEMS view_drive view_drop)
   add_test(NAME ${script} COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/view/${script}.sh)
   set_tests_properties(${script} PROPERTIES LABELS cli TIMEOUT ${toile_script_timeout} SKIP_RETURN_CODE 77
-    ENVIRONMENT "TOILE=$<TARGET_FILE:toile>;DROP=${drop_files}")
+    ENVIRONMENT "TOILE=$<TARGET_FILE:toile>;DROP=${drop_files};${toile_cache}")
 endforeach()

@@ -1,0 +1,198 @@
+#include "app/drape/cache.h"
+
+#include "config/file.h"
+#include "config/hash.h"
+#include "config/log.h"
+#include "config/memory.h"
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define EXTENSION "drape"
+#define MAGIC     "toiledrp"
+
+static struct {
+    char *folder; /* NULL: no cache */
+    uint64_t limit_bytes;
+} used;
+
+char *tl_cache_folder(void)
+{
+    const char *cache = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
+    if (cache && cache[0] == '/') /* the XDG specification ignores relative paths */
+        return tl_format("%s/toile/drapes", cache);
+    return home && home[0] == '/' ? tl_format("%s/.cache/toile/drapes", home) : NULL;
+}
+
+void tl_cache_use(const char *folder, uint64_t limit_bytes)
+{
+    free(used.folder);
+    used.folder = folder ? tl_copy_string(folder) : NULL;
+    used.limit_bytes = limit_bytes;
+}
+
+bool tl_cache_is_used(void)
+{
+    return used.folder != NULL;
+}
+
+/* ---- Keys ---- */
+
+/* Two hashes that begin differently, so that one accidental collision is not enough. */
+struct tl_cache_key tl_cache_key_begin(void)
+{
+    return (struct tl_cache_key){{TL_HASH_START, TL_HASH_START * 31 + 1}};
+}
+
+void tl_cache_key_add(struct tl_cache_key *key, const void *bytes, size_t size)
+{
+    for (int i = 0; i < 2; i++) {
+        key->words[i] = tl_hash(key->words[i], &size, sizeof size);
+        key->words[i] = tl_hash(key->words[i], bytes, size);
+    }
+}
+
+static char *path_of(const struct tl_cache_key *key)
+{
+    return tl_format("%s/%016" PRIx64 "%016" PRIx64 "." EXTENSION, used.folder, key->words[0], key->words[1]);
+}
+
+/* ---- Files ---- */
+
+/* Before the data. */
+struct header {
+    char magic[8];
+    struct tl_cache_key key;
+    uint64_t size, checksum;
+};
+
+static bool is_intact(const struct tl_cache_key *key, const char *file, size_t size)
+{
+    struct header header;
+    if (size < sizeof header)
+        return false;
+    memcpy(&header, file, sizeof header);
+    return memcmp(header.magic, MAGIC, sizeof header.magic) == 0 && header.key.words[0] == key->words[0] &&
+           header.key.words[1] == key->words[1] && header.size == size - sizeof header &&
+           header.checksum == tl_hash(TL_HASH_START, file + sizeof header, size - sizeof header);
+}
+
+bool tl_cache_load(const struct tl_cache_key *key, void **data, size_t *size)
+{
+    if (!used.folder)
+        return false;
+    char *path = path_of(key), *file = NULL;
+    size_t file_size = 0;
+    tl_error error;
+    bool found = tl_file_exists(path);
+    bool intact = found && tl_file_read_small(path, (size_t)used.limit_bytes, &file, &file_size, &error) &&
+                  is_intact(key, file, file_size);
+    if (intact) {
+        *size = file_size - sizeof(struct header);
+        *data = tl_alloc(*size, 1);
+        memcpy(*data, file + sizeof(struct header), *size);
+        utimensat(AT_FDCWD, path, NULL, 0); /* used now: it is the last to be removed */
+    } else if (found) {
+        tl_info("%s: is damaged: it is removed from the cache", path);
+        unlink(path);
+    }
+    free(file);
+    free(path);
+    return intact;
+}
+
+static bool is_entry(const char *name)
+{
+    return tl_path_has_extension(name, EXTENSION);
+}
+
+static int compare_used(const void *a, const void *b)
+{
+    const struct timespec *x = &((const struct tl_cache_entry *)a)->used,
+                          *y = &((const struct tl_cache_entry *)b)->used;
+    if (x->tv_sec != y->tv_sec)
+        return x->tv_sec > y->tv_sec ? -1 : 1;
+    return (x->tv_nsec < y->tv_nsec) - (x->tv_nsec > y->tv_nsec);
+}
+
+struct tl_cache_entry *tl_cache_list(const char *folder, size_t *count)
+{
+    struct tl_cache_entry *entries = NULL;
+    DIR *directory = opendir(folder);
+    *count = 0;
+    for (struct dirent *item; directory && (item = readdir(directory));) {
+        struct stat status;
+        struct tl_cache_entry entry;
+        if (!is_entry(item->d_name) || strlen(item->d_name) >= sizeof entry.name ||
+            fstatat(dirfd(directory), item->d_name, &status, 0) != 0)
+            continue;
+        entry = (struct tl_cache_entry){.bytes = (uint64_t)status.st_size, .used = status.st_mtim};
+        strcpy(entry.name, item->d_name);
+        entries = tl_resize(entries, *count + 1, sizeof *entries);
+        entries[(*count)++] = entry;
+    }
+    if (directory)
+        closedir(directory);
+    if (*count > 0)
+        qsort(entries, *count, sizeof *entries, compare_used);
+    return entries;
+}
+
+/* Another process may remove the same file at the same time: it is gone either way. */
+static bool remove_entry(const char *folder, const char *name)
+{
+    char *path = tl_format("%s/%s", folder, name);
+    bool removed = unlink(path) == 0;
+    free(path);
+    return removed;
+}
+
+static void keep_limit(void)
+{
+    size_t count;
+    struct tl_cache_entry *entries = tl_cache_list(used.folder, &count);
+    uint64_t bytes = 0;
+    for (size_t i = 0; i < count; i++) {
+        bytes += entries[i].bytes;
+        if (bytes > used.limit_bytes)
+            remove_entry(used.folder, entries[i].name);
+    }
+    free(entries);
+}
+
+void tl_cache_store(const struct tl_cache_key *key, const void *data, size_t size)
+{
+    if (!used.folder || size > used.limit_bytes)
+        return;
+    struct header header = {.key = *key, .size = size, .checksum = tl_hash(TL_HASH_START, data, size)};
+    memcpy(header.magic, MAGIC, sizeof header.magic);
+    char *path = path_of(key);
+    struct tl_writer writer = {0};
+    tl_error error;
+    bool stored = tl_folder_make(used.folder, &error) && tl_writer_begin(&writer, path, &error);
+    if (stored) {
+        fwrite(&header, sizeof header, 1, writer.stream);
+        fwrite(data, 1, size, writer.stream);
+        stored = tl_writer_commit(&writer, &error);
+    }
+    if (stored)
+        keep_limit();
+    else
+        tl_debug("cache: %s", error.message);
+    free(path);
+}
+
+size_t tl_cache_clear(const char *folder)
+{
+    size_t count, removed = 0;
+    struct tl_cache_entry *entries = tl_cache_list(folder, &count);
+    for (size_t i = 0; i < count; i++)
+        removed += remove_entry(folder, entries[i].name);
+    free(entries);
+    return removed;
+}
