@@ -82,16 +82,38 @@ static bool is_intact(const struct tl_cache_key *key, const char *file, size_t s
            header.checksum == tl_hash(TL_HASH_START, file + sizeof header, size - sizeof header);
 }
 
+/* Through one descriptor, so that a file that is replaced meanwhile is read whole, as it was. NULL: it cannot
+ * be read; *found: there is one. */
+static char *read_file(const char *path, size_t *size, bool *found)
+{
+    int descriptor = open(path, O_RDONLY | O_CLOEXEC);
+    struct stat status;
+    char *data = NULL;
+    *found = descriptor >= 0;
+    if (!*found)
+        return NULL;
+    if (fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) && status.st_size > 0 &&
+        (uint64_t)status.st_size <= used.limit_bytes + sizeof(struct header)) {
+        size_t length = 0;
+        ssize_t got = 1;
+        *size = (size_t)status.st_size;
+        data = tl_alloc(*size, 1);
+        while (length < *size && (got = read(descriptor, data + length, *size - length)) > 0)
+            length += (size_t)got;
+        *size = length; /* a shorter one fails its check */
+    }
+    close(descriptor);
+    return data;
+}
+
 bool tl_cache_load(const struct tl_cache_key *key, void **data, size_t *size)
 {
     if (!used.folder)
         return false;
-    char *path = path_of(key), *file = NULL;
     size_t file_size = 0;
-    tl_error error;
-    bool found = tl_file_exists(path);
-    bool intact = found && tl_file_read_small(path, (size_t)used.limit_bytes, &file, &file_size, &error) &&
-                  is_intact(key, file, file_size);
+    bool found;
+    char *path = path_of(key), *file = read_file(path, &file_size, &found);
+    bool intact = file && is_intact(key, file, file_size);
     if (intact) {
         *size = file_size - sizeof(struct header);
         *data = tl_alloc(*size, 1);
