@@ -247,14 +247,11 @@ static void add_includes(struct house *house)
             if (!include->quoted)
                 continue;
             char *because = tl_format("%s:%zu: #include \"%s\"", file->path, include->line, include->header);
-            char *pair = without(include->header, '.'), *room = without(include->header, '/');
-            graph_add(&house->pairs, graph_find(&house->pairs, file->pair), graph_find(&house->pairs, pair),
-                      because);
+            char *room = without(include->header, '/');
             graph_add(&house->rooms, graph_find(&house->rooms, file->room), graph_find(&house->rooms, room),
                       because);
             graph_add(&house->headers, graph_find(&house->headers, file->path),
                       graph_find(&house->headers, include->header), because);
-            free(pair);
             free(room);
             free(because);
         }

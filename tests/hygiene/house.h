@@ -49,7 +49,7 @@ struct house {
     struct house_file *files; /* .c, .h, .cpp of the floors, then of tests/; sorted by path in each */
     size_t file_count;
     size_t own_count;     /* of them in the floors */
-    struct graph pairs;   /* of the floors' files, by includes; house_read_objects adds linked symbols */
+    struct graph pairs;   /* of the floors' files, by linked symbols: house_read_objects */
     struct graph headers; /* of the floors' headers, by includes */
     struct graph rooms;   /* of the floors, by both */
 };
