@@ -6,7 +6,7 @@
 #include "app/lab/gallery/commands.h"
 #include "app/lab/stability/commands.h"
 #include "app/lab/trade/commands.h"
-#include "app/scene/settings.h"
+#include "app/settings/settings.h"
 #include "app/sheet/commands.h"
 #include "app/view/commands.h"
 #include "config/memory.h"

@@ -1,7 +1,7 @@
 /* toile info: prints what a file holds and how it is read, or what is built in. */
 #include "app/batch/commands.h"
 #include "app/cli/json.h"
-#include "app/scene/settings.h"
+#include "app/settings/settings.h"
 #include "assets/builtin/specimen.h"
 #include "assets/environment.h"
 #include "assets/model.h"

@@ -6,7 +6,7 @@
 #ifndef TOILE_APP_BUDGET_QUALITY_H
 #define TOILE_APP_BUDGET_QUALITY_H
 
-#include "app/scene/settings.h"
+#include "app/settings/settings.h"
 
 #include <stdint.h>
 

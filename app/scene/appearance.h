@@ -1,11 +1,11 @@
 /* How garment and avatar look: the materials of their files, what the settings' fabric makes of the
- * garment's, and what the colourway changes: scene.colourway's looks (app/scene/colourway.h) and the files'
- * own variants. Never how anything moves. Reads weave.picture's file and nothing else. */
+ * garment's, and what the colourway changes: scene.colourway's looks (app/settings/colourway.h) and the
+ * files' own variants. Never how anything moves. Reads weave.picture's file and nothing else. */
 #ifndef TOILE_APP_SCENE_APPEARANCE_H
 #define TOILE_APP_SCENE_APPEARANCE_H
 
 #include "app/scene/moving.h"
-#include "app/scene/settings.h"
+#include "app/settings/settings.h"
 
 struct tl_woven {
     struct tl_weave_params params;

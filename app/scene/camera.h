@@ -2,7 +2,7 @@
 #ifndef TOILE_APP_SCENE_CAMERA_H
 #define TOILE_APP_SCENE_CAMERA_H
 
-#include "app/scene/settings.h"
+#include "app/settings/settings.h"
 
 /* Whether the camera says by itself where it is: a distance of 0 is the one that the scene needs, and a
  * target of 0 0 0 the middle of what there is. */

@@ -6,7 +6,7 @@
 #ifndef TOILE_APP_SCENE_ORBIT_H
 #define TOILE_APP_SCENE_ORBIT_H
 
-#include "app/scene/settings.h"
+#include "app/settings/settings.h"
 
 struct tl_ray {
     vec3s origin, direction; /* metres; unit */

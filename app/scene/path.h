@@ -11,7 +11,7 @@
 #ifndef TOILE_APP_SCENE_PATH_H
 #define TOILE_APP_SCENE_PATH_H
 
-#include "app/scene/settings.h"
+#include "app/settings/settings.h"
 
 struct tl_path_key {
     double time_s; /* rising from key to key */

@@ -5,7 +5,7 @@
 #ifndef TOILE_APP_SCENE_PLAYBACK_H
 #define TOILE_APP_SCENE_PLAYBACK_H
 
-#include "app/scene/settings.h"
+#include "app/settings/settings.h"
 #include "assets/model.h"
 
 typedef struct tl_playback tl_playback;

@@ -5,7 +5,7 @@
 
 #include "app/scene/appearance.h"
 #include "app/scene/moving_light.h"
-#include "app/scene/settings.h"
+#include "app/settings/settings.h"
 #include "cloth/cloth.h"
 #include "render/renderer.h"
 

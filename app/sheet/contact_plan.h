@@ -6,7 +6,7 @@
 
 #include "app/cli/arguments.h"
 #include "app/scene/path.h"
-#include "app/scene/settings.h"
+#include "app/settings/settings.h"
 #include "app/sheet/contact_layout.h"
 
 #define TL_CONTACT_CELLS_MAX 4096

@@ -2,7 +2,7 @@
 #ifndef TOILE_TESTS_CLOTH_FABRICS_H
 #define TOILE_TESTS_CLOTH_FABRICS_H
 
-#include "app/scene/settings.h"
+#include "app/settings/settings.h"
 #include "tests/testing.h"
 
 #include <string.h>

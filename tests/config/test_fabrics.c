@@ -3,7 +3,7 @@
  * coatings and swimwear. */
 #include "tests/testing.h"
 
-#include "app/scene/settings.h"
+#include "app/settings/settings.h"
 #include "config/embedded.h"
 
 #include <string.h>

@@ -1,7 +1,7 @@
 /* The layers: defaults < preset < fabric < scene file < --set; what ships with the program reads well. */
 #include "tests/testing.h"
 
-#include "app/scene/settings.h"
+#include "app/settings/settings.h"
 #include "assets/builtin/specimen.h"
 #include "assets/garment.h"
 #include "config/embedded.h"

@@ -4,7 +4,7 @@
 #ifndef TOILE_APP_VIEW_MEMORY_HISTORY_H
 #define TOILE_APP_VIEW_MEMORY_HISTORY_H
 
-#include "app/scene/settings.h"
+#include "app/settings/settings.h"
 
 #define TL_HISTORY_EDITS 64 /* the oldest is dropped when there are more */
 

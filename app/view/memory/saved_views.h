@@ -7,7 +7,7 @@
 #ifndef TOILE_APP_VIEW_MEMORY_SAVED_VIEWS_H
 #define TOILE_APP_VIEW_MEMORY_SAVED_VIEWS_H
 
-#include "app/scene/settings.h"
+#include "app/settings/settings.h"
 
 #define TL_SAVED_VIEWS 9
 

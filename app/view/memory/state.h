@@ -7,7 +7,7 @@
 #ifndef TOILE_APP_VIEW_MEMORY_STATE_H
 #define TOILE_APP_VIEW_MEMORY_STATE_H
 
-#include "app/scene/settings.h"
+#include "app/settings/settings.h"
 
 struct tl_window_params { /* table "window" */
     int width, height;    /* of the window, pixels */

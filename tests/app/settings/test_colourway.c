@@ -2,6 +2,7 @@
 #include "tests/testing.h"
 
 #include "app/scene/appearance.h"
+#include "app/settings/layers.h"
 #include "assets/garment.h"
 #include "config/log.h"
 #include "config/memory.h"
@@ -61,8 +62,8 @@ static void looks_follow_the_scene(void **state)
     struct tl_weave_params satin_weave, denim_weave;
     tl_error error = {0};
     write_scene(SCENE);
-    assert_ok(tl_settings_read_look("satin", &satin, &satin_weave, &error), error);
-    assert_ok(tl_settings_read_look("denim", &denim, &denim_weave, &error), error);
+    assert_ok(tl_layer_read_appearance("satin", &satin, &satin_weave, &error), error);
+    assert_ok(tl_layer_read_appearance("denim", &denim, &denim_weave, &error), error);
 
     struct tl_looks looks = dress_in("Ink", &dress);
     const tl_material *bodice = &looks.garment.materials[0], *skirt = &looks.garment.materials[1];

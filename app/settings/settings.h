@@ -1,9 +1,9 @@
 /* Every params struct, one value; and the layers that fill it: defaults < preset < fabric < scene file <
  * command line. */
-#ifndef TOILE_APP_SCENE_SETTINGS_H
-#define TOILE_APP_SCENE_SETTINGS_H
+#ifndef TOILE_APP_SETTINGS_SETTINGS_H
+#define TOILE_APP_SETTINGS_SETTINGS_H
 
-#include "app/scene/colourway.h"
+#include "app/settings/colourway.h"
 #include "assets/builtin/weave.h"
 #include "cloth/cloth.h"
 #include "config/options.h"
@@ -101,9 +101,5 @@ bool tl_settings_apply_colourway(struct tl_settings *settings, const char *name,
 
 /* The scene that the colourways are read from, "" for none. */
 const char *tl_settings_colourways_source(const struct tl_settings *settings);
-
-/* How a fabric looks. */
-bool tl_settings_read_look(const char *fabric, struct tl_material_params *params,
-                           struct tl_weave_params *weave, tl_error *error);
 
 #endif

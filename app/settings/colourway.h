@@ -15,8 +15,8 @@
  *
  * A colourway changes materials and weaves only, never how the cloth moves. Failure: one line with file,
  * line, field and the nearest name. Threads: pure. */
-#ifndef TOILE_APP_SCENE_COLOURWAY_H
-#define TOILE_APP_SCENE_COLOURWAY_H
+#ifndef TOILE_APP_SETTINGS_COLOURWAY_H
+#define TOILE_APP_SETTINGS_COLOURWAY_H
 
 #include "assets/builtin/weave.h"
 #include "config/options.h"

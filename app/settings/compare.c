@@ -1,4 +1,4 @@
-#include "app/scene/settings.h"
+#include "app/settings/settings.h"
 
 #include "config/hash.h"
 

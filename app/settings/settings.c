@@ -1,12 +1,11 @@
-#include "app/scene/settings.h"
+#include "app/settings/settings.h"
+#include "app/settings/layers.h"
 
 #include "assets/base/units.h"
 #include "assets/model.h"
 #include "config/embedded.h"
-#include "config/file.h"
 #include "config/log.h"
 #include "config/memory.h"
-#include "config/words.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -143,67 +142,16 @@ struct tl_render_settings tl_settings_render(const struct tl_settings *settings)
                                        .reference = settings->reference};
 }
 
-/* One kind of file that can be named or lie on disk. */
-struct layer {
-    const char *kind; /* for messages */
-    const struct tl_embedded *list;
-    const char *const *names;
-};
-static const struct layer preset_layer = {"preset", tl_embedded_presets, tl_embedded_presets_names};
-static const struct layer fabric_layer = {"fabric", tl_embedded_fabrics, tl_embedded_fabrics_names};
-static const struct layer scene_layer = {"scene", tl_embedded_scenes, tl_embedded_scenes_names};
-
-static bool fail_name(const struct layer *layer, const char *name, tl_error *error)
-{
-    size_t count = tl_count_words(layer->names);
-    char *list = tl_join_words(layer->names, count, ", ", ", ");
-    const char *near = tl_nearest_word(name, layer->names, count);
-    tl_fail(error, TL_USAGE, "%s: no such %s: expected %s, or a YAML file%s%s%s", name, layer->kind, list,
-            near ? ": did you mean " : "", near ? near : "", near ? "?" : "");
-    free(list);
-    return false;
-}
-
-/* `section`: of records that the file may have, or NULL. */
-static bool apply_with(const struct layer *layer, const char *name, const struct tl_binding *bindings,
-                       size_t count, const struct tl_record_section *section, tl_error *error)
-{
-    if (tl_option_is_file_name(name))
-        return tl_options_read_yaml_file_with(bindings, count, section, name, error);
-    char *file = tl_format("%s.yaml", name);
-    const struct tl_embedded *entry = tl_embedded_find(layer->list, file);
-    free(file);
-    if (!entry)
-        return fail_name(layer, name, error);
-    return tl_options_read_yaml_with(bindings, count, section, entry->name, entry->data, entry->size, error);
-}
-
-static bool apply(const struct layer *layer, const char *name, const struct tl_binding *bindings,
-                  size_t count, tl_error *error)
-{
-    return apply_with(layer, name, bindings, count, NULL, error);
-}
-
 static bool apply_preset(const struct tl_binding *all, const char *name, tl_error *error)
 {
     const struct tl_binding bindings[] = {all[CLOTH], all[LIGHT], all[IMAGE]};
-    return apply(&preset_layer, name, bindings, TL_COUNT(bindings), error);
+    return tl_layer_apply(&tl_layer_preset, name, bindings, TL_COUNT(bindings), NULL, error);
 }
 
 static bool apply_fabric(const struct tl_binding *all, const char *name, tl_error *error)
 {
     const struct tl_binding bindings[] = {all[FABRIC], all[WEAVE], all[MATERIAL]};
-    return apply(&fabric_layer, name, bindings, TL_COUNT(bindings), error);
-}
-
-bool tl_settings_read_look(const char *fabric, struct tl_material_params *params,
-                           struct tl_weave_params *weave, tl_error *error)
-{
-    struct tl_cloth_fabric unused;
-    const struct tl_binding bindings[] = {
-        {&tl_cloth_fabric_options, &unused}, {&tl_weave_options, weave}, {&tl_material_options, params}};
-    tl_options_reset(bindings, TL_COUNT(bindings));
-    return apply(&fabric_layer, fabric, bindings, TL_COUNT(bindings), error);
+    return tl_layer_apply(&tl_layer_fabric, name, bindings, TL_COUNT(bindings), NULL, error);
 }
 
 bool tl_settings_assign(struct tl_settings *settings, const char *const *assignments, size_t most,
@@ -238,7 +186,7 @@ static bool apply_scene(const struct tl_binding *all, const char *name, tl_error
     struct tl_colourways_reader reader;
     tl_colourways_begin(&reader, "", &found);
     const struct tl_record_section section = tl_colourways_section(&reader);
-    if (!apply_with(&scene_layer, name, all, TL_SETTINGS_TABLES, &section, error))
+    if (!tl_layer_apply(&tl_layer_scene, name, all, TL_SETTINGS_TABLES, &section, error))
         return false;
     bool brings = found.name_count > 0 && tl_option_is_file_name(name);
     return !brings || !has_own_colourways(all[SCENE].params) ||
@@ -290,7 +238,7 @@ static bool read_colourways(struct tl_settings *settings, tl_error *error)
     struct tl_settings *unused = TL_NEW(struct tl_settings);
     struct tl_binding all[TL_SETTINGS_TABLES];
     tl_settings_bind(unused, all);
-    bool read = apply_with(&scene_layer, source, all, TL_SETTINGS_TABLES, &section, error);
+    bool read = tl_layer_apply(&tl_layer_scene, source, all, TL_SETTINGS_TABLES, &section, error);
     free(unused);
     return read;
 }
@@ -359,7 +307,7 @@ bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *
     choose_fabric(&named);
     tl_options_reset(all, TL_SETTINGS_TABLES);
     if (!apply_preset(all, named.preset, error) || !apply_fabric(all, named.fabric, error) ||
-        !tl_settings_read_look(named.overlay_fabric, &settings.overlay, &settings.overlay_weave, error) ||
+        !tl_layer_read_appearance(named.overlay_fabric, &settings.overlay, &settings.overlay_weave, error) ||
         !apply_source(all, source, error))
         return false;
     if (source->scene_file && tl_model_is_file(source->scene_file))
@@ -420,7 +368,7 @@ bool tl_settings_apply_overlay(struct tl_settings *settings, const char *name, t
     struct tl_binding all[TL_SETTINGS_TABLES];
     tl_settings_bind(&changed, all);
     if (!tl_options_set(all, TL_SETTINGS_TABLES, "scene.overlay_fabric", name, "fabric", NULL, error) ||
-        !tl_settings_read_look(name, &changed.overlay, &changed.overlay_weave, error))
+        !tl_layer_read_appearance(name, &changed.overlay, &changed.overlay_weave, error))
         return false;
     *settings = changed;
     return true;
