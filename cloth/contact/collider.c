@@ -9,7 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A distance below this has no direction of its own: the pseudo-normal gives it. */
+/* Below this distance the direction to the nearest point is rounding error: the pseudo-normal is used
+ * instead. */
 #define TOUCHING_M 1e-6
 
 struct tl_collider {
@@ -45,13 +46,16 @@ static vec3d area_vector(const vec3d t[3])
     return vec3d_cross(vec3d_sub(t[1], t[0]), vec3d_sub(t[2], t[0]));
 }
 
+/* part / whole within 0 and 1: rounding must not leave the edge, and degenerate edges must not divide by 0.
+ */
 static double clamped_share(double part, double whole)
 {
     return whole > 0 ? fmin(fmax(part / whole, 0), 1) : 0;
 }
 
-/* Barycentric coordinates of the point of a triangle nearest to p: which region of the plane p lies over is
- * read from six dot products (Ericson, Real-Time Collision Detection, 5.1.5). Exact zeros tell the feature.
+/* Barycentric coordinates of the point of a triangle nearest to p (Ericson, Real-Time Collision
+ * Detection, 5.1.5). Six dot products decide which Voronoi region p lies in: of a corner, an edge or the
+ * face. Coordinates outside the feature are exactly 0, because pseudo_normal recognises the feature by them.
  */
 static void nearest_on_triangle(const vec3d t[3], vec3d p, double b[3])
 {
@@ -107,8 +111,10 @@ static vec3d face_normal(const tl_collider *collider, size_t triangle, double ph
     return vec3d_unit_or(area_vector(t), (vec3d){0});
 }
 
-/* Pseudo-normal of the feature that the nearest point lies on (Baerentzen & Aanaes 2005): of a face its
- * normal, of an edge the sum of both faces', of a vertex the sum weighted by the faces' angles at it. */
+/* Pseudo-normal of the feature that the nearest point lies on (Baerentzen & Aanaes 2005): the normal of a
+ * face; for an edge the sum of both faces' normals; for a vertex the sum of its faces' normals, weighted by
+ * their angles at it. Its dot product with the offset gives the side for every closed mesh. The normal of the
+ * nearest face alone gives the wrong side for points beyond sharp edges. */
 static vec3d pseudo_normal(const tl_collider *collider, uint32_t triangle, const double b[3], double phase)
 {
     const uint32_t *corners = &collider->corners[3 * (size_t)triangle];
@@ -142,6 +148,9 @@ struct nearest {
     double barycentric[3];
 };
 
+/* Embree calls this for each candidate triangle. Distances are computed in double, and of equal ones the
+ * lowest triangle wins: the result does not depend on the order of the traversal. Returns whether the radius
+ * was reduced. */
 static bool visit_triangle(struct RTCPointQueryFunctionArguments *arguments)
 {
     struct nearest *nearest = arguments->userPtr;
@@ -150,7 +159,7 @@ static bool visit_triangle(struct RTCPointQueryFunctionArguments *arguments)
     triangle_at(nearest->collider, arguments->primID, nearest->phase, t);
     vec3d area = area_vector(t);
     if (!(vec3d_dot(area, area) > 0))
-        return false; /* no side to be on; its neighbours cover it */
+        return false; /* no area, so no normal; its neighbours contain its points */
     nearest_on_triangle(t, nearest->point, b);
     double distance = vec3d_distance(nearest->point, blend(t, b));
     bool first = nearest->triangle == TL_NONE;
@@ -161,7 +170,7 @@ static bool visit_triangle(struct RTCPointQueryFunctionArguments *arguments)
     nearest->distance = distance;
     nearest->triangle = arguments->primID;
     memcpy(nearest->barycentric, b, sizeof b);
-    /* Embree culls in float: the radius keeps a margin above the rounding of coordinates and of itself. */
+    /* Embree culls in float: the margin covers the rounding of the coordinates and of the radius. */
     float radius = (float)(distance * 1.0001 + 1e-6);
     if (radius >= arguments->query->radius)
         return false;
@@ -202,7 +211,8 @@ bool tl_collider_query(const tl_collider *collider, const double point[3], doubl
     return tl_collider_query_at(collider, point, 1, reach_m, out);
 }
 
-/* tan(half the angle) = a.(b x c) / (|a||b||c| + (a.b)|c| + (b.c)|a| + (c.a)|b|). */
+/* Solid angle of the triangle a, b, c seen from the origin (van Oosterom & Strackee 1983):
+ * tan(angle / 2) = a.(b x c) / (|a||b||c| + (a.b)|c| + (b.c)|a| + (c.a)|b|). */
 static double solid_angle(vec3d a, vec3d b, vec3d c)
 {
     double la = vec3d_norm(a), lb = vec3d_norm(b), lc = vec3d_norm(c);
@@ -269,7 +279,8 @@ static void copy_mesh(tl_collider *collider, const tl_mesh *mesh)
     free(weld);
 }
 
-/* One thread: the same tree, and so the same answer between equally near triangles, on every machine. */
+/* Builds Embree's BVH over both poses, as two time steps. One thread, so that the tree is the same on every
+ * machine. */
 static bool build_scene(tl_collider *collider, tl_error *error)
 {
     collider->device = rtcNewDevice("threads=1");
@@ -300,7 +311,7 @@ tl_collider *tl_collider_create(const tl_mesh *mesh, bool ground, tl_error *erro
         return collider;
     for (size_t i = 0; i < mesh->vertex_count; i++)
         if (!vec3d_finite(vec3d_from(mesh->positions[i]))) {
-            tl_fail(error, TL_INPUT, "avatar: vertex %zu is not finite: mend the mesh", i);
+            tl_fail(error, TL_INPUT, "avatar: vertex %zu is not finite: repair the mesh", i);
             tl_collider_destroy(&collider);
             return NULL;
         }
@@ -330,7 +341,8 @@ void tl_collider_destroy(tl_collider **collider)
     *collider = NULL;
 }
 
-/* After the poses have changed. */
+/* Updates travel, revision and BVH after the poses have changed. A refit keeps the tree's topology, which
+ * suits a mesh that deforms little; a rebuild takes longer. */
 static void refit(tl_collider *collider)
 {
     collider->travel = 0;
@@ -345,7 +357,8 @@ static void refit(tl_collider *collider)
     rtcCommitScene(collider->scene);
 }
 
-static void take_out_jump(tl_collider *collider)
+/* Applies the best rigid fit of the jump to the previous pose, so that only the rest remains as motion. */
+static void remove_jump(tl_collider *collider)
 {
     struct tl_rigid *jump = &collider->jump;
     *jump = tl_rigid_fit(collider->poses[0], collider->poses[1], collider->vertex_count);
@@ -367,7 +380,7 @@ void tl_collider_move(tl_collider *collider, const vec3s *positions)
     refit(collider);
     collider->jumped = collider->travel > TL_COLLIDER_JUMP_M;
     if (collider->jumped)
-        take_out_jump(collider);
+        remove_jump(collider);
 }
 
 bool tl_collider_jump(const tl_collider *collider, struct tl_rigid *out)

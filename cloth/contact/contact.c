@@ -5,20 +5,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* How far from its thickness a particle looks for the avatar. */
+/* Distance beyond the thickness within which the avatar is searched. */
 #define REACH_M 0.04
-/* How far a particle slides over a surface before its plane is asked again: over a radius of 3 cm the plane
- * leaves the surface by 2^2 / (2 * 30) mm = 0.07 mm, small against any thickness. */
+/* Sliding distance after which the plane is queried again. After a slide s over a radius R the plane is off
+ * the surface by s^2 / 2R: 2^2 / (2 * 30) mm = 0.07 mm at R = 3 cm, which is small against any thickness. */
 #define SLIDE_M    0.002
 #define ROUNDING_M 1e-9
-/* What slides is asked for this share of that way ahead of it, so that its plane leans with its way as much
- * as against it: a plane that always lags leans against it, and rubs more than friction does. */
+/* The query point of a sliding particle is moved ahead by this share of the sliding distance. The plane's
+ * tilt against the surface then averages to about zero along the slide. A plane queried at the particle
+ * itself lags behind and is always tilted against the motion, which would act as additional friction. */
 #define LEAD_SHARE 0.9
 
-/* Edges longer than this are probed: shorter ones sink into a radius of 5 cm by no more than 2.3 mm. */
+/* Edges longer than this get probes. Shorter ones sink into a radius R by at most e^2 / 8R: 2.3 mm at R = 5
+ * cm. */
 #define COARSE_M 0.03
-/* A particle that is put back outside is put this share of its thickness above the surface, and half as far
- * after each answer that there it is inside of another part. */
+/* A particle that is moved outside is placed at this share of its thickness above the surface. If it is then
+ * inside another part of the avatar, the share is halved and the move repeated. */
 #define OUTSIDE_SHARE 0.5
 #define OUTSIDE_TRIES 8
 
@@ -55,7 +57,7 @@ static vec3d anchor_at(const struct tl_contact_cache *cache, double phase)
     return vec3d_mix(cache->anchor[0], cache->anchor[1], phase);
 }
 
-/* Against its anchor, if it has one. */
+/* Displacement since the query, relative to the moving anchor if there is one. */
 static vec3d moved_since(const struct tl_contact_cache *cache, double phase, vec3d x)
 {
     vec3d moved = vec3d_sub(x, cache->query_point);
@@ -64,12 +66,14 @@ static vec3d moved_since(const struct tl_contact_cache *cache, double phase, vec
     return moved;
 }
 
+/* The sliding distance, less for thin cloth; never 0, or every substep would query. */
 static double slide_of(double thickness)
 {
     return fmin(SLIDE_M, fmax(thickness / 2, ROUNDING_M));
 }
 
-/* Where to ask for a point at x. */
+/* The query point for a point at x: ahead of it in the direction of its slide, see LEAD_SHARE. A point that
+ * moved less than half a sliding distance tangentially has no direction of slide and is queried at x. */
 static vec3d predicted_point(const struct tl_contact_cache *cache, double thickness, double phase, vec3d x)
 {
     if (!cache->near || cache->query_phase > 1)
@@ -80,6 +84,9 @@ static vec3d predicted_point(const struct tl_contact_cache *cache, double thickn
     return length > slide / 2 ? vec3d_muladd(x, slid, LEAD_SHARE * slide / length) : x;
 }
 
+/* Whether the cache has to be queried again for a point at x: if it is invalid or the point moved further
+ * than the clearance. Out of reach there is no anchor, so the largest displacement of the surface is
+ * subtracted instead. */
 TL_INLINE bool is_stale(const struct tl_contact_cache *cache, double travel, double phase, vec3d x)
 {
     if (cache->query_phase > 1)
@@ -91,8 +98,9 @@ TL_INLINE bool is_stale(const struct tl_contact_cache *cache, double travel, dou
     return clearance <= 0 || vec3d_dot(moved, moved) > clearance * clearance;
 }
 
-/* How far the surface can be at most, as far as is known: as far as the old anchor, within which few
- * triangles lie; or for what was out of reach, as far as it has gone since. */
+/* Search radius of a query. The old anchor is a point of the surface, so its distance is an upper bound of
+ * the nearest one: such a radius covers few triangles, and the search is fast. Without an anchor the radius
+ * is the reach, or the displacement of point and surface since the last query if that is larger. */
 static double bound_distance(const struct tl_contact_cache *cache, double thickness, double travel,
                              double phase, vec3d x)
 {
@@ -102,7 +110,8 @@ static double bound_distance(const struct tl_contact_cache *cache, double thickn
     return fmax(thickness + REACH_M, gone);
 }
 
-/* Asked for where the particle was, not for where it was driven to: that may be nearer to the other side. */
+/* Fills the cache for a point at x. Substeps pass the position at their start, not the predicted one, which
+ * may lie nearer to the opposite side of a thin part. */
 static void query(const tl_collider *collider, double thickness, double phase, vec3d x,
                   struct tl_contact_cache *cache)
 {
@@ -143,12 +152,12 @@ void tl_contacts_begin(struct tl_contacts *contacts, const tl_collider *collider
     for (size_t i = 0; i < cache_count(contacts) && !same; i++) {
         struct tl_contact_cache *cache = &contacts->caches[i];
         cache->query_phase = HUGE_VAL;
-        cache->anchor[0] = cache->anchor[1]; /* where the last frame ended the next begins */
+        cache->anchor[0] = cache->anchor[1]; /* the pose at the end of the last frame starts the next one */
         cache->near = cache->near && next;
     }
 }
 
-/* Signed, to the plane that the cache holds. */
+/* Signed distance to the cached plane; HUGE_VAL without one. */
 static double distance_to(const struct tl_contact_cache *cache, vec3d x, double phase)
 {
     return cache->near ? vec3d_dot(vec3d_sub(x, anchor_at(cache, phase)), cache->normal) : HUGE_VAL;
@@ -183,7 +192,9 @@ void tl_contacts_update(struct tl_contacts *contacts, const vec3d *x, double thi
     }
 }
 
-/* One particle; whether it had to be put back. */
+/* Moves one particle outside along the normal of its nearest point, until a query finds it no deeper than
+ * allowed; returns whether it was moved. Its velocity keeps no part into the surface. Between two parts of
+ * the avatar a move may enter the other part, so the target height is halved after each try. */
 static bool move_outside(struct tl_contacts *contacts, size_t i, double thickness, double phase,
                          struct tl_particles *particles)
 {
@@ -204,6 +215,8 @@ static bool move_outside(struct tl_contacts *contacts, size_t i, double thicknes
     return true;
 }
 
+/* Enforces one particle. With a valid plane of a resting avatar, no old penetration and no second part
+ * nearby, the substeps have enforced everything already, and no query is made. */
 static void enforce_one(struct tl_contacts *contacts, size_t i, const struct tl_contact_params *step,
                         struct tl_particles *particles)
 {
@@ -214,7 +227,7 @@ static void enforce_one(struct tl_contacts *contacts, size_t i, const struct tl_
         return;
     bool slipped = contacts->slipped[i],
          plane_is_lost = slipped || is_stale(cache, travel, step->phase, particles->x[i]);
-    cache->near = cache->near && !slipped; /* it may be anywhere */
+    cache->near = cache->near && !slipped; /* its old anchor no longer bounds the search */
     if (plane_is_lost && !cache->near)
         query(contacts->collider, step->thickness_m, step->phase, particles->x[i], cache);
     bool must_query = travel > 0 || plane_is_lost || contacts->allowed_depth[i] > 0 || contacts->pinched[i];
@@ -233,6 +246,7 @@ void tl_contacts_enforce(struct tl_contacts *contacts, const struct tl_contact_p
     memset(contacts->slipped, 0, contacts->particle_count * sizeof(bool));
 }
 
+/* The ground is the plane y = 0 and does not move. */
 static vec3d push_off_ground(vec3d x, vec3d before, const struct tl_contact_params *params)
 {
     const vec3d up = {0, 1, 0}, origin = {0};
@@ -251,8 +265,9 @@ static struct surroundings surroundings_of(const tl_collider *collider)
                                  collider ? tl_collider_travel(collider) : 0};
 }
 
-/* Where a point that is driven from `before` to `x` may go. Inline, with all it calls as a rule: vectors that
- * are handed over in memory made it take twice as long. */
+/* Returns the position allowed for a point that moved from `before` to `x`: projected out of the avatar
+ * first, then out of the ground, so that the ground is exact. Inline with the functions on its usual path:
+ * vectors passed in memory made it take twice as long. */
 TL_INLINE vec3d keep_out(const struct surroundings *surroundings, struct tl_contact_cache *cache, vec3d x,
                          vec3d before, const struct tl_contact_params *params)
 {
@@ -267,7 +282,8 @@ TL_INLINE vec3d keep_out(const struct surroundings *surroundings, struct tl_cont
     return x;
 }
 
-/* Where a pin goes that is driven to `x`, whatever its way there. */
+/* Returns the position of a pin driven to `x`: at OUTSIDE_SHARE of the thickness above the surface or higher.
+ * Its motion is prescribed, so there is no friction, and its path to x does not matter. */
 static vec3d park_pin(const struct surroundings *surroundings, struct tl_contact_cache *cache, vec3d x,
                       const struct tl_contact_params *params)
 {
@@ -277,6 +293,7 @@ static vec3d park_pin(const struct surroundings *surroundings, struct tl_contact
     return depth > 0 ? vec3d_muladd(x, cache->normal, depth) : x;
 }
 
+/* Moves a probe out by moving its three vertices in proportion to their weights and inverse masses. */
 static void solve_sample(const struct surroundings *surroundings, const struct tl_contact_sample *sample,
                          struct tl_contact_cache *cache, const struct tl_contact_params *params,
                          struct tl_particles *particles)
@@ -309,8 +326,10 @@ void tl_contacts_solve(struct tl_contacts *contacts, const struct tl_contact_par
 
 /* ---- Velocities ---- */
 
-/* What the velocity of a point at `gap` above a surface that moves at `surface` is left with, if it would
- * arrive there within the next substep: Coulomb's bound on impulses. */
+/* Returns the velocity of a point after an inelastic contact with friction. It is unchanged if the point, at
+ * `gap` above a surface with velocity `surface`, would not reach the surface within h. Otherwise the
+ * approaching normal velocity becomes 0, and the tangential slip is reduced by at most mu times that normal
+ * velocity (Coulomb's bound on impulses per mass). */
 static vec3d apply_friction(vec3d v, double gap, vec3d surface, vec3d normal,
                             const struct tl_contact_params *params)
 {
@@ -323,7 +342,7 @@ static vec3d apply_friction(vec3d v, double gap, vec3d surface, vec3d normal,
     return vec3d_muladd(surface, slip, length > max_friction ? 1 - max_friction / length : 0);
 }
 
-/* Of a point at x, by all that it touches. */
+/* apply_friction for the avatar and then the ground, for a point at x with velocity v. */
 static vec3d apply_all_friction(const struct surroundings *surroundings, const struct tl_contact_cache *cache,
                                 vec3d x, vec3d v, const struct tl_contact_params *params)
 {
@@ -366,8 +385,11 @@ void tl_contacts_solve_velocities(const struct tl_contacts *contacts, const stru
                                                  particles->v[i], params);
 }
 
-/* ---- For solvers that heed planes themselves ---- */
+/* ---- Planes for solvers that enforce them ---- */
 
+/* The inequality for a particle at x at the substep's start. Outside (depth < 0) it may approach by its
+ * distance; inside it has to move out by its depth, at push_out_speed at most. Both are relative to the
+ * surface's own motion. */
 static struct tl_contact_plane plane_of(vec3d x, vec3d surface, vec3d surface_before, vec3d normal,
                                         const struct tl_contact_params *params)
 {

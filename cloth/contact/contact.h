@@ -1,9 +1,15 @@
 /* Contact of particles with a moving collider and the ground, with Coulomb friction.
  *
- * Each particle remembers the plane at its nearest point of the avatar and asks again only once it has moved
- * far enough along it to matter; cloth that rests asks nothing, and does not jitter between two answers. The
- * plane moves with its triangle during the frame. Penetration that was there before the substep is taken out
- * at a limited speed. Threads: pure. */
+ * Each particle caches the tangent plane at its nearest point of the avatar. The collider is queried again
+ * only when the particle has moved further than the plane is valid. Cloth at rest therefore makes no queries
+ * and does not jitter between two nearest points. The plane moves with its triangle during the frame.
+ * Penetration that existed before the substep is removed at a limited speed, because removing it at once
+ * would add energy.
+ *
+ * A step calls tl_contacts_update at its start, tl_contacts_solve (or tl_contacts_planes) in each substep and
+ * tl_contacts_enforce at its end. A probe is a contact sample between vertices. Metres, seconds, world axes
+ * with y up. Errors: none. Lifetime: the contacts own their arrays; the collider must outlive the frame.
+ * Threads: pure. */
 #ifndef TOILE_CLOTH_CONTACT_CONTACT_H
 #define TOILE_CLOTH_CONTACT_CONTACT_H
 
@@ -13,95 +19,105 @@
 #include "config/simd.h"
 
 struct tl_contact_cache {
-    vec3d query_point;  /* where the particle was when the collider was asked */
-    vec3d anchor[2];    /* nearest point, at the frame's start and end */
+    vec3d query_point;  /* position for which the collider was queried */
+    vec3d anchor[2];    /* nearest point of the collider, at the frame's start and end */
     vec3d normal;       /* outward */
-    double query_phase; /* 0 to 1 within the frame; above 1: never asked */
-    double clearance;   /* m the particle may move against the anchor before asking again */
-    bool near;          /* an anchor was found */
+    double query_phase; /* 0 to 1 within the frame; above 1: not queried yet */
+    double clearance;   /* m the particle may move relative to the anchor before the next query */
+    bool near;          /* the collider is within reach: anchor and normal are valid */
 };
 
 struct tl_contacts {
     size_t particle_count, sample_count;
     struct tl_contact_sample *samples;
     struct tl_contact_cache *caches; /* [particle_count + sample_count] */
-    bool *caught;                    /* [particle_count] in this frame, so far */
+    bool *caught;                    /* [particle_count] caught in this frame so far */
     bool *pinched;                   /* [particle_count] caught in the last frame, or in the last one in which
-                                        the collider moved: one plane alone says too little of where it is */
-    double *allowed_depth; /* [particle_count] m below the offset that a particle may still be: what it began
-                        with, less what has been taken out; HUGE_VAL: never looked */
-    bool *slipped; /* [particle_count] moved by cloth/contact/caught.h, which knows nothing of planes; cleared
-                      once heeded */
-    size_t caught_count; /* of those */
+                                        the collider moved: one plane does not describe both parts */
+    double *allowed_depth; /* [particle_count] m by which a particle may still be deeper than the thickness:
+                        its initial penetration less the part removed so far; HUGE_VAL: not measured yet */
+    bool *slipped; /* [particle_count] moved by cloth/contact/caught.h, which ignores the planes; cleared by
+                tl_contacts_enforce */
+    size_t caught_count; /* particles caught in this frame */
     uint64_t revision;   /* of the collider when the caches were filled */
     const tl_collider *collider;
 };
-/* `rest` shapes decide which triangles are coarse. */
+
+/* Allocates caches and probes. The `rest` shapes [triangle_count] decide which triangles are coarse enough to
+ * need probes. End with tl_contacts_release. */
 struct tl_contacts tl_contacts_create(const struct tl_topology *topology, const vec2s (*rest)[3]);
 void tl_contacts_release(struct tl_contacts *contacts);
 
-/* 14 mm in 0.07 s, and no more energy than a fall from 2 mm. */
+/* m/s. Removes 14 mm of penetration in 0.07 s, and adds no more energy than a fall from 2 mm: v^2 / 2g. */
 #define TL_PUSH_OUT_SPEED 0.2
 
 struct tl_contact_params {
     double friction, thickness_m;
-    double push_out_speed;      /* m/s: how fast penetration that was there before is taken out */
-    double min_slip_speed;      /* m/s, of solvers that heed planes while they solve: slower is no slip */
-    double phase_before, phase; /* of the collider's motion at the start and the end of the substep */
-    double h;                   /* s */
+    double push_out_speed; /* m/s at which penetration from before the substep is removed */
+    double
+        min_slip_speed; /* m/s, for solvers that enforce planes themselves: slower slip counts as sticking */
+    double phase_before, phase; /* of the collider's motion, at the substep's start and end */
+    double h;                   /* s, the substep */
 };
 
-/* Once per frame: forgets what no longer holds. */
+/* Call once per frame, after the collider has moved. Invalidates the caches if the collider changed, and
+ * carries the caught flags of the last frame over to `pinched`. */
 void tl_contacts_begin(struct tl_contacts *contacts, const tl_collider *collider);
 
-/* The particles have been put elsewhere: all planes are asked for anew. */
+/* Invalidates all caches, for particles that were placed elsewhere. */
 void tl_contacts_forget(struct tl_contacts *contacts);
 
-/* Once per step, at its start: asks for all who were never asked, and for the near ones when the collider
- * moves, because its planes turn. On all threads. */
+/* Call once per step, at its start, with the positions `x`. Queries the collider for every invalid cache, and
+ * also for the near ones while the collider moves, because a cached plane is translated but not rotated. */
 void tl_contacts_update(struct tl_contacts *contacts, const vec3d *x, double thickness_m, double phase);
 
-/* A plane that a particle may not pass during a substep, for a solver that heeds it while it solves: its way
- * d (m) obeys d.normal >= least. */
+/* A plane that a particle may not cross during a substep, as an inequality for a solver that enforces it
+ * itself: the particle's displacement d (m) satisfies d.normal >= min_normal_step. */
 struct tl_contact_plane {
     vec3d normal;           /* outward, unit */
     vec3d motion;           /* m, of the surface during the substep */
-    double min_normal_step; /* m; starting penetration is taken out at a limited speed */
+    double min_normal_step; /* m; removes penetration at the limited speed */
 };
-#define TL_CONTACT_PLANES 2 /* the avatar's and the ground's */
+#define TL_CONTACT_PLANES 2 /* one of the avatar, one of the ground */
 
-/* Those of a particle, or of probe i as particle_count + i, that starts at x; returns how many. */
+/* Writes the planes of one particle that starts the substep at `x`; index particle_count + i means probe i.
+ * Returns their number. */
 size_t tl_contacts_planes(struct tl_contacts *contacts, const struct tl_contact_params *params,
                           size_t particle, vec3d x, struct tl_contact_plane out[TL_CONTACT_PLANES]);
 
-/* Moves particles and probes out of the collider; after the constraints, so that nothing is inside at a
- * substep's end.
- */
+/* Moves particles and probes out of the collider and applies friction to their displacement. Call it after
+ * the other constraints of the substep: they could push particles back inside. */
 void tl_contacts_solve(struct tl_contacts *contacts, const struct tl_contact_params *params,
                        struct tl_particles *particles);
 
-/* After a substep that has moved particles by tl_contacts_solve and then pushed on, as half a kick of Verlet
- * does: no particle or probe that touches goes on into what it touches, whose impulse rubs too (the second
- * half of RATTLE, Andersen 1983). */
+/* The velocity half of RATTLE (Andersen 1983). Call it after velocities have changed since tl_contacts_solve,
+ * as by the second half kick of Verlet. Removes the approaching normal velocity of every particle and probe
+ * in contact, and applies Coulomb friction bounded by that normal impulse. */
 void tl_contacts_solve_velocities(const struct tl_contacts *contacts, const struct tl_contact_params *params,
                                   struct tl_particles *particles);
 
-/* Whether a particle was caught lately: new contacts have to be told. */
+/* Whether a particle was caught in this frame or the last one. */
 static inline bool tl_contacts_is_pinched(const struct tl_contacts *contacts, size_t particle)
 {
     return contacts->caught[particle] || contacts->pinched[particle];
 }
 
-/* Once per step, at its end, with the step's own duration and phases: whatever the substeps' planes have
- * missed, no particle is deeper in the avatar than it was before, and none that was outside is inside. Where
- * two parts of the avatar press on one particle the price is strain; what was put back so, or has slipped
- * past a part, is caught in this frame. */
+/* Call once per step, at its end, with the step's own duration and phases. Queries the surface itself and
+ * moves particles that the substeps' planes have missed: afterwards no particle is deeper in the avatar than
+ * before the step, and none has entered it. A particle between two parts of the avatar is moved whatever
+ * strain that causes. A particle that was moved here, or whose `slipped` flag is set near the avatar, is
+ * marked as caught. */
 void tl_contacts_enforce(struct tl_contacts *contacts, const struct tl_contact_params *step,
                          struct tl_particles *particles);
 
-/* Where a point goes that is driven from `before` to `x`: to the outer side of a plane through `surface`,
- * which was at `surface_before`, with Coulomb friction, which bounds the slip by mu times the normal
- * correction. */
+/* Projects a point that moved from `before` to `x` to the outer side of a plane, and applies Coulomb
+ * friction. The plane passes at `thickness_m` above the point `surface`, which moved there from
+ * `surface_before`.
+ *
+ * Normal: depth = thickness - (x - surface).normal. The part of the old depth that push_out_speed does not
+ * remove in this substep is kept. Tangential: the slip relative to the surface is reduced by at most mu *
+ * pressed_in (position-based Coulomb friction). pressed_in leaves the old penetration out, because removing
+ * it is not a load: with it, deep particles would stick. */
 TL_INLINE vec3d tl_contact_push_out(vec3d x, vec3d before, vec3d surface, vec3d surface_before, vec3d normal,
                                     const struct tl_contact_params *params)
 {
@@ -117,7 +133,7 @@ TL_INLINE vec3d tl_contact_push_out(vec3d x, vec3d before, vec3d surface, vec3d 
     vec3d slip = vec3d_sub(vec3d_sub(x, before), vec3d_sub(surface, surface_before));
     slip = vec3d_muladd(slip, normal, -vec3d_dot(slip, normal));
     double length = vec3d_norm(slip);
-    double pressed_in = fmax(depth - depth_before, 0); /* what load pushed in, without the old penetration */
+    double pressed_in = fmax(depth - depth_before, 0); /* caused by load, without the old penetration */
     double max_friction = params->friction * pressed_in;
     return vec3d_muladd(x, slip, length > max_friction ? -max_friction / length : -1);
 }

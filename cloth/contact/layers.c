@@ -5,20 +5,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Pieces that come this near are one over the other; and what is found deeper than this on the wrong side of
- * a piece is not under it, but elsewhere, on the far side of a leg say. */
+/* Largest distance between pieces that lie over each other. A point deeper than this on the wrong side of a
+ * piece is not under it, but elsewhere, for example on the far side of a leg. */
 #define REACH_M 0.03
-/* How far from the avatar a piece may be and still have an inside. */
+/* Largest distance from the avatar at which its normals decide which side of a triangle is the inner one. */
 #define AVATAR_REACH_M 0.5
-/* Edges longer than this are probed between their vertices: a belt under a shirt is a few centimetres high.
- */
+/* Edges longer than this get probes between their vertices: a belt under a shirt is only a few centimetres
+ * high. */
 #define COARSE_M 0.015
-/* Triangles that lean more than this from the avatar's way out, hems say, are neither in nor out; and what
- * lies more than this aside of a triangle's normal lies beside its edge. */
+/* Smallest |cosine| between a triangle's normal and the avatar's outward normal at which the triangle faces
+ * outwards or inwards; steeper ones, in hems for example, face neither way. Also the smallest cosine between
+ * a triangle's normal and the direction to a point that counts as lying over the triangle; other points lie
+ * past its edge. */
 #define FACING_COSINE 0.4
-/* m/s. Cloth that is pushed gives way, and its own stiffness works against it: slower never gets there. */
+/* m/s, faster than TL_PUSH_OUT_SPEED: both layers move, and their stiffness pushes them back together. At the
+ * avatar's speed crossed layers would never separate. */
 #define PUSH_OUT_SPEED 1.0
-/* A layer that has moved by less than this since it was looked at has not moved. */
+/* A layer whose vertices all moved by less than this since the last search is not searched again. */
 #define AT_REST_M 1e-4
 
 /* ---- Pieces ---- */
@@ -39,13 +42,16 @@ size_t tl_layers_pieces(const struct tl_topology *topology, uint32_t *pieces)
     return count;
 }
 
+/* Unit normal as wound; 0 for a triangle without area. */
 static vec3d face_normal(const uint32_t v[3], const vec3d *x)
 {
     vec3d area = vec3d_cross(vec3d_sub(x[v[1]], x[v[0]]), vec3d_sub(x[v[2]], x[v[0]]));
     return vec3d_unit_or(area, (vec3d){0});
 }
 
-/* Files wind some pieces inside out, and hems are rolled: their edges face down and their linings inwards. */
+/* Decides per triangle whether its wound normal points away from the avatar. The winding alone is unreliable:
+ * files wind some pieces inside out, and in rolled hems the edge faces down and the lining inwards. Without
+ * an avatar within reach the winding is taken as it is. */
 static void find_facings(struct tl_layers *layers, const struct tl_topology *topology,
                          const tl_collider *avatar, const vec3d *x)
 {
@@ -64,6 +70,7 @@ static void find_facings(struct tl_layers *layers, const struct tl_topology *top
     }
 }
 
+/* Marks the vertices of edges that belong to one triangle only. */
 static void find_open_edges(struct tl_layers *layers, const struct tl_topology *topology)
 {
     for (size_t t = 0; t < topology->triangle_count; t++)
@@ -90,7 +97,7 @@ static void copy_positions(struct tl_layer *layer, const vec3d *x)
         layer->positions[i] = vec3d_to_float(x[layer->particles[i]]);
 }
 
-/* The triangles of one group of particles. */
+/* Builds the collider of the triangles whose vertices are in one group, with particles renumbered from 0. */
 static bool build_layer(struct tl_layer *layer, const struct tl_topology *topology, const uint32_t *group_of,
                         uint32_t group, const vec3d *x, tl_error *error)
 {
@@ -121,6 +128,8 @@ static bool build_layer(struct tl_layer *layer, const struct tl_topology *topolo
     return layer->surface != NULL;
 }
 
+/* Whether the nearest point lies on an open edge or at one of its vertices, read from the zeros in the
+ * barycentric coordinates: one zero is the edge opposite that corner, two are a vertex. */
 static bool is_open(const struct tl_layers *layers, const struct tl_topology *topology, uint32_t triangle,
                     const double b[3])
 {
@@ -134,7 +143,9 @@ static bool is_open(const struct tl_layers *layers, const struct tl_topology *to
     return false;
 }
 
-/* What is nearest to a point on a layer, and how far out of it the point is. Nothing beside an edge. */
+/* Finds the point of a layer nearest to contact_pair->point, its outward normal and the signed distance,
+ * positive outside. Returns false beyond REACH_M, past an open edge and at triangles that face neither way:
+ * there is no side to be on. */
 static bool find_surface(const struct tl_layers *layers, const struct tl_topology *topology,
                          const struct tl_layer *layer, const vec3d *x, struct tl_layer_contact *contact_pair,
                          double *distance)
@@ -158,9 +169,10 @@ static bool find_surface(const struct tl_layers *layers, const struct tl_topolog
     return true;
 }
 
-/* ---- Which is outside ---- */
+/* ---- Order of the pieces ---- */
 
-/* How much of a piece lies out of another rather than in it: the sum of signed distances, m. */
+/* Sum over a piece's vertices of their signed distances to another piece, m: positive if it lies mostly
+ * outside. The sum rather than a count, so that a few crossed vertices near the surface do not decide. */
 static double measure_outside(const struct tl_layers *layers, const struct tl_topology *topology,
                               const struct tl_layer *piece, const struct tl_layer *other, const vec3d *x)
 {
@@ -174,8 +186,10 @@ static double measure_outside(const struct tl_layers *layers, const struct tl_to
     return sum;
 }
 
-/* A piece lies on the layer above the highest that it is out of. Pieces that are each out of the next in a
- * ring have no order; the number of rounds bounds what they make of it. Returns the number of layers. */
+/* Assigns each piece to the layer above the highest piece that it lies outside of, by relaxation: `layer_of`
+ * starts at 0 and each round raises pieces over those they lie outside of. A chain of n pieces needs n - 1
+ * rounds. Pieces that lie outside of each other in a ring have no order; bounding layers by the round ends
+ * the relaxation there. Returns the number of layers. */
 static size_t assign_layers(const struct tl_layers *layers, const struct tl_topology *topology,
                             const struct tl_layer *pieces, size_t piece_count, const vec3d *x,
                             uint32_t *layer_of)
@@ -197,7 +211,8 @@ static size_t assign_layers(const struct tl_layers *layers, const struct tl_topo
     return (size_t)highest + 1;
 }
 
-/* Fills layer_of and layer_count. */
+/* Fills layer_of and layer_count: builds a collider for each piece, compares every pair and discards the
+ * colliders. */
 static bool order_pieces(struct tl_layers *layers, const struct tl_topology *topology, const uint32_t *pieces,
                          size_t piece_count, const vec3d *x, tl_error *error)
 {
@@ -217,7 +232,7 @@ static bool order_pieces(struct tl_layers *layers, const struct tl_topology *top
     return built;
 }
 
-/* ---- The whole ---- */
+/* ---- Creation ---- */
 
 void tl_layers_release(struct tl_layers *layers)
 {
@@ -232,7 +247,7 @@ void tl_layers_release(struct tl_layers *layers)
     *layers = (struct tl_layers){0};
 }
 
-/* Vertices come first. */
+/* Every vertex, then the samples of coarse edges and triangles. */
 static void make_probes(struct tl_layers *layers, const struct tl_topology *topology, const vec2s (*rest)[3])
 {
     size_t between;
@@ -278,16 +293,18 @@ bool tl_layers_decide(struct tl_layers *layers, const struct tl_topology *topolo
 
 /* ---- Contact ---- */
 
+/* Whether any vertex is further than AT_REST_M from its position in the layer's collider. */
 static bool has_moved(const struct tl_layer *layer, const vec3d *x)
 {
     double furthest = 0;
     for (size_t i = 0; i < layer->particle_count; i++) {
-        vec3d way = vec3d_sub(x[layer->particles[i]], vec3d_from(layer->positions[i]));
-        furthest = fmax(furthest, vec3d_dot(way, way));
+        vec3d moved = vec3d_sub(x[layer->particles[i]], vec3d_from(layer->positions[i]));
+        furthest = fmax(furthest, vec3d_dot(moved, moved));
     }
     return furthest > AT_REST_M * AT_REST_M;
 }
 
+/* Whether x is within REACH_M of the box along each axis. */
 static bool within(const struct tl_box *box, vec3d x)
 {
     vec3d lower = vec3d_from(box->lower), upper = vec3d_from(box->upper);
@@ -295,20 +312,22 @@ static bool within(const struct tl_box *box, vec3d x)
            x.y < upper.y + REACH_M && x.z > lower.z - REACH_M && x.z < upper.z + REACH_M;
 }
 
-static void find_contacts(struct tl_layers *layers, const struct tl_topology *topology,
-                          uint32_t below_or_above, const vec3d *x)
+/* Adds a contact for each probe of any other layer near layer `target`. A contact's normal points to the side
+ * on which the probe's layer belongs: outwards if that layer lies above the target, else inwards. */
+static void find_contacts(struct tl_layers *layers, const struct tl_topology *topology, uint32_t target,
+                          const vec3d *x)
 {
-    const struct tl_layer *other = &layers->layers[below_or_above];
+    const struct tl_layer *other = &layers->layers[target];
     struct tl_box box = tl_box_of(other->positions, other->particle_count);
     for (size_t i = 0; i < layers->sample_count; i++) {
         const struct tl_contact_sample *sample = &layers->samples[i];
         uint32_t own = layers->layer_of[sample->vertices[0]];
         struct tl_layer_contact contact_pair = {.point = *sample};
         double distance;
-        if (own == below_or_above || !within(&box, tl_contact_sample_position(sample, x)) ||
+        if (own == target || !within(&box, tl_contact_sample_position(sample, x)) ||
             !find_surface(layers, topology, other, x, &contact_pair, &distance))
             continue;
-        if (own < below_or_above)
+        if (own < target)
             contact_pair.normal = vec3d_scale(contact_pair.normal, -1);
         layers->contacts[layers->contact_count++] = contact_pair;
     }
@@ -341,8 +360,8 @@ void tl_layers_update(struct tl_layers *layers, const struct tl_topology *topolo
 void tl_layers_solve(const struct tl_layers *layers, const struct tl_contact_params *params,
                      struct tl_particles *particles)
 {
-    struct tl_contact_params own = *params;
-    own.push_out_speed = PUSH_OUT_SPEED;
+    struct tl_contact_params faster = *params;
+    faster.push_out_speed = PUSH_OUT_SPEED;
     for (size_t i = 0; i < layers->contact_count; i++) {
         const struct tl_layer_contact *contact_pair = &layers->contacts[i];
         double inverse = tl_contact_sample_inverse_mass(&contact_pair->point, particles->w) +
@@ -351,8 +370,11 @@ void tl_layers_solve(const struct tl_layers *layers, const struct tl_contact_par
         vec3d before = tl_contact_sample_position(&contact_pair->point, particles->previous);
         vec3d surface = tl_contact_sample_position(&contact_pair->surface, particles->x);
         vec3d surface_before = tl_contact_sample_position(&contact_pair->surface, particles->previous);
-        vec3d to = tl_contact_push_out(x, before, surface, surface_before, contact_pair->normal, &own);
-        vec3d push = vec3d_sub(to, x);
+        /* The push acts on the point and its opposite on the surface, divided by the sum of both effective
+         * inverse masses: the relative displacement is the wanted one, and momentum is conserved. */
+        vec3d allowed =
+            tl_contact_push_out(x, before, surface, surface_before, contact_pair->normal, &faster);
+        vec3d push = vec3d_sub(allowed, x);
         if (!(inverse > 0) || !(vec3d_dot(push, push) > 0))
             continue;
         tl_contact_sample_push(&contact_pair->point, vec3d_scale(push, 1 / inverse), particles->w,

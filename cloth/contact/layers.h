@@ -1,19 +1,20 @@
-/* Layers of a garment that is made of several pieces, a shirt over trousers: which of them is outside, and
- * contact between them with Coulomb friction.
+/* Layers of a garment of several pieces, such as a shirt over trousers: their order from inside to outside,
+ * and contact between them with Coulomb friction.
  *
- * Every connected component of the cloth is a piece. Of two that come within a few centimetres of each other,
- * the one that lies mostly on the other's outer side is the outer one; this is decided once, and anew when
- * seams change the pieces. From then on the vertices of each are kept on their side of the other's nearest
- * triangle, and both give way in proportion to their masses. The pairs are looked for once a step and follow
- * their triangles in between. A piece's open edges touch nothing: beside them there is no side to be on.
- * Which side of a piece is its outer one the avatar tells, and without one the winding of its triangles.
- * Metres. Threads: pure. */
+ * Every connected component of the cloth is a piece. Of two pieces within a few centimetres of each other,
+ * the one that lies mostly on the other's outer side is the outer one. The avatar's normals decide which side
+ * of a piece is its outer one; without an avatar the winding of the triangles does. The order is decided
+ * once, and again when seams change the pieces. Contact then keeps the vertices of each layer on their side
+ * of the other layer's nearest triangle, and moves both layers in inverse proportion to their masses. Pairs
+ * are searched once per step and follow their triangles during the substeps. Points past an open edge of a
+ * piece have no contact, because an edge does not separate two sides. Metres. Lifetime: plain structs that
+ * own their arrays. Threads: pure. */
 #ifndef TOILE_CLOTH_CONTACT_LAYERS_H
 #define TOILE_CLOTH_CONTACT_LAYERS_H
 
 #include "cloth/contact/contact.h"
 
-/* Garments of more pieces are not told apart. */
+/* A garment of more pieces has no layers: every pair of pieces is compared. */
 #define TL_PIECES_MAX 64
 
 /* A point of one layer and the nearest point of a triangle of another. */
@@ -24,19 +25,19 @@ struct tl_layer_contact {
 
 struct tl_layer {
     tl_collider *surface; /* the layer's triangles */
-    uint32_t *triangles;  /* the cloth's, of each triangle of the surface */
+    uint32_t *triangles;  /* the cloth's triangle for each triangle of the surface */
     size_t particle_count;
-    uint32_t *particles; /* [particle_count] of each vertex of the surface */
-    vec3s *positions;    /* [particle_count] as the surface has them */
+    uint32_t *particles; /* [particle_count] the cloth's particle for each vertex of the surface */
+    vec3s *positions;    /* [particle_count] of the surface, from the last search */
 };
 
 struct tl_layers {
-    bool ordered;
-    bool searched;       /* touches are those of the last step */
-    size_t layer_count;  /* 0 or 1: nothing to keep apart */
+    bool ordered;        /* tl_layers_decide has run */
+    bool searched;       /* contacts are those of the last search */
+    size_t layer_count;  /* 0 or 1: no contact between layers */
     uint32_t *layer_of;  /* [particle] 0 is innermost */
     bool *on_open_edge;  /* [particle] */
-    signed char *facing; /* [triangle] 1: outwards as wound, -1: inwards, 0: neither */
+    signed char *facing; /* [triangle] wound normal points 1: outwards, -1: inwards, 0: neither */
     size_t sample_count; /* of all layers, vertices included */
     struct tl_contact_sample *samples;
     struct tl_layer *layers; /* [layer_count] */
@@ -45,20 +46,24 @@ struct tl_layers {
 };
 void tl_layers_release(struct tl_layers *layers);
 
-/* Forgets what the last step has found. */
+/* Invalidates the last search, for particles that were placed elsewhere. */
 void tl_layers_forget(struct tl_layers *layers);
 
-/* How many pieces a mesh has; numbers them from 0 in `pieces` [vertex_count]. */
+/* Numbers the connected components from 0 in `pieces` [vertex_count]; returns their number. */
 size_t tl_layers_pieces(const struct tl_topology *topology, uint32_t *pieces);
 
-/* Fills empty layers: tells them apart, at positions `x`. Fails only where a collider cannot be built. */
+/* Fills empty layers: finds the pieces, orders them by the positions `x` and builds a collider for each
+ * layer. `avatar` may be NULL. Errors: those of tl_collider_create; returns false and leaves the layers empty
+ * then. */
 bool tl_layers_decide(struct tl_layers *layers, const struct tl_topology *topology, const vec2s (*rest)[3],
                       const tl_collider *avatar, const vec3d *x, tl_error *error);
 
-/* Once per step, at its start: looks for what touches. */
+/* Searches the contacts; once per step, at its start. Does nothing if no layer has moved since the last
+ * search. */
 void tl_layers_update(struct tl_layers *layers, const struct tl_topology *topology, const vec3d *x);
 
-/* Once per substep, before the avatar's contacts. */
+/* Separates the layers and applies friction; once per substep, before the avatar's contacts, which must hold
+ * at the end of the substep. */
 void tl_layers_solve(const struct tl_layers *layers, const struct tl_contact_params *params,
                      struct tl_particles *particles);
 
