@@ -223,7 +223,7 @@ static void apply_wind(tl_cloth *cloth, const struct tl_substep *substep)
 }
 
 /* Substeps of the next step. Crushed cloth is stiffer than at rest, so `reference` measures its critical step
- * anew; returns 0, and sets refused_step, if the budget does not allow so many. */
+ * again; returns 0, and sets refused_step, if the budget does not allow so many. */
 static double substeps_now(tl_cloth *cloth)
 {
     double substeps = tl_cloth_substeps_per_step(cloth);

@@ -1,11 +1,11 @@
 /* The state of a cloth as bytes, and back: a cloth that is restored steps as the one that was saved, to the
  * bit.
  *
- * What is saved is a marked start (tl_cloth_mark_start): positions and velocities, which seams are closed,
- * the links of those that are not, pins and what carries them, which vertices are caught. The rest follows
- * from the garment, the fabric and the params, which must be the same, as must the program: the bytes have no
- * format beyond the structs of this one. Contacts, warm starts and strain limits are not among them, because
- * a marked start forgets these. Threads: one at a time per cloth. */
+ * The bytes hold a marked start (tl_cloth_mark_start): positions, velocities, closed seams, the links of open
+ * seams, pins with their attachments, and caught vertices. The garment, the fabric and the params are not
+ * saved and must be the same on restoring. The program must be the same too: the bytes are its structs.
+ * Contacts, warm starts and strain limits are not saved, because a marked start resets them. Threads: one at
+ * a time per cloth. */
 #ifndef TOILE_CLOTH_SNAPSHOT_H
 #define TOILE_CLOTH_SNAPSHOT_H
 

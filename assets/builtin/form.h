@@ -18,8 +18,8 @@
 /* Roughly the distance to the torso's surface, negative inside: exact in sign, right to some 20 % near it. */
 double tl_form_distance(const double point[3]);
 
-/* Where the horizontal ray from the axis at height y leaves the torso: metres from the axis. `angle` is
- * around +Y from the back: x = -r sin(angle), z = -r cos(angle). 0 where there is no torso. */
+/* Distance from the axis, m, at which the horizontal ray from the axis at height y leaves the torso. `angle`
+ * is around +Y from the back: x = -r sin(angle), z = -r cos(angle). 0 where there is no torso. */
 double tl_form_radius(double y, double angle);
 
 /* Length of the torso's horizontal section at height y, as a tape measure takes it: of its convex hull. */

@@ -151,7 +151,7 @@ static size_t component_size(int type)
     }
 }
 
-/* Where the elements of an accessor are; NULL data: zeros. */
+/* The elements of an accessor in memory, `stride` bytes apart; `data` NULL: all elements are zero. */
 struct elements {
     const uint8_t *data;
     size_t stride;

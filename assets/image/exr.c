@@ -33,7 +33,7 @@ static uint32_t word_at(const uint8_t *bytes)
     return (uint32_t)bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
 }
 
-/* What follows the NUL that ends the text at `at`; NULL when there is none. */
+/* Returns the byte after the NUL that ends the text at `at`; NULL if there is no NUL before `end`. */
 static const uint8_t *skip_text(const uint8_t *at, const uint8_t *end)
 {
     const uint8_t *nul = memchr(at, 0, (size_t)(end - at));
@@ -82,7 +82,7 @@ static bool check_attributes(const struct source *source, tl_error *error)
 
 enum { RED, GREEN, BLUE, ALPHA, LUMINANCE = 0, RED_CHROMA, BLUE_CHROMA };
 
-/* Where the values of one channel go: [height][width] of them, `step` floats apart. */
+/* The destination of one channel's values: [height][width], `step` floats apart. */
 struct plane {
     const char *channel; /* NULL: the file has none */
     int x_sampling, y_sampling;

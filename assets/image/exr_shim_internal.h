@@ -32,7 +32,7 @@ struct tl_exr_part {
     const struct tl_exr_channel *channels; /* by name; lives as long as the file */
 };
 
-/* Where the samples of one channel go. */
+/* The destination of one channel's samples. */
 struct tl_exr_plane {
     const char *channel;
     int x_sampling, y_sampling;

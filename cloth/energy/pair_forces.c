@@ -228,8 +228,8 @@ static void set_packs(struct tl_pair_forces *pairs)
     }
 }
 
-/* Where the strength of the pair with each vertex is stored. The lower end of an edge writes it: NULL for the
- * other. */
+/* Fills `entries` [vertex] with the address of the coefficient of each pair (vertex, other). The lower end of
+ * an edge writes the coefficient; for the higher end the entry is NULL. */
 static void list_entries(struct tl_pair_forces *pairs, uint32_t vertex, double **entries)
 {
     for (uint32_t k = pairs->incident_first[vertex]; k < pairs->incident_first[vertex + 1]; k++) {

@@ -81,7 +81,7 @@ struct tl_pair_forces {
     double *parts;              /* [metric_count + blocks of vertices] J */
 };
 
-/* Of the membranes, bends and links in `energy`. */
+/* Builds the pair forces of the membranes, bends and links in `energy`. */
 struct tl_pair_forces tl_pair_forces_build(const struct tl_topology *topology,
                                            const struct tl_energy *energy);
 void tl_pair_forces_release(struct tl_pair_forces *pairs);

@@ -91,17 +91,18 @@ TL_INLINE size_t fetch_edges(const struct fans *fans, size_t first, struct edges
 /* m^2, far below the rounding error of a garment triangle's area: keeps divisors above 0. */
 #define NOTHING 1e-18f
 
-/* atan2(sine, cosine) / length for sine > 0: the angle at a corner over the length of what it weighs. The
- * angle is within 2e-7 rad: the polynomial meets atan(x) / x at Chebyshev's nodes of x^2. */
+/* atan2(sine, cosine) / length for sine > 0: the angle at a corner over the length of the vector that it
+ * weights. The angle is within 2e-7 rad: the polynomial interpolates atan(x) / x at the Chebyshev nodes of
+ * x^2. */
 TL_INLINE float angle_over(float sine, float cosine, float length)
 {
-    float beside = fabsf(cosine);
-    float low = tl_lesser(sine, beside), high = tl_greater(sine, beside);
+    float adjacent = fabsf(cosine);
+    float low = tl_lesser(sine, adjacent), high = tl_greater(sine, adjacent);
     float x = low / high, y = x * x;
     float series = 0.0986886546f + y * (-0.0588297531f + y * (0.0237805186f - 0.00455979199f * y));
     series = -0.333318127f + y * (0.199669618f + y * (-0.140032902f + y * series));
     float angle = x * (0.999999882f + y * series);
-    angle = sine > beside ? (float)M_PI_2 - angle : angle;
+    angle = sine > adjacent ? (float)M_PI_2 - angle : angle;
     angle = cosine < 0 ? (float)M_PI - angle : angle;
     return angle / length;
 }

@@ -9,6 +9,7 @@
 
 /* ---- Twins ---- */
 
+/* The edge's vertices in increasing order, so that both directions sort next to each other. */
 struct half_edge {
     uint32_t low, high;
     uint32_t falls; /* 1 where it runs from the higher vertex to the lower */
@@ -40,6 +41,8 @@ static struct half_edge *sort_half_edges(const uint32_t *vertices, size_t corner
 
 uint32_t *tl_twins_build(const uint32_t *vertices, size_t corner_count)
 {
+    /* Each run of equal edges holds the rising half edges first, then the falling ones from `falling` on;
+     * both are ordered by corner, so that the pairing does not depend on qsort. */
     struct half_edge *edges = sort_half_edges(vertices, corner_count);
     uint32_t *twins = TL_NEW_ARRAY(uint32_t, corner_count);
     memset(twins, 0xff, corner_count * sizeof *twins);
@@ -70,14 +73,17 @@ uint32_t tl_twins_before(const uint32_t *twins, uint32_t corner)
 
 /* ---- Normals ---- */
 
+/* Twice the triangle's area times its normal. */
 static vec3s corner_area(const vec3s *positions, const uint32_t *c)
 {
     return glms_vec3_cross(glms_vec3_sub(positions[c[1]], positions[c[0]]),
                            glms_vec3_sub(positions[c[2]], positions[c[0]]));
 }
 
-/* Vertices drawn only by triangles that turn their back to the first triangle on the same three places (a
- * sheet drawn from both sides) have the opposite normal. */
+/* Marks the render vertices of back faces. A sheet may be modelled from both sides: two triangles on the same
+ * three welded vertices, with opposite windings and render vertices of their own. The topology keeps the
+ * first of such triangles. A vertex is a back if only the other triangles use it and one of them faces
+ * against the sum of the kept ones' normals. Without this the normals of both sides would cancel. */
 static void find_backs(const tl_mesh *mesh, const struct tl_topology *topology, bool *back)
 {
     vec3s *sums = TL_NEW_ARRAY(vec3s, topology->vertex_count);
@@ -104,7 +110,8 @@ static void find_backs(const tl_mesh *mesh, const struct tl_topology *topology, 
     free(first);
 }
 
-/* One normal for each welded vertex, and another where it has a back; numbered as they are first met. */
+/* Numbers the normals in the order of their first render vertex: one for each welded vertex, and a second one
+ * for its back if it has one. */
 static void number_normals(struct tl_tangent_groups *groups, const tl_mesh *mesh, const uint32_t *weld)
 {
     size_t welded = 0;
@@ -126,6 +133,8 @@ static void number_normals(struct tl_tangent_groups *groups, const tl_mesh *mesh
     tl_topology_release(&topology);
 }
 
+/* Lists the corners of triangles with three different normals; the others have two corners at one point and
+ * no area. */
 static void list_corners(struct tl_tangent_groups *groups, const tl_mesh *mesh)
 {
     groups->vertices = TL_NEW_ARRAY(uint32_t, mesh->index_count);
@@ -143,10 +152,10 @@ static void list_corners(struct tl_tangent_groups *groups, const tl_mesh *mesh)
 
 /* ---- Tangents ---- */
 
-/* What MikkTSpace welds: one normal, one UV. */
+/* MikkTSpace welds corners of equal position, normal and UV. The index of the normal implies the position. */
 struct mikk_key {
     uint32_t normal, u, v;
-    uint32_t render; /* last, so that equal keys are told apart in a fixed order */
+    uint32_t render; /* last, so that the order of equal keys is fixed */
 };
 
 static int compare_mikk_keys(const void *a, const void *b)
@@ -161,6 +170,7 @@ static int compare_mikk_keys(const void *a, const void *b)
     return (left->render > right->render) - (left->render < right->render);
 }
 
+/* The bits, with -0 as +0: equal values have equal keys. NaN equals itself here. */
 static uint32_t float_bits(float value)
 {
     uint32_t bits;
@@ -169,7 +179,7 @@ static uint32_t float_bits(float value)
     return bits;
 }
 
-/* MikkTSpace's vertex of every corner. Free it. */
+/* Returns the index of MikkTSpace's welded vertex for every corner. The caller frees it. */
 static uint32_t *weld_corners(const struct tl_tangent_groups *groups, const vec2s *uvs)
 {
     struct mikk_key *keys = TL_NEW_ARRAY(struct mikk_key, groups->render_count);
@@ -192,7 +202,7 @@ static uint32_t *weld_corners(const struct tl_tangent_groups *groups, const vec2
     return welded;
 }
 
-/* Twice the signed area in UV; 0 for triangles that have no tangent. */
+/* Twice the signed area in UV; 0 if it is not finite or too small to define a tangent. */
 static double uv_area(const vec2s *uvs, const uint32_t *corners)
 {
     vec2s a = uvs[corners[0]], b = uvs[corners[1]], c = uvs[corners[2]];
@@ -201,7 +211,9 @@ static double uv_area(const vec2s *uvs, const uint32_t *corners)
     return isfinite(area) && fabs(area) > 1e-37 ? area : 0;
 }
 
-/* Mikkelsen's vOs: sign(area) (t31.v d1 - t21.v d2), here without its length, which projection discards. */
+/* Mikkelsen's vOs = sign(area) (t31.v d1 - t21.v d2), where d1, d2 are the edges in space and t21, t31 in UV.
+ * Its length is not needed, because the tangent is projected and normalised later; dividing by the larger
+ * coefficient keeps tiny UVs from underflowing in float. */
 static void find_gradients(struct tl_tangent_groups *groups, const vec2s *uvs)
 {
     groups->gradients = tl_alloc(groups->corner_count / 3, sizeof *groups->gradients);
@@ -223,9 +235,10 @@ static bool has_tangent(const struct tl_tangent_groups *groups, size_t triangle)
     return groups->gradients[triangle][0] != 0 || groups->gradients[triangle][1] != 0;
 }
 
-/* Puts a corner into a group, unless it is in one or its triangle has the other handedness. A triangle
- * without UV area has that of the first group that reaches it. */
-static bool claim(struct tl_tangent_groups *groups, float *signs, uint32_t corner, uint32_t group)
+/* Adds a corner to a group, unless it is in a group or its triangle has the opposite handedness. A triangle
+ * without UV area takes the handedness of the first group that reaches it, as MikkTSpace does. Returns
+ * whether the corner was added. */
+static bool join_group(struct tl_tangent_groups *groups, float *signs, uint32_t corner, uint32_t group)
 {
     float *sign = &signs[corner / 3];
     if (groups->groups[corner] != TL_NONE || (*sign != 0 && *sign != groups->group_signs[group]))
@@ -235,8 +248,9 @@ static bool claim(struct tl_tangent_groups *groups, float *signs, uint32_t corne
     return true;
 }
 
-/* MikkTSpace's groups: corners around one of its vertices, over edges between triangles of one UV handedness.
- * `signs` has each triangle's, 0 where it has no UV area. */
+/* Forms MikkTSpace's groups: corners around one of its vertices, connected over edges between triangles of
+ * equal UV handedness. `signs` [triangle]: handedness, 0 without UV area. Each group grows from its first
+ * corner in both directions until a border, another group or the other handedness. */
 static void group_corners(struct tl_tangent_groups *groups, float *signs, const uint32_t *twins)
 {
     memset(groups->groups, 0xff, groups->corner_count * sizeof *groups->groups);
@@ -246,15 +260,16 @@ static void group_corners(struct tl_tangent_groups *groups, float *signs, const 
         uint32_t group = (uint32_t)groups->group_count++;
         groups->group_signs[group] = signs[c / 3];
         groups->groups[c] = group;
-        for (uint32_t i = tl_twins_before(twins, c); i != TL_NONE && claim(groups, signs, i, group);)
+        for (uint32_t i = tl_twins_before(twins, c); i != TL_NONE && join_group(groups, signs, i, group);)
             i = tl_twins_before(twins, i);
-        for (uint32_t i = tl_twins_after(twins, c); i != TL_NONE && claim(groups, signs, i, group);)
+        for (uint32_t i = tl_twins_after(twins, c); i != TL_NONE && join_group(groups, signs, i, group);)
             i = tl_twins_after(twins, i);
     }
 }
 
-/* A render vertex may be a corner of several groups, as MikkTSpace would split it: it takes the one that most
- * of its own corners are in, the first of equals. */
+/* Chooses one group for each render vertex. MikkTSpace would split a vertex whose corners are in several
+ * groups; the mesh keeps its vertices, so the vertex takes the group of most of its corners, the first one if
+ * several are equal. */
 static void choose_groups(struct tl_tangent_groups *groups)
 {
     uint32_t *votes = TL_NEW_ARRAY(uint32_t, groups->group_count); /* of one render vertex at a time */
@@ -284,7 +299,7 @@ static void build_groups(struct tl_tangent_groups *groups, const vec2s *uvs)
     uint32_t *twins = tl_twins_build(welded, groups->corner_count);
     float *signs = TL_NEW_ARRAY(float, groups->corner_count / 3);
     find_gradients(groups, uvs);
-    /* v runs down in glTF and up in a normal map: the bitangent points to smaller v. */
+    /* v points down in glTF and up in a normal map, so the bitangent points to smaller v. */
     for (size_t t = 0; t < groups->corner_count / 3; t++)
         if (has_tangent(groups, t))
             signs[t] = uv_area(uvs, &groups->vertices[3 * t]) > 0 ? -1 : 1;

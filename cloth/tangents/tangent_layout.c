@@ -9,7 +9,7 @@
 #define LANES TL_LANES
 
 struct item {
-    uint32_t normal, group; /* group: TL_NONE where the normal has none */
+    uint32_t normal, group; /* group: TL_NONE if the normal has none */
     uint32_t spoke_count;
     uint32_t slot; /* block * LANES + lane */
 };
@@ -18,8 +18,8 @@ struct layer {
     const struct tl_tangent_groups *groups;
     uint32_t *twins;
     struct tl_fans normal_fans, group_fans;
-    bool *waiting;        /* [corner_count] corners of the item in hand that are not laid yet */
-    uint32_t *first_user; /* [normal_count] a render vertex with that normal: where it is */
+    bool *pending;        /* [corner_count] corners of the current item that are not written yet */
+    uint32_t *first_user; /* [normal_count] the first render vertex with that normal: its position is read */
     struct item *items;   /* normal_count of them, then the borrowers */
     size_t item_count;
     uint32_t *item_of; /* [render_count] */
@@ -27,14 +27,15 @@ struct layer {
 
 /* ---- Items ---- */
 
-/* The item of every render vertex. A vertex in no group shows its normal's first tangent. */
+/* Lists the items and finds the item of every render vertex. The first group at a normal shares the normal's
+ * item; each further group gets a borrower. A vertex without a group uses its normal's item. */
 static void list_items(struct layer *layer)
 {
     const struct tl_tangent_groups *groups = layer->groups;
     layer->items = TL_NEW_ARRAY(struct item, groups->normal_count + groups->group_count);
     layer->item_of = TL_NEW_ARRAY(uint32_t, groups->render_count);
     layer->first_user = TL_NEW_ARRAY(uint32_t, groups->normal_count);
-    uint32_t *item_of_group = TL_NEW_ARRAY(uint32_t, groups->group_count); /* plus one */
+    uint32_t *item_of_group = TL_NEW_ARRAY(uint32_t, groups->group_count); /* plus 1; 0: none yet */
     for (uint32_t n = 0; n < groups->normal_count; n++)
         layer->items[n] = (struct item){.normal = n, .group = TL_NONE};
     layer->item_count = groups->normal_count;
@@ -57,10 +58,11 @@ static void list_items(struct layer *layer)
     free(item_of_group);
 }
 
+/* The corners of each group. */
 static struct tl_fans fan_groups(const struct tl_tangent_groups *groups)
 {
     uint32_t *lists = TL_NEW_ARRAY(uint32_t, groups->corner_count);
-    for (size_t c = 0; c < groups->corner_count; c++) /* one more list for corners without a group */
+    for (size_t c = 0; c < groups->corner_count; c++) /* the last list takes the corners without a group */
         lists[c] = groups->groups[c] == TL_NONE ? (uint32_t)groups->group_count : groups->groups[c];
     struct tl_fans fans = tl_fans_build(lists, groups->corner_count, groups->group_count + 1);
     free(lists);
@@ -69,7 +71,7 @@ static struct tl_fans fan_groups(const struct tl_tangent_groups *groups)
 
 /* ---- Fans ---- */
 
-/* Where a fan goes; with `rows` NULL it is counted only. */
+/* Destination of a fan: one lane of a block's rows. With `rows` NULL the spokes are counted only. */
 struct lane {
     uint32_t (*rows)[LANES];
     float (*gradients)[2][LANES];
@@ -77,15 +79,17 @@ struct lane {
     uint32_t spoke_count;
 };
 
-static void lay_spoke(struct lane *lane, uint32_t vertex)
+static void add_spoke(struct lane *lane, uint32_t vertex)
 {
     if (lane->rows)
         lane->rows[lane->spoke_count][lane->index] = vertex;
     lane->spoke_count++;
 }
 
-/* The triangle's tangent from the two edges that leave one of its corners. */
-static void lay_gradient(const struct layer *layer, uint32_t corner, struct lane *lane)
+/* Writes the triangle's tangent in terms of the two edges that leave `corner`. The stored pair g is in terms
+ * of the edges from corner 0: e01 g0 + e02 g1. Substituting e01 = -e10, e02 = e12 - e10 it is e12 g1 - e10
+ * (g0 + g1) from corner 1, and -e20 (g0 + g1) + e21 g0 from corner 2. */
+static void add_gradient(const struct layer *layer, uint32_t corner, struct lane *lane)
 {
     if (!lane->gradients)
         return;
@@ -95,27 +99,30 @@ static void lay_gradient(const struct layer *layer, uint32_t corner, struct lane
         lane->gradients[lane->spoke_count - 1][i][lane->index] = (float)from[corner % 3][i];
 }
 
-static uint32_t place_of(const struct layer *layer, uint32_t corner)
+static uint32_t position_vertex(const struct layer *layer, uint32_t corner)
 {
     return layer->first_user[layer->groups->normals[corner]];
 }
 
-/* All corners of a chain from its first on. */
-static void lay_chain(struct layer *layer, const struct item *item, uint32_t corner, struct lane *lane)
+/* Writes a chain of adjacent corners from its first one on. Every chain but the first is separated from the
+ * one before by a spoke to the vertex itself, whose triangles have no area. */
+static void add_chain(struct layer *layer, const struct item *item, uint32_t corner, struct lane *lane)
 {
     if (lane->spoke_count > 0)
-        lay_spoke(lane, layer->first_user[item->normal]);
-    lay_spoke(lane, place_of(layer, tl_corner_turn(corner, 1)));
-    for (; corner != TL_NONE && layer->waiting[corner]; corner = tl_twins_after(layer->twins, corner)) {
-        layer->waiting[corner] = false;
+        add_spoke(lane, layer->first_user[item->normal]);
+    add_spoke(lane, position_vertex(layer, tl_corner_turn(corner, 1)));
+    for (; corner != TL_NONE && layer->pending[corner]; corner = tl_twins_after(layer->twins, corner)) {
+        layer->pending[corner] = false;
         if (item->group != TL_NONE && layer->groups->groups[corner] == item->group)
-            lay_gradient(layer, corner, lane);
-        lay_spoke(lane, place_of(layer, tl_corner_turn(corner, 2)));
+            add_gradient(layer, corner, lane);
+        add_spoke(lane, position_vertex(layer, tl_corner_turn(corner, 2)));
     }
 }
 
-/* Open chains from their first corner, then rings. */
-static void lay_fan(struct layer *layer, size_t index, struct lane *lane)
+/* Writes the fan of an item. Open chains have to start at a corner that has no pending corner before it, so
+ * they are written first; every corner that is still pending after that lies on a ring, which may start
+ * anywhere. */
+static void write_fan(struct layer *layer, size_t index, struct lane *lane)
 {
     const struct item *item = &layer->items[index];
     bool borrows = index >= layer->groups->normal_count;
@@ -124,20 +131,23 @@ static void lay_fan(struct layer *layer, size_t index, struct lane *lane)
     const uint32_t *corners = fans->items + fans->first[list];
     size_t count = fans->first[list + 1] - fans->first[list];
     for (size_t i = 0; i < count; i++)
-        layer->waiting[corners[i]] = true;
+        layer->pending[corners[i]] = true;
     for (size_t i = 0; i < count; i++) {
         uint32_t before = tl_twins_before(layer->twins, corners[i]);
-        if (layer->waiting[corners[i]] && (before == TL_NONE || !layer->waiting[before]))
-            lay_chain(layer, item, corners[i], lane);
+        if (layer->pending[corners[i]] && (before == TL_NONE || !layer->pending[before]))
+            add_chain(layer, item, corners[i], lane);
     }
     for (size_t i = 0; i < count; i++)
-        if (layer->waiting[corners[i]])
-            lay_chain(layer, item, corners[i], lane);
+        if (layer->pending[corners[i]])
+            add_chain(layer, item, corners[i], lane);
 }
 
 /* ---- Blocks ---- */
 
-#define WINDOW 1024 /* items: those of a block have about as many spokes, and are near each other */
+/* Items are sorted by their number of spokes within windows of this many. A block is as long as its longest
+ * fan, so fans of equal length waste no lanes; a window keeps the items of a block near each other in memory.
+ */
+#define WINDOW 1024
 
 struct ranked {
     uint32_t spoke_count, item;
@@ -151,7 +161,8 @@ static int compare_ranks(const void *a, const void *b)
     return (left->item > right->item) - (left->item < right->item);
 }
 
-/* Gives items [begin, end) their slots from block `first_block` on; returns the block after them. */
+/* Assigns slots to items [begin, end), starting with block `first_block`; returns the first block after them.
+ */
 static size_t place_items(struct layer *layer, size_t begin, size_t end, size_t first_block)
 {
     size_t count = end - begin;
@@ -166,6 +177,7 @@ static size_t place_items(struct layer *layer, size_t begin, size_t end, size_t 
     return first_block + (count + LANES - 1) / LANES;
 }
 
+/* Sets each block's spokes to its longest fan's, and its offsets; allocates rows, gradients and states. */
 static void size_blocks(tl_tangent_frames *frames, const struct layer *layer)
 {
     for (size_t i = 0; i < layer->item_count; i++) {
@@ -185,6 +197,8 @@ static void size_blocks(tl_tangent_frames *frames, const struct layer *layer)
     frames->states = TL_NEW_ARRAY(struct tl_tangent_state, frames->block_count);
 }
 
+/* Writes every fan into its lane. The rows are filled with the vertex itself first, so that shorter fans end
+ * in triangles without area. A state starts with the normal +Y. */
 static void fill_blocks(tl_tangent_frames *frames, struct layer *layer)
 {
     for (size_t i = 0; i < layer->item_count; i++) {
@@ -195,7 +209,7 @@ static void fill_blocks(tl_tangent_frames *frames, struct layer *layer)
             frames->rows[block->first_row + k][lane] = layer->first_user[item->normal];
         struct lane place = {frames->rows + block->first_row + 1, frames->gradients + block->first_gradient,
                              lane, 0};
-        lay_fan(layer, i, &place);
+        write_fan(layer, i, &place);
         struct tl_tangent_state *state = &frames->states[item->slot / LANES];
         state->normal[1][lane] = 1;
         state->sign[lane] = item->group == TL_NONE ? 1 : layer->groups->group_signs[item->group];
@@ -205,6 +219,7 @@ static void fill_blocks(tl_tangent_frames *frames, struct layer *layer)
     }
 }
 
+/* Lists the render vertices of each block by a counting sort. */
 static void list_outputs(tl_tangent_frames *frames, const struct layer *layer)
 {
     size_t count = layer->groups->render_count;
@@ -229,17 +244,17 @@ void tl_tangent_frames_lay_out(tl_tangent_frames *frames, const struct tl_tangen
         .twins = tl_twins_build(groups->normals, groups->corner_count),
         .normal_fans = tl_fans_build(groups->normals, groups->corner_count, groups->normal_count),
         .group_fans = fan_groups(groups),
-        .waiting = TL_NEW_ARRAY(bool, groups->corner_count),
+        .pending = TL_NEW_ARRAY(bool, groups->corner_count),
     };
     list_items(&layer);
     for (size_t i = 0; i < layer.item_count; i++) {
         struct lane counter = {0};
-        lay_fan(&layer, i, &counter);
+        write_fan(&layer, i, &counter);
         layer.items[i].spoke_count = counter.spoke_count;
     }
-    size_t lending = place_items(&layer, 0, groups->normal_count, 0);
-    frames->block_count = place_items(&layer, groups->normal_count, layer.item_count, lending);
-    frames->borrower_count = frames->block_count - lending;
+    size_t normal_blocks = place_items(&layer, 0, groups->normal_count, 0);
+    frames->block_count = place_items(&layer, groups->normal_count, layer.item_count, normal_blocks);
+    frames->borrower_count = frames->block_count - normal_blocks;
     frames->blocks = TL_NEW_ARRAY(struct tl_tangent_block, frames->block_count + 1);
     frames->lenders = tl_alloc(frames->borrower_count, sizeof *frames->lenders);
     size_blocks(frames, &layer);
@@ -248,7 +263,7 @@ void tl_tangent_frames_lay_out(tl_tangent_frames *frames, const struct tl_tangen
     free(layer.twins);
     tl_fans_release(&layer.normal_fans);
     tl_fans_release(&layer.group_fans);
-    free(layer.waiting);
+    free(layer.pending);
     free(layer.first_user);
     free(layer.items);
     free(layer.item_of);

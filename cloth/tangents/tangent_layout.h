@@ -4,7 +4,8 @@
  * neighbours of the vertex in order: two consecutive spokes and the vertex are a triangle, so that each spoke
  * is read once for two triangles. Between the pieces of a fan, and after its end, the spoke is the vertex
  * itself, which makes triangles without area that add nothing. A vertex with several groups has one item that
- * sums its normal and the first group's tangent, and further items that borrow that normal. */
+ * sums its normal and the first group's tangent, and further items, the borrowers, that copy that normal
+ * instead of summing it again. */
 #ifndef TOILE_CLOTH_TANGENTS_TANGENT_LAYOUT_H
 #define TOILE_CLOTH_TANGENTS_TANGENT_LAYOUT_H
 
@@ -23,7 +24,7 @@ struct tl_tangent_output {
     uint32_t vertex, lane;
 };
 
-/* The last result, which vertices keep whose triangles have no direction. */
+/* The last result. A vertex whose triangles give no direction in a frame keeps it. */
 struct tl_tangent_state {
     float normal[3][TL_LANES], tangent[3][TL_LANES];
     float sign[TL_LANES];
@@ -35,7 +36,7 @@ struct tl_tangent_frames {
     uint32_t (*rows)[TL_LANES];         /* render vertices */
     float (*gradients)[2][TL_LANES];    /* tangent = spoke * [0] + next spoke * [1] */
     struct tl_tangent_output *outputs;  /* render vertices of each block */
-    uint32_t (*lenders)[TL_LANES];      /* [borrower_count] items, TL_LANES in a block */
+    uint32_t (*lenders)[TL_LANES];      /* [borrower_count] slot of the item whose normal each lane copies */
     struct tl_tangent_state *states;    /* [block_count] */
 };
 

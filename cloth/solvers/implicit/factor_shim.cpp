@@ -15,7 +15,7 @@ namespace
 using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
 using Cholesky = Eigen::SimplicialLDLT<Matrix, Eigen::Lower, Eigen::AMDOrdering<int>>;
 
-/* What Eigen's triplets must offer. */
+/* A triplet with the accessors that Eigen's setFromTriplets calls. */
 struct Triplet {
     struct tl_triplet of;
     int row() const { return of.row; }
