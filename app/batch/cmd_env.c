@@ -158,34 +158,35 @@ static int capture_size(const struct tl_arguments *arguments, enum tl_layout lay
     return size;
 }
 
-static bool capture(struct tl_stage *stage, const struct tl_arguments *arguments, enum tl_layout layout,
+static bool capture(struct tl_headless *headless, const struct tl_arguments *arguments, enum tl_layout layout,
                     tl_image *out, tl_error *error)
 {
-    stage->settings.light.method = TL_METHOD_MAPS;
-    stage->settings.maps.capture_every = 1;
-    stage->settings.maps.size = capture_size(arguments, layout, &stage->settings.maps);
+    headless->settings.light.method = TL_METHOD_MAPS;
+    headless->settings.maps.capture_every = 1;
+    headless->settings.maps.size = capture_size(arguments, layout, &headless->settings.maps);
     for (int frame = 0; frame < arguments->first_frame; frame++)
         if (tl_interrupted())
             return tl_fail(error, TL_INTERRUPTED, "env: stopped at frame %d", frame);
-        else if (!tl_session_advance(stage->session, error))
+        else if (!tl_session_advance(headless->session, error))
             return false;
-    return tl_stage_draw_still(stage, error) && tl_renderer_read_capture(stage->renderer, out, error);
+    return tl_headless_draw_still(headless, error) &&
+           tl_renderer_read_capture(headless->renderer, out, error);
 }
 
 static bool convert_capture(const struct tl_arguments *arguments, enum tl_layout layout, tl_error *error)
 {
-    struct tl_stage stage;
+    struct tl_headless headless;
     tl_image cube = {0};
     struct tl_sphere_map from = {TL_LAYOUT_CUBE, TL_MAPS_SIZE_MIN, 6 * TL_MAPS_SIZE_MIN}, to;
     if (!find_target(arguments, &from, layout, &to, error) || /* checked before the cloth is settled */
-        !tl_stage_create(&stage, arguments, error))
+        !tl_headless_create(&headless, arguments, error))
         return false;
-    bool done = capture(&stage, arguments, layout, &cube, error);
+    bool done = capture(&headless, arguments, layout, &cube, error);
     from.width = cube.width;
     from.height = cube.height;
     done = done && convert(arguments, layout, &cube, &from, error);
     tl_image_release(&cube);
-    tl_stage_release(&stage);
+    tl_headless_release(&headless);
     return done;
 }
 

@@ -95,7 +95,7 @@ static bool export_motion(tl_session *session, const struct tl_arguments *argume
 bool tl_command_export(const struct tl_arguments *arguments, tl_error *error)
 {
     struct tl_settings settings;
-    if (!check_output(arguments, error) || !tl_stage_settings(arguments, &settings, error))
+    if (!check_output(arguments, error) || !tl_headless_settings(arguments, &settings, error))
         return false;
     tl_session *session = tl_session_create(&settings, error);
     bool done = session != NULL;

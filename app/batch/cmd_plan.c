@@ -198,69 +198,69 @@ static void add_clocks(cJSON *object, const struct tl_gpu_clocks *clocks)
     cJSON_AddBoolToObject(clock, "timer_is_trusted", clocks->timer_is_trusted);
 }
 
-static void print_report(const struct tl_stage *stage, const tl_plan *plan, const struct budgeted *budgeted,
-                         const struct tl_gpu_clocks *clocks, bool json)
+static void print_report(const struct tl_headless *headless, const tl_plan *plan,
+                         const struct budgeted *budgeted, const struct tl_gpu_clocks *clocks, bool json)
 {
-    struct tl_cloth_report report = tl_session_report(stage->session);
+    struct tl_cloth_report report = tl_session_report(headless->session);
     if (json) {
         cJSON *object = cJSON_CreateObject();
-        add_jobs(object, plan, tl_renderer_last_plan(stage->renderer));
-        add_memory(object, stage->renderer);
+        add_jobs(object, plan, tl_renderer_last_plan(headless->renderer));
+        add_memory(object, headless->renderer);
         if (budgeted->budget_ms > 0)
             add_budget(object, budgeted);
         add_clocks(object, clocks);
         if (report.vertex_count > 0)
-            add_cloth(object, &stage->settings, &report);
+            add_cloth(object, &headless->settings, &report);
         tl_json_print(object);
         return;
     }
     print_plan(plan);
-    print_memory(stage->renderer);
+    print_memory(headless->renderer);
     if (budgeted->budget_ms > 0)
         print_budget(budgeted);
     print_clocks(clocks);
     if (report.vertex_count > 0)
-        print_cloth(&stage->settings, &report);
+        print_cloth(&headless->settings, &report);
 }
 
 /* Simulates and draws a frame as toile fly does: the governor chooses the levels, then learns from the
  * measured times. */
-static bool draw_within_budget(struct tl_stage *stage, tl_quality_governor *governor, tl_error *error)
+static bool draw_within_budget(struct tl_headless *headless, tl_quality_governor *governor, tl_error *error)
 {
-    const struct tl_settings full = stage->settings;
+    const struct tl_settings full = headless->settings;
     struct tl_stopwatch watch = tl_stopwatch_start();
-    const tl_frame frame = tl_session_frame(stage->session);
-    struct tl_quality_choice choice = tl_quality_governor_choose(governor, stage->renderer, &frame, &full);
-    stage->settings = tl_quality_apply(&choice.levels, &full);
-    bool done = tl_session_apply(stage->session, &stage->settings, error);
+    const tl_frame frame = tl_session_frame(headless->session);
+    struct tl_quality_choice choice = tl_quality_governor_choose(governor, headless->renderer, &frame, &full);
+    headless->settings = tl_quality_apply(&choice.levels, &full);
+    bool done = tl_session_apply(headless->session, &headless->settings, error);
     struct tl_stopwatch cloth = tl_stopwatch_start();
-    done = done && tl_session_advance(stage->session, error);
+    done = done && tl_session_advance(headless->session, error);
     double cloth_ms = tl_stopwatch_read(&cloth).wall_ms;
-    done = done && tl_stage_draw(stage, error);
+    done = done && tl_headless_draw(headless, error);
     if (done)
-        tl_quality_governor_learn(governor, tl_renderer_last_plan(stage->renderer), cloth_ms,
+        tl_quality_governor_learn(governor, tl_renderer_last_plan(headless->renderer), cloth_ms,
                                   tl_stopwatch_read(&watch).wall_ms);
-    stage->settings = full;
+    headless->settings = full;
     return done;
 }
 
 /* Draws the frames before `number` within the budget and chooses the levels of `number`. The session is left
  * at the frame before it. */
-static bool choose_levels(struct tl_stage *stage, int number, struct budgeted *out, tl_error *error)
+static bool choose_levels(struct tl_headless *headless, int number, struct budgeted *out, tl_error *error)
 {
     const int learned_from = 30; /* frames */
     tl_quality_governor *governor = tl_quality_governor_create(out->budget_ms);
-    const struct tl_settings full = stage->settings;
+    const struct tl_settings full = headless->settings;
     int first = number - 1 > learned_from ? number - 1 - learned_from : 0;
-    bool done = tl_session_go_to(stage->session, first, error);
-    while (done && tl_session_frame_number(stage->session) < number - 1)
-        done = draw_within_budget(stage, governor, error);
+    bool done = tl_session_go_to(headless->session, first, error);
+    while (done && tl_session_frame_number(headless->session) < number - 1)
+        done = draw_within_budget(headless, governor, error);
     if (done) {
-        const tl_frame frame = tl_session_frame(stage->session);
-        out->choice = tl_quality_governor_choose(governor, stage->renderer, &frame, &full);
-        tl_quality_governor_steps(governor, stage->renderer, &frame, &full, out->steps);
-        stage->settings = tl_quality_apply(&out->choice.levels, &full);
-        done = tl_session_apply(stage->session, &stage->settings, error);
+        const tl_frame frame = tl_session_frame(headless->session);
+        out->choice = tl_quality_governor_choose(governor, headless->renderer, &frame, &full);
+        tl_quality_governor_steps(governor, headless->renderer, &frame, &full, out->steps);
+        headless->settings = tl_quality_apply(&out->choice.levels, &full);
+        done = tl_session_apply(headless->session, &headless->settings, error);
     }
     tl_quality_governor_destroy(&governor);
     return done;
@@ -270,28 +270,28 @@ static bool choose_levels(struct tl_stage *stage, int number, struct budgeted *o
  * its costs are known. Frame 0 is the first, for which everything is computed. */
 bool tl_command_plan(const struct tl_arguments *arguments, tl_error *error)
 {
-    struct tl_stage stage;
+    struct tl_headless headless;
     struct budgeted budgeted = {.budget_ms = arguments->budget_ms};
-    if (!tl_stage_create(&stage, arguments, error))
+    if (!tl_headless_create(&headless, arguments, error))
         return false;
     bool done = true;
     int frame = arguments->first_frame;
     if (budgeted.budget_ms > 0)
-        done = choose_levels(&stage, frame, &budgeted, error);
+        done = choose_levels(&headless, frame, &budgeted, error);
     if (done && frame > 0)
-        done = tl_session_go_to(stage.session, frame - 1, error) && tl_stage_draw(&stage, error) &&
-               tl_session_advance(stage.session, error);
+        done = tl_session_go_to(headless.session, frame - 1, error) && tl_headless_draw(&headless, error) &&
+               tl_session_advance(headless.session, error);
     if (done) {
-        tl_frame next = tl_session_frame(stage.session);
-        const struct tl_render_settings settings = tl_settings_render(&stage.settings);
+        tl_frame next = tl_session_frame(headless.session);
+        const struct tl_render_settings settings = tl_settings_render(&headless.settings);
         tl_plan plan;
-        tl_renderer_plan(stage.renderer, &next, &settings, &plan);
-        done = tl_stage_draw(&stage, error); /* so that the memory is what the frame really takes */
+        tl_renderer_plan(headless.renderer, &next, &settings, &plan);
+        done = tl_headless_draw(&headless, error); /* so that the memory is what the frame really takes */
         struct tl_gpu_clocks clocks;
-        done = done && tl_gpu_compare_clocks(stage.gpu, &clocks, error);
+        done = done && tl_gpu_compare_clocks(headless.gpu, &clocks, error);
         if (done)
-            print_report(&stage, &plan, &budgeted, &clocks, arguments->json);
+            print_report(&headless, &plan, &budgeted, &clocks, arguments->json);
     }
-    tl_stage_release(&stage);
+    tl_headless_release(&headless);
     return done;
 }

@@ -44,22 +44,22 @@ static bool check_output(const struct tl_arguments *arguments, tl_error *error)
     return writable;
 }
 
-static void draw_legend(const struct tl_stage *stage, tl_image *image)
+static void draw_legend(const struct tl_headless *headless, tl_image *image)
 {
     struct tl_legend legend;
-    tl_renderer_legend(stage->renderer, &legend);
+    tl_renderer_legend(headless->renderer, &legend);
     if (!tl_legend_draw(&legend, image))
         tl_info("%s: the picture is too small for its legend", legend.title);
 }
 
 /* Saves the image, and as further layers the AOVs that were asked for. */
-static bool save_layers(const struct tl_stage *stage, const char *path, const tl_image *image,
+static bool save_layers(const struct tl_headless *headless, const char *path, const tl_image *image,
                         tl_error *error)
 {
     static const char *const names[] = {"R", "G", "B", "A"};
     struct tl_exr_layer written[1 + TL_AOVS_MAX] = {{.channel_names = names, .image = image}};
     struct tl_aovs aovs = {0};
-    if (stage->aovs && !tl_renderer_read_aovs(stage->renderer, &aovs, error))
+    if (headless->aovs && !tl_renderer_read_aovs(headless->renderer, &aovs, error))
         return false;
     for (int i = 0; i < aovs.count; i++)
         written[1 + i] =
@@ -69,23 +69,24 @@ static bool save_layers(const struct tl_stage *stage, const char *path, const tl
     return saved;
 }
 
-static bool save_frame(struct tl_stage *stage, const char *path, tl_error *error)
+static bool save_frame(struct tl_headless *headless, const char *path, tl_error *error)
 {
     tl_image image = {0};
     bool saved;
     if (tl_path_has_extension(path, "exr")) {
-        saved = tl_renderer_read(stage->renderer, &image, error) && save_layers(stage, path, &image, error);
+        saved =
+            tl_renderer_read(headless->renderer, &image, error) && save_layers(headless, path, &image, error);
     } else {
-        saved = tl_renderer_show_image(stage->renderer, &image, error);
-        if (saved && stage->settings.image.legend)
-            draw_legend(stage, &image);
+        saved = tl_renderer_show_image(headless->renderer, &image, error);
+        if (saved && headless->settings.image.legend)
+            draw_legend(headless, &image);
         saved = saved && tl_image_save_png(path, &image, error);
     }
     tl_image_release(&image);
     return saved;
 }
 
-static bool render_frames(struct tl_stage *stage, const struct tl_arguments *arguments, tl_error *error)
+static bool render_frames(struct tl_headless *headless, const struct tl_arguments *arguments, tl_error *error)
 {
     int first = arguments->first_frame, last = arguments->last_frame;
     struct tl_progress progress =
@@ -95,12 +96,12 @@ static bool render_frames(struct tl_stage *stage, const struct tl_arguments *arg
      * it. */
     for (int frame = 0; done && frame <= last; frame++) {
         if (frame > 0)
-            done = tl_session_advance(stage->session, error);
+            done = tl_session_advance(headless->session, error);
         if (done && frame >= first) {
             char *path = frame_path(arguments, frame);
-            done =
-                (arguments->frames_given ? tl_stage_draw(stage, error) : tl_stage_draw_still(stage, error)) &&
-                save_frame(stage, path, error);
+            done = (arguments->frames_given ? tl_headless_draw(headless, error)
+                                            : tl_headless_draw_still(headless, error)) &&
+                   save_frame(headless, path, error);
             free(path);
         }
         if (tl_interrupted())
@@ -114,12 +115,12 @@ static bool render_frames(struct tl_stage *stage, const struct tl_arguments *arg
 
 bool tl_command_render(const struct tl_arguments *arguments, tl_error *error)
 {
-    struct tl_stage stage;
-    if (!check_output(arguments, error) || !tl_stage_create(&stage, arguments, error))
+    struct tl_headless headless;
+    if (!check_output(arguments, error) || !tl_headless_create(&headless, arguments, error))
         return false;
-    stage.aovs = arguments->aovs;
-    tl_session_want_strains(stage.session, arguments->aovs);
-    bool done = render_frames(&stage, arguments, error);
-    tl_stage_release(&stage);
+    headless.aovs = arguments->aovs;
+    tl_session_want_strains(headless.session, arguments->aovs);
+    bool done = render_frames(&headless, arguments, error);
+    tl_headless_release(&headless);
     return done;
 }

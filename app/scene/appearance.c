@@ -59,13 +59,13 @@ static void set_params(const struct tl_material_params *params, tl_material *mat
 }
 
 /* The yarns of a fabric, or NULL: they are shared by the materials that show them. */
-static bool find_weave(struct tl_looks *looks, const struct tl_weave_params *params, const tl_weave **out,
-                       tl_error *error)
+static bool find_weave(struct tl_appearance *appearance, const struct tl_weave_params *params,
+                       const tl_weave **out, tl_error *error)
 {
     *out = NULL;
-    for (size_t i = 0; i < looks->weave_count && !*out; i++)
-        if (tl_options_equal(&tl_weave_options, &looks->weaves[i].params, params))
-            *out = looks->weaves[i].weave;
+    for (size_t i = 0; i < appearance->weave_count && !*out; i++)
+        if (tl_options_equal(&tl_weave_options, &appearance->weaves[i].params, params))
+            *out = appearance->weaves[i].weave;
     tl_weave made;
     if (*out)
         return true;
@@ -73,16 +73,17 @@ static bool find_weave(struct tl_looks *looks, const struct tl_weave_params *par
         return false;
     if (!params->picture[0] && !tl_weave_create(params, &made))
         return true;
-    looks->weaves = tl_resize(looks->weaves, looks->weave_count + 1, sizeof *looks->weaves);
+    appearance->weaves =
+        tl_resize(appearance->weaves, appearance->weave_count + 1, sizeof *appearance->weaves);
     tl_weave *kept = TL_NEW(tl_weave);
     *kept = made;
-    looks->weaves[looks->weave_count++] = (struct tl_woven){*params, kept};
+    appearance->weaves[appearance->weave_count++] = (struct tl_woven){*params, kept};
     *out = kept;
     return true;
 }
 
 /* What is left of a print when it is dyed over: its holes. */
-static void forget_print(struct tl_looks *looks, tl_material *material)
+static void drop_print(struct tl_appearance *appearance, tl_material *material)
 {
     const tl_image *print = material->diffuse_map.image;
     material->diffuse_map.image = NULL;
@@ -94,8 +95,8 @@ static void forget_print(struct tl_looks *looks, tl_material *material)
     memset(plain->texels, 255, 4 * texels);
     for (size_t i = 0; i < texels; i++)
         tl_image_bytes(plain)[4 * i + 3] = tl_image_bytes(print)[4 * i + 3];
-    looks->images = tl_resize(looks->images, looks->image_count + 1, sizeof(tl_image *));
-    material->diffuse_map.image = looks->images[looks->image_count++] = plain;
+    appearance->images = tl_resize(appearance->images, appearance->image_count + 1, sizeof(tl_image *));
+    material->diffuse_map.image = appearance->images[appearance->image_count++] = plain;
 }
 
 /* A fabric replaces how the surface reflects; a print or dye that the file brings stays. */
@@ -154,11 +155,12 @@ static void change(const struct tl_swatch *swatch, struct making *making)
         making->params = params_of(making->file);
 }
 
-static bool finish(struct tl_looks *looks, const struct making *making, tl_material *out, tl_error *error)
+static bool finish(struct tl_appearance *appearance, const struct making *making, tl_material *out,
+                   tl_error *error)
 {
     tl_material made = *making->file;
     const tl_weave *weave = NULL;
-    if (making->is_woven && !find_weave(looks, &making->weave, &weave, error))
+    if (making->is_woven && !find_weave(appearance, &making->weave, &weave, error))
         return false;
     if (!making->is_file)
         set_fabric(&making->params, weave, &made);
@@ -167,7 +169,7 @@ static bool finish(struct tl_looks *looks, const struct making *making, tl_mater
     if (making->is_woven)
         made.weave = weave;
     if (making->is_plain)
-        forget_print(looks, &made);
+        drop_print(appearance, &made);
     if (making->is_dyed || making->is_plain)
         memcpy(made.diffuse.raw, making->params.diffuse, sizeof made.diffuse.raw);
     *out = made;
@@ -179,8 +181,8 @@ static bool is_meant(const struct tl_swatch *swatch, const tl_material *material
     return strcmp(swatch->material, TL_SWATCH_ALL) == 0 || strcmp(swatch->material, material->name) == 0;
 }
 
-static bool make_materials(const struct tl_settings *settings, const tl_model *model, struct tl_looks *looks,
-                           tl_error *error)
+static bool make_materials(const struct tl_settings *settings, const tl_model *model,
+                           struct tl_appearance *appearance, tl_error *error)
 {
     const struct tl_colourways *colourways = &settings->colourways;
     for (size_t i = 0; i < model->material_count; i++) {
@@ -188,7 +190,7 @@ static bool make_materials(const struct tl_settings *settings, const tl_model *m
         for (size_t k = 0; k < colourways->swatch_count; k++)
             if (is_meant(&colourways->swatches[k], making.file))
                 change(&colourways->swatches[k], &making);
-        if (!finish(looks, &making, &looks->garment.materials[i], error))
+        if (!finish(appearance, &making, &appearance->garment.materials[i], error))
             return false;
     }
     return true;
@@ -196,24 +198,24 @@ static bool make_materials(const struct tl_settings *settings, const tl_model *m
 
 /* ---- The colourway ---- */
 
-static void add_name(struct tl_looks *looks, const char *name)
+static void add_name(struct tl_appearance *appearance, const char *name)
 {
-    for (size_t i = 0; i < looks->name_count; i++)
-        if (strcmp(looks->names[i], name) == 0)
+    for (size_t i = 0; i < appearance->name_count; i++)
+        if (strcmp(appearance->names[i], name) == 0)
             return;
-    looks->names = tl_resize(looks->names, looks->name_count + 1, sizeof(char *));
-    looks->names[looks->name_count++] = tl_copy_string(name);
+    appearance->names = tl_resize(appearance->names, appearance->name_count + 1, sizeof(char *));
+    appearance->names[appearance->name_count++] = tl_copy_string(name);
 }
 
 static void gather_names(const struct tl_settings *settings, const tl_model *garment, const tl_model *avatar,
-                         struct tl_looks *looks)
+                         struct tl_appearance *appearance)
 {
     const tl_model *models[] = {garment, avatar};
     for (size_t i = 0; i < settings->colourways.name_count; i++)
-        add_name(looks, settings->colourways.names[i]);
+        add_name(appearance, settings->colourways.names[i]);
     for (size_t m = 0; m < TL_COUNT(models); m++)
         for (size_t i = 0; models[m] && i < models[m]->variant_count; i++)
-            add_name(looks, models[m]->variants[i].name);
+            add_name(appearance, models[m]->variants[i].name);
 }
 
 static bool fail_name(const char *what, const char *name, const char *const *names, size_t count,
@@ -231,17 +233,18 @@ static bool fail_name(const char *what, const char *name, const char *const *nam
     return false;
 }
 
-static bool check_colourway(const struct tl_settings *settings, const struct tl_looks *looks, tl_error *error)
+static bool check_colourway(const struct tl_settings *settings, const struct tl_appearance *appearance,
+                            tl_error *error)
 {
     const char *name = settings->scene.colourway;
-    for (size_t i = 0; i < looks->name_count; i++)
-        if (strcmp(looks->names[i], name) == 0)
+    for (size_t i = 0; i < appearance->name_count; i++)
+        if (strcmp(appearance->names[i], name) == 0)
             return true;
     if (name[0] == '\0')
         return true;
     char *what =
         tl_format("scene.colourway: \"%s\": neither the scene nor a model has such a colourway", name);
-    fail_name(what, name, (const char *const *)looks->names, looks->name_count, error);
+    fail_name(what, name, (const char *const *)appearance->names, appearance->name_count, error);
     free(what);
     return false;
 }
@@ -281,16 +284,16 @@ static void dress(const tl_model *model, const char *variant_name, struct tl_dre
     }
 }
 
-bool tl_looks_make(const struct tl_settings *settings, const tl_model *garment, const tl_model *avatar,
-                   struct tl_looks *out, tl_error *error)
+bool tl_appearance_make(const struct tl_settings *settings, const tl_model *garment, const tl_model *avatar,
+                        struct tl_appearance *out, tl_error *error)
 {
-    *out = (struct tl_looks){0};
+    *out = (struct tl_appearance){0};
     gather_names(settings, garment, avatar, out);
     bool good = check_colourway(settings, out, error);
     for (size_t i = 0; good && garment && i < settings->colourways.swatch_count; i++)
         good = check_swatch(settings, &settings->colourways.swatches[i], garment, error);
     if (!good) {
-        tl_looks_release(out);
+        tl_appearance_release(out);
         return false;
     }
     if (avatar)
@@ -298,37 +301,37 @@ bool tl_looks_make(const struct tl_settings *settings, const tl_model *garment, 
     if (garment) {
         dress(garment, settings->scene.colourway, &out->garment);
         if (!make_materials(settings, garment, out, error)) {
-            tl_looks_release(out);
+            tl_appearance_release(out);
             return false;
         }
     }
     return true;
 }
 
-void tl_looks_release(struct tl_looks *looks)
+void tl_appearance_release(struct tl_appearance *appearance)
 {
-    for (size_t i = 0; i < looks->weave_count; i++) {
-        tl_weave_release(looks->weaves[i].weave);
-        free(looks->weaves[i].weave);
+    for (size_t i = 0; i < appearance->weave_count; i++) {
+        tl_weave_release(appearance->weaves[i].weave);
+        free(appearance->weaves[i].weave);
     }
-    for (size_t i = 0; i < looks->image_count; i++) {
-        tl_image_release(looks->images[i]);
-        free(looks->images[i]);
+    for (size_t i = 0; i < appearance->image_count; i++) {
+        tl_image_release(appearance->images[i]);
+        free(appearance->images[i]);
     }
-    for (size_t i = 0; i < looks->name_count; i++)
-        free(looks->names[i]);
-    struct tl_dressing *dressings[] = {&looks->garment, &looks->avatar};
+    for (size_t i = 0; i < appearance->name_count; i++)
+        free(appearance->names[i]);
+    struct tl_dressing *dressings[] = {&appearance->garment, &appearance->avatar};
     for (size_t i = 0; i < TL_COUNT(dressings); i++) {
         free(dressings[i]->materials);
         free(dressings[i]->parts);
     }
-    free(looks->weaves);
-    free((void *)looks->images);
-    free((void *)looks->names);
-    *looks = (struct tl_looks){0};
+    free(appearance->weaves);
+    free((void *)appearance->images);
+    free((void *)appearance->names);
+    *appearance = (struct tl_appearance){0};
 }
 
-bool tl_looks_are_same(const struct tl_settings *a, const struct tl_settings *b)
+bool tl_appearance_is_same(const struct tl_settings *a, const struct tl_settings *b)
 {
     return !tl_settings_differ(a, b, (struct tl_option_filter){.any_of = TL_AFFECTS_MATERIALS}) &&
            tl_colourways_equal(&a->colourways, &b->colourways);
@@ -336,13 +339,13 @@ bool tl_looks_are_same(const struct tl_settings *a, const struct tl_settings *b)
 
 /* Colourways belong to a garment: another garment keeps its own. What follows from options that are taken
  * (overlay_weave, colourways) is taken with them. */
-void tl_looks_take(const struct tl_settings *look, struct tl_settings *settings)
+void tl_appearance_take(const struct tl_settings *from, struct tl_settings *settings)
 {
-    bool same_garment = strcmp(look->scene.garment, settings->scene.garment) == 0;
-    tl_settings_take(look, settings,
+    bool same_garment = strcmp(from->scene.garment, settings->scene.garment) == 0;
+    tl_settings_take(from, settings,
                      (struct tl_option_filter){.any_of = TL_AFFECTS_APPEARANCE,
                                                .none_of = same_garment ? 0 : TL_AFFECTS_GARMENT});
-    settings->overlay_weave = look->overlay_weave;
+    settings->overlay_weave = from->overlay_weave;
     if (same_garment)
-        settings->colourways = look->colourways;
+        settings->colourways = from->colourways;
 }

@@ -1,6 +1,9 @@
-/* How garment and avatar look: the materials of their files, what the settings' fabric makes of the
- * garment's, and what the colourway changes: scene.colourway's looks (app/settings/colourway.h) and the
- * files' own variants. Never how anything moves. Reads weave.picture's file and nothing else. */
+/* The appearance of garment and avatar: the materials of their files, what the settings' fabric makes of the
+ * garment's, and what scene.colourway changes: the swatches of the scene (app/settings/colourway.h) and the
+ * files' own variants. Never how anything moves. Reads weave.picture's file and no other.
+ *
+ * Threads: pure, but for reading that file; an appearance may be made on any thread while the models are not
+ * written to. */
 #ifndef TOILE_APP_SCENE_APPEARANCE_H
 #define TOILE_APP_SCENE_APPEARANCE_H
 
@@ -12,27 +15,30 @@ struct tl_woven {
     tl_weave *weave;
 };
 
-struct tl_looks {
+struct tl_appearance {
     struct tl_dressing garment, avatar; /* empty where there is none */
-    struct tl_woven *weaves;            /* what the garment's materials point to, and their plain maps */
+    struct tl_woven *weaves;            /* the garment's materials point to these ... */
     size_t weave_count;
-    tl_image **images;
+    tl_image **images; /* ... and to these: colour maps without their print */
     size_t image_count;
     char **names; /* colourways: the scene's, then the variants of garment and avatar; each once */
     size_t name_count;
 };
 
-/* Either model may be NULL. Fails when nobody knows the colourway, the garment has no material of a name that
- * it gives, or a weave's picture cannot be read. */
-bool tl_looks_make(const struct tl_settings *settings, const tl_model *garment, const tl_model *avatar,
-                   struct tl_looks *out, tl_error *error);
-void tl_looks_release(struct tl_looks *looks); /* frees and zeroes */
+/* Makes the appearance of the models, either of which may be NULL.
+ * Errors: TL_USAGE when neither the scene nor a model has the colourway, or the garment has no material of a
+ * name that the colourway gives; those of tl_height_picture_weave for a weave's picture. `out` is then empty.
+ * Lifetime: the caller releases `out`; it refers to the models' maps, so it is released before they are. */
+bool tl_appearance_make(const struct tl_settings *settings, const tl_model *garment, const tl_model *avatar,
+                        struct tl_appearance *out, tl_error *error);
+void tl_appearance_release(struct tl_appearance *appearance); /* frees and zeroes */
 
-/* Whether two settings make the same looks of the same models. */
-bool tl_looks_are_same(const struct tl_settings *a, const struct tl_settings *b);
+/* True when two settings give the same models the same appearance. */
+bool tl_appearance_is_same(const struct tl_settings *a, const struct tl_settings *b);
 
-/* Gives `settings` the look of others, and the way in which it is drawn: what may differ between two looks
- * that are compared. Camera, light and cloth stay; of another garment, its colourways. Pure. */
-void tl_looks_take(const struct tl_settings *look, struct tl_settings *settings);
+/* Copies into `settings` the options of `from` that may differ between two appearances under comparison:
+ * those of materials, and of how they are drawn. Camera, light and cloth stay; so do the colourways of
+ * another garment. Pure. */
+void tl_appearance_take(const struct tl_settings *from, struct tl_settings *settings);
 
 #endif

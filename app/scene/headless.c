@@ -3,7 +3,7 @@
 #include "config/interrupt.h"
 #include "config/log.h"
 
-bool tl_stage_settings(const struct tl_arguments *arguments, struct tl_settings *out, tl_error *error)
+bool tl_headless_settings(const struct tl_arguments *arguments, struct tl_settings *out, tl_error *error)
 {
     if (arguments->positional_count > 1)
         return tl_fail(error, TL_USAGE,
@@ -17,55 +17,55 @@ bool tl_stage_settings(const struct tl_arguments *arguments, struct tl_settings 
     return tl_settings_load(out, &source, error);
 }
 
-bool tl_stage_open(struct tl_stage *stage, const struct tl_settings *settings, tl_error *error)
+bool tl_headless_open(struct tl_headless *headless, const struct tl_settings *settings, tl_error *error)
 {
-    *stage = (struct tl_stage){.settings = *settings};
-    stage->gpu = tl_gpu_create_headless(error);
-    stage->renderer = stage->gpu ? tl_renderer_create(stage->gpu, error) : NULL;
-    stage->session = stage->renderer ? tl_session_create(&stage->settings, error) : NULL;
-    if (stage->session) {
-        tl_debug("rendering with %s", tl_gpu_name(stage->gpu));
+    *headless = (struct tl_headless){.settings = *settings};
+    headless->gpu = tl_gpu_create_headless(error);
+    headless->renderer = headless->gpu ? tl_renderer_create(headless->gpu, error) : NULL;
+    headless->session = headless->renderer ? tl_session_create(&headless->settings, error) : NULL;
+    if (headless->session) {
+        tl_debug("rendering with %s", tl_gpu_name(headless->gpu));
         return true;
     }
-    tl_stage_release(stage);
+    tl_headless_release(headless);
     return false;
 }
 
-bool tl_stage_create(struct tl_stage *stage, const struct tl_arguments *arguments, tl_error *error)
+bool tl_headless_create(struct tl_headless *headless, const struct tl_arguments *arguments, tl_error *error)
 {
     struct tl_settings settings;
-    *stage = (struct tl_stage){0};
-    return tl_stage_settings(arguments, &settings, error) && tl_stage_open(stage, &settings, error);
+    *headless = (struct tl_headless){0};
+    return tl_headless_settings(arguments, &settings, error) && tl_headless_open(headless, &settings, error);
 }
 
-void tl_stage_release(struct tl_stage *stage)
+void tl_headless_release(struct tl_headless *headless)
 {
-    tl_renderer_destroy(&stage->renderer);
-    tl_gpu_destroy(&stage->gpu);
-    tl_session_destroy(&stage->session);
+    tl_renderer_destroy(&headless->renderer);
+    tl_gpu_destroy(&headless->gpu);
+    tl_session_destroy(&headless->session);
 }
 
-static bool draw(struct tl_stage *stage, bool still, tl_error *error)
+static bool draw(struct tl_headless *headless, bool still, tl_error *error)
 {
-    tl_frame frame = tl_session_frame(stage->session);
+    tl_frame frame = tl_session_frame(headless->session);
     frame.still = still;
-    frame.aovs = stage->aovs;
-    const struct tl_render_settings settings = tl_settings_render(&stage->settings);
-    return tl_renderer_draw(stage->renderer, &frame, &settings, error);
+    frame.aovs = headless->aovs;
+    const struct tl_render_settings settings = tl_settings_render(&headless->settings);
+    return tl_renderer_draw(headless->renderer, &frame, &settings, error);
 }
 
-bool tl_stage_draw(struct tl_stage *stage, tl_error *error)
+bool tl_headless_draw(struct tl_headless *headless, tl_error *error)
 {
-    return draw(stage, false, error);
+    return draw(headless, false, error);
 }
 
-bool tl_stage_draw_still(struct tl_stage *stage, tl_error *error)
+bool tl_headless_draw_still(struct tl_headless *headless, tl_error *error)
 {
     struct tl_progress progress = tl_progress_begin("averaging");
-    bool drawn = draw(stage, true, error);
-    for (int round = 1; drawn && !tl_renderer_is_at_rest(stage->renderer) && !tl_interrupted(); round++) {
-        drawn = draw(stage, true, error);
-        tl_progress_update(&progress, round + 1, stage->settings.light.rounds);
+    bool drawn = draw(headless, true, error);
+    for (int round = 1; drawn && !tl_renderer_is_at_rest(headless->renderer) && !tl_interrupted(); round++) {
+        drawn = draw(headless, true, error);
+        tl_progress_update(&progress, round + 1, headless->settings.light.rounds);
     }
     tl_progress_end(&progress);
     return drawn;

@@ -47,12 +47,12 @@ struct tl_session {
         uint64_t revision;  /* dress.motion_revision that they are of; 0: none */
     } strain;
 
-    struct tl_looks looks;
-    uint64_t look_revision; /* of meshes and materials; the renderer sees another one as new */
-    uint64_t looks_made;    /* the highest revision so far */
-    struct tl_spare_look {
+    struct tl_appearance appearance;
+    uint64_t appearance_revision; /* of meshes and materials; the renderer sees another one as new */
+    uint64_t appearances_made;    /* the highest revision so far */
+    struct tl_spare_appearance {
         bool is_kept;
-        struct tl_looks looks;
+        struct tl_appearance appearance;
         uint64_t revision;
         struct tl_settings made_of;
     } spares[2]; /* the last one first: the look before, for comparisons that go to and fro, and the next */
@@ -73,7 +73,7 @@ static bool is_built_in_garment(const char *name)
 }
 
 /* What was guessed is said aloud. */
-static void tell_units(const tl_model *model, const char *option)
+static void report_units(const tl_model *model, const char *option)
 {
     char *lines[] = {tl_units_describe(model->name, &model->units, option),
                      tl_units_describe_up(model->name, &model->units)};
@@ -97,7 +97,7 @@ static bool load_avatar(tl_session *session, tl_error *error)
         loaded = tl_specimen_ball();
     else if (!tl_avatar_load_in(name, (enum tl_units)session->settings.scene.avatar_units, &loaded, error))
         return false;
-    tell_units(&loaded.model, "scene.avatar_units");
+    report_units(&loaded.model, "scene.avatar_units");
     session->avatar = TL_NEW(tl_avatar);
     *session->avatar = loaded;
     const char *clip = session->settings.scene.clip;
@@ -123,17 +123,17 @@ static bool plays_motion(const tl_session *session)
 /* A mesh of long edges cannot fold. What is played back has the vertices of its file. */
 static bool refine_garment(const tl_session *session, tl_garment *garment, tl_error *error)
 {
-    float most_m = session->settings.cloth.longest_edge_m;
+    float max_m = session->settings.cloth.longest_edge_m;
     const tl_mesh *mesh = &garment->model.mesh;
     size_t triangles = mesh->index_count / 3;
     float longest_m = tl_mesh_longest_edge(mesh);
-    if (plays_motion(session) || !(most_m > 0) || !(longest_m > most_m))
+    if (plays_motion(session) || !(max_m > 0) || !(longest_m > max_m))
         return true;
-    if (!tl_garment_refine(garment, most_m, error))
+    if (!tl_garment_refine(garment, max_m, error))
         return false;
     tl_info("%s: edges of up to %.3g m cannot fold: %zu triangles were split into %zu with none above %g m; "
             "cloth.longest_edge_m=0 leaves them as they are",
-            garment->model.name, (double)longest_m, triangles, mesh->index_count / 3, (double)most_m);
+            garment->model.name, (double)longest_m, triangles, mesh->index_count / 3, (double)max_m);
     return true;
 }
 
@@ -156,7 +156,7 @@ static bool read_garment(const tl_session *session, tl_garment *out, tl_error *e
     const struct tl_scene_params *scene = &session->settings.scene;
     if (!tl_garment_load_in(scene->garment, (enum tl_units)scene->units, out, error))
         return false;
-    tell_units(&out->model, "--units");
+    report_units(&out->model, "--units");
     lift_garment(session, out);
     if (refine_garment(session, out, error))
         return true;
@@ -200,7 +200,7 @@ static void pose_avatar(tl_session *session, double time_s)
         tl_collider_move(session->collider, session->body.positions);
 }
 
-static void pull_cloth(tl_session *session)
+static void read_back_cloth(tl_session *session)
 {
     tl_cloth_positions(session->cloth, session->dress.positions);
     tl_moving_update(&session->dress);
@@ -225,7 +225,7 @@ static bool drape(tl_session *session, tl_error *error)
     if (!session->cloth)
         return false;
     tl_moving_create(&session->dress, &session->garment->model, tl_cloth_weld(session->cloth));
-    pull_cloth(session);
+    read_back_cloth(session);
     return true;
 }
 
@@ -247,7 +247,7 @@ static bool play_back(tl_session *session, int number, tl_error *error)
 }
 
 /* Other programs put the floor elsewhere. */
-static void tell_ground(const tl_session *session)
+static void report_ground(const tl_session *session)
 {
     const float noticed_m = 0.01f;
     float lowest_m = tl_playback_lowest(session->playback);
@@ -275,7 +275,7 @@ static bool begin_playback(tl_session *session, tl_error *error)
     free(weld);
     free(first);
     if (posed)
-        tell_ground(session);
+        report_ground(session);
     return posed;
 }
 
@@ -308,17 +308,17 @@ struct tl_session_models tl_session_models(const tl_session *session)
     };
 }
 
-bool tl_session_make_look(const struct tl_session_models *models, const struct tl_settings *settings,
-                          struct tl_looks *out, tl_error *error)
+bool tl_session_make_appearance(const struct tl_session_models *models, const struct tl_settings *settings,
+                                struct tl_appearance *out, tl_error *error)
 {
-    return tl_looks_make(settings, models->garment, models->avatar, out, error);
+    return tl_appearance_make(settings, models->garment, models->avatar, out, error);
 }
 
-static bool make_look(const tl_session *session, const struct tl_settings *settings, struct tl_looks *out,
-                      tl_error *error)
+static bool make_appearance(const tl_session *session, const struct tl_settings *settings,
+                            struct tl_appearance *out, tl_error *error)
 {
     const struct tl_session_models models = tl_session_models(session);
-    return tl_session_make_look(&models, settings, out, error);
+    return tl_session_make_appearance(&models, settings, out, error);
 }
 
 /* A missing file is refused before anything is made: the built-in form alone takes half a second. */
@@ -341,9 +341,9 @@ static bool load_all(tl_session *session, tl_error *error)
         return false;
     if (!session->avatar && !session->garment)
         return tl_fail(error, TL_USAGE, "scene: neither a garment nor an avatar: name at least one");
-    if (!make_look(session, &session->settings, &session->looks, error))
+    if (!make_appearance(session, &session->settings, &session->appearance, error))
         return false;
-    session->look_revision = ++session->looks_made;
+    session->appearance_revision = ++session->appearances_made;
     if (session->avatar)
         tl_moving_create(&session->body, &session->avatar->model, NULL);
     if (session->garment) {
@@ -389,9 +389,9 @@ void tl_session_destroy(tl_session **handle)
     tl_moving_light_release(&session->light);
     tl_strains_destroy(&session->strain.rest);
     free(session->strain.of_vertices);
-    tl_looks_release(&session->looks);
+    tl_appearance_release(&session->appearance);
     for (size_t i = 0; i < TL_COUNT(session->spares); i++)
-        tl_looks_release(&session->spares[i].looks);
+        tl_appearance_release(&session->spares[i].appearance);
     free(session);
     *handle = NULL;
 }
@@ -408,7 +408,7 @@ bool tl_session_advance(tl_session *session, tl_error *error)
     if (session->cloth) {
         if (!tl_cloth_step(session->cloth, session->collider, error))
             return false;
-        pull_cloth(session);
+        read_back_cloth(session);
     }
     if (session->playback && !play_back(session, session->frame + 1, error))
         return false;
@@ -432,7 +432,7 @@ bool tl_session_reset(tl_session *session, tl_error *error)
     }
     if (session->cloth) {
         tl_cloth_reset(session->cloth);
-        pull_cloth(session);
+        read_back_cloth(session);
     }
     return true;
 }
@@ -470,10 +470,10 @@ bool tl_session_needs_light(const struct tl_settings *old, const struct tl_setti
     return tl_settings_differ(old, new, (struct tl_option_filter){.any_of = TL_AFFECTS_ENVIRONMENT});
 }
 
-bool tl_session_needs_look(const struct tl_settings *old, const struct tl_settings *new)
+bool tl_session_needs_appearance(const struct tl_settings *old, const struct tl_settings *new)
 {
     struct tl_settings same = *new;
-    tl_looks_take(old, &same);
+    tl_appearance_take(old, &same);
     return !tl_settings_equal(&same, new);
 }
 
@@ -494,8 +494,8 @@ void tl_session_replace(tl_session *session, tl_session **made)
 {
     tl_session *fresh = *made;
     fresh->light.revision += session->light.revision;
-    fresh->looks_made += session->looks_made + 1;
-    fresh->look_revision = fresh->looks_made;
+    fresh->appearances_made += session->appearances_made + 1;
+    fresh->appearance_revision = fresh->appearances_made;
     fresh->body.motion_revision += session->body.motion_revision;
     fresh->dress.motion_revision += session->dress.motion_revision;
     fresh->strain.wanted = session->strain.wanted;
@@ -539,65 +539,66 @@ static bool change_in_place(tl_session *session, const struct tl_settings *setti
            tl_cloth_set(session->cloth, &settings->fabric, &settings->cloth, error);
 }
 
-static struct tl_spare_look *find_spare(tl_session *session, const struct tl_settings *settings)
+static struct tl_spare_appearance *find_spare(tl_session *session, const struct tl_settings *settings)
 {
     for (size_t i = 0; i < TL_COUNT(session->spares); i++)
-        if (session->spares[i].is_kept && tl_looks_are_same(&session->spares[i].made_of, settings))
+        if (session->spares[i].is_kept && tl_appearance_is_same(&session->spares[i].made_of, settings))
             return &session->spares[i];
     return NULL;
 }
 
 /* In the place of the oldest one. */
-static void add_spare(tl_session *session, const struct tl_settings *made_of, const struct tl_looks *looks,
-                      uint64_t revision)
+static void add_spare(tl_session *session, const struct tl_settings *made_of,
+                      const struct tl_appearance *appearance, uint64_t revision)
 {
-    struct tl_spare_look *spares = session->spares;
+    struct tl_spare_appearance *spares = session->spares;
     const size_t last = TL_COUNT(session->spares) - 1;
-    tl_looks_release(&spares[last].looks);
+    tl_appearance_release(&spares[last].appearance);
     memmove(spares + 1, spares, last * sizeof *spares);
-    spares[0] = (struct tl_spare_look){true, *looks, revision, *made_of};
+    spares[0] = (struct tl_spare_appearance){true, *appearance, revision, *made_of};
 }
 
 /* Takes up the look that was set aside, in exchange for the present one. */
-static void exchange_looks(tl_session *session, struct tl_spare_look *spare)
+static void exchange_appearance(tl_session *session, struct tl_spare_appearance *spare)
 {
-    const struct tl_spare_look taken = *spare;
-    spare->looks = (struct tl_looks){0};
+    const struct tl_spare_appearance taken = *spare;
+    spare->appearance = (struct tl_appearance){0};
     memmove(session->spares + 1, session->spares, (size_t)(spare - session->spares) * sizeof *spare);
-    session->spares[0] =
-        (struct tl_spare_look){true, session->looks, session->look_revision, session->settings};
-    session->looks = taken.looks;
-    session->look_revision = taken.revision;
+    session->spares[0] = (struct tl_spare_appearance){true, session->appearance, session->appearance_revision,
+                                                      session->settings};
+    session->appearance = taken.appearance;
+    session->appearance_revision = taken.revision;
 }
 
-void tl_session_keep_look(tl_session *session, const struct tl_settings *made_of, struct tl_looks *made)
+void tl_session_keep_appearance(tl_session *session, const struct tl_settings *made_of,
+                                struct tl_appearance *made)
 {
-    if (tl_looks_are_same(&session->settings, made_of) || find_spare(session, made_of))
-        tl_looks_release(made);
+    if (tl_appearance_is_same(&session->settings, made_of) || find_spare(session, made_of))
+        tl_appearance_release(made);
     else
-        add_spare(session, made_of, made, ++session->looks_made);
-    *made = (struct tl_looks){0};
+        add_spare(session, made_of, made, ++session->appearances_made);
+    *made = (struct tl_appearance){0};
 }
 
 bool tl_session_apply(tl_session *session, const struct tl_settings *settings, tl_error *error)
 {
     if (tl_session_needs_scene(&session->settings, settings))
         return tl_session_restart(session, settings, error);
-    struct tl_looks looks = {0};
-    bool new_look = !tl_looks_are_same(&session->settings, settings);
-    struct tl_spare_look *spare = find_spare(session, settings);
-    if (new_look && !spare && !make_look(session, settings, &looks, error))
+    struct tl_appearance appearance = {0};
+    bool is_new = !tl_appearance_is_same(&session->settings, settings);
+    struct tl_spare_appearance *spare = find_spare(session, settings);
+    if (is_new && !spare && !make_appearance(session, settings, &appearance, error))
         return false;
     if (!change_in_place(session, settings, error)) {
-        tl_looks_release(&looks);
+        tl_appearance_release(&appearance);
         return false;
     }
-    if (new_look && spare) {
-        exchange_looks(session, spare);
-    } else if (new_look) {
-        add_spare(session, &session->settings, &session->looks, session->look_revision);
-        session->looks = looks;
-        session->look_revision = ++session->looks_made;
+    if (is_new && spare) {
+        exchange_appearance(session, spare);
+    } else if (is_new) {
+        add_spare(session, &session->settings, &session->appearance, session->appearance_revision);
+        session->appearance = appearance;
+        session->appearance_revision = ++session->appearances_made;
     }
     session->settings = *settings;
     return true;
@@ -608,7 +609,7 @@ const struct tl_settings *tl_session_settings(const tl_session *session)
     return &session->settings;
 }
 
-/* Of cloth, when somebody looks at them. */
+/* The strains of simulated cloth, while they are wanted or shown; else NULL. */
 static const vec3s *strains_of_garment(tl_session *session)
 {
     bool shown = session->strain.wanted || tl_view_is_strain(session->settings.image.view);
@@ -631,8 +632,8 @@ void tl_session_want_strains(tl_session *session, bool wanted)
 
 size_t tl_session_colourways(const tl_session *session, const char *const **names)
 {
-    *names = (const char *const *)session->looks.names;
-    return session->looks.name_count;
+    *names = (const char *const *)session->appearance.names;
+    return session->appearance.name_count;
 }
 
 tl_frame tl_session_frame(tl_session *session)
@@ -640,14 +641,14 @@ tl_frame tl_session_frame(tl_session *session)
     session->surface_count = 0;
     if (session->avatar)
         session->surfaces[session->surface_count++] =
-            tl_moving_surface(&session->body, "avatar", &session->looks.avatar);
+            tl_moving_surface(&session->body, "avatar", &session->appearance.avatar);
     if (session->garment) {
         tl_surface *garment = &session->surfaces[session->surface_count++];
-        *garment = tl_moving_surface(&session->dress, "garment", &session->looks.garment);
+        *garment = tl_moving_surface(&session->dress, "garment", &session->appearance.garment);
         garment->strains = strains_of_garment(session);
     }
     for (size_t i = 0; i < session->surface_count; i++)
-        session->surfaces[i].topology_revision = session->look_revision;
+        session->surfaces[i].topology_revision = session->appearance_revision;
     const struct tl_image_params *image = &session->settings.image;
     struct tl_camera camera = tl_camera_frame(&session->settings.camera, session->framed,
                                               (float)image->width / (float)image->height);
@@ -673,14 +674,14 @@ static tl_surface surface_at_rest(const tl_model *model, const char *name, const
     return surface;
 }
 
-tl_frame tl_session_frame_in(const struct tl_session_models *models, const struct tl_looks *looks,
+tl_frame tl_session_frame_in(const struct tl_session_models *models, const struct tl_appearance *appearance,
                              tl_surface surfaces[2])
 {
     size_t count = 0;
     if (models->avatar)
-        surfaces[count++] = surface_at_rest(models->avatar, "avatar", &looks->avatar);
+        surfaces[count++] = surface_at_rest(models->avatar, "avatar", &appearance->avatar);
     if (models->garment)
-        surfaces[count++] = surface_at_rest(models->garment, "garment", &looks->garment);
+        surfaces[count++] = surface_at_rest(models->garment, "garment", &appearance->garment);
     return (tl_frame){.surfaces = surfaces, .surface_count = count};
 }
 

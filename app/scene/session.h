@@ -24,7 +24,7 @@ int tl_session_frame_number(const tl_session *session);
 bool tl_session_reset(tl_session *session, tl_error *error);
 
 /* Takes over changed settings: reloads or re-weaves only what differs. On failure the session is as it was.
- * To and fro between two looks costs nothing: the last ones are kept. */
+ * To and fro between two appearance costs nothing: the last ones are kept. */
 bool tl_session_apply(tl_session *session, const struct tl_settings *settings, tl_error *error);
 /* The same, but all is loaded and draped anew: as another fabric would fall, which only moves the cloth on
  * when it is applied. A new session in a renderer's sight begins like this, not with tl_session_create. */
@@ -36,8 +36,9 @@ const struct tl_settings *tl_session_settings(const tl_session *session);
  * in another way. Pure. */
 bool tl_session_needs_scene(const struct tl_settings *old, const struct tl_settings *new);
 bool tl_session_needs_light(const struct tl_settings *old, const struct tl_settings *new);
-bool tl_session_needs_look(const struct tl_settings *old, const struct tl_settings *new);
-/* Sets the options that decide the first two to those of `kept`; tl_looks_take does so with the third. Pure.
+bool tl_session_needs_appearance(const struct tl_settings *old, const struct tl_settings *new);
+/* Sets the options that decide the first two to those of `kept`; tl_appearance_take does so with the third.
+ * Pure.
  */
 void tl_session_keep_scene(const struct tl_settings *kept, struct tl_settings *settings);
 /* Becomes what was made beside it; *made is nulled. */
@@ -51,14 +52,15 @@ struct tl_session_models {
 };
 struct tl_session_models tl_session_models(const tl_session *session);
 /* The models in another look; on any thread. */
-bool tl_session_make_look(const struct tl_session_models *models, const struct tl_settings *settings,
-                          struct tl_looks *out, tl_error *error);
+bool tl_session_make_appearance(const struct tl_session_models *models, const struct tl_settings *settings,
+                                struct tl_appearance *out, tl_error *error);
 /* A frame of the models at rest in a look, in which only what depends on materials is meaningful; on any
  * thread. Borrows all three. */
-tl_frame tl_session_frame_in(const struct tl_session_models *models, const struct tl_looks *looks,
+tl_frame tl_session_frame_in(const struct tl_session_models *models, const struct tl_appearance *appearance,
                              tl_surface surfaces[2]);
 /* To apply these settings then costs little. *made is emptied. */
-void tl_session_keep_look(tl_session *session, const struct tl_settings *made_of, struct tl_looks *made);
+void tl_session_keep_appearance(tl_session *session, const struct tl_settings *made_of,
+                                struct tl_appearance *made);
 bool tl_session_light_plays(const tl_session *session); /* its environment is a sequence's */
 /* The colourways there are, for scene.colourway beside "": those of the scene's section, then the variants of
  * the garment's and the avatar's files. Valid until the next call that changes the session. To change to one:

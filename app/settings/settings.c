@@ -268,7 +268,7 @@ static bool is_layered(const struct tl_material_params *look)
 }
 
 /* What was asked for and will not be done is said. */
-static void tell_what_is_unused(const struct tl_settings *settings)
+static void warn_of_unused_options(const struct tl_settings *settings)
 {
     const struct tl_light_params *light = &settings->light;
     bool by_maps = light->method == TL_METHOD_MAPS;
@@ -315,7 +315,7 @@ bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *
     settings.scene = named;
     if (!read_colourways(&settings, error))
         return false;
-    tell_what_is_unused(&settings);
+    warn_of_unused_options(&settings);
     *out = settings;
     return true;
 }

@@ -25,8 +25,8 @@ struct work {
     tl_contact_store *store;
     char *folder;
     bool is_image; /* the output is a PNG: the folder is removed once the image is complete */
-    struct tl_stage
-        stage;     /* the device and renderer are made for the first cell, the session for the first row */
+    /* The device and renderer are made for the first cell, the session for the first row. */
+    struct tl_headless headless;
     bool *refused; /* [cells] */
     size_t drawn, kept, refused_count;
 };
@@ -56,15 +56,15 @@ static bool keeps_drape(const struct tl_settings *draped, const struct tl_settin
 
 static bool begin_row(struct work *work, const struct tl_settings *settings, tl_error *error)
 {
-    struct tl_stage *stage = &work->stage;
-    if (stage->session && keeps_drape(tl_session_settings(stage->session), settings))
-        return tl_session_apply(stage->session, settings, error);
+    struct tl_headless *headless = &work->headless;
+    if (headless->session && keeps_drape(tl_session_settings(headless->session), settings))
+        return tl_session_apply(headless->session, settings, error);
     bool draped = true;
-    if (stage->session)
-        draped = tl_session_restart(stage->session, settings, error);
+    if (headless->session)
+        draped = tl_session_restart(headless->session, settings, error);
     else
-        draped = (stage->session = tl_session_create(settings, error)) != NULL;
-    return draped && tl_session_go_to(stage->session, work->arguments->first_frame, error);
+        draped = (headless->session = tl_session_create(settings, error)) != NULL;
+    return draped && tl_session_go_to(headless->session, work->arguments->first_frame, error);
 }
 
 /* The box that the camera frames: where the garment hangs, but with the size of the cloth before it fell, a
@@ -115,14 +115,14 @@ static void frame_garment(tl_session *session, struct tl_settings *settings)
 
 static bool draw_cell(struct work *work, size_t row, size_t column, tl_image *out, tl_error *error)
 {
-    struct tl_stage *stage = &work->stage;
-    if (!tl_contact_cell_settings(&work->plan, row, column, &stage->settings, error))
+    struct tl_headless *headless = &work->headless;
+    if (!tl_contact_cell_settings(&work->plan, row, column, &headless->settings, error))
         return false;
-    tl_renderer_forget(stage->renderer); /* so that a cell does not depend on those drawn before it */
+    tl_renderer_forget(headless->renderer); /* so that a cell does not depend on those drawn before it */
     if (work->plan.columns[column].view.camera == TL_CONTACT_ORBIT)
-        frame_garment(stage->session, &stage->settings);
-    return tl_session_apply(stage->session, &stage->settings, error) && tl_stage_draw_still(stage, error) &&
-           tl_renderer_show_image(stage->renderer, out, error);
+        frame_garment(headless->session, &headless->settings);
+    return tl_session_apply(headless->session, &headless->settings, error) &&
+           tl_headless_draw_still(headless, error) && tl_renderer_show_image(headless->renderer, out, error);
 }
 
 static bool concerns_one_cell(const tl_error *error)
@@ -203,9 +203,9 @@ static bool make_cells(struct work *work, tl_error *error)
 {
     size_t wanted = count_wanted(work);
     if (wanted > 0) {
-        work->stage.gpu = tl_gpu_create_headless(error);
-        work->stage.renderer = work->stage.gpu ? tl_renderer_create(work->stage.gpu, error) : NULL;
-        if (!work->stage.renderer)
+        work->headless.gpu = tl_gpu_create_headless(error);
+        work->headless.renderer = work->headless.gpu ? tl_renderer_create(work->headless.gpu, error) : NULL;
+        if (!work->headless.renderer)
             return false;
     }
     struct tl_progress progress = tl_progress_begin("drawing the sheet");
@@ -334,7 +334,7 @@ bool tl_command_sheet(const struct tl_arguments *arguments, tl_error *error)
 {
     struct work work = {.arguments = arguments};
     bool done = begin(&work, error) && make_cells(&work, error) && finish(&work, error);
-    tl_stage_release(&work.stage);
+    tl_headless_release(&work.headless);
     tl_contact_store_close(&work.store);
     tl_contact_plan_release(&work.plan);
     free(work.folder);

@@ -167,7 +167,7 @@ static bool load_row(const struct tl_arguments *arguments, const struct choice *
     struct tl_arguments changed = *arguments;
     changed.assignments = all;
     changed.assignment_count = count;
-    bool loaded = tl_stage_settings(&changed, out, error);
+    bool loaded = tl_headless_settings(&changed, out, error);
     for (size_t i = 0; i < TL_COUNT(own); i++)
         free(own[i]);
     free((void *)all);

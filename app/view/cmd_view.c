@@ -123,7 +123,7 @@ static bool open_scene(struct tl_review *review, bool is_restored, tl_error *err
     if (review->closing || !is_restored || tl_interrupted())
         return false;
     tl_warn("view: the last review cannot be restored (%s): opening the built-in one", error->message);
-    if (!tl_stage_settings(review->arguments, &review->wanted, error))
+    if (!tl_headless_settings(review->arguments, &review->wanted, error))
         return false;
     review->wanted.camera = restored.camera;
     return tl_review_load_first(review, error);
@@ -132,7 +132,7 @@ static bool open_scene(struct tl_review *review, bool is_restored, tl_error *err
 static bool open_review(struct tl_review *review, tl_error *error)
 {
     const struct tl_arguments *arguments = review->arguments;
-    if (!tl_stage_settings(arguments, &review->wanted, error))
+    if (!tl_headless_settings(arguments, &review->wanted, error))
         return false;
     bool is_restored = tl_review_restore_state(review);
     if (arguments->budget_ms > 0)

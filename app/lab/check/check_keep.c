@@ -99,7 +99,7 @@ static void draw_mark(tl_image *image, int x, int y)
     tl_canvas_box(image, left + side - width, top, width, side, red);
 }
 
-static bool keep_picture(const char *folder, struct tl_stage *stage, const struct tl_checked *checked,
+static bool keep_picture(const char *folder, struct tl_headless *headless, const struct tl_checked *checked,
                          const struct tl_finding *finding, tl_error *error)
 {
     static const char *const channels[] = {"R", "G", "B", "A"};
@@ -109,7 +109,8 @@ static bool keep_picture(const char *folder, struct tl_stage *stage, const struc
     tl_image shown = {0};
     int x, y;
     const struct tl_exr_layer layer = {.channel_names = channels, .image = checked->image};
-    bool kept = tl_exr_save(exr, &layer, 1, error) && tl_renderer_show_image(stage->renderer, &shown, error);
+    bool kept =
+        tl_exr_save(exr, &layer, 1, error) && tl_renderer_show_image(headless->renderer, &shown, error);
     if (kept && find_mark(checked, finding, &x, &y))
         draw_mark(&shown, x, y);
     kept = kept && tl_image_save_png(png, &shown, error);
@@ -150,22 +151,22 @@ static bool keep_environment(const char *folder, const tl_environment *environme
     return kept;
 }
 
-bool tl_check_keep(const char *folder, struct tl_stage *stage, const struct tl_checked *checked,
+bool tl_check_keep(const char *folder, struct tl_headless *headless, const struct tl_checked *checked,
                    const struct tl_finding *broken, tl_error *error)
 {
     const tl_surface *garment = find_surface(checked->frame, "garment");
-    struct tl_settings run = rooted(&stage->settings);
-    struct tl_settings still = still_settings(&stage->settings, checked->frame);
+    struct tl_settings run = rooted(&headless->settings);
+    struct tl_settings still = still_settings(&headless->settings, checked->frame);
     if (!tl_folder_make(folder, error) || !tl_folder_print(folder, "run.yaml", &run, print_settings, error) ||
         !tl_folder_print(folder, "scene.yaml", &still, print_settings, error) ||
         !keep_environment(folder, checked->frame->environment, error) ||
-        !keep_picture(folder, stage, checked, broken, error))
+        !keep_picture(folder, headless, checked, broken, error))
         return false;
     /* Files with NaN positions are refused; the others are kept. */
     tl_error refused = {0};
     if (!keep_surface(folder, checked->frame, "garment", &refused) ||
         !keep_surface(folder, checked->frame, "avatar", &refused) ||
-        (garment && !keep_positions(folder, garment, stage->settings.cloth.frame_rate, &refused)))
+        (garment && !keep_positions(folder, garment, headless->settings.cloth.frame_rate, &refused)))
         tl_warn("%s", refused.message);
     return true;
 }

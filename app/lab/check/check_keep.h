@@ -9,7 +9,7 @@
 /* What is kept of a frame (check_keep.c), each file that can be written: scene.yaml opens it as it stands;
  * run.yaml holds the settings of the run; what the first names lies beside it. The picture as .exr, and as
  * .png with the place marked. */
-bool tl_check_keep(const char *folder, struct tl_stage *stage, const struct tl_checked *checked,
+bool tl_check_keep(const char *folder, struct tl_headless *headless, const struct tl_checked *checked,
                    const struct tl_finding *broken, tl_error *error);
 
 #endif

@@ -21,7 +21,7 @@ struct auxiliary {
 };
 
 struct run {
-    struct tl_stage *stage;
+    struct tl_headless *headless;
     const struct tl_check_params *params;
     struct tl_check_outcome *outcome;
     struct tl_motion motion;
@@ -46,12 +46,12 @@ static bool is_swung(const struct run *run, int number)
 /* The settings that frame `number` is simulated and drawn with. */
 static struct tl_settings settings_of(const struct run *run, int number)
 {
-    return tl_quality_apply(&run->levels[number], &run->stage->settings);
+    return tl_quality_apply(&run->levels[number], &run->headless->settings);
 }
 
 static bool advance(struct run *run, int number, tl_error *error)
 {
-    tl_session *session = run->stage->session;
+    tl_session *session = run->headless->session;
     const struct tl_settings settings = settings_of(run, number);
     if (run->governor && !tl_session_apply(session, &settings, error))
         return false;
@@ -64,8 +64,8 @@ static bool advance(struct run *run, int number, tl_error *error)
 
 static tl_frame frame_of(const struct run *run, int number)
 {
-    tl_frame frame = tl_session_frame(run->stage->session);
-    frame.camera = tl_motion_camera(&frame.camera, number, run->stage->settings.cloth.frame_rate);
+    tl_frame frame = tl_session_frame(run->headless->session);
+    frame.camera = tl_motion_camera(&frame.camera, number, run->headless->settings.cloth.frame_rate);
     return frame;
 }
 
@@ -73,7 +73,7 @@ static bool draw_with(tl_renderer **renderer, const struct run *run, const tl_fr
                       const struct tl_render_settings *settings, tl_image *image, tl_error *error)
 {
     if (!*renderer)
-        *renderer = tl_renderer_create(run->stage->gpu, error);
+        *renderer = tl_renderer_create(run->headless->gpu, error);
     return *renderer && tl_renderer_draw(*renderer, frame, settings, error) &&
            tl_renderer_read(*renderer, image, error);
 }
@@ -131,13 +131,13 @@ static bool draw_frame(struct run *run, const tl_frame *frame, const struct tl_r
                        tl_image *image, tl_error *error)
 {
     struct tl_stopwatch watch = tl_stopwatch_start();
-    if (!tl_renderer_draw(run->stage->renderer, frame, settings, error))
+    if (!tl_renderer_draw(run->headless->renderer, frame, settings, error))
         return false;
     run->drawn_ms = tl_stopwatch_read(&watch).wall_ms;
     if (run->governor)
-        tl_quality_governor_learn(run->governor, tl_renderer_last_plan(run->stage->renderer), run->moved_ms,
-                                  run->chosen_ms + run->moved_ms + run->drawn_ms);
-    return tl_renderer_read(run->stage->renderer, image, error);
+        tl_quality_governor_learn(run->governor, tl_renderer_last_plan(run->headless->renderer),
+                                  run->moved_ms, run->chosen_ms + run->moved_ms + run->drawn_ms);
+    return tl_renderer_read(run->headless->renderer, image, error);
 }
 
 /* Draws all images that the frame's invariants need. */
@@ -147,7 +147,7 @@ static bool prepare(struct run *run, const tl_frame *frame, tl_image images[IMAG
     struct auxiliary *auxiliary = &run->auxiliary;
     if (!draw_frame(run, frame, checked->settings, &images[DRAWN], error))
         return false;
-    checked->renderer = run->stage->renderer;
+    checked->renderer = run->headless->renderer;
     checked->image = &images[DRAWN];
     checked->hash = tl_check_hash(frame, checked->image);
     checked->places_hash = tl_check_hash(frame, NULL);
@@ -183,7 +183,7 @@ static bool note(struct run *run, const struct tl_checked *checked, tl_error *er
     if (!run->params->keep)
         return true;
     outcome->is_kept = true;
-    return tl_check_keep(run->params->keep, run->stage, checked, &found, error);
+    return tl_check_keep(run->params->keep, run->headless, checked, &found, error);
 }
 
 /* Checks frame `number`, the session's current one. A frame with non-finite positions is not drawn, but its
@@ -203,7 +203,7 @@ static bool check_frame(struct run *run, int number, tl_error *error)
                                  .budget_ms = run->params->budget_ms,
                                  .least_ms = run->choice.min_ms,
                                  .is_reduced = run->choice.error > 0};
-    if (tl_session_cloth(run->stage->session)) {
+    if (tl_session_cloth(run->headless->session)) {
         /* A budget changes the solver's substeps, and with them its effective stiffness. */
         cloth = tl_cloth_monitor_measure(&run->watch, &frame, is_swung(run, number), run->governor);
         checked.cloth = &cloth;
@@ -226,7 +226,7 @@ static bool report_progress(struct run *run, int step, tl_error *error)
 
 static void begin(struct run *run)
 {
-    tl_motion_begin(&run->motion, run->stage->session);
+    tl_motion_begin(&run->motion, run->headless->session);
 }
 
 static void choose(struct run *run, int number)
@@ -236,7 +236,7 @@ static void choose(struct run *run, int number)
     struct tl_stopwatch watch = tl_stopwatch_start();
     tl_frame frame = frame_of(run, number);
     run->choice =
-        tl_quality_governor_choose(run->governor, run->stage->renderer, &frame, &run->stage->settings);
+        tl_quality_governor_choose(run->governor, run->headless->renderer, &frame, &run->headless->settings);
     run->levels[number] = run->choice.levels;
     run->chosen_ms = tl_stopwatch_read(&watch).wall_ms;
 }
@@ -266,10 +266,10 @@ static bool play(struct run *run, tl_error *error)
 /* Plays the first frames once more from the start, with a new renderer. */
 static bool play_again(struct run *run, int count, tl_error *error)
 {
-    if (!tl_session_apply(run->stage->session, &run->stage->settings, error) ||
-        !tl_session_reset(run->stage->session, error))
+    if (!tl_session_apply(run->headless->session, &run->headless->settings, error) ||
+        !tl_session_reset(run->headless->session, error))
         return false;
-    tl_renderer_destroy(&run->stage->renderer);
+    tl_renderer_destroy(&run->headless->renderer);
     bool done = true;
     begin(run);
     for (int number = 0; done && number < count; number++) {
@@ -278,13 +278,13 @@ static bool play_again(struct run *run, int count, tl_error *error)
         const struct tl_render_settings settings = tl_settings_render(&levelled);
         done = number == 0 || advance(run, number, error);
         tl_frame frame = frame_of(run, number);
-        done = done && draw_with(&run->stage->renderer, run, &frame, &settings, &image, error);
+        done = done && draw_with(&run->headless->renderer, run, &frame, &settings, &image, error);
         if (done) {
             struct tl_verdicts *verdicts = &run->outcome->verdicts;
             const struct tl_checked checked = {.number = number,
                                                .frame = &frame,
                                                .settings = &settings,
-                                               .renderer = run->stage->renderer,
+                                               .renderer = run->headless->renderer,
                                                .image = &image,
                                                .hash = tl_check_hash(&frame, &image),
                                                .first_hash = run->hashes[number],
@@ -317,11 +317,11 @@ static void release(struct run *run)
     tl_cloth_monitor_release(&run->watch);
 }
 
-bool tl_check_play(struct tl_stage *stage, const struct tl_check_params *params, struct tl_check_outcome *out,
-                   tl_error *error)
+bool tl_check_play(struct tl_headless *headless, const struct tl_check_params *params,
+                   struct tl_check_outcome *out, tl_error *error)
 {
     *out = (struct tl_check_outcome){.broken = -1};
-    struct run run = {.stage = stage,
+    struct run run = {.headless = headless,
                       .params = params,
                       .outcome = out,
                       .hashes = TL_NEW_ARRAY(uint64_t, (size_t)params->frames),
@@ -332,7 +332,7 @@ bool tl_check_play(struct tl_stage *stage, const struct tl_check_params *params,
                       .progress = tl_progress_begin("checking")};
     int again = params->frames < 20 ? (params->frames + 1) / 2 : params->frames / 10;
     run.steps = params->frames + again;
-    run.watch = tl_cloth_monitor_begin(stage->session, &stage->settings);
+    run.watch = tl_cloth_monitor_begin(headless->session, &headless->settings);
     bool done = play(&run, error);
     if (done && run.played == params->frames)
         done = play_again(&run, again, error);

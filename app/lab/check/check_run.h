@@ -2,8 +2,8 @@
  *
  * The camera walks round. A garment that nothing else moves stands still for a tenth of the frames, then a
  * hand swings its hem, and in the last third it is let go and comes to rest. Then the first tenth is played
- * again, by another renderer, and must be the same to the bit. Owns nothing of the stage. Threads: the one of
- * the GL context. */
+ * again, by another renderer, and must be the same to the bit. Borrows the headless context. Threads: the one
+ * of the GL context. */
 #ifndef TOILE_APP_LAB_CHECK_CHECK_RUN_H
 #define TOILE_APP_LAB_CHECK_CHECK_RUN_H
 
@@ -29,7 +29,7 @@ struct tl_check_outcome {
 
 /* False only where the run cannot go on: bad input, no device, a refused step of the cloth, Ctrl-C. `out`
  * holds the findings until then. A broken invariant is no failure. */
-bool tl_check_play(struct tl_stage *stage, const struct tl_check_params *params, struct tl_check_outcome *out,
-                   tl_error *error);
+bool tl_check_play(struct tl_headless *headless, const struct tl_check_params *params,
+                   struct tl_check_outcome *out, tl_error *error);
 
 #endif

@@ -92,18 +92,19 @@ bool tl_command_check(const struct tl_arguments *arguments, tl_error *error)
                                            .still = arguments->still,
                                            .budget_ms = arguments->budget_ms,
                                            .keep = arguments->keep};
-    struct tl_stage stage;
+    struct tl_headless headless;
     struct tl_check_outcome outcome;
     if (params.frames > FRAMES_MAX)
         return tl_fail(error, TL_USAGE, "--frames: %d: at most %d", params.frames, FRAMES_MAX);
-    if ((params.keep && !tl_folder_make(params.keep, error)) || !tl_stage_create(&stage, arguments, error))
+    if ((params.keep && !tl_folder_make(params.keep, error)) ||
+        !tl_headless_create(&headless, arguments, error))
         return false;
-    bool done = tl_check_play(&stage, &params, &outcome, error);
+    bool done = tl_check_play(&headless, &params, &outcome, error);
     bool has_found = outcome.verdicts.frames > 0; /* even where it could not go on */
     if (has_found && arguments->json)
         print_json(&outcome, params.keep);
     else if (has_found)
         print_table(&outcome);
-    tl_stage_release(&stage);
+    tl_headless_release(&headless);
     return done && judge(&outcome, params.keep, error);
 }

@@ -48,7 +48,7 @@ static bool read_settings(const struct tl_arguments *arguments, struct tl_settin
     }
     for (size_t i = 0; i < arguments->assignment_count; i++)
         sized.assignments[sized.assignment_count++] = arguments->assignments[i];
-    bool read = tl_stage_settings(&sized, out, error);
+    bool read = tl_headless_settings(&sized, out, error);
     free(sized.assignments);
     return read;
 }
@@ -85,11 +85,11 @@ static bool load_records(struct flying *flying, tl_error *error)
 }
 
 /* The camera says where it is, so that a path can go on from there. */
-static void make_camera_explicit(struct tl_stage *stage)
+static void make_camera_explicit(struct tl_headless *headless)
 {
-    const tl_frame frame = tl_session_frame(stage->session);
-    if (!tl_camera_is_placed(&stage->settings.camera))
-        tl_orbit_take(&stage->settings.camera, &frame.camera);
+    const tl_frame frame = tl_session_frame(headless->session);
+    if (!tl_camera_is_placed(&headless->settings.camera))
+        tl_orbit_take(&headless->settings.camera, &frame.camera);
 }
 
 static bool find_path(const struct flying *flying, const struct tl_settings *settings, struct tl_path *out,
@@ -138,12 +138,13 @@ static bool check_kept(const struct flying *flying, tl_error *error)
                    image->width, image->height, bytes >> 20);
 }
 
-static bool prepare(struct flying *flying, struct tl_stage *stage, struct tl_path *path, tl_error *error)
+static bool prepare(struct flying *flying, struct tl_headless *headless, struct tl_path *path,
+                    tl_error *error)
 {
     const struct tl_arguments *arguments = flying->arguments;
     struct tl_fly_options *options = &flying->options;
-    make_camera_explicit(stage);
-    if (!find_path(flying, &stage->settings, path, error) ||
+    make_camera_explicit(headless);
+    if (!find_path(flying, &headless->settings, path, error) ||
         !count_frames(flying, path, &options->frames, error))
         return false;
     if (arguments->against && !same_path(path, &flying->against.flight.path))
@@ -174,7 +175,7 @@ static void compare_images(const struct tl_flight *here, const struct tl_flight 
     }
 }
 
-static struct tl_flight_account account_of(const struct flying *flying, const struct tl_stage *stage,
+static struct tl_flight_account account_of(const struct flying *flying, const struct tl_headless *headless,
                                            const char *stopped)
 {
     const struct tl_arguments *arguments = flying->arguments;
@@ -184,7 +185,7 @@ static struct tl_flight_account account_of(const struct flying *flying, const st
         .settings = &flying->settings,
         .scene = arguments->positional_count ? arguments->positionals[0] : "built-in",
         .path = arguments->path ? arguments->path : "built-in",
-        .gl = tl_gpu_name(stage->gpu),
+        .gl = tl_gpu_name(headless->gpu),
         .cores = (int)sysconf(_SC_NPROCESSORS_ONLN),
         .stopped = stopped,
         .replay = arguments->replay,
@@ -235,10 +236,10 @@ static bool check_replay(const struct tl_flight_account *account, tl_error *erro
 }
 
 /* Writes and prints what was recorded, even if the flight ended early. */
-static bool report(const struct flying *flying, const struct tl_stage *stage, const char *stopped,
+static bool report(const struct flying *flying, const struct tl_headless *headless, const char *stopped,
                    tl_error *error)
 {
-    const struct tl_flight_account account = account_of(flying, stage, stopped);
+    const struct tl_flight_account account = account_of(flying, headless, stopped);
     if (!write_files(flying->arguments->output, &account, error))
         return false;
     if (flying->arguments->json)
@@ -248,19 +249,19 @@ static bool report(const struct flying *flying, const struct tl_stage *stage, co
     return check_replay(&account, error);
 }
 
-static bool fly(struct flying *flying, struct tl_stage *stage, tl_error *error)
+static bool fly(struct flying *flying, struct tl_headless *headless, tl_error *error)
 {
     struct tl_path path = {0};
-    if (!prepare(flying, stage, &path, error)) {
+    if (!prepare(flying, headless, &path, error)) {
         tl_path_release(&path);
         return false;
     }
     tl_error failure = {0};
-    bool done = tl_fly(stage, &flying->options, &path, &flying->flight, error) &&
-                tl_fly_judge(stage, &flying->flight, error);
+    bool done = tl_fly(headless, &flying->options, &path, &flying->flight, error) &&
+                tl_fly_judge(headless, &flying->flight, error);
     if (flying->flight.count == 0)
         return done;
-    bool reported = report(flying, stage, done ? NULL : error->message, &failure) &&
+    bool reported = report(flying, headless, done ? NULL : error->message, &failure) &&
                     tl_video_commit(&flying->options.video, &failure);
     if (done && !reported)
         *error = failure;
@@ -270,7 +271,7 @@ static bool fly(struct flying *flying, struct tl_stage *stage, tl_error *error)
 bool tl_command_fly(const struct tl_arguments *arguments, tl_error *error)
 {
     struct flying *flying = TL_NEW(struct flying);
-    struct tl_stage stage = {0};
+    struct tl_headless headless = {0};
     flying->arguments = arguments;
     bool done = check_arguments(arguments, error) && read_settings(arguments, &flying->settings, error) &&
                 load_records(flying, error) && tl_folder_make(arguments->output, error);
@@ -278,12 +279,12 @@ bool tl_command_fly(const struct tl_arguments *arguments, tl_error *error)
         flying->options.video = tl_video_begin(arguments->video, flying->settings.cloth.frame_rate, error);
         done = flying->options.video != NULL;
     }
-    done = done && tl_stage_open(&stage, &flying->settings, error) && fly(flying, &stage, error);
+    done = done && tl_headless_open(&headless, &flying->settings, error) && fly(flying, &headless, error);
     tl_video_abandon(&flying->options.video);
     tl_flight_release(&flying->flight);
     tl_flight_record_release(&flying->replay);
     tl_flight_record_release(&flying->against);
-    tl_stage_release(&stage);
+    tl_headless_release(&headless);
     free(flying);
     return done;
 }

@@ -14,7 +14,7 @@
 #define PICTURE_PIXELS 256 /* width of a thumbnail, about */
 
 struct recorder {
-    struct tl_stage *stage;
+    struct tl_headless *headless;
     const struct tl_fly_options *options;
     struct tl_flight *flight;
     struct tl_motion motion;
@@ -22,23 +22,23 @@ struct recorder {
 };
 
 /* At full quality. */
-static struct tl_settings settings_at(const struct tl_stage *stage, const struct tl_flight *flight,
+static struct tl_settings settings_at(const struct tl_headless *headless, const struct tl_flight *flight,
                                       int number)
 {
     struct tl_path_key key = tl_path_at(&flight->path, number / flight->frame_rate);
-    struct tl_settings settings = stage->settings;
+    struct tl_settings settings = headless->settings;
     settings.camera = key.camera;
     settings.scene.environment_yaw_deg = key.environment_yaw_deg;
     return settings;
 }
 
-static bool begin_motion(struct tl_stage *stage, const struct tl_flight *flight, struct tl_motion *motion,
-                         tl_error *error)
+static bool begin_motion(struct tl_headless *headless, const struct tl_flight *flight,
+                         struct tl_motion *motion, tl_error *error)
 {
-    struct tl_settings settings = settings_at(stage, flight, 0);
-    if (!tl_session_apply(stage->session, &settings, error))
+    struct tl_settings settings = settings_at(headless, flight, 0);
+    if (!tl_session_apply(headless->session, &settings, error))
         return false;
-    tl_motion_begin(motion, stage->session);
+    tl_motion_begin(motion, headless->session);
     return true;
 }
 
@@ -112,7 +112,7 @@ static bool keep_shown(struct recorder *recorder, int number, tl_error *error)
     if (!stop && !worst && !recorder->options->video)
         return true;
     tl_image shown = {0};
-    bool kept = tl_renderer_show_image(recorder->stage->renderer, &shown, error);
+    bool kept = tl_renderer_show_image(recorder->headless->renderer, &shown, error);
     if (kept && stop)
         flight->stops[flight->stop_count++] = (struct tl_flight_picture){number, thumbnail_of(&shown)};
     if (kept && worst)
@@ -131,7 +131,7 @@ static bool keep_linear(struct recorder *recorder, int number, tl_error *error)
     tl_image image = {0};
     if (!options->hash && !judged)
         return true;
-    if (!tl_renderer_read(recorder->stage->renderer, &image, error))
+    if (!tl_renderer_read(recorder->headless->renderer, &image, error))
         return false;
     if (options->hash)
         flight->frames[number].hash = hash_of(&image);
@@ -158,18 +158,18 @@ static void record_jobs(struct tl_flight *flight, const tl_plan *plan, struct tl
 static bool choose(struct recorder *recorder, const struct tl_settings *wanted, int number,
                    struct tl_quality_choice *out, tl_error *error)
 {
-    struct tl_stage *stage = recorder->stage;
+    struct tl_headless *headless = recorder->headless;
     struct tl_settings looked_from = *wanted;
-    looked_from.cloth = tl_session_settings(stage->session)->cloth;
-    if (!tl_session_apply(stage->session, &looked_from, error))
+    looked_from.cloth = tl_session_settings(headless->session)->cloth;
+    if (!tl_session_apply(headless->session, &looked_from, error))
         return false;
-    const tl_frame coming = tl_session_frame(stage->session);
+    const tl_frame coming = tl_session_frame(headless->session);
     if (recorder->options->replay) {
         const struct tl_flight_frame *recorded = &recorder->options->replay->frames[number];
         *out = (struct tl_quality_choice){
             .levels = recorded->levels, .predicted_ms = NAN, .error = recorded->error};
     } else {
-        *out = tl_quality_governor_choose(recorder->governor, stage->renderer, &coming, wanted);
+        *out = tl_quality_governor_choose(recorder->governor, headless->renderer, &coming, wanted);
     }
     return true;
 }
@@ -177,21 +177,21 @@ static bool choose(struct recorder *recorder, const struct tl_settings *wanted, 
 /* What the clock runs for. */
 static bool draw_timed(struct recorder *recorder, int number, struct tl_flight_frame *frame, tl_error *error)
 {
-    struct tl_stage *stage = recorder->stage;
+    struct tl_headless *headless = recorder->headless;
     struct tl_quality_choice choice;
-    const struct tl_settings wanted = settings_at(stage, recorder->flight, number);
+    const struct tl_settings wanted = settings_at(headless, recorder->flight, number);
     struct tl_stopwatch watch = tl_stopwatch_start();
     if (!choose(recorder, &wanted, number, &choice, error))
         return false;
     const struct tl_settings settings = tl_quality_apply(&choice.levels, &wanted);
     struct tl_stopwatch cloth_watch = tl_stopwatch_start();
-    if (!tl_session_apply(stage->session, &settings, error) ||
+    if (!tl_session_apply(headless->session, &settings, error) ||
         (number > 0 && !tl_motion_advance(&recorder->motion, number, error)))
         return false;
     frame->cloth_ms = tl_stopwatch_read(&cloth_watch).wall_ms;
-    const tl_frame shown = tl_session_frame(stage->session);
+    const tl_frame shown = tl_session_frame(headless->session);
     const struct tl_render_settings render = tl_settings_render(&settings);
-    if (!tl_renderer_draw(stage->renderer, &shown, &render, error))
+    if (!tl_renderer_draw(headless->renderer, &shown, &render, error))
         return false;
     frame->total_ms = tl_stopwatch_read(&watch).wall_ms; /* every job ends with a glFinish */
     frame->levels = choice.levels;
@@ -206,11 +206,11 @@ static bool record_frame(struct recorder *recorder, int number, tl_error *error)
     struct tl_flight_frame frame = {.flip_mean = NAN, .rel_rmse = NAN};
     if (!draw_timed(recorder, number, &frame, error))
         return false;
-    const tl_plan *plan = tl_renderer_last_plan(recorder->stage->renderer);
+    const tl_plan *plan = tl_renderer_last_plan(recorder->headless->renderer);
     if (recorder->governor)
         tl_quality_governor_learn(recorder->governor, plan, frame.cloth_ms, frame.total_ms);
     record_jobs(flight, plan, &frame);
-    frame.memory_bytes = tl_renderer_memory(recorder->stage->renderer).total;
+    frame.memory_bytes = tl_renderer_memory(recorder->headless->renderer).total;
     flight->frames[number] = frame;
     flight->count = number + 1;
     return keep_linear(recorder, number, error) && keep_shown(recorder, number, error);
@@ -222,10 +222,10 @@ static int warm_up_frames(int planned, double frame_rate)
     return second < planned / 2 ? second : planned / 2;
 }
 
-bool tl_fly(struct tl_stage *stage, const struct tl_fly_options *options, struct tl_path *path,
+bool tl_fly(struct tl_headless *headless, const struct tl_fly_options *options, struct tl_path *path,
             struct tl_flight *out, tl_error *error)
 {
-    double frame_rate = stage->settings.cloth.frame_rate;
+    double frame_rate = headless->settings.cloth.frame_rate;
     *out = (struct tl_flight){.budget_ms = options->budget_ms,
                               .frame_rate = frame_rate,
                               .planned = options->frames,
@@ -233,11 +233,11 @@ bool tl_fly(struct tl_stage *stage, const struct tl_fly_options *options, struct
                               .frames = TL_NEW_ARRAY(struct tl_flight_frame, (size_t)options->frames),
                               .path = *path};
     *path = (struct tl_path){0};
-    struct recorder recorder = {.stage = stage, .options = options, .flight = out};
+    struct recorder recorder = {.headless = headless, .options = options, .flight = out};
     if (!options->replay)
         recorder.governor = tl_quality_governor_create(options->budget_ms);
     struct tl_progress progress = tl_progress_begin("flying");
-    bool done = begin_motion(stage, out, &recorder.motion, error);
+    bool done = begin_motion(headless, out, &recorder.motion, error);
     for (int number = 0; done && number < options->frames; number++) {
         done = record_frame(&recorder, number, error);
         if (tl_interrupted())
@@ -283,24 +283,25 @@ static bool judge(struct tl_variant_run *reference, tl_session *session,
     return judged;
 }
 
-bool tl_fly_judge(struct tl_stage *stage, struct tl_flight *flight, tl_error *error)
+bool tl_fly_judge(struct tl_headless *headless, struct tl_flight *flight, tl_error *error)
 {
     struct tl_motion motion;
     struct tl_variant_run reference = {0};
     /* A reset would not do: a cloth whose step has changed goes on otherwise than a fresh one. */
-    bool done = tl_session_restart(stage->session, &stage->settings, error) &&
-                begin_motion(stage, flight, &motion, error) &&
-                tl_variant_run_create(&reference, stage->gpu, &tl_setup_reference, &stage->settings, error);
+    bool done =
+        tl_session_restart(headless->session, &headless->settings, error) &&
+        begin_motion(headless, flight, &motion, error) &&
+        tl_variant_run_create(&reference, headless->gpu, &tl_setup_reference, &headless->settings, error);
     struct tl_progress progress = tl_progress_begin("ray tracing what was flown");
     int judged = 0;
     for (int number = 0; done && judged < flight->kept_count; number++) {
         struct tl_flight_frame *frame = &flight->frames[number];
-        const struct tl_settings wanted = settings_at(stage, flight, number);
+        const struct tl_settings wanted = settings_at(headless, flight, number);
         const struct tl_settings settings = tl_quality_apply(&frame->levels, &wanted);
-        done = tl_session_apply(stage->session, &settings, error) &&
+        done = tl_session_apply(headless->session, &settings, error) &&
                (number == 0 || tl_motion_advance(&motion, number, error));
         if (done && flight->kept[judged].frame == number)
-            done = judge(&reference, stage->session, &flight->kept[judged++], frame, error);
+            done = judge(&reference, headless->session, &flight->kept[judged++], frame, error);
         if (tl_interrupted())
             done = tl_fail(error, TL_INTERRUPTED, "fly: stopped while frame %d was ray traced", number);
         tl_progress_update(&progress, judged, flight->kept_count);

@@ -62,13 +62,13 @@ struct tl_fly_options {
 
 /* Records a flight along `path`, which it takes ownership of, from the session's frame 0. After a failure or
  * Ctrl-C `out` holds the frames until then. Release `out` in any case. */
-bool tl_fly(struct tl_stage *stage, const struct tl_fly_options *options, struct tl_path *path,
+bool tl_fly(struct tl_headless *headless, const struct tl_fly_options *options, struct tl_path *path,
             struct tl_flight *out, tl_error *error);
 void tl_flight_release(struct tl_flight *flight);
 
 /* Compares the kept images with the ray-traced reference, which is drawn in a second run of the same motion.
  */
-bool tl_fly_judge(struct tl_stage *stage, struct tl_flight *flight, tl_error *error);
+bool tl_fly_judge(struct tl_headless *headless, struct tl_flight *flight, tl_error *error);
 
 /* FOLDER/frames.csv. A flight that is read has frames, job names and the warm-up, but no images. */
 void tl_flight_write_csv(const struct tl_flight *flight, FILE *out);

@@ -48,7 +48,7 @@ static const struct tl_technique *find_technique(const struct tl_experiment *exp
 static bool prepare(struct suite *suite, const struct tl_arguments *arguments, tl_error *error)
 {
     const struct tl_experiment *experiment = tl_experiment_find(TL_OUTPUT_BOUNDS, "light");
-    if (!tl_stage_settings(arguments, &suite->settings, error))
+    if (!tl_headless_settings(arguments, &suite->settings, error))
         return false;
     suite->settings.image.width = suite->settings.image.height = SIDE;
     suite->settings.image.supersample = 1;

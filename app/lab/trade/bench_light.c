@@ -45,7 +45,7 @@ struct rest {
 struct bench {
     struct rest rest; /* of review */
     struct schedule schedule;
-    struct tl_stage stage;
+    struct tl_headless headless;
     tl_recording *recording;
     struct tl_variant_run reference;
     struct row rows[ROWS_MAX];
@@ -90,21 +90,21 @@ static struct row_summary summarise(const struct bench *bench, const struct row 
 
 static double coverage(const struct bench *bench)
 {
-    const struct tl_image_params *image = &bench->stage.settings.image;
+    const struct tl_image_params *image = &bench->headless.settings.image;
     return (double)find_row(bench, "paper")->error[0].covered / ((double)image->width * image->height);
 }
 
 static bool prepare(struct bench *bench, const struct tl_arguments *arguments, tl_error *error)
 {
-    struct tl_stage *stage = &bench->stage;
-    if (!tl_stage_create(stage, arguments, error))
+    struct tl_headless *headless = &bench->headless;
+    if (!tl_headless_create(headless, arguments, error))
         return false;
     bench->recording =
-        tl_motion_record(stage->session, bench->schedule.warm + bench->schedule.measured, error);
+        tl_motion_record(headless->session, bench->schedule.warm + bench->schedule.measured, error);
     if (!bench->recording)
         return false;
     const struct tl_experiment *experiment = tl_experiment_find(TL_OUTPUT_TABLE, "light");
-    if (!tl_variant_run_create(&bench->reference, stage->gpu, &experiment->reference, &stage->settings,
+    if (!tl_variant_run_create(&bench->reference, headless->gpu, &experiment->reference, &headless->settings,
                                error))
         return false;
     const struct tl_technique *technique = NULL;
@@ -112,7 +112,8 @@ static bool prepare(struct bench *bench, const struct tl_arguments *arguments, t
         assert(bench->row_count < ROWS_MAX);
         struct row *row = &bench->rows[bench->row_count++];
         row->name = technique->table;
-        if (!tl_variant_run_create(&row->variant, stage->gpu, &technique->setup, &stage->settings, error))
+        if (!tl_variant_run_create(&row->variant, headless->gpu, &technique->setup, &headless->settings,
+                                   error))
             return false;
     }
     return true;
@@ -124,7 +125,7 @@ static void release(struct bench *bench)
         tl_variant_run_release(&bench->rows[i].variant);
     tl_variant_run_release(&bench->reference);
     tl_recording_destroy(&bench->recording);
-    tl_stage_release(&bench->stage);
+    tl_headless_release(&bench->headless);
 }
 
 /* One frame before the first measured one. A technique without history draws only the last of them, to fill
@@ -208,7 +209,7 @@ static bool run(struct bench *bench, tl_error *error)
 static void print_table(const struct bench *bench)
 {
     struct tl_recording_report recording = tl_recording_report(bench->recording);
-    const struct tl_image_params *image = &bench->stage.settings.image;
+    const struct tl_image_params *image = &bench->headless.settings.image;
     printf(
         "%d x %d pixels, %.1f %% covered, %zu garment triangles, moving %.1f mm a frame on average;\n"
         "medians of %d frames, process CPU time; errors are means of %d frames against the reference, whose "

@@ -34,15 +34,15 @@ static void write_frames_html(const void *trade, FILE *out)
 static bool trade_frames(const struct tl_experiment *experiment, const struct tl_arguments *arguments,
                          tl_error *error)
 {
-    struct tl_stage stage;
-    if (!tl_trade_stage(experiment, arguments, &stage, error))
+    struct tl_headless headless;
+    if (!tl_trade_headless(experiment, arguments, &headless, error))
         return false;
     struct tl_trade trade;
-    bool done = tl_trade_measure(experiment, &stage, arguments->quick, &trade, error);
+    bool done = tl_trade_measure(experiment, &headless, arguments->quick, &trade, error);
     if (trade.row_count)
         done = write_both(arguments->output, &trade, write_frames_csv, write_frames_html, done, error);
     tl_trade_release(&trade);
-    tl_stage_release(&stage);
+    tl_headless_release(&headless);
     return done;
 }
 

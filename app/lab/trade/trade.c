@@ -15,7 +15,7 @@
 
 struct run {
     const struct tl_experiment *experiment;
-    struct tl_stage *stage;
+    struct tl_headless *headless;
     struct tl_settings scene; /* without an appearance */
     struct tl_trade *trade;
     int warm, measured; /* frames before the first measured one, and those measured; the last one rests */
@@ -226,12 +226,12 @@ static void note_refusal(struct tl_trade *trade, const char *name, const tl_erro
 
 static bool enter(struct run *run, const struct tl_technique *technique, struct entry *out, tl_error *error)
 {
-    const struct tl_settings *scene = &run->stage->settings;
+    const struct tl_settings *scene = &run->headless->settings;
     *out = (struct entry){
         .technique = technique,
         .governor = technique->budget_ms > 0 ? tl_quality_governor_create(technique->budget_ms) : NULL};
     return tl_setup_apply(&technique->setup, scene, &out->settings, error) &&
-           tl_variant_run_create(&out->variant, run->stage->gpu, &technique->setup, scene, error);
+           tl_variant_run_create(&out->variant, run->headless->gpu, &technique->setup, scene, error);
 }
 
 /* A technique that the renderer refuses is noted and skipped; Ctrl-C or a failing reference ends the run. */
@@ -267,7 +267,8 @@ static bool make_reference(struct run *run, const struct tl_experiment_appearanc
          i++)
         reference.assignments[own++] = appearance->reference[i];
     tl_variant_run_release(&run->reference);
-    return tl_variant_run_create(&run->reference, run->stage->gpu, &reference, &run->stage->settings, error);
+    return tl_variant_run_create(&run->reference, run->headless->gpu, &reference, &run->headless->settings,
+                                 error);
 }
 
 static bool begin_appearance(struct run *run, int number, tl_error *error)
@@ -276,10 +277,10 @@ static bool begin_appearance(struct run *run, int number, tl_error *error)
     run->appearance = number;
     tl_reference_frame_release(&run->frames[0]);
     tl_reference_frame_release(&run->frames[1]);
-    run->stage->settings = run->scene;
-    return tl_settings_assign(&run->stage->settings, appearance->assignments,
+    run->headless->settings = run->scene;
+    return tl_settings_assign(&run->headless->settings, appearance->assignments,
                               TL_COUNT(appearance->assignments), error) &&
-           tl_session_apply(run->stage->session, &run->stage->settings, error) &&
+           tl_session_apply(run->headless->session, &run->headless->settings, error) &&
            make_reference(run, appearance, error);
 }
 
@@ -306,8 +307,8 @@ static bool measure_all(struct run *run, tl_error *error)
 }
 
 /* Assignments of the command line come after, and so override, the experiment's base. */
-bool tl_trade_stage(const struct tl_experiment *experiment, const struct tl_arguments *arguments,
-                    struct tl_stage *stage, tl_error *error)
+bool tl_trade_headless(const struct tl_experiment *experiment, const struct tl_arguments *arguments,
+                       struct tl_headless *headless, tl_error *error)
 {
     struct tl_arguments own = *arguments;
     char *assignments[TL_EXPERIMENT_ASSIGNMENTS];
@@ -322,20 +323,20 @@ bool tl_trade_stage(const struct tl_experiment *experiment, const struct tl_argu
     for (size_t i = 0; i < arguments->assignment_count; i++)
         own.assignments[count + i] = arguments->assignments[i];
     tl_topic_default_scene(&own, experiment->scene);
-    bool created = tl_stage_create(stage, &own, error);
+    bool created = tl_headless_create(headless, &own, error);
     for (size_t i = 0; i < count; i++)
         free(assignments[i]);
     free(own.assignments);
     return created;
 }
 
-bool tl_trade_measure(const struct tl_experiment *experiment, struct tl_stage *stage, bool quick,
+bool tl_trade_measure(const struct tl_experiment *experiment, struct tl_headless *headless, bool quick,
                       struct tl_trade *out, tl_error *error)
 {
     struct run run = {
         .experiment = experiment,
-        .stage = stage,
-        .scene = stage->settings,
+        .headless = headless,
+        .scene = headless->settings,
         .trade = out,
         .warm = quick ? 2 : experiment->warm_up,
         .measured = quick ? 2 : experiment->measured,
@@ -343,11 +344,11 @@ bool tl_trade_measure(const struct tl_experiment *experiment, struct tl_stage *s
         .sky = tl_environment_constant(1, 1, 1),
     };
     *out = (struct tl_trade){.experiment = experiment,
-                             .width = stage->settings.image.width,
-                             .height = stage->settings.image.height,
+                             .width = headless->settings.image.width,
+                             .height = headless->settings.image.height,
                              .quick = quick,
-                             .environment = tl_session_frame(stage->session).environment};
-    run.recording = tl_motion_record(stage->session, run.warm + run.measured, error);
+                             .environment = tl_session_frame(headless->session).environment};
+    run.recording = tl_motion_record(headless->session, run.warm + run.measured, error);
     bool done = run.recording != NULL;
     if (done) {
         out->recording = tl_recording_report(run.recording);

@@ -46,12 +46,12 @@ struct tl_trade {
 
 /* Opens the scene that an experiment is measured in: the command line's, with the experiment's base under the
  * command line's assignments. */
-bool tl_trade_stage(const struct tl_experiment *experiment, const struct tl_arguments *arguments,
-                    struct tl_stage *stage, tl_error *error);
+bool tl_trade_headless(const struct tl_experiment *experiment, const struct tl_arguments *arguments,
+                       struct tl_headless *headless, tl_error *error);
 
 /* Measures all techniques. `quick`: a few techniques and frames, as a test that it works. On Ctrl-C the error
  * is TL_INTERRUPTED and `out` holds what was measured until then. Release `out` in any case. */
-bool tl_trade_measure(const struct tl_experiment *experiment, struct tl_stage *stage, bool quick,
+bool tl_trade_measure(const struct tl_experiment *experiment, struct tl_headless *headless, bool quick,
                       struct tl_trade *out, tl_error *error);
 void tl_trade_release(struct tl_trade *trade);
 

@@ -46,7 +46,7 @@ static tl_frame frame_of(tl_loader *loader, tl_surface surfaces[2])
         return tl_session_frame(loaded->session);
     tl_frame frame = {.environment = &loaded->light.environment};
     if (loader->kind == TL_LOAD_APPEARANCE)
-        frame = tl_session_frame_in(&loader->models, &loaded->looks, surfaces);
+        frame = tl_session_frame_in(&loader->models, &loaded->appearance, surfaces);
     return frame;
 }
 
@@ -74,7 +74,7 @@ static bool load(tl_loader *loader)
     case TL_LOAD_LIGHT:
         return tl_moving_light_open(&loaded->light, settings->scene.environment, 0, &loader->error);
     case TL_LOAD_APPEARANCE:
-        return tl_session_make_look(&loader->models, settings, &loaded->looks, &loader->error);
+        return tl_session_make_appearance(&loader->models, settings, &loaded->appearance, &loader->error);
     }
     return false;
 }
@@ -151,7 +151,7 @@ void tl_loaded_release(struct tl_loaded *loaded)
 {
     tl_session_destroy(&loaded->session);
     tl_moving_light_release(&loaded->light);
-    tl_looks_release(&loaded->looks);
+    tl_appearance_release(&loaded->appearance);
     for (int i = 0; i < TL_LOADER_LIGHTS_MAX; i++)
         tl_prepared_destroy(&loaded->prepared[i]);
 }

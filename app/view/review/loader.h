@@ -3,7 +3,7 @@
  *
  * The worker makes no GL call. It reads copies and immutable data only: nothing that a playing session
  * writes. Ownership: a loader owns what it has loaded until it is taken. Threads: these calls belong to the
- * window's thread. Errors: those of tl_session_create, tl_moving_light_open and tl_session_make_look;
+ * window's thread. Errors: those of tl_session_create, tl_moving_light_open and tl_session_make_appearance;
  * TL_DEVICE when no thread can be started. */
 #ifndef TOILE_APP_VIEW_WINDOW_LOADER_H
 #define TOILE_APP_VIEW_WINDOW_LOADER_H
@@ -35,7 +35,7 @@ struct tl_load_lights {
 struct tl_loaded {
     tl_session *session;
     struct tl_moving_light light;
-    struct tl_looks looks;
+    struct tl_appearance appearance;
     tl_prepared *prepared[TL_LOADER_LIGHTS_MAX]; /* in the order of the requests */
 };
 void tl_loaded_release(struct tl_loaded *loaded);

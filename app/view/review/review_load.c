@@ -15,8 +15,8 @@ static bool needs_appearance(const struct tl_review *review, const struct tl_set
     struct tl_settings present = *tl_session_settings(review->session);
     if (review->editing)
         tl_settings_take(settings, &present, (struct tl_option_filter){.any_of = TL_AFFECTS_AT_ONCE});
-    return !tl_session_light_plays(review->session) && tl_session_needs_look(&present, settings) &&
-           tl_session_needs_look(&review->loaded_appearance, settings);
+    return !tl_session_light_plays(review->session) && tl_session_needs_appearance(&present, settings) &&
+           tl_session_needs_appearance(&review->loaded_appearance, settings);
 }
 
 static bool is_slow(const struct tl_review *review, const struct tl_settings *settings)
@@ -32,7 +32,7 @@ static void keep_present(const struct tl_review *review, struct tl_settings *set
     const struct tl_settings *present = tl_session_settings(review->session);
     tl_session_keep_scene(present, settings);
     if (needs_appearance(review, settings))
-        tl_looks_take(present, settings);
+        tl_appearance_take(present, settings);
 }
 
 struct tl_settings tl_review_drawable_settings(const struct tl_review *review)
@@ -75,7 +75,7 @@ static struct tl_load_lights lights_of(struct tl_review *review, enum tl_load ki
     struct tl_settings drawn = review->wanted;
     if (kind == TL_LOAD_LIGHT &&
         needs_appearance(review, &drawn)) /* the appearance is loaded after the light */
-        tl_looks_take(tl_session_settings(review->session), &drawn);
+        tl_appearance_take(tl_session_settings(review->session), &drawn);
     const struct tl_settings other = tl_review_settings_a(review, &drawn);
     struct tl_load_lights lights = {.count = review->wipe.renderer && kind != TL_LOAD_APPEARANCE ? 2 : 1,
                                     .of = {light_of(review, &drawn), light_of(review, &other)}};
@@ -114,7 +114,7 @@ static bool is_outdated(const struct tl_review *review)
     const struct tl_settings *made = tl_loader_settings(review->loader);
     return tl_session_needs_scene(made, &review->wanted) || tl_session_needs_light(made, &review->wanted) ||
            (tl_loader_kind(review->loader) == TL_LOAD_APPEARANCE &&
-            tl_session_needs_look(made, &review->wanted));
+            tl_session_needs_appearance(made, &review->wanted));
 }
 
 /* Hands the loaded light to the renderers. */
@@ -138,7 +138,7 @@ static void finish(struct tl_review *review)
         keep_present(review, &review->wanted);
         tl_review_report_error(review, &error);
     } else if (kind == TL_LOAD_APPEARANCE) {
-        tl_session_keep_look(review->session, &made_of, &loaded.looks);
+        tl_session_keep_appearance(review->session, &made_of, &loaded.appearance);
         take_lights(review, &loaded);
         review->loaded_appearance = made_of;
     } else if (kind == TL_LOAD_SCENE) {

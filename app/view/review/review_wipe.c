@@ -68,7 +68,7 @@ int tl_review_wipe_column(const struct tl_review *review, int width)
 struct tl_settings tl_review_settings_a(const struct tl_review *review, const struct tl_settings *settings)
 {
     struct tl_settings result = *settings;
-    tl_looks_take(&review->wipe.settings, &result);
+    tl_appearance_take(&review->wipe.settings, &result);
     return result;
 }
 

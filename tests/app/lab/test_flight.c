@@ -10,7 +10,7 @@
 
 #define FRAMES 6
 
-static struct tl_stage open_stage(void)
+static struct tl_headless open_headless(void)
 {
     static const char *const assignments[] = {"cloth.edge_m=0.08",      "cloth.settle_s=0.3",
                                               "image.width=48",         "image.height=64",
@@ -18,13 +18,13 @@ static struct tl_stage open_stage(void)
     const struct tl_settings_source source = {.assignments = assignments,
                                               .assignment_count = TL_COUNT(assignments)};
     struct tl_settings settings;
-    struct tl_stage stage = {0};
+    struct tl_headless headless = {0};
     tl_error error = {0};
     assert_ok(tl_settings_load(&settings, &source, &error), error);
-    assert_ok(tl_stage_open(&stage, &settings, &error), error);
-    const tl_frame frame = tl_session_frame(stage.session);
-    tl_orbit_take(&stage.settings.camera, &frame.camera);
-    return stage;
+    assert_ok(tl_headless_open(&headless, &settings, &error), error);
+    const tl_frame frame = tl_session_frame(headless.session);
+    tl_orbit_take(&headless.settings.camera, &frame.camera);
+    return headless;
 }
 
 /* A path that turns fast, so that each frame shows something else. */
@@ -52,14 +52,14 @@ static struct tl_flight make_record(void)
     return record;
 }
 
-static struct tl_flight fly(struct tl_stage *stage, const struct tl_flight *record, int oracle_every)
+static struct tl_flight fly(struct tl_headless *headless, const struct tl_flight *record, int oracle_every)
 {
     const struct tl_fly_options options = {
         .frames = FRAMES, .hash = true, .oracle_every = oracle_every, .replay = record};
-    struct tl_path path = make_path(&stage->settings);
+    struct tl_path path = make_path(&headless->settings);
     struct tl_flight flight;
     tl_error error = {0};
-    assert_ok(tl_fly(stage, &options, &path, &flight, &error), error);
+    assert_ok(tl_fly(headless, &options, &path, &flight, &error), error);
     assert_int_equal(flight.count, FRAMES);
     return flight;
 }
@@ -80,29 +80,29 @@ static void flown_again_it_shows_the_same(void **state)
     tl_error error = {0};
     struct tl_flight record = make_record();
     omp_set_num_threads(2);
-    struct tl_stage stage = open_stage();
-    struct tl_flight first = fly(&stage, &record, 0);
+    struct tl_headless headless = open_headless();
+    struct tl_flight first = fly(&headless, &record, 0);
 
     /* From a session begun anew, by a renderer that has not drawn: as the oracle finds them. */
-    assert_ok(tl_session_restart(stage.session, &stage.settings, &error), error);
-    tl_renderer_destroy(&stage.renderer);
-    stage.renderer = tl_renderer_create(stage.gpu, &error);
-    assert_ok(stage.renderer != NULL, error);
-    struct tl_flight again = fly(&stage, &record, 0);
+    assert_ok(tl_session_restart(headless.session, &headless.settings, &error), error);
+    tl_renderer_destroy(&headless.renderer);
+    headless.renderer = tl_renderer_create(headless.gpu, &error);
+    assert_ok(headless.renderer != NULL, error);
+    struct tl_flight again = fly(&headless, &record, 0);
     assert_same_images(&first, &again);
     tl_flight_release(&again);
-    tl_stage_release(&stage);
+    tl_headless_release(&headless);
 
     omp_set_num_threads(1);
-    stage = open_stage();
-    again = fly(&stage, &record, 0);
+    headless = open_headless();
+    again = fly(&headless, &record, 0);
     assert_same_images(&first, &again);
     omp_set_num_threads(2);
 
     tl_flight_release(&again);
     tl_flight_release(&first);
     tl_flight_release(&record);
-    tl_stage_release(&stage);
+    tl_headless_release(&headless);
 }
 
 /* An image against another frame's truth is far off: at least three times as far. */
@@ -111,10 +111,10 @@ static void the_oracle_judges_each_image_by_its_own_frame(void **state)
     (void)state;
     tl_error error = {0};
     struct tl_flight record = make_record();
-    struct tl_stage stage = open_stage();
-    struct tl_flight flight = fly(&stage, &record, 3);
+    struct tl_headless headless = open_headless();
+    struct tl_flight flight = fly(&headless, &record, 3);
     assert_int_equal(flight.kept_count, 2);
-    assert_ok(tl_fly_judge(&stage, &flight, &error), error);
+    assert_ok(tl_fly_judge(&headless, &flight, &error), error);
     double right = flight.frames[0].rel_rmse + flight.frames[3].rel_rmse;
     assert_true(isfinite(right) && right > 0);
     assert_true(flight.frames[0].flip_mean > 0 && flight.frames[3].flip_mean < 1);
@@ -123,13 +123,13 @@ static void the_oracle_judges_each_image_by_its_own_frame(void **state)
     tl_image first = flight.kept[0].image;
     flight.kept[0].image = flight.kept[1].image;
     flight.kept[1].image = first;
-    assert_ok(tl_fly_judge(&stage, &flight, &error), error);
+    assert_ok(tl_fly_judge(&headless, &flight, &error), error);
     double wrong = flight.frames[0].rel_rmse + flight.frames[3].rel_rmse;
     assert_true(wrong > 3 * right);
 
     tl_flight_release(&flight);
     tl_flight_release(&record);
-    tl_stage_release(&stage);
+    tl_headless_release(&headless);
 }
 
 int main(void)

@@ -120,20 +120,20 @@ static void looks_are_made_beside_the_session(void **state)
     for (int i = 0; i < 4; i++) {
         looks[i] = *tl_session_settings(session);
         looks[i].material.glossiness = 0.2f * (float)i;
-        assert_true(i == 0 || tl_session_needs_look(&looks[0], &looks[i]));
+        assert_true(i == 0 || tl_session_needs_appearance(&looks[0], &looks[i]));
     }
     uint64_t first = look_of(session, &looks[0]), second = look_of(session, &looks[1]);
 
-    struct tl_looks made;
+    struct tl_appearance made;
     tl_surface surfaces[2];
     tl_error error = {0};
     const struct tl_session_models models = tl_session_models(session);
-    assert_ok(tl_session_make_look(&models, &looks[2], &made, &error), error);
+    assert_ok(tl_session_make_appearance(&models, &looks[2], &made, &error), error);
     tl_frame frame = tl_session_frame_in(&models, &made, surfaces);
     assert_int_equal(frame.surface_count, 2);
     assert_true(frame.surfaces[1].materials[0].glossiness == looks[2].material.glossiness);
     assert_true(look_of(session, &looks[1]) == second); /* until it is applied nothing shows it */
-    tl_session_keep_look(session, &looks[2], &made);
+    tl_session_keep_appearance(session, &looks[2], &made);
     assert_int_equal(made.image_count + made.weave_count + made.name_count, 0);
     uint64_t third = look_of(session, &looks[2]);
     assert_true(third > second);
@@ -144,8 +144,8 @@ static void looks_are_made_beside_the_session(void **state)
     assert_true(look_of(session, &looks[2]) == third);
 
     /* What the session has already is not taken twice. */
-    assert_ok(tl_session_make_look(&models, &looks[1], &made, &error), error);
-    tl_session_keep_look(session, &looks[1], &made);
+    assert_ok(tl_session_make_appearance(&models, &looks[1], &made, &error), error);
+    tl_session_keep_appearance(session, &looks[1], &made);
     assert_true(look_of(session, &looks[1]) == second);
     look_of(session, &looks[3]);
     assert_true(look_of(session, &looks[1]) == second);
@@ -153,8 +153,8 @@ static void looks_are_made_beside_the_session(void **state)
     assert_true(look_of(session, &looks[0]) > third);
 
     struct tl_settings taken = looks[3];
-    tl_looks_take(&looks[0], &taken);
-    assert_false(tl_session_needs_look(&looks[0], &taken));
+    tl_appearance_take(&looks[0], &taken);
+    assert_false(tl_session_needs_appearance(&looks[0], &taken));
     tl_session_destroy(&session);
 }
 

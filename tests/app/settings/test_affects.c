@@ -109,14 +109,14 @@ static void appearances_follow_a_new_row(void **state)
     (void)state;
     struct tl_settings old = load(), new = changed(&old);
     affects = without;
-    assert_true(tl_looks_are_same(&old, &new));
+    assert_true(tl_appearance_is_same(&old, &new));
     affects = TL_AFFECTS_MATERIALS;
-    assert_false(tl_looks_are_same(&old, &new));
+    assert_false(tl_appearance_is_same(&old, &new));
 
     affects = without;
-    assert_false(tl_session_needs_look(&old, &new));
+    assert_false(tl_session_needs_appearance(&old, &new));
     affects = TL_AFFECTS_APPEARANCE;
-    assert_true(tl_session_needs_look(&old, &new));
+    assert_true(tl_session_needs_appearance(&old, &new));
 }
 
 /* The row of the camera says AT_ONCE, the new one does not. */

@@ -44,14 +44,14 @@ static bool load(const char *colourway, tl_error *error)
     "    skirt: {warp_tint: [0.5, 0.5, 0.5]}\n"
 
 /* The garment's two materials in a colourway. */
-static struct tl_looks dress_in(const char *colourway, tl_garment *dress)
+static struct tl_appearance dress_in(const char *colourway, tl_garment *dress)
 {
     tl_error error = {0};
-    struct tl_looks looks;
+    struct tl_appearance appearance;
     assert_ok(load(colourway, &error), error);
     assert_ok(tl_garment_cut("dress", 0.08f, dress, &error), error);
-    assert_ok(tl_looks_make(&settings, &dress->model, NULL, &looks, &error), error);
-    return looks;
+    assert_ok(tl_appearance_make(&settings, &dress->model, NULL, &appearance, &error), error);
+    return appearance;
 }
 
 static void looks_follow_the_scene(void **state)
@@ -65,8 +65,8 @@ static void looks_follow_the_scene(void **state)
     assert_ok(tl_layer_read_appearance("satin", &satin, &satin_weave, &error), error);
     assert_ok(tl_layer_read_appearance("denim", &denim, &denim_weave, &error), error);
 
-    struct tl_looks looks = dress_in("Ink", &dress);
-    const tl_material *bodice = &looks.garment.materials[0], *skirt = &looks.garment.materials[1];
+    struct tl_appearance appearance = dress_in("Ink", &dress);
+    const tl_material *bodice = &appearance.garment.materials[0], *skirt = &appearance.garment.materials[1];
     assert_near(bodice->diffuse.z, 0.07, 1e-7);
     assert_near(bodice->specular.x, satin.specular[0], 0); /* the fabric's, where nothing else is said */
     assert_near(bodice->glossiness, 0.5, 0);
@@ -75,27 +75,28 @@ static void looks_follow_the_scene(void **state)
     assert_non_null(bodice->weave);
     assert_non_null(skirt->weave);
     assert_true(bodice->weave != skirt->weave); /* satin and wool */
-    assert_int_equal(looks.name_count, 3);
-    assert_string_equal(looks.names[1], "As cut");
-    tl_looks_release(&looks);
+    assert_int_equal(appearance.name_count, 3);
+    assert_string_equal(appearance.names[1], "As cut");
+    tl_appearance_release(&appearance);
     tl_garment_release(&dress);
 
-    looks = dress_in("Work", &dress);
-    bodice = &looks.garment.materials[0], skirt = &looks.garment.materials[1];
+    appearance = dress_in("Work", &dress);
+    bodice = &appearance.garment.materials[0], skirt = &appearance.garment.materials[1];
     assert_near(skirt->diffuse.x, denim.diffuse[0], 0); /* `all` first, the skirt's own on top */
     assert_true(bodice->weave != skirt->weave);         /* other yarns */
     assert_near(tl_image_floats(&bodice->weave->height)[0], tl_image_floats(&skirt->weave->height)[0], 0);
-    tl_looks_release(&looks);
+    tl_appearance_release(&appearance);
     tl_garment_release(&dress);
 
-    looks = dress_in("As cut", &dress);
+    appearance = dress_in("As cut", &dress);
     tl_garment same;
-    struct tl_looks plain = dress_in("", &same);
-    assert_near(looks.garment.materials[0].glossiness, plain.garment.materials[0].glossiness, 0);
-    assert_true(looks.garment.materials[0].weave == looks.garment.materials[1].weave); /* made once */
-    tl_looks_release(&plain);
+    struct tl_appearance plain = dress_in("", &same);
+    assert_near(appearance.garment.materials[0].glossiness, plain.garment.materials[0].glossiness, 0);
+    assert_true(appearance.garment.materials[0].weave ==
+                appearance.garment.materials[1].weave); /* made once */
+    tl_appearance_release(&plain);
     tl_garment_release(&same);
-    tl_looks_release(&looks);
+    tl_appearance_release(&appearance);
     tl_garment_release(&dress);
 }
 
@@ -115,7 +116,7 @@ static tl_material printed(tl_image *print, tl_image *gloss)
     return material;
 }
 
-static tl_material look_of(const char *colourway, const tl_material *file, struct tl_looks *looks)
+static tl_material look_of(const char *colourway, const tl_material *file, struct tl_appearance *appearance)
 {
     tl_error error = {0};
     tl_material materials[] = {*file};
@@ -125,8 +126,8 @@ static tl_material look_of(const char *colourway, const tl_material *file, struc
                       .material_count = 1,
                       .materials = materials};
     assert_ok(load(colourway, &error), error);
-    assert_ok(tl_looks_make(&settings, &model, NULL, looks, &error), error);
-    return looks->garment.materials[0];
+    assert_ok(tl_appearance_make(&settings, &model, NULL, appearance, &error), error);
+    return appearance->garment.materials[0];
 }
 
 static void a_files_own_material_is_dyed(void **state)
@@ -134,7 +135,7 @@ static void a_files_own_material_is_dyed(void **state)
     (void)state;
     tl_image print, gloss;
     tl_material file = printed(&print, &gloss), made;
-    struct tl_looks looks;
+    struct tl_appearance appearance;
     write_scene("scene: {fabric: none}\n"
                 "colourways:\n"
                 "  Same:\n"
@@ -142,36 +143,36 @@ static void a_files_own_material_is_dyed(void **state)
                 "  Plain: {lace: {diffuse: [0.5, 0.5, 0.5], print: false}}\n"
                 "  Velvet: {lace: {fabric: wool}}\n"
                 "  Own: {all: {fabric: wool}, lace: {fabric: none}}\n");
-    made = look_of("Same", &file, &looks);
+    made = look_of("Same", &file, &appearance);
     assert_memory_equal(&made, &file, sizeof made);
-    tl_looks_release(&looks);
+    tl_appearance_release(&appearance);
 
-    made = look_of("Tinted", &file, &looks);
+    made = look_of("Tinted", &file, &appearance);
     assert_ptr_equal(made.diffuse_map.image, &print);
     assert_ptr_equal(made.gloss_map.image, &gloss); /* a colour changes no gloss */
     assert_near(made.diffuse.x, 0.5, 0);
     assert_near(made.glossiness, 0.6, 1e-7);
-    tl_looks_release(&looks);
+    tl_appearance_release(&appearance);
 
-    made = look_of("Plain", &file, &looks);
+    made = look_of("Plain", &file, &appearance);
     assert_near(made.diffuse.x, 0.5, 0);
     assert_non_null(made.diffuse_map.image); /* lace keeps its holes */
     const uint8_t holes[8] = {255, 255, 255, 255, 255, 255, 255, 0};
     assert_memory_equal(made.diffuse_map.image->texels, holes, sizeof holes);
-    tl_looks_release(&looks);
+    tl_appearance_release(&appearance);
 
-    made = look_of("Velvet", &file, &looks);
+    made = look_of("Velvet", &file, &appearance);
     assert_ptr_equal(made.diffuse_map.image, &print); /* the print stays, in its own colours */
     assert_near(made.diffuse.x, 0.9, 1e-7);
     assert_null(made.gloss_map.image);
     assert_non_null(made.weave);
-    tl_looks_release(&looks);
+    tl_appearance_release(&appearance);
 
-    made = look_of("Own", &file, &looks);
+    made = look_of("Own", &file, &appearance);
     assert_ptr_equal(made.gloss_map.image, &gloss);
     assert_near(made.diffuse.x, 0.9, 1e-7);
     assert_null(made.weave);
-    tl_looks_release(&looks);
+    tl_appearance_release(&appearance);
     tl_image_release(&print);
     tl_image_release(&gloss);
 }
@@ -216,12 +217,12 @@ static void expect_refused(const char *colourway, const char *message)
 {
     tl_garment dress;
     tl_error error = {0};
-    struct tl_looks looks;
+    struct tl_appearance appearance;
     assert_ok(load(colourway, &error), error);
     assert_ok(tl_garment_cut("dress", 0.08f, &dress, &error), error);
-    assert_false(tl_looks_make(&settings, &dress.model, NULL, &looks, &error));
+    assert_false(tl_appearance_make(&settings, &dress.model, NULL, &appearance, &error));
     assert_non_null(strstr(error.message, message));
-    assert_null(looks.names);
+    assert_null(appearance.names);
     tl_garment_release(&dress);
 }
 
@@ -278,10 +279,10 @@ static void built_in_ones_fit(void **state)
         assert_ok(load("", &error), error);
         assert_true(settings.colourways.name_count >= 2);
         for (size_t i = 0; i < settings.colourways.name_count; i++) {
-            struct tl_looks looks;
+            struct tl_appearance appearance;
             assert_ok(tl_settings_apply_colourway(&settings, settings.colourways.names[i], &error), error);
-            assert_ok(tl_looks_make(&settings, &garment.model, NULL, &looks, &error), error);
-            tl_looks_release(&looks);
+            assert_ok(tl_appearance_make(&settings, &garment.model, NULL, &appearance, &error), error);
+            tl_appearance_release(&appearance);
         }
         tl_garment_release(&garment);
     }

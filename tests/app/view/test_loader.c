@@ -47,7 +47,7 @@ static void an_appearance_is_made_while_the_session_plays(void **state)
     assert_ok(tl_loader_take(&loader, &loaded, &error), error);
     assert_int_equal(atomic_load(&wake_count), 1);
     assert_non_null(loaded.prepared[0]);
-    assert_true(loaded.looks.garment.materials[0].glossiness == wanted.material.glossiness);
+    assert_true(loaded.appearance.garment.materials[0].glossiness == wanted.material.glossiness);
 
     /* What was played while the loader ran is what is played without it, bit for bit. */
     assert_ok(tl_session_go_to(alone, FRAMES, &error), error);
