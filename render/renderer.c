@@ -220,7 +220,7 @@ static void make_plan(const tl_renderer *renderer, const struct tl_plan_input *i
                       const struct tl_render_settings *settings, tl_plan *plan)
 {
     double predicted_ms[TL_JOBS_MAX];
-    const struct tl_work_seen seen = tl_work_look(&renderer->resources, &renderer->counts, settings);
+    const struct tl_work_seen seen = tl_work_observe(&renderer->resources, &renderer->counts, settings);
     for (int i = 0; i < tl_frame_job_count; i++) {
         struct tl_work work = work_of(i, &seen);
         predicted_ms[i] =
@@ -234,7 +234,7 @@ static void make_plan(const tl_renderer *renderer, const struct tl_plan_input *i
 static void learn_costs(tl_renderer *renderer, tl_plan *plan, double new_regions)
 {
     const int known = 3; /* runs */
-    struct tl_work_seen seen = tl_work_look(&renderer->resources, &renderer->counts, &renderer->settings);
+    struct tl_work_seen seen = tl_work_observe(&renderer->resources, &renderer->counts, &renderer->settings);
     seen.new_regions = new_regions; /* as it was before they were made */
     double predicted_ms = 0, took_ms = 0, load = tl_machine_load_factor(&renderer->load);
     for (int i = 0; i < plan->count; i++) {
@@ -256,7 +256,7 @@ static bool run_plan(tl_renderer *renderer, const struct tl_plan_input *input, t
 {
     make_plan(renderer, input, &renderer->settings, plan);
     double new_regions =
-        tl_work_look(&renderer->resources, &renderer->counts, &renderer->settings).new_regions;
+        tl_work_observe(&renderer->resources, &renderer->counts, &renderer->settings).new_regions;
     tl_gpu_reset_state(renderer->resources.gpu);
     for (int i = 0; i < plan->count; i++) {
         if (plan->rows[i].action != TL_JOB_RUN)
@@ -410,7 +410,7 @@ static void set_inputs(const tl_renderer *renderer, struct tl_resources *resourc
 bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct tl_render_settings *settings,
                       tl_error *error)
 {
-    struct tl_render_settings used = tl_frame_usable(settings);
+    struct tl_render_settings used = tl_render_settings_resolve(settings);
     struct tl_resources *resources = &renderer->resources;
     if (!check_camera(&frame->camera, error) || !check_image_size(renderer, &used.image, error) ||
         !check_light_size(&used, error) || !check_envmap_size(frame, &used, error))
@@ -518,7 +518,7 @@ bool tl_renderer_show_columns(tl_renderer *renderer, int width, int height, int 
 void tl_renderer_plan(const tl_renderer *renderer, const tl_frame *frame,
                       const struct tl_render_settings *settings, tl_plan *out)
 {
-    struct tl_render_settings used = tl_frame_usable(settings);
+    struct tl_render_settings used = tl_render_settings_resolve(settings);
     uint64_t signatures[TL_INPUT_COUNT];
     struct tl_rest rest = renderer->rest;
     tl_frame_sign(frame, &used, renderer->signatures, &rest, signatures);
@@ -533,10 +533,10 @@ void tl_renderer_plan(const tl_renderer *renderer, const tl_frame *frame,
      TL_BIT(TL_INPUT_CAMERA) | TL_BIT(TL_INPUT_LAYOUT) | TL_BIT(TL_INPUT_CAPTURE) | TL_BIT(TL_INPUT_LAMPS))
 #define ROUND_INPUTS (TL_BIT(TL_INPUT_ROUND) | TL_BIT(TL_INPUT_SCENE_ROUND))
 
-tl_bits tl_renderer_would_run(const tl_renderer *renderer, const tl_frame *frame,
-                              const struct tl_render_settings *settings)
+tl_bits tl_renderer_predict_jobs(const tl_renderer *renderer, const tl_frame *frame,
+                                 const struct tl_render_settings *settings)
 {
-    struct tl_render_settings used = tl_frame_usable(settings);
+    struct tl_render_settings used = tl_render_settings_resolve(settings);
     uint64_t signatures[TL_INPUT_COUNT];
     struct tl_rest rest = renderer->rest;
     tl_frame_sign(frame, &used, renderer->signatures, &rest, signatures);
@@ -552,11 +552,11 @@ tl_bits tl_renderer_would_run(const tl_renderer *renderer, const tl_frame *frame
     return jobs;
 }
 
-double tl_renderer_would_take(const tl_renderer *renderer, const struct tl_render_settings *settings,
+double tl_renderer_predict_ms(const tl_renderer *renderer, const struct tl_render_settings *settings,
                               tl_bits jobs)
 {
     double sum_ms = 0;
-    const struct tl_work_seen seen = tl_work_look(&renderer->resources, &renderer->counts, settings);
+    const struct tl_work_seen seen = tl_work_observe(&renderer->resources, &renderer->counts, settings);
     for (int i = 0; i < tl_frame_job_count; i++) {
         if (!(jobs & (tl_bits)1 << i))
             continue;
@@ -583,7 +583,7 @@ bool tl_renderer_is_moving(const tl_renderer *renderer, const tl_frame *frame)
 
 bool tl_renderer_has_regions(const tl_renderer *renderer, const struct tl_render_settings *settings)
 {
-    const struct tl_render_settings used = tl_frame_usable(settings);
+    const struct tl_render_settings used = tl_render_settings_resolve(settings);
     const tl_bits needed = TL_BIT(TL_MADE_CUBE) | TL_BIT(TL_MADE_LOBES) | TL_BIT(TL_MADE_LIGHTS);
     return (renderer->resources.valid & needed) != needed ||
            tl_light_cache_has(&renderer->resources.light_cache, &used.light);
@@ -591,7 +591,7 @@ bool tl_renderer_has_regions(const tl_renderer *renderer, const struct tl_render
 
 void tl_renderer_prepare_regions(tl_renderer *renderer, const struct tl_render_settings *settings)
 {
-    const struct tl_render_settings used = tl_frame_usable(settings);
+    const struct tl_render_settings used = tl_render_settings_resolve(settings);
     if (!tl_renderer_has_regions(renderer, &used))
         tl_light_cache_prepare(&renderer->resources.light_cache, &renderer->resources.cube, &used.light);
 }

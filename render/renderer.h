@@ -72,9 +72,9 @@ const tl_plan *tl_renderer_last_plan(const tl_renderer *renderer);
 /* What a frame to come would take if it moves as the last ones did, for those who choose its settings: first
  * which jobs (by bit) would run, then how long they would take; the last is cheap enough to be asked for
  * thousands of settings. Both pure but for reading the renderer's state. */
-tl_bits tl_renderer_would_run(const tl_renderer *renderer, const tl_frame *frame,
-                              const struct tl_render_settings *settings);
-double tl_renderer_would_take(const tl_renderer *renderer, const struct tl_render_settings *settings,
+tl_bits tl_renderer_predict_jobs(const tl_renderer *renderer, const tl_frame *frame,
+                                 const struct tl_render_settings *settings);
+double tl_renderer_predict_ms(const tl_renderer *renderer, const struct tl_render_settings *settings,
                               tl_bits jobs); /* ms */
 /* How much slower the machine is than it was: other programs'; 1: not. */
 double tl_renderer_load(const tl_renderer *renderer);

@@ -89,7 +89,7 @@ static double cost_of(const void *context, const uint8_t *of)
     const struct tl_quality_scope applied = tl_quality_scope_at(&levels, &coming->full);
     double load = tl_renderer_load(coming->renderer);
     struct tl_work cloth = cloth_work(&applied);
-    return tl_renderer_would_take(coming->renderer, &applied.drawn, coming->running) +
+    return tl_renderer_predict_ms(coming->renderer, &applied.drawn, coming->running) +
            known_ms(&governor->cloth, &cloth, load) + known_ms(&governor->other, &any_work, load);
 }
 
@@ -110,7 +110,7 @@ static double change_of(const void *context, const uint8_t *of)
         return 0;
     const struct tl_quality_scope applied = tl_quality_scope_at(&levels, &coming->full);
     struct tl_work cloth = cloth_work(&applied);
-    return tl_renderer_would_take(coming->renderer, &applied.drawn, jobs) +
+    return tl_renderer_predict_ms(coming->renderer, &applied.drawn, jobs) +
            (is_shorter ? extra * known_ms(&governor->cloth, &cloth, tl_renderer_load(coming->renderer)) : 0);
 }
 
@@ -135,12 +135,12 @@ static struct coming look_ahead(const tl_quality_governor *governor, const tl_re
 {
     struct coming coming = {.governor = governor, .renderer = renderer, .full = *full};
     struct tl_quality_scope now = tl_quality_scope_at(&governor->choice.levels, full);
-    coming.running = tl_renderer_would_run(renderer, frame, &now.drawn);
+    coming.running = tl_renderer_predict_jobs(renderer, frame, &now.drawn);
     for (int control = 0; control < TL_CONTROL_COUNT; control++) {
         int level = governor->choice.levels.of[control], other = level > 0 ? level - 1 : level + 1;
         struct tl_quality_scope then = at_level(&coming, control, other);
         if (other < governor->level_counts[control] && control != TL_CONTROL_CLOTH)
-            coming.started[control] = tl_renderer_would_run(renderer, frame, &then.drawn);
+            coming.started[control] = tl_renderer_predict_jobs(renderer, frame, &then.drawn);
     }
     for (int level = 0; level < governor->level_counts[TL_CONTROL_REGIONS]; level++) {
         struct tl_quality_scope then = at_level(&coming, TL_CONTROL_REGIONS, level);

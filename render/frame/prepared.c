@@ -125,14 +125,14 @@ static void make_usable(struct tl_prepared_request *request)
     for (int i = 0; i < TL_PREPARED_COUNTS_MAX; i++)
         if (request->region_counts[i] > 0) {
             settings.light.regions = request->region_counts[i];
-            request->region_counts[i] = tl_frame_usable(&settings).light.regions;
+            request->region_counts[i] = tl_render_settings_resolve(&settings).light.regions;
         }
 }
 
 tl_prepared *tl_prepared_make(struct tl_prepared_request *request)
 {
     make_usable(request);
-    const struct tl_render_settings used = tl_frame_usable(&request->settings);
+    const struct tl_render_settings used = tl_render_settings_resolve(&request->settings);
     const int lobe_count = __builtin_popcount(request->exponents), total = 1 + 2 * lobe_count;
     struct tl_progress progress = tl_progress_begin("prefiltering the light");
     tl_prepared *prepared = begin(request, &used.light);

@@ -13,7 +13,7 @@ void tl_render_settings_bind(struct tl_render_settings *settings,
     memcpy(bindings, all, sizeof all);
 }
 
-struct tl_render_settings tl_frame_usable(const struct tl_render_settings *settings)
+struct tl_render_settings tl_render_settings_resolve(const struct tl_render_settings *settings)
 {
     struct tl_render_settings used = *settings;
     if (used.light.cut == TL_CUT_FACES)

@@ -26,7 +26,7 @@ void tl_render_settings_bind(struct tl_render_settings *settings,
 
 /* As the jobs use them: regions in sixes, sizes in powers of two; views other than light show what rays find.
  */
-struct tl_render_settings tl_frame_usable(const struct tl_render_settings *settings);
+struct tl_render_settings tl_render_settings_resolve(const struct tl_render_settings *settings);
 
 /* The reference's part of these settings. All three are borrowed. */
 struct tl_reference_request tl_frame_reference_request(const tl_frame *frame,

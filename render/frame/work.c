@@ -62,8 +62,8 @@ static double lobes_of(const struct tl_work_counts *counts, const struct tl_ligh
     return 1 + (counts->is_glossy ? 1 : 0) + (counts->is_faceted ? light->fan : 0);
 }
 
-struct tl_work_seen tl_work_look(const struct tl_resources *resources, const struct tl_work_counts *counts,
-                                 const struct tl_render_settings *settings)
+struct tl_work_seen tl_work_observe(const struct tl_resources *resources, const struct tl_work_counts *counts,
+                                    const struct tl_render_settings *settings)
 {
     const struct tl_samples *samples = &resources->samples;
     const struct tl_light_params *light = &settings->light;

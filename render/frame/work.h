@@ -25,8 +25,8 @@ struct tl_work_counts {
 };
 struct tl_work_counts tl_work_count(const tl_frame *frame);
 /* `counts` of the last frame, whose resources these are. */
-struct tl_work_seen tl_work_look(const struct tl_resources *resources, const struct tl_work_counts *counts,
-                                 const struct tl_render_settings *settings);
+struct tl_work_seen tl_work_observe(const struct tl_resources *resources, const struct tl_work_counts *counts,
+                                    const struct tl_render_settings *settings);
 
 /* Of the jobs of the same names; `seen` is a struct tl_work_seen. */
 struct tl_work tl_lights_work(const void *seen);

@@ -3,7 +3,6 @@
 #include "config/memory.h"
 #include "config/simd.h"
 #include "render/visibility/cache_probes.h"
-#include "render/visibility/cover_taps.h"
 #include "render/visibility/maps.h"
 #include "render/visibility/ray_origins.h"
 #include "render/visibility/repair.h"

@@ -1,7 +1,13 @@
-/* Points of samples' own, for the few whose triangle's corners disagree most: what lies between them would be
- * guessed (FRONTIER: nearly all of the error sits in one pixel of a hundred, where folds and cloth on a body
- * touch). Made anew in every moving frame, averaged at rest, where there may be more of them. Part of
- * points.c. */
+/* Repairs what samples read of the visibility at points, in two ways. Part of points.c.
+ *
+ * Extra points: the triangles whose corners disagree most cannot be interpolated, so their samples get points
+ * of their own. Nearly all of the error sits in one pixel of a hundred, where folds touch and where cloth
+ * lies on a body (FRONTIER). In motion these points are traced again every frame; at rest they are averaged,
+ * and there may be more of them.
+ *
+ * Cover: where cloth begins to lie on a body, a triangle has corners in the open and corners under the cloth.
+ * Interpolation would make everything between them half dark. A sample therefore reads only the corners that
+ * are covered if it is covered itself, and only the open ones otherwise. */
 #ifndef TOILE_RENDER_VISIBILITY_REPAIR_H
 #define TOILE_RENDER_VISIBILITY_REPAIR_H
 
@@ -30,5 +36,10 @@ size_t tl_repair_trace(struct tl_repair *repair, const struct tl_refresh *refres
                        uint16_t *weights);
 void tl_repair_release(struct tl_repair *repair);
 size_t tl_repair_bytes(const struct tl_repair *repair);
+
+/* Restricts each sample's taps to the corners that are covered as the sample is, and normalises their
+ * weights. Bit i of covered[c] is set where a surface lies close above point c x TL_CLUSTER + i. */
+void tl_taps_match_cover(const struct tl_points_request *request, const uint16_t *covered,
+                         struct tl_taps *taps);
 
 #endif
