@@ -1,18 +1,22 @@
-/* What each job of a frame is handed, and nothing else: a run function (run_*.c) takes the struct of its job.
- * One list a job is all three at once: the struct's fields, the bits that the plan reasons about, and the
- * wiring from the frame's resources. So a job cannot read or write what it has not declared, nor declare what
- * it is not handed.
+/* The inputs and outputs of each job of a frame. A run function (run_*.c) takes the struct of its job and
+ * sees nothing else of the frame.
  *
- *     READS(member)          const; a change of it is a reason to run
- *     AFTER(bit)             no field: a reason to run. What was made in place of a member that the job is
- * handed, or an input after which the light has to be begun again SEES(member)           const; no reason to
- * run: it changes only with what is read, or decides nothing WRITES(member)         what the job makes
- *     WRITES_IN(member, bit) ... of which it is a part
- *     EXTENDS(member, bit)   reads the member and makes another resource in its place
- *     USES(member)           what the job works with: caches, programs, the GPU
+ * One list for each job yields three things: the fields of the struct, the bits that the plan reasons about,
+ * and the wiring from the frame's resources to the fields. A job can therefore neither read nor write a
+ * resource that it does not declare.
  *
- * ..._HANDLE hand over what a member points to, not the member. Pointers of `const` structs are as deep as
- * C's const goes. */
+ *     READS(member)            const field; a change of the member is a reason to run
+ *     AFTER(bit)               no field, but a reason to run: a resource that replaces a member which the job
+ * has, or an input after which the light has to be begun again SEES(member)             const field; no
+ * reason to run, because it changes only together with a member that is read, or does not decide the result
+ *     WRITES(member)           the job makes this resource
+ *     WRITES_IN(member, bit)   the job makes resource `bit`, which is a part of the member
+ *     EXTENDS(member, bit)     the job reads the member and turns it into resource `bit` in place
+ *     USES(member)             caches, programs, the GPU: they decide the job's speed, never its result
+ *
+ * The kinds ..._HANDLE pass the pointer that a member holds instead of the member's address. `const` reaches
+ * as deep as C lets it: not through pointers inside of a struct. tests/render/frame/test_jobs.c checks all
+ * three. */
 #ifndef TOILE_RENDER_FRAME_JOB_IO_H
 #define TOILE_RENDER_FRAME_JOB_IO_H
 
@@ -377,7 +381,41 @@
     IO(WRITES_IN, present, TL_MADE_SHOWN)                                                                    \
     IO(USES, gpu)
 
-/* A field. */
+/* All jobs: JOB(name, list), in the order of the lists above. */
+#define TL_JOBS(JOB)                                                                                         \
+    JOB(cube, TL_CUBE_JOB)                                                                                   \
+    JOB(regions, TL_REGIONS_JOB)                                                                             \
+    JOB(lobe, TL_LOBE_JOB)                                                                                   \
+    JOB(pems, TL_PEMS_JOB)                                                                                   \
+    JOB(lobes, TL_LOBES_JOB)                                                                                 \
+    JOB(slices, TL_SLICES_JOB)                                                                               \
+    JOB(lights, TL_LIGHTS_JOB)                                                                               \
+    JOB(surfaces, TL_SURFACES_JOB)                                                                           \
+    JOB(detail, TL_DETAIL_JOB)                                                                               \
+    JOB(maps, TL_MAPS_JOB)                                                                                   \
+    JOB(blur, TL_BLUR_JOB)                                                                                   \
+    JOB(gbuffer, TL_GBUFFER_JOB)                                                                             \
+    JOB(samples, TL_SAMPLES_JOB)                                                                             \
+    JOB(transparency, TL_TRANSPARENCY_JOB)                                                                   \
+    JOB(trace, TL_TRACE_JOB)                                                                                 \
+    JOB(mirrors, TL_MIRRORS_JOB)                                                                             \
+    JOB(points, TL_POINTS_JOB)                                                                               \
+    JOB(light, TL_LIGHT_JOB)                                                                                 \
+    JOB(compose, TL_COMPOSE_JOB)                                                                             \
+    JOB(inspect, TL_INSPECT_JOB)                                                                             \
+    JOB(envmap_lobes, TL_ENVMAP_LOBES_JOB)                                                                   \
+    JOB(capture, TL_CAPTURE_JOB)                                                                             \
+    JOB(envmap, TL_ENVMAP_JOB)                                                                               \
+    JOB(look_up, TL_LOOK_UP_JOB)                                                                             \
+    JOB(lamp_maps, TL_LAMP_MAPS_JOB)                                                                         \
+    JOB(lamp_rays, TL_LAMP_RAYS_JOB)                                                                         \
+    JOB(lamps, TL_LAMPS_JOB)                                                                                 \
+    JOB(resolve, TL_RESOLVE_JOB)                                                                             \
+    JOB(reference, TL_REFERENCE_JOB)                                                                         \
+    JOB(backdrop, TL_BACKDROP_JOB)                                                                           \
+    JOB(show, TL_SHOW_JOB)
+
+/* A field of the struct, for each kind. */
 #define TL_TYPE_OF(member)            __typeof__(((struct tl_resources *)0)->member)
 #define TL_TYPE_AT(member)            __typeof__(*((struct tl_resources *)0)->member)
 #define TL_FIELD_READS(member)        const TL_TYPE_OF(member) * member;
@@ -401,37 +439,7 @@
     };                                                                                                       \
     bool tl_run_##name(const struct tl_##name##_job *job, tl_error *error);
 
-TL_DECLARE_JOB(cube, TL_CUBE_JOB)
-TL_DECLARE_JOB(regions, TL_REGIONS_JOB)
-TL_DECLARE_JOB(lobe, TL_LOBE_JOB)
-TL_DECLARE_JOB(pems, TL_PEMS_JOB)
-TL_DECLARE_JOB(lobes, TL_LOBES_JOB)
-TL_DECLARE_JOB(slices, TL_SLICES_JOB)
-TL_DECLARE_JOB(lights, TL_LIGHTS_JOB)
-TL_DECLARE_JOB(surfaces, TL_SURFACES_JOB)
-TL_DECLARE_JOB(detail, TL_DETAIL_JOB)
-TL_DECLARE_JOB(maps, TL_MAPS_JOB)
-TL_DECLARE_JOB(blur, TL_BLUR_JOB)
-TL_DECLARE_JOB(gbuffer, TL_GBUFFER_JOB)
-TL_DECLARE_JOB(samples, TL_SAMPLES_JOB)
-TL_DECLARE_JOB(transparency, TL_TRANSPARENCY_JOB)
-TL_DECLARE_JOB(trace, TL_TRACE_JOB)
-TL_DECLARE_JOB(mirrors, TL_MIRRORS_JOB)
-TL_DECLARE_JOB(points, TL_POINTS_JOB)
-TL_DECLARE_JOB(light, TL_LIGHT_JOB)
-TL_DECLARE_JOB(compose, TL_COMPOSE_JOB)
-TL_DECLARE_JOB(inspect, TL_INSPECT_JOB)
-TL_DECLARE_JOB(envmap_lobes, TL_ENVMAP_LOBES_JOB)
-TL_DECLARE_JOB(capture, TL_CAPTURE_JOB)
-TL_DECLARE_JOB(envmap, TL_ENVMAP_JOB)
-TL_DECLARE_JOB(look_up, TL_LOOK_UP_JOB)
-TL_DECLARE_JOB(lamp_maps, TL_LAMP_MAPS_JOB)
-TL_DECLARE_JOB(lamp_rays, TL_LAMP_RAYS_JOB)
-TL_DECLARE_JOB(lamps, TL_LAMPS_JOB)
-TL_DECLARE_JOB(resolve, TL_RESOLVE_JOB)
-TL_DECLARE_JOB(reference, TL_REFERENCE_JOB)
-TL_DECLARE_JOB(backdrop, TL_BACKDROP_JOB)
-TL_DECLARE_JOB(show, TL_SHOW_JOB)
+TL_JOBS(TL_DECLARE_JOB)
 
 #undef TL_DECLARE_JOB
 

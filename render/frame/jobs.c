@@ -60,37 +60,7 @@
         (void)level;                                                                                         \
         return tl_run_##name(&job, error);                                                                   \
     }
-RUN(cube, TL_CUBE_JOB)
-RUN(regions, TL_REGIONS_JOB)
-RUN(lobe, TL_LOBE_JOB)
-RUN(pems, TL_PEMS_JOB)
-RUN(lobes, TL_LOBES_JOB)
-RUN(slices, TL_SLICES_JOB)
-RUN(lights, TL_LIGHTS_JOB)
-RUN(surfaces, TL_SURFACES_JOB)
-RUN(detail, TL_DETAIL_JOB)
-RUN(maps, TL_MAPS_JOB)
-RUN(blur, TL_BLUR_JOB)
-RUN(gbuffer, TL_GBUFFER_JOB)
-RUN(samples, TL_SAMPLES_JOB)
-RUN(transparency, TL_TRANSPARENCY_JOB)
-RUN(trace, TL_TRACE_JOB)
-RUN(mirrors, TL_MIRRORS_JOB)
-RUN(points, TL_POINTS_JOB)
-RUN(light, TL_LIGHT_JOB)
-RUN(compose, TL_COMPOSE_JOB)
-RUN(inspect, TL_INSPECT_JOB)
-RUN(envmap_lobes, TL_ENVMAP_LOBES_JOB)
-RUN(capture, TL_CAPTURE_JOB)
-RUN(envmap, TL_ENVMAP_JOB)
-RUN(look_up, TL_LOOK_UP_JOB)
-RUN(lamp_maps, TL_LAMP_MAPS_JOB)
-RUN(lamp_rays, TL_LAMP_RAYS_JOB)
-RUN(lamps, TL_LAMPS_JOB)
-RUN(resolve, TL_RESOLVE_JOB)
-RUN(reference, TL_REFERENCE_JOB)
-RUN(backdrop, TL_BACKDROP_JOB)
-RUN(show, TL_SHOW_JOB)
+TL_JOBS(RUN)
 
 #define IO(name, LIST) .reads = LIST(READ) 0, .writes = LIST(WRITTEN) 0, .run = run_##name
 #define LEVELS_ONE                                                                                           \
@@ -211,14 +181,14 @@ const tl_job tl_frame_jobs[] = {
      IO(envmap_lobes, TL_ENVMAP_LOBES_JOB),
      .requires_scene = TL_BIT(TL_SCENE_ENVMAP),
      .levels = LEVELS_ONE},
-    /* What it draws is not among what it reads: what has changed since waits for the next capture. */
+    /* The scene that it draws is no reason to run: changes wait until the next capture is due. */
     {.name = "capture",
      .what = "the scene seen from a point, through exact lobes",
      IO(capture, TL_CAPTURE_JOB),
      .requires_scene = TL_BIT(TL_SCENE_ENVMAP) | TL_BIT(TL_SCENE_CAPTURE),
      .levels = LEVELS_ONE},
     {.name = "envmap",
-     .what = "lobes poured into environment maps of a layout",
+     .what = "lobes resampled to environment maps of a layout",
      IO(envmap, TL_ENVMAP_JOB),
      .requires_scene = TL_BIT(TL_SCENE_ENVMAP),
      .levels = LEVELS_ONE},
@@ -227,7 +197,7 @@ const tl_job tl_frame_jobs[] = {
      IO(look_up, TL_LOOK_UP_JOB),
      .requires_scene = TL_BIT(TL_SCENE_ENVMAP),
      .levels = LEVELS_ONE},
-    /* Lamps add to the light in place, which is therefore made anew whenever they change. */
+    /* Lamps are added to the light in place, so the light is recomputed whenever they change. */
     {.name = "lamp_maps",
      .what = "a shadow map for each lamp",
      IO(lamp_maps, TL_LAMP_MAPS_JOB),
