@@ -9,7 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A sphere of latitude and longitude rings; the seam and the poles are split, as files have them. */
+/* A sphere of latitude and longitude rings. Vertices at the seam and the poles are duplicated, as in files.
+ */
 static inline tl_mesh body_sphere(vec3s centre, double radius, int rings)
 {
     int sides = 2 * rings;

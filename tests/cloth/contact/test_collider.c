@@ -22,7 +22,8 @@ static double box_distance(vec3d p, vec3d half)
     return vec3d_norm(out) + fmin(fmax(q.x, fmax(q.y, q.z)), 0);
 }
 
-/* Faces, edges and corners from both sides; the gradient points to where the distance grows as fast. */
+/* Distances at faces, edges and corners from both sides. The gradient has length 1 in the direction of the
+ * normal. */
 static void test_box(void **state)
 {
     (void)state;
@@ -40,7 +41,8 @@ static void test_box(void **state)
         assert_near(contact.distance_m, distance, 1e-12);
         vec3d normal = {contact.normal[0], contact.normal[1], contact.normal[2]};
         assert_near(vec3d_norm(normal), 1, 1e-9);
-        double step = 1e-4; /* straight outwards the distance grows by the way, unless a ridge is near */
+        double step =
+            1e-4; /* along the normal the distance grows by the displacement, unless a ridge is near */
         if (distance > 0)
             assert_near(box_distance(vec3d_muladd(at, normal, step), half), distance + step, 1e-9);
     }
@@ -70,7 +72,7 @@ static void test_sphere_inside_and_out(void **state)
     tl_mesh_release(&mesh);
 }
 
-/* 1 inside and 0 outside, near faces, edges and corners too; solid angles add up to rounding. */
+/* The winding number is 1 inside and 0 outside to rounding, also near faces, edges and corners. */
 static void test_winding(void **state)
 {
     (void)state;
@@ -91,8 +93,9 @@ static void test_winding(void **state)
     tl_mesh_release(&mesh);
 }
 
-/* A box whose top is pushed 0.2 m below its bottom is inside out: who floats above the bottom sees its back,
- * at a negative distance, and is outside; between the two it is wound around the other way. */
+/* The top of a box is pushed 0.2 m below its bottom, so the box is inside out. A point above the bottom is
+ * nearest to the bottom's back, at a negative distance, and is outside. Between the two faces the winding
+ * number is -1. */
 static void test_inside_out_is_not_inside(void **state)
 {
     (void)state;
@@ -133,7 +136,8 @@ static void test_reach_and_nothing(void **state)
     tl_mesh_release(&mesh);
 }
 
-/* During a move the surface is at the blend of both poses; moved twice to one place it is at rest there. */
+/* During a move the surface is interpolated between both poses. A second move to the same positions brings it
+ * to rest. */
 static void test_moving(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* Contact: spheres that are draped, carried, and begun inside. Friction: test_friction.c. */
+/* Contact with draped, moving and initially penetrating spheres. Friction: test_friction.c. */
 #include "cloth/measure.h"
 #include "cloth/state.h"
 #include "tests/cloth/bodies.h"
@@ -9,7 +9,7 @@
 
 static const double thickness_m = 0.003;
 
-/* On a box whose top is at height 0, at the distance that contact keeps. */
+/* Places the sheet on a box whose top is at height 0, at the distance that contact keeps. */
 static vec3s place_on_box(double u, double v)
 {
     return (vec3s){{(float)(u - 0.1), (float)thickness_m, (float)(0.1 - v)}};
@@ -20,7 +20,7 @@ static vec3s above_sphere(double u, double v)
     return (vec3s){{(float)(u - 0.5), 0.72f, (float)(0.5 - v)}};
 }
 
-/* Over the middle of a sphere, 12 mm deep in it at the pole. */
+/* Places the sheet over the middle of a sphere, 12 mm deep in it at the pole. */
 static vec3s inside_sphere(double u, double v)
 {
     double x = u - 0.25, z = 0.25 - v, radius = 0.188 + x * x + z * z;
@@ -39,7 +39,7 @@ static double nearest_to_centre(const tl_cloth *cloth, vec3d centre)
 
 #define RADIUS 0.2
 #define RINGS  48
-/* Facets of the sphere lie inside it by this much. */
+/* Largest distance of the sphere's facets below the sphere. */
 static double sag(void)
 {
     return RADIUS * (1 - pow(cos(M_PI / (2 * RINGS)), 2));
@@ -62,7 +62,7 @@ static void test_drape_over_sphere(void **state)
         struct tl_cloth_report report = tl_cloth_measure(cloth, collider);
         assert_near(report.deepest_m, 0, 0);
         double nearest = nearest_to_centre(cloth, (vec3d){0, 0.5, 0});
-        /* A plane that is asked for again after 2 mm leaves this sphere by 0.01 mm. */
+        /* A plane that is queried again after 2 mm leaves this sphere by 0.01 mm. */
         assert_true(nearest > RADIUS + fabric.thickness_m - sag() - 1e-4);
     }
     tl_cloth_destroy(&cloth);
@@ -71,7 +71,7 @@ static void test_drape_over_sphere(void **state)
     sheet_free(&garment);
 }
 
-/* Penetration is taken out at a limited speed: nothing is thrown, and in the end nothing is inside. */
+/* Penetration is removed at a limited speed: particles stay slow, and in the end none is inside. */
 static void test_starting_penetration(void **state)
 {
     (void)state;
@@ -99,7 +99,7 @@ static void test_starting_penetration(void **state)
     sheet_free(&garment);
 }
 
-/* A box moves sideways at 0.3 m/s, gently set off: with enough friction the cloth on it goes along. */
+/* A box accelerates gently to 0.3 m/s sideways. With enough friction the cloth on it moves with it. */
 static void test_moving_collider_carries_cloth(void **state)
 {
     (void)state;
@@ -129,8 +129,8 @@ static void test_moving_collider_carries_cloth(void **state)
     sheet_free(&garment);
 }
 
-/* Puts a particle `above_m` above the box's top, as another part's plane would, and ends a step there. Where
- * it is afterwards, above the top. */
+/* Puts a particle `above_m` above the box's top, as the plane of another part would, and ends a step there.
+ * Returns the particle's height above the top after that. */
 static double end_step(tl_cloth *cloth, const tl_collider *collider, size_t particle, double above_m)
 {
     const struct tl_contact_params step = {
@@ -144,15 +144,15 @@ static double end_step(tl_cloth *cloth, const tl_collider *collider, size_t part
     return cloth->particles.x[particle].y;
 }
 
-/* What a moving body had caught is asked for at the end of each step, though it lies still within what its
- * plane is good for: between two parts one plane says nothing of the other. Across a reset, too. */
-static void test_what_was_caught_is_kept_outside_at_rest(void **state)
+/* A particle caught by a moving body is queried at the end of each step, even within the clearance of its
+ * plane: between two parts one plane does not describe the other part. This holds after a reset too. */
+static void test_caught_particles_stay_outside_at_rest(void **state)
 {
     (void)state;
     tl_error error = {0};
     const struct sheet_shape shape = {4, 4, 0.2, 0.2};
     enum { PARTICLE = 12 };
-    const double sunk_m = -0.0004; /* 1.4 mm from where the plane was asked for, which is good for 1.5 */
+    const double sunk_m = -0.0004; /* 1.4 mm from the query point of a plane that is valid for 1.5 mm */
     tl_garment garment = sheet_make(&shape, place_on_box);
     tl_mesh box = body_box((vec3s){{0, -0.5f, 0}}, (vec3s){{1, 0.5f, 1}}, 0);
     struct tl_cloth_fabric fabric = fabric_defaults();
@@ -178,7 +178,7 @@ static void test_what_was_caught_is_kept_outside_at_rest(void **state)
     sheet_free(&garment);
 }
 
-/* A pin near the avatar rides on it, turning with it; far from it, it stays. */
+/* A pin near the avatar moves and turns with it; a pin far from it stays. */
 static void test_pins_ride(void **state)
 {
     (void)state;
@@ -215,7 +215,7 @@ static void test_pins_ride(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_what_was_caught_is_kept_outside_at_rest),
+        cmocka_unit_test(test_caught_particles_stay_outside_at_rest),
         cmocka_unit_test(test_drape_over_sphere),
         cmocka_unit_test(test_starting_penetration),
         cmocka_unit_test(test_moving_collider_carries_cloth),

@@ -22,7 +22,7 @@ static vec3s place_on_slope(double u, double v)
                     (float)(-sin(tilt_now) * along + cos(tilt_now) * out), (float)(0.1 - v)}};
 }
 
-/* How far the middle of a sheet has slid down a slope after `seconds`, and how fast it says it is then. */
+/* Displacement of the middle of a sheet down a slope after `seconds`, and its velocity then. */
 struct slid {
     double way, speed;
 };
@@ -65,12 +65,12 @@ static void test_sticks(void **state)
                    tl_cloth_solver_names[solver], tan(slopes[i].tilt), slopes[i].friction, slid.way,
                    slid.speed);
             assert_near(slid.way, 0, 1e-4);
-            assert_near(slid.speed, 0, 1e-4); /* not half a substep of falling */
+            assert_near(slid.speed, 0, 1e-4); /* less than the fall in half a substep */
         }
 }
 
-/* Backward Euler's a/2 t (t + h), within the first-order error of short substeps and what a step in which
- * contact first presses takes. */
+/* Displacement by backward Euler: a/2 t (t + h), within the first-order error of short substeps and the
+ * duration of the first step with contact. */
 static void test_slides(void **state)
 {
     (void)state;
@@ -80,8 +80,9 @@ static void test_slides(void **state)
         for (size_t i = 0; i < TL_COUNT(slopes); i++) {
             double acceleration =
                 params_defaults().gravity * (sin(slopes[i].tilt) - slopes[i].friction * cos(slopes[i].tilt));
-            double h =
-                solver == TL_CLOTH_SETTLE ? params_defaults().dt : 0; /* others' are too short to matter */
+            double h = solver == TL_CLOTH_SETTLE
+                           ? params_defaults().dt
+                           : 0; /* the steps of the other solvers are too short to matter */
             double expected = 0.5 * acceleration * seconds * (seconds + h);
             double slid = slide(&slopes[i], solver, seconds).way;
             printf("slides, %s, tan %.2f, mu %.1f: off by %+.2f %%\n", tl_cloth_solver_names[solver],
@@ -188,7 +189,8 @@ static void test_capstan(void **state)
             printf("capstan, %s, mu %.1f: T2/T1 %.4f, exp(mu pi) %.4f: off by %+.2f %%\n",
                    tl_cloth_solver_names[solver], frictions[i], ratio, expected,
                    100 * (ratio / expected - 1));
-            double share = solver == TL_CLOTH_SETTLE ? 0.08 : 0.01; /* its rounds for friction are bounded */
+            double share =
+                solver == TL_CLOTH_SETTLE ? 0.08 : 0.01; /* its iterations for friction are limited */
             assert_near(ratio, expected, share * expected);
         }
 }

@@ -1,4 +1,4 @@
-/* Layers: the order of pieces, a shirt that no belt shows through, folds that keep their distance. */
+/* Layers: the order of pieces; a belt that must not show through a shirt; folds that keep their distance. */
 #include "assets/avatar.h"
 #include "cloth/measure.h"
 #include "cloth/state.h"
@@ -17,7 +17,7 @@ static double noise(uint32_t *state)
     return (*state >> 8) / 16777216.0;
 }
 
-/* The hash finds the pairs that comparing everyone with everyone finds, each once. */
+/* The hash finds exactly the pairs that a comparison of all particles finds, each once. */
 static void test_pairs(void **state)
 {
     (void)state;
@@ -50,8 +50,8 @@ static void test_pairs(void **state)
     tl_repulsion_release(&repulsion);
 }
 
-/* Two particles that meet stop at the thickness, keep their momentum, and lose slip by mu times the push. */
-static void test_pair_is_parted(void **state)
+/* Two colliding particles stop at the thickness, keep their momentum, and lose slip by mu times the push. */
+static void test_pair_is_separated(void **state)
 {
     (void)state;
     const double thickness = 0.004, friction = 0.3;
@@ -61,7 +61,7 @@ static void test_pair_is_parted(void **state)
     particles.w[1] = 3;
     particles.previous[0] = particles.x[0] = (vec3d){0};
     particles.previous[1] = (vec3d){0, 0.004, 0};
-    particles.x[1] = (vec3d){0.001, 0.003, 0}; /* came nearer by about 1 mm, and slipped by about 1 mm */
+    particles.x[1] = (vec3d){0.001, 0.003, 0}; /* approached by about 1 mm, and slipped by about 1 mm */
     struct tl_repulsion repulsion = {0};
     tl_repulsion_update(&repulsion, 2, particles.x, start, thickness);
     vec3d apart = particles.x[1];
@@ -86,7 +86,7 @@ static vec3s upright(double u, double v)
     return (vec3s){{(float)(u - 0.03), (float)(v + 0.01), (float)(0.004 * sin(25 * v))}};
 }
 
-/* How many pairs of particles that are not near in the pattern are nearer than half the thickness. */
+/* Counts the pairs of particles nearer than half the thickness that are not neighbours in the pattern. */
 static size_t count_touching(const tl_cloth *cloth, const tl_garment *garment)
 {
     const double apart_m = 0.02;
@@ -99,7 +99,7 @@ static size_t count_touching(const tl_cloth *cloth, const tl_garment *garment)
     return count;
 }
 
-/* A strip that comes down on its edge folds over itself in a heap. */
+/* A strip falls on its edge and folds over itself in a heap. */
 static size_t heap_up(bool self_repulsion)
 {
     tl_error error = {0};
@@ -128,7 +128,7 @@ static void test_heap(void **state)
     printf("heap: in 60 frames %zu pairs nearer than half the thickness, without repulsion %zu\n", with,
            without);
     assert_true(without > 1000);
-    assert_true(with < without / 10); /* what is pressed from both sides comes nearer for a moment */
+    assert_true(with < without / 10); /* particles pressed from both sides come nearer for a moment */
 }
 
 /* ---- Pieces ---- */
@@ -179,8 +179,8 @@ static double least_gap(const tl_cloth *cloth, size_t inner, size_t outer, size_
     return least;
 }
 
-/* Whichever comes first in the file, and however it is wound, the outer cloth is found and stays out;
- * beginning 1 mm apart, they are parted. Both ride on a sphere that turns under them. */
+/* The outer cloth is found and stays outside, whatever the order in the file and the winding. Cloths that
+ * start 1 mm apart are separated. Both move with a sphere that turns under them. */
 static void test_two_cloths(void **state)
 {
     (void)state;
@@ -206,9 +206,10 @@ static void test_two_cloths(void **state)
         assert_int_equal(cloth->layers.layer_of[outer], 1);
         assert_near(report.deepest_m, 0, 0);
         double gap = least_gap(cloth, inner, outer, count);
-        printf("two cloths: least gap %.2f mm\n", 1e3 * gap);
-        assert_true(gap >
-                    0.5 * fabric.thickness_m); /* they slide on one another: no longer quite on one ray */
+        printf("two cloths: smallest gap %.2f mm\n", 1e3 * gap);
+        assert_true(
+            gap >
+            0.5 * fabric.thickness_m); /* they slide on one another, so their vertices leave the common ray */
         tl_cloth_destroy(&cloth);
         tl_collider_destroy(&collider);
         tl_mesh_release(&sphere);
@@ -238,8 +239,8 @@ static tl_collider *piece_collider(const tl_cloth *cloth, const uint32_t *pieces
     return collider;
 }
 
-/* How far the trousers stick out through the shirt: of 15 points of every triangle of the shirt, those
- * nearest to the inside of a trouser triangle, rather than to its rim. */
+/* Depth of the shirt in the trousers: the largest of 15 points of every shirt triangle. Points whose nearest
+ * trouser point lies on the rim are left out. */
 static double deepest_in_trousers(const tl_cloth *cloth)
 {
     const double reach_m = 0.03;
@@ -314,7 +315,7 @@ static void test_shirt_over_trousers(void **state)
         tl_cloth_destroy(&cloth);
         tl_collider_destroy(&collider);
     }
-    assert_true(depths[0] > 5e-3); /* it shows without: see the picture from behind */
+    assert_true(depths[0] > 5e-3); /* without contact between layers the trousers show through */
     assert_true(depths[1] < 1e-3);
     tl_garment_release(&garment);
     tl_avatar_release(&avatar);
@@ -324,7 +325,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_pairs),
-        cmocka_unit_test(test_pair_is_parted),
+        cmocka_unit_test(test_pair_is_separated),
         cmocka_unit_test(test_heap),
         cmocka_unit_test(test_two_cloths),
         cmocka_unit_test(test_shirt_over_trousers),

@@ -1,7 +1,6 @@
-/* No particle is inside the avatar after a frame: on a man who walks with his arms through his skirt, and on
- * two bodies that twist, under every solver. TOILE_FRAMES=300 runs the full length: a minute and a half of
- * CPU for the reference on the man, half of one for settle; the default is a second and a half, and less of
- * what is slow. */
+/* No particle is inside the avatar after a frame, under every solver: on a man who walks with his arms
+ * through his skirt, and on two bodies that twist. TOILE_FRAMES=300 runs the full length: 90 s of CPU for the
+ * reference on the man, 30 s for settle. The default is 1.5 s of motion, and less for the slow solvers. */
 #include "assets/avatar.h"
 #include "assets/builtin/fit.h"
 #include "cloth/state.h"
@@ -13,7 +12,7 @@
 #define FRAME_RATE 30.0
 #define POSE_IN    30 /* frames from the rest pose to the clip's first */
 
-/* By default a share of a second and a half. */
+/* Number of frames: by default this share of 1.5 s. */
 static int frame_count(int share)
 {
     const char *wanted = getenv("TOILE_FRAMES");
@@ -50,7 +49,7 @@ static void undress(struct dressed *d)
     free(d->pose);
 }
 
-/* The worst of a run. */
+/* Largest values of a run. */
 struct worst {
     double deepest, strain;
     size_t caught, caught_frames;
@@ -69,10 +68,11 @@ static void step(struct dressed *d, struct worst *worst)
     worst->caught = report.caught_count > worst->caught ? report.caught_count : worst->caught;
     worst->caught_frames += report.caught_count > 0;
     assert_near(report.deepest_m, 0, tolerance);
-    assert_true(report.max_strain < 5); /* half of where the solver gives up; what is caught slips at 1.5 */
+    assert_true(report.max_strain <
+                5); /* half the strain at which the solver gives up; caught cloth slips at 1.5 */
 }
 
-static void tell(const char *name, int frames, const struct worst *worst)
+static void print_worst(const char *name, int frames, const struct worst *worst)
 {
     printf("%s: %d frames, deepest %.3g mm, strain %.2f, at most %zu vertices caught, in %zu frames\n", name,
            frames, 1e3 * worst->deepest, worst->strain, worst->caught, worst->caught_frames);
@@ -83,11 +83,13 @@ static void dress_walker(struct dressed *d, float edge_m)
     tl_error error = {0};
     assert_ok(tl_avatar_load(test_data("avatars/CesiumMan.glb"), &d->avatar, &error), error);
     assert_ok(tl_garment_cut("skirt", edge_m, &d->garment, &error), error);
-    (void)tl_garment_fit(&d->garment, "CesiumMan", &d->avatar.model.mesh, &error); /* may warn of its waist */
+    (void)tl_garment_fit(&d->garment, "CesiumMan", &d->avatar.model.mesh,
+                         &error); /* the garment may warn about its waist */
     dress(d);
 }
 
-/* Frame `frame` of the walk; the first ones lead to the clip's first pose, in straight lines. */
+/* Moves to frame `frame` of the walk. The first frames interpolate linearly from the rest pose to the clip's
+ * first pose. */
 static void walk(struct dressed *d, int frame)
 {
     const tl_model *model = &d->avatar.model;
@@ -108,7 +110,7 @@ static void test_walking(void **state)
         walk(&d, frame);
         step(&d, &worst);
     }
-    tell("walking", frames, &worst);
+    print_worst("walking", frames, &worst);
     double mean_height = 0;
     for (size_t i = 0; i < d.cloth->particles.count; i++)
         mean_height += d.cloth->particles.x[i].y / (double)d.cloth->particles.count;
@@ -124,8 +126,8 @@ static void change_solver(struct dressed *d, int solver)
     assert_ok(tl_cloth_set(d->cloth, &d->cloth->fabric, &params, &error), error);
 }
 
-/* Another solver takes over where the arms are about to brush the skirt. A coarse one: the reference's step
- * is short. */
+/* The tested solver takes over shortly before the arms reach the skirt. Settling uses a coarse one, because
+ * the reference's step is short. */
 static void check_walking(int solver, int frames)
 {
     struct dressed d = {0};
@@ -141,7 +143,7 @@ static void check_walking(int solver, int frames)
         walk(&d, frame);
         step(&d, &worst);
     }
-    tell(tl_cloth_solver_names[solver], frames, &worst);
+    print_worst(tl_cloth_solver_names[solver], frames, &worst);
     undress(&d);
 }
 
@@ -157,7 +159,7 @@ static void test_walking_settle(void **state)
     check_walking(TL_CLOTH_SETTLE, frame_count(2));
 }
 
-/* The shoulders turn against the feet, and the body sways to the side: every triangle moves and most bend. */
+/* The shoulders turn against the feet and the body sways sideways: every triangle moves and most deform. */
 static void twist(struct dressed *d, int frame)
 {
     const tl_mesh *mesh = &d->avatar.model.mesh;
@@ -184,7 +186,7 @@ static void check_twisting(const char *garment, const char *avatar, int solver, 
         step(&d, &worst);
     }
     printf("%s: ", tl_cloth_solver_names[solver]);
-    tell(garment, frames, &worst);
+    print_worst(garment, frames, &worst);
     undress(&d);
 }
 

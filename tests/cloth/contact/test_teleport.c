@@ -1,5 +1,5 @@
-/* Avatars that jump: the cloth goes along, stays on and outside; and the rigid motion that it goes along
- * with. */
+/* Avatars that jump: the cloth moves with them, stays worn and outside. Also the rigid fit that moves the
+ * cloth. */
 #include "cloth/mesh/rigid.h"
 #include "cloth/state.h"
 #include "tests/cloth/bodies.h"
@@ -8,15 +8,15 @@
 
 #include "config/log.h"
 
-/* Turned about an axis, and moved. */
+/* Turns p about an axis and translates it. */
 static vec3d moved_by(vec3d p, double angle, vec3d by)
 {
     return (vec3d){cos(angle) * p.x + sin(angle) * p.z + by.x, p.y + by.y,
                    cos(angle) * p.z - sin(angle) * p.x + by.z};
 }
 
-/* Points that truly moved rigidly: the fit is that motion, half a turn and a mirror-like flat set among them.
- */
+/* The fit of a rigid motion is that motion, also for half a turn and for a flat set of points, which a
+ * reflection would fit as well. */
 static void test_rigid_fit(void **state)
 {
     (void)state;
@@ -34,7 +34,7 @@ static void test_rigid_fit(void **state)
             struct tl_rigid rigid = tl_rigid_fit(from, to, COUNT);
             vec3d probe = {0.3, 0.2, -0.5};
             double error = vec3d_distance(tl_rigid_point(&rigid, probe), moved_by(probe, angles[a], by));
-            assert_near(error, 0, 5e-6); /* of coordinates in float, 10 m out */
+            assert_near(error, 0, 5e-6); /* rounding of float coordinates 10 m from the origin */
             vec3d turned = tl_rigid_turn(&rigid, probe);
             assert_near(vec3d_distance(turned, moved_by(probe, angles[a], (vec3d){0})), 0, 2e-6);
         }
@@ -47,7 +47,7 @@ static vec3s above(double u, double v)
     return (vec3s){{(float)(u - 0.25), 0.71f, (float)(0.25 - v)}};
 }
 
-/* A cloth lies on a sphere, which then jumps within one frame and stays there. */
+/* A cloth lies on a sphere that jumps within one frame and stays there. */
 static void jump(double angle, vec3d by, float scale)
 {
     tl_error error = {0};
@@ -71,7 +71,8 @@ static void jump(double angle, vec3d by, float scale)
         struct tl_cloth_report report = tl_cloth_measure(cloth, collider);
         assert_near(report.deepest_m, 0, 1e-6);
         assert_true(report.max_strain < 0.5);
-        assert_true(report.max_speed < (scale == 1 ? 1 : 3)); /* 1 cm in 33 ms, and what that throws up */
+        assert_true(report.max_speed <
+                    (scale == 1 ? 1 : 3)); /* 1 cm in 33 ms, and the velocity that contact adds */
     }
     assert_near(vec3d_distance(cloth->particles.x[100], marked), 0, 0.02 + 0.3 * fabs((double)scale - 1));
     tl_cloth_destroy(&cloth);
@@ -92,7 +93,7 @@ static void test_half_turn(void **state)
     jump(M_PI, (vec3d){0.6, 0, 0}, 1);
 }
 
-/* Not a jump: what grows by 5 % within a frame comes up under the cloth, and pushes it out. */
+/* A sphere that grows by 5 % within a frame does not count as a jump; it pushes the cloth out. */
 static void test_growing(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* A hand that pulls at a vertex: it goes evenly from frame to frame, so that cloth of any fineness can
+/* A hand pulls at a vertex. It moves at constant speed within a frame, so that cloth of any resolution can
  * follow. */
 #include "tests/cloth/solvers.h"
 
@@ -8,11 +8,11 @@
 
 #include <stdio.h>
 
-/* Vertices are half a millimetre apart, and the hand goes a sixth of the sheet a frame: six of its edges. It
- * yields where it strains an edge by more than TL_HAND_STRAIN; the next ones may take as much again. The
- * cloth comes along all the same: at once where a step is solved to its end, else as fast as one sweep a
- * substep passes the pull on (measured: 31 to 45 mm of 50 on the way, then to and fro about the hand). */
-static void what_is_fine_goes_along(void **state)
+/* The hand moves a sixth of a sheet with edges of 0.5 mm per frame: six edges. It yields if it strains an
+ * edge by more than TL_HAND_STRAIN; the next edges may strain as much. The cloth has to follow all the same:
+ * at once if a step is solved exactly, else as fast as one sweep per substep passes the pull on (measured: 31
+ * to 45 mm of 50 during the motion, then oscillating about the hand). */
+static void fine_cloth_follows_the_hand(void **state)
 {
     (void)state;
     const struct sheet_shape shape = {40, 40, 0.02, 0.02};
@@ -50,7 +50,7 @@ static void what_is_fine_goes_along(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_fine_goes_along),
+        cmocka_unit_test(fine_cloth_follows_the_hand),
     };
     tl_log_set_level(TL_LOG_WARN);
     return cmocka_run_group_tests(tests, NULL, NULL);

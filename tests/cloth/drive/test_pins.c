@@ -1,5 +1,5 @@
-/* Pins: by height, by hand, from a file, in the avatar and out of it; and the strain limit on what hangs from
- * them. */
+/* Pins by height, by hand and from a file, inside and outside the avatar; and the strain limit of cloth that
+ * hangs from pins. */
 #include "cloth/state.h"
 #include "tests/cloth/bodies.h"
 #include "tests/cloth/sheets.h"
@@ -34,7 +34,7 @@ static void run(tl_cloth *cloth, int frames)
         assert_ok(tl_cloth_step(cloth, NULL, &error), error);
 }
 
-/* What starts above the height stays, to the bit; the rest falls when the pins go. */
+/* Vertices above the height stay in place, to the bit. The others fall when the pins are removed. */
 static void test_by_height(void **state)
 {
     (void)state;
@@ -60,7 +60,7 @@ static void test_by_height(void **state)
     sheet_free(&garment);
 }
 
-/* A pin by hand holds one vertex where it is, until it is taken out, or the cloth goes back to its start. */
+/* A pin by hand holds one vertex until it is removed or the cloth is reset. */
 static void test_by_hand(void **state)
 {
     (void)state;
@@ -72,7 +72,7 @@ static void test_by_hand(void **state)
     run(cloth, 3);
     vec3d held = cloth->particles.x[corner];
     tl_cloth_pin(cloth, corner);
-    tl_cloth_pin(cloth, UINT32_MAX); /* no such vertex: nothing */
+    tl_cloth_pin(cloth, UINT32_MAX); /* no such vertex: no effect */
     run(cloth, 30);
     assert_near(vec3d_distance(cloth->particles.x[corner], held), 0, 0);
     assert_int_equal(tl_cloth_unpin(cloth), 1);
@@ -87,7 +87,7 @@ static void test_by_hand(void **state)
     sheet_free(&garment);
 }
 
-/* A pin that starts inside the avatar is held outside, and goes along when the avatar moves. */
+/* A pin that starts inside the avatar is held outside, and moves with the avatar. */
 static void test_in_avatar(void **state)
 {
     (void)state;
@@ -122,7 +122,7 @@ static void write_file(const char *path, const void *bytes, size_t size)
     assert_int_equal(fclose(file), 0);
 }
 
-/* A square whose upper two corners the attribute _PIN holds, and whose third one is red. */
+/* A square whose upper two corners are pinned by the attribute _PIN, and whose third corner is red. */
 static tl_garment load_painted(void)
 {
     static const struct {
@@ -162,7 +162,8 @@ static tl_garment load_painted(void)
     return garment;
 }
 
-/* What the file holds stays, to the bit; its colours hold when they are asked to. */
+/* Vertices pinned by the file stay in place, to the bit. Its vertex colours pin only if that option is set.
+ */
 static void test_from_file(void **state)
 {
     (void)state;
@@ -189,8 +190,8 @@ static void test_from_file(void **state)
     tl_garment_release(&garment);
 }
 
-/* At its top a strip of length L stretches by rho g L / k. Beyond the limit preview stops, within one sweep's
- * error; with no limit it does not. */
+/* A strip of length L stretches at its top by rho g L / k. Preview stops at the strain limit, within the
+ * error of one sweep; without a limit it exceeds it. */
 static void test_strain_limit(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* Seams: two panels on either side of a body are drawn together around it and become one cloth. */
+/* Seams: two panels on either side of a body are pulled together around it and become one cloth. */
 #include "cloth/build.h"
 #include "cloth/state.h"
 #include "tests/cloth/bodies.h"
@@ -11,8 +11,8 @@
 #define ROWS    16
 static const struct sheet_shape panel = {COLUMNS, ROWS, 0.6, 0.4};
 
-/* Two panels in one mesh, `gap` metres apart, before and behind the origin, 0.3 to 0.7 m high; their sides
- * and half of their tops are sewn. */
+/* Two panels in one mesh, `gap` metres apart, in front of and behind the origin, 0.3 to 0.7 m high. Their
+ * sides and half of their tops are sewn. */
 static tl_garment two_panels(double gap)
 {
     tl_garment front = sheet_make(&panel, NULL), back = sheet_make(&panel, NULL);
@@ -47,7 +47,7 @@ static tl_garment two_panels(double gap)
     return front;
 }
 
-/* 30 cm of gap around a sphere as wide as it. */
+/* The gap is 30 cm; the sphere between the panels is as wide. */
 static void test_panels_close_around_a_body(void **state)
 {
     (void)state;
@@ -80,7 +80,7 @@ static void test_panels_close_around_a_body(void **state)
     sheet_free(&garment);
 }
 
-/* What a wall holds apart stays two, linked; and nothing explodes. */
+/* Seam vertices that a wall keeps apart remain separate and linked, and the motion stays bounded. */
 static void test_held_apart(void **state)
 {
     (void)state;
@@ -115,7 +115,7 @@ static void test_joining_keeps_momentum(void **state)
     uint32_t *joined = TL_NEW_ARRAY(uint32_t, count);
     for (size_t i = 0; i < count; i++)
         joined[i] = (uint32_t)(i % half);
-    vec3d sums[2][2] = {0}; /* momentum, mass times place; before, after */
+    vec3d sums[2][2] = {0}; /* momentum, and mass times position; before, after */
     double masses[2] = {0};
     for (int after = 0; after < 2; after++) {
         for (size_t i = 0; i < cloth->particles.count; i++) {

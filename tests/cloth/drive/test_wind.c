@@ -1,4 +1,4 @@
-/* Wind against closed forms: the fall of a flat sheet, the pull on a held one; and a flag that flies. */
+/* Wind against closed forms: the fall of a flat sheet and the force on a held one; and a flag in the wind. */
 #include "cloth/drive/wind.h"
 #include "cloth/measure.h"
 #include "cloth/state.h"
@@ -12,8 +12,8 @@ static vec3s lying(double u, double v)
     return (vec3s){{(float)u, 100, (float)-v}};
 }
 
-/* v = v_t tanh(g t / v_t), v_t = sqrt(2 g areal density / rho). The air is one that moves as little as the
- * option may say: what counts is the speed against it. */
+/* v = v_t tanh(g t / v_t), v_t = sqrt(2 g areal density / rho). The air moves at the smallest speed that the
+ * option allows: the force depends on the speed relative to it. */
 static void test_terminal_velocity(void **state)
 {
     (void)state;
@@ -31,7 +31,7 @@ static void test_terminal_velocity(void **state)
             params.dt = 1.0 / 600;
             params.substeps = 4;
             params.cg_tolerance =
-                1e-9; /* of the momentum: a looser one overlooks the weight of what flies fast */
+                1e-9; /* relative to the momentum: a looser tolerance would miss the weight of fast cloth */
             params.wind[0] = (float)still;
             tl_cloth *cloth = tl_cloth_create(&garment, &fabric, &params, &error);
             assert_non_null(cloth);
@@ -39,7 +39,7 @@ static void test_terminal_velocity(void **state)
             for (int frame = 1; frame <= 30; frame++) {
                 assert_ok(tl_cloth_step(cloth, NULL, &error), error);
                 double expected = terminal * tanh(params.gravity * frame / params.frame_rate / terminal);
-                /* First order in the step: of the speed, at most g h / v_t and that much again. */
+                /* The error is of first order in the step: at most 2 g h / v_t, relative to the speed. */
                 for (size_t i = 0; i < cloth->particles.count; i++)
                     assert_near(-cloth->particles.v[i].y, expected, 0.02 * terminal);
             }
@@ -49,8 +49,8 @@ static void test_terminal_velocity(void **state)
         }
 }
 
-/* The forces on a sheet across the wind sum to 1/2 rho A v^2, along its normal: times cos^2 when it is
- * tilted. */
+/* The forces on a sheet across the wind sum to 1/2 rho A v^2 along its normal, times cos^2 if it is tilted.
+ */
 static void test_pressure(void **state)
 {
     (void)state;
@@ -78,7 +78,7 @@ static void test_pressure(void **state)
     sheet_free(&garment);
 }
 
-/* Gusts stay within their share, have no drift, and travel with the wind. */
+/* Gusts stay within their share, have zero mean and travel with the wind. */
 static void test_gusts(void **state)
 {
     (void)state;
@@ -100,8 +100,8 @@ static void test_gusts(void **state)
     assert_near(vec3d_distance(here, tl_wind_at(&wind, (vec3d){0})), 0, 1e-12);
 }
 
-/* Held along one side: it streams out down the wind, flutters, and hangs in between as weight against
- * pressure says: the stiller the air, the steeper. */
+/* A flag held along one side: it streams downwind and flutters. Its mean slope follows from weight against
+ * pressure: the slower the wind, the steeper. */
 static double fly(double speed, double *flutter)
 {
     tl_error error = {0};
@@ -113,7 +113,8 @@ static double fly(double speed, double *flutter)
     struct tl_cloth_params params = params_defaults();
     fabric.areal_density = 0.05;
     params.wind[0] = (float)speed;
-    params.wind[2] = (float)(0.15 * speed); /* a little aside: from straight on a flat flag feels nothing */
+    params.wind[2] =
+        (float)(0.15 * speed); /* slightly from the side: a flat flag exactly along the wind has no force */
     params.gust = 0.3;
     tl_cloth *cloth = tl_cloth_create(&garment, &fabric, &params, &error);
     double reach = 0;
