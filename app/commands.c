@@ -21,8 +21,8 @@ static const struct tl_command commands[] = {
      "Opens the review window: orbit, play, pull on the cloth, change fabric and light.",
      TL_FLAGS_SCENE | TL_FLAGS_WINDOW | TL_FLAGS_BUDGET, tl_command_view},
     {"render", "render [SCENE] -o OUT.exr|OUT.png [OPTIONS]",
-     "Renders frames without a screen: .exr holds linear radiance and coverage, .png what a person would "
-     "see.",
+     "Renders frames without a screen: .exr holds linear radiance and coverage, .png the picture as "
+     "displayed.",
      TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_FRAME | TL_FLAGS_FRAMES | TL_FLAGS_AOV, tl_command_render},
     {"fly", "fly [SCENE] -o FOLDER [--budget MS] [--path FILE.yaml] [--frames N] [OPTIONS]",
      "Flies round the moving garment and records every frame: FOLDER/frames.csv, summary.json, report.html.",
@@ -31,12 +31,13 @@ static const struct tl_command commands[] = {
      "Prints what would run for a frame, why, at what cost and in how much memory.",
      TL_FLAGS_SCENE | TL_FLAGS_FRAME | TL_FLAGS_JSON | TL_FLAGS_BUDGET, tl_command_plan},
     {"bench", "bench light|cloth|shading [--json] [--quick|--full] [SCENE] [OPTIONS]",
-     "Measures ratios side by side in one run: light: the presets' CPU time and error in motion; cloth: the "
-     "solvers' steps per second beside a plain loop's, normals and tangents, a dress that comes to rest.",
+     "Measures methods against each other in one run: light: the presets' CPU time and error in motion; "
+     "cloth: the "
+     "solvers' steps per second against a plain loop's, normals and tangents, a dress that comes to rest.",
      TL_FLAGS_SCENE | TL_FLAGS_JSON | TL_FLAGS_QUICK | TL_FLAGS_FULL, tl_command_bench},
     {"check", "check [SCENE] [--frames N] [--budget MS] [--keep FOLDER] [--json] [OPTIONS]",
-     "Plays a scene and holds every frame against a table of invariants: geometry, pixels, shadow maps, "
-     "visibility, regions, cloth, the oracle; tells the worst of each, where it was, and fails when one "
+     "Plays a scene and checks every frame against a table of invariants: geometry, pixels, shadow maps, "
+     "visibility, regions, cloth, the oracle. Reports the worst of each and where it was; fails when one "
      "breaks.",
      TL_FLAGS_SCENE | TL_FLAGS_JSON | TL_FLAGS_CHECK | TL_FLAGS_BUDGET, tl_command_check},
     {"trade",
@@ -45,25 +46,23 @@ static const struct tl_command commands[] = {
      "Measures error against time over many choices of settings: FOLDER/trade.csv and report.html.",
      TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_AXIS | TL_FLAGS_QUICK, tl_command_trade},
     {"stability", "stability [light|cloth|detail|shading] [--json] [--quick] [-o FOLDER] [OPTIONS]",
-     "Runs the extremes, cell by cell: exact, within a stated bound, or refused with a clear message; "
-     "FOLDER gets a table of all cells and a picture of the cloth's.",
+     "Runs extreme inputs and settings, and checks that each result is exact, within a stated bound, or "
+     "refused with a clear message; FOLDER gets a table of all cases and a picture of the cloth's.",
      TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_JSON | TL_FLAGS_QUICK, tl_command_stability},
-    {"gallery", "gallery [WALL] -o FOLDER [--quick]",
-     "Hangs every technique and setting beside its exact evaluation, with its error and its time: pictures, "
-     "FOLDER/gallery.html and gallery.csv.",
+    {"gallery", "gallery [SECTION] -o FOLDER [--quick]",
+     "Renders every technique and setting next to its exact evaluation, with its error and its time: "
+     "pictures, FOLDER/gallery.html and gallery.csv.",
      TL_FLAGS_OUTPUT | TL_FLAGS_QUICK, tl_command_gallery},
     {"sheet", "sheet [SCENE] -o OUT.png|FOLDER [OPTIONS]",
      "Draws a contact sheet: garments x fabrics or colourways down, environments x views across, as one "
-     "image "
-     "or as a folder with a page. Stopped, the same command goes on where it was.",
+     "image or as a folder with a page. After an interruption the same command continues.",
      TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_FRAME | TL_FLAGS_SHEET, tl_command_sheet},
     {"compare", "compare TESTED REFERENCE [--json] [--ldr|--hdr]",
-     "Tells how different two images are: relative RMSE, mean FLIP, largest difference.",
+     "Prints how much two images differ: relative RMSE, mean FLIP, largest difference.",
      TL_FLAGS_JSON | TL_FLAGS_METRIC, tl_command_compare},
     {"export", "export [SCENE] -o OUT.glb|OUT.obj|OUT.pc2|OUT.mdd [OPTIONS]",
      "Writes a frame: the garment and its avatar as .glb, the garment as .obj; or with --frames the "
-     "garment's "
-     "motion as .pc2 or .mdd.",
+     "garment's motion as .pc2 or .mdd.",
      TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_FRAME | TL_FLAGS_FRAMES, tl_command_export},
     {"env",
      "env IN -o OUT.exr --layout cube|sphere|paraboloid|latlong|octahedral [--from LAYOUT] [--size N]\n"
@@ -71,13 +70,12 @@ static const struct tl_command commands[] = {
      "Converts an environment map between layouts, keeping its light; or captures one from a scene.",
      TL_FLAGS_OUTPUT | TL_FLAGS_LAYOUT | TL_FLAGS_CAPTURE, tl_command_env},
     {"fabric", "fabric IN.png|IN.exr -o FOLDER [--repeat-mm MM] [--height-mm MM] [--clamp]",
-     "Bakes normal, offset, horizon and gloss maps from a height map, and tells their size and scale.",
+     "Bakes normal, offset, horizon and gloss maps from a height map, and prints their size and scale.",
      TL_FLAGS_OUTPUT | TL_FLAGS_FABRIC, tl_command_fabric},
-    {"cache", "cache [--clear] [--json]",
-     "Lists the drapes that are kept so that a scene need not drape again, or removes them.",
+    {"cache", "cache [--clear] [--json]", "Lists the drapes that are kept for reuse, or removes them.",
      TL_FLAGS_JSON | TL_FLAGS_CLEAR, tl_command_cache},
     {"info", "info FILE|fabrics|presets|garments [--json]",
-     "Tells what a file holds and how it will be read, or lists what is built in.", TL_FLAGS_JSON,
+     "Prints what a file holds and how it will be read, or lists what is built in.", TL_FLAGS_JSON,
      tl_command_info},
     {"help", "help [COMMAND|options|reference]",
      "Lists the commands, explains one, or prints every option (reference: as a Markdown page).", 0,
@@ -132,6 +130,6 @@ bool tl_command_help(const struct tl_arguments *arguments, tl_error *error)
            TOILE_VERSION);
     for (size_t i = 0; i < TL_COUNT(commands); i++)
         printf("  %-9s %s\n", commands[i].name, commands[i].help);
-    printf("\n`toile COMMAND --help` tells more, `toile help options` lists every option.\n");
+    printf("\n`toile COMMAND --help` explains a command, `toile help options` lists every option.\n");
     return true;
 }

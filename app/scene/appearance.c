@@ -58,7 +58,7 @@ static void set_params(const struct tl_material_params *params, tl_material *mat
     material->openness = params->openness;
 }
 
-/* The yarns of a fabric, or NULL: they are shared by the materials that show them. */
+/* Finds or makes the weave of a fabric; NULL when it has none. Materials of one fabric share it. */
 static bool find_weave(struct tl_appearance *appearance, const struct tl_weave_params *params,
                        const tl_weave **out, tl_error *error)
 {
@@ -82,7 +82,7 @@ static bool find_weave(struct tl_appearance *appearance, const struct tl_weave_p
     return true;
 }
 
-/* What is left of a print when it is dyed over: its holes. */
+/* Replaces a colour map by its alpha alone: a material without its print keeps its holes. */
 static void drop_print(struct tl_appearance *appearance, tl_material *material)
 {
     const tl_image *print = material->diffuse_map.image;

@@ -55,7 +55,7 @@ struct tl_session {
         struct tl_appearance appearance;
         uint64_t revision;
         struct tl_settings made_of;
-    } spares[2]; /* the last one first: the look before, for comparisons that go to and fro, and the next */
+    } spares[2]; /* the newest first: comparisons switch to and fro between the last one and the next */
 
     int frame;
     struct tl_box framed; /* what the camera frames: all there is at frame 0 */
@@ -72,7 +72,7 @@ static bool is_built_in_garment(const char *name)
     return false;
 }
 
-/* What was guessed is said aloud. */
+/* Reports which units and which up axis were guessed. */
 static void report_units(const tl_model *model, const char *option)
 {
     char *lines[] = {tl_units_describe(model->name, &model->units, option),
@@ -120,7 +120,8 @@ static bool plays_motion(const tl_session *session)
     return strcmp(session->settings.scene.motion, "none") != 0;
 }
 
-/* A mesh of long edges cannot fold. What is played back has the vertices of its file. */
+/* Splits long edges, across which cloth cannot fold. A garment that is played back is left as it is: its
+ * motion has one position for each vertex of the file. */
 static bool refine_garment(const tl_session *session, tl_garment *garment, tl_error *error)
 {
     float max_m = session->settings.cloth.longest_edge_m;
@@ -137,7 +138,8 @@ static bool refine_garment(const tl_session *session, tl_garment *garment, tl_er
     return true;
 }
 
-/* What nobody wears is not placed by anybody: below the ground it would be hidden, and pushed out of it. */
+/* Lifts a garment without an avatar onto the ground. No body places it, and below the ground it would be
+ * hidden, and pushed out at the first step. */
 static void lift_garment(const tl_session *session, tl_garment *garment)
 {
     tl_mesh *mesh = &garment->model.mesh;
@@ -150,7 +152,7 @@ static void lift_garment(const tl_session *session, tl_garment *garment)
             garment->model.name, (double)-lowest_m);
 }
 
-/* From a file. */
+/* Reads the garment from a file, lifts and refines it. */
 static bool read_garment(const tl_session *session, tl_garment *out, tl_error *error)
 {
     const struct tl_scene_params *scene = &session->settings.scene;
@@ -246,7 +248,7 @@ static bool play_back(tl_session *session, int number, tl_error *error)
     return true;
 }
 
-/* Other programs put the floor elsewhere. */
+/* Reports a motion that reaches below the ground: other programs put the floor elsewhere. */
 static void report_ground(const tl_session *session)
 {
     const float noticed_m = 0.01f;
@@ -256,8 +258,8 @@ static void report_ground(const tl_session *session)
                 session->settings.scene.motion, (double)-lowest_m);
 }
 
-/* The motion's first sample says what is sewn together: a garment that was cut as panels has closed its seams
- * there. */
+/* Welds vertices by the motion's first sample: there a garment that was cut as panels has closed its seams.
+ */
 static bool begin_playback(tl_session *session, tl_error *error)
 {
     const tl_model *model = &session->garment->model;
@@ -279,7 +281,7 @@ static bool begin_playback(tl_session *session, tl_error *error)
     return posed;
 }
 
-/* How far a sequence of environments has played at frame `number`, in its own frames. */
+/* The position: how far a sequence of environments has played at frame `number`, in its own frames. */
 static double light_position(const struct tl_settings *settings, int number)
 {
     return number / settings->cloth.frame_rate * (double)settings->scene.environment_rate;
@@ -321,7 +323,7 @@ static bool make_appearance(const tl_session *session, const struct tl_settings 
     return tl_session_make_appearance(&models, settings, out, error);
 }
 
-/* A missing file is refused before anything is made: the built-in form alone takes half a second. */
+/* Checks the files before anything is made: the built-in form alone takes half a second. */
 static bool check_files(const struct tl_scene_params *scene, tl_error *error)
 {
     const char *names[] = {scene->garment, scene->avatar};
@@ -402,8 +404,8 @@ bool tl_session_advance(tl_session *session, tl_error *error)
     double position = light_position(&session->settings, session->frame + 1);
     if (!tl_moving_light_follow(&session->light, position, error))
         return false;
-    if (session->clip >=
-        0) /* else it stands as it stood, and nothing that follows from it need be done again */
+    /* Without a clip the avatar stands still: its normals and the collider need no update. */
+    if (session->clip >= 0)
         pose_avatar(session, time_s);
     if (session->cloth) {
         if (!tl_cloth_step(session->cloth, session->collider, error))
@@ -428,7 +430,7 @@ bool tl_session_reset(tl_session *session, tl_error *error)
     if (session->avatar) {
         pose_avatar(session, 0);
         tl_moving_restart(&session->body);
-        pose_avatar(session, 0); /* twice: the collider is at rest */
+        pose_avatar(session, 0); /* twice: the collider then has no velocity */
     }
     if (session->cloth) {
         tl_cloth_reset(session->cloth);
@@ -477,7 +479,7 @@ bool tl_session_needs_appearance(const struct tl_settings *old, const struct tl_
     return !tl_settings_equal(&same, new);
 }
 
-/* Colourways belong to a garment: with the garment that is kept, its colourways are kept too. */
+/* Copies the colourways with the garment: they belong to it. */
 void tl_session_keep_scene(const struct tl_settings *kept, struct tl_settings *settings)
 {
     const struct tl_option_filter colourways = {.any_of = TL_AFFECTS_GARMENT};
@@ -489,7 +491,7 @@ void tl_session_keep_scene(const struct tl_settings *kept, struct tl_settings *s
     tl_settings_take(kept, settings, scene);
 }
 
-/* Revisions go on rising, so that the renderer sees everything as new. */
+/* Adds the old revisions to the new ones: they go on rising, so the renderer uploads everything again. */
 void tl_session_replace(tl_session *session, tl_session **made)
 {
     tl_session *fresh = *made;
@@ -523,7 +525,7 @@ bool tl_session_restart(tl_session *session, const struct tl_settings *settings,
     return true;
 }
 
-/* Light and cloth. */
+/* Changes environment and cloth without loading the scene again. */
 static bool change_in_place(tl_session *session, const struct tl_settings *settings, tl_error *error)
 {
     double position = light_position(settings, session->frame);
@@ -532,7 +534,7 @@ static bool change_in_place(tl_session *session, const struct tl_settings *setti
             ? !tl_moving_light_open(&session->light, environment, position, error)
             : !tl_moving_light_follow(&session->light, position, error))
         return false;
-    /* To set the cloth's options forgets its contacts, so that is done only where one of them has changed. */
+    /* tl_cloth_set discards the contacts, so it is called only when one of its options has changed. */
     bool same_cloth = !tl_settings_differ(&session->settings, settings,
                                           (struct tl_option_filter){.any_of = TL_AFFECTS_CLOTH});
     return !session->cloth || same_cloth ||
@@ -547,7 +549,7 @@ static struct tl_spare_appearance *find_spare(tl_session *session, const struct 
     return NULL;
 }
 
-/* In the place of the oldest one. */
+/* Keeps an appearance in place of the oldest one. */
 static void add_spare(tl_session *session, const struct tl_settings *made_of,
                       const struct tl_appearance *appearance, uint64_t revision)
 {
@@ -558,7 +560,7 @@ static void add_spare(tl_session *session, const struct tl_settings *made_of,
     spares[0] = (struct tl_spare_appearance){true, *appearance, revision, *made_of};
 }
 
-/* Takes up the look that was set aside, in exchange for the present one. */
+/* Exchanges the present appearance for a kept one. */
 static void exchange_appearance(tl_session *session, struct tl_spare_appearance *spare)
 {
     const struct tl_spare_appearance taken = *spare;

@@ -1,5 +1,18 @@
-/* A session: settings -> a running garment. Loads what the scene names, drapes it, and hands one frame after
- * the other to the renderer. Knows no GL. */
+/* A session: settings -> a running garment. It loads what the scene names, drapes it, and hands one frame
+ * after the other to the renderer. It uses no GL.
+ *
+ * Units: metres, seconds; world space is right-handed, +Y up.
+ *
+ * Errors: a function that can fail takes a tl_error and says below which codes it sets. TL_USAGE: an option
+ * that means nothing for this scene; TL_INPUT: a file that cannot be read; TL_INTERRUPTED: the user stopped
+ * it.
+ *
+ * Lifetime: a session owns all that it loads. What it hands out is borrowed, until the call that each
+ * function names.
+ *
+ * Threads: a session is used by one thread at a time, which may be any. Two sessions do not share anything
+ * that is written to, so one may be created on a worker thread while another plays. Functions marked pure may
+ * be called on any thread. */
 #ifndef TOILE_APP_SCENE_SESSION_H
 #define TOILE_APP_SCENE_SESSION_H
 
@@ -11,79 +24,165 @@
 
 typedef struct tl_session tl_session;
 
-/* Loads and settles; shows progress. */
-tl_session *tl_session_create(const struct tl_settings *settings, tl_error *error);
-void tl_session_destroy(tl_session **handle); /* nulls it; null is fine */
+/* ---- A session's life ---- */
 
-/* One frame (1/frame_rate s) further: avatar, cloth, normals and tangents. */
+/* Loads avatar, garment and environment, drapes the garment, and reports progress in the log.
+ * Errors: NULL, with TL_USAGE (an unknown colourway; neither garment nor avatar), TL_INPUT (a file, a clip),
+ * TL_INTERRUPTED, or the error of the drape.
+ * Lifetime: `settings` is copied; the caller destroys the session.
+ * Threads: any; it runs for seconds. */
+tl_session *tl_session_create(const struct tl_settings *settings, tl_error *error);
+
+/* Frees the session and nulls *handle; a null *handle is fine.
+ * Lifetime: everything that was borrowed from the session ends.
+ * Threads: any, once no other one uses the session or its models. */
+void tl_session_destroy(tl_session **handle);
+
+/* ---- Time ---- */
+
+/* Goes on by one frame (1/frame_rate s): environment, avatar, cloth, normals and tangents.
+ * Errors: TL_INPUT when a sequence's or a motion's next file cannot be read, or the error of tl_cloth_step.
+ * The frame number then stays, but parts may have moved: reset the session or destroy it. Lifetime: ends the
+ * last tl_session_frame. Threads: the session's. */
 bool tl_session_advance(tl_session *session, tl_error *error);
-/* To frame `number` (0 = settled), from the start when it lies behind. */
+
+/* Goes to frame `number` (0: the settled start), and through the start when it lies behind: cloth has no way
+ * back.
+ * Errors: as tl_session_advance, and TL_INTERRUPTED at the frame that was reached.
+ * Lifetime: ends the last tl_session_frame.
+ * Threads: the session's. */
 bool tl_session_go_to(tl_session *session, int number, tl_error *error);
+
+/* The number of the present frame. Errors: none. Threads: the session's. */
 int tl_session_frame_number(const tl_session *session);
-/* Settled state again, frame 0. */
+
+/* Goes back to frame 0, the settled state, without draping again.
+ * Errors: as tl_session_advance, without the cloth's.
+ * Lifetime: ends the last tl_session_frame.
+ * Threads: the session's. */
 bool tl_session_reset(tl_session *session, tl_error *error);
 
-/* Takes over changed settings: reloads or re-weaves only what differs. On failure the session is as it was.
- * To and fro between two appearance costs nothing: the last ones are kept. */
+/* ---- Changes ---- */
+
+/* Changes the settings: loads or rebuilds only what differs. The last two appearances are kept, so that to
+ * switch between two of them costs nothing.
+ * Errors: as tl_session_create when the scene has to be loaded again, else those of the appearance, the
+ * environment or tl_cloth_set; the settings stay as they were.
+ * Lifetime: `settings` is copied; ends the last tl_session_frame, and all else that is borrowed when the
+ * scene is loaded again. Threads: the session's. */
 bool tl_session_apply(tl_session *session, const struct tl_settings *settings, tl_error *error);
-/* The same, but all is loaded and draped anew: as another fabric would fall, which only moves the cloth on
- * when it is applied. A new session in a renderer's sight begins like this, not with tl_session_create. */
+
+/* Loads and drapes everything again. tl_session_apply lets a draped cloth of another fabric move on from
+ * where it is; this shows how that fabric falls from the start. A renderer that has drawn the session needs
+ * this instead of a new session: revisions go on rising. Errors: as tl_session_create; the session stays as
+ * it was. Lifetime: `settings` is copied; ends all that is borrowed. Threads: the session's. */
 bool tl_session_restart(tl_session *session, const struct tl_settings *settings, tl_error *error);
+
+/* The present settings. Errors: none. Lifetime: borrowed until the session is destroyed; the values change
+ * with the session. Threads: the session's. */
 const struct tl_settings *tl_session_settings(const tl_session *session);
 
-/* For those who make a scene beside the one that is shown (app/view/review/loader.h). True when from `old` to
- * `new` the scene has to be made anew; or another environment be read; or cloth look different, or be drawn
- * in another way. Pure. */
+/* ---- Loading on a worker thread (app/view/review/loader.h) ---- */
+
+/* What a change from `old` to `new` asks for: to load the scene again; to read another environment; to make
+ * or draw the appearance in another way. Errors: none. Threads: pure. */
 bool tl_session_needs_scene(const struct tl_settings *old, const struct tl_settings *new);
 bool tl_session_needs_light(const struct tl_settings *old, const struct tl_settings *new);
 bool tl_session_needs_appearance(const struct tl_settings *old, const struct tl_settings *new);
-/* Sets the options that decide the first two to those of `kept`; tl_appearance_take does so with the third.
- * Pure.
- */
+
+/* Copies from `kept` into `settings` the options that decide the first two; tl_appearance_take copies those
+ * of the third. Errors: none. Threads: pure. */
 void tl_session_keep_scene(const struct tl_settings *kept, struct tl_settings *settings);
-/* Becomes what was made beside it; *made is nulled. */
+
+/* Gives the session the contents of *made, with revisions above its own, so that the renderer uploads
+ * everything.
+ * Errors: none.
+ * Lifetime: takes *made and nulls it; ends all that was borrowed from either.
+ * Threads: the session's; no other thread may read the session's models. */
 void tl_session_replace(tl_session *session, tl_session **made);
+
+/* Gives the session another environment, and its name in scene.environment.
+ * Errors: none.
+ * Lifetime: takes the contents of *made and empties it; ends the last tl_session_frame.
+ * Threads: the session's. */
 void tl_session_replace_light(tl_session *session, struct tl_moving_light *made, const char *name);
-/* The models of a session's scene: all that another look of it is made from. Nothing writes to them while the
- * session keeps its scene, so that another thread may read them while the session plays. Borrowed: they are
- * freed with the scene. NULL: the scene has none. */
+
+/* The models of the scene; NULL where the scene has none. Appearances are made of them and of settings alone.
+ */
 struct tl_session_models {
     const tl_model *garment, *avatar;
 };
+
+/* Errors: none. Lifetime: borrowed until the scene is loaded again, replaced or destroyed. Threads: the
+ * session's; the models themselves may be read on any thread, for the session does not write to them. */
 struct tl_session_models tl_session_models(const tl_session *session);
-/* The models in another look; on any thread. */
+
+/* Makes another appearance of the models.
+ * Errors: as tl_appearance_make; `out` is then empty.
+ * Lifetime: the caller releases `out`, or gives it to tl_session_keep_appearance.
+ * Threads: any. */
 bool tl_session_make_appearance(const struct tl_session_models *models, const struct tl_settings *settings,
                                 struct tl_appearance *out, tl_error *error);
-/* A frame of the models at rest in a look, in which only what depends on materials is meaningful; on any
- * thread. Borrows all three. */
+
+/* A frame of the models in their rest pose, with only surfaces in it: enough to prepare what depends on
+ * materials.
+ * Errors: none.
+ * Lifetime: borrows all three arguments.
+ * Threads: any. */
 tl_frame tl_session_frame_in(const struct tl_session_models *models, const struct tl_appearance *appearance,
                              tl_surface surfaces[2]);
-/* To apply these settings then costs little. *made is emptied. */
+
+/* Keeps an appearance, so that tl_session_apply of the settings `made_of` does not make it again. The oldest
+ * kept one is released.
+ * Errors: none.
+ * Lifetime: takes the contents of *made and empties it; `made_of` is copied.
+ * Threads: the session's. */
 void tl_session_keep_appearance(tl_session *session, const struct tl_settings *made_of,
                                 struct tl_appearance *made);
-bool tl_session_light_plays(const tl_session *session); /* its environment is a sequence's */
-/* The colourways there are, for scene.colourway beside "": those of the scene's section, then the variants of
- * the garment's and the avatar's files. Valid until the next call that changes the session. To change to one:
- * tl_settings_apply_colourway, then tl_session_apply, which makes new materials and leaves the cloth as it
- * is.
- */
+
+/* ---- What there is ---- */
+
+/* True when the environment is a sequence. Errors: none. Threads: the session's. */
+bool tl_session_light_plays(const tl_session *session);
+
+/* The values that scene.colourway can have beside "": the scene's colourways, then the variants of the
+ * garment's and the avatar's files. To change to one: tl_settings_apply_colourway, then tl_session_apply,
+ * which makes new materials and leaves the cloth as it is. Returns their number. Errors: none. Lifetime:
+ * borrowed until the next call that changes the session. Threads: the session's. */
 size_t tl_session_colourways(const tl_session *session, const char *const **names);
 
-/* The frame as the renderer wants it; valid until the next call that changes the session. Orbit camera from
- * settings.camera, framed on the avatar and garment when camera.distance_m is 0. */
+/* The present frame for the renderer. Its camera is that of settings.camera; a distance_m of 0 frames avatar
+ * and garment as they are at frame 0.
+ * Errors: none.
+ * Lifetime: borrowed until the next call that changes the session.
+ * Threads: the session's. */
 tl_frame tl_session_frame(tl_session *session);
 
-/* Whether frames tell the garment's strains whatever they show; else they do in the views of strain. */
+/* True makes frames hold the garment's strains in every view; else only the views of strain have them.
+ * Errors: none. Threads: the session's. */
 void tl_session_want_strains(tl_session *session, bool wanted);
 
-/* Where a ray meets the garment: its nearest render vertex and the distance along the ray; false when it
- * misses. */
+/* Intersects a ray with the garment, from both sides: the render vertex nearest to the first hit, and the
+ * distance along the ray in units of `direction`'s length. `origin` in metres. False when the ray misses:
+ * *vertex is then not set. Errors: none. Threads: the session's. */
 bool tl_session_pick(const tl_session *session, vec3s origin, vec3s direction, uint32_t *vertex,
                      float *distance_m);
-bool tl_session_plays_clip(const tl_session *session); /* the avatar's */
-/* NULL when the scene has no garment, or one that is played back instead of simulated. */
+
+/* True when the avatar plays an animation. Errors: none. Threads: the session's. */
+bool tl_session_plays_clip(const tl_session *session);
+
+/* The simulated cloth; NULL when the scene has no garment, or one that is solid or played back.
+ * Errors: none. Lifetime: borrowed until the scene is loaded again, replaced or destroyed. Threads: the
+ * session's. */
 tl_cloth *tl_session_cloth(tl_session *session);
-const tl_model *tl_session_garment(const tl_session *session); /* NULL when the scene has none */
+
+/* The garment's model in its rest pose; NULL when the scene has none.
+ * Errors: none. Lifetime: borrowed until the scene is loaded again, replaced or destroyed. Threads: the
+ * session's; the model itself may be read on any. */
+const tl_model *tl_session_garment(const tl_session *session);
+
+/* Measures the cloth (tl_cloth_measure); all 0 when none is simulated.
+ * Errors: none. Threads: the session's. */
 struct tl_cloth_report tl_session_report(const tl_session *session);
 
 #endif
