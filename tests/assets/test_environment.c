@@ -23,10 +23,10 @@ static const float *texel(const tl_environment *environment, int x, int y)
 static float darkest(const tl_environment *environment, double u, double v)
 {
     int x = (int)(u * environment->image.width), y = (int)(v * environment->image.height);
-    float least = 1;
+    float minimum = 1;
     for (int row = y - 2; row <= y + 2; row++)
-        least = fminf(least, texel(environment, x, row)[1]);
-    return least;
+        minimum = fminf(minimum, texel(environment, x, row)[1]);
+    return minimum;
 }
 
 /* The OpenEXR project's picture with axes painted on it, read as it is seen: at its centre Y goes up and X to

@@ -13,9 +13,9 @@ enum { VERTICES = 9 };
 
 static tl_garment make_sheet(void)
 {
-    static const vec3s places[VERTICES] = {{{0, 0, 0}}, {{3, 0, 0}}, {{3, 1, 0}},
-                                           {{0, 0, 0}}, {{3, 1, 0}}, {{0, 1, 0}},
-                                           {{0, 0, 0}}, {{0, 1, 0}}, {{-0.01f, 0.5f, 0}}};
+    static const vec3s corners[VERTICES] = {{{0, 0, 0}}, {{3, 0, 0}}, {{3, 1, 0}},
+                                            {{0, 0, 0}}, {{3, 1, 0}}, {{0, 1, 0}},
+                                            {{0, 0, 0}}, {{0, 1, 0}}, {{-0.01f, 0.5f, 0}}};
     static const uint32_t indices[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
     tl_garment garment = {0};
     tl_mesh *mesh = &garment.model.mesh;
@@ -26,10 +26,10 @@ static tl_garment make_sheet(void)
     mesh->uvs = TL_NEW_ARRAY(vec2s, VERTICES);
     garment.model.pins = TL_NEW_ARRAY(float, VERTICES);
     for (int i = 0; i < VERTICES; i++) {
-        mesh->positions[i] = places[i];
+        mesh->positions[i] = corners[i];
         mesh->normals[i] = (vec3s){{0, 0, 1}};
-        mesh->uvs[i] = (vec2s){{places[i].x / 4, 1 - places[i].y}};
-        garment.model.pins[i] = places[i].y > 0.9f ? 1 : 0;
+        mesh->uvs[i] = (vec2s){{corners[i].x / 4, 1 - corners[i].y}};
+        garment.model.pins[i] = corners[i].y > 0.9f ? 1 : 0;
     }
     mesh->index_count = TL_COUNT(indices);
     mesh->indices = TL_NEW_ARRAY(uint32_t, mesh->index_count);

@@ -1,9 +1,10 @@
-/* The energy that Verlet keeps. Its orbit solves exactly, but for a part that is exponentially small in the
- * step, the equations of a Hamiltonian near the true one: which is measured from the orbit alone (Engle,
- * Skeel and Drees 2005, "Monitoring energy drift with shadow Hamiltonians"). With a further variable that
- * makes the energy homogeneous, beta' = x.dU/dx - 2 U, any energy is (x'.p - p'.x - beta')/2; the shadow is
- * that of the curve through the orbit's places, momenta and betas, beta stepped as p is. Its derivatives here
- * are central differences of orders up to 16: of order 2 n it misses the shadow by h^2n. */
+/* The energy that Verlet conserves. Up to a part that is exponentially small in the step, its orbit is an
+ * exact solution for a Hamiltonian near the true one, the shadow Hamiltonian. It is measured from the orbit
+ * alone (Engle, Skeel and Drees 2005, "Monitoring energy drift with shadow Hamiltonians"). An additional
+ * variable makes the energy homogeneous: beta' = x.dU/dx - 2 U. Any energy then is (x'.p - p'.x - beta')/2.
+ * The shadow is that of the curve through the orbit's positions, momenta and betas, with beta stepped as p
+ * is. The derivatives are central differences of orders up to 16; with order 2 n the error against the shadow
+ * is O(h^2n). */
 #ifndef TOILE_TESTS_CLOTH_SHADOW_H
 #define TOILE_TESTS_CLOTH_SHADOW_H
 
@@ -16,8 +17,8 @@
 
 struct shadow {
     double h, beta, last_slope;
-    long count; /* of what was recorded */
-    vec3d *places[SHADOW_STEPS], *momenta[SHADOW_STEPS];
+    long count; /* of the recorded steps */
+    vec3d *positions[SHADOW_STEPS], *momenta[SHADOW_STEPS];
     double betas[SHADOW_STEPS];
 };
 
@@ -25,7 +26,7 @@ static inline struct shadow shadow_begin(const tl_cloth *cloth, double h)
 {
     struct shadow shadow = {.h = h};
     for (int i = 0; i < SHADOW_STEPS; i++) {
-        shadow.places[i] = TL_NEW_ARRAY(vec3d, cloth->particles.count);
+        shadow.positions[i] = TL_NEW_ARRAY(vec3d, cloth->particles.count);
         shadow.momenta[i] = TL_NEW_ARRAY(vec3d, cloth->particles.count);
     }
     return shadow;
@@ -34,12 +35,12 @@ static inline struct shadow shadow_begin(const tl_cloth *cloth, double h)
 static inline void shadow_end(struct shadow *shadow)
 {
     for (int i = 0; i < SHADOW_STEPS; i++) {
-        free(shadow->places[i]);
+        free(shadow->positions[i]);
         free(shadow->momenta[i]);
     }
 }
 
-/* 2 U - x.dU/dx of elastic energy and gravity's, of what is not held. */
+/* 2 U - x.dU/dx of elastic energy and gravity, summed over free particles. */
 static inline double shadow_slope(const tl_cloth *cloth)
 {
     struct tl_energies energies = tl_cloth_energies(cloth);
@@ -53,7 +54,7 @@ static inline double shadow_slope(const tl_cloth *cloth)
     return slope;
 }
 
-/* The weight of f(t + j h) - f(t - j h) in h f'(t), of 2 `reach` places. */
+/* The coefficient of f(t + j h) - f(t - j h) in h f'(t), for 2 `reach` points. */
 static inline double shadow_weight(int reach, int j)
 {
     double weight = j % 2 ? 1.0 / j : -1.0 / j;
@@ -78,7 +79,7 @@ static inline vec3d shadow_derivative(const struct shadow *shadow, int reach, ve
     return sum;
 }
 
-/* After every substep. */
+/* Call after every substep. */
 static inline void shadow_record(struct shadow *shadow, const tl_cloth *cloth)
 {
     const struct tl_particles *p = &cloth->particles;
@@ -88,7 +89,7 @@ static inline void shadow_record(struct shadow *shadow, const tl_cloth *cloth)
     shadow->last_slope = slope;
     shadow->betas[at] = shadow->beta;
     for (size_t i = 0; i < p->count; i++) {
-        shadow->places[at][i] = p->x[i];
+        shadow->positions[at][i] = p->x[i];
         shadow->momenta[at][i] = p->w[i] > 0 ? vec3d_scale(p->v[i], 1 / p->w[i]) : (vec3d){0};
     }
     shadow->count++;
@@ -110,14 +111,15 @@ static inline double shadow_energy(const struct shadow *shadow, const tl_cloth *
     for (size_t i = 0; i < cloth->particles.count; i++)
         if (cloth->particles.w[i] > 0)
             sum +=
-                vec3d_dot(shadow_derivative(shadow, reach, shadow->places, i), shadow->momenta[middle][i]) -
-                vec3d_dot(shadow_derivative(shadow, reach, shadow->momenta, i), shadow->places[middle][i]);
+                vec3d_dot(shadow_derivative(shadow, reach, shadow->positions, i),
+                          shadow->momenta[middle][i]) -
+                vec3d_dot(shadow_derivative(shadow, reach, shadow->momenta, i), shadow->positions[middle][i]);
     return sum / 2;
 }
 
-/* The h^2 term (J) of the shadow, in closed form: h^2 (v.U''v / 12 - |M^-1/2 U'|^2 / 24), for the places and
- * velocities at a whole step (Hairer, Lubich and Wanner 2006, "Geometric Numerical Integration", IX.3). U''v
- * is a difference of forces over a way of 0.1 um. */
+/* The h^2 term (J) of the shadow in closed form: h^2 (v.U''v / 12 - |M^-1/2 U'|^2 / 24), from the positions
+ * and velocities at a whole step (Hairer, Lubich and Wanner 2006, "Geometric Numerical Integration", IX.3).
+ * U''v is a difference of forces over a displacement of 0.1 um. */
 static inline double shadow_second_order(const tl_cloth *cloth, double h)
 {
     const struct tl_particles *p = &cloth->particles;

@@ -1,4 +1,5 @@
-/* What tests that run every solver share: how each one steps, and how long to run it. */
+/* Helpers of tests that run every solver: each solver's step rule, its error at rest and suitable parameters.
+ */
 #ifndef TOILE_TESTS_CLOTH_SOLVERS_H
 #define TOILE_TESTS_CLOTH_SOLVERS_H
 
@@ -6,7 +7,7 @@
 #include "tests/cloth/sheets.h"
 #include "tests/testing.h"
 
-/* What a solver does with one linear spring. */
+/* The discrete rule by which a solver advances one linear spring. */
 enum step_rule { RULE_IMPLICIT_EULER, RULE_VERLET };
 
 static inline enum step_rule solver_rule(int solver)
@@ -14,8 +15,8 @@ static inline enum step_rule solver_rule(int solver)
     return solver == TL_CLOTH_REFERENCE ? RULE_VERLET : RULE_IMPLICIT_EULER;
 }
 
-/* Whether it comes to rest where the energy is least whatever the step, or only as the step goes to 0: one
- * sweep over the constraints leaves each pushed by those that come after it, by h^2 w T. */
+/* Whether the solver's rest state is the minimum of the energy at every step length, or only in the limit h
+ * to 0: after one sweep over the constraints each is violated by the later ones, by h^2 w T. */
 static inline bool solver_rests_exactly(int solver)
 {
     return solver != TL_CLOTH_PREVIEW;
@@ -27,7 +28,7 @@ static inline void params_solve_exactly(struct tl_cloth_params *params)
     params->cg_iterations = 10000;
 }
 
-/* As exact as the solver can be made within a step. */
+/* Parameters with which the solver solves a step as exactly as it can. */
 static inline struct tl_cloth_params params_exact(int solver)
 {
     struct tl_cloth_params params = params_defaults();
@@ -37,7 +38,7 @@ static inline struct tl_cloth_params params_exact(int solver)
     return params;
 }
 
-/* A step at which a solver comes to rest soon: the longer the better for one that is stable at any. */
+/* A step length at which the solver comes to rest soon: large for an unconditionally stable one. */
 static inline double solver_resting_step(int solver)
 {
     return solver == TL_CLOTH_SETTLE ? 1.0 / 60 : 1.0 / 1920;
@@ -68,7 +69,7 @@ static inline tl_cloth *cloth_make(const tl_garment *garment, const struct tl_cl
     return cloth;
 }
 
-/* Of particles that are all free. */
+/* Linear and angular momentum; all particles are free. */
 struct momenta {
     vec3d linear, angular;
     double size; /* sum of m |v| */

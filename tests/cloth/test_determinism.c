@@ -1,5 +1,5 @@
-/* The same bits every time and at any number of threads, under every solver: an FNV-1a hash of all positions,
- * frame by frame. The hashes that test_threads prints are those of a Debug build, too. */
+/* Every solver gives the same bits in every run and at any number of threads: an FNV-1a hash of all positions
+ * after each frame. test_threads prints hashes that equal those of a Debug build. */
 #include "cloth/mesh/threads.h"
 #include "cloth/solvers/implicit/stiffness.h"
 #include "cloth/state.h"
@@ -32,7 +32,7 @@ static void begin_at(struct run *run, int solver, int cells, vec3s (*place)(doub
 {
     tl_error error = {0};
     const struct sheet_shape shape = {cells, cells, 0.6, 0.6};
-    run->garment = sheet_make(&shape, place); /* the cloth borrows it: it must stay where it is */
+    run->garment = sheet_make(&shape, place); /* the cloth keeps a pointer to it, so it must not move */
     run->sphere = body_sphere((vec3s){{0, 0.5f, 0}}, 0.2, 24);
     struct tl_cloth_fabric fabric = fabric_defaults();
     struct tl_cloth_params params = params_defaults();
@@ -84,7 +84,7 @@ static void end(struct run *run)
     sheet_free(&run->garment);
 }
 
-/* More vertices than one thread is left alone with: settle's own loops share out far fewer. */
+/* More vertices than are processed by a single thread; settle's own loops are divided at far fewer. */
 static void test_threads(void **state)
 {
     (void)state;
@@ -108,7 +108,7 @@ static void test_threads(void **state)
     }
 }
 
-/* After a reset the same frames come again; after a change of material they do not. */
+/* After a reset the same frames follow; after a change of material they differ. */
 static void test_reset(void **state)
 {
     (void)state;
@@ -135,7 +135,7 @@ static void test_reset(void **state)
     end(&run);
 }
 
-/* A marked start, where the sheet lies on the sphere already, comes back with the same frames after it. */
+/* A marked start with the sheet already on the sphere is restored, with the same frames after it. */
 static void check_marked_start(int solver, int cells)
 {
     uint64_t first[FRAMES], again[FRAMES], away[FRAMES];
@@ -167,12 +167,12 @@ static vec3s pulled_apart(double u, double v)
     return (vec3s){{(float)(4 * (u - 0.3)), 0.71f, (float)(0.3 - v)}};
 }
 
-/* Cloth that begins stretched to several times its length is drawn back at a limited speed: so it is after a
- * reset, however long it has been simulated since. */
+/* Cloth that starts stretched to several times its length contracts at a limited speed, and does so again
+ * after a reset, however long it was simulated before. */
 static void test_stretched_start(void **state)
 {
     (void)state;
-    const int frames = 90; /* three seconds: all is drawn back */
+    const int frames = 90; /* three seconds: all of it has contracted */
     uint64_t first[90], again[FRAMES];
     struct run run;
     begin_at(&run, TL_CLOTH_PREVIEW, 20, pulled_apart);

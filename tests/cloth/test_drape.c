@@ -1,11 +1,12 @@
-/* Cusick's drape test (BS 5058, ISO 9073-9) of fabrics that ship: a disc of cloth of 30 cm, clamped between
- * plates of 18 cm, hangs over their edge; the drape coefficient is the share of the hanging ring that its
- * shadow keeps: DC = (A_shadow - A_9cm) / (A_15cm - A_9cm).
+/* Cusick's drape test (BS 5058, ISO 9073-9) of the fabrics that ship. A disc of cloth of 30 cm, clamped
+ * between plates of 18 cm, hangs over their edge. The drape coefficient is the share of the hanging ring that
+ * its shadow keeps: DC = (A_shadow - A_9cm) / (A_15cm - A_9cm).
  *
- * The order silk < cotton < denim must hold. Published bands (Matsudaira and Yang 2003 for silk; Gan, Ly and
- * Steven 1991 for plain cotton; the usual class of denim) are of other samples than those our numbers were
- * measured on, and real cloth has several stable drapes, so they bind the mean over seeds only. The number of
- * folds is told, not checked. With names of fabrics as arguments: tells their drape. */
+ * The order silk < cotton < denim must hold. The published bands (Matsudaira and Yang 2003 for silk; Gan, Ly
+ * and Steven 1991 for plain cotton; the usual class of denim) come from other samples than our measured
+ * fabrics, and real cloth has several stable drapes, so only the mean over seeds is checked against them. The
+ * number of folds is printed, not checked. With names of fabrics as arguments the program prints their drape.
+ */
 #include "assets/builtin/specimen.h"
 #include "cloth/measure.h"
 #include "config/log.h"
@@ -17,7 +18,7 @@
 
 /* ---- The specimen ---- */
 
-/* Its warp turned by `turn` against the triangles. */
+/* Its warp is turned by `turn` against the triangles. */
 static tl_garment make_specimen(double edge_m, double turn)
 {
     tl_garment garment;
@@ -76,7 +77,7 @@ static double shadow_area(const tl_cloth *cloth)
     return count * pixel_m * pixel_m;
 }
 
-/* The strongest wave of the rim's height round the disc. */
+/* The number of folds: the largest Fourier component of the rim's height around the disc. */
 static int count_folds(const tl_cloth *cloth)
 {
     double strongest = 0;
@@ -103,7 +104,7 @@ static int count_folds(const tl_cloth *cloth)
 struct drape {
     double coefficient; /* % */
     int folds;
-    double speed; /* m/s, what is left */
+    double speed; /* m/s, remaining */
 };
 
 static struct drape drape_once(const struct tl_cloth_fabric *fabric, double edge_m, int seed)
@@ -114,7 +115,8 @@ static struct drape drape_once(const struct tl_cloth_fabric *fabric, double edge
     params.solver = TL_CLOTH_SETTLE;
     damped.damping = 2;
     tl_cloth *cloth = cloth_make(&garment, &damped, &params);
-    for (size_t i = 0; i < cloth->particles.count; i++) /* a breath: what is quite level buckles late */
+    for (size_t i = 0; i < cloth->particles.count;
+         i++) /* a small disturbance: an exactly level disc buckles late */
         if (cloth->particles.w[i] > 0)
             cloth->particles.x[i].y += 1e-4 * sin((double)i * (1.3 + seed));
     cloth_run(cloth, NULL, 3);
@@ -130,7 +132,7 @@ static struct drape drape_once(const struct tl_cloth_fabric *fabric, double edge
     return drape;
 }
 
-/* Mean over seeds, which are orientations too. */
+/* Mean over seeds; each seed has its own orientation. */
 static double drape_coefficient(const char *name)
 {
     const int seeds = 3;
@@ -148,10 +150,10 @@ static void test_cusick(void **state)
     double silk = drape_coefficient("silk"), cotton = drape_coefficient("cotton_plain");
     double denim = drape_coefficient("denim");
     assert_true(silk < cotton && cotton < denim);
-    /* Cotton falls in its band, 60 to 76 %. Denim ends at the upper edge of its own, 70 to 90 %, and silk
-     * above its own, 20 to 40 %: their bending is not measured, but that of a solid shell, which is the most
-     * it can be; what slips between the yarns of denim and the filaments of silk is not in it. So the edges
-     * are given a margin: to 93 % for denim, and for silk only to where cotton's band begins. */
+    /* Cotton lies in its band, 60 to 76 %. Denim lies at the upper edge of its band, 70 to 90 %, and silk
+     * above its band, 20 to 40 %. Their bending stiffness is not measured but that of a solid shell, an upper
+     * bound: slip between the yarns of denim and the filaments of silk is not modelled. So the bounds have a
+     * margin: 93 % for denim, and for silk the lower edge of cotton's band. */
     assert_true(cotton > 60 && cotton < 76);
     assert_true(denim > 70 && denim < 93);
     assert_true(silk > 20 && silk < 60);

@@ -1,5 +1,5 @@
-/* Real garments on real bodies: they settle, hang, neither tear nor slide off nor tremble, and nothing shows
- * through. The bounds are what a viewer would notice, not what the solver happens to reach. */
+/* Real garments on real bodies: they settle and hang, do not tear, slide off or tremble, and the body does
+ * not show through. The bounds are what a viewer would notice, not what the solver reaches. */
 #include "assets/avatar.h"
 #include "cloth/measure.h"
 #include "cloth/state.h"
@@ -41,7 +41,7 @@ static vec3d centre(const tl_cloth *cloth)
     return sum;
 }
 
-/* How deep any of 15 points of any cloth triangle lies in the body: what would show through. */
+/* Depth in the body: the largest of 15 points of every cloth triangle. A point inside would show the body. */
 static double deepest_inside(const struct dressed *d)
 {
     const double reach_m = 0.05;
@@ -71,7 +71,7 @@ static double rms_speed(const tl_cloth *cloth)
     return sqrt(2 * tl_cloth_measure(cloth, NULL).kinetic_energy / mass);
 }
 
-/* What a viewer sees move: the longest way of a frame, in m/s, once two seconds have passed. */
+/* The largest displacement per frame after two seconds, in m/s: the motion that a viewer sees. */
 static double creep(struct dressed *d)
 {
     tl_error error = {0};
@@ -88,7 +88,7 @@ static double creep(struct dressed *d)
     return fastest;
 }
 
-/* Two seconds after settling: what moves, how fast, how far. */
+/* Checks speed and displacement in the two seconds after settling. */
 static void check_rest(struct dressed *d, const char *name)
 {
     tl_error error = {0};
@@ -113,10 +113,10 @@ static void check_rest(struct dressed *d, const char *name)
     assert_true(settled.settled);
     assert_int_equal(settled.open_seams, 0);
     assert_true(start.y - rest.y <
-                0.08);                 /* a flared skirt comes down by its folds; more would be sliding off */
+                0.08); /* a flared skirt sinks as its folds form; more would mean that it slides off */
     assert_true(after.max_strain < 1); /* torn cloth is stretched many times its length */
     assert_true(drift < 2e-3);
-    assert_true(rms < 5e-3);    /* trembling would keep all of it moving */
+    assert_true(rms < 5e-3);    /* trembling would move all of it */
     assert_true(fastest < 0.1); /* where a fold loses its grip, a single vertex may start for a moment */
     assert_true(after.deepest_m < 1e-3);
     assert_true(deepest_inside(d) < 1e-3);
@@ -159,9 +159,10 @@ static void test_built_in(void **state)
     }
 }
 
-/* Rest is rest: two millimetres a second take a garment that fills the screen half a second for a pixel.
- * Preview's hem still swings a little in the third second; settle has stopped. (Not on coarse meshes, whose
- * edges' middles touch instead of vertices: at 3 cm settle goes on at 2 to 5 mm/s.) */
+/* A garment at rest does not visibly move: at 2 mm/s a garment that fills the screen moves by a pixel in half
+ * a second. Preview's hem still swings a little in the third second; settle has stopped. Coarse meshes are
+ * left out, because probes at the middles of edges touch instead of vertices: at 3 cm settle continues at 2
+ * to 5 mm/s. */
 static void test_rests(void **state)
 {
     (void)state;
@@ -183,8 +184,9 @@ static void test_rests(void **state)
     }
 }
 
-/* Of ten thousand vertices one or another may hum between substeps, which no frame shows: settling ends all
- * the same, and none hums for long: the limit draws the same edges back every time. */
+/* A few of ten thousand vertices may oscillate between substeps, which is not visible in frames. Settling
+ * still ends, and none oscillates for long, because the strain limit shortens the same edges in every
+ * substep. */
 static void test_fine_rests(void **state)
 {
     (void)state;

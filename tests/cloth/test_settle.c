@@ -1,4 +1,4 @@
-/* Coming to rest: settled drapes of solvers against one another, and cloth that rests is at rest. */
+/* Coming to rest: settled drapes of the solvers are compared, and cloth at rest must not move. */
 #include "tests/cloth/bodies.h"
 #include "tests/cloth/sheets.h"
 #include "tests/cloth/solvers.h"
@@ -20,8 +20,8 @@ static double elastic_and_potential(const tl_cloth *cloth)
     return report.elastic_energy + report.potential_energy;
 }
 
-/* Root mean square distance of two states of a sheet, the second one mirrored at a plane z, which holds the
- * pins and the vertical: a mirrored equilibrium is one as well. */
+/* Root mean square distance of two states of a sheet. The second one is mirrored at the plane z, which
+ * contains the pins and the vertical: a mirrored equilibrium is an equilibrium too. */
 static double rms_mirrored(const tl_cloth *a, const tl_cloth *b, double z)
 {
     double sum = 0;
@@ -44,13 +44,14 @@ static double rms(const tl_cloth *a, const tl_cloth *b)
     return sqrt(sum / (double)a->particles.count);
 }
 
-/* Which of the twins it comes to is left to rounding. */
+/* The smaller of both distances, plain and mirrored: rounding decides which of the two equilibria is reached.
+ */
 static double rms_of_twins(const tl_cloth *a, const tl_cloth *b, double z)
 {
     return fmin(rms(a, b), rms_mirrored(a, b, z));
 }
 
-/* A metre of cloth hung by two corners, run until it no longer moves: by a drag that dies away. */
+/* A sheet of 1 m hung by two corners, run until it no longer moves, with a drag that decreases to 0. */
 static tl_cloth *hang(const tl_garment *garment, int solver, double stop_speed)
 {
     tl_error error = {0};
@@ -58,7 +59,7 @@ static tl_cloth *hang(const tl_garment *garment, int solver, double stop_speed)
     struct tl_cloth_params params = params_defaults();
     fabric.areal_density = 0.2;
     fabric.stretch_weft = fabric.stretch_warp = 1000;
-    fabric.damping = 0; /* what rubs in itself creeps for minutes */
+    fabric.damping = 0; /* internal friction creeps for minutes */
     fabric.bend_weft = fabric.bend_warp = 1e-4;
     params.solver = solver;
     params.cg_tolerance = 1e-3;
@@ -73,8 +74,8 @@ static tl_cloth *hang(const tl_garment *garment, int solver, double stop_speed)
     return cloth;
 }
 
-/* Different ways down, one rest. Preview hangs as if it were softer. TOILE_CELLS=32: a sheet of 33 x 33,
- * which takes the reference minutes. */
+/* Every solver reaches the same equilibrium by its own path. Preview hangs as if it were softer.
+ * TOILE_CELLS=32: a sheet of 33 x 33 vertices, which takes the reference minutes. */
 static void test_drapes_agree(void **state)
 {
     (void)state;
@@ -107,11 +108,11 @@ static void test_drapes_agree(void **state)
 /* ---- At rest ---- */
 
 struct speeds {
-    double momentary; /* m/s, of a substep */
-    double seen;      /* m/s, from frame to frame */
+    double per_substep; /* m/s, of a substep */
+    double per_frame;   /* m/s, from frame to frame */
 };
 
-/* The fastest of any vertex in the sixth second after the cloth was settled. */
+/* The largest speed of any vertex in the sixth second after settling. */
 static struct speeds speeds_after_5_s(tl_cloth *cloth, const tl_collider *collider)
 {
     struct speeds fastest = {0};
@@ -121,9 +122,10 @@ static struct speeds speeds_after_5_s(tl_cloth *cloth, const tl_collider *collid
     for (int frame = 0; frame < 30; frame++) {
         memcpy(before, cloth->particles.x, cloth->particles.count * sizeof *before);
         cloth_run(cloth, collider, 1 / rate);
-        fastest.momentary = fmax(fastest.momentary, tl_cloth_max_speed(cloth));
+        fastest.per_substep = fmax(fastest.per_substep, tl_cloth_max_speed(cloth));
         for (size_t i = 0; i < cloth->particles.count; i++)
-            fastest.seen = fmax(fastest.seen, rate * vec3d_distance(cloth->particles.x[i], before[i]));
+            fastest.per_frame =
+                fmax(fastest.per_frame, rate * vec3d_distance(cloth->particles.x[i], before[i]));
     }
     free(before);
     return fastest;
@@ -170,13 +172,13 @@ static struct speeds run_to_rest(const struct resting *resting, int solver)
     return speeds;
 }
 
-/* Seen: a sixth of a millimetre a frame, which is a pixel of a garment that fills the screen.
- * Momentary: what contact gives and takes back within a few substeps, which are as short as 1e-5 s in
+/* Frame to frame: a sixth of a millimetre, a pixel of a garment that fills the screen.
+ * Within substeps: contact pushes that cancel within a few substeps, which are as short as 1e-5 s in
  * `reference`. */
 static void test_rest_is_at_rest(void **state)
 {
     (void)state;
-    const struct speeds bounds = {.momentary = 1e-2, .seen = 5e-3};
+    const struct speeds bounds = {.per_substep = 1e-2, .per_frame = 5e-3};
     const struct resting cases[] = {
         {"hanging", lying, true, false, 0},
         {"on the ground", near_ground, false, true, 0},
@@ -186,9 +188,9 @@ static void test_rest_is_at_rest(void **state)
         for (int solver = 0; solver < TL_CLOTH_SOLVER_COUNT; solver++) {
             struct speeds speeds = run_to_rest(&cases[i], solver);
             print_message("%s, %s, after 5 s: at most %.1e m/s from frame to frame, %.1e m/s in a substep\n",
-                          cases[i].name, tl_cloth_solver_names[solver], speeds.seen, speeds.momentary);
-            assert_true(speeds.seen < bounds.seen);
-            assert_true(speeds.momentary < bounds.momentary);
+                          cases[i].name, tl_cloth_solver_names[solver], speeds.per_frame, speeds.per_substep);
+            assert_true(speeds.per_frame < bounds.per_frame);
+            assert_true(speeds.per_substep < bounds.per_substep);
         }
 }
 

@@ -39,7 +39,7 @@ static bool run_refuses(const struct extreme *extreme)
     fabric.stretch_weft = fabric.stretch_warp = fabric.shear = extreme->stiffness;
     fabric.bend_weft = fabric.bend_warp = extreme->bending;
     fabric.areal_density = extreme->density;
-    params.strain_limit = 0; /* whether it truly stretches is what is asked */
+    params.strain_limit = 0; /* the physical stretch decides the expected result */
     params.dt = extreme->dt;
     params.substeps = extreme->substeps;
     params.solver = extreme->solver;
@@ -61,8 +61,8 @@ static bool run_refuses(const struct extreme *extreme)
     return !good;
 }
 
-/* What hangs here weighs 0.2 N: below 0.1 N/m it truly stretches by more than 10 and must be refused; from
- * 1 N/m on it does not, and must be solved. */
+/* The hanging sheet weighs 0.2 N. Below 0.1 N/m it physically stretches by more than 10 and must be refused;
+ * from 1 N/m on it does not, and must be solved. */
 static void test_stiffness_and_step(void **state)
 {
     (void)state;
@@ -72,10 +72,11 @@ static void test_stiffness_and_step(void **state)
             for (int solver = TL_CLOTH_PREVIEW; solver <= TL_CLOTH_SETTLE; solver++) {
                 bool refused =
                     run_refuses(&(struct extreme){stiffnesses[k], 1e-5, 0.15, steps[d], 10, solver});
-                bool long_enough = steps[d] > 1e-4; /* 12 ms of fall stretch nothing yet */
+                bool long_enough = steps[d] > 1e-4; /* 12 ms of fall cause no stretch yet */
                 bool expected = stiffnesses[k] < 0.1 && long_enough;
                 if (expected && solver == TL_CLOTH_SETTLE && steps[d] > 0.05)
-                    continue; /* a fall so damped may land before it stretches that far: either is right */
+                    continue; /* with so much damping it may land before it stretches that far: both results
+                                 are correct */
                 assert_int_equal(refused, expected);
             }
         }
@@ -92,7 +93,7 @@ static void test_bending_and_mass(void **state)
                     run_refuses(&(struct extreme){1e3, bendings[b], densities[m], 1.0 / 60, 10, solver}));
 }
 
-/* Every vertex anywhere in a cube of 1 m, and all in one point: it comes back to strain below 1. */
+/* Every vertex at random in a cube of 1 m, or all at one point: the sheet recovers to strain below 1. */
 static void test_scrambled_and_collapsed(void **state)
 {
     (void)state;
@@ -113,7 +114,7 @@ static void test_scrambled_and_collapsed(void **state)
                 x[k] = collapsed ? 1e-7 * (noise >> 8) / 16777216.0 : (noise >> 8) / 16777216.0;
             }
         }
-        bool refused = false; /* the first frame may still be out of the envelope, and then says so */
+        bool refused = false; /* the first frame may still exceed the limits, and then reports so */
         for (int frame = 0; frame < 120; frame++) {
             refused = !tl_cloth_step(cloth, NULL, &error);
             assert_true(!refused || error.code == TL_UNSTABLE);
@@ -126,7 +127,7 @@ static void test_scrambled_and_collapsed(void **state)
     }
 }
 
-/* Needles, slivers, collapsed and repeated triangles, a fin, a vertex nobody uses. */
+/* Needles, slivers, collapsed and repeated triangles, a third triangle on an edge, an unused vertex. */
 static void test_bad_triangles(void **state)
 {
     (void)state;
@@ -227,7 +228,7 @@ static void test_bad_input_is_refused(void **state)
     sheet_free(&garment);
 }
 
-/* A state that has left the finite numbers is rolled back, and says so. */
+/* A state with NaN or infinite values is rolled back, and reported. */
 static void test_roll_back(void **state)
 {
     (void)state;
@@ -252,8 +253,8 @@ static vec3s buried(double u, double v)
     return (vec3s){{(float)u, (float)(v - 1), 0}};
 }
 
-/* Needles 20 cm long and 5 mm wide, a metre below the ground, which lifts them out: no energy out of nothing.
- */
+/* Needles 20 cm long and 5 mm wide start 1 m below the ground. The ground lifts them out without adding
+ * energy. */
 static void what_the_ground_lifts_out_is_driven(void **state)
 {
     (void)state;

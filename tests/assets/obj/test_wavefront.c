@@ -144,17 +144,17 @@ static void units_scale_positions(void **state)
 {
     (void)state;
     const char *path = write_text("mm.obj", "v 0 0 0\nv 812 0 0\nv 0 400 0\nf 1 2 3\n");
-    tl_model guessed, told = load_in(path, TL_UNITS_CM);
+    tl_model guessed, given = load_in(path, TL_UNITS_CM);
     tl_error error = {0};
     assert_ok(tl_model_load(path, &guessed, &error), error);
     assert_int_equal(guessed.units.units, TL_UNITS_MM);
     assert_near(guessed.mesh.positions[1].x, 0.812, 1e-7);
-    assert_near(told.mesh.positions[1].x, 8.12, 1e-6);
+    assert_near(given.mesh.positions[1].x, 8.12, 1e-6);
     vec3s points[3];
-    tl_model_points(&told, told.mesh.positions, points);
+    tl_model_points(&given, given.mesh.positions, points);
     assert_near(points[1].x, 812, 1e-4);
     tl_model_release(&guessed);
-    tl_model_release(&told);
+    tl_model_release(&given);
 }
 
 /* Too many groups to draw one by one are gathered by material, with every triangle kept. */

@@ -113,16 +113,17 @@ static void test_moving_collider_carries_cloth(void **state)
     fabric.damping = 0;
     tl_collider *collider = tl_collider_create(&box, false, &error);
     tl_cloth *cloth = tl_cloth_create(&garment, &fabric, &params, &error);
-    double start = cloth->particles.x[60].x, way = 0, speed = 0;
+    double start = cloth->particles.x[60].x, distance = 0, speed = 0;
     for (int frame = 0; frame < 60; frame++) {
         speed = fmin(speed + 0.02, 0.3); /* 0.6 m/s^2, less than mu g = 3.9 m/s^2 */
-        way += speed / params.frame_rate;
+        distance += speed / params.frame_rate;
         for (int i = 0; i < 8; i++)
-            moved[i] = (vec3s){{box.positions[i].x + (float)way, box.positions[i].y, box.positions[i].z}};
+            moved[i] =
+                (vec3s){{box.positions[i].x + (float)distance, box.positions[i].y, box.positions[i].z}};
         tl_collider_move(collider, moved);
         assert_ok(tl_cloth_step(cloth, collider, &error), error);
     }
-    assert_near(cloth->particles.x[60].x - start, way, 1e-3);
+    assert_near(cloth->particles.x[60].x - start, distance, 1e-3);
     tl_cloth_destroy(&cloth);
     tl_collider_destroy(&collider);
     tl_mesh_release(&box);

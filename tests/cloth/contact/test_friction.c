@@ -24,7 +24,7 @@ static vec3s place_on_slope(double u, double v)
 
 /* Displacement of the middle of a sheet down a slope after `seconds`, and its velocity then. */
 struct slid {
-    double way, speed;
+    double distance, speed;
 };
 
 static struct slid slide(const struct slope *slope, int solver, double seconds)
@@ -62,9 +62,9 @@ static void test_sticks(void **state)
         for (size_t i = 0; i < TL_COUNT(slopes); i++) {
             struct slid slid = slide(&slopes[i], solver, 1);
             printf("sticks, %s, tan %.2f, mu %.1f: slides %.1e m in 1 s, ends at %.1e m/s\n",
-                   tl_cloth_solver_names[solver], tan(slopes[i].tilt), slopes[i].friction, slid.way,
+                   tl_cloth_solver_names[solver], tan(slopes[i].tilt), slopes[i].friction, slid.distance,
                    slid.speed);
-            assert_near(slid.way, 0, 1e-4);
+            assert_near(slid.distance, 0, 1e-4);
             assert_near(slid.speed, 0, 1e-4); /* less than the fall in half a substep */
         }
 }
@@ -84,7 +84,7 @@ static void test_slides(void **state)
                            ? params_defaults().dt
                            : 0; /* the steps of the other solvers are too short to matter */
             double expected = 0.5 * acceleration * seconds * (seconds + h);
-            double slid = slide(&slopes[i], solver, seconds).way;
+            double slid = slide(&slopes[i], solver, seconds).distance;
             printf("slides, %s, tan %.2f, mu %.1f: off by %+.2f %%\n", tl_cloth_solver_names[solver],
                    tan(slopes[i].tilt), slopes[i].friction, 100 * (slid / expected - 1));
             assert_near(slid, expected, 0.01 * expected);

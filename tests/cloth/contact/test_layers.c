@@ -67,8 +67,8 @@ static void test_pair_is_separated(void **state)
     vec3d apart = particles.x[1];
     double depth = thickness - vec3d_norm(apart);
     vec3d normal = vec3d_scale(apart, 1 / vec3d_norm(apart));
-    vec3d way = vec3d_sub(apart, particles.previous[1]);
-    vec3d slip = vec3d_muladd(way, normal, -vec3d_dot(way, normal));
+    vec3d approach = vec3d_sub(apart, particles.previous[1]);
+    vec3d slip = vec3d_muladd(approach, normal, -vec3d_dot(approach, normal));
     tl_repulsion_solve(&repulsion, friction, 1, &particles);
     vec3d after = vec3d_sub(particles.x[1], particles.x[0]);
     assert_near(vec3d_dot(after, normal), thickness, 1e-15);
@@ -170,13 +170,13 @@ static tl_garment two_cloths(const struct sheet_shape *shape, double first, doub
 
 static double least_gap(const tl_cloth *cloth, size_t inner, size_t outer, size_t count)
 {
-    double least = HUGE_VAL;
+    double min_gap = HUGE_VAL;
     for (size_t i = 0; i < count; i++) { /* the same vertex of both lies on the same ray from the centre */
         const vec3d centre = {0, 0.5, 0};
-        least = fmin(least, vec3d_distance(cloth->particles.x[outer + i], centre) -
-                                vec3d_distance(cloth->particles.x[inner + i], centre));
+        min_gap = fmin(min_gap, vec3d_distance(cloth->particles.x[outer + i], centre) -
+                                    vec3d_distance(cloth->particles.x[inner + i], centre));
     }
-    return least;
+    return min_gap;
 }
 
 /* The outer cloth is found and stays outside, whatever the order in the file and the winding. Cloths that

@@ -30,17 +30,17 @@ static void fine_cloth_follows_the_hand(void **state)
         assert_ok(cloth != NULL, error);
         uint32_t corner = sheet_vertex(&shape, shape.columns, 0);
         vec3s home = garment.model.mesh.positions[corner];
-        double most = 0;
+        double max_strain = 0;
         for (int frame = 1; frame <= moving + waiting; frame++) {
             vec3s hand = home;
             hand.x += way_m * (float)(frame < moving ? frame : moving) / (float)moving;
             tl_cloth_grab(cloth, corner, hand);
             assert_ok(tl_cloth_step(cloth, NULL, &error), error);
-            most = fmax(most, tl_cloth_max_strain(cloth));
+            max_strain = fmax(max_strain, tl_cloth_max_strain(cloth));
         }
         double behind = (double)(home.x + way_m) - cloth->particles.x[corner].x;
-        printf("solver %d: strain %.3f, %.2f mm behind the hand\n", params.solver, most, 1e3 * behind);
-        assert_true(most < 2 * TL_HAND_STRAIN);
+        printf("solver %d: strain %.3f, %.2f mm behind the hand\n", params.solver, max_strain, 1e3 * behind);
+        assert_true(max_strain < 2 * TL_HAND_STRAIN);
         assert_true(behind < 0.5 * (double)way_m);
         tl_cloth_destroy(&cloth);
         sheet_free(&garment);

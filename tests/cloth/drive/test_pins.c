@@ -206,18 +206,18 @@ static void test_strain_limit(void **state)
         fabric.stretch_weft = fabric.stretch_warp = fabric.areal_density * params.gravity * length / strain;
         fabric.damping = 3;
         tl_cloth *cloth = make(&garment, &fabric, &params);
-        double most = 0;
+        double max_strain = 0;
         for (int frame = 0; frame < 60; frame++) {
             run(cloth, 1);
             for (size_t e = 0; e < cloth->limits.count; e++) {
                 const struct tl_limited_edge *edge = &cloth->limits.edges[e];
                 double now =
                     vec3d_distance(cloth->particles.x[edge->ends[0]], cloth->particles.x[edge->ends[1]]);
-                most = fmax(most, now / edge->rest - 1);
+                max_strain = fmax(max_strain, now / edge->rest - 1);
             }
         }
-        printf("strain limit: %.3f with the limit at %g\n", most, params.strain_limit);
-        assert_true(limited ? most < limit + 0.02 : most > 0.7 * strain);
+        printf("strain limit: %.3f with the limit at %g\n", max_strain, params.strain_limit);
+        assert_true(limited ? max_strain < limit + 0.02 : max_strain > 0.7 * strain);
         tl_cloth_destroy(&cloth);
         sheet_free(&garment);
     }

@@ -83,16 +83,16 @@ static void test_gusts(void **state)
 {
     (void)state;
     struct tl_wind wind = {.velocity = {3, 0, 4}, .gust = 0.4, .areal_density = 0.1};
-    double sum = 0, least = HUGE_VAL, most = 0;
+    double sum = 0, min_speed = HUGE_VAL, max_speed = 0;
     const int count = 20000;
     for (int i = 0; i < count; i++) {
         wind.time_s = 0.05 * i;
         double speed = vec3d_norm(tl_wind_at(&wind, (vec3d){0}));
         sum += speed / count;
-        least = fmin(least, speed);
-        most = fmax(most, speed);
+        min_speed = fmin(min_speed, speed);
+        max_speed = fmax(max_speed, speed);
     }
-    assert_true(least > 3 && least < 3.6 && most < 7 && most > 6.4);
+    assert_true(min_speed > 3 && min_speed < 3.6 && max_speed < 7 && max_speed > 6.4);
     assert_near(sum, 5, 0.01);
     wind.time_s = 2;
     vec3d here = tl_wind_at(&wind, (vec3d){0.3, 0.1, 0.4}); /* 0.5 m down the wind: 0.1 s later */

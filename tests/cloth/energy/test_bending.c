@@ -49,7 +49,7 @@ static struct tip elastica(double load)
     return tip;
 }
 
-/* The shooting itself, against figures found independently with another program. */
+/* The shooting method, against figures computed independently with another program. */
 static void test_elastica_figures(void **state)
 {
     (void)state;
@@ -68,7 +68,7 @@ struct strip {
     int solver;
     int columns, rows; /* cells along the strip and across it */
     double load;       /* (L/c)^3 = w L^3 / B */
-    double turn_deg;   /* of warp and weft against the strip */
+    double turn_deg;   /* angle of warp and weft to the strip */
     double irregular;  /* share of a cell by which inner vertices are moved */
     double across; /* stiffness of what lies across the strip (at 0 degrees: the warp) over that along it */
     bool panel;    /* cut as garments are, not a grid */
@@ -106,8 +106,8 @@ static tl_garment grid_strip(const struct strip *strip)
     return garment;
 }
 
-/* Cut as garments are (assets/builtin/panel.h), but for the first column of cells, which is regular: the
- * clamp is where it is in a grid. */
+/* Cut as garments are (assets/builtin/panel.h), except for the first column of cells, which is regular so
+ * that the clamp is at the same position as in a grid. */
 static tl_garment panel_strip(const struct strip *strip)
 {
     double cell = cell_of(strip), width = strip->columns * cell, height = strip->rows * cell;
@@ -126,7 +126,7 @@ static tl_garment panel_strip(const struct strip *strip)
     return garment;
 }
 
-/* Lies along +x at height 1, s = 0 half a cell after its first column; the pattern is turned. */
+/* A strip along +x at height 1, with s = 0 half a cell after its first column; the pattern is turned. */
 static tl_garment make_strip(const struct strip *strip)
 {
     tl_garment garment = strip->panel ? panel_strip(strip) : grid_strip(strip);

@@ -1,4 +1,4 @@
-/* The energy's forces against its differences, and what forces within a body must not do. */
+/* The energy's forces against finite differences; and their sum, torque and invariance under rigid motion. */
 #include "cloth/state.h"
 #include "tests/cloth/sheets.h"
 #include "tests/testing.h"
@@ -113,10 +113,10 @@ static void deform(tl_cloth *cloth, double by)
 
 static double largest(const vec3d *vectors, size_t count)
 {
-    double most = 0;
+    double max_norm = 0;
     for (size_t i = 0; i < count; i++)
-        most = fmax(most, vec3d_norm(vectors[i]));
-    return most;
+        max_norm = fmax(max_norm, vec3d_norm(vectors[i]));
+    return max_norm;
 }
 
 /* (E(x + d) - E(x - d)) / 2d differs from dE/dx by d^2 E''' / 6, with E''' about E''/l and l no less than the
@@ -128,7 +128,7 @@ static void check_forces(tl_cloth *cloth, const char *name, enum term term)
     size_t count = cloth->particles.count;
     vec3d *x = cloth->particles.x, *forces = TL_NEW_ARRAY(vec3d, count),
           *scratch = TL_NEW_ARRAY(vec3d, count);
-    double energy = forces_of(cloth, x, forces), most = largest(forces, count), worst = 0;
+    double energy = forces_of(cloth, x, forces), max_norm = largest(forces, count), worst = 0;
     assert_true(isfinite(energy) && energy >= 0);
     for (size_t i = 0; i < 3 * count; i++) {
         double *at = &x[i / 3].x + i % 3, from = *at;
@@ -140,14 +140,14 @@ static void check_forces(tl_cloth *cloth, const char *name, enum term term)
         worst = fmax(worst, fabs((below - above) / (up - down) - (&forces[i / 3].x)[i % 3]));
     }
     printf("%s, term %d: E %.3g J, largest force %.3g N, worst difference %.2g of it\n", name, (int)term,
-           energy, most, most > 0 ? worst / most : 0);
-    assert_near(worst, 0, 1e-6 * most);
+           energy, max_norm, max_norm > 0 ? worst / max_norm : 0);
+    assert_near(worst, 0, 1e-6 * max_norm);
     free(forces);
     free(scratch);
 }
 
-/* Forces within the cloth add up to nothing, and so do their torques: rounding of the terms that meet in a
- * vertex, each no larger than a few times the largest force of all. */
+/* Internal forces sum to zero, and so do their torques, within the rounding of the terms that meet at a
+ * vertex. Each term is no larger than a few times the largest force. */
 static void check_balance(tl_cloth *cloth)
 {
     size_t count = cloth->particles.count;
@@ -165,8 +165,8 @@ static void check_balance(tl_cloth *cloth)
     free(forces);
 }
 
-/* Turned and moved as a whole from rest: no energy, no force beyond the rounding of places (1e-16 m in edges
- * of 2 cm: strains of 1e-14), against the force of a strain of 1 in a stiffness of 1000 N/m on 2 cm. */
+/* A sheet turned and translated from rest has no energy and no force beyond the rounding of positions (1e-16
+ * m in edges of 2 cm: strains of 1e-14), relative to the force of a strain of 1 at 1000 N/m on 2 cm. */
 static void check_rigid_motion(tl_cloth *cloth, const tl_garment *garment)
 {
     size_t count = cloth->particles.count;
@@ -288,7 +288,8 @@ static void add_bend(const struct tl_bend *bend, size_t lane, const double stiff
     }
 }
 
-/* One triangle after the other, from the deformation gradient and the curvature's rows. */
+/* Forces by plain loops over the triangles, from the deformation gradient and the rows of the curvature
+ * operator. */
 static void plain_forces(const tl_cloth *cloth, vec3d *forces)
 {
     const struct tl_energy *energy = &cloth->energy;
@@ -317,8 +318,8 @@ static tl_cloth *make_large(tl_garment *garment, const struct tl_cloth_params *p
     return cloth;
 }
 
-/* Lanes, squared lengths and the constant matrix are the same forces: to the rounding of strains, 1e-16 of
- * places over edges of 1 cm, times a few of the largest force. */
+/* The vectorised form (lanes, squared lengths, constant matrix) gives the same forces within the rounding of
+ * strains: 1e-16 of positions over edges of 1 cm, times a few of the largest force. */
 static void test_plain_loops_agree(void **state)
 {
     (void)state;
@@ -353,7 +354,7 @@ static vec3d *places_after_frame(int threads, int solver, double bend, size_t *c
     tl_garment garment;
     struct tl_cloth_params params = params_defaults();
     params.frame_rate = 500;
-    params.substeps = 20; /* short enough for bending as a force in cells of 8 mm */
+    params.substeps = 20; /* small enough for explicit bending in cells of 8 mm */
     tl_cloth *cloth = make_large(&garment, &params);
     struct tl_cloth_fabric fabric = cloth->fabric;
     fabric.bend_weft = fabric.bend_warp = bend;
@@ -365,11 +366,11 @@ static vec3d *places_after_frame(int threads, int solver, double bend, size_t *c
     assert_ok(tl_cloth_step(cloth, NULL, &error), error);
     omp_set_num_threads(before);
     *count = cloth->particles.count;
-    vec3d *places = TL_NEW_ARRAY(vec3d, *count);
-    memcpy(places, cloth->particles.x, *count * sizeof *places);
+    vec3d *positions = TL_NEW_ARRAY(vec3d, *count);
+    memcpy(positions, cloth->particles.x, *count * sizeof *positions);
     tl_cloth_destroy(&cloth);
     sheet_free(&garment);
-    return places;
+    return positions;
 }
 
 static void test_threads_agree(void **state)

@@ -1,4 +1,4 @@
-/* Strains against their closed forms under affine maps, and against the energy that is made of them. */
+/* Strains against their closed forms under affine maps, and against the energy that is computed from them. */
 #include "tests/cloth/sheets.h"
 #include "tests/testing.h"
 
@@ -7,10 +7,11 @@
 
 static const struct sheet_shape shape = {.columns = 5, .rows = 7, .width = 0.5, .height = 0.7};
 
-/* Floats hold positions near 1 m to 6e-8, sides of 0.1 m that much less well. */
+/* Float positions near 1 m are rounded by 6e-8: relative to sides of 0.1 m, that is this much with a margin.
+ */
 #define ROUNDING 3e-6
 
-/* x -> F x + t of the sheet's own plane; columns are where its first and second axis go. */
+/* The map x -> F x + t in the sheet's plane. The columns are the images of the first and second axis. */
 struct affine {
     vec3s u, v, t;
 };
@@ -56,9 +57,9 @@ static void closed_forms(void **state)
     map.u.x = 0.93f; /* 7 % shorter along the weft */
     expect(&garment, &map, 0, -0.07, 0);
     map = identity;
-    map.v = (vec3s){{tanf(0.3f), 1, 0}}; /* simple shear: warp threads lean over and get longer */
+    map.v = (vec3s){{tanf(0.3f), 1, 0}}; /* simple shear: warp threads tilt and stretch */
     expect(&garment, &map, 1 / cos(0.3) - 1, 0, sin(0.3));
-    map.v = (vec3s){{sinf(0.3f), cosf(0.3f), 0}}; /* pure shear of threads that keep their length */
+    map.v = (vec3s){{sinf(0.3f), cosf(0.3f), 0}}; /* pure shear: threads keep their length */
     expect(&garment, &map, 0, 0, sin(0.3));
     tl_garment_release(&garment);
 }
@@ -77,8 +78,8 @@ static void rigid_motions_strain_nothing(void **state)
     tl_garment_release(&garment);
 }
 
-/* A panel cut at an angle: stretched along y, its threads stretch by the square of their cosines. The
- * pattern's place of a point is the point turned back by the angle. */
+/* A panel cut at an angle. Under stretch along y the threads stretch by the square of their cosines. The
+ * pattern position of a point is the point rotated back by the angle. */
 static void turned_panels(void **state)
 {
     (void)state;
@@ -94,7 +95,7 @@ static void turned_panels(void **state)
             vec3s p = garment.model.mesh.positions[i];
             double u = c * (double)p.x + s * (double)p.y, v = c * (double)p.y - s * (double)p.x;
             garment.pattern[i] = (vec2s){{(float)u, (float)v}};
-            /* UVs of another scale: only their directions tell the threads. */
+            /* UVs at another scale: only their directions define the threads. */
             garment.model.mesh.uvs[i] = (vec2s){{3 * (float)u, -3 * (float)v}};
         }
         expect(&garment, &map, warp - 1, weft - 1, shear);
@@ -105,7 +106,7 @@ static void turned_panels(void **state)
     }
 }
 
-/* E = A/2 [ k_weft weft^2 + k_warp warp^2 + k_shear shear^2 ] of a flat sheet, whatever was done to it in its
+/* E = A/2 [ k_weft weft^2 + k_warp warp^2 + k_shear shear^2 ] of a flat sheet under any deformation in its
  * plane. */
 static void energy_is_made_of_them(void **state)
 {
@@ -149,7 +150,7 @@ static void energy_is_made_of_them(void **state)
     tl_garment_release(&garment);
 }
 
-/* A triangle without an area says nothing, and neither does a vertex that no triangle uses. */
+/* A triangle without area has no strain, and a vertex without triangles has none either. */
 static void slivers_say_nothing(void **state)
 {
     (void)state;
@@ -172,7 +173,7 @@ static void slivers_say_nothing(void **state)
     tl_garment_release(&garment);
 }
 
-/* Panels that meet at a seam have vertices of their own there: the strain of one is not mixed into the
+/* Panels that meet at a seam have separate vertices there: the strain of one is not averaged with the
  * other's. */
 static void seams_part_strains(void **state)
 {

@@ -14,8 +14,8 @@ static void test_weld_is_bitwise_but_for_zero(void **state)
     assert_memory_equal(weld, expected, sizeof weld);
 }
 
-/* Two triangles of a square, one of them twice with its winding turned, a fin on the diagonal, and one whose
- * corners weld together. */
+/* A square of two triangles, one of them repeated with opposite winding; a third triangle on the diagonal;
+ * and a triangle whose corners weld together. */
 static const uint32_t corners[] = {0, 1, 2, 0, 2, 3, 2, 0, 3, 0, 2, 4, 1, 1, 5};
 static const uint32_t identity[] = {0, 1, 2, 3, 4, 5};
 
@@ -67,8 +67,8 @@ static void test_fans_list_every_corner_once(void **state)
     tl_fans_release(&fans);
 }
 
-/* A fan has a vertex in common everywhere: one lane each; a strip of far quads fills its lanes. Every element
- * is listed once, and no run has a vertex twice. */
+/* All triangles of a fan share a vertex, so each batch has one lane; a strip of separate quads fills its
+ * lanes. Every element is listed once, and no batch contains a vertex twice. */
 static void test_batches_share_no_vertex(void **state)
 {
     (void)state;

@@ -120,20 +120,20 @@ static void check_drift(const struct tl_cloth_fabric *fabric, const struct swing
         if (p->w[i] > 0)
             p->x[i] = (vec3d){p->x[i].x, 0.12 - length * cos(swing->tilt), length * sin(swing->tilt)};
     }
-    double start = total_energy(trial.cloth), most = 0, means[SECONDS] = {0}, worst = 0;
+    double start = total_energy(trial.cloth), max_kinetic = 0, means[SECONDS] = {0}, worst = 0;
     for (int frame = 0; frame < SECONDS * FRAMES; frame++) {
         assert_ok(tl_cloth_step(trial.cloth, NULL, &error), error);
         double energy = total_energy(trial.cloth);
         means[frame / FRAMES] += energy / FRAMES;
         worst = fmax(worst, fabs(energy - start));
-        most = fmax(most, tl_cloth_measure(trial.cloth, NULL).kinetic_energy);
+        max_kinetic = fmax(max_kinetic, tl_cloth_measure(trial.cloth, NULL).kinetic_energy);
     }
     end(&trial);
-    double drift = fabs(means[SECONDS - 1] - means[0]) / most;
+    double drift = fabs(means[SECONDS - 1] - means[0]) / max_kinetic;
     printf("%g N/m, stretched to %g, tilted by %g: energy drifts by %.2g of %.3g J in 10 s, ripple %.2g\n",
-           fabric->stretch_warp, swing->stretch, swing->tilt, drift, most, worst / most);
+           fabric->stretch_warp, swing->stretch, swing->tilt, drift, max_kinetic, worst / max_kinetic);
     assert_true(drift < 1e-3);
-    assert_true(worst < 0.05 * most);
+    assert_true(worst < 0.05 * max_kinetic);
 }
 
 static void test_energy_drift(void **state)
@@ -170,7 +170,7 @@ static const int measure_reach[MEASURE_COUNT] = {0, 0, 3, 4, SHADOW_REACH};
 
 struct means {
     double first[MEASURE_COUNT], last[MEASURE_COUNT]; /* J, over the first and the tenth second */
-    double most;                                      /* J, kinetic */
+    double max_kinetic;                               /* J, kinetic */
 };
 
 static void add_energies(const struct trial *trial, const struct shadow *shadow, double share, double *sums)
@@ -204,7 +204,7 @@ static struct means run_wild(enum held held, double share)
             add_energies(&trial, &shadow, 1 / (double)(second - (SHADOW_STEPS - 1)), means.first);
         if (i >= steps - second)
             add_energies(&trial, &shadow, 1 / (double)second, means.last);
-        means.most = fmax(means.most, tl_cloth_energies(trial.cloth).kinetic);
+        means.max_kinetic = fmax(means.max_kinetic, tl_cloth_energies(trial.cloth).kinetic);
     }
     shadow_end(&shadow);
     end(&trial);
@@ -214,7 +214,7 @@ static struct means run_wild(enum held held, double share)
 /* Of the largest kinetic energy, in 10 s. */
 static double drift_of(const struct means *means, enum measure measure)
 {
-    return (means->last[measure] - means->first[measure]) / means->most;
+    return (means->last[measure] - means->first[measure]) / means->max_kinetic;
 }
 
 /* Energy passes on to stiffer and stiffer waves, whatever the step. Verlet keeps exactly, but for what is
