@@ -255,7 +255,7 @@ static vec3s buried(double u, double v)
 
 /* Needles 20 cm long and 5 mm wide start 1 m below the ground. The ground lifts them out without adding
  * energy. */
-static void what_the_ground_lifts_out_is_driven(void **state)
+static void ground_lifts_without_energy(void **state)
 {
     (void)state;
     const struct sheet_shape shape = {1, 80, 0.2, 0.4};
@@ -277,14 +277,10 @@ static void what_the_ground_lifts_out_is_driven(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_the_ground_lifts_out_is_driven),
-        cmocka_unit_test(test_stiffness_and_step),
-        cmocka_unit_test(test_bending_and_mass),
-        cmocka_unit_test(test_scrambled_and_collapsed),
-        cmocka_unit_test(test_bad_triangles),
-        cmocka_unit_test(test_teleporting_avatar),
-        cmocka_unit_test(test_bad_input_is_refused),
-        cmocka_unit_test(test_roll_back),
+        cmocka_unit_test(ground_lifts_without_energy), cmocka_unit_test(test_stiffness_and_step),
+        cmocka_unit_test(test_bending_and_mass),       cmocka_unit_test(test_scrambled_and_collapsed),
+        cmocka_unit_test(test_bad_triangles),          cmocka_unit_test(test_teleporting_avatar),
+        cmocka_unit_test(test_bad_input_is_refused),   cmocka_unit_test(test_roll_back),
     };
     tl_log_set_level(TL_LOG_QUIET);
     return cmocka_run_group_tests(tests, NULL, NULL);

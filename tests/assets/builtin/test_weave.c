@@ -95,9 +95,9 @@ static void test_crests(void **state)
     }
 }
 
-/* Of the weave's crossings, the share with the warp on top, and which: plain 1 of 2, chequered; twill 3 of 4,
- * each row of the pattern (a pick) one end to the right of the row below; satin 4 of 5, no two weft crossings
- * adjacent, not even by a corner. */
+/* The share of the weave's crossings with the warp on top, and their order: plain 1 of 2, chequered; twill 3
+ * of 4, each row of the pattern (a pick) one end to the right of the row below; satin 4 of 5, no two weft
+ * crossings adjacent, not even by a corner. */
 static void test_interlacing(void **state)
 {
     (void)state;

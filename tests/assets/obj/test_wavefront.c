@@ -178,7 +178,7 @@ static void many_groups_are_merged_by_material(void **state)
     tl_model_release(&model);
 }
 
-/* What is written is read back: points, faces, UVs; v to the bit. */
+/* Points, faces and UVs that are written are read back; v to the bit. */
 static void written_objects_are_read_back(void **state)
 {
     (void)state;

@@ -108,7 +108,7 @@ static void turned_panels(void **state)
 
 /* E = A/2 [ k_weft weft^2 + k_warp warp^2 + k_shear shear^2 ] of a flat sheet under any deformation in its
  * plane. */
-static void energy_is_made_of_them(void **state)
+static void energy_follows_from_strains(void **state)
 {
     (void)state;
     tl_garment garment = sheet_make(&shape, NULL);
@@ -151,7 +151,7 @@ static void energy_is_made_of_them(void **state)
 }
 
 /* A triangle without area has no strain, and a vertex without triangles has none either. */
-static void slivers_say_nothing(void **state)
+static void slivers_have_no_strain(void **state)
 {
     (void)state;
     tl_garment garment = sheet_make(&shape, NULL);
@@ -175,7 +175,7 @@ static void slivers_say_nothing(void **state)
 
 /* Panels that meet at a seam have separate vertices there: the strain of one is not averaged with the
  * other's. */
-static void seams_part_strains(void **state)
+static void strains_are_separate_at_seams(void **state)
 {
     (void)state;
     tl_garment garment = sheet_make(&shape, NULL);
@@ -213,9 +213,9 @@ static void seams_part_strains(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(closed_forms),        cmocka_unit_test(rigid_motions_strain_nothing),
-        cmocka_unit_test(turned_panels),       cmocka_unit_test(energy_is_made_of_them),
-        cmocka_unit_test(slivers_say_nothing), cmocka_unit_test(seams_part_strains),
+        cmocka_unit_test(closed_forms),           cmocka_unit_test(rigid_motions_strain_nothing),
+        cmocka_unit_test(turned_panels),          cmocka_unit_test(energy_follows_from_strains),
+        cmocka_unit_test(slivers_have_no_strain), cmocka_unit_test(strains_are_separate_at_seams),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

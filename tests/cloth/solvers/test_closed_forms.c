@@ -127,15 +127,15 @@ static void test_spring(void **state)
 
 /* ---- At rest ---- */
 
-/* A chain's shape at rest: where each row's vertices should be, below or beside where row 0 is. */
+/* The rest shape of a chain. `expect` gives each row's position relative to row 0. */
 struct rest_case {
     const char *name;
     double stretch;          /* N/m */
-    double damping, seconds; /* 1/s, s: how it is brought to rest */
+    double damping, seconds; /* 1/s, s: damping and duration of the run to rest */
     vec3s (*place)(double, double);
     bool both_ends; /* held at both ends, not only at the last row */
     void (*expect)(const struct rest_case *, const tl_garment *, uint32_t column, vec3d *rows);
-    double scale; /* m, of the displacement: what errors are relative to */
+    double scale; /* m, the displacement to which errors are relative */
 };
 
 static double spring_of(const struct rest_case *rest)
@@ -144,7 +144,7 @@ static double spring_of(const struct rest_case *rest)
     return chain_stiffness(&chain_shape, &fabric);
 }
 
-/* The largest distance of any vertex from where it should be, over the case's scale. */
+/* The largest distance of any vertex from its expected position, relative to the case's scale. */
 static double rest_error(const struct rest_case *rest, int solver, double h)
 {
     tl_garment garment = sheet_make(&chain_shape, rest->place);
@@ -173,7 +173,8 @@ static double rest_error(const struct rest_case *rest, int solver, double h)
     return worst / rest->scale;
 }
 
-/* To rounding where the solver rests exactly; else at the second order in the step that its sweep has. */
+/* The error is rounding if the solver rests exactly; else it falls with the second order in the step, as one
+ * sweep leaves it. */
 static void check_rest(const struct rest_case *rest, int solver)
 {
     double coarse = rest_error(rest, solver, solver_resting_step(solver));
@@ -233,8 +234,8 @@ static vec3s sag(double u, double v)
     return (vec3s){{(float)(span_m * v), (float)(-1.4 * v * (1 - v)), (float)u}};
 }
 
-/* The end of a chain whose first spring pulls with (across, up), for a chain of equal masses. Every spring
- * has the length d + T/k along its tension. */
+/* The end of a chain of equal masses whose first spring pulls with (across, up). Every spring has the length
+ * d + T/k along its tension. */
 static void hang_chain(const struct rest_case *rest, double mass, double across, double up, vec3d *rows)
 {
     const double length = chain_shape.height / chain_shape.rows, k = spring_of(rest);
@@ -304,7 +305,8 @@ static vec3d framed(double u, double v, double gamma)
     return (vec3d){u * cos(lean) + v * sin(lean), u * sin(lean) + v * cos(lean), 0};
 }
 
-/* Sets a clothed frame: its border held where it is sheared to, its inside shaken in the plane. */
+/* Makes a sheet in a sheared frame: its border is held in the sheared shape, its interior is displaced in the
+ * plane. */
 static tl_cloth *make_frame(const tl_garment *garment, const struct tl_cloth_fabric *fabric,
                             const struct tl_cloth_params *params, double gamma)
 {
@@ -323,8 +325,8 @@ struct frame_error {
     double energy, force;
 };
 
-/* How far energy and force are from the closed forms, relatively. The force is what the held border feels:
- * the power of its forces in a further shear, per change of the diagonal. */
+/* Relative errors of energy and force against the closed forms. The force is measured at the held border: the
+ * power of its forces in a further shear, per change of the diagonal. */
 static struct frame_error measure_frame(tl_cloth *cloth, const tl_garment *garment, double gamma)
 {
     const double side = frame_shape.width, shear = cloth->fabric.shear, s = sin(gamma), turn = 1e-6;

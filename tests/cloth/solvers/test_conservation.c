@@ -1,5 +1,5 @@
-/* What a free, weightless sheet keeps under every solver: momentum to rounding; angular momentum and energy
- * to rounding or to the order of the step, and never more energy than it had under the implicit methods. */
+/* Conservation laws of a free, weightless sheet under every solver: momentum to rounding; angular momentum
+ * and energy to rounding or to the order of the step. The implicit methods must never gain energy. */
 #include "tests/cloth/solvers.h"
 
 #include "config/log.h"
@@ -24,7 +24,7 @@ struct momentum_drift {
     double linear, angular; /* over sum of m |v|; the angular one per metre of the sheet */
 };
 
-/* Over a third of a second of wild motion. */
+/* Largest drift over a third of a second of large motion. */
 static struct momentum_drift drift_of(int solver, double h)
 {
     tl_garment garment = sheet_make(&shape, NULL);
@@ -54,7 +54,7 @@ static void test_momentum(void **state)
         assert_true(coarse.linear <= 1e-12 && fine.linear <= 1e-12);
         if (solver_rule(solver) == RULE_VERLET)
             assert_true(fine.angular <= 1e-12);
-        else /* pushes act at the places of the step's end: first order */
+        else /* corrections act at the positions of the step's end: first order */
             assert_true(fine.angular < 0.4 * coarse.angular);
     }
 }
@@ -67,7 +67,7 @@ static double total_energy(const tl_cloth *cloth)
     return report.kinetic_energy + report.elastic_energy + report.potential_energy;
 }
 
-/* A sheet that billows: waves as long as itself, which every solver's step resolves. */
+/* A billowing sheet: waves of the sheet's own length, which every solver's step resolves. */
 static void set_billowing(tl_cloth *cloth, const tl_garment *garment)
 {
     for (size_t i = 0; i < cloth->particles.count; i++) {
@@ -113,8 +113,8 @@ static void test_energy(void **state)
                tl_cloth_solver_names[solver], history.change, history.rise);
         if (solver_rule(solver) == RULE_VERLET)
             assert_near(history.change, 0, 1e-3);
-        else /* what one sweep leaves unsolved comes and goes, a share (h omega)^2 of it: 1 % of the start
-                here */
+        else /* one sweep leaves a residual that oscillates, (h omega)^2 of the energy: 1 % of the start here
+              */
             assert_true(history.change < 0 && history.rise <= (solver_rests_exactly(solver) ? 1e-9 : 0.01));
     }
 }

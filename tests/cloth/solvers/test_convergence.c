@@ -1,8 +1,9 @@
-/* Orders of convergence: of each solver's motion in the step, of the mesh at rest against a continuum.
+/* Orders of convergence: of each solver's motion in the step, and of the rest shape in the mesh against a
+ * continuum.
  *
- * Motion is compared before anything buckles or touches: a sheet clamped along an edge, whose weight sets it
- * swinging. Corners that are pinned alone would be singular, and strain there grow without end as meshes are
- * refined. */
+ * Motion is compared before anything buckles or touches: a sheet clamped along an edge swings under its
+ * weight. A sheet pinned at corners only would be singular: its strain there grows without bound as the mesh
+ * is refined. */
 #include "tests/cloth/solvers.h"
 
 #include "cloth/timestep.h"
@@ -50,7 +51,7 @@ static double rms_apart(const vec3d *a, const vec3d *b)
     return sqrt(sum);
 }
 
-/* Against Verlet at a step that leaves it (1/8)^2 of the finest step's error. */
+/* The reference is Verlet at a step that leaves (1/8)^2 of the finest step's error. */
 static void test_step(void **state)
 {
     (void)state;
@@ -95,7 +96,7 @@ static double continuum_sag(void)
     return sqrt(reach * reach + s * s) - reach + w * s * s / (2 * stretch);
 }
 
-/* A whole sheet, of several columns, with the resistance of weft and shear: it hangs as a chain does. */
+/* A sheet of several columns, with stiffness along weft and in shear, hangs as a chain does. */
 static double sheet_sag(int rows)
 {
     const struct sheet_shape shape = {3, rows, 3.0 / rows, 1};

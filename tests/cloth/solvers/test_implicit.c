@@ -32,7 +32,7 @@ static tl_cloth *make_cloth(const tl_garment *garment, const struct tl_cloth_fab
     return cloth;
 }
 
-/* Under tension, without shear, what the matrix leaves out is nothing: it is the forces' derivative. */
+/* Under tension and without shear the matrix neglects no term: it equals the derivative of the forces. */
 static void test_matrix_is_derivative(void **state)
 {
     (void)state;
@@ -72,7 +72,7 @@ static void test_matrix_is_derivative(void **state)
     sheet_free(&garment);
 }
 
-/* In any shape it is symmetric, and no motion is pushed along by it. */
+/* In any shape the matrix is symmetric and positive semidefinite: no motion gains energy from it. */
 static void test_matrix_is_semidefinite(void **state)
 {
     (void)state;
@@ -124,7 +124,7 @@ static struct tl_cloth_params settle_params(void)
     return params;
 }
 
-/* A stretched sheet let go: total energy never rises. */
+/* A stretched sheet is released: total energy never rises. */
 static void test_energy_falls(void **state)
 {
     (void)state;
@@ -188,7 +188,7 @@ static void test_threads(void **state)
     assert_int_equal(drape_hash(8), one);
 }
 
-/* One iteration a step is far too few: said, and still bounded. */
+/* One iteration per step is far too few: this is reported, and the motion stays bounded. */
 static void test_cut_short(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* The reference solver: what it keeps, how fast it converges, and the step beyond which it blows up. */
+/* The reference solver: its conserved quantities, its order of convergence and its critical step. */
 #include "cloth/measure.h"
 #include "cloth/solvers/verlet.h"
 #include "cloth/state.h"
@@ -147,7 +147,7 @@ static void test_energy_drift(void **state)
     }
 }
 
-/* Fabrics that ship, as cloth moves: let go a little out of its plumb line. No correction. */
+/* The fabrics that ship, released slightly out of the vertical. No correction. */
 static void test_energy_of_fabrics(void **state)
 {
     (void)state;
@@ -163,8 +163,8 @@ static void test_energy_of_fabrics(void **state)
 
 /* ---- Energy of wild motion ---- */
 
-/* What is held to be the energy: the plain one, with the h^2 term of the kept one, and the kept one by
- * differences of rising order. */
+/* The measured energy: the plain one, the plain one with the h^2 term of the shadow, and the shadow by
+ * differences of several orders. */
 enum measure { PLAIN, CORRECTED, SIXTH, EIGHTH, SIXTEENTH, MEASURE_COUNT };
 static const int measure_reach[MEASURE_COUNT] = {0, 0, 3, 4, SHADOW_REACH};
 
@@ -182,8 +182,8 @@ static void add_energies(const struct trial *trial, const struct shadow *shadow,
         sums[m] += share * shadow_energy(shadow, trial->cloth, measure_reach[m]);
 }
 
-/* A sheet that falls from level, crumples and never comes to rest, at a share of the critical step. It is
- * never crushed so that the step would have to be more than 2 % shorter. */
+/* A sheet falls from level, crumples and never comes to rest, at a share of the critical step. It is never
+ * compressed so much that the critical step falls by more than 2 %. */
 static struct means run_wild(enum held held, double share)
 {
     tl_error error = {0};
@@ -211,18 +211,18 @@ static struct means run_wild(enum held held, double share)
     return means;
 }
 
-/* Of the largest kinetic energy, in 10 s. */
+/* Drift in 10 s, relative to the largest kinetic energy. */
 static double drift_of(const struct means *means, enum measure measure)
 {
     return (means->last[measure] - means->first[measure]) / means->max_kinetic;
 }
 
-/* Energy passes on to stiffer and stiffer waves, whatever the step. Verlet keeps exactly, but for what is
- * exponentially small, an energy that differs from the plain one by h^2 times what grows with stiff waves: so
- * the mean of the plain one moves although nothing is lost. That this is all shows in orders: the plain drift
- * falls with h^2, that of the plain energy with the kept one's h^2 term with h^4, and at the solver's own
- * step it falls with each further order that is counted. Bounds on ratios are wide, as two runs of a chaotic
- * sheet agree in their statistics only: 4 and 16 are meant. */
+/* Energy flows to ever stiffer waves at any step. Up to an exponentially small part, Verlet conserves a
+ * shadow energy. It differs from the plain energy by h^2 times a term that grows with stiff waves, so the
+ * mean of the plain energy drifts although no energy is lost. The orders prove that this explains all of the
+ * drift: the plain drift falls with h^2; with the shadow's h^2 term it falls with h^4; at the solver's own
+ * step it falls with each further order. The bounds on the ratios are wide (4 and 16 are expected), because
+ * two runs of a chaotic sheet agree in their statistics only. */
 static void check_wild(enum held held)
 {
     struct means coarse = run_wild(held, TL_VERLET_SAFETY), fine = run_wild(held, TL_VERLET_SAFETY / 2);
@@ -264,7 +264,7 @@ static void run(tl_cloth *cloth, double gravity, double h, int steps)
     }
 }
 
-/* Places after 50 ms in steps of 0.9 h_c / division. */
+/* Positions after 50 ms in steps of 0.9 h_c / division. */
 static vec3d *places_after(const struct tl_cloth_fabric *fabric, int division, size_t *count)
 {
     struct trial trial = begin(4, fabric, HELD_CORNERS, 0.003);
@@ -325,8 +325,8 @@ static double speed_after(const struct tl_cloth_fabric *fabric, double irregular
     return rms;
 }
 
-/* Gershgorin's bound may be short of the truth, and must not be beyond it: stable at 1, and unstable at some
- * factor that is found here by halving. A mode whose step is 1 % too long grows by 1.3 each step. */
+/* Gershgorin's bound may be below the true critical step but not above it: stable at 1, and unstable at some
+ * factor, which is found by bisection. A mode whose step is 1 % too long grows by 1.3 in each step. */
 static void check_critical_step(const char *name, const struct tl_cloth_fabric *fabric, double irregular)
 {
     double stable = 1, unstable = 4;
@@ -341,7 +341,7 @@ static void check_critical_step(const char *name, const struct tl_cloth_fabric *
             unstable = middle;
     }
     printf("%s: blows up at %.2f of the critical step\n", name, unstable);
-    assert_true(unstable < 2); /* no wasteful bound either */
+    assert_true(unstable < 2); /* the bound is not too pessimistic either */
 }
 
 static void test_critical_step(void **state)

@@ -1,5 +1,4 @@
-/* XPBD, one substep at a time. What it shares with the other solvers: test_closed_forms.c,
- * test_conservation.c.
+/* XPBD, one substep at a time. Properties of all solvers are in test_closed_forms.c and test_conservation.c.
  */
 #include "cloth/solvers/xpbd.h"
 #include "cloth/state.h"
@@ -38,8 +37,8 @@ static void test_one_spring_is_implicit_euler(void **state)
     tl_particles_release(&particles);
 }
 
-/* A patch sheared by a small angle in its plane, nothing else: its energy's derivative is what the corners'
- * forces do. One XPBD substep from rest moves by the force times h^2 w as h goes to 0. */
+/* A patch is sheared by a small angle in its plane. The derivative of its energy is the work of the corners'
+ * forces. One XPBD substep from rest moves by the force times h^2 w as h goes to 0. */
 static void test_shear_force(void **state)
 {
     (void)state;

@@ -1,12 +1,13 @@
 /* MikkTSpace from its description (Mikkelsen 2008, "Simulation of Wrinkled Surfaces Revisited", and the
- * comments of its reference code), for tests: slow and plain, in double, per corner, triangle by triangle,
- * sharing no code and no order of sums with cloth/frames.
+ * comments of its reference code), as a reference for tests: slow and simple, in double, per corner and
+ * triangle. It shares no code and no order of summation with cloth/tangents.
  *
- * Vertices are one where place, given normal and UV are. Triangles with two corners in one place take no
- * part. An edge joins the first two triangles that run along it in opposite ways. A group spreads around its
- * vertex over such edges while the UV handedness stays; a triangle without UV area takes that of the first
- * group that reaches it, and adds nothing. A group's tangent is the sum, over its corners, of the triangle's
- * dP/du in the plane of the normal, unit, times the angle between the corner's edges in that plane. */
+ * Corners with equal position, given normal and UV are one vertex. Triangles with two corners at one position
+ * are left out. An edge connects the first two triangles that run along it in opposite directions. A group
+ * spreads around its vertex over such edges while the UV handedness is the same. A triangle without UV area
+ * takes the handedness of the first group that reaches it, and contributes nothing. A group's tangent is the
+ * sum, over its corners, of the triangle's unit dP/du in the plane of the normal, times the angle between the
+ * corner's edges in that plane. */
 #ifndef TOILE_TESTS_CLOTH_TANGENTS_MIKK_ORACLE_H
 #define TOILE_TESTS_CLOTH_TANGENTS_MIKK_ORACLE_H
 
@@ -115,7 +116,7 @@ static inline bool oracle_grouped(const struct oracle *o, size_t corner)
     return o->group[corner] != ORACLE_NONE;
 }
 
-/* Puts a corner into a group, and those beside it at the same vertex. */
+/* Adds a corner to a group, then the adjacent corners at the same vertex. */
 static inline void oracle_spread(struct oracle *o, size_t corner, size_t group, int hand)
 {
     size_t t = 3 * (corner / 3);
@@ -134,7 +135,7 @@ static inline void oracle_spread(struct oracle *o, size_t corner, size_t group, 
         oracle_spread(o, behind, group, hand);
 }
 
-/* Borrows everything; oracle_release frees its own lists. */
+/* Keeps pointers to its arguments; oracle_release frees only its own lists. */
 static inline struct oracle oracle_make(const tl_mesh *mesh, const vec3s *positions, const vec3s *normals,
                                         const uint32_t *weld)
 {
@@ -166,8 +167,8 @@ static inline void oracle_release(struct oracle *o)
     free(o->hand);
 }
 
-/* Angle-weighted, over all corners with the same place and given normal; not unit: its length tells how well
- * the triangles agree. */
+/* Angle-weighted normal over all corners with the same position and given normal. Not unit: its length
+ * measures how well the triangles agree. */
 static inline vec3d oracle_normal_sum(const struct oracle *o, size_t corner)
 {
     vec3d sum = {0};
@@ -199,7 +200,7 @@ static inline vec3d oracle_face_tangent(const struct oracle *o, size_t triangle)
                        1 / oracle_uv_area(o, triangle));
 }
 
-/* Of the corner's group, with the normal that oracle_normal_sum gives; not unit, as above. */
+/* The tangent of the corner's group, with the normal of oracle_normal_sum; not unit, as above. */
 static inline vec3d oracle_tangent_sum(const struct oracle *o, size_t corner)
 {
     vec3d normal = vec3d_unit_or(oracle_normal_sum(o, corner), (vec3d){0}), sum = {0};

@@ -21,8 +21,8 @@ static double noise(uint32_t i, uint32_t channel)
     return (double)x / 2147483648.0 - 1;
 }
 
-/* A sheet whose right half mirrors the UVs of its left half about the middle column, and that is cut at a
- * quarter: UVs jump there while places do not. */
+/* A sheet whose right half mirrors the UVs of its left half about the middle column, and with a cut at a
+ * quarter, where UVs jump and positions do not. */
 static tl_garment mirrored_and_cut(void)
 {
     const struct sheet_shape shape = {12, 8, 1.2, 0.8};
@@ -55,8 +55,8 @@ static tl_garment mirrored_and_cut(void)
     return garment;
 }
 
-/* Waves through the whole garment, a tenth of its size, and noise at every place, `roughness` of the mean
- * edge. Fixed by `seed`. */
+/* Waves of a tenth of the garment's size, and noise at every position, `roughness` times the mean edge. Fixed
+ * by `seed`. */
 static void deform(const tl_mesh *mesh, const uint32_t *weld, uint32_t seed, double roughness, vec3s *out)
 {
     struct tl_box box = tl_box_of(mesh->positions, mesh->vertex_count);
@@ -128,7 +128,7 @@ struct errors {
     size_t normal_count, tangent_count, undetermined;
 };
 
-/* The corner of a vertex whose group most of its corners are in, the first of equals. */
+/* The corner of a vertex in the group of most of its corners, the first if several are equal. */
 static size_t showing_corner(const struct oracle *o, uint32_t vertex)
 {
     size_t best = ORACLE_NONE, most = 0;
@@ -144,8 +144,8 @@ static size_t showing_corner(const struct oracle *o, uint32_t vertex)
     return best;
 }
 
-/* Every vertex that the oracle gives a normal or a tangent. Sums that all but cancel (a thousandth of one
- * triangle's) have no direction that the float positions determine. */
+/* Compares every vertex that the oracle gives a normal or a tangent. Sums that almost cancel (a thousandth of
+ * one triangle's) have no direction that float positions determine. */
 static void compare(const tl_mesh *mesh, const struct buffers *b, struct errors *errors)
 {
     const double cancelled = 1e-3;
@@ -222,8 +222,9 @@ static void test_mirrored_and_cut(void **state)
     sheet_free(&garment);
 }
 
-/* Nothing that a file forbids: UVs at random, so that handedness changes from triangle to triangle, a third
- * of the vertices with the UV of another, triangles turned over, edges with three and four triangles. */
+/* A mesh with every irregularity that a file may have: random UVs, so that handedness changes from triangle
+ * to triangle; a third of the vertices with the UV of another; flipped triangles; edges with three and four
+ * triangles. */
 static void test_tangled_mesh(void **state)
 {
     (void)state;
@@ -291,8 +292,8 @@ static vec3s roll(double u, double v)
 }
 
 /* A sheet rolled about y: normals are radial, tangents follow the circle, the bitangent is up, v runs down.
- * Inner vertices of a regular grid see the cylinder alike on both sides but for the diagonal: within the
- * angle of one cell. */
+ * At inner vertices of a regular grid the cylinder is symmetric except for the diagonal: errors are within
+ * the angle of one cell. */
 static void test_cylinder(void **state)
 {
     (void)state;
@@ -319,7 +320,7 @@ static void test_cylinder(void **state)
     sheet_free(&garment);
 }
 
-/* Collapsed triangles, UVs of one point, vertices that nothing uses, a sheet crumpled into a point. */
+/* Collapsed triangles, equal UVs, unused vertices, a sheet collapsed to a point. */
 static void test_degenerate_input_stays_finite(void **state)
 {
     (void)state;
@@ -343,7 +344,7 @@ static void test_degenerate_input_stays_finite(void **state)
     assert_orthonormal(&b, mesh->vertex_count);
     assert_near(b.normals[24].z, 1, 1e-6); /* kept from before */
 
-    /* Bent over, the vertices without UVs keep tangents of their own; forgotten, they begin anew. */
+    /* After bending, the vertices without UVs keep tangents of their own; after a reset they start again. */
     deform(mesh, b.weld, 1, 0.1, b.positions);
     tl_tangent_frames_update(frames, b.positions, b.normals, b.tangents);
     memcpy(b.positions, mesh->positions, mesh->vertex_count * sizeof(vec3s));
@@ -358,7 +359,7 @@ static void test_degenerate_input_stays_finite(void **state)
     sheet_free(&garment);
 }
 
-/* A sheet drawn from both sides with vertices of their own: each side has its own normal. */
+/* A sheet modelled from both sides with separate vertices: each side has its own normal. */
 static void test_both_sides(void **state)
 {
     (void)state;
@@ -384,8 +385,8 @@ static void test_both_sides(void **state)
     free_buffers(&b);
 }
 
-/* An open fan and a ring of 100 triangles that touch in one vertex, which is more spokes than are held at a
- * time, in two pieces. */
+/* An open fan and a ring of 100 triangles that share one vertex: two chains, and more spokes than are
+ * buffered at a time. */
 static void test_long_fans(void **state)
 {
     (void)state;
@@ -415,7 +416,7 @@ static void test_long_fans(void **state)
     check_deformations("long fans", &mesh, 6);
 }
 
-/* Directions do not depend on size, even where squares of areas come near the ends of float. */
+/* Directions do not depend on size, even if squares of areas come near the limits of float. */
 static void test_sizes(void **state)
 {
     (void)state;
@@ -430,7 +431,7 @@ static void test_sizes(void **state)
     sheet_free(&garment);
 }
 
-/* What is around a vertex that is nowhere keeps its frame, and the rest moves on. */
+/* Vertices around one that is not finite keep their frames, and the others are updated. */
 static void test_positions_that_are_not_finite(void **state)
 {
     (void)state;
@@ -499,7 +500,7 @@ static double thread_seconds(void)
     return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
-/* Prints the time of one core, the best of many; no claim is made of it. */
+/* Prints the time on one core, the best of many; not checked. */
 static void test_print_speed(void **state)
 {
     (void)state;
