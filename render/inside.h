@@ -1,4 +1,4 @@
-/* A look inside a renderer, for checks: what its last frame's jobs made, read only. */
+/* Read-only access to the resources of a renderer's last frame, for checks and tests. */
 #ifndef TOILE_RENDER_INSIDE_H
 #define TOILE_RENDER_INSIDE_H
 
@@ -6,8 +6,8 @@
 #include "render/frame/resources.h"
 #include "render/renderer.h"
 
-/* Borrowed; valid until the renderer is destroyed. What it holds is of the frame drawn last, as far as `valid`
- * says so. */
+/* Returns the resources. Lifetime: borrowed, until the renderer is destroyed. Only resources in `valid`
+ * belong to the last frame. */
 const struct tl_resources *tl_renderer_look_inside(const tl_renderer *renderer);
 
 #endif

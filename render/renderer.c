@@ -152,7 +152,7 @@ static struct tl_plan_input plan_input(const tl_renderer *renderer, const tl_fra
                                        const struct tl_render_settings *settings, tl_bits changed,
                                        tl_bits wanted)
 {
-    /* Maps that wait for their turn are not what they should be. */
+    /* Shadow maps that wait for their turn are out of date, so they do not count as valid. */
     tl_bits waiting =
         tl_shadow_maps_wait(renderer->resources.maps) ? TL_BIT(TL_MADE_DEPTHS) | TL_BIT(TL_MADE_MAPS) : 0;
     return (struct tl_plan_input){.changed = changed,
@@ -163,7 +163,7 @@ static struct tl_plan_input plan_input(const tl_renderer *renderer, const tl_fra
                                   .resource_names = tl_resource_names};
 }
 
-/* What somebody outside reads of a drawn frame. */
+/* The resources that callers read after a draw. */
 static tl_bits read_of(const tl_frame *frame)
 {
     return TL_BIT(TL_MADE_IMAGE) | (frame->aovs ? TL_BIT(TL_MADE_SAMPLES) : 0);
@@ -178,19 +178,21 @@ static tl_bits changed_inputs(const tl_renderer *renderer, const uint64_t signat
     return changed;
 }
 
-/* Nothing holds, and the next frame begins anew: rounds are never averaged into what another frame left. */
+/* Invalidates every resource, so that the next frame starts from nothing: rounds must never be averaged into
+ * the image of another frame. */
 static void forget(tl_renderer *renderer)
 {
     renderer->resources.valid = 0;
     memset(renderer->signatures, 0, sizeof renderer->signatures);
 }
 
-/* As if all surfaces had moved: what follows from the environment alone is the same however it came about. */
+/* Treats all surfaces as moved. Resources that follow from the environment alone are kept, because they do
+ * not depend on earlier frames. */
 void tl_renderer_forget(tl_renderer *renderer)
 {
     renderer->signatures[TL_INPUT_MOTION] = 0;
     renderer->rest = (struct tl_rest){0};
-    tl_points_destroy(&renderer->resources.points); /* they refine what they have */
+    tl_points_destroy(&renderer->resources.points); /* visibility at points refines earlier values */
     renderer->resources.points = tl_points_create();
 }
 
@@ -199,7 +201,7 @@ bool tl_renderer_forget_scene(tl_renderer *renderer, tl_error *error)
     renderer->resources.valid &= TL_BIT(TL_MADE_CUBE) | TL_BIT(TL_MADE_REGIONS) | TL_BIT(TL_MADE_LOBE) |
                                  TL_BIT(TL_MADE_PEMS) | TL_BIT(TL_MADE_LOBES) | TL_BIT(TL_MADE_SLICES) |
                                  TL_BIT(TL_MADE_LIGHTS) | TL_BIT(TL_MADE_ENVMAP_LOBES);
-    renderer->signatures[TL_INPUT_MOTION] = 0; /* no round goes on */
+    renderer->signatures[TL_INPUT_MOTION] = 0; /* ends averaging */
     renderer->rest = (struct tl_rest){0};
     tl_surfaces_destroy(&renderer->resources.surfaces);
     renderer->resources.surfaces = tl_surfaces_create(renderer->resources.gpu);
@@ -229,13 +231,13 @@ static void make_plan(const tl_renderer *renderer, const struct tl_plan_input *i
     tl_plan_make(tl_frame_jobs, tl_frame_job_count, input, predicted_ms, plan);
 }
 
-/* Jobs learn from the work that they turned out to have. What slows all of them down is learned apart, from
- * those that are known by now. */
+/* Each job's cost model learns from the work that the job turned out to have. The machine's load slows all
+ * jobs down alike and is learned separately, from the jobs whose cost is known. */
 static void learn_costs(tl_renderer *renderer, tl_plan *plan, double new_regions)
 {
     const int known = 3; /* runs */
     struct tl_work_seen seen = tl_work_observe(&renderer->resources, &renderer->counts, &renderer->settings);
-    seen.new_regions = new_regions; /* as it was before they were made */
+    seen.new_regions = new_regions; /* counted before the jobs made them */
     double predicted_ms = 0, took_ms = 0, load = tl_machine_load_factor(&renderer->load);
     for (int i = 0; i < plan->count; i++) {
         if (plan->rows[i].action != TL_JOB_RUN)
@@ -277,7 +279,7 @@ static bool run_plan(tl_renderer *renderer, const struct tl_plan_input *input, t
     return true;
 }
 
-/* Shader files edited on disk take effect at the next draw; an error in one is told, and the old one stays.
+/* Reloads shader files that were edited on disk. An error in one is logged, and its old program stays in use.
  */
 static void reload_shaders(tl_renderer *renderer)
 {
@@ -325,8 +327,9 @@ static bool check_envmap_size(const tl_frame *frame, const struct tl_render_sett
     return true;
 }
 
-/* Releases what the scene does not need any more; jobs make it again when it does. While something else than
- * light is shown, what light needs is kept. Bumps are as high as the options say, with maps or without. */
+/* Releases resources that the scene does not need any more; jobs make them again on demand. A view other than
+ * light releases nothing that light needs, so that switching back is quick. The height of bumps follows the
+ * options even where there are no detail maps. */
 static void release_unused(struct tl_resources *resources, const struct tl_detail_params *detail)
 {
     tl_bits facts = resources->facts;
@@ -346,7 +349,7 @@ static void release_unused(struct tl_resources *resources, const struct tl_detai
     }
 }
 
-/* What is drawn: the frame's surfaces, with the ground last when it is drawn. */
+/* Lists the surfaces to draw: those of the frame, then the ground if it is shown. */
 static void list_surfaces(const tl_frame *frame, bool has_ground, uint64_t revision,
                           struct tl_resources *resources)
 {
@@ -419,7 +422,7 @@ bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct
     uint64_t signatures[TL_INPUT_COUNT];
     tl_frame_sign(frame, &used, renderer->signatures, &renderer->rest, signatures);
     tl_bits changed = changed_inputs(renderer, signatures);
-    if (resources->valid) /* a first frame moves from nowhere */
+    if (resources->valid) /* the first frame has no earlier one to differ from */
         renderer->moving = changed;
     renderer->frame = *frame;
     renderer->counts = tl_work_count(frame);
@@ -483,7 +486,7 @@ static bool show(tl_renderer *renderer, unsigned framebuffer, int width, int hei
     renderer->resources.valid &=
         ~TL_BIT(TL_MADE_SHOWN); /* a window's buffer holds nothing from one frame to the next */
     tl_plan plan;
-    /* The image is there; the scene may have gone on since, and says nothing about it. */
+    /* No input counts as changed: the image is shown as it was drawn, even if the scene has changed since. */
     const struct tl_plan_input input = {.valid = renderer->resources.valid,
                                         .scene = renderer->resources.facts,
                                         .wanted = TL_BIT(TL_MADE_SHOWN),
@@ -527,7 +530,7 @@ void tl_renderer_plan(const tl_renderer *renderer, const tl_frame *frame,
     make_plan(renderer, &input, &used, out);
 }
 
-/* What may move by itself; options change when somebody changes them. */
+/* Inputs that can change without the user: their change counts as motion. Options change only by hand. */
 #define MOVING_INPUTS                                                                                        \
     (TL_BIT(TL_INPUT_ENVIRONMENT) | TL_BIT(TL_INPUT_YAW) | TL_BIT(TL_INPUT_MOTION) |                         \
      TL_BIT(TL_INPUT_CAMERA) | TL_BIT(TL_INPUT_LAYOUT) | TL_BIT(TL_INPUT_CAPTURE) | TL_BIT(TL_INPUT_LAMPS))

@@ -1,4 +1,5 @@
-/* The inside of a renderer: a frame's resources, and what plans the next one. */
+/* The state of a renderer: the resources of the last frame, and the cost models and signatures that plan the
+ * next one. */
 #ifndef TOILE_RENDER_RENDERER_INTERNAL_H
 #define TOILE_RENDER_RENDERER_INTERNAL_H
 
@@ -8,13 +9,13 @@
 struct tl_renderer {
     struct tl_resources resources;
 
-    /* Of the last draw; borrowed pointers in `frame` live as long as tl_frame says. */
+    /* The arguments of the last draw and what follows from them. Pointers in `frame` are borrowed. */
     tl_frame frame;
     struct tl_render_settings settings;
     struct tl_work_counts counts;
     struct tl_rest rest;
     uint64_t signatures[TL_INPUT_COUNT]; /* of its inputs */
-    tl_bits moving;                      /* inputs that changed from one frame to the last */
+    tl_bits moving;                      /* inputs that changed before the last frame */
 
     tl_plan plan;
     struct tl_cost_job costs[TL_JOBS_MAX];

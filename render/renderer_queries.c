@@ -1,4 +1,5 @@
-/* What a renderer tells of its last frame beside the image, and what it exchanges with a worker thread. */
+/* Queries about the last frame (inspection, legend, AOVs, memory), and the exchange of prepared environments
+ * with a worker thread. */
 #include "render/frame/memory.h"
 #include "render/inside.h"
 #include "render/renderer_internal.h"
@@ -82,7 +83,7 @@ uint32_t tl_renderer_exponents(const tl_renderer *renderer)
     return renderer->resources.light_cache.exponents;
 }
 
-/* The cube is that of the last frame: an image without light leaves it as it was. */
+/* The cube belongs to the last frame that was lit: an image without light does not remake it. */
 tl_prepared *tl_renderer_copy_prepared(const tl_renderer *renderer)
 {
     const struct tl_resources *resources = &renderer->resources;

@@ -40,7 +40,7 @@ static uint32_t exponents_between(float least, float greatest)
                                1 - 1 / fmaxf(greatest * (1 + ROUNDING), 1));
 }
 
-/* Of what a material is beyond two lobes. */
+/* The exponents that a material's lobes beyond the first two need. */
 static uint32_t layered_exponents(const tl_material *material, float low, float high)
 {
     uint32_t needed = 0;
@@ -168,7 +168,7 @@ static tl_bits light_facts(const tl_frame *frame, const struct tl_render_setting
     return facts | lamp_facts(frame, light);
 }
 
-/* Of a frame whose view is not light, but for those of its materials. */
+/* Facts of a frame whose view is not light, except those that follow from its materials. */
 static tl_bits view_facts(int view)
 {
     tl_bits facts = TL_BIT(TL_SCENE_RASTER) | TL_BIT(TL_SCENE_SAMPLES) | TL_BIT(TL_SCENE_INSPECT);

@@ -16,7 +16,7 @@ uint32_t tl_map_exponents_of(const tl_surface *surfaces, size_t count, const str
 /* Whether any material that is drawn has the property. */
 bool tl_materials_have(const tl_surface *surfaces, size_t count,
                        bool (*property)(const tl_material *material));
-/* Its gloss is not a lobe about the mirror direction. */
+/* Whether the material's gloss is not a lobe about the mirror direction. */
 bool tl_material_is_faceted(const tl_material *material);
 
 #endif

@@ -35,7 +35,8 @@ static uint64_t camera_signature(const struct tl_camera *camera)
     return MIX(MIX(MIX(hash, camera->fov_y), camera->near_m), camera->far_m);
 }
 
-/* What options decide, by bits of their rows. Inputs that are not here follow from the frame alone. */
+/* The inputs that options decide, by the bits of the options' rows. Other inputs follow from the frame alone.
+ */
 static const uint64_t bits_of[TL_INPUT_COUNT] = {
     [TL_INPUT_SIZE] = TL_AFFECTS_SIZE,         [TL_INPUT_GROUND] = TL_AFFECTS_GROUND,
     [TL_INPUT_PEM_SIZE] = TL_AFFECTS_PEM_SIZE, [TL_INPUT_FILTER] = TL_AFFECTS_FILTER,
@@ -86,7 +87,7 @@ static uint64_t layout_signature(const tl_frame *frame, const struct tl_maps_par
     return MIX(MIX(options, view.forward), view.up);
 }
 
-/* What a capture shows. */
+/* The signature of the scene that a capture shows. */
 static uint64_t scene_signature(const uint64_t signatures[TL_INPUT_COUNT])
 {
     static const enum tl_resource shown[] = {TL_INPUT_ENVIRONMENT, TL_INPUT_YAW, TL_INPUT_SHAPES,
@@ -147,7 +148,7 @@ void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *setti
     signatures[TL_INPUT_MOTION] = motion_signature(frame);
     signatures[TL_INPUT_CAMERA] = camera_signature(&frame->camera);
     bool in_passes =
-        tl_light_source(light) == TL_LIGHT_CHAIN; /* so many maps to an array as PEMs to a pass */
+        tl_light_source(light) == TL_LIGHT_CHAIN; /* maps in an array: as many as PEMs in a pass */
     signatures[TL_INPUT_MAPS] = MIX(signatures[TL_INPUT_MAPS], in_passes);
     signatures[TL_INPUT_LAMPS] = lamps_signature(frame, signatures[TL_INPUT_LAMPS]);
     bool captures = settings->maps.capture_every > 0;

@@ -1,6 +1,6 @@
-/* The inputs of a frame: for each of them what it holds, and a signature, which changes when it does. An
- * input of options holds those that its signature covers and those that what is made earlier already follows
- * from; the others are 0, so that a job that reads an option without declaring it finds nothing. Pure. */
+/* The inputs of a frame: the value of each, and a signature that changes when the value does. An input made
+ * of options holds the options that its signature covers and those that earlier resources already depend on.
+ * All others are 0, so that a job that reads an option without declaring it finds nothing. Pure. */
 #ifndef TOILE_RENDER_FRAME_INPUTS_H
 #define TOILE_RENDER_FRAME_INPUTS_H
 
@@ -46,7 +46,7 @@ struct tl_cut_input {
 struct tl_shadow_input {
     enum tl_visibility kind;
     int map_size;   /* texels */
-    bool in_passes; /* so many maps to an array as PEMs to a pass */
+    bool in_passes; /* maps in an array: as many as PEMs in a pass */
     float blur_m;
 };
 

@@ -1,6 +1,6 @@
-/* What was made of one environment cube and costs time to make again: its exact lobes, by exponent, and the
- * lights of a few cuts into regions, so that going to more or fewer regions and back costs little. A cache:
- * what it returns is bit for bit what would be made. Pure. */
+/* A cache of one environment cube's slow results: its exact lobes, by exponent, and the lights of a few cuts
+ * into regions, so that changing the number of regions back and forth is quick. What it returns is bit for
+ * bit what would be computed. Pure. */
 #ifndef TOILE_RENDER_FRAME_LIGHT_CACHE_H
 #define TOILE_RENDER_FRAME_LIGHT_CACHE_H
 
@@ -28,7 +28,7 @@ struct tl_light_cache {
     const struct tl_region_lights *current; /* those that light the image: never replaced */
 };
 
-/* Another cube: its lobes are to be made again, and kept lights are found no more. */
+/* Begins with another cube: discards all lobes, and kept lights are no longer found. */
 void tl_light_cache_begin(struct tl_light_cache *cache);
 void tl_light_cache_release(struct tl_light_cache *cache);
 
@@ -45,13 +45,12 @@ const struct tl_regions *tl_light_cache_regions(const struct tl_light_cache *cac
 const struct tl_region_lights *tl_light_cache_lights(struct tl_light_cache *cache, int region_count, int cut,
                                                      enum tl_region_weight weight,
                                                      const struct tl_regions *regions);
-/* Whether these lights are there, complete. */
+/* Returns whether these lights are in the cache, complete. */
 bool tl_light_cache_has(const struct tl_light_cache *cache, const struct tl_light_params *light);
-/* Makes them ready, of this cube. */
+/* Computes the lights of these options from this cube and keeps them. */
 void tl_light_cache_prepare(struct tl_light_cache *cache, const tl_cube *cube,
                             const struct tl_light_params *light);
-/* Regions of the present cube and their lights that were made elsewhere: what of both is not there yet is
- * taken. */
+/* Adds regions and lights of the present cube that were made elsewhere, as far as the cache lacks them. */
 void tl_light_cache_keep(struct tl_light_cache *cache, const struct tl_light_params *light,
                          struct tl_regions *regions, struct tl_region_lights *lights);
 

@@ -1,4 +1,4 @@
-/* What the renderer keeps, resource by resource. */
+/* Counts the renderer's memory, resource by resource. */
 #include "render/frame/memory.h"
 
 static size_t cube_bytes(const tl_cube *cube)

@@ -27,7 +27,7 @@ uint32_t tl_prepared_exponents(const tl_frame *frame, const struct tl_render_set
     return tl_exponents_of(frame->surfaces, frame->surface_count, &settings->detail);
 }
 
-/* What is lit from regions at every sample. */
+/* Whether every sample is lit from regions at these settings. */
 static bool wants_lights(const struct tl_light_params *light)
 {
     return light->visibility == TL_VISIBILITY_RAYS && light->method != TL_METHOD_REFERENCE &&
@@ -58,7 +58,7 @@ static bool is_requested(const struct tl_prepared_request *request, int region_c
     return false;
 }
 
-/* Of what is known: lights that nobody asks for would only take their place. */
+/* Keeps only the lights that are requested. Others would only displace them from the cache. */
 static void keep_requested(tl_prepared *prepared, const struct tl_prepared_request *request)
 {
     int kept = 0;
@@ -66,7 +66,7 @@ static void keep_requested(tl_prepared *prepared, const struct tl_prepared_reque
         const struct tl_prepared_lights lights = prepared->lights[i];
         if (!is_requested(request, lights.count))
             release_lights(prepared, i);
-        prepared->lights[i] = (struct tl_prepared_lights){0}; /* whoever fills it finds it empty */
+        prepared->lights[i] = (struct tl_prepared_lights){0}; /* the next user starts with an empty entry */
         if (is_requested(request, lights.count))
             prepared->lights[kept++] = lights;
     }
@@ -83,7 +83,7 @@ static void need_lights(tl_prepared *prepared, uint32_t exponents, int region_co
     add_lights(prepared, exponents, region_count);
 }
 
-/* One exponent at a time, so that nobody waits long for a loader to stop. */
+/* One exponent at a time, so that a loader stops soon after it is interrupted. */
 static void add_lobes(tl_prepared *prepared, uint32_t exponents, struct tl_progress *progress, int total)
 {
     int done = 1;
@@ -200,7 +200,7 @@ bool tl_prepared_fits(const tl_prepared *prepared, uint64_t environment_revision
 void tl_prepared_give_lights(tl_prepared *prepared, struct tl_light_cache *cache)
 {
     tl_lobes_merge(&cache->lobes, &prepared->lobes);
-    /* The first ones matter most: they come last, so that no other takes their place. */
+    /* The first counts matter most and are added last, so that no other displaces them. */
     for (int i = prepared->count - 1; i >= 0; i--) {
         prepared->light.regions = prepared->lights[i].count;
         tl_light_cache_keep(cache, &prepared->light, &prepared->lights[i].regions,

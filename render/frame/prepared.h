@@ -1,7 +1,7 @@
-/* What a renderer makes of an environment before it can light anything, made ready beside it: that takes up
- * to a second, in which images go on. So does what it lacks for materials that are new to it. Pure; on any
- * thread. What it holds is bit for bit what the renderer would have made, and what it does not hold the
- * renderer makes itself. */
+/* Prepares an environment on a worker thread: the cube, lobes and lights that a renderer needs before it can
+ * light anything. That takes up to a second, during which the renderer goes on drawing. Light that new
+ * materials need is prepared in the same way. The result is bit for bit what the renderer would make; what it
+ * lacks, the renderer makes itself. Pure. Threads: any. */
 #ifndef TOILE_RENDER_FRAME_PREPARED_H
 #define TOILE_RENDER_FRAME_PREPARED_H
 
@@ -26,7 +26,7 @@ struct tl_prepared_request {
 /* Of the lobes that the frame's materials need, as bits of render/env/lobes.h. */
 uint32_t tl_prepared_exponents(const tl_frame *frame, const struct tl_render_settings *settings);
 
-/* Shows progress. One that is interrupted holds less. */
+/* Prepares an environment and reports progress. When it is interrupted, the result holds less. */
 tl_prepared *tl_prepared_make(struct tl_prepared_request *request);
 void tl_prepared_destroy(tl_prepared **prepared); /* null is fine */
 

@@ -1,5 +1,5 @@
-/* The resources of a frame and the facts about its scene, by bit: what render/plan reasons about. The first
- * resources are inputs, which no job writes. */
+/* The resources of a frame and the facts about its scene, by bit, for render/plan. The first resources are
+ * inputs, which no job writes. */
 #ifndef TOILE_RENDER_FRAME_RESOURCE_H
 #define TOILE_RENDER_FRAME_RESOURCE_H
 
@@ -22,7 +22,7 @@ enum tl_resource {
     TL_INPUT_RAYS,        /* how rays are spent */
     TL_INPUT_ROUND,       /* which of the jittered frames that are averaged while nothing changes */
     TL_INPUT_SCENE_ROUND, /* ... while nothing but the camera does */
-    TL_INPUT_LIGHT,       /* how light is put together */
+    TL_INPUT_LIGHT,       /* how light is composed */
     TL_INPUT_LAMPS,       /* and how surfaces are shaded under them */
     TL_INPUT_REFERENCE,
     TL_INPUT_DETAIL,      /* how its maps are read */
@@ -47,9 +47,9 @@ enum tl_resource {
     TL_MADE_MAPS,
     TL_MADE_GBUFFER,
     TL_MADE_SAMPLES,
-    TL_MADE_TRANSPARENCY, /* what is seen through cloth */
-    TL_MADE_MIRRORS,      /* what near mirrors show */
-    TL_MADE_TRACE,        /* the surfaces as rays meet them */
+    TL_MADE_TRANSPARENCY, /* samples behind open cloth */
+    TL_MADE_MIRRORS,      /* samples that near mirrors reflect */
+    TL_MADE_TRACE,        /* the surfaces as a BVH */
     TL_MADE_POINTS,
     TL_MADE_ENVMAP_LOBES,
     TL_MADE_CAPTURE,
@@ -68,12 +68,12 @@ enum tl_resource {
 /* Facts about the scene, by bit. */
 enum tl_scene_fact {
     TL_SCENE_RASTER,       /* anything but the reference */
-    TL_SCENE_SHADOWS,      /* somebody asks for visibility */
+    TL_SCENE_SHADOWS,      /* the method needs visibility */
     TL_SCENE_MAPS,         /* ... of shadow maps */
-    TL_SCENE_RAYS,         /* the back-end of rays says what is seen */
+    TL_SCENE_RAYS,         /* visibility comes from rays */
     TL_SCENE_TRANSPARENCY, /* ... and something is seen through, or is lit from behind */
     TL_SCENE_MIRRORS,      /* ... and something is so glossy that rays follow what it shows */
-    TL_SCENE_PASSES,       /* passes on the GPU do */
+    TL_SCENE_PASSES,       /* passes on the GPU light the samples */
     TL_SCENE_CHAINS,       /* ... and read filter chains */
     TL_SCENE_SLICES,       /* ... and read exact slices of the regions */
     TL_SCENE_EXACT,        /* exact light of the whole environment is read */
@@ -86,7 +86,7 @@ enum tl_scene_fact {
     TL_SCENE_LAMP_MAPS, /* ... and depth maps shadow one of them */
     TL_SCENE_LAMP_RAYS, /* ... and rays do */
     TL_SCENE_SAMPLES,   /* rays start from what is seen */
-    TL_SCENE_COMPOSED,  /* light is put together from what rays see */
+    TL_SCENE_COMPOSED,  /* light is composed from visibility by rays */
     TL_SCENE_INSPECT,   /* something else than light is shown */
     TL_SCENE_FACT_COUNT
 };

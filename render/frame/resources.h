@@ -1,6 +1,6 @@
-/* What the jobs of a frame read and write, each resource by itself, and what they work with. The list names
- * the inputs of a frame first, then what jobs make; each has the bit that the plan knows it by (resource.h).
- * Jobs never see the whole: job_io.h lists what each of them is handed. */
+/* The resources that the jobs of a frame read and write, and the caches that they use. The lists name the
+ * inputs of a frame first, then the results of jobs, each with its bit in the plan (resource.h). No job sees
+ * the whole struct: job_io.h lists the members that each one gets. */
 #ifndef TOILE_RENDER_FRAME_RESOURCES_H
 #define TOILE_RENDER_FRAME_RESOURCES_H
 
@@ -34,7 +34,7 @@ struct tl_region_slices {
     struct tl_slice_maps maps;
 };
 
-/* What environment maps are made of: all light, suns included. */
+/* The light of environment maps: all of it, suns included. */
 struct tl_surroundings {
     tl_cube cube;
     struct tl_lobes lobes;
@@ -109,7 +109,7 @@ struct tl_resources {
 #undef TL_RESOURCE_MEMBER
     tl_bits valid; /* which of them hold what their inputs call for */
 
-    /* What jobs work with: it decides how fast they are, never what they make. */
+    /* Devices and caches of the jobs: they decide the jobs' speed, never their results. */
     tl_gpu *gpu;
     struct tl_lighting lighting;
     struct tl_light_cache light_cache;
@@ -117,7 +117,7 @@ struct tl_resources {
     struct tl_resampling resampling;     /* from environments of one size to the cube */
     struct tl_resampling map_resampling; /* ... to the size of environment maps */
 
-    /* What jobs are told of the frame beside its inputs: none of it is a reason to run again. */
+    /* Further values of the frame that jobs read. A change of one is no reason to run. */
     tl_bits facts; /* of its scene */
     struct tl_moment moment;
     struct tl_show_target show_target;

@@ -56,7 +56,7 @@ bool tl_run_lobes(const struct tl_lobes_job *job, tl_error *error)
     return true;
 }
 
-/* Slices of other regions, or of another cube, are of no use. */
+/* Slices of other regions or of another cube cannot be reused. */
 bool tl_run_slices(const struct tl_slices_job *job, tl_error *error)
 {
     (void)error;

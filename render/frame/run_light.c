@@ -63,7 +63,8 @@ bool tl_run_points(const struct tl_points_job *job, tl_error *error)
     return true;
 }
 
-/* Lamplight of the samples that no pass of the GPU knows: behind open cloth, through cloth, in mirrors. */
+/* Adds the lamps' light to the samples that no pass on the GPU covers: behind open cloth, through cloth, in
+ * mirrors. */
 static void add_lamps(const struct tl_compose_job *job, const struct tl_compose_request *composed)
 {
     const struct tl_lamp_samples_request request = {.lamp_count = job->lamps->count,

@@ -16,7 +16,7 @@ bool tl_run_detail(const struct tl_detail_job *job, tl_error *error)
                                job->detail_steps, error);
 }
 
-/* Both jobs of shadow maps are handed the same. */
+/* The jobs that draw and that blur shadow maps make the same request. */
 #define SHADOW_REQUEST(job)                                                                                  \
     (struct tl_shadow_request)                                                                               \
     {                                                                                                        \

@@ -24,7 +24,8 @@ struct tl_render_settings {
 void tl_render_settings_bind(struct tl_render_settings *settings,
                              struct tl_binding bindings[TL_RENDER_TABLES]);
 
-/* As the jobs use them: regions in sixes, sizes in powers of two; views other than light show what rays find.
+/* Returns the settings as the jobs use them: the number of regions rounded to a multiple of six, sizes to
+ * powers of two, and visibility by rays for views other than light.
  */
 struct tl_render_settings tl_render_settings_resolve(const struct tl_render_settings *settings);
 

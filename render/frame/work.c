@@ -1,6 +1,6 @@
-/* How much work each job of the frame would have: what the last frame saw, at other settings. Costs are CPU
- * ms on a machine with two cores (the built-in scene, preset draft, 128 x 128 to 1024 x 1024 samples, best of
- * twelve frames); only their ratios within a job matter, the rest is learned. */
+/* Estimates the work of each job of a frame to come from the last frame's counts, at other settings. Costs
+ * are CPU ms on a machine with two cores (the built-in scene, preset draft, 128 x 128 to 1024 x 1024 samples,
+ * best of twelve frames); only their ratios within a job matter, the rest is learned. */
 #include "render/frame/work.h"
 
 #include "render/frame/facts.h"
@@ -8,7 +8,7 @@
 
 #include <math.h>
 
-/* Of a frame's samples, as long as none has been drawn. */
+/* The assumed share of covered samples while no frame has been drawn. */
 #define COVERED_AT_FIRST 0.5
 
 static double texels_of(const struct tl_image_params *image)
@@ -56,7 +56,7 @@ struct tl_work_counts tl_work_count(const tl_frame *frame)
     return counts;
 }
 
-/* A matt one, a glossy one, those of a fan. */
+/* A matt lobe, a glossy lobe, those of a multi-lobe fit. */
 static double lobes_of(const struct tl_work_counts *counts, const struct tl_light_params *light)
 {
     return 1 + (counts->is_glossy ? 1 : 0) + (counts->is_faceted ? light->fan : 0);

@@ -1,5 +1,5 @@
-/* How much work each job of a frame would have: what the last frame saw, at other settings. Pure but for
- * reading the renderer's state. */
+/* Estimates the work of each job of a frame to come from the last frame's counts, at other settings. Reads
+ * the renderer's state and changes nothing. */
 #ifndef TOILE_RENDER_FRAME_WORK_H
 #define TOILE_RENDER_FRAME_WORK_H
 
@@ -17,7 +17,7 @@ struct tl_work_seen {
     double lamps, suns; /* lit; that stand apart */
     double new_regions; /* as lights that are not kept from an earlier frame */
 };
-/* What is remembered of a frame when its surfaces may be gone. */
+/* Counts of a frame, kept because its surfaces may be freed after the draw. */
 struct tl_work_counts {
     double triangles;
     int lamps;
@@ -28,7 +28,7 @@ struct tl_work_counts tl_work_count(const tl_frame *frame);
 struct tl_work_seen tl_work_observe(const struct tl_resources *resources, const struct tl_work_counts *counts,
                                     const struct tl_render_settings *settings);
 
-/* Of the jobs of the same names; `seen` is a struct tl_work_seen. */
+/* The work of the jobs of the same names; `seen` is a struct tl_work_seen. */
 struct tl_work tl_lights_work(const void *seen);
 struct tl_work tl_gbuffer_work(const void *seen);
 struct tl_work tl_samples_work(const void *seen);

@@ -12,7 +12,7 @@
 #define DEPTH_ROUNDING 1e-6f
 #define PLACE_ROUNDING (16 * FLT_EPSILON)
 
-/* Places farther out than this, in sizes of the picture, are too coarse to reckon with. */
+/* Positions farther out than this, in sizes of the picture, are rounded too coarsely for a bound. */
 #define FARTHEST 4
 
 /* Triangles that span more samples than this one way cover one; where only that is asked they are kept. */
@@ -86,7 +86,7 @@ TL_INLINE bool is_far_out(const struct raster *raster, const struct tl_cull_plac
 
 enum seen { SEEN_NEVER, SEEN_PERHAPS, SEEN_BY_SAMPLE };
 
-/* What can be said of a triangle before its samples are looked at. */
+/* Classifies a triangle before its samples are tested. */
 TL_INLINE enum seen set_up(const struct raster *raster, const struct tl_cull_place *places,
                            const uint32_t corners[3], struct facet *facet)
 {
@@ -124,7 +124,8 @@ TL_INLINE bool is_within(const struct facet *facet, float x, float y, float marg
     return within;
 }
 
-/* Bounds of its depth at a sample. A sliver's slopes may be anything, NaN too: then they say nothing. */
+/* Bounds of the triangle's depth at a sample. A sliver's slopes may be anything, even NaN; then there is no
+ * bound. */
 TL_INLINE void depth_bounds(const struct facet *facet, float margin, float x, float y, float *low,
                             float *high)
 {

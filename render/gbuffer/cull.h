@@ -1,10 +1,10 @@
-/* Triangles that a picture may show.
+/* Culls triangles that cannot change a picture.
  *
- * Of a garment's triangles most fall between the samples of a small picture, or behind others. The GPU finds
- * that out for itself once it has worked for each of them; on software GL that is most of what a small
- * picture costs. What is left out here covers the middle of no sample, or is hidden at each one that it
- * covers, by more than any rasteriser's rounding: the picture stays the same to the bit. What is kept stays
- * in its order. Pure. */
+ * In a small picture most of a garment's triangles fall between the samples or behind other triangles. The
+ * GPU finds that out for itself once it has worked for each of them; on software GL that is most of what a
+ * small picture costs. A triangle is left out if it covers the centre of no sample, or if it is hidden at
+ * each one that it covers, by more than any rasteriser's rounding: the picture stays the same to the bit. The
+ * other triangles stay in order. Pure. */
 #ifndef TOILE_RENDER_GBUFFER_CULL_H
 #define TOILE_RENDER_GBUFFER_CULL_H
 
@@ -16,13 +16,13 @@ struct tl_cull_request {
     mat4s view_projection; /* as GL has it */
     int width, height;     /* samples */
     int subpixel_bits;     /* corners are rounded to 2^-bits of a sample */
-    /* What is hidden is left out, too. Parts whose alpha map cuts holes hide nothing; no more do surfaces
+    /* Hidden triangles are left out, too. Parts whose alpha map cuts holes hide nothing; no more do surfaces
      * from this one on, which fade. */
     bool nearest_only;
     size_t first_fading;
 };
 
-/* Where a vertex is seen: samples from the left and from below, and depth in 0 .. 1. */
+/* A vertex projected to the picture: samples from the left and from below, and depth in 0 .. 1. */
 struct tl_cull_place {
     float x, y, z;
     bool ahead; /* else it lies on the plane of the eye or behind it, and has no place */

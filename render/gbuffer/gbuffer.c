@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-/* Uniform locations of gbuffer.vert and gbuffer.frag beside those of surface.glsl. */
+/* Uniform locations of gbuffer.vert and gbuffer.frag that surface.glsl does not have. */
 enum { VIEW_PROJECTION = 16, EYE = 17, FADING_DISC = 18 };
 
 /* Texture units of gbuffer.frag's own: the last ones, out of the surfaces' way. */
@@ -98,8 +98,8 @@ static void clear(const tl_target *target)
 /* Many samples to a triangle leave little to save. */
 #define SAMPLES_PER_TRIANGLE 4
 
-/* What is behind is asked for, what is not drawn hides nothing, and relief has holes at its rim: there every
- * triangle counts. */
+/* No triangle may be culled where layers behind are drawn, where a surface is not drawn and hides nothing,
+ * and where relief has holes at its rim. */
 static bool counts_nearest_only(const struct tl_gbuffer_request *request)
 {
     size_t triangles = 0;

@@ -22,7 +22,7 @@ enum tl_gbuffer_layer {
     TL_GBUFFER_LAYERS
 };
 
-/* Bits of what a program does beside. */
+/* Bits of a program's optional outputs. */
 enum { TL_GBUFFER_FRAMES = 1, TL_GBUFFER_BEHIND = 2, TL_GBUFFER_PROGRAMS = 4 };
 
 struct tl_gbuffer {

@@ -35,7 +35,7 @@ struct tl_samples {
     size_t staging_bytes;
 };
 
-/* Where global triangle numbers begin, for each surface (with the ground, which comes last). */
+/* The first global triangle number of each surface (the ground comes last). */
 struct tl_triangle_ranges {
     const tl_surface *const *surfaces;
     size_t surface_count;
@@ -44,7 +44,8 @@ struct tl_triangle_ranges {
 /* The surfaces must outlive the ranges; `out` is used again from frame to frame. */
 void tl_triangle_ranges_make(const tl_surface *const *surfaces, size_t count, struct tl_triangle_ranges *out);
 void tl_triangle_ranges_release(struct tl_triangle_ranges *ranges);
-/* Which surface holds global triangle `number` (without the top bit), and its three corners there. */
+/* Returns the surface that holds global triangle `number` (without the top bit), and its three corners there.
+ */
 const tl_surface *tl_triangle_find(const struct tl_triangle_ranges *ranges, uint32_t number,
                                    uint32_t corners[3], size_t *surface);
 
@@ -60,7 +61,8 @@ static inline size_t tl_samples_seen(const struct tl_samples *samples)
 /* The material of a global triangle number (without the top bit). */
 const tl_material *tl_triangle_material(const struct tl_triangle_ranges *ranges, uint32_t number);
 
-/* Where a sample's rays start: on the smooth surface that its triangle stands for, `offset_m` above it. */
+/* The origin of a sample's rays: on the smooth surface that its triangle approximates, `offset_m` above it.
+ */
 vec3s tl_sample_start(const tl_sample *sample, const struct tl_triangle_ranges *ranges, float offset_m);
 
 /* Reads the G-buffer back. The arrays of `out` are used again from frame to frame. */

@@ -28,7 +28,7 @@ static void weigh(vec3s p, vec3s a, vec3s b, vec3s c, float weights[3])
     float d00 = glms_vec3_dot(ab, ab), d01 = glms_vec3_dot(ab, ac), d11 = glms_vec3_dot(ac, ac);
     float d20 = glms_vec3_dot(ap, ab), d21 = glms_vec3_dot(ap, ac);
     float area = d00 * d11 - d01 * d01;
-    if (!(area > 0)) { /* a triangle without an area is drawn by nobody but for rounding */
+    if (!(area > 0)) { /* a triangle without area is rasterised only by rounding */
         weights[0] = 1, weights[1] = weights[2] = 0;
         return;
     }

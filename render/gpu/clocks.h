@@ -1,6 +1,6 @@
-/* Whether GL's own timers tell how long work took. They do on hardware; software drivers end a query when the
- * work is queued, not when it is done. Costs are therefore read off the CPU's clock around finished work,
- * which is right everywhere; this tells whether a timer would be as good. */
+/* Tests whether GL's own timers measure how long work takes. They do on hardware; software drivers end a
+ * query when the work is queued, not when it is done. The renderer therefore measures with the CPU's clock
+ * around finished work, which is right everywhere; this test reports whether a timer would be as good. */
 #ifndef TOILE_RENDER_GPU_CLOCKS_H
 #define TOILE_RENDER_GPU_CLOCKS_H
 

@@ -19,7 +19,7 @@ static void on_message(GLenum source, GLenum type, GLuint id, GLenum severity, G
     tl_warn("GL message %u: %s", id, message);
 }
 
-/* Everything that does not depend on who made the context. */
+/* Initialises everything that does not depend on the origin of the context. */
 static bool take_over(tl_gpu *gpu, tl_error *error)
 {
     if (epoxy_gl_version() < GL_VERSION_NEEDED || !epoxy_is_desktop_gl())

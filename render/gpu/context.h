@@ -1,4 +1,4 @@
-/* What the files of render/gpu share: the inside of a tl_gpu. */
+/* The members of a tl_gpu, shared by the files of render/gpu. */
 #ifndef TOILE_RENDER_GPU_CONTEXT_H
 #define TOILE_RENDER_GPU_CONTEXT_H
 

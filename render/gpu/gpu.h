@@ -46,7 +46,7 @@ int tl_texture_full_levels(int width, int height);
  * CPU's averages (map_texture.h). `colour`: bytes are sRGB unless the image says linear. */
 void tl_texture_fill(const tl_texture *texture, int layer, const tl_image *image, bool colour);
 
-/* What a pass draws into: up to six 2D colour textures of one size, and a 32-bit float depth texture. */
+/* The target of a pass: up to six 2D colour textures of one size, and a 32-bit float depth texture. */
 #define TL_TARGET_COLOURS_MAX 6
 typedef struct tl_target {
     unsigned id; /* GL framebuffer */
@@ -80,7 +80,8 @@ bool tl_program_reload(tl_program *program, tl_error *error);
 /* Changes when a file of `shaders` in TOILE_SHADER_DIR does; constant when that is not set. */
 uint64_t tl_shaders_stamp(const struct tl_embedded *shaders);
 
-/* GL's state as a fresh context has it, so that a pass need not know who drew before (a window's panel). */
+/* Resets GL's state to that of a fresh context, so that a pass does not depend on earlier drawing (a window's
+ * panel). */
 void tl_gpu_reset_state(const tl_gpu *gpu);
 /* One triangle that covers the viewport, for programs whose vertex file is fullscreen.vert; at depth 1. */
 void tl_gpu_draw_fullscreen(const tl_gpu *gpu);

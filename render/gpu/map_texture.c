@@ -22,7 +22,7 @@ static float value_at(const struct tl_map_texture *texture, int level, int x, in
     return level == 0 ? decoded(texture, index, channel) : texture->levels[level][index];
 }
 
-/* Which texels of the finer level a texel lies over: two, or up to three where a side is odd. */
+/* The texels of the finer level under a texel: two, or up to three where a side is odd. */
 struct span {
     int first, count;
     float shares[4];

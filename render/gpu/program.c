@@ -40,8 +40,8 @@ static void append_line_directive(struct source *source, int line, int file)
     append(source, directive, (size_t)length);
 }
 
-/* Where TOILE_SHADER_DIR, laid out as the folder render/ is, holds the file; NULL when it does not. New
- * string. */
+/* Returns the file's path in TOILE_SHADER_DIR, which is laid out as the folder render/, as a new string; NULL
+ * when it is not there. */
 static char *path_on_disk(const struct tl_embedded *file)
 {
     const char *folder = getenv("TOILE_SHADER_DIR");

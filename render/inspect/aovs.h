@@ -1,4 +1,4 @@
-/* The layers of an image beside its light (AOVs), for files of several layers. */
+/* The auxiliary layers of an image (AOVs), for files of several layers. */
 #ifndef TOILE_RENDER_INSPECT_AOVS_H
 #define TOILE_RENDER_INSPECT_AOVS_H
 

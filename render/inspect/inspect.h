@@ -1,9 +1,9 @@
 /* Views that show something other than light (image.view): normals, tangents, UVs, visibility, regions,
- * strain; and what lies under a pixel.
+ * strain; and the description of the surface under a pixel.
  *
- * All on the CPU, from the covered samples of the G-buffer. What these functions tell is of the image that
- * was drawn last: its surfaces, materials and environment must still be there, as for tl_renderer_show_image.
- * Threads: the renderer's. */
+ * All on the CPU, from the covered samples of the G-buffer. These functions describe the last frame, whose
+ * surfaces, materials and environment must still exist, as for tl_renderer_show_image. Threads: the
+ * renderer's. */
 #ifndef TOILE_RENDER_INSPECT_INSPECT_H
 #define TOILE_RENDER_INSPECT_INSPECT_H
 
@@ -37,7 +37,7 @@ struct tl_inspection {
     float shear;                    /* cosine of the angle between warp and weft; 0: at right angles */
 };
 
-/* What views are made of, all of the same image. Borrowed. */
+/* The inputs of a view, all of the same image. Borrowed. */
 struct tl_inspect_request {
     const struct tl_image_params *image; /* view, view_region, view_range */
     float strain_range;                  /* views of strain: share of 1 at the ends of the legend */
@@ -62,9 +62,10 @@ bool tl_inspect_averages(int view);
 /* The nearest sample of the texel in the middle of pixel (x, y) of a picture of width x height, counted from
  * its upper left corner; primary_count where nothing is. */
 size_t tl_inspect_find(const struct tl_samples *samples, int width, int height, int x, int y);
-/* All that is known of sample `number`. */
+/* Describes the surface at sample `number`. */
 void tl_inspect_sample(const struct tl_inspect_request *request, size_t number, struct tl_inspection *out);
-/* What a ray through the middle of the pixel meets, for images whose samples were not kept; false: nothing.
+/* Describes the surface that a ray through the centre of the pixel hits, for images whose samples were not
+ * kept. False when it hits none.
  */
 bool tl_inspect_ray(const struct tl_inspect_request *request, int width, int height, int x, int y,
                     struct tl_inspection *out);

@@ -7,7 +7,7 @@
 
 #define CURVE_STEPS 1024
 
-/* What costs too much sample by sample. */
+/* Tables of values that are too slow to compute for each sample. */
 struct palette {
     float linear[CURVE_STEPS + 2]; /* of sRGB values in CURVE_STEPS equal steps from 0 to 1 */
     vec3s checker[2][2];           /* [block][square] */
@@ -34,21 +34,23 @@ static float linear_of(const struct palette *palette, float encoded)
 }
 
 /* A sample's triangle. */
-struct spot {
+struct surface_point {
     const tl_sample *sample;
     const tl_surface *surface;
     uint32_t corners[3];
     float uv_metres;
 };
 
-static struct spot find_spot(const struct tl_paint_request *request, const tl_sample *sample)
+static struct surface_point find_surface_point(const struct tl_paint_request *request,
+                                               const tl_sample *sample)
 {
-    struct spot spot = {.sample = sample};
+    struct surface_point surface_point = {.sample = sample};
     uint32_t number = sample->triangle & ~TL_SAMPLE_BACK;
     size_t index;
-    spot.surface = tl_triangle_find(request->ranges, number, spot.corners, &index);
-    spot.uv_metres = tl_triangle_part(spot.surface, number - request->ranges->first[index])->uv_metres;
-    return spot;
+    surface_point.surface = tl_triangle_find(request->ranges, number, surface_point.corners, &index);
+    surface_point.uv_metres =
+        tl_triangle_part(surface_point.surface, number - request->ranges->first[index])->uv_metres;
+    return surface_point;
 }
 
 vec3s tl_paint_mix(const vec3s *values, const uint32_t corners[3], const float weights[3])
@@ -65,13 +67,13 @@ static float facing(const struct tl_paint_request *request, const tl_sample *sam
     return fmaxf(glms_vec3_dot(view, sample->smooth), 0) / fmaxf(glms_vec3_norm(view), 1e-12f);
 }
 
-/* Form without a colour. */
+/* Shades the surface's form without a colour. */
 static vec3s unknown(const struct tl_paint_request *request, const tl_sample *sample)
 {
     return glms_vec3_scale(tl_legend_unknown, 0.6f + 0.4f * facing(request, sample));
 }
 
-/* Side of what a texel covers of the surface, metres, foreshortened in one direction. */
+/* The side of the area of surface that a texel covers, metres; foreshortened in one direction. */
 static float footprint(const struct tl_paint_request *request, const tl_sample *sample)
 {
     const float least_cosine = 0.1f;
@@ -93,15 +95,15 @@ float tl_paint_square_wave(float place, float width)
 }
 
 /* Millimetres of cloth along u and v. */
-static bool millimetres(const struct spot *spot, float mm[2])
+static bool millimetres(const struct surface_point *surface_point, float mm[2])
 {
-    if (!spot->surface->uvs || !(spot->uv_metres > 0))
+    if (!surface_point->surface->uvs || !(surface_point->uv_metres > 0))
         return false;
     mm[0] = mm[1] = 0;
     for (int i = 0; i < 3; i++)
         for (int c = 0; c < 2; c++)
-            mm[c] += 1000 * spot->uv_metres * spot->sample->weights[i] *
-                     spot->surface->uvs[spot->corners[i]].raw[c];
+            mm[c] += 1000 * surface_point->uv_metres * surface_point->sample->weights[i] *
+                     surface_point->surface->uvs[surface_point->corners[i]].raw[c];
     return isfinite(mm[0]) && isfinite(mm[1]);
 }
 
@@ -114,11 +116,11 @@ static float checker(const float mm[2], float width_mm, float side_mm)
 }
 
 static vec3s uv_colour(const struct tl_paint_request *request, const struct palette *palette,
-                       const struct spot *spot)
+                       const struct surface_point *surface_point)
 {
-    float mm[2], width_mm = 1000 * footprint(request, spot->sample);
-    if (!millimetres(spot, mm))
-        return unknown(request, spot->sample);
+    float mm[2], width_mm = 1000 * footprint(request, surface_point->sample);
+    if (!millimetres(surface_point, mm))
+        return unknown(request, surface_point->sample);
     float block = 0.5f - 0.5f * checker(mm, width_mm, TL_CHECKER_BLOCK_MM);
     float square = 0.5f + 0.5f * checker(mm, width_mm, TL_CHECKER_SQUARE_MM);
     vec3s even = glms_vec3_lerp(palette->checker[0][0], palette->checker[0][1], square);
@@ -127,11 +129,11 @@ static vec3s uv_colour(const struct tl_paint_request *request, const struct pale
 }
 
 /* The share of a texel under dark lines of constant u. */
-static float hatch(const struct tl_paint_request *request, const struct spot *spot)
+static float hatch(const struct tl_paint_request *request, const struct surface_point *surface_point)
 {
     const float line_share = 0.2f;
-    float mm[2], width = 1000 * footprint(request, spot->sample) / TL_HATCH_MM;
-    if (!millimetres(spot, mm))
+    float mm[2], width = 1000 * footprint(request, surface_point->sample) / TL_HATCH_MM;
+    if (!millimetres(surface_point, mm))
         return 0;
     /* Where two square waves, a line's width apart, differ, a line begins or ends: of their halves one is
      * lines. */
@@ -141,25 +143,28 @@ static float hatch(const struct tl_paint_request *request, const struct spot *sp
     return fminf(covered, 1);
 }
 
-static vec3s tangent_colour(const struct tl_paint_request *request, const struct spot *spot)
+static vec3s tangent_colour(const struct tl_paint_request *request, const struct surface_point *surface_point)
 {
     vec3s tangent = {{0, 0, 0}};
-    for (int i = 0; spot->surface->tangents && i < 3; i++)
-        tangent = glms_vec3_add(tangent, glms_vec3_scale(glms_vec3(spot->surface->tangents[spot->corners[i]]),
-                                                         spot->sample->weights[i]));
-    vec3s smooth = spot->sample->smooth;
+    for (int i = 0; surface_point->surface->tangents && i < 3; i++)
+        tangent = glms_vec3_add(
+            tangent, glms_vec3_scale(glms_vec3(surface_point->surface->tangents[surface_point->corners[i]]),
+                                     surface_point->sample->weights[i]));
+    vec3s smooth = surface_point->sample->smooth;
     tangent = glms_vec3_sub(tangent, glms_vec3_scale(smooth, glms_vec3_dot(smooth, tangent)));
-    if (!(glms_vec3_norm(tangent) > 1e-6f && spot->uv_metres > 0))
-        return unknown(request, spot->sample);
+    if (!(glms_vec3_norm(tangent) > 1e-6f && surface_point->uv_metres > 0))
+        return unknown(request, surface_point->sample);
     const float ink = 0.75f;
-    return glms_vec3_scale(tl_direction_colour(glms_vec3_normalize(tangent)), 1 - ink * hatch(request, spot));
+    return glms_vec3_scale(tl_direction_colour(glms_vec3_normalize(tangent)),
+                           1 - ink * hatch(request, surface_point));
 }
 
-static vec3s strain_colour(const struct tl_paint_request *request, const struct spot *spot)
+static vec3s strain_colour(const struct tl_paint_request *request, const struct surface_point *surface_point)
 {
-    if (!spot->surface->strains)
-        return unknown(request, spot->sample);
-    vec3s strain = tl_paint_mix(spot->surface->strains, spot->corners, spot->sample->weights);
+    if (!surface_point->surface->strains)
+        return unknown(request, surface_point->sample);
+    vec3s strain =
+        tl_paint_mix(surface_point->surface->strains, surface_point->corners, surface_point->sample->weights);
     return tl_legend_colour(request->legend, 100 * strain.raw[tl_view_strain_axis(request->view)]);
 }
 
@@ -195,10 +200,10 @@ static vec3s colour_of(const struct tl_paint_request *request, const struct pale
     default:
         break;
     }
-    struct spot spot = find_spot(request, sample);
-    return request->view == TL_VIEW_UV        ? uv_colour(request, palette, &spot)
-           : request->view == TL_VIEW_TANGENT ? tangent_colour(request, &spot)
-                                              : strain_colour(request, &spot);
+    struct surface_point surface_point = find_surface_point(request, sample);
+    return request->view == TL_VIEW_UV        ? uv_colour(request, palette, &surface_point)
+           : request->view == TL_VIEW_TANGENT ? tangent_colour(request, &surface_point)
+                                              : strain_colour(request, &surface_point);
 }
 
 static vec3s linear_colour(const struct tl_paint_request *request, const struct palette *palette,

@@ -13,7 +13,7 @@ struct tl_paint_request {
     const struct tl_triangle_ranges *ranges;
     vec3s eye;
     float texel; /* side of a texel at distance 1 */
-    /* Of the views of visibility. */
+    /* Inputs of the views of visibility. */
     const struct tl_seen_regions *regions;
     const uint16_t *values;
     size_t stride;

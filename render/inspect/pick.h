@@ -1,4 +1,5 @@
-/* What a ray meets first, triangle by triangle: for one pixel of an image whose samples were not kept. Pure.
+/* Finds the first triangle that a ray hits by testing all of them: for one pixel of an image whose samples
+ * were not kept. Pure.
  */
 #ifndef TOILE_RENDER_INSPECT_PICK_H
 #define TOILE_RENDER_INSPECT_PICK_H

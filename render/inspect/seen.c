@@ -43,7 +43,7 @@ TL_INLINE void add_group(const struct tl_seen_group *group, int number, const ui
     }
 }
 
-/* Of equals the lowest. */
+/* Among equals the lowest. */
 static int find_strongest(const struct lanes *lanes)
 {
     int strongest = -1;

@@ -1,4 +1,4 @@
-/* What a point sees of the environment's regions, from visibility that is kept at points
+/* The regions of the environment that a point sees, from visibility kept at points
  * (render/visibility/points.h). Pure. */
 #ifndef TOILE_RENDER_INSPECT_SEEN_H
 #define TOILE_RENDER_INSPECT_SEEN_H

@@ -24,7 +24,7 @@ struct sums {
     float seen[2][3];
 };
 
-/* The lobes of a sample beyond the two: a fan, and a coat. Environment's frame. */
+/* The lobes of a sample beyond the two: a multi-lobe fit, and a coat. Environment's frame. */
 #define LOBES_MAX (TL_LOBE_FIT_MAX + 1)
 struct lobes {
     int count;
@@ -75,8 +75,9 @@ TL_INLINE void add_weights(float sums[TL_LANES], const float power[TL_LANES], co
         sums[lane] += power[lane] * weights[lane];
 }
 
-/* What a sample's sums need: bumps turn its normal away from the smooth one; something reflects through the
- * glossy lobe (the ground does not, nor what a fan or a coat stands for). */
+/* The parts of a sample's sums that can be skipped: whether bumps turn its normal away from the smooth one,
+ * and whether its glossy lobe reflects (that of the ground does not, nor one that a multi-lobe fit or a coat
+ * replaces). */
 struct kind {
     bool bumped, glossy;
 };
@@ -146,7 +147,8 @@ TL_INLINE struct sums sum_kind(struct block *block, size_t index, const struct f
                        : sum_groups(block, index, frame, (struct kind){false, false});
 }
 
-/* What a sample receives through its two lobes, unshadowed and shadowed, before the material's colours. */
+/* The light that a sample receives through its two lobes, unshadowed and shadowed, before the material's
+ * colours. */
 struct received {
     vec3s unshadowed[2], shadowed[2];
 };
@@ -224,8 +226,8 @@ static void receive_shadowed(const struct block *block, const struct frame *fram
             light[lobe].raw[c] = gains[lobe].raw[c] * sums->seen[lobe][c];
 }
 
-/* One ray tells whether the lobe is open; what it shows is the mean over the lobe, for bright texels have
- * edges. */
+/* One ray decides whether the lobe is open. Its light is the mean over the lobe, because bright texels would
+ * show their edges. */
 static vec3s perfect_mirror_light(const struct block *block, const struct tl_mirror *mirror, float exponent)
 {
     const struct tl_compose_request *request = block->request;
@@ -271,7 +273,8 @@ static vec3s mirror_light(const struct block *block, const struct tl_mirror *mir
     return light;
 }
 
-/* Ambient occlusion knows one share for all light. Under white light of 1 the share is what arrives. */
+/* Ambient occlusion applies one share to all light. Under white light of radiance 1 that share is the light
+ * that arrives. */
 static void replace_by_occlusion(const struct sums *sums, int method, struct received *light)
 {
     vec3s share;

@@ -1,6 +1,6 @@
 /* The light of every sample from visibility that is kept at points (render/visibility/points.h), on the CPU.
  *
- * What is interpolated is never the light but the share of it that is seen:
+ * Never the light itself but its visible share is interpolated:
  *
  *     c = kd E(n, 1) sum v_i w_i / sum w_i  +  F ks E(r, s) sum v_i u_i / sum u_i        (by colour channel)
  *

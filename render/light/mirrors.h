@@ -32,7 +32,7 @@ struct tl_mirrors {
     struct tl_mirror *items; /* one a sample, those that mirrors show included */
 };
 
-/* How many rays a lobe gets: they stand for it once M s is beyond what the exact lobes resolve. */
+/* The number of rays M of a lobe: they represent it once M s is beyond the resolution of the exact lobes. */
 int tl_mirror_ray_count(float exponent);
 
 /* Direction m of `count` that stand for a lobe: even shares of its volume. `axis` unit. */

@@ -35,7 +35,7 @@ struct tl_light_params { /* table "light" */
     int composition;     /* enum tl_composition; rays: ratio only */
     bool jitter;         /* directions vary inside their regions from frame to frame */
     int rounds;          /* at rest, so many jittered frames are averaged */
-    int refresh;         /* rays: regions traced anew for each point and moving frame; 0: all */
+    int refresh;         /* rays: regions traced again for each point and moving frame; 0: all */
     int rays;            /* rays: directions a region and refresh */
     float repair;        /* rays: share of the samples, the least certain, that get rays of their own */
     float repair_rest;   /* ... once nothing moves, when it is more */
@@ -48,7 +48,7 @@ struct tl_light_params { /* table "light" */
     float bleed_reduction; /* [0, 1): Chebyshev values below it become 0 */
 };
 extern const struct tl_option_table tl_light_options;
-/* So many sheets are looked through, where cloth is open; the next one is taken as closed. */
+/* The number of transparency layers behind open cloth; the layer after them counts as closed. */
 #define TL_TRANSPARENCY_LAYERS 4
 #define TL_MIRROR_EXPONENT     199.0f /* a glossiness of 0.995, however it is rounded */
 

@@ -28,8 +28,8 @@ static void reserve_shares(struct tl_transparency *transparency, size_t count)
     transparency->shares = tl_resize(transparency->shares, transparency->share_capacity, sizeof(float));
 }
 
-/* What reaches sample `index` is `through`; it keeps its part of that, and notes when there is more behind.
- * Returns whether there is. */
+/* Of the weight `through` that reaches sample `index`, keeps the sample's own part and records whether more
+ * lies behind. Returns whether it does. */
 static bool share_out(struct tl_transparency *transparency, const struct tl_transparency_request *request,
                       const struct tl_samples *samples, size_t index, float through, bool last)
 {
@@ -67,7 +67,8 @@ static size_t append(struct tl_samples *samples, const tl_sample *sample, const 
     return index;
 }
 
-/* What the next layer shows where the last one is open. Returns whether some of that is open again. */
+/* Adds the samples of the next layer where the last one is open. Returns whether some of them are open again.
+ */
 static bool append_behind(struct tl_transparency *transparency, const struct tl_transparency_request *request,
                           bool last, struct tl_samples *samples)
 {

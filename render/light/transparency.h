@@ -1,4 +1,4 @@
-/* What is seen through cloth: what lies behind open cloth, and light that comes through from its other side.
+/* Transparency of cloth: the surfaces behind open cloth, and light that comes through from the other side.
  *
  * Behind an open sample the camera's own ray goes on: the G-buffer is drawn again without what is nearer, up
  * to TL_TRANSPARENCY_LAYERS times, so that what lies behind has all of its maps. Every sample counts for what
@@ -9,7 +9,7 @@
  * and what the last layer lets through is left to the background. Openness is of the area as it is seen
  * straight on: it does not fall with the angle, as that of real threads does. Light through the cloth itself
  * is the diffuse light of the layer's other side, which becomes a sample too: kt K_1(-n), lit as any back is.
- * What light does between layers is not followed. World space, metres. */
+ * Light that bounces between layers is not followed. World space, metres. */
 #ifndef TOILE_RENDER_LIGHT_TRANSPARENCY_H
 #define TOILE_RENDER_LIGHT_TRANSPARENCY_H
 

@@ -3,14 +3,14 @@
 #include <math.h>
 
 #define MACHINE_DEVIATION 1.0  /* of the factor that all parts share, at first */
-#define PART_DEVIATION    0.5  /* of each part beside it */
+#define PART_DEVIATION    0.5  /* of each part's own factor, at first */
 #define DRIFT             0.02 /* of the machine, from run to run */
 #define PART_DRIFT        0.01 /* of a part: what is seen changes slowly */
-#define NOISE             0.06 /* of a measurement, beside NOISE_MS */
+#define NOISE             0.06 /* relative, of a measurement; added to NOISE_MS */
 #define NOISE_MS          0.05
-#define OUTLIER           3.0 /* standard deviations, beyond which a run says no more */
-#define FIRST_RUNS        2   /* the first run makes what others find made, and says little */
-#define BELIEVED_RUNS     5   /* ... but the next ones are believed whatever they say */
+#define OUTLIER           3.0 /* standard deviations, beyond which a run is an outlier */
+#define FIRST_RUNS        2   /* the first runs also allocate and compile: they weigh little */
+#define BELIEVED_RUNS     5   /* ... and of the next ones none is taken for an outlier */
 #define FACTOR_MIN        0.02
 #define UNIT_MIN_MS       0.05
 

@@ -13,7 +13,7 @@ bool tl_jobs_check(const tl_job *jobs, int count, tl_error *error)
     for (int i = 0; i < count; i++) {
         if (!jobs[i].levels[0])
             return tl_fail(error, TL_USAGE, "job table: %s: has no level: name at least one", jobs[i].name);
-        /* What a job reads and only itself writes is what it left behind in the last frame. */
+        /* A resource that only its reader writes is that job's result of the last frame. */
         tl_bits known = jobs[i].writes;
         for (int k = 0; k < i; k++)
             known |= jobs[k].writes;
@@ -84,7 +84,7 @@ static void plan_row(const tl_job *job, const struct tl_plan_input *input, tl_bi
         give_reason(row, "no ", missing_facts, input->scene_fact_names, " here");
     } else if (!(job->writes & needed)) {
         row->action = TL_JOB_DROP;
-        give_reason(row, "nobody reads ", job->writes, input->resource_names, "");
+        give_reason(row, "nothing reads ", job->writes, input->resource_names, "");
     } else if (missing) {
         row->action = TL_JOB_RUN;
         give_reason(row, "not made yet: ", missing, input->resource_names, "");

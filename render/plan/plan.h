@@ -1,7 +1,7 @@
 /* The plan of a frame: which jobs of the table run, at which level, and why. Pure: no GL, no clock.
  *
  * plan = f(jobs, what changed, what the scene requires, what is wanted). A job is dropped when the scene does
- * not require it or nobody reads what it writes, reused when nothing that it reads has changed, and run
+ * not require it or no job reads its results, reused when nothing that it reads has changed, and run
  * otherwise. */
 #ifndef TOILE_RENDER_PLAN_PLAN_H
 #define TOILE_RENDER_PLAN_PLAN_H
@@ -35,7 +35,7 @@ struct tl_plan_input {
     tl_bits changed;                     /* resources (inputs of the frame) that differ from the last frame */
     tl_bits valid;                       /* resources that an earlier frame left behind */
     tl_bits scene;                       /* facts about the scene */
-    tl_bits wanted;                      /* resources that somebody outside reads at the end */
+    tl_bits wanted;                      /* resources that the caller reads afterwards */
     const char *const *scene_fact_names; /* by bit, for reasons */
     const char *const *resource_names;   /* by bit */
 };

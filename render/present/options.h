@@ -34,7 +34,7 @@ struct tl_image_params { /* table "image" */
     int view_region;   /* visibility view: of this region; -1: of all, by their power */
     float view_range;  /* strain views: percent at the legend's ends; 0: automatic */
     float scale;       /* samples a side over those that supersample asks for, (0, 1] */
-    bool legend;       /* pictures of a view say what its colours mean */
+    bool legend;       /* pictures of a view have a legend */
 };
 /* Size of the G-buffer and of the light. */
 void tl_image_samples(const struct tl_image_params *image, int *width, int *height);

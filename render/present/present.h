@@ -9,7 +9,7 @@
 #include "render/present/options.h"
 #include "render/scene/view.h"
 
-/* What is behind the figure; or colours that stand for numbers, as they are. */
+/* The background; or none and no tone mapping, for colours that stand for numbers. */
 enum tl_shown {
     TL_SHOWN_ON_GREY,
     TL_SHOWN_ON_BLURRED,
@@ -35,7 +35,7 @@ struct tl_show_request {
     const struct tl_image_params *params;
     unsigned framebuffer;         /* GL name */
     int width, height;            /* pixels */
-    int first_column, end_column; /* what of it is drawn: [first, end) */
+    int first_column, end_column; /* columns that are drawn: [first, end) */
 };
 
 bool tl_present_create(struct tl_present *present, tl_gpu *gpu, tl_error *error);
@@ -47,7 +47,7 @@ bool tl_present_reload(struct tl_present *present, tl_error *error); /* its shad
 void tl_present_resolve(struct tl_present *present, tl_gpu *gpu, const tl_texture *lights,
                         const tl_texture *points, int width, int height);
 
-/* The image as it was made elsewhere: F32 RGBA, rows downwards. */
+/* Takes an image that was made elsewhere: F32 RGBA, rows downwards. */
 void tl_present_set_image(struct tl_present *present, tl_gpu *gpu, const tl_image *image);
 
 /* Makes the backdrop from the environment. False when the environment is larger than GL can hold. */

@@ -10,7 +10,8 @@
 
 #define TAPS_MAX 12 /* downwards by image.supersample at most, which is 8 */
 
-/* What one row or column of the result reads. Indices beyond the border stand for the border. */
+/* The source rows or columns that one row or column of the result reads. Indices beyond the border stand for
+ * the border. */
 struct reads {
     int first, count;
     bool is_between; /* upwards: the result lies between the second and the third */

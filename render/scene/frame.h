@@ -1,4 +1,4 @@
-/* What is drawn: the surfaces, the environment, the lamps and the camera of one frame. */
+/* One frame's scene: surfaces, environment, lamps and camera. */
 #ifndef TOILE_RENDER_SCENE_FRAME_H
 #define TOILE_RENDER_SCENE_FRAME_H
 
@@ -18,8 +18,8 @@ typedef struct tl_frame {
     const struct tl_lamp *lamps;
     size_t lamp_count; /* at most TL_LAMPS_MAX */
     double time_s;
-    bool aovs;  /* what render/inspect/aovs.h reads is kept */
-    bool still; /* drawn until it rests: every round is taken whole, however long that takes */
+    bool aovs;  /* keep the samples that render/inspect/aovs.h reads */
+    bool still; /* a still image: every round is completed, however long that takes */
 } tl_frame;
 
 #endif

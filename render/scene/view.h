@@ -1,5 +1,5 @@
-/* A camera as the passes need it. Pure. Cameras that make no sense (eye on its target, up along the view,
- * near behind far) are mended to the nearest one that does, so that no matrix ever holds a NaN. */
+/* A camera's matrices and axes for the passes. Pure. A degenerate camera (eye on its target, up along the
+ * view, near behind far) is corrected to the nearest valid one, so that no matrix ever holds a NaN. */
 #ifndef TOILE_RENDER_SCENE_VIEW_H
 #define TOILE_RENDER_SCENE_VIEW_H
 

@@ -6,7 +6,7 @@
 
 #include "assets/base/surface.h"
 
-/* What casts shadows: the sphere that the shadow maps are fitted to. Metres. */
+/* The bounding sphere of the shadow casters, to which shadow maps are fitted. Metres. */
 struct tl_casters {
     vec3s centre;
     float radius; /* at least TL_CASTERS_RADIUS_MIN */
@@ -45,8 +45,8 @@ void tl_ground_make(const struct tl_casters *casters, struct tl_ground *out);
 float tl_ground_cover(const struct tl_ground *ground, float x, float z);
 float tl_ground_visibility(const struct tl_ground *ground, vec3s point, vec3s direction);
 
-/* Where a ray from above meets the disc: the point, the mesh's triangle there and the point's weights of its
- * corners. False when it does not, or there is no ground. */
+/* Intersects a ray from above with the disc: the point, the mesh's triangle there and the barycentric
+ * weights. False when it misses or there is no ground. */
 bool tl_ground_meet(const struct tl_ground *ground, vec3s origin, vec3s direction, vec3s *point,
                     uint32_t *triangle, float weights[3]);
 

@@ -111,7 +111,8 @@ static tl_texture upload(tl_gpu *gpu, const tl_image *image, bool colour)
     return texture;
 }
 
-/* Grey beside alpha with four channels: of sRGB texels only the fourth is not decoded. */
+/* Expands grey with alpha to four channels, because GL leaves only the fourth channel of sRGB texels
+ * undecoded. */
 static tl_image spread_grey(const tl_image *image)
 {
     tl_image spread = tl_image_create(image->width, image->height, 4, TL_IMAGE_U8);
@@ -288,7 +289,7 @@ static int bind_weave(const struct item *item, const tl_weave *weave, float uv_m
 }
 
 /* Units without a map are cleared: software GL samples whatever is bound, wanted or not, and compiles each
- * shader anew for every set of formats that it meets. */
+ * shader again for every set of formats that it meets. */
 static void set_material(const struct item *item, const struct tl_mesh_part *part)
 {
     const tl_material *material = &item->materials[part->material];
@@ -335,7 +336,7 @@ const tl_material *tl_surfaces_part_material(const tl_surfaces *surfaces, size_t
     return &item->materials[item->parts[part].material];
 }
 
-/* From the index buffer that is bound; `number` is what the shader is told of the first triangle. */
+/* Draws from the index buffer that is bound; `number` is the first triangle's number in the shader. */
 static void draw_indices(const tl_surfaces *surfaces, size_t index, size_t part_index, size_t first_index,
                          size_t index_count, size_t number)
 {

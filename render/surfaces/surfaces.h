@@ -1,7 +1,7 @@
 /* Surfaces on the GPU: vertex buffers that follow the motion, and the maps of their materials.
  *
- * What has not changed (by the surfaces' revisions) is not sent again. Both sides of every triangle are
- * drawn: a garment's inside is seen, also where a file says that it is single-sided. */
+ * Data whose revision has not changed is not sent again. Both sides of every triangle are drawn: a garment's
+ * inside is visible even where a file marks it single-sided. */
 #ifndef TOILE_RENDER_SURFACES_SURFACES_H
 #define TOILE_RENDER_SURFACES_SURFACES_H
 
@@ -45,7 +45,7 @@ typedef struct tl_surfaces tl_surfaces;
 tl_surfaces *tl_surfaces_create(tl_gpu *gpu);
 void tl_surfaces_destroy(tl_surfaces **surfaces);
 
-/* Whose derived maps are bound from now on with those of the surfaces; borrowed. */
+/* Sets the detail maps that are bound together with the surfaces' own from now on; borrowed. */
 void tl_surfaces_use_detail(tl_surfaces *surfaces, const struct tl_detail_maps *detail);
 
 /* Brings the GPU's copies up to date. Fails when a map is larger than GL can hold. */

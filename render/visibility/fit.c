@@ -5,7 +5,7 @@
 
 #include <stdlib.h>
 
-#define EXTENT_MIN   1e-4f /* metres: of a sheet seen edge-on, or of nothing */
+#define EXTENT_MIN   1e-4f /* metres: for cloth seen edge-on, or no casters */
 #define DEPTH_MARGIN 1e-3f /* of the range */
 
 static size_t whole_groups(size_t count)

@@ -1,5 +1,5 @@
-/* Views of the casters along a direction, fitted to what is seen along it: two to three times the resolution
- * of a view of their sphere for a standing figure. Pure. */
+/* Orthographic views of the casters along a direction, fitted to their outline: two to three times the
+ * resolution of a view of their sphere for a standing figure. Pure. */
 #ifndef TOILE_RENDER_VISIBILITY_FIT_H
 #define TOILE_RENDER_VISIBILITY_FIT_H
 

@@ -1,4 +1,4 @@
-/* Which shadow maps are drawn anew when there is not time for all. Pure.
+/* Chooses the shadow maps to redraw when there is no time for all. Pure.
  *
  * A map's turn comes by the energy of its region times how much its shadow changes while it waits: its age,
  * times the motion, over how soft the shadow is. No map gets older than the cap. */

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 
 /* A depth map's texel is pushed back by this many times its surface's own slope across a texel, so that no
- * surface shadows itself where a look-up blends texels beside it. */
+ * surface shadows itself where a look-up blends neighbouring texels. */
 #define SLOPE_OFFSET 2.0f
 
 /* Uniform locations of maps.vert and blur.frag. */

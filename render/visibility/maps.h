@@ -34,11 +34,11 @@ struct tl_shadow_request {
     const struct tl_regions *regions;
     const struct tl_suns *suns;
     float environment_yaw; /* rad */
-    /* What casts shadows, without the ground. */
+    /* The shadow casters, without the ground. */
     const tl_surface *caster_surfaces;
     size_t caster_count;
     struct tl_casters casters;
-    /* What is drawn, with it. */
+    /* All surfaces to draw, with the ground. */
     const tl_surfaces *surfaces;
     size_t surface_count;
     int ground_index; /* which of them is the ground; -1: none */
@@ -58,13 +58,14 @@ void tl_shadow_maps_destroy(tl_shadow_maps **maps);
 void tl_shadow_maps_draw(tl_shadow_maps *maps, const struct tl_shadow_request *request);
 void tl_shadow_maps_blur(tl_shadow_maps *maps, const struct tl_shadow_request *request);
 
-/* Whether maps wait for their turn: they show what was, along the views that they were drawn with. */
+/* Returns whether maps wait for their turn. Such maps show an earlier state, along the views that they were
+ * drawn with. */
 bool tl_shadow_maps_wait(const tl_shadow_maps *maps);
 
 /* The array texture that holds the maps of pass `index`; that of the suns' maps. */
 unsigned tl_shadow_maps_texture(const tl_shadow_maps *maps, int index);
 unsigned tl_shadow_maps_sun_texture(const tl_shadow_maps *maps);
-/* How each region, each sun, was seen when its map was drawn. */
+/* The view of each region and each sun with which its map was drawn. */
 const struct tl_region_view *tl_shadow_maps_views(const tl_shadow_maps *maps);
 const struct tl_region_view *tl_shadow_maps_sun_views(const tl_shadow_maps *maps);
 /* The map of region `index` as it is on the GPU, rows upwards: for checks. */

@@ -1,4 +1,4 @@
-/* How visibility is found, and the options of the back-end of rays (from table "light", light/options.h). */
+/* The back-ends of visibility, and the options of rays (from table "light", light/options.h). */
 #ifndef TOILE_RENDER_VISIBILITY_OPTIONS_H
 #define TOILE_RENDER_VISIBILITY_OPTIONS_H
 

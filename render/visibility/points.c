@@ -168,7 +168,7 @@ static bool is_where_it_was(const int source[TL_REGIONS_MAX], int count)
     return true;
 }
 
-/* A small turn leaves the values where they are: they are traced anew before it has gone far. */
+/* A small turn leaves the values with their regions: they are traced again before the error grows. */
 static bool has_turned_far(const tl_points *points, const struct tl_points_request *request)
 {
     int source[TL_REGIONS_MAX];
@@ -281,7 +281,7 @@ static void activate_clusters(tl_points *points, size_t repair_count)
     points->slot_count = slot_count;
 }
 
-/* Sites become points. */
+/* Assigns points to the visible probes. */
 static void resolve_taps(tl_points *points)
 {
 #pragma omp parallel for schedule(static)
@@ -316,7 +316,7 @@ static vec3s *jitter_directions(const tl_points *points, const struct tl_points_
     return directions;
 }
 
-/* The means begin anew when something has moved since the last rest. A point that comes into sight
+/* The means are reset when something has moved since the last rest. A point that comes into sight
  * has its cluster's rounds begun again: the others' means only grow. */
 static void begin_rest(tl_points *points, size_t slot, uint32_t members)
 {
@@ -404,7 +404,8 @@ static size_t bundles_of_a_frame(const tl_points *points, const struct tl_refres
     return rays / ((size_t)request->regions->count * TL_CLUSTER) + 1;
 }
 
-/* What one image shows is chosen once in motion and once at rest, when the points know what to doubt. */
+/* The samples to repair are chosen once for an image in motion and once at rest, when the points' values are
+ * good enough to find them. */
 static void choose_samples(tl_points *points, const struct tl_refresh *refresh, bool again)
 {
     struct tl_repair *repair = &points->repair;
@@ -441,7 +442,7 @@ static void read_repaired(tl_points *points)
     }
 }
 
-/* Where samples' rays start; true when nothing has changed since these were made. */
+/* Makes the origins of the samples' rays; true when nothing has changed since they were made. */
 static bool follow_samples(tl_points *points, const struct tl_points_request *request)
 {
     bool has_suns = request->suns && request->suns->count > 0;

@@ -3,9 +3,9 @@
  * age).
  *
  * A point is a render vertex seen from one side, or an extra point that a sample owns (repair). A sample
- * reads up to four points with weights. In motion R regions of each visible point are traced anew a frame, in
- * directions jittered inside the region, and replace what was there; at rest as many are averaged in, until
- * every region has had its rounds. Results do not depend on the number of threads. */
+ * reads up to four points with weights. In motion R regions of each visible point are traced again each
+ * frame, in directions jittered inside the region, and replace what was there; at rest as many are averaged
+ * in, until every region has had its rounds. Results do not depend on the number of threads. */
 #ifndef TOILE_RENDER_VISIBILITY_POINTS_H
 #define TOILE_RENDER_VISIBILITY_POINTS_H
 
@@ -17,7 +17,7 @@ tl_points *tl_points_create(void);
 void tl_points_destroy(tl_points **points);
 
 void tl_points_update(tl_points *points, const struct tl_points_request *request);
-/* After an update at rest: another would change nothing. */
+/* Returns, after an update at rest, whether another one would change nothing. */
 bool tl_points_are_done(const tl_points *points);
 
 /* After an update. Visibility of region i at point p is values[p * stride + i] / TL_VISIBILITY_ONE; stride is

@@ -1,4 +1,5 @@
-/* What visibility at points is found for, and what a sample reads of it: shared by points.c and its parts. */
+/* The inputs of visibility at points, and the taps with which a sample reads it: shared by points.c and its
+ * parts. */
 #ifndef TOILE_RENDER_VISIBILITY_POINTS_REQUEST_H
 #define TOILE_RENDER_VISIBILITY_POINTS_REQUEST_H
 
@@ -11,7 +12,7 @@
 
 #define TL_TAPS 4
 
-/* What a sample reads: values of `point[i]` times `weight[i]`; weights sum to 1, unused ones are 0. */
+/* The taps of a sample: values of `point[i]` times `weight[i]`; weights sum to 1, unused ones are 0. */
 struct tl_taps {
     uint32_t point[TL_TAPS];
     float weight[TL_TAPS];

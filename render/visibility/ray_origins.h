@@ -1,5 +1,5 @@
-/* Where the rays of samples start: on the smooth surface that a triangle stands for, a little above it. And
- * whether the samples are those of the last frame. Part of points.c. */
+/* The origins of the samples' rays: a little above the smooth surface that a triangle approximates. A hash
+ * records whether the samples are those of the last frame. Part of points.c. */
 #ifndef TOILE_RENDER_VISIBILITY_RAY_ORIGINS_H
 #define TOILE_RENDER_VISIBILITY_RAY_ORIGINS_H
 

@@ -119,8 +119,8 @@ TL_INLINE float greatest_cosine(const struct lanes *lanes, vec3s direction)
     return greatest;
 }
 
-/* What a stale value of each region costs: its light on the cluster times its age. And the age of what is
- * late, as a need of its own; 0 for all else. */
+/* The need of each region: its light on the cluster times the age of its value. Late regions also have their
+ * age as a need of its own, 0 for all others. */
 static void measure_needs(const struct tl_refresh *refresh, const struct tl_cluster *cluster,
                           const struct lanes *lanes, float needs[TL_REGIONS_MAX], float late[TL_REGIONS_MAX])
 {
@@ -134,7 +134,7 @@ static void measure_needs(const struct tl_refresh *refresh, const struct tl_clus
     }
 }
 
-/* Selects up to `wanted` more regions, of greatest need; of equals the first. Returns how many. */
+/* Selects up to `wanted` more regions of greatest need, among equals the first. Returns how many. */
 static int select_regions(const float needs[TL_REGIONS_MAX], int count, int wanted,
                           bool selected[TL_REGIONS_MAX])
 {
@@ -253,7 +253,7 @@ static size_t look(const struct tl_refresh *refresh, const struct lanes *lanes, 
     return (size_t)bundle.count;
 }
 
-/* In motion a glance replaces what was there, at rest it is averaged in. */
+/* In motion the new value replaces the old one; at rest it is averaged in. */
 static void store(const struct tl_refresh *refresh, const struct tl_cluster *cluster, uint32_t lanes_wanted,
                   int region, const struct glance *glance)
 {

@@ -18,8 +18,8 @@ struct tl_refresh {
     bool whole_rounds;        /* all regions are traced; in motion this is the first round of a rest */
 };
 
-/* What lies so near above a point that the point says nothing about places that it does not lie above: so
- * many offsets, 1 cm of a figure. */
+/* A surface within this distance above a point covers it: the point's value then does not hold for uncovered
+ * neighbours. In ray offsets; 1 cm for a figure. */
 #define TL_COVER_OFFSETS 100
 
 /* At rest so many times the rays of a moving frame are traced: its other costs, the G-buffer, its reading and

@@ -46,8 +46,8 @@ TL_INLINE float spread_of(const struct weights *weights, vec3s normal, const uin
     return tl_sum_lanes(sums);
 }
 
-/* Half-way between its corners a sample knows least, at a corner most. Where it reads only some of them it is
- * known that they do not fit. */
+/* The share of a sample's value that is interpolated: 0 at a corner, greatest half-way between them, and 1
+ * where the sample reads only some of its corners, because the others are known not to fit. */
 static float share_unknown(const float weights[TL_TAPS], const float corners[3])
 {
     float square = 0;
@@ -185,7 +185,7 @@ static bool is_covered(const uint16_t *covered, uint32_t point)
     return covered[point / TL_CLUSTER] >> point % TL_CLUSTER & 1;
 }
 
-/* Whether a sample reads points that are covered and points that are not. */
+/* Returns whether a sample reads both covered and uncovered points. */
 static bool is_mixed(const uint16_t *covered, const struct tl_taps *taps)
 {
     int count = 0;

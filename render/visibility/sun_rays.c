@@ -38,8 +38,8 @@ static void reserve(struct tl_sun_rays *rays, const struct tl_points_request *re
     }
 }
 
-/* What `count` samples see of a place of the sun; those that it does not rise for are left at -1. Returns the
- * number of rays. */
+/* Traces the visibility of a point of the sun at `count` samples; samples below whose horizon it lies are
+ * left at -1. Returns the number of rays. */
 static size_t look(const struct tl_points_request *request, const struct tl_ray_origins *origins,
                    const uint32_t samples[BUNDLE], int count, vec3s direction, float seen[BUNDLE])
 {
@@ -94,7 +94,7 @@ static size_t look_once(struct tl_sun_rays *rays, const struct tl_points_request
         float *seen = rays->seen + first;
         ray_count += look(request, origins, samples, size, direction, seen);
         for (int i = 0; i < size; i++) {
-            /* Where the sun has not risen there is nothing to disagree about: the horizon's share is zero. */
+            /* Samples whose horizon hides the sun take no part: their share is zero. */
             if (seen[i] >= 0 && first + (size_t)i < request->samples->primary_count)
                 rays->marks[request->samples->items[first + (size_t)i].texel] = seen[i] > 0.5f ? LIT : DARK;
             seen[i] = fmaxf(seen[i], 0);
@@ -146,7 +146,7 @@ static size_t find_doubtful(struct tl_sun_rays *rays, const struct tl_samples *s
     return count;
 }
 
-/* More rays for the doubtful samples: what they see becomes the mean of all. */
+/* Traces more rays for the doubtful samples, whose visibility becomes the mean of all rays. */
 static size_t look_again(struct tl_sun_rays *rays, const struct tl_points_request *request,
                          const struct tl_ray_origins *origins, int sun, size_t doubtful_count)
 {
