@@ -23,7 +23,12 @@
  * name; tl_option_is_file_name tells them apart.
  *
  * NaN and infinities are refused everywhere; so is text that is not printable UTF-8, so that every value can
- * be written into YAML and JSON and read back. Threads: pure. */
+ * be written into YAML and JSON and read back.
+ *
+ * Errors: functions that can fail set TL_USAGE for a wrong key or value, and return false. Lifetime: tables
+ * are static; bindings and params belong to the caller and are not kept; new strings are freed by the caller.
+ * Threads: all functions are pure but for the files that they name: any thread, one at a time for each value
+ * that is written to. */
 #ifndef TOILE_CONFIG_OPTIONS_H
 #define TOILE_CONFIG_OPTIONS_H
 
@@ -160,30 +165,33 @@ struct tl_binding {
     }
 /* clang-format on */
 
-/* Copies every table's defaults into its params. */
+/* Copies every table's defaults into its params. Errors: none. Lifetime: copies. Threads: pure. */
 void tl_options_reset(const struct tl_binding *bindings, size_t count);
 
 /* Sets one option from text. `key` is "table.name"; `where` ("scene.yaml:12" or "--set") begins the message
  * of a failure, which names the key, what was expected and, for an unknown key, the nearest known one.
- * `base_file` is the file that relative paths are taken from, or NULL for the working directory. Nothing is
- * changed on failure. */
+ * `base_file` is the file that relative paths are taken from, or NULL for the working directory.
+ * Errors: TL_USAGE; nothing is changed. Lifetime: the value is copied. Threads: pure. */
 bool tl_options_set(const struct tl_binding *bindings, size_t count, const char *key, const char *text,
                     const char *where, const char *base_file, tl_error *error);
 
-/* Sets an option from "table.name=value", as --set takes it. */
+/* Sets an option from "table.name=value", as --set takes it. Errors: TL_USAGE; nothing is changed. Lifetime:
+ * the value is copied. Threads: pure. */
 bool tl_options_set_assignment(const struct tl_binding *bindings, size_t count, const char *assignment,
                                tl_error *error);
 
 #define TL_LIMIT_YAML_BYTES ((size_t)1 << 20)
 
 /* Reads a YAML document: a mapping of table names to mappings of option names to scalars (or [r, g, b]).
- * `name` is the file's name for messages and the base of relative paths. On failure some options may have
- * been set already: callers discard the settings. Documents over TL_LIMIT_YAML_BYTES, several documents,
- * keys given twice, anchors, aliases, tags and nested structures are refused. */
+ * `name` is the file's name for messages and the base of relative paths. Documents over TL_LIMIT_YAML_BYTES,
+ * several documents, keys given twice, anchors, aliases, tags and nested structures are refused.
+ * Errors: TL_USAGE; some options may have been set already, so callers discard the settings. Lifetime: `data`
+ * is not kept. Threads: pure. */
 bool tl_options_read_yaml(const struct tl_binding *bindings, size_t count, const char *name, const char *data,
                           size_t size, tl_error *error);
 
-/* The same from a file. */
+/* The same from a file. Errors: also TL_INPUT, when the file cannot be read. Lifetime: keeps nothing.
+ * Threads: reads the file, else pure. */
 bool tl_options_read_yaml_file(const struct tl_binding *bindings, size_t count, const char *path,
                                tl_error *error);
 
@@ -194,16 +202,18 @@ struct tl_record_place {
     const char *record, *part, *key;
 };
 
-/* A section beside the tables whose names are the document's own: RECORD: {PART: {key: value}}. `take` is
- * told of every record and every part as it begins, then of each of its values, as text, in the document's
- * order. */
+/* A section next to the tables, whose names are the document's own: RECORD: {PART: {key: value}}. The reader
+ * calls `take` for every record and every part as it begins, then for each of its values, as text, in the
+ * document's order; when it returns false, reading fails with its error. Lifetime: `place` and `text` are
+ * valid during the call. Threads: the reader's. */
 struct tl_record_section {
     const char *name;
     bool (*take)(void *context, const struct tl_record_place *place, const char *text, tl_error *error);
     void *context;
 };
 
-/* The same as tl_options_read_yaml and _file, of a document that may have this section (NULL: it may not). */
+/* The same as tl_options_read_yaml and _file, of a document that may have this section (NULL: it may not).
+ * Errors: the same, and those of the section's `take`. Lifetime: keeps nothing. Threads: the same. */
 bool tl_options_read_yaml_with(const struct tl_binding *bindings, size_t count,
                                const struct tl_record_section *section, const char *name, const char *data,
                                size_t size, tl_error *error);
@@ -212,17 +222,20 @@ bool tl_options_read_yaml_file_with(const struct tl_binding *bindings, size_t co
                                     const struct tl_record_section *section, const char *path,
                                     tl_error *error);
 
-/* True when two fields of the row's type hold the same value. */
+/* True when two fields of the row's type hold the same value. Errors: none. Lifetime: keeps nothing. Threads:
+ * pure. */
 bool tl_option_equal(const struct tl_option *row, const void *a, const void *b);
 
-/* Chooses rows by what they affect: those that have a bit of `any_of` and no bit of `none_of`. */
+/* Chooses rows by what they affect: those that have a bit of `any_of` and no bit of `none_of`. True when the
+ * row passes. Errors: none. Lifetime: keeps nothing. Threads: pure. */
 struct tl_option_filter {
     uint64_t any_of, none_of;
 };
 bool tl_option_passes(const struct tl_option *row, struct tl_option_filter filter);
 
-/* The rows that pass a filter, over lists of bindings to the same tables in the same order: whether a value
- * differs; `from`'s values into `to`; a hash of names and values that goes on from `hash` (config/hash.h). */
+/* The rows that pass a filter, over lists of bindings to the same tables in the same order. `differ` is true
+ * when a value differs; `take` copies the values of `from` into `to`; `hash` continues `hash` (config/hash.h)
+ * over names and values. Errors: none. Lifetime: keeps nothing. Threads: pure. */
 bool tl_options_differ(const struct tl_binding *a, const struct tl_binding *b, size_t count,
                        struct tl_option_filter filter);
 void tl_options_take(const struct tl_binding *from, const struct tl_binding *to, size_t count,
@@ -230,26 +243,32 @@ void tl_options_take(const struct tl_binding *from, const struct tl_binding *to,
 uint64_t tl_options_hash(const struct tl_binding *bindings, size_t count, struct tl_option_filter filter,
                          uint64_t hash);
 
-/* Copies one option from a params struct to another of the same table. */
+/* Copies one option from a params struct to another of the same table. Errors: none. Lifetime: copies.
+ * Threads: pure. */
 void tl_options_copy(const struct tl_option *row, const void *from, void *to);
 
-/* True when the text of a TL_PATH with choices is a file's name: it has a dot or a slash in it. */
+/* True when the text of a TL_PATH with choices is a file's name: it has a dot or a slash in it. Errors: none.
+ * Lifetime: keeps nothing. Threads: pure. */
 bool tl_option_is_file_name(const char *text);
 
-/* From wherever they are read next, every TL_PATH means the same file. One that would be too long stays as it
- * is. */
+/* Makes every TL_PATH absolute, so that it means the same file wherever it is read next. Errors: none; a path
+ * that would be too long stays as it is. Lifetime: copies. Threads: reads the working directory. */
 void tl_options_make_paths_absolute(const struct tl_binding *bindings, size_t count);
 
-/* The option's value as the text that tl_options_set takes back. New string. */
+/* The option's value as the text that tl_options_set takes back. Errors: none. Lifetime: a new string, which
+ * the caller frees. Threads: pure. */
 char *tl_options_get_text(const struct tl_binding *binding, const struct tl_option *row);
 
-/* True when two values of the table's params struct agree in every option. */
+/* True when two values of the table's params struct agree in every option. Errors: none. Lifetime: keeps
+ * nothing. Threads: pure. */
 bool tl_options_equal(const struct tl_option_table *table, const void *a, const void *b);
 
-/* All options as help text (one line each), as a Markdown reference page, or as a YAML document that
+/* Prints all options as help text (one line each), as a Markdown reference page, or as a YAML document that
  * tl_options_read_yaml reads back to the same values (relative paths are printed as they stand, so the
  * document must be read from the same working directory, under a name without a folder; a TL_PATH with
- * choices that is empty was left out, and is again). */
+ * choices that is empty was left out, and is again).
+ * Errors: none here; the caller checks `out` (ferror). Lifetime: keeps nothing. Threads: one at a time for
+ * `out`. */
 void tl_options_print_help(const struct tl_binding *bindings, size_t count, FILE *out);
 void tl_options_print_reference(const struct tl_binding *bindings, size_t count, FILE *out);
 void tl_options_print_yaml(const struct tl_binding *bindings, size_t count, FILE *out);

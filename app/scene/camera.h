@@ -4,8 +4,8 @@
 
 #include "app/settings/settings.h"
 
-/* Whether the camera says by itself where it is: a distance of 0 is the one that the scene needs, and a
- * target of 0 0 0 the middle of what there is. */
+/* True when the settings place the camera. A distance of 0 stands for the one that frames the scene, a target
+ * of 0 0 0 for the middle of the scene. */
 bool tl_camera_is_placed(const struct tl_camera_params *params);
 
 /* The camera of the frame. With distance_m = 0 the box (metres, world) fills the image of the given aspect

@@ -19,19 +19,19 @@ struct tl_moving {
 void tl_moving_create(struct tl_moving *moving, const tl_model *model, const uint32_t *weld);
 void tl_moving_release(struct tl_moving *moving);
 
-/* As it was when it was created: in the rest pose, whatever it has gone through since. */
+/* Goes back to the state after tl_moving_create: the rest pose. */
 void tl_moving_restart(struct tl_moving *moving);
 
-/* After `positions` changed. */
+/* Recomputes normals and tangents after `positions` changed, and raises motion_revision. */
 void tl_moving_update(struct tl_moving *moving);
 
-/* How it looks: a material for each of the model's, and parts that choose among them. */
+/* The appearance of a moving model: a material for each of the model's, and parts that choose among them. */
 struct tl_dressing {
     tl_material *materials;
     struct tl_mesh_part *parts;
 };
 
-/* The view that the renderer gets. */
+/* The surface for the renderer. Borrows all three arguments. */
 tl_surface tl_moving_surface(const struct tl_moving *moving, const char *name,
                              const struct tl_dressing *dressing);
 

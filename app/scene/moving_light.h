@@ -19,7 +19,7 @@ struct tl_moving_light {
 bool tl_moving_light_open(struct tl_moving_light *light, const char *name, double position, tl_error *error);
 /* Shows the frame at `position`; does nothing where that is shown already. */
 bool tl_moving_light_follow(struct tl_moving_light *light, double position, tl_error *error);
-/* Says what the reader of an environment had to clean, if anything. */
+/* Warns when the reader of an environment had to replace values. */
 void tl_environment_warn_of_cleaning(const tl_environment *environment);
 void tl_moving_light_release(struct tl_moving_light *light);
 

@@ -6,8 +6,9 @@
  *
  * A key that leaves something out has what the key before it has (the first: the scene's, and time 0). Angles
  * are not wrapped: from 0 to 720 turns twice. A distance of 0 frames the scene (app/scene/camera.h): so do
- * all keys or none, for nothing lies between a distance and none. A target of 0 0 0 is the scene's. Failure:
- * as scene files (config/yaml.h), with file, line and field. Pure but for the files. */
+ * all keys or none, because no distance can be interpolated between a given one and an automatic one. A
+ * target of 0 0 0 is the scene's. Failure: as scene files (config/yaml.h), with file, line and field. Pure
+ * but for the files. */
 #ifndef TOILE_APP_SCENE_PATH_H
 #define TOILE_APP_SCENE_PATH_H
 
@@ -37,8 +38,8 @@ struct tl_path tl_path_built_in(const struct tl_settings *scene);
 bool tl_path_same_key(const struct tl_path_key *a, const struct tl_path_key *b);
 
 double tl_path_length_s(const struct tl_path *path); /* time of the last key */
-/* Between keys by a monotone cubic of each number (no overshoot: a camera that is to stop stops); before the
- * first and after the last key it rests. */
+/* Between keys by a monotone cubic of each number (no overshoot, so a camera that stops does not swing beyond
+ * its key); before the first and after the last key it rests. */
 struct tl_path_key tl_path_at(const struct tl_path *path, double time_s);
 
 #endif

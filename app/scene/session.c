@@ -281,7 +281,7 @@ static bool begin_playback(tl_session *session, tl_error *error)
     return posed;
 }
 
-/* The position: how far a sequence of environments has played at frame `number`, in its own frames. */
+/* The position of a sequence of environments at frame `number`, in the sequence's own frames. */
 static double light_position(const struct tl_settings *settings, int number)
 {
     return number / settings->cloth.frame_rate * (double)settings->scene.environment_rate;

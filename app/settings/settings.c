@@ -255,7 +255,7 @@ static void choose_role(struct tl_scene_params *scene)
     }
 }
 
-/* Of what a material is beyond two lobes: what environment maps do not show, and what they do. */
+/* Parts of a material beyond two lobes: those that environment maps do not show, and those that they do. */
 static bool is_more_than_maps_show(const struct tl_material_params *look)
 {
     return look->model != TL_REFLECT_PHONG || look->openness > 0;
@@ -267,7 +267,7 @@ static bool is_layered(const struct tl_material_params *look)
            look->transmission[2] > 0;
 }
 
-/* What was asked for and will not be done is said. */
+/* Warns of options that the chosen method does not use. */
 static void warn_of_unused_options(const struct tl_settings *settings)
 {
     const struct tl_light_params *light = &settings->light;
@@ -320,7 +320,7 @@ bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *
     return true;
 }
 
-/* What the last fabric set and this one does not must not remain: the tables begin anew. */
+/* Resets the fabric's tables first, so that no value of the last fabric remains. */
 bool tl_settings_apply_fabric(struct tl_settings *settings, const char *name, tl_error *error)
 {
     struct tl_settings changed = *settings;
@@ -348,7 +348,7 @@ bool tl_settings_apply_colourway(struct tl_settings *settings, const char *name,
     return true;
 }
 
-/* Only light begins anew: cloth and image hold more than quality (the picture's size, say). */
+/* Resets the table light only: cloth and image hold more than quality (the picture's size, for instance). */
 bool tl_settings_apply_preset(struct tl_settings *settings, const char *name, tl_error *error)
 {
     struct tl_settings changed = *settings;

@@ -76,10 +76,10 @@ uint64_t tl_settings_hash(const struct tl_settings *settings, struct tl_option_f
  * waits until it is released. Pure. */
 bool tl_settings_differ_slowly(const struct tl_settings *a, const struct tl_settings *b);
 
-/* What of it the renderer takes. */
+/* The part of the settings that the renderer takes. Pure. */
 struct tl_render_settings tl_settings_render(const struct tl_settings *settings);
 
-/* What the command line says about settings. */
+/* The parts of the command line that settings are loaded from. */
 struct tl_settings_source {
     const char *scene_file;         /* YAML, .glb or .gltf, or NULL: the built-in scene */
     const char *const *assignments; /* "table.key=value", later ones win */
