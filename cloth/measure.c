@@ -14,10 +14,10 @@ double tl_cloth_max_speed(const tl_cloth *cloth)
     return sqrt(fastest);
 }
 
-/* Strain is change of length over rest length, but a much shorter edge than usual says little by it: a mesh
- * resolves folds no finer than its usual edge, and the short edge of a sliver absorbs the rest. (Example: a
- * dress as a heap on the floor; one edge of 0.4 mm among edges of 8 mm is 1.5 mm long, and no other is
- * strained by more than 0.7.) So the divisor is at least a quarter of the usual edge length. */
+/* Strain is change of length over rest length, which is meaningless for an edge much shorter than usual: a
+ * mesh resolves folds no finer than its usual edge, and the short edge of a sliver absorbs the rest.
+ * (Example: a dress as a heap on the floor; one edge of 0.4 mm among edges of 8 mm is 1.5 mm long, and no
+ * other is strained by more than 0.7.) So the divisor is at least a quarter of the usual edge length. */
 #define RESOLVED_EDGES                                                                                       \
     25 /* times shortest_edge, which is a hundredth of the mean edge: a quarter of that                      \
         */

@@ -267,9 +267,9 @@ TL_CLONES static void update_block(tl_tangent_frames *frames, size_t index, cons
     struct fans fans = fans_of(frames, index, positions);
     struct tl_tangent_state *state = &frames->states[index];
     struct edges edges;
-    size_t lending = frames->block_count - frames->borrower_count, count = 0;
+    size_t normal_blocks = frames->block_count - frames->borrower_count, count = 0;
     prefetch_block(frames, index + 1);
-    if (index < lending) {
+    if (index < normal_blocks) {
         float sum[3][LANES] = {{0}};
         for (size_t first = 0; first + 1 < fans.spoke_count; first += KEPT - 1) {
             count = fetch_edges(&fans, first, &edges);
@@ -277,7 +277,7 @@ TL_CLONES static void update_block(tl_tangent_frames *frames, size_t index, cons
         }
         finish_normals(sum, state->normal);
     } else {
-        borrow_normals(frames, frames->lenders[index - lending], state->normal);
+        borrow_normals(frames, frames->lenders[index - normal_blocks], state->normal);
     }
     struct planes planes;
     find_planes(state->normal, &planes);
@@ -308,11 +308,11 @@ void tl_tangent_frames_reset(tl_tangent_frames *frames)
 void tl_tangent_frames_update(tl_tangent_frames *frames, const vec3s *positions, vec3s *normals,
                               vec4s *tangents)
 {
-    size_t lending = frames->block_count - frames->borrower_count;
-#pragma omp parallel for schedule(static) if (lending > WORTH_THREADS)
-    for (size_t b = 0; b < lending; b++)
+    size_t normal_blocks = frames->block_count - frames->borrower_count;
+#pragma omp parallel for schedule(static) if (normal_blocks > WORTH_THREADS)
+    for (size_t b = 0; b < normal_blocks; b++)
         update_block(frames, b, positions, normals, tangents);
 #pragma omp parallel for schedule(static) if (frames->borrower_count > WORTH_THREADS)
-    for (size_t b = lending; b < frames->block_count; b++)
+    for (size_t b = normal_blocks; b < frames->block_count; b++)
         update_block(frames, b, positions, normals, tangents);
 }

@@ -5,9 +5,9 @@
  * normal force N of the last solve and the slip extrapolated from the last steps. A resistance can only slow
  * a particle, so an N that was wrong never drives it. Slower than min_slip_speed it sticks.
  *
- * Which of the three holds is found by iteration (an active set): after each solve the reaction tells. A
- * particle whose reaction pulls becomes free, one that sticks with more than mu N tangentially slips.
- * Threads: pure. */
+ * Which of the three holds is found by iteration (an active set): each solve's reaction decides the next
+ * state. A particle whose reaction pulls becomes free, one that sticks with more than mu N tangentially
+ * slips. Threads: pure. */
 #ifndef TOILE_CLOTH_SOLVERS_IMPLICIT_CONTACT_CONSTRAINT_H
 #define TOILE_CLOTH_SOLVERS_IMPLICIT_CONTACT_CONSTRAINT_H
 
