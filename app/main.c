@@ -51,7 +51,7 @@ static bool run(int argc, char **argv, tl_error *error)
 }
 
 /* What a frame frees the next one asks for again, in another size when levels change. Kept in the process it
- * is there at once; given back, its pages are faulted in and zeroed anew, which takes a frame's time. */
+ * is there at once; given back, its pages are faulted in and zeroed again, which takes a frame's time. */
 static void keep_freed_memory(void)
 {
     mallopt(M_ARENA_MAX, 1); /* what one thread frees, as a loader's, is there for all */

@@ -93,7 +93,7 @@ static bool begin_part(struct tl_colourways_reader *reader, const struct tl_reco
 static bool take_fabric(struct tl_swatch *swatch, const char *name, tl_error *error)
 {
     struct tl_swatch fresh = *swatch;
-    if (!tl_layer_read_appearance(name, &fresh.params, &fresh.weave, error))
+    if (!tl_option_layer_read_appearance(name, &fresh.params, &fresh.weave, error))
         return false;
     tl_swatch_apply(swatch, &fresh.params, &fresh.weave);
     *swatch = fresh;

@@ -6,11 +6,13 @@
 
 #include <stdlib.h>
 
-const struct tl_layer tl_layer_preset = {"preset", tl_embedded_presets, tl_embedded_presets_names};
-const struct tl_layer tl_layer_fabric = {"fabric", tl_embedded_fabrics, tl_embedded_fabrics_names};
-const struct tl_layer tl_layer_scene = {"scene", tl_embedded_scenes, tl_embedded_scenes_names};
+const struct tl_option_layer tl_option_layer_preset = {"preset", tl_embedded_presets,
+                                                       tl_embedded_presets_names};
+const struct tl_option_layer tl_option_layer_fabric = {"fabric", tl_embedded_fabrics,
+                                                       tl_embedded_fabrics_names};
+const struct tl_option_layer tl_option_layer_scene = {"scene", tl_embedded_scenes, tl_embedded_scenes_names};
 
-static bool fail_name(const struct tl_layer *layer, const char *name, tl_error *error)
+static bool fail_name(const struct tl_option_layer *layer, const char *name, tl_error *error)
 {
     size_t count = tl_count_words(layer->names);
     char *list = tl_join_words(layer->names, count, ", ", ", ");
@@ -21,8 +23,9 @@ static bool fail_name(const struct tl_layer *layer, const char *name, tl_error *
     return false;
 }
 
-bool tl_layer_apply(const struct tl_layer *layer, const char *name, const struct tl_binding *bindings,
-                    size_t count, const struct tl_record_section *section, tl_error *error)
+bool tl_option_layer_apply(const struct tl_option_layer *layer, const char *name,
+                           const struct tl_binding *bindings, size_t count,
+                           const struct tl_record_section *section, tl_error *error)
 {
     if (tl_option_is_file_name(name))
         return tl_options_read_yaml_file_with(bindings, count, section, name, error);
@@ -34,12 +37,12 @@ bool tl_layer_apply(const struct tl_layer *layer, const char *name, const struct
     return tl_options_read_yaml_with(bindings, count, section, entry->name, entry->data, entry->size, error);
 }
 
-bool tl_layer_read_appearance(const char *fabric, struct tl_material_params *params,
-                              struct tl_weave_params *weave, tl_error *error)
+bool tl_option_layer_read_appearance(const char *fabric, struct tl_material_params *params,
+                                     struct tl_weave_params *weave, tl_error *error)
 {
     struct tl_cloth_fabric ignored;
     const struct tl_binding bindings[] = {
         {&tl_cloth_fabric_options, &ignored}, {&tl_weave_options, weave}, {&tl_material_options, params}};
     tl_options_reset(bindings, TL_COUNT(bindings));
-    return tl_layer_apply(&tl_layer_fabric, fabric, bindings, TL_COUNT(bindings), NULL, error);
+    return tl_option_layer_apply(&tl_option_layer_fabric, fabric, bindings, TL_COUNT(bindings), NULL, error);
 }

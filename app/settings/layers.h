@@ -12,20 +12,21 @@
 #include "render/brdf/options.h"
 
 /* One kind of layer. */
-struct tl_layer {
+struct tl_option_layer {
     const char *kind; /* for messages */
     const struct tl_embedded *list;
     const char *const *names; /* of the built-in ones, NULL-terminated */
 };
-extern const struct tl_layer tl_layer_preset, tl_layer_fabric, tl_layer_scene;
+extern const struct tl_option_layer tl_option_layer_preset, tl_option_layer_fabric, tl_option_layer_scene;
 
 /* Sets the bound options that the layer `name` gives; the others keep their values. `name` is that of a
  * built-in layer or a file's path. `section`: the records that the file may have besides, or NULL. */
-bool tl_layer_apply(const struct tl_layer *layer, const char *name, const struct tl_binding *bindings,
-                    size_t count, const struct tl_record_section *section, tl_error *error);
+bool tl_option_layer_apply(const struct tl_option_layer *layer, const char *name,
+                           const struct tl_binding *bindings, size_t count,
+                           const struct tl_record_section *section, tl_error *error);
 
 /* The appearance that a fabric gives, over default values: how it moves is left out. */
-bool tl_layer_read_appearance(const char *fabric, struct tl_material_params *params,
-                              struct tl_weave_params *weave, tl_error *error);
+bool tl_option_layer_read_appearance(const char *fabric, struct tl_material_params *params,
+                                     struct tl_weave_params *weave, tl_error *error);
 
 #endif

@@ -145,13 +145,13 @@ struct tl_render_settings tl_settings_render(const struct tl_settings *settings)
 static bool apply_preset(const struct tl_binding *all, const char *name, tl_error *error)
 {
     const struct tl_binding bindings[] = {all[CLOTH], all[LIGHT], all[IMAGE]};
-    return tl_layer_apply(&tl_layer_preset, name, bindings, TL_COUNT(bindings), NULL, error);
+    return tl_option_layer_apply(&tl_option_layer_preset, name, bindings, TL_COUNT(bindings), NULL, error);
 }
 
 static bool apply_fabric(const struct tl_binding *all, const char *name, tl_error *error)
 {
     const struct tl_binding bindings[] = {all[FABRIC], all[WEAVE], all[MATERIAL]};
-    return tl_layer_apply(&tl_layer_fabric, name, bindings, TL_COUNT(bindings), NULL, error);
+    return tl_option_layer_apply(&tl_option_layer_fabric, name, bindings, TL_COUNT(bindings), NULL, error);
 }
 
 bool tl_settings_assign(struct tl_settings *settings, const char *const *assignments, size_t most,
@@ -186,7 +186,7 @@ static bool apply_scene(const struct tl_binding *all, const char *name, tl_error
     struct tl_colourways_reader reader;
     tl_colourways_begin(&reader, "", &found);
     const struct tl_record_section section = tl_colourways_section(&reader);
-    if (!tl_layer_apply(&tl_layer_scene, name, all, TL_SETTINGS_TABLES, &section, error))
+    if (!tl_option_layer_apply(&tl_option_layer_scene, name, all, TL_SETTINGS_TABLES, &section, error))
         return false;
     bool brings = found.name_count > 0 && tl_option_is_file_name(name);
     return !brings || !has_own_colourways(all[SCENE].params) ||
@@ -238,7 +238,8 @@ static bool read_colourways(struct tl_settings *settings, tl_error *error)
     struct tl_settings *unused = TL_NEW(struct tl_settings);
     struct tl_binding all[TL_SETTINGS_TABLES];
     tl_settings_bind(unused, all);
-    bool read = tl_layer_apply(&tl_layer_scene, source, all, TL_SETTINGS_TABLES, &section, error);
+    bool read =
+        tl_option_layer_apply(&tl_option_layer_scene, source, all, TL_SETTINGS_TABLES, &section, error);
     free(unused);
     return read;
 }
@@ -307,7 +308,8 @@ bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *
     choose_fabric(&named);
     tl_options_reset(all, TL_SETTINGS_TABLES);
     if (!apply_preset(all, named.preset, error) || !apply_fabric(all, named.fabric, error) ||
-        !tl_layer_read_appearance(named.overlay_fabric, &settings.overlay, &settings.overlay_weave, error) ||
+        !tl_option_layer_read_appearance(named.overlay_fabric, &settings.overlay, &settings.overlay_weave,
+                                         error) ||
         !apply_source(all, source, error))
         return false;
     if (source->scene_file && tl_model_is_file(source->scene_file))
@@ -368,7 +370,7 @@ bool tl_settings_apply_overlay(struct tl_settings *settings, const char *name, t
     struct tl_binding all[TL_SETTINGS_TABLES];
     tl_settings_bind(&changed, all);
     if (!tl_options_set(all, TL_SETTINGS_TABLES, "scene.overlay_fabric", name, "fabric", NULL, error) ||
-        !tl_layer_read_appearance(name, &changed.overlay, &changed.overlay_weave, error))
+        !tl_option_layer_read_appearance(name, &changed.overlay, &changed.overlay_weave, error))
         return false;
     *settings = changed;
     return true;

@@ -12,7 +12,7 @@ static const char *const fresnel_names[] = {"off", "additive", "coat", NULL};
 typedef struct tl_maps_params maps_params;
 static const struct tl_option rows[] = {
     TL_OPTION_ENUM(maps_params, layout, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LAYOUT, tl_layout_names,
-                   "how the environment map is laid out; sphere is made anew whenever the view turns"),
+                   "how the environment map is laid out; sphere is rebuilt whenever the view turns"),
     TL_OPTION_INT(maps_params, size, TL_AFFECTS_APPEARANCE | TL_AFFECTS_ENVMAP | TL_AFFECTS_CAPTURE,
                   TL_MAPS_SIZE_MIN, TL_MAPS_SIZE_MAX, "texels",
                   "side of a cube's face, height of the others, a power of two; larger sharpens mirrors"),

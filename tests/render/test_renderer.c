@@ -105,14 +105,14 @@ static void test_maps_wait_and_catch_up(void **state)
         assert_false(tl_renderer_is_at_rest(renderer));
         tl_image resting = test_scene_draw(&scene, renderer);
         assert_true(tl_renderer_is_at_rest(renderer));
-        tl_image anew = test_draw(fresh, &scene.frame, &scene.settings);
-        size_t bytes = (size_t)anew.width * (size_t)anew.height * 4 * sizeof(float);
-        assert_memory_equal(resting.texels, anew.texels, bytes);
-        assert_memory_not_equal(moving.texels, anew.texels, bytes);
+        tl_image rebuilt = test_draw(fresh, &scene.frame, &scene.settings);
+        size_t bytes = (size_t)rebuilt.width * (size_t)rebuilt.height * 4 * sizeof(float);
+        assert_memory_equal(resting.texels, rebuilt.texels, bytes);
+        assert_memory_not_equal(moving.texels, rebuilt.texels, bytes);
         expect_jobs(renderer, &scene, "");
         tl_image_release(&moving);
         tl_image_release(&resting);
-        tl_image_release(&anew);
+        tl_image_release(&rebuilt);
         test_scene_close(&scene);
         tl_renderer_destroy(&fresh);
         tl_renderer_destroy(&renderer);
@@ -132,11 +132,11 @@ static void test_reuse_changes_nothing(void **state)
     scene.settings.light.lobe = TL_LOBE_SINGLE;
     tl_image kept = test_scene_draw(&scene, device->renderer);
     tl_renderer *fresh = tl_renderer_create(device->gpu, &error);
-    tl_image anew = test_draw(fresh, &scene.frame, &scene.settings);
-    assert_memory_equal(kept.texels, anew.texels, (size_t)48 * 32 * 4 * sizeof(float));
+    tl_image rebuilt = test_draw(fresh, &scene.frame, &scene.settings);
+    assert_memory_equal(kept.texels, rebuilt.texels, (size_t)48 * 32 * 4 * sizeof(float));
     tl_renderer_destroy(&fresh);
     tl_image_release(&kept);
-    tl_image_release(&anew);
+    tl_image_release(&rebuilt);
     test_scene_close(&scene);
 }
 

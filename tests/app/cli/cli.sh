@@ -39,7 +39,7 @@ refuse() { # NAME PATTERN ARGUMENTS...
     fi
 }
 
-# Ctrl-C once toile ARGUMENTS has told of its work what matches, however slow the machine: leaves what it wrote in `said`
+# Ctrl-C once toile ARGUMENTS has printed a line that matches, however slow the machine: leaves what it wrote in `said`
 # and `told`, and its status in $status. Twice at once, as `timeout` does it.
 interrupt() { # PATTERN ARGUMENTS...
     local pattern=$1 job
@@ -48,7 +48,7 @@ interrupt() { # PATTERN ARGUMENTS...
     $TOILE "$@" >said 2>told &
     job=$!
     until grep -q "$pattern" told; do
-        kill -0 $job 2>/dev/null || { fail "ended before it told of $pattern: $(cat told)"; break; }
+        kill -0 $job 2>/dev/null || { fail "ended before it printed $pattern: $(cat told)"; break; }
         sleep 0.1
     done
     kill -INT $job && kill -INT $job || true

@@ -60,5 +60,5 @@ check "the exit status tells" test $status -eq 0
 for substeps in 4 30; do
     $TOILE export dress --no-cache --set cloth.edge_m=0.03 --set cloth.settle_s=1 --set cloth.substeps=$substeps -o dress.obj 2>"said$substeps"
 done
-check "what hangs too long is told of" grep -q "the cloth is stretched by .* cloth.substeps=4 are too few" said4
+check "cloth that hangs too long is reported" grep -q "the cloth is stretched by .* cloth.substeps=4 are too few" said4
 check "and nothing else is" sh -c "! grep -q stretched said30"

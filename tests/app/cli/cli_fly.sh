@@ -76,7 +76,7 @@ echo "it does not like this video" >&2
 exit 3
 TEXT
 chmod +x empty/ffmpeg
-check "an ffmpeg that dies is told of, in its words" sh -c \
+check "an ffmpeg that dies is reported, with its message" sh -c \
     "! PATH=\"$PWD/empty:\$PATH\" $TOILE fly $small --frames 8 -o e --video flight.mp4 >/dev/null 2>said && grep -q 'status 3: it does not like' said"
 check "the flight is kept all the same, and no video" test -s e/frames.csv -a "$(ls | grep -c flight.mp4)" -eq 0
 if command -v ffmpeg >/dev/null && command -v ffprobe >/dev/null; then

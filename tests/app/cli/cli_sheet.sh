@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # toile sheet: a picture a cell, kept by a second run and redrawn when something changes; one image of them all; what
-# cannot be shown is told of and left empty; wrong use exits 2.
+# cannot be rendered is reported and left empty; wrong use exits 2.
 set -u
 . "$(dirname "$0")/cli.sh"
 fast="--garment sphere --avatar none --preset draft --size 64x64 --set light.jitter=false --set image.supersample=1 $cheap_light"
@@ -41,7 +41,7 @@ grep -q 'nowhere.yaml' log || fail "names the fabric: $(cat log)"
 [ $? -eq 1 ] || fail "a refused cell exits 1: $(cat log)"
 grep -q 'nowhere.hdr: no such file' log || fail "says why: $(cat log)"
 [ -s one.png ] && [ -d one.png.cells ] || fail "the image and its cells: $(ls)"
-"$TOILE" sheet -o one.png $fast --views front --envs studio,white 2>log || fail "mended: $(cat log)"
+"$TOILE" sheet -o one.png $fast --views front --envs studio,white 2>log || fail "repaired: $(cat log)"
 grep -q '1 cells drawn, 1 kept, 0 refused' log || fail "only the new one: $(cat log)"
 [ -s one.png ] && [ ! -e one.png.cells ] || fail "complete: $(ls)"
 

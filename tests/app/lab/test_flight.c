@@ -1,5 +1,5 @@
 /* A flight flown again at the same levels shows the same images, whatever the threads and from a session
- * begun anew; and the oracle judges each image against its own frame. */
+ * that starts afresh; and the reference judges each image against its own frame. */
 #include "tests/testing.h"
 
 #include "app/lab/flight/fly.h"
@@ -83,7 +83,7 @@ static void flown_again_it_shows_the_same(void **state)
     struct tl_headless headless = open_headless();
     struct tl_flight first = fly(&headless, &record, 0);
 
-    /* From a session begun anew, by a renderer that has not drawn: as the oracle finds them. */
+    /* From a new session, by a renderer that has not drawn: as the oracle finds them. */
     assert_ok(tl_session_restart(headless.session, &headless.settings, &error), error);
     tl_renderer_destroy(&headless.renderer);
     headless.renderer = tl_renderer_create(headless.gpu, &error);

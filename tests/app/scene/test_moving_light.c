@@ -164,7 +164,7 @@ static void a_broken_frame_is_named_and_nothing_is_lost(void **state)
     assert_int_equal(tl_session_frame_number(session), 1);
     assert_int_equal(shown(session), 2);
     assert_int_equal(revision(session), before);
-    write_sequence(); /* mended: it goes on */
+    write_sequence(); /* repaired: it continues */
     assert_ok(tl_session_advance(session, &error), error);
     assert_int_equal(shown(session), 3);
     tl_session_destroy(&session);

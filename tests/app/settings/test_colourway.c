@@ -62,8 +62,8 @@ static void looks_follow_the_scene(void **state)
     struct tl_weave_params satin_weave, denim_weave;
     tl_error error = {0};
     write_scene(SCENE);
-    assert_ok(tl_layer_read_appearance("satin", &satin, &satin_weave, &error), error);
-    assert_ok(tl_layer_read_appearance("denim", &denim, &denim_weave, &error), error);
+    assert_ok(tl_option_layer_read_appearance("satin", &satin, &satin_weave, &error), error);
+    assert_ok(tl_option_layer_read_appearance("denim", &denim, &denim_weave, &error), error);
 
     struct tl_appearance appearance = dress_in("Ink", &dress);
     const tl_material *bodice = &appearance.garment.materials[0], *skirt = &appearance.garment.materials[1];

@@ -70,13 +70,13 @@ static void merged_light_is_that_of_all_texels(void **state)
         float s = exponents[e], steps[TL_LANES] = {0};
         struct tl_emitters emitters = tl_emitters_merge(texels, TEXELS, SIZE, s);
         double worst = 0, sum = 0;
-        struct tl_lobe_packet gaze;
+        struct tl_lobe_packet packet;
         vec3s directions[TL_LANES];
         float got[3][TL_LANES];
         for (int i = 0; i < TL_LANES; i++)
             directions[i] = direction_of(i, TL_LANES);
-        tl_lobe_packet_set(&gaze, directions, steps, s);
-        tl_emitters_convolve(&emitters, &gaze, got);
+        tl_lobe_packet_set(&packet, directions, steps, s);
+        tl_emitters_convolve(&emitters, &packet, got);
         for (int i = 0; i < TL_LANES; i++) {
             double expected[3];
             integrate(&cube, fine_angles, directions[i], s, expected);

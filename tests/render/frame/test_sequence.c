@@ -58,14 +58,14 @@ static void expect_fresh(struct test_device *device, tl_renderer *renderer, cons
     tl_image followed = test_scene_draw(scene, renderer);
     tl_renderer *fresh = tl_renderer_create(device->gpu, &error);
     assert_non_null(fresh);
-    tl_image anew = test_scene_draw(scene, fresh);
+    tl_image rebuilt = test_scene_draw(scene, fresh);
     size_t bytes = (size_t)followed.width * (size_t)followed.height * 4 * sizeof(float);
-    if (memcmp(followed.texels, anew.texels, bytes) != 0)
+    if (memcmp(followed.texels, rebuilt.texels, bytes) != 0)
         print_error("frame %d differs from that of a new renderer\n", number);
-    assert_memory_equal(followed.texels, anew.texels, bytes);
+    assert_memory_equal(followed.texels, rebuilt.texels, bytes);
     tl_renderer_destroy(&fresh);
     tl_image_release(&followed);
-    tl_image_release(&anew);
+    tl_image_release(&rebuilt);
 }
 
 /* The image must also change from frame to frame, or the test would see nothing. A new renderer takes a
@@ -153,8 +153,8 @@ static tl_image draw_after(struct test_device *device, const tl_frame *last, con
     return image;
 }
 
-/* Rays, all of which are traced anew in every frame, in directions that differ from frame to frame: what was
- * followed differs from what a new renderer draws by the noise of that choice only. How much that is, a
+/* Rays, all of which are traced rebuilt in every frame, in directions that differ from frame to frame: what
+ * was followed differs from what a new renderer draws by the noise of that choice only. How much that is, a
  * renderer shows that draws the same environment twice, under two revisions. Eight frames at a time turn the
  * sun by 45 degrees, which would be seen. */
 static void rays_follow(void **state)
@@ -180,11 +180,11 @@ static void rays_follow(void **state)
         tl_image followed = test_scene_draw(&scene, renderer);
         tl_frame last = scene.frame;
         last.environment_revision--;
-        tl_image anew = draw_after(device, NULL, &scene), again = draw_after(device, &last, &scene);
-        stale += distance(&followed, &anew);
-        noise += distance(&again, &anew);
-        change += distance(&before, &anew);
-        tl_image_release(&anew);
+        tl_image rebuilt = draw_after(device, NULL, &scene), again = draw_after(device, &last, &scene);
+        stale += distance(&followed, &rebuilt);
+        noise += distance(&again, &rebuilt);
+        change += distance(&before, &rebuilt);
+        tl_image_release(&rebuilt);
         tl_image_release(&again);
         tl_image_release(&before);
         before = followed;

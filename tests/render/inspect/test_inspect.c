@@ -240,7 +240,7 @@ static void nothing_runs_that_is_not_needed(void **state)
     static const char *const of_light[] = {"compose", "light", "lights",   "lobes",
                                            "pems",    "maps",  "reference"};
     for (int view = TL_VIEW_LIGHT + 1; view < TL_VIEW_COUNT; view++) {
-        scene.frame.environment_revision++; /* all is made anew */
+        scene.frame.environment_revision++; /* all is rebuilt */
         scene.settings.image.view = view;
         tl_error error = {0};
         assert_ok(tl_renderer_draw(device->renderer, &scene.frame, &scene.settings, &error), error);

@@ -270,7 +270,7 @@ static void a_dear_change_waits(void **state)
 }
 
 /* Others' work takes 9.5 ms of every 95th frame: more than one in a hundred would be late, were they not
- * thought of from the start, and anew when the budget changes. */
+ * thought of from the start, and again when the budget changes. */
 static void what_is_not_foreseen_has_room(void **state)
 {
     (void)state;

@@ -583,16 +583,16 @@ static double doubt_of(const struct stage *stage, size_t s)
 static void repair_finds_and_mends_the_worst(void **state)
 {
     (void)state;
-    struct stage plain, mended;
+    struct stage plain, corrected;
     stage_open(&plain, 24);
-    stage_open(&mended, 24);
-    plain.params.rays = mended.params.rays = 64;
-    mended.params.repair = 0.1f;
+    stage_open(&corrected, 24);
+    plain.params.rays = corrected.params.rays = 64;
+    corrected.params.repair = 0.1f;
     step(&plain, true);
-    step(&mended, true);
+    step(&corrected, true);
     size_t count = plain.samples.count, repaired = 0, wanted = (size_t)(0.1f * (float)count);
-    assert_int_equal(tl_points_report(mended.points).repaired_samples, wanted);
-    const struct tl_taps *before = tl_points_taps(plain.points), *after = tl_points_taps(mended.points);
+    assert_int_equal(tl_points_report(corrected.points).repaired_samples, wanted);
+    const struct tl_taps *before = tl_points_taps(plain.points), *after = tl_points_taps(corrected.points);
     double least = INFINITY, most = 0, error = 0;
     for (size_t s = 0; s < count; s++) {
         const tl_sample *sample = &plain.samples.items[s];
@@ -622,7 +622,7 @@ static void repair_finds_and_mends_the_worst(void **state)
         start = glms_vec3_add(start, glms_vec3_scale(sample->smooth, tl_trace_offset(plain.trace)));
         for (int i = 0; i < plain.regions.count; i++) {
             float arriving, truth = seen_from(&plain, start, sample->smooth, i, 256, &arriving);
-            double difference = (double)value_at(&mended, s, 0, i) - (double)truth;
+            double difference = (double)value_at(&corrected, s, 0, i) - (double)truth;
             error = fmax(error, (double)arriving * fabs(difference));
         }
     }
@@ -631,7 +631,7 @@ static void repair_finds_and_mends_the_worst(void **state)
     assert_true(error <
                 0.2); /* 64 even rays of a shadow's edge: 1 / sqrt(64) at worst, and as much for 256 */
     stage_close(&plain);
-    stage_close(&mended);
+    stage_close(&corrected);
 }
 
 /* A square lies on another, larger one, a millimetre above. The large one's corners by its edge lie in the
