@@ -3,8 +3,8 @@
 # a video, Ctrl-C, refusals. Times are not judged, only that they are there.
 set -eu
 . "$(dirname "$0")/cli.sh"
-small="--size 64x48 --preset draft --set cloth.edge_m=0.08 --set cloth.settle_s=0.3 --fabric none $cheap_light
-    --set reference.replicates=2 --quiet"
+small="--size 64x48 --preset draft --set cloth.edge_m=0.08 --set cloth.settle_s=0.3 --fabric none $cheap_light"
+small="$small --set reference.replicates=2 --quiet"
 
 refuse "no folder" "add -o FOLDER" fly
 refuse "no budget" "expected milliseconds" fly -o f --budget 0
