@@ -113,8 +113,8 @@ tl_cube tl_cube_from_environment_with(const tl_environment *environment, int siz
 
 tl_cube tl_cube_from_environment(const tl_environment *environment, int size)
 {
-    struct tl_resampling pour = {0};
-    tl_cube cube = tl_cube_from_environment_with(environment, size, &pour);
-    tl_resampling_release(&pour);
+    struct tl_resampling resampling = {0};
+    tl_cube cube = tl_cube_from_environment_with(environment, size, &resampling);
+    tl_resampling_release(&resampling);
     return cube;
 }

@@ -1,3 +1,4 @@
+/* clang-format off: the table below keeps its lines */
 /* The inputs and outputs of each job of a frame. A run function (run_*.c) takes the struct of its job and
  * sees nothing else of the frame.
  *
@@ -6,9 +7,10 @@
  * resource that it does not declare.
  *
  *     READS(member)            const field; a change of the member is a reason to run
- *     AFTER(bit)               no field, but a reason to run: a resource that replaces a member which the job
- * has, or an input after which the light has to be begun again SEES(member)             const field; no
- * reason to run, because it changes only together with a member that is read, or does not decide the result
+ *     AFTER(bit)               no field, but a reason to run: a resource that replaces a member of the job,
+ *                              or an input after which the light starts again
+ *     SEES(member)             const field, no reason to run: it changes only together with a member that
+ *                              is read, or does not decide the result
  *     WRITES(member)           the job makes this resource
  *     WRITES_IN(member, bit)   the job makes resource `bit`, which is a part of the member
  *     EXTENDS(member, bit)     the job reads the member and turns it into resource `bit` in place
@@ -17,6 +19,7 @@
  * The kinds ..._HANDLE pass the pointer that a member holds instead of the member's address. `const` reaches
  * as deep as C lets it: not through pointers inside of a struct. tests/render/frame/test_jobs.c checks all
  * three. */
+/* clang-format on */
 #ifndef TOILE_RENDER_FRAME_JOB_IO_H
 #define TOILE_RENDER_FRAME_JOB_IO_H
 

@@ -91,13 +91,13 @@ static void sum_light(const tl_cube *cube, const struct tl_suns *suns, double su
 }
 
 /* The cube of the last size requested, cached, because making it would take most of the time. */
-static struct tl_resampling pour;
+static struct tl_resampling resampling;
 
 /* Takes the suns of a cube of `size`; no light may be lost but by the rounding of floats, and what is left
  * must be light. */
 static struct tl_suns take(const tl_environment *environment, int size, tl_cube *left)
 {
-    tl_cube cube = tl_cube_from_environment_with(environment, size, &pour);
+    tl_cube cube = tl_cube_from_environment_with(environment, size, &resampling);
     struct tl_suns suns = {0};
     double before[3], after[3];
     sum_light(&cube, &suns, before);
@@ -360,6 +360,6 @@ int main(void)
         cmocka_unit_test(real_environments),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    tl_resampling_release(&pour);
+    tl_resampling_release(&resampling);
     return failed;
 }
