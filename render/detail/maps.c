@@ -35,10 +35,16 @@ struct tl_detail_entry {
     tl_texture textures[TL_DETAIL_UNITS];
 };
 
+static bool same_transform(const struct tl_uv_transform *a, const struct tl_uv_transform *b)
+{
+    return a->offset[0] == b->offset[0] && a->offset[1] == b->offset[1] && a->scale[0] == b->scale[0] &&
+           a->scale[1] == b->scale[1] && a->rotation == b->rotation;
+}
+
 static bool same_map(const struct tl_map *a, const struct tl_map *b)
 {
-    return a->image == b->image && memcmp(&a->transform, &b->transform, sizeof a->transform) == 0 &&
-           a->clamp_u == b->clamp_u && a->clamp_v == b->clamp_v;
+    return a->image == b->image && same_transform(&a->transform, &b->transform) && a->clamp_u == b->clamp_u &&
+           a->clamp_v == b->clamp_v;
 }
 
 static bool same_detail(const struct tl_detail_entry *entry, const tl_material *material, float uv_metres)
@@ -245,7 +251,10 @@ void tl_detail_maps_release(struct tl_detail_maps *maps)
     free(maps->entries);
     free(maps->entry_of_part);
     free(maps->first_parts);
-    *maps = (struct tl_detail_maps){.params = maps->params};
+    maps->entries = NULL;
+    maps->entry_of_part = NULL;
+    maps->first_parts = NULL;
+    maps->surface_count = maps->part_count = maps->entry_count = 0;
 }
 
 static const struct tl_detail_entry *entry_of(const struct tl_detail_maps *maps, size_t surface, size_t part)

@@ -418,7 +418,8 @@
     JOB(backdrop, TL_BACKDROP_JOB)                                                                           \
     JOB(show, TL_SHOW_JOB)
 
-/* A field of the struct, for each kind. */
+/* A field of the struct, for each kind. The argument is the name that a declaration gives, and a name in
+ * parentheses is not one: NOLINTBEGIN(bugprone-macro-parentheses) */
 #define TL_TYPE_OF(member)            __typeof__(((struct tl_resources *)0)->member)
 #define TL_TYPE_AT(member)            __typeof__(*((struct tl_resources *)0)->member)
 #define TL_FIELD_READS(member)        const TL_TYPE_OF(member) * member;
@@ -434,6 +435,7 @@
 #define TL_FIELD_USES(member)                TL_FIELD_WRITES(member)
 #define TL_FIELD_USES_HANDLE(member)         TL_FIELD_WRITES_HANDLE(member)
 #define TL_JOB_FIELD(kind, ...)              TL_FIELD_##kind(__VA_ARGS__)
+/* NOLINTEND(bugprone-macro-parentheses) */
 
 /* The job's struct and its run function. */
 #define TL_DECLARE_JOB(name, LIST)                                                                           \

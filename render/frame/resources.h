@@ -125,6 +125,7 @@ struct tl_resources {
 
 /* A member's bit: TL_RESOURCE_OF_cube is TL_MADE_CUBE. */
 enum {
+/* NOLINTNEXTLINE(bugprone-macro-parentheses): the bit is one name */
 #define TL_RESOURCE_BIT(member, bit, type) TL_RESOURCE_OF_##member = bit,
     TL_INPUT_RESOURCES(TL_RESOURCE_BIT) TL_MADE_RESOURCES(TL_RESOURCE_BIT)
 #undef TL_RESOURCE_BIT

@@ -23,7 +23,8 @@ static void halve_all(const struct tl_mip_levels *levels, float *texels[TL_MIP_L
 
 static void create_texels(const struct tl_mip_levels *levels, float *texels[TL_MIP_LEVELS_MAX])
 {
-    for (int level = 0; level < levels->count; level++)
+    texels[0] = TL_NEW_ARRAY(float, 4 * count_of(levels, 0)); /* there is at least one level */
+    for (int level = 1; level < levels->count; level++)
         texels[level] = TL_NEW_ARRAY(float, 4 * count_of(levels, level));
 }
 
