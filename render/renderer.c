@@ -436,6 +436,13 @@ bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct
     return fine;
 }
 
+static bool require_image(const tl_renderer *renderer, const char *purpose, tl_error *error)
+{
+    if (!(renderer->resources.valid & TL_BIT(TL_MADE_IMAGE)))
+        return tl_fail(error, TL_USAGE, "renderer: there is no image to %s: draw a frame first", purpose);
+    return true;
+}
+
 /* GL's rows run upwards, an image's downwards. */
 static void flip_rows(tl_image *image, size_t row_bytes)
 {
@@ -452,15 +459,10 @@ static void flip_rows(tl_image *image, size_t row_bytes)
 
 bool tl_renderer_read(tl_renderer *renderer, tl_image *out, tl_error *error)
 {
-    if (!(renderer->resources.valid & TL_BIT(TL_MADE_IMAGE)))
-        return tl_fail(error, TL_USAGE, "renderer: there is no image to read: draw a frame first");
-    const tl_target *target = &renderer->resources.present.image;
-    *out = tl_image_create(target->width, target->height, 4, TL_IMAGE_F32);
-    size_t row_bytes = (size_t)target->width * 4 * sizeof(float);
+    if (!require_image(renderer, "read", error))
+        return false;
     tl_gpu_reset_state(renderer->resources.gpu);
-    glGetTextureImage(target->colours[0].id, 0, GL_RGBA, GL_FLOAT,
-                      (GLsizei)(row_bytes * (size_t)target->height), out->texels);
-    flip_rows(out, row_bytes);
+    tl_linear_image_read(&renderer->resources.present.image, out);
     return true;
 }
 
@@ -478,8 +480,6 @@ bool tl_renderer_read_capture(const tl_renderer *renderer, tl_image *out, tl_err
 
 static bool show(tl_renderer *renderer, unsigned framebuffer, int width, int height, tl_error *error)
 {
-    if (!(renderer->resources.valid & TL_BIT(TL_MADE_IMAGE)))
-        return tl_fail(error, TL_USAGE, "renderer: there is no image to show: draw a frame first");
     renderer->resources.show_target.framebuffer = framebuffer;
     renderer->resources.show_target.width = width;
     renderer->resources.show_target.height = height;
@@ -497,7 +497,10 @@ static bool show(tl_renderer *renderer, unsigned framebuffer, int width, int hei
 
 bool tl_renderer_show_image(tl_renderer *renderer, tl_image *out, tl_error *error)
 {
-    const tl_target *target = &renderer->resources.present.shown;
+    struct tl_resources *resources = &renderer->resources;
+    if (!require_image(renderer, "show", error))
+        return false;
+    const tl_target *target = tl_present_screen(&resources->present, resources->gpu);
     renderer->resources.show_target.first = 0;
     renderer->resources.show_target.end = target->width;
     if (!show(renderer, target->id, target->width, target->height, error))
@@ -515,7 +518,7 @@ bool tl_renderer_show_columns(tl_renderer *renderer, int width, int height, int 
 {
     renderer->resources.show_target.first = first;
     renderer->resources.show_target.end = end;
-    return show(renderer, 0, width, height, error);
+    return require_image(renderer, "show", error) && show(renderer, 0, width, height, error);
 }
 
 void tl_renderer_plan(const tl_renderer *renderer, const tl_frame *frame,

@@ -364,8 +364,7 @@
     IO(READS, reference_options)                                                                             \
     IO(AFTER, TL_INPUT_VIEW)                                                                                 \
     IO(WRITES, present)                                                                                      \
-    IO(WRITES, standard_error)                                                                               \
-    IO(USES, gpu)
+    IO(WRITES, standard_error)
 
 #define TL_BACKDROP_JOB(IO)                                                                                  \
     IO(READS, environment)                                                                                   \

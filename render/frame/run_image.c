@@ -108,7 +108,7 @@ bool tl_run_reference(const struct tl_reference_job *job, tl_error *error)
     tl_info("reference: %d replicates, %.3g million rays, standard error %.2g %%", report.replicates,
             1e-6 * (double)report.rays, 100 * report.standard_error);
     *job->standard_error = report.standard_error;
-    tl_present_set_image(job->present, *job->gpu, &image);
+    tl_present_set_image(job->present, &image);
     tl_image_release(&image);
     return true;
 }

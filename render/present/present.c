@@ -8,6 +8,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Uniform locations of show.frag. */
 enum { EXPOSURE, ENVIRONMENT_TURN, VIEW, BLURRED_SCALE = 5 };
@@ -24,7 +25,7 @@ void tl_present_release(struct tl_present *present)
     for (int shown = 0; shown < TL_SHOWN_COUNT; shown++)
         for (int same_size = 0; same_size < 2; same_size++)
             tl_program_destroy(&present->shows[shown][same_size]);
-    tl_target_destroy(&present->image);
+    tl_linear_image_release(&present->image);
     tl_target_destroy(&present->shown);
     tl_texture_destroy(&present->backdrop);
     tl_texture_destroy(&present->blurred);
@@ -40,23 +41,18 @@ bool tl_present_reload(struct tl_present *present, tl_error *error)
     return fine;
 }
 
-static void allocate(struct tl_present *present, tl_gpu *gpu, int width, int height)
+float *tl_present_begin_cpu_image(struct tl_present *present, int width, int height)
 {
-    const unsigned linear = GL_RGBA32F, encoded = GL_RGBA8;
-    if (present->image.width == width && present->image.height == height)
-        return;
-    tl_target_destroy(&present->image);
-    tl_target_destroy(&present->shown);
-    present->image = tl_target_create(gpu, width, height, &linear, 1, false);
-    present->shown = tl_target_create(gpu, width, height, &encoded, 1, false);
+    return tl_linear_image_begin_cpu(&present->image, width, height);
 }
 
-void tl_present_set_image(struct tl_present *present, tl_gpu *gpu, const tl_image *image)
+void tl_present_set_image(struct tl_present *present, const tl_image *image)
 {
-    allocate(present, gpu, image->width, image->height);
-    for (int y = 0; y < image->height; y++) /* GL's rows run upwards */
-        glTextureSubImage2D(present->image.colours[0].id, 0, 0, image->height - 1 - y, image->width, 1,
-                            GL_RGBA, GL_FLOAT, tl_image_floats(image) + 4 * (size_t)y * (size_t)image->width);
+    size_t row_floats = 4 * (size_t)image->width;
+    float *texels = tl_present_begin_cpu_image(present, image->width, image->height);
+    for (size_t y = 0; y < (size_t)image->height; y++) /* the image's rows run downwards */
+        memcpy(texels + ((size_t)image->height - 1 - y) * row_floats, tl_image_floats(image) + y * row_floats,
+               row_floats * sizeof *texels);
 }
 
 static float *read_texture(const tl_texture *texture)
@@ -68,24 +64,20 @@ static float *read_texture(const tl_texture *texture)
 }
 
 static void resolve_by_resampling(struct tl_present *present, const tl_texture *lights,
-                                  const tl_texture *points)
+                                  const tl_texture *points, int width, int height)
 {
     float *light = read_texture(lights), *point = read_texture(points);
     size_t count = (size_t)lights->width * (size_t)lights->height;
 #pragma omp parallel for
     for (size_t i = 0; i < count; i++) /* as resolve.frag has it */
         light[4 * i + 3] = point[4 * i + 3] - light[4 * i + 3];
-    const tl_target *image = &present->image;
-    struct tl_resample resample = {.from = light,
-                                   .from_width = lights->width,
-                                   .from_height = lights->height,
-                                   .to_width = image->width,
-                                   .to_height = image->height};
-    resample.to = tl_alloc(4 * (size_t)image->width * (size_t)image->height, sizeof *resample.to);
+    const struct tl_resample resample = {.from = light,
+                                         .from_width = lights->width,
+                                         .from_height = lights->height,
+                                         .to = tl_present_begin_cpu_image(present, width, height),
+                                         .to_width = width,
+                                         .to_height = height};
     tl_resample(&resample);
-    glTextureSubImage2D(image->colours[0].id, 0, 0, 0, image->width, image->height, GL_RGBA, GL_FLOAT,
-                        resample.to);
-    free(resample.to);
     free(point);
     free(light);
 }
@@ -94,13 +86,11 @@ void tl_present_resolve(struct tl_present *present, tl_gpu *gpu, const tl_textur
                         const tl_texture *points, int width, int height)
 {
     int side = lights->width / width;
-    allocate(present, gpu, width, height);
     if (side * width != lights->width || side * height != lights->height) {
-        resolve_by_resampling(present, lights, points);
+        resolve_by_resampling(present, lights, points, width, height);
         return;
     }
-    glBindFramebuffer(GL_FRAMEBUFFER, present->image.id);
-    glViewport(0, 0, width, height);
+    tl_linear_image_begin_gpu(&present->image, gpu, width, height);
     glUseProgram(present->resolve.id);
     glUniform1i(0, side);
     glBindTextureUnit(0, lights->id);
@@ -134,6 +124,17 @@ bool tl_present_set_backdrop(struct tl_present *present, tl_gpu *gpu, const tl_e
                             image->texels);
     }
     return true;
+}
+
+const tl_target *tl_present_screen(struct tl_present *present, tl_gpu *gpu)
+{
+    const struct tl_linear_image *image = &present->image;
+    const unsigned format = GL_RGBA8;
+    if (present->shown.width != image->width || present->shown.height != image->height) {
+        tl_target_destroy(&present->shown);
+        present->shown = tl_target_create(gpu, image->width, image->height, &format, 1, false);
+    }
+    return &present->shown;
 }
 
 static enum tl_shown shown_of(const struct tl_present *present, const struct tl_image_params *params)
@@ -188,13 +189,14 @@ bool tl_present_show(struct tl_present *present, tl_gpu *gpu, const struct tl_sh
     const tl_program *program = program_of(present, gpu, shown, same_size, error);
     if (!program)
         return false;
+    const tl_texture *image = tl_linear_image_texture(&present->image, gpu);
     glBindFramebuffer(GL_FRAMEBUFFER, request->framebuffer);
     glViewport(0, 0, request->width, request->height);
     glEnable(GL_SCISSOR_TEST);
     glScissor(request->first_column, 0, request->end_column - request->first_column, request->height);
     glUseProgram(program->id);
     set_uniforms(present, request, shown);
-    glBindTextureUnit(0, present->image.colours[0].id);
+    glBindTextureUnit(0, image->id);
     glBindTextureUnit(1, shown == TL_SHOWN_ON_BLURRED ? present->blurred.id : present->backdrop.id);
     tl_gpu_draw_fullscreen(gpu);
     glDisable(GL_SCISSOR_TEST);
@@ -203,5 +205,5 @@ bool tl_present_show(struct tl_present *present, tl_gpu *gpu, const struct tl_sh
 
 size_t tl_present_bytes(const struct tl_present *present)
 {
-    return tl_target_bytes(&present->image) + tl_target_bytes(&present->shown);
+    return tl_linear_image_bytes(&present->image) + tl_target_bytes(&present->shown);
 }

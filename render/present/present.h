@@ -6,6 +6,7 @@
 #include "assets/environment.h"
 #include "render/gpu/gpu.h"
 #include "render/pem/pems.h"
+#include "render/present/linear_image.h"
 #include "render/present/options.h"
 #include "render/scene/view.h"
 
@@ -22,10 +23,10 @@ enum tl_shown {
 struct tl_present {
     tl_program resolve;
     tl_program shows[TL_SHOWN_COUNT][2]; /* made when first used; the second where sizes are the same */
-    tl_target image;                     /* RGBA32F: linear, premultiplied, coverage in alpha */
-    tl_target shown;                     /* RGBA8, for images; windows have their own */
-    tl_texture backdrop;                 /* the environment in its own layout */
-    tl_texture blurred;                  /* the whole cube, filtered */
+    struct tl_linear_image image;
+    tl_target shown;     /* RGBA8, for images; windows have their own */
+    tl_texture backdrop; /* the environment in its own layout */
+    tl_texture blurred;  /* the whole cube, filtered */
     float blurred_scale;
 };
 
@@ -47,12 +48,16 @@ bool tl_present_reload(struct tl_present *present, tl_error *error); /* its shad
 void tl_present_resolve(struct tl_present *present, tl_gpu *gpu, const tl_texture *lights,
                         const tl_texture *points, int width, int height);
 
+/* Begins an image that is made on the CPU: tl_linear_image_begin_cpu. */
+float *tl_present_begin_cpu_image(struct tl_present *present, int width, int height);
 /* Takes an image that was made elsewhere: F32 RGBA, rows downwards. */
-void tl_present_set_image(struct tl_present *present, tl_gpu *gpu, const tl_image *image);
+void tl_present_set_image(struct tl_present *present, const tl_image *image);
 
 /* Makes the backdrop from the environment. False when the environment is larger than GL can hold. */
 bool tl_present_set_backdrop(struct tl_present *present, tl_gpu *gpu, const tl_environment *environment,
                              const tl_cube *cube, int filter, tl_error *error);
+/* A screen for pictures, as large as the image. */
+const tl_target *tl_present_screen(struct tl_present *present, tl_gpu *gpu);
 bool tl_present_show(struct tl_present *present, tl_gpu *gpu, const struct tl_show_request *request,
                      tl_error *error);
 

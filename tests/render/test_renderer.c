@@ -165,7 +165,7 @@ static void test_memory(void **state)
         assert_int_equal(memory.maps, (count * 8 + 8 + 4) * 32 * 32);
         /* Beside the targets: indices and numbers of triangles, twice, places of vertices, depths of samples.
          */
-        size_t culled = memory.targets - (48 * 32 * 4 * (16 + 3 * 8 + 4 + 4 + 16) + 48 * 32 * (16 + 4));
+        size_t culled = memory.targets - (48 * 32 * 4 * (16 + 3 * 8 + 4 + 4 + 16) + 48 * 32 * 16);
         assert_in_range(culled, 1, indices / 3 * 32 + vertices * 16 + 48 * 32 * 4 * 4 + 64);
         assert_int_equal(memory.surfaces, vertices * (12 + 12 + 16 + 8) + indices * 4);
         /* The cube's floats, the regions' labels, luminances, texels and sums, and solid angles. */
