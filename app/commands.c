@@ -31,14 +31,13 @@ static const struct tl_command commands[] = {
      "Prints what would run for a frame, why, at what cost and in how much memory.",
      TL_FLAGS_SCENE | TL_FLAGS_FRAME | TL_FLAGS_JSON | TL_FLAGS_BUDGET, tl_command_plan},
     {"bench", "bench light|cloth|shading [--json] [--quick|--full] [SCENE] [OPTIONS]",
-     "Measures methods against each other in one run: light: the presets' CPU time and error in motion; "
-     "cloth: the "
-     "solvers' steps per second against a plain loop's, normals and tangents, a dress that comes to rest.",
+     "Compares methods in one run. light: CPU time and error of the presets in motion; cloth: steps per "
+     "second of the solvers and of a plain loop, normals and tangents, a dress that comes to rest.",
      TL_FLAGS_SCENE | TL_FLAGS_JSON | TL_FLAGS_QUICK | TL_FLAGS_FULL, tl_command_bench},
     {"check", "check [SCENE] [--frames N] [--budget MS] [--keep FOLDER] [--json] [OPTIONS]",
      "Plays a scene and checks every frame against a table of invariants: geometry, pixels, shadow maps, "
-     "visibility, regions, cloth, the oracle. Reports the worst of each and where it was; fails when one "
-     "breaks.",
+     "visibility, regions, cloth, and sampled pixels against the ray-traced reference. Prints the largest "
+     "deviation of each invariant and its place; fails if one exceeds its bound.",
      TL_FLAGS_SCENE | TL_FLAGS_JSON | TL_FLAGS_CHECK | TL_FLAGS_BUDGET, tl_command_check},
     {"trade",
      "trade [SCENE] -o FOLDER [--axis overall|light|resolution|detail|shading|levels|cloth] [--quick] "

@@ -50,11 +50,12 @@ static bool run(int argc, char **argv, tl_error *error)
     return done;
 }
 
-/* What a frame frees the next one asks for again, in another size when levels change. Kept in the process it
- * is there at once; given back, its pages are faulted in and zeroed again, which takes a frame's time. */
+/* Keeps freed memory in the process. Each frame allocates again what the last one freed, in other sizes when
+ * levels change. If it were given back to the system, its pages would be faulted in and zeroed again, which
+ * takes as long as a frame. */
 static void keep_freed_memory(void)
 {
-    mallopt(M_ARENA_MAX, 1); /* what one thread frees, as a loader's, is there for all */
+    mallopt(M_ARENA_MAX, 1); /* memory that the loader's thread frees is usable by all */
     const int largest_kept = 32 << 20, trimmed_beyond = 256 << 20; /* bytes; 32 MiB is what glibc allows */
     mallopt(M_MMAP_THRESHOLD, largest_kept);
     mallopt(M_TRIM_THRESHOLD, trimmed_beyond);

@@ -195,7 +195,7 @@ bool tl_options_read_yaml(const struct tl_binding *bindings, size_t count, const
 bool tl_options_read_yaml_file(const struct tl_binding *bindings, size_t count, const char *path,
                                tl_error *error);
 
-/* Where a value stands in a section of records; what has not come yet is NULL. */
+/* The position of a value in a section of records; parts that have not been read yet are NULL. */
 struct tl_record_place {
     const char *file;
     size_t line;

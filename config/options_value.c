@@ -66,7 +66,8 @@ static size_t decode(const unsigned char *text, uint32_t *code)
     return *code < smallest[length] || *code > 0x10FFFF || surrogate ? 0 : length;
 }
 
-/* What YAML can hold between quotes without an escape, less the line breaks and the byte order mark. */
+/* Whether YAML can hold the text between quotes without an escape. Line breaks and the byte order mark need
+ * one here, too. */
 static bool is_printable(const char *text)
 {
     const unsigned char *c = (const unsigned char *)text;

@@ -5,14 +5,14 @@
 
 #include "config/options.h"
 
-/* What a row accepts, for people: "a whole number from 6 to 384 texels". New string. */
+/* Describes the values that a row accepts, as in "a whole number from 6 to 384 texels". New string. */
 char *tl_option_expectation(const struct tl_option *row);
 
-/* Text into a field of the row's type. On failure the field is untouched and the result is the reason, a new
- * string; NULL means success. */
+/* Converts text to the row's type and stores it in the field. On failure the field is untouched and the
+ * result is the reason, a new string; NULL means success. */
 char *tl_option_read(const struct tl_option *row, const char *text, const char *base_file, void *field);
 
-/* The text that tl_option_read takes back. New string. */
+/* Converts a field to text that tl_option_read accepts. New string. */
 char *tl_option_write(const struct tl_option *row, const void *field);
 
 /* Bytes of a field of the row's type. */

@@ -3,7 +3,7 @@
  * It draws surfaces and knows nothing of cloth. A frame is a const table of jobs (render/frame/jobs.c);
  * render/plan decides which of them run, and a job whose inputs have not changed is not run again.
  *
- * Where a function below says nothing else:
+ * Unless a function below states otherwise:
  *   Errors: none.
  *   Lifetime: a renderer owns every GL object that it makes and borrows its tl_gpu, which must outlive it.
  *   Arguments are read during the call only. A function that reads "the last frame" needs the surfaces,

@@ -1,4 +1,4 @@
-/* What every test needs: cmocka, real data that may be absent, and a few checks. */
+/* Shared by all tests: cmocka, access to real data that may be absent, and a few checks. */
 #ifndef TOILE_TESTS_TESTING_H
 #define TOILE_TESTS_TESTING_H
 

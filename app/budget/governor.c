@@ -93,7 +93,7 @@ static double cost_of(const void *context, const uint8_t *of)
            known_ms(&governor->cloth, &cloth, load) + known_ms(&governor->other, &any_work, load);
 }
 
-/* What the change to these levels costs once, in ms: the jobs that run because a level differs from the last
+/* Cost of changing to these levels, in ms, paid once: the jobs that run because a level differs from the last
  * frame's, and the cloth if its step becomes shorter. Then its contacts are found again and it takes three
  * times as long for a few frames (built-in dress: 31, 31, 24, 15 ms, then 11). */
 static double change_of(const void *context, const uint8_t *of)
@@ -152,7 +152,7 @@ static struct coming look_ahead(const tl_quality_governor *governor, const tl_re
 
 static struct tl_budget budget_of(const tl_quality_governor *governor, const struct coming *coming)
 {
-    struct tl_budget budget = {.knob_count = TL_CONTROL_COUNT,
+    struct tl_budget budget = {.control_count = TL_CONTROL_COUNT,
                                .cost = cost_of,
                                .change = change_of,
                                .error = error_of,
@@ -198,7 +198,7 @@ static void describe(char *out, size_t size, const char *before, const struct tl
 /* The cost of the cheapest levels, which is looked for only where the choice exceeds the budget. */
 static double min_of(const struct tl_budget *budget, double budget_ms, double predicted_ms)
 {
-    uint8_t levels[TL_BUDGET_KNOBS_MAX] = {0};
+    uint8_t levels[TL_BUDGET_CONTROLS_MAX] = {0};
     if (predicted_ms <= budget_ms)
         return predicted_ms;
     tl_budget_best(budget, budget_ms, INFINITY, levels);
@@ -225,7 +225,7 @@ static void choose_in_motion(tl_quality_governor *governor, const struct tl_budg
  * and the memory that it allocates makes the first frames at other levels cheap. */
 static void choose_whole(tl_quality_governor *governor, const struct tl_budget *budget)
 {
-    const uint8_t best[TL_BUDGET_KNOBS_MAX] = {0};
+    const uint8_t best[TL_BUDGET_CONTROLS_MAX] = {0};
     governor->choice.change_ms = budget->change(budget->context, best);
     governor->choice.predicted_ms = governor->choice.min_ms =
         budget->cost(budget->context, best) + governor->choice.change_ms;
@@ -266,7 +266,7 @@ void tl_quality_governor_steps(const tl_quality_governor *governor, const tl_ren
 {
     const struct tl_quality_scope full = tl_quality_scope_of(settings);
     const struct coming coming = look_ahead(governor, renderer, frame, &full);
-    uint8_t now[TL_BUDGET_KNOBS_MAX] = {0};
+    uint8_t now[TL_BUDGET_CONTROLS_MAX] = {0};
     memcpy(now, governor->choice.levels.of, sizeof governor->choice.levels.of);
     double ms = cost_of(&coming, now), error = error_of(&coming, now);
     for (int k = 0; k < TL_CONTROL_COUNT; k++) {

@@ -38,7 +38,7 @@ struct tl_quality_scope {
     struct tl_cloth_params cloth;
 };
 
-/* That part of settings; the same at some levels. */
+/* Returns that part of the settings; the second function also applies levels to it. */
 struct tl_quality_scope tl_quality_scope_of(const struct tl_settings *settings);
 struct tl_quality_scope tl_quality_scope_at(const struct tl_quality *levels,
                                             const struct tl_quality_scope *full);

@@ -35,7 +35,7 @@ void tl_cache_key_add(struct tl_cache_key *key, const void *bytes, size_t size);
 bool tl_cache_load(const struct tl_cache_key *key, void **data, size_t *size);
 void tl_cache_store(const struct tl_cache_key *key, const void *data, size_t size);
 
-/* What a folder holds, the most recently used first. */
+/* The entries of a folder, the most recently used first. */
 struct tl_cache_entry {
     char name[64];
     uint64_t bytes;

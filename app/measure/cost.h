@@ -16,7 +16,7 @@ struct tl_stopwatch {
 struct tl_stopwatch tl_stopwatch_start(void);
 struct tl_taken tl_stopwatch_read(const struct tl_stopwatch *watch); /* since the start */
 
-/* Of `count` values, in any order; the mean of the middle two for an even count; NaN of none. */
+/* The median of `count` values in any order: for an even count the mean of the middle two, for 0 NaN. */
 double tl_median(const double *values, size_t count);
 
 #endif

@@ -60,10 +60,10 @@ struct tl_measured_error {
     double worst_share; /* of the square error: the share of its worst pixel */
     size_t covered;     /* pixels */
 };
-/* Of an image as tl_renderer_read gives it. */
+/* Compares an image as tl_renderer_read returns it. */
 bool tl_reference_frame_compare(const tl_image *image, const struct tl_reference_frame *reference,
                                 struct tl_measured_error *out, tl_error *error);
-/* Of the image that the run drew last. */
+/* Compares the image that the run drew last. */
 bool tl_variant_run_compare(struct tl_variant_run *run, const struct tl_reference_frame *reference,
                             struct tl_measured_error *out, tl_error *error);
 

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What a key may say; ranges are those of the options camera.* and scene.environment_yaw_deg. */
+/* The rows of a key; ranges are those of the options camera.* and scene.environment_yaw_deg. */
 #define KEY_ROW(field, path, kind, low, high, u)                                                             \
     {                                                                                                        \
         .name = #field, .type = (kind), .offset = offsetof(struct tl_path_key, path),                        \
@@ -163,7 +163,7 @@ static bool read_root(void *context)
     return false;
 }
 
-/* What has no target of its own has the scene's. */
+/* Gives keys without a target of their own the scene's target. */
 static void aim_keys(struct tl_path *path, const struct tl_camera_params *scene)
 {
     for (size_t i = 0; i < path->count; i++) {

@@ -84,8 +84,8 @@ const struct tl_settings *tl_session_settings(const tl_session *session);
 
 /* ---- Loading on a worker thread (app/view/review/loader.h) ---- */
 
-/* What a change from `old` to `new` asks for: to load the scene again; to read another environment; to make
- * or draw the appearance in another way. Errors: none. Threads: pure. */
+/* Whether a change from `old` to `new` requires: loading the scene again; reading another environment;
+ * rebuilding or redrawing the appearance. Errors: none. Threads: pure. */
 bool tl_session_needs_scene(const struct tl_settings *old, const struct tl_settings *new);
 bool tl_session_needs_light(const struct tl_settings *old, const struct tl_settings *new);
 bool tl_session_needs_appearance(const struct tl_settings *old, const struct tl_settings *new);

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-/* What stands in a swatch beside the rows of material and weave. */
+/* The fields of a swatch that are not rows of material and weave. */
 struct draft {
     char fabric[TL_STRING_SIZE];
     struct tl_swatch swatch;

@@ -27,7 +27,7 @@
 #define TL_SWATCHES_MAX   16
 #define TL_SWATCH_ALL     "all"
 
-/* What a colourway says of one material. */
+/* One material of a colourway. */
 struct tl_swatch {
     char material[64]; /* its name, or TL_SWATCH_ALL */
     int line;          /* of the file, for messages */

@@ -10,9 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What assets/garment.h, assets/builtin/specimen.h, assets/avatar.h and assets/builtin/studio.h make without
- * a file, and "none".
- */
+/* Names that stand for built-in assets (assets/garment.h, assets/builtin/specimen.h, assets/avatar.h,
+ * assets/builtin/studio.h), and "none". */
 static const char *const garment_names[] = {"dress",  "skirt", "layers", "sheet", "disc",
                                             "sphere", "torus", "none",   NULL};
 static const char *const avatar_names[] = {"form", "ball", "none", NULL};
@@ -226,7 +225,7 @@ const char *tl_settings_colourways_source(const struct tl_settings *settings)
     return "";
 }
 
-/* Of the scene only its section of colourways is wanted here. */
+/* Reads the section of colourways of the source and ignores its other sections. */
 static bool read_colourways(struct tl_settings *settings, tl_error *error)
 {
     const char *source = tl_settings_colourways_source(settings);

@@ -64,8 +64,8 @@ void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[T
 /* True when every option of every table agrees. */
 bool tl_settings_equal(const struct tl_settings *a, const struct tl_settings *b);
 
-/* Of the options whose rows pass a filter, that is, that affect something (config/options.h): whether a value
- * differs; `from`'s values into `to`. Pure. */
+/* Compares, or copies from `from` to `to`, the options whose rows pass a filter: those that affect a given
+ * part (config/options.h). Pure. */
 bool tl_settings_differ(const struct tl_settings *a, const struct tl_settings *b,
                         struct tl_option_filter filter);
 void tl_settings_take(const struct tl_settings *from, struct tl_settings *to, struct tl_option_filter filter);

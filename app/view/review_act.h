@@ -41,7 +41,7 @@ tl_review_action tl_act_compare;
 tl_review_action tl_act_swap;
 tl_review_action tl_act_move_wipe; /* 1 or -1 steps */
 
-/* What the image shows. */
+/* View modes of the image. */
 tl_review_action tl_act_next_view;
 tl_review_action tl_act_light_view;
 tl_review_action tl_act_read_out;

@@ -135,7 +135,7 @@ struct question {
     size_t answer_count;
 };
 
-/* What a dropped file is to be used as, when that is asked. */
+/* Fills the question about the use of a dropped file, when one is open. */
 static void set_question(const struct tl_review *review, struct question *question,
                          struct tl_panel_input *input)
 {

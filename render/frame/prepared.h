@@ -23,7 +23,7 @@ struct tl_prepared_request {
     uint32_t exponents;                        /* tl_prepared_exponents */
 };
 
-/* Of the lobes that the frame's materials need, as bits of render/env/lobes.h. */
+/* The exponents of the lobes that the frame's materials need, as bits of render/env/lobes.h. */
 uint32_t tl_prepared_exponents(const tl_frame *frame, const struct tl_render_settings *settings);
 
 /* Prepares an environment and reports progress. When it is interrupted, the result holds less. */

@@ -22,7 +22,7 @@ struct tl_map_texture {
 struct tl_map_texture tl_map_texture_make(const tl_image *image, bool colour);
 void tl_map_texture_release(struct tl_map_texture *texture);
 
-/* Where it is fetched, and how far that moves from one sample to the next one across and down. */
+/* The place of a look-up, and its difference to the neighbouring samples' across and down. */
 struct tl_footprint {
     vec2s uv, across, down;
 };

@@ -135,8 +135,8 @@ static float hatch(const struct tl_paint_request *request, const struct surface_
     float mm[2], width = 1000 * footprint(request, surface_point->sample) / TL_HATCH_MM;
     if (!millimetres(surface_point, mm))
         return 0;
-    /* Where two square waves, a line's width apart, differ, a line begins or ends: of their halves one is
-     * lines. */
+    /* Two square waves, shifted by a line's width, differ in a line and in its counterpart half a period
+     * later. The difference is positive in one of them. */
     float place = mm[0] / TL_HATCH_MM;
     float half = tl_paint_square_wave(place, width), later = tl_paint_square_wave(place - line_share, width);
     float covered = 0.5f * fmaxf(half - later, 0);

@@ -22,7 +22,7 @@ struct tl_paint_request {
 };
 
 /* Writes light[4 * texel] of every nearest sample: linear, premultiplied by cover, nothing looked through.
- * What a screen then shows is the colour of the legend. */
+ * On a screen the result has the colours of the legend. */
 void tl_paint(const struct tl_paint_request *request, float *light);
 
 /* The smallest of 0.1, 0.15, 0.2, 0.3, 0.5, 0.7, 1, 1.5 ... 100 and 1000 % within which 99 % of the vertices'

@@ -17,13 +17,13 @@ struct tl_seen_regions {
         float weight[TL_LANES]; /* luminance of the region's power */
     } groups[TL_SEEN_GROUPS_MAX];
 };
-/* Of an environment that is turned by `yaw` (rad). */
+/* Fills `out` for an environment that is turned by `yaw` (rad). */
 void tl_seen_regions_make(const struct tl_regions *regions, float yaw, struct tl_seen_regions *out);
 
 struct tl_seen {
     float visibility; /* [0, 1]: mean over the regions, each weighted by what it would give a matt surface */
     int strongest;    /* region that gives the most; -1: none gives any */
-    float share;      /* [0, 1]: of what all give */
+    float share;      /* [0, 1]: of the light of all regions */
 };
 
 /* `values` and `stride` as tl_points_values gives them; `normal` unit, world. Where no region

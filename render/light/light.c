@@ -13,7 +13,7 @@ enum { REGION_RANGE = 0, EYE, ENVIRONMENT_TURN, PEM_SCALE, LOBE, ALREADY_THERE, 
 enum { COUNTS = 0, COMPOSITION = 5, LAST_EXPONENT = 8, LOBE_PLACES };
 /* Texture units; the G-buffer's layers without the triangles come first. */
 enum { LEVELS_UNIT = 5, PEMS_UNIT, MAPS_UNIT, LOBES_UNIT, SUN_MAPS_UNIT };
-/* Of regions.frag. */
+/* Values of the uniform in regions.frag. */
 enum composition { SUM, DIFFERENCE, RATIO, OCCLUSION, OCCLUSION_COLOUR, UNSHADOWED };
 
 /* exact.glsl: log2 of the largest exponent that the table of levels tells apart. */

@@ -20,19 +20,19 @@
 #include "render/pem/slice_maps.h"
 #include "render/visibility/maps.h"
 
-/* Where the regions' light comes from. */
+/* The source of the regions' light. */
 enum tl_light_source { TL_LIGHT_CHAIN, TL_LIGHT_SLICES, TL_LIGHT_LOBES, TL_LIGHT_EXACT, TL_LIGHT_SOURCES };
 
-/* What these settings ask for. The ratio of chains would need all of them in one pass, and its weights need
- * not be exact: there the broadened lobes stand for them. */
+/* The light source that these settings select. The ratio of filter chains would need all of them in one pass;
+ * its weights need not be exact, and the broadened lobes replace them. */
 enum tl_light_source tl_light_source(const struct tl_light_params *params);
 /* Whether the exact light of the whole environment is read (env/lobes.h). */
 bool tl_light_needs_exact(const struct tl_light_params *params);
 
 #define TL_LIGHT_MAP_KINDS 3 /* enum tl_visibility, none instead of rays */
 
-/* What draws light: programs, and the table of exponents that they look up. It decides how fast light is
- * drawn, never which. */
+/* GL programs that draw light, and the table of exponents that they look up. A cache: affects speed, never
+ * the image. */
 struct tl_lighting {
     tl_program programs[TL_LIGHT_SOURCES][TL_LIGHT_MAP_KINDS]; /* made when first used */
     unsigned regions_buffer;                                   /* GL name: regions, then suns */

@@ -100,7 +100,7 @@ static tl_sample seen_sample(const tl_surface *surface, uint32_t triangle, const
     return sample;
 }
 
-/* What a block of samples hits, before it has its place behind all samples. */
+/* The samples that a block's rays hit, before they are appended to all samples. */
 struct block {
     size_t count, capacity;
     tl_sample *items;

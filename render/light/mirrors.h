@@ -18,7 +18,7 @@
  * suns and all. */
 #define TL_PERFECT_EXPONENT 1e5f
 
-/* What a ray along the lobe met. */
+/* Values of `hits` for rays without a sample. */
 enum { TL_MIRROR_OPEN = 0xffffffff, TL_MIRROR_BLACK = 0xfffffffe };
 
 struct tl_mirror {

@@ -60,7 +60,7 @@ TL_CLONES static void sum_lobes(const struct tl_region_lights *lights, vec3s d, 
         sum[c] = tl_sum_lanes(lanes[c]);
 }
 
-/* Where no region shines there is nothing to correct. */
+/* Divides channel by channel; 1 where no region has light. */
 static vec3s divide(vec3s light, const float sum[3])
 {
     vec3s gain;

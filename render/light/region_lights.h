@@ -42,8 +42,8 @@ struct tl_region_lights {
     int group_count;
     struct tl_region_group groups[TL_REGION_GROUPS_MAX];
     bool is_exact; /* there are gains: the weight is POWER */
-    /* Of the exponents that were asked for. K_1 about a normal is a cosine and does without a power, so it
-     * has its own. */
+    /* Corrections for the exponents that were asked for. K_1 about a normal is a cosine and needs no power,
+     * so it has a table of its own. */
     struct tl_lobes gain, diffuse_gain;
 };
 

@@ -28,8 +28,8 @@ static void reserve_shares(struct tl_transparency *transparency, size_t count)
     transparency->shares = tl_resize(transparency->shares, transparency->share_capacity, sizeof(float));
 }
 
-/* Of the weight `through` that reaches sample `index`, keeps the sample's own part and records whether more
- * lies behind. Returns whether it does. */
+/* Gives sample `index` its own part of the weight `through` that reaches it, and records whether a layer lies
+ * behind it. Returns whether one does. */
 static bool share_out(struct tl_transparency *transparency, const struct tl_transparency_request *request,
                       const struct tl_samples *samples, size_t index, float through, bool last)
 {

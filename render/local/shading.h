@@ -10,8 +10,8 @@
 
 #include <stdbool.h>
 
-/* Where the reflectance model is evaluated: at vertices; at pixels with interpolated vectors as they are; at
- * pixels with renormalised vectors. */
+/* The place of evaluation of the reflectance model: at vertices; at pixels with interpolated vectors as they
+ * are; at pixels with renormalised vectors. */
 enum tl_frequency { TL_FREQUENCY_GOURAUD, TL_FREQUENCY_FAST_PHONG, TL_FREQUENCY_PHONG };
 /* The origin of the cosines: from the normal by one matrix, with constant light and view directions [000, eq.
  * 2 and 3]; computed at vertices and interpolated; from vectors at pixels. */

@@ -1,10 +1,10 @@
-/* What work costs, learned from what it took. Pure: no GL, no clock.
+/* The cost of work, learned from measured times. Pure: no GL, no clock.
  *
- * A job's work is a few numbers, so many of which lie in each part of it: samples, rays, 1 for what is always
- * there. Its cost is the sum over the parts of work times ms a unit. At first the units cost what the job
- * table says, on some machine: only their ratios are believed. Each run then corrects them (a Kalman filter
- * whose state are the factors on the table's costs), so that levels that never ran are foretold from those
- * that did. What slows the whole machine down for a while, another program say, is one factor on all. */
+ * A job's work has a few parts, each with a number of units: samples, rays, 1 for the constant part. Its cost
+ * is the sum over the parts of units times ms a unit. The job table gives initial costs, measured on some
+ * machine: only their ratios are trusted. Each run then corrects them (a Kalman filter whose state is the
+ * factors on the table's costs), so that the cost of levels that never ran is predicted from those that did.
+ * A slowdown of the whole machine, by another program for example, is one factor on all jobs. */
 #ifndef TOILE_RENDER_PLAN_COST_H
 #define TOILE_RENDER_PLAN_COST_H
 
@@ -21,19 +21,20 @@ double tl_work_sum(const struct tl_work *work);
 
 struct tl_cost_job {
     int runs;
-    double unit_ms; /* of work that the table knows nothing of: what the first runs took */
+    double unit_ms; /* for jobs without work in the table: time of the first runs */
     double factor[TL_WORK_PARTS];
     double covariance[TL_WORK_PARTS][TL_WORK_PARTS];
 };
 
-/* NaN for a job that never ran, if the table knows nothing of it (no work in any part). */
+/* Predicted ms. NaN for a job that never ran and has no work in the table. */
 double tl_cost_predict(const struct tl_cost_job *job, const struct tl_work *work, double load);
-/* A run took `ms`, when the machine was slowed down by `load`. What no clock says (NaN, < 0) is left out. */
+/* Learns from a run that took `ms` while the machine was slowed down by `load`. Ignores times that are NaN or
+ * negative. */
 void tl_cost_learn(struct tl_cost_job *job, const struct tl_work *work, double load, double ms);
 
-/* How much slower than usual the machine is; a load of 1, or an empty one: not at all. Follows frames'
- * measured over predicted cost within a few frames up, within some tens down. A single frame that was slow
- * is over when it is known, and is not followed. */
+/* How much slower than usual the machine is: 1, or an empty struct, for not at all. Follows the ratio of
+ * measured to predicted frame times, upwards within a few frames, downwards within some tens. A single slow
+ * frame is ignored: it is over when it is measured. */
 struct tl_machine_load {
     double factor;
     bool was_sudden; /* the last frame was much slower than those before */

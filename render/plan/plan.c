@@ -60,7 +60,7 @@ static int level_count(const tl_job *job)
     return count;
 }
 
-/* What each job finds changed when its turn comes, were all jobs to run that have reason to. */
+/* For each job, the inputs that have changed by its turn, if every job with a reason to run does run. */
 static void spread_changes(const tl_job *jobs, int count, const struct tl_plan_input *input,
                            tl_bits changed_reads[])
 {

@@ -1,4 +1,4 @@
-/* What the reference renderer draws, and how. */
+/* The scene, view and options of one image by the reference renderer. */
 #ifndef TOILE_RENDER_REFERENCE_REQUEST_H
 #define TOILE_RENDER_REFERENCE_REQUEST_H
 

@@ -357,9 +357,9 @@ static uint32_t trace_packet(const tl_trace *trace, const struct tl_ray_packet *
             rays.org_x[i] + rays.org_y[i] + rays.org_z[i] + rays.dir_x[i] + rays.dir_y[i] + rays.dir_z[i];
         valid[i] = i < packet->count && isfinite(sum) ? -1 : 0;
         if (!valid[i]) {
-            /* Where the processor has no vectors of 16 floats, Embree 3.13 traces the packet as a stream,
-             * which ignores `valid`: a ray is inactive there if it ends before it begins, and its numbers are
-             * asserted to be finite all the same. */
+            /* On processors without vectors of 16 floats, Embree 3.13 traces the packet as a stream, which
+             * ignores `valid`. There a ray is inactive if it ends before it begins, and its numbers must be
+             * finite: Embree asserts it. */
             rays.org_x[i] = rays.org_y[i] = rays.org_z[i] = 0;
             rays.dir_x[i] = rays.dir_y[i] = rays.dir_z[i] = 1;
             rays.tfar[i] = -INFINITY;

@@ -5,17 +5,17 @@
 #include <math.h>
 #include <string.h>
 
-/* A pixel's horizon differs from its vertices' by up to half the bend of a triangle: regions are traced to 17
- * degrees below a vertex's tangent plane, and clipped at the pixel's (FRONTIER, finding 1).
- * What is clipped there must not be counted as hidden here too, so a value stands for what lies above the
- * horizon: a direction below it is mirrored at the vertex's plane. (Review at rest: 3.3 to 3.1 % in a
- * studio, 1.8 to 1.6 % in the sun; mean FLIP 0.041 to 0.033, 0.033 to 0.027.) */
+/* A pixel's horizon differs from its vertices' by up to half the bend of a triangle. Regions are therefore
+ * traced down to 17 degrees below a vertex's tangent plane, and clipped at the pixel's horizon. The clipped
+ * part must not count as hidden here, too, so a value describes the part above the horizon: a direction below
+ * it is mirrored at the vertex's plane. (Review at rest: 3.3 to 3.1 % in a studio, 1.8 to 1.6 % in the sun;
+ * mean FLIP 0.041 to 0.033, 0.033 to 0.027.) */
 #define SINE_BELOW 0.2924f
 
-/* A region that has waited for so many average rounds is late. So many of the regions traced in a frame may
- * be late ones: all of them at once would leave none for what matters. */
-#define PATIENCE   4
-#define LATE_SHARE 4
+/* A region that has not been traced for LATE_ROUNDS average rounds is late. At most one in LATE_SHARE of the
+ * regions traced in a frame is chosen because it is late, or important ones would wait for all late ones. */
+#define LATE_ROUNDS 4
+#define LATE_SHARE  4
 
 /* Weights of directions are kept in sixteen bits: a thousand rounds fill them, and from then on the mean is a
  * running one. */
@@ -125,7 +125,7 @@ static void measure_needs(const struct tl_refresh *refresh, const struct tl_clus
                           const struct lanes *lanes, float needs[TL_REGIONS_MAX], float late[TL_REGIONS_MAX])
 {
     int count = refresh->request->regions->count, refreshed = refresh->request->params->refresh;
-    uint32_t longest = (uint32_t)(PATIENCE * (count + refreshed - 1) / refreshed);
+    uint32_t longest = (uint32_t)(LATE_ROUNDS * (count + refreshed - 1) / refreshed);
     for (int i = 0; i < count; i++) {
         float cosine = greatest_cosine(lanes, refresh->centres[i]);
         uint32_t age = refresh->frame - cluster->stamps[i];
@@ -206,7 +206,7 @@ static void select_for(const struct tl_refresh *refresh, const struct tl_cluster
         select_at_rest(refresh, cluster, lanes, selected);
 }
 
-/* What members saw of a region in one frame. */
+/* The visibility of one region from a cluster's members in one frame. */
 struct glance {
     float seen[TL_CLUSTER];   /* sum of weights x visibility */
     float weight[TL_CLUSTER]; /* sum of weights, in 1 / WEIGHT_ONE */

@@ -6,7 +6,7 @@
 #include "render/visibility/cache_probes.h"
 #include "render/visibility/points_request.h"
 
-/* What every cluster's rays share in one update. */
+/* Data of one update that the rays of all clusters share. */
 struct tl_refresh {
     const struct tl_points_request *request;
     size_t stride;            /* of values, and of the arrays by region */

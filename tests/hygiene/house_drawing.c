@@ -31,8 +31,7 @@ struct floor {
     int rows;
 };
 
-/* What is written in the box: the room's path within its floor, or the floor's own name for its top folder.
- */
+/* The text in a room's box: its path within the floor, or the floor's name for the top folder. */
 static const char *label_of(const char *room)
 {
     const char *slash = strchr(room, '/');

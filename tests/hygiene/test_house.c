@@ -95,7 +95,7 @@ static void every_arrow_is_in_the_table(void **state)
     assert_int_equal(offences, 0);
 }
 
-/* What the table lists but the code does not use is struck out: the table is the architecture, not a wish. */
+/* An entry that the code does not use must be removed: the table describes the architecture as it is. */
 static void every_entry_of_the_table_is_used(void **state)
 {
     (void)state;

@@ -125,8 +125,8 @@ static void test_exact_light(void **state)
     tl_environment_release(&environment);
 }
 
-/* Where all light is seen, sum, difference and ratio are the exact light: the latter two by construction, the
- * sum within the 1 % that slices are off. */
+/* Without occlusion, sum, difference and ratio equal the exact light: the latter two by construction, the sum
+ * within the 1 % error of slices. */
 static void test_unoccluded_is_exact(void **state)
 {
     struct test_device *device = *state;

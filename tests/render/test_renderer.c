@@ -119,7 +119,7 @@ static void test_maps_wait_and_catch_up(void **state)
     }
 }
 
-/* What is drawn from what was kept equals what is drawn from nothing. */
+/* An image that reuses earlier results equals one drawn without them. */
 static void test_reuse_changes_nothing(void **state)
 {
     struct test_device *device = *state;
@@ -191,7 +191,8 @@ static void expect_refusal(tl_renderer *renderer, const struct test_scene *scene
     assert_non_null(strstr(error.message, part));
 }
 
-/* What would take the machine's memory is refused before it is asked for, and the renderer goes on. */
+/* Settings that would need more memory than the machine has are refused before any is allocated, and the
+ * renderer remains usable. */
 static void test_too_large(void **state)
 {
     struct test_device *device = *state;

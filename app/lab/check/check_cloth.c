@@ -7,25 +7,25 @@
 
 #include <math.h>
 
-/* What no drape does to cloth that fits; and what putting on may do to the shortest edges of a garment that a
- * file has inside of its wearer (MakeHuman's sports suit, up to 8 mm: 0.64). */
+/* Strains that a drape does not exceed: of cloth that fits; of the shortest edges in frame 0, when a file has
+ * the garment inside its wearer (MakeHuman's sports suit, up to 8 mm inside: 0.64). */
 #define DRAPED_STRAIN 0.5
 #define WORN_STRAIN   1.0
-#define LATER         1.25 /* than when it was put on */
+#define LATER         1.25 /* times the largest strain in frame 0 */
 
-/* A hand yields before it strains the edges that it holds by TL_HAND_STRAIN; the next ones may take as much
- * again (tests/cloth/drive/test_hand.c: 0.96), and what the wearer holds back half as much more (trousers
- * about a leg: 1.21). */
+/* A hand yields before it strains the edges that it holds by TL_HAND_STRAIN. The next edges may be strained
+ * by as much again (tests/cloth/drive/test_hand.c: 0.96), and edges that the wearer holds back by half as
+ * much more (trousers about a leg: 1.21). */
 #define HELD_STRAIN (3 * TL_HAND_STRAIN)
 
-/* With the fewest substeps that a budget leaves: eight of a frame, instead of sixty, leave the dress's worst
- * edge at 0.85 instead of 0.16. */
+/* Strain with the smallest number of substeps that a budget chooses: with eight a frame instead of sixty the
+ * dress's worst edge has 0.85 instead of 0.16. */
 #define HURRIED_STRAIN 1.0
 
 /* Root mean square over all edges: the default strain limit of `preview`. */
 #define USUAL_STRAIN 0.1
 
-/* Metres: what single precision leaves of places on an avatar. */
+/* Metres: the rounding of positions on an avatar to single precision. */
 #define ROUNDED_M 1e-6
 
 static double energy_of(const struct tl_cloth_report *report)
@@ -33,10 +33,10 @@ static double energy_of(const struct tl_cloth_report *report)
     return report->kinetic_energy + report->elastic_energy + report->potential_energy;
 }
 
-/* A wearer that moves drags along what is between its parts: at the end of every step what is strained beyond
- * TL_CAUGHT_STRAIN slips, so that by then nothing is (a skirt on a walking man comes to 1.43; that this is so
- * of a few edges only, cloth.stretch sees to). What is caught between two surfaces is pushed out after that,
- * and goes with an arm in the frame between. */
+/* The bound of the strain. A moving wearer drags cloth along between its parts; at the end of every step
+ * edges that are strained beyond TL_CAUGHT_STRAIN slip, so that none exceeds it (a skirt on a walking man
+ * reaches 1.43; cloth.stretch checks that only a few edges do). Particles that are caught between two
+ * surfaces are pushed out only after that, and move with an arm until then. */
 static double strain_bound(const struct tl_checked_cloth *cloth)
 {
     double draped = DRAPED_STRAIN;
@@ -85,9 +85,9 @@ void tl_measure_inside(const struct tl_checked *checked, struct tl_finding *find
                      report->vertex_count);
 }
 
-/* Of the energy that there was at the least, all of it may come back as motion and height. What is strained
- * now would take its part, which is left out: `preview` leaves its constraints unbalanced and strains the
- * more the harder gravity and swing pull, for which they do not pay. */
+/* Kinetic and potential energy may rise to the minimum of the total energy, because elastic energy may turn
+ * into them. The elastic energy of this frame is left out of the sum: `preview` does not balance its
+ * constraints, so that gravity and swing strain the cloth without losing energy of their own. */
 void tl_measure_energy(const struct tl_checked *checked, struct tl_finding *finding)
 {
     const struct tl_checked_cloth *cloth = checked->cloth;

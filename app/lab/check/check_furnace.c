@@ -1,4 +1,5 @@
-/* White light from everywhere: what is not shadowed sends back its albedo, whatever its shape. */
+/* The furnace test: in white light from everywhere an unshadowed surface reflects its albedo, whatever its
+ * shape. */
 #include "app/lab/check/check_measures.h"
 #include "config/memory.h"
 #include "render/inside.h"
@@ -6,8 +7,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* What each pixel should be: the mean albedo of its samples. A pixel that shows more than two lobes is not
- * asked, for its albedo is no sum of colours. */
+/* The expected value of each pixel: the mean albedo of its samples. Pixels with more than two lobes are not
+ * compared, because their albedo is not a sum of colours. */
 struct albedo {
     float colour[3];
     bool is_known;
@@ -30,7 +31,7 @@ static void add_sample(const struct tl_resources *inside, const tl_sample *sampl
         albedo->colour[c] += sample->cover * colour.raw[c] / (float)(side * side);
 }
 
-/* From the G-buffer, whichever back-end drew it. New array. */
+/* Reads the albedos from the G-buffer, of either back-end. New array. */
 static struct albedo *find_albedos(const struct tl_resources *inside, int width, int height)
 {
     struct albedo *albedos = TL_NEW_ARRAY(struct albedo, (size_t)width * (size_t)height);
@@ -53,7 +54,8 @@ void tl_measure_furnace(const struct tl_checked *checked, struct tl_finding *fin
     if (!checked->white)
         return;
     const tl_image *image = checked->white_image;
-    struct albedo *albedos = find_albedos(tl_renderer_look_inside(checked->white), image->width, image->height);
+    struct albedo *albedos =
+        find_albedos(tl_renderer_look_inside(checked->white), image->width, image->height);
     for (int i = 0; i < image->width * image->height; i++)
         for (int c = 0; albedos[i].is_known && c < 3; c++) {
             double off = fabs((double)tl_image_floats(image)[4 * i + c] - (double)albedos[i].colour[c]);

@@ -72,11 +72,9 @@ static double relative_error(const tl_image *a, const tl_image *b, size_t *worst
     return sqrt(squares / (double)count) / (sum / (double)count);
 }
 
-/* Two pictures by rays differ by the error of both: `toile bench light` has 3 to 4.5 % for review in motion,
- * of which each picture has its own part; small pictures and fewer regions widen that. Maps are rebuilt
- * whenever anything moves, so that the image is the same but for the rounds that an image at rest has
- * averaged.
- */
+/* Two images by rays differ by the errors of both: `toile bench light` reports 3 to 4.5 % for review in
+ * motion; small images and fewer regions increase it. Maps are rebuilt whenever anything moves, so that the
+ * images are equal except for the rounds that an image at rest has averaged. */
 static double fresh_bound(const struct tl_light_params *light)
 {
     const double by_rays = 0.12, by_jitter = 0.12, same = 1e-6;
@@ -104,7 +102,7 @@ void tl_measure_repeat(const struct tl_checked *checked, struct tl_finding *find
                                                                         : "");
 }
 
-/* Where even the cheapest plan exceeds the budget, that plan is the bound. */
+/* If even the cheapest plan exceeds the budget, its predicted time is the bound. */
 void tl_measure_budget(const struct tl_checked *checked, struct tl_finding *finding)
 {
     if (!(checked->budget_ms > 0) || !isfinite(checked->predicted_ms))

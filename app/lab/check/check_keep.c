@@ -41,7 +41,7 @@ static struct tl_settings rooted(const struct tl_settings *settings)
     return copy;
 }
 
-/* The orbit that stands where the frame's camera does. */
+/* The orbit whose camera equals the frame's. */
 static void set_camera(const struct tl_camera *camera, struct tl_camera_params *out)
 {
     vec3s back = glms_vec3_sub(camera->eye, camera->target);
@@ -51,7 +51,7 @@ static void set_camera(const struct tl_camera *camera, struct tl_camera_params *
     memcpy(out->target, camera->target.raw, sizeof out->target);
 }
 
-/* One picture of the scene: what it shows lies in files, and nothing moves. */
+/* Settings of a still scene: everything that it shows is read from files, and nothing moves. */
 static struct tl_settings still_settings(const struct tl_settings *settings, const tl_frame *frame)
 {
     struct tl_settings still = rooted(settings);
@@ -66,7 +66,7 @@ static struct tl_settings still_settings(const struct tl_settings *settings, con
     return still;
 }
 
-/* Where a finding is on the picture, in pixels; false when it is nowhere. */
+/* The pixel of a finding; false if it is not on the image. */
 static bool find_mark(const struct tl_checked *checked, const struct tl_finding *finding, int *x, int *y)
 {
     const struct tl_image_params *image = &checked->settings->image;
@@ -87,7 +87,7 @@ static bool find_mark(const struct tl_checked *checked, const struct tl_finding 
     return true;
 }
 
-/* A square frame about the place. */
+/* Draws a square frame around the pixel. */
 static void draw_mark(tl_image *image, int x, int y)
 {
     const int half = 8, width = 2;

@@ -6,9 +6,9 @@
 #include "app/lab/check/finding.h"
 #include "app/scene/headless.h"
 
-/* What is kept of a frame (check_keep.c), each file that can be written: scene.yaml opens it as it stands;
- * run.yaml holds the settings of the run; what the first names lies beside it. The picture as .exr, and as
- * .png with the place marked. */
+/* Writes into `folder`: scene.yaml, which opens the frame as it is, with the files that it names; run.yaml,
+ * the settings of the run; the image as .exr, and as .png with the finding marked. Files that cannot be
+ * written for this frame are left out. */
 bool tl_check_keep(const char *folder, struct tl_headless *headless, const struct tl_checked *checked,
                    const struct tl_finding *broken, tl_error *error);
 

@@ -64,7 +64,7 @@ static struct power power_of_cube(const tl_cube *cube)
     return power;
 }
 
-/* What samples add up. */
+/* The light that the regions' groups hold, as samples sum it. */
 static struct power power_of_lights(const struct tl_region_lights *lights)
 {
     struct power power = {{0}};
@@ -95,7 +95,7 @@ static void add_difference(struct tl_finding *finding, const struct power *got, 
     }
 }
 
-/* An environment changes seldom, and summing it takes long. */
+/* Only sampled frames are measured: an environment changes seldom, and summing it takes long. */
 static bool is_time(const struct tl_checked *checked)
 {
     return checked->is_sampled && has(checked, TL_MADE_CUBE) && has(checked, TL_MADE_REGIONS);
@@ -186,8 +186,8 @@ static struct power gather_lobe(const struct texels *texels, vec3s direction, do
     return sum;
 }
 
-/* Beyond it a lobe is narrower than a few texels of the coarsest cube in use, which no sum over texels
- * resolves. */
+/* A lobe with a larger exponent is narrower than a few texels of the coarsest cube in use, and a sum over
+ * texels does not resolve it. */
 #define EXPONENT_MAX 64.0f
 
 /* The diffuse exponent, and the sharpest of those made that a sum over texels resolves. */
@@ -203,7 +203,7 @@ static int choose_exponents(uint32_t made, int exponents[2])
     return count;
 }
 
-/* What stands for the integral, at one direction and one of the lobes' exponents. */
+/* The renderer's approximation of the integral, for one direction and one of the lobes' exponents. */
 typedef vec3s estimator(const struct tl_resources *inside, vec3s direction, int exponent);
 
 static double largest_difference(vec3s got, const struct power *expected)
@@ -265,7 +265,7 @@ void tl_measure_exact(const struct tl_checked *checked, struct tl_finding *findi
                       tl_renderer_look_inside(checked->renderer)->exact.lobes->made, fetch_exact, finding);
 }
 
-/* As every sample sums them when all of them are seen (light/region_lights.h). */
+/* The sum that every sample makes when it sees all regions (light/region_lights.h). */
 static vec3s sum_lights(const struct tl_resources *inside, vec3s direction, int exponent)
 {
     const struct tl_region_lights *lights = inside->lights;

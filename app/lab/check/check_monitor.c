@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The hand of app/measure/motion.c moves no faster. */
+/* Largest speed of the hand of app/measure/motion.c, m/s. */
 #define HAND_SPEED 1.0
-/* A whip's end is faster than the hand that swings it. */
+/* Factor on the sum of the driving speeds: the end of a whip is faster than the hand that swings it. */
 #define WHIP 3.0
 
 static double area_of(const tl_mesh *mesh, const uint32_t corners[3])
@@ -20,7 +20,7 @@ static double area_of(const tl_mesh *mesh, const uint32_t corners[3])
     return 0.5 * (double)glms_vec3_norm(glms_vec3_cross(a, b));
 }
 
-/* Newtons, of the garment as it was cut. */
+/* The weight of the garment in its rest shape, newtons. */
 static double weigh(tl_session *session, const struct tl_settings *settings)
 {
     const tl_model *model = tl_session_garment(session);
@@ -30,7 +30,7 @@ static double weigh(tl_session *session, const struct tl_settings *settings)
     return area * settings->fabric.areal_density * settings->cloth.gravity;
 }
 
-/* What a fall from the highest point of all to the lowest gives. */
+/* The speed after a free fall from the highest point of the scene to the lowest. */
 static double fall_speed(const tl_frame *frame, double gravity)
 {
     double lowest = DBL_MAX, highest = -DBL_MAX;
@@ -42,7 +42,8 @@ static double fall_speed(const tl_frame *frame, double gravity)
     return highest > lowest ? sqrt(2 * gravity * (highest - lowest)) : 0;
 }
 
-/* The fastest vertex of the wearer since the last frame, whose positions are then those of this one. */
+/* The speed of the fastest vertex of the wearer since the last frame. Keeps this frame's positions for the
+ * next call. */
 static double wearer_speed(struct tl_cloth_monitor *watch, const tl_frame *frame)
 {
     double farthest = 0;
@@ -59,7 +60,7 @@ static double wearer_speed(struct tl_cloth_monitor *watch, const tl_frame *frame
     return farthest * watch->settings->cloth.frame_rate;
 }
 
-/* Where the garment's centre of mass is on the ground plan, each triangle weighed as it was cut. */
+/* The garment's centre of mass in the plane of the ground, with each triangle's mass from its rest shape. */
 static void find_centre(const struct tl_cloth_monitor *watch, const tl_frame *frame, double centre[2])
 {
     const tl_mesh *cut = &tl_session_garment(watch->session)->mesh;
@@ -78,7 +79,8 @@ static void find_centre(const struct tl_cloth_monitor *watch, const tl_frame *fr
     centre[1] = sum[1] / weight;
 }
 
-/* Metres, sideways since the first frame; NaN where anything holds, holds up or pushes it, or has done so. */
+/* Horizontal displacement since the first frame, metres. NaN if anything supports, holds or pushes the cloth,
+ * or did so earlier. */
 static double measure_drift(struct tl_cloth_monitor *watch, const tl_frame *frame, bool is_driven)
 {
     const struct tl_settings *settings = watch->settings;
@@ -97,8 +99,8 @@ static double wind_speed(const float wind[3])
     return sqrt((double)(wind[0] * wind[0] + wind[1] * wind[1] + wind[2] * wind[2]));
 }
 
-/* What lets go of a strain e runs off at e sqrt(k / areal density), as behind a wave along a rod. Steps of
- * the other solvers take such waves away; the reference solver keeps their energy. */
+/* Cloth that releases a strain e moves at e sqrt(k / areal density), as behind a wave along a rod. The steps
+ * of the other solvers damp such waves; the reference solver keeps their energy. */
 static double spring_speed(const struct tl_settings *settings, double strain)
 {
     const struct tl_cloth_fabric *fabric = &settings->fabric;

@@ -11,7 +11,7 @@
 struct tl_cloth_monitor {
     tl_session *session;
     const struct tl_settings *settings;
-    double weight_n; /* of the garment as it was cut */
+    double weight_n; /* of the garment in its rest shape */
     bool was_held;   /* by the hand, in any frame so far */
     /* NaN: not known yet. */
     double least_energy_j, first_strain;
@@ -19,8 +19,8 @@ struct tl_cloth_monitor {
     vec3s *wearer;    /* positions one frame ago; NULL: none */
 };
 
-/* Release with tl_cloth_monitor_release. */ struct tl_cloth_monitor
-tl_cloth_monitor_begin(tl_session *session, const struct tl_settings *settings);
+/* Release with tl_cloth_monitor_release. */
+struct tl_cloth_monitor tl_cloth_monitor_begin(tl_session *session, const struct tl_settings *settings);
 void tl_cloth_monitor_release(struct tl_cloth_monitor *watch);
 
 /* Measures the cloth of the next frame. `is_changed`: the solver's settings changed, so that energies of

@@ -10,9 +10,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Pixels, and what is spent on each of their samples. The worst of a sixteenth of them is left out: an
- * outline that falls on the other side of a sample's middle puts a highlight in or out, and says nothing of
- * light. */
+/* Number of pixels, and of rays for each of their samples. The worst sixteenth of the pixels is left out: an
+ * outline that falls on the other side of a sample's centre adds or removes a highlight, which is no error of
+ * the light. */
 enum { PIXELS = 48, LEFT_OUT = PIXELS / 16, REPLICATES = 4, STRATA = 96, LOBE_SAMPLES = 8 };
 
 struct oracle {
@@ -25,15 +25,15 @@ struct oracle {
     double light[PIXELS][REPLICATES][3];
 };
 
-/* Samples of pixels on their way through sheets of open cloth. */
+/* Camera rays through layers of open cloth. */
 struct ray_batch {
     int count;
     struct tl_ray_differential rays[TL_SHADING_POINTS];
-    int pixels[TL_SHADING_POINTS]; /* index into the oracle's */
+    int pixels[TL_SHADING_POINTS]; /* index into the pixels of struct oracle */
     float shares[TL_SHADING_POINTS];
 };
 
-/* What they meet; they become what goes on through it. */
+/* The hits of a ray batch. The batch then holds the rays that continue behind them. */
 struct hits {
     struct tl_shading_points points;
     int pixels[TL_SHADING_POINTS];
@@ -65,7 +65,7 @@ static void intersect(const struct oracle *oracle, bool last, struct ray_batch *
     batch->count = through;
 }
 
-/* One replicate of the light of what was hits. */
+/* Adds one replicate of the light of the hits. */
 static void accumulate_light(struct oracle *oracle, const struct hits *hits, uint64_t key, int replicate)
 {
     struct tl_sky_sample sky[STRATA];
@@ -97,7 +97,7 @@ static void trace_layers(struct oracle *oracle, struct ray_batch *batch, uint64_
     }
 }
 
-/* Sixteen pixels' samples of one place at a time. */
+/* Traces all pixels: one sample each of TL_SHADING_POINTS pixels at a time. */
 static void trace_pixels(struct oracle *oracle)
 {
     int side = oracle->side, samples = side * side,
@@ -120,7 +120,7 @@ static void trace_pixels(struct oracle *oracle)
         }
 }
 
-/* Whether the pixel and the eight about it are wholly covered: no outline crosses it. */
+/* Whether the pixel and its eight neighbours are fully covered, so that no outline crosses it. */
 static bool is_inside(const tl_image *image, int x, int y)
 {
     if (x < 1 || y < 1 || x + 1 >= image->width || y + 1 >= image->height)
@@ -134,7 +134,7 @@ static bool is_inside(const tl_image *image, int x, int y)
     return true;
 }
 
-/* Evenly over what is covered, other ones in every frame. */
+/* Chooses pixels evenly among the covered ones, different ones in every frame. */
 static void choose_pixels(struct oracle *oracle)
 {
     const tl_image *image = oracle->checked->image;
@@ -178,7 +178,7 @@ static struct pixel_error compare_pixel(const struct oracle *oracle, int i)
     return error;
 }
 
-/* The largest first; one that is no number before all. */
+/* Descending; NaN first. */
 static int by_square(const void *a, const void *b)
 {
     const struct pixel_error *x = a, *y = b;
@@ -206,9 +206,9 @@ static void compare_pixels(const struct oracle *oracle, struct tl_finding *findi
     tl_finding_pixel(finding, (int)(worst % width), (int)(worst / width));
 }
 
-/* What each back-end is known for over a whole picture (`toile bench light`, FRONTIER's table), times three,
- * because a few pixels may be the worst ones: rays 3 to 4.5 %; hard maps and exact lobes 6 %; blurred ones 11
- * %; filter chains as the paper has them up to 64 %, the whole of which is their bound. */
+/* The measured error of each back-end over a whole image (`toile bench light`), times three, because a few
+ * pixels may be the worst ones: rays 3 to 4.5 %; hard maps and exact lobes 6 %; blurred maps 11 %. Filter
+ * chains as in the paper reach 64 %, which is their bound. */
 static double oracle_bound(const struct tl_light_params *light)
 {
     if (light->visibility == TL_VISIBILITY_RAYS)
@@ -218,14 +218,14 @@ static double oracle_bound(const struct tl_light_params *light)
     return light->visibility == TL_VISIBILITY_VSM ? 0.33 : 0.2;
 }
 
-/* Methods that leave shadows out, or stand for them by one number, do not estimate what the oracle knows; nor
- * do pictures of other things than light. */
+/* Only images of light by the method `pem` estimate what the reference computes: the other methods leave
+ * shadows out or replace them by one number. */
 static bool is_comparable(const struct tl_render_settings *settings)
 {
     return settings->light.method == TL_METHOD_PEM && settings->image.view == TL_VIEW_LIGHT;
 }
 
-/* Traces the pixels chosen, and compares. */
+/* Traces the chosen pixels and compares them. */
 static void compare_with_reference(struct oracle *oracle, struct tl_finding *finding)
 {
     const struct tl_checked *checked = oracle->checked;

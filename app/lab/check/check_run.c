@@ -27,11 +27,11 @@ struct run {
     struct tl_motion motion;
     struct auxiliary auxiliary;
     uint64_t *hashes, *places;     /* [frames]: of all that is seen; of positions alone */
-    int played;                    /* of them are there */
+    int played;                    /* number of frames played so far */
     tl_quality_governor *governor; /* NULL: no budget */
     struct tl_quality *levels;     /* [frames] */
     struct tl_quality_choice choice;
-    double chosen_ms, moved_ms, drawn_ms; /* on the wall, of this frame: the choice, the cloth, the picture */
+    double chosen_ms, moved_ms, drawn_ms; /* wall time of this frame: governor, cloth, image */
     struct tl_cloth_monitor watch;
     struct tl_progress progress;
     int steps; /* all that progress counts */
@@ -88,7 +88,7 @@ static void release_images(tl_image *images, size_t count)
 
 enum { DRAWN, FRESH, WHITE, WHITE_SHADOWED, IMAGES };
 
-/* Where an image is upsampled from fewer samples than pixels, the furnace looks at the samples: a sharpening
+/* If the image is upsampled from fewer samples than pixels, the furnace compares the samples: the sharpening
  * filter does not conserve light. */
 static void show_samples(struct tl_image_params *image)
 {
@@ -291,7 +291,7 @@ static bool play_again(struct run *run, int count, tl_error *error)
                                                .places_hash = tl_check_hash(&frame, NULL),
                                                .first_places_hash = run->places[number]};
             done = note(run, &checked, error);
-            verdicts->frames--; /* it has been counted */
+            verdicts->frames--; /* the frame has been counted already */
         }
         done = report_progress(run, run->params->frames + number + 1, error) && done;
         tl_image_release(&image);

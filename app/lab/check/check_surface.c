@@ -1,5 +1,5 @@
-/* Geometry against its definitions. Vertices that share place, normal and UV are one, as MikkTSpace has it.
- */
+/* Compares geometry with its definitions. Vertices with equal position, normal and UV are merged, as in
+ * MikkTSpace. */
 #include "app/lab/check/check_measures.h"
 #include "config/hash.h"
 #include "config/memory.h"
@@ -120,7 +120,7 @@ void tl_measure_tangents(const struct tl_checked *checked, struct tl_finding *fi
     add_vertices(checked, finding, tangent_deviation);
 }
 
-/* What makes vertices one: place, normal and UV, as bits. */
+/* Vertices are merged if these are equal: position, normal and UV, as bits. */
 struct key {
     uint32_t bits[8];
 };
@@ -137,7 +137,7 @@ static struct key key_of(const tl_surface *surface, size_t vertex, bool with_uv)
     return key;
 }
 
-/* group[v]: the first vertex that is one with v. New array. */
+/* group[v]: the first vertex with the same key as v. New array. */
 static uint32_t *join_vertices(const tl_surface *surface, bool with_uv)
 {
     size_t slots = 16;
@@ -190,12 +190,12 @@ static struct corner corner_of(const tl_surface *surface, size_t triangle, int f
     return corner;
 }
 
-/* Square metres: below what the rounding of a garment's coordinates leaves of an area, a triangle has no
- * side. */
+/* Square metres: the rounding of a garment's coordinates makes smaller areas meaningless, and the side of
+ * such a triangle unknown. */
 #define NO_AREA 1e-12
 
-/* Where the faces about a vertex cancel to less than this part of their angles, their mean has no side
- * either; nor has that of directions in them. */
+/* If the faces about a vertex cancel to less than this fraction of their angles, the side of their mean is
+ * unknown, too, and so is the mean of directions in them. */
 #define NO_MEAN 1e-2
 
 struct fan {
@@ -239,24 +239,24 @@ void tl_measure_sides(const struct tl_checked *checked, struct tl_finding *findi
     }
 }
 
-/* What the faces about a vertex say of its tangent. */
-enum { SAYS_NOTHING, DISAGREES, AGREES };
+/* Result of comparing a vertex's tangent with the faces about it. */
+enum { UNDEFINED, DISAGREES, AGREES };
 
 /* MikkTSpace's direction of u in the face, sign(A) (t31 d1 - t21 d2), against the tangent: it is the mean of
  * such directions in the normal's plane, all of one handedness. v runs down, so that w is the opposite of the
  * UVs' own sign. */
-static int opinion_of(const tl_surface *surface, const struct corner *corner, size_t vertex)
+static int compare_face(const tl_surface *surface, const struct corner *corner, size_t vertex)
 {
     const double flat = 1e-37, seen_edge_on = 1e-3;
     if (!(fabs(corner->uv_area) > flat) || !(corner->area > NO_AREA))
-        return SAYS_NOTHING;
+        return UNDEFINED;
     struct vector normal = vector_of(surface->normals[vertex]), zero = {0, 0, 0};
     struct vector along =
         add_scaled(add_scaled(zero, corner->v[1], corner->first), -corner->v[0], corner->second);
     double size = length(along), rise = dot(along, normal);
     struct vector level = add_scaled(along, -rise, normal);
     if (!(length(level) > seen_edge_on * size))
-        return SAYS_NOTHING;
+        return UNDEFINED;
     double cosine = dot(level, tangent_of(surface, vertex)) * (corner->uv_area > 0 ? 1 : -1);
     bool handed = (surface->tangents[vertex].w > 0) == (corner->uv_area < 0);
     return cosine > -NO_MEAN * length(level) && handed ? AGREES : DISAGREES;
@@ -281,16 +281,16 @@ static struct corner_lists list_corners(const tl_surface *surface, const uint32_
     return lists;
 }
 
-static int opinion_at(const tl_surface *surface, const struct corner_lists *lists, uint32_t group,
-                      size_t vertex)
+static int compare_faces(const tl_surface *surface, const struct corner_lists *lists, uint32_t group,
+                         size_t vertex)
 {
-    int opinion = SAYS_NOTHING;
-    for (uint32_t i = lists->first[group]; i < lists->first[group + 1] && opinion != AGREES; i++) {
+    int result = UNDEFINED;
+    for (uint32_t i = lists->first[group]; i < lists->first[group + 1] && result != AGREES; i++) {
         struct corner corner = corner_of(surface, lists->items[i] / 3, (int)(lists->items[i] % 3));
-        int heard = opinion_of(surface, &corner, vertex);
-        opinion = heard > opinion ? heard : opinion;
+        int one = compare_face(surface, &corner, vertex);
+        result = one > result ? one : result;
     }
-    return opinion;
+    return result;
 }
 
 void tl_measure_handed(const struct tl_checked *checked, struct tl_finding *finding)
@@ -301,7 +301,7 @@ void tl_measure_handed(const struct tl_checked *checked, struct tl_finding *find
         uint32_t *group = join_vertices(surface, true);
         struct corner_lists lists = list_corners(surface, group);
         for (size_t v = 0; v < surface->vertex_count; v++) {
-            if (opinion_at(surface, &lists, group[v], v) != DISAGREES)
+            if (compare_faces(surface, &lists, group[v], v) != DISAGREES)
                 continue;
             if (wrong++ > 0)
                 continue;

@@ -1,4 +1,4 @@
-/* What is seen of the regions: the range of VIS and of what it is made of, and VIS against rays. */
+/* Visibility of regions: the range of VIS and of its parts, and VIS compared with rays. */
 #include "app/lab/check/check_measures.h"
 #include "config/memory.h"
 #include "render/inside.h"
@@ -6,15 +6,15 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Points that VIS is measured at, and directions of each region, the same for all of them: so the cache
- * traces, a frame one direction for all that it visits. */
+/* Points at which VIS is measured, and directions of each region. All points use the same directions, because
+ * the cache, too, traces one direction for all points that it visits in a frame. */
 enum { POINTS = 64, RAYS = 32, BUNDLE = 16 };
 
-/* A region counts when so many points face it, this far above their horizon. */
+/* A region is measured if at least so many points face it, with a cosine of FACES or more. */
 enum { LEAST_POINTS = POINTS / 4 };
 #define FACES 0.2f
 
-/* Of chance: a value within a range lies within three of its standard deviations nearly always. */
+/* Allowed sampling error, in standard deviations: a bounded random value is nearly always within three. */
 #define DEVIATIONS 3
 
 static bool has_facts(const struct tl_checked *checked, tl_bits facts)
@@ -22,7 +22,7 @@ static bool has_facts(const struct tl_checked *checked, tl_bits facts)
     return (tl_frame_facts(checked->frame, checked->settings) & facts) == facts;
 }
 
-/* E[z]^2 - E[z^2], of E[z^2]; infinite where either is no number. */
+/* E[z]^2 - E[z^2], relative to E[z^2]; infinite if either is not finite. */
 static double moments_deviation(const float *texel)
 {
     const double nearest = 1e-2; /* depths near 0 are exact to single precision, their squares are not */
@@ -57,7 +57,7 @@ void tl_measure_moments(const struct tl_checked *checked, struct tl_finding *fin
     }
 }
 
-/* Values lie in [0, 1] as they are kept, so that weights decide: how far these can lead out of it. */
+/* How far interpolation can leave [0, 1]. Stored values lie within it, so that only the weights matter. */
 static double taps_deviation(const struct tl_taps *taps, size_t point_count)
 {
     double above = 0, below = 0;
@@ -106,8 +106,7 @@ void tl_measure_visibility(const struct tl_checked *checked, struct tl_finding *
     }
 }
 
-/* The sums over points of what is claimed to be seen of a region, and of what is seen along each direction.
- */
+/* Sums over points: the region's VIS, and the visibility along each direction. */
 struct tally {
     int points;
     double claimed, seen[RAYS];
@@ -134,7 +133,7 @@ static double claimed_of(const struct witness *witness, size_t sample, int regio
     return claimed;
 }
 
-/* Even over the region. */
+/* Directions evenly distributed over the region. */
 static vec3s region_direction(const struct tl_resources *inside, int region, int ray)
 {
     const float step = 0.5698402909980532f; /* of the plastic number, as tl_region_seen_direction has it */
@@ -143,8 +142,8 @@ static vec3s region_direction(const struct tl_resources *inside, int region, int
     return tl_turn_direction(direction, inside->yaw);
 }
 
-/* Whether all of a region is well above a point's horizon: of what is not, VIS stands for what is above only.
- */
+/* Whether the whole region is well above the point's horizon. Of other regions, VIS counts only the part
+ * above it. */
 static bool faces(const struct tl_sample *sample, const vec3s directions[RAYS])
 {
     for (int ray = 0; ray < RAYS; ray++)
@@ -153,7 +152,7 @@ static bool faces(const struct tl_sample *sample, const vec3s directions[RAYS])
     return true;
 }
 
-/* Adds what one point sees of one region. */
+/* Adds the VIS and the traced visibility of one region at one point. */
 static void queue_rays(struct witness *witness, const tl_sample *sample, vec3s start, size_t index,
                        int region)
 {
@@ -198,8 +197,8 @@ static void tally_answers(struct witness *witness, int frame)
     }
 }
 
-/* The cache traces a region the more seldom the less light it has, so that its errors in the light are alike:
- * a region counts as its light does, up to the mean. */
+/* The region's light relative to the mean region's, at most 1. The cache traces a dark region less often, so
+ * that the errors of all regions in the light are equal. */
 static double weight_of(const struct tl_regions *regions, int region)
 {
     double all = 0;
@@ -209,7 +208,7 @@ static double weight_of(const struct tl_regions *regions, int region)
     return share < all ? share / all : 1;
 }
 
-/* Of what the points see along one direction or another. */
+/* Mean and standard deviation of the visibility over the directions. */
 static void spread_of(const struct tally *tally, double *mean, double *deviation)
 {
     double sum = 0, squares = 0;
@@ -222,9 +221,9 @@ static void spread_of(const struct tally *tally, double *mean, double *deviation
     *deviation = sqrt(fmax(squares / RAYS - *mean * *mean, 0));
 }
 
-/* What is kept was seen along one direction of the region in a frame, by all points or by each along its own:
- * so far as chance goes it is off by no more than DEVIATIONS of what the rays see, the less the narrower the
- * region. */
+/* The cache traces one direction of the region in a frame, the same for all points or one for each. Its
+ * sampling error is therefore at most DEVIATIONS standard deviations over the directions, which are smaller
+ * for narrower regions. */
 static void add_tallies(const struct witness *witness, struct tl_finding *finding)
 {
     const struct tl_regions *regions = &witness->inside->regions;

@@ -1,5 +1,5 @@
-/* What a frame's time buys: samples of the image, presets and budgets, and each of the governor's levels by
- * itself. */
+/* Experiments about the time of a frame: samples of the image, presets and budgets, and each of the
+ * governor's levels alone. */
 #include "app/lab/experiments/rows_internal.h"
 
 #define SATIN "material.use_file=false", "material.glossiness=0.7"

@@ -6,7 +6,7 @@
 #define COARSE WOVEN("20", "5")
 
 static const struct tl_technique techniques[] = {
-    /* What moves the point that is looked up. */
+    /* Methods that move the point of the look-up. */
     {.page = "normal",
      .picture = "normal map alone",
      .golden = "weave_plain",
@@ -87,7 +87,7 @@ static const struct tl_technique techniques[] = {
     {.picture = "matt weft", .id = "C7", SET("weave.weft_gloss=-0.6")},
     {.picture = "matt warp", .id = "C7", SET("weave.warp_gloss=-0.6")},
 
-    /* What becomes of bumps that are finer than pixels. */
+    /* Treatment of bumps that are finer than pixels. */
     {.page = "no minification",
      .picture = "no widening",
      .group = "minify",

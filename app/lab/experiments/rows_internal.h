@@ -1,5 +1,5 @@
-/* What the families' files share: their lists, and short forms for rows. Included by them and by the table.
- */
+/* Shared by the files of the families: their lists, and short forms for rows. Included by them and by the
+ * table. */
 #ifndef TOILE_APP_LAB_EXPERIMENTS_ROWS_INTERNAL_H
 #define TOILE_APP_LAB_EXPERIMENTS_ROWS_INTERNAL_H
 

@@ -38,7 +38,7 @@ static const struct tl_technique techniques[] = {
      .shown = true,
      .once = true},
 
-    /* Where the coordinates of tables come from. */
+    /* Origin of the tables' coordinates. */
     {.table = "phong, cosines by matrix", SET("shading.coordinates=matrix")},
     {.page = "cosines by matrix",
      .picture = "matrix",
@@ -216,7 +216,7 @@ static const struct tl_experiment_appearance models[] = {
      .assignments = {"material.model=ward", "material.width_weft=0.4", "material.width_warp=0.1", SPECULAR}},
 };
 
-/* Of the mesh that bench shading draws (app/lab/trade/bench_shading.c). */
+/* Appearances of the mesh that bench shading draws (app/lab/trade/bench_shading.c). */
 static const struct tl_experiment_appearance meshes[] = {{.name = "plain"}, {.name = "decal and bumps"}};
 
 static const struct tl_experiment experiments[] = {

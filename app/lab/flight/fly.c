@@ -174,7 +174,7 @@ static bool choose(struct recorder *recorder, const struct tl_settings *wanted, 
     return true;
 }
 
-/* What the clock runs for. */
+/* Draws a frame; the measured time includes the choice of levels, the cloth and the image. */
 static bool draw_timed(struct recorder *recorder, int number, struct tl_flight_frame *frame, tl_error *error)
 {
     struct tl_headless *headless = recorder->headless;

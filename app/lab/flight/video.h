@@ -14,7 +14,7 @@ typedef struct tl_video tl_video;
 /* Fails when ffmpeg is missing or `path` does not end in .mp4, .mkv or .mov. */
 bool tl_video_check(const char *path, tl_error *error);
 
-/* Of a path that was checked; fails when it cannot be written. */
+/* Begins a video file. `path` has been checked. Fails when the file cannot be written. */
 tl_video *tl_video_begin(const char *path, double frame_rate, tl_error *error);
 /* U8 RGB; all of the first one's size. */
 bool tl_video_add(tl_video *video, const tl_image *image, tl_error *error);

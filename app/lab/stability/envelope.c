@@ -161,9 +161,9 @@ static double farthest_from(const tl_cloth *cloth, const tl_garment *garment)
     return farthest;
 }
 
-/* Of its energy since `first`. What one sweep of `preview` leaves unsolved of stiff threads is elastic energy
- * by the book, but none that it can release: there it is the larger of its motion's, and what the largest
- * strain stands for. */
+/* Growth of the cloth's energy since `first`, a ratio. One sweep of `preview` leaves stiff threads strained:
+ * by definition this is elastic energy, but the solver cannot release it. For `preview` the growth is
+ * therefore the larger of that of the kinetic energy and the square of that of the largest strain. */
 static double growth_since(const struct tl_cloth_report *first, const tl_cloth *cloth, int solver)
 {
     struct tl_cloth_report now = tl_cloth_measure(cloth, NULL);

@@ -38,7 +38,8 @@ struct tl_envelope_place tl_envelope_place_of(size_t index)
     return at;
 }
 
-/* Of large sizes: the softest, an ordinary and the stiffest cloth, evenly meshed. */
+/* Whether a place of the envelope is run. Large sizes are run only with the softest, an ordinary and the
+ * stiffest cloth, evenly meshed. */
 static bool is_asked_for(bool quick, struct tl_envelope_place at)
 {
     const struct tl_envelope_size *size = &tl_envelope_sizes[at.size];

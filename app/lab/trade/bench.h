@@ -1,4 +1,5 @@
-/* What `toile bench` measures, one function a topic: each prints a table, or one JSON object with --json. */
+/* The measurements of `toile bench`, one function a topic. Each prints a table, or one JSON object with
+ * --json. */
 #ifndef TOILE_APP_LAB_TRADE_BENCH_H
 #define TOILE_APP_LAB_TRADE_BENCH_H
 

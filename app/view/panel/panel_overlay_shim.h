@@ -1,4 +1,4 @@
-/* What the panel draws over the view, and its strip of frame times; for the panel's C++ only. */
+/* The panel's overlay on the view, and its strip of frame times. For the panel's C++ only. */
 #ifndef TOILE_APP_VIEW_PANEL_PANEL_OVERLAY_SHIM_H
 #define TOILE_APP_VIEW_PANEL_PANEL_OVERLAY_SHIM_H
 

@@ -31,7 +31,7 @@ struct tl_load_lights {
     struct tl_prepared_request of[TL_LOADER_LIGHTS_MAX];
 };
 
-/* What has been loaded; null or zero: nothing of this kind. */
+/* The loaded objects; null or zero: none of this kind. */
 struct tl_loaded {
     tl_session *session;
     struct tl_moving_light light;

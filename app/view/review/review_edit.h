@@ -20,7 +20,8 @@ void tl_review_next_view(struct tl_review *review, int by); /* image.view */
 
 /* A file was dropped on the window: uses it at once, asks what it is to be used as, or refuses it. */
 void tl_review_open_dropped(struct tl_review *review, const char *path);
-/* What the file that is asked about may be used as; NULL and 0 when no question is open. Static. */
+/* The possible uses of the dropped file that the open question is about; NULL and 0 without a question.
+ * Static. */
 struct tl_review_answer {
     const char *label, *help;
     void (*use)(struct tl_review *review, const char *path); /* NULL: the file is not used */

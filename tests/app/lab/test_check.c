@@ -384,7 +384,7 @@ static void a_plan_over_budget_is_named(void **state)
     take_down(&stand);
 }
 
-/* What a renderer has made, to be broken. */
+/* A renderer's resources, writable, so that tests can corrupt them. */
 static struct tl_resources *inside(const tl_renderer *renderer)
 {
     return (struct tl_resources *)(uintptr_t)tl_renderer_look_inside(renderer);
@@ -423,7 +423,7 @@ static int most_hidden_region(const struct tl_resources *made)
     return hidden;
 }
 
-/* What is kept says that all of one region is seen, everywhere. */
+/* Sets the cached visibility of one region to 1 at all points. */
 static void leak(const struct tl_resources *made, int region)
 {
     size_t stride;

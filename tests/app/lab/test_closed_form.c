@@ -1,5 +1,5 @@
-/* What cloth is measured on: the tube's closed form against the sums over its own triangles, cells whose
- * outcome is known, and the baseline's sag. */
+/* The oracles of cloth measurements: the tube's closed form compared with sums over its triangles, cells with
+ * a known outcome, and the baseline's sag. */
 #include "tests/testing.h"
 
 #include "app/lab/stability/envelope.h"

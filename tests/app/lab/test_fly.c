@@ -1,5 +1,5 @@
-/* What flights come to: percentiles and shares of known frames, one flight against another whose ratio is
- * known, and records that are read back or refused. */
+/* Figures of flights: percentiles and shares of known frames, a comparison of two flights with a known ratio,
+ * and records that are read back or refused. */
 #include "tests/testing.h"
 
 #include "app/lab/flight/fly_figures.h"
@@ -155,9 +155,9 @@ static void a_slower_job_is_named(void **unused)
     tl_flight_release(&after);
 }
 
-/* Of 60 pairs of flights that differ by noise only, frames that are alike in a row among it, about 5 % may
- * lie outside of a 95 % interval. Blocks of 30 in 370 frames are few, so that intervals come out narrower
- * than they should: at most 15 % is asked for. */
+/* Of 60 pairs of flights that differ by noise only, with correlated frames, about 5 % may lie outside a 95 %
+ * interval. Blocks of 30 in 370 frames are few, which makes the intervals too narrow: the test allows 15 %.
+ */
 static void noise_is_seldom_called_slower(void **unused)
 {
     (void)unused;

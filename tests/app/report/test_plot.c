@@ -83,7 +83,7 @@ static size_t count_of(const char *text, const char *what)
     return count;
 }
 
-/* What a plot may have beside its points. The drawing's frame is from 66 to 740. */
+/* Optional parts of a plot are drawn. The drawing's frame is from 66 to 740. */
 static void manners_are_drawn(void **state)
 {
     (void)state;

@@ -143,7 +143,7 @@ static void looks_are_made_beside_the_session(void **state)
     assert_true(look_of(session, &looks[1]) == second);
     assert_true(look_of(session, &looks[2]) == third);
 
-    /* What the session has already is not taken twice. */
+    /* An appearance that the session already has is not taken again. */
     assert_ok(tl_session_make_appearance(&models, &looks[1], &made, &error), error);
     tl_session_keep_appearance(session, &looks[1], &made);
     assert_true(look_of(session, &looks[1]) == second);

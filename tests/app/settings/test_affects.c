@@ -161,7 +161,7 @@ static void recorded_flights_follow_a_new_row(void **state)
     cJSON_Delete(record.settings);
 }
 
-/* Of the inputs of two frames that differ in the new option, by bits: which have other signatures. */
+/* The inputs, by bits, whose signatures differ between two frames that differ in the new option. */
 static uint64_t inputs_that_follow(uint64_t bits, const struct tl_render_settings *settings)
 {
     const struct tl_lamp lamp = {

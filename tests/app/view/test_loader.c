@@ -49,7 +49,7 @@ static void an_appearance_is_made_while_the_session_plays(void **state)
     assert_non_null(loaded.prepared[0]);
     assert_true(loaded.appearance.garment.materials[0].glossiness == wanted.material.glossiness);
 
-    /* What was played while the loader ran is what is played without it, bit for bit. */
+    /* Frames played while the loader ran are bit-identical to frames played without it. */
     assert_ok(tl_session_go_to(alone, FRAMES, &error), error);
     const tl_frame with = tl_session_frame(session), without = tl_session_frame(alone);
     assert_int_equal(with.surface_count, without.surface_count);

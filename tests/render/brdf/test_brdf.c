@@ -251,7 +251,7 @@ static void banks_shines_along_the_cone(void **state)
 }
 
 /* The disc of the paper's figure 3: threads run in circles about its centre; light and viewer are far away.
- * Where a thread is at right angles to both, at azimuths 0 and 180 degrees, it reflects one into the other.
+ * At azimuths 0 and 180 degrees a thread is perpendicular to both directions and reflects one into the other.
  * The brightness falls with the distance of the azimuth from there, is constant along a radius and equal on
  * both sides. */
 static void banks_on_a_disc_is_a_bow_tie(void **state)

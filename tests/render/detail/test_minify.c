@@ -90,7 +90,7 @@ static vec3s mean_of(const tl_image *image)
     return (vec3s){{(float)(sums[0] / sums[3]), (float)(sums[1] / sums[3]), (float)(sums[2] / sums[3])}};
 }
 
-/* Of the mean colour, by channel. */
+/* The largest relative error of the mean colour over the channels. */
 static double off(vec3s tested, vec3s truth)
 {
     double worst = 0;

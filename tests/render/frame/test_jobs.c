@@ -6,7 +6,7 @@
 #include "render/frame/jobs.h"
 #include "tests/testing.h"
 
-/* What an entry of a list means: resources read and written (NONE: neither), and whether it is a field. */
+/* The meaning of a list's entry: resources read and written (NONE: neither), and whether it is a field. */
 struct entry {
     int reads, writes;
     bool is_field;

@@ -154,7 +154,7 @@ static void a_copy_serves_another_renderer(void **state)
     scene_close(&scene);
 }
 
-/* Of another environment, or of other settings: then it is as if there were none. */
+/* Light prepared for another environment, or for other settings, is ignored. */
 static void unfit_light_is_not_used(void **state)
 {
     struct test_device *device = *state;
@@ -171,7 +171,7 @@ static void unfit_light_is_not_used(void **state)
     scene_close(&scene);
 }
 
-/* What new materials lack is added to what is known, and nothing of it is made again. */
+/* Light that new materials need is added to the known light, none of which is computed again. */
 static void known_light_is_added_to(void **state)
 {
     struct test_device *device = *state;
@@ -200,7 +200,7 @@ static void known_light_is_added_to(void **state)
     assert_int_equal(tl_renderer_memory(renderer).pems, known);
     expect_as_new(device, renderer, &scene);
 
-    /* Of what is known only some regions are asked for, and others are not known. */
+    /* Only some of the known regions are needed, and some needed ones are not known. */
     for (int regions = 12; regions <= 36; regions += 12) {
         scene.settings.light.regions = regions;
         expect_as_new(device, renderer, &scene);
@@ -217,7 +217,7 @@ static void known_light_is_added_to(void **state)
         expect_as_new(device, renderer, &scene);
     }
 
-    /* Of another cube nothing is known. */
+    /* Nothing is known of another cube. */
     request.known = tl_renderer_copy_prepared(renderer);
     request.settings.light.pem_size = scene.settings.light.pem_size = 16;
     prepared = tl_prepared_make(&request);

@@ -140,7 +140,7 @@ static double distance(const tl_image *a, const tl_image *b)
     return sqrt(sum);
 }
 
-/* What a renderer draws that has drawn `last` before; NULL: nothing. */
+/* The image by a new renderer that has drawn `last` before; NULL: nothing. */
 static tl_image draw_after(struct test_device *device, const tl_frame *last, const struct test_scene *scene)
 {
     tl_error error = {0};

@@ -277,7 +277,7 @@ static void test_what_covers_a_sample_is_kept(void **state)
     test_shape_release(&ball);
 }
 
-/* What has holes or fades hides nothing; as it is, one half of the square hides the small one. */
+/* Surfaces with holes or transparency hide nothing; an opaque half of the square hides the small one. */
 static void test_what_hides(void **state)
 {
     (void)state;

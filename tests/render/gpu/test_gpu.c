@@ -156,8 +156,8 @@ static int encoded(float value, int channel)
     return (int)lroundf(255 * (channel < 3 ? tl_srgb_from_linear(value) : value));
 }
 
-/* Of 5 x 3 texels, whose sides do not halve: a column of the next level covers two and a half of them, its
- * one row all three. Light is averaged, not its bytes, and alpha as it is. */
+/* Mip levels of 5 x 3 texels, sides that do not halve: a column of the next level covers two and a half
+ * texels, its one row all three. Averages are taken of linear light, not of bytes, and of alpha as stored. */
 static void test_levels_are_means_of_light(void **state)
 {
     tl_image image = tl_image_create(5, 3, 4, TL_IMAGE_U8);

@@ -256,7 +256,7 @@ static void nothing_runs_that_is_not_needed(void **state)
     scene_close(&scene);
 }
 
-/* What tl_points keeps, summed by hand. */
+/* The view of visibility equals the sum over the values of tl_points. */
 static void visibility_is_that_of_the_points(void **state)
 {
     struct test_device *device = *state;

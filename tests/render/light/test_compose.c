@@ -37,7 +37,7 @@ static vec3s room(vec3s d)
     return light;
 }
 
-/* What stands in the way: everything on one side of a slanted plane through the sample. */
+/* The occluder: everything on one side of a slanted plane through the sample is hidden. */
 static bool is_open(vec3s d)
 {
     return d.x + 0.5f * d.y > -0.1f;

@@ -358,7 +358,7 @@ static vec3s facing_z(struct test_device *device, const tl_material *material, f
     return colour;
 }
 
-/* What a matt square with this normal would show. */
+/* The colour of a matt square with this normal. */
 static vec3s facing(struct test_device *device, vec3s normal, const tl_material *material,
                     const tl_environment *environment)
 {

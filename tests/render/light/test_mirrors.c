@@ -1,4 +1,4 @@
-/* What near mirrors show: a coloured wall in a mirror on the floor, the sky beside it. */
+/* Reflections in near mirrors: a coloured wall in a mirror on the floor, with the sky beside it. */
 #include "tests/render/scenes.h"
 
 #include "config/memory.h"

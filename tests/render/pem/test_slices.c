@@ -139,7 +139,7 @@ static void slices_keep_their_regions_power(void **state)
         }
         for (int region = 0; region < regions.count; region++) {
             double power = (double)regions.items[region].power.x;
-            /* Of the region itself, its border is sampled; of a lobe, the crop takes 3e-4. */
+            /* Error of the region itself: sampling of its border; of a lobe: 3e-4 by the crop. */
             assert_near(energies[region], power, (k == TL_EXPONENT_COUNT ? 0.05 : 0.01) * power);
         }
     }

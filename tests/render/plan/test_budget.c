@@ -13,14 +13,15 @@ static double noise(uint32_t *state)
     return (double)((word >> 22) ^ word) / 4294967296.0;
 }
 
-/* A frame in small: a fixed part, and per knob what its levels leave of a part. Any table would do, so that
- * costs need not add up: knobs multiply one another's, as samples do regions. */
+/* A model of a frame: a fixed cost, and for each control a part of the cost that its levels scale. The search
+ * must work for any table, so costs need not be additive: controls multiply one another's, as samples and
+ * regions do. */
 struct table {
-    int knobs;
-    double fixed, part[TL_BUDGET_KNOBS_MAX], left[TL_BUDGET_KNOBS_MAX][TL_BUDGET_LEVELS_MAX];
-    double error[TL_BUDGET_KNOBS_MAX][TL_BUDGET_LEVELS_MAX];
+    int controls;
+    double fixed, part[TL_BUDGET_CONTROLS_MAX], left[TL_BUDGET_CONTROLS_MAX][TL_BUDGET_LEVELS_MAX];
+    double error[TL_BUDGET_CONTROLS_MAX][TL_BUDGET_LEVELS_MAX];
     double factor; /* on all of it: the machine's */
-    double change; /* of the first knob's level, ms */
+    double change; /* of the first control's level, ms */
     const uint8_t *now;
 };
 
@@ -28,7 +29,7 @@ static double table_cost(const void *context, const uint8_t *levels)
 {
     const struct table *table = context;
     double sum = table->fixed, product = 1;
-    for (int k = 0; k < table->knobs; k++) {
+    for (int k = 0; k < table->controls; k++) {
         product *= table->left[k][levels[k]];
         sum += table->part[k] * product;
     }
@@ -45,21 +46,21 @@ static double table_error(const void *context, const uint8_t *levels)
 {
     const struct table *table = context;
     double square = 0;
-    for (int k = 0; k < table->knobs; k++)
+    for (int k = 0; k < table->controls; k++)
         square += pow(table->error[k][levels[k]], 2);
     return sqrt(square);
 }
 
-static struct tl_budget make_budget(struct table *table, int knobs, uint32_t seed)
+static struct tl_budget make_budget(struct table *table, int controls, uint32_t seed)
 {
-    struct tl_budget budget = {.knob_count = knobs,
+    struct tl_budget budget = {.control_count = controls,
                                .cost = table_cost,
                                .change = table_change,
                                .error = table_error,
                                .context = table};
-    static const uint8_t any[TL_BUDGET_KNOBS_MAX];
-    *table = (struct table){.knobs = knobs, .fixed = 5 * noise(&seed), .factor = 1, .now = any};
-    for (int k = 0; k < knobs; k++) {
+    static const uint8_t any[TL_BUDGET_CONTROLS_MAX];
+    *table = (struct table){.controls = controls, .fixed = 5 * noise(&seed), .factor = 1, .now = any};
+    for (int k = 0; k < controls; k++) {
         table->part[k] = 10 + 40 * noise(&seed);
         table->left[k][0] = 1;
         budget.level_counts[k] = 1 + (int)(4 * noise(&seed)) + k;
@@ -72,13 +73,13 @@ static struct tl_budget make_budget(struct table *table, int knobs, uint32_t see
 }
 
 /* The definition, level by level: the least error of all that fit, and the least cost of all. */
-static void search(const struct tl_budget *budget, int knob, double limit, uint8_t *levels, double *error,
+static void search(const struct tl_budget *budget, int control, double limit, uint8_t *levels, double *error,
                    double *cost)
 {
-    if (knob < budget->knob_count) {
-        for (int level = 0; level < budget->level_counts[knob]; level++) {
-            levels[knob] = (uint8_t)level;
-            search(budget, knob + 1, limit, levels, error, cost);
+    if (control < budget->control_count) {
+        for (int level = 0; level < budget->level_counts[control]; level++) {
+            levels[control] = (uint8_t)level;
+            search(budget, control + 1, limit, levels, error, cost);
         }
         return;
     }
@@ -95,7 +96,7 @@ static void the_best_of_all_is_found(void **state)
         struct table table;
         struct tl_budget budget = make_budget(&table, 1 + (int)(seed % 4), seed);
         for (double limit = 2; limit < 200; limit *= 1.3) {
-            uint8_t found[TL_BUDGET_KNOBS_MAX], tried[TL_BUDGET_KNOBS_MAX] = {0};
+            uint8_t found[TL_BUDGET_CONTROLS_MAX], tried[TL_BUDGET_CONTROLS_MAX] = {0};
             double error = INFINITY, cost = INFINITY;
             search(&budget, 0, limit, tried, &error, &cost);
             bool fits = tl_budget_best(&budget, limit, INFINITY, found);
@@ -119,7 +120,7 @@ static void more_budget_never_errs_more(void **state)
         struct tl_budget budget = make_budget(&table, 4, seed);
         double before = INFINITY;
         for (double limit = 2; limit < 300; limit *= 1.05) { /* and, the same, dearer frames never err less */
-            uint8_t found[TL_BUDGET_KNOBS_MAX];
+            uint8_t found[TL_BUDGET_CONTROLS_MAX];
             if (!tl_budget_best(&budget, limit, INFINITY, found))
                 continue;
             double error = table_error(&table, found);
@@ -150,7 +151,7 @@ static void run_frames(struct run *run, struct table *table, const struct tl_bud
     for (int frame = 0; frame < run->frames; frame++) {
         bool spike = frame >= run->spike_begins && frame < run->spike_ends;
         table->factor = tl_machine_load_factor(&load);
-        uint8_t before[TL_BUDGET_KNOBS_MAX];
+        uint8_t before[TL_BUDGET_CONTROLS_MAX];
         memcpy(before, governor.levels, sizeof before);
         enum tl_governed how = tl_governor_choose(&governor, budget, run->budget);
         double predicted = table_cost(table, governor.levels);
@@ -186,7 +187,7 @@ static void noise_makes_no_pumping(void **state)
             struct run run = {.budget = budget_ms, .deviation = 0.05, .frames = 630, .spike_begins = 10000};
             run_frames(&run, &table, &budget);
             table.factor = 1.2; /* a plan within the budget, with room for the noise, exists */
-            uint8_t found[TL_BUDGET_KNOBS_MAX];
+            uint8_t found[TL_BUDGET_CONTROLS_MAX];
             if (!tl_budget_best(&budget, budget_ms, INFINITY, found))
                 continue;
             assert_in_range(run.over, 0, 6);         /* 99 of 100 frames */
@@ -204,7 +205,7 @@ static void a_spike_is_absorbed_and_given_back(void **state)
             .budget = 60, .deviation = 0.03, .frames = 630, .spike_begins = 200, .spike_ends = 350};
         run_frames(&run, &table, &budget);
         table.factor = 2.3;
-        uint8_t found[TL_BUDGET_KNOBS_MAX];
+        uint8_t found[TL_BUDGET_CONTROLS_MAX];
         if (!tl_budget_best(&budget, run.budget, INFINITY, found))
             continue;
         assert_in_range(run.over_late, 0, 1);
@@ -220,7 +221,7 @@ static void steps_down_do_not_wait(void **state)
     struct table table;
     struct tl_budget budget = make_budget(&table, 4, 3);
     struct tl_governor governor = {0};
-    const uint8_t best[TL_BUDGET_KNOBS_MAX] = {0};
+    const uint8_t best[TL_BUDGET_CONTROLS_MAX] = {0};
     double whole_ms = table_cost(&table, best), budget_ms = 1.2 * whole_ms;
     tl_governor_choose(&governor, &budget, budget_ms);
     assert_near(table_error(&table, governor.levels), 0, 0);
@@ -236,20 +237,21 @@ static void steps_down_do_not_wait(void **state)
     assert_in_range(waited, 8, 40);
     assert_near(table_error(&table, governor.levels), 0, 0);
 
-    /* A knob that ended is followed at once. */
+    /* The removal of a control's levels takes effect at once. */
     governor.levels[3] = (uint8_t)(budget.level_counts[3] - 1);
     budget.level_counts[3] = 1;
     tl_governor_choose(&governor, &budget, budget_ms);
     assert_int_equal(governor.levels[3], 0);
 }
 
-/* What makes a frame late by itself is not done for the better, and is done where levels are too dear. */
+/* A change that alone makes a frame late is not made to reduce the error, but is made when the present levels
+ * exceed the budget. */
 static void a_dear_change_waits(void **state)
 {
     (void)state;
     struct table table = {
-        .knobs = 1, .part = {40}, .left = {{1, 0.5}}, .error = {{0, 0.1}}, .factor = 1, .change = 20};
-    struct tl_budget budget = {.knob_count = 1,
+        .controls = 1, .part = {40}, .left = {{1, 0.5}}, .error = {{0, 0.1}}, .factor = 1, .change = 20};
+    struct tl_budget budget = {.control_count = 1,
                                .level_counts = {2},
                                .cost = table_cost,
                                .change = table_change,
@@ -274,9 +276,9 @@ static void a_dear_change_waits(void **state)
 static void what_is_not_foreseen_has_room(void **state)
 {
     (void)state;
-    const uint8_t any[TL_BUDGET_KNOBS_MAX] = {0};
-    struct table table = {.knobs = 1, .part = {100}, .factor = 1, .now = any};
-    struct tl_budget budget = {.knob_count = 1,
+    const uint8_t any[TL_BUDGET_CONTROLS_MAX] = {0};
+    struct table table = {.controls = 1, .part = {100}, .factor = 1, .now = any};
+    struct tl_budget budget = {.control_count = 1,
                                .level_counts = {TL_BUDGET_LEVELS_MAX},
                                .cost = table_cost,
                                .change = table_change,

@@ -69,7 +69,7 @@ static void one_level_tells_the_machine(void **state)
     assert_near(tl_cost_predict(&plain, &nothing, 1), 7, 0.2);
 }
 
-/* What changes for good is followed, what it was is forgotten. */
+/* A permanent change of cost is learned, and the former cost is forgotten. */
 static void a_change_is_followed(void **state)
 {
     (void)state;

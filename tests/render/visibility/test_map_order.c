@@ -65,7 +65,8 @@ static void equal_maps_take_turns(void **state)
         assert_int_equal(drawn[i], 10);
 }
 
-/* Of two with the same energy the sharper shadow goes first; all means all. */
+/* Of two maps with the same energy the one with the sharper shadow is drawn first; a limit of all draws all.
+ */
 static void sharp_shadows_go_first(void **state)
 {
     (void)state;

@@ -28,7 +28,7 @@ static struct tl_render_settings settings_of_six(int width, int height)
     return settings;
 }
 
-/* Where the ray through the middle of a pixel meets the plane y = 0. */
+/* The intersection of the ray through a pixel's centre with the plane y = 0. */
 static vec3s ground_point(const struct tl_camera *camera, const struct tl_render_settings *settings, int x,
                           int y)
 {
@@ -201,7 +201,7 @@ static void test_no_acne(void **state)
     tl_environment_release(&environment);
 }
 
-/* What the alpha mask cuts away casts no shadow. */
+/* Texels that the alpha mask cuts away cast no shadow. */
 static void test_mask_lets_light_through(void **state)
 {
     struct test_device *device = *state;
@@ -294,9 +294,10 @@ static tl_frame half_plane_frame(const tl_surface surfaces[2], const tl_environm
     return test_frame((vec3s){{0, 0.7f, 1.9f}}, (vec3s){{0, 0, 0}}, 45, surfaces, 2, environment);
 }
 
-/* Of a depth map the edge is there where it is, sharp but for the two texels that a look-up blends: the
- * casters are 4 m wide on 252 texels. The light's direction is the patch's centre of light on the cube, off
- * by up to a hundredth of a texel of 32 a face; the sheet's slope is none, so its offset is none. */
+/* With a depth map the shadow's edge is at its exact place, and sharp except for the two texels that a
+ * look-up blends: the casters are 4 m wide on 252 texels. The light's direction is the patch's centre of
+ * light on the cube, exact to a hundredth of a texel of 32 a face; the sheet has no slope and therefore no
+ * offset. */
 static void test_depth_half_plane(void **state)
 {
     struct test_device *device = *state;
