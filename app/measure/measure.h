@@ -49,7 +49,7 @@ struct tl_reference_frame {
 };
 bool tl_reference_frame_draw(struct tl_variant_run *reference, const tl_frame *frame,
                              struct tl_reference_frame *out, tl_error *error);
-void tl_reference_frame_release(struct tl_reference_frame *frame);
+void tl_reference_frame_release(struct tl_reference_frame *reference);
 
 struct tl_measured_error {
     double rel_rmse;       /* without the reference's own noise, which is independent of it:

@@ -28,19 +28,19 @@ struct tl_work_counts tl_work_count(const tl_frame *frame);
 struct tl_work_seen tl_work_observe(const struct tl_resources *resources, const struct tl_work_counts *counts,
                                     const struct tl_render_settings *settings);
 
-/* The work of the jobs of the same names; `seen` is a struct tl_work_seen. */
-struct tl_work tl_lights_work(const void *seen);
-struct tl_work tl_gbuffer_work(const void *seen);
-struct tl_work tl_samples_work(const void *seen);
-struct tl_work tl_trace_work(const void *seen);
-struct tl_work tl_points_work(const void *seen);
-struct tl_work tl_compose_work(const void *seen);
-struct tl_work tl_inspect_work(const void *seen);
-struct tl_work tl_passes_work(const void *seen); /* light */
-struct tl_work tl_maps_work(const void *seen);   /* and blur */
-struct tl_work tl_resolve_work(const void *seen);
-struct tl_work tl_lamps_work(const void *seen);
-struct tl_work tl_lamp_maps_work(const void *seen);
-struct tl_work tl_sample_rays_work(const void *seen); /* transparency, mirrors, lamp_rays */
+/* The work of the jobs of the same names; `context` is a struct tl_work_seen. */
+struct tl_work tl_lights_work(const void *context);
+struct tl_work tl_gbuffer_work(const void *context);
+struct tl_work tl_samples_work(const void *context);
+struct tl_work tl_trace_work(const void *context);
+struct tl_work tl_points_work(const void *context);
+struct tl_work tl_compose_work(const void *context);
+struct tl_work tl_inspect_work(const void *context);
+struct tl_work tl_passes_work(const void *context); /* light */
+struct tl_work tl_maps_work(const void *context);   /* and blur */
+struct tl_work tl_resolve_work(const void *context);
+struct tl_work tl_lamps_work(const void *context);
+struct tl_work tl_lamp_maps_work(const void *context);
+struct tl_work tl_sample_rays_work(const void *context); /* transparency, mirrors, lamp_rays */
 
 #endif

@@ -55,7 +55,7 @@ float tl_inspect_strain_range(const struct tl_image_params *image, const tl_surf
 /* The legend of a view. */
 void tl_inspect_legend(const struct tl_inspect_request *request, struct tl_legend *out);
 /* Writes light[4 * texel] of the samples: the view's colours in place of light. */
-void tl_inspect_paint(const struct tl_inspect_request *request, float *light);
+void tl_inspect_paint(const struct tl_inspect_request *asked, float *light);
 /* Whether rounds at rest change what is shown. */
 bool tl_inspect_averages(int view);
 

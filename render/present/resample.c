@@ -63,12 +63,12 @@ TL_CLONES static void resample_row(const float *from, int from_width, const stru
         const struct reads *read = &columns[x];
         float sum[4] = {0};
         for (int t = 0; t < read->count; t++) {
-            const float *texel = from + 4 * within(read->first + t, from_width);
+            const float *texel = from + 4 * (size_t)within(read->first + t, from_width);
             for (int c = 0; c < 4; c++)
                 sum[c] += read->weights[t] * texel[c];
         }
-        const float *before = from + 4 * within(read->first + 1, from_width);
-        const float *after = from + 4 * within(read->first + 2, from_width);
+        const float *before = from + 4 * (size_t)within(read->first + 1, from_width);
+        const float *after = from + 4 * (size_t)within(read->first + 2, from_width);
         for (int c = 0; c < 4; c++)
             to[4 * x + c] = read->is_between ? between(sum[c], before[c], after[c]) : sum[c];
     }

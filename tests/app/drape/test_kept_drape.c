@@ -65,7 +65,7 @@ static vec3s *play(tl_session *session, size_t *count)
 {
     size_t vertices = garment_size(session);
     *count = 0;
-    vec3s *seen = TL_NEW_ARRAY(vec3s, 2 * (FRAMES + 1) * vertices);
+    vec3s *seen = TL_NEW_ARRAY(vec3s, (size_t)2 * (FRAMES + 1) * vertices);
     tl_error error = {0};
     for (int round = 0; round < 2; round++) {
         tl_cloth_grab(tl_session_cloth(session), 0, (vec3s){{0.1f, 1.2f, 0.3f}});

@@ -15,7 +15,7 @@
 #include <string.h>
 
 /* Small, and with a share of all pixels in shadow that a few dozen of them show. */
-enum { WIDTH = 96, HEIGHT = 72 };
+enum { WIDTH = 96, HEIGHT = 72, PIXEL_40_30 = 4 * (30 * WIDTH + 40) /* its first value */ };
 
 /* A pleated curtain over a floor, drawn by one back-end; and everything that its frame is checked with. */
 struct stand {
@@ -345,7 +345,7 @@ static void faults_of_pixels_are_named(void **state)
 {
     (void)state;
     struct stand *stand = by_rays();
-    float *pixel = tl_image_floats(&stand->image) + 4 * (30 * WIDTH + 40), kept = pixel[1];
+    float *pixel = tl_image_floats(&stand->image) + PIXEL_40_30, kept = pixel[1];
     pixel[1] = NAN;
     assert_breaks(&stand->checked, "image.finite", "pixel 40, 30");
     pixel[1] = -1e-3f;
@@ -360,7 +360,7 @@ static void faults_of_pixels_are_named(void **state)
     assert_clean(&stand->checked);
 
     /* The same frame again, one bit aside. */
-    uint32_t *bits = (uint32_t *)stand->image.texels + 4 * (30 * WIDTH + 40);
+    uint32_t *bits = (uint32_t *)stand->image.texels + PIXEL_40_30;
     *bits ^= 1;
     stand->checked.hash = tl_check_hash(&stand->frame, &stand->image);
     assert_breaks(&stand->checked, "run.repeat", "in pixels only");
@@ -384,10 +384,18 @@ static void a_plan_over_budget_is_named(void **state)
     take_down(&stand);
 }
 
-/* A renderer's resources, writable, so that tests can corrupt them. */
+/* Removes const: tests corrupt data that a renderer only lends. */
+static void *writable(const void *lent)
+{
+    void *pointer;
+    memcpy(&pointer, &lent, sizeof pointer);
+    return pointer;
+}
+
+/* A renderer's resources, writable. */
 static struct tl_resources *inside(const tl_renderer *renderer)
 {
-    return (struct tl_resources *)(uintptr_t)tl_renderer_look_inside(renderer);
+    return writable(tl_renderer_look_inside(renderer));
 }
 
 /* ---- Shadows ---- */
@@ -427,7 +435,7 @@ static int most_hidden_region(const struct tl_resources *made)
 static void leak(const struct tl_resources *made, int region)
 {
     size_t stride;
-    uint16_t *values = (uint16_t *)(uintptr_t)tl_points_values(made->points, &stride);
+    uint16_t *values = writable(tl_points_values(made->points, &stride));
     size_t points = tl_points_report(made->points).points;
     for (size_t p = 0; p < points; p++)
         values[p * stride + (size_t)region] = UINT16_MAX;
@@ -463,7 +471,7 @@ static void visibility_out_of_range_is_named(void **state)
 {
     (void)state;
     struct stand *stand = by_rays();
-    struct tl_taps *taps = (struct tl_taps *)(uintptr_t)tl_points_taps(inside(stand->renderer)->points);
+    struct tl_taps *taps = writable(tl_points_taps(inside(stand->renderer)->points));
     struct tl_taps kept = taps[5];
     taps[5].weight[0] += 0.1f;
     assert_breaks(&stand->checked, "visibility.range", "sample");
@@ -569,7 +577,7 @@ static void lost_light_is_named(void **state)
     assert_breaks(&stand->checked, "light.regions", "");
     made->regions.items[40].power = power;
 
-    float *lane = (float *)(uintptr_t)&made->lights->groups[2].power[1][8], kept = *lane;
+    float *lane = writable(&made->lights->groups[2].power[1][8]), kept = *lane;
     *lane = 0;
     assert_breaks(&stand->checked, "light.regions", "green");
     *lane = kept;
@@ -614,11 +622,11 @@ static void a_furnace_that_glows_is_named(void **state)
     (void)state;
     struct stand *stand = by_rays();
     draw_white(stand);
-    float *pixel = tl_image_floats(&stand->white_image) + 4 * (30 * WIDTH + 40), kept = *pixel;
+    float *pixel = tl_image_floats(&stand->white_image) + PIXEL_40_30, kept = *pixel;
     *pixel *= 1.03f;
     assert_breaks(&stand->checked, "furnace.albedo", "pixel 40, 30");
     *pixel = kept;
-    pixel = tl_image_floats(&stand->white_shadowed_image) + 4 * (30 * WIDTH + 40);
+    pixel = tl_image_floats(&stand->white_shadowed_image) + PIXEL_40_30;
     *pixel = 1.03f * kept;
     assert_breaks(&stand->checked, "furnace.shadowed", "pixel 40, 30");
     take_down(&stand);

@@ -275,7 +275,7 @@ static bool has_ink(const tl_image *sheet, int x, int y, int width, int height)
 {
     for (int row = y; row < y + height; row++)
         for (int column = x; column < x + width; column++)
-            if (tl_image_bytes(sheet)[3 * (row * sheet->width + column)] < 60)
+            if (tl_image_bytes(sheet)[3 * ((size_t)row * (size_t)sheet->width + (size_t)column)] < 60)
                 return true;
     return false;
 }
@@ -304,7 +304,8 @@ static void words_and_pictures_are_in_their_places(void **state)
     int x, y;
     tl_contact_paste(&grid, 2, 3, &picture, &sheet);
     tl_contact_place(&grid, 2, 3, &x, &y);
-    const uint8_t *corner = tl_image_bytes(&sheet) + 3 * ((y + 119) * sheet.width + x + 89);
+    const uint8_t *corner =
+        tl_image_bytes(&sheet) + 3 * ((size_t)(y + 119) * (size_t)sheet.width + (size_t)x + 89);
     assert_int_equal(corner[0], 0x10);
     assert_int_equal(corner[2], 0x30);
     assert_true(corner[3] > 0x80); /* beside it paper */

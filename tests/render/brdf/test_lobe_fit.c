@@ -103,7 +103,8 @@ static void test_lobes_match_the_gloss(void **state)
                     least = fmin(least, sums.fan / sums.gloss);
                     greatest = fmax(greatest, sums.fan / sums.gloss);
                 }
-            errors[n] = sum / (1 + (TL_COUNT(polars) - 1) * TL_COUNT(azimuths));
+            const size_t directions = 1 + (TL_COUNT(polars) - 1) * TL_COUNT(azimuths);
+            errors[n] = sum / (double)directions;
         }
         for (int n = 0; n < 4; n++)
             assert_true(errors[n] < cases[i].error[n]);

@@ -42,8 +42,8 @@ static void directions_return(void **state)
         for (int i = 0; i < 27; i++)
             for (int step = -1; step <= 1 && i != 13; step++) {
                 float beside = 1e-4f * (float)step;
-                vec3s at = {
-                    {(float)(i % 3 - 1) + beside, (float)(i / 3 % 3 - 1) - beside, (float)(i / 9 - 1)}};
+                int layer = i / 9 - 1;
+                vec3s at = {{(float)(i % 3 - 1) + beside, (float)(i / 3 % 3 - 1) - beside, (float)layer}};
                 check_round_trip(&map, glms_vec3_normalize(at));
             }
     }
@@ -147,7 +147,8 @@ static void solid_angle_of_a_texel(void **state)
             double sum = 0, middle = spanned(&map, x + 0.5, y + 0.5, 1 / 16.0) * 256;
             bool whole = true;
             for (int k = 0; k < 256; k++) {
-                double at_x = x + (k % 16 + 0.5) / 16, at_y = y + (k / 16 + 0.5) / 16;
+                int column = k % 16, row = k / 16;
+                double at_x = x + (column + 0.5) / 16, at_y = y + (row + 0.5) / 16;
                 if (tl_layout_contains(&map, at_x, at_y))
                     sum += spanned(&map, at_x, at_y, 1 / 16.0);
                 else

@@ -94,7 +94,7 @@ static void a_jobs_bits_are_those_of_its_list(void **state)
 static void a_field_points_to_the_resource_of_its_name(void **state)
 {
     (void)state;
-    char handles[4]; /* four addresses that differ, never read */
+    static char handles[4]; /* four addresses that differ, never read */
     all.surfaces = (void *)&handles[0];
     all.maps = (void *)&handles[1];
     all.trace = (void *)&handles[2];

@@ -95,8 +95,8 @@ static bool see(const struct scene *scene, uint32_t number, struct corner out[3]
         number -= (uint32_t)(scene->surfaces[s]->index_count / 3);
     for (size_t i = 0; i < 3; i++) {
         const tl_surface *surface = scene->surfaces[s];
-        out[i] = project(&scene->view, surface->positions[surface->indices[3 * number + i]], scene->width,
-                         scene->height);
+        out[i] = project(&scene->view, surface->positions[surface->indices[3 * (size_t)number + i]],
+                         scene->width, scene->height);
         ahead &= out[i].w > 0;
     }
     return ahead;
@@ -114,7 +114,8 @@ static uint32_t *find_winners(const struct scene *scene)
         struct corner corners[3];
         bool ahead = see(scene, t, corners);
         for (size_t i = 0; ahead && i < samples; i++) {
-            double x = (double)(i % (size_t)scene->width) + 0.5, y = (double)(i / (size_t)scene->width) + 0.5;
+            size_t column = i % (size_t)scene->width, row = i / (size_t)scene->width;
+            double x = (double)column + 0.5, y = (double)row + 0.5;
             double inside = inset(corners, x, y);
             if (inside < -CLEAR)
                 continue;

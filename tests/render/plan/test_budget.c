@@ -95,7 +95,8 @@ static void the_best_of_all_is_found(void **state)
     for (uint32_t seed = 1; seed <= 40; seed++) {
         struct table table;
         struct tl_budget budget = make_budget(&table, 1 + (int)(seed % 4), seed);
-        for (double limit = 2; limit < 200; limit *= 1.3) {
+        for (int step = 0; step < 18; step++) {
+            double limit = 2 * pow(1.3, step); /* up to 173 */
             uint8_t found[TL_BUDGET_CONTROLS_MAX], tried[TL_BUDGET_CONTROLS_MAX] = {0};
             double error = INFINITY, cost = INFINITY;
             search(&budget, 0, limit, tried, &error, &cost);
@@ -119,7 +120,8 @@ static void more_budget_never_errs_more(void **state)
         struct table table;
         struct tl_budget budget = make_budget(&table, 4, seed);
         double before = INFINITY;
-        for (double limit = 2; limit < 300; limit *= 1.05) { /* and, the same, dearer frames never err less */
+        for (int step = 0; step < 103; step++) { /* and, the same, dearer frames never err less */
+            double limit = 2 * pow(1.05, step);  /* up to 290 */
             uint8_t found[TL_BUDGET_CONTROLS_MAX];
             if (!tl_budget_best(&budget, limit, INFINITY, found))
                 continue;
@@ -181,7 +183,8 @@ static void noise_makes_no_pumping(void **state)
 {
     (void)state;
     for (uint32_t seed = 1; seed <= 12; seed++)
-        for (double budget_ms = 30; budget_ms < 130; budget_ms *= 1.4) {
+        for (int step = 0; step < 5; step++) {
+            double budget_ms = 30 * pow(1.4, step); /* up to 115 */
             struct table table;
             struct tl_budget budget = make_budget(&table, 4, seed);
             struct run run = {.budget = budget_ms, .deviation = 0.05, .frames = 630, .spike_begins = 10000};

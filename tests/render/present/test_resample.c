@@ -85,7 +85,7 @@ static void ramps_stay_where_they_were(void **state)
             for (int x = 0; x < s[2]; x++) {
                 float largest = fmaxf(tolerance(s[0], s[2]), tolerance(s[1], s[3]));
                 float margin_x = 2.0f / (float)s[0], margin_y = 2.0f / (float)s[1];
-                const float *wanted = expected + 4 * (y * s[2] + x);
+                const float *wanted = expected + 4 * ((size_t)y * (size_t)s[2] + (size_t)x);
                 bool inside = wanted[0] > margin_x && wanted[0] < 1 - margin_x && wanted[1] > margin_y &&
                               wanted[1] < 1 - margin_y;
                 for (int c = 0; inside && c < 4; c++)
@@ -122,9 +122,9 @@ static void areas_keep_their_light(void **state)
     float *from = image_of(s[0], s[1], disc), *to = resampled(from, s[0], s[1], s[2], s[3]);
     double before = 0, after = 0;
     for (int k = 0; k < s[0] * s[1]; k++)
-        before += (double)from[4 * k] / (s[0] * s[1]);
+        before += (double)from[4 * (size_t)k] / (s[0] * s[1]);
     for (int k = 0; k < s[2] * s[3]; k++)
-        after += (double)to[4 * k] / (s[2] * s[3]);
+        after += (double)to[4 * (size_t)k] / (s[2] * s[3]);
     assert_near(after / before, 1, 1e-5);
     free(from);
     free(to);
