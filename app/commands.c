@@ -56,7 +56,7 @@ static const struct tl_command commands[] = {
      "Draws a contact sheet: garments x fabrics or colourways down, environments x views across, as one "
      "image or as a folder with a page. After an interruption the same command continues.",
      TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_FRAME | TL_FLAGS_SHEET, tl_command_sheet},
-    {"compare", "compare TESTED REFERENCE [--json] [--ldr|--hdr]",
+    {"compare", "compare TESTED REFERENCE [--mask FILE] [--json] [--ldr|--hdr]",
      "Prints how much two images differ: relative RMSE, mean FLIP, largest difference.",
      TL_FLAGS_JSON | TL_FLAGS_METRIC, tl_command_compare},
     {"export", "export [SCENE] -o OUT.glb|OUT.obj|OUT.pc2|OUT.mdd [OPTIONS]",

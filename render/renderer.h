@@ -92,6 +92,13 @@ void tl_renderer_legend(const tl_renderer *renderer, struct tl_legend *out);
  * Lifetime: the caller releases `out` with tl_aovs_release. */
 bool tl_renderer_read_aovs(const tl_renderer *renderer, struct tl_aovs *out, tl_error *error);
 
+/* Makes the garment's layer of the last frame alone: F32, one channel, of the image's size, 1 where the
+ * garment is the nearest surface, else 0.
+ *
+ * Errors: false, with `error` set and `out` empty, when the frame was drawn without tl_frame.aovs.
+ * Lifetime: the caller releases `out` with tl_image_release. */
+bool tl_renderer_read_garment(const tl_renderer *renderer, tl_image *out, tl_error *error);
+
 /* Show the last frame's image: background, exposure, tone mapping (Khronos PBR Neutral), sRGB. The first
  * function makes an image (U8 RGB). The second draws columns [first, end) of framebuffer 0 of the current
  * context, a window of `width` x `height` pixels.

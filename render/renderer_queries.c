@@ -67,14 +67,30 @@ static bool has_strains(const struct tl_shapes_input *shapes)
     return false;
 }
 
+static bool check_layers(const tl_renderer *renderer, tl_error *error)
+{
+    return has(renderer, TL_MADE_SAMPLES) ||
+           tl_fail(error, TL_USAGE,
+                   "renderer: the last frame kept no layers: set aovs of the frame before drawing it");
+}
+
 bool tl_renderer_read_aovs(const tl_renderer *renderer, struct tl_aovs *out, tl_error *error)
 {
     *out = (struct tl_aovs){0};
-    if (!has(renderer, TL_MADE_SAMPLES))
-        return tl_fail(error, TL_USAGE,
-                       "renderer: the last frame kept no layers: set aovs of the frame before drawing it");
+    if (!check_layers(renderer, error))
+        return false;
     const struct tl_inspect_request request = inspect_request(renderer);
     tl_aovs_make(&request, has_strains(&renderer->resources.shapes), out);
+    return true;
+}
+
+bool tl_renderer_read_garment(const tl_renderer *renderer, tl_image *out, tl_error *error)
+{
+    *out = (tl_image){0};
+    if (!check_layers(renderer, error))
+        return false;
+    const struct tl_inspect_request request = inspect_request(renderer);
+    *out = tl_aovs_make_garment(&request);
     return true;
 }
 

@@ -16,7 +16,7 @@ enum tl_flag_set {
     TL_FLAGS_FRAME = 1 << 2,    /* --frame N */
     TL_FLAGS_FRAMES = 1 << 3,   /* --frames A:B */
     TL_FLAGS_JSON = 1 << 4,     /* --json */
-    TL_FLAGS_METRIC = 1 << 5,   /* --ldr --hdr */
+    TL_FLAGS_METRIC = 1 << 5,   /* --mask FILE --ldr --hdr */
     TL_FLAGS_WINDOW = 1 << 6,   /* --screenshots DIR --max-frames N --fresh */
     TL_FLAGS_AXIS = 1 << 7,     /* --axis NAME */
     TL_FLAGS_QUICK = 1 << 8,    /* --quick */
@@ -43,6 +43,7 @@ struct tl_arguments {
     const char *axis;
     const char *layout, *from;
     const char *path, *video, *against, *replay;
+    const char *mask;
     struct { /* names with commas between them */
         const char *garments, *fabrics, *colourways, *environments, *views;
     } sheet;

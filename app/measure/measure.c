@@ -1,7 +1,6 @@
 #include "app/measure/measure.h"
 
 #include "config/memory.h"
-#include "render/metrics/compare.h"
 
 #include <math.h>
 
@@ -58,17 +57,21 @@ bool tl_reference_frame_draw(struct tl_variant_run *reference, const tl_frame *f
         !tl_renderer_read(reference->renderer, &out->image, error))
         return false;
     out->standard_error = tl_renderer_standard_error(reference->renderer);
-    return true;
+    return !frame->aovs || (tl_renderer_show_image(reference->renderer, &out->shown, error) &&
+                            tl_renderer_read_garment(reference->renderer, &out->garment, error));
 }
 
 void tl_reference_frame_release(struct tl_reference_frame *reference)
 {
     tl_image_release(&reference->image);
+    tl_image_release(&reference->shown);
+    tl_image_release(&reference->garment);
     reference->standard_error = 0;
 }
 
-bool tl_reference_frame_compare(const tl_image *image, const struct tl_reference_frame *reference,
-                                struct tl_measured_error *out, tl_error *error)
+bool tl_reference_frame_compare(const tl_image *image, const tl_image *shown,
+                                const struct tl_reference_frame *reference, struct tl_measured_error *out,
+                                tl_error *error)
 {
     struct tl_comparison result;
     if (!tl_image_compare(image, &reference->image, -1, 0, &result, error))
@@ -79,16 +82,20 @@ bool tl_reference_frame_compare(const tl_image *image, const struct tl_reference
                                       .flip_mean = result.flip_mean,
                                       .max_abs = result.max_abs,
                                       .worst_share = result.worst_share,
-                                      .covered = result.covered};
-    return true;
+                                      .covered = result.covered,
+                                      .garment = {.flip_mean = NAN, .flip_worst = NAN}};
+    return !reference->garment.texels ||
+           tl_image_compare_object(shown, &reference->shown, &reference->garment, 0, &out->garment, error);
 }
 
 bool tl_variant_run_compare(struct tl_variant_run *run, const struct tl_reference_frame *reference,
                             struct tl_measured_error *out, tl_error *error)
 {
-    tl_image image = {0};
+    tl_image image = {0}, shown = {0};
     bool done = tl_renderer_read(run->renderer, &image, error) &&
-                tl_reference_frame_compare(&image, reference, out, error);
+                (!reference->garment.texels || tl_renderer_show_image(run->renderer, &shown, error)) &&
+                tl_reference_frame_compare(&image, &shown, reference, out, error);
     tl_image_release(&image);
+    tl_image_release(&shown);
     return done;
 }

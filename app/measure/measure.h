@@ -8,6 +8,7 @@
 #include "app/measure/cost.h"
 #include "app/measure/motion.h"
 #include "app/scene/headless.h"
+#include "render/metrics/compare.h"
 
 /* Settings over those of a scene: a preset's (but its image table), then single options. */
 #define TL_SETUP_ASSIGNMENTS 8
@@ -46,6 +47,9 @@ bool tl_variant_run_draw(struct tl_variant_run *run, const tl_frame *frame, stru
 struct tl_reference_frame {
     tl_image image; /* as tl_renderer_read gives it; no texels: not drawn yet */
     double standard_error;
+    /* Only of a frame with tl_frame.aovs, else without texels: what the garment's error is measured by. */
+    tl_image shown;   /* as tl_renderer_show_image gives it */
+    tl_image garment; /* as tl_renderer_read_garment gives it */
 };
 bool tl_reference_frame_draw(struct tl_variant_run *reference, const tl_frame *frame,
                              struct tl_reference_frame *out, tl_error *error);
@@ -59,10 +63,15 @@ struct tl_measured_error {
     double max_abs;
     double worst_share; /* of the square error: the share of its worst pixel */
     size_t covered;     /* pixels */
+    /* As shown, over the pixels where the reference shows the garment; the reference's noise is part of it.
+     * Without pixels, and NaN, when it shows none of it or was drawn without tl_frame.aovs. */
+    struct tl_object_error garment;
 };
-/* Compares an image as tl_renderer_read returns it. */
-bool tl_reference_frame_compare(const tl_image *image, const struct tl_reference_frame *reference,
-                                struct tl_measured_error *out, tl_error *error);
+/* Compares an image as tl_renderer_read returns it, and for the garment's error the picture as
+ * tl_renderer_show_image returns it. `shown` may be NULL when the reference was drawn without tl_frame.aovs. */
+bool tl_reference_frame_compare(const tl_image *image, const tl_image *shown,
+                                const struct tl_reference_frame *reference, struct tl_measured_error *out,
+                                tl_error *error);
 /* Compares the image that the run drew last. */
 bool tl_variant_run_compare(struct tl_variant_run *run, const struct tl_reference_frame *reference,
                             struct tl_measured_error *out, tl_error *error);

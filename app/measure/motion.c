@@ -56,7 +56,7 @@ static float size_of(const tl_surface *garment)
 void tl_motion_begin(struct tl_motion *motion, tl_session *session)
 {
     tl_frame frame = tl_session_frame(session);
-    const tl_surface *garment = find_surface(&frame, "garment");
+    const tl_surface *garment = find_surface(&frame, TL_SURFACE_GARMENT);
     *motion = (struct tl_motion){.session = session};
     motion->pulls = garment && tl_session_cloth(session) && !tl_session_plays_clip(session);
     if (!motion->pulls)
@@ -206,7 +206,7 @@ struct tl_recording_report tl_recording_report(const tl_recording *recording)
     tl_frame frame = tl_session_frame(recording->session);
     report.cloth_cpu_ms =
         recording->count > 1 ? tl_median(recording->cloth_cpu_ms + 1, (size_t)recording->count - 1) : 0;
-    const tl_surface *garment = find_surface(&frame, "garment");
+    const tl_surface *garment = find_surface(&frame, TL_SURFACE_GARMENT);
     if (!garment)
         return report;
     size_t s = (size_t)(garment - frame.surfaces);

@@ -646,7 +646,7 @@ tl_frame tl_session_frame(tl_session *session)
             tl_moving_surface(&session->body, "avatar", &session->appearance.avatar);
     if (session->garment) {
         tl_surface *garment = &session->surfaces[session->surface_count++];
-        *garment = tl_moving_surface(&session->dress, "garment", &session->appearance.garment);
+        *garment = tl_moving_surface(&session->dress, TL_SURFACE_GARMENT, &session->appearance.garment);
         garment->strains = strains_of_garment(session);
     }
     for (size_t i = 0; i < session->surface_count; i++)
@@ -683,7 +683,7 @@ tl_frame tl_session_frame_in(const struct tl_session_models *models, const struc
     if (models->avatar)
         surfaces[count++] = surface_at_rest(models->avatar, "avatar", &appearance->avatar);
     if (models->garment)
-        surfaces[count++] = surface_at_rest(models->garment, "garment", &appearance->garment);
+        surfaces[count++] = surface_at_rest(models->garment, TL_SURFACE_GARMENT, &appearance->garment);
     return (tl_frame){.surfaces = surfaces, .surface_count = count};
 }
 

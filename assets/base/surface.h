@@ -6,8 +6,11 @@
 #include "assets/base/material.h"
 #include "assets/base/mesh.h"
 
+/* The name of the surface that is judged: errors of a picture in motion are those of its pixels. */
+#define TL_SURFACE_GARMENT "garment"
+
 typedef struct tl_surface {
-    const char *name; /* "garment", "avatar", "ground" */
+    const char *name; /* TL_SURFACE_GARMENT, "avatar", "ground" */
     size_t vertex_count;
     const vec3s *positions; /* metres, world */
     const vec3s *normals;   /* unit; towards the outside */

@@ -97,7 +97,8 @@ struct reader {
     tl_exr_file *file;
     struct tl_exr_part part;
     int width, height;
-    bool luminance; /* planes are Y, RY, BY and not R, G, B */
+    const char *wanted; /* the one channel to read; NULL: the colours */
+    bool luminance;     /* planes are Y, RY, BY and not R, G, B */
     struct plane planes[4];
 };
 
@@ -172,6 +173,8 @@ static bool choose_channels(struct reader *reader, tl_error *error)
     const struct tl_exr_part *part = &reader->part;
     if (part->channel_count < 1)
         return fail_damaged(reader->source, "it has no channels", error);
+    if (reader->wanted)
+        return set_plane(reader, 0, find_channel(part, reader->wanted), error);
     bool colour = find_channel(part, "R") || find_channel(part, "G") || find_channel(part, "B");
     reader->luminance = !colour && find_channel(part, "Y");
     if (!colour && !reader->luminance) {
@@ -280,8 +283,10 @@ static bool load_part(struct reader *reader, tl_image *out, tl_error *error)
         return tl_fail(error, TL_INPUT, "%s: holds deep data only: flatten it first", reader->source->path);
     if (!check_window(reader, error) || !check_chunk(reader, error) || !choose_channels(reader, error))
         return false;
-    tl_image image =
-        tl_image_create(reader->width, reader->height, reader->planes[ALPHA].channel ? 4 : 3, TL_IMAGE_F32);
+    if (reader->wanted && !reader->planes[0].channel)
+        return true;
+    int channels = reader->wanted ? 1 : reader->planes[ALPHA].channel ? 4 : 3;
+    tl_image image = tl_image_create(reader->width, reader->height, channels, TL_IMAGE_F32);
     place_planes(reader, &image);
     bool read = read_pixels(reader, error);
     if (read)
@@ -295,10 +300,10 @@ static bool load_part(struct reader *reader, tl_image *out, tl_error *error)
     return read;
 }
 
-static bool load_source(const struct source *source, tl_image *out, enum tl_exr_envmap *envmap,
-                        tl_error *error)
+static bool load_source(const struct source *source, const char *wanted, tl_image *out,
+                        enum tl_exr_envmap *envmap, tl_error *error)
 {
-    struct reader reader = {.source = source};
+    struct reader reader = {.source = source, .wanted = wanted};
     char complaint[TL_EXR_COMPLAINT];
     if (!check_attributes(source, error))
         return false;
@@ -312,7 +317,8 @@ static bool load_source(const struct source *source, tl_image *out, enum tl_exr_
     return loaded;
 }
 
-bool tl_exr_load(const char *path, tl_image *out, enum tl_exr_envmap *envmap, tl_error *error)
+static bool load(const char *path, const char *wanted, tl_image *out, enum tl_exr_envmap *envmap,
+                 tl_error *error)
 {
     *out = (tl_image){0};
     *envmap = TL_EXR_NOT_ENVMAP;
@@ -321,9 +327,20 @@ bool tl_exr_load(const char *path, tl_image *out, enum tl_exr_envmap *envmap, tl
     if (!tl_file_read(path, &data, &size, error))
         return false;
     const struct source source = {.path = path, .data = (const uint8_t *)data, .size = size};
-    bool loaded = load_source(&source, out, envmap, error);
+    bool loaded = load_source(&source, wanted, out, envmap, error);
     free(data);
     return loaded;
+}
+
+bool tl_exr_load(const char *path, tl_image *out, enum tl_exr_envmap *envmap, tl_error *error)
+{
+    return load(path, NULL, out, envmap, error);
+}
+
+bool tl_exr_load_channel(const char *path, const char *channel, tl_image *out, tl_error *error)
+{
+    enum tl_exr_envmap envmap;
+    return load(path, channel, out, &envmap, error);
 }
 
 /* ---- Writing ---- */

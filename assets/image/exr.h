@@ -19,6 +19,10 @@ enum tl_exr_envmap { TL_EXR_NOT_ENVMAP, TL_EXR_LATLONG, TL_EXR_CUBE }; /* the fi
  * image; the display window is ignored. *out is zeroed on failure. */
 bool tl_exr_load(const char *path, tl_image *out, enum tl_exr_envmap *envmap, tl_error *error);
 
+/* Reads one channel by its full name, such as "garment.Y", into *out: F32, 1 channel. True with *out empty
+ * when the file has no such channel. *out is zeroed on failure. */
+bool tl_exr_load_channel(const char *path, const char *channel, tl_image *out, tl_error *error);
+
 /* A layer of a file to be written. */
 struct tl_exr_layer {
     const char *const *channel_names; /* [image->channels], such as "R", "G", "B" or "normal.X" ... */

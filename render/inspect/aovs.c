@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-enum layer { NORMAL, POINT, UV, ALBEDO, VISIBILITY, STRAIN };
+enum layer { NORMAL, POINT, UV, ALBEDO, VISIBILITY, STRAIN, GARMENT };
 
 static const char *const normal_channels[] = {"N.x", "N.y", "N.z"};
 static const char *const point_channels[] = {"P.x", "P.y", "P.z"};
@@ -10,6 +10,7 @@ static const char *const uv_channels[] = {"uv.u", "uv.v"};
 static const char *const albedo_channels[] = {"albedo.R", "albedo.G", "albedo.B"};
 static const char *const visibility_channels[] = {"visibility.Y"};
 static const char *const strain_channels[] = {"strain.warp", "strain.weft", "strain.shear"};
+static const char *const garment_channels[] = {TL_AOV_GARMENT};
 
 static const struct kind {
     const char *const *channels;
@@ -19,7 +20,17 @@ static const struct kind {
                         [UV] = {uv_channels, 2},
                         [ALBEDO] = {albedo_channels, 3},
                         [VISIBILITY] = {visibility_channels, 1},
-                        [STRAIN] = {strain_channels, 3}};
+                        [STRAIN] = {strain_channels, 3},
+                        [GARMENT] = {garment_channels, 1}};
+
+static bool is_garment(const struct tl_inspect_request *request, const tl_sample *sample)
+{
+    uint32_t corners[3];
+    size_t index;
+    const tl_surface *surface =
+        tl_triangle_find(request->ranges, sample->triangle & ~TL_SAMPLE_BACK, corners, &index);
+    return strcmp(surface->name, TL_SURFACE_GARMENT) == 0;
+}
 
 static void fill(const struct tl_inspect_request *request, size_t number, enum layer layer, float *texel)
 {
@@ -34,6 +45,9 @@ static void fill(const struct tl_inspect_request *request, size_t number, enum l
         return;
     case ALBEDO:
         memcpy(texel, sample->diffuse.raw, sizeof sample->diffuse);
+        return;
+    case GARMENT:
+        *texel = is_garment(request, sample);
         return;
     case UV:
     case VISIBILITY:
@@ -70,13 +84,19 @@ static tl_image read_layer(const struct tl_inspect_request *request, enum layer 
 void tl_aovs_make(const struct tl_inspect_request *request, bool has_strains, struct tl_aovs *out)
 {
     *out = (struct tl_aovs){0};
-    bool is_known[TL_AOVS_MAX] = {[NORMAL] = true, [POINT] = true, [UV] = true, [ALBEDO] = true};
+    bool is_known[TL_AOVS_MAX] = {
+        [NORMAL] = true, [POINT] = true, [UV] = true, [ALBEDO] = true, [GARMENT] = true};
     is_known[VISIBILITY] = request->points != NULL;
     is_known[STRAIN] = has_strains;
     for (int layer = 0; layer < TL_AOVS_MAX; layer++)
         if (is_known[layer])
             out->items[out->count++] = (struct tl_aov){.channels = kinds[layer].channels,
                                                        .image = read_layer(request, (enum layer)layer)};
+}
+
+tl_image tl_aovs_make_garment(const struct tl_inspect_request *request)
+{
+    return read_layer(request, GARMENT);
 }
 
 void tl_aovs_release(struct tl_aovs *aovs)

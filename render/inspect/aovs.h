@@ -4,7 +4,10 @@
 
 #include "render/inspect/inspect.h"
 
-#define TL_AOVS_MAX 6
+#define TL_AOVS_MAX 7
+
+/* The one channel of the layer that is 1 where the garment (TL_SURFACE_GARMENT) is nearest, else 0. */
+#define TL_AOV_GARMENT "garment.Y"
 
 struct tl_aov {
     const char *const *channels; /* "N.x", "N.y", "N.z" ...: as many as the image has */
@@ -12,7 +15,8 @@ struct tl_aov {
 };
 
 /* N and P: world, metres; uv: as the mesh has them; albedo: kd, linear; visibility: as struct tl_inspection
- * has it, in [0, 1], only where rays keep it; strain: shares of 1, only where a surface knows its strains. */
+ * has it, in [0, 1], only where rays keep it; strain: shares of 1, only where a surface knows its strains;
+ * garment: 1 or 0. */
 struct tl_aovs {
     int count;
     struct tl_aov items[TL_AOVS_MAX];
@@ -23,5 +27,8 @@ struct tl_aovs {
  * places of different surfaces have no mean. */
 void tl_aovs_make(const struct tl_inspect_request *request, bool has_strains, struct tl_aovs *out);
 void tl_aovs_release(struct tl_aovs *aovs);
+/* The garment's layer alone, one channel: the pixels over which render/metrics/compare.h measures the
+ * garment. To be released. */
+tl_image tl_aovs_make_garment(const struct tl_inspect_request *request);
 
 #endif

@@ -133,20 +133,31 @@ static bool measure_flip(const struct tl_flip_frame *frame, const struct plain *
     return true;
 }
 
+static bool check_sizes(const tl_image *a, const tl_image *b, tl_error *error)
+{
+    return (a->width == b->width && a->height == b->height) ||
+           tl_fail(error, TL_INPUT, "compare: one image is %d x %d, the other %d x %d: render both the same",
+                   a->width, a->height, b->width, b->height);
+}
+
+static bool frame_of(const tl_image *image, double pixels_per_degree, struct tl_flip_frame *out,
+                     tl_error *error)
+{
+    *out = (struct tl_flip_frame){image->width, image->height,
+                                  pixels_per_degree > 0 ? pixels_per_degree : TL_FLIP_PIXELS_PER_DEGREE};
+    return (out->pixels_per_degree >= PIXELS_PER_DEGREE_MIN &&
+            out->pixels_per_degree <= PIXELS_PER_DEGREE_MAX) ||
+           tl_fail(error, TL_USAGE, "compare: %g pixels per degree: give %d to %d", pixels_per_degree,
+                   PIXELS_PER_DEGREE_MIN, PIXELS_PER_DEGREE_MAX);
+}
+
 bool tl_image_compare(const tl_image *a, const tl_image *b, int hdr, double pixels_per_degree,
                       struct tl_comparison *out, tl_error *error)
 {
     *out = (struct tl_comparison){0};
-    if (a->width != b->width || a->height != b->height)
-        return tl_fail(error, TL_INPUT,
-                       "compare: one image is %d x %d, the other %d x %d: render both the same", a->width,
-                       a->height, b->width, b->height);
-    struct tl_flip_frame frame = {a->width, a->height, TL_FLIP_PIXELS_PER_DEGREE};
-    if (pixels_per_degree > 0)
-        frame.pixels_per_degree = pixels_per_degree;
-    if (frame.pixels_per_degree < PIXELS_PER_DEGREE_MIN || frame.pixels_per_degree > PIXELS_PER_DEGREE_MAX)
-        return tl_fail(error, TL_USAGE, "compare: %g pixels per degree: give %d to %d", pixels_per_degree,
-                       PIXELS_PER_DEGREE_MIN, PIXELS_PER_DEGREE_MAX);
+    struct tl_flip_frame frame;
+    if (!check_sizes(a, b, error) || !frame_of(a, pixels_per_degree, &frame, error))
+        return false;
 
     struct plain test = {0}, reference = {0};
     bool done = false;
@@ -162,6 +173,64 @@ bool tl_image_compare(const tl_image *a, const tl_image *b, int hdr, double pixe
     out->hdr = hdr < 0 ? needs_hdr(&reference) : hdr > 0;
     done = measure_flip(&frame, &test, &reference, out, error);
 cleanup:
+    plain_release(&test);
+    plain_release(&reference);
+    return done;
+}
+
+/* ---- One object's pixels ---- */
+
+static bool is_object(const tl_image *mask, size_t pixel)
+{
+    return channel_value(mask, pixel * (size_t)mask->channels, false) > 0.5f;
+}
+
+static int compare_falling(const void *a, const void *b)
+{
+    float first = *(const float *)a, second = *(const float *)b;
+    return (first < second) - (first > second);
+}
+
+/* The mean of the first `count` values. */
+static double mean_of(const float *values, size_t count)
+{
+    double sum = 0;
+    for (size_t i = 0; i < count; i++)
+        sum += (double)values[i];
+    return count ? sum / (double)count : (double)NAN;
+}
+
+/* Keeps the mask's values of the map, and sorts them from the largest down. */
+static void measure_object(const tl_image *mask, float *map, size_t count, struct tl_object_error *out)
+{
+    for (size_t i = 0; i < count; i++)
+        if (is_object(mask, i))
+            map[out->pixels++] = map[i];
+    qsort(map, out->pixels, sizeof *map, compare_falling);
+    out->flip_mean = mean_of(map, out->pixels);
+    out->flip_worst = mean_of(map, (size_t)ceil(TL_FLIP_WORST_SHARE * (double)out->pixels));
+}
+
+bool tl_image_compare_object(const tl_image *a, const tl_image *b, const tl_image *mask,
+                             double pixels_per_degree, struct tl_object_error *out, tl_error *error)
+{
+    *out = (struct tl_object_error){.flip_mean = NAN, .flip_worst = NAN};
+    struct tl_flip_frame frame;
+    if (!check_sizes(a, b, error) || !frame_of(a, pixels_per_degree, &frame, error))
+        return false;
+    if (mask->width != a->width || mask->height != a->height)
+        return tl_fail(error, TL_INPUT,
+                       "compare: the mask is %d x %d, the images are %d x %d: give one of "
+                       "their size",
+                       mask->width, mask->height, a->width, a->height);
+    struct plain test = {0}, reference = {0};
+    bool done = plain_create(a, "tested", &test, error) && plain_create(b, "reference", &reference, error);
+    if (done) {
+        float *map = TL_NEW_ARRAY(float, test.count);
+        tl_flip_ldr(&frame, test.rgb, reference.rgb, map);
+        measure_object(mask, map, test.count, out);
+        free(map);
+    }
     plain_release(&test);
     plain_release(&reference);
     return done;

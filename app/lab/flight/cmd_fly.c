@@ -131,7 +131,8 @@ static bool check_kept(const struct flying *flying, tl_error *error)
     const struct tl_image_params *image = &flying->settings.image;
     int every = flying->options.oracle_every;
     size_t kept = every ? ((size_t)flying->options.frames + (size_t)every - 1) / (size_t)every : 0;
-    size_t bytes = kept * (size_t)image->width * (size_t)image->height * 4 * sizeof(float);
+    const size_t pixel_bytes = 4 * sizeof(float) + 3; /* linear RGBA, and as shown */
+    size_t bytes = kept * (size_t)image->width * (size_t)image->height * pixel_bytes;
     return bytes <= LIMIT_KEPT_BYTES ||
            tl_fail(error, TL_USAGE,
                    "--oracle: %d: %zu images of %d x %d pixels would wait in %zu MB: take fewer", every, kept,

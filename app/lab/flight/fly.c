@@ -123,25 +123,26 @@ static bool keep_shown(struct recorder *recorder, int number, tl_error *error)
     return kept;
 }
 
-static bool keep_linear(struct recorder *recorder, int number, tl_error *error)
+/* Hashes the image, and keeps it where it is to be judged. */
+static bool keep_images(struct recorder *recorder, int number, tl_error *error)
 {
     const struct tl_fly_options *options = recorder->options;
     struct tl_flight *flight = recorder->flight;
     bool judged = options->oracle_every > 0 && number % options->oracle_every == 0;
-    tl_image image = {0};
+    tl_image image = {0}, shown = {0};
     if (!options->hash && !judged)
         return true;
-    if (!tl_renderer_read(recorder->headless->renderer, &image, error))
-        return false;
-    if (options->hash)
+    bool read = tl_renderer_read(recorder->headless->renderer, &image, error) &&
+                (!judged || tl_renderer_show_image(recorder->headless->renderer, &shown, error));
+    if (read && options->hash)
         flight->frames[number].hash = hash_of(&image);
-    if (judged) {
+    if (read && judged) {
         flight->kept = tl_resize(flight->kept, (size_t)flight->kept_count + 1, sizeof *flight->kept);
-        flight->kept[flight->kept_count++] = (struct tl_flight_picture){number, image};
+        flight->kept[flight->kept_count++] = (struct tl_flight_kept){number, image, shown};
     } else {
         tl_image_release(&image);
     }
-    return true;
+    return read;
 }
 
 static void record_jobs(struct tl_flight *flight, const tl_plan *plan, struct tl_flight_frame *frame)
@@ -203,7 +204,7 @@ static bool draw_timed(struct recorder *recorder, int number, struct tl_flight_f
 static bool record_frame(struct recorder *recorder, int number, tl_error *error)
 {
     struct tl_flight *flight = recorder->flight;
-    struct tl_flight_frame frame = {.flip_mean = NAN, .rel_rmse = NAN};
+    struct tl_flight_frame frame = TL_FLIGHT_FRAME_EMPTY;
     if (!draw_timed(recorder, number, &frame, error))
         return false;
     const tl_plan *plan = tl_renderer_last_plan(recorder->headless->renderer);
@@ -213,7 +214,7 @@ static bool record_frame(struct recorder *recorder, int number, tl_error *error)
     frame.memory_bytes = tl_renderer_memory(recorder->headless->renderer).total;
     flight->frames[number] = frame;
     flight->count = number + 1;
-    return keep_linear(recorder, number, error) && keep_shown(recorder, number, error);
+    return keep_images(recorder, number, error) && keep_shown(recorder, number, error);
 }
 
 static int warm_up_frames(int planned, double frame_rate)
@@ -260,22 +261,28 @@ void tl_flight_release(struct tl_flight *flight)
 {
     release_pictures(flight->worst, flight->worst_count);
     release_pictures(flight->stops, flight->stop_count);
-    release_pictures(flight->kept, flight->kept_count);
+    for (int i = 0; i < flight->kept_count; i++) {
+        tl_image_release(&flight->kept[i].image);
+        tl_image_release(&flight->kept[i].shown);
+    }
     free(flight->kept);
     free(flight->frames);
     tl_path_release(&flight->path);
     *flight = (struct tl_flight){0};
 }
 
-static bool judge(struct tl_variant_run *reference, tl_session *session,
-                  const struct tl_flight_picture *picture, struct tl_flight_frame *frame, tl_error *error)
+static bool judge(struct tl_variant_run *reference, tl_session *session, const struct tl_flight_kept *kept,
+                  struct tl_flight_frame *frame, tl_error *error)
 {
     struct tl_reference_frame frame_reference = {0};
     struct tl_measured_error measured;
-    const tl_frame shown = tl_session_frame(session);
+    tl_frame shown = tl_session_frame(session);
+    shown.aovs = true;
     bool judged = tl_reference_frame_draw(reference, &shown, &frame_reference, error) &&
-                  tl_reference_frame_compare(&picture->image, &frame_reference, &measured, error);
+                  tl_reference_frame_compare(&kept->image, &kept->shown, &frame_reference, &measured, error);
     if (judged) {
+        frame->garment_flip = measured.garment.flip_mean;
+        frame->garment_flip_worst = measured.garment.flip_worst;
         frame->flip_mean = measured.flip_mean;
         frame->rel_rmse = measured.rel_rmse;
     }

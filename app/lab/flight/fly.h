@@ -13,6 +13,8 @@
 #include "app/scene/headless.h"
 #include "app/scene/path.h"
 
+#include <math.h>
+
 #define TL_FLIGHT_WORST   6 /* frames that are shown as pictures: those that took longest ... */
 #define TL_FLIGHT_STOPS   8 /* ... and some of the way */
 #define TL_JOB_NAME_BYTES 24
@@ -23,14 +25,30 @@ struct tl_flight_frame {
     double error;        /* estimated, of the reduced levels; NaN: unknown */
     double job_ms[TL_JOBS_MAX];
     struct tl_quality levels;
-    size_t memory_bytes;        /* the renderer's */
-    uint64_t hash;              /* of the linear image; 0: none */
-    double flip_mean, rel_rmse; /* against the reference; NaN: not measured */
+    size_t memory_bytes; /* the renderer's */
+    uint64_t hash;       /* of the linear image; 0: none */
+    /* Against the reference; NaN: not measured. The garment's error is FLIP of the picture as shown, over the
+     * pixels of the garment (tl_image_compare_object), and NaN also where none of it is in sight; the other
+     * two are over all covered pixels, of which most are the ground. */
+    double garment_flip, garment_flip_worst; /* mean; mean of the largest 5 % */
+    double flip_mean, rel_rmse;
 };
+/* A frame of which nothing is measured yet. */
+#define TL_FLIGHT_FRAME_EMPTY                                                                                \
+    {                                                                                                        \
+        .garment_flip = NAN, .garment_flip_worst = NAN, .flip_mean = NAN, .rel_rmse = NAN                    \
+    }
 
 struct tl_flight_picture {
     int frame;
     tl_image image; /* as a person would see it */
+};
+
+/* What waits for the reference. */
+struct tl_flight_kept {
+    int frame;
+    tl_image image; /* linear */
+    tl_image shown; /* as a person would see it, full size */
 };
 
 struct tl_flight {
@@ -47,7 +65,7 @@ struct tl_flight {
     /* Only of a flight that was recorded by this process. */
     struct tl_flight_picture worst[TL_FLIGHT_WORST], stops[TL_FLIGHT_STOPS]; /* slowest first; in order */
     int worst_count, stop_count;
-    struct tl_flight_picture *kept; /* linear images to compare with the reference */
+    struct tl_flight_kept *kept; /* images to compare with the reference */
     int kept_count;
 };
 

@@ -22,7 +22,9 @@ static const struct {
     {"cloth_ms", offsetof(struct tl_flight_frame, cloth_ms), "%.4f"},
     {"predicted_ms", offsetof(struct tl_flight_frame, predicted_ms), "%.4f"},
     {"error_estimate", offsetof(struct tl_flight_frame, error), "%.6g"},
-    {"mean_flip", offsetof(struct tl_flight_frame, flip_mean), "%.6g"},
+    {"garment_flip", offsetof(struct tl_flight_frame, garment_flip), "%.6g"},
+    {"garment_flip_worst", offsetof(struct tl_flight_frame, garment_flip_worst), "%.6g"},
+    {"covered_flip", offsetof(struct tl_flight_frame, flip_mean), "%.6g"},
     {"relative_rmse", offsetof(struct tl_flight_frame, rel_rmse), "%.6g"},
 };
 
@@ -197,7 +199,7 @@ static bool read_frame(struct table *table, char *line, struct tl_flight *flight
 {
     flight->frames = tl_resize(flight->frames, (size_t)flight->count + 1, sizeof *flight->frames);
     struct tl_flight_frame *frame = &flight->frames[flight->count];
-    *frame = (struct tl_flight_frame){.flip_mean = NAN, .rel_rmse = NAN};
+    *frame = (struct tl_flight_frame)TL_FLIGHT_FRAME_EMPTY;
     int column = 0;
     for (char *cell; (cell = strsep(&line, ",")); column++)
         if (column == table->column_count || !read_cell(table, column, cell, flight, frame))

@@ -69,7 +69,7 @@ static void measure_times(const struct tl_flight *flight, struct numbers *number
 
 static void measure_oracle(const struct tl_flight *flight, struct tl_flight_figures *out)
 {
-    double flip = 0, rmse = 0, worst = 0;
+    double flip = 0, rmse = 0, highest = 0, garment = 0, garment_worst = 0, garment_highest = 0;
     for (int i = 0; i < flight->count; i++) {
         const struct tl_flight_frame *frame = &flight->frames[i];
         if (!isfinite(frame->flip_mean) || !isfinite(frame->rel_rmse))
@@ -77,12 +77,22 @@ static void measure_oracle(const struct tl_flight *flight, struct tl_flight_figu
         out->oracle_frames++;
         flip += frame->flip_mean;
         rmse += frame->rel_rmse;
-        worst = fmax(worst, frame->flip_mean);
+        highest = fmax(highest, frame->flip_mean);
+        if (!isfinite(frame->garment_flip) || !isfinite(frame->garment_flip_worst))
+            continue;
+        out->garment_frames++;
+        garment += frame->garment_flip;
+        garment_worst += frame->garment_flip_worst;
+        garment_highest = fmax(garment_highest, frame->garment_flip);
     }
+    double shown = out->garment_frames ? out->garment_frames : (double)NAN;
+    out->garment_flip = garment / shown;
+    out->garment_flip_worst = garment_worst / shown;
+    out->garment_flip_max = out->garment_frames ? garment_highest : (double)NAN;
     double count = out->oracle_frames ? out->oracle_frames : (double)NAN;
     out->flip_mean = flip / count;
     out->rel_rmse = rmse / count;
-    out->flip_worst = out->oracle_frames ? worst : (double)NAN;
+    out->flip_max = out->oracle_frames ? highest : (double)NAN;
 }
 
 struct tl_flight_figures tl_flight_measure(const struct tl_flight *flight)

@@ -18,7 +18,12 @@ struct tl_flight_figures {
     double estimated_error;  /* mean of the frames' estimates; NaN: none */
     size_t memory_bytes;     /* largest */
     int oracle_frames;       /* frames compared with the reference, warm-up included */
-    double flip_mean, rel_rmse, flip_worst; /* over these frames: means, and the largest; NaN: none */
+    /* Over these frames; NaN: none. */
+    int garment_frames;        /* those of them that show the garment */
+    double garment_flip;       /* mean FLIP over the garment's pixels: mean of the frames, ... */
+    double garment_flip_max;   /* ... and the largest */
+    double garment_flip_worst; /* mean of the largest 5 % of the garment's pixels: mean of the frames */
+    double flip_mean, rel_rmse, flip_max; /* over all covered pixels: means, and the largest mean FLIP */
 };
 struct tl_flight_figures tl_flight_measure(const struct tl_flight *flight);
 

@@ -76,6 +76,7 @@ static bool need_reference(struct run *run, int number, const struct tl_referenc
     if (kept->image.texels)
         return true;
     tl_frame frame = frame_of(run, number);
+    frame.aovs = run->experiment->by_flip; /* whose error is the garment's */
     return tl_reference_frame_draw(&run->reference, &frame, kept, error) &&
            (!last || keep_picture(run, &run->reference, "the truth", &(struct tl_measured_error){0}, error));
 }
@@ -151,11 +152,15 @@ static bool measure_motion(struct run *run, struct entry *entry, tl_error *error
     if (!compare(run, variant, warm + count - 1, &last, error))
         return false;
     add_row(run, entry, 1, cpu_ms, wall_ms, count,
-            (struct tl_measured_error){.rel_rmse = 0.5 * (first.rel_rmse + last.rel_rmse),
-                                       .standard_error = 0.5 * (first.standard_error + last.standard_error),
-                                       .flip_mean = 0.5 * (first.flip_mean + last.flip_mean),
-                                       .max_abs = fmax(first.max_abs, last.max_abs),
-                                       .covered = last.covered});
+            (struct tl_measured_error){
+                .rel_rmse = 0.5 * (first.rel_rmse + last.rel_rmse),
+                .standard_error = 0.5 * (first.standard_error + last.standard_error),
+                .flip_mean = 0.5 * (first.flip_mean + last.flip_mean),
+                .max_abs = fmax(first.max_abs, last.max_abs),
+                .covered = last.covered,
+                .garment = {.pixels = last.garment.pixels,
+                            .flip_mean = 0.5 * (first.garment.flip_mean + last.garment.flip_mean),
+                            .flip_worst = 0.5 * (first.garment.flip_worst + last.garment.flip_worst)}});
     return !entry->technique->shown || keep_picture(run, variant, entry->technique->page, &last, error);
 }
 

@@ -43,11 +43,26 @@ static float *read_channel(const char *path, const char *name, size_t *count)
 static void layers_are_there(void **state)
 {
     (void)state;
-    static const char *const names[] = {"R",           "G",           "B",           "A",
-                                        "N.x",         "N.y",         "N.z",         "P.x",
-                                        "P.y",         "P.z",         "uv.u",        "uv.v",
-                                        "albedo.R",    "albedo.G",    "albedo.B",    "visibility.Y",
-                                        "strain.warp", "strain.weft", "strain.shear"};
+    static const char *const names[] = {"R",
+                                        "G",
+                                        "B",
+                                        "A",
+                                        "N.x",
+                                        "N.y",
+                                        "N.z",
+                                        "P.x",
+                                        "P.y",
+                                        "P.z",
+                                        "uv.u",
+                                        "uv.v",
+                                        "albedo.R",
+                                        "albedo.G",
+                                        "albedo.B",
+                                        "visibility.Y",
+                                        "strain.warp",
+                                        "strain.weft",
+                                        "strain.shear",
+                                        "garment.Y"};
     enum { COUNT = TL_COUNT(names) };
     const char *path = TOILE_SCRATCH_DIR "/aovs.exr", *plain = TOILE_SCRATCH_DIR "/no_aovs.exr";
     float *channels[COUNT];
@@ -56,7 +71,7 @@ static void layers_are_there(void **state)
     for (int c = 0; c < COUNT; c++)
         channels[c] = read_channel(path, names[c], &count);
     assert_int_equal(count, 64 * 64);
-    double strained = 0;
+    double strained = 0, garment = 0;
     for (size_t i = 0; i < count; i++) {
         double n = hypot((double)channels[4][i], hypot((double)channels[5][i], (double)channels[6][i]));
         bool covered = channels[8][i] != 0; /* somewhere above the ground */
@@ -64,8 +79,13 @@ static void layers_are_there(void **state)
         assert_true(channels[8][i] >= 0 && channels[8][i] < 2);
         assert_true(channels[15][i] >= 0 && channels[15][i] <= 1);
         strained = fmax(strained, fabs((double)channels[16][i]));
+        assert_true(channels[19][i] == 0 || channels[19][i] == 1); // NOLINT: one of two values
+        assert_true(channels[19][i] == 0 || covered);              // NOLINT
+        assert_true(channels[16][i] == 0 || channels[19][i] == 1); // NOLINT: only the garment has strains
+        garment += (double)channels[19][i];
     }
     assert_true(strained > 1e-5);
+    assert_true(garment > 100);
 
     render(plain,
            NULL); /* the image is the same with layers and without; and they are only there when asked for */

@@ -17,6 +17,7 @@ refuse "an unknown kind of video" "unknown kind of video" fly -o f --video fligh
 
 $TOILE fly $small --frames 24 --budget 10 --hash --oracle 12 -o a >said
 check "it says what it came to" grep -q "within 1.1 x 10 ms" said
+check "the garment's error comes first" grep -q "FLIP of the garment 0\.[0-9]*, of its worst 5 % 0\.[0-9]*" said
 check "four files" test "$(ls a | tr '\n' ' ')" = "frames.csv path.yaml report.html summary.json "
 status=0
 OMP_NUM_THREADS=1 $TOILE fly $small --no-cache --replay a --against a -o b >said || status=$?
@@ -46,11 +47,20 @@ assert a["frames"] == 24 and a["budget_ms"] == 10 and a["warm_up_frames"] == 12,
 for key in ("p50_ms", "p95_ms", "p99_ms", "within_1_1x", "prediction_error_median"):
     assert math.isfinite(a[key]) and a[key] >= 0, key
 assert a["p50_ms"] <= a["p95_ms"] <= a["p99_ms"] <= a["worst_ms"]
-assert a["oracle"]["frames"] == 2 and 0 < a["oracle"]["flip_mean"] < 1 and a["oracle"]["rel_rmse"] > 0
+assert a["oracle"]["frames"] == 2 and 0 < a["oracle"]["covered_flip_mean"] < 1 and a["oracle"]["rel_rmse"] > 0
+assert a["oracle"]["garment_frames"] == 2
+assert 0 < a["oracle"]["garment_flip_mean"] < a["oracle"]["garment_flip_worst"] < 1
+assert a["oracle"]["garment_flip_mean"] <= a["oracle"]["garment_flip_max"]
 assert a["machine"]["cores"] >= 1 and a["machine"]["gl"] and a["settings"]["image.width"] == "64"
 assert c["budget_ms"] is None and c["within_1_1x"] is None and c["frames"] == 7
 assert c["path"] == "path.yaml" and c == json.load(open("c/summary.json"))
 rows = list(csv.DictReader(open("a/frames.csv")))
+judged = [row for row in rows if row["garment_flip"]]
+assert [row["frame"] for row in judged] == ["0", "12"]
+mean = sum(float(row["garment_flip"]) for row in judged) / 2
+assert abs(mean - a["oracle"]["garment_flip_mean"]) < 1e-5 * mean, mean
+assert all(float(row["garment_flip_worst"]) > float(row["garment_flip"]) for row in judged)
+assert "FLIP of the garment" in open("a/report.html").read()
 for row in rows:
     assert None not in row and None not in row.values(), row
     jobs = sum(float(row[key]) for key in row if key.startswith("job_"))

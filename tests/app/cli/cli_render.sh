@@ -27,11 +27,17 @@ check "Ctrl-C keeps the picture as far as it was averaged, and says so: status 1
     grep -q 'render: stopped at frame 0' told && $TOILE compare average.exr average.exr >/dev/null"
 $TOILE render $fast -o layers.exr --set light.rounds=1 --aov
 check "layers leave the image as it is" sh -c "$TOILE compare plain.exr layers.exr --json | grep -q '\"max_abs\":[[:space:]]*0[,}[:space:]]'"
+$TOILE render $fast -o other.exr --set light.rounds=1 --set light.method=unshadowed
+$TOILE render $fast -o picture.png --set image.view=smooth
+check "compare knows the garment by the reference's layer" sh -c "$TOILE compare plain.exr layers.exr | grep -q 'garment FLIP     0 ' && ! $TOILE compare layers.exr plain.exr | grep -q garment"
+check "... or by a mask, here the reference's own" test "$($TOILE compare other.exr layers.exr --json | grep garment_)" = "$($TOILE compare other.exr plain.exr --mask layers.exr --json | grep garment_)"
+check "... or by the bright part of a picture" sh -c "$TOILE compare other.exr plain.exr --mask picture.png | grep -Eq 'garment FLIP +0\.[0-9]'"
 check "layers are there" test "$(stat -c %s layers.exr)" -gt "$(stat -c %s plain.exr)"
 check "layers want an .exr" sh -c "$TOILE render $fast --aov -o layers.png 2>said; test \$? = 2 && grep -q exr said"
 OMP_NUM_THREADS=1 $TOILE render $fast --no-cache --size 400x400 -o one.png --set image.view=strain_warp
 OMP_NUM_THREADS=2 $TOILE render $fast --no-cache --size 400x400 -o two.png --set image.view=strain_warp
 $TOILE render $fast --size 400x400 -o bare.png --set image.view=strain_warp --set image.legend=false
+refuse "a mask of another size" "the mask is 400 x 400" compare plain.exr plain.exr --mask bare.png
 check "a view is the same at any number of threads" cmp one.png two.png
 check "a view has a legend" sh -c "! cmp -s one.png bare.png"
 check "plan tells what a view runs" sh -c "$TOILE plan $fast --set image.view=strain_warp | grep inspect | grep -q run && $TOILE plan $fast | grep inspect | grep -q drop"

@@ -119,6 +119,11 @@ static void the_oracle_judges_each_image_by_its_own_frame(void **state)
     assert_true(isfinite(right) && right > 0);
     assert_true(flight.frames[0].flip_mean > 0 && flight.frames[3].flip_mean < 1);
     assert_true(isnan(flight.frames[1].flip_mean) && isnan(flight.frames[1].rel_rmse));
+    assert_true(isnan(flight.frames[1].garment_flip) && isnan(flight.frames[1].garment_flip_worst));
+    double garment = flight.frames[0].garment_flip + flight.frames[3].garment_flip;
+    assert_true(garment > 0);
+    for (int i = 0; i < FRAMES; i += 3)
+        assert_true(flight.frames[i].garment_flip_worst > flight.frames[i].garment_flip);
 
     tl_image first = flight.kept[0].image;
     flight.kept[0].image = flight.kept[1].image;
@@ -126,6 +131,13 @@ static void the_oracle_judges_each_image_by_its_own_frame(void **state)
     assert_ok(tl_fly_judge(&headless, &flight, &error), error);
     double wrong = flight.frames[0].rel_rmse + flight.frames[3].rel_rmse;
     assert_true(wrong > 3 * right);
+    assert_near(flight.frames[0].garment_flip + flight.frames[3].garment_flip, garment, 0); /* as shown */
+
+    first = flight.kept[0].shown;
+    flight.kept[0].shown = flight.kept[1].shown;
+    flight.kept[1].shown = first;
+    assert_ok(tl_fly_judge(&headless, &flight, &error), error);
+    assert_true(flight.frames[0].garment_flip + flight.frames[3].garment_flip > 2 * garment);
 
     tl_flight_release(&flight);
     tl_flight_release(&record);

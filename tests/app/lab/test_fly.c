@@ -33,7 +33,8 @@ static struct tl_flight make_flight(int count, uint32_t seed)
     state = seed;
     for (int i = 0; i < count; i++) {
         struct tl_flight_frame *frame = &flight.frames[i];
-        *frame = (struct tl_flight_frame){.flip_mean = NAN, .rel_rmse = NAN, .memory_bytes = 1000};
+        *frame = (struct tl_flight_frame)TL_FLIGHT_FRAME_EMPTY;
+        frame->memory_bytes = 1000;
         frame->cloth_ms = 2 + 0.1 * draw();
         frame->job_ms[0] = 5 + 3 * sin(0.01 * i) + 0.2 * draw();
         frame->job_ms[1] = 3 + 0.2 * draw();
@@ -74,6 +75,8 @@ static void the_warm_up_does_not_count(void **unused)
     flight.frames[50].rel_rmse = 0.2;
     flight.frames[0].flip_mean = 0.3; /* measured, and images have no warm-up */
     flight.frames[0].rel_rmse = 0.4;
+    flight.frames[0].garment_flip = 0.05; /* in the other one the garment is out of sight */
+    flight.frames[0].garment_flip_worst = 0.25;
     struct tl_flight_figures figures = tl_flight_measure(&flight);
     assert_int_equal(figures.judged, 100);
     assert_near(figures.p50_ms, 10, 0);
@@ -87,7 +90,18 @@ static void the_warm_up_does_not_count(void **unused)
     assert_int_equal(figures.oracle_frames, 2);
     assert_near(figures.flip_mean, 0.2, 1e-12);
     assert_near(figures.rel_rmse, 0.3, 1e-12);
-    assert_near(figures.flip_worst, 0.3, 0);
+    assert_near(figures.flip_max, 0.3, 0);
+    assert_int_equal(figures.garment_frames, 1);
+    assert_near(figures.garment_flip, 0.05, 1e-12);
+    assert_near(figures.garment_flip_max, 0.05, 0);
+    assert_near(figures.garment_flip_worst, 0.25, 1e-12);
+    flight.frames[50].garment_flip = 0.15;
+    flight.frames[50].garment_flip_worst = 0.35;
+    figures = tl_flight_measure(&flight);
+    assert_int_equal(figures.garment_frames, 2);
+    assert_near(figures.garment_flip, 0.1, 1e-12);
+    assert_near(figures.garment_flip_max, 0.15, 0);
+    assert_near(figures.garment_flip_worst, 0.3, 1e-12);
     flight.budget_ms = 0;
     figures = tl_flight_measure(&flight);
     assert_true(isnan(figures.within));
@@ -96,6 +110,12 @@ static void the_warm_up_does_not_count(void **unused)
     figures = tl_flight_measure(&flight);
     assert_int_equal(figures.judged, 0);
     assert_true(isnan(figures.p50_ms) && isnan(figures.within) && isnan(figures.mean_ms));
+    flight.frames[0].garment_flip = flight.frames[0].garment_flip_worst = NAN;
+    figures = tl_flight_measure(&flight);
+    assert_int_equal(figures.oracle_frames, 1);
+    assert_int_equal(figures.garment_frames, 0);
+    assert_true(isnan(figures.garment_flip) && isnan(figures.garment_flip_worst) &&
+                isnan(figures.garment_flip_max));
     tl_flight_release(&flight);
 }
 
@@ -199,6 +219,8 @@ static void records_come_back(void **unused)
     struct tl_flight flight = make_flight(60, 6), back;
     flight.frames[7].hash = 0xfedcba9876543210u;
     flight.frames[7].flip_mean = 0.125;
+    flight.frames[7].garment_flip = 0.25;
+    flight.frames[7].garment_flip_worst = 0.5;
     flight.frames[0].predicted_ms = NAN;
     tl_error error = {0};
     write_flight(&flight, file);
@@ -209,6 +231,9 @@ static void records_come_back(void **unused)
     assert_string_equal(back.job_names[1], "light");
     assert_true(back.frames[7].hash == flight.frames[7].hash && back.frames[8].hash == 0);
     assert_near(back.frames[7].flip_mean, 0.125, 0);
+    assert_near(back.frames[7].garment_flip, 0.25, 0);
+    assert_near(back.frames[7].garment_flip_worst, 0.5, 0);
+    assert_true(isnan(back.frames[8].garment_flip) && isnan(back.frames[8].garment_flip_worst));
     assert_true(isnan(back.frames[0].predicted_ms) && isnan(back.frames[0].flip_mean));
     for (int i = 0; i < flight.count; i++) {
         assert_memory_equal(&back.frames[i].levels, &flight.frames[i].levels, sizeof back.frames[i].levels);

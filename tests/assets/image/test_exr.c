@@ -179,6 +179,20 @@ static void layers_are_kept_apart(void **state)
     assert_ok(tl_exr_save(path, layers, 2, &error), error);
     assert_ok(tl_exr_load(path, &back, &envmap, &error), error);
     assert_memory_equal(back.texels, colour.texels, value_count(&colour) * sizeof(float));
+    tl_image_release(&back);
+    assert_ok(tl_exr_load_channel(path, "B", &back, &error), error);
+    assert_int_equal(back.channels, 1);
+    assert_true(back.width == 5 && back.height == 4);
+    for (size_t i = 0; i < value_count(&back); i++)
+        assert_near(tl_image_floats(&back)[i], 3 * i + 2, 0);
+    tl_image_release(&back);
+    assert_ok(tl_exr_load_channel(path, "N.Y", &back, &error), error);
+    assert_near(tl_image_floats(&back)[19], -1000, 0);
+    tl_image_release(&back);
+    assert_ok(tl_exr_load_channel(path, "N", &back, &error), error); /* a layer is no channel */
+    assert_null(back.texels);
+    assert_false(tl_exr_load_channel(TOILE_SCRATCH_DIR "/no such file.exr", "N.Y", &back, &error));
+    assert_ok(tl_exr_load(path, &back, &envmap, &error), error);
     assert_false(tl_exr_save(TOILE_SCRATCH_DIR "/no such folder/a.exr", layers, 2, &error));
     tl_image_release(&colour);
     tl_image_release(&normal);

@@ -392,19 +392,25 @@ static void aovs_tell_what_is_under_each_pixel(void **state)
     for (int back_end = 0; back_end < 2; back_end++) {
         struct tl_aovs aovs;
         bool rays = back_end == 0;
+        int garment = 0, avatar = 0;
         scene.settings.light.visibility = rays ? TL_VISIBILITY_RAYS : TL_VISIBILITY_VSM;
         scene.settings.image.supersample = 1 + back_end;
         scene.frame.aovs = true;
         draw(device->renderer, &scene);
         assert_ok(tl_renderer_read_aovs(device->renderer, &aovs, &error), error);
-        assert_int_equal(aovs.count, rays ? 6 : 5); /* visibility is of rays */
+        assert_int_equal(aovs.count, rays ? 7 : 6); /* visibility is of rays */
         for (int y = 0; y < HEIGHT; y++)
             for (int x = 0; x < WIDTH; x++) {
                 struct tl_inspection under;
                 if (!tl_renderer_inspect(device->renderer, x, y, &under)) {
                     assert_near(aov_at(&aovs, "N.x", x, y)[1], 0, 0);
+                    assert_near(*aov_at(&aovs, TL_AOV_GARMENT, x, y), 0, 0);
                     continue;
                 }
+                bool is_garment = under.surface_index == 1;
+                assert_near(*aov_at(&aovs, TL_AOV_GARMENT, x, y), is_garment, 0);
+                garment += is_garment;
+                avatar += under.surface_index == 0;
                 assert_memory_equal(aov_at(&aovs, "N.x", x, y), &under.normal, sizeof under.normal);
                 assert_memory_equal(aov_at(&aovs, "P.x", x, y), &under.position, sizeof under.position);
                 assert_memory_equal(aov_at(&aovs, "uv.u", x, y), &under.uv, sizeof under.uv);
@@ -413,13 +419,22 @@ static void aovs_tell_what_is_under_each_pixel(void **state)
                 if (rays)
                     assert_near(*aov_at(&aovs, "visibility.Y", x, y), under.visibility, 0);
             }
+        assert_true(garment > 500 && avatar > 200);
+        tl_image alone;
+        assert_ok(tl_renderer_read_garment(device->renderer, &alone, &error), error);
+        assert_memory_equal(alone.texels, aov_at(&aovs, TL_AOV_GARMENT, 0, 0),
+                            WIDTH * HEIGHT * sizeof(float));
+        tl_image_release(&alone);
         tl_aovs_release(&aovs);
     }
     scene.frame.aovs = false;
     scene.frame.camera.eye.x += 0.1f;
     struct tl_aovs none;
+    tl_image no_garment;
     draw(device->renderer, &scene);
     assert_false(tl_renderer_read_aovs(device->renderer, &none, &error));
+    assert_false(tl_renderer_read_garment(device->renderer, &no_garment, &error));
+    assert_null(no_garment.texels);
     tl_aovs_release(&none);
     scene_close(&scene);
 }

@@ -1,7 +1,11 @@
 #include "render/metrics/compare.h"
 
+#include "config/memory.h"
+#include "render/metrics/flip.h"
+
 #include "tests/testing.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 static tl_image filled(int width, int height, int channels, const float *values)
@@ -196,6 +200,141 @@ static void tiny_images_work(void **state)
     tl_image_release(&b);
 }
 
+/* ---- One object's pixels ---- */
+
+enum { SIDE = 96 };
+
+/* 1 in a square, else 0; one channel. */
+static tl_image square_mask(int first, int end)
+{
+    tl_image mask = tl_image_create(SIDE, SIDE, 1, TL_IMAGE_F32);
+    for (int y = first; y < end; y++)
+        for (int x = first; x < end; x++)
+            tl_image_floats(&mask)[y * SIDE + x] = 1;
+    return mask;
+}
+
+static void blacken(tl_image *image, int first_x, int first_y, int side)
+{
+    for (int y = first_y; y < first_y + side; y++)
+        for (int x = first_x; x < first_x + side; x++)
+            memset(tl_image_floats(image) + 4 * (y * SIDE + x), 0, 3 * sizeof(float));
+}
+
+/* The mean of the `wanted` largest values under the mask, found one by one. */
+static double mean_of_largest(const float *map, const tl_image *mask, size_t wanted)
+{
+    bool *taken = TL_NEW_ARRAY(bool, SIDE *SIDE);
+    double sum = 0;
+    for (size_t k = 0; k < wanted; k++) {
+        int largest = -1;
+        for (int i = 0; i < SIDE * SIDE; i++)
+            if (tl_image_floats(mask)[i] > 0.5f && !taken[i] && (largest < 0 || map[i] > map[largest]))
+                largest = i;
+        taken[largest] = true;
+        sum += (double)map[largest];
+    }
+    free(taken);
+    return sum / (double)wanted;
+}
+
+/* FLIP's filters reach 10 pixels at 67 pixels per degree: an error further away than that is none of the
+ * object's, however large it is; and the object's error is all its own, whatever is around it. */
+static void only_the_objects_pixels_count(void **state)
+{
+    (void)state;
+    tl_image a = filled(SIDE, SIDE, 4, grey), b = filled(SIDE, SIDE, 4, grey), mask = square_mask(4, 44);
+    struct tl_object_error object;
+    struct tl_comparison all;
+    tl_error error = {0};
+    blacken(&a, 60, 60, 30);
+    assert_ok(tl_image_compare_object(&a, &b, &mask, 0, &object, &error), error);
+    assert_ok(tl_image_compare(&a, &b, 0, 0, &all, &error), error);
+    assert_int_equal(object.pixels, 40 * 40);
+    assert_near(object.flip_mean, 0, 0);
+    assert_near(object.flip_worst, 0, 0);
+    assert_true(all.flip_mean > 0.05);
+    tl_image_release(&a);
+    tl_image_release(&b);
+    tl_image_release(&mask);
+}
+
+/* 5 x 5 black pixels on 40 x 40 of the object: a mean hides them; of the largest 5 %, 80 pixels, they and
+ * what the filters spread of them are the greater part. */
+static void a_small_patch_shows_in_the_worst(void **state)
+{
+    (void)state;
+    tl_image a = filled(SIDE, SIDE, 4, grey), b = filled(SIDE, SIDE, 4, grey), mask = square_mask(28, 68);
+    float rgb[2][3 * SIDE * SIDE], map[SIDE * SIDE];
+    const struct tl_flip_frame frame = {SIDE, SIDE, TL_FLIP_PIXELS_PER_DEGREE};
+    struct tl_object_error object;
+    tl_error error = {0};
+    blacken(&a, 40, 44, 5);
+    assert_ok(tl_image_compare_object(&a, &b, &mask, 0, &object, &error), error);
+    for (int i = 0; i < SIDE * SIDE; i++)
+        for (int c = 0; c < 3; c++) {
+            rgb[0][3 * i + c] = tl_image_floats(&a)[4 * i + c];
+            rgb[1][3 * i + c] = tl_image_floats(&b)[4 * i + c];
+        }
+    tl_flip_ldr(&frame, rgb[0], rgb[1], map);
+    assert_near(object.flip_mean, mean_of_largest(map, &mask, 1600), 1e-12);
+    assert_near(object.flip_worst, mean_of_largest(map, &mask, 80), 1e-12);
+    assert_true(object.flip_mean < 0.05);
+    assert_true(object.flip_worst > 0.3);
+    tl_image_release(&a);
+    tl_image_release(&b);
+    tl_image_release(&mask);
+}
+
+/* One colour against another: the mean and the worst are alike, and those of the whole picture. */
+static void an_even_error_is_the_same_everywhere(void **state)
+{
+    (void)state;
+    const float other[4] = {0.4f, 0.3f, 0.7f, 1};
+    tl_image a = filled(SIDE, SIDE, 4, other), b = filled(SIDE, SIDE, 4, grey), mask = square_mask(30, 37);
+    struct tl_object_error object;
+    struct tl_comparison all;
+    tl_error error = {0};
+    assert_ok(tl_image_compare_object(&a, &b, &mask, 0, &object, &error), error);
+    assert_ok(tl_image_compare(&a, &b, 0, 0, &all, &error), error);
+    assert_true(object.flip_mean > 0.01);
+    assert_near(object.flip_mean, all.flip_mean, 1e-6);
+    assert_near(object.flip_worst, all.flip_mean, 1e-6);
+    tl_image_release(&a);
+    tl_image_release(&b);
+    tl_image_release(&mask);
+}
+
+/* 5 % of one pixel is one pixel; a mask of bytes counts from 128; and without any pixel nothing is known. */
+static void masks_are_read_as_stated(void **state)
+{
+    (void)state;
+    const float shifted[4] = {0.6f, 0.25f, 0.55f, 1};
+    tl_image a = filled(SIDE, SIDE, 4, shifted), b = filled(SIDE, SIDE, 4, grey);
+    tl_image mask = tl_image_create(SIDE, SIDE, 3, TL_IMAGE_U8),
+             small = tl_image_create(8, 8, 1, TL_IMAGE_U8);
+    struct tl_object_error object;
+    tl_error error = {0};
+    memset(mask.texels, 127, 3 * SIDE * SIDE);
+    assert_ok(tl_image_compare_object(&a, &b, &mask, 0, &object, &error), error);
+    assert_int_equal(object.pixels, 0);
+    assert_true(isnan(object.flip_mean) && isnan(object.flip_worst));
+    tl_image_bytes(&mask)[3 * 500] = 128;
+    assert_ok(tl_image_compare_object(&a, &b, &mask, 0, &object, &error), error);
+    assert_int_equal(object.pixels, 1);
+    assert_true(object.flip_mean > 0.01);
+    assert_near(object.flip_worst, object.flip_mean, 0);
+    assert_false(tl_image_compare_object(&a, &b, &small, 0, &object, &error));
+    assert_non_null(strstr(error.message, "8 x 8"));
+    tl_image_floats(&a)[4] = NAN;
+    assert_false(tl_image_compare_object(&a, &b, &mask, 0, &object, &error));
+    assert_non_null(strstr(error.message, "tested image: pixel (1, 0)"));
+    tl_image_release(&a);
+    tl_image_release(&b);
+    tl_image_release(&mask);
+    tl_image_release(&small);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -207,6 +346,10 @@ int main(void)
         cmocka_unit_test(eight_bits_are_decoded),
         cmocka_unit_test(bad_images_are_refused),
         cmocka_unit_test(tiny_images_work),
+        cmocka_unit_test(only_the_objects_pixels_count),
+        cmocka_unit_test(a_small_patch_shows_in_the_worst),
+        cmocka_unit_test(an_even_error_is_the_same_everywhere),
+        cmocka_unit_test(masks_are_read_as_stated),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
