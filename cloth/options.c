@@ -18,7 +18,7 @@ static const struct tl_option cloth_rows[] = {
         "preview: bounded cost, rests as if slightly softer; settle: stable at any step, exact at rest, "
         "overdamped in motion; reference: exact in motion, its step shrinks with the fabric's stiffness"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, dt, AFFECTS, 1e-5, 0.1, "s",
-                     "longest time step; a frame is made of equal steps; larger: faster, less exact"),
+                     "maximum time step; a frame is divided into equal steps; larger: faster, less exact"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, frame_rate, AFFECTS | TL_AFFECTS_WORK, 1, 1000, "1/s",
                      "frames per second of animation"),
     TL_OPTION_INT(struct tl_cloth_params, substeps, AFFECTS, 1, 1000, "",
@@ -51,8 +51,7 @@ static const struct tl_option cloth_rows[] = {
     TL_OPTION_FLOAT(struct tl_cloth_params, edge_m, TL_AFFECTS_SCENE | AFFECTS | TL_AFFECTS_WORK, 0.001f, 1,
                     "m", "target edge length of built-in garments; larger: coarser, faster"),
     TL_OPTION_FLOAT(struct tl_cloth_params, longest_edge_m, TL_AFFECTS_SCENE | AFFECTS, 0, 1000, "m",
-                    "a garment's file may have longer edges, but they are halved: without, it cannot fold; "
-                    "0: as the file has them"),
+                    "longer edges of a garment's file are halved, so that it can fold; 0: never"),
 };
 const struct tl_option_table tl_cloth_options = TL_OPTION_TABLE(
-    "cloth", "how the cloth is solved", cloth_rows, struct tl_cloth_params, TL_CLOTH_DEFAULTS);
+    "cloth", "simulation of the cloth", cloth_rows, struct tl_cloth_params, TL_CLOTH_DEFAULTS);

@@ -28,67 +28,68 @@ static const char *const colourways_names[] = {OWN, "dress", "skirt", "composed"
 static const struct tl_option scene_rows[] = {
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, garment,
                            TL_AFFECTS_SCENE | TL_AFFECTS_DRAPE | TL_AFFECTS_WORK, garment_names,
-                           "what is worn: built in, or a glTF or OBJ file"),
-    TL_OPTION_ENUM(
-        struct tl_scene_params, units, TL_AFFECTS_SCENE | TL_AFFECTS_DRAPE | TL_AFFECTS_WORK, tl_units_names,
-        "of the garment's file and its motion; auto: glTF is in metres, OBJ is guessed by its size"),
-    TL_OPTION_NAME_OR_PATH(
-        struct tl_scene_params, motion, TL_AFFECTS_SCENE | TL_AFFECTS_WORK, motion_names,
-        "how the garment moves instead of being simulated: a .pc2 or .mdd point cache, or OBJ "
-        "files, frame.####.obj"),
-    TL_OPTION_FLOAT(struct tl_scene_params, motion_rate, TL_AFFECTS_SCENE, 0, 100000, "1/s",
-                    "frames of the motion a second: faster; 0: what its file says, or one a frame"),
+                           "garment: built in, or a glTF or OBJ file"),
+    TL_OPTION_ENUM(struct tl_scene_params, units, TL_AFFECTS_SCENE | TL_AFFECTS_DRAPE | TL_AFFECTS_WORK,
+                   tl_units_names,
+                   "length unit of the garment's file and its motion; auto: metres for glTF, guessed from "
+                   "the size for OBJ"),
+    TL_OPTION_NAME_OR_PATH(struct tl_scene_params, motion, TL_AFFECTS_SCENE | TL_AFFECTS_WORK, motion_names,
+                           "recorded motion of the garment, in place of simulation: a .pc2 or .mdd point "
+                           "cache, or a sequence of OBJ files, frame.####.obj"),
+    TL_OPTION_FLOAT(
+        struct tl_scene_params, motion_rate, TL_AFFECTS_SCENE, 0, 100000, "1/s",
+        "frames of the motion per second; 0: as its file states, or one per frame of the animation"),
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, avatar,
                            TL_AFFECTS_SCENE | TL_AFFECTS_DRAPE | TL_AFFECTS_WORK, avatar_names,
-                           "who wears it: built in, or a glTF or OBJ file"),
+                           "avatar that wears the garment: built in, or a glTF or OBJ file"),
     TL_OPTION_ENUM(struct tl_scene_params, avatar_units, TL_AFFECTS_SCENE | TL_AFFECTS_DRAPE, tl_units_names,
-                   "of the avatar's file, as units"),
+                   "length unit of the avatar's file, as units"),
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, environment, TL_AFFECTS_ENVIRONMENT, environment_names,
-                           "the light: built in (white: 1 from everywhere), an .exr or .hdr file, or a "
-                           "sequence of them, sky.####.exr: "
-                           "each # is a digit of the frame's number"),
-    TL_OPTION_NAME_OR_PATH(
-        struct tl_scene_params, fabric, TL_AFFECTS_APPEARANCE, tl_embedded_fabrics_names,
-        "sets the tables fabric, weave and material: built in, or a YAML file; left out: satin on built-in "
-        "garments, none on a garment file"),
+                           "light: built in (white: radiance 1 from everywhere), an .exr or .hdr file, or a "
+                           "sequence of files, sky.####.exr, where each # is a digit of the frame's number"),
+    TL_OPTION_NAME_OR_PATH(struct tl_scene_params, fabric, TL_AFFECTS_APPEARANCE, tl_embedded_fabrics_names,
+                           "fabric, which sets the tables fabric, weave and material: built in, or a YAML "
+                           "file; empty: satin on built-in garments, none on garment files"),
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, overlay_fabric,
                            TL_AFFECTS_MATERIALS | TL_AFFECTS_APPEARANCE, tl_embedded_fabrics_names,
-                           "sets the table overlay, and the weave, of a garment's second fabric; how it "
-                           "moves is scene.fabric's"),
+                           "second fabric of a garment, which sets the table overlay and this fabric's "
+                           "weave: built in, or a YAML file; motion follows scene.fabric"),
     TL_OPTION_STRING(struct tl_scene_params, colourway,
                      TL_AFFECTS_MATERIALS | TL_AFFECTS_APPEARANCE | TL_AFFECTS_GARMENT,
-                     "fabrics and colours that the scene or a glTF file (its variants) has under this name; "
-                     "empty: as they are"),
+                     "colourway by its name in the scene or among a glTF file's variants; empty: the "
+                     "original fabrics and colours"),
+    TL_OPTION_NAME_OR_PATH(struct tl_scene_params, colourways, TL_AFFECTS_APPEARANCE | TL_AFFECTS_GARMENT,
+                           colourways_names,
+                           "source of colourways: this scene or, if it has none, its built-in garment (own); "
+                           "or another scene, built in or a YAML file"),
     TL_OPTION_NAME_OR_PATH(
-        struct tl_scene_params, colourways, TL_AFFECTS_APPEARANCE | TL_AFFECTS_GARMENT, colourways_names,
-        "where colourways are from: this scene or, when it has none, its built-in garment (own); or "
-        "another scene, built in or a YAML file"),
-    TL_OPTION_NAME_OR_PATH(struct tl_scene_params, preset, TL_AFFECTS_APPEARANCE, tl_embedded_presets_names,
-                           "sets quality in the tables cloth, light and image: built in, or a YAML file"),
+        struct tl_scene_params, preset, TL_AFFECTS_APPEARANCE, tl_embedded_presets_names,
+        "quality, which sets options of the tables cloth, light and image: built in, or a YAML file"),
     TL_OPTION_STRING(struct tl_scene_params, clip, TL_AFFECTS_SCENE | TL_AFFECTS_DRAPE | TL_AFFECTS_WORK,
-                     "animation of the avatar; empty: its first; none: the rest pose"),
+                     "animation of the avatar; empty: the first one; none: the rest pose"),
     TL_OPTION_FLOAT(struct tl_scene_params, environment_yaw_deg, TL_AFFECTS_AT_ONCE, -3600, 3600, "degrees",
-                    "turns the environment about the vertical, counter-clockwise from above"),
+                    "rotation of the environment about the vertical, counter-clockwise seen from above"),
     TL_OPTION_FLOAT(struct tl_scene_params, environment_rate, TL_AFFECTS_NOTHING, 0, 1000, "1/s",
-                    "frames of a sequence of environments a second; 0 stays at its first"),
+                    "frames per second of a sequence of environments; 0: its first frame only"),
 };
 static const struct tl_option_table scene_table =
-    TL_OPTION_TABLE("scene", "what is shown", scene_rows, struct tl_scene_params, TL_SCENE_DEFAULTS);
+    TL_OPTION_TABLE("scene", "garment, avatar, light, fabric and quality", scene_rows, struct tl_scene_params,
+                    TL_SCENE_DEFAULTS);
 
 #define TL_CAMERA_DEFAULTS .yaw_deg = 25, .pitch_deg = 8, .distance_m = 0, .fov_deg = 30
 
 static const struct tl_option camera_rows[] = {
     TL_OPTION_FLOAT(struct tl_camera_params, yaw_deg, TL_AFFECTS_AT_ONCE, -3600, 3600, "degrees",
-                    "where the eye is about the vertical: 0 looks from +Z, positive moves it towards +X"),
+                    "direction of the eye about the vertical: 0 is +Z, positive turns towards +X"),
     TL_OPTION_FLOAT(struct tl_camera_params, pitch_deg, TL_AFFECTS_AT_ONCE, -90, 90, "degrees",
-                    "positive looks down"),
+                    "elevation of the eye; positive looks down"),
     TL_OPTION_FLOAT(struct tl_camera_params, distance_m, TL_AFFECTS_AT_ONCE, 0, 10000, "m",
-                    "from the target; 0 frames the avatar and the garment"),
-    TL_OPTION_VECTOR(struct tl_camera_params, target, TL_AFFECTS_AT_ONCE, -10000, 10000, "m",
-                     "what the eye looks at and turns about, once distance_m is given; 0 0 0: the middle of "
-                     "all there is"),
+                    "distance to the target; 0: the avatar and the garment fill the image"),
+    TL_OPTION_VECTOR(
+        struct tl_camera_params, target, TL_AFFECTS_AT_ONCE, -10000, 10000, "m",
+        "centre of the view and of the orbit, if distance_m is not 0; 0 0 0: the centre of the scene"),
     TL_OPTION_FLOAT(struct tl_camera_params, fov_deg, TL_AFFECTS_AT_ONCE, 1, 150, "degrees",
-                    "vertical field of view; larger looks wider"),
+                    "vertical field of view; larger: wider"),
 };
 const struct tl_option_table tl_camera_options = TL_OPTION_TABLE(
     "camera", "an orbit about a target", camera_rows, struct tl_camera_params, TL_CAMERA_DEFAULTS);
@@ -278,18 +279,15 @@ static void warn_of_unused_options(const struct tl_settings *settings)
         light->method == TL_METHOD_REFERENCE || (!by_maps && light->visibility == TL_VISIBILITY_RAYS);
     if (by_maps && others)
         tl_warn("material: model and openness are shown by light.visibility rays and by light.method "
-                "reference only: "
-                "environment maps show two lobes, a coat and light that comes through");
+                "reference only: environment maps show two lobes, a coat and light that comes through");
     else if (!by_maps && !shows_all && (layers || others))
-        tl_warn(
-            "material: model, coat, transmission and openness are shown by light.visibility rays and by "
-            "light.method reference only: shadow maps know two plain lobes; light.method maps shows coat and "
-            "transmission, without shadows");
+        tl_warn("material: model, coat, transmission and openness are shown by light.visibility rays and by "
+                "light.method reference only: shadow maps know two plain lobes; light.method maps shows coat "
+                "and transmission, without shadows");
     if (light->method == TL_METHOD_PEM && light->visibility == TL_VISIBILITY_RAYS &&
         light->composition != TL_COMPOSE_RATIO)
-        tl_warn(
-            "light.composition: rays always compose by ratio; this option is for light.visibility vsm and "
-            "depth");
+        tl_warn("light.composition: rays always compose by ratio; this option is for light.visibility vsm "
+                "and depth");
 }
 
 /* The topmost layers name the preset and the fabric that lie below them, so they are read twice: once to

@@ -11,13 +11,13 @@ static const char *const pattern_names[] = {"none", "plain", "twill", "satin", N
 
 static const struct tl_option rows[] = {
     TL_OPTION_ENUM(struct tl_weave_params, pattern, AFFECTS, pattern_names,
-                   "how the yarns interlace; none: the material's own maps only"),
+                   "interlacing of the yarns; none: only the material's own maps"),
     TL_OPTION_FLOAT(struct tl_weave_params, warp_pitch_mm, AFFECTS, 0.05, 20, "mm",
                     "distance between warp yarns"),
     TL_OPTION_FLOAT(struct tl_weave_params, weft_pitch_mm, AFFECTS, 0.05, 20, "mm",
                     "distance between weft yarns"),
     TL_OPTION_FLOAT(struct tl_weave_params, crimp_mm, AFFECTS, 0, 5, "mm",
-                    "height of a yarn's crest over the middle plane; larger is rougher"),
+                    "height of a yarn's crest above the middle plane; larger: rougher"),
     TL_OPTION_FLOAT(struct tl_weave_params, warp_gloss, AFFECTS, -1, 1, "",
                     "added to the glossiness on warp yarns"),
     TL_OPTION_FLOAT(struct tl_weave_params, weft_gloss, AFFECTS, -1, 1, "",
@@ -29,11 +29,11 @@ static const struct tl_option rows[] = {
     TL_OPTION_INT(struct tl_weave_params, texels_per_yarn, AFFECTS, 16, 64, "texels",
                   "resolution of the maps"),
     TL_OPTION_PATH(struct tl_weave_params, picture, AFFECTS,
-                   "heights instead of yarns: a .png or .exr that repeats; empty: none"),
+                   "image of heights in place of yarns, a repeating .png or .exr; empty: none"),
     TL_OPTION_FLOAT(struct tl_weave_params, picture_mm, AFFECTS, 0.001, 10000, "mm",
                     "width of the picture on the cloth"),
     TL_OPTION_FLOAT(struct tl_weave_params, depth_mm, AFFECTS, 0, 10000, "mm",
-                    "from the picture's lowest to its highest; larger is rougher"),
+                    "height difference between the picture's lowest and highest value; larger: rougher"),
 };
 const struct tl_option_table tl_weave_options =
     TL_OPTION_TABLE("weave", "woven detail: normals, gloss and yarn colours at millimetre scale", rows,

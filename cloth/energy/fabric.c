@@ -29,5 +29,6 @@ static const struct tl_option fabric_rows[] = {
     TL_OPTION_DOUBLE(struct tl_cloth_fabric, thickness_m, AFFECTS, 0, 0.1, "m",
                      "distance kept between the cloth's middle surface and the avatar"),
 };
-const struct tl_option_table tl_cloth_fabric_options = TL_OPTION_TABLE(
-    "fabric", "what the cloth is made of", fabric_rows, struct tl_cloth_fabric, TL_CLOTH_FABRIC_DEFAULTS);
+const struct tl_option_table tl_cloth_fabric_options =
+    TL_OPTION_TABLE("fabric", "mechanical properties of the cloth", fabric_rows, struct tl_cloth_fabric,
+                    TL_CLOTH_FABRIC_DEFAULTS);

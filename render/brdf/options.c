@@ -12,47 +12,45 @@ typedef struct tl_material_params material_params;
 static const struct tl_option material_rows[] = {
     TL_OPTION_BOOL(material_params, use_file, AFFECTS,
                    "keep the materials of the garment's file, if it has any"),
-    TL_OPTION_COLOUR(material_params, diffuse, AFFECTS, 0, 1,
-                     "share of light scattered evenly; larger is brighter"),
+    TL_OPTION_COLOUR(material_params, diffuse, AFFECTS, 0, 1, "diffuse albedo; larger: brighter"),
     TL_OPTION_COLOUR(material_params, specular, AFFECTS, 0, 1,
-                     "share of light reflected at normal incidence; 0.04 for most fibres, larger is shinier"),
+                     "reflectance at normal incidence; 0.04 for most fibres; larger: shinier"),
     TL_OPTION_FLOAT(
         material_params, glossiness, AFFECTS, 0, 1, "",
-        "0 reflects in all directions, 1 is a mirror; the lobe's exponent is 1 / (1 - glossiness)"),
-    TL_OPTION_ENUM(material_params, model, AFFECTS, model_names,
-                   "how gloss is spread about the mirror direction"),
+        "0: reflects in all directions, 1: a mirror; the exponent of the lobe is 1 / (1 - glossiness)"),
+    TL_OPTION_ENUM(material_params, model, AFFECTS, model_names, "reflectance model of the glossy lobe"),
     TL_OPTION_ENUM(material_params, facets, AFFECTS, facets_names,
-                   "torrance_sparrow: how the slopes of its facets are spread"),
+                   "torrance_sparrow: distribution of the slopes of facets"),
     TL_OPTION_ENUM(material_params, masking, AFFECTS, masking_names,
-                   "torrance_sparrow: how facets hide one another"),
+                   "torrance_sparrow: masking and shadowing of facets by one another"),
     TL_OPTION_ENUM(material_params, fresnel, AFFECTS, fresnel_names,
-                   "how reflectance rises towards grazing angles: from specular, or from the index"),
+                   "rise of reflectance towards grazing angles: from specular, or from the index"),
     TL_OPTION_FLOAT(material_params, index, AFFECTS, 1, 200, "",
-                    "index of refraction of dielectric and conductor; larger reflects more"),
+                    "index of refraction of dielectric and conductor; larger: reflects more"),
     TL_OPTION_FLOAT(material_params, extinction, AFFECTS, 0, 20, "",
                     "conductor: imaginary part of the index"),
     TL_OPTION_FLOAT(material_params, width_weft, AFFECTS, 0, 1, "",
-                    "torrance_sparrow, ward: root mean square slope of the facets along the weft; larger is "
+                    "torrance_sparrow, ward: root mean square slope of facets along the weft; larger: "
                     "duller; 0: from glossiness"),
-    TL_OPTION_FLOAT(material_params, width_warp, AFFECTS, 0, 1, "", "ward: ... along the warp"),
+    TL_OPTION_FLOAT(material_params, width_warp, AFFECTS, 0, 1, "", "ward: the same along the warp"),
     TL_OPTION_FLOAT(material_params, rotation_deg, AFFECTS, -360, 360, "degrees",
-                    "ward, banks: turns weft and warp, counter-clockwise seen from outside"),
+                    "ward, banks: rotation of weft and warp, counter-clockwise seen from outside"),
     TL_OPTION_FLOAT(material_params, coat, AFFECTS, 0, 1, "",
-                    "share of the surface under a clear coat of index 1.5"),
+                    "fraction of the surface under a clear coat of index 1.5"),
     TL_OPTION_FLOAT(material_params, coat_glossiness, AFFECTS, 0, 1, "", "glossiness of the coat"),
     TL_OPTION_COLOUR(material_params, transmission, AFFECTS, 0, 1,
-                     "share of light scattered through to the other side; larger is more sheer"),
+                     "fraction of light scattered through to the other side; larger: more sheer"),
     TL_OPTION_FLOAT(
         material_params, openness, AFFECTS, 0, 0.99, "",
-        "share of the surface that is holes between threads; larger shows more of what is behind"),
+        "fraction of the surface that is holes between threads; larger: more of the background shows"),
 };
 #define DEFAULTS                                                                                             \
     .use_file = true, .diffuse = {0.5f, 0.5f, 0.5f}, .specular = {0.04f, 0.04f, 0.04f}, .glossiness = 0.5f,  \
     .index = 1.5f, .coat_glossiness = 0.95f
 
 const struct tl_option_table tl_material_options =
-    TL_OPTION_TABLE("material", "the garment's look: two lobes, diffuse and glossy", material_rows,
+    TL_OPTION_TABLE("material", "appearance of the garment: a diffuse and a glossy lobe", material_rows,
                     material_params, DEFAULTS);
 const struct tl_option_table tl_overlay_options =
-    TL_OPTION_TABLE("overlay", "the look of the garment's materials that are named overlay, as material",
+    TL_OPTION_TABLE("overlay", "appearance of the garment's materials named overlay, as material",
                     material_rows, material_params, DEFAULTS);

@@ -9,26 +9,26 @@ static const char *const minify_names[] = {"none", "toksvig", "lean", NULL};
 
 typedef struct tl_detail_params params;
 static const struct tl_option rows[] = {
-    TL_OPTION_ENUM(
-        params, mode, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL_MAPS, mode_names,
-        "how bumps appear: normal and blinn bend the light, parallax and relief also displace the texture"),
-    TL_OPTION_INT(
-        params, steps, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL, 1, 1024, "",
-        "relief: largest number of cone steps through the heights; too few miss crests at grazing views"),
+    TL_OPTION_ENUM(params, mode, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL_MAPS, mode_names,
+                   "rendering of bumps: normal and blinn change the normal, parallax and relief also "
+                   "displace the texture"),
+    TL_OPTION_INT(params, steps, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL, 1, 1024, "",
+                  "relief: maximum number of cone steps through the heights; with too few, crests are missed "
+                  "at grazing views"),
     TL_OPTION_INT(params, refine, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL, 0, 32, "",
-                  "relief: bisections of the last step; more are more exact"),
-    TL_OPTION_ENUM(
-        params, shadow, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL_MAPS, shadow_names,
-        "shadows of bumps on their own surface; relief: marched for lamps instead of horizon maps"),
+                  "relief: bisections of the last step; larger: more exact"),
+    TL_OPTION_ENUM(params, shadow, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL_MAPS, shadow_names,
+                   "shadows of bumps on their own surface; relief: traced through the heights for lamps, in "
+                   "place of horizon maps"),
     TL_OPTION_ENUM(params, angles, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL_MAPS, angle_names,
-                   "horizon: number of azimuths per texel; more place the shadows of low lamps better"),
+                   "horizon: number of azimuths per texel; larger: more exact shadows of low lamps"),
     TL_OPTION_FLOAT(params, height_scale, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL_MAPS, 0, 100, "",
                     "factor on the heights of weaves and height maps"),
     TL_OPTION_BOOL(params, silhouette, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL,
                    "relief: clips the surface beyond the border of a map that does not repeat"),
     TL_OPTION_ENUM(params, minify, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL_MAPS, minify_names,
-                   "how bumps smaller than a pixel widen the gloss; none: they vanish, and distant cloth "
-                   "looks like plastic"),
+                   "widening of the gloss by bumps smaller than a pixel; none: they vanish, and distant "
+                   "cloth looks like plastic"),
 };
 const struct tl_option_table tl_detail_options = TL_OPTION_TABLE(
     "detail", "fabric detail: bumps, their depth and their shadows", rows, params, .steps = 32, .refine = 5,

@@ -12,25 +12,26 @@ static const char *const fresnel_names[] = {"off", "additive", "coat", NULL};
 typedef struct tl_maps_params maps_params;
 static const struct tl_option rows[] = {
     TL_OPTION_ENUM(maps_params, layout, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LAYOUT, tl_layout_names,
-                   "how the environment map is laid out; sphere is rebuilt whenever the view turns"),
-    TL_OPTION_INT(maps_params, size, TL_AFFECTS_APPEARANCE | TL_AFFECTS_ENVMAP | TL_AFFECTS_CAPTURE,
-                  TL_MAPS_SIZE_MIN, TL_MAPS_SIZE_MAX, "texels",
-                  "side of a cube's face, height of the others, a power of two; larger sharpens mirrors"),
+                   "projection of the environment map; sphere is rebuilt whenever the view turns"),
+    TL_OPTION_INT(
+        maps_params, size, TL_AFFECTS_APPEARANCE | TL_AFFECTS_ENVMAP | TL_AFFECTS_CAPTURE, TL_MAPS_SIZE_MIN,
+        TL_MAPS_SIZE_MAX, "texels",
+        "side of a cube face, height of the other layouts, a power of two; larger: sharper mirrors"),
     TL_OPTION_ENUM(
         maps_params, look_up, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LOOK_UP, look_up_names,
         "matrix: paraboloids by projective texture matrices and the first map's alpha, as in 1999"),
     TL_OPTION_ENUM(maps_params, mode, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LOOK_UP, mode_names,
-                   "surface: diffuse and gloss; mirror; refraction by the material's index; one term alone; "
+                   "surface: diffuse and gloss; mirror; refraction by the material's index; a single term; "
                    "transmission: straight through a thin sheet"),
     TL_OPTION_ENUM(maps_params, fresnel, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LOOK_UP, fresnel_names,
-                   "combines mirrors with the light below them by material.fresnel; additive: adds both; "
-                   "coat: only the light that is not reflected reaches the layer below"),
+                   "combines mirrors with the light below them by material.fresnel; additive: sum of both; "
+                   "coat: only light that is not reflected reaches the layer below"),
     TL_OPTION_BOOL(maps_params, minify, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LOOK_UP,
                    "mirrors and refraction read mip levels, weighted by solid angle, where a pixel covers "
                    "many texels of the map"),
     TL_OPTION_INT(maps_params, capture_every, TL_AFFECTS_APPEARANCE, 0, 1000000, "frames",
-                  "redraws the scene into the map when it has changed and this many frames have passed; 0: "
-                  "the map holds the environment only"),
+                  "redraws the scene into the map if it has changed and this many frames have passed; 0: the "
+                  "map holds the environment only"),
     TL_OPTION_VECTOR(
         maps_params, capture_at, TL_AFFECTS_APPEARANCE | TL_AFFECTS_CAPTURE, -10000, 10000, "m",
         "point of the capture, relative to the centre of the scene; surfaces around it are left out"),

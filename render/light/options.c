@@ -15,72 +15,74 @@ static const char *const composition_names[] = {"sum", "difference", "ratio", NU
 
 typedef struct tl_light_params light_params;
 static const struct tl_option light_rows[] = {
+    TL_OPTION_ENUM(light_params, method, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LIGHT, method_names,
+                   "pem: light of each region times its visibility; lights: regions as directional lights; "
+                   "ao, ao_colour: ambient occlusion; unshadowed: visibility is 1; reference: ray traced; "
+                   "maps: environment maps (table maps), unshadowed"),
     TL_OPTION_ENUM(
-        light_params, method, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LIGHT, method_names,
-        "pem: light of each region times its visibility; lights: regions as directional lights; ao, "
-        "ao_colour: ambient occlusion; unshadowed: visibility is 1; reference: ray traced; maps: "
-        "environment maps (table maps), unshadowed"),
-    TL_OPTION_ENUM(light_params, lobe, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LIGHT, lobe_names,
-                   "single: one look-up from diffuse to mirror by glossiness; dual: diffuse plus gloss"),
+        light_params, lobe, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LIGHT, lobe_names,
+        "single: one look-up, from diffuse to mirror by glossiness; dual: a diffuse and a glossy look-up"),
     TL_OPTION_ENUM(light_params, cut, TL_AFFECTS_APPEARANCE | TL_AFFECTS_REGIONS, cut_names,
                    "faces: median cut of each cube face; sphere: cut of the whole sphere by variance"),
     TL_OPTION_INT(light_params, regions, TL_AFFECTS_APPEARANCE | TL_AFFECTS_REGIONS, 6, TL_REGIONS_MAX, "",
-                  "regions of the environment, in sixes; more give truer shadows for more time and memory"),
+                  "number of regions of the environment, a multiple of six; larger: truer shadows, more time "
+                  "and memory"),
     TL_OPTION_BOOL(light_params, sun, TL_AFFECTS_APPEARANCE | TL_AFFECTS_SUN,
-                   "suns leave the regions and get shadows of their own"),
+                   "small bright sources (suns) are taken out of the regions and cast shadows of their own"),
     TL_OPTION_ENUM(light_params, prefilter, TL_AFFECTS_APPEARANCE | TL_AFFECTS_FILTER | TL_AFFECTS_LIGHT,
                    prefilter_names,
                    "chain: the 2014 filter chain; slices: exact lobes; rays always use exact lobes"),
     TL_OPTION_INT(
         light_params, pem_size, TL_AFFECTS_APPEARANCE | TL_AFFECTS_PEM_SIZE, 4, 512, "texels",
-        "side of a PEM's cube face, a power of two; larger sharpens mirrors for four times the memory"),
+        "side of a PEM's cube face, a power of two; twice as large: sharper mirrors, four times the memory"),
     TL_OPTION_ENUM(light_params, filter, TL_AFFECTS_APPEARANCE | TL_AFFECTS_FILTER, tl_chain_filter_names,
-                   "filter between the levels of a PEM; wider ones make glossy highlights rounder"),
+                   "filter between the levels of a PEM; wider filters make glossy highlights rounder"),
     TL_OPTION_INT(light_params, pems_per_pass, TL_AFFECTS_APPEARANCE | TL_AFFECTS_PASSES, 1, 64, "",
-                  "regions added up in one drawing pass; more need fewer passes and larger textures"),
+                  "regions summed in one drawing pass; larger: fewer passes, larger textures"),
     TL_OPTION_ENUM(light_params, visibility,
                    TL_AFFECTS_APPEARANCE | TL_AFFECTS_LIGHT | TL_AFFECTS_SHADOW_MAPS, visibility_names,
-                   "vsm: variance shadow maps; depth: plain shadow maps; rays: rays kept at vertices"),
-    TL_OPTION_ENUM(
-        light_params, composition, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LIGHT, composition_names,
-        "sum: of shadowed light; difference: exact light less what is shadowed; ratio: exact light "
-        "times the share that is seen (rays: always)"),
+                   "vsm: variance shadow maps; depth: plain shadow maps; rays: rays cached at vertices"),
+    TL_OPTION_ENUM(light_params, composition, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LIGHT, composition_names,
+                   "sum: shadowed light of all regions; difference: exact light minus the occluded light; "
+                   "ratio: exact light times its visible fraction (rays: always)"),
     TL_OPTION_BOOL(light_params, jitter, TL_AFFECTS_APPEARANCE | TL_AFFECTS_SHADOW_MAPS | TL_AFFECTS_RAYS,
-                   "directions vary inside their regions from frame to frame"),
+                   "directions vary within their regions from frame to frame"),
     TL_OPTION_INT(light_params, rounds, TL_AFFECTS_APPEARANCE, 1, 4096, "frames",
-                  "jittered frames averaged while nothing moves; more make still images truer"),
-    TL_OPTION_INT(
-        light_params, refresh, TL_AFFECTS_APPEARANCE | TL_AFFECTS_RAYS, 0, TL_REGIONS_MAX, "regions",
-        "regions renewed a moving frame; 0: all. rays: traced for each point, twice as many at rest; "
-        "maps: drawn, in turn by energy and age, and all at rest"),
+                  "jittered frames averaged while nothing moves; larger: more exact still images"),
+    TL_OPTION_INT(light_params, refresh, TL_AFFECTS_APPEARANCE | TL_AFFECTS_RAYS, 0, TL_REGIONS_MAX,
+                  "regions",
+                  "regions renewed per frame in motion; 0: all. rays: traced for each point, twice as many "
+                  "at rest; maps: redrawn in order of energy and age, all at rest"),
     TL_OPTION_INT(light_params, rays, TL_AFFECTS_APPEARANCE | TL_AFFECTS_RAYS, 1, 64, "",
-                  "rays: directions traced a region; more are truer and slower"),
+                  "rays: directions traced per region; larger: more exact, slower"),
     TL_OPTION_FLOAT(light_params, repair, TL_AFFECTS_APPEARANCE | TL_AFFECTS_RAYS, 0, 1, "",
-                    "rays: share of the samples, the least certain ones, that get rays of their own"),
+                    "rays: fraction of the samples, the least certain ones, that trace rays of their own"),
     TL_OPTION_FLOAT(light_params, repair_rest, TL_AFFECTS_APPEARANCE | TL_AFFECTS_RAYS, 0, 1, "",
-                    "rays: the same once nothing moves, when it is more: spread over frames at rest"),
-    TL_OPTION_INT(
-        light_params, fan, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LIGHT, 1, TL_LOBE_FIT_MAX, "",
-        "rays: cosine lobes at most for a gloss that is not one itself; more follow it closer, slower"),
-    TL_OPTION_BOOL(light_params, reflect_scene, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LIGHT,
-                   "near mirrors (exponent 200 and more) show the lit scene; off: black"),
+                    "rays: the same fraction at rest, if it is larger; spread over several frames"),
+    TL_OPTION_INT(light_params, fan, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LIGHT, 1, TL_LOBE_FIT_MAX, "",
+                  "rays: maximum number of cosine lobes that approximate gloss of another shape; larger: "
+                  "more exact, slower"),
+    TL_OPTION_BOOL(
+        light_params, reflect_scene, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LIGHT,
+        "mirrors (exponent 200 and more) reflect nearby lit surfaces; off: these reflect as black"),
     TL_OPTION_INT(light_params, map_size, TL_AFFECTS_APPEARANCE | TL_AFFECTS_SHADOW_MAPS, 1, 4096, "texels",
-                  "side of a shadow map; larger keeps small shadows for more time and memory"),
+                  "side of a shadow map; larger: smaller shadows appear, more time and memory"),
     TL_OPTION_FLOAT(light_params, blur_m, TL_AFFECTS_APPEARANCE | TL_AFFECTS_SHADOW_MAPS, 0, 10, "m",
-                    "shadow blur: sigma is this times the tangent of a region's cone; larger is softer"),
-    TL_OPTION_FLOAT(light_params, depth_bias_m, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LIGHT, 0, 1, "m",
-                    "depth that a shadow must differ by; larger hides false shadows and loses small ones"),
+                    "shadow blur: sigma is this times the tangent of a region's cone angle; larger: softer"),
+    TL_OPTION_FLOAT(
+        light_params, depth_bias_m, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LIGHT, 0, 1, "m",
+        "minimum depth difference of a shadow; larger: fewer false shadows, but small ones are lost"),
     TL_OPTION_FLOAT(
         light_params, min_variance, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LIGHT, 0, 1, "m^2",
-        "least variance of depth in a shadow map; larger hides false shadows and leaks more light"),
+        "minimum variance of depth in a shadow map; larger: fewer false shadows, more light leaks"),
     TL_OPTION_FLOAT(light_params, bleed_reduction, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LIGHT, 0, 0.95, "",
-                    "visibility below it becomes 0; larger leaks less light and hardens soft shadows"),
+                    "visibility below this becomes 0; larger: fewer light leaks, harder shadows"),
 };
 const struct tl_option_table tl_light_options = TL_OPTION_TABLE(
-    "light", "how the environment lights and shadows the scene", light_rows, light_params,
-    .method = TL_METHOD_PEM, .lobe = TL_LOBE_DUAL, .regions = 96, .pem_size = 128,
-    .filter = TL_CHAIN_SQRT_COSINE, .pems_per_pass = 12, .rounds = 1, .rays = 1, .fan = 5, .map_size = 256,
-    .blur_m = 0.05f, .depth_bias_m = 0.004f, .min_variance = 1e-6f, .bleed_reduction = 0.1f);
+    "light", "light and shadows of the environment", light_rows, light_params, .method = TL_METHOD_PEM,
+    .lobe = TL_LOBE_DUAL, .regions = 96, .pem_size = 128, .filter = TL_CHAIN_SQRT_COSINE, .pems_per_pass = 12,
+    .rounds = 1, .rays = 1, .fan = 5, .map_size = 256, .blur_m = 0.05f, .depth_bias_m = 0.004f,
+    .min_variance = 1e-6f, .bleed_reduction = 0.1f);
 
 struct tl_ray_params tl_light_ray_params(const struct tl_light_params *light)
 {

@@ -11,13 +11,14 @@ static const struct tl_option rows[] = {
     TL_OPTION_ENUM(lamp_params, kind, TL_AFFECTS_NOTHING, kind_names,
                    "a light in addition to the environment"),
     TL_OPTION_FLOAT(lamp_params, yaw_deg, TL_AFFECTS_NOTHING, -3600, 3600, "degrees",
-                    "about the camera's target: 0 shines from +Z, positive moves it towards +X"),
+                    "direction about the camera's target: 0 shines from +Z, positive turns towards +X"),
     TL_OPTION_FLOAT(lamp_params, pitch_deg, TL_AFFECTS_NOTHING, -90, 90, "degrees",
-                    "positive shines from above"),
+                    "elevation; positive shines from above"),
     TL_OPTION_FLOAT(lamp_params, distance_m, TL_AFFECTS_NOTHING, 0, 10000, "m",
-                    "point: from the camera's target"),
+                    "point: distance to the camera's target"),
     TL_OPTION_COLOUR(lamp_params, irradiance, TL_AFFECTS_NOTHING, 0, 1e6,
-                     "on a surface that faces it, of a point at 1 m; larger is brighter, 3.14 makes white 1"),
+                     "irradiance of a surface that faces the lamp, for point at 1 m; larger: brighter; 3.14 "
+                     "makes white 1"),
 };
 const struct tl_option_table tl_lamp_options =
     TL_OPTION_TABLE("lamp", "a light in addition to the environment", rows, lamp_params, .yaw_deg = -40,

@@ -17,33 +17,35 @@ static const char *const self_shadow_names[] = {"step", "ramp", NULL};
 
 typedef struct tl_shading_params params;
 static const struct tl_option rows[] = {
-    TL_OPTION_ENUM(params, frequency, AFFECTS, frequency_names,
-                   "where light is evaluated: at vertices; at pixels with vectors as interpolation leaves "
-                   "them; at pixels with unit vectors"),
+    TL_OPTION_ENUM(
+        params, frequency, AFFECTS, frequency_names,
+        "place of evaluation: vertices; pixels with interpolated vectors; pixels with renormalised vectors"),
     TL_OPTION_ENUM(params, coordinates, AFFECTS, coordinates_names,
-                   "inputs of the model: cosines from one matrix, for a distant light and viewer; cosines "
-                   "interpolated from vertices, without bumps; vectors at pixels"),
+                   "origin of the cosines: one matrix, for a distant light and viewer; interpolation from "
+                   "vertices, without bumps; vectors at pixels"),
     TL_OPTION_ENUM(params, reflectance, AFFECTS, reflectance_names,
-                   "gloss by its formula, or from tables of the material, which ignore its gloss maps"),
-    TL_OPTION_INT(params, table_size, AFFECTS, 8, 512, "texels", "side of a table; larger is more exact"),
+                   "gloss by its formula, or from tables of the material, which ignore gloss maps"),
+    TL_OPTION_INT(params, table_size, AFFECTS, 8, 512, "texels", "side of a table; larger: more exact"),
     TL_OPTION_ENUM(params, table_precision, AFFECTS, precision_names, "precision of the values of a table"),
     TL_OPTION_ENUM(params, table_range, AFFECTS, range_names,
                    "fixed-point tables of a factor that is unbounded at grazing angles: clamped to 1, or "
                    "divided by its maximum"),
     TL_OPTION_INT(params, max_textures_per_pass, AFFECTS, 1, 4, "tables",
-                  "gloss with more tables is multiplied in several passes; smaller needs more passes"),
+                  "tables multiplied in one pass; smaller: more passes for gloss with more tables"),
     TL_OPTION_ENUM(params, pass_target, AFFECTS, pass_target_names,
-                   "precision in which passes are multiplied"),
-    TL_OPTION_ENUM(params, normalisation, AFFECTS, normalisation_names,
-                   "phong: how vectors are renormalised; all but exact start from interpolated vectors"),
-    TL_OPTION_ENUM(params, power, AFFECTS, power_names, "how the direct formula raises a cosine to a power"),
+                   "precision of the target in which passes are multiplied"),
+    TL_OPTION_ENUM(
+        params, normalisation, AFFECTS, normalisation_names,
+        "phong: renormalisation of vectors; all methods but exact start from interpolated vectors"),
+    TL_OPTION_ENUM(params, power, AFFECTS, power_names,
+                   "evaluation of powers of cosines in the direct formula"),
     TL_OPTION_ENUM(params, space, AFFECTS, space_names,
                    "space of vectors at pixels: world, or tangent space by a transformation at vertices"),
     TL_OPTION_ENUM(params, self_shadow, AFFECTS, self_shadow_names,
-                   "how light ends at the horizon of the smooth surface: abruptly, or along a steep ramp"),
+                   "end of light at the horizon of the smooth surface: a step, or a steep ramp"),
 };
 const struct tl_option_table tl_shading_options = TL_OPTION_TABLE(
-    "shading", "how surfaces are shaded under lamps", rows, params, .frequency = TL_FREQUENCY_PHONG,
+    "shading", "shading of surfaces by lamps", rows, params, .frequency = TL_FREQUENCY_PHONG,
     .coordinates = TL_COORDINATES_PIXEL, .reflectance = TL_REFLECTANCE_DIRECT, .table_size = 256,
     .table_precision = TL_PRECISION_FLOAT, .table_range = TL_RANGE_SCALED, .max_textures_per_pass = 4,
     .pass_target = TL_PASS_TARGET_FLOAT, .normalisation = TL_NORMALISE_EXACT, .power = TL_POWER_POW,

@@ -6,14 +6,14 @@ static const char *const terminator_names[] = {"smooth", "geometric", NULL};
 
 static const struct tl_option reference_rows[] = {
     TL_OPTION_INT(reference_params, strata, TL_AFFECTS_REFERENCE, 1, 65536, "",
-                  "environment samples per replicate; more are more exact and slower"),
+                  "environment samples per replicate; larger: more exact, slower"),
     TL_OPTION_INT(reference_params, lobe_samples, TL_AFFECTS_REFERENCE, 1, 4096, "",
-                  "samples of the glossy lobe per replicate; more reduce the noise of mirrors"),
+                  "samples of the glossy lobe per replicate; larger: less noise in mirrors"),
     TL_OPTION_INT(reference_params, replicates, TL_AFFECTS_REFERENCE, 1, 65536, "",
-                  "independent images; their mean is the result and their spread its standard error, which "
-                  "needs at least 2"),
+                  "independent images, whose mean is the result and whose spread gives its standard error, "
+                  "which needs at least 2"),
     TL_OPTION_ENUM(reference_params, terminator, TL_AFFECTS_REFERENCE, terminator_names,
-                   "where light ends: at the horizon of the interpolated normal with rays from the smooth "
+                   "end of light: at the horizon of the interpolated normal, with rays from the smooth "
                    "surface, or at that of the triangle"),
 };
 const struct tl_option_table tl_reference_options =
