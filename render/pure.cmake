@@ -56,7 +56,9 @@ add_library(toile_light STATIC
   plan/budget.c
   plan/cost.c
   plan/plan.c
+  present/behind.c
   present/resample.c
+  present/tone_map.c
   reference/detail.c
   reference/gather.c
   reference/lamps.c

@@ -443,20 +443,6 @@ static bool require_image(const tl_renderer *renderer, const char *purpose, tl_e
     return true;
 }
 
-/* GL's rows run upwards, an image's downwards. */
-static void flip_rows(tl_image *image, size_t row_bytes)
-{
-    char *rows = image->texels, *spare = tl_alloc(1, row_bytes);
-    for (int y = 0; y < image->height / 2; y++) {
-        char *upper = rows + (size_t)y * row_bytes,
-             *lower = rows + (size_t)(image->height - 1 - y) * row_bytes;
-        memcpy(spare, upper, row_bytes);
-        memcpy(upper, lower, row_bytes);
-        memcpy(lower, spare, row_bytes);
-    }
-    free(spare);
-}
-
 bool tl_renderer_read(tl_renderer *renderer, tl_image *out, tl_error *error)
 {
     if (!require_image(renderer, "read", error))
@@ -478,17 +464,17 @@ bool tl_renderer_read_capture(const tl_renderer *renderer, tl_image *out, tl_err
     return true;
 }
 
-static bool show(tl_renderer *renderer, unsigned framebuffer, int width, int height, tl_error *error)
+/* Makes the picture of the last image, unless this part of it is there. */
+static bool show(tl_renderer *renderer, const struct tl_picture_part *part, tl_error *error)
 {
-    renderer->resources.show_target.framebuffer = framebuffer;
-    renderer->resources.show_target.width = width;
-    renderer->resources.show_target.height = height;
-    renderer->resources.valid &=
-        ~TL_BIT(TL_MADE_SHOWN); /* a window's buffer holds nothing from one frame to the next */
+    struct tl_resources *resources = &renderer->resources;
+    if (!tl_picture_has(&resources->present.picture, part))
+        resources->valid &= ~TL_BIT(TL_MADE_SHOWN);
+    resources->show_part = *part;
     tl_plan plan;
     /* No input counts as changed: the image is shown as it was drawn, even if the scene has changed since. */
-    const struct tl_plan_input input = {.valid = renderer->resources.valid,
-                                        .scene = renderer->resources.facts,
+    const struct tl_plan_input input = {.valid = resources->valid,
+                                        .scene = resources->facts,
                                         .wanted = TL_BIT(TL_MADE_SHOWN),
                                         .scene_fact_names = tl_scene_fact_names,
                                         .resource_names = tl_resource_names};
@@ -497,28 +483,24 @@ static bool show(tl_renderer *renderer, unsigned framebuffer, int width, int hei
 
 bool tl_renderer_show_image(tl_renderer *renderer, tl_image *out, tl_error *error)
 {
-    struct tl_resources *resources = &renderer->resources;
-    if (!require_image(renderer, "show", error))
+    const struct tl_linear_image *image = &renderer->resources.present.image;
+    const struct tl_picture_part whole = {
+        .width = image->width, .height = image->height, .end_column = image->width};
+    if (!require_image(renderer, "show", error) || !show(renderer, &whole, error))
         return false;
-    const tl_target *target = tl_present_screen(&resources->present, resources->gpu);
-    renderer->resources.show_target.first = 0;
-    renderer->resources.show_target.end = target->width;
-    if (!show(renderer, target->id, target->width, target->height, error))
-        return false;
-    *out = tl_image_create(target->width, target->height, 3, TL_IMAGE_U8);
-    size_t row_bytes = (size_t)target->width * 3;
-    glGetTextureImage(target->colours[0].id, 0, GL_RGB, GL_UNSIGNED_BYTE,
-                      (GLsizei)(row_bytes * (size_t)target->height), out->texels);
-    flip_rows(out, row_bytes);
+    tl_picture_read(&renderer->resources.present.picture, out);
     return true;
 }
 
 bool tl_renderer_show_columns(tl_renderer *renderer, int width, int height, int first, int end,
                               tl_error *error)
 {
-    renderer->resources.show_target.first = first;
-    renderer->resources.show_target.end = end;
-    return require_image(renderer, "show", error) && show(renderer, 0, width, height, error);
+    const struct tl_picture_part part = {
+        .width = width, .height = height, .first_column = first, .end_column = end};
+    if (!require_image(renderer, "show", error) || !show(renderer, &part, error))
+        return false;
+    tl_picture_copy(&renderer->resources.present.picture, renderer->resources.gpu, 0, first, end);
+    return true;
 }
 
 void tl_renderer_plan(const tl_renderer *renderer, const tl_frame *frame,

@@ -73,13 +73,6 @@ struct tl_moment {
     bool moves_shadows; /* surfaces or the environment's yaw differ from the last frame */
 };
 
-/* Not an input: where the image is shown. */
-struct tl_show_target {
-    unsigned framebuffer; /* GL name */
-    int width, height;    /* pixels */
-    int first, end;       /* columns [first, end) */
-};
-
 /* How many frames have been drawn since something changed: anything, and anything but the camera. */
 struct tl_rest {
     int image, scene;

@@ -367,11 +367,10 @@
     IO(WRITES, standard_error)
 
 #define TL_BACKDROP_JOB(IO)                                                                                  \
-    IO(READS, environment)                                                                                   \
+    IO(AFTER, TL_INPUT_ENVIRONMENT)                                                                          \
     IO(READS, cube)                                                                                          \
     IO(READS, filter)                                                                                        \
-    IO(WRITES_IN, present, TL_MADE_BACKDROP)                                                                 \
-    IO(USES, gpu)
+    IO(WRITES_IN, present, TL_MADE_BACKDROP)
 
 #define TL_SHOW_JOB(IO)                                                                                      \
     IO(AFTER, TL_MADE_IMAGE)                                                                                 \
@@ -379,7 +378,8 @@
     IO(READS, show_options)                                                                                  \
     IO(READS, yaw)                                                                                           \
     IO(READS, camera)                                                                                        \
-    IO(SEES, show_target)                                                                                    \
+    IO(SEES, environment)                                                                                    \
+    IO(SEES, show_part)                                                                                      \
     IO(WRITES_IN, present, TL_MADE_SHOWN)                                                                    \
     IO(USES, gpu)
 

@@ -79,7 +79,7 @@ static size_t resource_bytes(const struct tl_resources *from, enum tl_resource r
     case TL_MADE_IMAGE:
         return tl_present_bytes(present);
     case TL_MADE_BACKDROP:
-        return tl_texture_bytes(&present->backdrop) + tl_texture_bytes(&present->blurred);
+        return tl_backdrop_bytes(&present->backdrop);
     default:
         return 0;
     }

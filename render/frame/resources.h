@@ -120,7 +120,7 @@ struct tl_resources {
     /* Further values of the frame that jobs read. A change of one is no reason to run. */
     tl_bits facts; /* of its scene */
     struct tl_moment moment;
-    struct tl_show_target show_target;
+    struct tl_picture_part show_part; /* what of the image is shown */
 };
 
 /* A member's bit: TL_RESOURCE_OF_cube is TL_MADE_CUBE. */

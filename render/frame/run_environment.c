@@ -96,6 +96,7 @@ bool tl_run_lights(const struct tl_lights_job *job, tl_error *error)
 
 bool tl_run_backdrop(const struct tl_backdrop_job *job, tl_error *error)
 {
-    return tl_present_set_backdrop(job->present, *job->gpu, job->environment->map, job->cube, *job->filter,
-                                   error);
+    (void)error;
+    tl_backdrop_set(&job->present->backdrop, job->cube, *job->filter);
+    return true;
 }

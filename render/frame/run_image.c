@@ -144,11 +144,8 @@ bool tl_run_show(const struct tl_show_job *job, tl_error *error)
 {
     const struct tl_show_request request = {.view = job->camera->view,
                                             .environment_yaw = *job->yaw,
+                                            .environment = job->environment->map,
                                             .params = job->show_options,
-                                            .framebuffer = job->show_target->framebuffer,
-                                            .width = job->show_target->width,
-                                            .first_column = job->show_target->first,
-                                            .end_column = job->show_target->end,
-                                            .height = job->show_target->height};
+                                            .part = *job->show_part};
     return tl_present_show(job->present, *job->gpu, &request, error);
 }

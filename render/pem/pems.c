@@ -109,15 +109,3 @@ tl_cube tl_pems_read(const struct tl_pems *pems, int index, int level)
         cube.texels[i] *= pems->scale;
     return cube;
 }
-
-tl_texture tl_pem_upload_whole(tl_gpu *gpu, const tl_cube *cube, int filter, float *scale)
-{
-    struct tl_chain chain = tl_chain_build(cube, (enum tl_chain_filter)filter);
-    *scale = storage_scale(cube);
-    scale_chain(&chain, 1 / *scale);
-    tl_texture texture =
-        tl_texture_create(gpu, GL_TEXTURE_CUBE_MAP, GL_RGBA16F, cube->size, cube->size, 6, chain.level_count);
-    upload(&texture, 0, &chain);
-    tl_chain_release(&chain);
-    return texture;
-}

@@ -30,8 +30,4 @@ size_t tl_pems_bytes(const struct tl_pems *pems);
  * releases the cube. */
 tl_cube tl_pems_read(const struct tl_pems *pems, int index, int level);
 
-/* One whole cube, filtered, as a cube map: the environment without regions. radiance = *scale x stored. The
- * caller destroys the texture. */
-tl_texture tl_pem_upload_whole(tl_gpu *gpu, const tl_cube *cube, int filter, float *scale);
-
 #endif

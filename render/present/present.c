@@ -11,10 +11,11 @@
 #include <string.h>
 
 /* Uniform locations of show.frag. */
-enum { EXPOSURE, ENVIRONMENT_TURN, VIEW, BLURRED_SCALE = 5 };
+enum { EXPOSURE, ENVIRONMENT_TURN, VIEW };
 
 bool tl_present_create(struct tl_present *present, tl_gpu *gpu, tl_error *error)
 {
+    tl_encoding_make(&present->encoding);
     return tl_program_create(gpu, tl_embedded_shaders, "fullscreen.vert", "resolve.frag", &present->resolve,
                              error);
 }
@@ -26,9 +27,8 @@ void tl_present_release(struct tl_present *present)
         for (int same_size = 0; same_size < 2; same_size++)
             tl_program_destroy(&present->shows[shown][same_size]);
     tl_linear_image_release(&present->image);
-    tl_target_destroy(&present->shown);
-    tl_texture_destroy(&present->backdrop);
-    tl_texture_destroy(&present->blurred);
+    tl_picture_release(&present->picture);
+    tl_backdrop_release(&present->backdrop);
 }
 
 bool tl_present_reload(struct tl_present *present, tl_error *error)
@@ -98,54 +98,16 @@ void tl_present_resolve(struct tl_present *present, tl_gpu *gpu, const tl_textur
     tl_gpu_draw_fullscreen(gpu);
 }
 
-bool tl_present_set_backdrop(struct tl_present *present, tl_gpu *gpu, const tl_environment *environment,
-                             const tl_cube *cube, int filter, tl_error *error)
+static enum tl_shown shown_of(const struct tl_show_request *request)
 {
-    const tl_image *image = &environment->image;
-    int limit = tl_gpu_texture_side_max(gpu);
-    if (image->width > limit || image->height > limit)
-        return tl_fail(error, TL_INPUT, "%s: %d x %d texels are more than GL holds: scale it to %d",
-                       environment->name, image->width, image->height, limit);
-    bool latlong = environment->layout == TL_ENV_LATLONG;
-    tl_texture_destroy(&present->backdrop);
-    tl_texture_destroy(&present->blurred);
-    present->blurred = tl_pem_upload_whole(gpu, cube, filter, &present->blurred_scale);
-    GLenum given = image->channels == 4 ? GL_RGBA : GL_RGB;
-    if (latlong) {
-        present->backdrop =
-            tl_texture_create(gpu, GL_TEXTURE_2D, GL_RGBA32F, image->width, image->height, 1, 1);
-        glTextureSubImage2D(present->backdrop.id, 0, 0, 0, image->width, image->height, given, GL_FLOAT,
-                            image->texels);
-        glTextureParameteri(present->backdrop.id, GL_TEXTURE_WRAP_S, GL_REPEAT);
-    } else {
-        present->backdrop =
-            tl_texture_create(gpu, GL_TEXTURE_CUBE_MAP, GL_RGBA32F, image->width, image->width, 6, 1);
-        glTextureSubImage3D(present->backdrop.id, 0, 0, 0, 0, image->width, image->width, 6, given, GL_FLOAT,
-                            image->texels);
-    }
-    return true;
-}
-
-const tl_target *tl_present_screen(struct tl_present *present, tl_gpu *gpu)
-{
-    const struct tl_linear_image *image = &present->image;
-    const unsigned format = GL_RGBA8;
-    if (present->shown.width != image->width || present->shown.height != image->height) {
-        tl_target_destroy(&present->shown);
-        present->shown = tl_target_create(gpu, image->width, image->height, &format, 1, false);
-    }
-    return &present->shown;
-}
-
-static enum tl_shown shown_of(const struct tl_present *present, const struct tl_image_params *params)
-{
+    const struct tl_image_params *params = request->params;
     if (params->view != TL_VIEW_LIGHT)
         return TL_SHOWN_AS_IT_IS;
     if (params->background == TL_BACKGROUND_GREY)
         return TL_SHOWN_ON_GREY;
     if (params->background == TL_BACKGROUND_BLURRED)
         return TL_SHOWN_ON_BLURRED;
-    return present->backdrop.target == GL_TEXTURE_2D ? TL_SHOWN_ON_LATLONG : TL_SHOWN_ON_CUBE;
+    return request->environment->layout == TL_ENV_LATLONG ? TL_SHOWN_ON_LATLONG : TL_SHOWN_ON_CUBE;
 }
 
 static const tl_program *program_of(struct tl_present *present, tl_gpu *gpu, enum tl_shown shown,
@@ -165,8 +127,7 @@ static const tl_program *program_of(struct tl_present *present, tl_gpu *gpu, enu
     return program;
 }
 
-static void set_uniforms(const struct tl_present *present, const struct tl_show_request *request,
-                         enum tl_shown shown)
+static void set_uniforms(const struct tl_show_request *request, enum tl_shown shown)
 {
     const struct tl_view *view = &request->view;
     const vec3s columns[3] = {view->right, view->up, view->forward};
@@ -177,33 +138,85 @@ static void set_uniforms(const struct tl_present *present, const struct tl_show_
         return;
     glUniform2f(ENVIRONMENT_TURN, cosf(request->environment_yaw), sinf(request->environment_yaw));
     glUniformMatrix3fv(VIEW, 1, GL_FALSE, columns[0].raw);
-    if (shown == TL_SHOWN_ON_BLURRED)
-        glUniform1f(BLURRED_SCALE, present->blurred_scale);
 }
 
-bool tl_present_show(struct tl_present *present, tl_gpu *gpu, const struct tl_show_request *request,
-                     tl_error *error)
+/* Binds the texture of what is behind; true where there is none. */
+static bool bind_backdrop(struct tl_present *present, tl_gpu *gpu, const struct tl_show_request *request,
+                          enum tl_shown shown, tl_error *error)
 {
-    enum tl_shown shown = shown_of(present, request->params);
-    bool same_size = request->width == present->image.width && request->height == present->image.height;
+    const tl_texture *texture = NULL;
+    if (shown == TL_SHOWN_AS_IT_IS || shown == TL_SHOWN_ON_GREY)
+        return true;
+    if (shown == TL_SHOWN_ON_BLURRED)
+        texture = tl_backdrop_blurred(&present->backdrop, gpu);
+    else
+        texture = tl_backdrop_sharp(&present->backdrop, gpu, request->environment, error);
+    if (texture)
+        glBindTextureUnit(1, texture->id);
+    return texture;
+}
+
+static bool show_by_shader(struct tl_present *present, tl_gpu *gpu, const struct tl_show_request *request,
+                           tl_error *error)
+{
+    const struct tl_picture_part *part = &request->part;
+    enum tl_shown shown = shown_of(request);
+    bool same_size = part->width == present->image.width && part->height == present->image.height;
     const tl_program *program = program_of(present, gpu, shown, same_size, error);
-    if (!program)
+    if (!program || !bind_backdrop(present, gpu, request, shown, error))
         return false;
-    const tl_texture *image = tl_linear_image_texture(&present->image, gpu);
-    glBindFramebuffer(GL_FRAMEBUFFER, request->framebuffer);
-    glViewport(0, 0, request->width, request->height);
+    glBindTextureUnit(0, tl_linear_image_texture(&present->image, gpu)->id);
+    tl_picture_begin_gpu(&present->picture, gpu, part);
     glEnable(GL_SCISSOR_TEST);
-    glScissor(request->first_column, 0, request->end_column - request->first_column, request->height);
+    glScissor(part->first_column, 0, part->end_column - part->first_column, part->height);
     glUseProgram(program->id);
-    set_uniforms(present, request, shown);
-    glBindTextureUnit(0, image->id);
-    glBindTextureUnit(1, shown == TL_SHOWN_ON_BLURRED ? present->blurred.id : present->backdrop.id);
+    set_uniforms(request, shown);
     tl_gpu_draw_fullscreen(gpu);
     glDisable(GL_SCISSOR_TEST);
     return true;
 }
 
+static void show_on_cpu(struct tl_present *present, const struct tl_show_request *request)
+{
+    const struct tl_picture_part *part = &request->part;
+    struct tl_backdrop *backdrop = &present->backdrop;
+    enum tl_shown shown = shown_of(request);
+    struct tl_tone_map_request tone_map = {.encoding = &present->encoding,
+                                           .texels = present->image.texels,
+                                           .width = part->width,
+                                           .height = part->height,
+                                           .first_column = part->first_column,
+                                           .end_column = part->end_column,
+                                           .is_light = shown != TL_SHOWN_AS_IT_IS,
+                                           .exposure = exp2f(request->params->exposure_ev)};
+    if (shown != TL_SHOWN_AS_IT_IS && shown != TL_SHOWN_ON_GREY) {
+        const struct tl_behind_request behind = {.forward = request->view.forward,
+                                                 .right = request->view.right,
+                                                 .up = request->view.up,
+                                                 .environment_yaw = request->environment_yaw,
+                                                 .environment = request->environment,
+                                                 .blurred =
+                                                     shown == TL_SHOWN_ON_BLURRED ? &backdrop->blurred : NULL,
+                                                 .width = part->width,
+                                                 .height = part->height,
+                                                 .revision = backdrop->revision};
+        tl_behind_begin(&backdrop->behind, &behind);
+        tone_map.behind = &backdrop->behind;
+    }
+    tl_tone_map(&tone_map, tl_picture_begin_cpu(&present->picture, part));
+}
+
+bool tl_present_show(struct tl_present *present, tl_gpu *gpu, const struct tl_show_request *request,
+                     tl_error *error)
+{
+    const struct tl_linear_image *image = &present->image;
+    if (!image->texels || image->width != request->part.width || image->height != request->part.height)
+        return show_by_shader(present, gpu, request, error);
+    show_on_cpu(present, request);
+    return true;
+}
+
 size_t tl_present_bytes(const struct tl_present *present)
 {
-    return tl_linear_image_bytes(&present->image) + tl_target_bytes(&present->shown);
+    return tl_linear_image_bytes(&present->image) + tl_picture_bytes(&present->picture);
 }

@@ -3,11 +3,11 @@
 #ifndef TOILE_RENDER_PRESENT_PRESENT_H
 #define TOILE_RENDER_PRESENT_PRESENT_H
 
-#include "assets/environment.h"
-#include "render/gpu/gpu.h"
-#include "render/pem/pems.h"
+#include "render/present/backdrop.h"
 #include "render/present/linear_image.h"
 #include "render/present/options.h"
+#include "render/present/picture.h"
+#include "render/present/tone_map.h"
 #include "render/scene/view.h"
 
 /* The background; or none and no tone mapping, for colours that stand for numbers. */
@@ -24,19 +24,17 @@ struct tl_present {
     tl_program resolve;
     tl_program shows[TL_SHOWN_COUNT][2]; /* made when first used; the second where sizes are the same */
     struct tl_linear_image image;
-    tl_target shown;     /* RGBA8, for images; windows have their own */
-    tl_texture backdrop; /* the environment in its own layout */
-    tl_texture blurred;  /* the whole cube, filtered */
-    float blurred_scale;
+    struct tl_picture picture; /* the image as it was shown last */
+    struct tl_backdrop backdrop;
+    struct tl_encoding encoding;
 };
 
 struct tl_show_request {
     struct tl_view view;
-    float environment_yaw; /* rad */
+    float environment_yaw;             /* rad */
+    const tl_environment *environment; /* that the backdrop was made of */
     const struct tl_image_params *params;
-    unsigned framebuffer;         /* GL name */
-    int width, height;            /* pixels */
-    int first_column, end_column; /* columns that are drawn: [first, end) */
+    struct tl_picture_part part;
 };
 
 bool tl_present_create(struct tl_present *present, tl_gpu *gpu, tl_error *error);
@@ -53,14 +51,12 @@ float *tl_present_begin_cpu_image(struct tl_present *present, int width, int hei
 /* Takes an image that was made elsewhere: F32 RGBA, rows downwards. */
 void tl_present_set_image(struct tl_present *present, const tl_image *image);
 
-/* Makes the backdrop from the environment. False when the environment is larger than GL can hold. */
-bool tl_present_set_backdrop(struct tl_present *present, tl_gpu *gpu, const tl_environment *environment,
-                             const tl_cube *cube, int filter, tl_error *error);
-/* A screen for pictures, as large as the image. */
-const tl_target *tl_present_screen(struct tl_present *present, tl_gpu *gpu);
+/* Shows the image in `picture`: on the CPU when it is there and has as many pixels as the picture, else by
+ * show.frag. Both give the same bytes within 1. False when the environment is seen behind and is larger than
+ * GL can hold. */
 bool tl_present_show(struct tl_present *present, tl_gpu *gpu, const struct tl_show_request *request,
                      tl_error *error);
 
-size_t tl_present_bytes(const struct tl_present *present); /* targets; without the backdrop */
+size_t tl_present_bytes(const struct tl_present *present); /* image and picture, without the backdrop */
 
 #endif

@@ -29,6 +29,7 @@ foreach(name
     pem/regions_sphere
     detail/relief
     present/resample
+    present/tone_map
     reference/sky
     pem/slices
     env/sun

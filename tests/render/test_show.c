@@ -1,0 +1,167 @@
+/* The two ways to show an image, as they are used: on the CPU, where the image was made there, and by
+ * show.frag. The oracle of each is the other; both share the text of the tone mapper (present/tone.glsl),
+ * whose own oracle is in present/test_tone_map.c. */
+#include "assets/builtin/studio.h"
+#include "config/memory.h"
+#include "render/env/convert.h"
+#include "render/renderer_internal.h"
+#include "tests/render/scenes.h"
+#include "tests/testing.h"
+
+#include <epoxy/gl.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Moves the renderer's image to the GPU, so that it is shown there. */
+static void move_to_gpu(tl_renderer *renderer)
+{
+    struct tl_resources *resources = &renderer->resources;
+    struct tl_linear_image *image = &resources->present.image;
+    assert_non_null(image->texels);
+    int width = image->width, height = image->height;
+    float *texels = tl_alloc(image->bytes, 1);
+    memcpy(texels, image->texels, image->bytes);
+    tl_linear_image_begin_gpu(image, resources->gpu, width, height);
+    glTextureSubImage2D(image->target.colours[0].id, 0, 0, 0, width, height, GL_RGBA, GL_FLOAT, texels);
+    resources->valid &= ~TL_BIT(TL_MADE_SHOWN);
+    free(texels);
+}
+
+static tl_image show(tl_renderer *renderer)
+{
+    tl_error error = {0};
+    tl_image shown;
+    assert_ok(tl_renderer_show_image(renderer, &shown, &error), error);
+    return shown;
+}
+
+/* Draws, shows on both sides and compares every byte. */
+static void expect_same(tl_renderer *renderer, const struct test_scene *scene, const char *name)
+{
+    renderer->resources.valid &= ~TL_BIT(TL_MADE_IMAGE); /* the last one was moved */
+    tl_image drawn = test_scene_draw(scene, renderer);
+    tl_image_release(&drawn);
+    tl_image on_cpu = show(renderer);
+    move_to_gpu(renderer);
+    tl_image by_shader = show(renderer);
+    const uint8_t *a = tl_image_bytes(&on_cpu), *b = tl_image_bytes(&by_shader);
+    size_t count = (size_t)on_cpu.width * (size_t)on_cpu.height * 3, different = 0, at = 0;
+    int largest = 0;
+    for (size_t i = 0; i < count; i++) {
+        int difference = abs(a[i] - b[i]);
+        different += difference > 0;
+        if (difference > largest) {
+            largest = difference;
+            at = i / 3;
+        }
+    }
+    print_message("%s, %d x %d: %.2f %% of the bytes differ, by %d at most\n", name, on_cpu.width,
+                  on_cpu.height, 100.0 * (double)different / (double)count, largest);
+    if (largest > 1)
+        fail_msg("%s: pixel (%zu, %zu) is %d %d %d on the CPU and %d %d %d by the shader", name,
+                 at % (size_t)on_cpu.width, at / (size_t)on_cpu.width, a[3 * at], a[3 * at + 1],
+                 a[3 * at + 2], b[3 * at], b[3 * at + 1], b[3 * at + 2]);
+    tl_image_release(&on_cpu);
+    tl_image_release(&by_shader);
+}
+
+/* A ball and a sheet with a gloss that goes far beyond white, drawn by rays, in an image of this size. The
+ * environment's yaw is not 0, so that a wrong turn is seen. */
+static void open_scene(struct test_scene *scene, tl_environment environment, int width, int height)
+{
+    test_scene_open(scene, environment, (vec3s){{0.3f, 0.7f, 2.2f}}, (vec3s){{0, 0.35f, 0}}, 40, width,
+                    height);
+    test_scene_add(scene, test_sphere((vec3s){{0, 0.4f, 0}}, 0.4f, 32))->glossiness = 0.9f;
+    test_scene_add(scene, test_sheet(0.8f, 0.5f, 0.05f, 9, 32));
+    scene->frame.environment_yaw = 0.7f;
+    scene->settings.light.visibility = TL_VISIBILITY_RAYS;
+    scene->settings.light.composition = TL_COMPOSE_RATIO;
+    scene->settings.light.regions = 8;
+    scene->settings.image.scale = 0.9f; /* such images are made on the CPU */
+}
+
+static void expect_same_backgrounds(tl_renderer *renderer, struct test_scene *scene, const char *where)
+{
+    static const char *const names[] = {"environment", "blurred", "grey"};
+    for (int background = TL_BACKGROUND_ENVIRONMENT; background <= TL_BACKGROUND_GREY; background++) {
+        char name[64];
+        snprintf(name, sizeof name, "%s, %s", where, names[background]);
+        scene->settings.image.background = background;
+        expect_same(renderer, scene, name);
+    }
+}
+
+static void test_backgrounds(void **state)
+{
+    struct test_device *device = *state;
+    struct test_scene scene;
+    open_scene(&scene, tl_environment_studio(), 900, 800);
+    expect_same_backgrounds(device->renderer, &scene, "studio");
+    scene.settings.image.exposure_ev = 2;
+    scene.settings.image.width = 1920;
+    scene.settings.image.height = 1080;
+    scene.settings.light.pem_size = 128; /* as review has it: a sharper blur */
+    expect_same_backgrounds(device->renderer, &scene, "studio, brighter");
+    test_scene_close(&scene);
+}
+
+/* An environment with a sun, as many texels as real ones have. */
+static void test_large_environment(void **state)
+{
+    struct test_device *device = *state;
+    struct test_scene scene;
+    open_scene(&scene, test_environment(2048, 1024, test_daylight), 900, 800);
+    scene.settings.light.pem_size = 128;
+    expect_same_backgrounds(device->renderer, &scene, "daylight");
+    test_scene_close(&scene);
+}
+
+/* The studio as a cube. */
+static tl_environment cube_studio(void)
+{
+    tl_environment studio = tl_environment_studio();
+    const struct tl_sphere_map from = {TL_LAYOUT_LATLONG, studio.image.width, studio.image.height};
+    const struct tl_sphere_map to = {TL_LAYOUT_CUBE, 128, 6 * 128};
+    tl_image cube = tl_image_convert(&studio.image, &from, &to, NULL);
+    tl_image_release(&studio.image);
+    studio.image = cube;
+    studio.layout = TL_ENV_CUBE;
+    return studio;
+}
+
+static void test_cube(void **state)
+{
+    struct test_device *device = *state;
+    struct test_scene scene;
+    open_scene(&scene, cube_studio(), 900, 800);
+    scene.settings.image.background = TL_BACKGROUND_ENVIRONMENT;
+    expect_same(device->renderer, &scene, "cube");
+    test_scene_close(&scene);
+}
+
+/* Views in place of light are neither exposed nor mapped. */
+static void test_views(void **state)
+{
+    struct test_device *device = *state;
+    struct test_scene scene;
+    open_scene(&scene, tl_environment_studio(), 901, 333);
+    scene.settings.image.exposure_ev = -3;
+    for (int view = TL_VIEW_LIGHT + 1; view < TL_VIEW_STRAIN_WARP; view++) {
+        scene.settings.image.view = view;
+        expect_same(device->renderer, &scene, tl_image_view_names[view]);
+    }
+    test_scene_close(&scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_backgrounds),
+        cmocka_unit_test(test_large_environment),
+        cmocka_unit_test(test_cube),
+        cmocka_unit_test(test_views),
+    };
+    return cmocka_run_group_tests(tests, test_device_open, test_device_close);
+}
