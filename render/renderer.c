@@ -138,6 +138,10 @@ void tl_renderer_destroy(tl_renderer **renderer)
     release_environment(resources);
     release_scene(resources);
     tl_gbuffer_release(&resources->gbuffer);
+    tl_ids_release(&resources->ids);
+    tl_shade_materials_release(&resources->shade_materials);
+    tl_ratios_release(&resources->ratios);
+    tl_sun_pixels_release(&resources->sun_pixels);
     tl_light_buffer_release(&resources->light);
     tl_lighting_release(&resources->lighting);
     tl_envmap_release(&resources->envmap);
@@ -291,6 +295,7 @@ static void reload_shaders(tl_renderer *renderer)
     tl_error error = {0};
     if (!tl_shadow_maps_reload(renderer->resources.maps, &error) ||
         !tl_gbuffer_reload(&renderer->resources.gbuffer, &error) ||
+        !tl_gbuffer_reload(&renderer->resources.ids.drawn, &error) ||
         !tl_gbuffer_reload(&renderer->resources.transparency.behind, &error) ||
         !tl_lighting_reload(&renderer->resources.lighting, &error) ||
         !tl_envmap_reload(&renderer->resources.envmap, &error) ||
@@ -404,6 +409,7 @@ static void set_inputs(const tl_renderer *renderer, struct tl_resources *resourc
     resources->look_up = tl_input_look_up(&settings->maps);
     resources->capture_options = tl_input_capture(&settings->maps);
     resources->view_options = tl_input_view(image);
+    resources->ratio_at = light->ratio_at;
     resources->facts = tl_frame_facts(frame, settings);
     const tl_bits moves_shadows = TL_BIT(TL_INPUT_MOTION) | TL_BIT(TL_INPUT_YAW);
     resources->moment = (struct tl_moment){frame->still, renderer->moving & moves_shadows};

@@ -3,6 +3,7 @@
 #include "config/memory.h"
 #include "render/env/emitters.h"
 #include "render/env/exponent.h"
+#include "render/env/lobes_fetch.h"
 
 #include <assert.h>
 #include <math.h>
@@ -274,45 +275,10 @@ void tl_lobes_release(struct tl_lobes *lobes)
     *lobes = (struct tl_lobes){0};
 }
 
-typedef float quad __attribute__((vector_size(4 * sizeof(float)), aligned(4)));
-
-/* A point of the unfolded octahedron, u and v in [0, 1]. */
-struct place {
-    float u, v;
-};
-
-static inline struct place place_of(vec3s direction)
-{
-    float scale = 0.5f / (fabsf(direction.x) + fabsf(direction.y) + fabsf(direction.z));
-    float u = direction.x * scale, v = direction.z * scale;
-    /* Below the horizon 1 - |v| = |u| + |y|. */
-    float outwards = direction.y < 0 ? -direction.y * scale : 0;
-    u += copysignf(outwards, u);
-    v += copysignf(outwards, v);
-    return (struct place){u + 0.5f, v + 0.5f};
-}
-
-static inline quad fetch(const struct tl_lobe_map *map, struct place place)
-{
-    float x = place.u * (float)map->side + 0.5f, y = place.v * (float)map->side + 0.5f,
-          last = (float)map->side + 0.5f;
-    x = x > 0 ? x < last ? x : last : 0; /* NaN becomes 0, too */
-    y = y > 0 ? y < last ? y : last : 0;
-    int column = (int)x, row = (int)y;
-    float right = x - (float)column, below = y - (float)row;
-    const quad *top = (const quad *)map->texels + (size_t)row * (size_t)(map->side + 2) + (size_t)column;
-    const quad *bottom = top + map->side + 2;
-    quad upper = top[0] + right * (top[1] - top[0]), lower = bottom[0] + right * (bottom[1] - bottom[0]);
-    return upper + below * (lower - upper);
-}
-
 vec3s tl_lobes_fetch(const struct tl_lobes *lobes, vec3s direction, struct tl_exponent_blend blend)
 {
     assert(lobes->maps[blend.index].side);
-    struct place place = place_of(direction);
-    quad colour = fetch(&lobes->maps[blend.index], place);
-    if (blend.weight > 0) /* the next map need not exist otherwise */
-        colour += blend.weight * (fetch(&lobes->maps[blend.index + 1], place) - colour);
+    tl_quad colour = tl_lobes_fetch_quad(lobes, tl_octahedral_place(direction.x, direction.y, direction.z), blend);
     return (vec3s){{colour[0], colour[1], colour[2]}};
 }
 

@@ -9,6 +9,7 @@
 #include "render/light/mirrors.h"
 #include "render/light/transparency.h"
 #include "render/local/lamp_shadows.h"
+#include "render/shade/materials.h"
 
 #include <math.h>
 
@@ -136,8 +137,30 @@ static tl_bits lamp_facts(const tl_frame *frame, const struct tl_light_params *l
     return facts;
 }
 
+/* Facts of a frame whose pixels are lit from ratios at vertices; 0 where these are not wanted, or where
+ * something in the scene needs samples. */
+static tl_bits ratio_facts(const tl_frame *frame, const struct tl_render_settings *settings)
+{
+    const struct tl_light_params *light = &settings->light;
+    struct tl_lamp lamps[TL_LAMPS_MAX];
+    bool wanted = light->ratio_at == TL_RATIO_AT_VERTICES && light->method == TL_METHOD_PEM &&
+                  light->visibility == TL_VISIBILITY_RAYS && light->lobe == TL_LOBE_DUAL && !frame->aovs;
+    if (!wanted || tl_lamps_lit(frame, lamps) > 0 ||
+        !tl_shade_materials_fit(frame->surfaces, frame->surface_count, &settings->detail))
+        return 0;
+    bool mirrors =
+        light->reflect_scene &&
+        tl_mirror_ray_count(tl_lobe_exponent(greatest_glossiness(frame->surfaces, frame->surface_count))) > 0;
+    return mirrors ? 0
+                   : TL_BIT(TL_SCENE_RATIOS) | TL_BIT(TL_SCENE_RAYS) | TL_BIT(TL_SCENE_SHADOWS) |
+                         TL_BIT(TL_SCENE_EXACT);
+}
+
 static tl_bits light_facts(const tl_frame *frame, const struct tl_render_settings *settings)
 {
+    tl_bits ratios = ratio_facts(frame, settings);
+    if (ratios)
+        return ratios;
     const struct tl_light_params *light = &settings->light;
     if (light->method == TL_METHOD_REFERENCE)
         return TL_BIT(TL_SCENE_REFERENCE);

@@ -48,6 +48,7 @@ static const uint64_t bits_of[TL_INPUT_COUNT] = {
     [TL_INPUT_SHOW] = TL_AFFECTS_SHOW,         [TL_INPUT_ENVMAP] = TL_AFFECTS_ENVMAP,
     [TL_INPUT_LAYOUT] = TL_AFFECTS_LAYOUT,     [TL_INPUT_LOOK_UP] = TL_AFFECTS_LOOK_UP,
     [TL_INPUT_CAPTURE] = TL_AFFECTS_CAPTURE,   [TL_INPUT_VIEW] = TL_AFFECTS_VIEW,
+    [TL_INPUT_RATIO] = TL_AFFECTS_RATIO,
 };
 
 /* Each input's signature as far as options decide it. */
@@ -123,7 +124,8 @@ static void count_rest(const struct tl_light_params *light, const uint64_t befor
         if (is_outcome || i == TL_INPUT_SHOW || signatures[i] == before[i])
             continue;
         image_rests = false;
-        scene_rests = scene_rests && (i == TL_INPUT_CAMERA || i == TL_INPUT_SIZE || i == TL_INPUT_LAMPS);
+        scene_rests = scene_rests && (i == TL_INPUT_CAMERA || i == TL_INPUT_SIZE || i == TL_INPUT_LAMPS ||
+                                      i == TL_INPUT_RATIO || i == TL_INPUT_RAYS);
     }
     int last = tl_light_averages(light) ? light->rounds - 1 : 0;
     rest->image = !image_rests ? 0 : rest->image < last ? rest->image + 1 : last;

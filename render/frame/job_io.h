@@ -147,6 +147,23 @@
     IO(READS, shapes)                                                                                        \
     IO(WRITES, samples)
 
+#define TL_IDS_JOB(IO)                                                                                       \
+    IO(READS_HANDLE, surfaces)                                                                               \
+    IO(READS, ground)                                                                                        \
+    IO(READS, camera)                                                                                        \
+    IO(READS, size)                                                                                          \
+    IO(READS, has_ground)                                                                                    \
+    IO(READS, shapes)                                                                                        \
+    IO(WRITES, ids)                                                                                          \
+    IO(USES, gpu)
+
+#define TL_SHADE_MATERIALS_JOB(IO)                                                                           \
+    IO(READS, shapes)                                                                                        \
+    IO(READS, detail_options)                                                                                \
+    IO(READS, has_ground)                                                                                    \
+    IO(READS, light_options)                                                                                 \
+    IO(WRITES, shade_materials)
+
 #define TL_TRANSPARENCY_JOB(IO)                                                                              \
     IO(EXTENDS, samples, TL_MADE_TRANSPARENCY)                                                               \
     IO(READS_HANDLE, surfaces)                                                                               \
@@ -176,6 +193,7 @@
 
 #define TL_POINTS_JOB(IO)                                                                                    \
     IO(READS, samples)                                                                                       \
+    IO(READS, ids)                                                                                           \
     IO(AFTER, TL_MADE_TRANSPARENCY)                                                                          \
     IO(AFTER, TL_MADE_MIRRORS)                                                                               \
     IO(READS, regions)                                                                                       \
@@ -189,8 +207,50 @@
     IO(READS, ray_options)                                                                                   \
     IO(READS, scene_round)                                                                                   \
     IO(SEES, moment)                                                                                         \
+    IO(SEES, facts)                                                                                          \
     IO(WRITES_HANDLE, points)                                                                                \
     IO(WRITES, points_are_done)
+
+#define TL_RATIOS_JOB(IO)                                                                                    \
+    IO(READS, ids)                                                                                           \
+    IO(READS, shade_materials)                                                                               \
+    IO(READS_HANDLE, points)                                                                                 \
+    IO(READS_HANDLE, lights)                                                                                 \
+    IO(READS, exact)                                                                                         \
+    IO(READS, yaw)                                                                                           \
+    IO(READS, camera)                                                                                        \
+    IO(READS, shapes)                                                                                        \
+    IO(READS, light_options)                                                                                 \
+    IO(WRITES, ratios)
+
+#define TL_SUN_PIXELS_JOB(IO)                                                                                \
+    IO(READS, ids)                                                                                           \
+    IO(READS, shade_materials)                                                                               \
+    IO(READS, suns)                                                                                          \
+    IO(READS_HANDLE, trace)                                                                                  \
+    IO(READS, yaw)                                                                                           \
+    IO(READS, camera)                                                                                        \
+    IO(READS, shapes)                                                                                        \
+    IO(READS, ground)                                                                                        \
+    IO(READS, has_ground)                                                                                    \
+    IO(WRITES, sun_pixels)
+
+#define TL_SHADE_JOB(IO)                                                                                     \
+    IO(READS, ids)                                                                                           \
+    IO(READS, ratios)                                                                                        \
+    IO(READS, sun_pixels)                                                                                    \
+    IO(READS, shade_materials)                                                                               \
+    IO(READS, exact)                                                                                         \
+    IO(READS, suns)                                                                                          \
+    IO(READS, yaw)                                                                                           \
+    IO(READS, camera)                                                                                        \
+    IO(READS, size)                                                                                          \
+    IO(READS, shapes)                                                                                        \
+    IO(READS, ground)                                                                                        \
+    IO(READS, has_ground)                                                                                    \
+    IO(AFTER, TL_INPUT_RATIO)                                                                                \
+    IO(AFTER, TL_INPUT_VIEW)                                                                                 \
+    IO(WRITES, present)
 
 #define TL_LIGHT_JOB(IO)                                                                                     \
     IO(READS, gbuffer)                                                                                       \
@@ -247,8 +307,10 @@
     IO(READS, yaw)                                                                                           \
     IO(READS, camera)                                                                                        \
     IO(READS, view_options)                                                                                  \
+    IO(READS, gbuffer)                                                                                       \
     IO(WRITES, light)                                                                                        \
-    IO(WRITES, strain_range)
+    IO(WRITES, strain_range)                                                                                 \
+    IO(USES, gpu)
 
 #define TL_ENVMAP_LOBES_JOB(IO)                                                                              \
     IO(READS, environment)                                                                                   \
@@ -340,6 +402,7 @@
 
 #define TL_RESOLVE_JOB(IO)                                                                                   \
     IO(READS, light)                                                                                         \
+    IO(AFTER, TL_INPUT_RATIO)                                                                                \
     IO(AFTER, TL_MADE_LAMPLIGHT)                                                                             \
     IO(READS, gbuffer)                                                                                       \
     IO(READS, size)                                                                                          \
@@ -395,11 +458,16 @@
     JOB(maps, TL_MAPS_JOB)                                                                                   \
     JOB(blur, TL_BLUR_JOB)                                                                                   \
     JOB(gbuffer, TL_GBUFFER_JOB)                                                                             \
+    JOB(ids, TL_IDS_JOB)                                                                                     \
+    JOB(shade_materials, TL_SHADE_MATERIALS_JOB)                                                             \
     JOB(samples, TL_SAMPLES_JOB)                                                                             \
     JOB(transparency, TL_TRANSPARENCY_JOB)                                                                   \
     JOB(trace, TL_TRACE_JOB)                                                                                 \
     JOB(mirrors, TL_MIRRORS_JOB)                                                                             \
     JOB(points, TL_POINTS_JOB)                                                                               \
+    JOB(ratios, TL_RATIOS_JOB)                                                                               \
+    JOB(sun_pixels, TL_SUN_PIXELS_JOB)                                                                       \
+    JOB(shade, TL_SHADE_JOB)                                                                                 \
     JOB(light, TL_LIGHT_JOB)                                                                                 \
     JOB(compose, TL_COMPOSE_JOB)                                                                             \
     JOB(inspect, TL_INSPECT_JOB)                                                                             \

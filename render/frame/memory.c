@@ -56,6 +56,14 @@ static size_t resource_bytes(const struct tl_resources *from, enum tl_resource r
         return tl_shadow_maps_bytes(from->maps);
     case TL_MADE_GBUFFER:
         return tl_gbuffer_bytes(&from->gbuffer);
+    case TL_MADE_IDS:
+        return tl_ids_bytes(&from->ids);
+    case TL_MADE_SHADE_MATERIALS:
+        return tl_shade_materials_bytes(&from->shade_materials);
+    case TL_MADE_RATIOS:
+        return tl_ratios_bytes(&from->ratios);
+    case TL_MADE_SUN_PIXELS:
+        return tl_sun_pixels_bytes(&from->sun_pixels);
     case TL_MADE_SAMPLES:
         return samples_bytes(&from->samples);
     case TL_MADE_TRANSPARENCY:
@@ -113,10 +121,10 @@ struct tl_render_memory tl_resources_memory(const struct tl_resources *from)
         .pems = SUM_OF(TL_MADE_PEMS, TL_MADE_LOBES, TL_MADE_LIGHTS, TL_MADE_SLICES, TL_MADE_ENVMAP_LOBES,
                        TL_MADE_ENVMAP, TL_MADE_CAPTURE),
         .maps = SUM_OF(TL_MADE_DEPTHS, TL_MADE_LAMP_MAPS),
-        .rays = SUM_OF(TL_MADE_POINTS, TL_MADE_TRACE, TL_MADE_SAMPLES),
+        .rays = SUM_OF(TL_MADE_POINTS, TL_MADE_RATIOS, TL_MADE_SUN_PIXELS, TL_MADE_TRACE, TL_MADE_SAMPLES),
         .transparency = SUM_OF(TL_MADE_TRANSPARENCY),
-        .targets = SUM_OF(TL_MADE_GBUFFER, TL_MADE_LIGHT, TL_MADE_IMAGE),
-        .surfaces = SUM_OF(TL_MADE_SURFACES, TL_MADE_DETAIL),
+        .targets = SUM_OF(TL_MADE_GBUFFER, TL_MADE_IDS, TL_MADE_LIGHT, TL_MADE_IMAGE),
+        .surfaces = SUM_OF(TL_MADE_SURFACES, TL_MADE_DETAIL, TL_MADE_SHADE_MATERIALS),
         .other = SUM_OF(TL_MADE_CUBE, TL_MADE_REGIONS, TL_MADE_LOBE, TL_MADE_LAMPLIGHT, TL_MADE_BACKDROP)};
     memory.total = memory.pems + memory.maps + memory.rays + memory.transparency + memory.targets +
                    memory.surfaces + memory.other;

@@ -33,6 +33,7 @@ enum tl_resource {
     TL_INPUT_LOOK_UP,     /* how they are looked up */
     TL_INPUT_CAPTURE,     /* the scene as it was when it was to be captured last */
     TL_INPUT_VIEW,        /* what is shown in place of light */
+    TL_INPUT_RATIO,       /* where the ratio of seen to exact light is computed */
     TL_INPUT_COUNT,
     TL_MADE_CUBE = TL_INPUT_COUNT, /* and the suns taken from it */
     TL_MADE_REGIONS,
@@ -46,6 +47,10 @@ enum tl_resource {
     TL_MADE_DEPTHS,
     TL_MADE_MAPS,
     TL_MADE_GBUFFER,
+    TL_MADE_IDS,             /* the number of the nearest triangle at every pixel */
+    TL_MADE_SHADE_MATERIALS, /* materials and their maps on the CPU */
+    TL_MADE_RATIOS,          /* of seen to exact light, at vertices */
+    TL_MADE_SUN_PIXELS,      /* what every pixel sees of the suns */
     TL_MADE_SAMPLES,
     TL_MADE_TRANSPARENCY, /* samples behind open cloth */
     TL_MADE_MIRRORS,      /* samples that near mirrors reflect */
@@ -67,7 +72,7 @@ enum tl_resource {
 
 /* Facts about the scene, by bit. */
 enum tl_scene_fact {
-    TL_SCENE_RASTER,       /* anything but the reference */
+    TL_SCENE_RASTER,       /* samples become the image */
     TL_SCENE_SHADOWS,      /* the method needs visibility */
     TL_SCENE_MAPS,         /* ... of shadow maps */
     TL_SCENE_RAYS,         /* visibility comes from rays */
@@ -87,6 +92,7 @@ enum tl_scene_fact {
     TL_SCENE_LAMP_RAYS, /* ... and rays do */
     TL_SCENE_SAMPLES,   /* rays start from what is seen */
     TL_SCENE_COMPOSED,  /* light is composed from visibility by rays */
+    TL_SCENE_RATIOS,    /* ratios at vertices light the pixels, in one pass */
     TL_SCENE_INSPECT,   /* something else than light is shown */
     TL_SCENE_FACT_COUNT
 };

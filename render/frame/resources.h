@@ -16,6 +16,8 @@
 #include "render/light/transparency.h"
 #include "render/local/local.h"
 #include "render/present/present.h"
+#include "render/shade/pixels.h"
+#include "render/shade/sun_pixels.h"
 #include "render/trace/trace.h"
 #include "render/visibility/maps.h"
 #include "render/visibility/points.h"
@@ -69,7 +71,8 @@ struct tl_surroundings {
     RESOURCE(layout, TL_INPUT_LAYOUT, struct tl_maps_params)                                                 \
     RESOURCE(look_up, TL_INPUT_LOOK_UP, struct tl_maps_params)                                               \
     RESOURCE(capture_options, TL_INPUT_CAPTURE, struct tl_maps_params)                                       \
-    RESOURCE(view_options, TL_INPUT_VIEW, struct tl_image_params)
+    RESOURCE(view_options, TL_INPUT_VIEW, struct tl_image_params)                                            \
+    RESOURCE(ratio_at, TL_INPUT_RATIO, int) /* enum tl_ratio_at */
 
 #define TL_MADE_RESOURCES(RESOURCE)                                                                          \
     RESOURCE(cube, TL_MADE_CUBE, tl_cube)        /* without the suns */                                      \
@@ -87,6 +90,10 @@ struct tl_surroundings {
     RESOURCE(detail, TL_MADE_DETAIL, struct tl_detail_maps)                                                  \
     RESOURCE(maps, TL_MADE_DEPTHS, tl_shadow_maps *)                                                         \
     RESOURCE(gbuffer, TL_MADE_GBUFFER, struct tl_gbuffer)                                                    \
+    RESOURCE(ids, TL_MADE_IDS, struct tl_id_buffer)                                                          \
+    RESOURCE(shade_materials, TL_MADE_SHADE_MATERIALS, struct tl_shade_materials)                            \
+    RESOURCE(ratios, TL_MADE_RATIOS, struct tl_vertex_ratios)                                                \
+    RESOURCE(sun_pixels, TL_MADE_SUN_PIXELS, struct tl_sun_pixels)                                           \
     RESOURCE(samples, TL_MADE_SAMPLES, struct tl_samples)                                                    \
     RESOURCE(transparency, TL_MADE_TRANSPARENCY, struct tl_transparency)                                     \
     RESOURCE(mirrors, TL_MADE_MIRRORS, struct tl_mirrors)                                                    \

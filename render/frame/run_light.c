@@ -6,6 +6,7 @@
 #include "render/frame/job_io.h"
 #include "render/light/compose.h"
 #include "render/local/lamp_samples.h"
+#include "render/present/resample.h"
 
 #include <stdlib.h>
 
@@ -46,9 +47,12 @@ static void take_rounds(const struct tl_points_job *job, struct tl_points_reques
 bool tl_run_points(const struct tl_points_job *job, tl_error *error)
 {
     (void)error;
+    bool at_vertices = *job->facts & TL_BIT(TL_SCENE_RATIOS);
     struct tl_points_request request = {.trace = job->trace,
                                         .ranges = &job->shapes->ranges,
-                                        .samples = job->samples,
+                                        .samples = at_vertices ? NULL : job->samples,
+                                        .seen = job->ids->seen,
+                                        .seen_count = job->ids->seen_count,
                                         .regions = job->regions,
                                         .suns = job->suns,
                                         .regions_revision = *job->regions_revision,
@@ -60,6 +64,75 @@ bool tl_run_points(const struct tl_points_job *job, tl_error *error)
                                         .whole_rounds = job->moment->still};
     take_rounds(job, &request);
     *job->points_are_done = tl_points_are_done(job->points);
+    return true;
+}
+
+bool tl_run_ratios(const struct tl_ratios_job *job, tl_error *error)
+{
+    (void)error;
+    const struct tl_ratios_request request = {.ids = job->ids,
+                                              .ranges = &job->shapes->ranges,
+                                              .materials = job->shade_materials,
+                                              .points = job->points,
+                                              .lights = job->lights,
+                                              .lobes = job->exact->lobes,
+                                              .environment_yaw = *job->yaw,
+                                              .eye = job->camera->view.eye,
+                                              .params = job->light_options};
+    tl_ratios_make(job->ratios, &request);
+    return true;
+}
+
+bool tl_run_sun_pixels(const struct tl_sun_pixels_job *job, tl_error *error)
+{
+    (void)error;
+    struct tl_pixel_triangle *triangles =
+        tl_pixel_triangles_make(job->ids, &job->camera->view, &job->shapes->ranges, job->shade_materials);
+    const struct tl_sun_pixels_request request = {.ids = job->ids,
+                                                  .triangles = triangles,
+                                                  .suns = job->suns,
+                                                  .trace = job->trace,
+                                                  .ground = *job->has_ground ? job->ground : NULL,
+                                                  .environment_yaw = *job->yaw};
+    tl_sun_pixels_update(job->sun_pixels, &request);
+    free(triangles);
+    return true;
+}
+
+bool tl_run_shade(const struct tl_shade_job *job, tl_error *error)
+{
+    (void)error;
+    struct tl_pixel_triangle *triangles =
+        tl_pixel_triangles_make(job->ids, &job->camera->view, &job->shapes->ranges, job->shade_materials);
+    struct tl_pixels_request request = {.ids = job->ids,
+                                        .triangles = triangles,
+                                        .ranges = &job->shapes->ranges,
+                                        .materials = job->shade_materials,
+                                        .ratios = job->ratios,
+                                        .lobes = job->exact->lobes,
+                                        .suns = job->suns,
+                                        .ground = *job->has_ground ? job->ground : NULL,
+                                        .view = &job->camera->view,
+                                        .environment_yaw = *job->yaw};
+    for (int i = 0; i < job->suns->count; i++)
+        request.sun_visibility[i] = job->sun_pixels->visible[i];
+    const struct tl_size_input *size = job->size;
+    if (size->columns == size->width && size->rows == size->height) {
+        tl_pixels_shade(&request, tl_present_begin_cpu_image(job->present, size->width, size->height));
+        free(triangles);
+        return true;
+    }
+    struct tl_resample resample = {.from_width = size->columns,
+                                   .from_height = size->rows,
+                                   .to_width = size->width,
+                                   .to_height = size->height};
+    float *shaded = tl_alloc(4 * (size_t)size->columns * (size_t)size->rows, sizeof *shaded);
+    tl_pixels_shade(&request, shaded);
+    resample.from = shaded;
+    resample.to = tl_present_begin_cpu_image(job->present, size->width, size->height);
+    tl_resample(&resample);
+    free(shaded);
+    free(triangles);
     return true;
 }
 
@@ -109,10 +182,7 @@ bool tl_run_compose(const struct tl_compose_job *job, tl_error *error)
     }
     tl_compose(&request, job->light->texels);
     add_lamps(job, &request);
-    if (*job->facts & TL_BIT(TL_SCENE_LAMPS)) /* the rest of their light is added on the GPU */
-        tl_light_buffer_send(job->light, *job->gpu, &job->gbuffer->target);
-    else
-        tl_light_buffer_finish(job->light, job->samples);
+    tl_light_buffer_send(job->light, *job->gpu, &job->gbuffer->target);
     return true;
 }
 

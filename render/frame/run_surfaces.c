@@ -68,6 +68,27 @@ bool tl_run_gbuffer(const struct tl_gbuffer_job *job, tl_error *error)
     return tl_gbuffer_draw(job->gbuffer, *job->gpu, &request, error);
 }
 
+bool tl_run_ids(const struct tl_ids_job *job, tl_error *error)
+{
+    const struct tl_gbuffer_request request = {.view = &job->camera->view,
+                                               .width = job->size->columns,
+                                               .height = job->size->rows,
+                                               .surfaces = job->surfaces,
+                                               .drawn = job->shapes->drawn,
+                                               .surface_count = job->shapes->drawn_count,
+                                               .ground = *job->has_ground ? job->ground : NULL,
+                                               .only_triangle = true};
+    return tl_ids_draw(job->ids, *job->gpu, &request, &job->shapes->ranges, error);
+}
+
+bool tl_run_shade_materials(const struct tl_shade_materials_job *job, tl_error *error)
+{
+    (void)error;
+    tl_shade_materials_make(job->shade_materials, job->shapes->drawn, job->shapes->drawn_count,
+                            job->shapes->revision, job->detail_options, job->light_options->fan);
+    return true;
+}
+
 bool tl_run_samples(const struct tl_samples_job *job, tl_error *error)
 {
     (void)error;

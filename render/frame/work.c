@@ -110,6 +110,31 @@ struct tl_work tl_samples_work(const void *context)
     return (struct tl_work){{1e-5 * seen->texels, 4e-5 * seen->covered}};
 }
 
+struct tl_work tl_ids_work(const void *context)
+{
+    const struct tl_work_seen *seen = context;
+    return (struct tl_work){{0.5, 1e-4 * seen->triangles, 5e-6 * seen->texels, 1e-5 * seen->covered}};
+}
+
+struct tl_work tl_ratios_work(const void *context)
+{
+    const struct tl_work_seen *seen = context;
+    return (struct tl_work){{0.5, 1e-5 * seen->triangles, 1e-5 * seen->groups * seen->lobes * seen->points}};
+}
+
+struct tl_work tl_sun_pixels_work(const void *context)
+{
+    const struct tl_work_seen *seen = context;
+    return (struct tl_work){{0.1, 1e-5 * seen->triangles, (1e-5 * seen->suns) * seen->covered,
+                             0.02 * seen->suns * sqrt(seen->covered)}};
+}
+
+struct tl_work tl_shade_work(const void *context)
+{
+    const struct tl_work_seen *seen = context;
+    return (struct tl_work){{0.5, 2e-6 * seen->texels, 2e-5 * (4 + seen->lobes) * seen->covered}};
+}
+
 struct tl_work tl_trace_work(const void *context)
 {
     const struct tl_work_seen *seen = context;

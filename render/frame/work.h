@@ -32,6 +32,10 @@ struct tl_work_seen tl_work_observe(const struct tl_resources *resources, const 
 struct tl_work tl_lights_work(const void *context);
 struct tl_work tl_gbuffer_work(const void *context);
 struct tl_work tl_samples_work(const void *context);
+struct tl_work tl_ids_work(const void *context);
+struct tl_work tl_ratios_work(const void *context);
+struct tl_work tl_sun_pixels_work(const void *context);
+struct tl_work tl_shade_work(const void *context);
 struct tl_work tl_trace_work(const void *context);
 struct tl_work tl_points_work(const void *context);
 struct tl_work tl_compose_work(const void *context);

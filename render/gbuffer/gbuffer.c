@@ -56,14 +56,16 @@ static void choose_detail(struct tl_gbuffer *gbuffer, const struct tl_detail_par
 }
 
 static const tl_program *program_of(struct tl_gbuffer *gbuffer, tl_gpu *gpu,
-                                    const struct tl_gbuffer_request *request, tl_error *error)
+                                    const struct tl_gbuffer_request *request, bool masked, tl_error *error)
 {
-    choose_detail(gbuffer, request->detail);
-    int bits = (request->frames ? TL_GBUFFER_FRAMES : 0) | (request->passed ? TL_GBUFFER_BEHIND : 0);
+    int bits = (request->frames ? TL_GBUFFER_FRAMES : 0) | (request->passed ? TL_GBUFFER_BEHIND : 0) |
+               (request->only_triangle ? TL_GBUFFER_ONLY_TRIANGLE : 0) | (masked ? TL_GBUFFER_MASKED : 0);
     struct tl_gbuffer_program *made = &gbuffer->programs[bits];
     tl_detail_defines(request->detail, made->defines, sizeof made->defines);
     strcat(made->defines, request->frames ? "#define FRAMES\n" : "");
     strcat(made->defines, request->passed ? "#define BEHIND\n" : "");
+    strcat(made->defines, request->only_triangle ? "#define ONLY_TRIANGLE\n" : "");
+    strcat(made->defines, masked ? "#define MASKED\n" : "");
     if (!made->program.id && !tl_program_create_variant(gpu, tl_embedded_shaders, "gbuffer.vert",
                                                         "gbuffer.frag", made->defines, &made->program, error))
         return NULL;
@@ -74,13 +76,15 @@ static void allocate(struct tl_gbuffer *gbuffer, tl_gpu *gpu, const struct tl_gb
 {
     static const unsigned formats[TL_GBUFFER_LAYERS] = {GL_RGBA32F, GL_RGBA16F, GL_RGBA16F,
                                                         GL_RGBA16F, GL_R32UI,   GL_RGBA16F};
-    int layers = request->frames ? TL_GBUFFER_LAYERS : TL_GBUFFER_TANGENT;
+    int layers = request->only_triangle ? 1 : request->frames ? TL_GBUFFER_LAYERS : TL_GBUFFER_TANGENT;
     const tl_target *target = &gbuffer->target;
     if (target->width == request->width && target->height == request->height &&
         target->colour_count == layers)
         return;
     tl_target_destroy(&gbuffer->target);
-    gbuffer->target = tl_target_create(gpu, request->width, request->height, formats, layers, true);
+    gbuffer->target =
+        tl_target_create(gpu, request->width, request->height,
+                         formats + (request->only_triangle ? TL_GBUFFER_TRIANGLE : 0), layers, true);
 }
 
 static void clear(const tl_target *target)
@@ -88,7 +92,7 @@ static void clear(const tl_target *target)
     const float nothing[] = {0, 0, 0, 0}, farthest = 1;
     const GLuint no_triangle[] = {0, 0, 0, 0};
     for (int i = 0; i < target->colour_count; i++)
-        if (i == TL_GBUFFER_TRIANGLE)
+        if (target->colours[i].format == GL_R32UI)
             glClearNamedFramebufferuiv(target->id, GL_COLOR, i, no_triangle);
         else
             glClearNamedFramebufferfv(target->id, GL_COLOR, i, nothing);
@@ -137,26 +141,63 @@ static void keep_triangles(struct tl_gbuffer *gbuffer, const tl_gpu *gpu,
     glBindTextureUnit(NUMBERS_UNIT, gbuffer->numbers);
 }
 
+static void use_program(const struct tl_gbuffer_request *request, const tl_program *program)
+{
+    glUseProgram(program->id);
+    glUniformMatrix4fv(VIEW_PROJECTION, 1, GL_FALSE, request->view->view_projection.raw[0]);
+    glUniform3fv(EYE, 1, request->view->eye.raw);
+}
+
+static void set_fading_disc(const struct tl_gbuffer_request *request, size_t surface)
+{
+    const struct tl_ground *ground = request->ground;
+    if (ground && surface + 1 == request->surface_count)
+        glUniform4f(FADING_DISC, ground->centre.x, ground->centre.y, ground->centre.z, ground->radius);
+    else
+        glUniform4f(FADING_DISC, 0, 0, 0, 0);
+}
+
+static void draw_part(const struct tl_gbuffer *gbuffer, const struct tl_gbuffer_request *request,
+                      size_t surface, size_t part, const struct tl_cull_part *kept)
+{
+    tl_surfaces_draw_some(request->surfaces, surface, part, gbuffer->kept[KEPT_INDICES], kept->first,
+                          kept->count);
+}
+
 static void draw_surfaces(const struct tl_gbuffer *gbuffer, const struct tl_gbuffer_request *request)
 {
     const struct tl_cull_part *kept = gbuffer->cull.parts;
-    const struct tl_ground *ground = request->ground;
     for (size_t i = 0; i < request->surface_count; i++) {
-        bool is_ground = ground && i + 1 == request->surface_count;
-        if (is_ground)
-            glUniform4f(FADING_DISC, ground->centre.x, ground->centre.y, ground->centre.z, ground->radius);
-        else
-            glUniform4f(FADING_DISC, 0, 0, 0, 0);
+        set_fading_disc(request, i);
         for (size_t p = 0; p < request->drawn[i]->part_count; p++, kept++)
-            tl_surfaces_draw_some(request->surfaces, i, p, gbuffer->kept[KEPT_INDICES], kept->first,
-                                  kept->count);
+            draw_part(gbuffer, request, i, p, kept);
     }
+}
+
+/* Parts without holes are drawn by a program that reads no texture: the early depth test then works. */
+static bool draw_triangles(struct tl_gbuffer *gbuffer, tl_gpu *gpu, const struct tl_gbuffer_request *request,
+                           tl_error *error)
+{
+    bool has_masked = tl_surfaces_have(request->surfaces, TL_PARTS_MASKED);
+    for (int masked = 0; masked <= has_masked; masked++) {
+        const tl_program *program = program_of(gbuffer, gpu, request, masked, error);
+        if (!program)
+            return false;
+        use_program(request, program);
+        const struct tl_cull_part *kept = gbuffer->cull.parts;
+        for (size_t i = 0; i < request->surface_count; i++)
+            for (size_t p = 0; p < request->drawn[i]->part_count; p++, kept++)
+                if ((tl_surfaces_part_material(request->surfaces, i, p)->alpha_cutoff > 0) == masked)
+                    draw_part(gbuffer, request, i, p, kept);
+    }
+    return true;
 }
 
 bool tl_gbuffer_draw(struct tl_gbuffer *gbuffer, tl_gpu *gpu, const struct tl_gbuffer_request *request,
                      tl_error *error)
 {
-    const tl_program *program = program_of(gbuffer, gpu, request, error);
+    choose_detail(gbuffer, request->detail);
+    const tl_program *program = program_of(gbuffer, gpu, request, false, error);
     if (!program)
         return false;
     allocate(gbuffer, gpu, request);
@@ -164,13 +205,15 @@ bool tl_gbuffer_draw(struct tl_gbuffer *gbuffer, tl_gpu *gpu, const struct tl_gb
     glBindFramebuffer(GL_FRAMEBUFFER, gbuffer->target.id);
     glViewport(0, 0, request->width, request->height);
     glEnable(GL_DEPTH_TEST);
-    glUseProgram(program->id);
-    glUniformMatrix4fv(VIEW_PROJECTION, 1, GL_FALSE, request->view->view_projection.raw[0]);
-    glUniform3fv(EYE, 1, request->view->eye.raw);
+    use_program(request, program);
     if (request->passed)
         glBindTextureUnit(PASSED_UNIT, request->passed->id);
     keep_triangles(gbuffer, gpu, request);
-    draw_surfaces(gbuffer, request);
+    bool fine = true;
+    if (request->only_triangle)
+        fine = draw_triangles(gbuffer, gpu, request, error);
+    else
+        draw_surfaces(gbuffer, request);
     tl_gpu_reset_state(gpu);
-    return true;
+    return fine;
 }

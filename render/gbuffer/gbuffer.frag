@@ -7,16 +7,21 @@ layout(location = 17) uniform vec3 eye;
 layout(binding = 14) uniform usamplerBuffer numbers; // of the triangles that are drawn
 layout(location = 18) uniform vec4 fading_disc; // centre and radius of the ground, while the ground is drawn
 
+in vec2 uv;
+
+#ifdef ONLY_TRIANGLE
+layout(location = 0) out uint out_triangle; // 1 + its number, and TRIANGLE_BACK
+#else
 in vec3 point;
 in vec3 normal;
 in vec4 tangent;
-in vec2 uv;
 
 layout(location = 0) out vec4 out_point;    // world, metres; coverage
 layout(location = 1) out vec4 out_normal;   // world, unit, towards the viewer's side; 1 - glossiness
 layout(location = 2) out vec4 out_diffuse;  // kd with occlusion; octahedral x of the smooth normal
 layout(location = 3) out vec4 out_specular; // F ks, or F0 of facets where FRAMES; octahedral y of the smooth normal
 layout(location = 4) out uint out_triangle; // 1 + its number, and TRIANGLE_BACK
+#endif
 #ifdef FRAMES
 layout(location = 5) out vec4 out_tangent; // world, along u, not yet at right angles to the normal; handedness
 #endif
@@ -36,6 +41,22 @@ vec2 octahedral(vec3 n)
     return n.z >= 0.0 ? p : (1.0 - abs(p.yx)) * away;
 }
 
+uint triangle_number()
+{
+    uint number = texelFetch(numbers, int(first_triangle) + gl_PrimitiveID).r;
+    return (number + 1u) | (gl_FrontFacing ? 0u : TRIANGLE_BACK);
+}
+
+#ifdef ONLY_TRIANGLE
+void main()
+{
+#ifdef MASKED
+    if (surface_cut_away(surface_colour(uv).a))
+        discard;
+#endif
+    out_triangle = triangle_number();
+}
+#else
 void main()
 {
 #ifdef BEHIND
@@ -96,6 +117,6 @@ void main()
     out_tangent = vec4(direction_or(tangent.xyz, vec3(0.0)), tangent.w * side);
 #endif
     out_specular = vec4(ks, horizon.y);
-    uint number = texelFetch(numbers, int(first_triangle) + gl_PrimitiveID).r;
-    out_triangle = (number + 1u) | (gl_FrontFacing ? 0u : TRIANGLE_BACK);
+    out_triangle = triangle_number();
 }
+#endif

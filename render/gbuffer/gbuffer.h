@@ -22,8 +22,15 @@ enum tl_gbuffer_layer {
     TL_GBUFFER_LAYERS
 };
 
-/* Bits of a program's optional outputs. */
-enum { TL_GBUFFER_FRAMES = 1, TL_GBUFFER_BEHIND = 2, TL_GBUFFER_PROGRAMS = 4 };
+/* Bits of the variants of the program: with tangents; only what lies behind a depth; nothing but the number
+ * of the triangle; of a part whose alpha map cuts holes (the other variants decide that while they draw). */
+enum {
+    TL_GBUFFER_FRAMES = 1,
+    TL_GBUFFER_BEHIND = 2,
+    TL_GBUFFER_ONLY_TRIANGLE = 4,
+    TL_GBUFFER_MASKED = 8,
+    TL_GBUFFER_PROGRAMS = 16
+};
 
 struct tl_gbuffer {
     char detail[TL_DETAIL_DEFINES_SIZE]; /* that the programs were made for */
@@ -46,6 +53,7 @@ struct tl_gbuffer_request {
     const struct tl_ground *ground;        /* the last of the surfaces, or NULL when none is drawn */
     const struct tl_detail_params *detail; /* NULL: normals alone */
     bool frames;                           /* with the layer of tangents */
+    bool only_triangle; /* one layer, that of TL_GBUFFER_TRIANGLE: an ID buffer */
     const tl_texture *passed;              /* only what lies behind this depth; NULL: what is nearest */
 };
 

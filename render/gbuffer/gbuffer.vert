@@ -7,16 +7,20 @@ layout(location = 3) in vec2 vertex_uv;
 layout(location = 16) uniform mat4 view_projection;
 
 invariant gl_Position; // passes that shade what is seen draw it again
+out vec2 uv;
+#ifndef ONLY_TRIANGLE
 out vec3 point;
 out vec3 normal;
 out vec4 tangent;
-out vec2 uv;
+#endif
 
 void main()
 {
+    uv = vertex_uv;
+#ifndef ONLY_TRIANGLE
     point = position;
     normal = vertex_normal;
     tangent = vertex_tangent;
-    uv = vertex_uv;
+#endif
     gl_Position = view_projection * vec4(position, 1.0);
 }

@@ -563,6 +563,61 @@ static void look_through(const struct tl_compose_request *request, const vec3s *
     }
 }
 
+/* Seen and whole light of the lobes that stand for a gloss of facets: the ratio of the two. */
+TL_INLINE vec3s ratio_of_lobes(const struct block *block, size_t index, const struct lobes *lobes,
+                               vec3s smooth)
+{
+    vec3s arriving[LOBES_MAX], seen = {{0, 0, 0}}, all = {{0, 0, 0}};
+    see_lobes(block, index, lobes, smooth, arriving);
+    for (int k = 0; k < lobes->count; k++) {
+        const struct tl_fitted_lobe *lobe = &lobes->items[k];
+        vec3s exact =
+            tl_lobes_fetch(block->request->lobes, lobe->direction, tl_exponent_blend(lobe->exponent));
+        seen = glms_vec3_add(seen, glms_vec3_mul(lobe->weight, arriving[k]));
+        all = glms_vec3_add(all, glms_vec3_mul(lobe->weight, exact));
+    }
+    return share_of(seen, all);
+}
+
+TL_INLINE struct tl_light_ratio ratio_of_sample(struct block *block, size_t index)
+{
+    const struct tl_compose_request *request = block->request;
+    tl_sample sample = request->samples->items[index];
+    const tl_material *rich = rich_material(request, index);
+    struct lobes lobes = {0};
+    if (rich)
+        part_lobes(block, rich, index, &sample, &lobes);
+    struct frame frame = frame_of(block, &sample);
+    struct kind kind = {.bumped = false, .glossy = is_glossy(request, &sample)};
+    struct sums sums = sum_kind(block, index, &frame, kind);
+    vec3s seen[2], all[2];
+    receive_shadowed(block, &frame, &sums, kind, seen);
+    receive_unshadowed(block, &frame, all);
+    struct tl_light_ratio ratio = {.diffuse = share_of(seen[DIFFUSE], all[DIFFUSE])};
+    ratio.glossy = rich && lobes.facets > 0 ? ratio_of_lobes(block, index, &lobes, frame.smooth)
+                   : kind.glossy            ? share_of(seen[GLOSSY], all[GLOSSY])
+                                            : ratio.diffuse;
+    return ratio;
+}
+
+TL_CLONES static void ratio_block(const struct tl_compose_request *request, size_t first, size_t last,
+                                  struct tl_light_ratio *ratios)
+{
+    struct block block = {.request = request,
+                          .turn_cosine = cosf(request->environment_yaw),
+                          .turn_sine = sinf(request->environment_yaw)};
+    for (size_t i = first; i < last; i++)
+        ratios[i] = ratio_of_sample(&block, i);
+}
+
+void tl_compose_ratios(const struct tl_compose_request *request, struct tl_light_ratio *ratios)
+{
+    const size_t few = 64, count = request->samples->count;
+#pragma omp parallel for schedule(dynamic)
+    for (size_t first = 0; first < count; first += few)
+        ratio_block(request, first, count - first < few ? count : first + few, ratios);
+}
+
 static void compose_range(const struct tl_compose_request *request, size_t begin, size_t end, float *light,
                           vec3s *further)
 {

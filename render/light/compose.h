@@ -49,4 +49,13 @@ struct tl_compose_request {
  * `lobes`. Results do not depend on the number of threads. */
 void tl_compose(const struct tl_compose_request *request, float *light);
 
+/* The ratio of seen to exact light, of the regions alone (suns have visibility of their own), by channel. */
+struct tl_light_ratio {
+    vec3s diffuse, glossy; /* of all lobes of the gloss together */
+};
+
+/* Writes the ratio of every sample, from the sums that tl_compose makes: method PEM, two lobes, no coat and
+ * no mirrors. A sample without gloss has the diffuse ratio for both. */
+void tl_compose_ratios(const struct tl_compose_request *request, struct tl_light_ratio *ratios);
+
 #endif

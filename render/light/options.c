@@ -11,6 +11,7 @@ static const char *const lobe_names[] = {"single", "dual", NULL};
 static const char *const cut_names[] = {"faces", "sphere", NULL};
 static const char *const prefilter_names[] = {"chain", "slices", NULL};
 static const char *const visibility_names[] = {"vsm", "depth", "rays", NULL};
+static const char *const ratio_at_names[] = {"samples", "vertices", NULL};
 static const char *const composition_names[] = {"sum", "difference", "ratio", NULL};
 
 typedef struct tl_light_params light_params;
@@ -45,6 +46,9 @@ static const struct tl_option light_rows[] = {
     TL_OPTION_ENUM(light_params, composition, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LIGHT, composition_names,
                    "sum: shadowed light of all regions; difference: exact light minus the occluded light; "
                    "ratio: exact light times its visible fraction (rays: always)"),
+    TL_OPTION_ENUM(light_params, ratio_at, TL_AFFECTS_APPEARANCE | TL_AFFECTS_RATIO, ratio_at_names,
+                   "rays: where the ratio of visible to exact light is computed: samples: at every sample; "
+                   "vertices: at vertices, interpolated: several times faster, slightly softer"),
     TL_OPTION_BOOL(light_params, jitter, TL_AFFECTS_APPEARANCE | TL_AFFECTS_SHADOW_MAPS | TL_AFFECTS_RAYS,
                    "directions vary within their regions from frame to frame"),
     TL_OPTION_INT(light_params, rounds, TL_AFFECTS_APPEARANCE, 1, 4096, "frames",

@@ -20,6 +20,9 @@ enum tl_cut { TL_CUT_FACES, TL_CUT_SPHERE };
 enum tl_prefilter { TL_PREFILTER_CHAIN, TL_PREFILTER_SLICES };
 /* sum: VIS_i P_i [002, eq. 5]. difference: E - (1 - VIS_i) P_i. ratio: E x sum VIS_i w_i / sum w_i, w_i being
  * P_i or what stands for it. E is the exact unshadowed light. */
+/* Where the ratio of seen to exact light is computed: for every sample, or at the vertices of the triangles
+ * that are seen (render/shade), from where pixels interpolate it. */
+enum tl_ratio_at { TL_RATIO_AT_SAMPLES, TL_RATIO_AT_VERTICES };
 enum tl_composition { TL_COMPOSE_SUM, TL_COMPOSE_DIFFERENCE, TL_COMPOSE_RATIO };
 struct tl_light_params { /* table "light" */
     int method;          /* enum tl_method */
@@ -33,6 +36,7 @@ struct tl_light_params { /* table "light" */
     int pems_per_pass;   /* 12 in the paper; 1 to 64 */
     int visibility;      /* enum tl_visibility: the back-end */
     int composition;     /* enum tl_composition; rays: ratio only */
+    int ratio_at;        /* enum tl_ratio_at, of rays */
     bool jitter;         /* directions vary inside their regions from frame to frame */
     int rounds;          /* at rest, so many jittered frames are averaged */
     int refresh;         /* rays: regions traced again for each point and moving frame; 0: all */

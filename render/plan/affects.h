@@ -32,5 +32,6 @@
 #define TL_AFFECTS_VIEW    TL_AFFECTS_RENDER_BIT(19) /* which view is shown in place of light */
 #define TL_AFFECTS_VIEW_SCALE                                                                                \
     TL_AFFECTS_RENDER_BIT(20) /* how such a view is drawn; nothing while light is shown */
+#define TL_AFFECTS_RATIO TL_AFFECTS_RENDER_BIT(21) /* where the ratio of seen to exact light is computed */
 
 #endif

@@ -12,7 +12,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define TL_JOBS_MAX       32
+#define TL_JOBS_MAX       40
 #define TL_JOB_LEVELS_MAX 6
 
 typedef uint64_t tl_bits; /* a set of resources or facts */

@@ -4,6 +4,7 @@
 #ifndef TOILE_RENDER_REFERENCE_DETAIL_H
 #define TOILE_RENDER_REFERENCE_DETAIL_H
 
+#include "render/detail/bump_statistics.h"
 #include "render/detail/detail.h"
 #include "render/gpu/map_texture.h"
 
@@ -19,23 +20,6 @@ void tl_reference_detail_release(struct tl_reference_detail *detail);
  * needs them. */
 const struct tl_map_texture *tl_reference_moments(struct tl_reference_detail *detail,
                                                   const tl_image *normals);
-
-/* A mean tangent-space normal, the variances of the slopes about it, and its length before normalisation. */
-struct tl_bump_statistics {
-    vec3s normal;
-    float spread[2], length;
-};
-/* Statistics of a single normal. */
-struct tl_bump_statistics tl_bump_statistics_of_normal(vec3s normal);
-/* Statistics of averaged moments (x, y, x^2, y^2); slopes are multiplied by `scale`. */
-struct tl_bump_statistics tl_bump_statistics_of_moments(vec4s moments, float scale);
-/* The sum of two layers of bumps: slopes add as those of summed heights do, and so do their variances. */
-struct tl_bump_statistics tl_bump_statistics_add(const struct tl_bump_statistics *a,
-                                                 const struct tl_bump_statistics *b);
-/* Roughness 1 - g of a surface with these bumps, by the minification of `params`; `view` is in tangent
- * space. */
-float tl_bump_statistics_roughness(const struct tl_detail_params *params, float rough,
-                                   const struct tl_bump_statistics *bumps, vec3s view);
 
 /* The shift in UV by parallax or relief. `view` is in the tangent space of the front; `side` is -1 for a back
  * face. */

@@ -218,6 +218,19 @@ static void mark_sample(tl_points *points, const struct tl_points_request *reque
     taps->point[3] = taps->point[0];
 }
 
+static void mark_triangles(tl_points *points, const struct tl_points_request *request)
+{
+    points->sample_count = 0;
+    for (size_t i = 0; i < request->seen_count; i++) {
+        uint32_t corners[3];
+        size_t surface;
+        tl_triangle_find(request->ranges, request->seen[i] & ~TL_SAMPLE_BACK, corners, &surface);
+        for (int k = 0; k < 3; k++)
+            points->seen[tl_cache_probe_at(&points->probes, surface, corners[k],
+                                           request->seen[i] & TL_SAMPLE_BACK)] = points->frame;
+    }
+}
+
 static void mark_samples(tl_points *points, const struct tl_points_request *request)
 {
     points->sample_count = request->samples->count;
@@ -380,7 +393,7 @@ static void trace_clusters(tl_points *points, const struct tl_refresh *refresh)
 
 static size_t share_of(float share, const struct tl_points_request *request)
 {
-    return (size_t)(share * (float)request->samples->count);
+    return request->samples ? (size_t)(share * (float)request->samples->count) : 0;
 }
 
 /* Samples with points of their own: in motion, and once nothing moves. */
@@ -445,7 +458,7 @@ static void read_repaired(tl_points *points)
 /* Makes the origins of the samples' rays; true when nothing has changed since they were made. */
 static bool follow_samples(tl_points *points, const struct tl_points_request *request)
 {
-    bool has_suns = request->suns && request->suns->count > 0;
+    bool has_suns = request->samples && request->suns && request->suns->count > 0;
     size_t repaired =
         request->moved && !request->whole_rounds ? repaired_in_motion(request) : repaired_at_rest(request);
     uint64_t before = points->origins.samples;
@@ -458,7 +471,7 @@ static bool follow_samples(tl_points *points, const struct tl_points_request *re
 
 static void trace_suns(tl_points *points, const struct tl_points_request *request, bool again)
 {
-    if (request->suns && request->suns->count > 0)
+    if (request->samples && request->suns && request->suns->count > 0)
         points->ray_count += tl_sun_rays_update(&points->suns, request, &points->origins, again);
     else
         points->suns.count = 0;
@@ -474,7 +487,8 @@ static void trace_in_turn(tl_points *points, const struct tl_refresh *refresh)
     points->ray_count = 0;
     if (refresh->whole_rounds || !samples_first)
         trace_clusters(points, refresh);
-    tl_taps_match_cover(refresh->request, points->covered, points->taps);
+    if (refresh->request->samples)
+        tl_taps_match_cover(refresh->request, points->covered, points->taps);
     trace_suns(points, refresh->request, again);
     choose_samples(points, refresh, again);
     if (refresh->whole_rounds || !again || samples_first || points->are_done)
@@ -523,7 +537,10 @@ void tl_points_update(tl_points *points, const struct tl_points_request *request
 {
     assert(request->regions->count > 0 && request->params->rays > 0);
     follow_changes(points, request);
-    mark_samples(points, request);
+    if (request->samples)
+        mark_samples(points, request);
+    else
+        mark_triangles(points, request);
     activate_clusters(points, request->moved ? repaired_in_motion(request) : repaired_at_rest(request));
     resolve_taps(points);
     trace_all(points, request);
@@ -538,6 +555,17 @@ const uint16_t *tl_points_values(const tl_points *points, size_t *stride)
 const struct tl_taps *tl_points_taps(const tl_points *points)
 {
     return points->taps;
+}
+
+uint32_t tl_points_of_vertex(const tl_points *points, size_t surface, uint32_t vertex, bool back)
+{
+    uint32_t probe = tl_cache_probe_at(&points->probes, surface, vertex, back);
+    return points->slots[probe / TL_CLUSTER] * TL_CLUSTER + probe % TL_CLUSTER;
+}
+
+bool tl_points_is_covered(const tl_points *points, uint32_t point)
+{
+    return points->covered[point / TL_CLUSTER] >> point % TL_CLUSTER & 1;
 }
 
 bool tl_points_are_done(const tl_points *points)

@@ -24,7 +24,9 @@ struct tl_taps {
 struct tl_points_request {
     const tl_trace *trace;
     const struct tl_triangle_ranges *ranges;
-    const struct tl_samples *samples;
+    const struct tl_samples *samples; /* NULL: only the points of `seen` are wanted; no suns and no repair */
+    const uint32_t *seen; /* [seen_count]: without samples: global triangles, and TL_SAMPLE_BACK */
+    size_t seen_count;
     const struct tl_regions *regions;
     const struct tl_suns *suns; /* NULL: none stand apart */
     uint64_t

@@ -1,0 +1,37 @@
+/* The ID buffer on the CPU: the number of the nearest triangle at every pixel, and a list of the triangles
+ * that are seen. GL rasterises one integer target and depth, which is read back once.
+ *
+ * Lifetime: owns its arrays and GL objects; needs the context of its tl_gpu. Threads: that of the context. */
+#ifndef TOILE_RENDER_GBUFFER_IDS_H
+#define TOILE_RENDER_GBUFFER_IDS_H
+
+#include "render/gbuffer/gbuffer.h"
+#include "render/gbuffer/samples.h"
+
+struct tl_id_buffer {
+    struct tl_gbuffer drawn; /* its one layer */
+    int width, height;
+    uint32_t *ids; /* [height][width], rows upwards: 0 nothing; else 1 + triangle, and TL_SAMPLE_BACK */
+    size_t capacity;
+    size_t covered; /* pixels */
+    /* Each triangle that is seen, once a side, in order: its global number, and TL_SAMPLE_BACK. */
+    size_t seen_count, triangle_count;
+    uint32_t *seen;   /* [2 triangle_count] */
+    uint32_t *places; /* [2 triangle + back]: index into `seen`, of those that are there */
+    uint8_t *marks;
+};
+
+/* Draws and reads the buffer. `request->only_triangle` must be set. Errors: false when a program fails. */
+bool tl_ids_draw(struct tl_id_buffer *buffer, tl_gpu *gpu, const struct tl_gbuffer_request *request,
+                 const struct tl_triangle_ranges *ranges, tl_error *error);
+void tl_ids_release(struct tl_id_buffer *buffer);
+size_t tl_ids_bytes(const struct tl_id_buffer *buffer);
+
+/* The place in `seen` of what an ID that is not 0 stands for. */
+static inline uint32_t tl_ids_place(const struct tl_id_buffer *buffer, uint32_t id)
+{
+    size_t triangle = (id & ~TL_SAMPLE_BACK) - 1;
+    return buffer->places[2 * triangle + (id & TL_SAMPLE_BACK ? 1 : 0)];
+}
+
+#endif

@@ -1,0 +1,170 @@
+#include "render/shade/fan_table.h"
+
+#include "config/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static float cosine_of(int row)
+{
+    float at = ((float)row + TL_FAN_FIRST) / TL_FAN_ROWS;
+    return at * at;
+}
+
+static bool follows_glossiness(const tl_material *material)
+{
+    switch (material->gloss.model) {
+    case TL_REFLECT_WARD:
+        return !(material->gloss.width_weft > 0 && material->gloss.width_warp > 0);
+    case TL_REFLECT_TORRANCE_SPARROW:
+        return !(material->gloss.width_weft > 0);
+    default:
+        return true;
+    }
+}
+
+/* Nodes with fewer lobes than the table repeat the middle one without weight. */
+static void fill_node(const struct tl_fitted_lobe low[], const struct tl_fitted_lobe high[], int count,
+                      int wanted, struct tl_fan_node *node)
+{
+    int before = (wanted - count) / 2;
+    for (int k = 0; k < wanted; k++) {
+        bool is_one = k >= before && k < before + count;
+        int from = is_one ? k - before : count / 2;
+        struct tl_fan_lobe *lobe = &node->lobes[k];
+        for (int i = 0; i < 3; i++)
+            lobe->direction[i] = low[from].direction.raw[i];
+        lobe->log_exponent = log2f(low[from].exponent);
+        lobe->low = is_one ? low[from].weight.x : 0;
+        lobe->high = is_one ? high[from].weight.x : 0;
+    }
+}
+
+static void fit_node(const tl_material *material, float glossiness, float cosine, float azimuth,
+                     int max_count, int wanted, struct tl_fan_node *node)
+{
+    static const struct tl_brdf_frame frame = {{{0, 0, 1}}, {{1, 0, 0}}, {{0, 1, 0}}};
+    float sine = sqrtf(1 - cosine * cosine);
+    vec3s viewer = {{sine * cosf(azimuth), sine * sinf(azimuth), cosine}};
+    struct tl_fitted_lobe low[TL_LOBE_FIT_MAX], high[TL_LOBE_FIT_MAX];
+    struct tl_brdf brdf =
+        tl_brdf_of(material, (vec3s){{TL_FAN_LOW_F0, TL_FAN_LOW_F0, TL_FAN_LOW_F0}}, glossiness);
+    int count = tl_lobe_fit_make(&brdf, &frame, viewer, max_count, low);
+    brdf.f0 = (vec3s){{1, 1, 1}};
+    tl_lobe_fit_make(&brdf, &frame, viewer, max_count, high);
+    fill_node(low, high, count, wanted, node);
+}
+
+static float distance_of(const struct tl_fan_node *a, const struct tl_fan_node *b, int count, bool reversed)
+{
+    float sum = 0;
+    for (int k = 0; k < count; k++)
+        for (int i = 0; i < 3; i++) {
+            float d = a->lobes[k].direction[i] - b->lobes[reversed ? count - 1 - k : k].direction[i];
+            sum += d * d;
+        }
+    return sum;
+}
+
+/* The fit may list its lobes from either end. Interpolation needs one order in all nodes: that of the
+ * neighbour. */
+static void order_as(const struct tl_fan_node *neighbour, int count, struct tl_fan_node *node)
+{
+    if (distance_of(neighbour, node, count, true) >= distance_of(neighbour, node, count, false))
+        return;
+    for (int k = 0; k < count / 2; k++) {
+        struct tl_fan_lobe spare = node->lobes[k];
+        node->lobes[k] = node->lobes[count - 1 - k];
+        node->lobes[count - 1 - k] = spare;
+    }
+}
+
+static struct tl_fan_node *node_at(const struct tl_fan_table *table, int gloss, int row, int column)
+{
+    return &table->nodes[(size_t)(gloss * TL_FAN_COSINES + row) * TL_FAN_AZIMUTHS + (size_t)column];
+}
+
+static float glossiness_at(const struct tl_fan_table *table, int gloss)
+{
+    if (table->gloss_count == 1)
+        return table->gloss_low;
+    float share = (float)gloss / (float)(table->gloss_count - 1);
+    return table->gloss_low + share * (table->gloss_high - table->gloss_low);
+}
+
+static int largest_count(const tl_material *material, float glossiness, int max_count)
+{
+    struct tl_brdf brdf = tl_brdf_of(material, (vec3s){{1, 1, 1}}, glossiness);
+    static const struct tl_brdf_frame frame = {{{0, 0, 1}}, {{1, 0, 0}}, {{0, 1, 0}}};
+    int largest = 1;
+    for (int row = 0; row < TL_FAN_COSINES; row += 4)
+        for (int column = 0; column < TL_FAN_AZIMUTHS; column += 4) {
+            float cosine = cosine_of(row), sine = sqrtf(1 - cosine * cosine);
+            float azimuth = (float)M_PI * (float)column / (TL_FAN_AZIMUTHS - 1);
+            vec3s viewer = {{sine * cosf(azimuth), sine * sinf(azimuth), cosine}};
+            struct tl_fitted_lobe lobes[TL_LOBE_FIT_MAX];
+            int count = tl_lobe_fit_make(&brdf, &frame, viewer, max_count, lobes);
+            largest = count > largest ? count : largest;
+        }
+    return largest;
+}
+
+void tl_fan_table_make(const tl_material *material, float gloss_low, float gloss_high, int max_count,
+                       struct tl_fan_table *out)
+{
+    bool one = !follows_glossiness(material) || gloss_high - gloss_low < 1e-4f;
+    *out = (struct tl_fan_table){
+        .gloss_count = one ? 1 : TL_FAN_GLOSSES, .gloss_low = gloss_low, .gloss_high = gloss_high};
+    for (int gloss = 0; gloss < out->gloss_count; gloss++) {
+        int count = largest_count(material, glossiness_at(out, gloss), max_count);
+        out->lobe_count = count > out->lobe_count ? count : out->lobe_count;
+    }
+    out->nodes =
+        TL_NEW_ARRAY(struct tl_fan_node, (size_t)out->gloss_count * TL_FAN_COSINES * TL_FAN_AZIMUTHS);
+#pragma omp parallel for collapse(2) schedule(dynamic)
+    for (int gloss = 0; gloss < out->gloss_count; gloss++)
+        for (int row = 0; row < TL_FAN_COSINES; row++)
+            for (int column = 0; column < TL_FAN_AZIMUTHS; column++)
+                fit_node(material, glossiness_at(out, gloss), cosine_of(row),
+                         (float)M_PI * (float)column / (TL_FAN_AZIMUTHS - 1), max_count, out->lobe_count,
+                         node_at(out, gloss, row, column));
+    for (int gloss = 0; gloss < out->gloss_count; gloss++)
+        for (int row = TL_FAN_COSINES - 1; row >= 0; row--)
+            for (int column = 0; column < TL_FAN_AZIMUTHS; column++) {
+                const struct tl_fan_node *neighbour = column > 0 ? node_at(out, gloss, row, column - 1)
+                                                      : row < TL_FAN_COSINES - 1
+                                                          ? node_at(out, gloss, row + 1, column)
+                                                      : gloss > 0 ? node_at(out, gloss - 1, row, column)
+                                                                  : NULL;
+                if (neighbour)
+                    order_as(neighbour, out->lobe_count, node_at(out, gloss, row, column));
+            }
+}
+
+void tl_fan_table_release(struct tl_fan_table *table)
+{
+    free(table->nodes);
+    *table = (struct tl_fan_table){0};
+}
+
+int tl_fan_table_look_up(const struct tl_fan_table *table, const struct tl_brdf_frame *frame, vec3s viewer,
+                         vec3s f0, float glossiness, struct tl_fitted_lobe lobes[TL_LOBE_FIT_MAX])
+{
+    tl_quad sums[2 * TL_LOBE_FIT_MAX];
+    float cosine = glms_vec3_dot(viewer, frame->normal);
+    if (!(cosine > 0))
+        return 0;
+    float side = tl_fan_fetch(table, glms_vec3_dot(viewer, frame->tangent),
+                              glms_vec3_dot(viewer, frame->bitangent), cosine, glossiness, sums);
+    for (int k = 0; k < table->lobe_count; k++) {
+        const tl_quad at = sums[2 * k], weight = sums[2 * k + 1];
+        vec3s d = glms_vec3_scale(frame->tangent, side * at[0]);
+        d = glms_vec3_add(d, glms_vec3_scale(frame->bitangent, side * at[1]));
+        d = glms_vec3_add(d, glms_vec3_scale(frame->normal, at[2]));
+        lobes[k] = (struct tl_fitted_lobe){.direction = glms_vec3_normalize(d), .exponent = exp2f(at[3])};
+        for (int c = 0; c < 3; c++)
+            lobes[k].weight.raw[c] = tl_fan_weight(weight[0], weight[1], f0.raw[c]);
+    }
+    return table->lobe_count;
+}

@@ -1,0 +1,127 @@
+/* A table of the lobes that stand for a gloss of facets (render/brdf/lobe_fit.h), by the direction of the
+ * viewer in the frame of the threads: the fit takes ten evaluations of the gloss, a look-up a hundredth of
+ * that.
+ *
+ * Exact at its nodes, interpolated between them. Reflectance is affine in F0 by Schlick's term, so two fits
+ * give the weights at any F0; other Fresnel terms multiply F0 and are as exact. Widths that follow the
+ * glossiness are a third axis. tests/render/shade/test_fan_table.c prints the error. Threads: pure once made.
+ */
+#ifndef TOILE_RENDER_SHADE_FAN_TABLE_H
+#define TOILE_RENDER_SHADE_FAN_TABLE_H
+
+#include "render/brdf/lobe_fit.h"
+#include "render/env/quad.h"
+
+#include <math.h>
+
+#define TL_FAN_AZIMUTHS 49 /* over half a turn: the fit is the same seen from the other side, mirrored */
+#define TL_FAN_COSINES  49
+#define TL_FAN_GLOSSES  9
+
+/* One node: lobes in the local frame (tangent, bitangent, normal). Two quads each. */
+struct tl_fan_lobe {
+    float direction[3], log_exponent; /* base 2 */
+    float low, high, unused[2];       /* weight at F0 = TL_FAN_LOW_F0 and at F0 = 1 */
+};
+struct tl_fan_node {
+    struct tl_fan_lobe lobes[TL_LOBE_FIT_MAX];
+};
+
+struct tl_fan_table {
+    int lobe_count, gloss_count;
+    float gloss_low, gloss_high; /* 1 - 1 / exponent at the ends of the third axis */
+    struct tl_fan_node *nodes;   /* [gloss][cosine][azimuth] */
+};
+
+/* Makes the table of a material whose gloss is made of facets, for glossiness between two values, with at
+ * most `max_count` lobes. */
+void tl_fan_table_make(const tl_material *material, float gloss_low, float gloss_high, int max_count,
+                       struct tl_fan_table *out);
+void tl_fan_table_release(struct tl_fan_table *table);
+
+/* Schlick's term is affine in F0 from here on; below, a reflectance is in proportion to this one (fresnel.h).
+ */
+#define TL_FAN_LOW_F0 0.02f
+
+/* A place between nodes: the first of two, and the share of the second. */
+struct tl_fan_between {
+    int first;
+    float share;
+};
+
+TL_INLINE struct tl_fan_between tl_fan_between(float at, int count)
+{
+    at = tl_lesser(tl_greater(at, 0), (float)(count - 1));
+    int first = (int)at;
+    first = first < count - 1 ? first : count > 1 ? count - 2 : 0;
+    return (struct tl_fan_between){first, at - (float)first};
+}
+
+/* Towards a grazing viewer the fit changes quickly: cosines are squared distances from there. */
+#define TL_FAN_ROWS  ((float)TL_FAN_COSINES - 0.98f)
+#define TL_FAN_FIRST 0.02f
+
+/* atan2 over [0, pi], y >= 0, within 2e-5 rad: a minimax polynomial of atan over [0, 1]. */
+TL_INLINE float tl_fan_azimuth(float x, float y)
+{
+    float along = fabsf(x), most = tl_greater(tl_greater(along, y), 1e-30f);
+    float q = tl_lesser(along, y) / most, square = q * q;
+    float series = -0.11643287f + square * (0.05265332f - 0.01172120f * square);
+    float angle = q * (0.99997726f + square * (-0.33262347f + square * (0.19354346f + square * series)));
+    angle = y > along ? 1.57079633f - angle : angle;
+    return x < 0 ? 3.14159265f - angle : angle;
+}
+
+TL_INLINE void tl_fan_add_nodes(const struct tl_fan_table *table, int gloss, float share,
+                                struct tl_fan_between row, struct tl_fan_between column,
+                                tl_quad sums[2 * TL_LOBE_FIT_MAX])
+{
+    const struct tl_fan_node *nodes =
+        table->nodes + (size_t)(gloss * TL_FAN_COSINES + row.first) * TL_FAN_AZIMUTHS + (size_t)column.first;
+    for (int i = 0; i < 4; i++) {
+        float weight =
+            share * (i & 1 ? column.share : 1 - column.share) * (i & 2 ? row.share : 1 - row.share);
+        const tl_quad *node = (const tl_quad *)&nodes[(i >> 1) * TL_FAN_AZIMUTHS + (i & 1)];
+        for (int k = 0; k < 2 * table->lobe_count; k++)
+            sums[k] += weight * node[k];
+    }
+}
+
+/* The interpolated node of a viewer (x, y, cosine > 0) in the frame of the threads. Directions are of the
+ * frame that is turned by half a turn about the normal where y < 0: the return value is 1 or -1, a factor on
+ * their x and y; they are not normalised. */
+TL_INLINE float tl_fan_fetch(const struct tl_fan_table *table, float x, float y, float cosine,
+                             float glossiness, tl_quad sums[2 * TL_LOBE_FIT_MAX])
+{
+    float side = y < 0 ? -1.0f : 1.0f;
+    struct tl_fan_between column = tl_fan_between(
+        tl_fan_azimuth(side * x, side * y) * ((TL_FAN_AZIMUTHS - 1) / 3.14159265f), TL_FAN_AZIMUTHS);
+    struct tl_fan_between row =
+        tl_fan_between(sqrtf(tl_lesser(cosine, 1)) * TL_FAN_ROWS - TL_FAN_FIRST, TL_FAN_COSINES);
+    for (int k = 0; k < 2 * table->lobe_count; k++)
+        sums[k] = (tl_quad){0, 0, 0, 0};
+    if (table->gloss_count == 1) {
+        tl_fan_add_nodes(table, 0, 1, row, column, sums);
+        return side;
+    }
+    struct tl_fan_between gloss =
+        tl_fan_between((glossiness - table->gloss_low) / (table->gloss_high - table->gloss_low) *
+                           (float)(table->gloss_count - 1),
+                       table->gloss_count);
+    tl_fan_add_nodes(table, gloss.first, 1 - gloss.share, row, column, sums);
+    tl_fan_add_nodes(table, gloss.first + 1, gloss.share, row, column, sums);
+    return side;
+}
+
+/* The weight of a lobe at a reflectance. */
+TL_INLINE float tl_fan_weight(float low, float high, float f0)
+{
+    return f0 < TL_FAN_LOW_F0 ? low * f0 / TL_FAN_LOW_F0
+                              : low + (high - low) * (f0 - TL_FAN_LOW_F0) / (1 - TL_FAN_LOW_F0);
+}
+
+/* The lobes towards a viewer above the surface, as tl_lobe_fit_make gives them. Returns their number. */
+int tl_fan_table_look_up(const struct tl_fan_table *table, const struct tl_brdf_frame *frame, vec3s viewer,
+                         vec3s f0, float glossiness, struct tl_fitted_lobe lobes[TL_LOBE_FIT_MAX]);
+
+#endif

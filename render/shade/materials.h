@@ -1,0 +1,66 @@
+/* The materials of all parts of the surfaces, ready to be evaluated on the CPU at every pixel: what the
+ * shader of the G-buffer (render/gbuffer/gbuffer.frag) reads from uniforms and textures, with the fit of its
+ * facets as a table. Bumps bend normals and widen gloss (detail.mode normal, detail.minify any). Whatever
+ * else a material can be is not evaluated here, and tl_shade_materials_fit says so.
+ *
+ * Lifetime: owns its maps and tables; borrows the materials from the surfaces. Threads: pure once made. */
+#ifndef TOILE_RENDER_SHADE_MATERIALS_H
+#define TOILE_RENDER_SHADE_MATERIALS_H
+
+#include "render/detail/options.h"
+#include "render/gbuffer/samples.h"
+#include "render/shade/fan_table.h"
+#include "render/shade/texels.h"
+#include "render/surfaces/surfaces.h"
+
+struct tl_shade_map {
+    const struct tl_texels *texels; /* NULL: none */
+    bool clamp_u, clamp_v;
+    float rows[6]; /* from the mesh's UV */
+};
+
+/* One part of a surface. */
+struct tl_shade_part {
+    const tl_material *material;
+    struct tl_shade_map maps[TL_MAP_USES];
+    const struct tl_texels *own_moments; /* of the normal map: with its UV */
+    const struct tl_texels *weave_tint;  /* factor on kd; what is added to glossiness in the fourth channel */
+    const struct tl_texels *weave_moments; /* NULL where they are not kept: */
+    const struct tl_texels *weave_normal;
+    float weave_scale[2];           /* repeats per UV unit */
+    float turn_cosine, turn_sine;   /* of gloss.rotation */
+    bool has_maps;                  /* UV is read */
+    bool has_bumps;                 /* the tangent is read */
+    bool is_glossy;                 /* something is reflected */
+    const struct tl_fan_table *fan; /* NULL: two cosine lobes */
+};
+
+struct tl_shade_image;
+struct tl_shade_fan;
+struct tl_shade_materials {
+    struct tl_detail_params detail;
+    uint64_t shapes_revision;
+    size_t surface_count;
+    size_t *first_parts; /* [surface_count + 1] */
+    struct tl_shade_part *parts;
+    size_t image_count, fan_count;
+    struct tl_shade_image **images; /* each image is packed once */
+    struct tl_shade_fan **fans;
+};
+
+/* Returns true when every material of the surfaces can be evaluated here with these options. */
+bool tl_shade_materials_fit(const tl_surface *surfaces, size_t count, const struct tl_detail_params *detail);
+
+/* Makes the materials and replaces the previous ones. Maps and tables of the same `shapes_revision` are kept.
+ * `fan`: lobes at most that stand for a gloss of facets. */
+void tl_shade_materials_make(struct tl_shade_materials *materials, const tl_surface *const *surfaces,
+                             size_t count, uint64_t shapes_revision, const struct tl_detail_params *detail,
+                             int fan);
+void tl_shade_materials_release(struct tl_shade_materials *materials);
+size_t tl_shade_materials_bytes(const struct tl_shade_materials *materials);
+
+/* Index of the part that holds a surface's own triangle. */
+size_t tl_shade_part_at(const struct tl_shade_materials *materials, const tl_surface *surface,
+                        size_t surface_index, uint32_t triangle);
+
+#endif

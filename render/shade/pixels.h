@@ -1,0 +1,34 @@
+/* Light at every pixel from ratios at vertices, in one pass over the ID buffer: interpolation within the
+ * triangle, material, exact light of the environment times the interpolated ratio, suns.
+ *
+ *     c = kd E(n, 1) ratio_d + sum of lobes weight E(direction, s) ratio_g + suns
+ *
+ * The error against composing each sample is measured by tests/render/shade. Linear, premultiplied by cover.
+ * Results do not depend on the number of threads. */
+#ifndef TOILE_RENDER_SHADE_PIXELS_H
+#define TOILE_RENDER_SHADE_PIXELS_H
+
+#include "render/env/sun.h"
+#include "render/scene/view.h"
+#include "render/shade/ratios.h"
+#include "render/shade/triangles.h"
+#include "render/surfaces/ground.h"
+
+struct tl_pixels_request {
+    const struct tl_id_buffer *ids;
+    const struct tl_pixel_triangle *triangles; /* of the triangles in `ids->seen` */
+    const struct tl_triangle_ranges *ranges;
+    const struct tl_shade_materials *materials;
+    const struct tl_vertex_ratios *ratios;
+    const struct tl_lobes *lobes;
+    const struct tl_suns *suns;
+    const float *sun_visibility[TL_SUNS_MAX]; /* [height][width]; NULL: all of it is seen */
+    const struct tl_ground *ground;           /* the last of the surfaces, or NULL when none is drawn */
+    const struct tl_view *view;
+    float environment_yaw; /* rad */
+};
+
+/* Writes RGBA [height][width] of the ID buffer, rows upwards; 0 where nothing is covered. */
+void tl_pixels_shade(const struct tl_pixels_request *request, float *image);
+
+#endif

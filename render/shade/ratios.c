@@ -1,0 +1,167 @@
+#include "render/shade/ratios.h"
+
+#include "config/memory.h"
+#include "render/shade/look.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static void follow_surfaces(struct tl_vertex_ratios *ratios, const struct tl_triangle_ranges *ranges)
+{
+    size_t vertices = 0;
+    for (size_t s = 0; s < ranges->surface_count; s++)
+        vertices += ranges->surfaces[s]->vertex_count;
+    if (ratios->surface_count != ranges->surface_count || !ratios->first_vertex) {
+        free(ratios->first_vertex);
+        ratios->first_vertex = TL_NEW_ARRAY(size_t, ranges->surface_count + 1);
+        ratios->surface_count = ranges->surface_count;
+    }
+    for (size_t s = 0; s < ranges->surface_count; s++)
+        ratios->first_vertex[s + 1] = ratios->first_vertex[s] + ranges->surfaces[s]->vertex_count;
+    if (vertices == ratios->vertex_count)
+        return;
+    free(ratios->items);
+    free(ratios->stamps);
+    ratios->items = TL_NEW_ARRAY(struct tl_vertex_ratio, 2 * vertices);
+    ratios->stamps = TL_NEW_ARRAY(uint32_t, 2 * vertices);
+    ratios->vertex_count = vertices;
+    ratios->update = 0;
+}
+
+static void reserve(struct tl_vertex_ratios *ratios, size_t count)
+{
+    if (count <= ratios->capacity)
+        return;
+    ratios->capacity = count + count / 4;
+    ratios->taps = tl_resize(ratios->taps, ratios->capacity, sizeof *ratios->taps);
+    ratios->places = tl_resize(ratios->places, ratios->capacity, sizeof *ratios->places);
+    ratios->made = tl_resize(ratios->made, ratios->capacity, sizeof *ratios->made);
+    if (!ratios->samples.tangents)
+        ratios->samples.tangents = TL_NEW_ARRAY(vec4s, 1);
+    tl_samples_reserve(&ratios->samples, ratios->capacity);
+}
+
+/* A vertex has no neighbours to filter over: it looks like the mean of its maps, in the middle of bumps of
+ * every direction. */
+static struct tl_look mean_look(const struct tl_shade_part *part, const struct tl_detail_params *detail,
+                                struct tl_look_at *at)
+{
+    const float whole = 1e3f; /* UV units: all of any map */
+    at->uv[0] = at->uv[1] = 0.5f;
+    at->change[0][0] = at->change[1][1] = whole;
+    at->change[0][1] = at->change[1][0] = 0;
+    struct tl_look look = tl_look_evaluate(part, detail, at);
+    look.normal = glms_vec3_scale(at->smooth, at->side);
+    return look;
+}
+
+/* A sample at a corner of a seen triangle, to be summed like any other. */
+static void place_sample(struct tl_vertex_ratios *ratios, const struct tl_ratios_request *request,
+                         uint32_t seen, size_t surface_index, const tl_surface *surface, uint32_t vertex)
+{
+    const uint32_t number = seen & ~TL_SAMPLE_BACK;
+    const struct tl_shade_materials *materials = request->materials;
+    size_t part_index =
+        tl_shade_part_at(materials, surface, surface_index, number - request->ranges->first[surface_index]);
+    const struct tl_shade_part *part = &materials->parts[part_index];
+    bool back = seen & TL_SAMPLE_BACK;
+    vec3s point = surface->positions[vertex], up = {{0, 1, 0}};
+    struct tl_look_at at = {.normal = surface->normals[vertex],
+                            .smooth = tl_unit_or(surface->normals[vertex], up),
+                            .viewer = tl_unit_or(glms_vec3_sub(request->eye, point), up),
+                            .side = back ? -1.0f : 1.0f};
+    if (surface->tangents)
+        at.tangent = surface->tangents[vertex];
+    struct tl_look look = mean_look(part, &materials->detail, &at);
+    float cosine = tl_greater(glms_vec3_dot(look.normal, at.viewer), 0);
+    vec3s mirror = glms_vec3_sub(glms_vec3_scale(look.normal, 2 * cosine), at.viewer);
+    /* Facets need a viewer above the surface: one at the horizon stands for those below it. */
+    const float least = 0.02f;
+    vec3s seen_from = at.viewer;
+    if (cosine < least)
+        seen_from = tl_unit_or(
+            glms_vec3_add(at.viewer,
+                          glms_vec3_scale(look.normal, least - glms_vec3_dot(look.normal, at.viewer))),
+            look.normal);
+    size_t i = ratios->count++;
+    ratios->samples.items[i] =
+        (tl_sample){.triangle = seen,
+                    .weights = {1, 0, 0},
+                    .cover = 1,
+                    .point = glms_vec3_sub(request->eye, seen_from), /* compose takes the viewer from it */
+                    .normal = look.normal,
+                    .smooth = look.normal,
+                    .mirror = tl_unit_or(mirror, look.normal),
+                    .glossiness = look.glossiness,
+                    .diffuse = look.diffuse,
+                    .specular = look.f0};
+    ratios->samples.tangents[i] = (vec4s){{at.tangent.x, at.tangent.y, at.tangent.z, at.tangent.w * at.side}};
+    uint32_t value = tl_points_of_vertex(request->points, surface_index, vertex, back);
+    ratios->taps[i] = (struct tl_taps){.point = {value, value, value, value}, .weight = {1}};
+    ratios->places[i] = (uint32_t)(2 * (ratios->first_vertex[surface_index] + vertex) + back);
+}
+
+/* Corners that triangles share are listed once, for the first of these. */
+static void list_corners(struct tl_vertex_ratios *ratios, const struct tl_ratios_request *request)
+{
+    ratios->count = 0;
+    ratios->update++;
+    for (size_t i = 0; i < request->ids->seen_count; i++) {
+        uint32_t corners[3], seen = request->ids->seen[i];
+        size_t index;
+        const tl_surface *surface =
+            tl_triangle_find(request->ranges, seen & ~TL_SAMPLE_BACK, corners, &index);
+        reserve(ratios, ratios->count + 3);
+        for (int k = 0; k < 3; k++) {
+            uint32_t *stamp = &ratios->stamps[2 * (ratios->first_vertex[index] + corners[k]) +
+                                              (seen & TL_SAMPLE_BACK ? 1 : 0)];
+            if (*stamp == ratios->update)
+                continue;
+            *stamp = ratios->update;
+            place_sample(ratios, request, seen, index, surface, corners[k]);
+        }
+    }
+    ratios->samples.count = ratios->samples.primary_count = ratios->count;
+}
+
+void tl_ratios_make(struct tl_vertex_ratios *ratios, const struct tl_ratios_request *request)
+{
+    follow_surfaces(ratios, request->ranges);
+    list_corners(ratios, request);
+    struct tl_compose_request compose = {.samples = &ratios->samples,
+                                         .lights = request->lights,
+                                         .lobes = request->lobes,
+                                         .taps = ratios->taps,
+                                         .environment_yaw = request->environment_yaw,
+                                         .params = request->params,
+                                         .ranges = request->ranges,
+                                         .eye = request->eye};
+    compose.values = tl_points_values(request->points, &compose.stride);
+    tl_compose_ratios(&compose, ratios->made);
+    for (size_t i = 0; i < ratios->count; i++) {
+        struct tl_vertex_ratio *ratio = &ratios->items[ratios->places[i]];
+        bool covered = tl_points_is_covered(request->points, ratios->taps[i].point[0]);
+        *ratio = (struct tl_vertex_ratio){.glossy = {0, 0, 0, covered ? 1.0f : 0.0f}};
+        memcpy(ratio->diffuse, ratios->made[i].diffuse.raw, sizeof(vec3s));
+        memcpy(ratio->glossy, ratios->made[i].glossy.raw, sizeof(vec3s));
+    }
+}
+
+void tl_ratios_release(struct tl_vertex_ratios *ratios)
+{
+    free(ratios->first_vertex);
+    free(ratios->items);
+    free(ratios->stamps);
+    free(ratios->taps);
+    free(ratios->places);
+    free(ratios->made);
+    tl_samples_release(&ratios->samples);
+    *ratios = (struct tl_vertex_ratios){0};
+}
+
+size_t tl_ratios_bytes(const struct tl_vertex_ratios *ratios)
+{
+    return 2 * ratios->vertex_count * (sizeof *ratios->items + sizeof *ratios->stamps) +
+           ratios->capacity * (sizeof(tl_sample) + sizeof(vec4s) + sizeof *ratios->taps +
+                               sizeof *ratios->places + sizeof *ratios->made);
+}

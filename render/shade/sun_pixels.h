@@ -1,0 +1,40 @@
+/* Shadows of the suns at every pixel, by rays where they are needed: from every fourth pixel each way first;
+ * where the corners of a cell agree and are of one surface, its pixels take their answer; the other pixels
+ * are traced themselves. Pixels near an edge of the shadow get more rays to other places of the sun: the
+ * penumbra. What is missed are shadows narrower than a cell (tests/render/shade/test_sun_pixels.c counts the
+ * pixels).
+ *
+ * Lifetime: owns its arrays. Threads: one call at a time; results do not depend on their number. */
+#ifndef TOILE_RENDER_SHADE_SUN_PIXELS_H
+#define TOILE_RENDER_SHADE_SUN_PIXELS_H
+
+#include "render/env/sun.h"
+#include "render/shade/triangles.h"
+#include "render/surfaces/ground.h"
+#include "render/trace/trace.h"
+
+struct tl_sun_pixels {
+    size_t capacity; /* pixels */
+    float
+        *visible[TL_SUNS_MAX]; /* [height][width] of the ID buffer, in [0, 1]; of pixels that face the sun */
+    uint8_t *states, *spread;  /* ...: what was seen; what was seen in the 5 x 5 pixels about it */
+    uint32_t *pixels;          /* lists of those in a penumbra, from each thread's first row on */
+    vec3s *starts;             /* ... origins of their rays */
+    uint8_t *is_settled;       /* ... and whether their first rays agree */
+    size_t rays;               /* of the last update */
+};
+
+struct tl_sun_pixels_request {
+    const struct tl_id_buffer *ids;
+    const struct tl_pixel_triangle *triangles; /* of the triangles in `ids->seen` */
+    const struct tl_suns *suns;
+    const tl_trace *trace;
+    const struct tl_ground *ground; /* NULL: none */
+    float environment_yaw;          /* rad */
+};
+
+void tl_sun_pixels_update(struct tl_sun_pixels *pixels, const struct tl_sun_pixels_request *request);
+void tl_sun_pixels_release(struct tl_sun_pixels *pixels);
+size_t tl_sun_pixels_bytes(const struct tl_sun_pixels *pixels);
+
+#endif

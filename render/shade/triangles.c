@@ -1,0 +1,78 @@
+#include "render/shade/triangles.h"
+
+#include "config/memory.h"
+
+#include <math.h>
+
+/* A clip-space corner in pixels, times w. */
+struct corner {
+    double x, y, w;
+};
+
+static struct corner corner_of(const struct tl_view *view, int width, int height, vec3s p)
+{
+    const vec4s clip = glms_mat4_mulv(view->view_projection, (vec4s){{p.x, p.y, p.z, 1}});
+    double w = (double)clip.w;
+    return (struct corner){(0.5 * (double)clip.x + 0.5 * w) * width,
+                           (0.5 * (double)clip.y + 0.5 * w) * height, w};
+}
+
+/* Weights are small differences of large products: they are counted from a place near the triangle. */
+static void set_origin(const struct corner corners[3], int width, int height,
+                       struct tl_pixel_triangle *triangle)
+{
+    double x = 0.5 * width, y = 0.5 * height;
+    for (int i = 0; i < 3; i++)
+        if (corners[i].w > 0) {
+            x = corners[i].x / corners[i].w;
+            y = corners[i].y / corners[i].w;
+            break;
+        }
+    triangle->x0 = (float)floor(fmin(fmax(x, 0), width));
+    triangle->y0 = (float)floor(fmin(fmax(y, 0), height));
+}
+
+static struct tl_pixel_triangle make_triangle(const struct tl_view *view, int width, int height,
+                                              const struct tl_triangle_ranges *ranges,
+                                              const struct tl_shade_materials *materials, uint32_t seen)
+{
+    struct tl_pixel_triangle triangle = {.back = seen & TL_SAMPLE_BACK};
+    uint32_t number = seen & ~TL_SAMPLE_BACK;
+    triangle.surface = tl_triangle_find(ranges, number, triangle.corners, &triangle.surface_index);
+    triangle.part = tl_shade_part_at(materials, triangle.surface, triangle.surface_index,
+                                     number - ranges->first[triangle.surface_index]);
+    struct corner at[3];
+    for (int i = 0; i < 3; i++)
+        at[i] = corner_of(view, width, height, triangle.surface->positions[triangle.corners[i]]);
+    set_origin(at, width, height, &triangle);
+    for (int i = 0; i < 3; i++) {
+        at[i].x -= (double)triangle.x0 * at[i].w;
+        at[i].y -= (double)triangle.y0 * at[i].w;
+    }
+    double edges[3][3], largest = 0;
+    for (int i = 0; i < 3; i++) {
+        const struct corner *p = &at[(i + 1) % 3], *q = &at[(i + 2) % 3];
+        edges[i][0] = p->y * q->w - p->w * q->y;
+        edges[i][1] = p->w * q->x - p->x * q->w;
+        edges[i][2] = p->x * q->y - p->y * q->x;
+        for (int k = 0; k < 3; k++)
+            largest = fmax(largest, fabs(edges[i][k]));
+    }
+    double determinant = at[0].x * edges[0][0] + at[0].y * edges[0][1] + at[0].w * edges[0][2];
+    double scale = largest > 0 ? (determinant < 0 ? -1 : 1) / largest : 0;
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++)
+            triangle.edges[i][k] = (float)(scale * edges[i][k]);
+    return triangle;
+}
+
+struct tl_pixel_triangle *tl_pixel_triangles_make(const struct tl_id_buffer *ids, const struct tl_view *view,
+                                                  const struct tl_triangle_ranges *ranges,
+                                                  const struct tl_shade_materials *materials)
+{
+    struct tl_pixel_triangle *triangles = TL_NEW_ARRAY(struct tl_pixel_triangle, ids->seen_count);
+#pragma omp parallel for schedule(static)
+    for (size_t i = 0; i < ids->seen_count; i++)
+        triangles[i] = make_triangle(view, ids->width, ids->height, ranges, materials, ids->seen[i]);
+    return triangles;
+}

@@ -1,0 +1,54 @@
+/* The triangles of an ID buffer, prepared for the pixels that they cover: homogeneous edge functions [Olano
+ * and Greer 1997], which need no clipping, and the weights of a triangle's corners at a pixel. Borrows the
+ * surfaces. Pure; threads: any. */
+#ifndef TOILE_RENDER_SHADE_TRIANGLES_H
+#define TOILE_RENDER_SHADE_TRIANGLES_H
+
+#include "config/simd.h"
+#include "render/gbuffer/ids.h"
+#include "render/scene/view.h"
+#include "render/shade/materials.h"
+
+struct tl_pixel_triangle {
+    float edges[3][3]; /* weights of the corners, not normalised: a (x - x0) + b (y - y0) + c, pixels */
+    float x0, y0;
+    const tl_surface *surface;
+    uint32_t corners[3];
+    size_t surface_index, part; /* part: index into the materials' parts */
+    bool back;
+};
+
+/* Prepares the triangles that are seen, in the order of `ids->seen`. The caller frees the array. */
+struct tl_pixel_triangle *tl_pixel_triangles_make(const struct tl_id_buffer *ids, const struct tl_view *view,
+                                                  const struct tl_triangle_ranges *ranges,
+                                                  const struct tl_shade_materials *materials);
+
+/* Of a pixel: weights of the corners, which sum to 1, and their changes to the next pixel across and up. */
+struct tl_pixel_weights {
+    float at[3], across[3], up[3];
+};
+
+/* At (x, y) in pixels from the lower left corner; pixel centres lie at halves. */
+TL_INLINE struct tl_pixel_weights tl_pixel_weigh(const struct tl_pixel_triangle *triangle, float x, float y)
+{
+    struct tl_pixel_weights weights;
+    float sum = 0, sum_across = 0, sum_up = 0;
+    for (int i = 0; i < 3; i++) {
+        const float *e = triangle->edges[i];
+        float value = e[0] * (x - triangle->x0) + e[1] * (y - triangle->y0) + e[2];
+        weights.at[i] = value > 0 ? value : 0; /* rounding at the edge */
+        sum += weights.at[i];
+        sum_across += e[0];
+        sum_up += e[1];
+    }
+    float inverse = sum > 0 ? 1 / sum : 0;
+    for (int i = 0; i < 3; i++) {
+        const float *e = triangle->edges[i];
+        weights.at[i] = sum > 0 ? weights.at[i] * inverse : 1 / 3.0f;
+        weights.across[i] = (e[0] - weights.at[i] * sum_across) * inverse;
+        weights.up[i] = (e[1] - weights.at[i] * sum_up) * inverse;
+    }
+    return weights;
+}
+
+#endif
