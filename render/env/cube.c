@@ -138,16 +138,28 @@ int tl_cube_texel_across(int size, int face, int x, int y)
     return tl_cube_texel(size, tl_cube_direction(face, s, t));
 }
 
+static int floor_of(float value)
+{
+    int whole = (int)value; /* towards 0 */
+    return whole - ((float)whole > value);
+}
+
 struct tl_cube_taps tl_cube_taps(int size, vec3s direction)
 {
     int face;
     float s, t;
     tl_cube_locate(direction, &face, &s, &t);
     float fx = s * (float)size - 0.5f, fy = t * (float)size - 0.5f;
-    int x = (int)floorf(fx), y = (int)floorf(fy);
+    int x = floor_of(fx), y = floor_of(fy);
     float wx = fx - (float)x, wy = fy - (float)y;
 
     struct tl_cube_taps taps = {.weight = {(1 - wx) * (1 - wy), wx * (1 - wy), (1 - wx) * wy, wx * wy}};
+    if (x >= 0 && y >= 0 && x + 1 < size && y + 1 < size) {
+        int first = (face * size + y) * size + x;
+        memcpy(taps.texel, (const int[]){first, first + 1, first + size, first + size + 1},
+               sizeof taps.texel);
+        return taps;
+    }
     int missing = -1;
     for (int i = 0; i < 4; i++) {
         int tap_x = x + (i & 1), tap_y = y + (i >> 1);

@@ -16,27 +16,43 @@ static tl_cube environment_as_cube(const tl_environment *environment)
     return (tl_cube){.size = environment->image.width, .texels = tl_image_floats(&environment->image)};
 }
 
-static vec3s sample_latlong(const tl_image *image, vec3s direction)
+void tl_environment_place(vec3s direction, float *u, float *v)
 {
-    float length = glms_vec3_norm(direction);
-    float y = length > 0 ? direction.y / length : 0;
-    float u = 0.5f + atan2f(direction.x, -direction.z) / (float)(2 * M_PI);
-    float v = acosf(fminf(fmaxf(y, -1), 1)) / (float)M_PI;
-    float fx = u * (float)image->width - 0.5f, fy = v * (float)image->height - 0.5f;
-    int x = (int)floorf(fx), row = (int)floorf(fy);
-    float wx = fx - (float)x, wy = fy - (float)row;
+    *u = 0.5f + atan2f(direction.x, -direction.z) / (float)(2 * M_PI);
+    *v = acosf(fminf(fmaxf(direction.y, -1), 1)) / (float)M_PI;
+}
 
+static int floor_of(float value)
+{
+    int whole = (int)value; /* towards 0 */
+    return whole - ((float)whole > value);
+}
+
+vec3s tl_environment_fetch(const tl_image *latlong, float u, float v)
+{
+    int width = latlong->width;
+    float fx = u * (float)width - 0.5f, fy = v * (float)latlong->height - 0.5f;
+    int x = floor_of(fx), row = floor_of(fy);
+    float wx = fx - (float)x, wy = fy - (float)row;
+    const int columns[2] = {x < 0 ? x + width : x, x + 1 < width ? x + 1 : x + 1 - width};
     vec3s sum = {{0, 0, 0}};
     for (int i = 0; i < 4; i++) {
-        int column = (x + (i & 1) + image->width) % image->width;
-        int line = clamp_index(row + (i >> 1), image->height);
+        int line = clamp_index(row + (i >> 1), latlong->height);
         float weight = ((i & 1) ? wx : 1 - wx) * ((i >> 1) ? wy : 1 - wy);
         const float *texel =
-            tl_image_floats(image) + 3 * ((size_t)line * (size_t)image->width + (size_t)column);
+            tl_image_floats(latlong) + 3 * ((size_t)line * (size_t)width + (size_t)columns[i & 1]);
         for (int c = 0; c < 3; c++)
             sum.raw[c] += weight * texel[c];
     }
     return sum;
+}
+
+static vec3s sample_latlong(const tl_image *image, vec3s direction)
+{
+    float length = glms_vec3_norm(direction), u, v;
+    vec3s unit = length > 0 ? glms_vec3_scale(direction, 1 / length) : (vec3s){{0, 0, 0}};
+    tl_environment_place(unit, &u, &v);
+    return tl_environment_fetch(image, u, v);
 }
 
 vec3s tl_environment_sample(const tl_environment *environment, vec3s direction)

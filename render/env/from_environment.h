@@ -22,6 +22,11 @@ tl_cube tl_cube_from_environment_with(const tl_environment *environment, int siz
  */
 vec3s tl_environment_texel(const tl_environment *environment, vec3s direction);
 
+/* Place of a unit direction in a lat-long picture: u and v in [0, 1]. */
+void tl_environment_place(vec3s direction, float *u, float *v);
+/* Bilinear fetch from a lat-long picture (F32, RGB), whose left and right edges meet. */
+vec3s tl_environment_fetch(const tl_image *latlong, float u, float v);
+
 /* Bilinear fetch from the environment in its own layout. */
 vec3s tl_environment_sample(const tl_environment *environment, vec3s direction);
 

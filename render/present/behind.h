@@ -1,6 +1,7 @@
 /* What is seen behind the figure, on the CPU: the environment as it is, or blurred, in linear radiance. It is
- * evaluated in tiles, where one is asked for, and kept for as long as camera, environment and size stay.
- * Blurred light is so smooth that it is evaluated at every TL_BEHIND_STEP-th pixel and interpolated. Pure. */
+ * evaluated in tiles, where one is asked for, and kept for as long as camera, environment and size stay. What
+ * is smooth enough over TL_BEHIND_STEP pixels, blurred light or the place in the environment's picture, is
+ * evaluated at every TL_BEHIND_STEP-th pixel and interpolated. Pure. */
 #ifndef TOILE_RENDER_PRESENT_BEHIND_H
 #define TOILE_RENDER_PRESENT_BEHIND_H
 
@@ -12,9 +13,9 @@
 #include <stdint.h>
 
 #define TL_BEHIND_COLUMNS 32 /* pixels of a tile */
-#define TL_BEHIND_ROWS    4
+#define TL_BEHIND_ROWS    8
 #define TL_BEHIND_PIXELS  (TL_BEHIND_COLUMNS * TL_BEHIND_ROWS)
-#define TL_BEHIND_STEP    4
+#define TL_BEHIND_STEP    8
 
 struct tl_behind_request {
     vec3s forward, right, up;          /* tl_view's */
@@ -27,6 +28,8 @@ struct tl_behind_request {
 
 struct tl_behind {
     struct tl_behind_request of;
+    vec3s forward, right, up; /* in the environment's frame */
+    bool is_interpolated;
     int columns, rows; /* tiles */
     float *colours;    /* [rows][columns][3][TL_BEHIND_PIXELS]: of those that are made */
     uint8_t *made;     /* [rows][columns] */

@@ -115,6 +115,13 @@ static void test_large_environment(void **state)
     open_scene(&scene, test_environment(2048, 1024, test_daylight), 900, 800);
     scene.settings.light.pem_size = 128;
     expect_same_backgrounds(device->renderer, &scene, "daylight");
+    scene.settings.image.width = 64; /* pixels as large as the texels of what is blurred */
+    scene.settings.image.height = 48;
+    expect_same_backgrounds(device->renderer, &scene, "daylight, small");
+    scene.frame.camera.target.y = 3; /* towards the pole */
+    scene.settings.image.width = 900;
+    scene.settings.image.height = 800;
+    expect_same_backgrounds(device->renderer, &scene, "daylight, upwards");
     test_scene_close(&scene);
 }
 
