@@ -68,7 +68,8 @@ struct tl_measured_error {
     struct tl_object_error garment;
 };
 /* Compares an image as tl_renderer_read returns it, and for the garment's error the picture as
- * tl_renderer_show_image returns it. `shown` may be NULL when the reference was drawn without tl_frame.aovs. */
+ * tl_renderer_show_image returns it. `shown` may be NULL when the reference was drawn without tl_frame.aovs.
+ */
 bool tl_reference_frame_compare(const tl_image *image, const tl_image *shown,
                                 const struct tl_reference_frame *reference, struct tl_measured_error *out,
                                 tl_error *error);

@@ -25,7 +25,7 @@ enum tl_output {
     TL_OUTPUTS
 };
 
-#define TL_EXPERIMENT_ASSIGNMENTS 12
+#define TL_EXPERIMENT_ASSIGNMENTS 16
 #define TL_EXPERIMENT_APPEARANCES 5
 #define TL_EXPERIMENT_IDS         2
 
@@ -43,7 +43,7 @@ struct tl_technique {
     double budget_ms; /* page: the governor chooses the levels for this budget; 0: as set up */
     bool quick;       /* page: part of a quick run */
     bool shown;       /* page: its picture is shown beside the reference */
-    bool once;        /* pictures: under the first appearance only */
+    bool once;        /* pictures, page: under the first appearance only */
 };
 
 /* How the garment and its light look. */
@@ -69,8 +69,9 @@ struct tl_experiment {
     int warm_up, measured; /* page: frames before the first measured one, and those measured */
     bool rests;            /* page: the last frame is drawn until it rests, too */
     bool by_wall;          /* page: plots show wall time; else CPU time of all threads */
-    bool by_flip;          /* errors are mean FLIP, for images of edges; else relative RMSE */
-    bool reference_alone;  /* the reference leaves out the technique's settings, so that all share one */
+    bool by_flip; /* pictures: errors are mean FLIP, for images of edges; page: FLIP of the garment, as
+                     shown; else relative RMSE */
+    bool reference_alone; /* the reference leaves out the technique's settings, so that all share one */
 };
 
 /* The next technique of the experiment that `output` takes; `after` NULL: the first. NULL past the last one.

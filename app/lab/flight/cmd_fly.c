@@ -130,7 +130,7 @@ static bool check_kept(const struct flying *flying, tl_error *error)
 {
     const struct tl_image_params *image = &flying->settings.image;
     int every = flying->options.oracle_every;
-    size_t kept = every ? ((size_t)flying->options.frames + (size_t)every - 1) / (size_t)every : 0;
+    size_t kept = every ? ((size_t)flying->options.frames - 1) / (size_t)every : 0;
     const size_t pixel_bytes = 4 * sizeof(float) + 3; /* linear RGBA, and as shown */
     size_t bytes = kept * (size_t)image->width * (size_t)image->height * pixel_bytes;
     return bytes <= LIMIT_KEPT_BYTES ||

@@ -73,7 +73,8 @@ struct tl_fly_options {
     double budget_ms; /* 0: none */
     int frames;
     bool hash;                      /* of every image */
-    int oracle_every;               /* 0: never */
+    int oracle_every;               /* frames N, 2 N ...; 0: never. The first frame is none of them: it has
+                                       not moved, and is at full quality whatever the budget */
     const struct tl_flight *replay; /* levels are taken from here; NULL: chosen */
     tl_video *video;                /* gets every image; NULL: none */
 };

@@ -38,7 +38,7 @@ static bool trade_frames(const struct tl_experiment *experiment, const struct tl
     if (!tl_trade_headless(experiment, arguments, &headless, error))
         return false;
     struct tl_trade trade;
-    bool done = tl_trade_measure(experiment, &headless, arguments->quick, &trade, error);
+    bool done = tl_trade_measure(experiment, arguments, &headless, &trade, error);
     if (trade.row_count)
         done = write_both(arguments->output, &trade, write_frames_csv, write_frames_html, done, error);
     tl_trade_release(&trade);

@@ -15,8 +15,8 @@
 
 struct run {
     const struct tl_experiment *experiment;
+    const struct tl_arguments *arguments;
     struct tl_headless *headless;
-    struct tl_settings scene; /* without an appearance */
     struct tl_trade *trade;
     int warm, measured; /* frames before the first measured one, and those measured; the last one rests */
     bool quick;
@@ -276,17 +276,61 @@ static bool make_reference(struct run *run, const struct tl_experiment_appearanc
                                  error);
 }
 
+/* The appearance that is measured first: the only one of a quick run. */
+static int first_appearance(const struct tl_experiment *experiment, bool quick)
+{
+    return quick ? experiment->quick_appearance : 0;
+}
+
+/* The scene as an appearance has it. It is read from its file again, because a fabric that an assignment
+ * names is a layer below the other assignments. */
+static bool read_appearance(const struct tl_experiment *experiment, int number,
+                            const struct tl_arguments *arguments, struct tl_settings *out, tl_error *error)
+{
+    const char *const *parts[] = {experiment->base, experiment->appearances[number].assignments};
+    struct tl_arguments own = *arguments;
+    own.assignments =
+        tl_alloc(TL_COUNT(parts) * TL_EXPERIMENT_ASSIGNMENTS + arguments->assignment_count, sizeof(char *));
+    size_t count = 0, copied;
+    for (size_t p = 0; p < TL_COUNT(parts); p++)
+        for (size_t i = 0; i < TL_EXPERIMENT_ASSIGNMENTS && parts[p][i]; i++)
+            own.assignments[count++] = tl_copy_string(parts[p][i]);
+    copied = count;
+    for (size_t i = 0; i < arguments->assignment_count; i++)
+        own.assignments[count++] = arguments->assignments[i];
+    own.assignment_count = count;
+    tl_topic_default_scene(&own, experiment->scene);
+    bool read = tl_headless_settings(&own, out, error);
+    for (size_t i = 0; i < copied; i++)
+        free(own.assignments[i]);
+    free(own.assignments);
+    return read;
+}
+
+/* Another fabric falls and moves otherwise, so every appearance has a drape and a recording of its own. The
+ * session has the first appearance's drape. */
 static bool begin_appearance(struct run *run, int number, tl_error *error)
 {
-    const struct tl_experiment_appearance *appearance = &run->experiment->appearances[number];
+    const struct tl_experiment *experiment = run->experiment;
+    struct tl_headless *headless = run->headless;
+    struct tl_trade *trade = run->trade;
+    struct tl_settings settings;
+    bool first = number == first_appearance(experiment, run->quick);
     run->appearance = number;
     tl_reference_frame_release(&run->frames[0]);
     tl_reference_frame_release(&run->frames[1]);
-    run->headless->settings = run->scene;
-    return tl_settings_assign(&run->headless->settings, appearance->assignments,
-                              TL_COUNT(appearance->assignments), error) &&
-           tl_session_apply(run->headless->session, &run->headless->settings, error) &&
-           make_reference(run, appearance, error);
+    tl_recording_destroy(&run->recording);
+    if (!first) {
+        if (!read_appearance(experiment, number, run->arguments, &settings, error) ||
+            !tl_session_restart(headless->session, &settings, error))
+            return false;
+        headless->settings = settings;
+    }
+    trade->environment = tl_session_frame(headless->session).environment;
+    run->recording = tl_motion_record(headless->session, run->warm + run->measured, error);
+    if (run->recording && first)
+        trade->recording = tl_recording_report(run->recording);
+    return run->recording && make_reference(run, &experiment->appearances[number], error);
 }
 
 static bool measure_all(struct run *run, tl_error *error)
@@ -299,10 +343,10 @@ static bool measure_all(struct run *run, tl_error *error)
     int appearances = run->quick ? 1 : experiment->appearance_count;
     bool done = true;
     for (int i = 0; done && i < appearances; i++) {
-        done = begin_appearance(run, run->quick ? experiment->quick_appearance : i, error);
+        done = begin_appearance(run, first_appearance(experiment, run->quick) + i, error);
         const struct tl_technique *technique = NULL;
         while (done && (technique = tl_experiment_next(experiment, TL_OUTPUT_PAGE, technique))) {
-            if (!run->quick || technique->quick)
+            if (run->quick ? technique->quick : i == 0 || !technique->once)
                 done = measure_technique(run, technique, error);
             tl_progress_update(&progress, (double)++measured, (double)(count * (size_t)appearances));
         }
@@ -311,54 +355,31 @@ static bool measure_all(struct run *run, tl_error *error)
     return done;
 }
 
-/* Assignments of the command line come after, and so override, the experiment's base. */
 bool tl_trade_headless(const struct tl_experiment *experiment, const struct tl_arguments *arguments,
                        struct tl_headless *headless, tl_error *error)
 {
-    struct tl_arguments own = *arguments;
-    char *assignments[TL_EXPERIMENT_ASSIGNMENTS];
-    size_t count = 0;
-    while (count < TL_COUNT(experiment->base) && experiment->base[count]) {
-        assignments[count] = tl_copy_string(experiment->base[count]);
-        count++;
-    }
-    own.assignments = tl_alloc(count + arguments->assignment_count, sizeof(char *));
-    own.assignment_count = count + arguments->assignment_count;
-    memcpy(own.assignments, assignments, count * sizeof(char *));
-    for (size_t i = 0; i < arguments->assignment_count; i++)
-        own.assignments[count + i] = arguments->assignments[i];
-    tl_topic_default_scene(&own, experiment->scene);
-    bool created = tl_headless_create(headless, &own, error);
-    for (size_t i = 0; i < count; i++)
-        free(assignments[i]);
-    free(own.assignments);
-    return created;
+    struct tl_settings settings;
+    return read_appearance(experiment, first_appearance(experiment, arguments->quick), arguments, &settings,
+                           error) &&
+           tl_headless_open(headless, &settings, error);
 }
 
-bool tl_trade_measure(const struct tl_experiment *experiment, struct tl_headless *headless, bool quick,
-                      struct tl_trade *out, tl_error *error)
+bool tl_trade_measure(const struct tl_experiment *experiment, const struct tl_arguments *arguments,
+                      struct tl_headless *headless, struct tl_trade *out, tl_error *error)
 {
+    bool quick = arguments->quick;
     struct run run = {
         .experiment = experiment,
+        .arguments = arguments,
         .headless = headless,
-        .scene = headless->settings,
         .trade = out,
         .warm = quick ? 2 : experiment->warm_up,
         .measured = quick ? 2 : experiment->measured,
         .quick = quick,
         .sky = tl_environment_constant(1, 1, 1),
     };
-    *out = (struct tl_trade){.experiment = experiment,
-                             .width = headless->settings.image.width,
-                             .height = headless->settings.image.height,
-                             .quick = quick,
-                             .environment = tl_session_frame(headless->session).environment};
-    run.recording = tl_motion_record(headless->session, run.warm + run.measured, error);
-    bool done = run.recording != NULL;
-    if (done) {
-        out->recording = tl_recording_report(run.recording);
-        done = out->complete = measure_all(&run, error);
-    }
+    *out = (struct tl_trade){.experiment = experiment, .quick = quick};
+    bool done = out->complete = measure_all(&run, error);
     tl_variant_run_release(&run.reference);
     tl_reference_frame_release(&run.frames[0]);
     tl_reference_frame_release(&run.frames[1]);

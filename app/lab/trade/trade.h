@@ -39,20 +39,20 @@ struct tl_trade {
     size_t refusal_count;
     bool complete; /* false: interrupted */
     bool quick;
-    const tl_environment *environment; /* borrowed from the session */
-    struct tl_recording_report recording;
-    int width, height;
+    const tl_environment *environment;    /* of the last appearance; borrowed from the session */
+    struct tl_recording_report recording; /* of the first appearance */
 };
 
-/* Opens the scene that an experiment is measured in: the command line's, with the experiment's base under the
- * command line's assignments. */
+/* Opens the scene that an experiment is measured in, as its first appearance has it: the command line's scene
+ * or the experiment's, then the experiment's base, the appearance and the command line's assignments, of
+ * which a later one overrides an earlier one. */
 bool tl_trade_headless(const struct tl_experiment *experiment, const struct tl_arguments *arguments,
                        struct tl_headless *headless, tl_error *error);
 
 /* Measures all techniques. `quick`: a few techniques and frames, as a test that it works. On Ctrl-C the error
  * is TL_INTERRUPTED and `out` holds what was measured until then. Release `out` in any case. */
-bool tl_trade_measure(const struct tl_experiment *experiment, struct tl_headless *headless, bool quick,
-                      struct tl_trade *out, tl_error *error);
+bool tl_trade_measure(const struct tl_experiment *experiment, const struct tl_arguments *arguments,
+                      struct tl_headless *headless, struct tl_trade *out, tl_error *error);
 void tl_trade_release(struct tl_trade *trade);
 
 /* The next row of a group (NULL: any); `after` NULL: the first. NULL past the last one. */

@@ -17,26 +17,34 @@ static const char *choice_name(const char *key, int index)
 
 void tl_trade_write_csv(const struct tl_trade *trade, FILE *out)
 {
-    fputs("group,name,look,state,draws,budget_ms,scale,method,visibility,prefilter,composition,cut,regions,"
+    fputs("group,name,look,state,draws,budget_ms,width,height,scale,method,visibility,prefilter,composition,"
+          "cut,regions,"
           "map_size_texels,"
           "filter,cpu_ms_per_frame,wall_ms_per_frame,pem_bytes,map_bytes,total_bytes,relative_rmse,standard_"
           "error,mean_flip,"
-          "largest_difference,covered_pixels\n",
+          "largest_difference,covered_pixels,garment_flip,garment_flip_worst,garment_pixels\n",
           out);
     for (size_t i = 0; i < trade->row_count; i++) {
         const struct tl_trade_row *row = &trade->rows[i];
         const struct tl_light_params *light = &row->settings.light;
-        fprintf(out,
-                "\"%s\",\"%s\",%s,%s,%d,%g,%g,%s,%s,%s,%s,%s,%d,%d,%s,%.3f,%.3f,%zu,%zu,%zu,%.6g,%.6g,%.6g,%."
-                "6g,%zu\n",
-                row->group, row->name, trade->experiment->appearances[row->appearance].name,
-                row->rest ? "rest" : "moving", row->draws, row->budget_ms, (double)row->settings.image.scale,
-                choice_name("method", light->method), choice_name("visibility", light->visibility),
-                choice_name("prefilter", light->prefilter), choice_name("composition", light->composition),
-                choice_name("cut", light->cut), light->regions, light->map_size,
-                choice_name("filter", light->filter), row->taken.cpu_ms, row->taken.wall_ms, row->memory.pems,
-                row->memory.maps, row->memory.total, row->error.rel_rmse, row->error.standard_error,
-                row->error.flip_mean, row->error.max_abs, row->error.covered);
+        fprintf(
+            out,
+            "\"%s\",\"%s\",%s,%s,%d,%g,%d,%d,%g,%s,%s,%s,%s,%s,%d,%d,%s,%.3f,%.3f,%zu,%zu,%zu,%.6g,%.6g,%."
+            "6g,%.6g,%zu",
+            row->group, row->name, trade->experiment->appearances[row->appearance].name,
+            row->rest ? "rest" : "moving", row->draws, row->budget_ms, row->settings.image.width,
+            row->settings.image.height, (double)row->settings.image.scale,
+            choice_name("method", light->method), choice_name("visibility", light->visibility),
+            choice_name("prefilter", light->prefilter), choice_name("composition", light->composition),
+            choice_name("cut", light->cut), light->regions, light->map_size,
+            choice_name("filter", light->filter), row->taken.cpu_ms, row->taken.wall_ms, row->memory.pems,
+            row->memory.maps, row->memory.total, row->error.rel_rmse, row->error.standard_error,
+            row->error.flip_mean, row->error.max_abs, row->error.covered);
+        if (row->error.garment.pixels)
+            fprintf(out, ",%.6g,%.6g,%zu\n", row->error.garment.flip_mean, row->error.garment.flip_worst,
+                    row->error.garment.pixels);
+        else
+            fputs(",,,\n", out);
     }
 }
 
@@ -52,9 +60,12 @@ static const struct tl_trade_row *sibling(const struct tl_trade *trade, const st
     return found;
 }
 
-static void add_error_cell(struct tl_cells *cells, const struct tl_trade_row *row)
+static void add_error_cell(const struct tl_trade *trade, struct tl_cells *cells,
+                           const struct tl_trade_row *row)
 {
-    if (row)
+    if (row && trade->experiment->by_flip)
+        tl_cells_add(cells, "%.4f / %.3f", row->error.garment.flip_mean, row->error.garment.flip_worst);
+    else if (row)
         tl_cells_add(cells, "%.2f %% / %.3f", 100 * row->error.rel_rmse, row->error.flip_mean);
     else
         tl_cells_add(cells, "-");
@@ -87,8 +98,8 @@ static void print_group_table(const struct tl_trade *trade, const char *group, i
         tl_cells_add(&cells, "%.1f", (double)row->memory.total / MEBIBYTE);
         for (int l = 0; l < trade->experiment->appearance_count; l++)
             if (shown[l]) {
-                add_error_cell(&cells, sibling(trade, row, l, false));
-                add_error_cell(&cells, sibling(trade, row, l, true));
+                add_error_cell(trade, &cells, sibling(trade, row, l, false));
+                add_error_cell(trade, &cells, sibling(trade, row, l, true));
             }
     }
     tl_cells_print(&cells, columns, out);
@@ -101,7 +112,7 @@ static double time_of(const struct tl_trade *trade, const struct tl_trade_row *r
 
 static double error_of(const struct tl_trade *trade, const struct tl_trade_row *row)
 {
-    return trade->experiment->by_flip ? row->error.flip_mean : 100 * row->error.rel_rmse;
+    return trade->experiment->by_flip ? row->error.garment.flip_mean : 100 * row->error.rel_rmse;
 }
 
 /* Points of a plot by group, with room for the Pareto front. */
@@ -152,10 +163,15 @@ static void release_scatter(struct scatter *scatter)
     free(scatter->front_points);
 }
 
-static void print_front(const struct scatter *scatter, FILE *out)
+static void print_front(const struct tl_trade *trade, const struct scatter *scatter, FILE *out)
 {
-    static const char *const heads[] = {"on the Pareto front", "CPU ms",    "wall ms",
-                                        "rel. RMSE",           "mean FLIP", "MiB"};
+    bool garment = trade->experiment->by_flip;
+    const char *const heads[] = {"on the Pareto front",
+                                 "CPU ms",
+                                 "wall ms",
+                                 garment ? "FLIP of the garment" : "rel. RMSE",
+                                 garment ? "of its worst 5 %" : "mean FLIP",
+                                 "MiB"};
     struct tl_cells cells = {0};
     for (size_t i = 0; i < TL_COUNT(heads); i++)
         tl_cells_add(&cells, "%s", heads[i]);
@@ -164,8 +180,13 @@ static void print_front(const struct scatter *scatter, FILE *out)
         tl_cells_add(&cells, "%s", row->name);
         tl_cells_add(&cells, "%.1f", row->taken.cpu_ms);
         tl_cells_add(&cells, "%.1f", row->taken.wall_ms);
-        tl_cells_add(&cells, "%.2f %%", 100 * row->error.rel_rmse);
-        tl_cells_add(&cells, "%.4f", row->error.flip_mean);
+        if (garment) {
+            tl_cells_add(&cells, "%.4f", row->error.garment.flip_mean);
+            tl_cells_add(&cells, "%.3f", row->error.garment.flip_worst);
+        } else {
+            tl_cells_add(&cells, "%.2f %%", 100 * row->error.rel_rmse);
+            tl_cells_add(&cells, "%.4f", row->error.flip_mean);
+        }
         tl_cells_add(&cells, "%.1f", (double)row->memory.total / MEBIBYTE);
     }
     tl_cells_print(&cells, TL_COUNT(heads), out);
@@ -175,22 +196,25 @@ static void print_scatters(const struct tl_trade *trade, FILE *out)
 {
     tl_report_heading(out, "Error against time, in motion");
     tl_report_paragraph(out, trade->experiment->text);
-    const char *measure = trade->experiment->by_flip ? "mean FLIP" : "relative RMSE, %";
+    bool garment = trade->experiment->by_flip;
+    const char *measure = garment ? "FLIP of the garment" : "relative RMSE, %";
     for (int appearance = 0; appearance < trade->experiment->appearance_count; appearance++) {
-        if (!tl_trade_next(trade, NULL, NULL, appearance, false))
+        const struct tl_trade_row *any = tl_trade_next(trade, NULL, NULL, appearance, false);
+        if (!any)
             continue;
         struct scatter scatter;
         make_scatter(trade, appearance, &scatter);
-        char caption[200];
-        snprintf(caption, sizeof caption, "%c%s. Errors over covered pixels against the truth.",
+        char caption[300];
+        snprintf(caption, sizeof caption, "%c%s, %d x %d pixels. Errors over %s pixels against the truth.",
                  trade->experiment->appearances[appearance].title[0] - 'a' + 'A',
-                 trade->experiment->appearances[appearance].title + 1);
+                 trade->experiment->appearances[appearance].title + 1, any->settings.image.width,
+                 any->settings.image.height, garment ? "the garment's" : "covered");
         tl_report_plot(out,
                        &(struct tl_plot){trade->experiment->by_wall ? "ms a frame on the wall"
                                                                     : "CPU ms a frame, all threads",
                                          measure, true, true, scatter.series, scatter.series_count},
                        caption);
-        print_front(&scatter, out);
+        print_front(trade, &scatter, out);
         release_scatter(&scatter);
     }
 }
@@ -212,7 +236,10 @@ static void print_pictures(const struct tl_trade *trade, FILE *out)
                 begun = true;
             }
             snprintf(text, sizeof text, "ray traced");
-            if (picture->error.covered)
+            if (picture->error.garment.pixels)
+                snprintf(text, sizeof text, "FLIP of the garment %.3f, of its worst 5 %% %.3f",
+                         picture->error.garment.flip_mean, picture->error.garment.flip_worst);
+            else if (picture->error.covered)
                 snprintf(text, sizeof text, "%.1f %% relative RMSE, FLIP %.3f", 100 * picture->error.rel_rmse,
                          picture->error.flip_mean);
             tl_report_picture(out, picture->png, picture->size, picture->name, text);
@@ -225,8 +252,13 @@ static void print_pictures(const struct tl_trade *trade, FILE *out)
 static void print_tables(const struct tl_trade *trade, int appearance, FILE *out)
 {
     tl_report_heading(out, "All figures");
-    tl_report_paragraph(out, "Errors are relative RMSE and mean FLIP over covered pixels against the truth; "
-                             "times are medians of process CPU time; at rest, of the last frames averaged.");
+    tl_report_paragraph(
+        out, trade->experiment->by_flip
+                 ? "Errors are FLIP of the picture as shown over the garment's pixels, and over the "
+                   "worst 5 % of them, against the truth; times are medians."
+                 : "Errors are relative RMSE and mean FLIP over covered pixels against the "
+                   "truth; times are medians of process CPU time; at rest, of the last frames "
+                   "averaged.");
     const char *group = NULL;
     for (const struct tl_trade_row *row = NULL; (row = tl_trade_next(trade, row, NULL, appearance, false));) {
         if (group && strcmp(group, row->group) == 0)
@@ -243,11 +275,10 @@ void tl_trade_write_html(const struct tl_trade *trade, FILE *out)
 {
     char subtitle[400];
     snprintf(subtitle, sizeof subtitle,
-             "toile trade --axis %s: %d x %d pixels, %zu garment triangles that move %.1f mm a frame on "
-             "average, environment %.120s%s",
-             trade->experiment->name, trade->width, trade->height, trade->recording.garment_triangles,
-             1e3 * trade->recording.mean_step_m, trade->environment->name,
-             trade->complete ? "" : "; interrupted: what was measured until then");
+             "toile trade --axis %s: %zu garment triangles that move %.1f mm a frame on average, environment "
+             "%.120s%s",
+             trade->experiment->name, trade->recording.garment_triangles, 1e3 * trade->recording.mean_step_m,
+             trade->environment->name, trade->complete ? "" : "; interrupted: what was measured until then");
     tl_report_begin(out, trade->experiment->title, subtitle);
     print_scatters(trade, out);
     print_pictures(trade, out);

@@ -28,7 +28,7 @@ PYTHON
     check_report measured/report.html 1
     check "it shows pictures" grep -q 'src="data:image/png;base64,' measured/report.html
     for axis in overall resolution detail shading levels; do
-        check "trade, $axis" $TOILE trade --axis $axis $small --quick -o "$axis"
+        check "trade, $axis" $TOILE trade --axis $axis $small --set light.pem_size=16 --quick -o "$axis"
         check "finite numbers, $axis" python3 - "$axis/trade.csv" <<'PYTHON'
 import csv, math, sys
 rows = list(csv.DictReader(open(sys.argv[1])))
@@ -36,6 +36,12 @@ assert len(rows) >= 2, len(rows)
 for row in rows:
     for key in ("cpu_ms_per_frame", "wall_ms_per_frame", "relative_rmse", "mean_flip"):
         assert math.isfinite(float(row[key])) and float(row[key]) >= 0, (key, row)
+    assert row["width"] == row["height"] == "96", "an appearance's size overrode the command line's"
+    if sys.argv[1] in ("overall/trade.csv", "levels/trade.csv"):
+        assert 0 < float(row["garment_flip"]) < float(row["garment_flip_worst"]) < 1, row
+        assert 100 < int(row["garment_pixels"]) < int(row["covered_pixels"]), row
+    else:
+        assert row["garment_flip"] == "" and row["garment_pixels"] == "", row
 PYTHON
     done
     check "bench --json" sh -c "$TOILE bench light $small --quick --json | python3 -c '
