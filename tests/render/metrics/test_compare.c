@@ -203,6 +203,7 @@ static void tiny_images_work(void **state)
 /* ---- One object's pixels ---- */
 
 enum { SIDE = 96 };
+static const size_t side_count = (size_t)SIDE * SIDE; /* pixels */
 
 /* 1 in a square, else 0; one channel. */
 static tl_image square_mask(int first, int end)
@@ -218,13 +219,13 @@ static void blacken(tl_image *image, int first_x, int first_y, int side)
 {
     for (int y = first_y; y < first_y + side; y++)
         for (int x = first_x; x < first_x + side; x++)
-            memset(tl_image_floats(image) + 4 * (y * SIDE + x), 0, 3 * sizeof(float));
+            memset(tl_image_floats(image) + 4 * ((size_t)y * SIDE + (size_t)x), 0, 3 * sizeof(float));
 }
 
 /* The mean of the `wanted` largest values under the mask, found one by one. */
 static double mean_of_largest(const float *map, const tl_image *mask, size_t wanted)
 {
-    bool *taken = TL_NEW_ARRAY(bool, SIDE *SIDE);
+    bool *taken = TL_NEW_ARRAY(bool, side_count);
     double sum = 0;
     for (size_t k = 0; k < wanted; k++) {
         int largest = -1;
@@ -315,11 +316,11 @@ static void masks_are_read_as_stated(void **state)
              small = tl_image_create(8, 8, 1, TL_IMAGE_U8);
     struct tl_object_error object;
     tl_error error = {0};
-    memset(mask.texels, 127, 3 * SIDE * SIDE);
+    memset(mask.texels, 127, 3 * side_count);
     assert_ok(tl_image_compare_object(&a, &b, &mask, 0, &object, &error), error);
     assert_int_equal(object.pixels, 0);
     assert_true(isnan(object.flip_mean) && isnan(object.flip_worst));
-    tl_image_bytes(&mask)[3 * 500] = 128;
+    tl_image_bytes(&mask)[1500] = 128;
     assert_ok(tl_image_compare_object(&a, &b, &mask, 0, &object, &error), error);
     assert_int_equal(object.pixels, 1);
     assert_true(object.flip_mean > 0.01);
