@@ -322,9 +322,11 @@ static bool check_camera(const struct tl_camera *camera, tl_error *error)
 static bool check_envmap_size(const tl_frame *frame, const struct tl_render_settings *settings,
                               tl_error *error)
 {
+    if (settings->light.method != TL_METHOD_MAPS)
+        return true;
     uint32_t exponents = tl_map_exponents_of(frame->surfaces, frame->surface_count, &settings->detail);
     uint64_t bytes = tl_envmap_bytes_needed(&settings->maps, exponents);
-    if (settings->light.method == TL_METHOD_MAPS && bytes > TEXTURE_BYTES_MAX)
+    if (bytes > TEXTURE_BYTES_MAX)
         return tl_fail(error, TL_USAGE,
                        "maps: %d environment maps of %d texels need %d MB, more than %d: lower maps.size",
                        __builtin_popcount(exponents), settings->maps.size, (int)(bytes >> 20),

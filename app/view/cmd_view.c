@@ -49,6 +49,16 @@ static bool is_minimised(const struct tl_review *review)
     return width < 1 || height < 1;
 }
 
+/* While the pointer moves camera or light, the panel gets no input, and its figures need not be new in every
+ * frame. */
+static bool panel_is_due(const struct tl_review *review)
+{
+    const double every_s = 0.1;
+    enum tl_review_drag drag = review->drag;
+    bool is_idle = drag == TL_DRAG_ORBIT || drag == TL_DRAG_PAN || drag == TL_DRAG_LIGHT;
+    return !is_idle || !review->is_paced || tl_clock_s() >= review->times.panel_s + every_s;
+}
+
 /* The work between two checks for events. */
 static bool run_one_frame(struct tl_review *review, bool always_shows, tl_error *error)
 {
@@ -68,7 +78,10 @@ static bool run_one_frame(struct tl_review *review, bool always_shows, tl_error 
     if (review->redraws == 0 && !review->editing && !review->loader && !always_shows)
         return true;
     review->redraws -= review->redraws > 0;
-    tl_review_build_panel(review);
+    if (panel_is_due(review)) {
+        tl_review_build_panel(review);
+        review->times.panel_s = tl_clock_s();
+    }
     tl_review_lap(review, "the panel");
     return tl_review_present(review, error);
 }
@@ -197,6 +210,7 @@ static void log_end(const struct tl_review *review, size_t bytes_before)
 {
     const double megabyte = 1 << 20;
     log_times(&review->frame_times, "in motion");
+    log_times(&review->window_times, "in motion, without drawing and cloth");
     log_times(&review->rest_times, "at rest");
     tl_info("view: closed after %d images, %d shown, %zu GL messages, resident %.0f MB at start, %.0f MB "
             "at end",

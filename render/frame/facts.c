@@ -1,5 +1,6 @@
 #include "render/frame/facts.h"
 
+#include "config/simd.h"
 #include "render/brdf/lobe_fit.h"
 #include "render/detail/detail.h"
 #include "render/env/exponent.h"
@@ -13,17 +14,43 @@
 
 #include <math.h>
 
+/* The smallest and the largest of some numbers. In many lanes, because the facts of a frame to come are asked
+ * for several times a frame. */
+TL_CLONES static void range_of(const float *values, size_t count, float *low, float *high)
+{
+    enum { LANES = 2 * TL_LANES }; /* loops of TL_LANES would be unrolled, and not become vector code */
+    float lows[LANES], highs[LANES];
+    for (int k = 0; k < LANES; k++) {
+        lows[k] = INFINITY;
+        highs[k] = -INFINITY;
+    }
+    size_t whole = count - count % LANES;
+    for (size_t i = 0; i < whole; i += LANES)
+        for (int k = 0; k < LANES; k++) {
+            lows[k] = tl_lesser(values[i + (size_t)k], lows[k]);
+            highs[k] = tl_greater(values[i + (size_t)k], highs[k]);
+        }
+    for (size_t i = whole; i < count; i++) {
+        lows[0] = tl_lesser(values[i], lows[0]);
+        highs[0] = tl_greater(values[i], highs[0]);
+    }
+    *low = INFINITY;
+    *high = -INFINITY;
+    for (int k = 0; k < LANES; k++) {
+        *low = fminf(*low, lows[k]);
+        *high = fmaxf(*high, highs[k]);
+    }
+}
+
 /* The smallest and the largest glossiness that a material's maps can make of it. */
 static void glossiness_range(const tl_material *material, float *low, float *high)
 {
     float least = material->gloss_map.image ? 0 : material->glossiness, most = material->glossiness;
     if (material->weave) {
         const tl_image *gloss = &material->weave->gloss;
-        float added_low = INFINITY, added_high = -INFINITY;
-        for (size_t i = 0; i < (size_t)gloss->width * (size_t)gloss->height; i++) {
-            added_low = fminf(added_low, tl_image_floats(gloss)[i]);
-            added_high = fmaxf(added_high, tl_image_floats(gloss)[i]);
-        }
+        float added_low, added_high;
+        range_of(tl_image_floats(gloss), (size_t)gloss->width * (size_t)gloss->height, &added_low,
+                 &added_high);
         least += added_low;
         most += added_high;
     }

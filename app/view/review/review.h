@@ -36,6 +36,7 @@ enum tl_review_drag { TL_DRAG_NONE, TL_DRAG_ORBIT, TL_DRAG_PAN, TL_DRAG_LIGHT, T
 struct tl_review_times {       /* of the last frame that had such a part */
     double frame, cloth, draw; /* ms; frame: from its start to the swap of buffers */
     double began_s;            /* when the current frame began */
+    double panel_s;            /* when the panel was built */
     double lap_s;              /* when its last part ended */
     const char *longest;       /* its longest part so far other than drawing */
     double longest_ms;
@@ -133,6 +134,7 @@ struct tl_review {
     struct tl_review_memory memory;
     struct tl_review_times times;
     struct tl_frame_times frame_times, rest_times; /* of images in motion, and at rest */
+    struct tl_frame_times window_times;            /* of images in motion, without drawing and cloth */
     struct tl_cloth_report report;
     int reported_frame;
     double reported_s;

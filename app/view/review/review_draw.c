@@ -80,6 +80,8 @@ static void record_time(struct tl_review *review)
     }
     review->times.frame = frame_ms;
     tl_frame_times_add(&review->frame_times, frame_ms);
+    if (!review->wipe.renderer) /* whose drawing is not a part of frame_ms */
+        tl_frame_times_add(&review->window_times, frame_ms - review->times.cloth - review->times.draw);
     tl_quality_governor_learn(review->governor, tl_renderer_last_plan(review->renderer), review->times.cloth,
                               frame_ms);
 }
