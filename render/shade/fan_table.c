@@ -9,7 +9,7 @@
 static float cosine_of(int row)
 {
     float at = ((float)row + TL_FAN_FIRST) / TL_FAN_ROWS;
-    return at * at;
+    return sinf(0.5f * (float)M_PI * fminf(at * at, 1));
 }
 
 static bool follows_glossiness(const tl_material *material)
@@ -67,22 +67,30 @@ static float distance_of(const struct tl_fan_node *a, const struct tl_fan_node *
     return sum;
 }
 
-/* The fit may list its lobes from either end. Interpolation needs one order in all nodes: that of the
- * neighbour. */
-static void order_as(const struct tl_fan_node *neighbour, int count, struct tl_fan_node *node)
-{
-    if (distance_of(neighbour, node, count, true) >= distance_of(neighbour, node, count, false))
-        return;
-    for (int k = 0; k < count / 2; k++) {
-        struct tl_fan_lobe spare = node->lobes[k];
-        node->lobes[k] = node->lobes[count - 1 - k];
-        node->lobes[count - 1 - k] = spare;
-    }
-}
-
 static struct tl_fan_node *node_at(const struct tl_fan_table *table, int gloss, int row, int column)
 {
     return &table->nodes[(size_t)(gloss * TL_FAN_COSINES + row) * TL_FAN_AZIMUTHS + (size_t)column];
+}
+
+/* Orders the lobes of a cell's corners as those of the corner whose lobes lie farthest apart. */
+static void order_cell(const struct tl_fan_table *table, int gloss, int row, int column)
+{
+    const int count = table->lobe_count, corners = table->gloss_count > 1 ? 8 : 4;
+    const struct tl_fan_node *nodes[8], *widest = NULL;
+    float width = -1;
+    for (int i = 0; i < corners; i++) {
+        nodes[i] = node_at(table, gloss + (i >> 2), row + (i >> 1 & 1), column + (i & 1));
+        float apart = distance_of(nodes[i], nodes[i], count, true);
+        if (apart > width) {
+            width = apart;
+            widest = nodes[i];
+        }
+    }
+    int orders = 0;
+    for (int i = 0; i < corners; i++)
+        if (distance_of(widest, nodes[i], count, true) < distance_of(widest, nodes[i], count, false))
+            orders |= 1 << i;
+    node_at(table, gloss, row, column)->lobes[0].orders = (float)orders;
 }
 
 static float glossiness_at(const struct tl_fan_table *table, int gloss)
@@ -129,17 +137,10 @@ void tl_fan_table_make(const tl_material *material, float gloss_low, float gloss
                 fit_node(material, glossiness_at(out, gloss), cosine_of(row),
                          (float)M_PI * (float)column / (TL_FAN_AZIMUTHS - 1), max_count, out->lobe_count,
                          node_at(out, gloss, row, column));
-    for (int gloss = 0; gloss < out->gloss_count; gloss++)
-        for (int row = TL_FAN_COSINES - 1; row >= 0; row--)
-            for (int column = 0; column < TL_FAN_AZIMUTHS; column++) {
-                const struct tl_fan_node *neighbour = column > 0 ? node_at(out, gloss, row, column - 1)
-                                                      : row < TL_FAN_COSINES - 1
-                                                          ? node_at(out, gloss, row + 1, column)
-                                                      : gloss > 0 ? node_at(out, gloss - 1, row, column)
-                                                                  : NULL;
-                if (neighbour)
-                    order_as(neighbour, out->lobe_count, node_at(out, gloss, row, column));
-            }
+    for (int gloss = 0; gloss == 0 || gloss < out->gloss_count - 1; gloss++)
+        for (int row = 0; row < TL_FAN_COSINES - 1; row++)
+            for (int column = 0; column < TL_FAN_AZIMUTHS - 1; column++)
+                order_cell(out, gloss, row, column);
 }
 
 void tl_fan_table_release(struct tl_fan_table *table)

@@ -13,6 +13,7 @@
 #include "render/env/quad.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 #define TL_FAN_AZIMUTHS 49 /* over half a turn: the fit is the same seen from the other side, mirrored */
 #define TL_FAN_COSINES  49
@@ -21,7 +22,9 @@
 /* One node: lobes in the local frame (tangent, bitangent, normal). Two quads each. */
 struct tl_fan_lobe {
     float direction[3], log_exponent; /* base 2 */
-    float low, high, unused[2];       /* weight at F0 = TL_FAN_LOW_F0 and at F0 = 1 */
+    float low, high;                  /* weight at F0 = TL_FAN_LOW_F0 and at F0 = 1 */
+    float orders;                     /* of the first lobe: of the cell that begins at this node */
+    float unused;
 };
 struct tl_fan_node {
     struct tl_fan_lobe lobes[TL_LOBE_FIT_MAX];
@@ -57,7 +60,8 @@ TL_INLINE struct tl_fan_between tl_fan_between(float at, int count)
     return (struct tl_fan_between){first, at - (float)first};
 }
 
-/* Towards a grazing viewer the fit changes quickly: cosines are squared distances from there. */
+/* Towards a grazing viewer the fit changes quickly: elevations, as shares of a right angle, are squared
+ * distances from there. */
 #define TL_FAN_ROWS  ((float)TL_FAN_COSINES - 0.98f)
 #define TL_FAN_FIRST 0.02f
 
@@ -72,18 +76,29 @@ TL_INLINE float tl_fan_azimuth(float x, float y)
     return x < 0 ? 3.14159265f - angle : angle;
 }
 
-TL_INLINE void tl_fan_add_nodes(const struct tl_fan_table *table, int gloss, float share,
-                                struct tl_fan_between row, struct tl_fan_between column,
+TL_INLINE const struct tl_fan_node *tl_fan_nodes(const struct tl_fan_table *table, int gloss, int row,
+                                                 int column)
+{
+    return table->nodes + (size_t)(gloss * TL_FAN_COSINES + row) * TL_FAN_AZIMUTHS + (size_t)column;
+}
+
+/* The fit lists its lobes along an axis that has no sign, and which turns by half a turn about a viewer to
+ * whom the gloss is round: no order of the lobes suits all nodes, but one suits a cell. Bit i of `orders`:
+ * corner i lists them from the other end. */
+TL_INLINE void tl_fan_add_nodes(const struct tl_fan_table *table, const struct tl_fan_node *nodes, int orders,
+                                float share, struct tl_fan_between row, struct tl_fan_between column,
                                 tl_quad sums[2 * TL_LOBE_FIT_MAX])
 {
-    const struct tl_fan_node *nodes =
-        table->nodes + (size_t)(gloss * TL_FAN_COSINES + row.first) * TL_FAN_AZIMUTHS + (size_t)column.first;
     for (int i = 0; i < 4; i++) {
         float weight =
             share * (i & 1 ? column.share : 1 - column.share) * (i & 2 ? row.share : 1 - row.share);
-        const tl_quad *node = (const tl_quad *)&nodes[(i >> 1) * TL_FAN_AZIMUTHS + (i & 1)];
-        for (int k = 0; k < 2 * table->lobe_count; k++)
-            sums[k] += weight * node[k];
+        const tl_quad *lobe = (const tl_quad *)&nodes[(i >> 1) * TL_FAN_AZIMUTHS + (i & 1)];
+        bool reversed = orders >> i & 1;
+        lobe += reversed ? 2 * (table->lobe_count - 1) : 0;
+        for (int k = 0; k < table->lobe_count; k++, lobe += reversed ? -2 : 2) {
+            sums[2 * k] += weight * lobe[0];
+            sums[2 * k + 1] += weight * lobe[1];
+        }
     }
 }
 
@@ -96,20 +111,25 @@ TL_INLINE float tl_fan_fetch(const struct tl_fan_table *table, float x, float y,
     float side = y < 0 ? -1.0f : 1.0f;
     struct tl_fan_between column = tl_fan_between(
         tl_fan_azimuth(side * x, side * y) * ((TL_FAN_AZIMUTHS - 1) / 3.14159265f), TL_FAN_AZIMUTHS);
-    struct tl_fan_between row =
-        tl_fan_between(sqrtf(tl_lesser(cosine, 1)) * TL_FAN_ROWS - TL_FAN_FIRST, TL_FAN_COSINES);
+    float sine = sqrtf(tl_greater(1 - cosine * cosine, 0));
+    float elevation = tl_fan_azimuth(sine, cosine) * (2 / 3.14159265f);
+    struct tl_fan_between row = tl_fan_between(sqrtf(elevation) * TL_FAN_ROWS - TL_FAN_FIRST, TL_FAN_COSINES);
     for (int k = 0; k < 2 * table->lobe_count; k++)
         sums[k] = (tl_quad){0, 0, 0, 0};
     if (table->gloss_count == 1) {
-        tl_fan_add_nodes(table, 0, 1, row, column, sums);
+        const struct tl_fan_node *nodes = tl_fan_nodes(table, 0, row.first, column.first);
+        tl_fan_add_nodes(table, nodes, (int)nodes->lobes[0].orders, 1, row, column, sums);
         return side;
     }
     struct tl_fan_between gloss =
         tl_fan_between((glossiness - table->gloss_low) / (table->gloss_high - table->gloss_low) *
                            (float)(table->gloss_count - 1),
                        table->gloss_count);
-    tl_fan_add_nodes(table, gloss.first, 1 - gloss.share, row, column, sums);
-    tl_fan_add_nodes(table, gloss.first + 1, gloss.share, row, column, sums);
+    const struct tl_fan_node *nodes = tl_fan_nodes(table, gloss.first, row.first, column.first);
+    int orders = (int)nodes->lobes[0].orders;
+    tl_fan_add_nodes(table, nodes, orders, 1 - gloss.share, row, column, sums);
+    tl_fan_add_nodes(table, nodes + TL_FAN_COSINES * TL_FAN_AZIMUTHS, orders >> 4, gloss.share, row, column,
+                     sums);
     return side;
 }
 
