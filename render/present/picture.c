@@ -79,6 +79,7 @@ void tl_picture_copy(struct tl_picture *picture, tl_gpu *gpu, unsigned framebuff
     }
     glBlitNamedFramebuffer(picture->target.id, framebuffer, first_column, 0, end_column, picture->height,
                            first_column, 0, end_column, picture->height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
 }
 
 void tl_picture_read(const struct tl_picture *picture, tl_image *out)

@@ -29,7 +29,8 @@ uint8_t *tl_picture_begin_cpu(struct tl_picture *picture, const struct tl_pictur
  * viewport. */
 void tl_picture_begin_gpu(struct tl_picture *picture, tl_gpu *gpu, const struct tl_picture_part *part);
 
-/* Copies columns [first, end) to a framebuffer (GL name) that has as many pixels. */
+/* Copies columns [first, end) to a framebuffer (GL name) that has as many pixels, and leaves it bound: a
+ * window's panel is drawn over them. */
 void tl_picture_copy(struct tl_picture *picture, tl_gpu *gpu, unsigned framebuffer, int first_column,
                      int end_column);
 /* Copies the picture, rows downwards: U8 RGB. The caller releases `out` with tl_image_release. */
