@@ -270,7 +270,7 @@ static bool read_flag(int argc, char **argv, int *at, unsigned flags, struct tl_
     if (!flag->value && equals)
         return tl_fail(error, TL_USAGE, "%s: takes no value: write it alone", flag->name);
     if (!flag->value)
-        return take_flag(flag, NULL, out, error);
+        return take_flag(flag, "", out, error);
     if (!equals && *at + 1 == argc)
         return tl_fail(error, TL_USAGE, "%s: needs a value: %s %s", flag->name, flag->name, flag->value);
     return take_flag(flag, equals ? equals + 1 : argv[++*at], out, error);

@@ -40,7 +40,7 @@ static void add_membrane_rows(const struct tl_membrane *m, size_t lane, const st
     double area = m->area[lane], shear[3 * TL_BATCH] = {0};
     double u = x ? shortness(m->c, m->vertices, lane, x) : 1,
            v = x ? shortness(m->d, m->vertices, lane, x) : 1;
-    for (int i = 0; i < 3; i++)
+    for (size_t i = 0; i < 3; i++)
         shear[i * TL_BATCH] = u * fabs(m->c[i][lane]) + v * fabs(m->d[i][lane]);
     add_rows(&m->c[0][lane], TL_BATCH, &m->vertices[0][lane], 3,
              area * stretch_stiffness(fabric->stretch_weft, u), sums);

@@ -69,6 +69,7 @@ TL_INLINE size_t fetch_edges(const struct fans *fans, size_t first, struct edges
         for (size_t i = 0; i < LANES; i++)
             places[k * LANES + i] = fans->positions[fans->spokes[first + k][i]];
     for (size_t i = 0; i < count * LANES; i++) {
+        /* cppcheck-suppress uninitvar; the loop above has filled count * LANES places */
         out->x[i] = places[i].x;
         out->y[i] = places[i].y;
         out->z[i] = places[i].z;

@@ -149,7 +149,7 @@ static int compare_ranks(const void *a, const void *b)
 
 static void list_regions(const struct tl_regions *regions, struct tl_legend *legend)
 {
-    struct ranked order[TL_REGIONS_MAX];
+    struct ranked order[TL_REGIONS_MAX] = {{0}};
     double all = 0;
     for (int i = 0; i < regions->count; i++) {
         order[i] = (struct ranked){regions->items[i].importance, i};

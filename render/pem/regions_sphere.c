@@ -211,7 +211,7 @@ static void cut_node(struct tree *tree, const struct growth *node, struct growth
     bool flat = !isfinite(scale); /* the axis does not separate the points: split in the middle */
     int cut = flat ? 0 : find_cut(points, node->first, node->last, tree->along, range[0], scale);
     uint32_t middle = node->first + (node->last - node->first) / 2;
-    uint32_t left = node->first, right = node->first; /* write positions in `points` and in `spare` */
+    uint32_t left = node->first, right = left; /* write positions in `points` and in `spare` */
     for (uint32_t i = node->first; i < node->last; i++) {
         bool before = flat ? i < middle : bin_of(tree->along[i], range[0], scale) < cut;
         add_moments(&children[!before].moments, points, i);

@@ -55,6 +55,11 @@ static double area_of(const tl_mesh *mesh, const struct tl_mesh_part *part)
     return area;
 }
 
+static bool is_at(vec3s p, vec3s place)
+{
+    return p.x == place.x && p.y == place.y && p.z == place.z;
+}
+
 /* The number of triangle sides between positions a and b, in either direction. */
 static int sides_between(const tl_mesh *mesh, vec3s a, vec3s b)
 {
@@ -62,8 +67,7 @@ static int sides_between(const tl_mesh *mesh, vec3s a, vec3s b)
     for (size_t i = 0; i < mesh->index_count; i++) {
         vec3s p = mesh->positions[mesh->indices[i]];
         vec3s q = mesh->positions[mesh->indices[i % 3 == 2 ? i - 2 : i + 1]];
-        sides += (memcmp(&p, &a, sizeof p) == 0 && memcmp(&q, &b, sizeof q) == 0) ||
-                 (memcmp(&p, &b, sizeof p) == 0 && memcmp(&q, &a, sizeof q) == 0);
+        sides += (is_at(p, a) && is_at(q, b)) || (is_at(p, b) && is_at(q, a));
     }
     return sides;
 }

@@ -189,7 +189,7 @@ static int by_square(const void *a, const void *b)
 
 static void compare_pixels(const struct oracle *oracle, struct tl_finding *finding)
 {
-    struct pixel_error errors[PIXELS], sums = {0};
+    struct pixel_error errors[PIXELS] = {{0}}, sums = {0};
     for (int i = 0; i < oracle->count; i++)
         errors[i] = compare_pixel(oracle, i);
     qsort(errors, (size_t)oracle->count, sizeof *errors, by_square);

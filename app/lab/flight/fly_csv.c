@@ -57,7 +57,8 @@ void tl_flight_write_csv(const struct tl_flight *flight, FILE *out)
         const struct tl_flight_frame *frame = &flight->frames[i];
         fprintf(out, "%d,%d", i, i < flight->warm_up);
         for (size_t k = 0; k < TL_COUNT(numbers); k++) {
-            double value = *(const double *)((const char *)frame + numbers[k].offset);
+            double value;
+            memcpy(&value, (const char *)frame + numbers[k].offset, sizeof value);
             fputc(',', out);
             if (isfinite(value))
                 fprintf(out, numbers[k].format, value);
@@ -187,7 +188,7 @@ static bool read_cell(struct table *table, int column, const char *cell, struct 
     if (kind == MEMORY)
         frame->memory_bytes = (size_t)value;
     if (kind == NUMBER)
-        *(double *)((char *)frame + numbers[index].offset) = value;
+        memcpy((char *)frame + numbers[index].offset, &value, sizeof value);
     if (kind == LEVEL)
         frame->levels.of[index] = (uint8_t)value;
     if (kind == JOB)

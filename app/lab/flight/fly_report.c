@@ -221,7 +221,7 @@ static void print_stack(const struct tl_flight_account *account, FILE *out)
 {
     const struct tl_flight *flight = account->flight;
     double highest_ms = highest_shown(account);
-    struct ranked ranked[TL_JOBS_MAX];
+    struct ranked ranked[TL_JOBS_MAX] = {{0}};
     int count = rank_jobs(flight, ranked), shown = count < JOBS_SHOWN ? count : JOBS_SHOWN;
     struct lines lines = make_lines(flight);
     struct tl_plot_point *layers[TL_PLOT_STYLES];
@@ -248,7 +248,7 @@ static void print_stack(const struct tl_flight_account *account, FILE *out)
 
 static void print_job_table(const struct tl_flight *flight, FILE *out)
 {
-    struct ranked ranked[TL_JOBS_MAX];
+    struct ranked ranked[TL_JOBS_MAX] = {{0}};
     struct tl_cells cells = {0};
     int count = rank_jobs(flight, ranked), judged = flight->count - flight->warm_up;
     static const char *const heads[] = {"job", "median ms when it ran", "ran in", "of all time"};
@@ -418,7 +418,8 @@ static void print_oracle(const struct tl_flight_account *account, FILE *out)
         struct tl_plot_point *points = add_line(&lines, flight, oracle_lines[k].name);
         int count = 0;
         for (int i = 0; i < flight->count; i++) {
-            double value = *(const double *)((const char *)&flight->frames[i] + oracle_lines[k].offset);
+            double value;
+            memcpy(&value, (const char *)&flight->frames[i] + oracle_lines[k].offset, sizeof value);
             if (isfinite(value))
                 points[count++] =
                     (struct tl_plot_point){i / flight->frame_rate, value, oracle_lines[k].name, false};

@@ -79,7 +79,7 @@ static void print_group_table(const struct tl_trade *trade, const char *group, i
     for (size_t i = 0; i < TL_COUNT(heads); i++)
         tl_cells_add(&cells, "%s", heads[i]);
     size_t columns = TL_COUNT(heads);
-    bool shown[TL_EXPERIMENT_APPEARANCES];
+    bool shown[TL_EXPERIMENT_APPEARANCES] = {false};
     for (int l = 0; l < trade->experiment->appearance_count; l++) {
         shown[l] = tl_trade_next(trade, NULL, group, l, false) != NULL;
         if (!shown[l])

@@ -29,6 +29,7 @@ struct stand {
     tl_frame frame;
     struct tl_checked checked;
 };
+typedef struct stand *stand_maker(void);
 
 static void draw(struct stand *stand, tl_renderer **renderer, const tl_frame *frame,
                  const struct tl_render_settings *settings, tl_image *image)
@@ -205,7 +206,7 @@ static void a_clean_frame_passes(void **state)
     static const char *const rays[] = {"visibility.range", "visibility.regions", "light.exact", "light.sum"};
     static const char *const chains[] = {"maps.moments", "light.pems"};
     static const char *const exact[] = {"maps.moments", "light.slices", "light.sum", "light.exact"};
-    struct stand *(*const stands[])(void) = {by_rays, by_chains, by_slices};
+    stand_maker *const stands[] = {by_rays, by_chains, by_slices};
     const char *const *const own[] = {rays, chains, exact};
     const size_t counts[] = {TL_COUNT(rays), TL_COUNT(chains), TL_COUNT(exact)};
     for (size_t i = 0; i < TL_COUNT(stands); i++) {
@@ -453,7 +454,7 @@ static void a_leaking_shadow_is_named(void **state)
     take_down(&stand);
 
     /* All of them leak: the picture itself shows it. */
-    struct stand *(*const stands[])(void) = {by_rays, by_slices};
+    stand_maker *const stands[] = {by_rays, by_slices};
     for (size_t i = 0; i < TL_COUNT(stands); i++) {
         stand = stands[i]();
         struct tl_render_settings settings = stand->settings;
@@ -510,7 +511,7 @@ static void move_curtain(struct stand *stand)
 static void a_stale_map_is_named(void **state)
 {
     (void)state;
-    struct stand *(*const stands[])(void) = {by_rays, by_chains, by_slices};
+    stand_maker *const stands[] = {by_rays, by_chains, by_slices};
     for (size_t i = 0; i < TL_COUNT(stands); i++) {
         struct stand *stand = stands[i]();
         move_curtain(stand);
@@ -551,7 +552,7 @@ static void a_stale_map_is_named(void **state)
 static void a_skipped_update_is_named(void **state)
 {
     (void)state;
-    struct stand *(*const stands[])(void) = {by_rays, by_chains, by_slices};
+    stand_maker *const stands[] = {by_rays, by_chains, by_slices};
     for (size_t i = 0; i < TL_COUNT(stands); i++) {
         struct stand *stand = stands[i]();
         move_curtain(stand);

@@ -117,6 +117,7 @@ static void manners_are_drawn(void **state)
             free(text);
     }
     /* A tight axis: the shade, up to 1 of 2, is half of it. */
+    assert_non_null(lines);
     assert_non_null(strstr(lines, "class=\"shade\" x=\"66.0\" y=\"14.0\" width=\"337.0\""));
     free(lines);
 }
