@@ -126,10 +126,22 @@ static void change_solver(struct dressed *d, int solver)
     assert_ok(tl_cloth_set(d->cloth, &d->cloth->fabric, &params, &error), error);
 }
 
-/* The tested solver takes over shortly before the arms reach the skirt. Settling uses a coarse one, because
- * the reference's step is short. */
-static void check_walking(int solver, int frames)
+/* Puts cloth and avatar back to where the cloth's start was marked; d->pose is the avatar's pose there. */
+static void return_to_start(struct dressed *d)
 {
+    for (int i = 0; i < 2; i++) /* the second time the collider is at rest there */
+        tl_collider_move(d->collider, d->pose);
+    tl_cloth_reset(d->cloth);
+}
+
+/* The slow solvers take over shortly before the arms reach the skirt. Settling uses a coarse one, because the
+ * reference's step is short. */
+static void test_walking_slow_solvers(void **state)
+{
+    (void)state;
+    static const struct {
+        int solver, share;
+    } cases[] = {{TL_CLOTH_SETTLE, 2}, {TL_CLOTH_REFERENCE, 9}};
     struct dressed d = {0};
     struct worst worst = {0};
     const int first = POSE_IN + 14;
@@ -138,25 +150,20 @@ static void check_walking(int solver, int frames)
         walk(&d, frame);
         step(&d, &worst);
     }
-    change_solver(&d, solver);
-    for (int frame = first; frame < first + frames; frame++) {
-        walk(&d, frame);
-        step(&d, &worst);
+    tl_cloth_mark_start(d.cloth);
+    for (size_t i = 0; i < TL_COUNT(cases); i++) {
+        int frames = frame_count(cases[i].share);
+        walk(&d, first - 1);
+        return_to_start(&d);
+        change_solver(&d, cases[i].solver);
+        worst = (struct worst){0};
+        for (int frame = first; frame < first + frames; frame++) {
+            walk(&d, frame);
+            step(&d, &worst);
+        }
+        print_worst(tl_cloth_solver_names[cases[i].solver], frames, &worst);
     }
-    print_worst(tl_cloth_solver_names[solver], frames, &worst);
     undress(&d);
-}
-
-static void test_walking_reference(void **state)
-{
-    (void)state;
-    check_walking(TL_CLOTH_REFERENCE, frame_count(9));
-}
-
-static void test_walking_settle(void **state)
-{
-    (void)state;
-    check_walking(TL_CLOTH_SETTLE, frame_count(2));
 }
 
 /* The shoulders turn against the feet and the body sways sideways: every triangle moves and most deform. */
@@ -172,75 +179,53 @@ static void twist(struct dressed *d, int frame)
     }
 }
 
-static void check_twisting(const char *garment, const char *avatar, int solver, int frames)
+/* Every solver begins with the same drape. */
+static void check_twisting(const char *garment, const char *avatar)
 {
+    static const struct {
+        int solver, share;
+    } cases[] = {{TL_CLOTH_PREVIEW, 1}, {TL_CLOTH_SETTLE, 9}, {TL_CLOTH_REFERENCE, 9}};
     tl_error error = {0};
     struct dressed d = {0};
-    struct worst worst = {0};
     assert_ok(tl_avatar_load(test_data(avatar), &d.avatar, &error), error);
     assert_ok(tl_garment_load(test_data(garment), &d.garment, &error), error);
     dress(&d);
-    change_solver(&d, solver);
-    for (int frame = 1; frame <= frames; frame++) {
-        twist(&d, frame);
-        step(&d, &worst);
+    tl_cloth_mark_start(d.cloth);
+    for (size_t i = 0; i < TL_COUNT(cases); i++) {
+        struct worst worst = {0};
+        int frames = frame_count(cases[i].share);
+        twist(&d, 0);
+        return_to_start(&d);
+        change_solver(&d, cases[i].solver);
+        for (int frame = 1; frame <= frames; frame++) {
+            twist(&d, frame);
+            step(&d, &worst);
+        }
+        printf("%s: ", tl_cloth_solver_names[cases[i].solver]);
+        print_worst(garment, frames, &worst);
     }
-    printf("%s: ", tl_cloth_solver_names[solver]);
-    print_worst(garment, frames, &worst);
     undress(&d);
 }
-
-static const char man[] = "avatars/mh_male_body.glb", suit[] = "garments/mh_male_casualsuit06.glb";
-static const char woman[] = "avatars/mh_female_body.glb", sports[] = "garments/mh_female_sportsuit01.glb";
 
 static void test_twisting_man(void **state)
 {
     (void)state;
-    check_twisting(suit, man, TL_CLOTH_PREVIEW, frame_count(1));
-}
-
-static void test_twisting_man_settle(void **state)
-{
-    (void)state;
-    check_twisting(suit, man, TL_CLOTH_SETTLE, frame_count(9));
-}
-
-static void test_twisting_man_reference(void **state)
-{
-    (void)state;
-    check_twisting(suit, man, TL_CLOTH_REFERENCE, frame_count(9));
+    check_twisting("garments/mh_male_casualsuit06.glb", "avatars/mh_male_body.glb");
 }
 
 static void test_twisting_woman(void **state)
 {
     (void)state;
-    check_twisting(sports, woman, TL_CLOTH_PREVIEW, frame_count(1));
-}
-
-static void test_twisting_woman_settle(void **state)
-{
-    (void)state;
-    check_twisting(sports, woman, TL_CLOTH_SETTLE, frame_count(9));
-}
-
-static void test_twisting_woman_reference(void **state)
-{
-    (void)state;
-    check_twisting(sports, woman, TL_CLOTH_REFERENCE, frame_count(9));
+    check_twisting("garments/mh_female_sportsuit01.glb", "avatars/mh_female_body.glb");
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_walking),
-        cmocka_unit_test(test_walking_settle),
-        cmocka_unit_test(test_walking_reference),
+        cmocka_unit_test(test_walking_slow_solvers),
         cmocka_unit_test(test_twisting_man),
-        cmocka_unit_test(test_twisting_man_settle),
-        cmocka_unit_test(test_twisting_man_reference),
         cmocka_unit_test(test_twisting_woman),
-        cmocka_unit_test(test_twisting_woman_settle),
-        cmocka_unit_test(test_twisting_woman_reference),
     };
     tl_log_set_level(TL_LOG_WARN);
     cmocka_set_test_filter(getenv("TOILE_TESTS")); /* NULL: all */
